@@ -1,0 +1,94 @@
+"""The kinematic chain from a base to an end effector, taken from a compiled MuJoCo model."""
+
+import hashlib
+from dataclasses import dataclass, field, fields, replace
+from functools import cached_property
+
+import numpy as np
+
+
+def _identity() -> np.ndarray:
+    return np.eye(4)
+
+
+@dataclass(frozen=True, eq=False)
+class Chain:
+    """Joints in order from base to end effector, with everything the kernels need, as float64 arrays.
+
+    A chain has ``L`` joints driven by ``n`` coordinates (the configuration ``q``); ``L > n`` only where
+    joints are coupled (mimic joints, linear joint equalities). Joint ``i`` is displaced by
+    ``joint_scale[i] * q[joint_source[i]] + joint_offset[i]`` [rad or m].
+
+    Every joint frame has the joint axis as its local z, its origin on the axis. ``T_joint[i]`` is the
+    frame of joint ``i`` at zero displacement in the frame of joint ``i-1`` after its motion (in the base
+    frame for ``i = 0``); the joint then rotates about, or translates along, its z.
+    """
+
+    name: str
+    base_frame: str
+    tip_frame: str
+    joint_names: tuple[str, ...]  # of the n coordinates
+    lower_limits: np.ndarray  # (n,) [rad or m]; -pi where periodic
+    upper_limits: np.ndarray  # (n,) [rad or m]; +pi where periodic
+    periodic: np.ndarray  # (n,) bool: a hinge without limits
+    effort_limits: np.ndarray | None  # (n,) [N m or N], None where the model has none for some joint
+    joint_is_revolute: np.ndarray  # (L,) bool
+    joint_source: np.ndarray  # (L,) int
+    joint_scale: np.ndarray  # (L,)
+    joint_offset: np.ndarray  # (L,) [rad or m]
+    T_joint: np.ndarray  # (L, 4, 4)
+    T_tip: np.ndarray  # (4, 4) end effector in the frame of the last joint
+    mass: np.ndarray  # (L,) [kg] of everything rigidly attached to joint i, before joint i+1
+    center_of_mass: np.ndarray  # (L, 3) [m] in the frame of joint i
+    inertia: np.ndarray  # (L, 3, 3) [kg m²] about the centre of mass, axes of the frame of joint i
+    armature: np.ndarray  # (L,) [kg m² or kg] rotor inertia, added to the diagonal of M
+    has_inertia: bool
+    T_world_base: np.ndarray = field(default_factory=_identity)  # (4, 4) placement of the base frame
+    T_tip_tool: np.ndarray = field(default_factory=_identity)  # (4, 4) tool in the end-effector frame
+
+    def __post_init__(self):
+        for f in fields(self):
+            value = getattr(self, f.name)
+            if isinstance(value, np.ndarray):
+                value = np.array(value, order="C")
+                value.setflags(write=False)
+                object.__setattr__(self, f.name, value)
+
+    @property
+    def n(self) -> int:
+        """Number of coordinates: the length of a configuration."""
+        return len(self.joint_names)
+
+    @property
+    def revolute(self) -> np.ndarray:
+        """Whether coordinate k is an angle, shape (n,) bool (that of the joint it drives first)."""
+        return np.array([bool(self.joint_is_revolute[self.joint_source == k][0]) for k in range(self.n)])
+
+    @cached_property
+    def content_hash(self) -> str:
+        """SHA-256 of every number and name of the chain, hexadecimal."""
+        digest = hashlib.sha256()
+        for f in fields(self):
+            value = getattr(self, f.name)
+            digest.update(f.name.encode())
+            if isinstance(value, np.ndarray):
+                digest.update(f"{value.dtype.str}{value.shape}".encode() + value.tobytes())
+            else:
+                digest.update(repr(value).encode())
+        return digest.hexdigest()
+
+    def placed(self, T_world_base: np.ndarray | None = None, T_tip_tool: np.ndarray | None = None) -> "Chain":
+        """The same chain with its base placed in the world and a tool added at its tip ((4, 4) each)."""
+        changes = {"T_world_base": T_world_base, "T_tip_tool": T_tip_tool}
+        return replace(self, **{name: value for name, value in changes.items() if value is not None})
+
+    @cached_property
+    def reach(self) -> float:
+        """Upper bound of the distance from the first joint's origin to the end effector [m]."""
+        displaced = np.where(self.joint_is_revolute, 0.0, self._largest_displacement())
+        links = np.linalg.norm(self.T_joint[1:, :3, 3], axis=1).sum()
+        return float(links + displaced.sum() + np.linalg.norm((self.T_tip @ self.T_tip_tool)[:3, 3]))
+
+    def _largest_displacement(self) -> np.ndarray:
+        limits = np.stack([self.lower_limits, self.upper_limits])[:, self.joint_source]
+        return np.abs(self.joint_scale * limits + self.joint_offset).max(axis=0)

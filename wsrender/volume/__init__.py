@@ -1,0 +1,1 @@
+"""Lattice, distribution map and volume data."""

@@ -1,0 +1,24 @@
+"""Distribution map: one row per sample ([WSR] II.C.2)."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+
+@dataclass(frozen=True, eq=False)
+class DistributionMap:
+    """End-effector positions and local indices, one row per sample.
+
+    Positions [m] are in the world frame, shape (N, 3); ``configuration`` [rad or m] has shape (N, n) and
+    ``quat_wxyz`` (N, 4), both None unless kept; each index is an array of shape (N,).
+    """
+
+    position: np.ndarray
+    indices: dict[str, np.ndarray]
+    units: dict[str, str] = field(default_factory=dict)
+    configuration: np.ndarray | None = None
+    joint_names: tuple[str, ...] = ()
+    quat_wxyz: np.ndarray | None = None
+
+    def __len__(self) -> int:
+        return len(self.position)
