@@ -1,0 +1,110 @@
+"""The choices of a job document: task rows, indices, statistics, penalisation, device."""
+
+import re
+from typing import Annotated, Any, Literal
+
+from pydantic import BeforeValidator, Field, WithJsonSchema
+
+from wsrender.spec.quantities import Name, Number, distinct, quoted, real, sequence
+
+TASK_ROWS = ("x", "y", "z", "rx", "ry", "rz")
+NAMED_TASKS = {"linear": TASK_ROWS[:3], "angular": TASK_ROWS[3:], "full": TASK_ROWS}
+INDEX_GROUPS = ("kinematic", "dynamic", "all")
+STATISTICS = ("count", "maximum", "mean", "minimum")
+MAP_COLUMNS = ("configuration", "orientation")
+DEFAULT_PENALTY = 10.0  # K of [WSR] eq. 3 when the penalisation is on
+_DEVICE = re.compile(r"auto|cpu|cuda(:\d{1,3})?")
+
+
+def _task(value: Any) -> str | tuple[str, ...]:
+    if isinstance(value, str) and value in NAMED_TASKS:
+        return value
+    if isinstance(value, str) or value is None:
+        raise ValueError(f"must be {quoted(NAMED_TASKS)} or a list of rows from {' '.join(TASK_ROWS)}")
+    rows = _ordered(value, TASK_ROWS)
+    return next((name for name, named in NAMED_TASKS.items() if rows == named), rows)
+
+
+def _indices(value: Any) -> str | tuple[str, ...]:
+    if isinstance(value, str) and value in INDEX_GROUPS:
+        return value
+    names = () if isinstance(value, str) or value is None else distinct(sequence(value))
+    if not names or not all(isinstance(name, str) and name for name in names):
+        raise ValueError(f"must be {quoted(INDEX_GROUPS)} or a list of index names")
+    return names
+
+
+def _statistics(value: Any) -> tuple[str, ...]:
+    asked = sequence(value)
+    return _ordered(asked if "count" in asked else ["count", *asked], STATISTICS)
+
+
+def _columns(value: Any) -> tuple[str, ...]:
+    columns = sequence(value)
+    return _ordered(columns, MAP_COLUMNS) if columns else ()
+
+
+def _penalty(value: Any) -> float | None:
+    if value is True:
+        return DEFAULT_PENALTY
+    if value is None or value is False:
+        return None
+    number = real(value)
+    if number <= 0:
+        raise ValueError("must be greater than 0 (the K of the penalisation), true (10) or null (off)")
+    return number
+
+
+def _device(value: Any) -> str:
+    if not isinstance(value, str) or not _DEVICE.fullmatch(value):
+        raise ValueError('must be "auto", "cpu", "cuda" or "cuda:N"')
+    return value
+
+
+def _configurations(value: Any) -> tuple[tuple[float, ...], ...] | None:
+    if value is None:
+        return None
+    rows = tuple(tuple(real(q) for q in sequence(row)) for row in sequence(value))
+    if len({len(row) for row in rows}) > 1:
+        raise ValueError("must hold rows of one length, one joint value per joint")
+    return rows
+
+
+def _nothing(value: Any) -> None:
+    if value is not None:
+        raise ValueError("must be null (not available in this version)")
+
+
+def _ordered(value: Any, allowed: tuple[str, ...]) -> tuple[str, ...]:
+    """The distinct items of a list in the order of ``allowed``, so that equal jobs have equal documents."""
+    items = distinct(sequence(value))
+    unknown = [item for item in items if item not in allowed]
+    if unknown:
+        raise ValueError(f"must be a list of items from {' '.join(allowed)}")
+    return tuple(name for name in allowed if name in items)
+
+
+Task = Annotated[
+    Literal["linear", "angular", "full"] | tuple[Literal["x", "y", "z", "rx", "ry", "rz"], ...],
+    BeforeValidator(_task),
+]
+Indices = Annotated[
+    Literal["kinematic", "dynamic", "all"] | tuple[Name, ...],
+    BeforeValidator(_indices),
+]
+Penalty = Annotated[
+    float | None,
+    BeforeValidator(_penalty),
+    WithJsonSchema(
+        {"anyOf": [{"type": "number", "exclusiveMinimum": 0}, {"type": "boolean"}, {"type": "null"}]}
+    ),
+]
+Statistics = Annotated[
+    tuple[Literal["count", "maximum", "mean", "minimum"], ...], BeforeValidator(_statistics)
+]
+MapColumns = Annotated[tuple[Literal["configuration", "orientation"], ...], BeforeValidator(_columns)]
+NotAvailable = Annotated[None, BeforeValidator(_nothing)]
+Device = Annotated[
+    str, BeforeValidator(_device), Field(json_schema_extra={"pattern": f"^({_DEVICE.pattern})$"})
+]
+Configurations = Annotated[tuple[tuple[Number, ...], ...] | None, BeforeValidator(_configurations)]

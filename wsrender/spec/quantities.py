@@ -1,0 +1,67 @@
+"""Numbers, names and lists as job documents write them: strict, finite, never a string or a bool."""
+
+import math
+from collections.abc import Iterable
+from numbers import Integral, Real
+from typing import Annotated, Any
+
+from pydantic import BeforeValidator, Field, StrictStr
+
+LARGEST_COUNT = 10**15
+LARGEST_SEED = 2**63 - 1
+
+
+def real(value: Any) -> float:
+    """A finite float from any real number (NumPy scalars included); ValueError otherwise."""
+    if not _is_number(value):
+        raise ValueError("must be a number")
+    try:
+        number = float(value)
+    except OverflowError:
+        number = math.inf
+    if not math.isfinite(number):
+        raise ValueError("must be a finite number")
+    return number
+
+
+def integer(value: Any) -> int:
+    """An int from a whole number (1e6 is one, as in JSON Schema); ValueError otherwise."""
+    if not _is_number(value) or (not isinstance(value, Integral) and not float(value).is_integer()):
+        raise ValueError("must be a whole number")
+    return int(value)
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, Real) and not isinstance(value, bool)
+
+
+def sequence(value: Any) -> list:
+    """A list from a list, a tuple or a NumPy array; ValueError otherwise (a string is not a list)."""
+    if hasattr(value, "tolist"):
+        value = value.tolist()
+    if not isinstance(value, list | tuple):
+        raise ValueError("must be a list")
+    return list(value)
+
+
+def distinct(values: Iterable) -> tuple:
+    """The values as a tuple; ValueError if there is none or one is repeated."""
+    values = tuple(values)
+    if not values:
+        raise ValueError("must not be empty")
+    repeated = [value for k, value in enumerate(values) if value in values[:k]]
+    if repeated:
+        raise ValueError(f'must not repeat "{repeated[0]}"')
+    return values
+
+
+def quoted(names: Iterable[str]) -> str:
+    """The names in double quotes, separated by commas."""
+    return ", ".join(f'"{name}"' for name in names)
+
+
+Number = Annotated[float, BeforeValidator(real)]
+PositiveNumber = Annotated[float, Field(gt=0), BeforeValidator(real)]
+Count = Annotated[int, Field(ge=1, le=LARGEST_COUNT), BeforeValidator(integer)]
+Seed = Annotated[int, Field(ge=0, le=LARGEST_SEED), BeforeValidator(integer)]
+Name = Annotated[StrictStr, Field(min_length=1)]
