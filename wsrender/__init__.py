@@ -1,0 +1,90 @@
+"""Workspace analysis of robotic manipulators: where an arm can reach, and how well it moves there.
+
+``import wsrender`` loads nothing heavy: every public name is imported when it is first used.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from wsrender.errors import (
+    DocumentError,
+    FrameNotFoundError,
+    InputError,
+    MissingExtraError,
+    MissingInertiaError,
+    ModelError,
+    NotConvergedError,
+    NumericalError,
+    ResourceError,
+    WsrenderError,
+)
+
+if TYPE_CHECKING:
+    from wsrender import run
+    from wsrender.indices import Index, math, register_index
+    from wsrender.result import Result
+    from wsrender.robot import Robot, evaluate_indices, load_robot
+    from wsrender.run import analyze, execute
+    from wsrender.spec.robot import DHRow, DHTable, Transform
+    from wsrender.spec.sampling import BoundaryBiased, Converge, Grid, Random, Sobol
+
+__version__ = "0.1.0"
+
+__all__ = [
+    "BoundaryBiased",
+    "Converge",
+    "DHRow",
+    "DHTable",
+    "DocumentError",
+    "FrameNotFoundError",
+    "Grid",
+    "Index",
+    "InputError",
+    "MissingExtraError",
+    "MissingInertiaError",
+    "ModelError",
+    "NotConvergedError",
+    "NumericalError",
+    "Random",
+    "ResourceError",
+    "Result",
+    "Robot",
+    "Sobol",
+    "Transform",
+    "WsrenderError",
+    "__version__",
+    "analyze",
+    "evaluate_indices",
+    "execute",
+    "load_robot",
+    "math",
+    "register_index",
+    "run",
+]
+
+_NAMES_OF_MODULE = {
+    "wsrender.indices": ("Index", "register_index"),
+    "wsrender.result": ("Result",),
+    "wsrender.robot": ("Robot", "evaluate_indices", "load_robot"),
+    "wsrender.run": ("analyze", "execute"),
+    "wsrender.spec.robot": ("DHRow", "DHTable", "Transform"),
+    "wsrender.spec.sampling": ("BoundaryBiased", "Converge", "Grid", "Random", "Sobol"),
+}
+_MODULE_OF_NAME = {name: module for module, names in _NAMES_OF_MODULE.items() for name in names}
+_MODULES = {"math": "wsrender.indices.math", "run": "wsrender.run"}
+
+
+def __getattr__(name: str) -> Any:
+    """Import a public name when it is first used."""
+    if name in _MODULES:
+        value = import_module(_MODULES[name])
+    elif name in _MODULE_OF_NAME:
+        value = getattr(import_module(_MODULE_OF_NAME[name]), name)
+    else:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})
