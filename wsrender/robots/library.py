@@ -1,0 +1,55 @@
+"""The robot library: one folder per robot under ``mjcf/``, with its model and the source of every number."""
+
+from dataclasses import dataclass
+from difflib import get_close_matches
+from pathlib import Path
+from xml.etree import ElementTree
+
+import wsrender
+from wsrender.errors import ModelError
+
+
+@dataclass(frozen=True)
+class LibraryRobot:
+    """What the library says of one of its robots."""
+
+    name: str
+    joints: int
+    description: str
+    source: str  # where its numbers come from, in one line; the README beside the model has them all
+    path: Path
+
+
+def names() -> list[str]:
+    """Names of all robots of the library, sorted."""
+    return sorted(path.stem for path in _folder().glob("*/*.xml") if path.stem == path.parent.name)
+
+
+def find(name: str) -> Path:
+    """The MJCF file of a library robot; raises ModelError listing the names for one it does not have."""
+    known = names()
+    if name in known:
+        return _folder() / name / f"{name}.xml"
+    close = get_close_matches(str(name).lower().replace("-", "_"), known, n=1, cutoff=0.5)
+    hint = f'; did you mean "{close[0]}"?' if close else ""
+    raise ModelError("library", f'has no robot "{name}"{hint} It has: {", ".join(known)}')
+
+
+def describe() -> list[LibraryRobot]:
+    """Every robot of the library, sorted by name, as its model file describes it."""
+    return [_described(name) for name in names()]
+
+
+def _described(name: str) -> LibraryRobot:
+    path = find(name)
+    model = ElementTree.parse(path).getroot()  # our own file: the parser need not distrust it
+    texts = {text.get("name"): text.get("data", "") for text in model.iterfind("custom/text")}
+    joints = sum(1 for _ in model.iterfind("worldbody//joint"))
+    return LibraryRobot(name, joints, texts["description"], texts["source"], path)
+
+
+def _folder() -> Path:
+    """``mjcf/`` inside the installed package, or beside it in a checkout."""
+    package = Path(wsrender.__file__).parent
+    installed = package / "mjcf"
+    return installed if installed.is_dir() else package.parent / "mjcf"
