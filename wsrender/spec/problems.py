@@ -89,6 +89,8 @@ def _in_words(problem: ErrorDetails, model: type[BaseModel] | None) -> tuple[tup
         return loc, _unknown_field(loc, model)
     if kind == "value_error":
         allowed = str(context["error"])
+        if not loc:  # of the document as a whole, whose message tells what was found
+            return loc, allowed
     elif kind in _ALLOWED:
         allowed = _ALLOWED[kind].format(**_json_style(context))
     else:

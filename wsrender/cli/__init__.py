@@ -1,0 +1,72 @@
+"""The command line: ``wsrender robots | schema | run …`` and what the server adds to it."""
+
+import sys
+from collections.abc import Sequence
+from importlib.metadata import entry_points
+from typing import Annotated
+
+import typer
+
+from wsrender.cli.faults import one_line_faults
+from wsrender.cli.listing import robots, schema
+from wsrender.cli.run import run
+from wsrender.errors import MissingExtraError
+
+COMMANDS = {"run": run, "robots": robots, "schema": schema}
+# Typer apps whose commands join these; loaded only where none of these is asked for.
+EXTENSIONS = "wsrender.commands"
+SERVER_COMMANDS = ("serve", "worker", "keys", "database", "demo")
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Run the command line; exits with 0, 2 for a wrong input, 1 for any other fault."""
+    arguments = list(sys.argv[1:] if arguments is None else arguments)
+    command = next((argument for argument in arguments if not argument.startswith("-")), None)
+    command_line(command)(arguments, prog_name="wsrender")
+
+
+def command_line(command: str | None) -> typer.Typer:
+    """The command line that knows ``command``: extensions are loaded only if they may hold it."""
+    app = typer.Typer(
+        callback=_options, no_args_is_help=True, pretty_exceptions_enable=False, rich_markup_mode="rich"
+    )
+    for name, function in COMMANDS.items():
+        app.command(name)(function)
+    if command not in COMMANDS:
+        with one_line_faults():
+            _extend(app)
+    return app
+
+
+def _extend(app: typer.Typer) -> None:
+    extensions = entry_points(group=EXTENSIONS)
+    for extension in extensions:
+        app.add_typer(extension.load())
+    if not extensions:
+        for name in SERVER_COMMANDS:
+            app.command(name, hidden=True, context_settings=_ANY_ARGUMENTS)(_no_server)
+
+
+_ANY_ARGUMENTS = {"allow_extra_args": True, "ignore_unknown_options": True}
+
+
+def _no_server() -> None:
+    with one_line_faults():
+        raise MissingExtraError("The server", "server")
+
+
+def _print_version(asked: bool) -> None:
+    if asked:
+        from wsrender import __version__
+
+        typer.echo(f"wsrender {__version__}")
+        raise typer.Exit()
+
+
+def _options(
+    version: Annotated[
+        bool,
+        typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version and exit."),
+    ] = False,
+) -> None:
+    """Workspace analysis of robotic manipulators: where an arm can reach, and how well it moves there."""

@@ -1,0 +1,52 @@
+"""Errors and warnings as one readable line on standard error, with an exit code."""
+
+import sys
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import typer
+from rich.console import Console
+from rich.text import Text
+
+from wsrender.errors import InputError, MissingExtraError, WsrenderError
+
+WRONG_INPUT = 2
+OTHER_FAULT = 1
+
+
+@contextmanager
+def one_line_faults(traceback: bool = False) -> Iterator[None]:
+    """Turn exceptions into a red line and an exit code, warnings into yellow lines.
+
+    With ``traceback`` exceptions pass through untouched.
+    """
+    with warnings.catch_warnings():
+        warnings.showwarning = _show_warning
+        try:
+            yield
+        except (typer.Exit, typer.Abort):
+            raise
+        except Exception as error:
+            if traceback:
+                raise
+            _print("error: ", "bold red", _message(error))
+            raise typer.Exit(WRONG_INPUT if isinstance(error, InputError) else OTHER_FAULT) from None
+
+
+def _message(error: Exception) -> str:
+    if isinstance(error, WsrenderError):
+        return str(error)
+    if isinstance(error, ModuleNotFoundError) and error.name and not error.name.startswith("wsrender"):
+        return str(MissingExtraError(error.name, "engine"))
+    if isinstance(error, OSError):
+        return str(error)
+    return f"{type(error).__name__}: {error} (--traceback shows where)"
+
+
+def _show_warning(message: Warning | str, *_: object) -> None:
+    _print("warning: ", "yellow", str(message))
+
+
+def _print(label: str, style: str, message: str) -> None:
+    Console(file=sys.stderr, soft_wrap=True, highlight=False).print(Text.assemble((label + message, style)))

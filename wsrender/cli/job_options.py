@@ -1,0 +1,80 @@
+"""The parts of a job document that command-line options write."""
+
+from pathlib import Path
+from typing import Any
+
+from wsrender.errors import InputError
+from wsrender.spec.json_text import read_json
+
+ROBOT_FILES = (".xml", ".mjcf", ".urdf")
+COUNTED_METHODS = ("random", "sobol", "boundary")
+
+
+def job_document(job: str) -> dict[str, Any]:
+    """The document of a JOB argument: read from a .json file, or about a robot file or library robot.
+
+    Raises InputError where the file cannot be read, DocumentError where it is not JSON.
+    """
+    path = Path(job)
+    if path.suffix == ".json":
+        document = read_json(_read(path))
+        if not isinstance(document, dict):
+            raise InputError("JOB", f"{job} must hold an object, not {type(document).__name__}")
+        return document
+    source = "path" if path.suffix.lower() in ROBOT_FILES or path.is_file() else "library"
+    return {"analysis": "workspace", "robot": {source: job}}
+
+
+def sampling_document(
+    current: Any, method: str | None, grid: str | None, samples: str | None, seed: int | None, lock: list[str]
+) -> dict[str, Any] | None:
+    """The sampling that the options ask for, on top of that of the document; None without options.
+
+    A grid size chooses the grid, a number of samples the Sobol sequence unless the method is counted.
+    Raises InputError naming the option.
+    """
+    if method is grid is samples is seed is None and not lock:
+        return None
+    fields = dict(current) if isinstance(current, dict) else {"method": "grid"}
+    if method is None and grid is not None:
+        method = "grid"
+    if method is None and samples is not None and fields.get("method") not in COUNTED_METHODS:
+        method = "sobol"
+    if method is not None and method != fields.get("method"):
+        fields = {"method": method, "locked": fields.get("locked", {})}
+    if grid is not None:
+        counts = [_number("--grid", text) for text in grid.split(",")]
+        fields["per_joint"] = counts if len(counts) > 1 else counts[0]
+    if samples is not None:
+        fields["count"] = _number("--samples", samples)
+    if seed is not None:
+        fields["seed"] = seed
+    if lock:
+        fields["locked"] = {**fields.get("locked", {}), **dict(_locked(text) for text in lock)}
+    return fields
+
+
+def name_or_list(text: str | None, names: tuple[str, ...]) -> str | list[str] | None:
+    """One of the names as it is; anything else as a list separated by commas; None stays None."""
+    return text if text is None or text in names else [name.strip() for name in text.split(",")]
+
+
+def _read(path: Path) -> bytes:
+    try:
+        return path.read_bytes()
+    except OSError as error:
+        raise InputError("JOB", f"{path} cannot be read: {error.strerror}") from None
+
+
+def _locked(text: str) -> tuple[str, float]:
+    joint, equals, value = text.rpartition("=")
+    if not equals or not joint:
+        raise InputError("--lock", f'must be JOINT=VALUE, not "{text}"')
+    return joint, _number("--lock", value)
+
+
+def _number(option: str, text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        raise InputError(option, f'must be a number, not "{text}"') from None
