@@ -1,0 +1,62 @@
+"""Files: maps, volumes and surfaces in formats that other programs read.
+
+Every writer is atomic (a file appears complete or not at all) and deterministic (equal data give equal
+bytes). The functions are loaded on first use, because they import h5py, pyarrow, scipy or trimesh.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+from wsrender.errors import MissingExtraError
+
+if TYPE_CHECKING:
+    from wsrender.export.csv import write_map_csv, write_volume_csv
+    from wsrender.export.mat import write_map_mat, write_volume_mat
+    from wsrender.export.meshes import occupied_surface, write_mesh
+    from wsrender.export.npz import read_map_npz, read_volume_npz, write_map_npz, write_volume_npz
+    from wsrender.export.parquet import read_map_parquet, write_map_parquet
+    from wsrender.export.vtkhdf import read_volume_vtkhdf, write_volume_vtkhdf
+
+_MODULES = {
+    "occupied_surface": "meshes",
+    "read_map_npz": "npz",
+    "read_map_parquet": "parquet",
+    "read_volume_npz": "npz",
+    "read_volume_vtkhdf": "vtkhdf",
+    "write_map_csv": "csv",
+    "write_map_mat": "mat",
+    "write_map_npz": "npz",
+    "write_map_parquet": "parquet",
+    "write_mesh": "meshes",
+    "write_volume_csv": "csv",
+    "write_volume_mat": "mat",
+    "write_volume_npz": "npz",
+    "write_volume_vtkhdf": "vtkhdf",
+}
+
+__all__ = [
+    "occupied_surface",
+    "read_map_npz",
+    "read_map_parquet",
+    "read_volume_npz",
+    "read_volume_vtkhdf",
+    "write_map_csv",
+    "write_map_mat",
+    "write_map_npz",
+    "write_map_parquet",
+    "write_mesh",
+    "write_volume_csv",
+    "write_volume_mat",
+    "write_volume_npz",
+    "write_volume_vtkhdf",
+]
+
+
+def __getattr__(name: str):
+    if name not in _MODULES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    try:
+        module = import_module(f"{__name__}.{_MODULES[name]}")
+    except ModuleNotFoundError as error:
+        raise MissingExtraError(error.name or name, "engine") from error
+    return getattr(module, name)

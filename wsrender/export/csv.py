@@ -1,0 +1,51 @@
+"""Maps and volumes as CSV: a quoted header, then one row per sample or per occupied voxel."""
+
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.csv
+
+from wsrender.export.atomic import new_file
+from wsrender.export.cells import cell_array, cell_names
+from wsrender.export.columns import MapColumns, arrays_by_column
+from wsrender.volume.distribution_map import DistributionMap
+from wsrender.volume.volume_data import VolumeData
+
+ROWS_PER_BLOCK = 1 << 18
+
+
+def write_map_csv(samples: DistributionMap, path: str | Path) -> None:
+    """Write a map; columns as in Parquet, values with the digits that restore them exactly."""
+    columns = MapColumns.of(samples)
+    arrays = arrays_by_column(samples, columns)
+    schema = pa.schema([(name, pa.from_numpy_dtype(arrays[name].dtype)) for name in columns.names()])
+    with new_file(path) as temporary, pyarrow.csv.CSVWriter(temporary, schema) as writer:
+        for start in range(0, len(samples), ROWS_PER_BLOCK):
+            rows = slice(start, start + ROWS_PER_BLOCK)
+            writer.write_batch(_batch([arrays[name][rows] for name in columns.names()], schema))
+
+
+def write_volume_csv(volume: VolumeData, path: str | Path) -> None:
+    """Write the occupied voxels, z fastest.
+
+    Columns ``i``, ``j``, ``k`` (lattice index), ``x``, ``y``, ``z`` (centre [m], world frame), ``count``
+    and ``<statistic>_<index>``.
+    """
+    lattice = ("i", "j", "k", "x", "y", "z", "count")
+    names = cell_names(volume, taken=set(lattice))
+    arrays = [volume.count, *(cell_array(volume, *key) for key in names)]
+    types = [pa.int64()] * 3 + [pa.float64()] * 3 + [pa.from_numpy_dtype(array.dtype) for array in arrays]
+    header = [*lattice, *names.values()]
+    schema = pa.schema(list(zip(header, types, strict=True)))
+    with new_file(path) as temporary, pyarrow.csv.CSVWriter(temporary, schema) as writer:
+        for i in range(volume.count.shape[0]):
+            j, k = np.nonzero(volume.count[i])
+            cell = (np.full_like(j, i), j, k)
+            voxel = [start + along for start, along in zip(volume.first_voxel, cell, strict=True)]
+            centers = [volume.centers(axis)[cell[axis]] for axis in range(3)]
+            writer.write_batch(_batch([*voxel, *centers, *(array[i][j, k] for array in arrays)], schema))
+
+
+def _batch(arrays: list[np.ndarray], schema: pa.Schema) -> pa.RecordBatch:
+    return pa.RecordBatch.from_arrays([pa.array(np.ascontiguousarray(a)) for a in arrays], schema=schema)

@@ -1,0 +1,58 @@
+"""Maps and volumes for MATLAB (version 5 MAT files, which GNU Octave and SciPy read too)."""
+
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.io import savemat
+
+from wsrender.export.atomic import new_file
+from wsrender.export.cells import cell_array, cell_names
+from wsrender.export.columns import MapColumns, arrays_by_column
+from wsrender.volume.distribution_map import DistributionMap
+from wsrender.volume.volume_data import VolumeData
+
+_HEADER = b"MATLAB 5.0 MAT-file, written by wsrender".ljust(116)
+
+
+def write_map_mat(samples: DistributionMap, path: str | Path) -> None:
+    """Write a map as one column vector (N, 1) per column, named as in Parquet but as MATLAB allows."""
+    columns = MapColumns.of(samples)
+    arrays = arrays_by_column(samples, columns)
+    _write(path, arrays, columns.column_units())
+
+
+def write_volume_mat(volume: VolumeData, path: str | Path) -> None:
+    """Write ``count``, ``<statistic>_<index>`` (nx, ny, nz), ``origin_m`` and ``voxel_size_m``."""
+    names = cell_names(volume, taken={"count", "origin_m", "voxel_size_m"})
+    arrays = {
+        "count": volume.count,
+        "origin_m": volume.origin_m,
+        "voxel_size_m": np.array(volume.voxel_size_m),
+    }
+    arrays |= {name: cell_array(volume, *key) for key, name in names.items()}
+    _write(path, arrays, {name: volume.units.get(index, "1") for (_, index), name in names.items()})
+
+
+def _write(path: str | Path, arrays: dict[str, np.ndarray], units: dict[str, str]) -> None:
+    taken = {"units"}
+    identifiers = {name: _identifier(name, taken) for name in arrays}
+    variables: dict[str, Any] = {identifiers[name]: array for name, array in arrays.items()}
+    variables["units"] = {identifiers[name]: unit for name, unit in units.items()}
+    with new_file(path) as temporary, temporary.open("wb") as file:
+        savemat(file, variables, long_field_names=True, oned_as="column", do_compression=True)
+        file.seek(0)
+        file.write(_HEADER)  # SciPy writes the time here
+
+
+def _identifier(name: str, taken: set[str]) -> str:
+    """A MATLAB identifier of at most 63 characters that is not in ``taken``, which is extended."""
+    letters = re.sub(r"\W", "_", name, flags=re.ASCII)
+    identifier = letters if letters[:1].isalpha() else f"v_{letters}"
+    stem, number = identifier[:60], 2
+    identifier = identifier[:63]
+    while identifier in taken:
+        identifier, number = f"{stem}_{number}", number + 1
+    taken.add(identifier)
+    return identifier

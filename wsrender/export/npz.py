@@ -1,0 +1,89 @@
+"""Maps and volumes ↔ NumPy's npz: one plain array per column or statistic, never a pickle.
+
+The array ``wsrender`` holds a description as JSON text: names, units and frame.
+"""
+
+import json
+import zipfile
+import zlib
+from pathlib import Path
+
+import numpy as np
+
+from wsrender.errors import InputError
+from wsrender.export.atomic import new_file
+from wsrender.export.cells import cell_array, cell_names
+from wsrender.export.columns import DESCRIPTION, MapColumns, arrays_by_column, map_from_columns
+from wsrender.volume.distribution_map import DistributionMap
+from wsrender.volume.volume_data import VolumeData
+
+
+def write_map_npz(samples: DistributionMap, path: str | Path) -> None:
+    """Write a map as one array (N,) per column, named as in Parquet."""
+    columns = MapColumns.of(samples)
+    _write(path, columns.to_json(), arrays_by_column(samples, columns))
+
+
+def read_map_npz(path: str | Path) -> DistributionMap:
+    """Read a map that ``write_map_npz`` wrote; InputError where the file is none or damaged."""
+    description, arrays = _read(Path(path))
+    columns = MapColumns.from_json(description, Path(path).name)
+    missing = set(columns.names()) - set(arrays)
+    if missing:
+        raise InputError(Path(path).name, f"lacks the arrays {', '.join(sorted(missing))}")
+    return map_from_columns(columns, lambda names: np.stack([arrays[name] for name in names], axis=1))
+
+
+def write_volume_npz(volume: VolumeData, path: str | Path) -> None:
+    """Write volume data: ``count`` and ``<statistic>_<index>``, each (nx, ny, nz)."""
+    names = cell_names(volume, taken={"count", DESCRIPTION})
+    description = {
+        "frame": "world",
+        "voxel_size_m": float(volume.voxel_size_m),
+        "first_voxel": [int(i) for i in volume.first_voxel],
+        "arrays": [[statistic, index, name] for (statistic, index), name in names.items()],
+        "units": volume.units,
+    }
+    arrays = {"count": volume.count}
+    arrays |= {name: cell_array(volume, *key) for key, name in names.items()}
+    _write(path, json.dumps(description), arrays)
+
+
+def read_volume_npz(path: str | Path) -> VolumeData:
+    """Read volume data that ``write_volume_npz`` wrote; InputError where the file is none or damaged."""
+    path = Path(path)
+    text, arrays = _read(path)
+    try:
+        description = json.loads(text)
+        statistics: dict[str, dict[str, np.ndarray]] = {}
+        for statistic, index, name in description["arrays"]:
+            statistics.setdefault(statistic, {})[index] = arrays[name]
+        return VolumeData(
+            voxel_size_m=description["voxel_size_m"],
+            first_voxel=tuple(description["first_voxel"]),
+            count=arrays["count"],
+            statistics=statistics,
+            units=description["units"],
+        )
+    except (ValueError, KeyError, TypeError) as error:
+        raise InputError(path.name, f"is not volume data of wsrender: {error!r}") from error
+
+
+def _write(path: str | Path, description: str, arrays: dict[str, np.ndarray]) -> None:
+    # Not np.savez: it takes the names as keyword arguments, so an index called "file" would fail.
+    with (
+        new_file(path) as temporary,
+        zipfile.ZipFile(temporary, "w", zipfile.ZIP_DEFLATED, compresslevel=1) as file,
+    ):
+        for name, array in {DESCRIPTION: np.array(description), **arrays}.items():
+            with file.open(zipfile.ZipInfo(f"{name}.npy"), "w", force_zip64=True) as member:
+                np.lib.format.write_array(member, np.asarray(array), allow_pickle=False)
+
+
+def _read(path: Path) -> tuple[str, dict[str, np.ndarray]]:
+    try:
+        with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
+            arrays = {name: file[name] for name in file.files}
+        return str(arrays.pop(DESCRIPTION)), arrays
+    except (OSError, ValueError, KeyError, TypeError, EOFError, zipfile.BadZipFile, zlib.error) as error:
+        raise InputError(path.name, f"cannot be read as a file of wsrender: {error}") from error
