@@ -1,0 +1,124 @@
+"""Elementary functions as polynomials.
+
+A call into the C library in the lane loop keeps the CPU compiler from vectorising it, and CUDA's own versions
+are slower too; these are branch-free and accurate to a few units in the last place of the working precision.
+"""
+
+import math
+from functools import cache
+from types import SimpleNamespace
+
+import warp as wp
+
+# Minimax polynomials of sin and cos on [-pi/4, pi/4] (Moshier, Cephes, 1989: sinf/cosf; fdlibm, 1993: __kernel_sin).
+_SIN = {
+    wp.float32: (-1.6666654611e-1, 8.3321608736e-3, -1.9515295891e-4),
+    wp.float64: (
+        -1.66666666666666324348e-01, 8.33333333332248946124e-03, -1.98412698298579493134e-04,
+        2.75573137070700676789e-06, -2.50507602534068634195e-08, 1.58969099521155010221e-10,
+    ),
+}  # fmt: skip
+_COS = {
+    wp.float32: (4.166664568298827e-2, -1.388731625493765e-3, 2.443315711809948e-5),
+    wp.float64: (
+        4.16666666666666019037e-02, -1.38888888888741095749e-03, 2.48015872894767294178e-05,
+        -2.75573143513906633035e-07, 2.08757232129817482790e-09, -1.13596475577881948265e-11,
+    ),
+}  # fmt: skip
+# pi/2 in three parts with trailing zero bits, so that k * part is exact (Cody & Waite 1980).
+_HALF_PI = {
+    wp.float32: (1.5703125, 4.837512969970703125e-4, 7.549789954768648e-8),
+    wp.float64: (1.57079625129699707031e00, 7.54978941586159635335e-08, 5.39030285815811905290e-15),
+}
+# Terms of log2's atanh series on [1/sqrt 2, sqrt 2], and of exp2's Taylor series on [-1/2, 1/2].
+_LOG_TERMS = {wp.float32: 5, wp.float64: 11}
+_EXP_TERMS = {wp.float32: 8, wp.float64: 14}
+
+
+def _coefficients(values, real):
+    return wp.types.vector(len(values), real)(*values)
+
+
+def bits_type(real):
+    """Signed integer type of the same width as ``real``."""
+    return wp.int32 if real is wp.float32 else wp.int64
+
+
+@cache
+def elementary(real) -> SimpleNamespace:
+    """Device functions ``sincos``, ``log2``, ``exp2``, ``power`` and ``ordered`` for one precision.
+
+    ``sincos(a) -> (sin a, cos a)``; ``log2`` for positive normal numbers; ``power(x, e) = 2^(e log2 x)``, 0 for
+    x <= 0; ``ordered(x)`` maps a float to an integer that sorts alike (NaN sorts outside the infinities).
+    """
+    bits = bits_type(real)
+    mantissa = 23 if real is wp.float32 else 52
+    SIN, COS = _coefficients(_SIN[real], real), _coefficients(_COS[real], real)
+    DEGREE = len(_SIN[real])
+    PART_1, PART_2, PART_3 = (real(part) for part in _HALF_PI[real])
+    TWO_OVER_PI, HALF, ONE, ZERO = real(2.0 / math.pi), real(0.5), real(1.0), real(0.0)
+    LOG_TERMS, EXP_TERMS = _LOG_TERMS[real], _EXP_TERMS[real]
+    LOG = _coefficients([2.0 / math.log(2.0) / (2 * i + 1) for i in range(LOG_TERMS)], real)
+    EXP = _coefficients([math.log(2.0) ** i / math.factorial(i) for i in range(EXP_TERMS)], real)
+    SQRT_HALF = bits(0x3F3504F3) if real is wp.float32 else bits(0x3FE6A09E667F3BCD)
+    MANTISSA = bits(mantissa)
+    BIAS = bits(127 if real is wp.float32 else 1023)
+    SMALLEST = real(2.0**-126 if real is wp.float32 else 2.0**-1022)
+    SIGN = bits(31 if real is wp.float32 else 63)
+    MAGNITUDE = bits(2**31 - 1 if real is wp.float32 else 2**63 - 1)
+    LOWEST, HIGHEST = real(-126.0 if real is wp.float32 else -1022.0), real(127.0 if real is wp.float32 else 1023.0)
+
+    @wp.func
+    def sincos(a: real):
+        k = wp.floor(a * TWO_OVER_PI + HALF)
+        r = ((a - k * PART_1) - k * PART_2) - k * PART_3
+        z = r * r
+        s = SIN[DEGREE - 1]
+        c = COS[DEGREE - 1]
+        for i in range(1, DEGREE):
+            s = s * z + SIN[DEGREE - 1 - i]
+            c = c * z + COS[DEGREE - 1 - i]
+        s = r + r * z * s
+        c = ONE - HALF * z + z * z * c
+        quadrant = wp.int32(k)
+        swap = (quadrant & 1) != 0
+        sine = wp.where(swap, c, s)
+        cosine = wp.where(swap, s, c)
+        sine = wp.where((quadrant & 2) != 0, -sine, sine)
+        cosine = wp.where(((quadrant + 1) & 2) != 0, -cosine, cosine)
+        return sine, cosine
+
+    @wp.func
+    def log2(x: real):
+        i = wp.cast(x, bits)
+        exponent = (i - SQRT_HALF) >> MANTISSA
+        m = wp.cast(i - (exponent << MANTISSA), real)
+        s = (m - ONE) / (m + ONE)
+        z = s * s
+        series = LOG[LOG_TERMS - 1]
+        for j in range(1, LOG_TERMS):
+            series = series * z + LOG[LOG_TERMS - 1 - j]
+        return real(exponent) + s * series
+
+    @wp.func
+    def exp2(x: real):
+        t = wp.min(wp.max(x, LOWEST), HIGHEST)
+        k = wp.floor(t + HALF)
+        f = t - k
+        series = EXP[EXP_TERMS - 1]
+        for j in range(1, EXP_TERMS):
+            series = series * f + EXP[EXP_TERMS - 1 - j]
+        scale = wp.cast((bits(k) + BIAS) << MANTISSA, real)
+        return wp.where(x < LOWEST, ZERO, series * scale)
+
+    @wp.func
+    def power(x: real, e: real):
+        positive = x >= SMALLEST
+        return wp.where(positive, exp2(e * log2(wp.where(positive, x, ONE))), ZERO)
+
+    @wp.func
+    def ordered(x: real):
+        i = wp.cast(x, bits)
+        return i ^ ((i >> SIGN) & MAGNITUDE)
+
+    return SimpleNamespace(sincos=sincos, log2=log2, exp2=exp2, power=power, ordered=ordered)

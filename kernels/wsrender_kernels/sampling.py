@@ -1,0 +1,313 @@
+"""Configurations as pure functions of a 64-bit sample index.
+
+Samples come in blocks of LANES consecutive indices that start at a multiple of LANES. ``prepare(space, first)``
+does what depends on the block alone, ``draw(space, block, first, lane)`` gives sample ``first + lane``: so the lane
+loop keeps only SIMD work.
+"""
+
+import math
+from functools import cache
+from types import SimpleNamespace
+
+import numpy as np
+import warp as wp
+
+from wsrender_kernels.elementary import elementary
+
+LANES = 256
+METHODS = ("grid", "random", "sobol", "boundary", "given")
+SOBOL_BITS = 52
+
+# Threefry-4x32 with 13 rounds (Salmon, Moraes, Dror, Shaw, *Parallel random numbers: as easy as 1, 2, 3*, 2011).
+# Only additions, rotations and exclusive ors: they vectorise, which the wide products of Philox do not.
+_ROTATIONS_0 = (10, 11, 13, 23, 6, 17, 25, 18)
+_ROTATIONS_1 = (26, 21, 27, 5, 20, 11, 10, 20)
+_ROUNDS = 13
+_PARITY = 0x1BD11BDA
+
+
+@cache
+def sample_space(real):
+    """Struct with the numbers of a sampling, n = joints: see `pack_sample_space` for what each method fills."""
+
+    @wp.struct
+    class SampleSpace:
+        lower: wp.array(dtype=real)  # (n,)
+        upper: wp.array(dtype=real)  # (n,)
+        step: wp.array(dtype=real)  # (n,) grid: interval between levels; else: upper - lower
+        levels: wp.array(dtype=wp.int32)  # (n,) grid
+        key_0: wp.uint32  # random, boundary: the seed
+        key_1: wp.uint32
+        sobol_high: wp.array(dtype=wp.uint32)  # (n * SOBOL_BITS + n,) direction numbers, then the shift
+        sobol_low: wp.array(dtype=wp.uint32)
+        lane_high: wp.array(dtype=wp.uint32)  # (n * LANES,) contribution of the lowest bits of the index
+        lane_low: wp.array(dtype=wp.uint32)
+        given: wp.array(dtype=real)  # (n * given_stride,) configurations, one coordinate after the other
+        given_first: wp.int64  # sample index of the first given configuration
+        given_stride: wp.int64  # samples per coordinate
+
+    return SampleSpace
+
+
+@cache
+def threefry():
+    """Device function (counter 4 x uint32, key 2 x uint32) -> 4 x uint32."""
+    u32 = wp.uint32
+    vec5 = wp.types.vector(5, u32)
+    R0, R1 = wp.types.vector(8, u32)(*_ROTATIONS_0), wp.types.vector(8, u32)(*_ROTATIONS_1)
+    ROUNDS = _ROUNDS
+    PARITY, ZERO, WORD = u32(_PARITY), u32(0), u32(32)
+
+    @wp.func
+    def rotated(x: u32, r: u32):
+        return (x << r) | (x >> (WORD - r))
+
+    @wp.func
+    def random_words(c0: u32, c1: u32, c2: u32, c3: u32, k0: u32, k1: u32):
+        key = vec5(k0, k1, ZERO, ZERO, PARITY ^ k0 ^ k1)
+        x0 = c0 + key[0]
+        x1 = c1 + key[1]
+        x2 = c2 + key[2]
+        x3 = c3 + key[3]
+        for r in range(ROUNDS):
+            if r % 2 == 0:
+                x0 = x0 + x1
+                x1 = rotated(x1, R0[r % 8]) ^ x0
+                x2 = x2 + x3
+                x3 = rotated(x3, R1[r % 8]) ^ x2
+            else:
+                x0 = x0 + x3
+                x3 = rotated(x3, R0[r % 8]) ^ x0
+                x2 = x2 + x1
+                x1 = rotated(x1, R1[r % 8]) ^ x2
+            if r % 4 == 3:
+                s = (r + 1) // 4
+                x0 = x0 + key[s % 5]
+                x1 = x1 + key[(s + 1) % 5]
+                x2 = x2 + key[(s + 2) % 5]
+                x3 = x3 + key[(s + 3) % 5] + u32(s)
+        return x0, x1, x2, x3
+
+    return random_words
+
+
+@cache
+def uniform(real):
+    """Device function (high, low 32 random bits) -> [0, 1): the leading 24 (float32) or 53 (float64) bits."""
+    u32 = wp.uint32
+    HIGH_24, EIGHT = real(2.0**-24), u32(8)
+    HIGH_32, LOW_21, ELEVEN, HALF_RANGE = real(2.0**-32), real(2.0**-53), u32(11), real(2147483648.0)
+    SIGN = u32(0x80000000)
+
+    @wp.func
+    def uniform32(high: u32, low: u32):
+        return real(wp.int32(high >> EIGHT)) * HIGH_24
+
+    @wp.func
+    def uniform64(high: u32, low: u32):
+        # Through signed integers, whose conversion is one vector instruction.
+        return (real(wp.int32(high ^ SIGN)) + HALF_RANGE) * HIGH_32 + real(wp.int32(low >> ELEVEN)) * LOW_21
+
+    return uniform32 if real is wp.float32 else uniform64
+
+
+@cache
+def sampling(real, n: int, method: str) -> SimpleNamespace:
+    """Device functions ``prepare(space, first) -> block`` and ``draw(space, block, first, lane) -> q (n,)``."""
+    prepare, draw = {
+        "grid": _grid,
+        "random": _random,
+        "boundary": _boundary,
+        "sobol": _sobol,
+        "given": _given,
+    }[method](real, n)
+    return SimpleNamespace(prepare=prepare, draw=draw)
+
+
+def _grid(real, n: int):
+    """Mixed-radix digits of the index, the last joint fastest; both limits included."""
+    Space = sample_space(real)
+    vec_n = wp.types.vector(n, real)
+    int_n = wp.types.vector(n, wp.int32)
+    f32 = wp.float32
+    ONE = wp.float32(1.0)
+
+    @wp.func
+    def prepare(space: Space, first: wp.int64):
+        d = int_n()
+        rest = first
+        for back in range(n):
+            i = n - 1 - back
+            levels = wp.int64(space.levels[i])
+            d[i] = wp.int32(rest % levels)
+            rest = rest / levels
+        return d
+
+    @wp.func
+    def draw(space: Space, block: int_n, first: wp.int64, lane: wp.int32):
+        carry = lane
+        q = vec_n()
+        for back in range(n):
+            i = n - 1 - back
+            levels = space.levels[i]
+            value = block[i] + carry
+            # Integer division does not vectorise: estimate the quotient, then mend it by at most one.
+            carry = wp.int32(wp.floor(f32(value) * (ONE / f32(levels))))
+            value = value - carry * levels
+            low = value < 0
+            carry = wp.where(low, carry - 1, carry)
+            value = wp.where(low, value + levels, value)
+            high = value >= levels
+            carry = wp.where(high, carry + 1, carry)
+            value = wp.where(high, value - levels, value)
+            last = value == levels - 1
+            q[i] = wp.where(last, space.upper[i], space.lower[i] + real(value) * space.step[i])
+        return q
+
+    return prepare, draw
+
+
+def _stateless(Space):
+    @wp.func
+    def prepare(space: Space, first: wp.int64):
+        return wp.int32(0)
+
+    return prepare
+
+
+def _uniforms(real, n: int):
+    """Device function giving n independent uniforms of a sample; float32 takes the leading bits of float64's."""
+    Space = sample_space(real)
+    vec_n = wp.types.vector(n, real)
+    u32 = wp.uint32
+    words_n = wp.types.vector(4 * ((n + 3) // 4), u32)
+    random_words, unit = threefry(), uniform(real)
+    GROUPS = (n + 3) // 4
+    HIGH, LOW = u32(0), u32(1)
+    MASK, WORD = wp.int64(0xFFFFFFFF), wp.int64(32)
+    DOUBLE = real is wp.float64
+
+    @wp.func
+    def words(space: Space, first: wp.int64, lane: wp.int32, part: u32):
+        out = words_n()
+        c0 = u32(first & MASK) + u32(lane)
+        c1 = u32(first >> WORD)
+        for g in range(GROUPS):
+            x0, x1, x2, x3 = random_words(c0, c1, u32(g), part, space.key_0, space.key_1)
+            out[4 * g] = x0
+            out[4 * g + 1] = x1
+            out[4 * g + 2] = x2
+            out[4 * g + 3] = x3
+        return out
+
+    @wp.func
+    def uniforms32(space: Space, first: wp.int64, lane: wp.int32):
+        high = words(space, first, lane, HIGH)
+        u = vec_n()
+        for i in range(n):
+            u[i] = unit(high[i], HIGH)
+        return u
+
+    @wp.func
+    def uniforms64(space: Space, first: wp.int64, lane: wp.int32):
+        high = words(space, first, lane, HIGH)
+        low = words(space, first, lane, LOW)
+        u = vec_n()
+        for i in range(n):
+            u[i] = unit(high[i], low[i])
+        return u
+
+    return uniforms64 if DOUBLE else uniforms32
+
+
+def _random(real, n: int):
+    Space = sample_space(real)
+    uniforms = _uniforms(real, n)
+
+    @wp.func
+    def draw(space: Space, block: wp.int32, first: wp.int64, lane: wp.int32):
+        q = uniforms(space, first, lane)
+        for i in range(n):
+            q[i] = space.lower[i] + q[i] * space.step[i]
+        return q
+
+    return _stateless(Space), draw
+
+
+def _boundary(real, n: int):
+    """Beta(1/2, 1/2) between the limits, by its inverse distribution function (1 - cos(pi u)) / 2."""
+    Space = sample_space(real)
+    uniforms, sincos = _uniforms(real, n), elementary(real).sincos
+    PI, HALF, ONE = real(math.pi), real(0.5), real(1.0)
+
+    @wp.func
+    def draw(space: Space, block: wp.int32, first: wp.int64, lane: wp.int32):
+        q = uniforms(space, first, lane)
+        for i in range(n):
+            _s, c = sincos(PI * q[i])
+            q[i] = space.lower[i] + HALF * (ONE - c) * space.step[i]
+        return q
+
+    return _stateless(Space), draw
+
+
+def _sobol(real, n: int):
+    """Scrambled Sobol points in Gray-code order: the exclusive or of a direction number per bit of the index."""
+    Space = sample_space(real)
+    vec_n = wp.types.vector(n, real)
+    words_type = wp.types.vector(2 * n, wp.uint32)
+    unit = uniform(real)
+    ONE, ZERO = wp.int64(1), wp.int64(0)
+    BITS, SHIFT, BLOCK = SOBOL_BITS, n * SOBOL_BITS, LANES
+
+    @wp.func
+    def prepare(space: Space, first: wp.int64):
+        x = words_type()
+        for i in range(n):
+            x[i] = space.sobol_high[SHIFT + i]
+            x[n + i] = space.sobol_low[SHIFT + i]
+        rest = first ^ (first >> ONE)
+        bit = wp.int32(0)
+        while rest > ZERO:
+            if (rest & ONE) == ONE:
+                for i in range(n):
+                    x[i] = x[i] ^ space.sobol_high[i * BITS + bit]
+                    x[n + i] = x[n + i] ^ space.sobol_low[i * BITS + bit]
+            rest = rest >> ONE
+            bit = bit + 1
+        return x
+
+    @wp.func
+    def draw(space: Space, block: words_type, first: wp.int64, lane: wp.int32):
+        q = vec_n()
+        for i in range(n):
+            high = block[i] ^ space.lane_high[i * BLOCK + lane]
+            low = block[n + i] ^ space.lane_low[i * BLOCK + lane]
+            q[i] = space.lower[i] + unit(high, low) * space.step[i]
+        return q
+
+    return prepare, draw
+
+
+def _given(real, n: int):
+    Space = sample_space(real)
+    vec_n = wp.types.vector(n, real)
+
+    @wp.func
+    def draw(space: Space, block: wp.int32, first: wp.int64, lane: wp.int32):
+        q = vec_n()
+        for i in range(n):
+            q[i] = space.given[wp.int64(i) * space.given_stride + (first - space.given_first) + wp.int64(lane)]
+        return q
+
+    return _stateless(Space), draw
+
+
+def lane_table(directions: np.ndarray) -> np.ndarray:
+    """Contribution of the index bits below LANES, shape (n, LANES), from direction numbers (n, SOBOL_BITS)."""
+    lanes = np.arange(LANES, dtype=np.uint64)
+    gray = lanes ^ (lanes >> np.uint64(1))
+    table = np.zeros((len(directions), LANES), np.uint64)
+    for bit in range(LANES.bit_length() - 1):
+        table ^= np.where((gray >> np.uint64(bit)) & np.uint64(1), directions[:, bit : bit + 1], np.uint64(0))
+    return table

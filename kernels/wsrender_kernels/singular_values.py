@@ -1,0 +1,260 @@
+"""Singular values of an m×n matrix (m task rows), in descending order, accurate near singularities.
+
+Up to three rows: an orthogonal factorisation of the rows gives det(A Aᵀ) without squaring the condition number; the
+largest eigenvalue and the gap of the others come from the angle between the deviators of H = A Aᵀ and of H², the
+smallest by deflation. Four to six rows: one-sided Jacobi (Hestenes 1958; Demmel & Veselić 1992). A value
+<= max(m, n) eps sigma_1 counts as 0 (DEFINITIONS: section 2 of the project's definitions).
+"""
+
+from functools import cache
+
+import numpy as np
+import warp as wp
+
+SWEEPS = {wp.float32: 5, wp.float64: 6}
+NEWTON_STEPS = {wp.float32: 1, wp.float64: 2}
+
+
+def epsilon(real) -> float:
+    """Machine epsilon of the working precision."""
+    return float(np.finfo(wp.dtype_to_numpy(real)).eps)
+
+
+@cache
+def singular_values(real, m: int, n: int):
+    """Device function ``(A: (m, n)) -> (m,)``, descending; exact zeros where the matrix is singular or n < m."""
+    solver = {1: _one_row, 2: _two_rows, 3: _three_rows}.get(m, _jacobi)(real, m, n)
+    vec_m = wp.types.vector(m, real)
+    mat_mn = wp.types.matrix((m, n), real)
+    NEGLIGIBLE = real(max(m, n) * epsilon(real))
+    RANK = min(m, n)
+    ZERO = real(0.0)
+
+    @wp.func
+    def values(A: mat_mn):
+        sigma = solver(A)
+        out = vec_m()
+        out[0] = sigma[0]
+        for i in range(1, RANK):
+            out[i] = wp.where(sigma[i] > NEGLIGIBLE * sigma[0], sigma[i], ZERO)
+        return out
+
+    return values
+
+
+def _one_row(real, m: int, n: int):
+    vec_m = wp.types.vector(1, real)
+    mat_mn = wp.types.matrix((1, n), real)
+
+    @wp.func
+    def one_row(A: mat_mn):
+        return vec_m(wp.sqrt(wp.dot(A[0], A[0])))
+
+    return one_row
+
+
+def _two_rows(real, m: int, n: int):
+    vec_m = wp.types.vector(2, real)
+    mat_mn = wp.types.matrix((2, n), real)
+    HALF, ZERO, ONE, TINY = real(0.5), real(0.0), real(1.0), _tiny(real)
+
+    @wp.func
+    def two_rows(A: mat_mn):
+        a = A[0]
+        b = A[1]
+        aa = wp.dot(a, a)
+        ab = wp.dot(a, b)
+        bb = wp.dot(b, b)
+        rest = b - a * (ab * wp.where(aa > TINY, ONE / wp.max(aa, TINY), ZERO))
+        area = wp.sqrt(aa) * wp.sqrt(wp.dot(rest, rest))
+        d = HALF * (aa - bb)
+        largest = wp.sqrt(HALF * (aa + bb) + wp.sqrt(d * d + ab * ab))
+        return vec_m(largest, wp.where(largest > ZERO, area / wp.max(largest, TINY), ZERO))
+
+    return two_rows
+
+
+def _three_rows(real, m: int, n: int):
+    vec_m = wp.types.vector(3, real)
+    mat_mn = wp.types.matrix((3, n), real)
+    third_of_angle = _third_of_angle(real)
+    ZERO, HALF, ONE, TWO, THREE, FOUR = (real(v) for v in (0.0, 0.5, 1.0, 2.0, 3.0, 4.0))
+    THIRD, SIXTH, TWO_SQRT_3 = real(1.0 / 3.0), real(1.0 / 6.0), real(2.0 * 3.0**0.5)
+    TINY = _tiny(real)
+    NEARLY_RANK_ONE = real(0.01)
+
+    @wp.func
+    def three_rows(A: mat_mn):
+        a = A[0]
+        b = A[1]
+        c = A[2]
+        aa = wp.dot(a, a)
+        ab = wp.dot(a, b)
+        ac = wp.dot(a, c)
+        bb = wp.dot(b, b)
+        bc = wp.dot(b, c)
+        cc = wp.dot(c, c)
+        trace = aa + bb + cc
+        unit = wp.where(trace > TINY, ONE / wp.max(trace, TINY), ZERO)
+
+        # H / trace = L D Lᵀ with orthogonalised rows: the pivots keep the digits that H itself has lost.
+        ia = wp.where(aa > TINY, ONE / wp.max(aa, TINY), ZERO)
+        lb = ab * ia
+        lc = ac * ia
+        b1 = b - a * lb
+        c1 = c - a * lc
+        bb1 = wp.dot(b1, b1)
+        lcb = wp.dot(b1, c1) * wp.where(bb1 > TINY, ONE / wp.max(bb1, TINY), ZERO)
+        c2 = c1 - b1 * lcb
+        d1 = aa * unit
+        d2 = bb1 * unit
+        d3 = wp.dot(c2, c2) * unit
+        minor = lb * lcb - lc
+        det = d1 * d2 * d3
+        minors = d1 * (d2 * (ONE + lcb * lcb + minor * minor) + d3 * (ONE + lb * lb)) + d2 * d3
+
+        # Deviators of H and of H², both with trace 1 scaling: the angle between them is 3 phi, where the
+        # eigenvalues of H are 1/3 + 2 p cos(phi + 2 pi k / 3). No cancellation where eigenvalues coincide.
+        hx = aa * unit - THIRD
+        hy = bb * unit - THIRD
+        hz = cc * unit - THIRD
+        xy = ab * unit
+        xz = ac * unit
+        yz = bc * unit
+        gx = hx * hx + xy * xy + xz * xz
+        gy = xy * xy + hy * hy + yz * yz
+        gz = xz * xz + yz * yz + hz * hz
+        gxy = xy * (hx + hy) + xz * yz
+        gxz = xz * (hx + hz) + xy * yz
+        gyz = yz * (hy + hz) + xy * xz
+        hh = gx + gy + gz
+        mean = hh * THIRD
+        gx = gx - mean
+        gy = gy - mean
+        gz = gz - mean
+        gh = hx * gx + hy * gy + hz * gz + TWO * (xy * gxy + xz * gxz + yz * gyz)
+        along = wp.where(hh > TINY, gh / wp.max(hh, TINY), ZERO)
+        gx = gx - along * hx
+        gy = gy - along * hy
+        gz = gz - along * hz
+        gxy = gxy - along * xy
+        gxz = gxz - along * xz
+        gyz = gyz - along * yz
+        across = gx * gx + gy * gy + gz * gz + TWO * (gxy * gxy + gxz * gxz + gyz * gyz)
+        cosine, sine = third_of_angle(gh, wp.sqrt(across * hh))
+
+        p = wp.sqrt(hh * SIXTH)
+        l1 = THIRD + TWO * p * cosine
+        i1 = ONE / wp.max(l1, THIRD)
+        product = det * i1
+        total = (minors - product) * i1
+        # The gap from the angle errs by eps * l1, that from the discriminant by sqrt(eps) * total.
+        gap = wp.where(
+            total < NEARLY_RANK_ONE,
+            wp.sqrt(wp.max(total * total - FOUR * product, ZERO)),
+            TWO_SQRT_3 * p * sine,
+        )
+        l2 = HALF * (total + wp.min(gap, total))
+        l3 = wp.where(l2 > TINY, product / wp.max(l2, TINY), ZERO)
+        return vec_m(wp.sqrt(l1 * trace), wp.sqrt(l2 * trace), wp.sqrt(wp.min(l3, l2) * trace))
+
+    return three_rows
+
+
+def _third_of_angle(real):
+    """Device function (x, y >= 0) -> (cos, sin) of a third of the angle of (x, y), by Newton on z³ = e^{i angle}."""
+    ZERO, HALF, ONE, TWO, THIRD, PI = (real(v) for v in (0.0, 0.5, 1.0, 2.0, 1.0 / 3.0, np.pi))
+    TINY = _tiny(real)
+    STEPS = NEWTON_STEPS[real]
+    # Abramowitz & Stegun 1964, 4.4.45: arccos x = sqrt(1 - x) * cubic, error 7e-5: a start for Newton's method.
+    ARC = wp.types.vector(4, real)(1.5707288, -0.2121144, 0.0742610, -0.0187293)
+    FACTORIALS = wp.types.vector(5, real)(1 / 2, 1 / 6, 1 / 24, 1 / 120, 1 / 720)
+
+    @wp.func
+    def third_of_angle(x: real, y: real):
+        # Scaled by the larger component: their squares would underflow for nearly isotropic matrices.
+        size = wp.max(wp.abs(x), y)
+        known = size > TINY
+        scale = wp.where(known, ONE / wp.max(size, TINY), ZERO)
+        xs = wp.where(known, x * scale, ONE)
+        ys = y * scale
+        inverse = ONE / wp.sqrt(xs * xs + ys * ys)
+        c = xs * inverse
+        s = ys * inverse
+        k = wp.abs(c)
+        arc = wp.sqrt(wp.max(ONE - k, ZERO)) * (ARC[0] + k * (ARC[1] + k * (ARC[2] + k * ARC[3])))
+        t = wp.where(c < ZERO, PI - arc, arc) * THIRD
+        t2 = t * t
+        u = ONE - t2 * (FACTORIALS[0] - t2 * (FACTORIALS[2] - t2 * FACTORIALS[4]))
+        v = t * (ONE - t2 * (FACTORIALS[1] - t2 * FACTORIALS[3]))
+        for _step in range(STEPS):
+            # z <- (2 z + w conj(z)²) / 3, as 1 / z² = conj(z)² on the unit circle.
+            re = u * u - v * v
+            im = -TWO * u * v
+            u, v = (TWO * u + c * re - s * im) * THIRD, (TWO * v + c * im + s * re) * THIRD
+        return u, v
+
+    return third_of_angle
+
+
+def _jacobi(real, m: int, n: int):
+    """One-sided Jacobi on the shorter side: rows if m <= n, else columns."""
+    COUNT, LENGTH = min(m, n), max(m, n)
+    TRANSPOSED = m > n
+    vec_m = wp.types.vector(m, real)
+    mat_mn = wp.types.matrix((m, n), real)
+    mat_work = wp.types.matrix((COUNT, LENGTH), real)
+    NUMBER_OF_SWEEPS = SWEEPS[real]
+    ZERO, ONE, TWO, TINY = real(0.0), real(1.0), real(2.0), _tiny(real)
+
+    @wp.func
+    def sweep(W: mat_work):
+        out = W
+        for i in range(COUNT - 1):
+            for j in range(i + 1, COUNT):
+                a = out[i]
+                b = out[j]
+                difference = wp.dot(b, b) - wp.dot(a, a)
+                twice = TWO * wp.dot(a, b)
+                root = wp.sqrt(difference * difference + twice * twice)
+                size = wp.abs(difference) + root
+                t = wp.where(size > TINY, wp.where(difference < ZERO, -twice, twice) / wp.max(size, TINY), ZERO)
+                c = ONE / wp.sqrt(ONE + t * t)
+                s = c * t
+                out[i] = a * c - b * s
+                out[j] = a * s + b * c
+        return out
+
+    @wp.func
+    def jacobi(A: mat_mn):
+        W = mat_work()
+        for i in range(COUNT):
+            for j in range(LENGTH):
+                if wp.static(TRANSPOSED):
+                    W[i, j] = A[j, i]
+                else:
+                    W[i, j] = A[i, j]
+        # Unit scale, so that squares of small robots' lengths do not underflow.
+        scale = ZERO
+        for i in range(COUNT):
+            scale = scale + wp.dot(W[i], W[i])
+        scale = wp.sqrt(scale)
+        W = W * (ONE / wp.max(scale, TINY))
+        for _sweep in range(NUMBER_OF_SWEEPS):
+            W = sweep(W)
+        sigma = vec_m()
+        for i in range(COUNT):
+            sigma[i] = wp.sqrt(wp.dot(W[i], W[i])) * scale
+        for last in range(COUNT - 1):
+            for i in range(COUNT - 1 - last):
+                larger = wp.max(sigma[i], sigma[i + 1])
+                sigma[i + 1] = wp.min(sigma[i], sigma[i + 1])
+                sigma[i] = larger
+        return sigma
+
+    return jacobi
+
+
+def _tiny(real):
+    """A number whose square root and reciprocal are finite: below it a squared length counts as 0."""
+    return real(1e-36 if real is wp.float32 else 1e-300)

@@ -1,0 +1,244 @@
+"""Singular values that the indices of a convention are functions of (DEFINITIONS of the project, section 2).
+
+``standard``: those of A = J or J M^-1. ``table_1`` (Zhang, Cursi, Yang, *WSRender*, 2019, Table I as printed):
+those of J, and for the dynamic indices those whose squares are the eigenvalues of H with H^-1 = (M J^+)^T (M J^+).
+``wsrender_code`` (the original program): mu = sqrt det of the linear rows of J, or of all rows of J M, followed by
+the singular values of all six rows of J, or of J M.
+"""
+
+from functools import cache
+from types import SimpleNamespace
+
+import warp as wp
+
+from wsrender_kernels.elementary import elementary
+from wsrender_kernels.inertia import inertia
+from wsrender_kernels.model import model_arrays
+from wsrender_kernels.singular_values import singular_values
+
+LINEAR, ALL_ROWS = (0, 1, 2), (0, 1, 2, 3, 4, 5)
+
+
+def spectrum_length(n: int, rows: tuple[int, ...], convention: str) -> int:
+    """Number of values that an index function of this convention receives."""
+    return 1 + min(6, n) if convention == "wsrender_code" else len(rows)
+
+
+@cache
+def spectrum(real, n: int, rows: tuple[int, ...], convention: str, penalty: bool, torque: bool) -> SimpleNamespace:
+    """Device functions ``kinematic(model, J)`` and ``dynamic(model, J, M)``, and ``penalized(model, q, J)``."""
+    make = {"standard": _standard, "table_1": _table_1, "wsrender_code": _wsrender_code}[convention]
+    kinematic, dynamic = make(real, n, rows, _torque_scaled(real, n) if torque else None)
+    return SimpleNamespace(
+        kinematic=kinematic, dynamic=dynamic, penalized=_penalized(real, n) if penalty else _unchanged(real, n)
+    )
+
+
+def _unchanged(real, n: int):
+    Model = model_arrays(real)
+    vec_n, mat_6n = wp.types.vector(n, real), wp.types.matrix((6, n), real)
+
+    @wp.func
+    def unchanged(model: Model, q: vec_n, J: mat_6n):
+        return J
+
+    return unchanged
+
+
+def _penalized(real, n: int):
+    """Columns times (1 - exp(-4 K t)) / (1 - exp(-K)), t = (q_max - q)(q - q_min) / range² (WSRender eq. 3)."""
+    Model = model_arrays(real)
+    vec_n, mat_6n = wp.types.vector(n, real), wp.types.matrix((6, n), real)
+    exp2 = elementary(real).exp2
+    ZERO, ONE, FOUR, LOG2_E = real(0.0), real(1.0), real(4.0), real(1.4426950408889634)
+
+    @wp.func
+    def penalized(model: Model, q: vec_n, J: mat_6n):
+        out = J
+        K = model.penalty * LOG2_E
+        scale = ONE / (ONE - exp2(-K))
+        for i in range(n):
+            width = model.upper[i] - model.lower[i]
+            t = (model.upper[i] - q[i]) * (q[i] - model.lower[i]) / (width * width)
+            p = (ONE - exp2(-FOUR * K * wp.max(t, ZERO))) * scale
+            p = wp.where(model.limited[i] > ZERO, p, ONE)
+            for r in range(6):
+                out[r, i] *= p
+        return out
+
+    return penalized
+
+
+def _torque_scaled(real, n: int):
+    """Device function factory: columns of an (m, n) matrix times the largest joint efforts."""
+    Model = model_arrays(real)
+
+    @cache
+    def make(m: int):
+        mat_mn = wp.types.matrix((m, n), real)
+
+        @wp.func
+        def torque_scaled(model: Model, A: mat_mn):
+            out = A
+            for r in range(m):
+                for i in range(n):
+                    out[r, i] *= model.torque[i]
+            return out
+
+        return torque_scaled
+
+    return make
+
+
+def _task_matrix(real, n: int, rows: tuple[int, ...]):
+    """The chosen rows of J, linear ones divided by the characteristic length."""
+    Model = model_arrays(real)
+    m = len(rows)
+    ROW = wp.types.vector(m, wp.int32)(*rows)
+    mat_6n, mat_mn = wp.types.matrix((6, n), real), wp.types.matrix((m, n), real)
+
+    @wp.func
+    def task_matrix(model: Model, J: mat_6n):
+        A = mat_mn()
+        for r in range(m):
+            for i in range(n):
+                if ROW[r] < 3:
+                    A[r, i] = J[ROW[r], i] * model.linear_scale
+                else:
+                    A[r, i] = J[ROW[r], i]
+        return A
+
+    return task_matrix
+
+
+def _of_task(real, n: int, rows: tuple[int, ...]):
+    """Device function (model, J) -> singular values of the task matrix."""
+    Model = model_arrays(real)
+    mat_6n = wp.types.matrix((6, n), real)
+    task_matrix, values = _task_matrix(real, n, rows), singular_values(real, len(rows), n)
+
+    @wp.func
+    def of_task(model: Model, J: mat_6n):
+        return values(task_matrix(model, J))
+
+    return of_task
+
+
+def _standard(real, n: int, rows: tuple[int, ...], torque):
+    Model = model_arrays(real)
+    m = len(rows)
+    mat_6n, mat_nn = wp.types.matrix((6, n), real), wp.types.matrix((n, n), real)
+    mat_mn = wp.types.matrix((m, n), real)
+    task_matrix, values = _task_matrix(real, n, rows), singular_values(real, m, n)
+    solve = inertia(real, n, tuple(range(n))).solve(m)
+
+    @wp.func
+    def unscaled(model: Model, A: mat_mn):
+        return A
+
+    scaled = torque(m) if torque else unscaled
+
+    @wp.func
+    def dynamic(model: Model, J: mat_6n, M: mat_nn):
+        return values(scaled(model, solve(M, task_matrix(model, J))))
+
+    return _of_task(real, n, rows), dynamic
+
+
+def _table_1(real, n: int, rows: tuple[int, ...], torque):
+    """H = (L U^-1)(L U^-1)^T, with J = L Q (Q: orthonormal rows) and M Q^T = V U^T (V: orthonormal columns)."""
+    Model = model_arrays(real)
+    m = len(rows)
+    mat_6n, mat_nn = wp.types.matrix((6, n), real), wp.types.matrix((n, n), real)
+    mat_mn, mat_mm = wp.types.matrix((m, n), real), wp.types.matrix((m, m), real)
+    vec_m = wp.types.vector(m, real)
+    task_matrix = _task_matrix(real, n, rows)
+    values = singular_values(real, m, m)
+    lower_factor = _lower_factor(real, m, n)
+    DEFICIENT = n < m
+    ZERO, ONE = real(0.0), real(1.0)
+
+    @wp.func
+    def singular(model: Model, J: mat_6n, M: mat_nn):
+        return vec_m()
+
+    @wp.func
+    def dynamic(model: Model, J: mat_6n, M: mat_nn):
+        L, Q = lower_factor(task_matrix(model, J))
+        W = mat_mn()
+        for r in range(m):
+            W[r] = M * Q[r]
+        U, _V = lower_factor(W)
+        # Rows of X with X Uᵀ = L, that is the matrix whose singular values are the inverses of those of M J⁺.
+        X = mat_mm()
+        for r in range(m):
+            for back in range(m):
+                c = m - 1 - back
+                value = L[r, c]
+                for k in range(c + 1, m):
+                    value -= X[r, k] * U[k, c]
+                X[r, c] = wp.where(U[c, c] > ZERO, value / wp.where(U[c, c] > ZERO, U[c, c], ONE), ZERO)
+        return values(X)
+
+    return _of_task(real, n, rows), singular if DEFICIENT else dynamic
+
+
+def _lower_factor(real, m: int, n: int):
+    """Device function A (m, n) -> (L lower triangular, Q orthonormal rows) with A = L Q, by Gram–Schmidt done twice."""
+    mat_mn, mat_mm = wp.types.matrix((m, n), real), wp.types.matrix((m, m), real)
+    ZERO, ONE = real(0.0), real(1.0)
+    NEGLIGIBLE = real(1e-30 if real is wp.float32 else 1e-290)
+
+    @wp.func
+    def lower_factor(A: mat_mn):
+        L = mat_mm()
+        Q = A
+        for r in range(m):
+            for _again in range(2):
+                for k in range(r):
+                    along = wp.dot(Q[r], Q[k])
+                    L[r, k] += along
+                    Q[r] = Q[r] - Q[k] * along
+            size = wp.sqrt(wp.dot(Q[r], Q[r]))
+            L[r, r] = size
+            Q[r] = Q[r] * wp.where(size > NEGLIGIBLE, ONE / wp.max(size, NEGLIGIBLE), ZERO)
+        return L, Q
+
+    return lower_factor
+
+
+def _wsrender_code(real, n: int, rows: tuple[int, ...], torque):
+    Model = model_arrays(real)
+    mat_6n, mat_nn = wp.types.matrix((6, n), real), wp.types.matrix((n, n), real)
+    mat_3n = wp.types.matrix((3, n), real)
+    COUNT = min(6, n)
+    FULL_RANK = n >= 6
+    out_type = wp.types.vector(1 + COUNT, real)
+    of_three, of_six = singular_values(real, 3, n), singular_values(real, 6, n)
+    ONE, ZERO = real(1.0), real(0.0)
+
+    @wp.func
+    def kinematic(model: Model, J: mat_6n):
+        linear = mat_3n()
+        for r in range(3):
+            linear[r] = J[r]
+        three = of_three(linear)
+        six = of_six(J)
+        out = out_type()
+        out[0] = three[0] * three[1] * three[2]
+        for i in range(COUNT):
+            out[1 + i] = six[i]
+        return out
+
+    @wp.func
+    def dynamic(model: Model, J: mat_6n, M: mat_nn):
+        six = of_six(J * M)
+        out = out_type()
+        determinant = ONE
+        for i in range(COUNT):
+            out[1 + i] = six[i]
+            determinant *= six[i]
+        out[0] = wp.where(FULL_RANK, determinant, ZERO)
+        return out
+
+    return kinematic, dynamic

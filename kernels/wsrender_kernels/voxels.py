@@ -1,0 +1,80 @@
+"""Accumulation of samples into voxel records and totals, in integers only: the result does not depend on the order.
+
+A voxel record is ``1 + E`` integers of the precision's width: the count, then one per extreme (a maximum, or a
+minimum as the maximum of the complement) in `elementary.ordered` form, initially the lowest integer. Sums are 64-bit
+fixed point. The last record takes the masked lanes of a block.
+"""
+
+from functools import cache
+from types import SimpleNamespace
+
+import numpy as np
+import warp as wp
+
+from wsrender_kernels.elementary import bits_type, elementary
+
+
+@cache
+def lattice(real):
+    """Struct with the lattice: voxel edge [m], first voxel and shape of the dense block."""
+
+    @wp.struct
+    class Lattice:
+        edge: real
+        first_x: wp.int32
+        first_y: wp.int32
+        first_z: wp.int32
+        size_x: wp.int32
+        size_y: wp.int32
+        size_z: wp.int32
+
+    return Lattice
+
+
+@cache
+def voxels(real) -> SimpleNamespace:
+    """Device functions ``cell(lattice, position)`` and ``quantized(value, scale)``."""
+    Lattice = lattice(real)
+    vec3 = wp.types.vector(3, real)
+    HALF = real(0.5)
+    # Adding 1.5 * 2^52 leaves the rounded integer in the low bits: AVX2 has no conversion of doubles to 64-bit integers.
+    MAGIC = wp.float64(1.5 * 2.0**52)
+    MAGIC_BITS = wp.int64(0x4338000000000000)
+
+    @wp.func
+    def along(p: real, edge: real, first: wp.int32, size: wp.int32):
+        # A true division, so that voxels agree with floor(p / r) of any other program.
+        return wp.min(wp.max(wp.int32(wp.floor(p / edge)) - first, 0), size - 1)
+
+    @wp.func
+    def cell(grid: Lattice, p: vec3):
+        x = along(p[0], grid.edge, grid.first_x, grid.size_x)
+        y = along(p[1], grid.edge, grid.first_y, grid.size_y)
+        z = along(p[2], grid.edge, grid.first_z, grid.size_z)
+        return (x * grid.size_y + y) * grid.size_z + z
+
+    @wp.func
+    def quantized32(value: real, scale: real):
+        return wp.int64(wp.int32(wp.floor(value * scale + HALF)))
+
+    @wp.func
+    def quantized64(value: real, scale: real):
+        return wp.cast(value * scale + MAGIC, wp.int64) - MAGIC_BITS
+
+    return SimpleNamespace(cell=cell, quantized=quantized32 if real is wp.float32 else quantized64)
+
+
+QUANTUM_BITS = {wp.float32: 30, wp.float64: 50}  # a quantised value needs at most so many bits
+
+
+def lowest(real) -> int:
+    """Initial value of an extreme: the lowest integer of the precision's width."""
+    return int(np.iinfo(wp.dtype_to_numpy(bits_type(real))).min)
+
+
+def decode_extreme(bits: np.ndarray, minimum: bool) -> np.ndarray:
+    """Float values of extremes in `elementary.ordered` form (int32 -> float32, int64 -> float64)."""
+    bits = ~bits if minimum else bits
+    magnitude = np.iinfo(bits.dtype).max
+    restored = np.where(bits < 0, bits ^ magnitude, bits)
+    return restored.view(np.float32 if bits.dtype == np.int32 else np.float64)
