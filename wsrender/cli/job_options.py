@@ -33,7 +33,7 @@ def sampling_document(
     A grid size chooses the grid, a number of samples the Sobol sequence unless the method is counted.
     Raises InputError naming the option.
     """
-    if method is grid is samples is seed is None and not lock:
+    if not lock and all(option is None for option in (method, grid, samples, seed)):
         return None
     fields = dict(current) if isinstance(current, dict) else {"method": "grid"}
     if method is None and grid is not None:

@@ -1,0 +1,178 @@
+"""Malformed job documents, each with the field and the message that it must give."""
+
+import json
+
+import pytest
+
+from wsrender.errors import DocumentError
+from wsrender.spec import parse_job
+from wsrender.spec.json_text import LARGEST_DOCUMENT
+
+NAN, INF = float("nan"), float("inf")
+WORKSPACE = {"analysis": "workspace", "robot": {"library": "ur5e"}}
+INDICES_AT = {"analysis": "indices_at", "robot": {"library": "ur5e"}}
+
+
+def job(**fields):
+    return {**WORKSPACE, **fields}
+
+
+def at(**fields):
+    return {**INDICES_AT, **fields}
+
+
+def sampled(**fields):
+    return job(sampling={"method": "grid", **fields})
+
+
+def drawn(**fields):
+    return job(sampling={"method": "random", **fields})
+
+
+def converged(**fields):
+    return job(sampling={"method": "converge", **fields})
+
+
+def nested(depth):
+    document = []
+    for _ in range(depth):
+        document = [document]
+    return document
+
+
+CODE = {"convention": "wsrender_code", "precision": "float64"}
+METHODS = 'must be one of "grid", "random", "sobol", "boundary", "converge"'
+TASKS = 'must be "linear", "angular", "full" or a list of rows from x y z rx ry rz'
+GROUPS = 'must be "kinematic", "dynamic", "all" or a list of index names'
+
+MALFORMED = [
+    # the document as a whole
+    ("", "document", "is not JSON: Expecting value (line 1, column 1)"),
+    ("{", "document", "is not JSON: Expecting property name enclosed in double quotes"),
+    ('{"analysis": "workspace",}', "document", "is not JSON"),
+    ("[1, 2]", "document", "must be an object, not list"),
+    (b"\xff\xfe{}", "document", "must be UTF-8 text; byte 0 is not"),
+    ('{"a": NaN}', "document", "must hold finite numbers only, not NaN"),
+    ('{"a": -Infinity}', "document", "must hold finite numbers only, not -Infinity"),
+    ('{"analysis": "workspace", "analysis": "x"}', "analysis", "must be given only once in its object"),
+    ("[" * 100_000, "document", "must not be nested deeper than 32 levels"),
+    (job(robot=nested(40)), "document", "must not be nested deeper than 32 levels"),
+    ('"' + "x" * LARGEST_DOCUMENT + '"', "document", f"must have at most {LARGEST_DOCUMENT} bytes"),
+    ('{"a": ' + "1" * 5000 + "}", "document", "is not JSON: Exceeds the limit"),
+    (42, "document", "must be an object, not int"),
+    # the analysis
+    ({}, "analysis", 'must be one of "workspace", "indices_at"; it is required'),
+    ({"analysis": "worksapce"}, "analysis", 'must be one of "workspace", "indices_at", not "worksapce"'),
+    ({"analysis": ["workspace"]}, "analysis", 'not ["workspace"]'),
+    # the robot
+    ({"analysis": "workspace"}, "robot", "is required"),
+    (job(robot=5), "robot", "must be an object, not 5"),
+    (job(robot=None), "robot", "must be an object, not null"),
+    (job(robot={}), "robot.library", "exactly one of"),
+    (job(robot={"libary": "ur5e"}), "robot.libary", "did you mean library?"),
+    (job(robot=""), "robot.library", "must not be empty"),
+    # unknown and wrong fields
+    (job(tipp="tool"), "tipp", "is not a known field; did you mean tip?"),
+    (at(voxel_size_m=0.1), "voxel_size_m", "is not a known field; allowed: robot"),
+    (at(sampling={"method": "grid"}), "sampling", "is not a known field"),
+    (job(base=""), "base", "must not be empty"),
+    (job(tip=3), "tip", "must be a string, not 3"),
+    (job(tip="\ud800"), "tip", "must be valid Unicode text"),
+    # sampling
+    (job(sampling=15), "sampling", "must be an object, not 15"),
+    (job(sampling={}), "sampling.method", f"{METHODS}; it is required"),
+    (job(sampling={"method": "gird"}), "sampling.method", f'{METHODS}, not "gird"'),
+    (sampled(per_joint=0), "sampling.per_joint", "must lie between 1 and 1000000000000000, not 0"),
+    (sampled(per_joint=10**16), "sampling.per_joint", "must lie between 1 and 1000000000000000"),
+    (sampled(per_joint=True), "sampling.per_joint", "must be a whole number, not true"),
+    (sampled(per_joint="15"), "sampling.per_joint", 'or a list with one per joint, not "15"'),
+    (sampled(per_joint=1.5), "sampling.per_joint", "must be a whole number, not 1.5"),
+    (sampled(per_joint=[]), "sampling.per_joint", "must not be an empty list"),
+    (sampled(per_joint=[3, 0]), "sampling.per_joint", "not [3, 0]"),
+    (sampled(count=3), "sampling.count", "is not a known field; allowed: locked, method, per_joint"),
+    (sampled(locked={"joint6": NAN}), "sampling.locked.joint6", "must be a finite number, not NaN"),
+    (sampled(locked={"joint6": "0"}), "sampling.locked.joint6", 'must be a number, not "0"'),
+    (sampled(locked={"joint6": False}), "sampling.locked.joint6", "must be a number, not false"),
+    (sampled(locked=[0.0]), "sampling.locked", "must be an object, not [0.0]"),
+    (drawn(), "sampling.count", "is required"),
+    (drawn(count=-1), "sampling.count", "must be at least 1, not -1"),
+    (drawn(count=10**15 + 1), "sampling.count", "must be at most 1000000000000000, not 1000000000000001"),
+    (drawn(count=9, seed=-1), "sampling.seed", "must be at least 0, not -1"),
+    (drawn(count=9, seed=2**63), "sampling.seed", "must be at most 9223372036854775807"),
+    (converged(tolerance=0), "sampling.tolerance", "must be greater than 0, not 0"),
+    (converged(by="mean"), "sampling.by", 'must be "joint_mean" or "workspace_mean", not "mean"'),
+    (converged(step=0), "sampling.step", "must be at least 1, not 0"),
+    (converged(index=""), "sampling.index", "must not be empty"),
+    # indices and task
+    (job(indices="manipulability"), "indices", f'{GROUPS}, not "manipulability"'),
+    (job(indices=[]), "indices", "must not be empty, not []"),
+    (job(indices=[1]), "indices", f"{GROUPS}, not [1]"),
+    (job(indices=None), "indices", f"{GROUPS}, not null"),
+    (job(indices=["isotropy", "isotropy"]), "indices", 'must not repeat "isotropy"'),
+    (job(task="linea"), "task", f'{TASKS}, not "linea"'),
+    (job(task=[]), "task", "must not be empty"),
+    (job(task=["x", "x"]), "task", 'must not repeat "x"'),
+    (job(task=["x", "w"]), "task", 'must be a list of items from x y z rx ry rz, not ["x", "w"]'),
+    (job(characteristic_length_m=0), "characteristic_length_m", "must be greater than 0"),
+    (job(characteristic_length_m=INF), "characteristic_length_m", "must be a finite number, not Infinity"),
+    (job(convention="std"), "convention", 'must be "standard", "table_1" or "wsrender_code", not "std"'),
+    (job(joint_limit_penalty=0), "joint_limit_penalty", "must be greater than 0 (the K of the penalisation)"),
+    (job(joint_limit_penalty="10"), "joint_limit_penalty", 'must be a number, not "10"'),
+    (job(torque_scaling=1), "torque_scaling", "must be true or false, not 1"),
+    (job(inertia="mj"), "inertia", 'must be "kernel" or "mujoco", not "mj"'),
+    # voxels, map, execution
+    (job(voxel_size_m=0), "voxel_size_m", "must be greater than 0"),
+    (job(voxel_size_m=-0.01), "voxel_size_m", "must be greater than 0, not -0.01"),
+    (job(voxel_size_m="1 mm"), "voxel_size_m", 'must be a number, not "1 mm"'),
+    (
+        '{"analysis": "workspace", "robot": "a", "voxel_size_m": 1e999}',
+        "voxel_size_m",
+        "must be a finite number",
+    ),
+    (job(voxel_statistics=["median"]), "voxel_statistics", "must be a list of items from count maximum"),
+    (job(voxel_statistics="count"), "voxel_statistics", 'must be a list, not "count"'),
+    (job(voxel_statistics=["mean", "mean"]), "voxel_statistics", 'must not repeat "mean"'),
+    (job(refined_volume=0.005), "refined_volume", "must be null (not available in this version), not 0.005"),
+    (job(keep_map="yes"), "keep_map", 'must be true or false, not "yes"'),
+    (job(map_columns=["speed"], keep_map=True), "map_columns", "items from configuration orientation"),
+    (job(map_columns=["orientation"]), "map_columns", 'must be empty unless "keep_map" is true'),
+    (job(max_samples=0), "max_samples", "must be at least 1, not 0"),
+    (job(precision="float16"), "precision", 'must be "float32" or "float64", not "float16"'),
+    (job(device="gpu"), "device", 'must be "auto", "cpu", "cuda" or "cuda:N", not "gpu"'),
+    (job(device="cuda:x"), "device", 'not "cuda:x"'),
+    # fields that do not go together
+    (job(convention="wsrender_code"), "precision", 'must be "float64" with the convention "wsrender_code"'),
+    (job(**CODE, task="angular"), "task", 'must be left at "linear"'),
+    (job(**CODE, indices="all", torque_scaling=True), "torque_scaling", "must be false with the convention"),
+    (job(torque_scaling=True), "torque_scaling", "must be false with kinematic indices"),
+    # configurations
+    (at(configurations=3), "configurations", "must be a list, not 3"),
+    (at(configurations=[[0, 1], [0]]), "configurations", "must hold rows of one length"),
+    (at(configurations=[[0, "1"]]), "configurations", "must be a number"),
+    (at(configurations=[[0, NAN]]), "configurations", "must be a finite number"),
+]
+
+
+@pytest.mark.parametrize(("document", "field", "message"), MALFORMED, ids=range(len(MALFORMED)))
+def test_malformed_document_names_field_value_and_what_is_allowed(document, field, message):
+    with pytest.raises(DocumentError) as caught:
+        parse_job(document)
+    assert caught.value.problems[0][0] == field
+    assert message in caught.value.problems[0][1]
+
+
+@pytest.mark.parametrize(
+    "document", [row[0] for row in MALFORMED if isinstance(row[0], dict) and row[1] != "document"]
+)
+def test_text_and_dict_give_the_same_problems(document):
+    text = json.dumps(document)
+    if "NaN" in text or "Infinity" in text:
+        expected = [("document", "must hold finite numbers only")]
+    else:
+        with pytest.raises(DocumentError) as caught:
+            parse_job(document)
+        expected = caught.value.problems
+    with pytest.raises(DocumentError) as from_text:
+        parse_job(text)
+    assert from_text.value.problems[0][0] == expected[0][0]
+    assert from_text.value.problems[0][1].startswith(expected[0][1])
