@@ -1,0 +1,6 @@
+"""Robots: MJCF, URDF or DH table → compiled MuJoCo model → Chain."""
+
+from wsrender.robots.loading import load, load_dh, load_library, load_mjcf, load_path, load_urdf
+from wsrender.robots.model_warning import ModelWarning
+
+__all__ = ["ModelWarning", "load", "load_dh", "load_library", "load_mjcf", "load_path", "load_urdf"]

@@ -1,0 +1,225 @@
+"""From a compiled MuJoCo model to the Chain between a base and a tip."""
+
+import warnings
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+
+from wsrender.errors import ModelError
+from wsrender.robots import frames
+from wsrender.robots.chain import Chain
+from wsrender.robots.compiled_model import CompiledModel
+from wsrender.robots.couplings import Couplings, refuse_loops
+from wsrender.robots.frames import Frame, transform
+from wsrender.robots.inertials import MASSLESS
+from wsrender.robots.limits import Drive, coordinate_limits, effort_limits, joint_name
+from wsrender.robots.loaded_robot import LoadedRobot
+from wsrender.robots.model_warning import ModelWarning
+
+MAX_JOINTS = 16
+PLAUSIBLE_REACH = (0.02, 20.0)  # [m]; outside it, millimetres were probably taken for metres
+
+
+def extract(
+    compiled: CompiledModel, base: str | None, tip: str | None, name: str, source_hash: str, field: str
+) -> LoadedRobot:
+    """The robot between the frames ``base`` and ``tip`` (see ``frames.choose``) of a compiled model.
+
+    The chain is read from MuJoCo's own kinematics with its joints at ``qpos0``; everything else is held at
+    ``qpos0`` too, followers where their leaders put them, and its mass belongs to the joint that carries
+    it. Joints held by a coupling become part of the fixed links. Raises ModelError; gives one ModelWarning
+    if the reach is implausible.
+    """
+    model = compiled.model
+    base_frame, tip_frame = frames.choose(model, base, tip)
+    bodies = _bodies_between(model, base_frame, tip_frame)
+    _refuse_faults(compiled, bodies, base_frame, tip_frame, field)
+    couplings = Couplings(model, field)
+    leaders, drives = _drives(model, bodies, couplings, field)
+    carrier = _carriers(model, [drive.joint for drive in drives])
+    refuse_loops(model, carrier, field)
+    for body, fault in compiled.inertia_faults.items():
+        if carrier[model.body(body).id] >= 0:
+            raise ModelError(field, fault)
+    reference = couplings.reference_qpos()
+    geometry = _Geometry.at_reference(model, drives, reference, base_frame, tip_frame)
+    lower, upper, periodic = coordinate_limits(model, drives, leaders, field)
+    names = tuple(joint_name(model, leader) for leader in leaders)
+    dofs = model.jnt_dofadr[[drive.joint for drive in drives]]
+    mass, center, inertia = _composite(model, geometry, carrier)
+    chain = Chain(
+        name=name, base_frame=base_frame.name, tip_frame=tip_frame.name, joint_names=names,
+        lower_limits=lower, upper_limits=upper, periodic=periodic,
+        effort_limits=effort_limits(model, leaders),
+        joint_is_revolute=np.array([_is_hinge(model, drive.joint) for drive in drives]),
+        joint_source=np.array([drive.source for drive in drives]),
+        joint_scale=np.array([drive.scale for drive in drives]),
+        joint_offset=np.array([drive.offset for drive in drives]),
+        T_joint=geometry.between, T_tip=geometry.tip, mass=mass, center_of_mass=center, inertia=inertia,
+        armature=model.dof_armature[dofs], has_inertia=_has_inertia(model, carrier),
+    )  # fmt: skip
+    _check(chain, field)
+    qpos = model.jnt_qposadr[[drive.joint for drive in drives]]
+    return LoadedRobot(model, chain, source_hash, qpos, dofs, reference)
+
+
+def _bodies_between(model: mujoco.MjModel, base: Frame, tip: Frame) -> list[int]:
+    """Bodies of the path below the base body, the tip's body included."""
+    path = frames.path(model, tip.body)
+    return path[path.index(base.body) + 1 :]
+
+
+def _refuse_faults(compiled: CompiledModel, bodies: list[int], base: Frame, tip: Frame, field: str) -> None:
+    model = compiled.model
+    for body in bodies:
+        if fault := compiled.path_faults.get(model.body(body).name):
+            raise ModelError(field, fault)
+        for joint in frames.joints_of(model, body):
+            kind = {mujoco.mjtJoint.mjJNT_FREE: "free", mujoco.mjtJoint.mjJNT_BALL: "ball"}
+            if word := kind.get(model.jnt_type[joint]):
+                raise ModelError(
+                    field,
+                    f"{joint_name(model, joint)!r} is a {word} joint on the chain from {base.name!r} to "
+                    f"{tip.name!r}; only hinges and slides are supported: name a base below it",
+                )
+    joints = [joint for body in bodies for joint in frames.joints_of(model, body)]
+    if not joints:
+        raise ModelError(field, f"there is no joint between base {base.name!r} and tip {tip.name!r}")
+    if len(joints) > MAX_JOINTS:
+        raise ModelError(
+            field,
+            f"{len(joints)} joints lie between base {base.name!r} and tip {tip.name!r}; at most {MAX_JOINTS} "
+            "are supported",
+        )
+
+
+def _drives(
+    model: mujoco.MjModel, bodies: list[int], couplings: Couplings, field: str
+) -> tuple[list[int], list[Drive]]:
+    """Leaders (the joints whose values are the coordinates) and the joints that move, in chain order."""
+    joints = [joint for body in bodies for joint in frames.joints_of(model, body)]
+    leaders = [joint for joint in joints if couplings.leader(joint) == joint]
+    drives = []
+    for joint in joints:
+        leader = couplings.leader(joint)
+        if leader not in leaders:
+            continue
+        scale, offset = couplings.linear(joint)
+        if scale != 0.0:
+            zero = float(model.qpos0[model.jnt_qposadr[leader]])
+            drives.append(Drive(joint, leaders.index(leader), scale, offset - scale * zero))
+    if not leaders:
+        names = ", ".join(joint_name(model, joint) for joint in joints)
+        raise ModelError(field, f"no joint of the chain is free to move: couplings hold {names}")
+    return leaders, drives
+
+
+def _carriers(model: mujoco.MjModel, joints: list[int]) -> np.ndarray:
+    """Number of the chain joint that carries each body, −1 for the base, (nbody,)."""
+    carrier = np.full(model.nbody, -1)
+    for body in range(1, model.nbody):
+        carrier[body] = carrier[model.body_parentid[body]]
+        for joint in frames.joints_of(model, body):
+            carrier[body] = joints.index(joint) if joint in joints else carrier[body]
+    return carrier
+
+
+@dataclass(frozen=True)
+class _Geometry:
+    """Frames of the chain with its joints at ``qpos0``: of each joint in the last, and of the tip."""
+
+    data: mujoco.MjData
+    joint: np.ndarray  # (L, 4, 4) in the world
+    between: np.ndarray  # (L, 4, 4)
+    tip: np.ndarray  # (4, 4)
+
+    @classmethod
+    def at_reference(
+        cls, model: mujoco.MjModel, drives: list[Drive], reference: np.ndarray, base: Frame, tip: Frame
+    ) -> "_Geometry":
+        data = mujoco.MjData(model)
+        data.qpos[:] = reference
+        moving = model.jnt_qposadr[[drive.joint for drive in drives]]
+        data.qpos[moving] = model.qpos0[moving]
+        mujoco.mj_kinematics(model, data)
+        joint = np.array([_joint_frame(model, data, drive.joint) for drive in drives])
+        before = np.concatenate([base.pose(data)[None], joint[:-1]])
+        between = np.array([_inverse(T) @ T_next for T, T_next in zip(before, joint, strict=True)])
+        return cls(data, joint, between, _inverse(joint[-1]) @ tip.pose(data))
+
+
+def _joint_frame(model: mujoco.MjModel, data: mujoco.MjData, joint: int) -> np.ndarray:
+    """World frame on the joint's anchor: its body's axes, turned the shortest way to make z the axis."""
+    rotation = data.xmat[model.jnt_bodyid[joint]].reshape(3, 3)
+    return transform(data.xanchor[joint], rotation @ _turn_z_to(rotation.T @ data.xaxis[joint]))
+
+
+def _turn_z_to(axis: np.ndarray) -> np.ndarray:
+    """Rotation (3, 3) the shortest way from z to a unit ``axis``: 1 + K + K²/(1 + cos), K = [z × axis]."""
+    x, y, z = axis
+    if z < -0.5:  # half a turn about x first keeps the denominator away from 0
+        half_turn = np.diag([1.0, -1.0, -1.0])
+        return half_turn @ _turn_z_to(half_turn @ axis)
+    K = np.array([[0.0, 0.0, x], [0.0, 0.0, y], [-x, -y, 0.0]])
+    return np.eye(3) + K + K @ K / (1.0 + z)
+
+
+def _inverse(T: np.ndarray) -> np.ndarray:
+    R = T[:3, :3].T
+    return transform(-R @ T[:3, 3], R)
+
+
+def _is_hinge(model: mujoco.MjModel, joint: int) -> bool:
+    return model.jnt_type[joint] == mujoco.mjtJoint.mjJNT_HINGE
+
+
+def _composite(
+    model: mujoco.MjModel, geometry: _Geometry, carrier: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Mass (L,), centre of mass (L, 3) and inertia about it (L, 3, 3) of what each joint carries."""
+    count = len(geometry.joint)
+    mass, center, inertia = np.zeros(count), np.zeros((count, 3)), np.zeros((count, 3, 3))
+    for link, T in enumerate(geometry.joint):
+        bodies = np.flatnonzero(carrier == link)
+        m = model.body_mass[bodies]
+        R = T[:3, :3].T @ geometry.data.ximat[bodies].reshape(-1, 3, 3)
+        at = (geometry.data.xipos[bodies] - T[:3, 3]) @ T[:3, :3]
+        mass[link] = m.sum()
+        if mass[link] > 0.0:
+            center[link] = m @ at / mass[link]
+        moments = model.body_inertia[bodies]
+        about_own = np.einsum("bij,bj,bkj->ik", R, moments, R)
+        d = at - center[link]
+        # parallel axes (Huygens–Steiner): Σ m (|d|² 1 − d dᵀ)
+        moved = np.einsum("b,bi,bi->", m, d, d) * np.eye(3) - np.einsum("b,bi,bj->ij", m, d, d)
+        inertia[link] = about_own + moved
+    return mass, center, inertia
+
+
+def _has_inertia(model: mujoco.MjModel, carrier: np.ndarray) -> bool:
+    carried = carrier >= 0
+    return bool((model.body_mass[carried] > MASSLESS).any() or (model.body_inertia[carried] > MASSLESS).any())
+
+
+def _check(chain: Chain, field: str) -> None:
+    numbers = (
+        "T_joint",
+        "T_tip",
+        "mass",
+        "center_of_mass",
+        "inertia",
+        "armature",
+        "joint_scale",
+        "joint_offset",
+    )
+    for name in numbers:
+        if not np.isfinite(getattr(chain, name)).all():
+            raise ModelError(field, f"the chain's {name} is not finite: the model's numbers are too large")
+    low, high = PLAUSIBLE_REACH
+    if not low <= chain.reach <= high:
+        warnings.warn(
+            f"the reach of {chain.name!r} is {chain.reach:.3g} m; lengths must be in metres, not millimetres",
+            ModelWarning,
+            stacklevel=2,
+        )

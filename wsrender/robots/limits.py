@@ -1,0 +1,121 @@
+"""Limits of the coordinates of a chain: what every joint that a coordinate drives allows."""
+
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+
+from wsrender.errors import ModelError
+
+
+@dataclass(frozen=True)
+class Drive:
+    """A joint of the chain: displaced from ``qpos0`` by scale × q[source] + offset [rad or m]."""
+
+    joint: int
+    source: int
+    scale: float
+    offset: float
+
+
+def joint_name(model: mujoco.MjModel, joint: int) -> str:
+    """Name of a joint, or one made from its number where it has none; unique in the model."""
+    if name := model.joint(joint).name:
+        return name
+    name = f"joint{joint + 1}"
+    while mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_JOINT, name) >= 0:
+        name += "_"
+    return name
+
+
+def coordinate_limits(
+    model: mujoco.MjModel, drives: list[Drive], leaders: list[int], field: str
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Lower and upper limits [rad or m] and periodicity of the coordinates, (n,) each.
+
+    ``leaders`` are the joints whose value is the coordinate. A coordinate is periodic, −π … π, if no joint
+    it drives has limits and all of them turn by whole turns; otherwise its interval is what all its joints
+    allow. Raises ModelError where that is empty or has no end.
+    """
+    lower, upper = np.empty(len(leaders)), np.empty(len(leaders))
+    periodic = np.zeros(len(leaders), bool)
+    for k, leader in enumerate(leaders):
+        driven = [drive for drive in drives if drive.source == k]
+        interval = _intersection(model, driven)
+        name = joint_name(model, leader)
+        if interval is None:
+            if not all(_whole_turns(model, drive) for drive in driven):
+                raise ModelError(field, f"joint {name!r} has no limits: give its range")
+            periodic[k], interval = True, (-np.pi, np.pi)
+        lower[k], upper[k] = interval
+        if not (np.isfinite(interval).all() and lower[k] < upper[k]):
+            raise ModelError(
+                field,
+                f"joint {name!r}: its limits and those of its followers leave {lower[k]:g} … {upper[k]:g}; "
+                "a finite interval is needed",
+            )
+    return lower, upper, periodic
+
+
+def effort_limits(model: mujoco.MjModel, leaders: list[int]) -> np.ndarray | None:
+    """Largest joint torque or force in both directions [N m or N], (n,); None if a joint has no limit.
+
+    The smaller of the joint's ``actuatorfrcrange`` and the sum over its actuators of their force limits
+    times gear.
+    """
+    efforts = [min(_joint_effort(model, joint), _actuator_effort(model, joint)) for joint in leaders]
+    return np.array(efforts) if np.isfinite(efforts).all() else None
+
+
+def _intersection(model: mujoco.MjModel, driven: list[Drive]) -> tuple[float, float] | None:
+    """What the limited joints of ``driven`` allow their coordinate; None if none is limited."""
+    ends = []
+    for drive in driven:
+        if model.jnt_limited[drive.joint]:
+            zero = model.qpos0[model.jnt_qposadr[drive.joint]] + drive.offset
+            ends.append(sorted((model.jnt_range[drive.joint] - zero) / drive.scale))
+    if not ends:
+        return None
+    return max(low for low, _ in ends), min(high for _, high in ends)
+
+
+def _whole_turns(model: mujoco.MjModel, drive: Drive) -> bool:
+    return model.jnt_type[drive.joint] == mujoco.mjtJoint.mjJNT_HINGE and drive.scale.is_integer()
+
+
+def _joint_effort(model: mujoco.MjModel, joint: int) -> float:
+    if not model.jnt_actfrclimited[joint]:
+        return np.inf
+    return _both_ways(model.jnt_actfrcrange[joint])
+
+
+def _actuator_effort(model: mujoco.MjModel, joint: int) -> float:
+    transmissions = (mujoco.mjtTrn.mjTRN_JOINT, mujoco.mjtTrn.mjTRN_JOINTINPARENT)
+    efforts = [
+        abs(model.actuator_gear[actuator, 0]) * _force(model, actuator)
+        for actuator in range(model.nu)
+        if model.actuator_trntype[actuator] in transmissions and model.actuator_trnid[actuator, 0] == joint
+    ]
+    return sum(efforts) if efforts else np.inf
+
+
+def _force(model: mujoco.MjModel, actuator: int) -> float:
+    """Force limit of an actuator before its gear: its range, or for motors what the control range gives."""
+    force = np.inf
+    if model.actuator_forcelimited[actuator]:
+        force = _both_ways(model.actuator_forcerange[actuator])
+    motor = (
+        model.actuator_gaintype[actuator] == mujoco.mjtGain.mjGAIN_FIXED
+        and model.actuator_biastype[actuator] == mujoco.mjtBias.mjBIAS_NONE
+        and model.actuator_dyntype[actuator] == mujoco.mjtDyn.mjDYN_NONE
+    )
+    if motor and model.actuator_ctrllimited[actuator]:
+        gain = abs(model.actuator_gainprm[actuator, 0])
+        force = min(force, gain * _both_ways(model.actuator_ctrlrange[actuator]))
+    return force
+
+
+def _both_ways(limits: np.ndarray) -> float:
+    """The magnitude available in both directions; no limit where one direction has none at all."""
+    smaller = float(np.abs(limits).min())
+    return smaller if smaller > 0.0 else np.inf

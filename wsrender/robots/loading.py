@@ -1,0 +1,159 @@
+"""Loading robots: a library name, MJCF, URDF or a DH table becomes a compiled model and a chain."""
+
+import hashlib
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+from xml.etree.ElementTree import Element
+
+import numpy as np
+
+from wsrender.errors import InputError, MissingExtraError, ModelError
+from wsrender.robots import xml_source
+
+if TYPE_CHECKING:
+    from wsrender.robots.loaded_robot import LoadedRobot
+    from wsrender.robots.mjcf_model import ReadMesh
+    from wsrender.spec.robot import DHTable
+
+_FIELD = "model"
+
+
+def load(
+    source: "str | Path | DHTable",
+    *,
+    base: str | None = None,
+    tip: str | None = None,
+    name: str | None = None,
+    placement: np.ndarray | None = None,
+    tool: np.ndarray | None = None,
+) -> "LoadedRobot":
+    """The robot of a library name, of a path to an MJCF or URDF file, or of a DH table.
+
+    A string is a path if it ends in .xml or .urdf or has a folder in it. ``base`` and ``tip`` name a site,
+    body or link. The base is the world by default. The tip is by default the site ``tool``, else the only
+    end of the model that a joint moves, else the link ``tool0``; a site goes before a body of its name.
+    ``placement`` is the base frame in the world and ``tool`` the tool frame in the tip frame, (4, 4) each.
+    Raises ModelError, FrameNotFoundError, InputError.
+    """
+    options = {"base": base, "tip": tip, "name": name, "placement": placement, "tool": tool}
+    if isinstance(source, Path):
+        return load_path(source, **options)
+    if not isinstance(source, str):
+        return load_dh(source, **options)
+    if source.lstrip().startswith("<"):
+        raise ModelError(_FIELD, "XML text is no path; use load_mjcf or load_urdf")
+    if source.lower().endswith((".xml", ".urdf")) or "/" in source or "\\" in source:
+        return load_path(source, **options)
+    return load_library(source, **options)
+
+
+def load_library(name: str, **options) -> "LoadedRobot":
+    """A robot of the library by name; ``options`` as in ``load``. Raises ModelError listing the names."""
+    from wsrender.robots import library
+
+    robot = load_path(library.find(name), **{**options, "name": options.get("name") or name})
+    return robot
+
+
+def load_dh(table: "DHTable", **options) -> "LoadedRobot":
+    """The robot of a DH table; ``options`` as in ``load``."""
+    from wsrender.robots import dh
+
+    return load_mjcf(dh.to_mjcf(table), **options)
+
+
+def load_path(path: str | Path, **options) -> "LoadedRobot":
+    """The robot of a file of the user's own, MJCF or URDF by its root element; ``options`` as in ``load``.
+
+    Meshes that an inertia is computed from are read relative to the file; nothing else is.
+    """
+    path = Path(path)
+    content = _read(path)
+    root = xml_source.parse(content, _FIELD)
+    options = {**options, "name": options.get("name") or root.get("model") or root.get("name") or path.stem}
+    if root.tag == "robot":
+        return _from_urdf(root, content, **options)
+    if root.tag != "mujoco":
+        raise ModelError(_FIELD, f"the root element is <{root.tag}>; <mujoco> or <robot> (URDF) is needed")
+    mjcf_model = _mjcf_model()
+    return _from_mjcf(root, content, mjcf_model.from_folder(path.parent), **options)
+
+
+def load_mjcf(text: str | bytes, *, assets: Mapping[str, bytes] | None = None, **options) -> "LoadedRobot":
+    """The robot of MJCF text; no file is read. ``options`` as in ``load``.
+
+    ``assets`` maps names of mesh files, as the text writes them, to their bytes.
+    """
+    root = _root(text, "mujoco")
+    return _from_mjcf(root, text, _mjcf_model().from_assets(assets or {}), **options)
+
+
+def load_urdf(text: str | bytes, **options) -> "LoadedRobot":
+    """The robot of URDF text; no file is read. ``options`` as in ``load``."""
+    return _from_urdf(_root(text, "robot"), text, **options)
+
+
+def _mjcf_model():
+    try:
+        from wsrender.robots import mjcf_model
+    except ModuleNotFoundError as error:
+        if error.name != "mujoco":
+            raise
+        raise MissingExtraError("mujoco", "engine") from error
+    return mjcf_model
+
+
+def _root(text: str | bytes, tag: str) -> Element:
+    root = xml_source.parse(text, _FIELD)
+    if root.tag != tag:
+        raise ModelError(_FIELD, f"the root element is <{root.tag}>; <{tag}> is needed")
+    return root
+
+
+def _read(path: Path) -> bytes:
+    if not path.is_file():
+        raise ModelError(_FIELD, f"there is no file {str(path)!r}")
+    if (size := path.stat().st_size) > xml_source.MAX_BYTES:
+        raise ModelError(_FIELD, f"{path.name} has {size} bytes; at most {xml_source.MAX_BYTES} are allowed")
+    try:
+        return path.read_bytes()
+    except OSError as error:
+        raise ModelError(_FIELD, f"cannot read {str(path)!r}: {error.strerror}") from error
+
+
+def _from_mjcf(root: Element, text: str | bytes, read_mesh: "ReadMesh", **options) -> "LoadedRobot":
+    return _extracted(_mjcf_model().compile_mjcf(root, read_mesh, _FIELD), text, **options)
+
+
+def _from_urdf(root: Element, text: str | bytes, **options) -> "LoadedRobot":
+    _mjcf_model()
+    from wsrender.robots.urdf_model import compile_urdf
+
+    return _extracted(compile_urdf(root, _FIELD), text, **options)
+
+
+def _extracted(
+    compiled, text: str | bytes, *, base=None, tip=None, name=None, placement=None, tool=None
+) -> "LoadedRobot":
+    from wsrender.robots.chain_extraction import extract
+
+    source_hash = hashlib.sha256(text.encode() if isinstance(text, str) else text).hexdigest()
+    robot = extract(compiled, base, tip, name or compiled.name or "robot", source_hash, _FIELD)
+    placed = robot.chain.placed(_rigid("placement", placement), _rigid("tool", tool))
+    return replace(robot, chain=placed)
+
+
+def _rigid(field: str, T: np.ndarray | None) -> np.ndarray | None:
+    """A checked rigid (4, 4) transform."""
+    if T is None:
+        return None
+    T = np.asarray(T, float)
+    if T.shape != (4, 4) or not np.isfinite(T).all():
+        raise InputError(field, f"must be a (4, 4) array of finite numbers, not of shape {T.shape}")
+    R = T[:3, :3]
+    turned = np.abs(R @ R.T - np.eye(3)).max() < 1e-9 and np.linalg.det(R) > 0.0
+    if not turned or np.abs(T[3] - [0, 0, 0, 1]).max() > 0.0:
+        raise InputError(field, "must be a rigid transform: rotation matrix, position, last row 0 0 0 1")
+    return T

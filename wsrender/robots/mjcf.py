@@ -1,0 +1,91 @@
+"""MJCF text, made safe for MuJoCo's compiler: what moves and weighs is kept, the scenery is not."""
+
+from xml.etree import ElementTree
+from xml.etree.ElementTree import Element
+
+from wsrender.errors import ModelError
+from wsrender.robots.xml_source import MAX_ELEMENTS, number
+
+# Sections that neither kinematics nor inertia depend on; several of them could read files.
+_SCENERY = ("option", "size", "visual", "statistic", "custom", "extension", "deformable", "contact",
+            "sensor", "keyframe")  # fmt: skip
+_DROPPED = {"camera", "light", "texture", "material", "hfield", "skin", "plugin"}
+_REFUSED = {
+    "include": "includes are refused: inline the file",
+    "attach": "attached models are refused: inline the model",
+    "model": "model assets are refused: inline the model",
+    "composite": "composite bodies are not supported",
+    "flexcomp": "flexible bodies are not supported",
+}
+_NUMERIC = {
+    "pos", "quat", "axis", "axisangle", "xyaxes", "zaxis", "euler", "range", "ref", "size", "fromto", "mass",
+    "diaginertia", "fullinertia", "armature", "polycoef", "gear", "ctrlrange", "forcerange", "density",
+    "actuatorfrcrange", "anchor", "relpose", "vertex", "scale", "refpos", "refquat", "boundmass",
+    "boundinertia", "settotalmass", "offset", "coef", "margin", "springref", "damping", "stiffness",
+}  # fmt: skip
+
+
+def sanitized(mujoco: Element, field: str) -> Element:
+    """The ``<mujoco>`` element without scenery and materials, its numbers checked; changed in place.
+
+    Raises ModelError for elements that read other files or build bodies by the thousand, and for numbers
+    that are not finite.
+    """
+    for section in list(mujoco):
+        if section.tag in _SCENERY:
+            mujoco.remove(section)
+    _clean(mujoco, field)
+    _bound_replicas(mujoco, field)
+    return mujoco
+
+
+def directories(mujoco: Element) -> tuple[str, bool]:
+    """Folder of the meshes as the ``<compiler>`` states it, and whether paths are stripped from names.
+
+    The attributes are removed: mesh files are handed to MuJoCo under names of our own.
+    """
+    folder, strip = "", False
+    for compiler in mujoco.findall("compiler"):
+        get = compiler.attrib
+        folder = get.pop("meshdir", "") or get.pop("assetdir", "") or folder
+        strip = get.pop("strippath", "false") == "true" or strip
+        for other in ("texturedir", "assetdir", "meshdir"):
+            get.pop(other, None)
+    return folder, strip
+
+
+def text(mujoco: Element) -> str:
+    """The element as XML text, without declaration."""
+    return ElementTree.tostring(mujoco, encoding="unicode")
+
+
+def _clean(element: Element, field: str) -> None:
+    for key in [key for key in element.attrib if key == "material" or ":" in key or key == "xmlns"]:
+        del element.attrib[key]
+    for key in _NUMERIC.intersection(element.attrib):
+        _check_numbers(element, key, field)
+    for child in list(element):
+        if child.tag in _REFUSED and not (child.tag == "model" and element.tag != "asset"):
+            raise ModelError(field, _REFUSED[child.tag])
+        if child.tag in _DROPPED:
+            element.remove(child)
+        else:
+            _clean(child, field)
+
+
+def _check_numbers(element: Element, key: str, field: str) -> None:
+    name = element.get("name") or element.get("joint") or ""
+    for word in element.attrib[key].split():
+        number(word, field, f"<{element.tag}> {name!r}: {key}" if name else f"<{element.tag}>: {key}")
+
+
+def _bound_replicas(mujoco: Element, field: str) -> None:
+    if (count := _expanded(mujoco)) > MAX_ELEMENTS:
+        raise ModelError(field, f"replicas make {count} elements; at most {MAX_ELEMENTS} are allowed")
+
+
+def _expanded(element: Element) -> int:
+    """Number of elements after replicas are written out."""
+    inside = sum(_expanded(child) for child in element)
+    count = element.get("count", "1") if element.tag == "replicate" else "1"
+    return 1 + inside * (int(count) if count.isdecimal() else 1)

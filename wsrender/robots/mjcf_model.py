@@ -1,0 +1,126 @@
+"""MJCF → MuJoCo model; mesh files are read only where an inertia is computed from them."""
+
+import math
+import warnings
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from xml.etree.ElementTree import Element
+
+import mujoco
+
+from wsrender.errors import ModelError
+from wsrender.robots import mjcf
+from wsrender.robots.compiled_model import CompiledModel
+from wsrender.robots.inertials import compile_with_inertials
+from wsrender.robots.model_warning import ModelWarning
+
+MAX_MESH_BYTES = 256 * 2**20
+
+ReadMesh = Callable[[str], bytes | None]  # file name in the model → its bytes, None where it is not there
+
+
+def from_assets(assets: Mapping[str, bytes]) -> ReadMesh:
+    """Reads meshes from a mapping of file names, as the model writes them, to bytes; never from disk."""
+    return lambda name: assets.get(name, assets.get(Path(name).name))
+
+
+def from_folder(folder: Path) -> ReadMesh:
+    """Reads meshes relative to ``folder``: for files of the user's own."""
+
+    def read(name: str) -> bytes | None:
+        path = folder / name
+        if not path.is_file() or path.stat().st_size > MAX_MESH_BYTES:
+            return None
+        return path.read_bytes()
+
+    return read
+
+
+def compile_mjcf(root: Element, read_mesh: ReadMesh, field: str) -> CompiledModel:
+    """The compiled model of a ``<mujoco>`` element (changed in the process).
+
+    Geometry that needs a mesh stays only where it gives a body its inertia; meshes that are not there are
+    dropped with one ModelWarning, and noted as inertia faults where that leaves a body without inertia.
+    Raises ModelError.
+    """
+    mjcf.sanitized(root, field)
+    folder, strip = mjcf.directories(root)
+    spec = _parsed(mjcf.text(root), field)
+    files = {mesh.name: _file(mesh.file, folder, strip) for mesh in spec.meshes}
+    faults, missing = _drop_geometry(spec, files, read_mesh)
+    if missing:
+        warnings.warn(
+            f"geometry of {len(missing)} meshes is dropped ({missing[0]}, …): the files are not there",
+            ModelWarning,
+            stacklevel=2,
+        )
+    model = compile_with_inertials(spec, field)
+    return CompiledModel(model, root.get("model", ""), inertia_faults=faults)
+
+
+def _parsed(text: str, field: str) -> mujoco.MjSpec:
+    try:
+        return mujoco.MjSpec.from_string(text)
+    except (ValueError, RuntimeError, mujoco.FatalError) as error:
+        raise ModelError(field, f"MuJoCo refuses the model: {' '.join(str(error).split())}") from error
+
+
+def _file(file: str, folder: str, strip: bool) -> str:
+    """Path of a mesh file relative to the model; empty for a mesh written out in the model."""
+    name = Path(file.replace("\\", "/")).name if strip else file
+    return str(Path(folder) / name) if file else ""
+
+
+def _drop_geometry(
+    spec: mujoco.MjSpec, files: dict[str, str], read_mesh: ReadMesh
+) -> tuple[dict[str, str], list[str]]:
+    """Removes what cannot or need not be loaded; returns inertia faults by body and missing files."""
+    faults: dict[str, str] = {}
+    contents: dict[str, bytes | None] = {}
+    for geom in list(spec.geoms):
+        if not _needs_file(geom):
+            continue
+        file = files.get(geom.meshname, "")
+        if file and file not in contents:
+            contents[file] = read_mesh(file)
+        inline = geom.meshname in files and not file
+        gives_inertia = _gives_inertia(spec, geom)
+        if gives_inertia and not inline and contents.get(file) is None:
+            name = geom.parent.name
+            faults[name] = f"the inertia of body {name!r} comes from {file or 'geometry'}, which is not there"
+        if not gives_inertia or not (inline or contents.get(file) is not None):
+            spec.delete(geom)
+    _keep_meshes(spec, files, contents)
+    return faults, [file for file, content in contents.items() if content is None]
+
+
+def _needs_file(geom: mujoco.MjsGeom) -> bool:
+    kinds = (mujoco.mjtGeom.mjGEOM_HFIELD, mujoco.mjtGeom.mjGEOM_SDF, mujoco.mjtGeom.mjGEOM_MESH)
+    return bool(geom.meshname) or geom.type in kinds
+
+
+def _gives_inertia(spec: mujoco.MjSpec, geom: mujoco.MjsGeom) -> bool:
+    compiler, body = spec.compiler, geom.parent
+    rule = mujoco.mjtInertiaFromGeom
+    if compiler.inertiafromgeom == rule.mjINERTIAFROMGEOM_FALSE or body == spec.worldbody:
+        return False
+    if compiler.inertiafromgeom == rule.mjINERTIAFROMGEOM_AUTO and body.explicitinertial:
+        return False
+    low, high = compiler.inertiagrouprange
+    massive = geom.density > 0.0 if math.isnan(geom.mass) else geom.mass > 0.0
+    return massive and low <= geom.group <= high
+
+
+def _keep_meshes(spec: mujoco.MjSpec, files: dict[str, str], contents: dict[str, bytes | None]) -> None:
+    """Drops the meshes that no geometry uses any more and attaches the bytes of the others."""
+    used = {geom.meshname for geom in spec.geoms}
+    assets = {}
+    for mesh in list(spec.meshes):
+        if mesh.name not in used:
+            spec.delete(mesh)
+        elif file := files[mesh.name]:
+            content = contents[file]
+            assert content is not None
+            mesh.file = f"{len(assets)}-{Path(file).name}"
+            assets[mesh.file] = content
+    spec.assets = assets

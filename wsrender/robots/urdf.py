@@ -1,0 +1,292 @@
+"""URDF: its links and joints, checked, as they stand in the file."""
+
+from dataclasses import dataclass
+from xml.etree.ElementTree import Element
+
+import numpy as np
+
+from wsrender.errors import ModelError
+from wsrender.robots.xml_source import MAX_DEPTH, number, numbers
+
+JOINT_TYPES = ("revolute", "continuous", "prismatic", "fixed", "floating", "planar")
+_MOVABLE = ("revolute", "continuous", "prismatic")
+
+
+@dataclass(frozen=True)
+class Pose:
+    """An ``<origin>``: position [m] and roll, pitch, yaw [rad] about fixed axes, R = Rz Ry Rx."""
+
+    position: np.ndarray
+    rpy: np.ndarray
+
+    @property
+    def quat_wxyz(self) -> np.ndarray:
+        """Unit quaternion of the rotation, (4,)."""
+        (cr, cp, cy), (sr, sp, sy) = np.cos(self.rpy / 2), np.sin(self.rpy / 2)
+        return np.array(
+            [
+                cr * cp * cy + sr * sp * sy,
+                sr * cp * cy - cr * sp * sy,
+                cr * sp * cy + sr * cp * sy,
+                cr * cp * sy - sr * sp * cy,
+            ]
+        )
+
+
+@dataclass(frozen=True)
+class Inertial:
+    """Mass [kg] and inertia [kg m²], (3, 3) about the centre of mass, axes of ``pose``."""
+
+    pose: Pose
+    mass: float
+    inertia: np.ndarray
+
+
+@dataclass(frozen=True)
+class Shape:
+    """A geometry: ``box`` (edges), ``cylinder`` (radius, length), ``sphere`` (radius) [m], or ``mesh``."""
+
+    pose: Pose
+    kind: str
+    size: tuple[float, ...] = ()
+    file: str = ""
+
+
+@dataclass(frozen=True)
+class Link:
+    """A ``<link>``; ``inertial`` is None where the file gives none."""
+
+    name: str
+    inertial: Inertial | None
+    shapes: tuple[Shape, ...]
+
+
+@dataclass(frozen=True)
+class Mimic:
+    """Value of a joint = multiplier × value of ``leader`` + offset."""
+
+    leader: str
+    multiplier: float
+    offset: float
+
+
+@dataclass(frozen=True)
+class Joint:
+    """A ``<joint>``; ``limits`` [rad or m] are None without ``<limit>``, ``effort`` 0 where not stated."""
+
+    name: str
+    kind: str
+    parent: str
+    child: str
+    pose: Pose
+    axis: np.ndarray
+    limits: tuple[float, float] | None
+    effort: float
+    mimic: Mimic | None
+
+    @property
+    def movable(self) -> bool:
+        """Whether the joint has one degree of freedom."""
+        return self.kind in _MOVABLE
+
+
+@dataclass(frozen=True)
+class Urdf:
+    """A tree of links: every link but ``root`` is the child of one joint, parents before children."""
+
+    name: str
+    root: str
+    links: dict[str, Link]
+    joints: dict[str, Joint]
+
+
+def read_urdf(robot: Element, field: str) -> Urdf:
+    """Links and joints of the ``<robot>`` element; raises ModelError naming what is wrong with them."""
+    _refuse_xacro(robot, field)
+    links = [_link(element, field) for element in robot.findall("link")]
+    joints = [_joint(element, field) for element in robot.findall("joint")]
+    if not links:
+        raise ModelError(field, "the URDF has no <link>")
+    by_name = {"link": _unique(links, "link", field), "joint": _unique(joints, "joint", field)}
+    root, ordered = _tree(by_name["link"], joints, field)
+    _check_mimics(by_name["joint"], field)
+    return Urdf(robot.get("name", ""), root, by_name["link"], {joint.name: joint for joint in ordered})
+
+
+def _refuse_xacro(robot: Element, field: str) -> None:
+    for element in robot:
+        if element.tag.startswith("xacro:") and element.tag not in ("xacro:property", "xacro:arg"):
+            raise ModelError(field, f"<{element.tag}> is not expanded: run the file through xacro first")
+
+
+def _unique(items: list, kind: str, field: str) -> dict:
+    by_name = {item.name: item for item in items}
+    if len(by_name) < len(items):
+        names = [item.name for item in items]
+        twice = next(name for name in names if names.count(name) > 1)
+        raise ModelError(field, f"two {kind}s are named {twice!r}; names must be unique")
+    return by_name
+
+
+def _name(element: Element, field: str) -> str:
+    name = element.get("name", "").strip()
+    if not name:
+        raise ModelError(field, f"a <{element.tag}> has no name")
+    return name
+
+
+def _pose(parent: Element, field: str, where: str) -> Pose:
+    origin = parent.find("origin")
+    get = {} if origin is None else origin.attrib
+    xyz, rpy = (
+        np.array(numbers(get.get(key, "0 0 0") or "0 0 0", 3, field, f"{where}: origin {key}"))
+        for key in ("xyz", "rpy")
+    )
+    return Pose(xyz, rpy)
+
+
+def _link(element: Element, field: str) -> Link:
+    name = _name(element, field)
+    where = f"link {name!r}"
+    inertial = element.find("inertial")
+    shapes = []
+    for part in (*element.findall("visual"), *element.findall("collision")):
+        geometry = part.find("geometry")
+        if geometry is not None and len(geometry):
+            shapes.append(_shape(geometry[0], _pose(part, field, where), field, where))
+    return Link(name, None if inertial is None else _inertial(inertial, field, where), tuple(shapes))
+
+
+def _shape(element: Element, pose: Pose, field: str, where: str) -> Shape:
+    expected = {"box": ("size",), "cylinder": ("radius", "length"), "sphere": ("radius",)}
+    keys = expected.get(element.tag)
+    if keys is None:
+        return Shape(pose, "mesh", file=element.get("filename", element.tag))
+    count = 3 if element.tag == "box" else 1
+    size = [v for key in keys for v in numbers(element.get(key, ""), count, field, f"{where}: {key}")]
+    return Shape(pose, element.tag, tuple(size))
+
+
+def _inertial(element: Element, field: str, where: str) -> Inertial:
+    mass, inertia = element.find("mass"), element.find("inertia")
+    if mass is None or inertia is None:
+        missing = "mass" if mass is None else "inertia"
+        raise ModelError(field, f"{where}: its <inertial> has no <{missing}>")
+    moments = {
+        key: number(inertia.get(key, "0" if key in ("ixy", "ixz", "iyz") else ""), field, f"{where}: {key}")
+        for key in ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
+    }
+    rows = [["ixx", "ixy", "ixz"], ["ixy", "iyy", "iyz"], ["ixz", "iyz", "izz"]]
+    matrix = np.array([[moments[key] for key in row] for row in rows])
+    return Inertial(
+        _pose(element, field, where), number(mass.get("value", ""), field, f"{where}: mass"), matrix
+    )
+
+
+def _joint(element: Element, field: str) -> Joint:
+    name, kind = _name(element, field), element.get("type", "")
+    where = f"joint {name!r}"
+    if kind not in JOINT_TYPES:
+        raise ModelError(field, f"{where} has type {kind!r}; allowed: {', '.join(JOINT_TYPES)}")
+    ends = {}
+    for end in ("parent", "child"):
+        tag = element.find(end)
+        ends[end] = "" if tag is None else tag.get("link", "").strip()
+        if not ends[end]:
+            raise ModelError(field, f"{where} has no <{end} link=…>")
+    limits, effort = _limits(element, kind, field, where)
+    return Joint(
+        name, kind, ends["parent"], ends["child"], _pose(element, field, where),
+        _axis(element, kind, field, where), limits, effort, _mimic(element, field, where),
+    )  # fmt: skip
+
+
+def _axis(element: Element, kind: str, field: str, where: str) -> np.ndarray:
+    tag = element.find("axis")
+    text = "1 0 0" if tag is None else tag.get("xyz", "1 0 0")
+    if kind not in _MOVABLE:
+        return np.array([1.0, 0.0, 0.0])
+    axis = np.array(numbers(text, 3, field, f"{where}: axis"))
+    if (length := np.abs(axis).max()) == 0.0:
+        raise ModelError(field, f"{where}: its axis is {text!r}; it must not be zero")
+    return axis / length
+
+
+def _limits(element: Element, kind: str, field: str, where: str) -> tuple[tuple[float, float] | None, float]:
+    tag = element.find("limit")
+    if tag is None:
+        return None, 0.0
+    effort = _effort(tag.get("effort", "0"), field, where)
+    if kind not in ("revolute", "prismatic"):
+        return None, effort
+    lower, upper = (number(tag.get(end, "0"), field, f"{where}: {end} limit") for end in ("lower", "upper"))
+    if lower > upper:
+        raise ModelError(field, f"{where}: its lower limit {lower:g} is above its upper limit {upper:g}")
+    return (lower, upper), effort
+
+
+def _effort(text: str, field: str, where: str) -> float:
+    """Effort limit; 0 (none) where it is infinite."""
+    if text.strip().lower() in ("inf", "+inf", "infinity"):
+        return 0.0
+    effort = number(text, field, f"{where}: effort limit")
+    if effort < 0.0:
+        raise ModelError(field, f"{where}: its effort limit is {effort:g}; it must not be negative")
+    return effort
+
+
+def _mimic(element: Element, field: str, where: str) -> Mimic | None:
+    tag = element.find("mimic")
+    if tag is None:
+        return None
+    multiplier, offset = (
+        number(tag.get(key, default), field, f"{where}: mimic {key}")
+        for key, default in (("multiplier", "1"), ("offset", "0"))
+    )
+    return Mimic(tag.get("joint", "").strip(), multiplier, offset)
+
+
+def _check_mimics(joints: dict[str, Joint], field: str) -> None:
+    for joint in joints.values():
+        if joint.mimic is None or not joint.movable:
+            continue
+        leader = joints.get(joint.mimic.leader)
+        if leader is None or not (leader.movable or leader.kind == "fixed"):
+            raise ModelError(
+                field, f"joint {joint.name!r} mimics {joint.mimic.leader!r}, which is no movable joint"
+            )
+
+
+def _tree(links: dict[str, Link], joints: list[Joint], field: str) -> tuple[str, list[Joint]]:
+    """The root link, and the joints with parents before children."""
+    children: dict[str, list[Joint]] = {name: [] for name in links}
+    parent_joint: dict[str, str] = {}
+    for joint in joints:
+        for link in (joint.parent, joint.child):
+            if link not in links:
+                raise ModelError(field, f"joint {joint.name!r} refers to link {link!r}, which does not exist")
+        if joint.child in parent_joint:
+            both = f"{parent_joint[joint.child]!r} and {joint.name!r}"
+            raise ModelError(field, f"link {joint.child!r} is the child of two joints: {both}")
+        parent_joint[joint.child] = joint.name
+        children[joint.parent].append(joint)
+    roots = [name for name in links if name not in parent_joint]
+    if len(roots) > 1:
+        shown = ", ".join(roots[:8])
+        raise ModelError(field, f"links {shown} have no parent joint: a URDF is one tree with one root")
+    ordered = [] if not roots else _descend(roots[0], children, field)
+    if len(ordered) < len(joints):
+        loop = next(joint.child for joint in joints if joint not in ordered)
+        raise ModelError(field, f"the joints form a cycle through link {loop!r}")
+    return roots[0], ordered
+
+
+def _descend(root: str, children: dict[str, list[Joint]], field: str) -> list[Joint]:
+    ordered: list[Joint] = []
+    level = children[root]
+    for _ in range(MAX_DEPTH):
+        ordered += level
+        level = [joint for parent in level for joint in children[parent.child]]
+        if not level:
+            return ordered
+    raise ModelError(field, f"links are nested deeper than {MAX_DEPTH} joints")
