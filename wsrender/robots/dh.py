@@ -9,8 +9,9 @@ import numpy as np
 from wsrender.robots.chain import Chain
 from wsrender.spec.robot import DHRow, DHTable
 
-# MuJoCo refuses a moving body without mass; this one is 1e-12 of a robot's and marks "no published mass".
+# MuJoCo refuses a moving body without mass: this much stands for "not published".
 NEGLIGIBLE = "1e-12"  # kg, kg m²
+_COMPILER = {"angle": "radian", "autolimits": "true", "boundmass": NEGLIGIBLE, "boundinertia": NEGLIGIBLE}
 
 # Two axes this close to parallel are meant to be: a quarter turn written as 1.57 in two joints is off by
 # 0.0016 rad, and their common normal would meet the axes at a place that means nothing, metres away.
@@ -28,21 +29,21 @@ def to_mjcf(table: DHTable) -> str:
     """
     standard = table.convention == "standard"
     mujoco = ElementTree.Element("mujoco", model=table.name)
-    bounds = {"boundmass": NEGLIGIBLE, "boundinertia": NEGLIGIBLE}
-    ElementTree.SubElement(mujoco, "compiler", angle="radian", autolimits="true", **bounds)
+    ElementTree.SubElement(mujoco, "compiler", _COMPILER)
     parent = ElementTree.SubElement(mujoco, "worldbody")
     a, alpha = 0.0, 0.0  # of the link before the joint
     for k, (row, name) in enumerate(zip(table.rows, table.joint_names(), strict=True), start=1):
         if not standard:
             a, alpha = row.a, row.alpha
-        parent = ElementTree.SubElement(parent, "body", name=f"link{k}", **_pose(a, alpha, row.d, row.theta))
+        pose = _pose(a, alpha, row.d, row.theta)
+        parent = ElementTree.SubElement(parent, "body", {"name": f"link{k}", **pose})
         if standard:
             a, alpha = row.a, row.alpha
         _add_joint(parent, row, name)
         if row.mass is not None:
             _add_inertial(parent, row, (a, alpha) if standard else (0.0, 0.0))
     tool = _pose(a, alpha, 0.0, 0.0) if standard else {}
-    ElementTree.SubElement(parent, "site", name="tool", **tool)
+    ElementTree.SubElement(parent, "site", {"name": "tool", **tool})
     ElementTree.indent(mujoco)
     return ElementTree.tostring(mujoco, encoding="unicode") + "\n"
 
@@ -59,7 +60,7 @@ def modified_dh(chain: Chain) -> np.ndarray:
     axis from one common normal to the next. Parallel axes have many: the one through the origin of the former
     joint's frame in the Chain is taken, so that ``d`` is the signed offset between the two origins. A slide's
     axis is the line through the origin of its joint frame. Axes within 0.002 rad of parallel count as such
-    (``alpha`` is then 0 or pi). Conventions: Craig 1986, ch. 3; choice of normals: DEFINITIONS.md section 4.
+    (``alpha`` is then 0 or pi). Convention: Craig 1986, chapter 3.
     """
     links = [*chain.T_joint, chain.T_tip @ chain.T_tip_tool]
     rows = np.zeros((len(links) + 1, 4))
@@ -77,7 +78,7 @@ def modified_dh(chain: Chain) -> np.ndarray:
 def structural_length(chain: Chain) -> float:
     """Sum of |a| + |d| over the modified DH rows of a chain [m]; a slide counts with its largest |d|.
 
-    Waldron 1979's length sum as DEFINITIONS.md section 4 reads it, from the base frame to the tool.
+    Length sum of Waldron 1979, from the base frame to the tool.
     """
     rows = modified_dh(chain)
     offsets = np.abs(rows[:, 2])
