@@ -68,7 +68,7 @@ MALFORMED = [
     ({"analysis": "workspace"}, "robot", "is required"),
     (job(robot=5), "robot", "must be an object, not 5"),
     (job(robot=None), "robot", "must be an object, not null"),
-    (job(robot={}), "robot.library", "exactly one of"),
+    (job(robot={}), "robot.library", "is required, or another source of the robot"),
     (job(robot={"libary": "ur5e"}), "robot.libary", "did you mean library?"),
     (job(robot=""), "robot.library", "must not be empty"),
     # unknown and wrong fields

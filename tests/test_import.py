@@ -1,0 +1,53 @@
+"""``import wsrender`` is cheap, and every public name is there."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import wsrender as ws
+
+HEAVY = ("mujoco", "warp", "scipy", "matplotlib", "pyarrow", "h5py", "skimage", "trimesh", "numpy", "pydantic")
+CHECKOUT = Path(ws.__file__).parent.parent
+SCRIPT = f"""
+import sys, time
+sys.path.insert(0, {str(CHECKOUT)!r})
+started = time.perf_counter()
+import wsrender
+print(time.perf_counter() - started, *[name for name in {HEAVY!r} if name in sys.modules])
+"""
+
+
+def test_import_loads_nothing_heavy_and_takes_less_than_half_a_second():
+    runs = [
+        subprocess.run([sys.executable, "-c", SCRIPT], capture_output=True, text=True, check=True).stdout.split()
+        for _ in range(3)
+    ]
+    assert [loaded for _, *loaded in runs] == [[]] * 3
+    assert min(float(seconds) for seconds, *_ in runs) < 0.5
+
+
+@pytest.mark.parametrize("name", ws.__all__)
+def test_public_name_is_importable(name):
+    assert getattr(ws, name) is not None
+    assert name in dir(ws)
+
+
+def test_all_is_sorted_and_complete():
+    assert list(ws.__all__) == sorted(set(ws.__all__))
+    lazy = {*ws._MODULE_OF_NAME, *ws._MODULES}
+    errors = {name for name, value in vars(ws.errors).items() if isinstance(value, type) and name.endswith("Error")}
+    assert lazy | errors | {"__version__"} == set(ws.__all__)
+
+
+def test_public_modules_stay_modules():
+    import wsrender.run
+
+    assert ws.run is wsrender.run
+    assert ws.execute is wsrender.run.execute
+
+
+def test_unknown_name():
+    with pytest.raises(AttributeError, match="module 'wsrender' has no attribute 'analyse'"):
+        ws.analyse  # noqa: B018
