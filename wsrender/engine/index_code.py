@@ -1,0 +1,105 @@
+"""Device code of a set of indices, from the traced functions of the catalogue."""
+
+import hashlib
+import linecache
+from functools import cache
+
+import warp as wp
+from wsrender_kernels.elementary import elementary
+from wsrender_kernels.spectrum import spectrum_length
+
+from wsrender.indices.catalogue import find, is_dynamic
+from wsrender.indices.expression import Expression, trace
+
+_INFIX = {"add": "+", "subtract": "-", "multiply": "*", "divide": "/", "less": "<"}
+_CALLS = {
+    "sqrt": "wp.sqrt",
+    "absolute": "wp.abs",
+    "floor": "wp.floor",
+    "minimum": "wp.min",
+    "maximum": "wp.max",
+    "where": "wp.where",
+    "exp2": "exp2",
+    "log2": "log2",
+    "power": "power",
+    "sin": "sine",
+    "cos": "cosine",
+}
+
+
+class _Writer:
+    """Statements of a function body: one assignment per distinct operation."""
+
+    def __init__(self) -> None:
+        self.lines: list[str] = []
+        self._names: dict[str, str] = {}
+
+    def operand(self, value: Expression | float, spectrum: str) -> str:
+        if not isinstance(value, Expression):
+            return f"real({value!r})" if value >= 0 else f"(-real({-value!r}))"
+        if value.operation == "input":
+            return f"{spectrum}[{int(value.operands[0])}]"  # type: ignore[arg-type]
+        operands = [self.operand(o, spectrum) for o in value.operands]
+        return self._assign(_code(value.operation, operands))
+
+    def _assign(self, code: str) -> str:
+        if code not in self._names:
+            self._names[code] = f"v{len(self._names)}"
+            self.lines.append(f"{self._names[code]} = {code}")
+        return self._names[code]
+
+
+def _code(operation: str, operands: list[str]) -> str:
+    if operation in _INFIX:
+        return f"{operands[0]} {_INFIX[operation]} {operands[1]}"
+    if operation == "negative":
+        return f"-{operands[0]}"
+    return f"{_CALLS[operation]}({', '.join(operands)})"
+
+
+def index_source(names: tuple[str, ...], rows: tuple[int, ...], n: int, convention: str) -> str:
+    """Body of the device function of these indices, as text: equal texts share a kernel."""
+    length = spectrum_length(n, rows, convention)
+    writer = _Writer()
+    results = []
+    for name in names:
+        expression = trace(find(name).function_for(convention), length, len(rows), n)
+        results.append(writer.operand(expression, "dynamic" if is_dynamic(name) else "kinematic"))
+    body = [*writer.lines, f"return result_type({', '.join(results)})"]
+    return "\n".join("    " + line for line in body)
+
+
+@cache
+def index_function(body: str, n_indices: int, length: int, real) -> wp.Function:
+    """Warp function (kinematic spectrum, dynamic spectrum), (length,) each -> values (n_indices,)."""
+    source = f"def indices(kinematic: spectrum_type, dynamic: spectrum_type):\n{body}\n"
+    filename = f"<wsrender indices {hashlib.sha256(source.encode()).hexdigest()[:16]}>"
+    # Warp reads the source of a function through linecache; an entry without a time stamp is kept.
+    linecache.cache[filename] = (len(source), None, source.splitlines(keepends=True), filename)
+    functions = elementary(real)
+    sincos = functions.sincos
+
+    @wp.func
+    def sine(a: real):
+        s, _c = sincos(a)
+        return s
+
+    @wp.func
+    def cosine(a: real):
+        _s, c = sincos(a)
+        return c
+
+    namespace = {
+        "wp": wp,
+        "real": real,
+        "spectrum_type": wp.types.vector(length, real),
+        "result_type": wp.types.vector(n_indices, real),
+        "exp2": functions.exp2,
+        "log2": functions.log2,
+        "power": functions.power,
+        "sine": sine,
+        "cosine": cosine,
+        "__name__": __name__,
+    }
+    exec(compile(source, filename, "exec"), namespace)  # text made above, from traced arithmetic alone
+    return wp.func(namespace["indices"])

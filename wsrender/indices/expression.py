@@ -1,0 +1,116 @@
+"""Tracing of an index function: the arithmetic that it does on its arguments, recorded as a tree.
+
+The engine turns the tree into device code, so the same Python function serves NumPy and the kernels.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+
+def _numpy_power(x, exponent):
+    positive = np.greater(x, 0)
+    return np.where(positive, np.power(np.where(positive, x, 1.0), exponent), 0.0)
+
+
+NUMPY_OPERATIONS = {
+    "add": np.add,
+    "subtract": np.subtract,
+    "multiply": np.multiply,
+    "divide": np.divide,
+    "negative": np.negative,
+    "sqrt": np.sqrt,
+    "absolute": np.absolute,
+    "floor": np.floor,
+    "exp2": np.exp2,
+    "log2": np.log2,
+    "sin": np.sin,
+    "cos": np.cos,
+    "power": _numpy_power,
+    "minimum": np.minimum,
+    "maximum": np.maximum,
+    "less": np.less,
+    "where": np.where,
+}
+
+
+def apply(operation: str, *arguments: Any) -> Any:
+    """The operation on numbers and arrays, or its record where an argument is an Expression."""
+    if any(isinstance(a, Expression) for a in arguments):
+        return Expression(operation, tuple(_as_operand(a) for a in arguments))
+    return NUMPY_OPERATIONS[operation](*arguments)
+
+
+def _as_operand(value: Any) -> "Expression | float":
+    if isinstance(value, Expression):
+        return value
+    if isinstance(value, (int, float, np.integer, np.floating)) and np.isfinite(value):
+        return float(value)
+    raise TypeError(f"an index function may use finite numbers, arithmetic and wsrender.math only, not {value!r}")
+
+
+@dataclass(frozen=True, eq=False)
+class Expression:
+    """An operation and its operands (Expressions or floats); ``input`` leaves carry their position."""
+
+    operation: str
+    operands: tuple["Expression | float", ...]
+
+    __array_ufunc__ = None  # NumPy functions raise instead of looping over the object
+
+    def __add__(self, other):
+        return apply("add", self, other)
+
+    def __radd__(self, other):
+        return apply("add", other, self)
+
+    def __sub__(self, other):
+        return apply("subtract", self, other)
+
+    def __rsub__(self, other):
+        return apply("subtract", other, self)
+
+    def __mul__(self, other):
+        return apply("multiply", self, other)
+
+    def __rmul__(self, other):
+        return apply("multiply", other, self)
+
+    def __truediv__(self, other):
+        return apply("divide", self, other)
+
+    def __rtruediv__(self, other):
+        return apply("divide", other, self)
+
+    def __neg__(self):
+        return apply("negative", self)
+
+    def __abs__(self):
+        return apply("absolute", self)
+
+    def __pow__(self, exponent):
+        if isinstance(exponent, int) and 0 < exponent <= 8:
+            result = self
+            for _ in range(exponent - 1):
+                result = result * self
+            return result
+        return apply("power", self, exponent)
+
+    def __lt__(self, other):
+        return apply("less", self, other)
+
+    def __gt__(self, other):
+        return apply("less", other, self)
+
+    def __bool__(self):
+        raise TypeError("an index function cannot branch on a value: use wsrender.math.where")
+
+    def __float__(self):
+        raise TypeError("an index function may use arithmetic and wsrender.math only (not the math module)")
+
+
+def trace(function, length: int, *arguments: int) -> Expression | float:
+    """Expression of ``function(sigma, *arguments)`` for a spectrum of ``length`` values."""
+    sigma = tuple(Expression("input", (float(i),)) for i in range(length))
+    return _as_operand(function(sigma, *arguments))
