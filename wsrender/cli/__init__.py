@@ -33,18 +33,26 @@ def command_line(command: str | None) -> typer.Typer:
     for name, function in COMMANDS.items():
         app.command(name)(function)
     if command not in COMMANDS:
-        with one_line_faults():
-            _extend(app)
+        _extend(app)
     return app
 
 
 def _extend(app: typer.Typer) -> None:
-    extensions = entry_points(group=EXTENSIONS)
+    extensions = _extensions()
     for extension in extensions:
-        app.add_typer(extension.load())
+        app.add_typer(extension)
     if not extensions:
         for name in SERVER_COMMANDS:
             app.command(name, hidden=True, context_settings=_ANY_ARGUMENTS)(_no_server)
+
+
+def _extensions() -> list[typer.Typer]:
+    try:
+        return [extension.load() for extension in entry_points(group=EXTENSIONS)]
+    except ModuleNotFoundError as error:
+        if error.name is None or error.name.startswith("wsrender"):
+            raise
+        return []  # the server is there, what it needs is not
 
 
 _ANY_ARGUMENTS = {"allow_extra_args": True, "ignore_unknown_options": True}

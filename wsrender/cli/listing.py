@@ -1,13 +1,17 @@
 """``wsrender robots`` and ``wsrender schema``: what there is, and how a job is written."""
 
 import json
+import sys
 from typing import Annotated
 
 import typer
+from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
 
 from wsrender.cli.faults import one_line_faults
+
+_PIPED_WIDTH = 240  # columns off a terminal: one robot a line
 
 
 def robots() -> None:
@@ -15,10 +19,13 @@ def robots() -> None:
     with one_line_faults():
         from wsrender.robots import library
 
-        table = Table("name", "joints", "description", "source")
+        table = Table(
+            "name", "joints", "description", "source", box=SIMPLE_HEAD, show_edge=False, pad_edge=False
+        )
         for robot in library.describe():
             table.add_row(robot.name, str(robot.joints), robot.description, robot.source)
-        Console().print(table)
+        console = Console() if sys.stdout.isatty() else Console(width=_PIPED_WIDTH)
+        console.print(table)
 
 
 def schema(

@@ -1,0 +1,216 @@
+"""The command line around the engine: listing, faults, exit codes, progress, extensions."""
+
+import io
+import json
+import sys
+import warnings
+from importlib.metadata import EntryPoint
+from types import ModuleType, SimpleNamespace
+
+import pytest
+import typer
+
+import wsrender as ws
+from wsrender import cli
+from wsrender.cli.progress import LINE_EVERY_S, RunProgress
+from wsrender.errors import InputError, MissingExtraError, ModelError, NumericalError
+
+
+@pytest.fixture
+def wsrender(capsys):
+    """Run the command line: the exit code, standard output and standard error."""
+
+    def run(*arguments):
+        with pytest.raises(SystemExit) as ended:
+            cli.main(arguments)
+        written = capsys.readouterr()
+        return ended.value.code, written.out, written.err
+
+    return run
+
+
+@pytest.fixture
+def execute(monkeypatch):
+    """Put a function in the place of ``wsrender.run.execute``."""
+
+    def put(function):
+        module = ModuleType("wsrender.run")
+        module.execute = function
+        monkeypatch.setitem(sys.modules, "wsrender.run", module)
+
+    return put
+
+
+def raising(error):
+    def execute(document, progress=None):
+        raise error
+
+    return execute
+
+
+def pip(what, extra):
+    return f'error: {what} is not installed; run: pip install "wsrender[{extra}]"\n'
+
+
+def test_version(wsrender):
+    assert wsrender("--version") == (0, f"wsrender {ws.__version__}\n", "")
+
+
+def test_schema(wsrender):
+    code, out, _ = wsrender("schema", "--analysis", "indices_at")
+    assert (code, json.loads(out)["title"]) == (0, "IndicesAtJob")
+    assert json.loads(wsrender("schema")[1])["discriminator"]["propertyName"] == "analysis"
+    code, _, err = wsrender("schema", "--analysis", "nope")
+    assert (code, err) == (2, 'error: analysis: must be one of "workspace", "indices_at", not "nope"\n')
+
+
+def test_robots(wsrender):
+    code, out, _ = wsrender("robots")
+    assert code == 0
+    rows = {line.split()[0]: line for line in out.splitlines() if line.strip()}
+    assert {"ur5e", "scara", "puma560"} <= set(rows)
+    assert rows["scara"].split()[1] == "4"
+
+
+@pytest.mark.parametrize(
+    ("error", "code", "line"),
+    [
+        (ModelError("robot", "has no joints"), 2, "error: robot: has no joints\n"),
+        (InputError("tip", "holds [bold] text"), 2, "error: tip: holds [bold] text\n"),
+        (NumericalError("a σ is not finite"), 1, "error: a σ is not finite\n"),
+        (MissingExtraError("mujoco", "engine"), 1, pip("mujoco", "engine")),
+        (ModuleNotFoundError("No module", name="mujoco"), 1, pip("mujoco", "engine")),
+        (OSError(28, "No space left on device"), 1, "error: [Errno 28] No space left on device\n"),
+        (ZeroDivisionError("by zero"), 1, "error: ZeroDivisionError: by zero (--traceback shows where)\n"),
+    ],
+)  # fmt: skip
+def test_faults_are_one_line(wsrender, execute, error, code, line):
+    execute(raising(error))
+    assert wsrender("run", "ur5e") == (code, "", line)
+
+
+def test_traceback_on_request(execute):
+    execute(raising(ZeroDivisionError("by zero")))
+    with pytest.raises(ZeroDivisionError):
+        cli.main(["run", "ur5e", "--traceback"])
+
+
+def test_warnings_are_one_line(wsrender, execute):
+    def execute_with_warning(document, progress=None):
+        with warnings.catch_warnings():
+            warnings.simplefilter("default")
+            warnings.warn("geometry was dropped", stacklevel=1)
+        raise ModelError("robot", "nothing left")
+
+    execute(execute_with_warning)
+    _, _, err = wsrender("run", "ur5e")
+    assert err == "warning: geometry was dropped\nerror: robot: nothing left\n"
+
+
+def test_run_saves_and_prints_the_summary_and_the_files(wsrender, execute, tmp_path):
+    seen = {}
+
+    class Result:
+        def __init__(self):
+            self.document = {"artifacts": [{"name": "volume.vtkhdf", "bytes": 12_345_678}]}
+
+        def save(self, folder, formats):
+            seen.update(folder=folder, formats=formats)
+
+        def summary(self):
+            return "manipulability [m³] up to 0.2"
+
+    def execute_job(document, progress=None):
+        seen["document"] = document
+        progress(1, 2, "sampling")
+        return Result()
+
+    execute(execute_job)
+    code, out, err = wsrender("run", "ur5e", "-o", str(tmp_path), "--format", "csv", "--format", "npz")
+    assert (code, err) == (0, "")
+    assert out.splitlines() == ["manipulability [m³] up to 0.2", f"{tmp_path}/volume.vtkhdf  12.3 MB"]
+    assert seen["document"] == {"analysis": "workspace", "robot": {"library": "ur5e"}}
+    assert (seen["folder"], seen["formats"]) == (tmp_path, ("csv", "npz"))
+
+
+@pytest.mark.parametrize("command", ["serve", "worker", "keys", "database", "demo"])
+def test_server_commands_name_the_pip_command(wsrender, command):
+    code, _, err = wsrender(command, "--port", "8000")
+    assert (code, err) == (1, pip("The server", "server"))
+
+
+def test_extensions_join_the_command_line_only_where_they_are_needed(wsrender, monkeypatch):
+    extension = typer.Typer()
+    loads = []
+
+    @extension.command("serve")
+    def serve(port: int = 1):
+        typer.echo(f"serving on {port}")
+
+    @extension.command("keys")
+    def keys():
+        """Manage keys."""
+
+    def load(self):
+        loads.append(self.name)
+        return extension
+
+    monkeypatch.setattr(EntryPoint, "load", load)
+    found = [EntryPoint("server", "wsrender_server.cli:app", cli.EXTENSIONS)]
+    monkeypatch.setattr(cli, "entry_points", lambda group: found)
+    assert wsrender("serve", "--port", "8000") == (0, "serving on 8000\n", "")
+    assert "Manage keys." in wsrender("--help")[1]
+    loads.clear()
+    wsrender("schema")
+    assert loads == []
+
+
+def test_an_extension_whose_requirements_are_missing_names_the_pip_command(wsrender, monkeypatch):
+    def load(self):
+        raise ModuleNotFoundError("No module named 'fastapi'", name="fastapi")
+
+    monkeypatch.setattr(EntryPoint, "load", load)
+    found = [EntryPoint("server", "wsrender_server.cli:app", cli.EXTENSIONS)]
+    monkeypatch.setattr(cli, "entry_points", lambda group: found)
+    assert wsrender("--help")[0] == 0
+    code, _, err = wsrender("serve")
+    assert (code, err) == (1, pip("The server", "server"))
+
+
+class Terminal(io.StringIO):
+    def isatty(self):
+        return True
+
+
+def progress_after(monkeypatch, seconds, stream, calls):
+    """What progress writes when the calls (done, total) come at the given times."""
+    clock = iter([0.0, *seconds])
+    now = SimpleNamespace(value=0.0)
+    monkeypatch.setattr("wsrender.cli.progress.time", SimpleNamespace(monotonic=lambda: now.value))
+    now.value = next(clock)
+    with RunProgress(stream) as progress:
+        for done, total in calls:
+            now.value = next(clock)
+            progress(done, total, "sampling")
+    return stream.getvalue()
+
+
+def test_work_below_a_second_shows_nothing(monkeypatch):
+    for stream in (io.StringIO(), Terminal()):
+        assert progress_after(monkeypatch, [0.1, 0.9], stream, [(1, 2), (2, 2)]) == ""
+
+
+def test_plain_lines_off_a_terminal(monkeypatch):
+    times = [2.0, 2.1, 2.0 + LINE_EVERY_S]
+    lines = progress_after(monkeypatch, times, io.StringIO(), [(1e6, 4e6), (1.1e6, 4e6), (3.5e6, 4e6)])
+    assert lines.splitlines() == [
+        "sampling: 25 % of 4e+06, 1e+06 samples, 5e+05/s, 6 s left",
+        "sampling: 88 % of 4e+06, 3.5e+06 samples, 5e+05/s, 1 s left",
+    ]
+
+
+def test_bar_on_a_terminal(monkeypatch):
+    monkeypatch.setenv("TERM", "xterm")
+    shown = progress_after(monkeypatch, [2.0, 4.0], Terminal(), [(1e6, 4e6), (2e6, 4e6)])
+    assert "50 %" in shown
+    assert "5e+05/s" in shown
