@@ -40,7 +40,7 @@ def extract(
     carrier = _carriers(model, [drive.joint for drive in drives])
     refuse_loops(model, carrier, field)
     for body, fault in compiled.inertia_faults.items():
-        if carrier[model.body(body).id] >= 0:
+        if carrier[body] >= 0:
             raise ModelError(field, fault)
     reference = couplings.reference_qpos()
     geometry = _Geometry.at_reference(model, drives, reference, base_frame, tip_frame)
@@ -73,7 +73,7 @@ def _bodies_between(model: mujoco.MjModel, base: Frame, tip: Frame) -> list[int]
 def _refuse_faults(compiled: CompiledModel, bodies: list[int], base: Frame, tip: Frame, field: str) -> None:
     model = compiled.model
     for body in bodies:
-        if fault := compiled.path_faults.get(model.body(body).name):
+        if fault := compiled.path_faults.get(body):
             raise ModelError(field, fault)
         for joint in frames.joints_of(model, body):
             kind = {mujoco.mjtJoint.mjJNT_FREE: "free", mujoco.mjtJoint.mjJNT_BALL: "ball"}

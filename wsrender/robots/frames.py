@@ -6,7 +6,7 @@ from difflib import get_close_matches
 import mujoco
 import numpy as np
 
-from wsrender.errors import FrameNotFoundError
+from wsrender.errors import FrameNotFoundError, ModelError
 
 _DEFAULT_SITE = "tool"
 _DEFAULT_LINK = "tool0"  # the end of the flange in the ROS-Industrial convention
@@ -112,9 +112,9 @@ def _default_tip(model: mujoco.MjModel, carried: list[int]) -> Frame:
     if len(ends) == 1:
         return Frame(body_name(model, ends[0]), ends[0])
     if not carried:
-        raise FrameNotFoundError("tip", "no joint moves anything in the model", [_DEFAULT_SITE])
-    count = f"the model ends in {len(leaves)} places; its tip must be named"
-    raise FrameNotFoundError("tip", count, _names(model, carried))
+        raise ModelError("model", "no joint moves anything in the model")
+    places = f"the model ends in {len(leaves)} places; its tip must be named"
+    raise FrameNotFoundError("tip", places, _names(model, carried))
 
 
 def _floats(model: mujoco.MjModel, body: int) -> bool:

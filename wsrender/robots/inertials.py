@@ -15,13 +15,16 @@ from wsrender.robots.model_warning import ModelWarning
 
 NEGLIGIBLE = 1e-14  # [kg, kg m²] given to massless links; MuJoCo's own floor is mjMINVAL = 1e-15
 MASSLESS = 1e-12  # [kg, kg m²] up to here a link counts as having no inertia
+_SEMIDEFINITE = 1e-9  # relative; negative moments below it are decimal rounding of zero
 _ROUNDING = 1e-12  # relative; a violated inequality below it is decimal rounding
 
 
-def compile_with_inertials(spec: mujoco.MjSpec, field: str) -> mujoco.MjModel:
+def compile_with_inertials(spec: mujoco.MjSpec, field: str) -> tuple[mujoco.MjModel, dict[int, str]]:
     """The compiled model of ``spec`` with the masses [kg] and inertias [kg m²] that the source states.
 
-    Raises ModelError for negative masses and inertias, and where MuJoCo refuses the model; gives one
+    Also returns, by body, the inertias that are not positive definite though no number of theirs is
+    negative: they matter only to a chain that carries them. A full inertia is about the axes of ``iquat``.
+    Raises ModelError for negative masses and moments, and where MuJoCo refuses the model; gives one
     ModelWarning where inertias break the triangle inequality.
     """
     compiler = spec.compiler
@@ -29,25 +32,19 @@ def compile_with_inertials(spec: mujoco.MjSpec, field: str) -> mujoco.MjModel:
     compiler.boundmass = _bound(compiler.boundmass)
     compiler.boundinertia = _bound(compiler.boundinertia)
     compiler.fusestatic = False
-    restored = [] if _inferred_everywhere(spec) else _set_aside(spec, field)
+    stated = [] if _inferred_everywhere(spec) else [b for b in spec.bodies[1:] if b.explicitinertial]
+    moments = [(body, _moments(body, field)) for body in stated]
+    faults = [(body, _fault(body, m)) for body, m in moments if m.min() < 0.0]
+    restored = [(body, m) for body, m in moments if _excess(m) < 0.0 and m.min() >= 0.0]
+    for body, _ in faults + restored:
+        body.inertia = np.full(3, 10 * NEGLIGIBLE)
     model = _compile(spec, field)
-    for body, moments in restored:
-        model.body_inertia[body.id] = moments
+    for body, m in restored:
+        model.body_inertia[body.id] = m
     if restored:
         mujoco.mj_setConst(model, mujoco.MjData(model))
-    return model
-
-
-def principal_moments(inertia: np.ndarray, field: str, where: str) -> tuple[np.ndarray, np.ndarray]:
-    """Eigenvalues (3,) of a (3, 3) inertia and the rotation (3, 3) of its principal axes.
-
-    Raises ModelError if one is negative beyond rounding.
-    """
-    moments, axes = np.linalg.eigh(inertia)
-    if moments[0] < -1e-9 * np.abs(moments).max():
-        raise ModelError(field, f"{where}: its inertia is not positive (principal moment {moments[0]:g})")
-    axes[:, 2] *= np.sign(np.linalg.det(axes))
-    return np.maximum(moments, 0.0), axes
+        _warn_of_broken([body.name for body, m in restored if _excess(m) < -_ROUNDING * m.max()])
+    return model, {body.id: fault for body, fault in faults}
 
 
 def _bound(bound: float) -> float:
@@ -58,45 +55,47 @@ def _inferred_everywhere(spec: mujoco.MjSpec) -> bool:
     return spec.compiler.inertiafromgeom == mujoco.mjtInertiaFromGeom.mjINERTIAFROMGEOM_TRUE
 
 
-def _set_aside(spec: mujoco.MjSpec, field: str) -> list[tuple[mujoco.MjsBody, np.ndarray]]:
-    """Replaces the inertias that MuJoCo would refuse; returns the bodies with their true moments."""
-    restored, broken = [], []
-    for body in spec.bodies[1:]:
-        if not body.explicitinertial:
-            continue
-        where = f"link {body.name or body.id!r}"
-        if body.mass < 0.0:
-            raise ModelError(field, f"{where}: its mass is {body.mass:g} kg; it must not be negative")
-        moments = _moments(body, field, where)
-        if _excess(moments) < 0.0:
-            body.inertia = np.full(3, 10 * NEGLIGIBLE)
-            restored.append((body, moments))
-            if _excess(moments) < -_ROUNDING * moments.max():
-                broken.append(body.name)
-    if broken:
+def _moments(body: mujoco.MjsBody, field: str) -> np.ndarray:
+    """Principal moments of a body (3,), of which a full inertia leaves its axes in ``iquat``."""
+    where = f"link {body.name!r}"
+    if body.mass < 0.0:
+        raise ModelError(field, f"{where}: its mass is {body.mass:g} kg; it must not be negative")
+    full = not np.isnan(body.fullinertia[0])
+    diagonal = np.array(body.fullinertia[:3] if full else body.inertia)
+    if diagonal.min() < -NEGLIGIBLE:
+        raise ModelError(field, f"{where}: its inertia is {diagonal.min():g}; it must not be negative")
+    if not full:
+        return np.maximum(diagonal, 0.0)
+    xx, yy, zz, xy, xz, yz = body.fullinertia
+    moments, axes = np.linalg.eigh(np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]))
+    if moments.min() >= -max(_SEMIDEFINITE * moments.max(), NEGLIGIBLE):
+        moments = np.maximum(moments, 0.0)
+    body.fullinertia = [np.nan, 0.0, 0.0, 0.0, 0.0, 0.0]
+    body.inertia, body.iquat = moments, _turned(body.iquat, axes)
+    return moments
+
+
+def _turned(quat_wxyz: np.ndarray, axes: np.ndarray) -> np.ndarray:
+    """The orientation ``quat_wxyz`` followed by the turn to principal axes (3, 3), columns of any sign."""
+    axes = axes * [1.0, 1.0, np.sign(np.linalg.det(axes))]
+    principal, turned = np.empty(4), np.empty(4)
+    mujoco.mju_mat2Quat(principal, axes.ravel())
+    mujoco.mju_mulQuat(turned, quat_wxyz, principal)
+    return turned
+
+
+def _fault(body: mujoco.MjsBody, moments: np.ndarray) -> str:
+    return f"link {body.name!r}: its inertia is not positive (principal moment {moments.min():g} kg m²)"
+
+
+def _warn_of_broken(names: list[str]) -> None:
+    if names:
         warnings.warn(
-            f"the inertia of {', '.join(broken)} breaks the triangle inequality, so that no real body has "
-            "it; used as stated",
+            f"the inertia of {', '.join(names)} breaks the triangle inequality, so that no real body has it; "
+            "used as stated",
             ModelWarning,
             stacklevel=2,
         )
-    return restored
-
-
-def _moments(body: mujoco.MjsBody, field: str, where: str) -> np.ndarray:
-    """Principal moments of a body; a full inertia that MuJoCo would refuse is made diagonal on the way."""
-    if np.isnan(body.fullinertia[0]):
-        moments = np.array(body.inertia)
-        if moments.min() < 0.0:
-            raise ModelError(field, f"{where}: its inertia is {moments.min():g}; it must not be negative")
-        return moments
-    xx, yy, zz, xy, xz, yz = body.fullinertia
-    moments, axes = principal_moments(np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]), field, where)
-    if moments[0] < NEGLIGIBLE or _excess(moments) < 1e-9 * moments.max():
-        body.fullinertia = [np.nan, 0, 0, 0, 0, 0]
-        body.inertia = moments
-        mujoco.mju_mat2Quat(body.iquat, axes.ravel())
-    return moments
 
 
 def _excess(moments: np.ndarray) -> float:

@@ -54,8 +54,9 @@ def compile_mjcf(root: Element, read_mesh: ReadMesh, field: str) -> CompiledMode
             ModelWarning,
             stacklevel=2,
         )
-    model = compile_with_inertials(spec, field)
-    return CompiledModel(model, root.get("model", ""), inertia_faults=faults)
+    model, inertia_faults = compile_with_inertials(spec, field)
+    inertia_faults |= {body.id: fault for body, fault in faults}
+    return CompiledModel(model, root.get("model", ""), inertia_faults=inertia_faults)
 
 
 def _parsed(text: str, field: str) -> mujoco.MjSpec:
@@ -73,9 +74,9 @@ def _file(file: str, folder: str, strip: bool) -> str:
 
 def _drop_geometry(
     spec: mujoco.MjSpec, files: dict[str, str], read_mesh: ReadMesh
-) -> tuple[dict[str, str], list[str]]:
+) -> tuple[list[tuple[mujoco.MjsBody, str]], list[str]]:
     """Removes what cannot or need not be loaded; returns inertia faults by body and missing files."""
-    faults: dict[str, str] = {}
+    faults = []
     contents: dict[str, bytes | None] = {}
     for geom in list(spec.geoms):
         if not _needs_file(geom):
@@ -86,8 +87,11 @@ def _drop_geometry(
         inline = geom.meshname in files and not file
         gives_inertia = _gives_inertia(spec, geom)
         if gives_inertia and not inline and contents.get(file) is None:
-            name = geom.parent.name
-            faults[name] = f"the inertia of body {name!r} comes from {file or 'geometry'}, which is not there"
+            body = geom.parent
+            source = file or "geometry"
+            faults.append(
+                (body, f"the inertia of body {body.name!r} comes from {source}, which is not there")
+            )
         if not gives_inertia or not (inline or contents.get(file) is not None):
             spec.delete(geom)
     _keep_meshes(spec, files, contents)

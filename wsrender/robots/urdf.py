@@ -107,10 +107,10 @@ def read_urdf(robot: Element, field: str) -> Urdf:
     joints = [_joint(element, field) for element in robot.findall("joint")]
     if not links:
         raise ModelError(field, "the URDF has no <link>")
-    by_name = {"link": _unique(links, "link", field), "joint": _unique(joints, "joint", field)}
-    root, ordered = _tree(by_name["link"], joints, field)
-    _check_mimics(by_name["joint"], field)
-    return Urdf(robot.get("name", ""), root, by_name["link"], {joint.name: joint for joint in ordered})
+    by_name = _unique(links, "link", field)
+    _unique(joints, "joint", field)
+    root, ordered = _tree(by_name, joints, field)
+    return Urdf(robot.get("name", ""), root, by_name, {joint.name: joint for joint in ordered})
 
 
 def _refuse_xacro(robot: Element, field: str) -> None:
@@ -244,17 +244,6 @@ def _mimic(element: Element, field: str, where: str) -> Mimic | None:
         for key, default in (("multiplier", "1"), ("offset", "0"))
     )
     return Mimic(tag.get("joint", "").strip(), multiplier, offset)
-
-
-def _check_mimics(joints: dict[str, Joint], field: str) -> None:
-    for joint in joints.values():
-        if joint.mimic is None or not joint.movable:
-            continue
-        leader = joints.get(joint.mimic.leader)
-        if leader is None or not (leader.movable or leader.kind == "fixed"):
-            raise ModelError(
-                field, f"joint {joint.name!r} mimics {joint.mimic.leader!r}, which is no movable joint"
-            )
 
 
 def _tree(links: dict[str, Link], joints: list[Joint], field: str) -> tuple[str, list[Joint]]:

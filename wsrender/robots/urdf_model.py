@@ -7,7 +7,7 @@ import mujoco
 import numpy as np
 
 from wsrender.robots.compiled_model import CompiledModel
-from wsrender.robots.inertials import compile_with_inertials, principal_moments
+from wsrender.robots.inertials import compile_with_inertials
 from wsrender.robots.model_warning import ModelWarning
 from wsrender.robots.urdf import Joint, Link, Shape, Urdf, read_urdf
 
@@ -31,41 +31,42 @@ def compile_urdf(robot: Element, field: str) -> CompiledModel:
     spec.modelname = urdf.name
     spec.compiler.degree = False
     spec.compiler.inertiafromgeom = mujoco.mjtInertiaFromGeom.mjINERTIAFROMGEOM_FALSE
-    _add_links(spec, urdf, field)
+    _add_links(spec, urdf)
     _add_mimics(spec, urdf)
     _warn_of_meshes(urdf)
-    faults = {joint.child: fault for joint in urdf.joints.values() if (fault := _fault(joint))}
-    return CompiledModel(compile_with_inertials(spec, field), urdf.name, path_faults=faults)
+    model, inertia_faults = compile_with_inertials(spec, field)
+    path_faults = {
+        model.body(joint.child).id: fault
+        for joint in urdf.joints.values()
+        if (fault := _fault(joint, urdf.joints))
+    }
+    return CompiledModel(model, urdf.name, path_faults, inertia_faults)
 
 
-def _add_links(spec: mujoco.MjSpec, urdf: Urdf, field: str) -> None:
+def _add_links(spec: mujoco.MjSpec, urdf: Urdf) -> None:
     world = spec.worldbody
     bodies = {urdf.root: world if urdf.root == "world" else world.add_body(name=urdf.root)}
-    _fill(bodies[urdf.root], urdf.links[urdf.root], field)
+    _fill(bodies[urdf.root], urdf.links[urdf.root])
     for joint in urdf.joints.values():
         body = bodies[joint.parent].add_body(
             name=joint.child, pos=joint.pose.position, quat=joint.pose.quat_wxyz
         )
         bodies[joint.child] = body
-        _fill(body, urdf.links[joint.child], field)
+        _fill(body, urdf.links[joint.child])
         if joint.movable:
             _add_joint(body, joint)
 
 
-def _fill(body: mujoco.MjsBody, link: Link, field: str) -> None:
+def _fill(body: mujoco.MjsBody, link: Link) -> None:
     for shape in link.shapes:
         if shape.kind != "mesh" and min(shape.size) > 0.0:
             _add_shape(body, shape)
     if link.inertial is None:
         return
-    moments, axes = principal_moments(link.inertial.inertia, field, f"link {link.name!r}")
-    principal = np.empty(4)
-    mujoco.mju_mat2Quat(principal, axes.ravel())
-    quat = np.empty(4)
-    mujoco.mju_mulQuat(quat, link.inertial.pose.quat_wxyz, principal)
+    xx, xy, xz, _, yy, yz, _, _, zz = link.inertial.inertia.ravel()
     body.explicitinertial = True
-    body.mass, body.inertia = link.inertial.mass, moments
-    body.ipos, body.iquat = link.inertial.pose.position, quat
+    body.mass, body.fullinertia = link.inertial.mass, [xx, yy, zz, xy, xz, yz]
+    body.ipos, body.iquat = link.inertial.pose.position, link.inertial.pose.quat_wxyz
 
 
 def _add_shape(body: mujoco.MjsBody, shape: Shape) -> None:
@@ -98,24 +99,32 @@ def _add_mimics(spec: mujoco.MjSpec, urdf: Urdf) -> None:
     for joint in urdf.joints.values():
         if joint.mimic is None or not joint.movable:
             continue
-        data = np.zeros(11)
+        leader = urdf.joints.get(joint.mimic.leader)
+        moves = leader is not None and leader.movable
+        equality = spec.add_equality(
+            type=mujoco.mjtEq.mjEQ_JOINT,
+            objtype=mujoco.mjtObj.mjOBJ_JOINT,
+            name1=joint.name,
+            name2=joint.mimic.leader if moves else "",
+        )
+        data = np.zeros(len(equality.data))
         data[:2] = joint.mimic.offset, joint.mimic.multiplier
-        leader = joint.mimic.leader if urdf.joints[joint.mimic.leader].movable else ""
-        spec.add_equality(
-            type=mujoco.mjtEq.mjEQ_JOINT, objtype=mujoco.mjtObj.mjOBJ_JOINT,
-            name1=joint.name, name2=leader, data=data,
-        )  # fmt: skip
+        equality.data = data
 
 
-def _fault(joint: Joint) -> str:
+def _fault(joint: Joint, joints: dict[str, Joint]) -> str:
     """Why the joint cannot be on a chain; empty if it can."""
     if joint.kind in ("floating", "planar"):
         return f"joint {joint.name!r} is {joint.kind}: name a base below it"
     if joint.mimic is not None:
-        return ""
+        leader = joints.get(joint.mimic.leader)
+        known = leader is not None and (leader.movable or leader.kind == "fixed")
+        return (
+            "" if known else f"joint {joint.name!r} mimics {joint.mimic.leader!r}, which is no movable joint"
+        )
     if joint.kind == "revolute" and joint.limits is None:
         return f"revolute joint {joint.name!r} has no <limit>: give its limits, or make it continuous"
-    if joint.limits is not None and joint.limits[0] == joint.limits[1]:
+    if joint.limits is not None and joint.limits[0] == joint.limits[1] != 0.0:
         return (
             f"joint {joint.name!r}: its limits are both {joint.limits[0]:g}, which leaves no motion; "
             "give its limits, or make it continuous or fixed"
