@@ -8,7 +8,18 @@ import pytest
 
 import wsrender as ws
 
-HEAVY = ("mujoco", "warp", "scipy", "matplotlib", "pyarrow", "h5py", "skimage", "trimesh", "numpy", "pydantic")
+HEAVY = (
+    "mujoco",
+    "warp",
+    "scipy",
+    "matplotlib",
+    "pyarrow",
+    "h5py",
+    "skimage",
+    "trimesh",
+    "numpy",
+    "pydantic",
+)
 CHECKOUT = Path(ws.__file__).parent.parent
 SCRIPT = f"""
 import sys, time
@@ -21,7 +32,9 @@ print(time.perf_counter() - started, *[name for name in {HEAVY!r} if name in sys
 
 def test_import_loads_nothing_heavy_and_takes_less_than_half_a_second():
     runs = [
-        subprocess.run([sys.executable, "-c", SCRIPT], capture_output=True, text=True, check=True).stdout.split()
+        subprocess.run(
+            [sys.executable, "-c", SCRIPT], capture_output=True, text=True, check=True
+        ).stdout.split()
         for _ in range(3)
     ]
     assert [loaded for _, *loaded in runs] == [[]] * 3
@@ -37,7 +50,9 @@ def test_public_name_is_importable(name):
 def test_all_is_sorted_and_complete():
     assert list(ws.__all__) == sorted(set(ws.__all__))
     lazy = {*ws._MODULE_OF_NAME, *ws._MODULES}
-    errors = {name for name, value in vars(ws.errors).items() if isinstance(value, type) and name.endswith("Error")}
+    errors = {
+        name for name, value in vars(ws.errors).items() if isinstance(value, type) and name.endswith("Error")
+    }
     assert lazy | errors | {"__version__"} == set(ws.__all__)
 
 
@@ -51,3 +66,15 @@ def test_public_modules_stay_modules():
 def test_unknown_name():
     with pytest.raises(AttributeError, match="module 'wsrender' has no attribute 'analyse'"):
         ws.analyse  # noqa: B018
+
+
+def test_a_missing_extra_names_the_pip_command(monkeypatch):
+    def import_module(name):
+        raise ModuleNotFoundError("No module named 'warp'", name="warp")
+
+    monkeypatch.setattr(ws, "import_module", import_module)
+    monkeypatch.delitem(vars(ws), "load_robot", raising=False)
+    with pytest.raises(
+        ws.MissingExtraError, match=r'warp is not installed; run: pip install "wsrender\[engine\]"'
+    ):
+        ws.load_robot  # noqa: B018

@@ -4,6 +4,7 @@
 """
 
 from importlib import import_module
+from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 from wsrender.errors import (
@@ -75,15 +76,24 @@ _MODULES = {"math": "wsrender.indices.math", "run": "wsrender.run"}
 
 
 def __getattr__(name: str) -> Any:
-    """Import a public name when it is first used."""
+    """Import a public name when it is first used; raises MissingExtraError where its extra is missing."""
     if name in _MODULES:
-        value = import_module(_MODULES[name])
+        value = _imported(_MODULES[name])
     elif name in _MODULE_OF_NAME:
-        value = getattr(import_module(_MODULE_OF_NAME[name]), name)
+        value = getattr(_imported(_MODULE_OF_NAME[name]), name)
     else:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     globals()[name] = value
     return value
+
+
+def _imported(module: str) -> ModuleType:
+    try:
+        return import_module(module)
+    except ModuleNotFoundError as error:
+        if error.name is None or error.name.startswith("wsrender"):
+            raise
+        raise MissingExtraError(error.name, "engine") from None
 
 
 def __dir__() -> list[str]:

@@ -4,7 +4,6 @@ from pathlib import Path
 from typing import Any
 
 from wsrender.errors import InputError
-from wsrender.spec.json_text import read_json
 
 ROBOT_FILES = (".xml", ".mjcf", ".urdf")
 COUNTED_METHODS = ("random", "sobol", "boundary")
@@ -17,6 +16,8 @@ def job_document(job: str) -> dict[str, Any]:
     """
     path = Path(job)
     if path.suffix == ".json":
+        from wsrender.spec.json_text import read_json
+
         document = read_json(_read(path))
         if not isinstance(document, dict):
             raise InputError("JOB", f"{job} must hold an object, not {type(document).__name__}")
@@ -35,7 +36,7 @@ def sampling_document(
     """
     if not lock and all(option is None for option in (method, grid, samples, seed)):
         return None
-    fields = dict(current) if isinstance(current, dict) else {"method": "grid"}
+    fields: dict[str, Any] = dict(current) if isinstance(current, dict) else {"method": "grid"}
     if method is None and grid is not None:
         method = "grid"
     if method is None and samples is not None and fields.get("method") not in COUNTED_METHODS:
