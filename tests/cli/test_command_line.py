@@ -133,6 +133,16 @@ def test_run_saves_and_prints_the_summary_and_the_files(wsrender, execute, tmp_p
     assert (seen["folder"], seen["formats"]) == (tmp_path, ("csv", "npz"))
 
 
+def test_outputs_that_cannot_be_saved_are_refused_before_the_run(wsrender, execute, tmp_path):
+    execute(raising(AssertionError("ran")))
+    occupied = tmp_path / "file"
+    occupied.write_text("")
+    code, _, err = wsrender("run", "ur5e", "-o", str(occupied))
+    assert (code, err) == (2, f"error: --output: must be a folder, not the file {occupied}\n")
+    code, _, err = wsrender("run", "ur5e", "-o", str(tmp_path), "--format", "pickle")
+    assert (code, err) == (2, 'error: --format: must be one of npz, csv, mat, stl, svg, not "pickle"\n')
+
+
 @pytest.mark.parametrize("command", ["serve", "worker", "keys", "database", "demo"])
 def test_server_commands_name_the_pip_command(wsrender, command):
     code, _, err = wsrender(command, "--port", "8000")

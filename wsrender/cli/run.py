@@ -9,6 +9,7 @@ from rich.console import Console
 from wsrender.cli.faults import one_line_faults
 from wsrender.cli.job_options import job_document, name_or_list, sampling_document
 from wsrender.cli.progress import RunProgress
+from wsrender.errors import InputError
 
 _SAMPLING = "Sampling"
 _ANALYSIS = "Analysis"
@@ -60,7 +61,7 @@ def run(
         bool, typer.Option("--keep-map", help="Keep one row per sample (map.parquet).")
     ] = False,
     formats: Annotated[
-        list[str] | None, typer.Option("--format", help="Also write csv, npz or svg; repeatable.")
+        list[str] | None, typer.Option("--format", help="Also write npz, csv, mat, stl or svg; repeatable.")
     ] = None,
     dry_run: Annotated[
         bool, typer.Option("--dry-run", help="Print the job document and stop: it can be run again.")
@@ -91,6 +92,7 @@ def run(
         if dry_run:
             _print_job(document)
         else:
+            _check_output(output, tuple(formats or ()))
             _execute(document, output, tuple(formats or ()))
 
 
@@ -100,6 +102,17 @@ def _print_job(document: dict[str, Any]) -> None:
     from wsrender.spec import canonical_json, parse_job
 
     typer.echo(json.dumps(json.loads(canonical_json(parse_job(document))), indent=2))
+
+
+def _check_output(output: Path, formats: tuple[str, ...]) -> None:
+    """Refuse before a long run what saving would refuse after it."""
+    from wsrender.result import EXTRA_FORMATS, STANDARD_FORMATS
+
+    if output.exists() and not output.is_dir():
+        raise InputError("--output", f"must be a folder, not the file {output}")
+    for name in formats:
+        if name not in STANDARD_FORMATS + EXTRA_FORMATS:
+            raise InputError("--format", f'must be one of {", ".join(EXTRA_FORMATS)}, not "{name}"')
 
 
 def _execute(document: dict[str, Any], output: Path, formats: tuple[str, ...]) -> None:
