@@ -15,12 +15,14 @@ if TYPE_CHECKING:
     from wsrender.export.meshes import occupied_surface, write_mesh
     from wsrender.export.npz import read_map_npz, read_volume_npz, write_map_npz, write_volume_npz
     from wsrender.export.parquet import read_map_parquet, write_map_parquet
+    from wsrender.export.skeleton import read_skeleton, write_skeleton
     from wsrender.export.vtkhdf import read_volume_vtkhdf, write_volume_vtkhdf
 
 _MODULES = {
     "occupied_surface": "meshes",
     "read_map_npz": "npz",
     "read_map_parquet": "parquet",
+    "read_skeleton": "skeleton",
     "read_volume_npz": "npz",
     "read_volume_vtkhdf": "vtkhdf",
     "write_map_csv": "csv",
@@ -28,6 +30,7 @@ _MODULES = {
     "write_map_npz": "npz",
     "write_map_parquet": "parquet",
     "write_mesh": "meshes",
+    "write_skeleton": "skeleton",
     "write_volume_csv": "csv",
     "write_volume_mat": "mat",
     "write_volume_npz": "npz",
@@ -38,6 +41,7 @@ __all__ = [
     "occupied_surface",
     "read_map_npz",
     "read_map_parquet",
+    "read_skeleton",
     "read_volume_npz",
     "read_volume_vtkhdf",
     "write_map_csv",
@@ -45,6 +49,7 @@ __all__ = [
     "write_map_npz",
     "write_map_parquet",
     "write_mesh",
+    "write_skeleton",
     "write_volume_csv",
     "write_volume_mat",
     "write_volume_npz",

@@ -1,0 +1,72 @@
+"""The pictures of one result: what ``result.plot`` offers."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from wsrender.errors import InputError
+from wsrender.plots.histogram import histogram
+from wsrender.plots.robot import robot
+from wsrender.plots.scatter import scatter
+from wsrender.plots.slices import slice_plane, slices
+from wsrender.volume.distribution_map import DistributionMap
+from wsrender.volume.volume_data import VolumeData
+
+
+@dataclass(frozen=True)
+class ResultPlots:
+    """Pictures of a result, each a matplotlib Figure titled with its robot and sampling."""
+
+    title: str
+    samples: DistributionMap | None
+    volume: VolumeData | None
+    skeleton: np.ndarray | None
+
+    def scatter(self, index: str | None = None) -> Figure:
+        """Sampled positions in space, coloured by an index (by default the first)."""
+        return scatter(self._samples(), index, title=self.title)
+
+    def histogram(self, index: str | None = None) -> Figure:
+        """Distribution of an index over the samples; of each index by default."""
+        return histogram(self._samples(), index, title=self.title)
+
+    def slice(
+        self,
+        *,
+        x: float | None = None,
+        y: float | None = None,
+        z: float | None = None,
+        index: str | None = None,
+        statistic: str | None = None,
+    ) -> Figure:
+        """Voxels cut by the plane at x, y or z [m], coloured by a statistic of an index."""
+        choice: dict[str, Any] = {"index": index, "statistic": statistic, "title": self.title}
+        return slice_plane(self._volume(), x=x, y=y, z=z, **choice)
+
+    def slices(
+        self,
+        at: tuple[float | None, float | None, float | None] = (None, None, None),
+        *,
+        index: str | None = None,
+        statistic: str | None = None,
+    ) -> Figure:
+        """Three planes, normal to x, y and z at the coordinates ``at`` [m]."""
+        return slices(self._volume(), at=at, index=index, statistic=statistic, title=self.title)
+
+    def robot(self, index: str | None = None) -> Figure:
+        """The arm as a stick figure in its workspace, coloured by an index (by default the first)."""
+        if self.skeleton is None:
+            raise InputError("skeleton", "the result holds no configurations of the arm to draw")
+        return robot(self.skeleton, self.samples, index, title=self.title)
+
+    def _samples(self) -> DistributionMap:
+        if self.samples is None:
+            raise InputError("map", "the result holds neither a map nor a sample of it")
+        return self.samples
+
+    def _volume(self) -> VolumeData:
+        if self.volume is None:
+            raise InputError("volume", "the result holds no volume data")
+        return self.volume

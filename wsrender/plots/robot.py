@@ -1,0 +1,89 @@
+"""The arm as a stick figure in the cloud of its samples."""
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from mpl_toolkits.mplot3d.axes3d import Axes3D
+
+from wsrender.errors import InputError
+from wsrender.plots.scatter import checked_index
+from wsrender.plots.space import add_space, far_half, thinned
+from wsrender.plots.style import (
+    GREY,
+    INK,
+    add_color_bar,
+    add_title,
+    color_map,
+    new_figure,
+    paper_style,
+    quantity,
+    value_range,
+)
+from wsrender.volume.distribution_map import DistributionMap
+
+_ACCENT = "#c8102e"
+_CLOUD_POINTS = 12_000
+
+
+@paper_style()
+def robot(
+    skeleton: np.ndarray,
+    samples: DistributionMap | None = None,
+    index: str | None = None,
+    *,
+    title: str = "",
+    frame: str = "world",
+) -> Figure:
+    """Stick figures of the arm in representative configurations, before the far half of its workspace.
+
+    ``skeleton`` (K, L+2, 3) holds world positions [m] of base, joint origins and tip; the first of the K
+    configurations is drawn in full, the others pale. The cloud is coloured by ``index`` (by default the
+    map's first). Raises InputError for another shape or an unknown index.
+    """
+    skeleton = np.asarray(skeleton, np.float64)
+    if skeleton.ndim != 3 or skeleton.shape[1] < 2 or skeleton.shape[2] != 3 or len(skeleton) == 0:
+        raise InputError("skeleton", f"has shape {skeleton.shape}; it must be (K, L+2, 3) with K at least 1")
+    figure = new_figure(6.4, 5.6)
+    points = skeleton.reshape(-1, 3)
+    if samples is not None and len(samples):
+        points = np.concatenate([points, samples.position])
+    axes = add_space(figure, points, frame)
+    if samples is not None and len(samples):
+        _draw_cloud(figure, axes, samples, index)
+    for arm in skeleton[:0:-1]:
+        axes.plot(*arm.T, color="white", lw=4.0, alpha=0.8, solid_capstyle="round", zorder=3)
+        axes.plot(*arm.T, color=GREY, lw=2.0, marker="o", ms=3, zorder=4)
+    _draw_arm(axes, skeleton[0])
+    add_title(figure, title)
+    return figure
+
+
+def _draw_cloud(figure: Figure, axes: Axes3D, samples: DistributionMap, index: str | None) -> None:
+    behind = np.flatnonzero(far_half(samples.position))
+    rows = behind[thinned(len(behind), _CLOUD_POINTS)]
+    if samples.indices:
+        index = checked_index(samples, index)
+        values = samples.indices[index]
+        norm = value_range(values.min(), values.max())
+        colors = color_map()(norm(values[rows]))
+        label = quantity(index, samples.units.get(index))
+        add_color_bar(figure, norm, label, axes, shrink=0.7, pad=0.1, aspect=28)
+    else:
+        colors = color_map()(np.full(len(rows), 0.35))
+    axes.scatter(
+        *samples.position[rows].T, s=5, c=colors, alpha=0.6, linewidths=0, depthshade=False, rasterized=True
+    )
+
+
+def _draw_arm(axes: Axes3D, arm: np.ndarray) -> None:
+    axes.plot(*arm.T, color="white", lw=5.5, solid_capstyle="round", zorder=5)
+    axes.plot(*arm.T, color=INK, lw=3.2, solid_capstyle="round", zorder=6)
+    axes.plot(*arm[1:-1].T, ls="", marker="o", ms=6, mfc="white", mec=INK, mew=1.4, zorder=7)
+    axes.plot(*arm[:1].T, ls="", marker="s", ms=8, mfc=INK, mec="white", zorder=8)
+    axes.plot(*arm[-1:].T, ls="", marker="*", ms=13, mfc=_ACCENT, mec="white", mew=0.7, zorder=9)
+    handles = [
+        Line2D([], [], ls="", marker="s", ms=6, mfc=INK, mec="white", label="base"),
+        Line2D([], [], ls="", marker="o", ms=5, mfc="white", mec=INK, mew=1.2, label="joint"),
+        Line2D([], [], ls="", marker="*", ms=10, mfc=_ACCENT, mec="white", label="tip"),
+    ]
+    axes.legend(handles=handles, loc="upper left", frameon=False, fontsize=8)

@@ -1,0 +1,177 @@
+"""Planes through the volume data, coloured by a statistic; empty voxels stay blank."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+
+from wsrender.errors import InputError
+from wsrender.plots.style import (
+    add_color_bar,
+    add_title,
+    color_map,
+    new_figure,
+    paper_style,
+    quantity,
+    value_range,
+)
+from wsrender.volume.volume_data import VolumeData
+
+_NAMES = "xyz"
+_ACROSS = ((1, 2), (0, 2), (0, 1))  # horizontal and vertical axis of the plane normal to x, y, z
+_THINNEST = 0.2  # least extent of a drawn plane, relative to its longest: planar sets keep a legible panel
+
+
+@dataclass(frozen=True)
+class _Field:
+    """A scalar per voxel, (nx, ny, nz), NaN where empty, with its label; colours span all its values."""
+
+    values: np.ndarray
+    label: str
+    norm: Normalize
+
+
+@paper_style()
+def slice_plane(
+    volume: VolumeData,
+    *,
+    x: float | None = None,
+    y: float | None = None,
+    z: float | None = None,
+    index: str | None = None,
+    statistic: str | None = None,
+    title: str = "",
+    frame: str = "world",
+) -> Figure:
+    """The voxels cut by one plane, given by its coordinate x, y or z [m] in the world frame.
+
+    Without a coordinate: z = 0, or the plane with most voxels where nothing is occupied there. ``statistic``
+    is by default the maximum if the volume holds it; ``"count"`` shows the number of samples. ``index`` is by
+    default the first. Colours span the whole volume, so slices compare.
+
+    Raises InputError for more than one coordinate, a plane outside the volume, an unknown index or
+    statistic, or a volume without occupied voxels.
+    """
+    field = _field(volume, index, statistic)
+    given = [(axis, at) for axis, at in enumerate((x, y, z)) if at is not None]
+    if len(given) > 1:
+        raise InputError("slice", "takes one of x, y, z; use slices for all three")
+    axis, at = given[0] if given else (2, None)
+    layer = _layer(volume, axis, at)
+    width, height = _extents(volume, axis)
+    scale = min(4.6 / width, 4.4 / height)
+    figure = new_figure(width * scale + 1.8, max(height * scale + 1.0, 2.2))
+    axes = figure.add_subplot()
+    _draw(axes, volume, field, axis, layer, frame)
+    add_color_bar(figure, field.norm, field.label, axes, shrink=0.9, aspect=28)
+    add_title(figure, title)
+    return figure
+
+
+@paper_style()
+def slices(
+    volume: VolumeData,
+    *,
+    at: tuple[float | None, float | None, float | None] = (None, None, None),
+    index: str | None = None,
+    statistic: str | None = None,
+    title: str = "",
+    frame: str = "world",
+) -> Figure:
+    """Three panels: the planes normal to x, y and z at the coordinates ``at`` [m]; see ``slice_plane``."""
+    field = _field(volume, index, statistic)
+    extents = [_extents(volume, axis) for axis in range(3)]
+    widths = [width for width, _ in extents]
+    scale = min(9.6 / sum(widths), 4.0 / max(height for _, height in extents))
+    tallest = max(height for _, height in extents) * scale
+    figure = new_figure(max(sum(widths) * scale + 2.6, 6.0), max(tallest + 1.0, 2.4))
+    panels = figure.subplots(1, 3, width_ratios=widths)
+    for axis, (axes, coordinate) in enumerate(zip(panels, at, strict=True)):
+        _draw(axes, volume, field, axis, _layer(volume, axis, coordinate), frame)
+    add_color_bar(figure, field.norm, field.label, list(panels), shrink=0.8, aspect=28, pad=0.02)
+    add_title(figure, title)
+    return figure
+
+
+def _field(volume: VolumeData, index: str | None, statistic: str | None) -> _Field:
+    if not volume.occupied.any():
+        raise InputError("volume", "has no occupied voxel, so there is nothing to draw")
+    if statistic == "count" or not (volume.statistics or statistic or index):
+        values, label = np.where(volume.occupied, volume.count, np.nan), "Samples per voxel"
+    else:
+        values, label = _statistic(volume, index, statistic)
+    return _Field(values, label, value_range(np.nanmin(values), np.nanmax(values)))
+
+
+def _statistic(volume: VolumeData, index: str | None, statistic: str | None) -> tuple[np.ndarray, str]:
+    if statistic is None:
+        statistic = next(iter(sorted(volume.statistics, key=lambda name: name != "maximum")), "maximum")
+    if statistic not in volume.statistics:
+        raise InputError(
+            "statistic", f"the volume has no {statistic!r}; it holds {_listed(volume.statistics)}"
+        )
+    by_index = volume.statistics[statistic]
+    if index is None:
+        index = next(iter(by_index))
+    if index not in by_index:
+        raise InputError("index", f"the volume has no {index!r}; it holds {_listed(by_index)}")
+    return by_index[index], quantity(f"{statistic} of {index}", volume.units.get(index))
+
+
+def _listed(names) -> str:
+    return ", ".join([*names, "count"])
+
+
+def _layer(volume: VolumeData, axis: int, at: float | None) -> int:
+    """Number of the voxel layer cut at a coordinate [m] along an axis."""
+    size, layers = volume.voxel_size_m, volume.count.shape[axis]
+    first = volume.first_voxel[axis]
+    if at is None:
+        occupied = np.count_nonzero(volume.count, axis=_ACROSS[axis])
+        zero = -first
+        return zero if 0 <= zero < layers and occupied[zero] else int(occupied.argmax())
+    cells = at / size - first
+    if not -1e-9 <= cells <= layers + 1e-9:
+        name, low, high = _NAMES[axis], first * size, (first + layers) * size
+        raise InputError(name, f"the plane {name} = {at:g} m misses the workspace, {low:g} … {high:g} m")
+    return min(max(int(np.floor(cells + 1e-9)), 0), layers - 1)
+
+
+def _extents(volume: VolumeData, axis: int) -> tuple[float, float]:
+    """Width and height of the drawn plane [m]."""
+    size = [volume.count.shape[across] * volume.voxel_size_m for across in _ACROSS[axis]]
+    width, height = (max(extent, _THINNEST * max(size)) * 1.04 for extent in size)
+    return width, height
+
+
+def _draw(axes: Axes, volume: VolumeData, field: _Field, axis: int, layer: int, frame: str) -> None:
+    horizontal, vertical = _ACROSS[axis]
+    edges = [
+        volume.first_voxel[across] * volume.voxel_size_m
+        + np.array([0, volume.count.shape[across]]) * volume.voxel_size_m
+        for across in (horizontal, vertical)
+    ]
+    plane = np.ma.masked_invalid(field.values.take(layer, axis))
+    axes.imshow(
+        plane.T,
+        origin="lower",
+        extent=(*edges[0], *edges[1]),
+        cmap=color_map(),
+        norm=field.norm,
+        interpolation="nearest",
+        zorder=2,
+    )
+    for (low, high), extent, limit in zip(
+        edges, _extents(volume, axis), (axes.set_xlim, axes.set_ylim), strict=True
+    ):
+        limit((low + high - extent) / 2, (low + high + extent) / 2)
+    axes.xaxis.set_major_locator(MaxNLocator(5))
+    axes.yaxis.set_major_locator(MaxNLocator(5))
+    axes.grid(zorder=0)
+    axes.set_axisbelow(True)
+    axes.set_xlabel(f"{_NAMES[horizontal]} [m]")
+    axes.set_ylabel(f"{_NAMES[vertical]} [m]")
+    axes.set_title(f"{_NAMES[axis]} = {volume.centers(axis)[layer]:.3g} m ({frame})")

@@ -1,0 +1,179 @@
+"""The result of an analysis: a document, the data behind it, its files and pictures."""
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from wsrender import export, plots
+from wsrender.errors import InputError
+from wsrender.export.artifacts import (
+    DOCUMENT,
+    Artifact,
+    publish,
+    read_document,
+    verified_artifacts,
+    write_artifacts,
+    write_document,
+)
+from wsrender.export.atomic import staging_folder
+from wsrender.export.cells import cell_names
+from wsrender.export.columns import MapColumns
+from wsrender.export.text import sampling_text, summary_text
+from wsrender.volume.distribution_map import DistributionMap
+from wsrender.volume.volume_data import VolumeData
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from wsrender.plots.result_plots import ResultPlots
+
+STANDARD_FORMATS = ("parquet", "vtkhdf", "glb", "ply", "png")
+EXTRA_FORMATS = ("npz", "csv", "mat", "stl", "svg")
+
+
+@dataclass(eq=False)
+class Result:
+    """What an analysis returns, locally and from a server alike.
+
+    ``document`` is the result document, a plain dict. ``map`` has one row per sample where it was kept
+    (for ``indices_at``: one per configuration, in the order asked); ``sample`` is the fixed subsample that
+    pictures use. ``skeleton`` (K, L+2, 3) holds world positions [m] of base, joint origins and tip at K
+    representative configurations.
+    """
+
+    document: dict[str, Any]
+    map: DistributionMap | None = None
+    sample: DistributionMap | None = None
+    volume: VolumeData | None = None
+    skeleton: np.ndarray | None = None
+
+    @property
+    def global_indices(self) -> dict[str, Any]:
+        """Global indices: those of the robot, and ``joint_mean`` and ``workspace_mean`` by index."""
+        means = {
+            mean: {
+                name: values[mean]
+                for name, values in self.document.get("indices", {}).items()
+                if mean in values
+            }
+            for mean in ("joint_mean", "workspace_mean")
+        }
+        return {**self.document.get("global", {}), **means}
+
+    @property
+    def plot(self) -> "ResultPlots":
+        """Pictures as Figures: ``plot.slice(z=0.3)``, ``.slices()``, ``.scatter(index)``, ``.robot()``, …"""
+        samples = self.sample if self.sample is not None else self.map
+        return plots.ResultPlots(sampling_text(self.document), samples, self.volume, self.skeleton)
+
+    def summary(self) -> str:
+        """The main numbers as a few lines of text."""
+        return summary_text(self.document)
+
+    def save(self, folder: str | Path, formats: Iterable[str] = ()) -> None:
+        """Write document, data, surface and pictures to a folder, and list them in ``document["artifacts"]``.
+
+        Always written, as far as the result holds the data: ``result.json``, ``map.parquet``,
+        ``sample.parquet``, ``volume.vtkhdf``, ``surface.glb``, ``surface.ply``, ``skeleton.npy`` and
+        ``plots/*.png`` with ``plots/histogram.csv``. ``formats`` adds npz, csv, mat, stl and svg. A result
+        that was in the folder before is replaced, other files stay; if writing fails nothing changes.
+
+        Raises InputError for an unknown format or a folder that is a file.
+        """
+        formats = tuple(formats)
+        for name in formats:
+            if name not in STANDARD_FORMATS + EXTRA_FORMATS:
+                allowed = ", ".join(EXTRA_FORMATS)
+                raise InputError("formats", f"{name!r} is not a format that can be added; allowed: {allowed}")
+        with staging_folder(folder) as staging:
+            records = write_artifacts(_artifacts(self, formats), staging)
+            document = write_document({**self.document, "artifacts": records}, staging / DOCUMENT)
+            publish(staging, Path(folder).absolute())
+        self.document = document
+
+    @classmethod
+    def load(cls, folder: str | Path) -> "Result":
+        """Restore what ``save`` wrote.
+
+        Raises InputError, naming the file, where one that the document lists is missing or has changed.
+        """
+        folder = Path(folder)
+        document = read_document(folder)
+        files = verified_artifacts(document, folder)
+
+        return cls(
+            document=document,
+            map=_restored(files, "map.parquet", "read_map_parquet"),
+            sample=_restored(files, "sample.parquet", "read_map_parquet"),
+            volume=_restored(files, "volume.vtkhdf", "read_volume_vtkhdf"),
+            skeleton=_restored(files, "skeleton.npy", "read_skeleton"),
+        )
+
+
+def _restored(files: dict[str, Path], name: str, reader: str) -> Any:
+    """What the function ``reader`` of ``wsrender.export`` reads, None where there is no such file."""
+    return getattr(export, reader)(files[name]) if name in files else None
+
+
+def _artifacts(result: Result, formats: tuple[str, ...]) -> Iterator[Artifact]:
+    """Every file of a result but its document; surfaces and pictures are made when their turn comes."""
+    for name, samples in (("map", result.map), ("sample", result.sample)):
+        if samples is not None:
+            yield from _map_files(name, samples, formats)
+    if result.volume is not None:
+        yield from _volume_files(result.volume, formats)
+        yield from _surface_files(result.volume, formats)
+    if result.skeleton is not None:
+        skeleton = np.asarray(result.skeleton)
+        write = partial(export.write_skeleton, skeleton)
+        yield Artifact("skeleton.npy", write, skeleton.shape, {"skeleton": "m"})
+    yield from _picture_files(result, formats)
+
+
+def _map_files(name: str, samples: DistributionMap, formats: tuple[str, ...]) -> Iterator[Artifact]:
+    units = MapColumns.of(samples).column_units()
+    for ending in ("parquet", *(ending for ending in ("npz", "csv", "mat") if ending in formats)):
+        write = partial(getattr(export, f"write_map_{ending}"), samples)
+        yield Artifact(f"{name}.{ending}", write, (len(samples), len(units)), units)
+
+
+def _volume_files(volume: VolumeData, formats: tuple[str, ...]) -> Iterator[Artifact]:
+    names = cell_names(volume, taken={"count"})
+    units = {"count": "samples"} | {name: volume.units.get(index, "1") for (_, index), name in names.items()}
+    for ending in ("vtkhdf", *(ending for ending in ("npz", "csv", "mat") if ending in formats)):
+        write = partial(getattr(export, f"write_volume_{ending}"), volume)
+        yield Artifact(f"volume.{ending}", write, volume.count.shape, units)
+
+
+def _surface_files(volume: VolumeData, formats: tuple[str, ...]) -> Iterator[Artifact]:
+    if not volume.occupied.any():
+        return
+    mesh = export.occupied_surface(volume)
+    for ending in ("glb", "ply", *(["stl"] if "stl" in formats else [])):
+        write = partial(export.write_mesh, mesh)
+        yield Artifact(f"surface.{ending}", write, mesh.vertices.shape, {"vertices": "m"})
+
+
+def _picture_files(result: Result, formats: tuple[str, ...]) -> Iterator[Artifact]:
+    """PNG, and SVG if asked, of each picture that the result has data for."""
+    plot = result.plot
+    rows = 0 if plot.samples is None else len(plot.samples)
+    pictures: dict[str, Callable[[], Figure]] = {}
+    if result.skeleton is not None and len(result.skeleton):
+        pictures["robot"] = plot.robot
+    if rows:
+        pictures["scatter"] = plot.scatter
+    if result.volume is not None and result.volume.occupied.any():
+        pictures["slices"] = plot.slices
+    if plot.samples is not None and plot.samples.indices and rows:
+        pictures["histogram"] = plot.histogram
+        write = partial(plots.write_histogram_csv, plot.samples)
+        yield Artifact("plots/histogram.csv", write, frame=None)
+    for name, draw in pictures.items():
+        figure = draw()
+        for ending in ("png", *(["svg"] if "svg" in formats else [])):
+            yield Artifact(f"plots/{name}.{ending}", partial(plots.save_figure, figure))
