@@ -31,7 +31,7 @@ def find(name: str) -> Path:
     if name in known:
         return _folder() / name / f"{name}.xml"
     close = get_close_matches(str(name).lower().replace("-", "_"), known, n=1, cutoff=0.5)
-    hint = f'; did you mean "{close[0]}"?' if close else ""
+    hint = f'; did you mean "{close[0]}"?' if close else "."
     raise ModelError("library", f'has no robot "{name}"{hint} It has: {", ".join(known)}')
 
 

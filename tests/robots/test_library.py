@@ -1,0 +1,262 @@
+"""The robot library against the published tables, written out once more and evaluated in NumPy."""
+
+import math
+import shutil
+from pathlib import Path
+
+import mujoco
+import numpy as np
+import pytest
+
+import wsrender
+from tests.reference import chain_kinematics, dh_product
+from tests.reference.published_robots import (
+    EFFORTS,
+    FLANGE,
+    IIWA_LINKS,
+    INERTIAS,
+    NAMES,
+    STANFORD_LINKS,
+    UR5E_LINKS,
+    dh_table,
+)
+from wsrender.errors import ModelError
+from wsrender.robots import library, load_path, load_urdf
+from wsrender.robots.dh import structural_length
+
+
+def configurations(chain, count):
+    generator = np.random.default_rng(20240611)
+    return generator.uniform(chain.lower_limits, chain.upper_limits, (count, chain.n))
+
+
+def mass_matrix(model, q):
+    data, M = mujoco.MjData(model), np.zeros((model.nv, model.nv))
+    data.qpos[:] = q
+    mujoco.mj_forward(model, data)
+    mujoco.mj_fullM(model, data, M)
+    return M
+
+
+# --- the folder -----------------------------------------------------------------------------------------
+
+
+def test_the_library_has_every_robot():
+    assert library.names() == NAMES
+    assert all(library.find(name).is_file() for name in NAMES)
+
+
+def test_an_unknown_robot_is_refused_with_the_names():
+    with pytest.raises(
+        ModelError, match=r'no robot "UR-5e"; did you mean "ur5e"\? It has: articulated, .*ur5e'
+    ):
+        library.find("UR-5e")
+    with pytest.raises(ModelError, match=r'no robot "nonesuch". It has: articulated, .*ur5e$'):
+        library.find("nonesuch")
+
+
+@pytest.mark.parametrize("name", ["", ".", "../mjcf/ur5e", "ur5e/ur5e", "/etc/passwd", "*"])
+def test_names_are_not_paths(name):
+    with pytest.raises(ModelError, match="has no robot"):
+        library.find(name)
+
+
+def test_an_installed_package_uses_its_own_models(tmp_path, monkeypatch):
+    package = tmp_path / "wsrender"
+    shutil.copytree(library.find("scara").parent, package / "mjcf" / "scara")
+    monkeypatch.setattr(wsrender, "__file__", str(package / "__init__.py"))
+    assert library.names() == ["scara"]
+    assert library.find("scara") == package / "mjcf" / "scara" / "scara.xml"
+
+
+def test_descriptions_name_joints_and_source():
+    described = {robot.name: robot for robot in library.describe()}
+    assert sorted(described) == NAMES
+    for name, robot in described.items():
+        assert robot.joints == len(dh_table(name).rows)
+        assert len(robot.description) > 20 and len(robot.source) > 10
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_readme_states_the_numbers_and_their_source(name):
+    text = (library.find(name).parent / "README.md").read_text()
+    assert "## Source of every number" in text and "site `tool`" in text
+    plain = text.replace("−", "-")
+    for row in dh_table(name).rows:
+        assert f"| {row.a:g} | {math.degrees(row.alpha):g} |" in plain
+    for mass, center, *_ in INERTIAS.get(name, []):
+        assert f"| {mass:g} |" in plain or f"| {mass} |" in plain or mass == 0
+        assert all(f"{value:g}" in plain or f"{value}" in plain for value in center)
+
+
+# --- kinematics -----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_plain_mujoco_compiles_the_model_without_a_warning(name, tmp_path, monkeypatch, capfd):
+    monkeypatch.chdir(tmp_path)  # MuJoCo writes its warnings to a file in the working folder
+    model = mujoco.MjModel.from_xml_path(str(library.find(name)))
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    assert not list(Path().iterdir()) and capfd.readouterr() == ("", "")
+    assert all(warning.number == 0 for warning in data.warning)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_poses_are_those_of_the_published_table(name):
+    dh, flange = dh_table(name), dh_product.translation(0.0, FLANGE.get(name, 0.0))
+    model = mujoco.MjModel.from_xml_path(str(library.find(name)))
+    data, chain = mujoco.MjData(model), load_path(library.find(name)).chain
+    for q in configurations(chain, 20):
+        data.qpos[:] = q
+        mujoco.mj_kinematics(model, data)
+        T = dh_product.frames(dh, q)[-1] @ flange
+        np.testing.assert_allclose(data.site("tool").xpos, T[:3, 3], atol=1e-12, rtol=0)
+        np.testing.assert_allclose(data.site("tool").xmat.reshape(3, 3), T[:3, :3], atol=1e-12, rtol=0)
+        np.testing.assert_allclose(chain_kinematics.forward_kinematics(chain, q), T, atol=1e-12, rtol=0)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_limits_and_efforts_are_the_published_ones(name):
+    chain, rows = load_path(library.find(name)).chain, dh_table(name).rows
+    assert (chain.name, chain.tip_frame, chain.base_frame) == (name, "tool", "world")
+    assert chain.joint_names == tuple(f"joint{k}" for k in range(1, len(rows) + 1))
+    np.testing.assert_allclose(chain.lower_limits, [row.limits[0] for row in rows], rtol=1e-15, atol=0)
+    np.testing.assert_allclose(chain.upper_limits, [row.limits[1] for row in rows], rtol=1e-15, atol=0)
+    assert not chain.periodic.any()
+    if name in EFFORTS:
+        assert chain.effort_limits.tolist() == EFFORTS[name]
+    else:
+        assert chain.effort_limits is None
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_structural_length_is_that_of_the_table(name):
+    rows = dh_table(name).rows
+    slides = [max(map(abs, row.limits)) if row.joint == "prismatic" else abs(row.d) for row in rows]
+    expected = sum(abs(row.a) for row in rows) + sum(slides) + FLANGE.get(name, 0.0)
+    assert structural_length(load_path(library.find(name)).chain) == pytest.approx(expected, abs=1e-12)
+
+
+def test_gao_6r_has_its_closed_form():
+    """Gao and Xu's equations 3 to 5, with a0 along x."""
+    a0, a1, d2, a2, d4 = 0.16, 0.17, 0.082, 0.307, 0.256
+    chain = load_path(library.find("gao_6r")).chain
+    for q in configurations(chain, 10):
+        c1, s1, c2, s2 = np.cos(q[0]), np.sin(q[0]), np.cos(q[1]), np.sin(q[1])
+        c23, s23 = np.cos(q[1] + q[2]), np.sin(q[1] + q[2])
+        rho = a1 + a2 * c2 + d4 * s23
+        expected = [a0 + c1 * rho + s1 * d2, s1 * rho - c1 * d2, a2 * s2 - d4 * c23]
+        found = chain_kinematics.forward_kinematics(chain, q)[:3, 3]
+        np.testing.assert_allclose(found, expected, atol=1e-12)
+
+
+# --- inertia --------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_only_robots_with_published_inertias_have_them(name):
+    chain = load_path(library.find(name)).chain
+    assert chain.has_inertia == (name in {*INERTIAS, "kuka_iiwa14", "stanford_arm"})
+    for q in configurations(chain, 5) if chain.has_inertia else ():
+        assert np.linalg.eigvalsh(mass_matrix(load_path(library.find(name)).model, q))[0] > 1e-4
+
+
+@pytest.mark.parametrize("name", sorted(INERTIAS))
+def test_the_mass_matrix_is_that_of_the_published_inertias(name):
+    dh, robot = dh_table(name), load_path(library.find(name))
+    for q in configurations(robot.chain, 10):
+        expected = dh_product.inertia_matrix(dh, q)
+        np.testing.assert_allclose(mass_matrix(robot.model, q), expected, atol=1e-9 * expected.max())
+
+
+def test_puma560_agrees_with_the_explicit_model_of_its_authors():
+    """Armstrong, Khatib, Burdick 1986: abbreviated inertia and gravity terms, printed to two digits.
+
+    Their drive inertias replace those of G² Jm, which differ by up to 7 %.
+    """
+    model = mujoco.MjModel.from_xml_path(str(library.find("puma560")))
+    drives = np.array([1.14, 4.71, 0.827, 0.2, 0.179, 0.193])
+    data = mujoco.MjData(model)
+    for q in configurations(load_path(library.find("puma560")).chain, 20):
+        c2, s2, c3, s3 = np.cos(q[1]), np.sin(q[1]), np.cos(q[2]), np.sin(q[2])
+        c23, s23 = np.cos(q[1] + q[2]), np.sin(q[1] + q[2])
+        M = mass_matrix(model, q) - np.diag(model.dof_armature) + np.diag(drives)
+        assert M[1, 1] == pytest.approx(6.79 + 0.74 * s3, abs=0.06)
+        assert M[2, 2] == pytest.approx(1.16, abs=0.02)
+        assert M[0, 1] == pytest.approx(0.69 * s2 - 0.13 * c23 + 0.02 * c2, abs=0.03)
+        assert M[1, 2] == pytest.approx(0.33 + 0.37 * s3 - 0.01 * c3, abs=0.02)
+        data.qpos[:] = q
+        mujoco.mj_forward(model, data)
+        assert data.qfrc_bias[1] == pytest.approx(-37.2 * c2 - 8.4 * s23 + 1.0 * s2, abs=0.5)
+        assert data.qfrc_bias[2] == pytest.approx(-8.4 * s23 + 0.25 * c23, abs=0.1)
+
+
+def quarter_turns(turns):
+    return " ".join(repr(turn * math.pi / 2) for turn in turns)
+
+
+def urdf(links, base_turn, tip):
+    """A URDF of links (origin, quarter turns, mass, centre, quarter turns of the tensor, its six numbers)."""
+    parts = [
+        '<link name="base"/><link name="link0"/><joint name="base" type="fixed"><parent link="base"/>',
+        f'<child link="link0"/><origin rpy="0 0 {base_turn!r}"/></joint>',
+    ]
+    for k, (origin, rpy, mass, center, tensor_turns, tensor) in enumerate(links, start=1):
+        names = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
+        values = " ".join(f'{name}="{value!r}"' for name, value in zip(names, tensor, strict=True))
+        parts += [
+            f'<joint name="joint{k}" type="continuous"><parent link="link{k - 1}"/><child link="link{k}"/>',
+            f'<origin xyz="{origin}" rpy="{quarter_turns(rpy)}"/><axis xyz="0 0 1"/></joint>',
+            f'<link name="link{k}"><inertial><origin xyz="{center}" rpy="{quarter_turns(tensor_turns)}"/>',
+            f'<mass value="{mass}"/><inertia {values}/>',
+            "</inertial></link>",
+        ]
+    parts.append(
+        f'<link name="tip"/><joint name="tip" type="fixed"><parent link="link{len(links)}"/>'
+        f'<child link="tip"/><origin xyz="{tip}"/></joint>'
+    )
+    return f'<robot name="published">{"".join(parts)}</robot>'
+
+
+def same_robot(library_robot, published):
+    for q in configurations(library_robot.chain, 10):
+        np.testing.assert_allclose(
+            chain_kinematics.forward_kinematics(library_robot.chain, q),
+            chain_kinematics.forward_kinematics(published.chain, q),
+            atol=1e-12,
+        )
+        M = mass_matrix(published.model, q)
+        np.testing.assert_allclose(mass_matrix(library_robot.model, q), M, atol=1e-9 * M.max())
+
+
+def test_kuka_iiwa14_is_the_published_urdf():
+    links = [(*link[:4], (0, 0, 0), (*link[4], 0.0, 0.0, 0.0)) for link in IIWA_LINKS]
+    published = load_urdf(urdf(links, 0.0, "0 0 0.045"), base="base", tip="tip")
+    same_robot(load_path(library.find("kuka_iiwa14")), published)
+
+
+def test_ur5e_is_the_published_urdf_seen_from_its_base_frame():
+    """From ROS's ``base``; ``base_link`` is the same turned by 180° about z."""
+    links = [(*link[:4], (link[4], 0, 0), INERTIAS["ur5e"][k][2]) for k, link in enumerate(UR5E_LINKS)]
+    published = load_urdf(urdf(links, 0.0, "0 0 0"), base="base", tip="tip")
+    same_robot(load_path(library.find("ur5e")), published)
+
+
+def test_stanford_arm_carries_the_moments_about_the_frames_origins():
+    """Paul 1981's moments are about the origins of the DH frames, its centres of mass in decimetres."""
+    model = mujoco.MjModel.from_xml_path(str(library.find("stanford_arm")))
+    data = mujoco.MjData(model)
+    q = np.array([0.3, -0.7, 0.5, 1.1, -0.4, 0.9])
+    data.qpos[:] = q
+    mujoco.mj_forward(model, data)
+    frames = dh_product.frames(dh_table("stanford_arm"), q)
+    for k, (T, (mass, published_center, moments)) in enumerate(zip(frames, STANFORD_LINKS, strict=True)):
+        assert model.body_mass[k + 1] == mass
+        center = T[:3, :3].T @ (data.xipos[k + 1] - T[:3, 3])
+        np.testing.assert_allclose(center, published_center, atol=1e-12)
+        R = T[:3, :3].T @ data.ximat[k + 1].reshape(3, 3)
+        about_center = R @ np.diag(model.body_inertia[k + 1]) @ R.T
+        shift = mass * (center @ center * np.eye(3) - np.outer(center, center))
+        np.testing.assert_allclose(about_center + shift, np.diag(moments), atol=1e-10)
+    assert model.dof_armature.tolist() == [0.953, 2.193, 0.782, 0.106, 0.097, 0.02]
