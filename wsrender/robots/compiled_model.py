@@ -1,8 +1,32 @@
 """A robot model after MuJoCo compiled it, before a chain is chosen in it."""
 
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 
 import mujoco
+
+from wsrender.errors import ModelError
+
+MUJOCO_ERRORS = (ValueError, RuntimeError, mujoco.FatalError)
+
+
+@contextmanager
+def quiet() -> Iterator[None]:
+    """Keeps MuJoCo from writing its warnings to a log file in the working directory."""
+    before = mujoco.get_mju_user_warning()
+    mujoco.set_mju_user_warning(lambda message: None)
+    try:
+        yield
+    finally:
+        mujoco.set_mju_user_warning(before)
+
+
+def refusal(error: Exception, model_field: str) -> ModelError:
+    """MuJoCo's complaint as a ModelError, without line numbers: they count in our own rewriting."""
+    message = re.sub(r",? line \d+", "", " ".join(str(error).split()))
+    return ModelError(model_field, f"MuJoCo refuses the model: {message}")
 
 
 @dataclass(frozen=True)

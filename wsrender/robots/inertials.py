@@ -11,6 +11,7 @@ import mujoco
 import numpy as np
 
 from wsrender.errors import ModelError
+from wsrender.robots.compiled_model import MUJOCO_ERRORS, quiet, refusal
 from wsrender.robots.model_warning import ModelWarning
 
 NEGLIGIBLE = 1e-14  # [kg, kg m²] given to massless links; MuJoCo's own floor is mjMINVAL = 1e-15
@@ -38,12 +39,13 @@ def compile_with_inertials(spec: mujoco.MjSpec, field: str) -> tuple[mujoco.MjMo
     restored = [(body, m) for body, m in moments if _excess(m) < 0.0 and m.min() >= 0.0]
     for body, _ in faults + restored:
         body.inertia = np.full(3, 10 * NEGLIGIBLE)
-    model = _compile(spec, field)
-    for body, m in restored:
-        model.body_inertia[body.id] = m
-    if restored:
-        mujoco.mj_setConst(model, mujoco.MjData(model))
-        _warn_of_broken([body.name for body, m in restored if _excess(m) < -_ROUNDING * m.max()])
+    with quiet():
+        model = _compile(spec, field)
+        for body, m in restored:
+            model.body_inertia[body.id] = m
+        if restored:
+            mujoco.mj_setConst(model, mujoco.MjData(model))
+    _warn_of_broken([body.name for body, m in restored if _excess(m) < -_ROUNDING * m.max()])
     return model, {body.id: fault for body, fault in faults}
 
 
@@ -107,5 +109,5 @@ def _excess(moments: np.ndarray) -> float:
 def _compile(spec: mujoco.MjSpec, field: str) -> mujoco.MjModel:
     try:
         return spec.compile()
-    except (ValueError, RuntimeError, mujoco.FatalError) as error:
-        raise ModelError(field, f"MuJoCo refuses the model: {' '.join(str(error).split())}") from error
+    except MUJOCO_ERRORS as error:
+        raise refusal(error, field) from error

@@ -8,9 +8,8 @@ from xml.etree.ElementTree import Element
 
 import mujoco
 
-from wsrender.errors import ModelError
 from wsrender.robots import mjcf
-from wsrender.robots.compiled_model import CompiledModel
+from wsrender.robots.compiled_model import MUJOCO_ERRORS, CompiledModel, refusal
 from wsrender.robots.inertials import compile_with_inertials
 from wsrender.robots.model_warning import ModelWarning
 
@@ -62,8 +61,8 @@ def compile_mjcf(root: Element, read_mesh: ReadMesh, field: str) -> CompiledMode
 def _parsed(text: str, field: str) -> mujoco.MjSpec:
     try:
         return mujoco.MjSpec.from_string(text)
-    except (ValueError, RuntimeError, mujoco.FatalError) as error:
-        raise ModelError(field, f"MuJoCo refuses the model: {' '.join(str(error).split())}") from error
+    except MUJOCO_ERRORS as error:
+        raise refusal(error, field) from error
 
 
 def _file(file: str, folder: str, strip: bool) -> str:

@@ -24,7 +24,8 @@ def compile_urdf(robot: Element, field: str) -> CompiledModel:
     Every link, fixed or not, becomes a body of its name; the root link stands still in the world. Inertia
     comes from ``<inertial>`` alone. Primitive shapes are kept as massless geometry, meshes are dropped with
     one ModelWarning. Floating and planar joints are held at zero, and noted as faults of the path through
-    them, as are revolute joints whose limits leave no motion. Raises ModelError.
+    them, as are revolute joints whose limits are missing or equal. Limits that are both 0, as exporters
+    write them where none were set, count as none, with one ModelWarning. Raises ModelError.
     """
     urdf = read_urdf(robot, field)
     spec = mujoco.MjSpec()
@@ -34,6 +35,7 @@ def compile_urdf(robot: Element, field: str) -> CompiledModel:
     _add_links(spec, urdf)
     _add_mimics(spec, urdf)
     _warn_of_meshes(urdf)
+    _warn_of_unset_limits(urdf)
     model, inertia_faults = compile_with_inertials(spec, field)
     path_faults = {
         model.body(joint.child).id: fault
@@ -138,6 +140,20 @@ def _warn_of_meshes(urdf: Urdf) -> None:
         warnings.warn(
             f"geometry of {len(files)} meshes is dropped ({files[0]}, …): kinematics and inertia do not "
             "need it",
+            ModelWarning,
+            stacklevel=2,
+        )
+
+
+def _warn_of_unset_limits(urdf: Urdf) -> None:
+    names = [
+        joint.name
+        for joint in urdf.joints.values()
+        if joint.kind == "revolute" and joint.limits == (0.0, 0.0)
+    ]
+    if names:
+        warnings.warn(
+            f"the limits of {', '.join(names)} are both 0, which leaves no motion; taken as no limits",
             ModelWarning,
             stacklevel=2,
         )

@@ -11,7 +11,7 @@ from xml.sax.xmlreader import InputSource
 from wsrender.errors import MissingExtraError, ModelError
 
 MAX_BYTES = 16 * 2**20
-MAX_ELEMENTS = 50_000
+MAX_ELEMENTS = 20_000  # the largest robots have 4,000
 MAX_DEPTH = 200  # MuJoCo compiles bodies recursively
 
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
