@@ -49,12 +49,11 @@ def load(
     return load_library(source, **options)
 
 
-def load_library(name: str, **options) -> "LoadedRobot":
-    """A robot of the library by name; ``options`` as in ``load``. Raises ModelError listing the names."""
+def load_library(robot: str, **options) -> "LoadedRobot":
+    """The library's ``robot``; ``options`` as in ``load``. Raises ModelError listing the names."""
     from wsrender.robots import library
 
-    robot = load_path(library.find(name), **{**options, "name": options.get("name") or name})
-    return robot
+    return load_path(library.find(robot), **{**options, "name": options.get("name") or robot})
 
 
 def load_dh(table: "DHTable", **options) -> "LoadedRobot":
