@@ -61,6 +61,8 @@ BAD_ROWS = [
     ({"limits": [0, math.inf]}, "rows.0.limits", r"\[lower, upper\], two finite numbers"),
     ({"limits": [1]}, "rows.0.limits", r"\[lower, upper\], two finite numbers"),
     ({"limits": "free"}, "rows.0.limits", r"\[lower, upper\], two finite numbers"),
+    ({"limits": [0, 1e300]}, "rows.0.limits", r"must lie within ±1e\+06"),
+    ({"d": 1e300}, "rows.0.d", "must be at most 1000000"),
     ({"a": math.nan}, "rows.0.a", "must be a finite number"),
     ({"a": "0.3"}, "rows.0.a", 'must be a number, not "0.3"'),
     ({"d": True}, "rows.0.d", "must be a number, not true"),

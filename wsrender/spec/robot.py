@@ -11,6 +11,7 @@ from wsrender.spec.document import Document
 from wsrender.spec.quantities import Name, Number, PositiveNumber, quoted, real, sequence
 
 SOURCES = ("library", "dh", "mjcf", "urdf", "model", "path")
+LARGEST = 1e6  # m or rad: beyond any robot, far from overflow
 _IN_DEGREES = ("alpha", "theta", "limits")
 
 
@@ -41,6 +42,8 @@ def _interval(value: Any) -> tuple[float, ...] | None:
         raise ValueError("must be [lower, upper], two finite numbers, or null")
     if not numbers[0] < numbers[1]:
         raise ValueError("must have the lower limit below the upper one")
+    if max(abs(number) for number in numbers) > LARGEST:
+        raise ValueError(f"must lie within ±{LARGEST:g}")
     return numbers
 
 
@@ -61,6 +64,7 @@ Vector = Annotated[tuple[float, float, float], _numbers(3)]
 Quaternion = Annotated[tuple[float, float, float, float], _numbers(4)]
 Inertia = Annotated[tuple[float, ...], Field(min_length=3, max_length=6), _numbers(3, 6)]
 Limits = Annotated[tuple[float, float] | None, BeforeValidator(_interval)]
+Length = Annotated[float, Field(ge=-LARGEST, le=LARGEST), BeforeValidator(real)]
 NotNegative = Annotated[float, Field(ge=0), BeforeValidator(real)]
 
 
@@ -109,11 +113,11 @@ class DHRow(Document):
 
     joint: Literal["revolute", "prismatic"] = "revolute"
     """Kind of joint."""
-    a: Number = 0.0
+    a: Length = 0.0
     """Length of the common normal [m]."""
     alpha: Number = 0.0
     """Twist about the common normal [rad]."""
-    d: Number = 0.0
+    d: Length = 0.0
     """Offset along the joint axis, without the joint variable [m]."""
     theta: Number = 0.0
     """Angle about the joint axis, without the joint variable [rad]."""
