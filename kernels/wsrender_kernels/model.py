@@ -11,6 +11,7 @@ def model_arrays(real):
 
     @wp.struct
     class Model:
+        base_axes: wp.types.matrix((3, 3), real)  # rows: axes of the base in the world, for tasks given row by row
         chain: wp.array(dtype=real)  # kinematics.pack_kinematics
         bodies: wp.array(dtype=real)  # inertia.pack_inertia
         lower: wp.array(dtype=real)  # (n,) limits for the penalisation

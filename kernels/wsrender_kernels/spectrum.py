@@ -91,21 +91,33 @@ def _torque_scaled(real, n: int):
 
 
 def _task_matrix(real, n: int, rows: tuple[int, ...]):
-    """The chosen rows of J, linear ones divided by the characteristic length."""
+    """The chosen rows of J, linear ones divided by the characteristic length.
+
+    Whole triads are taken in world axes, which changes no singular value; single rows mean base axes.
+    """
     Model = model_arrays(real)
     m = len(rows)
+    IN_BASE_AXES = any(len({r for r in rows if r // 3 == part}) in (1, 2) for part in (0, 1))
+    vec3 = wp.types.vector(3, real)
     ROW = wp.types.vector(m, wp.int32)(*rows)
     mat_6n, mat_mn = wp.types.matrix((6, n), real), wp.types.matrix((m, n), real)
 
     @wp.func
     def task_matrix(model: Model, J: mat_6n):
+        B = J
+        if wp.static(IN_BASE_AXES):
+            for i in range(n):
+                linear = model.base_axes * vec3(J[0, i], J[1, i], J[2, i])
+                angular = model.base_axes * vec3(J[3, i], J[4, i], J[5, i])
+                for r in range(3):
+                    B[r, i] = linear[r]
+                    B[3 + r, i] = angular[r]
         A = mat_mn()
         for r in range(m):
             for i in range(n):
+                A[r, i] = B[ROW[r], i]
                 if ROW[r] < 3:
-                    A[r, i] = J[ROW[r], i] * model.linear_scale
-                else:
-                    A[r, i] = J[ROW[r], i]
+                    A[r, i] *= model.linear_scale
         return A
 
     return task_matrix

@@ -18,17 +18,10 @@ from wsrender_kernels.elementary import bits_type, elementary
 from wsrender_kernels.inertia import inertia
 from wsrender_kernels.kinematics import kinematics, orientation
 from wsrender_kernels.model import model_arrays
+from wsrender_kernels.options import MODULE_OPTIONS
 from wsrender_kernels.sampling import LANES, sample_space, sampling
 from wsrender_kernels.spectrum import spectrum
 from wsrender_kernels.voxels import lattice, voxels
-
-# -march=native is worth 4.6 times, fused multiply-add another 13 %.
-CPU_FLAGS = (
-    "-march=native -ffp-contract=fast -mllvm=-inline-threshold=9000"
-    " -mllvm=-inline-cold-callsite-threshold=3000 -mllvm=-slp-recursion-max-depth=4"
-)
-MODULE_OPTIONS = {"enable_backward": False, "cpu_compiler_flags": CPU_FLAGS}
-POSITION, INDICES = 0, 3  # first rows of the outputs
 
 
 @dataclass(frozen=True)
@@ -185,7 +178,7 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
     VOXELS, MAXIMUM, MINIMUM, SUMS, ROWS = shape.voxels, shape.maximum, shape.minimum, shape.sums, shape.keep_rows
     FIRST_MINIMUM = 1 + K * shape.maximum
     LOWEST = bits(-(2**31) if real is wp.float32 else -(2**63))
-    BLOCK = LANES
+    BLOCK, BLOCK_64, K_64 = LANES, wp.int64(LANES), wp.int64(K)
 
     @wp.kernel(module="unique", module_options=MODULE_OPTIONS, enable_backward=False)
     def sweep_cpu(
@@ -210,7 +203,7 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
     ):
         task = wp.tid()
         start = first + wp.int64(task * BLOCK)
-        valid = wp.int32(wp.min(wp.int64(BLOCK), first + count - start))
+        valid = wp.int32(wp.min(BLOCK_64, first + count - start))
         block = prepare(space, start)
 
         for lane in range(BLOCK):
@@ -250,7 +243,7 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
                         slot = at + wp.int64(FIRST_MINIMUM + k)
                         records[slot] = wp.max(records[slot], ~ordered(scratch[(3 + k) * BLOCK + lane]))
                     if wp.static(SUMS):
-                        slot = voxel * wp.int64(K) + wp.int64(k)
+                        slot = voxel * K_64 + wp.int64(k)
                         sums[slot] = sums[slot] + quantized(scratch[(3 + k) * BLOCK + lane], scales[k])
 
         if wp.static(ROWS):
@@ -276,7 +269,7 @@ def _cuda_kernel(shape: Shape) -> wp.Kernel:
     VOXELS, MAXIMUM, MINIMUM, SUMS, ROWS = shape.voxels, shape.maximum, shape.minimum, shape.sums, shape.keep_rows
     FIRST_MINIMUM = 1 + K * shape.maximum
     LOWEST = bits(-(2**31) if real is wp.float32 else -(2**63))
-    LANE_MASK = wp.int64(LANES - 1)
+    LANE_MASK, K_64 = wp.int64(LANES - 1), wp.int64(K)
 
     @wp.kernel(module="unique", module_options=MODULE_OPTIONS, enable_backward=False, grid_stride=False)
     def sweep_cuda(
@@ -323,7 +316,7 @@ def _cuda_kernel(shape: Shape) -> wp.Kernel:
                     if wp.static(MINIMUM):
                         wp.atomic_max(records, at + wp.int64(FIRST_MINIMUM + k), ~ordered(out[3 + k]))
                     if wp.static(SUMS):
-                        wp.atomic_add(sums, voxel * wp.int64(K) + wp.int64(k), quantized(out[3 + k], scales[k]))
+                        wp.atomic_add(sums, voxel * K_64 + wp.int64(k), quantized(out[3 + k], scales[k]))
             if wp.static(ROWS):
                 for r in range(N_OUTPUTS):
                     rows_out[wp.int64(r) * rows_stride + offset] = out[r]

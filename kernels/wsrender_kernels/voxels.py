@@ -1,8 +1,8 @@
 """Accumulation of samples into voxel records and totals, in integers only: the result does not depend on the order.
 
 A voxel record is ``1 + E`` integers of the precision's width: the count, then one per extreme (a maximum, or a
-minimum as the maximum of the complement) in `elementary.ordered` form, initially the lowest integer. Sums are 64-bit
-fixed point. The last record takes the masked lanes of a block.
+minimum as the maximum of the complement) in `elementary.ordered` form. All start at the lowest integer, the count
+too, so that filling needs no pattern. Sums are 64-bit fixed point.
 """
 
 from functools import cache

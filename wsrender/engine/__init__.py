@@ -1,0 +1,25 @@
+"""The only host code that talks to Warp: devices, packing, chunking, launches and partial results."""
+
+from wsrender.engine.at_configurations import Evaluated, evaluate_at
+from wsrender.engine.configurations import configurations
+from wsrender.engine.devices import devices_of, target_of, thread_count
+from wsrender.engine.evaluation import Evaluation
+from wsrender.engine.kinematics import Kinematics, evaluate_kinematics
+from wsrender.engine.partial import Partial, merge
+from wsrender.engine.sweep import SweepPlan, sweep
+
+__all__ = [
+    "Evaluated",
+    "Evaluation",
+    "Kinematics",
+    "Partial",
+    "SweepPlan",
+    "configurations",
+    "devices_of",
+    "evaluate_at",
+    "evaluate_kinematics",
+    "merge",
+    "sweep",
+    "target_of",
+    "thread_count",
+]

@@ -1,0 +1,53 @@
+"""Indices at given configurations."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from wsrender.engine.devices import devices_of
+from wsrender.engine.evaluation import Evaluation
+from wsrender.engine.sweep import SweepPlan, sweep
+from wsrender.sampling import given_sampling
+
+
+@dataclass(frozen=True, eq=False)
+class Evaluated:
+    """Tip positions (N, 3) [m], index values (K, N), extreme singular values (N,), tip orientations (N, 4)."""
+
+    position: np.ndarray
+    values: np.ndarray
+    largest_sigma: np.ndarray
+    smallest_sigma: np.ndarray
+    quat_wxyz: np.ndarray | None
+
+
+def evaluate_at(
+    evaluation: Evaluation,
+    q: np.ndarray,
+    precision: str = "float64",
+    device: str = "cpu",
+    *,
+    with_orientation: bool = False,
+    threads: int | None = None,
+) -> Evaluated:
+    """The evaluation at configurations ``q`` (N, n) [rad or m], in order."""
+    K = len(evaluation.indices)
+    plan = SweepPlan(
+        evaluation,
+        given_sampling(evaluation.chain, q),
+        block=None,
+        statistics=frozenset(),
+        scales=np.zeros(K),
+        bounds=np.full(K, np.inf),
+        precision=precision,
+        keep_rows=True,
+        keep_orientation=with_orientation,
+    )
+    partial = sweep(plan, 0, len(q), devices_of(device), threads=threads)
+    outputs = np.concatenate([partial.rows[first] for first in sorted(partial.rows)] or [_none(plan)], axis=1)
+    quat = np.ascontiguousarray(outputs[5 + K : 9 + K].T) if with_orientation else None
+    return Evaluated(np.ascontiguousarray(outputs[:3].T), outputs[3 : 3 + K], outputs[3 + K], outputs[4 + K], quat)
+
+
+def _none(plan: SweepPlan) -> np.ndarray:
+    return np.zeros((plan.shape.n_outputs, 0), plan.precision)

@@ -1,0 +1,56 @@
+"""Sampling plans on a device."""
+
+import numpy as np
+import warp as wp
+from wsrender_kernels.pointwise import configuration_kernel
+from wsrender_kernels.sampling import lane_table, sample_space
+
+from wsrender.engine.devices import devices_of
+from wsrender.engine.evaluation import REAL, device_array
+from wsrender.sampling import SamplingPlan
+
+
+def device_space(plan: SamplingPlan, precision: str, device: wp.Device):
+    """The SampleSpace struct of a plan on a device."""
+    real = REAL[precision]
+    space = sample_space(real)()
+    space.lower = device_array(plan.lower, real, device)
+    space.upper = device_array(plan.upper, real, device)
+    space.step = device_array(plan.step, real, device)
+    space.levels = device_array(plan.levels, wp.int32, device)
+    space.key_0 = plan.seed & 0xFFFFFFFF
+    space.key_1 = plan.seed >> 32
+    if plan.directions is not None and plan.shift is not None:
+        numbers = np.concatenate([plan.directions.ravel(), plan.shift])
+        lanes = lane_table(plan.directions).ravel()
+        for words, high, low in ((numbers, "sobol_high", "sobol_low"), (lanes, "lane_high", "lane_low")):
+            setattr(space, high, device_array(words >> np.uint64(32), wp.uint32, device))
+            setattr(space, low, device_array(words & np.uint64(0xFFFFFFFF), wp.uint32, device))
+    return space
+
+
+def given_space(q: np.ndarray, first: int, precision: str, device: wp.Device):
+    """The SampleSpace struct of configurations (N, n) given by the host, sample ``first`` being the first."""
+    real = REAL[precision]
+    space = sample_space(real)()
+    space.given = device_array(q.T.ravel(), real, device)
+    space.given_first = first
+    space.given_stride = len(q)
+    return space
+
+
+def configurations(plan: SamplingPlan, indices: np.ndarray, precision: str = "float64") -> np.ndarray:
+    """Configurations (N, n) of samples with these 64-bit indices (N,), evaluated on the CPU [rad or m]."""
+    (device,) = devices_of("cpu")
+    n = len(plan.lower)
+    real = REAL[precision]
+    q = wp.empty((len(indices), n), dtype=real, device=device)
+    if len(indices):
+        wp.launch(
+            configuration_kernel(real, n, plan.method),
+            dim=len(indices),
+            inputs=[device_space(plan, precision, device), device_array(indices, wp.int64, device)],
+            outputs=[q],
+            device=device,
+        )
+    return q.numpy()

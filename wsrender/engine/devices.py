@@ -1,0 +1,65 @@
+"""Devices: what the kernels run on, and what identifies a binary-identical target."""
+
+import os
+import platform
+import re
+
+import warp as wp
+
+from wsrender.errors import InputError
+
+THREADS_VARIABLE = "WSRENDER_THREADS"
+
+
+def initialize() -> None:
+    """Start Warp quietly; standard output belongs to the caller."""
+    wp.config.log_level = wp.LOG_WARNING if hasattr(wp, "LOG_WARNING") else wp.config.log_level
+    wp.init()
+
+
+def devices_of(request: str) -> list[wp.Device]:
+    """Warp devices of "auto" (a GPU if there is one), "cpu", "cuda" (all GPUs) or "cuda:N"; InputError if absent."""
+    initialize()
+    gpus = wp.get_cuda_devices()
+    if request == "cpu" or (request == "auto" and not gpus):
+        return [wp.get_device("cpu")]
+    if request in ("auto", "cuda") and gpus:
+        return gpus
+    match = re.fullmatch(r"cuda:(\d+)", request)
+    if match and int(match[1]) < len(gpus):
+        return [gpus[int(match[1])]]
+    raise InputError("device", f"{request!r} is not available; here: {', '.join(['cpu', *(d.alias for d in gpus)])}")
+
+
+def target_of(devices: list[wp.Device]) -> str:
+    """Name of the target: results of one version, precision and target are identical bits."""
+    device = devices[0]
+    if device.is_cuda:
+        return f"cuda:sm_{device.arch}"
+    return f"cpu:{platform.machine()}+{_vector_extension()}"
+
+
+def _vector_extension() -> str:
+    try:
+        with open("/proc/cpuinfo") as file:
+            flags = next((line for line in file if line.startswith(("flags", "Features"))), "")
+    except OSError:
+        flags = ""
+    names = set(flags.split())
+    return next((name for name in ("avx512f", "avx2", "avx", "asimd") if name in names), "generic")
+
+
+def thread_count(requested: int | None = None) -> int:
+    """CPU threads: the argument, else WSRENDER_THREADS, else the cores this process may use."""
+    if requested is None:
+        text = os.environ.get(THREADS_VARIABLE, "")
+        if text and not text.isdigit():
+            raise InputError(THREADS_VARIABLE, f"{text!r} is not allowed; a positive whole number is")
+        requested = int(text) if text else _usable_cores()
+    if requested < 1:
+        raise InputError("threads", f"{requested} is not allowed; a positive whole number is")
+    return requested
+
+
+def _usable_cores() -> int:
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else (os.cpu_count() or 1)

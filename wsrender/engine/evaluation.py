@@ -1,0 +1,116 @@
+"""What is evaluated at every sample, and its form on a device."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import warp as wp
+from wsrender_kernels.inertia import pack_inertia
+from wsrender_kernels.kinematics import pack_kinematics
+from wsrender_kernels.model import model_arrays
+from wsrender_kernels.spectrum import spectrum_length
+from wsrender_kernels.sweep import Shape
+
+from wsrender.engine.index_code import index_function, index_source
+from wsrender.indices.catalogue import is_dynamic
+from wsrender.robots.chain import Chain
+
+REAL = {"float32": wp.float32, "float64": wp.float64}
+
+
+@dataclass(frozen=True, eq=False)
+class Evaluation:
+    """The indices to evaluate and how (the fields of the job document, resolved).
+
+    ``rows`` are 0…5 for x y z rx ry rz; ``penalty`` is K or None. ``host_kinematics(q: (N, n)) -> position (N, 3),
+    Jacobian (N, 6, n)`` replaces the chain's kinematics, ``host_inertia(q) -> (N, n, n)`` its inertia matrix.
+    """
+
+    chain: Chain
+    indices: tuple[str, ...]
+    rows: tuple[int, ...] = (0, 1, 2)
+    convention: str = "standard"
+    penalty: float | None = None
+    characteristic_length_m: float = 1.0
+    torque_scaling: bool = False
+    host_kinematics: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]] | None = None
+    host_inertia: Callable[[np.ndarray], np.ndarray] | None = None
+
+    @property
+    def dynamic(self) -> bool:
+        """Whether any index is dynamic."""
+        return any(is_dynamic(name) for name in self.indices)
+
+    @property
+    def on_host(self) -> bool:
+        """Whether the host computes a part of every sample."""
+        return self.host_kinematics is not None or (self.dynamic and self.host_inertia is not None)
+
+    @property
+    def mixed_rows(self) -> bool:
+        """Whether the task has linear and angular rows."""
+        return min(self.rows) < 3 <= max(self.rows)
+
+
+def shape_of(evaluation: Evaluation, precision: str, method: str, **outputs: bool) -> Shape:
+    """Compile-time part of the sweep kernel of an evaluation."""
+    real, n = REAL[precision], evaluation.chain.n
+    body = index_source(evaluation.indices, evaluation.rows, n, evaluation.convention)
+    length = spectrum_length(n, evaluation.rows, evaluation.convention)
+    return Shape(
+        real=real,
+        n=n,
+        sources=tuple(int(s) for s in evaluation.chain.joint_source),
+        method="given" if evaluation.on_host else method,
+        rows=evaluation.rows,
+        convention=evaluation.convention,
+        indices=index_function(body, len(evaluation.indices), length, real),
+        n_indices=len(evaluation.indices),
+        dynamic=evaluation.dynamic,
+        given_jacobian=evaluation.host_kinematics is not None,
+        given_inertia=evaluation.dynamic and evaluation.host_inertia is not None,
+        penalty=evaluation.penalty is not None,
+        torque_scaling=evaluation.torque_scaling and evaluation.dynamic,
+        **outputs,
+    )
+
+
+def device_model(evaluation: Evaluation, precision: str, device: wp.Device):
+    """The Model struct of an evaluation's chain on a device."""
+    chain, real = evaluation.chain, REAL[precision]
+    model = chain_model(chain, precision, device)
+    model.lower = device_array(chain.lower_limits, real, device)
+    model.upper = device_array(chain.upper_limits, real, device)
+    limited = ~chain.periodic & (chain.upper_limits > chain.lower_limits)
+    model.limited = device_array(limited, real, device)
+    model.penalty = evaluation.penalty or 0.0
+    if evaluation.torque_scaling and chain.effort_limits is not None:
+        model.torque = device_array(chain.effort_limits, real, device)
+    mixed = evaluation.mixed_rows
+    model.linear_scale = 1.0 / evaluation.characteristic_length_m if mixed else 1.0
+    return model
+
+
+def chain_model(chain: Chain, precision: str, device: wp.Device):
+    """The Model struct with a chain's kinematics and inertias alone."""
+    real = REAL[precision]
+    model = model_arrays(real)()
+    kinematics = pack_kinematics(
+        chain.T_world_base,
+        chain.T_joint,
+        chain.T_tip @ chain.T_tip_tool,
+        chain.joint_is_revolute,
+        chain.joint_scale,
+        chain.joint_offset,
+    )
+    bodies = pack_inertia(chain.T_joint, chain.mass, chain.center_of_mass, chain.inertia, chain.armature)
+    model.chain = device_array(kinematics, real, device)
+    model.bodies = device_array(bodies, real, device)
+    model.base_axes = wp.types.matrix((3, 3), real)(*chain.T_world_base[:3, :3].T.ravel().tolist())
+    model.linear_scale = 1.0
+    return model
+
+
+def device_array(values: np.ndarray, dtype, device: wp.Device) -> wp.array:
+    """A contiguous copy of NumPy values on a device."""
+    return wp.array(np.ascontiguousarray(values, wp.dtype_to_numpy(dtype)), dtype=dtype, device=device)

@@ -1,0 +1,57 @@
+"""Batched forward kinematics, Jacobian and inertia matrix of a chain."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import warp as wp
+from wsrender_kernels.pointwise import kinematics_kernel
+
+from wsrender.engine.devices import devices_of
+from wsrender.engine.evaluation import REAL, chain_model, device_array
+from wsrender.robots.chain import Chain
+
+BATCH = 1 << 20
+
+
+@dataclass(frozen=True, eq=False)
+class Kinematics:
+    """Poses (N, 4, 4), Jacobians (N, 6, n) and, where asked, inertia matrices (N, n, n), in the world frame."""
+
+    pose: np.ndarray
+    jacobian: np.ndarray
+    inertia: np.ndarray | None
+
+
+def evaluate_kinematics(
+    chain: Chain, q: np.ndarray, with_inertia: bool = False, precision: str = "float64", device: str = "auto"
+) -> Kinematics:
+    """Kinematics at configurations ``q`` (N, n) [rad or m], in batches of bounded memory."""
+    target = devices_of(device)[0]
+    parts = [
+        _evaluate(chain, q[i : i + BATCH], with_inertia, precision, target) for i in range(0, max(len(q), 1), BATCH)
+    ]
+    return Kinematics(
+        np.concatenate([p.pose for p in parts]),
+        np.concatenate([p.jacobian for p in parts]),
+        np.concatenate([p.inertia for p in parts if p.inertia is not None]) if with_inertia else None,
+    )
+
+
+def _evaluate(chain: Chain, q: np.ndarray, with_inertia: bool, precision: str, device: wp.Device) -> Kinematics:
+    real, n = REAL[precision], chain.n
+    pose = wp.empty((len(q), 12), dtype=real, device=device)
+    jacobian = wp.empty((len(q), 6, n), dtype=real, device=device)
+    inertia = wp.empty((len(q) if with_inertia else 0, n, n), dtype=real, device=device)
+    if len(q):
+        sources = tuple(int(s) for s in chain.joint_source)
+        wp.launch(
+            kinematics_kernel(real, n, sources, with_inertia),
+            dim=len(q),
+            inputs=[chain_model(chain, precision, device), device_array(q, real, device)],
+            outputs=[pose, jacobian, inertia],
+            device=device,
+        )
+    T = np.zeros((len(q), 4, 4), wp.dtype_to_numpy(real))
+    T[:, :3, :] = pose.numpy().reshape(-1, 4, 3).transpose(0, 2, 1)
+    T[:, 3, 3] = 1
+    return Kinematics(T, jacobian.numpy(), inertia.numpy() if with_inertia else None)

@@ -1,0 +1,64 @@
+"""Partial results of a sweep: integers that merge associatively, so the order of the parts does not matter."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from wsrender_kernels.voxels import decode_extreme
+
+
+@dataclass(frozen=True, eq=False)
+class Partial:
+    """What a range of samples contributes.
+
+    ``extremes`` (2 R,): largest value and largest complement of each of the R = 5 + K outputs in ordered-integer
+    form; ``totals`` (K,) int64: fixed-point sums. Of the occupied voxels, sorted by ``cells`` (V,) int64 (flat index
+    in the lattice block): ``count`` (V,) int64, ``records`` (V, E) ordered integers, ``sums`` (V, K) int64.
+    ``rows`` maps the first sample index of a chunk to its outputs (n_outputs, samples).
+    """
+
+    samples: int
+    extremes: np.ndarray
+    totals: np.ndarray
+    cells: np.ndarray
+    count: np.ndarray
+    records: np.ndarray
+    sums: np.ndarray
+    rows: dict[int, np.ndarray]
+
+    @property
+    def maximum(self) -> np.ndarray:
+        """Largest value of each output, (R,)."""
+        return decode_extreme(self.extremes[0::2], minimum=False)
+
+    @property
+    def minimum(self) -> np.ndarray:
+        """Smallest value of each output, (R,)."""
+        return decode_extreme(self.extremes[1::2], minimum=True)
+
+
+def merge(a: Partial, b: Partial) -> Partial:
+    """The partial result of both ranges of samples; associative and commutative, bit for bit."""
+    cells, inverse = np.unique(np.concatenate([a.cells, b.cells]), return_inverse=True)
+    where_a, where_b = inverse[: len(a.cells)], inverse[len(a.cells) :]
+    count = np.zeros(len(cells), np.int64)
+    count[where_a] = a.count
+    count[where_b] += b.count
+    lowest = np.iinfo(a.records.dtype).min
+    records = np.full((len(cells), a.records.shape[1]), lowest, a.records.dtype)
+    records[where_a] = a.records
+    records[where_b] = np.maximum(records[where_b], b.records)
+    sums = np.zeros((len(cells), a.sums.shape[1]), np.int64)
+    sums[where_a] = a.sums
+    sums[where_b] += b.sums
+    return Partial(
+        a.samples + b.samples,
+        np.maximum(a.extremes, b.extremes),
+        a.totals + b.totals,
+        cells,
+        count,
+        records,
+        sums,
+        {**a.rows, **b.rows},
+    )
+
+

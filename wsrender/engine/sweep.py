@@ -1,0 +1,301 @@
+"""Sweeps a range of samples through the fused kernel, in chunks of bounded memory, on CPU threads or GPUs."""
+
+import os
+import threading
+from collections.abc import Callable, Iterator
+from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
+from dataclasses import dataclass, field
+
+import numpy as np
+import warp as wp
+from wsrender_kernels.elementary import bits_type
+from wsrender_kernels.sampling import LANES
+from wsrender_kernels.sweep import Shape, sweep_kernel
+from wsrender_kernels.voxels import lattice, lowest
+
+from wsrender.engine.configurations import configurations, device_space, given_space
+from wsrender.engine.devices import thread_count
+from wsrender.engine.evaluation import Evaluation, device_array, device_model, shape_of
+from wsrender.engine.partial import Partial, merge
+from wsrender.errors import NumericalError, ResourceError
+from wsrender.sampling import SamplingPlan
+from wsrender.volume.lattice import LatticeBlock
+
+CHUNK_CPU, CHUNK_CUDA, CHUNK_ROWS, CHUNK_GIVEN = 1 << 20, 1 << 28, 1 << 18, 1 << 14
+THREADS_PER_GPU = 1 << 19
+FOLD_AFTER = 2**31 - 2**29  # samples until 32-bit counts are moved to 64-bit ones
+MEMORY_SHARE = 0.8  # of the free memory that voxel records may take
+
+
+@dataclass(frozen=True, eq=False)
+class SweepPlan:
+    """Everything a range of samples needs: evaluation, sampling, lattice block, statistics, scales, target.
+
+    ``scales`` (K,): power of two by which each index is multiplied for its fixed-point sums; ``bounds`` (K,): the
+    largest absolute value for which they were chosen.
+    """
+
+    evaluation: Evaluation
+    sampling: SamplingPlan
+    block: LatticeBlock | None
+    statistics: frozenset[str]
+    scales: np.ndarray
+    bounds: np.ndarray
+    precision: str
+    keep_rows: bool = False
+    keep_configuration: bool = False
+    keep_orientation: bool = False
+
+    @property
+    def shape(self) -> Shape:
+        """Compile-time part of the kernel."""
+        return shape_of(
+            self.evaluation,
+            self.precision,
+            self.sampling.method,
+            voxels=self.block is not None,
+            maximum="maximum" in self.statistics,
+            minimum="minimum" in self.statistics,
+            sums="mean" in self.statistics,
+            keep_rows=self.keep_rows,
+            keep_configuration=self.keep_configuration,
+            keep_orientation=self.keep_orientation,
+        )
+
+
+def sweep(
+    plan: SweepPlan,
+    first: int,
+    count: int,
+    devices: list[wp.Device],
+    *,
+    threads: int | None = None,
+    chunk_size: int | None = None,
+    progress: Callable[[int], None] | None = None,
+) -> Partial:
+    """Evaluate samples first … first + count - 1; ``first`` is a multiple of LANES.
+
+    ``chunk_size`` is rounded up to a multiple of LANES; neither it nor ``threads`` changes a bit of the result.
+    ``progress`` is called in this thread with the number of samples done. Raises ResourceError where voxel records do
+    not fit in memory, NumericalError for a value that is not finite or beyond its bound.
+    """
+    shape = plan.shape
+    workers = devices if devices[0].is_cuda else devices * thread_count(threads)
+    chunk = _chunk_size(plan, devices[0], chunk_size)
+    chunks = list(_chunks(first, count, chunk)) if count <= chunk * len(workers) else _chunks(first, count, chunk)
+    if isinstance(chunks, list):
+        workers = workers[: max(len(chunks), 1)]
+    _check_memory(plan, shape, workers)
+    queue = _Queue(iter(chunks))
+    with ThreadPoolExecutor(len(workers)) as pool:
+        futures = [pool.submit(_work, _Accumulator(plan, shape, device, chunk), queue) for device in workers]
+        try:
+            pending = set(futures)
+            while pending:
+                done, pending = wait(pending, timeout=0.1, return_when=FIRST_COMPLETED)
+                if progress:
+                    progress(queue.done)
+                for future in done:
+                    future.result()
+        except BaseException:
+            queue.stop()
+            raise
+    result = futures[0].result()
+    for future in futures[1:]:
+        result = merge(result, future.result())
+    _check_values(plan, result)
+    return result
+
+
+def _chunk_size(plan: SweepPlan, device: wp.Device, requested: int | None) -> int:
+    size = requested or (CHUNK_CUDA if device.is_cuda else CHUNK_CPU)
+    if plan.keep_rows:
+        size = min(size, CHUNK_ROWS)
+    if plan.shape.method == "given":
+        size = min(size, CHUNK_GIVEN)
+    return -(-size // LANES) * LANES
+
+
+def _chunks(first: int, count: int, chunk: int) -> Iterator[tuple[int, int]]:
+    for start in range(first, first + count, chunk):
+        yield start, min(chunk, first + count - start)
+
+
+@dataclass(eq=False)
+class _Queue:
+    """Chunks handed to the workers, one after the other."""
+
+    chunks: Iterator[tuple[int, int]]
+    done: int = 0
+    stopped: bool = False
+    lock: threading.Lock = field(default_factory=threading.Lock)
+
+    def take(self) -> tuple[int, int] | None:
+        with self.lock:
+            return None if self.stopped else next(self.chunks, None)
+
+    def finished(self, count: int) -> None:
+        with self.lock:
+            self.done += count
+
+    def stop(self) -> None:
+        self.stopped = True
+
+
+def _work(accumulator: "_Accumulator", queue: _Queue) -> Partial:
+    with wp.ScopedDevice(accumulator.device):
+        while (chunk := queue.take()) is not None:
+            accumulator.add(*chunk)
+            queue.finished(chunk[1])
+        return accumulator.partial()
+
+
+class _Accumulator:
+    """One worker's private voxel records and totals on its device."""
+
+    def __init__(self, plan: SweepPlan, shape: Shape, device: wp.Device, chunk: int):
+        self.plan, self.shape, self.device, self.chunk = plan, shape, device, chunk
+        real, bits = shape.real, bits_type(shape.real)
+        self._bits = wp.dtype_to_numpy(bits)
+        self._lowest = lowest(real)
+        voxels = plan.block.size if plan.block else 0
+        self._kernel = sweep_kernel(shape, device.is_cuda)
+        self._model = device_model(plan.evaluation, plan.precision, device)
+        given = shape.method == "given"
+        self._space = None if given else device_space(plan.sampling, plan.precision, device)
+        self._lattice = _device_lattice(plan.block, real)
+        self._scales = device_array(plan.scales, real, device)
+        self._reduced = 5 + shape.n_indices
+        self._extremes = wp.full(2 * self._reduced, self._lowest, dtype=bits, device=device)
+        self._totals = wp.zeros(shape.n_indices, dtype=wp.int64, device=device)
+        self._records = wp.full(voxels * shape.record_size, self._lowest, dtype=bits, device=device)
+        self._sums = wp.zeros(voxels * shape.n_indices * shape.sums, dtype=wp.int64, device=device)
+        self._rows_out = wp.empty(shape.n_outputs * chunk * shape.keep_rows, dtype=real, device=device)
+        if not device.is_cuda:
+            self._scratch = wp.empty(shape.n_outputs * LANES, dtype=real, device=device)
+            self._cells = wp.empty(LANES, dtype=wp.int32, device=device)
+        self._folded: Partial | None = None
+        self._rows: dict[int, np.ndarray] = {}
+        self._samples = 0
+
+    def add(self, first: int, count: int) -> None:
+        """Sweep one chunk."""
+        if self._samples + count > FOLD_AFTER:
+            self._fold()
+        self._launch(first, count)
+        self._samples += count
+        if self.shape.keep_rows:
+            rows = self._rows_out.numpy().reshape(self.shape.n_outputs, self.chunk)
+            self._rows[first] = rows[:, :count].copy()
+
+    def partial(self) -> Partial:
+        """What all chunks contributed."""
+        self._fold()
+        assert self._folded is not None
+        return self._folded
+
+    def _launch(self, first: int, count: int) -> None:
+        space = self._space or self._given(first, count)
+        inputs = [self._model, space, self._lattice, first, count, self._scales]
+        outputs = [self._extremes, self._totals, self._records, self._sums, self._rows_out, self.chunk]
+        if self.device.is_cuda:
+            threads = min(count, THREADS_PER_GPU)
+            wp.launch(self._kernel, dim=threads, inputs=[*inputs, threads], outputs=outputs, device=self.device)
+            wp.synchronize_device(self.device)
+        else:
+            tasks = -(-count // LANES)
+            scratch = [self._reduced, self._scratch, self._cells]
+            wp.launch(self._kernel, dim=tasks, inputs=[*inputs, *scratch], outputs=outputs, device=self.device)
+
+    def _given(self, first: int, count: int):
+        """Configurations and what the host computes of them; puts the latter into the model."""
+        evaluation, precision = self.plan.evaluation, self.plan.precision
+        given = self.plan.sampling.given
+        if given is None:
+            q = configurations(self.plan.sampling, np.arange(first, first + count), precision)
+        else:
+            q = given[first : first + count]
+        real, device, model = self.shape.real, self.device, self._model
+        if evaluation.host_kinematics is not None:
+            position, jacobian = evaluation.host_kinematics(q)
+            model.position_given = device_array(position.T.ravel(), real, device)
+            model.jacobian_given = device_array(jacobian.reshape(count, -1).T.ravel(), real, device)
+        if evaluation.dynamic and evaluation.host_inertia is not None:
+            inertia = evaluation.host_inertia(q)
+            model.inertia_given = device_array(inertia.reshape(count, -1).T.ravel(), real, device)
+        return given_space(q, first, precision, device)
+
+    def _fold(self) -> None:
+        """Move what the device holds to 64-bit host arrays and start afresh."""
+        records = self._records.numpy().reshape(-1, self.shape.record_size)
+        cells = np.flatnonzero(records[:, 0] != self._lowest)
+        occupied = records[cells]
+        sums = self._sums.numpy().reshape(-1, self.shape.n_indices)
+        held = Partial(
+            self._samples,
+            self._extremes.numpy().copy(),
+            self._totals.numpy().copy(),
+            cells,
+            occupied[:, 0].astype(np.int64) - self._lowest,
+            occupied[:, 1:].copy(),
+            sums[cells] if self.shape.sums else np.zeros((len(cells), 0), np.int64),
+            self._rows,
+        )
+        self._folded = held if self._folded is None else merge(self._folded, held)
+        self._samples, self._rows = 0, {}
+        self._records.fill_(self._lowest)
+        self._sums.zero_()
+        self._totals.zero_()
+        self._extremes.fill_(self._lowest)
+
+
+def _device_lattice(block: LatticeBlock | None, real):
+    grid = lattice(real)()
+    grid.edge = block.voxel_size_m if block else 1.0
+    grid.first_x, grid.first_y, grid.first_z = block.first_voxel if block else (0, 0, 0)
+    grid.size_x, grid.size_y, grid.size_z = block.shape if block else (1, 1, 1)
+    return grid
+
+
+def _check_memory(plan: SweepPlan, shape: Shape, workers: list[wp.Device]) -> None:
+    if plan.block is None:
+        return
+    voxels = plan.block.size
+    width = 4 if plan.precision == "float32" else 8
+    needed = voxels * (shape.record_size * width + shape.n_indices * shape.sums * 8)
+    device = workers[0]
+    if device.is_cuda:
+        free = device.free_memory
+    else:
+        needed *= len(workers)
+        free = os.sysconf("SC_AVPHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") if hasattr(os, "sysconf") else 2**63
+    if voxels >= 2**31 or needed > MEMORY_SHARE * free:
+        nx, ny, nz = plan.block.shape
+        raise ResourceError(
+            "voxel_size_m",
+            f"{plan.block.voxel_size_m} gives {nx} x {ny} x {nz} voxels, {needed / 2**30:.1f} GiB of records; "
+            f"{free / 2**30:.1f} GiB are free on {device.alias}: choose larger voxels or fewer statistics",
+        )
+
+
+def _check_values(plan: SweepPlan, partial: Partial) -> None:
+    if not partial.samples:
+        return
+    high, low = partial.maximum.astype(np.float64), partial.minimum.astype(np.float64)
+    for k, name in enumerate(plan.evaluation.indices):
+        largest = max(abs(high[3 + k]), abs(low[3 + k]))
+        if not np.isfinite([high[3 + k], low[3 + k]]).all():
+            raise NumericalError(f"index {name} has a value that is not finite (largest {high[3 + k]})")
+        if largest > plan.bounds[k]:
+            raise NumericalError(
+                f"index {name} reaches {largest:.6g}, beyond {plan.bounds[k]:.6g}, twice its maximum over the first "
+                "pass: its sums would overflow; give another seed or bound the index with wsrender.math.minimum"
+            )
+    if plan.block is not None:
+        edge, first, shape = plan.block.voxel_size_m, plan.block.first_voxel, plan.block.shape
+        for axis in range(3):
+            if low[axis] < first[axis] * edge or high[axis] > (first[axis] + shape[axis]) * edge:
+                raise NumericalError(
+                    f"the end effector reaches {'xyz'[axis]} = {low[axis]:.6g} … {high[axis]:.6g} m, outside the "
+                    "lattice block planned for it"
+                )

@@ -1,0 +1,108 @@
+"""Local indices of a robot: from the words of a job document to an evaluation of the engine."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from wsrender.errors import InputError, MissingInertiaError
+from wsrender.indices.catalogue import CONVENTIONS, is_dynamic, resolve
+from wsrender.robot.model_robot import Robot, configuration_rows
+from wsrender.robot.user_robot import HostRobot, as_robot
+from wsrender.spec.options import NAMED_TASKS, TASK_ROWS
+
+if TYPE_CHECKING:
+    from wsrender.engine import Evaluation
+
+
+def evaluate_indices(
+    robot: Any,
+    q: Any,
+    indices: str | Sequence[str] = "all",
+    task: str | Sequence[str] = "linear",
+    *,
+    convention: str = "standard",
+    joint_limit_penalty: float | bool | None = None,
+    characteristic_length_m: float = 1.0,
+    torque_scaling: bool = False,
+    inertia: str = "kernel",
+    precision: str = "float64",
+    device: str = "auto",
+) -> dict[str, np.ndarray]:
+    """Local indices at configurations ``q`` (n,) or (N, n) [rad or m]: a dict of arrays (N,).
+
+    The arguments are those of the job document ``indices_at``. Raises InputError, MissingInertiaError.
+    """
+    from wsrender.engine import evaluate_at
+
+    robot = as_robot(robot)
+    evaluation = evaluation_of(
+        robot,
+        indices=indices,
+        task=task,
+        convention=convention,
+        joint_limit_penalty=joint_limit_penalty,
+        characteristic_length_m=characteristic_length_m,
+        torque_scaling=torque_scaling,
+        inertia=inertia,
+        precision=precision,
+    )
+    rows = configuration_rows(q, robot.chain.n)
+    values = evaluate_at(evaluation, rows, precision, device).values
+    return dict(zip(evaluation.indices, values, strict=True))
+
+
+def evaluation_of(
+    robot: Robot,
+    *,
+    indices: str | Sequence[str],
+    task: str | Sequence[str],
+    convention: str,
+    joint_limit_penalty: float | bool | None,
+    characteristic_length_m: float,
+    torque_scaling: bool,
+    inertia: str,
+    precision: str,
+) -> "Evaluation":
+    """The engine's evaluation of these choices for a robot, each checked."""
+    from wsrender.engine import Evaluation
+
+    if convention not in CONVENTIONS:
+        raise InputError("convention", f"{convention!r} is not allowed; {', '.join(CONVENTIONS)} are")
+    if convention == "wsrender_code" and precision != "float64":
+        raise InputError("precision", f'{precision!r} is not allowed with the convention wsrender_code; "float64" is')
+    if precision not in ("float32", "float64"):
+        raise InputError("precision", f'{precision!r} is not allowed; "float32" or "float64" is')
+    if inertia not in ("kernel", "mujoco"):
+        raise InputError("inertia", f'{inertia!r} is not allowed; "kernel" or "mujoco" is')
+    chain = robot.chain
+    names = resolve(indices, robot.has_inertia)
+    dynamic = any(is_dynamic(name) for name in names)
+    if torque_scaling and dynamic and chain.effort_limits is None:
+        raise MissingInertiaError("torque_scaling", f"the model of {robot.name} lacks effort limits for some joint")
+    host = robot if isinstance(robot, HostRobot) else None
+    if host:
+        host_inertia = host.inertia_matrix if dynamic else None
+    else:
+        host_inertia = robot.mujoco_inertia if dynamic and inertia == "mujoco" else None
+    penalty = 10.0 if joint_limit_penalty is True else (joint_limit_penalty or None)
+    return Evaluation(
+        chain=chain,
+        indices=names,
+        rows=task_rows(task),
+        convention=convention,
+        penalty=penalty,
+        characteristic_length_m=characteristic_length_m,
+        torque_scaling=torque_scaling,
+        host_kinematics=host.position_and_jacobian if host else None,
+        host_inertia=host_inertia,
+    )
+
+
+def task_rows(task: str | Sequence[str]) -> tuple[int, ...]:
+    """Row numbers 0…5 of a task: "linear", "angular", "full" or names from x y z rx ry rz."""
+    names = NAMED_TASKS.get(task, (task,)) if isinstance(task, str) else tuple(task)
+    rows = tuple(TASK_ROWS.index(name) for name in names if name in TASK_ROWS)
+    if not rows or len(rows) != len(names) or len(set(rows)) != len(rows):
+        raise InputError("task", f"{task!r} is not allowed; linear, angular, full or distinct rows of x y z rx ry rz are")
+    return tuple(sorted(rows))

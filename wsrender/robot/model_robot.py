@@ -1,0 +1,225 @@
+"""A robot compiled by MuJoCo."""
+
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from wsrender.errors import InputError, MissingInertiaError
+from wsrender.robots import load, load_dh, load_library, load_mjcf, load_path, load_urdf
+from wsrender.robots.chain import Chain
+from wsrender.spec.robot import DHTable, RobotSpec, Transform
+
+if TYPE_CHECKING:
+    import mujoco
+
+    from wsrender.robots.loaded_robot import LoadedRobot
+
+
+class Robot:
+    """A serial chain of a compiled model, from its base frame to its end effector.
+
+    Positions are in the world frame [m]; a configuration ``q`` has shape (n,) or (N, n), in radians and metres, in
+    the order of ``joint_names``; results always have the leading axis N (1 for a single configuration).
+    """
+
+    def __init__(self, loaded: "LoadedRobot", spec: RobotSpec | None = None, name: str | None = None):
+        self._loaded = loaded
+        self.spec = spec
+        self.name = name or loaded.chain.name
+
+    @property
+    def chain(self) -> Chain:
+        """The kinematic chain."""
+        return self._loaded.chain
+
+    @property
+    def model(self) -> "mujoco.MjModel":
+        """The compiled MuJoCo model."""
+        return self._loaded.model
+
+    @property
+    def model_hash(self) -> str:
+        """SHA-256 of the model's source text."""
+        return self._loaded.source_hash
+
+    @property
+    def joint_names(self) -> tuple[str, ...]:
+        """Names of the n joints, base to tip."""
+        return self.chain.joint_names
+
+    @property
+    def lower_limits(self) -> np.ndarray:
+        """Lower joint limits [rad or m], (n,)."""
+        return self.chain.lower_limits
+
+    @property
+    def upper_limits(self) -> np.ndarray:
+        """Upper joint limits [rad or m], (n,)."""
+        return self.chain.upper_limits
+
+    @property
+    def base_frame(self) -> str:
+        """Name of the frame that the chain starts from."""
+        return self.chain.base_frame
+
+    @property
+    def tip_frame(self) -> str:
+        """Name of the end-effector frame."""
+        return self.chain.tip_frame
+
+    @property
+    def has_inertia(self) -> bool:
+        """Whether the model has link inertias, so that dynamic indices exist."""
+        return self.chain.has_inertia
+
+    def forward_kinematics(self, q: Any, *, precision: str = "float64", device: str = "auto") -> np.ndarray:
+        """Poses of the end effector in the world, (N, 4, 4)."""
+        return self._kinematics(q, precision, device).pose
+
+    def jacobian(self, q: Any, *, precision: str = "float64", device: str = "auto") -> np.ndarray:
+        """Geometric Jacobians (N, 6, n): rows linear then angular, at the end effector, in world axes."""
+        return self._kinematics(q, precision, device).jacobian
+
+    def inertia_matrix(
+        self, q: Any, *, method: str = "kernel", precision: str = "float64", device: str = "auto"
+    ) -> np.ndarray:
+        """Joint-space inertia matrices (N, n, n) [kg m², kg m, kg], armature included.
+
+        ``method`` "mujoco" evaluates them with MuJoCo itself. Raises MissingInertiaError for a model without inertias.
+        """
+        if not self.has_inertia:
+            raise MissingInertiaError("inertia_matrix", f"the model of {self.name} has no link inertias")
+        if method == "mujoco":
+            return self.mujoco_inertia(configuration_rows(q, self.chain.n))
+        if method != "kernel":
+            raise InputError("method", f'{method!r} is not allowed; "kernel" or "mujoco" is')
+        inertia = self._kinematics(q, precision, device, with_inertia=True).inertia
+        assert inertia is not None
+        return inertia
+
+    def mujoco_inertia(self, q: np.ndarray) -> np.ndarray:
+        """Inertia matrices (N, n, n) float64 at ``q`` (N, n), by MuJoCo's composite rigid body algorithm."""
+        import mujoco
+
+        loaded, model = self._loaded, self.model
+        data = mujoco.MjData(model)
+        full = np.zeros((model.nv, model.nv))
+        dofs = np.ix_(loaded.dof_addresses, loaded.dof_addresses)
+        out = np.empty((len(q), self.chain.n, self.chain.n))
+        for i, row in enumerate(q):
+            loaded.set_configuration(data, row)
+            mujoco.mj_kinematics(model, data)
+            mujoco.mj_comPos(model, data)
+            mujoco.mj_makeM(model, data)
+            mujoco.mj_fullM(model, data, full)
+            out[i] = loaded.coupling.T @ full[dofs] @ loaded.coupling
+        return out
+
+    def skeleton(self, q: Any) -> np.ndarray:
+        """World positions [m] of base, joint origins and tip, (N, L + 2, 3), for drawing the arm."""
+        chain = self.chain
+        out = []
+        for row in configuration_rows(q, chain.n):
+            T = chain.T_world_base.copy()
+            points = [T[:3, 3].copy()]
+            moved = chain.joint_scale * row[chain.joint_source] + chain.joint_offset
+            for T_joint, revolute, value in zip(chain.T_joint, chain.joint_is_revolute, moved, strict=True):
+                T = T @ T_joint
+                motion = np.eye(4)
+                if revolute:
+                    motion[:2, :2] = [[np.cos(value), -np.sin(value)], [np.sin(value), np.cos(value)]]
+                else:
+                    motion[2, 3] = value
+                T = T @ motion
+                points.append(T[:3, 3].copy())
+            points.append((T @ chain.T_tip @ chain.T_tip_tool)[:3, 3])
+            out.append(points)
+        return np.array(out)
+
+    def _kinematics(self, q, precision, device, with_inertia=False):
+        from wsrender.engine import evaluate_kinematics
+
+        rows = configuration_rows(q, self.chain.n)
+        return evaluate_kinematics(self.chain, rows, with_inertia, precision, device)
+
+    @cached_property
+    def _text(self) -> str:
+        return f"{self.name}: {len(self.joint_names)} joints, {self.base_frame} to {self.tip_frame}"
+
+    def __repr__(self) -> str:
+        return f"<Robot {self._text}>"
+
+
+def configuration_rows(q: Any, n: int) -> np.ndarray:
+    """Configurations as float64 (N, n); InputError names what is wrong."""
+    try:
+        rows = np.asarray(q, np.float64)
+    except (TypeError, ValueError) as error:
+        raise InputError("q", f"is not an array of numbers: {error}") from error
+    if rows.ndim == 1 and len(rows) == n:
+        rows = rows[None]
+    if rows.ndim != 2 or rows.shape[1] != n:
+        raise InputError("q", f"has shape {np.shape(q)}; ({n},) or (N, {n}) is needed")
+    if not np.isfinite(rows).all():
+        raise InputError("q", f"row {int(np.argmin(np.isfinite(rows).all(axis=1)))} has a value that is not finite")
+    return rows
+
+
+def load_robot(
+    source: "str | Path | DHTable",
+    *,
+    base: str | None = None,
+    tip: str | None = None,
+    name: str | None = None,
+    placement: Any = None,
+    tool: Any = None,
+) -> Robot:
+    """Load a robot: a library name, the path of an MJCF (.xml) or URDF file, or a DH table.
+
+    ``base`` and ``tip`` name a site, body or link (default: the world, and the site "tool" or the only end).
+    ``placement`` is the base frame in the world and ``tool`` the tool point in the tip frame, each a `Transform` or a
+    (4, 4) array. Raises ModelError for a malformed or unsupported model, FrameNotFoundError listing the frames.
+    """
+    options: dict[str, Any] = {"base": base, "tip": tip, "name": name}
+    options |= {"placement": _matrix(placement), "tool": _matrix(tool)}
+    loaded = load(source, **options)
+    if isinstance(source, DHTable):
+        given: dict[str, Any] = {"dh": source}
+    else:
+        is_path = isinstance(source, Path) or source.lower().endswith((".xml", ".urdf")) or "/" in source
+        given = {"path": str(source)} if is_path else {"library": source}
+    spec = RobotSpec(**given, placement=_transform(placement), tool=_transform(tool))
+    return Robot(loaded, spec, name)
+
+
+def robot_of_spec(spec: RobotSpec, base: str | None = None, tip: str | None = None) -> Robot:
+    """The robot of a job document. Raises ModelError; InputError for a model that only a server has."""
+    options = {
+        "base": base,
+        "tip": tip,
+        "placement": spec.placement.matrix() if spec.placement else None,
+        "tool": spec.tool.matrix() if spec.tool else None,
+    }
+    loaders = {"library": load_library, "dh": load_dh, "mjcf": load_mjcf, "urdf": load_urdf, "path": load_path}
+    if spec.source not in loaders:
+        raise InputError("robot.model", "an uploaded model is known to its server only; give path, mjcf or urdf")
+    return Robot(loaders[spec.source](getattr(spec, spec.source), **options), spec)
+
+
+def _matrix(transform: Any) -> np.ndarray | None:
+    if transform is None:
+        return None
+    return transform.matrix() if isinstance(transform, Transform) else np.asarray(transform, np.float64)
+
+
+def _transform(value: Any) -> Transform | None:
+    """The document form of a placement or tool."""
+    if value is None or isinstance(value, Transform):
+        return value
+    from scipy.spatial.transform import Rotation
+
+    T = np.asarray(value, np.float64)
+    x, y, z, w = Rotation.from_matrix(T[:3, :3]).as_quat()
+    return Transform(position_m=T[:3, 3].tolist(), quat_wxyz=[w, x, y, z])

@@ -1,0 +1,197 @@
+"""Sampling plans: the numbers that make a sample a pure function of its 64-bit index ([WSR] II.B).
+
+The kernels evaluate the plan; it knows the chain's limits and the sampling of a job document, and no device.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from wsrender.errors import InputError, ResourceError
+from wsrender.robots.chain import Chain
+from wsrender.spec.sampling import BoundaryBiased, Converge, Grid, Random, Sobol
+
+SOBOL_BITS = 52
+LARGEST_LEVELS = 2**31 - 1
+
+# Primitive polynomials (degree, coefficients) and initial direction numbers of dimensions 2 to 16:
+# S. Joe, F. Y. Kuo, *Constructing Sobol sequences with better two-dimensional projections*, 2008, new-joe-kuo-6.
+_JOE_KUO = (
+    (1, 0, (1,)),
+    (2, 1, (1, 3)),
+    (3, 1, (1, 3, 1)),
+    (3, 2, (1, 1, 1)),
+    (4, 1, (1, 1, 3, 3)),
+    (4, 4, (1, 3, 5, 13)),
+    (5, 2, (1, 1, 5, 5, 17)),
+    (5, 4, (1, 1, 5, 5, 5)),
+    (5, 7, (1, 1, 7, 11, 19)),
+    (5, 11, (1, 1, 5, 1, 1)),
+    (5, 13, (1, 1, 1, 3, 11)),
+    (5, 14, (1, 3, 5, 5, 31)),
+    (6, 1, (1, 3, 3, 9, 7, 49)),
+    (6, 13, (1, 1, 1, 15, 21, 21)),
+    (6, 16, (1, 3, 1, 13, 27, 49)),
+)
+
+
+@dataclass(frozen=True, eq=False)
+class SamplingPlan:
+    """A sampling of n coordinates, resolved against a chain's limits.
+
+    ``lower``, ``upper`` (n,) float64 [rad or m]: interval of each coordinate, of zero width where locked. ``levels``
+    (n,) int64: grid levels. ``directions`` (n, 52) and ``shift`` (n,) uint64: scrambled Sobol numbers, the leading
+    bit of the fraction being bit 63. ``given`` (count, n): the configurations themselves, method "given".
+    """
+
+    method: str
+    count: int
+    seed: int
+    lower: np.ndarray
+    upper: np.ndarray
+    levels: np.ndarray
+    directions: np.ndarray | None = None
+    shift: np.ndarray | None = None
+    given: np.ndarray | None = None
+
+    @property
+    def step(self) -> np.ndarray:
+        """Interval between grid levels, else the width of the interval, (n,)."""
+        width = self.upper - self.lower
+        return width / np.maximum(self.levels - 1, 1) if self.method == "grid" else width
+
+
+def plan_sampling(chain: Chain, sampling, max_samples: int | None = None) -> SamplingPlan:
+    """Resolve a sampling of the job document for a chain.
+
+    Raises InputError for unknown or out-of-range locked joints and wrong numbers of levels, ResourceError where a
+    plan has more than ``max_samples`` samples.
+    """
+    locked = _locked_values(chain, sampling.locked)
+    lower = np.where(np.isnan(locked), chain.lower_limits, locked)
+    upper = np.where(np.isnan(locked), chain.upper_limits, locked)
+    free = np.isnan(locked)
+    if isinstance(sampling, Grid):
+        return _grid(chain, sampling, lower, upper, free, max_samples)
+    if isinstance(sampling, Converge):
+        raise TypeError("a converging sampling is a sequence of grids")
+    count = sampling.count
+    _check_count(count, max_samples, "count")
+    levels = np.ones(chain.n, np.int64)
+    if isinstance(sampling, Sobol):
+        if count > 2**SOBOL_BITS:
+            raise ResourceError("sampling.count", f"{count} samples; a Sobol sequence has at most 2^{SOBOL_BITS}")
+        directions, shift = scrambled_sobol(free, sampling.seed)
+        return SamplingPlan("sobol", count, sampling.seed, lower, upper, levels, directions, shift)
+    method = {Random: "random", BoundaryBiased: "boundary"}[type(sampling)]
+    return SamplingPlan(method, count, sampling.seed, lower, upper, levels)
+
+
+def given_sampling(chain: Chain, q: np.ndarray) -> SamplingPlan:
+    """The plan whose samples are the configurations ``q`` (N, n) [rad or m]."""
+    levels = np.ones(chain.n, np.int64)
+    return SamplingPlan("given", len(q), 0, chain.lower_limits, chain.upper_limits, levels, given=q)
+
+
+def _locked_values(chain: Chain, locked) -> np.ndarray:
+    values = np.full(chain.n, np.nan)
+    for name, value in locked.items():
+        field = f"sampling.locked.{name}"
+        if name not in chain.joint_names:
+            raise InputError(field, f"unknown joint; allowed: {', '.join(chain.joint_names)}")
+        i = chain.joint_names.index(name)
+        low, high = chain.lower_limits[i], chain.upper_limits[i]
+        # A value typed with few digits may lie just outside the limit it means.
+        if not chain.periodic[i] and not low - 1e-4 <= value <= high + 1e-4:
+            raise InputError(field, f"{value} is outside the joint's limits [{low:.6g}, {high:.6g}]")
+        values[i] = value
+    return values
+
+
+def _grid(chain: Chain, sampling: Grid, lower, upper, free, max_samples) -> SamplingPlan:
+    per_joint = sampling.per_joint
+    if isinstance(per_joint, int):
+        levels = np.full(chain.n, per_joint, np.int64)
+    elif len(per_joint) == chain.n:
+        levels = np.array(per_joint, np.int64)
+    elif len(per_joint) == free.sum():
+        levels = np.ones(chain.n, np.int64)
+        levels[free] = per_joint
+    else:
+        raise InputError(
+            "sampling.per_joint",
+            f"{len(per_joint)} numbers for {chain.n} joints ({free.sum()} not locked: {', '.join(chain.joint_names)})",
+        )
+    levels = np.where(free, levels, 1)
+    if levels.max(initial=1) > LARGEST_LEVELS:
+        raise ResourceError("sampling.per_joint", f"{levels.max()} levels; at most {LARGEST_LEVELS} per joint")
+    count = 1
+    for level in levels:
+        count *= int(level)
+    _check_count(count, max_samples, "per_joint")
+    # A periodic joint takes -pi + 2 pi k / levels, k = 1 … levels: no posture twice. One level means mid-range.
+    first = np.where(chain.periodic, lower + (upper - lower) / levels, lower)
+    single = free & (levels == 1)
+    middle = (lower + upper) / 2
+    return SamplingPlan(
+        "grid", count, 0, np.where(single, middle, np.where(free, first, lower)), np.where(single, middle, upper), levels
+    )
+
+
+def _check_count(count: int, max_samples: int | None, field: str) -> None:
+    if max_samples is not None and count > max_samples:
+        remedy = "use the sampling method sobol with fewer samples" if field == "per_joint" else "ask for fewer"
+        raise ResourceError(
+            f"sampling.{field}", f"{count:.4g} samples; at most max_samples = {max_samples:.4g}: {remedy}, or raise max_samples"
+        )
+
+
+def sobol_directions(dimensions: int) -> np.ndarray:
+    """Direction numbers of the first dimensions, shape (dimensions, SOBOL_BITS) uint64, leading bit first."""
+    numbers = np.zeros((dimensions, SOBOL_BITS), np.uint64)
+    for d in range(dimensions):
+        if d == 0:
+            values = [1] * SOBOL_BITS
+        else:
+            degree, coefficients, initial = _JOE_KUO[d - 1]
+            values = list(initial)
+            for i in range(degree, SOBOL_BITS):
+                value = values[i - degree] ^ (values[i - degree] << degree)
+                for k in range(1, degree):
+                    if coefficients >> (degree - 1 - k) & 1:
+                        value ^= values[i - k] << k
+                values.append(value)
+        numbers[d] = [v << (63 - i) for i, v in enumerate(values)]
+    return numbers
+
+
+def scrambled_sobol(free: np.ndarray, seed: int) -> tuple[np.ndarray, np.ndarray]:
+    """Direction numbers (n, 52) and digital shift (n,) of free coordinates; zeros for locked ones.
+
+    Linear matrix scrambling and a digital shift (Matoušek, *On the L2-discrepancy for anchored boxes*, 1998).
+    """
+    n, dimensions = len(free), int(free.sum())
+    # Raw output of a bit generator: NumPy keeps its stream stable for ever.
+    bits = np.random.Philox(key=seed)
+    directions, shift = np.zeros((n, SOBOL_BITS), np.uint64), np.zeros(n, np.uint64)
+    scrambled = np.zeros((dimensions, SOBOL_BITS), np.uint64)
+    for d, plain in enumerate(sobol_directions(dimensions)):
+        rows = bits.random_raw(64)
+        for i in range(64):
+            # Row i of a lower triangular matrix with unit diagonal gives bit 63 - i of the scrambled number.
+            place = np.uint64(63 - i)
+            above = np.uint64((2**64 - 1) << (64 - i) & (2**64 - 1))
+            row = (np.uint64(rows[i]) & above) | (np.uint64(1) << place)
+            parity = np.bitwise_count(plain & row).astype(np.uint64) & np.uint64(1)
+            scrambled[d] |= parity << place
+    directions[free] = scrambled
+    shift[free] = bits.random_raw(dimensions)
+    return directions, shift
+
+
+def subsample(count: int, size: int) -> np.ndarray:
+    """Sorted sample indices for pictures, at most ``size``: all, or pseudo-random ones (the same for equal counts)."""
+    if count <= size:
+        return np.arange(count, dtype=np.int64)
+    generator = np.random.Philox(key=0)
+    return np.unique((generator.random_raw(size) % np.uint64(count)).astype(np.int64))

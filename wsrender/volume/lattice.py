@@ -1,0 +1,56 @@
+"""The world lattice: voxels of one edge, anchored at the world origin ([WSR] II.C.2)."""
+
+from dataclasses import dataclass
+from math import floor, log10
+
+import numpy as np
+
+from wsrender.errors import InputError
+
+
+@dataclass(frozen=True)
+class LatticeBlock:
+    """A dense block of the lattice: voxel edge [m], first voxel and shape (x, y, z)."""
+
+    voxel_size_m: float
+    first_voxel: tuple[int, int, int]
+    shape: tuple[int, int, int]
+
+    @property
+    def size(self) -> int:
+        """Number of voxels."""
+        nx, ny, nz = self.shape
+        return nx * ny * nz
+
+
+def block_around(lower: np.ndarray, upper: np.ndarray, voxel_size_m: float) -> LatticeBlock:
+    """The block that contains the box lower … upper [m], with one voxel to spare for rounding."""
+    first = np.floor(np.asarray(lower) / voxel_size_m).astype(np.int64) - 1
+    last = np.floor(np.asarray(upper) / voxel_size_m).astype(np.int64) + 1
+    if np.abs([first, last]).max() >= 2**30:
+        raise InputError("voxel_size_m", f"{voxel_size_m} is too small for a workspace of {np.ptp([lower, upper]):.3g} m")
+    x, y, z = (int(v) for v in first)
+    nx, ny, nz = (int(v) for v in last - first + 1)
+    return LatticeBlock(float(voxel_size_m), (x, y, z), (nx, ny, nz))
+
+
+def default_voxel_size(positions: np.ndarray) -> float:
+    """A hundredth of the cube root of the convex hull's volume of positions (N, 3) [m], to two significant digits.
+
+    A planar set uses the square root of its area, a linear one its length. Raises InputError for a single point.
+    """
+    from scipy.spatial import ConvexHull
+
+    centered = positions - positions.mean(axis=0)
+    _, sizes, axes = np.linalg.svd(centered, full_matrices=False)
+    dimension = int((sizes > 1e-6 * max(sizes[0], 1e-12)).sum()) if sizes[0] > 1e-9 * np.sqrt(len(positions)) else 0
+    if dimension == 0:
+        raise InputError("voxel_size_m", "the end effector does not move; give a voxel size")
+    plane = centered @ axes[:dimension].T
+    extent = np.ptp(plane) if dimension == 1 else ConvexHull(plane).volume ** (1.0 / dimension)
+    return round_to_digits(float(extent) / 100.0, 2)
+
+
+def round_to_digits(value: float, digits: int) -> float:
+    """The decimal number of so many significant digits that is nearest to a positive value."""
+    return round(value, digits - 1 - floor(log10(value)))
