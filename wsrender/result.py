@@ -66,7 +66,7 @@ class Result:
 
     @property
     def plot(self) -> "ResultPlots":
-        """Pictures as Figures: ``plot.slice(z=0.3)``, ``.slices()``, ``.scatter(index)``, ``.robot()``, …"""
+        """Pictures as matplotlib Figures, such as ``plot.slice(z=0.3)`` or ``plot.scatter(index)``."""
         samples = self.sample if self.sample is not None else self.map
         return plots.ResultPlots(sampling_text(self.document), samples, self.volume, self.skeleton)
 

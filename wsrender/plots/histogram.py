@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from wsrender.errors import InputError
-from wsrender.plots.scatter import checked_index
+from wsrender.plots.space import checked_index
 from wsrender.plots.style import INK, add_title, color_map, new_figure, paper_style, quantity
 from wsrender.volume.distribution_map import DistributionMap
 

@@ -6,19 +6,8 @@ from matplotlib.lines import Line2D
 from mpl_toolkits.mplot3d.axes3d import Axes3D
 
 from wsrender.errors import InputError
-from wsrender.plots.scatter import checked_index
-from wsrender.plots.space import add_space, far_half, thinned
-from wsrender.plots.style import (
-    GREY,
-    INK,
-    add_color_bar,
-    add_title,
-    color_map,
-    new_figure,
-    paper_style,
-    quantity,
-    value_range,
-)
+from wsrender.plots.space import color_points, far_half, new_space, thinned
+from wsrender.plots.style import GREY, INK, add_title, paper_style
 from wsrender.volume.distribution_map import DistributionMap
 
 _ACCENT = "#c8102e"
@@ -43,36 +32,21 @@ def robot(
     skeleton = np.asarray(skeleton, np.float64)
     if skeleton.ndim != 3 or skeleton.shape[1] < 2 or skeleton.shape[2] != 3 or len(skeleton) == 0:
         raise InputError("skeleton", f"has shape {skeleton.shape}; it must be (K, L+2, 3) with K at least 1")
-    figure = new_figure(6.4, 5.6)
-    points = skeleton.reshape(-1, 3)
-    if samples is not None and len(samples):
-        points = np.concatenate([points, samples.position])
-    axes = add_space(figure, points, frame)
-    if samples is not None and len(samples):
-        _draw_cloud(figure, axes, samples, index)
+    if samples is None or len(samples) == 0:
+        figure, axes = new_space(skeleton.reshape(-1, 3), frame)
+    else:
+        figure, axes = new_space(np.concatenate([skeleton.reshape(-1, 3), samples.position]), frame)
+        behind = np.flatnonzero(far_half(samples.position))
+        rows = behind[thinned(len(behind), _CLOUD_POINTS)]
+        colors = color_points(figure, samples, index, rows)
+        cloud = samples.position[rows].T
+        axes.scatter(*cloud, s=5, c=colors, alpha=0.6, linewidths=0, depthshade=False, rasterized=True)
     for arm in skeleton[:0:-1]:
         axes.plot(*arm.T, color="white", lw=4.0, alpha=0.8, solid_capstyle="round", zorder=3)
         axes.plot(*arm.T, color=GREY, lw=2.0, marker="o", ms=3, zorder=4)
     _draw_arm(axes, skeleton[0])
     add_title(figure, title)
     return figure
-
-
-def _draw_cloud(figure: Figure, axes: Axes3D, samples: DistributionMap, index: str | None) -> None:
-    behind = np.flatnonzero(far_half(samples.position))
-    rows = behind[thinned(len(behind), _CLOUD_POINTS)]
-    if samples.indices:
-        index = checked_index(samples, index)
-        values = samples.indices[index]
-        norm = value_range(values.min(), values.max())
-        colors = color_map()(norm(values[rows]))
-        label = quantity(index, samples.units.get(index))
-        add_color_bar(figure, norm, label, axes, shrink=0.7, pad=0.1, aspect=28)
-    else:
-        colors = color_map()(np.full(len(rows), 0.35))
-    axes.scatter(
-        *samples.position[rows].T, s=5, c=colors, alpha=0.6, linewidths=0, depthshade=False, rasterized=True
-    )
 
 
 def _draw_arm(axes: Axes3D, arm: np.ndarray) -> None:

@@ -22,7 +22,7 @@ from wsrender.volume.volume_data import VolumeData
 
 _NAMES = "xyz"
 _ACROSS = ((1, 2), (0, 2), (0, 1))  # horizontal and vertical axis of the plane normal to x, y, z
-_THINNEST = 0.2  # least extent of a drawn plane, relative to its longest: planar sets keep a legible panel
+_THINNEST = 0.25  # least extent of a drawn plane, relative to its longest: planar sets keep a legible panel
 
 
 @dataclass(frozen=True)
@@ -63,10 +63,10 @@ def slice_plane(
     layer = _layer(volume, axis, at)
     width, height = _extents(volume, axis)
     scale = min(4.6 / width, 4.4 / height)
-    figure = new_figure(width * scale + 1.8, max(height * scale + 1.0, 2.2))
+    figure = new_figure(width * scale + 1.8, max(height * scale + 1.0, 2.6))
     axes = figure.add_subplot()
     _draw(axes, volume, field, axis, layer, frame)
-    add_color_bar(figure, field.norm, field.label, axes, shrink=0.9, aspect=28)
+    add_color_bar(figure, field.norm, field.label, ax=axes, shrink=0.9, aspect=28)
     add_title(figure, title)
     return figure
 
@@ -91,7 +91,7 @@ def slices(
     panels = figure.subplots(1, 3, width_ratios=widths)
     for axis, (axes, coordinate) in enumerate(zip(panels, at, strict=True)):
         _draw(axes, volume, field, axis, _layer(volume, axis, coordinate), frame)
-    add_color_bar(figure, field.norm, field.label, list(panels), shrink=0.8, aspect=28, pad=0.02)
+    add_color_bar(figure, field.norm, field.label, ax=list(panels), shrink=0.8, aspect=28, pad=0.02)
     add_title(figure, title)
     return figure
 
@@ -164,12 +164,12 @@ def _draw(axes: Axes, volume: VolumeData, field: _Field, axis: int, layer: int, 
         interpolation="nearest",
         zorder=2,
     )
-    for (low, high), extent, limit in zip(
-        edges, _extents(volume, axis), (axes.set_xlim, axes.set_ylim), strict=True
+    extents = _extents(volume, axis)
+    for (low, high), extent, ticks, limit in zip(
+        edges, extents, (axes.xaxis, axes.yaxis), (axes.set_xlim, axes.set_ylim), strict=True
     ):
         limit((low + high - extent) / 2, (low + high + extent) / 2)
-    axes.xaxis.set_major_locator(MaxNLocator(5))
-    axes.yaxis.set_major_locator(MaxNLocator(5))
+        ticks.set_major_locator(MaxNLocator(5 if extent > 0.6 * max(extents) else 2))
     axes.grid(zorder=0)
     axes.set_axisbelow(True)
     axes.set_xlabel(f"{_NAMES[horizontal]} [m]")

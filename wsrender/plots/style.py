@@ -4,10 +4,10 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any, Literal
 
 import matplotlib as mpl
 import matplotlib.style
-from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Colormap, Normalize
@@ -54,9 +54,9 @@ def paper_style() -> Iterator[None]:
         yield
 
 
-def new_figure(width: float, height: float) -> Figure:
+def new_figure(width: float, height: float, layout: Literal["constrained"] | None = "constrained") -> Figure:
     """An empty figure of that size [in] which can be drawn without a display."""
-    figure = Figure(figsize=(width, height), layout="constrained", dpi=100)
+    figure = Figure(figsize=(width, height), layout=layout, dpi=100)
     FigureCanvasAgg(figure)
     return figure
 
@@ -80,9 +80,9 @@ def value_range(lowest: float, highest: float) -> Normalize:
     return Normalize(lowest - 0.5, lowest + 0.5) if lowest else Normalize(0, 1)
 
 
-def add_color_bar(figure: Figure, norm: Normalize, label: str, axes: Axes | list[Axes], **place) -> None:
-    """A colour bar beside ``axes``, with its label and unit."""
-    bar = figure.colorbar(ScalarMappable(norm, color_map()), ax=axes, **place)
+def add_color_bar(figure: Figure, norm: Normalize, label: str, **place: Any) -> None:
+    """A colour bar with its label and unit, placed by the arguments of ``Figure.colorbar``."""
+    bar = figure.colorbar(ScalarMappable(norm, color_map()), **place)
     bar.set_label(label)
     bar.outline.set_visible(False)
 
@@ -90,7 +90,7 @@ def add_color_bar(figure: Figure, norm: Normalize, label: str, axes: Axes | list
 def add_title(figure: Figure, title: str) -> None:
     """What robot and samples the figure shows, above all axes."""
     if title:
-        figure.suptitle(title, fontsize=11)
+        figure.suptitle(title, fontsize=11, y=0.98 if figure.get_layout_engine() is None else None)
 
 
 def save_figure(figure: Figure, path: str | Path) -> None:
