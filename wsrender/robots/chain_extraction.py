@@ -1,6 +1,5 @@
 """From a compiled MuJoCo model to the Chain between a base and a tip."""
 
-import warnings
 from dataclasses import dataclass
 
 import mujoco
@@ -15,10 +14,8 @@ from wsrender.robots.frames import Frame, transform
 from wsrender.robots.inertials import MASSLESS
 from wsrender.robots.limits import Drive, coordinate_limits, effort_limits, joint_name
 from wsrender.robots.loaded_robot import LoadedRobot
-from wsrender.robots.model_warning import ModelWarning
 
 MAX_JOINTS = 16
-PLAUSIBLE_REACH = (0.02, 20.0)  # [m]; outside it, millimetres were probably taken for metres
 
 
 def extract(
@@ -28,8 +25,7 @@ def extract(
 
     The chain is read from MuJoCo's own kinematics with its joints at ``qpos0``; everything else is held at
     ``qpos0`` too, followers where their leaders put them, and its mass belongs to the joint that carries
-    it. Joints held by a coupling become part of the fixed links. Raises ModelError; gives one ModelWarning
-    if the reach is implausible.
+    it. Joints held by a coupling become part of the fixed links. Raises ModelError.
     """
     model = compiled.model
     base_frame, tip_frame = frames.choose(model, base, tip)
@@ -77,7 +73,7 @@ def _refuse_faults(compiled: CompiledModel, bodies: list[int], base: Frame, tip:
             raise ModelError(field, fault)
         for joint in frames.joints_of(model, body):
             kind = {mujoco.mjtJoint.mjJNT_FREE: "free", mujoco.mjtJoint.mjJNT_BALL: "ball"}
-            if word := kind.get(model.jnt_type[joint]):
+            if word := kind.get(mujoco.mjtJoint(model.jnt_type[joint])):
                 raise ModelError(
                     field,
                     f"{joint_name(model, joint)!r} is a {word} joint on the chain from {base.name!r} to "
@@ -203,23 +199,6 @@ def _has_inertia(model: mujoco.MjModel, carrier: np.ndarray) -> bool:
 
 
 def _check(chain: Chain, field: str) -> None:
-    numbers = (
-        "T_joint",
-        "T_tip",
-        "mass",
-        "center_of_mass",
-        "inertia",
-        "armature",
-        "joint_scale",
-        "joint_offset",
-    )
-    for name in numbers:
+    for name in ("T_joint", "T_tip", "mass", "center_of_mass", "inertia", "armature", "joint_offset"):
         if not np.isfinite(getattr(chain, name)).all():
             raise ModelError(field, f"the chain's {name} is not finite: the model's numbers are too large")
-    low, high = PLAUSIBLE_REACH
-    if not low <= chain.reach <= high:
-        warnings.warn(
-            f"the reach of {chain.name!r} is {chain.reach:.3g} m; lengths must be in metres, not millimetres",
-            ModelWarning,
-            stacklevel=2,
-        )

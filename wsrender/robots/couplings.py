@@ -105,7 +105,7 @@ def refuse_loops(model: mujoco.MjModel, carrier: np.ndarray, field: str) -> None
     """
     kinds = mujoco.mjtEq
     for equality in np.flatnonzero(model.eq_active0):
-        kind = model.eq_type[equality]
+        kind = mujoco.mjtEq(model.eq_type[equality])
         if kind == kinds.mjEQ_JOINT:
             continue
         if kind in (kinds.mjEQ_CONNECT, kinds.mjEQ_WELD):
@@ -138,7 +138,7 @@ def _tendon_bodies(model: mujoco.MjModel, equality: int) -> list[int]:
             continue
         first = int(model.tendon_adr[tendon])
         for wrap in range(first, first + int(model.tendon_num[tendon])):
-            kind, item = model.wrap_type[wrap], int(model.wrap_objid[wrap])
+            kind, item = mujoco.mjtWrap(model.wrap_type[wrap]), int(model.wrap_objid[wrap])
             if kind == wraps.mjWRAP_JOINT:
                 body = int(model.jnt_bodyid[item])
                 bodies += [body, int(model.body_parentid[body])]

@@ -119,4 +119,4 @@ def _default_tip(model: mujoco.MjModel, carried: list[int]) -> Frame:
 
 def _floats(model: mujoco.MjModel, body: int) -> bool:
     joints = [joint for ancestor in path(model, body) for joint in joints_of(model, ancestor)]
-    return any(model.jnt_type[joint] in _FREE for joint in joints)
+    return any(mujoco.mjtJoint(model.jnt_type[joint]) in _FREE for joint in joints)

@@ -94,7 +94,8 @@ def _actuator_effort(model: mujoco.MjModel, joint: int) -> float:
     efforts = [
         abs(model.actuator_gear[actuator, 0]) * _force(model, actuator)
         for actuator in range(model.nu)
-        if model.actuator_trntype[actuator] in transmissions and model.actuator_trnid[actuator, 0] == joint
+        if mujoco.mjtTrn(model.actuator_trntype[actuator]) in transmissions
+        and model.actuator_trnid[actuator, 0] == joint
     ]
     return sum(efforts) if efforts else np.inf
 

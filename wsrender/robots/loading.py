@@ -1,6 +1,7 @@
 """Loading robots: a library name, MJCF, URDF or a DH table becomes a compiled model and a chain."""
 
 import hashlib
+import warnings
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -11,11 +12,15 @@ import numpy as np
 
 from wsrender.errors import InputError, MissingExtraError, ModelError
 from wsrender.robots import xml_source
+from wsrender.robots.model_warning import ModelWarning
 
 if TYPE_CHECKING:
+    from wsrender.robots.chain import Chain
     from wsrender.robots.loaded_robot import LoadedRobot
     from wsrender.robots.mjcf_model import ReadMesh
     from wsrender.spec.robot import DHTable
+
+PLAUSIBLE_REACH = (0.02, 20.0)  # [m]
 
 _FIELD = "model"
 
@@ -35,7 +40,7 @@ def load(
     body or link. The base is the world by default. The tip is by default the site ``tool``, else the only
     end of the model that a joint moves, else the link ``tool0``; a site goes before a body of its name.
     ``placement`` is the base frame in the world and ``tool`` the tool frame in the tip frame, (4, 4) each.
-    Raises ModelError, FrameNotFoundError, InputError.
+    Raises ModelError, FrameNotFoundError, InputError; gives a ModelWarning if the reach is implausible.
     """
     options = {"base": base, "tip": tip, "name": name, "placement": placement, "tool": tool}
     if isinstance(source, Path):
@@ -141,7 +146,19 @@ def _extracted(
     source_hash = hashlib.sha256(text.encode() if isinstance(text, str) else text).hexdigest()
     robot = extract(compiled, base, tip, name or compiled.name or "robot", source_hash, _FIELD)
     placed = robot.chain.placed(_rigid("placement", placement), _rigid("tool", tool))
+    _warn_of_reach(placed)
     return replace(robot, chain=placed)
+
+
+def _warn_of_reach(chain: "Chain") -> None:
+    """Warns of lengths that were probably millimetres; a tip on the only axis has no reach at all."""
+    low, high = PLAUSIBLE_REACH
+    if chain.reach > 0.0 and not low <= chain.reach <= high:
+        warnings.warn(
+            f"the reach of {chain.name!r} is {chain.reach:.3g} m; lengths must be in metres, not millimetres",
+            ModelWarning,
+            stacklevel=2,
+        )
 
 
 def _rigid(field: str, T: np.ndarray | None) -> np.ndarray | None:

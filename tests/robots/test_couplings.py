@@ -1,0 +1,166 @@
+"""Joints that follow other joints, and closed loops."""
+
+import mujoco
+import numpy as np
+import pytest
+
+from tests.reference import chain_kinematics as reference
+from tests.reference import mujoco_kinematics as by_mujoco
+from wsrender import robots
+from wsrender.errors import ModelError
+
+
+def arm(equality, extra=""):
+    """Four hinges a, b, c, d in a row (b with a ref), a finger f beside the last link, and equalities."""
+    return f"""<mujoco><compiler angle="radian"/><worldbody>
+      <body name="A"><joint name="a" axis="0 0 1" range="-1 1"/><geom size=".1" pos=".2 0 0"/>
+      <body name="B" pos=".4 0 0">
+        <joint name="b" axis="0 1 0" ref=".3" range="-1 2"/><geom size=".1" pos=".2 0 0"/>
+      <body name="C" pos=".4 0 0"><joint name="c" axis="0 1 0.2" range="-2 2"/><geom size=".1" pos=".1 0 0"/>
+      <body name="D" pos=".3 0 0"><joint name="d" axis="1 0 0" range="-2 2"/><geom size=".1" pos="0 .1 0"/>
+        <site name="tool" pos="0 .1 .1"/>
+        <body name="F"><joint name="f" axis="0 0 1" ref=".1"/><geom size=".02" pos=".1 0 0"/></body>
+        <body name="G"><joint name="g" axis="0 0 1"/><geom size=".02" pos=".1 0 0"/></body>
+      </body></body></body></body>{extra}</worldbody>
+      <equality>{equality}</equality></mujoco>"""
+
+
+def follow(follower, leader, coefficients, more=""):
+    leads = f'joint2="{leader}"' if leader else ""
+    return f'<joint joint1="{follower}" {leads} polycoef="{coefficients}" {more}/>'
+
+
+def check(text, dependent, free):
+    """Compares with MuJoCo, ``dependent`` giving the value of each follower from a dict of the free ones."""
+    model = mujoco.MjModel.from_xml_string(text)
+    robot = robots.load_mjcf(text)
+    chain = robot.chain
+    assert chain.joint_names == free
+    step = 0.37 * np.eye(len(free))
+    for q in np.random.default_rng(1).uniform(chain.lower_limits, chain.upper_limits, (5, chain.n)):
+        values = dict(zip(free, q, strict=True))
+        full = values | dependent(values)
+        data = by_mujoco.at(model, full)
+        T = by_mujoco.pose(model, data, "tool")
+        names = [name for name in "abcd" if name in full]
+        J, M = by_mujoco.jacobian(model, data, "tool", names), by_mujoco.inertia_matrix(model, data, names)
+        S = np.array(
+            [
+                [_slope(dependent, values, name, free[k], step[k, k]) for k in range(len(free))]
+                for name in names
+            ]
+        )
+        np.testing.assert_allclose(reference.forward_kinematics(chain, q), T, atol=1e-12)
+        np.testing.assert_allclose(reference.jacobian(chain, q), J @ S, atol=1e-12)
+        np.testing.assert_allclose(reference.inertia_matrix(chain, q), S.T @ M @ S, atol=1e-12)
+        again = mujoco.MjData(robot.model)
+        robot.set_configuration(again, q)
+        np.testing.assert_allclose(again.qpos, data.qpos, atol=1e-15)
+    return chain
+
+
+def _slope(dependent, values, name, wrt, step):
+    if name in values:
+        return float(name == wrt)
+    moved = values | {wrt: values[wrt] + step}
+    return (dependent(moved)[name] - dependent(values)[name]) / step
+
+
+def test_a_follower_is_driven_by_its_leader():
+    text = arm(follow("c", "b", "0.1 -0.5 0 0 0"))  # c = 0.1 − 0.5 (b − 0.3)
+    chain = check(text, lambda v: {"c": 0.1 - 0.5 * (v["b"] - 0.3)}, ("a", "b", "d"))
+    assert list(chain.joint_source) == [0, 1, 1, 2]
+
+
+def test_a_follower_may_come_before_its_leader():
+    check(arm(follow("a", "d", "0 0.4 0 0 0")), lambda v: {"a": 0.4 * v["d"]}, ("b", "c", "d"))
+
+
+def test_followers_of_followers():
+    text = arm(follow("d", "c", "0.2 2 0 0 0") + follow("c", "b", "-0.1 0.5 0 0 0"))
+
+    def dependent(v):
+        c = -0.1 + 0.5 * (v["b"] - 0.3)
+        return {"c": c, "d": 0.2 + 2 * c}
+
+    check(text, dependent, ("a", "b"))
+
+
+def test_a_joint_led_from_off_the_chain_is_held():
+    text = arm(follow("c", "f", "0.25 3 0 0 0"))
+    check(text, lambda v: {"c": 0.25}, ("a", "b", "d"))
+
+
+def test_a_joint_held_by_a_constant_equality():
+    check(arm(follow("b", "", "0.5 0 0 0 0")), lambda v: {"b": 0.8}, ("a", "c", "d"))
+
+
+def test_followers_off_the_chain_are_held_where_their_leader_puts_them():
+    text = arm(follow("f", "g", "0.7 1 0 0 0"))
+    check(text, lambda v: {"f": 0.8}, ("a", "b", "c", "d"))
+
+
+def test_polynomials_off_the_chain_are_evaluated():
+    text = arm(follow("g", "", "0.5 0 0 0 0") + follow("f", "g", "0 1 2 0 0"))
+    check(text, lambda v: {"g": 0.5, "f": 0.1 + 0.5 + 0.5}, ("a", "b", "c", "d"))
+
+
+def test_inactive_equalities_do_not_bind():
+    chain = robots.load_mjcf(arm(follow("c", "b", "0 1 0 0 0", 'active="false"'))).chain
+    assert chain.joint_names == ("a", "b", "c", "d")
+
+
+def test_limits_are_what_leader_and_followers_allow():
+    chain = robots.load_mjcf(arm(follow("c", "d", "1 -2 0 0 0"))).chain  # c = 1 − 2 d in [−2, 2]
+    assert chain.joint_names == ("a", "b", "d")
+    assert (chain.lower_limits[2], chain.upper_limits[2]) == pytest.approx((-0.5, 1.5))
+
+
+def test_limits_that_leave_nothing_are_refused():
+    with pytest.raises(ModelError, match="joint 'd': its limits and those of its followers leave"):
+        robots.load_mjcf(arm(follow("c", "d", "9 1 0 0 0")))
+
+
+@pytest.mark.parametrize(
+    ("equality", "message"),
+    [
+        (follow("c", "b", "0 1 0.5 0 0"), "joint 'c' follows another joint by a polynomial of higher degree"),
+        (follow("c", "b", "0 1 0 0 0") + follow("c", "a", "0 1 0 0 0"), "joint 'c' follows two joints"),
+        (follow("c", "b", "0 1 0 0 0") + follow("b", "c", "0 1 0 0 0"), "form a cycle"),
+        (
+            "".join(follow(name, "g", "0.1 0 0 0 0") for name in "abcd"),
+            "no joint of the chain is free to move: couplings hold a, b, c, d",
+        ),
+        (
+            '<connect name="rod" body1="B" body2="D" anchor="0 0 0"/>',
+            "equality 'rod' ties B, D into a closed",
+        ),
+        ('<weld body1="D"/>', "an equality ties D, world into a closed loop"),
+        ('<weld body1="A" body2="F"/>', "an equality ties A, F into a closed loop"),
+        ('<connect site1="tool" site2="post"/>', "an equality ties A, D into a closed loop"),
+    ],
+)
+def test_couplings_that_are_refused(equality, message):
+    text = arm(equality).replace('<body name="B"', '<site name="post"/><body name="B"')
+    with pytest.raises(ModelError, match=message):
+        robots.load_mjcf(text)
+
+
+def test_tendon_equalities_on_the_chain_are_refused():
+    tendon = '<tendon><fixed name="t"><joint joint="a" coef="1"/><joint joint="b" coef="1"/></fixed></tendon>'
+    text = arm('<tendon name="belt" tendon1="t"/>').replace("</mujoco>", tendon + "</mujoco>")
+    with pytest.raises(ModelError, match="equality 'belt' ties A, B, world into a closed loop"):
+        robots.load_mjcf(text)
+
+
+@pytest.mark.parametrize(
+    "equality",
+    [
+        '<connect body1="F" body2="G" anchor=".1 0 0"/>',
+        '<weld body1="D" body2="F"/>',
+        '<weld body1="m" body2="D"/>',
+    ],
+)
+def test_loops_within_a_link_and_mocap_bodies_are_fine(equality):
+    chain = robots.load_mjcf(arm(equality, '<body name="m" mocap="true"/>')).chain
+    assert chain.joint_names == ("a", "b", "c", "d")

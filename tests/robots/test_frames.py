@@ -1,0 +1,98 @@
+"""Choosing base and tip."""
+
+import pytest
+
+from wsrender import robots
+from wsrender.errors import FrameNotFoundError, ModelError
+
+LINKS = """<inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>"""
+TWO_ARMS = f"""<mujoco model="torso"><worldbody>
+  <body name="pelvis"><freejoint name="root"/>{LINKS}
+    <body name="chest" pos="0 0 .5"><joint name="waist" axis="0 0 1"/>{LINKS}<site name="neck" pos="0 0 .3"/>
+      <body name="left" pos="0 .3 0"><joint name="left_shoulder" axis="0 1 0"/>{LINKS}
+        <body name="left_hand" pos="0 0 -.5"><joint name="left_elbow" axis="0 1 0"/>{LINKS}</body></body>
+      <body name="right" pos="0 -.3 0"><joint name="right_shoulder" axis="0 1 0"/>{LINKS}
+        <body name="right_hand" pos="0 0 -.5"><joint name="right_elbow" axis="1 0 0"/>{LINKS}
+          <site name="grip"/></body></body>
+    </body></body></worldbody></mujoco>"""
+
+
+def one_arm(end):
+    return f"""<mujoco><worldbody><body name="stand"/><body name="upper"><joint/>{LINKS}
+      <body name="lower" pos="1 0 0"><joint/>{LINKS}{end}</body></body></worldbody></mujoco>"""
+
+
+@pytest.mark.parametrize(
+    ("base", "tip", "joints"),
+    [
+        ("pelvis", "left_hand", ("waist", "left_shoulder", "left_elbow")),
+        ("chest", "right_hand", ("right_shoulder", "right_elbow")),
+        ("neck", "grip", ("right_shoulder", "right_elbow")),
+        ("left", None, ("left_elbow",)),
+    ],
+)
+def test_joints_between_base_and_tip(base, tip, joints):
+    chain = robots.load_mjcf(TWO_ARMS, base=base, tip=tip).chain
+    assert chain.joint_names == joints
+    assert (chain.base_frame, chain.tip_frame) == (base, tip or "left_hand")
+
+
+@pytest.mark.parametrize(
+    ("end", "tip"),
+    [
+        ("", "lower"),
+        ('<body name="flange" pos="1 0 0"><body name="plate"/></body>', "plate"),
+        ('<body name="camera"/><body name="flange"><body name="tool0" pos="0 0 1"/></body>', "tool0"),
+        ('<body name="camera"/><body name="flange"/><site name="tool"/>', "tool"),
+    ],
+)
+def test_default_tip(end, tip):
+    assert robots.load_mjcf(one_arm(end)).chain.tip_frame == tip
+
+
+def test_loose_objects_are_no_tips():
+    text = one_arm("").replace("</worldbody>", f'<body name="cube"><freejoint/>{LINKS}</body></worldbody>')
+    assert robots.load_mjcf(text).chain.tip_frame == "lower"
+
+
+def test_a_site_goes_before_the_body_of_its_name():
+    chain = robots.load_mjcf(one_arm('<site name="lower" pos="0 0 3"/>'), tip="lower").chain
+    assert chain.T_tip[:3, 3] == pytest.approx([0, 0, 3])
+
+
+def test_a_tip_that_must_be_chosen_lists_the_choices():
+    with pytest.raises(
+        FrameNotFoundError, match="tip: the model ends in 2 places; its tip must be named"
+    ) as caught:
+        robots.load_mjcf(TWO_ARMS, base="pelvis")
+    assert caught.value.choices == ["neck", "grip", "chest", "left", "left_hand", "right", "right_hand"]
+
+
+@pytest.mark.parametrize(
+    ("base", "tip", "message"),
+    [
+        (
+            "pelvis",
+            "left_hnad",
+            "tip: the model has no site, body or link 'left_hnad'; did you mean 'left_hand'",
+        ),
+        ("hips", "grip", "base: the model has no site, body or link 'hips'"),
+        ("left", "grip", "'left' is not an ancestor of the tip 'grip'; choose one of: world, pelvis, chest"),
+        ("grip", "left_hand", "base: 'grip' is not an ancestor of the tip 'left_hand'"),
+    ],
+)
+def test_unknown_frames(base, tip, message):
+    with pytest.raises(FrameNotFoundError, match=message):
+        robots.load_mjcf(TWO_ARMS, base=base, tip=tip)
+
+
+@pytest.mark.parametrize(
+    ("base", "message"),
+    [
+        (None, "'root' is a free joint on the chain from 'world' to 'grip'.*name a base below it"),
+        ("right_hand", "there is no joint between base 'right_hand' and tip 'grip'"),
+    ],
+)
+def test_frames_with_no_chain_between(base, message):
+    with pytest.raises(ModelError, match=message):
+        robots.load_mjcf(TWO_ARMS, base=base, tip="grip")
