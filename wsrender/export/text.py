@@ -16,30 +16,26 @@ def sampling_text(document: dict[str, Any]) -> str:
 
 def summary_text(document: dict[str, Any]) -> str:
     """Volume, bounds, global indices, and the range and means of each local index; several lines."""
-    return "\n".join(
-        [sampling_text(document), *_facts(document), *_index_table(document.get("indices") or {})]
-    )
+    facts = [f"  {name:<24}{value}" for name, value in _facts(document)]
+    table = _index_table(document.get("indices") or {})
+    return "\n".join([sampling_text(document), *facts, *table])
 
 
-def _facts(document: dict[str, Any]) -> Iterator[str]:
+def _facts(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
     volume = document.get("volume_m3") or {}
-    if "occupied" in volume:
-        bounds = [f"{name} {volume[name]:.4g}" for name in ("inner", "outer") if name in volume]
-        yield f"  volume      {volume['occupied']:.4g} m³ occupied" + (
-            f" ({', '.join(bounds)})" if bounds else ""
-        )
+    for name in ("occupied", "inner", "outer"):
+        if name in volume:
+            yield f"{name} volume", f"{volume[name]:.4g} m³"
     if volume.get("refined"):
         low, high = volume["refined"]["ci95"]
-        yield f"  refined     {volume['refined']['value']:.4g} m³ (95 %: {low:.4g} … {high:.4g})"
+        yield "refined volume", f"{volume['refined']['value']:.4g} m³ (95 %: {low:.4g} … {high:.4g})"
     bounds = document.get("bounds_m") or {}
     if {"lower", "upper"} <= set(bounds):
-        pairs = zip("xyz", bounds["lower"], bounds["upper"], strict=True)
-        yield (
-            "  bounds      " + ", ".join(f"{axis} {low:.3f} … {high:.3f}" for axis, low, high in pairs) + " m"
-        )
+        for axis, low, high in zip("xyz", bounds["lower"], bounds["upper"], strict=True):
+            yield axis, f"{low:.3f} … {high:.3f} m"
     for name, value in (document.get("global") or {}).items():
         if isinstance(value, int | float):
-            yield f"  {name.replace('_', ' ')}: {value:.4g}"
+            yield name.replace("_", " "), f"{value:.4g}"
 
 
 def _index_table(indices: dict[str, dict[str, Any]]) -> Iterator[str]:

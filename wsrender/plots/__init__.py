@@ -10,22 +10,23 @@ from typing import TYPE_CHECKING
 from wsrender.errors import MissingExtraError
 
 if TYPE_CHECKING:
-    from wsrender.plots.histogram import histogram, write_histogram_csv
+    from wsrender.plots.distribution import histogram, write_histogram_csv
+    from wsrender.plots.planes import slice_plane, slices
+    from wsrender.plots.point_cloud import scatter
     from wsrender.plots.result_plots import ResultPlots
-    from wsrender.plots.robot import robot
-    from wsrender.plots.scatter import scatter
-    from wsrender.plots.slices import slice_plane, slices
+    from wsrender.plots.stick_figure import robot
     from wsrender.plots.style import save_figure
 
+# Modules are not called like their functions: importing one would hide the function.
 _MODULES = {
     "ResultPlots": "result_plots",
-    "histogram": "histogram",
-    "robot": "robot",
+    "histogram": "distribution",
+    "robot": "stick_figure",
     "save_figure": "style",
-    "scatter": "scatter",
-    "slice_plane": "slices",
-    "slices": "slices",
-    "write_histogram_csv": "histogram",
+    "scatter": "point_cloud",
+    "slice_plane": "planes",
+    "slices": "planes",
+    "write_histogram_csv": "distribution",
 }
 
 __all__ = [

@@ -7,10 +7,10 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from wsrender.errors import InputError
-from wsrender.plots.histogram import histogram
-from wsrender.plots.robot import robot
-from wsrender.plots.scatter import scatter
-from wsrender.plots.slices import slice_plane, slices
+from wsrender.plots.distribution import histogram
+from wsrender.plots.planes import slice_plane, slices
+from wsrender.plots.point_cloud import scatter
+from wsrender.plots.stick_figure import robot
 from wsrender.volume.distribution_map import DistributionMap
 from wsrender.volume.volume_data import VolumeData
 

@@ -1,0 +1,226 @@
+import hashlib
+import subprocess
+import sys
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+from PIL import Image
+
+from tests.export.sample_data import ODD_NAMES, random_map, random_volume
+from wsrender import plots
+from wsrender.errors import InputError
+from wsrender.volume.distribution_map import DistributionMap
+from wsrender.volume.volume_data import VolumeData
+
+SKELETON = np.cumsum(np.random.default_rng(3).normal(size=(3, 5, 3)), axis=1)
+
+
+def drawn_plane(figure) -> tuple[np.ndarray, list[float]]:
+    """Values (vertical, horizontal) and extent [m] of the first image in a figure."""
+    (image,) = figure.axes[0].images
+    return np.ma.filled(image.get_array(), np.nan), image.get_extent()
+
+
+@pytest.mark.parametrize(("axis", "name"), list(enumerate("xyz")))
+def test_slice_shows_the_voxels_of_its_plane_where_they_are(axis, name):
+    volume = random_volume((5, 4, 3))
+    layer = 2
+    at = volume.centers(axis)[layer] + 0.4 * volume.voxel_size_m
+    values, extent = drawn_plane(plots.slice_plane(volume, **{name: at}, index="x", statistic="mean"))
+    np.testing.assert_array_equal(values, volume.statistics["mean"]["x"].take(layer, axis).T)
+    lower, upper = volume.origin_m, volume.origin_m + np.array(volume.count.shape) * volume.voxel_size_m
+    horizontal, vertical = [across for across in range(3) if across != axis]
+    expected = [lower[horizontal], upper[horizontal], lower[vertical], upper[vertical]]
+    np.testing.assert_allclose(extent, expected, atol=1e-12)
+
+
+def test_slice_at_a_voxel_border_shows_the_voxel_above_it_and_the_upper_end_the_last():
+    volume = VolumeData(0.1, (0, 0, 2), np.arange(1, 4).reshape(1, 1, 3))
+    for z, count in ((0.2, 1), (0.3, 2), (0.4, 3), (0.5, 3)):
+        values, _ = drawn_plane(plots.slice_plane(volume, z=z))
+        assert values == count
+
+
+def test_slice_without_coordinate_shows_zero_or_the_fullest_plane():
+    count = np.ones((2, 2, 3), int)
+    count[0, 0, 0] = 0
+    for first, layer in ((-2, 2), (5, 1)):
+        volume = VolumeData(0.1, (0, 0, first), count)
+        assert f"z = {(first + layer + 0.5) * 0.1:.3g} m" in plots.slice_plane(volume).axes[0].get_title()
+
+
+def test_colours_span_the_whole_volume_not_the_slice():
+    volume = random_volume((5, 4, 3))
+    values = volume.statistics["maximum"]["manipulability"]
+    for z in volume.centers(2):
+        (image,) = plots.slice_plane(volume, z=z).axes[0].images
+        assert image.get_clim() == (np.nanmin(values), np.nanmax(values))
+        assert image.get_cmap().name == "viridis"
+
+
+def test_three_slices_have_equal_scales_and_a_labelled_colour_bar():
+    figure = plots.slices(random_volume((5, 4, 3)), at=(None, None, 0.6), title="arm")
+    *panels, bar = figure.axes
+    assert [axes.get_aspect() for axes in panels] == [1.0] * 3
+    assert [axes.get_xlabel() for axes in panels] == ["y [m]", "x [m]", "x [m]"]
+    assert [axes.get_ylabel() for axes in panels] == ["z [m]", "z [m]", "y [m]"]
+    assert bar.get_ylabel() == "Maximum of manipulability [m³]"
+    assert figure.get_suptitle() == "arm"
+    assert all("(world)" in axes.get_title() for axes in panels)
+
+
+def test_volume_with_counts_alone_shows_counts():
+    volume = VolumeData(0.1, (0, 0, 0), np.array([[[0, 3]]]))
+    values, _ = drawn_plane(plots.slice_plane(volume, x=0.05))
+    np.testing.assert_array_equal(values, [[np.nan], [3]])
+
+
+def test_scatter_colours_each_point_by_its_index():
+    samples = random_map()
+    figure = plots.scatter(samples, "x")
+    (cloud,) = figure.axes[0].collections
+    points = np.stack(cloud._offsets3d, axis=1)
+    np.testing.assert_array_equal(points, samples.position)
+    values = samples.indices["x"]
+    expected = mpl.colormaps["viridis"]((values - values.min()) / (values.max() - values.min()))
+    figure.canvas.draw()  # sorts by depth
+    np.testing.assert_allclose(cloud.get_facecolor(), expected[cloud._z_markers_idx], atol=1 / 255)
+    assert figure.axes[1].get_ylabel() == "X [rad]"
+
+
+def test_space_has_equal_scales_in_metres():
+    axes = plots.scatter(random_map()).axes[0]
+    spans = np.array([np.ptp(axes.get_xlim()), np.ptp(axes.get_ylim()), np.ptp(axes.get_zlim())])
+    np.testing.assert_allclose(axes._box_aspect / axes._box_aspect.max(), spans / spans.max())
+    assert (axes.get_xlabel(), axes.get_ylabel(), axes.get_zlabel()) == ("x [m]", "y [m]", "z [m]")
+
+
+def test_large_maps_are_thinned_evenly():
+    position = np.zeros((100_000, 3))
+    position[:, 0] = np.arange(100_000)
+    (cloud,) = plots.scatter(DistributionMap(position, {})).axes[0].collections
+    x = cloud._offsets3d[0]
+    assert len(x) == 30_000
+    assert x[0] == 0
+    assert x[-1] == 99_999
+    assert np.ptp(np.diff(x)) <= 1
+
+
+def test_histogram_has_a_panel_per_index_whose_bars_sum_to_all_samples():
+    samples = random_map()
+    figure = plots.histogram(samples)
+    panels = [axes for axes in figure.axes if axes.get_visible()]
+    assert len(panels) == len(ODD_NAMES)
+    for axes, name in zip(panels, ODD_NAMES, strict=True):
+        assert sum(bar.get_height() for bar in axes.patches) == pytest.approx(100)
+        assert axes.lines[0].get_xdata()[0] == pytest.approx(samples.indices[name].mean(), rel=1e-6)
+
+
+def test_histogram_csv_holds_what_is_drawn(tmp_path):
+    plots.write_histogram_csv(random_map(names=("manipulability",)), tmp_path / "histogram.csv")
+    header, *rows = (tmp_path / "histogram.csv").read_text().splitlines()
+    assert header == "index,unit,lower,upper,share"
+    assert rows[0].startswith("manipulability,m³,")
+    assert sum(float(row.split(",")[4]) for row in rows) == pytest.approx(1)
+
+
+def test_robot_is_drawn_through_its_joints():
+    figure = plots.robot(SKELETON, random_map())
+    lines = [np.stack(line.get_data_3d(), axis=1) for line in figure.axes[0].lines]
+    for arm in SKELETON:
+        assert any(line.shape == arm.shape and np.array_equal(line, arm) for line in lines)
+    assert any(np.array_equal(line, SKELETON[0, 1:-1]) for line in lines)
+    labels = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
+    assert labels == ["base", "joint", "tip"]
+
+
+THIN = {
+    "planar": np.random.default_rng(0).normal(size=(50, 3)) * [1, 1, 0],
+    "linear": np.linspace(0, 1, 50)[:, None] * [0, 1, 0],
+    "one point": np.ones((50, 3)),
+    "no rows": np.empty((0, 3)),
+}
+
+
+@pytest.mark.parametrize("position", list(THIN.values()), ids=list(THIN))
+@pytest.mark.parametrize("names", [(), ("w",)], ids=["no index", "one index"])
+def test_thin_sets_and_constant_values_are_drawn(tmp_path, position, names):
+    samples = DistributionMap(position, {name: np.zeros(len(position)) for name in names})
+    for name, figure in {"scatter": plots.scatter(samples), "robot": plots.robot(SKELETON, samples)}.items():
+        plots.save_figure(figure, tmp_path / f"{name}.png")
+        assert np.ptp(np.asarray(Image.open(tmp_path / f"{name}.png").convert("L"))) > 100
+
+
+@pytest.mark.parametrize("shape", [(1, 1, 1), (30, 1, 1), (30, 20, 1)], ids=str)
+def test_thin_volumes_are_drawn(tmp_path, shape):
+    figure = plots.slices(random_volume(shape))
+    plots.save_figure(figure, tmp_path / "slices.png")
+    with Image.open(tmp_path / "slices.png") as image:
+        width, height = image.size
+    assert 300 < height < width < 3000
+
+
+def test_names_are_shown_as_they_are(tmp_path):
+    names = ("$a_{b", "50 % \\alpha$x$")
+    samples = random_map(names=names)
+    figure = plots.scatter(samples, names[0], title="robot $1$ & <2>")
+    plots.save_figure(figure, tmp_path / "scatter.svg")
+    plots.save_figure(plots.histogram(samples), tmp_path / "histogram.png")
+    assert figure.axes[1].get_ylabel() == "$a {b"
+
+
+@pytest.mark.parametrize("suffix", ["png", "svg"])
+def test_equal_pictures_are_equal_files(tmp_path, suffix):
+    hashes = set()
+    for k in range(2):
+        mpl.rcParams["font.size"] = 10 + k  # the user's own settings play no part
+        figures = (plots.scatter(random_map()), plots.slices(random_volume((5, 4, 3))))
+        for number, figure in enumerate(figures):
+            plots.save_figure(figure, tmp_path / f"{number}.{suffix}")
+        hashes.add(
+            b"".join(hashlib.sha256(path.read_bytes()).digest() for path in sorted(tmp_path.iterdir()))
+        )
+    assert len(hashes) == 1
+    assert mpl.rcParams["font.size"] == 11
+
+
+def test_no_display_and_no_pyplot_is_needed():
+    code = (
+        "import sys, numpy as np\n"
+        "from wsrender import plots\n"
+        "from wsrender.volume.distribution_map import DistributionMap\n"
+        "assert 'matplotlib' not in sys.modules\n"
+        "plots.scatter(DistributionMap(np.eye(3), {'w': np.arange(3.0)}))\n"
+        "assert 'matplotlib.pyplot' not in sys.modules\n"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True, env={"MPLBACKEND": "agg", "PATH": ""})
+
+
+@pytest.mark.parametrize(
+    ("draw", "message"),
+    [
+        (
+            lambda: plots.slice_plane(random_volume((2, 2, 2)), z=9),
+            r"z: the plane z = 9 m misses the workspace, 0\.55",
+        ),
+        (lambda: plots.slice_plane(random_volume((2, 2, 2)), x=0, y=0), "takes one of x, y, z"),
+        (
+            lambda: plots.slice_plane(random_volume((2, 2, 2)), index="speed"),
+            "no 'speed'; it holds manipulability",
+        ),
+        (
+            lambda: plots.slice_plane(random_volume((2, 2, 2)), statistic="mode"),
+            "no 'mode'; it holds maximum, mean",
+        ),
+        (lambda: plots.slices(VolumeData(0.1, (0, 0, 0), np.zeros((0, 0, 0), int))), "no occupied voxel"),
+        (lambda: plots.scatter(random_map(), "speed"), "no 'speed'; it holds manipulability"),
+        (lambda: plots.scatter(DistributionMap(np.eye(3), {}), "speed"), "no 'speed'; it holds no index"),
+        (lambda: plots.histogram(random_map(0)), "holds no values"),
+        (lambda: plots.robot(np.zeros((2, 3))), r"shape \(2, 3\)"),
+        (lambda: plots.save_figure(plots.scatter(random_map(1)), "a.bmp"), r"must end in \.png or \.svg"),
+    ],
+)
+def test_errors_name_what_is_there(draw, message):
+    with pytest.raises(InputError, match=message):
+        draw()
