@@ -16,6 +16,7 @@ from wsrender.robots.limits import Drive, coordinate_limits, effort_limits, join
 from wsrender.robots.loaded_robot import LoadedRobot
 
 MAX_JOINTS = 16
+LARGEST_NUMBER = 1e9  # of metres, radians, kilograms: beyond it, products overflow single precision
 
 
 def extract(
@@ -200,5 +201,5 @@ def _has_inertia(model: mujoco.MjModel, carrier: np.ndarray) -> bool:
 
 def _check(chain: Chain, field: str) -> None:
     for name in ("T_joint", "T_tip", "mass", "center_of_mass", "inertia", "armature", "joint_offset"):
-        if not np.isfinite(getattr(chain, name)).all():
-            raise ModelError(field, f"the chain's {name} is not finite: the model's numbers are too large")
+        if not (np.abs(getattr(chain, name)) <= LARGEST_NUMBER).all():
+            raise ModelError(field, f"the model's numbers are too large: {name} is beyond {LARGEST_NUMBER:g}")

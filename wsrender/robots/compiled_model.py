@@ -1,6 +1,7 @@
 """A robot model after MuJoCo compiled it, before a chain is chosen in it."""
 
 import re
+import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -14,11 +15,16 @@ MUJOCO_ERRORS = (ValueError, RuntimeError, mujoco.FatalError)
 
 @contextmanager
 def quiet() -> Iterator[None]:
-    """Keeps MuJoCo from writing its warnings to a log file in the working directory."""
+    """Keeps MuJoCo's warnings of near-singular inertias, which are no fault of a kinematic model, to itself.
+
+    Some of them come as Python warnings, others end in a log file in the working directory.
+    """
     before = mujoco.get_mju_user_warning()
     mujoco.set_mju_user_warning(lambda message: None)
     try:
-        yield
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", UserWarning)
+            yield
     finally:
         mujoco.set_mju_user_warning(before)
 

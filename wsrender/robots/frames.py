@@ -43,7 +43,7 @@ def choose(model: mujoco.MjModel, base: str | None, tip: str | None) -> tuple[Fr
     and a tip that must be chosen.
     """
     base_frame = Frame("world", 0) if base is None else _find(model, base, "base", range(model.nbody))
-    carried = _carried(model, base_frame.body)
+    carried = _carried(model, base_frame.body) or list(range(base_frame.body + 1, model.nbody))
     tip_frame = _default_tip(model, carried) if tip is None else _find(model, tip, "tip", carried)
     above = path(model, tip_frame.body)
     if base_frame.body not in above:
@@ -111,8 +111,8 @@ def _default_tip(model: mujoco.MjModel, carried: list[int]) -> Frame:
     ends = leaves if len(leaves) == 1 else named
     if len(ends) == 1:
         return Frame(body_name(model, ends[0]), ends[0])
-    if not carried:
-        raise ModelError("model", "no joint moves anything in the model")
+    if not leaves:
+        raise ModelError("model", "there is nothing to move: the model has no body")
     places = f"the model ends in {len(leaves)} places; its tip must be named"
     raise FrameNotFoundError("tip", places, _names(model, carried))
 

@@ -8,6 +8,7 @@ from xml.etree.ElementTree import Element
 
 import mujoco
 
+from wsrender.errors import ModelError
 from wsrender.robots import mjcf
 from wsrender.robots.compiled_model import MUJOCO_ERRORS, CompiledModel, refusal
 from wsrender.robots.inertials import compile_with_inertials
@@ -20,7 +21,8 @@ ReadMesh = Callable[[str], bytes | None]  # file name in the model → its bytes
 
 def from_assets(assets: Mapping[str, bytes]) -> ReadMesh:
     """Reads meshes from a mapping of file names, as the model writes them, to bytes; never from disk."""
-    return lambda name: assets.get(name, assets.get(Path(name).name))
+    by_last_part = {Path(name).name: content for name, content in assets.items()}
+    return lambda name: assets.get(name, by_last_part.get(Path(name).name))
 
 
 def from_folder(folder: Path) -> ReadMesh:
@@ -45,6 +47,7 @@ def compile_mjcf(root: Element, read_mesh: ReadMesh, field: str) -> CompiledMode
     mjcf.sanitized(root, field)
     folder, strip = mjcf.directories(root)
     spec = _parsed(mjcf.text(root), field)
+    _check_ranges(spec, field)
     files = {mesh.name: _file(mesh.file, folder, strip) for mesh in spec.meshes}
     faults, missing = _drop_geometry(spec, files, read_mesh)
     if missing:
@@ -63,6 +66,17 @@ def _parsed(text: str, field: str) -> mujoco.MjSpec:
         return mujoco.MjSpec.from_string(text)
     except MUJOCO_ERRORS as error:
         raise refusal(error, field) from error
+
+
+def _check_ranges(spec: mujoco.MjSpec, field: str) -> None:
+    """Refuses ranges that are upside down or empty, which MuJoCo would take for no range."""
+    for joint in spec.joints:
+        low, high = joint.range
+        if joint.limited != mujoco.mjtLimited.mjLIMITED_FALSE and low >= high and (low, high) != (0.0, 0.0):
+            name = joint.name or joint.parent.name
+            raise ModelError(
+                field, f"joint {name!r}: its range is {low:g} … {high:g}; the first must be below"
+            )
 
 
 def _file(file: str, folder: str, strip: bool) -> str:

@@ -9,7 +9,7 @@ import numpy as np
 from wsrender.robots.compiled_model import CompiledModel
 from wsrender.robots.inertials import compile_with_inertials
 from wsrender.robots.model_warning import ModelWarning
-from wsrender.robots.urdf import Joint, Link, Shape, Urdf, read_urdf
+from wsrender.robots.urdf import Joint, Link, Mimic, Shape, Urdf, read_urdf
 
 _SHAPES = {
     "box": mujoco.mjtGeom.mjGEOM_BOX,
@@ -102,7 +102,7 @@ def _add_mimics(spec: mujoco.MjSpec, urdf: Urdf) -> None:
         if joint.mimic is None or not joint.movable:
             continue
         leader = urdf.joints.get(joint.mimic.leader)
-        moves = leader is not None and leader.movable
+        moves = leader not in (None, joint) and leader.movable
         equality = spec.add_equality(
             type=mujoco.mjtEq.mjEQ_JOINT,
             objtype=mujoco.mjtObj.mjOBJ_JOINT,
@@ -114,16 +114,23 @@ def _add_mimics(spec: mujoco.MjSpec, urdf: Urdf) -> None:
         equality.data = data
 
 
+def _leader(mimic: Mimic, joint: Joint, joints: dict[str, Joint]) -> Joint | None:
+    """The joint that ``joint`` follows, movable or fixed; None if there is no such joint."""
+    leader = joints.get(mimic.leader)
+    usable = leader is not None and leader.name != joint.name and (leader.movable or leader.kind == "fixed")
+    return leader if usable else None
+
+
 def _fault(joint: Joint, joints: dict[str, Joint]) -> str:
     """Why the joint cannot be on a chain; empty if it can."""
     if joint.kind in ("floating", "planar"):
         return f"joint {joint.name!r} is {joint.kind}: name a base below it"
     if joint.mimic is not None:
-        leader = joints.get(joint.mimic.leader)
-        known = leader is not None and (leader.movable or leader.kind == "fixed")
-        return (
-            "" if known else f"joint {joint.name!r} mimics {joint.mimic.leader!r}, which is no movable joint"
-        )
+        if _leader(joint.mimic, joint, joints) is None:
+            return (
+                f"joint {joint.name!r} mimics {joint.mimic.leader!r}, which is no other joint of one freedom"
+            )
+        return ""
     if joint.kind == "revolute" and joint.limits is None:
         return f"revolute joint {joint.name!r} has no <limit>: give its limits, or make it continuous"
     if joint.limits is not None and joint.limits[0] == joint.limits[1] != 0.0:
