@@ -163,7 +163,7 @@ def _three_rows(real, m: int, n: int):
 
 def _third_of_angle(real):
     """Device function (x, y >= 0) -> (cos, sin) of a third of the angle of (x, y), by Newton on z³ = e^{i angle}."""
-    ZERO, HALF, ONE, TWO, THIRD, PI = (real(v) for v in (0.0, 0.5, 1.0, 2.0, 1.0 / 3.0, np.pi))
+    ZERO, ONE, TWO, THREE, THIRD, PI = (real(v) for v in (0.0, 1.0, 2.0, 3.0, 1.0 / 3.0, np.pi))
     TINY = _tiny(real)
     STEPS = NEWTON_STEPS[real]
     # Abramowitz & Stegun 1964, 4.4.45: arccos x = sqrt(1 - x) * cubic, error 7e-5: a start for Newton's method.
@@ -188,9 +188,10 @@ def _third_of_angle(real):
         u = ONE - t2 * (FACTORIALS[0] - t2 * (FACTORIALS[2] - t2 * FACTORIALS[4]))
         v = t * (ONE - t2 * (FACTORIALS[1] - t2 * FACTORIALS[3]))
         for _step in range(STEPS):
-            # z <- (2 z + w conj(z)²) / 3, as 1 / z² = conj(z)² on the unit circle.
-            re = u * u - v * v
-            im = -TWO * u * v
+            # z <- (2 z + w / z²) / 3 with 1 / z² = conj(z)² / |z|⁴, and 1 / |z|⁴ = 3 - 2 |z|² near the unit circle.
+            scale = THREE - TWO * (u * u + v * v)
+            re = (u * u - v * v) * scale
+            im = -TWO * u * v * scale
             u, v = (TWO * u + c * re - s * im) * THIRD, (TWO * v + c * im + s * re) * THIRD
         return u, v
 

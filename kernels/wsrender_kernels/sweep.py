@@ -21,7 +21,13 @@ from wsrender_kernels.model import model_arrays
 from wsrender_kernels.options import MODULE_OPTIONS
 from wsrender_kernels.sampling import LANES, sample_space, sampling
 from wsrender_kernels.spectrum import spectrum
-from wsrender_kernels.voxels import lattice, voxels
+from wsrender_kernels.voxels import lattice, lowest, voxels
+
+
+@wp.func
+def wide(i: wp.int32):
+    # A cast of an unrolled loop's variable would change the type of its other uses.
+    return wp.int64(i)
 
 
 @dataclass(frozen=True)
@@ -80,7 +86,7 @@ def _state(shape: Shape) -> SimpleNamespace:
         M = inertia_type()
         for r in range(n):
             for c in range(n):
-                M[r, c] = model.inertia_given[wp.int64(r * n + c) * stride + at]
+                M[r, c] = model.inertia_given[wide(r * n + c) * stride + at]
         return M
 
     read_inertia = given_inertia if shape.dynamic and shape.given_inertia else no_inertia
@@ -90,10 +96,10 @@ def _state(shape: Shape) -> SimpleNamespace:
         tip = vec3()
         J = jacobian_type()
         for r in range(3):
-            tip[r] = model.position_given[wp.int64(r) * stride + at]
+            tip[r] = model.position_given[wide(r) * stride + at]
         for r in range(6):
             for c in range(n):
-                J[r, c] = model.jacobian_given[wp.int64(r * n + c) * stride + at]
+                J[r, c] = model.jacobian_given[wide(r * n + c) * stride + at]
         return tip, mat33(), J, read_inertia(model, at, stride)
 
     @wp.func
@@ -177,7 +183,7 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
     N_OUTPUTS, RECORD = shape.n_outputs, shape.record_size
     VOXELS, MAXIMUM, MINIMUM, SUMS, ROWS = shape.voxels, shape.maximum, shape.minimum, shape.sums, shape.keep_rows
     FIRST_MINIMUM = 1 + K * shape.maximum
-    LOWEST = bits(-(2**31) if real is wp.float32 else -(2**63))
+    LOWEST = bits(lowest(real))
     BLOCK, BLOCK_64, K_64 = LANES, wp.int64(LANES), wp.int64(K)
 
     @wp.kernel(module="unique", module_options=MODULE_OPTIONS, enable_backward=False)
@@ -202,7 +208,7 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
         rows_stride: wp.int64,
     ):
         task = wp.tid()
-        start = first + wp.int64(task * BLOCK)
+        start = first + wide(task * BLOCK)
         valid = wp.int32(wp.min(BLOCK_64, first + count - start))
         block = prepare(space, start)
 
@@ -237,20 +243,20 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
                 records[at] = records[at] + bits(1)
                 for k in range(K):
                     if wp.static(MAXIMUM):
-                        slot = at + wp.int64(1 + k)
+                        slot = at + wide(1 + k)
                         records[slot] = wp.max(records[slot], ordered(scratch[(3 + k) * BLOCK + lane]))
                     if wp.static(MINIMUM):
-                        slot = at + wp.int64(FIRST_MINIMUM + k)
+                        slot = at + wide(FIRST_MINIMUM + k)
                         records[slot] = wp.max(records[slot], ~ordered(scratch[(3 + k) * BLOCK + lane]))
                     if wp.static(SUMS):
-                        slot = voxel * K_64 + wp.int64(k)
+                        slot = voxel * K_64 + wide(k)
                         sums[slot] = sums[slot] + quantized(scratch[(3 + k) * BLOCK + lane], scales[k])
 
         if wp.static(ROWS):
             for r in range(N_OUTPUTS):
-                target = wp.int64(r) * rows_stride + wp.int64(task * BLOCK)
+                target = wide(r) * rows_stride + wide(task * BLOCK)
                 for lane in range(valid):
-                    rows_out[target + wp.int64(lane)] = scratch[r * BLOCK + lane]
+                    rows_out[target + wide(lane)] = scratch[r * BLOCK + lane]
 
     return sweep_cpu
 
@@ -268,7 +274,7 @@ def _cuda_kernel(shape: Shape) -> wp.Kernel:
     N_OUTPUTS, RECORD = shape.n_outputs, shape.record_size
     VOXELS, MAXIMUM, MINIMUM, SUMS, ROWS = shape.voxels, shape.maximum, shape.minimum, shape.sums, shape.keep_rows
     FIRST_MINIMUM = 1 + K * shape.maximum
-    LOWEST = bits(-(2**31) if real is wp.float32 else -(2**63))
+    LOWEST = bits(lowest(real))
     LANE_MASK, K_64 = wp.int64(LANES - 1), wp.int64(K)
 
     @wp.kernel(module="unique", module_options=MODULE_OPTIONS, enable_backward=False, grid_stride=False)
@@ -312,14 +318,14 @@ def _cuda_kernel(shape: Shape) -> wp.Kernel:
                 wp.atomic_add(records, at, bits(1))
                 for k in range(K):
                     if wp.static(MAXIMUM):
-                        wp.atomic_max(records, at + wp.int64(1 + k), ordered(out[3 + k]))
+                        wp.atomic_max(records, at + wide(1 + k), ordered(out[3 + k]))
                     if wp.static(MINIMUM):
-                        wp.atomic_max(records, at + wp.int64(FIRST_MINIMUM + k), ~ordered(out[3 + k]))
+                        wp.atomic_max(records, at + wide(FIRST_MINIMUM + k), ~ordered(out[3 + k]))
                     if wp.static(SUMS):
-                        wp.atomic_add(sums, voxel * K_64 + wp.int64(k), quantized(out[3 + k], scales[k]))
+                        wp.atomic_add(sums, voxel * K_64 + wide(k), quantized(out[3 + k], scales[k]))
             if wp.static(ROWS):
                 for r in range(N_OUTPUTS):
-                    rows_out[wp.int64(r) * rows_stride + offset] = out[r]
+                    rows_out[wide(r) * rows_stride + offset] = out[r]
             offset += threads
         if wp.int64(thread) < count:
             for r in range(2 * REDUCED):

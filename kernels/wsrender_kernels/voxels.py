@@ -1,8 +1,8 @@
 """Accumulation of samples into voxel records and totals, in integers only: the result does not depend on the order.
 
 A voxel record is ``1 + E`` integers of the precision's width: the count, then one per extreme (a maximum, or a
-minimum as the maximum of the complement) in `elementary.ordered` form. All start at the lowest integer, the count
-too, so that filling needs no pattern. Sums are 64-bit fixed point.
+minimum as the maximum of the complement) in `elementary.ordered` form. All start at `lowest`, the count too, so
+that filling needs no pattern. Sums are 64-bit fixed point.
 """
 
 from functools import cache
@@ -68,8 +68,8 @@ QUANTUM_BITS = {wp.float32: 30, wp.float64: 50}  # a quantised value needs at mo
 
 
 def lowest(real) -> int:
-    """Initial value of an extreme: the lowest integer of the precision's width."""
-    return int(np.iinfo(wp.dtype_to_numpy(bits_type(real))).min)
+    """Initial value of a record: minus the largest integer of the precision's width (the lowest has no C literal)."""
+    return -int(np.iinfo(wp.dtype_to_numpy(bits_type(real))).max)
 
 
 def decode_extreme(bits: np.ndarray, minimum: bool) -> np.ndarray:

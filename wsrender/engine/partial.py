@@ -43,7 +43,7 @@ def merge(a: Partial, b: Partial) -> Partial:
     count = np.zeros(len(cells), np.int64)
     count[where_a] = a.count
     count[where_b] += b.count
-    lowest = np.iinfo(a.records.dtype).min
+    lowest = -np.iinfo(a.records.dtype).max
     records = np.full((len(cells), a.records.shape[1]), lowest, a.records.dtype)
     records[where_a] = a.records
     records[where_b] = np.maximum(records[where_b], b.records)

@@ -85,10 +85,13 @@ class Chain:
     @cached_property
     def reach(self) -> float:
         """Upper bound of the distance from the first joint's origin to the end effector [m]."""
-        displaced = np.where(self.joint_is_revolute, 0.0, self._largest_displacement())
         links = np.linalg.norm(self.T_joint[1:, :3, 3], axis=1).sum()
-        return float(links + displaced.sum() + np.linalg.norm((self.T_tip @ self.T_tip_tool)[:3, 3]))
+        tip = np.linalg.norm((self.T_tip @ self.T_tip_tool)[:3, 3])
+        return float(links + self.largest_slide.sum() + tip)
 
-    def _largest_displacement(self) -> np.ndarray:
+    @property
+    def largest_slide(self) -> np.ndarray:
+        """Largest distance that each joint slides from zero within its limits, 0 for revolute ones, (L,) [m]."""
         limits = np.stack([self.lower_limits, self.upper_limits])[:, self.joint_source]
-        return np.abs(self.joint_scale * limits + self.joint_offset).max(axis=0)
+        largest = np.abs(self.joint_scale * limits + self.joint_offset).max(axis=0)
+        return np.where(self.joint_is_revolute, 0.0, largest)

@@ -1,0 +1,64 @@
+"""Global values of a sweep: means, volumes, isotropy, structural length ([WSR] eq. 6; Waldron 1979)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from wsrender.engine import Partial, SweepPlan
+from wsrender.robots.chain import Chain
+from wsrender.robots.dh import structural_length
+from wsrender.volume.volume_data import VolumeData
+
+
+def joint_means(plan: SweepPlan, partial: Partial) -> np.ndarray:
+    """Mean over samples of index / maximum, (K,); 0 where the maximum is 0."""
+    mean = partial.totals / plan.scales / max(partial.samples, 1)
+    return _divided(mean, partial.maximum[3 : 3 + len(mean)].astype(np.float64))
+
+
+def workspace_mean(volume: VolumeData, name: str) -> float | None:
+    """Mean over occupied voxels of voxel value / maximum value; the voxel value is its maximum, else its mean.
+
+    None where neither statistic was kept.
+    """
+    for statistic in ("maximum", "mean"):
+        if statistic in volume.statistics:
+            values = volume.statistics[statistic][name][volume.occupied].astype(np.float64)
+            return float(_divided(values.mean(), values.max())) if len(values) else None
+    return None
+
+
+def _divided(values, largest):
+    largest = np.asarray(largest, np.float64)
+    return np.where(largest > 0, values / np.where(largest > 0, largest, 1.0), 0.0)
+
+
+@dataclass(frozen=True)
+class VoxelVolumes:
+    """Volumes [m³] of a voxel set: occupied; inner (all 26 neighbours occupied); outer (with all neighbours)."""
+
+    occupied: float
+    inner: float
+    outer: float
+
+
+def voxel_volumes(volume: VolumeData) -> VoxelVolumes:
+    """Estimates of the reachable volume from occupied voxels; inner and outer are no rigorous bounds."""
+    occupied = np.pad(volume.occupied, 2)
+    inner, outer = occupied, occupied
+    for axis in range(3):
+        inner = inner & np.roll(inner, 1, axis) & np.roll(inner, -1, axis)
+        outer = outer | np.roll(outer, 1, axis) | np.roll(outer, -1, axis)
+    voxel = volume.voxel_size_m**3
+    return VoxelVolumes(*(float(np.count_nonzero(cells)) * voxel for cells in (occupied, inner, outer)))
+
+
+def global_isotropy(partial: Partial) -> float:
+    """Smallest over largest singular value of the task matrix over all samples."""
+    largest = float(partial.maximum[-2])
+    return float(partial.minimum[-1]) / largest if largest > 0 else 0.0
+
+
+def structural_length_index(chain: Chain, volume_m3: float) -> float | None:
+    """Length sum over the cube root of the workspace volume; None where the volume is 0."""
+    return structural_length(chain) / float(np.cbrt(volume_m3)) if volume_m3 > 0 else None

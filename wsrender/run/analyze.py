@@ -1,0 +1,63 @@
+"""The workspace analysis from Python."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from wsrender.result import Result
+from wsrender.robot import Robot, as_robot
+from wsrender.run.steps import Progress, execute
+from wsrender.spec import WorkspaceJob
+from wsrender.spec.parsing import parse_job
+from wsrender.spec.robot import RobotSpec
+from wsrender.spec.sampling import Grid
+
+
+def analyze(
+    robot: Any,
+    sampling: Any = None,
+    indices: str | Sequence[str] = "kinematic",
+    task: str | Sequence[str] = "linear",
+    *,
+    progress: Progress | None = None,
+    threads: int | None = None,
+    chunk_size: int | None = None,
+    **fields: Any,
+) -> Result:
+    """Sample a robot's joint space: distribution map, volume data and global indices.
+
+    ``robot`` is a Robot, a user-defined robot or what `load_robot` takes; ``sampling`` one of Grid, Random, Sobol,
+    BoundaryBiased, Converge (default Grid(15)); ``fields`` are the other fields of the job document ``workspace``:
+    convention, joint_limit_penalty, characteristic_length_m, torque_scaling, inertia, voxel_size_m,
+    voxel_statistics, keep_map, map_columns, max_samples, precision, device. Raises DocumentError, InputError,
+    ModelError, ResourceError, NumericalError, NotConvergedError.
+    """
+    subject = _robot(robot)
+    job = parse_job(
+        {
+            "analysis": "workspace",
+            "robot": _spec(subject),
+            "base": None,
+            "tip": None,
+            "sampling": (Grid() if sampling is None else sampling).model_dump(mode="json"),
+            "indices": indices if isinstance(indices, str) else list(indices),
+            "task": task if isinstance(task, str) else list(task),
+            **{name: list(v) if isinstance(v, tuple | set) else v for name, v in fields.items()},
+        }
+    )
+    assert isinstance(job, WorkspaceJob)
+    return execute(job, progress, subject, threads=threads, chunk_size=chunk_size)
+
+
+def _robot(robot: Any) -> Robot:
+    from pathlib import Path
+
+    from wsrender.robot import load_robot
+    from wsrender.spec.robot import DHTable
+
+    return load_robot(robot) if isinstance(robot, str | Path | DHTable) else as_robot(robot)
+
+
+def _spec(robot: Robot) -> dict[str, Any]:
+    """The document form of a robot; a user-defined one has none but its name."""
+    spec = robot.spec or RobotSpec(path=f"user-defined:{robot.name}")
+    return spec.model_dump(mode="json", exclude_none=True)

@@ -1,0 +1,58 @@
+"""What a coarse first pass over 2^16 Sobol samples settles: voxel size, lattice block, scales of the sums."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from wsrender.engine import Evaluated, Evaluation, configurations, evaluate_at
+from wsrender.engine.sums import bound_from_reach, scales_for
+from wsrender.robots.chain import Chain
+from wsrender.sampling import plan_sampling
+from wsrender.spec.sampling import Sobol
+from wsrender.volume.lattice import LatticeBlock, block_around, default_voxel_size
+
+SAMPLES = 2**16
+MARGIN = 0.25  # of the first pass's extent, around a user-defined robot, whose reach is unknown
+
+
+@dataclass(eq=False)
+class FirstPass:
+    """Coarse knowledge of a robot under an evaluation; the samples are drawn when first needed."""
+
+    evaluation: Evaluation
+    locked: dict[str, float]
+
+    @cached_property
+    def evaluated(self) -> Evaluated:
+        """Positions and index values of the coarse samples, in float64 on the CPU: the same on every target."""
+        sampling = plan_sampling(self.evaluation.chain, Sobol(SAMPLES, seed=0, locked=self.locked))
+        q = configurations(sampling, np.arange(SAMPLES))
+        return evaluate_at(self.evaluation, q)
+
+    def voxel_size(self) -> float:
+        """Default voxel edge [m]."""
+        return default_voxel_size(self.evaluated.position)
+
+    def block(self, voxel_size_m: float) -> LatticeBlock:
+        """A block that holds every position the robot can reach."""
+        if self.evaluation.host_kinematics is None:
+            center, reach = _sphere(self.evaluation.chain)
+            return block_around(center - reach, center + reach, voxel_size_m)
+        low, high = self.evaluated.position.min(axis=0), self.evaluated.position.max(axis=0)
+        margin = MARGIN * (high - low) + voxel_size_m
+        return block_around(low - margin, high + margin, voxel_size_m)
+
+    def sum_scales(self, samples: int, precision: str) -> tuple[np.ndarray, np.ndarray]:
+        """Scales (K,) and bounds (K,) of the fixed-point sums: bounds from the reach, else twice the coarse maximum."""
+        bounds = np.array([bound_from_reach(self.evaluation, name) for name in self.evaluation.indices])
+        unknown = np.isnan(bounds)
+        if unknown.any():
+            largest = 2.0 * np.abs(self.evaluated.values[unknown]).max(axis=1)
+            bounds[unknown] = np.where(largest > 0, largest, 1.0)
+        return scales_for(bounds, samples, precision), bounds
+
+
+def _sphere(chain: Chain) -> tuple[np.ndarray, float]:
+    """Centre (the first joint's origin in the world) and radius of a sphere that holds every position [m]."""
+    return (chain.T_world_base @ chain.T_joint[0])[:3, 3], chain.reach

@@ -1,0 +1,93 @@
+"""The analysis ``indices_at``: local indices at given configurations."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from wsrender.engine import Evaluated, Evaluation, devices_of, evaluate_at, target_of
+from wsrender.errors import InputError
+from wsrender.indices.catalogue import unit
+from wsrender.result import Result
+from wsrender.robot import Robot
+from wsrender.robot.indices import evaluation_of
+from wsrender.robot.model_robot import configuration_rows
+from wsrender.run.provenance import index_choices, provenance, robot_entry
+from wsrender.spec import IndicesAtJob
+from wsrender.volume.distribution_map import DistributionMap
+
+
+@dataclass(eq=False)
+class IndicesAtPlan:
+    """A resolved ``indices_at`` job: one shard."""
+
+    job: IndicesAtJob
+    robot: Robot
+    evaluation: Evaluation
+    q: np.ndarray
+    target: str
+    shards: list[tuple[int, int]] = field(default_factory=list)
+    estimate: dict[str, float] = field(default_factory=dict)
+
+    def run_shard(self, shard: int, progress: Callable[[int], None] | None, **execution: Any) -> Evaluated:
+        """Positions and values of all rows."""
+        device = self.job.device
+        return evaluate_at(
+            self.evaluation,
+            self.q,
+            self.job.precision,
+            device,
+            with_orientation=self.evaluation.host_kinematics is None,
+            threads=execution.get("threads"),
+        )
+
+    def merge(self, a: Evaluated, b: Evaluated) -> Evaluated:
+        """There is one shard: nothing to merge."""
+        raise ValueError("indices_at has one shard")
+
+    def finish(self, partial: Evaluated, seconds: dict[str, float]) -> Result:
+        """The map, one row per configuration in the order asked, and the extremes of each index."""
+        names = self.evaluation.indices
+        units = {name: unit(name, self.evaluation.rows, self.evaluation.convention) for name in names}
+        values = dict(zip(names, partial.values, strict=True))
+        document = {
+            "analysis": "indices_at",
+            "job": self.job.model_dump(mode="json"),
+            "robot": robot_entry(self.robot),
+            "sampling": {"method": "given", "samples": len(self.q)},
+            "indices": {
+                name: {
+                    "maximum": float(v.max()) if len(v) else None,
+                    "minimum": float(v.min()) if len(v) else None,
+                    "unit": units[name],
+                }
+                for name, v in values.items()
+            },
+            "choices": index_choices(self.job, self.evaluation.rows),
+            "provenance": provenance(self.job.precision, self.target),
+            "timing_s": seconds,
+        }
+        rows = DistributionMap(
+            partial.position, values, units, self.q, self.robot.joint_names, partial.quat_wxyz
+        )
+        return Result(document, map=rows)
+
+
+def plan_indices_at(job: IndicesAtJob, robot: Robot) -> IndicesAtPlan:
+    """Resolve the job; InputError for configurations that are missing or of the wrong length."""
+    if job.configurations is None:
+        raise InputError("configurations", f"must be given: rows of {robot.chain.n} joint values")
+    q = configuration_rows(np.array(job.configurations, np.float64).reshape(len(job.configurations), -1), robot.chain.n)
+    evaluation = evaluation_of(
+        robot,
+        indices=job.indices,
+        task=job.task,
+        convention=job.convention,
+        joint_limit_penalty=job.joint_limit_penalty,
+        characteristic_length_m=job.characteristic_length_m,
+        torque_scaling=job.torque_scaling,
+        inertia=job.inertia,
+        precision=job.precision,
+    )
+    return IndicesAtPlan(job, robot, evaluation, q, target_of(devices_of(job.device)), [(0, len(q))])

@@ -1,0 +1,59 @@
+"""What a result says of its origin: robot, versions, hashes, target."""
+
+import platform
+from importlib.metadata import PackageNotFoundError, version
+from typing import Any
+
+from wsrender import __version__
+from wsrender.robot import Robot
+from wsrender.spec.options import TASK_ROWS
+
+
+def robot_entry(robot: Robot) -> dict[str, Any]:
+    """Name, hashes, frames, joints and limits of a robot, for the result document."""
+    chain = robot.chain
+    return {
+        "name": robot.name,
+        "model_hash": robot.model_hash,
+        "chain_hash": chain.content_hash,
+        "base_frame": chain.base_frame,
+        "tip_frame": chain.tip_frame,
+        "T_world_base": chain.T_world_base.tolist(),
+        "T_tip_tool": chain.T_tip_tool.tolist(),
+        "joint_names": list(chain.joint_names),
+        "lower_limits": chain.lower_limits.tolist(),
+        "upper_limits": chain.upper_limits.tolist(),
+        "has_inertia": chain.has_inertia,
+    }
+
+
+def index_choices(job: Any, rows: tuple[int, ...]) -> dict[str, Any]:
+    """The choices that make an index's values unambiguous."""
+    return {
+        "task": [TASK_ROWS[r] for r in rows],
+        "convention": job.convention,
+        "characteristic_length_m": job.characteristic_length_m,
+        "joint_limit_penalty": job.joint_limit_penalty,
+        "torque_scaling": job.torque_scaling,
+        "inertia": job.inertia,
+    }
+
+
+def provenance(precision: str, target: str, **more: Any) -> dict[str, Any]:
+    """Versions, precision, target and host."""
+    packages = ("warp-lang", "mujoco", "numpy")
+    return {
+        "wsrender": __version__,
+        **{name: _version(name) for name in packages},
+        "precision": precision,
+        "target": target,
+        **more,
+        "host": {"python": platform.python_version(), "system": platform.platform(), "name": platform.node()},
+    }
+
+
+def _version(package: str) -> str:
+    try:
+        return version(package)
+    except PackageNotFoundError:
+        return "unknown"

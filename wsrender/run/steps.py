@@ -1,0 +1,94 @@
+"""The four steps of a job, and a local run as the loop over them."""
+
+import time
+from collections.abc import Callable
+from functools import reduce
+from typing import Any, Protocol
+
+from wsrender.result import Result
+from wsrender.robot import Robot, as_robot, robot_of_spec
+from wsrender.run.indices_at import plan_indices_at
+from wsrender.run.workspace import plan_workspace
+from wsrender.spec import IndicesAtJob, WorkspaceJob, parse_job
+
+Progress = Callable[[int, int, str], None]
+
+PLANNERS = {WorkspaceJob: plan_workspace, IndicesAtJob: plan_indices_at}
+
+
+class Plan(Protocol):
+    """A job with everything resolved: device target, voxel size, sampling path, shards, estimate.
+
+    ``shards`` holds (first sample, number of samples); ``estimate`` says samples, bytes and seconds.
+    """
+
+    job: Any
+    shards: list[tuple[int, int]]
+    target: str
+    estimate: dict[str, float]
+
+    def run_shard(self, shard: int, progress: Callable[[int], None] | None, **execution: Any) -> Any:
+        """The partial result of a shard."""
+        ...
+
+    def merge(self, a: Any, b: Any) -> Any:
+        """The partial result of two; associative."""
+        ...
+
+    def finish(self, partial: Any, seconds: dict[str, float]) -> Result:
+        """The result of the merged partial."""
+        ...
+
+
+def plan(document: Any, robot: Any = None) -> Plan:
+    """Resolve a job: a document (dict or JSON text) or a parsed job; ``robot`` replaces the document's.
+
+    Raises DocumentError, InputError, ModelError, ResourceError; nothing has run then.
+    """
+    job = document if isinstance(document, tuple(PLANNERS)) else parse_job(document)
+    subject: Robot = robot_of_spec(job.robot, job.base, job.tip) if robot is None else as_robot(robot)
+    return PLANNERS[type(job)](job, subject)
+
+
+def run_shard(plan: Plan, shard: int, progress: Callable[[int], None] | None = None, **execution: Any) -> Any:
+    """The partial result of one shard; ``execution`` may give ``threads`` and ``chunk_size``, which change no bit."""
+    return plan.run_shard(shard, progress, **execution)
+
+
+def merge(plan: Plan, a: Any, b: Any) -> Any:
+    """The partial result of both; associative, so the order of shards does not matter."""
+    return plan.merge(a, b)
+
+
+def finish(plan: Plan, partial: Any, seconds: dict[str, float] | None = None) -> Result:
+    """The result of the merged partial results; ``seconds`` goes into ``timing_s``."""
+    return plan.finish(partial, seconds or {})
+
+
+def execute(document: Any, progress: Progress | None = None, robot: Any = None, **execution: Any) -> Result:
+    """Run a job here, from document to result.
+
+    ``progress(done, total, message)`` is called in this thread a few times a second. ``threads`` (default: the
+    variable WSRENDER_THREADS, else all cores) and ``chunk_size`` change no bit of the result.
+    """
+    started = time.perf_counter()
+    if progress:
+        progress(0, 1, "planning")
+    planned = plan(document, robot)
+    total = sum(count for _, count in planned.shards)
+    planned_at = time.perf_counter()
+    partials = []
+    before = 0
+    for shard, (_, count) in enumerate(planned.shards):
+
+        def report(done: int, before: int = before) -> None:
+            if progress:
+                progress(before + done, total, "samples")
+
+        partials.append(run_shard(planned, shard, report, **execution))
+        before += count
+    partial = reduce(planned.merge, partials)
+    swept_at = time.perf_counter()
+    if progress:
+        progress(total, total, "finishing")
+    return finish(planned, partial, {"plan": planned_at - started, "sweep": swept_at - planned_at})

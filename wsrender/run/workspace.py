@@ -1,0 +1,170 @@
+"""The analysis ``workspace``: plan, shards, merge."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+from wsrender.engine import Partial, SweepPlan, devices_of, merge, sweep, target_of
+from wsrender.errors import InputError, NotConvergedError
+from wsrender.global_indices import joint_means, workspace_mean
+from wsrender.engine.voxel_data import volume_data
+from wsrender.result import Result
+from wsrender.robot import Robot
+from wsrender.robot.indices import evaluation_of
+from wsrender.run.estimate import estimate
+from wsrender.run.first_pass import FirstPass
+from wsrender.run.workspace_result import workspace_result
+from wsrender.sampling import SamplingPlan, plan_sampling
+from wsrender.spec import WorkspaceJob
+from wsrender.spec.sampling import Converge, Grid
+
+SHARD_SAMPLES = 1 << 30  # a multiple of the kernels' block of samples
+
+
+@dataclass(frozen=True, eq=False)
+class WorkspacePartial:
+    """A partial result, and for a converging job the whole sequence of global values."""
+
+    sweep: Partial
+    plan: SweepPlan
+    convergence: list[dict[str, float]] | None = None
+
+
+@dataclass(eq=False)
+class WorkspacePlan:
+    """A resolved ``workspace`` job."""
+
+    job: WorkspaceJob
+    robot: Robot
+    sweep: SweepPlan
+    first_pass: FirstPass
+    target: str
+    shards: list[tuple[int, int]]
+    estimate: dict[str, float]
+
+    def run_shard(
+        self, shard: int, progress: Callable[[int], None] | None, **execution: Any
+    ) -> WorkspacePartial:
+        """Sweep the shard's samples; a converging job has one shard, its sequence of grids."""
+        devices = devices_of(self.job.device)
+        if isinstance(self.job.sampling, Converge):
+            return self._converge(self.job.sampling, progress, **execution)
+        first, count = self.shards[shard]
+        return WorkspacePartial(
+            sweep(self.sweep, first, count, devices, progress=progress, **execution), self.sweep
+        )
+
+    def merge(self, a: WorkspacePartial, b: WorkspacePartial) -> WorkspacePartial:
+        """The partial result of both; bit for bit the same in any order."""
+        return WorkspacePartial(merge(a.sweep, b.sweep), self.sweep)
+
+    def finish(self, partial: WorkspacePartial, seconds: dict[str, float]) -> Result:
+        """Map, volume, global values and the result document."""
+        return workspace_result(
+            self.job, self.robot, partial.plan, partial.sweep, partial.convergence, self.target, seconds
+        )
+
+    def _converge(
+        self, sampling: Converge, progress: Callable[[int], None] | None, **execution: Any
+    ) -> WorkspacePartial:
+        """[WSR] Algorithm 1: finer grids until the global value of an index changes by at most the tolerance."""
+        position = self.sweep.evaluation.indices.index(_converging_index(self.sweep, sampling))
+        sequence: list[dict[str, float]] = []
+        levels, before = sampling.start, 0
+        while True:
+            plan = self._with_grid(levels, sampling)
+            count = plan.sampling.count
+            if count > sampling.max_samples:
+                raise NotConvergedError(
+                    f"not converged: the next grid, {levels} per joint, has {count:.4g} samples, above max_samples = "
+                    f"{sampling.max_samples:.4g}; {sampling.by} so far: "
+                    + ", ".join(f"{s['value']:.6g} ({s['per_joint']})" for s in sequence),
+                    sequence,
+                )
+
+            def report(done: int, before: int = before) -> None:
+                if progress:
+                    progress(before + done)
+
+            partial = sweep(plan, 0, count, devices_of(self.job.device), progress=report, **execution)
+            value = self._global_value(plan, partial, position, sampling.by)
+            sequence.append({"per_joint": levels, "samples": count, "value": value})
+            if len(sequence) > 1 and abs(value - sequence[-2]["value"]) <= sampling.tolerance:
+                return WorkspacePartial(partial, plan, sequence)
+            levels, before = levels + sampling.step, before + count
+
+    def _with_grid(self, levels: int, sampling: Converge) -> SweepPlan:
+        """The plan of one grid; the voxel size is that of the job for all of them."""
+        grid = plan_sampling(self.robot.chain, Grid(levels, locked=sampling.locked))
+        scales, bounds = self.first_pass.sum_scales(grid.count, self.job.precision)
+        return replace(self.sweep, sampling=grid, scales=scales, bounds=bounds)
+
+    def _global_value(self, plan: SweepPlan, partial: Partial, position: int, by: str) -> float:
+        if by == "joint_mean":
+            return float(joint_means(plan, partial)[position])
+        value = workspace_mean(volume_data(plan, partial, {}), plan.evaluation.indices[position])
+        assert value is not None
+        return value
+
+
+def plan_workspace(job: WorkspaceJob, robot: Robot) -> WorkspacePlan:
+    """Resolve the job. Raises InputError, MissingInertiaError, ResourceError."""
+    devices = devices_of(job.device)
+    evaluation = evaluation_of(
+        robot,
+        indices=job.indices,
+        task=job.task,
+        convention=job.convention,
+        joint_limit_penalty=job.joint_limit_penalty,
+        characteristic_length_m=job.characteristic_length_m,
+        torque_scaling=job.torque_scaling,
+        inertia=job.inertia,
+        precision=job.precision,
+    )
+    sampling = _first_sampling(job, robot)
+    first_pass = FirstPass(evaluation, dict(job.sampling.locked))
+    voxel_size = job.voxel_size_m or first_pass.voxel_size()
+    scales, bounds = first_pass.sum_scales(sampling.count, job.precision)
+    plan = SweepPlan(
+        evaluation,
+        sampling,
+        first_pass.block(voxel_size),
+        frozenset(job.voxel_statistics),
+        scales,
+        bounds,
+        job.precision,
+        keep_rows=job.keep_map,
+        keep_configuration="configuration" in job.map_columns,
+        keep_orientation="orientation" in job.map_columns,
+    )
+    if job.keep_map and "orientation" in job.map_columns and evaluation.host_kinematics is not None:
+        raise InputError("map_columns", "orientation is not kept for a user-defined robot")
+    if isinstance(job.sampling, Converge):
+        _converging_index(plan, job.sampling)
+        if job.sampling.by == "workspace_mean" and not {"maximum", "mean"} & set(job.voxel_statistics):
+            raise InputError("sampling.by", "workspace_mean needs the voxel statistic maximum or mean")
+        shards = [(0, sampling.count)]
+    else:
+        shards = [
+            (first, min(SHARD_SAMPLES, sampling.count - first))
+            for first in range(0, sampling.count, SHARD_SAMPLES)
+        ]
+    return WorkspacePlan(
+        job, robot, plan, first_pass, target_of(devices), shards, estimate(plan, devices)
+    )
+
+
+def _first_sampling(job: WorkspaceJob, robot: Robot) -> SamplingPlan:
+    if isinstance(job.sampling, Converge):
+        limit = min(job.max_samples, job.sampling.max_samples)
+        return plan_sampling(robot.chain, Grid(job.sampling.start, locked=job.sampling.locked), limit)
+    return plan_sampling(robot.chain, job.sampling, job.max_samples)
+
+
+def _converging_index(plan: SweepPlan, sampling: Converge) -> str:
+    from wsrender.indices.catalogue import resolve
+
+    (name,) = resolve((sampling.index,), plan.evaluation.chain.has_inertia)
+    if name not in plan.evaluation.indices:
+        raise InputError("sampling.index", f"{sampling.index!r} is not among the job's indices")
+    return name
