@@ -87,9 +87,9 @@ def test_document_lists_every_file_with_its_hash(tmp_path, result):
 
 
 def test_equal_results_have_equal_artifacts(tmp_path, result):
-    result.save(tmp_path / "a", formats=("svg",))
+    result.save(tmp_path / "a")
     again = Result(document(), random_map(50), random_map(20), random_volume((5, 4, 3)), SKELETON)
-    again.save(tmp_path / "b", formats=("svg",))
+    again.save(tmp_path / "b")
     assert again.document["artifacts"] == result.document["artifacts"]
 
 
@@ -124,7 +124,8 @@ def test_values_that_json_lacks_are_refused_and_nothing_is_written(tmp_path, val
     assert not list(tmp_path.iterdir())
 
 
-def test_saving_again_replaces_the_result_and_keeps_other_files(tmp_path, result):
+def test_saving_again_replaces_the_result_and_keeps_other_files(tmp_path):
+    result = Result(document(), random_map(50, names=()), random_map(20, names=()), random_volume((5, 4, 3)))
     folder = tmp_path / "out"
     folder.mkdir()
     (folder / "notes.txt").write_text("mine")
@@ -137,7 +138,8 @@ def test_saving_again_replaces_the_result_and_keeps_other_files(tmp_path, result
     assert [path.name for path in tmp_path.iterdir()] == ["out"]
 
 
-def test_failed_save_changes_nothing(tmp_path, result, monkeypatch):
+def test_failed_save_changes_nothing(tmp_path, monkeypatch):
+    result = Result(document(), volume=random_volume((5, 4, 3)))
     folder = tmp_path / "out"
     result.save(folder)
     before = {name: (folder / name).read_bytes() for name in names_in(folder)}
@@ -154,9 +156,9 @@ def test_failed_save_changes_nothing(tmp_path, result, monkeypatch):
     assert [path.name for path in tmp_path.iterdir()] == ["out"]
 
 
-def test_changed_missing_or_outside_files_are_refused(tmp_path, result):
+def test_changed_missing_or_outside_files_are_refused(tmp_path):
     folder = tmp_path / "out"
-    result.save(folder)
+    Result(document(), volume=random_volume((5, 4, 3))).save(folder)
     volume = (folder / "volume.vtkhdf").read_bytes()
     (folder / "volume.vtkhdf").write_bytes(volume[:-1] + bytes([volume[-1] ^ 1]))
     with pytest.raises(InputError, match=r"volume\.vtkhdf: has changed since it was saved"):

@@ -1,4 +1,4 @@
-"""Names of columns and files, made from the names that robots and users give."""
+"""Names of columns and arrays, made from the names that robots and users give."""
 
 import re
 from collections.abc import Iterable
@@ -19,8 +19,3 @@ def unique_names(names: Iterable[str], kind: str, taken: set[str]) -> dict[str, 
         taken.add(free)
         result[name] = free
     return result
-
-
-def file_stem(name: str) -> str:
-    """A name that is safe in every file system, made from any name: letters, digits, ``_``, ``-``, ``.``."""
-    return re.sub(r"[^A-Za-z0-9_.-]+", "_", name).strip("._")[:80] or "unnamed"

@@ -33,12 +33,12 @@ def histogram(samples: DistributionMap, index: str | None = None, *, title: str 
     for axes, name in zip(panels.flat, names, strict=False):
         values = samples.indices[name]
         edges, share = histogram_data(values)
-        axes.bar(edges[:-1], 100 * share, np.diff(edges), align="edge", color=color_map()(0.35), zorder=2)
-        axes.axvline(
-            samples.indices[name].mean(dtype=np.float64), color=INK, lw=0.9, ls=(0, (4, 2)), zorder=3
-        )
+        axes.stairs(100 * share, edges, fill=True, color=color_map()(0.35), zorder=2)
+        axes.set_ylim(bottom=0)
+        axes.axvline(values.mean(dtype=np.float64), color=INK, lw=0.9, ls=(0, (4, 2)), zorder=3)
         axes.set_xlabel(quantity(name, samples.units.get(name)))
-        axes.xaxis.set_major_locator(MaxNLocator(5))
+        axes.xaxis.set_major_locator(MaxNLocator(4))
+        axes.yaxis.set_major_locator(MaxNLocator(4))
         axes.grid(axis="y", zorder=0)
     for axes in panels[:, 0]:
         axes.set_ylabel("Share of samples [%]")
