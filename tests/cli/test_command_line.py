@@ -3,6 +3,7 @@
 import io
 import json
 import sys
+import time
 import warnings
 from importlib.metadata import EntryPoint
 from types import ModuleType, SimpleNamespace
@@ -192,35 +193,49 @@ class Terminal(io.StringIO):
         return True
 
 
-def progress_after(monkeypatch, seconds, stream, calls):
-    """What progress writes when the calls (done, total) come at the given times."""
-    clock = iter([0.0, *seconds])
+def lines_of(monkeypatch, reports):
+    """What progress writes off a terminal when (time, done, message) are reported of 4 million samples."""
     now = SimpleNamespace(value=0.0)
     monkeypatch.setattr("wsrender.cli.progress.time", SimpleNamespace(monotonic=lambda: now.value))
-    now.value = next(clock)
+    stream = io.StringIO()
     with RunProgress(stream) as progress:
-        for done, total in calls:
-            now.value = next(clock)
-            progress(done, total, "sampling")
-    return stream.getvalue()
+        for now.value, done, message in reports:
+            progress(done, 4_000_000, message)
+    return stream.getvalue().splitlines()
 
 
 def test_work_below_a_second_shows_nothing(monkeypatch):
-    for stream in (io.StringIO(), Terminal()):
-        assert progress_after(monkeypatch, [0.1, 0.9], stream, [(1, 2), (2, 2)]) == ""
+    assert (
+        lines_of(monkeypatch, [(0.0, 0, "planning"), (0.5, 100, "samples"), (0.9, 4_000_000, "samples")])
+        == []
+    )
 
 
-def test_plain_lines_off_a_terminal(monkeypatch):
-    times = [2.0, 2.1, 2.0 + LINE_EVERY_S]
-    lines = progress_after(monkeypatch, times, io.StringIO(), [(1e6, 4e6), (1.1e6, 4e6), (3.5e6, 4e6)])
-    assert lines.splitlines() == [
-        "sampling: 25 % of 4e+06, 1e+06 samples, 5e+05/s, 6 s left",
-        "sampling: 88 % of 4e+06, 3.5e+06 samples, 5e+05/s, 1 s left",
+def test_plain_lines_off_a_terminal_do_not_count_planning_in_the_rate(monkeypatch):
+    reports = [
+        (0.0, 0, "planning"),
+        (10.0, 0, "samples"),
+        (12.0, 1_000_000, "samples"),
+        (12.1, 1_100_000, "samples"),
+        (12.0 + LINE_EVERY_S, 3_500_000, "samples"),
+    ]
+    assert lines_of(monkeypatch, reports) == [
+        "samples: 25 %, 1e+06, 5e+05/s, 6 s left",
+        "samples: 88 %, 3.5e+06, 5e+05/s, 1 s left",
     ]
 
 
-def test_bar_on_a_terminal(monkeypatch):
+def test_bar_on_a_terminal_appears_after_the_quiet_time(monkeypatch):
     monkeypatch.setenv("TERM", "xterm")
-    shown = progress_after(monkeypatch, [2.0, 4.0], Terminal(), [(1e6, 4e6), (2e6, 4e6)])
-    assert "50 %" in shown
-    assert "5e+05/s" in shown
+    monkeypatch.setattr("wsrender.cli.progress.QUIET_S", 0.05)
+    quick, slow = Terminal(), Terminal()
+    with RunProgress(quick) as progress:
+        progress(1, 2, "samples")
+    with RunProgress(slow) as progress:
+        progress(0, 4_000_000, "samples")
+        time.sleep(0.3)
+        progress(2_000_000, 4_000_000, "samples")
+        time.sleep(0.3)
+    assert "samples" not in quick.getvalue()
+    assert "50 %" in slow.getvalue()
+    assert "/s" in slow.getvalue()

@@ -2,66 +2,101 @@
 
 import sys
 import time
+from threading import Timer
 from types import TracebackType
 from typing import Self, TextIO
 
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeRemainingColumn
+from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
 QUIET_S = 1.0  # shorter work shows nothing
 LINE_EVERY_S = 5.0  # off a terminal
 
 
 class RunProgress:
-    """Called as ``progress(done, total, message)``; shows samples, rate and time left.
+    """Called as ``progress(done, total, message)``; shows the part done, samples, rate and time left.
 
     Use it as a context manager. Work that ends within a second shows nothing.
     """
 
     def __init__(self, stream: TextIO | None = None):
-        self._console = Console(file=stream or sys.stderr)
-        self._started = self._last_line = time.monotonic()
-        self._bar: Progress | None = None
-        self._task: TaskID | None = None
+        console = Console(file=stream or sys.stderr, highlight=False, soft_wrap=True)
+        self._shown = _Bar(console) if console.is_terminal else _Lines(console)
+        self._phase: tuple[int, str] | None = None
+        self._phase_start = (0.0, 0)  # time [s], done
 
     def __enter__(self) -> Self:
+        self._shown.start()
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        if self._bar is not None:
-            self._bar.stop()
+        self._shown.stop()
 
     def __call__(self, done: int, total: int, message: str) -> None:
-        """Report that ``done`` of ``total`` samples are finished."""
-        elapsed = time.monotonic() - self._started
-        if elapsed < QUIET_S:
+        """Report that ``done`` of ``total`` samples are finished; ``message`` names what is going on."""
+        now = time.monotonic()
+        if self._phase != (total, message):  # planning and compiling must not count in the rate
+            self._phase, self._phase_start = (total, message), (now, done)
+        since, done_before = self._phase_start
+        rate = (done - done_before) / (now - since) if done > done_before and now > since else None
+        self._shown.show(done, total, message, rate)
+
+
+class _Bar:
+    """A bar that appears after a second, moving even while no report comes."""
+
+    def __init__(self, console: Console):
+        columns = (
+            TextColumn("{task.description}"),
+            BarColumn(),
+            TextColumn("{task.percentage:3.0f} %"),
+            TextColumn("{task.fields[samples]}"),
+            TimeRemainingColumn(),
+        )
+        self._bar = Progress(*columns, console=console, transient=True)
+        self._task = self._bar.add_task("starting", total=None, samples="")
+        self._timer = Timer(QUIET_S, self._bar.start)
+        self._timer.daemon = True
+
+    def start(self) -> None:
+        self._timer.start()
+
+    def stop(self) -> None:
+        self._timer.cancel()
+        self._timer.join()
+        self._bar.stop()
+
+    def show(self, done: int, total: int, message: str, rate: float | None) -> None:
+        size = total if done else None  # None: a moving bar
+        self._bar.update(
+            self._task, completed=done, total=size, description=message, samples=_samples(done, rate)
+        )
+
+
+class _Lines:
+    """A line every few seconds."""
+
+    def __init__(self, console: Console):
+        self._console = console
+        self._next = 0.0
+
+    def start(self) -> None:
+        self._next = time.monotonic() + QUIET_S
+
+    def stop(self) -> None:
+        pass
+
+    def show(self, done: int, total: int, message: str, rate: float | None) -> None:
+        if done == 0 or time.monotonic() < self._next:
             return
-        if self._console.is_terminal:
-            self._show_bar(done, total, f"{message}  {_rate(done, elapsed)}")
-        elif time.monotonic() - self._last_line >= LINE_EVERY_S or self._last_line == self._started:
-            self._last_line = time.monotonic()
-            self._console.print(_line(done, total, message, elapsed), soft_wrap=True, highlight=False)
-
-    def _show_bar(self, done: int, total: int, description: str) -> None:
-        if self._bar is None or self._task is None:
-            columns = (
-                TextColumn("{task.percentage:3.0f} %"),
-                BarColumn(),
-                TextColumn("{task.description}"),
-                TimeRemainingColumn(),
-            )
-            self._bar = Progress(*columns, console=self._console, transient=True)
-            self._task = self._bar.add_task(description, total=total)
-            self._bar.start()
-        self._bar.update(self._task, completed=done, total=total, description=description)
+        self._next = time.monotonic() + LINE_EVERY_S
+        left = f", {(total - done) / rate:.0f} s left" if rate else ""
+        self._console.print(f"{message}: {100 * done / total:.0f} %, {_samples(done, rate)}{left}")
 
 
-def _rate(done: int, elapsed: float) -> str:
-    return f"{done:.3g} samples, {done / elapsed:.3g}/s"
-
-
-def _line(done: int, total: int, message: str, elapsed: float) -> str:
-    left = (total - done) * elapsed / done if done else float("nan")
-    return f"{message}: {100 * done / total:.0f} % of {total:.3g}, {_rate(done, elapsed)}, {left:.0f} s left"
+def _samples(done: int, rate: float | None) -> str:
+    if done == 0:
+        return ""
+    return f"{done:.3g}, {rate:.3g}/s" if rate else f"{done:.3g}"

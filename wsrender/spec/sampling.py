@@ -48,7 +48,8 @@ class Grid(_Sampling):
     method: Literal["grid"] = "grid"
     """Name of the sampling method."""
     per_joint: PerJoint = 15
-    """Samples per joint: one number for all, or a list with one per joint from base to tip."""
+    """Samples per joint: one number for all, or a list from base to tip with one per joint, or one per
+    joint that is not locked."""
 
     def __init__(
         self,
