@@ -191,3 +191,19 @@ def test_importing_the_package_loads_no_mujoco():
     code = "import sys, wsrender.robots; sys.exit('mujoco' in sys.modules)"
     root = Path(__file__).parents[2]
     subprocess.run([sys.executable, "-c", code], cwd=root, check=True, timeout=60)
+
+
+def test_without_mujoco_the_extra_is_named():
+    code = """
+import sys
+sys.modules["mujoco"] = None
+from wsrender import robots
+from wsrender.errors import MissingExtraError
+try:
+    robots.load_mjcf("<mujoco/>")
+except MissingExtraError as error:
+    sys.exit('pip install "wsrender[engine]"' not in str(error))
+sys.exit(1)
+"""
+    root = Path(__file__).parents[2]
+    subprocess.run([sys.executable, "-c", code], cwd=root, check=True, timeout=60)

@@ -15,7 +15,7 @@ MUJOCO_ERRORS = (ValueError, RuntimeError, mujoco.FatalError)
 
 @contextmanager
 def quiet() -> Iterator[None]:
-    """Keeps MuJoCo's warnings of near-singular inertias, which are no fault of a kinematic model, to itself.
+    """Keeps MuJoCo's warnings to itself: of near-singular inertias, no fault of a kinematic model, and such.
 
     Some of them come as Python warnings, others end in a log file in the working directory.
     """

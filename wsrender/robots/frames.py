@@ -89,7 +89,7 @@ def _find(model: mujoco.MjModel, name: str, field: str, offered) -> Frame:
         return Frame(name, body)
     choices = _names(model, offered)
     close = get_close_matches(name, choices, n=1)
-    hint = f"; did you mean {close[0]!r}?" if close else ""
+    hint = f"; did you mean {close[0]!r}" if close else ""
     raise FrameNotFoundError(field, f"the model has no site, body or link {name!r}{hint}", choices)
 
 

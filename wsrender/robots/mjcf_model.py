@@ -10,7 +10,7 @@ import mujoco
 
 from wsrender.errors import ModelError
 from wsrender.robots import mjcf
-from wsrender.robots.compiled_model import MUJOCO_ERRORS, CompiledModel, refusal
+from wsrender.robots.compiled_model import MUJOCO_ERRORS, CompiledModel, quiet, refusal
 from wsrender.robots.inertials import compile_with_inertials
 from wsrender.robots.model_warning import ModelWarning
 
@@ -63,7 +63,8 @@ def compile_mjcf(root: Element, read_mesh: ReadMesh, field: str) -> CompiledMode
 
 def _parsed(text: str, field: str) -> mujoco.MjSpec:
     try:
-        return mujoco.MjSpec.from_string(text)
+        with quiet():
+            return mujoco.MjSpec.from_string(text)
     except MUJOCO_ERRORS as error:
         raise refusal(error, field) from error
 
