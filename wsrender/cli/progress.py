@@ -89,11 +89,11 @@ class _Lines:
         pass
 
     def show(self, done: int, total: int, message: str, rate: float | None) -> None:
-        if done == 0 or time.monotonic() < self._next:
+        if rate is None or time.monotonic() < self._next:
             return
         self._next = time.monotonic() + LINE_EVERY_S
-        left = f", {(total - done) / rate:.0f} s left" if rate else ""
-        self._console.print(f"{message}: {100 * done / total:.0f} %, {_samples(done, rate)}{left}")
+        left = f"{(total - done) / rate:.0f} s left"
+        self._console.print(f"{message}: {100 * done / total:.0f} %, {_samples(done, rate)}, {left}")
 
 
 def _samples(done: int, rate: float | None) -> str:
