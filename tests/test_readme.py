@@ -1,0 +1,38 @@
+"""What the README shows works as it is written."""
+
+import re
+from pathlib import Path
+
+from wsrender.spec import parse_job
+
+README = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8")
+
+
+def blocks(language):
+    return re.findall(rf"```{language}\n(.*?)```", README, flags=re.DOTALL)
+
+
+def test_python_example(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (example,) = blocks("python")
+    names = {}
+    exec(compile(example, "README.md", "exec"), names)
+    assert "manipulability" in capsys.readouterr().out
+    assert (tmp_path / "slice.png").read_bytes().startswith(b"\x89PNG")
+    assert (tmp_path / "out" / "result.json").is_file()
+    assert names["robot"].forward_kinematics([0, -1.5, 1.5, 0, 1, 0]).shape == (1, 4, 4)
+
+
+def test_job_document():
+    (example,) = blocks("json")
+    assert parse_job(example).robot.library == "phantom_omni"
+
+
+def test_the_output_table_lists_the_files_of_a_result(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    import wsrender as ws
+
+    ws.analyze("scara", sampling=ws.Grid(3), task=["x", "y"], voxel_size_m=0.05, keep_map=True).save("out")
+    listed = set(re.findall(r"`([\w/.]+)`", README.split("## Reading the output")[1].split("\n\n")[1]))
+    written = {path.name for path in Path("out").iterdir()}
+    assert {name.strip("/") for name in listed} >= written
