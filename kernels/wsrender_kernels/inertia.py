@@ -33,7 +33,7 @@ def pack_inertia(T_joint, mass, center_of_mass, inertia, armature) -> np.ndarray
 
 @cache
 def inertia(real, n: int, sources: tuple[int, ...]) -> SimpleNamespace:
-    """Device functions ``inertia_matrix(chain, bodies, origins, X, Y, Z) -> (n, n)`` and ``solve(M, A) -> A M^-1``."""
+    """Device functions ``inertia_matrix(chain, bodies, levers, X, Y, Z) -> (n, n)`` and ``solve(M, A) -> A M^-1``."""
     L = len(sources)
     SOURCE = wp.types.vector(L, wp.int32)(*sources)
     CHAIN = JOINT_STRIDE
@@ -71,12 +71,15 @@ def inertia(real, n: int, sources: tuple[int, ...]) -> SimpleNamespace:
     def inertia_matrix(
         chain: wp.array(dtype=real),
         bodies: wp.array(dtype=real),
-        origins: axes_type,
+        levers: axes_type,
         X: axes_type,
         Y: axes_type,
         Z: axes_type,
     ):
         M = joint_inertia_type()
+        to_tip = axes_type()
+        for i in range(L):
+            to_tip[i] = X[i] * levers[i, 0] + Y[i] * levers[i, 1] + Z[i] * levers[i, 2]
         m = ZERO
         h = vec3()
         I = mat33()
@@ -86,9 +89,9 @@ def inertia(real, n: int, sources: tuple[int, ...]) -> SimpleNamespace:
             x = X[i]
             y = Y[i]
             z = Z[i]
-            o = origins[i]
+            o = to_tip[i]
             if back > 0:
-                d = origins[wp.min(i + 1, L - 1)] - o
+                d = o - to_tip[wp.min(i + 1, L - 1)]
                 I = shifted(I, m, h, d)
                 h = h + d * m
             R = mat33(x[0], y[0], z[0], x[1], y[1], z[1], x[2], y[2], z[2])
@@ -102,7 +105,7 @@ def inertia(real, n: int, sources: tuple[int, ...]) -> SimpleNamespace:
             for j in range(i + 1):
                 zj = Z[j]
                 value = (
-                    wp.dot(zj, moment + wp.cross(o - origins[j], momentum)) * chain[j * CHAIN + 7]
+                    wp.dot(zj, moment + wp.cross(to_tip[j] - o, momentum)) * chain[j * CHAIN + 7]
                     + wp.dot(zj, momentum) * chain[j * CHAIN + 8]
                 )
                 M[SOURCE[i], SOURCE[j]] += value

@@ -94,15 +94,18 @@ def orientation(real):
 def kinematics(real, n: int, sources: tuple[int, ...]) -> SimpleNamespace:
     """Device functions for a chain whose joint i is driven by coordinate ``sources[i]`` of ``n``.
 
-    ``forward(chain, q) -> tip, x, y, z, origins, X, Y, Z``: tip position and axes, origins and axes of the joint
-    frames after their motion, (L, 3) each, in the world frame [m]. ``jacobian(chain, tip, origins, Z)`` is (6, n),
-    rows linear then angular at the tip in world axes, as MuJoCo's mj_jacSite.
+    ``forward(chain, q) -> tip, x, y, z, levers, X, Y, Z``: tip position and axes in the world; for every joint frame
+    after its motion, (L, 3) each, its axes in the world and the tip's position in it [m]. ``jacobian(chain, levers, X,
+    Y, Z)`` is (6, n), rows linear then angular at the tip in world axes, as MuJoCo's mj_jacSite.
+
+    The tip's position is accumulated from the tip to the base: the levers of the last joints, which move the least
+    inertia, then err by their own small length times epsilon and not by the arm's.
     """
     L = len(sources)
     SOURCE = wp.types.vector(L, wp.int32)(*sources)
     STRIDE = JOINT_STRIDE
     vec3 = wp.types.vector(3, real)
-    vec_n = wp.types.vector(n, real)
+    vec_n, vec_l = wp.types.vector(n, real), wp.types.vector(L, real)
     axes_type = wp.types.matrix((L, 3), real)
     jacobian_type = wp.types.matrix((6, n), real)
     sincos = elementary(real).sincos
@@ -113,42 +116,57 @@ def kinematics(real, n: int, sources: tuple[int, ...]) -> SimpleNamespace:
         x = vec3(chain[b], chain[b + 1], chain[b + 2])
         y = vec3(chain[b + 3], chain[b + 4], chain[b + 5])
         z = vec3(chain[b + 6], chain[b + 7], chain[b + 8])
-        p = vec3(chain[b + 9], chain[b + 10], chain[b + 11])
-        origins = axes_type()
         X = axes_type()
         Y = axes_type()
         Z = axes_type()
+        sines = vec_l()
+        cosines = vec_l()
         for i in range(L):
             a = i * STRIDE
-            p = p + x * chain[a + 2] + y * chain[a + 3] + z * chain[a + 4]
             tilted = y * chain[a] + z * chain[a + 1]
             z = z * chain[a] - y * chain[a + 1]
-            value = q[SOURCE[i]]
-            s, c = sincos(value * chain[a + 7])
+            s, c = sincos(q[SOURCE[i]] * chain[a + 7])
             sine = s * chain[a + 5] + c * chain[a + 6]
             cosine = c * chain[a + 5] - s * chain[a + 6]
             y = tilted * cosine - x * sine
             x = x * cosine + tilted * sine
-            p = p + z * (value * chain[a + 8] + chain[a + 9])
-            origins[i] = p
+            sines[i] = sine
+            cosines[i] = cosine
             X[i] = x
             Y[i] = y
             Z[i] = z
         t = b + 12
-        tip = p + x * chain[t] + y * chain[t + 1] + z * chain[t + 2]
+        levers = axes_type()
+        r = vec3(chain[t], chain[t + 1], chain[t + 2])
+        for back in range(L):
+            i = L - 1 - back
+            a = i * STRIDE
+            levers[i] = r
+            rx = cosines[i] * r[0] - sines[i] * r[1]
+            ry = sines[i] * r[0] + cosines[i] * r[1]
+            rz = r[2] + (q[SOURCE[i]] * chain[a + 8] + chain[a + 9])
+            r = vec3(
+                chain[a + 2] + rx,
+                chain[a + 3] + (chain[a] * ry - chain[a + 1] * rz),
+                chain[a + 4] + (chain[a + 1] * ry + chain[a] * rz),
+            )
+        tip = vec3()
+        for k in range(3):
+            tip[k] = chain[b + 9 + k] + (chain[b + k] * r[0] + chain[b + 3 + k] * r[1] + chain[b + 6 + k] * r[2])
         tip_x = x * chain[t + 3] + y * chain[t + 4] + z * chain[t + 5]
         tip_y = x * chain[t + 6] + y * chain[t + 7] + z * chain[t + 8]
         tip_z = x * chain[t + 9] + y * chain[t + 10] + z * chain[t + 11]
-        return tip, tip_x, tip_y, tip_z, origins, X, Y, Z
+        return tip, tip_x, tip_y, tip_z, levers, X, Y, Z
 
     @wp.func
-    def jacobian(chain: wp.array(dtype=real), tip: vec3, origins: axes_type, Z: axes_type):
+    def jacobian(chain: wp.array(dtype=real), levers: axes_type, X: axes_type, Y: axes_type, Z: axes_type):
         J = jacobian_type()
         for i in range(L):
             per_angle = chain[i * STRIDE + 7]
             per_slide = chain[i * STRIDE + 8]
             z = Z[i]
-            linear = wp.cross(z, tip - origins[i]) * per_angle + z * per_slide
+            # z x lever, exactly 0 for a tip on the axis.
+            linear = (Y[i] * levers[i, 0] - X[i] * levers[i, 1]) * per_angle + z * per_slide
             for r in range(3):
                 J[r, SOURCE[i]] += linear[r]
                 J[3 + r, SOURCE[i]] += z[r] * per_angle

@@ -60,18 +60,18 @@ def kinematics_kernel(real, n: int, sources: tuple[int, ...], with_inertia: bool
         q = vec_n()
         for i in range(n):
             q[i] = q_in[sample, i]
-        tip, x, y, z, origins, X, Y, Z = forward(model.chain, q)
+        tip, x, y, z, levers, X, Y, Z = forward(model.chain, q)
         for r in range(3):
             pose_out[sample, r] = x[r]
             pose_out[sample, 3 + r] = y[r]
             pose_out[sample, 6 + r] = z[r]
             pose_out[sample, 9 + r] = tip[r]
-        J = jacobian(model.chain, tip, origins, Z)
+        J = jacobian(model.chain, levers, X, Y, Z)
         for r in range(6):
             for c in range(n):
                 jacobian_out[sample, r, c] = J[r, c]
         if wp.static(WITH_INERTIA):
-            M = inertia_matrix(model.chain, model.bodies, origins, X, Y, Z)
+            M = inertia_matrix(model.chain, model.bodies, levers, X, Y, Z)
             for r in range(n):
                 for c in range(n):
                     inertia_out[sample, r, c] = M[r, c]

@@ -3,10 +3,14 @@
 Up to three rows: an orthogonal factorisation of the rows gives det(A Aᵀ) without squaring the condition number; the
 largest eigenvalue and the gap of the others come from the angle between the deviators of H = A Aᵀ and of H², the
 smallest by deflation. Four to six rows: one-sided Jacobi (Hestenes 1958; Demmel & Veselić 1992). A value
-<= max(m, n) eps sigma_1 counts as 0 (DEFINITIONS: section 2 of the project's definitions).
+<= max(m, n) eps sigma_1 counts as 0.
+
+The columns of J M^-1 differ by the ratio of the links' inertias, often 1e5. Errors then must stay relative to each
+column, or float32 loses the small singular values: ``graded`` matrices are rotated by their largest columns first, or
+orthogonalised by columns (Demmel & Veselić: Jacobi is accurate for a well-conditioned matrix times any scaling).
 """
 
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 import warp as wp
@@ -21,18 +25,24 @@ def epsilon(real) -> float:
 
 
 @cache
-def singular_values(real, m: int, n: int):
-    """Device function ``(A: (m, n)) -> (m,)``, descending; exact zeros where the matrix is singular or n < m."""
-    solver = {1: _one_row, 2: _two_rows, 3: _three_rows}.get(m, _jacobi)(real, m, n)
+def singular_values(real, m: int, n: int, graded: bool = False):
+    """Device function ``(A: (m, n)) -> (m,)``, descending; exact zeros where the matrix is singular or n < m.
+
+    A ``graded`` matrix has small singular values that are no rounding noise: none counts as 0 there.
+    """
+    by_columns = m > n or graded
+    solver = {1: _one_row, 2: _two_rows, 3: _three_rows}.get(m) or partial(_jacobi, by_columns=by_columns)
+    solver = solver(real, m, n)
+    rotated = _by_largest_columns(real, n) if graded and m == 3 else _as_it_is(real, m, n)
     vec_m = wp.types.vector(m, real)
     mat_mn = wp.types.matrix((m, n), real)
-    NEGLIGIBLE = real(max(m, n) * epsilon(real))
+    NEGLIGIBLE = real(0.0 if graded else max(m, n) * epsilon(real))
     RANK = min(m, n)
     ZERO = real(0.0)
 
     @wp.func
     def values(A: mat_mn):
-        sigma = solver(A)
+        sigma = solver(rotated(A))
         out = vec_m()
         out[0] = sigma[0]
         for i in range(1, RANK):
@@ -40,6 +50,72 @@ def singular_values(real, m: int, n: int):
         return out
 
     return values
+
+
+def _as_it_is(real, m: int, n: int):
+    mat_mn = wp.types.matrix((m, n), real)
+
+    @wp.func
+    def as_it_is(A: mat_mn):
+        return A
+
+    return as_it_is
+
+
+def _by_largest_columns(real, n: int):
+    """Device function A -> R = E A: rows of E span the largest column, then the largest remainder (pivoted QR)."""
+    vec3, mat_3n = wp.types.vector(3, real), wp.types.matrix((3, n), real)
+    ZERO, ONE, TINY = real(0.0), real(1.0), _tiny(real)
+    NONE = wp.int32(-1)
+
+    @wp.func
+    def direction(v: vec3):
+        size = wp.dot(v, v)
+        return v * wp.where(size > TINY, ONE / wp.sqrt(wp.max(size, TINY)), ZERO)
+
+    @wp.func
+    def by_largest_columns(A: mat_3n):
+        first = NONE
+        largest = ZERO
+        a = vec3()
+        for j in range(n):
+            c = vec3(A[0, j], A[1, j], A[2, j])
+            size = wp.dot(c, c)
+            better = size > largest
+            largest = wp.where(better, size, largest)
+            first = wp.where(better, j, first)
+            for r in range(3):
+                a[r] = wp.where(better, c[r], a[r])
+        e1 = direction(a)
+        # The pivot's remainder is exactly zero: its rounding error would drown the small columns.
+        remainder = mat_3n()
+        R = mat_3n()
+        second = NONE
+        largest = ZERO
+        b = vec3()
+        for j in range(n):
+            c = vec3(A[0, j], A[1, j], A[2, j])
+            along = wp.dot(e1, c)
+            R[0, j] = along
+            c = c - e1 * along
+            keep = wp.where(first == j, ZERO, ONE)
+            c = c * keep
+            size = wp.dot(c, c)
+            better = size > largest
+            largest = wp.where(better, size, largest)
+            second = wp.where(better, j, second)
+            for r in range(3):
+                remainder[r, j] = c[r]
+                b[r] = wp.where(better, c[r], b[r])
+        e2 = direction(b - e1 * wp.dot(e1, b))
+        e3 = wp.cross(e1, e2)
+        for j in range(n):
+            c = vec3(remainder[0, j], remainder[1, j], remainder[2, j])
+            R[1, j] = wp.dot(e2, c)
+            R[2, j] = wp.where(second == j, ZERO, wp.dot(e3, c))
+        return R
+
+    return by_largest_columns
 
 
 def _one_row(real, m: int, n: int):
@@ -198,11 +274,12 @@ def _third_of_angle(real):
     return third_of_angle
 
 
-def _jacobi(real, m: int, n: int):
-    """One-sided Jacobi on the shorter side: rows if m <= n, else columns."""
-    COUNT, LENGTH = min(m, n), max(m, n)
-    TRANSPOSED = m > n
-    vec_m = wp.types.vector(m, real)
+def _jacobi(real, m: int, n: int, by_columns: bool):
+    """One-sided Jacobi: orthogonalises the n columns, or the m rows."""
+    COUNT, LENGTH = (n, m) if by_columns else (m, n)
+    VALUES = min(m, n)
+    TRANSPOSED = by_columns
+    vec_m, vec_count = wp.types.vector(m, real), wp.types.vector(COUNT, real)
     mat_mn = wp.types.matrix((m, n), real)
     mat_work = wp.types.matrix((COUNT, LENGTH), real)
     NUMBER_OF_SWEEPS = SWEEPS[real]
@@ -243,14 +320,17 @@ def _jacobi(real, m: int, n: int):
         W = W * (ONE / wp.max(scale, TINY))
         for _sweep in range(NUMBER_OF_SWEEPS):
             W = sweep(W)
-        sigma = vec_m()
+        norms = vec_count()
         for i in range(COUNT):
-            sigma[i] = wp.sqrt(wp.dot(W[i], W[i])) * scale
+            norms[i] = wp.sqrt(wp.dot(W[i], W[i])) * scale
         for last in range(COUNT - 1):
             for i in range(COUNT - 1 - last):
-                larger = wp.max(sigma[i], sigma[i + 1])
-                sigma[i + 1] = wp.min(sigma[i], sigma[i + 1])
-                sigma[i] = larger
+                larger = wp.max(norms[i], norms[i + 1])
+                norms[i + 1] = wp.min(norms[i], norms[i + 1])
+                norms[i] = larger
+        sigma = vec_m()
+        for i in range(VALUES):
+            sigma[i] = norms[i]
         return sigma
 
     return jacobi

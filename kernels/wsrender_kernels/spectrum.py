@@ -4,6 +4,9 @@
 those of J, and for the dynamic indices those whose squares are the eigenvalues of H with H^-1 = (M J^+)^T (M J^+).
 ``wsrender_code`` (the original program): mu = sqrt det of the linear rows of J, or of all rows of J M, followed by
 the singular values of all six rows of J, or of J M.
+
+M being regular, J M^-1 has the rank of J: which dynamic values count as 0 is decided on J, whose scale is uniform. The
+threshold of J M^-1 itself would call values of up to 1e-2 of their maximum zero in float32.
 """
 
 from functools import cache
@@ -26,7 +29,7 @@ def spectrum_length(n: int, rows: tuple[int, ...], convention: str) -> int:
 
 @cache
 def spectrum(real, n: int, rows: tuple[int, ...], convention: str, penalty: bool, torque: bool) -> SimpleNamespace:
-    """Device functions ``kinematic(model, J)`` and ``dynamic(model, J, M)``, and ``penalized(model, q, J)``."""
+    """Device functions ``kinematic(model, J)``, ``dynamic(model, J, M, kinematic)`` and ``penalized(model, q, J)``."""
     make = {"standard": _standard, "table_1": _table_1, "wsrender_code": _wsrender_code}[convention]
     kinematic, dynamic = make(real, n, rows, _torque_scaled(real, n) if torque else None)
     return SimpleNamespace(
@@ -136,12 +139,28 @@ def _of_task(real, n: int, rows: tuple[int, ...]):
     return of_task
 
 
+def _where_positive(real, m: int):
+    """Device function (a, b) -> b where a > 0, else 0."""
+    vec_m = wp.types.vector(m, real)
+    ZERO = real(0.0)
+
+    @wp.func
+    def where_positive(a: vec_m, b: vec_m):
+        out = vec_m()
+        for i in range(m):
+            out[i] = wp.where(a[i] > ZERO, b[i], ZERO)
+        return out
+
+    return where_positive
+
+
 def _standard(real, n: int, rows: tuple[int, ...], torque):
     Model = model_arrays(real)
     m = len(rows)
     mat_6n, mat_nn = wp.types.matrix((6, n), real), wp.types.matrix((n, n), real)
-    mat_mn = wp.types.matrix((m, n), real)
-    task_matrix, values = _task_matrix(real, n, rows), singular_values(real, m, n)
+    mat_mn, vec_m = wp.types.matrix((m, n), real), wp.types.vector(m, real)
+    task_matrix, values = _task_matrix(real, n, rows), singular_values(real, m, n, graded=True)
+    where_positive = _where_positive(real, m)
     solve = inertia(real, n, tuple(range(n))).solve(m)
 
     @wp.func
@@ -151,8 +170,8 @@ def _standard(real, n: int, rows: tuple[int, ...], torque):
     scaled = torque(m) if torque else unscaled
 
     @wp.func
-    def dynamic(model: Model, J: mat_6n, M: mat_nn):
-        return values(scaled(model, solve(M, task_matrix(model, J))))
+    def dynamic(model: Model, J: mat_6n, M: mat_nn, kinematic: vec_m):
+        return where_positive(kinematic, values(scaled(model, solve(M, task_matrix(model, J)))))
 
     return _of_task(real, n, rows), dynamic
 
@@ -165,17 +184,17 @@ def _table_1(real, n: int, rows: tuple[int, ...], torque):
     mat_mn, mat_mm = wp.types.matrix((m, n), real), wp.types.matrix((m, m), real)
     vec_m = wp.types.vector(m, real)
     task_matrix = _task_matrix(real, n, rows)
-    values = singular_values(real, m, m)
+    values, where_positive = singular_values(real, m, m, graded=True), _where_positive(real, m)
     lower_factor = _lower_factor(real, m, n)
     DEFICIENT = n < m
     ZERO, ONE = real(0.0), real(1.0)
 
     @wp.func
-    def singular(model: Model, J: mat_6n, M: mat_nn):
+    def singular(model: Model, J: mat_6n, M: mat_nn, kinematic: vec_m):
         return vec_m()
 
     @wp.func
-    def dynamic(model: Model, J: mat_6n, M: mat_nn):
+    def dynamic(model: Model, J: mat_6n, M: mat_nn, kinematic: vec_m):
         L, Q = lower_factor(task_matrix(model, J))
         W = mat_mn()
         for r in range(m):
@@ -190,7 +209,7 @@ def _table_1(real, n: int, rows: tuple[int, ...], torque):
                 for k in range(c + 1, m):
                     value -= X[r, k] * U[k, c]
                 X[r, c] = wp.where(U[c, c] > ZERO, value / wp.where(U[c, c] > ZERO, U[c, c], ONE), ZERO)
-        return values(X)
+        return where_positive(kinematic, values(X))
 
     return _of_task(real, n, rows), singular if DEFICIENT else dynamic
 
@@ -243,7 +262,7 @@ def _wsrender_code(real, n: int, rows: tuple[int, ...], torque):
         return out
 
     @wp.func
-    def dynamic(model: Model, J: mat_6n, M: mat_nn):
+    def dynamic(model: Model, J: mat_6n, M: mat_nn, kinematic: out_type):
         six = of_six(J * M)
         out = out_type()
         determinant = ONE

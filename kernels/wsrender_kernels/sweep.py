@@ -104,15 +104,15 @@ def _state(shape: Shape) -> SimpleNamespace:
 
     @wp.func
     def from_chain(model: Model, q: vec_n, at: wp.int64, stride: wp.int64):
-        tip, x, y, z, origins, X, Y, Z = forward(model.chain, q)
-        J = jacobian(model.chain, tip, origins, Z)
+        tip, x, y, z, levers, X, Y, Z = forward(model.chain, q)
+        J = jacobian(model.chain, levers, X, Y, Z)
         return tip, wp.matrix_from_cols(x, y, z), J, read_inertia(model, at, stride)
 
     @wp.func
     def with_inertia(model: Model, q: vec_n, at: wp.int64, stride: wp.int64):
-        tip, x, y, z, origins, X, Y, Z = forward(model.chain, q)
-        J = jacobian(model.chain, tip, origins, Z)
-        M = inertia_matrix(model.chain, model.bodies, origins, X, Y, Z)
+        tip, x, y, z, levers, X, Y, Z = forward(model.chain, q)
+        J = jacobian(model.chain, levers, X, Y, Z)
+        M = inertia_matrix(model.chain, model.bodies, levers, X, Y, Z)
         return tip, wp.matrix_from_cols(x, y, z), J, M
 
     if shape.given_jacobian:
@@ -145,7 +145,7 @@ def _outputs(shape: Shape):
         J = penalized(model, q, J)
         sigma = kinematic(model, J)
         if wp.static(DYNAMIC):
-            values = indices(sigma, dynamic(model, J, M))
+            values = indices(sigma, dynamic(model, J, M, sigma))
         else:
             values = indices(sigma, sigma)
         out = output_type()

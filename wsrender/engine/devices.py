@@ -3,6 +3,8 @@
 import os
 import platform
 import re
+from functools import cache
+from tempfile import TemporaryFile
 
 import warp as wp
 
@@ -11,10 +13,24 @@ from wsrender.errors import InputError
 THREADS_VARIABLE = "WSRENDER_THREADS"
 
 
+NO_DRIVER = b"Could not find or load the NVIDIA CUDA driver"
+
+
+@cache
 def initialize() -> None:
-    """Start Warp quietly; standard output belongs to the caller."""
-    wp.config.log_level = wp.LOG_WARNING if hasattr(wp, "LOG_WARNING") else wp.config.log_level
-    wp.init()
+    """Start Warp quietly: a machine without a GPU is nothing to warn of, and its native code would."""
+    wp.config.log_level = wp.LOG_WARNING
+    with TemporaryFile() as captured:
+        standard_error = os.dup(2)
+        os.dup2(captured.fileno(), 2)
+        try:
+            wp.init()
+        finally:
+            os.dup2(standard_error, 2)
+            os.close(standard_error)
+        captured.seek(0)
+        rest = b"".join(line for line in captured if NO_DRIVER not in line)
+    os.write(2, rest)
 
 
 def devices_of(request: str) -> list[wp.Device]:
