@@ -5,7 +5,7 @@ import pickle
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from wsrender.errors import DocumentError, InputError
@@ -139,6 +139,7 @@ DOCUMENTS = st.fixed_dictionaries(
 )
 
 
+@settings(derandomize=True, deadline=None)
 @given(DOCUMENTS, DOCUMENTS)
 def test_equal_jobs_and_only_they_have_equal_text(first, second):
     a, b = parse_job(first), parse_job(second)
