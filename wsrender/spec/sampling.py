@@ -58,12 +58,13 @@ class Grid(_Sampling):
         locked: Mapping[str, float] | None = None,
         method: Literal["grid"] = "grid",
     ):
-        Document.__init__(self, method=method, per_joint=per_joint, locked=locked or {})
+        Document.__init__(self, method=method, per_joint=per_joint, locked={} if locked is None else locked)
 
     __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
 
 
 class _Counted(_Sampling):
+    # Subclasses name the constructor again: type checkers would give them one of keywords only.
     count: Count
     """Number of samples."""
     seed: Seed = 0
@@ -72,7 +73,7 @@ class _Counted(_Sampling):
     def __init__(
         self, count: int, seed: int = 0, *, locked: Mapping[str, float] | None = None, **method: str
     ):
-        Document.__init__(self, count=count, seed=seed, locked=locked or {}, **method)
+        Document.__init__(self, count=count, seed=seed, locked={} if locked is None else locked, **method)
 
     __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
 
@@ -83,6 +84,8 @@ class Random(_Counted):
     method: Literal["random"] = "random"
     """Name of the sampling method."""
 
+    __init__ = _Counted.__init__
+
 
 class Sobol(_Counted):
     """Scrambled Sobol sequence: low discrepancy, any number of samples."""
@@ -90,12 +93,16 @@ class Sobol(_Counted):
     method: Literal["sobol"] = "sobol"
     """Name of the sampling method."""
 
+    __init__ = _Counted.__init__
+
 
 class BoundaryBiased(_Counted):
     """More samples near the joint limits (beta-distributed), for outlining a workspace."""
 
     method: Literal["boundary"] = "boundary"
     """Name of the sampling method."""
+
+    __init__ = _Counted.__init__
 
 
 class Converge(_Sampling):
@@ -137,7 +144,7 @@ class Converge(_Sampling):
             start=start,
             step=step,
             by=by,
-            locked=locked or {},
+            locked={} if locked is None else locked,
         )
 
     __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
