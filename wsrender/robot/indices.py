@@ -70,7 +70,9 @@ def evaluation_of(
     if convention not in CONVENTIONS:
         raise InputError("convention", f"{convention!r} is not allowed; {', '.join(CONVENTIONS)} are")
     if convention == "wsrender_code" and precision != "float64":
-        raise InputError("precision", f'{precision!r} is not allowed with the convention wsrender_code; "float64" is')
+        raise InputError(
+            "precision", f'{precision!r} is not allowed with the convention wsrender_code; "float64" is'
+        )
     if precision not in ("float32", "float64"):
         raise InputError("precision", f'{precision!r} is not allowed; "float32" or "float64" is')
     if inertia not in ("kernel", "mujoco"):
@@ -79,7 +81,9 @@ def evaluation_of(
     names = resolve(indices, robot.has_inertia)
     dynamic = any(is_dynamic(name) for name in names)
     if torque_scaling and dynamic and chain.effort_limits is None:
-        raise MissingInertiaError("torque_scaling", f"the model of {robot.name} lacks effort limits for some joint")
+        raise MissingInertiaError(
+            "torque_scaling", f"the model of {robot.name} lacks effort limits for some joint"
+        )
     host = robot if isinstance(robot, HostRobot) else None
     if host:
         host_inertia = host.inertia_matrix if dynamic else None
@@ -104,5 +108,7 @@ def task_rows(task: str | Sequence[str]) -> tuple[int, ...]:
     names = NAMED_TASKS.get(task, (task,)) if isinstance(task, str) else tuple(task)
     rows = tuple(TASK_ROWS.index(name) for name in names if name in TASK_ROWS)
     if not rows or len(rows) != len(names) or len(set(rows)) != len(rows):
-        raise InputError("task", f"{task!r} is not allowed; linear, angular, full or distinct rows of x y z rx ry rz are")
+        raise InputError(
+            "task", f"{task!r} is not allowed; linear, angular, full or distinct rows of x y z rx ry rz are"
+        )
     return tuple(sorted(rows))

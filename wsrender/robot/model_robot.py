@@ -163,7 +163,9 @@ def configuration_rows(q: Any, n: int) -> np.ndarray:
     if rows.ndim != 2 or rows.shape[1] != n:
         raise InputError("q", f"has shape {np.shape(q)}; ({n},) or (N, {n}) is needed")
     if not np.isfinite(rows).all():
-        raise InputError("q", f"row {int(np.argmin(np.isfinite(rows).all(axis=1)))} has a value that is not finite")
+        raise InputError(
+            "q", f"row {int(np.argmin(np.isfinite(rows).all(axis=1)))} has a value that is not finite"
+        )
     return rows
 
 
@@ -202,9 +204,17 @@ def robot_of_spec(spec: RobotSpec, base: str | None = None, tip: str | None = No
         "placement": spec.placement.matrix() if spec.placement else None,
         "tool": spec.tool.matrix() if spec.tool else None,
     }
-    loaders = {"library": load_library, "dh": load_dh, "mjcf": load_mjcf, "urdf": load_urdf, "path": load_path}
+    loaders = {
+        "library": load_library,
+        "dh": load_dh,
+        "mjcf": load_mjcf,
+        "urdf": load_urdf,
+        "path": load_path,
+    }
     if spec.source not in loaders:
-        raise InputError("robot.model", "an uploaded model is known to its server only; give path, mjcf or urdf")
+        raise InputError(
+            "robot.model", "an uploaded model is known to its server only; give path, mjcf or urdf"
+        )
     return Robot(loaders[spec.source](getattr(spec, spec.source), **options), spec)
 
 
@@ -222,4 +232,5 @@ def _transform(value: Any) -> Transform | None:
 
     T = np.asarray(value, np.float64)
     x, y, z, w = Rotation.from_matrix(T[:3, :3]).as_quat()
-    return Transform(position_m=T[:3, 3].tolist(), quat_wxyz=[w, x, y, z])
+    px, py, pz = T[:3, 3].tolist()
+    return Transform(position_m=(px, py, pz), quat_wxyz=(w, x, y, z))

@@ -50,7 +50,9 @@ class HostRobot(Robot):
     @property
     def model_hash(self) -> str:
         """SHA-256 of the class name and the limits: the code itself cannot be hashed."""
-        return hashlib.sha256(f"{type(self.user).__qualname__}{self._chain.content_hash}".encode()).hexdigest()
+        return hashlib.sha256(
+            f"{type(self.user).__qualname__}{self._chain.content_hash}".encode()
+        ).hexdigest()
 
     def forward_kinematics(self, q: Any, *, precision: str = "float64", device: str = "cpu") -> np.ndarray:
         """Poses of the end effector, (N, 4, 4)."""
@@ -95,7 +97,9 @@ def finite_difference_jacobian(forward_kinematics, q: np.ndarray) -> np.ndarray:
         derivative = (forward_kinematics(q + step) - forward_kinematics(q - step)) / (2 * STEP)
         W = derivative[:, :3, :3] @ T[:, :3, :3].transpose(0, 2, 1)
         J[:, :3, i] = derivative[:, :3, 3]
-        J[:, 3:, i] = np.stack([W[:, 2, 1] - W[:, 1, 2], W[:, 0, 2] - W[:, 2, 0], W[:, 1, 0] - W[:, 0, 1]], axis=1) / 2
+        J[:, 3:, i] = (
+            np.stack([W[:, 2, 1] - W[:, 1, 2], W[:, 0, 2] - W[:, 2, 0], W[:, 1, 0] - W[:, 0, 1]], axis=1) / 2
+        )
     return J
 
 
@@ -106,7 +110,8 @@ def as_robot(robot: Any) -> Robot:
     if isinstance(robot, UserRobot):
         return HostRobot(robot)
     raise InputError(
-        "robot", f"{type(robot).__name__} is neither a Robot (see load_robot) nor gives limits and forward_kinematics"
+        "robot",
+        f"{type(robot).__name__} is neither a Robot (see load_robot) nor gives limits and forward_kinematics",
     )
 
 
@@ -116,7 +121,9 @@ def _limits(user: UserRobot) -> np.ndarray:
     except (TypeError, ValueError) as error:
         raise ModelError("limits", f"is not an array of numbers: {error}") from error
     if limits.ndim != 2 or limits.shape[1] != 2 or not len(limits):
-        raise ModelError("limits", f"has shape {limits.shape}; (n, 2) is needed: lower and upper limit of each joint")
+        raise ModelError(
+            "limits", f"has shape {limits.shape}; (n, 2) is needed: lower and upper limit of each joint"
+        )
     if not np.isfinite(limits).all():
         raise ModelError("limits", "has a value that is not finite; every joint needs an interval")
     if (limits[:, 0] > limits[:, 1]).any():

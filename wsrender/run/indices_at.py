@@ -78,7 +78,9 @@ def plan_indices_at(job: IndicesAtJob, robot: Robot) -> IndicesAtPlan:
     """Resolve the job; InputError for configurations that are missing or of the wrong length."""
     if job.configurations is None:
         raise InputError("configurations", f"must be given: rows of {robot.chain.n} joint values")
-    q = configuration_rows(np.array(job.configurations, np.float64).reshape(len(job.configurations), -1), robot.chain.n)
+    q = configuration_rows(
+        np.array(job.configurations, np.float64).reshape(len(job.configurations), -1), robot.chain.n
+    )
     evaluation = evaluation_of(
         robot,
         indices=job.indices,

@@ -5,9 +5,9 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from wsrender.engine import Partial, SweepPlan, devices_of, merge, sweep, target_of
+from wsrender.engine.voxel_data import volume_data
 from wsrender.errors import InputError, NotConvergedError
 from wsrender.global_indices import joint_means, workspace_mean
-from wsrender.engine.voxel_data import volume_data
 from wsrender.result import Result
 from wsrender.robot import Robot
 from wsrender.robot.indices import evaluation_of
@@ -149,9 +149,7 @@ def plan_workspace(job: WorkspaceJob, robot: Robot) -> WorkspacePlan:
             (first, min(SHARD_SAMPLES, sampling.count - first))
             for first in range(0, sampling.count, SHARD_SAMPLES)
         ]
-    return WorkspacePlan(
-        job, robot, plan, first_pass, target_of(devices), shards, estimate(plan, devices)
-    )
+    return WorkspacePlan(job, robot, plan, first_pass, target_of(devices), shards, estimate(plan, devices))
 
 
 def _first_sampling(job: WorkspaceJob, robot: Robot) -> SamplingPlan:

@@ -7,7 +7,13 @@ import numpy as np
 
 from wsrender.engine import Partial, SweepPlan, configurations, evaluate_at
 from wsrender.engine.voxel_data import volume_data
-from wsrender.global_indices import global_isotropy, joint_means, structural_length_index, voxel_volumes, workspace_mean
+from wsrender.global_indices import (
+    global_isotropy,
+    joint_means,
+    structural_length_index,
+    voxel_volumes,
+    workspace_mean,
+)
 from wsrender.indices.catalogue import unit
 from wsrender.result import Result
 from wsrender.robot import Robot
@@ -43,7 +49,12 @@ def workspace_result(
         "indices": _index_entries(plan, partial, volume, units),
         "choices": index_choices(job, evaluation.rows),
         "voxel_size_m": plan.block.voxel_size_m if plan.block else None,
-        "volume_m3": {"occupied": volumes.occupied, "inner": volumes.inner, "outer": volumes.outer, "refined": None},
+        "volume_m3": {
+            "occupied": volumes.occupied,
+            "inner": volumes.inner,
+            "outer": volumes.outer,
+            "refined": None,
+        },
         "bounds_m": {
             "lower": [float(v) for v in partial.minimum[:3]],
             "upper": [float(v) for v in partial.maximum[:3]],
@@ -79,7 +90,9 @@ def _sampling_entry(job: WorkspaceJob, plan: SweepPlan, partial: Partial) -> dic
     return entry
 
 
-def _index_entries(plan: SweepPlan, partial: Partial, volume: VolumeData, units: dict[str, str]) -> dict[str, Any]:
+def _index_entries(
+    plan: SweepPlan, partial: Partial, volume: VolumeData, units: dict[str, str]
+) -> dict[str, Any]:
     high, low, means = partial.maximum, partial.minimum, joint_means(plan, partial)
     return {
         name: {
