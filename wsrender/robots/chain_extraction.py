@@ -179,19 +179,33 @@ def _composite(
     mass, center, inertia = np.zeros(count), np.zeros((count, 3)), np.zeros((count, 3, 3))
     for link, T in enumerate(geometry.joint):
         bodies = np.flatnonzero(carrier == link)
-        m = model.body_mass[bodies]
-        R = T[:3, :3].T @ geometry.data.ximat[bodies].reshape(-1, 3, 3)
-        at = (geometry.data.xipos[bodies] - T[:3, 3]) @ T[:3, :3]
-        mass[link] = m.sum()
-        if mass[link] > 0.0:
-            center[link] = m @ at / mass[link]
-        moments = model.body_inertia[bodies]
-        about_own = np.einsum("bij,bj,bkj->ik", R, moments, R)
-        d = at - center[link]
-        # parallel axes (Huygens–Steiner): Σ m (|d|² 1 − d dᵀ)
-        moved = np.einsum("b,bi,bi->", m, d, d) * np.eye(3) - np.einsum("b,bi,bj->ij", m, d, d)
-        inertia[link] = about_own + moved
+        stated = _rigid_sum(model, geometry.data, bodies, T, MASSLESS)
+        # The negligible values that MuJoCo needs stay only where nothing else keeps M(q) regular.
+        regular = np.linalg.eigvalsh(stated[2])[0] > MASSLESS
+        mass[link], center[link], inertia[link] = (
+            stated if regular else _rigid_sum(model, geometry.data, bodies, T, 0.0)
+        )
     return mass, center, inertia
+
+
+def _rigid_sum(
+    model: mujoco.MjModel, data: mujoco.MjData, bodies: np.ndarray, T: np.ndarray, floor: float
+) -> tuple[float, np.ndarray, np.ndarray]:
+    """Mass, centre of mass (3,) and inertia about it (3, 3) of ``bodies`` in the frame ``T`` (4, 4).
+
+    Masses [kg] and moments [kg m²] up to ``floor`` count as 0.
+    """
+    m, moments = model.body_mass[bodies], model.body_inertia[bodies]
+    m, moments = np.where(m > floor, m, 0.0), np.where(moments > floor, moments, 0.0)
+    R = T[:3, :3].T @ data.ximat[bodies].reshape(-1, 3, 3)
+    at = (data.xipos[bodies] - T[:3, 3]) @ T[:3, :3]
+    mass = float(m.sum())
+    center = m @ at / mass if mass > 0.0 else np.zeros(3)
+    about_own = np.einsum("bij,bj,bkj->ik", R, moments, R)
+    d = at - center
+    # parallel axes (Huygens–Steiner): Σ m (|d|² 1 − d dᵀ)
+    moved = np.einsum("b,bi,bi->", m, d, d) * np.eye(3) - np.einsum("b,bi,bj->ij", m, d, d)
+    return mass, center, about_own + moved
 
 
 def _has_inertia(model: mujoco.MjModel, carrier: np.ndarray) -> bool:
