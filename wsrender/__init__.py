@@ -8,20 +8,28 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 from wsrender.errors import (
+    AccessError,
     DocumentError,
     FrameNotFoundError,
     InputError,
+    JobFailedError,
     MissingExtraError,
     MissingInertiaError,
     ModelError,
     NotConvergedError,
+    NotFoundError,
     NumericalError,
+    QuotaError,
     ResourceError,
+    ServerConnectionError,
+    ServerError,
+    WaitTimeoutError,
     WsrenderError,
 )
 
 if TYPE_CHECKING:
     from wsrender import run
+    from wsrender.client import Client
     from wsrender.indices import Index, math, register_index
     from wsrender.result import Result
     from wsrender.robot import Robot, evaluate_indices, load_robot
@@ -32,7 +40,9 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 __all__ = [
+    "AccessError",
     "BoundaryBiased",
+    "Client",
     "Converge",
     "DHRow",
     "DHTable",
@@ -41,17 +51,23 @@ __all__ = [
     "Grid",
     "Index",
     "InputError",
+    "JobFailedError",
     "MissingExtraError",
     "MissingInertiaError",
     "ModelError",
     "NotConvergedError",
+    "NotFoundError",
     "NumericalError",
+    "QuotaError",
     "Random",
     "ResourceError",
     "Result",
     "Robot",
+    "ServerConnectionError",
+    "ServerError",
     "Sobol",
     "Transform",
+    "WaitTimeoutError",
     "WsrenderError",
     "__version__",
     "analyze",
@@ -64,6 +80,7 @@ __all__ = [
 ]
 
 _NAMES_OF_MODULE = {
+    "wsrender.client": ("Client",),
     "wsrender.indices": ("Index", "register_index"),
     "wsrender.result": ("Result",),
     "wsrender.robot": ("Robot", "evaluate_indices", "load_robot"),

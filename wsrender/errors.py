@@ -11,10 +11,18 @@
     │   └── ResourceError              the request needs more memory or samples than allowed
     ├── NotConvergedError              an iteration reached its limit before its tolerance
     ├── NumericalError                 a kernel reported a value that it must not produce
-    └── MissingExtraError (ImportError) an optional dependency is not installed
+    ├── MissingExtraError (ImportError) an optional dependency is not installed
+    ├── ServerError                    a server refused a request or failed; keeps its problem document
+    │   ├── AccessError                no key, an unknown key, or one without the right
+    │   ├── NotFoundError              the server has no such job, model or artifact, or not for this key
+    │   ├── QuotaError                 too many jobs or requests; says when to try again
+    │   └── JobFailedError             a job ended without a result: failed, canceled, timed out
+    ├── ServerConnectionError (ConnectionError) a server cannot be reached, or was lost for too long
+    └── WaitTimeoutError (TimeoutError) a job has not finished in the time that its caller would wait
 """
 
 from collections.abc import Iterable
+from typing import Any
 
 
 class WsrenderError(Exception):
@@ -101,3 +109,60 @@ class MissingExtraError(WsrenderError, ImportError):
 
     def __init__(self, package: str, extra: str):
         super().__init__(f'{package} is not installed; run: pip install "wsrender[{extra}]"')
+
+
+class ServerError(WsrenderError):
+    """A server refused a request or failed; ``problem`` is its problem document (RFC 9457), or empty.
+
+    ``code`` is the problem's, ``status`` the HTTP status (0: none), ``retryable`` whether the same request may
+    succeed later.
+    """
+
+    code = "server_error"
+
+    def __init__(self, message: str, problem: dict[str, Any] | None = None):
+        self.problem = problem or {}
+        self.code = str(self.problem.get("code") or self.code)
+        self.status = int(self.problem.get("status") or 0)
+        self.retryable = bool(self.problem.get("retryable"))
+        super().__init__(message)
+
+
+class AccessError(ServerError):
+    """The server asks for an API key, does not know the one given, or the key lacks the right."""
+
+    code = "access_denied"
+
+
+class NotFoundError(ServerError):
+    """The server has no such job, model or artifact, or it belongs to somebody else."""
+
+    code = "not_found"
+
+
+class QuotaError(ServerError):
+    """Too many jobs or requests of one key; ``retry_after_s`` says when to try again [s], None: unknown."""
+
+    code = "too_many_requests"
+
+    def __init__(self, message: str, problem: dict[str, Any] | None = None, retry_after_s: float | None = None):
+        self.retry_after_s = retry_after_s
+        super().__init__(message, problem)
+
+
+class JobFailedError(ServerError):
+    """A job ended without a result: failed, canceled or timed out."""
+
+    code = "job_failed"
+
+
+class ServerConnectionError(WsrenderError, ConnectionError):
+    """A server cannot be reached, or was lost for longer than the client would wait."""
+
+    code = "connection_failed"
+
+
+class WaitTimeoutError(WsrenderError, TimeoutError):
+    """A job has not finished in the time that its caller would wait; it goes on."""
+
+    code = "wait_timeout"

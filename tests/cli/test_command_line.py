@@ -13,7 +13,7 @@ import typer
 
 import wsrender as ws
 from wsrender import cli
-from wsrender.cli.progress import LINE_EVERY_S, RunProgress
+from wsrender.progress import LINE_EVERY_S, RunProgress
 from wsrender.errors import InputError, MissingExtraError, ModelError, NumericalError
 
 
@@ -196,7 +196,7 @@ class Terminal(io.StringIO):
 def lines_of(monkeypatch, reports):
     """What progress writes off a terminal when (time, done, message) are reported of 4 million samples."""
     now = SimpleNamespace(value=0.0)
-    monkeypatch.setattr("wsrender.cli.progress.time", SimpleNamespace(monotonic=lambda: now.value))
+    monkeypatch.setattr("wsrender.progress.time", SimpleNamespace(monotonic=lambda: now.value))
     stream = io.StringIO()
     with RunProgress(stream) as progress:
         for now.value, done, message in reports:
@@ -227,7 +227,7 @@ def test_plain_lines_off_a_terminal_do_not_count_planning_in_the_rate(monkeypatc
 
 def test_bar_on_a_terminal_appears_after_the_quiet_time(monkeypatch):
     monkeypatch.setenv("TERM", "xterm")
-    monkeypatch.setattr("wsrender.cli.progress.QUIET_S", 0.05)
+    monkeypatch.setattr("wsrender.progress.QUIET_S", 0.05)
     quick, slow = Terminal(), Terminal()
     with RunProgress(quick) as progress:
         progress(1, 2, "samples")

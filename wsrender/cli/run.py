@@ -8,8 +8,8 @@ from rich.console import Console
 
 from wsrender.cli.faults import one_line_faults
 from wsrender.cli.job_options import job_document, name_or_list, sampling_document
-from wsrender.cli.progress import RunProgress
 from wsrender.errors import InputError
+from wsrender.progress import RunProgress
 
 _SAMPLING = "Sampling"
 _ANALYSIS = "Analysis"

@@ -105,7 +105,7 @@ def verified_artifacts(document: dict[str, Any], folder: Path) -> dict[str, Path
     Raises InputError, naming the file, where one is missing, changed, or outside the folder.
     """
     paths = {}
-    for name, record in _records(document):
+    for name, record in artifact_records(document):
         path = folder / name
         if not path.is_file():
             raise InputError(name, f"is listed in {DOCUMENT} but missing in {folder}")
@@ -115,7 +115,8 @@ def verified_artifacts(document: dict[str, Any], folder: Path) -> dict[str, Path
     return paths
 
 
-def _records(document: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
+def artifact_records(document: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
+    """(name, record) of every artifact that a document lists; InputError for names outside its folder."""
     artifacts = document.get("artifacts", [])
     if not isinstance(artifacts, list):
         raise InputError("artifacts", f"must be a list, not {type(artifacts).__name__}")
@@ -150,7 +151,7 @@ def publish(staging: Path, target: Path) -> None:
 
 def _remove_previous(target: Path) -> None:
     try:
-        names = [name for name, _ in _records(read_document(target))]
+        names = [name for name, _ in artifact_records(read_document(target))]
     except InputError:  # none there, or none of ours
         names = []
     for name in (DOCUMENT, *names):

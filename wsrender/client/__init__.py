@@ -1,0 +1,6 @@
+"""Talking to a job server; needs nothing but the base dependencies."""
+
+from wsrender.client.client import Client
+from wsrender.client.job import Job
+
+__all__ = ["Client", "Job"]

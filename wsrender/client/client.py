@@ -1,0 +1,151 @@
+"""A job server, as seen from Python."""
+
+import uuid
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+from urllib.parse import quote
+
+import httpx2
+
+from wsrender.client.connection import Connection
+from wsrender.client.job import Job
+from wsrender.errors import InputError
+
+PAGE = 100  # jobs in one answer
+
+
+class Client:
+    """A connection to a job server; a context manager.
+
+    ``url`` is the server's address, ``token`` an API key where it asks for one. ``timeout_s`` bounds the wait for an
+    answer, ``patience_s`` for how long a request is sent again while the connection is lost.
+
+    Every method raises ServerConnectionError where the server cannot be reached, AccessError for a wrong key,
+    NotFoundError, QuotaError, and the errors of a local run (DocumentError, ModelError, …) for a wrong document.
+    """
+
+    def __init__(
+        self,
+        url: str = "http://127.0.0.1:8000",
+        token: str | None = None,
+        *,
+        timeout_s: float = 30.0,
+        patience_s: float = 60.0,
+        transport: httpx2.BaseTransport | None = None,
+    ):
+        self._connection = Connection(url, token, timeout_s, patience_s, transport)
+
+    def close(self) -> None:
+        """Close all sockets."""
+        self._connection.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def analyses(self) -> list[dict[str, Any]]:
+        """The analyses of the server: id, title, description and JSON Schema of their documents."""
+        return _items(self._get("/v1/analyses"))
+
+    def robots(self) -> list[dict[str, Any]]:
+        """The robots of the server's library."""
+        return _items(self._get("/v1/robots"))
+
+    def upload_model(self, model: str | Path | bytes) -> str:
+        """Upload an MJCF or URDF file, or its bytes; the SHA-256 for ``robot: {"model": sha256}``.
+
+        Meshes do not travel: geometry that needs them is dropped by the server. Raises InputError where the file
+        cannot be read, ModelError where it is no model.
+        """
+        text = model if isinstance(model, bytes) else _read(Path(model))
+        answer = self._connection.request(
+            "POST", "/v1/models", content=text, headers={"Content-Type": "application/xml"}
+        )
+        return answer.json()["sha256"]
+
+    def submit(
+        self,
+        job: Any,
+        *,
+        labels: Mapping[str, str] | None = None,
+        priority: int = 0,
+        timeout_s: float | None = None,
+        idempotency_key: str | None = None,
+    ) -> Job:
+        """Submit a job document (dict) or typed job; a robot given by path is uploaded first.
+
+        ``labels`` are free text to find the job by, larger ``priority`` goes first, ``timeout_s`` bounds the run. The
+        idempotency key (default: a new one) makes sure that a request sent again after a lost connection is one job.
+        """
+        body: dict[str, Any] = {"job": self._document(job)}
+        if labels:
+            body["labels"] = dict(labels)
+        if priority:
+            body["priority"] = priority
+        if timeout_s is not None:
+            body["timeout_s"] = timeout_s
+        headers = {"Idempotency-Key": idempotency_key or uuid.uuid4().hex}
+        return Job(self._connection, self._connection.request("POST", "/v1/jobs", json=body, headers=headers).json())
+
+    def estimate(self, job: Any) -> dict[str, Any]:
+        """Check a job without running it: samples, bytes and seconds that it would take."""
+        return self._connection.request("POST", "/v1/jobs:validate", json=self._document(job)).json()
+
+    def job(self, id: str) -> Job:
+        """The job of that id. Raises NotFoundError."""
+        return Job(self._connection, self._get(f"/v1/jobs/{quote(id, safe='')}"))
+
+    def jobs(
+        self,
+        *,
+        state: str | None = None,
+        analysis: str | None = None,
+        label: tuple[str, str] | None = None,
+        limit: int | None = None,
+    ) -> Iterator[Job]:
+        """Your jobs, newest first, page by page; ``limit`` bounds their number."""
+        filters = {"state": state, "analysis": analysis, "label": "=".join(label) if label else None}
+        params: dict[str, Any] = {name: value for name, value in filters.items() if value is not None}
+        left = limit
+        while left is None or left > 0:
+            params["limit"] = PAGE if left is None else min(PAGE, left)
+            page = self._get("/v1/jobs", params)
+            for record in page["items"][:left]:
+                yield Job(self._connection, record)
+            left = None if left is None else left - len(page["items"])
+            params["cursor"] = page.get("next_cursor")
+            if params["cursor"] is None:
+                return
+
+    def _get(self, path: str, params: dict[str, Any] | None = None) -> Any:
+        return self._connection.request("GET", path, params=params or {}).json()
+
+    def _document(self, job: Any) -> dict[str, Any]:
+        if isinstance(job, Mapping):
+            document = dict(job)
+        elif hasattr(job, "model_dump"):
+            document = job.model_dump(mode="json")
+        else:
+            raise InputError("job", f"must be a job document (dict) or a typed job, not {type(job).__name__}")
+        robot = document.get("robot")
+        if isinstance(robot, Mapping) and isinstance(robot.get("path"), str):
+            others = {key: value for key, value in robot.items() if key != "path"}
+            document["robot"] = {**others, "model": self.upload_model(robot["path"])}
+        return document
+
+
+def _items(answer: Any) -> list[dict[str, Any]]:
+    return answer["items"]
+
+
+def _read(path: Path) -> bytes:
+    try:
+        return path.read_bytes()
+    except OSError as error:
+        raise InputError("robot.path", f"{path} cannot be read: {error.strerror}") from None
