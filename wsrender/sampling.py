@@ -120,7 +120,8 @@ def _grid(chain: Chain, sampling: Grid, lower, upper, free, max_samples) -> Samp
     else:
         raise InputError(
             "sampling.per_joint",
-            f"{len(per_joint)} numbers for {chain.n} joints ({free.sum()} not locked: {', '.join(chain.joint_names)})",
+            f"{len(per_joint)} numbers for {chain.n} joints, {free.sum()} of them not locked: "
+            f"{', '.join(chain.joint_names)}",
         )
     levels = np.where(free, levels, 1)
     if levels.max(initial=1) > LARGEST_LEVELS:
@@ -133,16 +134,16 @@ def _grid(chain: Chain, sampling: Grid, lower, upper, free, max_samples) -> Samp
     first = np.where(chain.periodic, lower + (upper - lower) / levels, lower)
     single = free & (levels == 1)
     middle = (lower + upper) / 2
-    return SamplingPlan(
-        "grid", count, 0, np.where(single, middle, np.where(free, first, lower)), np.where(single, middle, upper), levels
-    )
+    start = np.where(single, middle, np.where(free, first, lower))
+    return SamplingPlan("grid", count, 0, start, np.where(single, middle, upper), levels)
 
 
 def _check_count(count: int, max_samples: int | None, field: str) -> None:
     if max_samples is not None and count > max_samples:
         remedy = "use the sampling method sobol with fewer samples" if field == "per_joint" else "ask for fewer"
         raise ResourceError(
-            f"sampling.{field}", f"{count:.4g} samples; at most max_samples = {max_samples:.4g}: {remedy}, or raise max_samples"
+            f"sampling.{field}",
+            f"{count:.4g} samples; at most max_samples = {max_samples:.4g}: {remedy}, or raise max_samples",
         )
 
 

@@ -46,7 +46,7 @@ def bits_type(real):
 
 @cache
 def elementary(real) -> SimpleNamespace:
-    """Device functions ``sincos``, ``log2``, ``exp2``, ``power`` and ``ordered`` for one precision.
+    """Device functions of one precision: ``sincos``, ``sine``, ``cosine``, ``log2``, ``exp2``, ``power``, ``ordered``.
 
     ``sincos(a) -> (sin a, cos a)``; ``log2`` for positive normal numbers; ``power(x, e) = 2^(e log2 x)``, 0 for
     x <= 0; ``ordered(x)`` maps a float to an integer that sorts alike (NaN sorts outside the infinities).
@@ -89,6 +89,16 @@ def elementary(real) -> SimpleNamespace:
         return sine, cosine
 
     @wp.func
+    def sine(a: real):
+        s, _c = sincos(a)
+        return s
+
+    @wp.func
+    def cosine(a: real):
+        _s, c = sincos(a)
+        return c
+
+    @wp.func
     def log2(x: real):
         i = wp.cast(x, bits)
         exponent = (i - SQRT_HALF) >> MANTISSA
@@ -121,4 +131,4 @@ def elementary(real) -> SimpleNamespace:
         i = wp.cast(x, bits)
         return i ^ ((i >> SIGN) & MAGNITUDE)
 
-    return SimpleNamespace(sincos=sincos, log2=log2, exp2=exp2, power=power, ordered=ordered)
+    return SimpleNamespace(sincos=sincos, sine=sine, cosine=cosine, log2=log2, exp2=exp2, power=power, ordered=ordered)

@@ -1,4 +1,6 @@
-"""Joint-space inertia matrix by the composite rigid body method (Featherstone, *Rigid Body Dynamics Algorithms*, 2008, ch. 6).
+"""Joint-space inertia matrix by the composite rigid body method.
+
+Featherstone, *Rigid Body Dynamics Algorithms*, 2008, chapter 6.
 
 Composite inertias are taken about each joint's own origin in world axes: about the base, float32 would lose the
 small inertias of the last links.
@@ -57,13 +59,13 @@ def inertia(real, n: int, sources: tuple[int, ...]) -> SimpleNamespace:
         return R * local * wp.transpose(R)
 
     @wp.func
-    def shifted(I: mat33, m: real, h: vec3, d: vec3):
+    def shifted(about: mat33, m: real, h: vec3, d: vec3):
         # Parallel axis theorem for a first moment h about the old origin, which lies at d from the new one.
         s = m * wp.dot(d, d) + TWO * wp.dot(h, d)
         out = mat33()
         for r in range(3):
             for c in range(3):
-                out[r, c] = I[r, c] - m * d[r] * d[c] - h[r] * d[c] - d[r] * h[c]
+                out[r, c] = about[r, c] - m * d[r] * d[c] - h[r] * d[c] - d[r] * h[c]
             out[r, r] += s
         return out
 
@@ -82,7 +84,7 @@ def inertia(real, n: int, sources: tuple[int, ...]) -> SimpleNamespace:
             to_tip[i] = X[i] * levers[i, 0] + Y[i] * levers[i, 1] + Z[i] * levers[i, 2]
         m = ZERO
         h = vec3()
-        I = mat33()
+        composite = mat33()
         for back in range(L):
             i = L - 1 - back
             b = i * BODY
@@ -92,16 +94,16 @@ def inertia(real, n: int, sources: tuple[int, ...]) -> SimpleNamespace:
             o = to_tip[i]
             if back > 0:
                 d = o - to_tip[wp.min(i + 1, L - 1)]
-                I = shifted(I, m, h, d)
+                composite = shifted(composite, m, h, d)
                 h = h + d * m
             R = mat33(x[0], y[0], z[0], x[1], y[1], z[1], x[2], y[2], z[2])
-            I = I + rotated(R, bodies, b)
+            composite = composite + rotated(R, bodies, b)
             h = h + x * bodies[b + 1] + y * bodies[b + 2] + z * bodies[b + 3]
             m = m + bodies[b]
             angle = chain[i * CHAIN + 7]
             slide = chain[i * CHAIN + 8]
             momentum = wp.cross(z, h) * angle + z * (m * slide)
-            moment = (I * z) * angle + wp.cross(h, z) * slide
+            moment = (composite * z) * angle + wp.cross(h, z) * slide
             for j in range(i + 1):
                 zj = Z[j]
                 value = (

@@ -154,7 +154,7 @@ def _three_rows(real, m: int, n: int):
     vec_m = wp.types.vector(3, real)
     mat_mn = wp.types.matrix((3, n), real)
     third_of_angle = _third_of_angle(real)
-    ZERO, HALF, ONE, TWO, THREE, FOUR = (real(v) for v in (0.0, 0.5, 1.0, 2.0, 3.0, 4.0))
+    ZERO, HALF, ONE, TWO, FOUR = (real(v) for v in (0.0, 0.5, 1.0, 2.0, 4.0))
     THIRD, SIXTH, TWO_SQRT_3 = real(1.0 / 3.0), real(1.0 / 6.0), real(2.0 * 3.0**0.5)
     TINY = _tiny(real)
     NEARLY_RANK_ONE = real(0.01)

@@ -29,12 +29,30 @@ def spectrum_length(n: int, rows: tuple[int, ...], convention: str) -> int:
 
 @cache
 def spectrum(real, n: int, rows: tuple[int, ...], convention: str, penalty: bool, torque: bool) -> SimpleNamespace:
-    """Device functions ``kinematic(model, J)``, ``dynamic(model, J, M, kinematic)`` and ``penalized(model, q, J)``."""
+    """Device functions ``kinematic(model, J)``, ``dynamic(model, J, M, kinematic)`` and ``penalized(model, q, J)``.
+
+    ``absent`` stands for ``dynamic`` where no index needs it.
+    """
     make = {"standard": _standard, "table_1": _table_1, "wsrender_code": _wsrender_code}[convention]
     kinematic, dynamic = make(real, n, rows, _torque_scaled(real, n) if torque else None)
     return SimpleNamespace(
-        kinematic=kinematic, dynamic=dynamic, penalized=_penalized(real, n) if penalty else _unchanged(real, n)
+        kinematic=kinematic,
+        dynamic=dynamic,
+        absent=_absent(real, n, spectrum_length(n, rows, convention)),
+        penalized=_penalized(real, n) if penalty else _unchanged(real, n),
     )
+
+
+def _absent(real, n: int, length: int):
+    Model = model_arrays(real)
+    mat_6n, mat_nn = wp.types.matrix((6, n), real), wp.types.matrix((n, n), real)
+    spectrum_type = wp.types.vector(length, real)
+
+    @wp.func
+    def absent(model: Model, J: mat_6n, M: mat_nn, kinematic: spectrum_type):
+        return kinematic
+
+    return absent
 
 
 def _unchanged(real, n: int):

@@ -26,7 +26,7 @@ from wsrender_kernels.voxels import lattice, lowest, voxels
 
 @wp.func
 def wide(i: wp.int32):
-    # A cast of an unrolled loop's variable would change the type of its other uses.
+    """The index as int64: a cast in place would change the type of an unrolled loop's variable."""
     return wp.int64(i)
 
 
@@ -127,7 +127,8 @@ def _outputs(shape: Shape):
     draw = sampling(real, n, shape.method).draw
     state = _state(shape)
     spectra = spectrum(real, n, shape.rows, shape.convention, shape.penalty, shape.torque_scaling)
-    penalized, kinematic, dynamic = spectra.penalized, spectra.kinematic, spectra.dynamic
+    penalized, kinematic = spectra.penalized, spectra.kinematic
+    dynamic_spectrum = spectra.dynamic if shape.dynamic else spectra.absent
     indices = shape.indices
     Model, Space = model_arrays(real), sample_space(real)
     output_type = wp.types.vector(shape.n_outputs, real)
@@ -136,7 +137,7 @@ def _outputs(shape: Shape):
     LARGEST = 1 if shape.convention == "wsrender_code" else 0
     CONFIGURATION = 5 + K
     ORIENTATION = CONFIGURATION + n * shape.keep_configuration
-    KEEP_CONFIGURATION, KEEP_ORIENTATION, DYNAMIC = shape.keep_configuration, shape.keep_orientation, shape.dynamic
+    KEEP_CONFIGURATION, KEEP_ORIENTATION = shape.keep_configuration, shape.keep_orientation
 
     @wp.func
     def evaluate(model: Model, space: Space, block: Any, first: wp.int64, lane: wp.int32):
@@ -144,10 +145,7 @@ def _outputs(shape: Shape):
         tip, axes, J, M = state(model, q, first - space.given_first + wp.int64(lane), space.given_stride)
         J = penalized(model, q, J)
         sigma = kinematic(model, J)
-        if wp.static(DYNAMIC):
-            values = indices(sigma, dynamic(model, J, M, sigma))
-        else:
-            values = indices(sigma, sigma)
+        values = indices(sigma, dynamic_spectrum(model, J, M, sigma))
         out = output_type()
         for r in range(3):
             out[r] = tip[r]

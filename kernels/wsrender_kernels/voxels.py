@@ -11,7 +11,7 @@ from types import SimpleNamespace
 import numpy as np
 import warp as wp
 
-from wsrender_kernels.elementary import bits_type, elementary
+from wsrender_kernels.elementary import bits_type
 
 
 @cache
@@ -37,7 +37,7 @@ def voxels(real) -> SimpleNamespace:
     Lattice = lattice(real)
     vec3 = wp.types.vector(3, real)
     HALF = real(0.5)
-    # Adding 1.5 * 2^52 leaves the rounded integer in the low bits: AVX2 has no conversion of doubles to 64-bit integers.
+    # Adding 1.5 * 2^52 leaves the rounded integer in the low bits: AVX2 cannot convert doubles to 64-bit integers.
     MAGIC = wp.float64(1.5 * 2.0**52)
     MAGIC_BITS = wp.int64(0x4338000000000000)
 

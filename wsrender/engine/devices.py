@@ -4,6 +4,7 @@ import os
 import platform
 import re
 from functools import cache
+from pathlib import Path
 from tempfile import TemporaryFile
 
 import warp as wp
@@ -57,10 +58,10 @@ def target_of(devices: list[wp.Device]) -> str:
 
 def _vector_extension() -> str:
     try:
-        with open("/proc/cpuinfo") as file:
-            flags = next((line for line in file if line.startswith(("flags", "Features"))), "")
+        lines = Path("/proc/cpuinfo").read_text().splitlines()
     except OSError:
-        flags = ""
+        lines = []
+    flags = next((line for line in lines if line.startswith(("flags", "Features"))), "")
     names = set(flags.split())
     return next((name for name in ("avx512f", "avx2", "avx", "asimd") if name in names), "generic")
 

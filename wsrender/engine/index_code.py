@@ -3,6 +3,7 @@
 import hashlib
 import linecache
 from functools import cache
+from typing import Any
 
 import warp as wp
 from wsrender_kernels.elementary import elementary
@@ -77,18 +78,6 @@ def index_function(body: str, n_indices: int, length: int, real) -> wp.Function:
     # Warp reads the source of a function through linecache; an entry without a time stamp is kept.
     linecache.cache[filename] = (len(source), None, source.splitlines(keepends=True), filename)
     functions = elementary(real)
-    sincos = functions.sincos
-
-    @wp.func
-    def sine(a: real):
-        s, _c = sincos(a)
-        return s
-
-    @wp.func
-    def cosine(a: real):
-        _s, c = sincos(a)
-        return c
-
     namespace = {
         "wp": wp,
         "real": real,
@@ -97,9 +86,10 @@ def index_function(body: str, n_indices: int, length: int, real) -> wp.Function:
         "exp2": functions.exp2,
         "log2": functions.log2,
         "power": functions.power,
-        "sine": sine,
-        "cosine": cosine,
+        "sine": functions.sine,
+        "cosine": functions.cosine,
         "__name__": __name__,
     }
     exec(compile(source, filename, "exec"), namespace)  # text made above, from traced arithmetic alone
-    return wp.func(namespace["indices"])
+    function: Any = wp.func(namespace["indices"])
+    return function

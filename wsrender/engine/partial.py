@@ -60,5 +60,3 @@ def merge(a: Partial, b: Partial) -> Partial:
         sums,
         {**a.rows, **b.rows},
     )
-
-

@@ -173,7 +173,7 @@ class _Accumulator:
         self._rows_out = wp.empty(shape.n_outputs * chunk * shape.keep_rows, dtype=real, device=device)
         if not device.is_cuda:
             self._scratch = wp.empty(shape.n_outputs * LANES + 1, dtype=real, device=device)
-            self._cells = wp.empty(LANES, dtype=wp.int32, device=device)
+            self._cells = wp.zeros(LANES, dtype=wp.int32, device=device)
         self._folded: Partial | None = None
         self._rows: dict[int, np.ndarray] = {}
         self._samples = 0

@@ -148,9 +148,7 @@ def resolve(request: str | Sequence[str], has_inertia: bool) -> tuple[str, ...]:
         return KINEMATIC + (DYNAMIC if has_inertia else ())
     if isinstance(request, str):
         request = {"kinematic": KINEMATIC, "dynamic": DYNAMIC}.get(request, (request,))
-    names = tuple(
-        dict.fromkeys((DYNAMIC_PREFIX if is_dynamic(name) else "") + find(name).name for name in request)
-    )
+    names = tuple(dict.fromkeys((DYNAMIC_PREFIX if is_dynamic(name) else "") + find(name).name for name in request))
     dynamic = [name for name in names if is_dynamic(name)]
     if dynamic and not has_inertia:
         raise MissingInertiaError(

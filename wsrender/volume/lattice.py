@@ -28,7 +28,8 @@ def block_around(lower: np.ndarray, upper: np.ndarray, voxel_size_m: float) -> L
     first = np.floor(np.asarray(lower) / voxel_size_m).astype(np.int64) - 1
     last = np.floor(np.asarray(upper) / voxel_size_m).astype(np.int64) + 1
     if np.abs([first, last]).max() >= 2**30:
-        raise InputError("voxel_size_m", f"{voxel_size_m} is too small for a workspace of {np.ptp([lower, upper]):.3g} m")
+        extent = float(np.ptp([lower, upper]))
+        raise InputError("voxel_size_m", f"{voxel_size_m} is too small for a workspace of {extent:.3g} m")
     x, y, z = (int(v) for v in first)
     nx, ny, nz = (int(v) for v in last - first + 1)
     return LatticeBlock(float(voxel_size_m), (x, y, z), (nx, ny, nz))
