@@ -17,7 +17,7 @@ def joint_means(plan: SweepPlan, partial: Partial) -> np.ndarray:
 
 
 def workspace_mean(volume: VolumeData, name: str) -> float | None:
-    """Mean over occupied voxels of voxel value / maximum value; the voxel value is its maximum, else its mean.
+    """Mean over occupied voxels of voxel value / largest voxel value: its maximum, else its mean.
 
     None where neither statistic was kept.
     """
@@ -35,7 +35,7 @@ def _divided(values, largest):
 
 @dataclass(frozen=True)
 class VoxelVolumes:
-    """Volumes [m³] of a voxel set: occupied; inner (all 26 neighbours occupied); outer (with all neighbours)."""
+    """Volumes [m³] of a voxel set: occupied; inner (all 26 neighbours occupied); outer (and all neighbours)."""
 
     occupied: float
     inner: float

@@ -9,7 +9,7 @@ from wsrender.errors import InputError, MissingInertiaError
 from wsrender.indices.catalogue import CONVENTIONS, is_dynamic, resolve
 from wsrender.robot.model_robot import Robot, configuration_rows
 from wsrender.robot.user_robot import HostRobot, as_robot
-from wsrender.spec.options import NAMED_TASKS, TASK_ROWS
+from wsrender.spec.options import DEFAULT_PENALTY, NAMED_TASKS, TASK_ROWS
 
 if TYPE_CHECKING:
     from wsrender.engine import Evaluation
@@ -70,9 +70,7 @@ def evaluation_of(
     if convention not in CONVENTIONS:
         raise InputError("convention", f"{convention!r} is not allowed; {', '.join(CONVENTIONS)} are")
     if convention == "wsrender_code" and precision != "float64":
-        raise InputError(
-            "precision", f'{precision!r} is not allowed with the convention wsrender_code; "float64" is'
-        )
+        raise InputError("precision", f'{precision!r} is not allowed with the convention wsrender_code; "float64" is')
     if precision not in ("float32", "float64"):
         raise InputError("precision", f'{precision!r} is not allowed; "float32" or "float64" is')
     if inertia not in ("kernel", "mujoco"):
@@ -80,27 +78,41 @@ def evaluation_of(
     chain = robot.chain
     names = resolve(indices, robot.has_inertia)
     dynamic = any(is_dynamic(name) for name in names)
-    if torque_scaling and dynamic and chain.effort_limits is None:
-        raise MissingInertiaError(
-            "torque_scaling", f"the model of {robot.name} lacks effort limits for some joint"
-        )
+    if torque_scaling and not dynamic:
+        raise InputError("torque_scaling", "must be false with kinematic indices: it scales dynamic ones")
+    if torque_scaling and chain.effort_limits is None:
+        raise MissingInertiaError("torque_scaling", f"the model of {robot.name} lacks effort limits for some joint")
+    if not (np.isfinite(characteristic_length_m) and characteristic_length_m > 0):
+        raise InputError("characteristic_length_m", f"{characteristic_length_m!r} is not allowed; a positive length is")
     host = robot if isinstance(robot, HostRobot) else None
+    if host and inertia == "mujoco":
+        raise InputError("inertia", f'"mujoco" is not allowed: {robot.name} has no model but its own class')
     if host:
         host_inertia = host.inertia_matrix if dynamic else None
     else:
         host_inertia = robot.mujoco_inertia if dynamic and inertia == "mujoco" else None
-    penalty = 10.0 if joint_limit_penalty is True else (joint_limit_penalty or None)
     return Evaluation(
         chain=chain,
         indices=names,
         rows=task_rows(task),
         convention=convention,
-        penalty=penalty,
+        penalty=_penalty(joint_limit_penalty),
         characteristic_length_m=characteristic_length_m,
         torque_scaling=torque_scaling,
         host_kinematics=host.position_and_jacobian if host else None,
         host_inertia=host_inertia,
     )
+
+
+def _penalty(value: float | bool | None) -> float | None:
+    """K of the joint-limit penalisation; None where it is off."""
+    if value is None or value is False:
+        return None
+    if value is True:
+        return DEFAULT_PENALTY
+    if not (np.isfinite(value) and value > 0):
+        raise InputError("joint_limit_penalty", f"{value!r} is not allowed; a positive K, true or null is")
+    return float(value)
 
 
 def task_rows(task: str | Sequence[str]) -> tuple[int, ...]:

@@ -20,13 +20,21 @@ if TYPE_CHECKING:
 class Robot:
     """A serial chain of a compiled model, from its base frame to its end effector.
 
-    Positions are in the world frame [m]; a configuration ``q`` has shape (n,) or (N, n), in radians and metres, in
-    the order of ``joint_names``; results always have the leading axis N (1 for a single configuration).
+    Positions are in the world frame [m]; a configuration ``q`` has shape (n,) or (N, n), in radians and
+    metres, in the order of ``joint_names``; results always have the leading axis N (1 for a single one).
     """
 
-    def __init__(self, loaded: "LoadedRobot", spec: RobotSpec | None = None, name: str | None = None):
+    def __init__(
+        self,
+        loaded: "LoadedRobot",
+        spec: RobotSpec | None = None,
+        name: str | None = None,
+        base: str | None = None,
+        tip: str | None = None,
+    ):
         self._loaded = loaded
         self.spec = spec
+        self.base, self.tip = base, tip  # as asked for; base_frame and tip_frame are what was found
         self.name = name or loaded.chain.name
 
     @property
@@ -87,7 +95,8 @@ class Robot:
     ) -> np.ndarray:
         """Joint-space inertia matrices (N, n, n) [kg m², kg m, kg], armature included.
 
-        ``method`` "mujoco" evaluates them with MuJoCo itself. Raises MissingInertiaError for a model without inertias.
+        ``method`` "mujoco" evaluates them with MuJoCo itself. Raises MissingInertiaError for a model
+        without inertias.
         """
         if not self.has_inertia:
             raise MissingInertiaError("inertia_matrix", f"the model of {self.name} has no link inertias")
@@ -152,20 +161,19 @@ class Robot:
         return f"<Robot {self._text}>"
 
 
-def configuration_rows(q: Any, n: int) -> np.ndarray:
-    """Configurations as float64 (N, n); InputError names what is wrong."""
+def configuration_rows(q: Any, n: int, field: str = "q") -> np.ndarray:
+    """Configurations as float64 (N, n); InputError names what is wrong with ``field``."""
     try:
         rows = np.asarray(q, np.float64)
     except (TypeError, ValueError) as error:
-        raise InputError("q", f"is not an array of numbers: {error}") from error
+        raise InputError(field, f"is not an array of numbers: {error}") from error
     if rows.ndim == 1 and len(rows) == n:
         rows = rows[None]
     if rows.ndim != 2 or rows.shape[1] != n:
-        raise InputError("q", f"has shape {np.shape(q)}; ({n},) or (N, {n}) is needed")
-    if not np.isfinite(rows).all():
-        raise InputError(
-            "q", f"row {int(np.argmin(np.isfinite(rows).all(axis=1)))} has a value that is not finite"
-        )
+        raise InputError(field, f"has shape {np.shape(q)}; ({n},) or (N, {n}) is needed")
+    finite = np.isfinite(rows).all(axis=1)
+    if not finite.all():
+        raise InputError(field, f"row {int(np.argmin(finite))} has a value that is not finite")
     return rows
 
 
@@ -181,8 +189,9 @@ def load_robot(
     """Load a robot: a library name, the path of an MJCF (.xml) or URDF file, or a DH table.
 
     ``base`` and ``tip`` name a site, body or link (default: the world, and the site "tool" or the only end).
-    ``placement`` is the base frame in the world and ``tool`` the tool point in the tip frame, each a `Transform` or a
-    (4, 4) array. Raises ModelError for a malformed or unsupported model, FrameNotFoundError listing the frames.
+    ``placement`` is the base frame in the world and ``tool`` the tool point in the tip frame, each a
+    `Transform` or a (4, 4) array. Raises ModelError for a malformed or unsupported model,
+    FrameNotFoundError listing the frames.
     """
     options: dict[str, Any] = {"base": base, "tip": tip, "name": name}
     options |= {"placement": _matrix(placement), "tool": _matrix(tool)}
@@ -193,7 +202,7 @@ def load_robot(
         is_path = isinstance(source, Path) or source.lower().endswith((".xml", ".urdf")) or "/" in source
         given = {"path": str(source)} if is_path else {"library": source}
     spec = RobotSpec(**given, placement=_transform(placement), tool=_transform(tool))
-    return Robot(loaded, spec, name)
+    return Robot(loaded, spec, name, base, tip)
 
 
 def robot_of_spec(spec: RobotSpec, base: str | None = None, tip: str | None = None) -> Robot:
@@ -212,10 +221,9 @@ def robot_of_spec(spec: RobotSpec, base: str | None = None, tip: str | None = No
         "path": load_path,
     }
     if spec.source not in loaders:
-        raise InputError(
-            "robot.model", "an uploaded model is known to its server only; give path, mjcf or urdf"
-        )
-    return Robot(loaders[spec.source](getattr(spec, spec.source), **options), spec)
+        raise InputError("robot.model", "an uploaded model is known to its server only; give path, mjcf or urdf")
+    loaded = loaders[spec.source](getattr(spec, spec.source), **options)
+    return Robot(loaded, spec, base=base, tip=tip)
 
 
 def _matrix(transform: Any) -> np.ndarray | None:

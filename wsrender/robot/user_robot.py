@@ -9,6 +9,7 @@ from wsrender.errors import InputError, ModelError
 from wsrender.robot.model_robot import Robot, configuration_rows
 from wsrender.robots.chain import Chain
 
+HASHED_POSES = 16
 STEP = 6e-6  # rad or m: the cube root of float64's epsilon, where central differences err least (about 1e-11)
 
 
@@ -16,9 +17,10 @@ STEP = 6e-6  # rad or m: the cube root of float64's epsilon, where central diffe
 class UserRobot(Protocol):
     """What a user-defined robot gives; ``jacobian`` and ``inertia_matrix`` may be added, batched alike.
 
-    ``limits``: (n, 2) lower and upper [rad or m]. ``forward_kinematics(q: (N, n)) -> (N, 4, 4)`` poses in the world.
-    ``jacobian(q) -> (N, 6, n)``, linear then angular rows at the tip in world axes; absent: finite differences.
-    ``inertia_matrix(q) -> (N, n, n)``; absent: no dynamic indices. ``joint_names`` and ``name`` are optional.
+    ``limits``: (n, 2) lower and upper [rad or m]. ``forward_kinematics(q: (N, n)) -> (N, 4, 4)`` poses in
+    the world. ``jacobian(q) -> (N, 6, n)``, linear then angular rows at the tip in world axes; absent: finite
+    differences. ``inertia_matrix(q) -> (N, n, n)``; absent: no dynamic indices. ``joint_names`` and ``name``
+    are optional.
     """
 
     limits: Any
@@ -33,7 +35,7 @@ class HostRobot(Robot):
 
     def __init__(self, user: UserRobot):
         self.user = user
-        self.spec = None
+        self.spec = self.base = self.tip = None
         limits = _limits(user)
         n = len(limits)
         names = tuple(getattr(user, "joint_names", None) or (f"joint{i + 1}" for i in range(n)))
@@ -49,10 +51,12 @@ class HostRobot(Robot):
 
     @property
     def model_hash(self) -> str:
-        """SHA-256 of the class name and the limits: the code itself cannot be hashed."""
-        return hashlib.sha256(
-            f"{type(self.user).__qualname__}{self._chain.content_hash}".encode()
-        ).hexdigest()
+        """SHA-256 of the class name, the limits and poses between them: the code itself cannot be hashed."""
+        digest = hashlib.sha256(f"{type(self.user).__qualname__}{self._chain.content_hash}".encode())
+        shares = np.linspace(0.0, 1.0, HASHED_POSES)[:, None]
+        q = self.lower_limits + shares * (self.upper_limits - self.lower_limits)
+        digest.update(self.forward_kinematics(q).tobytes())
+        return digest.hexdigest()
 
     def forward_kinematics(self, q: Any, *, precision: str = "float64", device: str = "cpu") -> np.ndarray:
         """Poses of the end effector, (N, 4, 4)."""
@@ -97,9 +101,8 @@ def finite_difference_jacobian(forward_kinematics, q: np.ndarray) -> np.ndarray:
         derivative = (forward_kinematics(q + step) - forward_kinematics(q - step)) / (2 * STEP)
         W = derivative[:, :3, :3] @ T[:, :3, :3].transpose(0, 2, 1)
         J[:, :3, i] = derivative[:, :3, 3]
-        J[:, 3:, i] = (
-            np.stack([W[:, 2, 1] - W[:, 1, 2], W[:, 0, 2] - W[:, 2, 0], W[:, 1, 0] - W[:, 0, 1]], axis=1) / 2
-        )
+        turning = [W[:, 2, 1] - W[:, 1, 2], W[:, 0, 2] - W[:, 2, 0], W[:, 1, 0] - W[:, 0, 1]]
+        J[:, 3:, i] = np.stack(turning, axis=1) / 2
     return J
 
 
@@ -121,9 +124,7 @@ def _limits(user: UserRobot) -> np.ndarray:
     except (TypeError, ValueError) as error:
         raise ModelError("limits", f"is not an array of numbers: {error}") from error
     if limits.ndim != 2 or limits.shape[1] != 2 or not len(limits):
-        raise ModelError(
-            "limits", f"has shape {limits.shape}; (n, 2) is needed: lower and upper limit of each joint"
-        )
+        raise ModelError("limits", f"has shape {limits.shape}; (n, 2) is needed: lower and upper limit of each joint")
     if not np.isfinite(limits).all():
         raise ModelError("limits", "has a value that is not finite; every joint needs an interval")
     if (limits[:, 0] > limits[:, 1]).any():

@@ -7,6 +7,7 @@ from wsrender.result import Result
 from wsrender.robot import Robot, as_robot
 from wsrender.run.steps import Progress, execute
 from wsrender.spec import WorkspaceJob
+from wsrender.spec.document import Document
 from wsrender.spec.parsing import parse_job
 from wsrender.spec.robot import RobotSpec
 from wsrender.spec.sampling import Grid
@@ -25,20 +26,20 @@ def analyze(
 ) -> Result:
     """Sample a robot's joint space: distribution map, volume data and global indices.
 
-    ``robot`` is a Robot, a user-defined robot or what `load_robot` takes; ``sampling`` one of Grid, Random, Sobol,
-    BoundaryBiased, Converge (default Grid(15)); ``fields`` are the other fields of the job document ``workspace``:
-    convention, joint_limit_penalty, characteristic_length_m, torque_scaling, inertia, voxel_size_m,
-    voxel_statistics, keep_map, map_columns, max_samples, precision, device. Raises DocumentError, InputError,
-    ModelError, ResourceError, NumericalError, NotConvergedError.
+    ``robot`` is a Robot, a user-defined robot or what `load_robot` takes; ``sampling`` one of Grid, Random,
+    Sobol, BoundaryBiased, Converge (default Grid(15)) or its part of a job document; ``fields`` are the
+    other fields of the job document ``workspace``: convention, joint_limit_penalty, characteristic_length_m,
+    torque_scaling, inertia, voxel_size_m, voxel_statistics, keep_map, map_columns, max_samples, precision,
+    device. Raises DocumentError, InputError, ModelError, ResourceError, NumericalError, NotConvergedError.
     """
     subject = _robot(robot)
     job = parse_job(
         {
             "analysis": "workspace",
             "robot": _spec(subject),
-            "base": None,
-            "tip": None,
-            "sampling": (Grid() if sampling is None else sampling).model_dump(mode="json"),
+            "base": subject.base,
+            "tip": subject.tip,
+            "sampling": _sampling(sampling),
             "indices": indices if isinstance(indices, str) else list(indices),
             "task": task if isinstance(task, str) else list(task),
             **{name: list(v) if isinstance(v, tuple | set) else v for name, v in fields.items()},
@@ -57,7 +58,13 @@ def _robot(robot: Any) -> Robot:
     return load_robot(robot) if isinstance(robot, str | Path | DHTable) else as_robot(robot)
 
 
+def _sampling(sampling: Any) -> Any:
+    if sampling is None:
+        return Grid().model_dump(mode="json")
+    return sampling.model_dump(mode="json") if isinstance(sampling, Document) else sampling
+
+
 def _spec(robot: Robot) -> dict[str, Any]:
-    """The document form of a robot; a user-defined one has none but its name."""
-    spec = robot.spec or RobotSpec(path=f"user-defined:{robot.name}")
+    """The document form of a robot; a user-defined one has none, and its result document says so."""
+    spec = robot.spec or RobotSpec(path="user-defined")
     return spec.model_dump(mode="json", exclude_none=True)

@@ -14,8 +14,8 @@ from wsrender.volume.lattice import LatticeBlock, block_around, default_voxel_si
 
 SAMPLES = 2**16
 MARGIN = 0.25  # of the first pass's extent, around a user-defined robot, whose reach is unknown
-# An index without a bound from the reach may take this many times its coarse maximum. The pseudo-inverse of the
-# original program jumps up in exactly singular postures, which grids hit and the first pass does not.
+# An index without a bound from the reach may take this many times its coarse maximum. The pseudo-inverse of
+# the original program jumps up in exactly singular postures, which grids hit and the first pass does not.
 HEADROOM, HEADROOM_CODE = 2.0, 1024.0
 
 
@@ -28,7 +28,7 @@ class FirstPass:
 
     @cached_property
     def evaluated(self) -> Evaluated:
-        """Positions and index values of the coarse samples, in float64 on the CPU: the same on every target."""
+        """Positions and values of the coarse samples, in float64 on the CPU: the same on every target."""
         sampling = plan_sampling(self.evaluation.chain, Sobol(count=SAMPLES, seed=0, locked=self.locked))
         q = configurations(sampling, np.arange(SAMPLES))
         return evaluate_at(self.evaluation, q)
@@ -47,7 +47,7 @@ class FirstPass:
         return block_around(low - margin, high + margin, voxel_size_m)
 
     def sum_scales(self, samples: int, precision: str) -> tuple[np.ndarray, np.ndarray]:
-        """Scales (K,) and bounds (K,) of the fixed-point sums: bounds from the reach, else from the coarse maximum."""
+        """Scales and bounds (K,) of the fixed-point sums: from the reach, else from the coarse maximum."""
         bounds = np.array([bound_from_reach(self.evaluation, name) for name in self.evaluation.indices])
         unknown = np.isnan(bounds)
         if unknown.any():

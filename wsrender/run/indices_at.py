@@ -13,7 +13,7 @@ from wsrender.result import Result
 from wsrender.robot import Robot
 from wsrender.robot.indices import evaluation_of
 from wsrender.robot.model_robot import configuration_rows
-from wsrender.run.provenance import index_choices, provenance, robot_entry
+from wsrender.run.provenance import index_choices, job_entry, provenance, robot_entry
 from wsrender.spec import IndicesAtJob
 from wsrender.volume.distribution_map import DistributionMap
 
@@ -53,13 +53,13 @@ class IndicesAtPlan:
         values = dict(zip(names, partial.values, strict=True))
         document = {
             "analysis": "indices_at",
-            "job": self.job.model_dump(mode="json"),
+            "job": job_entry(self.job, self.robot),
             "robot": robot_entry(self.robot),
             "sampling": {"method": "given", "samples": len(self.q)},
             "indices": {
                 name: {
-                    "maximum": float(v.max()) if len(v) else None,
-                    "minimum": float(v.min()) if len(v) else None,
+                    "maximum": float(v.max()),
+                    "minimum": float(v.min()),
                     "unit": units[name],
                 }
                 for name, v in values.items()
@@ -68,19 +68,16 @@ class IndicesAtPlan:
             "provenance": provenance(self.job.precision, self.target),
             "timing_s": seconds,
         }
-        rows = DistributionMap(
-            partial.position, values, units, self.q, self.robot.joint_names, partial.quat_wxyz
-        )
+        rows = DistributionMap(partial.position, values, units, self.q, self.robot.joint_names, partial.quat_wxyz)
         return Result(document, map=rows)
 
 
 def plan_indices_at(job: IndicesAtJob, robot: Robot) -> IndicesAtPlan:
     """Resolve the job; InputError for configurations that are missing or of the wrong length."""
-    if job.configurations is None:
-        raise InputError("configurations", f"must be given: rows of {robot.chain.n} joint values")
-    q = configuration_rows(
-        np.array(job.configurations, np.float64).reshape(len(job.configurations), -1), robot.chain.n
-    )
+    n = robot.chain.n
+    if not job.configurations:
+        raise InputError("configurations", f"must be given: rows of {n} joint values, {', '.join(robot.joint_names)}")
+    q = configuration_rows(np.array(job.configurations, np.float64), n, "configurations")
     evaluation = evaluation_of(
         robot,
         indices=job.indices,

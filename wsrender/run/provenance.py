@@ -6,6 +6,7 @@ from typing import Any
 
 from wsrender import __version__
 from wsrender.robot import Robot
+from wsrender.robot.user_robot import HostRobot
 from wsrender.spec.options import TASK_ROWS
 
 
@@ -14,6 +15,7 @@ def robot_entry(robot: Robot) -> dict[str, Any]:
     chain = robot.chain
     return {
         "name": robot.name,
+        "user_defined": isinstance(robot, HostRobot),
         "model_hash": robot.model_hash,
         "chain_hash": chain.content_hash,
         "base_frame": chain.base_frame,
@@ -25,6 +27,15 @@ def robot_entry(robot: Robot) -> dict[str, Any]:
         "upper_limits": chain.upper_limits.tolist(),
         "has_inertia": chain.has_inertia,
     }
+
+
+def job_entry(job: Any, robot: Robot) -> dict[str, Any]:
+    """The job document that gave a result; a robot that is a Python class has no form that could be run again."""
+    entry = job.model_dump(mode="json")
+    if isinstance(robot, HostRobot):
+        cls = type(robot.user)
+        entry["robot"] = {"user_defined": f"{cls.__module__}.{cls.__qualname__}"}
+    return entry
 
 
 def index_choices(job: Any, rows: tuple[int, ...]) -> dict[str, Any]:

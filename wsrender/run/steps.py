@@ -5,6 +5,7 @@ from collections.abc import Callable
 from functools import reduce
 from typing import Any, Protocol
 
+from wsrender.errors import InputError
 from wsrender.result import Result
 from wsrender.robot import Robot, as_robot, robot_of_spec
 from wsrender.run.indices_at import plan_indices_at
@@ -51,7 +52,13 @@ def plan(document: Any, robot: Any = None) -> Plan:
 
 
 def run_shard(plan: Plan, shard: int, progress: Callable[[int], None] | None = None, **execution: Any) -> Any:
-    """The partial result of one shard; ``execution`` may give ``threads`` and ``chunk_size``, which change no bit."""
+    """The partial result of one shard.
+
+    ``execution`` may give ``threads`` and ``chunk_size`` (samples), which change no bit; InputError below 1.
+    """
+    chunk_size = execution.get("chunk_size")
+    if chunk_size is not None and (not isinstance(chunk_size, int) or chunk_size < 1):
+        raise InputError("chunk_size", f"{chunk_size!r} is not allowed; a positive whole number is")
     return plan.run_shard(shard, progress, **execution)
 
 
@@ -68,8 +75,8 @@ def finish(plan: Plan, partial: Any, seconds: dict[str, float] | None = None) ->
 def execute(document: Any, progress: Progress | None = None, robot: Any = None, **execution: Any) -> Result:
     """Run a job here, from document to result.
 
-    ``progress(done, total, message)`` is called in this thread a few times a second. ``threads`` (default: the
-    variable WSRENDER_THREADS, else all cores) and ``chunk_size`` change no bit of the result.
+    ``progress(done, total, message)`` is called in this thread a few times a second. ``threads`` (default:
+    the variable WSRENDER_THREADS, else all cores) and ``chunk_size`` change no bit of the result.
     """
     started = time.perf_counter()
     if progress:
@@ -83,7 +90,7 @@ def execute(document: Any, progress: Progress | None = None, robot: Any = None, 
 
         def report(done: int, before: int = before) -> None:
             if progress:
-                progress(before + done, total, "samples")
+                progress(before + done, max(total, before + done), "samples")  # converging jobs exceed it
 
         partials.append(run_shard(planned, shard, report, **execution))
         before += count

@@ -42,17 +42,13 @@ class WorkspacePlan:
     shards: list[tuple[int, int]]
     estimate: dict[str, float]
 
-    def run_shard(
-        self, shard: int, progress: Callable[[int], None] | None, **execution: Any
-    ) -> WorkspacePartial:
+    def run_shard(self, shard: int, progress: Callable[[int], None] | None, **execution: Any) -> WorkspacePartial:
         """Sweep the shard's samples; a converging job has one shard, its sequence of grids."""
         devices = devices_of(self.job.device)
         if isinstance(self.job.sampling, Converge):
             return self._converge(self.job.sampling, progress, **execution)
         first, count = self.shards[shard]
-        return WorkspacePartial(
-            sweep(self.sweep, first, count, devices, progress=progress, **execution), self.sweep
-        )
+        return WorkspacePartial(sweep(self.sweep, first, count, devices, progress=progress, **execution), self.sweep)
 
     def merge(self, a: WorkspacePartial, b: WorkspacePartial) -> WorkspacePartial:
         """The partial result of both; bit for bit the same in any order."""
@@ -67,18 +63,18 @@ class WorkspacePlan:
     def _converge(
         self, sampling: Converge, progress: Callable[[int], None] | None, **execution: Any
     ) -> WorkspacePartial:
-        """[WSR] Algorithm 1: finer grids until the global value of an index changes by at most the tolerance."""
+        """[WSR] Algorithm 1: finer grids until an index's global value changes by at most the tolerance."""
         position = self.sweep.evaluation.indices.index(_converging_index(self.sweep, sampling))
         sequence: list[dict[str, float]] = []
         levels, before = sampling.start, 0
         while True:
             plan = self._with_grid(levels, sampling)
             count = plan.sampling.count
-            if count > sampling.max_samples:
+            if count > (limit := min(sampling.max_samples, self.job.max_samples)):
+                values = ", ".join(f"{s['value']:.6g} ({s['per_joint']})" for s in sequence)
                 raise NotConvergedError(
-                    f"not converged: the next grid, {levels} per joint, has {count:.4g} samples, above max_samples = "
-                    f"{sampling.max_samples:.4g}; {sampling.by} so far: "
-                    + ", ".join(f"{s['value']:.6g} ({s['per_joint']})" for s in sequence),
+                    f"not converged: the next grid, {levels} per joint, has {count:.4g} samples, above "
+                    f"max_samples = {limit:.4g}; {sampling.by} so far: {values or 'none'}",
                     sequence,
                 )
 
@@ -146,16 +142,15 @@ def plan_workspace(job: WorkspaceJob, robot: Robot) -> WorkspacePlan:
         shards = [(0, sampling.count)]
     else:
         shards = [
-            (first, min(SHARD_SAMPLES, sampling.count - first))
-            for first in range(0, sampling.count, SHARD_SAMPLES)
+            (first, min(SHARD_SAMPLES, sampling.count - first)) for first in range(0, sampling.count, SHARD_SAMPLES)
         ]
     return WorkspacePlan(job, robot, plan, first_pass, target_of(devices), shards, estimate(plan, devices))
 
 
 def _first_sampling(job: WorkspaceJob, robot: Robot) -> SamplingPlan:
     if isinstance(job.sampling, Converge):
-        limit = min(job.max_samples, job.sampling.max_samples)
-        return plan_sampling(robot.chain, Grid(job.sampling.start, locked=job.sampling.locked), limit)
+        # Its own limit ends the sequence: see WorkspacePlan._converge.
+        return plan_sampling(robot.chain, Grid(job.sampling.start, locked=job.sampling.locked))
     return plan_sampling(robot.chain, job.sampling, job.max_samples)
 
 

@@ -17,7 +17,7 @@ from wsrender.global_indices import (
 from wsrender.indices.catalogue import unit
 from wsrender.result import Result
 from wsrender.robot import Robot
-from wsrender.run.provenance import index_choices, provenance, robot_entry
+from wsrender.run.provenance import index_choices, job_entry, provenance, robot_entry
 from wsrender.sampling import subsample
 from wsrender.spec import WorkspaceJob
 from wsrender.volume.distribution_map import DistributionMap
@@ -43,7 +43,7 @@ def workspace_result(
     volumes = voxel_volumes(volume)
     document: dict[str, Any] = {
         "analysis": "workspace",
-        "job": job.model_dump(mode="json"),
+        "job": job_entry(job, robot),
         "robot": robot_entry(robot),
         "sampling": _sampling_entry(job, plan, partial),
         "indices": _index_entries(plan, partial, volume, units),
@@ -90,9 +90,7 @@ def _sampling_entry(job: WorkspaceJob, plan: SweepPlan, partial: Partial) -> dic
     return entry
 
 
-def _index_entries(
-    plan: SweepPlan, partial: Partial, volume: VolumeData, units: dict[str, str]
-) -> dict[str, Any]:
+def _index_entries(plan: SweepPlan, partial: Partial, volume: VolumeData, units: dict[str, str]) -> dict[str, Any]:
     high, low, means = partial.maximum, partial.minimum, joint_means(plan, partial)
     return {
         name: {
