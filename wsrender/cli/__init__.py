@@ -1,4 +1,4 @@
-"""The command line: ``wsrender robots | schema | run …`` and what the server adds to it."""
+"""The command line: ``wsrender robots | schema | run | submit | jobs …`` and what the server adds to it."""
 
 import sys
 from collections.abc import Sequence
@@ -8,11 +8,14 @@ from typing import Annotated
 import typer
 
 from wsrender.cli.faults import one_line_faults
+from wsrender.cli.jobs import jobs
 from wsrender.cli.listing import robots, schema
 from wsrender.cli.run import run
+from wsrender.cli.submit import submit
 from wsrender.errors import MissingExtraError
 
-COMMANDS = {"run": run, "robots": robots, "schema": schema}
+COMMANDS = {"run": run, "robots": robots, "schema": schema, "submit": submit}
+GROUPS = {"jobs": jobs}
 # Typer apps whose commands join these; loaded only where none of these is asked for.
 EXTENSIONS = "wsrender.commands"
 SERVER_COMMANDS = ("serve", "worker", "keys", "database", "demo")
@@ -27,12 +30,12 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 def command_line(command: str | None) -> typer.Typer:
     """The command line that knows ``command``: extensions are loaded only if they may hold it."""
-    app = typer.Typer(
-        callback=_options, no_args_is_help=True, pretty_exceptions_enable=False, rich_markup_mode="rich"
-    )
+    app = typer.Typer(callback=_options, no_args_is_help=True, pretty_exceptions_enable=False, rich_markup_mode="rich")
     for name, function in COMMANDS.items():
         app.command(name)(function)
-    if command not in COMMANDS:
+    for name, group in GROUPS.items():
+        app.add_typer(group, name=name)
+    if command not in COMMANDS | GROUPS:
         _extend(app)
     return app
 

@@ -11,7 +11,7 @@ from rich.table import Table
 
 from wsrender.cli.faults import one_line_faults
 
-_PIPED_WIDTH = 240  # columns off a terminal: one robot a line
+PIPED_WIDTH = 240  # columns off a terminal: one robot a line
 
 
 def robots() -> None:
@@ -19,12 +19,10 @@ def robots() -> None:
     with one_line_faults():
         from wsrender.robots import library
 
-        table = Table(
-            "name", "joints", "description", "source", box=SIMPLE_HEAD, show_edge=False, pad_edge=False
-        )
+        table = Table("name", "joints", "description", "source", box=SIMPLE_HEAD, show_edge=False, pad_edge=False)
         for robot in library.describe():
             table.add_row(robot.name, str(robot.joints), robot.description, robot.source)
-        console = Console() if sys.stdout.isatty() else Console(width=_PIPED_WIDTH)
+        console = Console() if sys.stdout.isatty() else Console(width=PIPED_WIDTH)
         console.print(table)
 
 

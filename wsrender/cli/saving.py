@@ -1,0 +1,42 @@
+"""The end of a run: its files written and reported."""
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from rich.console import Console
+
+from wsrender.errors import InputError
+
+Formats = Annotated[
+    list[str] | None, typer.Option("--format", help="Also write npz, csv, mat, stl or svg; repeatable.")
+]
+
+
+def check_output(output: Path, formats: list[str] | None) -> None:
+    """Refuse before a long run what saving would refuse after it; raises InputError."""
+    from wsrender.result import EXTRA_FORMATS, STANDARD_FORMATS
+
+    if output.exists() and not output.is_dir():
+        raise InputError("--output", f"must be a folder, not the file {output}")
+    for name in formats or ():
+        if name not in STANDARD_FORMATS + EXTRA_FORMATS:
+            raise InputError("--format", f'must be one of {", ".join(EXTRA_FORMATS)}, not "{name}"')
+
+
+def save_and_report(result: Any, output: Path, formats: list[str] | None) -> None:
+    """Save a result; print its summary and the files written."""
+    result.save(output, formats=tuple(formats or ()))
+    console = Console(soft_wrap=True, highlight=False, markup=False)
+    console.print(result.summary())
+    for artifact in result.document["artifacts"]:
+        console.print(f"{output / artifact['name']}  {_size(artifact['bytes'])}")
+
+
+def _size(count: float) -> str:
+    """Bytes in decimal units, three digits."""
+    for unit in ("B", "kB", "MB"):
+        if count < 1000:
+            return f"{count:.3g} {unit}"
+        count /= 1000
+    return f"{count:.3g} GB"
