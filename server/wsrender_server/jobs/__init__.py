@@ -1,0 +1,1 @@
+"""Jobs: their store, their execution on Dask, their files. Nothing here knows HTTP."""

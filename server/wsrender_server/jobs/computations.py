@@ -1,0 +1,246 @@
+"""The job table seen by the dispatcher: computations to start, their progress, their ends."""
+
+import json
+from collections.abc import Iterable, Mapping
+from datetime import UTC, datetime
+from typing import Any
+
+from sqlalchemy import delete, func, select
+from sqlalchemy.orm import Session
+
+from wsrender_server.jobs.changes import Changes
+from wsrender_server.jobs.database import Transactions
+from wsrender_server.jobs.files import DataFolder
+from wsrender_server.jobs.identity import Identity
+from wsrender_server.jobs.records import ArtifactRecord, ComputationRecord, Progress, QueueSummary
+from wsrender_server.jobs.rows import enter, finish, move, report
+from wsrender_server.jobs.states import LIVE, UNFINISHED, ComputationState, JobState
+from wsrender_server.jobs.tables import ArtifactFile, Computation, DeviceTarget, Job
+
+
+class ComputationStore:
+    """The dispatcher's part of the store. An attempt that is over changes nothing: every end names its attempt."""
+
+    transactions: Transactions
+    changes: Changes
+    files: DataFolder
+    identity: Identity
+
+    def unfinished(self, known: Iterable[str] = ()) -> list[ComputationRecord]:
+        """Computations that wait, run or are to stop, the most urgent first, except the waiting ones ``known``."""
+        query = select(Computation).where(Computation.state.in_(UNFINISHED))
+        query = query.order_by(Computation.priority.desc(), Computation.created_at)
+        known = set(known)
+        with self.transactions.read() as session:
+            return [
+                _record(row)
+                for row in session.scalars(query)
+                if row.state != ComputationState.WAITING or row.id not in known
+            ]
+
+    def begin(self, computation_id: str, attempt: int) -> bool:
+        """A waiting computation runs, and its queued jobs with it; False where it no longer should."""
+        with self.transactions.write() as session:
+            row = self._current(session, computation_id, attempt)
+            if row is None or row.state not in (ComputationState.WAITING, ComputationState.RUNNING):
+                return False
+            row.state = ComputationState.RUNNING
+            jobs = self._jobs(session, computation_id, [JobState.QUEUED])
+            for job in jobs:
+                move(session, job, JobState.RUNNING)
+            ids = [job.id for job in jobs]
+        self.changes.notify(*ids)
+        return True
+
+    def settle(self, computation_id: str, resolved: Mapping[str, Any], target: str) -> None:
+        """Keep what the plan settled; a restart and every worker use it unchanged."""
+        with self.transactions.write() as session:
+            row = session.get(Computation, computation_id, with_for_update=True)
+            if row is None:
+                return
+            row.resolved, row.target = dict(resolved), target
+            # The key was made for the target that the workers had when the job was submitted, if any was known.
+            key = self.identity.key(row.owner, json.loads(row.document), target)
+            if session.scalar(select(Computation.id).where(Computation.key == key)) is None:
+                row.key = key
+
+    def report(self, progress: Mapping[str, Progress]) -> None:
+        """Record the progress of computations for their running jobs."""
+        told: list[str] = []
+        with self.transactions.write() as session:
+            for computation_id in sorted(progress):
+                row = session.get(Computation, computation_id, with_for_update=True)
+                if row is None:
+                    continue
+                for job in self._jobs(session, computation_id, [JobState.RUNNING]):
+                    report(session, job, progress[computation_id])
+                    told.append(job.id)
+        self.changes.notify(*told)
+
+    def complete(self, computation_id: str, attempt: int, artifacts: Iterable[ArtifactRecord]) -> None:
+        """The result is there: its files are listed and every job that waited for it succeeds."""
+        with self.transactions.write() as session:
+            row = self._current(session, computation_id, attempt)
+            if row is None or row.state not in (ComputationState.RUNNING, ComputationState.STOPPING):
+                return
+            row.state = ComputationState.SUCCEEDED
+            session.execute(delete(ArtifactFile).where(ArtifactFile.computation_id == computation_id))
+            for position, record in enumerate(artifacts):
+                session.add(
+                    ArtifactFile(
+                        computation_id=computation_id,
+                        name=record.name,
+                        position=position,
+                        sha256=record.sha256,
+                        record=vars(record),
+                    )
+                )
+            ids = self._end(session, computation_id, None)
+        self.files.forget_partials(computation_id)
+        self.changes.notify(*ids)
+
+    def fail(self, computation_id: str, attempt: int, error: Mapping[str, Any]) -> None:
+        """The computation failed, and every job that waited for it: code, message, retryable, perhaps field."""
+        with self.transactions.write() as session:
+            row = self._current(session, computation_id, attempt)
+            if row is None or row.state not in UNFINISHED:
+                return
+            row.state = ComputationState.FAILED
+            ids = self._end(session, computation_id, dict(error))
+        self.changes.notify(*ids)
+
+    def stopped(self, computation_id: str, attempt: int) -> None:
+        """Nothing of a computation that was to stop runs any more; it waits again if a new job wants it."""
+        with self.transactions.write() as session:
+            row = self._current(session, computation_id, attempt)
+            if row is None or row.state != ComputationState.STOPPING:
+                return
+            canceling = self._jobs(session, computation_id, [JobState.CANCELING])
+            for job in canceling:
+                move(session, job, JobState.CANCELED)
+            wanted = bool(self._jobs(session, computation_id, LIVE))
+            row.state = ComputationState.WAITING if wanted else ComputationState.STOPPED
+            row.attempt += wanted
+            ids = [job.id for job in canceling]
+        self.changes.notify(*ids)
+
+    def time_out(self, now: datetime | None = None) -> list[str]:
+        """Detach the jobs whose time is up; their ids."""
+        now = now or datetime.now(UTC)
+        due = select(Job.id, Job.computation_id).where(Job.state == JobState.RUNNING, Job.deadline <= now)
+        with self.transactions.read() as session:
+            candidates = session.execute(due.order_by(Job.computation_id)).all()
+        if not candidates:
+            return []
+        ids: list[str] = []
+        with self.transactions.write() as session:
+            for job_id, computation_id in candidates:
+                computation = session.get(Computation, computation_id, with_for_update=True)
+                job = session.get(Job, job_id)
+                if job is None or computation is None or job.state != JobState.RUNNING:
+                    continue
+                error = {
+                    "code": "timed_out",
+                    "message": f"the job ran longer than its {job.timeout_s:g} s",
+                    "retryable": False,
+                }
+                self._detach(session, job, computation, JobState.TIMED_OUT, error)
+                ids.append(job_id)
+        self.changes.notify(*ids)
+        return ids
+
+    def recover(self) -> None:
+        """At the start, when nothing runs yet: what was running waits again, what was to stop has stopped."""
+        with self.transactions.write() as session:
+            rows = session.scalars(
+                select(Computation)
+                .where(Computation.state.in_([ComputationState.RUNNING, ComputationState.STOPPING]))
+                .with_for_update()
+            ).all()
+            stopping = [(row.id, row.attempt) for row in rows if row.state == ComputationState.STOPPING]
+            for row in rows:
+                if row.state == ComputationState.RUNNING:
+                    row.state = ComputationState.WAITING
+        for computation_id, attempt in stopping:
+            self.stopped(computation_id, attempt)
+
+    def set_targets(self, targets: Mapping[str, str]) -> None:
+        """Keep which target a request for a device ("auto", "cpu", "cuda", …) means on the workers there are."""
+        with self.transactions.write() as session:
+            for device, target in targets.items():
+                session.merge(DeviceTarget(device=device, target=target))
+
+    def queue_summary(self) -> QueueSummary:
+        """Jobs by state and computations waiting and running, of the whole server."""
+        with self.transactions.read() as session:
+            jobs = dict(session.execute(select(Job.state, func.count()).group_by(Job.state)).tuples().all())
+            states = dict(
+                session.execute(select(Computation.state, func.count()).group_by(Computation.state)).tuples().all()
+            )
+            oldest = session.scalar(select(func.min(Job.created_at)).where(Job.state == JobState.QUEUED))
+        return QueueSummary(
+            {state.value: jobs.get(state, 0) for state in JobState},
+            states.get(ComputationState.WAITING, 0),
+            states.get(ComputationState.RUNNING, 0),
+            oldest,
+        )
+
+    def ping(self) -> None:
+        """Raise StoreUnavailable where the database does not answer."""
+        with self.transactions.read() as session:
+            session.execute(select(1))
+
+    def _target(self, session: Session, device: str) -> str | None:
+        row = session.get(DeviceTarget, device)
+        return row.target if row else None
+
+    def _current(self, session: Session, computation_id: str, attempt: int) -> Computation | None:
+        row = session.get(Computation, computation_id, with_for_update=True)
+        return row if row is not None and row.attempt == attempt else None
+
+    def _jobs(self, session: Session, computation_id: str, states: Iterable[JobState]) -> list[Job]:
+        query = select(Job).where(Job.computation_id == computation_id, Job.state.in_(list(states)))
+        return list(session.scalars(query.order_by(Job.created_at, Job.id)))
+
+    def _end(self, session: Session, computation_id: str, error: dict[str, Any] | None) -> list[str]:
+        """The jobs that waited succeed, or fail with an error; those being canceled are canceled."""
+        jobs = self._jobs(session, computation_id, [*LIVE, JobState.CANCELING])
+        for job in jobs:
+            if job.state == JobState.CANCELING:
+                move(session, job, JobState.CANCELED)
+            elif error is None:
+                finish(session, job)
+            else:
+                move(session, job, JobState.FAILED, error)
+        return [job.id for job in jobs]
+
+    def _detach(
+        self,
+        session: Session,
+        job: Job,
+        computation: Computation,
+        end: JobState,
+        error: dict[str, Any] | None = None,
+    ) -> None:
+        """Take a job off its computation, which stops with its last job; a canceled one waits for that."""
+        others = [other for other in self._jobs(session, computation.id, LIVE) if other.id != job.id]
+        running = computation.state == ComputationState.RUNNING
+        if not others and running:
+            computation.state = ComputationState.STOPPING
+        elif not others and computation.state == ComputationState.WAITING:
+            computation.state = ComputationState.STOPPED
+        waits = end == JobState.CANCELED and not others and running
+        enter(session, job, JobState.CANCELING if waits else end, error)
+
+
+def _record(row: Computation) -> ComputationRecord:
+    return ComputationRecord(
+        id=row.id,
+        owner=row.owner,
+        state=ComputationState(row.state),
+        document=json.loads(row.document),
+        priority=row.priority,
+        attempt=row.attempt,
+        resolved=row.resolved,
+        target=row.target,
+    )

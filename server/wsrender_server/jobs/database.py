@@ -1,0 +1,96 @@
+"""Connections to SQLite or PostgreSQL, and their transactions."""
+
+import sqlite3
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from sqlalchemy import Connection, Engine, create_engine, event, make_url
+from sqlalchemy.exc import DBAPIError, IntegrityError
+from sqlalchemy.orm import Session
+
+from wsrender_server.jobs.faults import StoreUnavailable
+
+LOCK_WAIT_S = 5.0
+
+
+def open_database(url: str, lock_wait_s: float = LOCK_WAIT_S) -> Engine:
+    """An engine for a SQLite file (made if absent, WAL mode) or any other database of SQLAlchemy.
+
+    ``lock_wait_s`` is how long SQLite waits for another process's lock.
+    """
+    address = make_url(url)
+    if address.get_backend_name() != "sqlite":
+        # No transaction of the store takes seconds; one that does holds a dead connection's lock.
+        options = "-c lock_timeout=5000 -c statement_timeout=15000"
+        return create_engine(
+            url,
+            pool_pre_ping=True,
+            pool_size=10,
+            max_overflow=20,
+            connect_args={"connect_timeout": 5, "options": options},
+        )
+    if address.database:
+        Path(address.database).parent.mkdir(parents=True, exist_ok=True)
+    engine = create_engine(url, connect_args={"timeout": lock_wait_s}, pool_size=10, max_overflow=40)
+    event.listen(engine, "connect", _set_up_sqlite)
+    event.listen(engine, "begin", _begin_sqlite)
+    return engine
+
+
+def _set_up_sqlite(connection: sqlite3.Connection, record: Any) -> None:
+    connection.isolation_level = None  # transactions begin where _begin_sqlite says so
+    for pragma in ("journal_mode = WAL", "synchronous = FULL", "foreign_keys = ON"):
+        connection.execute(f"PRAGMA {pragma}")
+
+
+def _begin_sqlite(connection: Connection) -> None:
+    # A transaction that will write takes the lock at once: upgrading a read lock later may deadlock.
+    writes = connection.get_execution_options().get("writes", False)
+    connection.exec_driver_sql("BEGIN IMMEDIATE" if writes else "BEGIN")
+
+
+class Transactions:
+    """Short transactions; a database that is locked, gone or full raises StoreUnavailable and changes nothing."""
+
+    def __init__(self, engine: Engine):
+        self.engine = engine
+        self._writing = engine.execution_options(writes=True)
+        # SQLite has one writer; threads of this process queue here rather than poll its lock.
+        self._turn = threading.Lock() if engine.dialect.name == "sqlite" else None
+
+    @contextmanager
+    def read(self) -> Iterator[Session]:
+        """A session that only reads."""
+        with _faults(), Session(self.engine) as session, session.begin():
+            yield session
+
+    @contextmanager
+    def write(self) -> Iterator[Session]:
+        """A session that is committed at the end of the block, or rolled back by an exception."""
+        with _faults(), self._my_turn(), Session(self._writing) as session, session.begin():
+            yield session
+
+    @contextmanager
+    def _my_turn(self) -> Iterator[None]:
+        if self._turn is None:
+            yield
+        elif self._turn.acquire(timeout=2 * LOCK_WAIT_S):
+            try:
+                yield
+            finally:
+                self._turn.release()
+        else:
+            raise StoreUnavailable("the database is busy; nothing was changed, try again")
+
+
+@contextmanager
+def _faults() -> Iterator[None]:
+    try:
+        yield
+    except IntegrityError:
+        raise
+    except DBAPIError as error:
+        raise StoreUnavailable(f"the database does not answer ({error.orig}); nothing was changed") from error

@@ -1,0 +1,70 @@
+"""What the store and the engine raise on purpose.
+
+::
+
+    WsrenderError
+    └── JobFault
+        ├── IdempotencyConflict     the idempotency key was used with another body
+        ├── InvalidTransition       the job's state does not allow what was asked
+        ├── QueueFull               the owner has as many unfinished jobs as allowed
+        ├── StoreUnavailable        the database is locked, gone or on a full disk; try again
+        ├── DiskFull                less disk is free than the server keeps in reserve; try again
+        └── EngineUnavailable       no scheduler or worker answers; try again
+"""
+
+from wsrender.errors import WsrenderError
+
+
+class JobFault(WsrenderError):  # noqa: N818
+    """Base of the job server's own errors; ``retryable`` says whether trying again later may help."""
+
+    code = "job_fault"
+    retryable = False
+
+
+class IdempotencyConflict(JobFault):
+    """The idempotency key was used before with another body."""
+
+    code = "idempotency_key_reused"
+
+
+class InvalidTransition(JobFault):
+    """The job's state does not allow what was asked; ``state`` is that state."""
+
+    code = "invalid_transition"
+
+    def __init__(self, state: str, action: str):
+        self.state = state
+        super().__init__(f"a job that is {state} cannot be {action}")
+
+
+class QueueFull(JobFault):
+    """The owner has as many unfinished jobs as allowed."""
+
+    code = "queue_full"
+    retryable = True
+
+    def __init__(self, limit: int):
+        self.limit = limit
+        super().__init__(f"{limit} unfinished jobs are allowed at a time; wait for one to end or cancel one")
+
+
+class StoreUnavailable(JobFault):
+    """The database is locked, gone or on a full disk; nothing was changed."""
+
+    code = "database_unavailable"
+    retryable = True
+
+
+class DiskFull(JobFault):
+    """Less disk is free than the server keeps in reserve; nothing was changed."""
+
+    code = "disk_full"
+    retryable = True
+
+
+class EngineUnavailable(JobFault):
+    """No scheduler or worker answers."""
+
+    code = "engine_unavailable"
+    retryable = True

@@ -1,0 +1,37 @@
+"""What makes two submissions the same computation."""
+
+import hashlib
+import json
+from collections.abc import Mapping
+from functools import cache
+from typing import Any
+
+from wsrender import __version__
+from wsrender.errors import InputError
+from wsrender.robots.library import find
+
+
+class Identity:
+    """Keys of computations; equal keys share one computation and its result."""
+
+    def __init__(self, shared_cache: bool = False):
+        self.shared_cache = shared_cache
+
+    def key(self, owner: str, document: Mapping[str, Any], target: str | None) -> str:
+        """SHA-256 of owner, document, model, version and target.
+
+        With a shared cache, jobs of library robots have the same key for every owner. Raises InputError for a robot
+        given by a path: the server reads no files for its users.
+        """
+        robot = document["robot"]
+        if robot.get("path") is not None:
+            raise InputError("robot.path", "is for local runs; upload the model and give robot.model")
+        library = robot.get("library")
+        anyone = self.shared_cache and library is not None
+        parts = ["" if anyone else owner, document, _library_hash(library), __version__, target]
+        return hashlib.sha256(json.dumps(parts, sort_keys=True).encode()).hexdigest()
+
+
+@cache
+def _library_hash(name: str | None) -> str | None:
+    return None if name is None else hashlib.sha256(find(name).read_bytes()).hexdigest()

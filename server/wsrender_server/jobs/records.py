@@ -1,0 +1,123 @@
+"""What the store hands out: plain values, never rows of the database. Times are aware datetimes in UTC."""
+
+from dataclasses import dataclass, field
+from datetime import datetime
+from typing import Any
+
+from wsrender_server.jobs.states import ComputationState, JobState
+
+
+@dataclass(frozen=True)
+class Progress:
+    """How far a job is: fraction 0 … 1, samples, samples per second, seconds to go (None: unknown)."""
+
+    fraction: float = 0.0
+    samples_done: int = 0
+    samples_total: int | None = None
+    rate_per_s: float | None = None
+    eta_s: float | None = None
+    message: str = ""
+
+
+@dataclass(frozen=True)
+class JobRecord:
+    """A job. ``error`` holds code, message, retryable and where known field; ``document`` is None in lists.
+
+    ``last_event`` is the id of the job's newest event.
+    """
+
+    id: str
+    owner: str
+    analysis: str
+    state: JobState
+    created_at: datetime
+    started_at: datetime | None
+    finished_at: datetime | None
+    labels: dict[str, str]
+    priority: int
+    attempt: int
+    timeout_s: float | None
+    progress: Progress
+    error: dict[str, Any] | None
+    last_event: int
+    document: dict[str, Any] | None = None
+
+
+@dataclass(frozen=True)
+class Submission:
+    """A submitted job: ``replayed`` by its idempotency key, or answered from the cache (``cached``)."""
+
+    job: JobRecord
+    replayed: bool = False
+    cached: bool = False
+
+
+@dataclass(frozen=True)
+class EventRecord:
+    """Something that happened to a job; ids count from 1 within the job.
+
+    ``type`` "state": data {state, attempt, error}; "progress": data as Progress, only the newest one is kept.
+    """
+
+    id: int
+    type: str
+    data: dict[str, Any]
+
+
+@dataclass(frozen=True)
+class ArtifactRecord:
+    """A file of a result, as the result document lists it."""
+
+    name: str
+    media_type: str
+    bytes: int
+    sha256: str
+    shape: list[int] | None = None
+    units: dict[str, str] = field(default_factory=dict)
+    frame: str | None = None
+
+
+@dataclass(frozen=True)
+class KeyRecord:
+    """An API key without its secret; ``scopes`` from read, submit, admin."""
+
+    id: str
+    name: str
+    scopes: tuple[str, ...]
+    created_at: datetime
+    revoked_at: datetime | None = None
+
+
+@dataclass(frozen=True)
+class ComputationRecord:
+    """What the dispatcher needs of a computation; ``resolved`` is what its plan settled once and for all."""
+
+    id: str
+    owner: str
+    state: ComputationState
+    document: dict[str, Any]
+    priority: int
+    attempt: int
+    resolved: dict[str, Any] | None
+    target: str | None
+
+
+@dataclass(frozen=True)
+class WorkerRecord:
+    """A worker: its address in the cluster, host, device target, devices, and whether it is at work."""
+
+    address: str
+    host: str
+    target: str | None
+    devices: tuple[str, ...]
+    busy: bool
+
+
+@dataclass(frozen=True)
+class QueueSummary:
+    """Jobs of the whole server by state, and computations waiting and running."""
+
+    jobs: dict[str, int]
+    waiting: int
+    running: int
+    oldest_queued_at: datetime | None = None

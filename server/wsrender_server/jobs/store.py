@@ -1,0 +1,363 @@
+"""The job table seen by an owner: submit, look, cancel, retry, delete. Foreign jobs do not exist here."""
+
+import base64
+import binascii
+import json
+import uuid
+from collections.abc import Callable, Mapping
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+from sqlalchemy import Engine, delete, func, select, tuple_
+from sqlalchemy.exc import IntegrityError
+from sqlalchemy.orm import Session
+
+from wsrender.errors import InputError
+from wsrender_server.jobs.changes import Changes
+from wsrender_server.jobs.computations import ComputationStore
+from wsrender_server.jobs.database import Transactions, open_database
+from wsrender_server.jobs.faults import IdempotencyConflict, InvalidTransition, QueueFull, StoreUnavailable
+from wsrender_server.jobs.files import DataFolder
+from wsrender_server.jobs.identity import Identity
+from wsrender_server.jobs.keys import KeyStore
+from wsrender_server.jobs.records import ArtifactRecord, EventRecord, JobRecord, Submission
+from wsrender_server.jobs.rows import job_record, subscribe
+from wsrender_server.jobs.states import ENDED, LIVE, RETRYABLE, ComputationState, JobState
+from wsrender_server.jobs.tables import ArtifactFile, Computation, Event, Job, Label, Model
+from wsrender_server.migrations import upgrade
+from wsrender_server.settings import Settings
+
+Events = list[EventRecord]  # "list" is a method below
+Artifacts = list[ArtifactRecord]
+Jobs = list[JobRecord]
+
+LONGEST_TEXT, MOST_LABELS, HIGHEST_PRIORITY = 255, 32, 1000
+ATTEMPTS = 5  # of a submission whose twin is submitted at the same moment
+
+
+class JobStore(ComputationStore, KeyStore):
+    """The only place with SQL. Methods block for milliseconds and may be called from any thread.
+
+    Every method raises StoreUnavailable, and changes nothing, where the database is locked, gone or full.
+    """
+
+    def __init__(
+        self,
+        engine: Engine,
+        files: DataFolder,
+        *,
+        max_queued_per_owner: int = 1000,
+        shared_cache: bool = False,
+        timeout_of: Callable[[float | None], float | None] = lambda requested: requested,
+    ):
+        self.transactions = Transactions(engine)
+        self.files = files
+        self.changes = Changes()
+        self.identity = Identity(shared_cache)
+        self.max_queued_per_owner = max_queued_per_owner
+        self.timeout_of = timeout_of
+
+    def submit(
+        self,
+        owner: str,
+        document: Mapping[str, Any],
+        *,
+        labels: Mapping[str, str] | None = None,
+        priority: int = 0,
+        timeout_s: float | None = None,
+        idempotency_key: str | None = None,
+        body_hash: str = "",
+    ) -> Submission:
+        """A new job of a canonical job document (all defaults present).
+
+        It is answered from the cache, joins a twin that is running, or waits; the row is committed when this returns.
+        ``body_hash`` identifies the request's body, so that an idempotency key repeated with another is noticed.
+        Raises IdempotencyConflict, QueueFull, DiskFull; InputError for a robot given by a path, and for labels, key or
+        priority out of bounds.
+        """
+        _check_options(labels or {}, priority, idempotency_key)
+        self.files.check_space()
+        for _ in range(ATTEMPTS):
+            try:
+                with self.transactions.write() as session:
+                    replayed = self._replay(session, owner, idempotency_key, body_hash)
+                    if replayed:
+                        return Submission(replayed, replayed=True)
+                    job, cached = self._insert(
+                        session, owner, document, dict(labels or {}), priority, timeout_s, idempotency_key, body_hash
+                    )
+                    record = job_record(job, dict(document))
+            except IntegrityError:
+                continue  # another process inserted the same key or computation a moment before
+            self.changes.notify(record.id)
+            return Submission(record, cached=cached)
+        raise StoreUnavailable("the same job is being submitted many times at once; nothing was changed, try again")
+
+    def get(self, owner: str, job_id: str) -> JobRecord | None:
+        """A job with its document."""
+        with self.transactions.read() as session:
+            row = session.execute(
+                select(Job, Computation.document)
+                .join(Computation, Job.computation_id == Computation.id)
+                .where(Job.id == job_id, Job.owner == owner)
+            ).first()
+            return None if row is None else job_record(row[0], json.loads(row[1]))
+
+    def list(
+        self,
+        owner: str,
+        *,
+        state: str | None = None,
+        analysis: str | None = None,
+        label: tuple[str, str] | None = None,
+        limit: int = 50,
+        cursor: str | None = None,
+    ) -> tuple[Jobs, str | None]:
+        """Jobs without their documents, newest first, and the cursor of the next page.
+
+        Raises InputError for a cursor that this method did not give.
+        """
+        query = select(Job).where(Job.owner == owner)
+        if state is not None:
+            query = query.where(Job.state == state)
+        if analysis is not None:
+            query = query.where(Job.analysis == analysis)
+        if label is not None:
+            key, value = label
+            query = query.join(Label, Label.job_id == Job.id).where(Label.key == key, Label.value == value)
+        if cursor is not None:
+            query = query.where(tuple_(Job.created_at, Job.id) < tuple_(*_place(cursor)))
+        query = query.order_by(Job.created_at.desc(), Job.id.desc()).limit(limit + 1)
+        with self.transactions.read() as session:
+            records = [job_record(job) for job in session.scalars(query)]
+        more = len(records) > limit
+        return records[:limit], _cursor(records[limit - 1]) if more else None
+
+    def cancel(self, owner: str, job_id: str) -> JobRecord | None:
+        """Detach a job; its computation stops with its last job. Raises InvalidTransition for an ended job."""
+        with self.transactions.write() as session:
+            job, computation = self._job(session, owner, job_id)
+            if job is None or computation is None:
+                return None
+            if job.state in ENDED:
+                raise InvalidTransition(job.state, "canceled")
+            if job.state in LIVE:
+                self._detach(session, job, computation, JobState.CANCELED)
+            record = job_record(job, json.loads(computation.document))
+        self.changes.notify(job_id)
+        return record
+
+    def retry(self, owner: str, job_id: str) -> JobRecord | None:
+        """Queue a failed, canceled or timed-out job again. Raises InvalidTransition for any other, DiskFull."""
+        self.files.check_space()
+        with self.transactions.write() as session:
+            job, computation = self._job(session, owner, job_id)
+            if job is None or computation is None:
+                return None
+            if job.state not in RETRYABLE:
+                raise InvalidTransition(job.state, "retried")
+            self._check_queue(session, owner)
+            job.attempt += 1
+            job.started_at = job.finished_at = job.deadline = job.progress = None
+            subscribe(session, job, computation)
+            record = job_record(job, json.loads(computation.document))
+        self.changes.notify(job_id)
+        return record
+
+    def delete(self, owner: str, job_id: str) -> JobRecord | None:
+        """Forget an ended job, and its result with its last job. Raises InvalidTransition for an unfinished one."""
+        with self.transactions.write() as session:
+            job, computation = self._job(session, owner, job_id)
+            if job is None or computation is None:
+                return None
+            if job.state not in ENDED:
+                raise InvalidTransition(job.state, "deleted")
+            record = job_record(job, json.loads(computation.document))
+            for table in (Event, Label):
+                session.execute(delete(table).where(table.job_id == job_id))
+            session.delete(job)
+            session.flush()
+            unused = session.scalar(select(func.count()).where(Job.computation_id == computation.id)) == 0
+            if unused and computation.state not in (ComputationState.RUNNING, ComputationState.STOPPING):
+                session.execute(delete(ArtifactFile).where(ArtifactFile.computation_id == computation.id))
+                session.delete(computation)
+        if unused:
+            self.files.forget(computation.id)
+        self.changes.notify(job_id)
+        return record
+
+    def events(self, owner: str, job_id: str, after: int = 0) -> Events:
+        """Events of a job with ids above ``after``, in order; none for an unknown job."""
+        query = (
+            select(Event)
+            .join(Job, Job.id == Event.job_id)
+            .where(Job.id == job_id, Job.owner == owner, Event.number > after)
+            .order_by(Event.number)
+        )
+        with self.transactions.read() as session:
+            return [EventRecord(row.number, row.type, row.data) for row in session.scalars(query)]
+
+    async def wait_for_change(self, owner: str, job_id: str, after_event: int, timeout_s: float) -> bool:
+        """Wait until a job has an event with an id above ``after_event``, or is gone; False at the timeout."""
+        return await self.changes.wait(job_id, lambda: self._changed(owner, job_id, after_event), timeout_s)
+
+    def artifacts(self, owner: str, job_id: str) -> Artifacts:
+        """Files of a succeeded job's result, ``result.json`` first; none for any other job."""
+        with self.transactions.read() as session:
+            rows = session.scalars(_artifacts(owner, job_id).order_by(ArtifactFile.position))
+            return [ArtifactRecord(**row.record) for row in rows]
+
+    def artifact_path(self, owner: str, job_id: str, name: str) -> Path | None:
+        """File of an artifact; None where the job has none of that name."""
+        with self.transactions.read() as session:
+            row = session.scalar(_artifacts(owner, job_id).where(ArtifactFile.name == name))
+            return None if row is None else self.files.artifact(row.computation_id, row.sha256)
+
+    def result_document(self, owner: str, job_id: str) -> dict[str, Any] | None:
+        """The result document of a succeeded job."""
+        path = self.artifact_path(owner, job_id, "result.json")
+        return None if path is None else json.loads(path.read_text(encoding="utf-8"))
+
+    def put_model(self, owner: str, content: bytes) -> str:
+        """Keep an uploaded model for its owner; its SHA-256. Raises DiskFull."""
+        sha256 = self.files.put_model(content)
+        with self.transactions.write() as session:
+            if session.get(Model, (owner, sha256)) is None:
+                session.add(Model(owner=owner, sha256=sha256, bytes=len(content), created_at=datetime.now(UTC)))
+        return sha256
+
+    def get_model(self, owner: str, sha256: str) -> bytes | None:
+        """A model that the owner uploaded."""
+        with self.transactions.read() as session:
+            known = session.get(Model, (owner, sha256)) is not None
+        return self.files.model(sha256).read_bytes() if known else None
+
+    def _replay(self, session: Session, owner: str, key: str | None, body_hash: str) -> JobRecord | None:
+        if key is None:
+            return None
+        job = session.scalar(select(Job).where(Job.owner == owner, Job.idempotency_key == key))
+        if job is None:
+            return None
+        if job.body_hash != body_hash:
+            raise IdempotencyConflict("the idempotency key was used with another body; send a new key")
+        computation = session.get_one(Computation, job.computation_id)
+        return job_record(job, json.loads(computation.document))
+
+    def _insert(
+        self, session, owner, document, labels, priority, timeout_s, idempotency_key, body_hash
+    ) -> tuple[Job, bool]:
+        computation = self._computation(session, owner, document, priority)
+        if computation.state != ComputationState.SUCCEEDED:
+            self._check_queue(session, owner)
+        job = Job(
+            id=uuid.uuid4().hex,
+            owner=owner,
+            computation_id=computation.id,
+            analysis=document["analysis"],
+            state=JobState.QUEUED,
+            created_at=datetime.now(UTC),
+            labels=labels,
+            priority=priority,
+            attempt=1,
+            timeout_s=self.timeout_of(timeout_s),
+            idempotency_key=idempotency_key,
+            body_hash=body_hash,
+            last_event=0,
+        )
+        session.add(job)
+        session.flush()
+        session.add_all(Label(job_id=job.id, key=key, value=value) for key, value in labels.items())
+        subscribe(session, job, computation)
+        return job, job.state == JobState.SUCCEEDED
+
+    def _computation(self, session: Session, owner: str, document, priority: int) -> Computation:
+        """The computation of a document, locked until the transaction ends; a new one if there is none."""
+        key = self.identity.key(owner, document, self._target(session, document["device"]))
+        found = session.scalar(select(Computation).where(Computation.key == key).with_for_update())
+        if found is not None:
+            return found
+        computation = Computation(
+            id=uuid.uuid4().hex,
+            key=key,
+            owner=owner,
+            state=ComputationState.WAITING,
+            document=json.dumps(document, sort_keys=True, separators=(",", ":"), allow_nan=False),
+            priority=priority,
+            attempt=1,
+            created_at=datetime.now(UTC),
+        )
+        session.add(computation)
+        session.flush()
+        return computation
+
+    def _check_queue(self, session: Session, owner: str) -> None:
+        unfinished = [JobState.QUEUED, JobState.RUNNING, JobState.CANCELING]
+        count = session.scalar(select(func.count()).where(Job.owner == owner, Job.state.in_(unfinished)))
+        if (count or 0) >= self.max_queued_per_owner:
+            raise QueueFull(self.max_queued_per_owner)
+
+    def _job(self, session: Session, owner: str, job_id: str) -> tuple[Job | None, Computation | None]:
+        """A job and its computation, the latter locked: whoever changes a job holds its computation's lock."""
+        computation = session.scalar(
+            select(Computation)
+            .join(Job, Job.computation_id == Computation.id)
+            .where(Job.id == job_id, Job.owner == owner)
+            .with_for_update(of=Computation)
+        )
+        return (None, None) if computation is None else (session.get(Job, job_id), computation)
+
+    def _changed(self, owner: str, job_id: str, after_event: int) -> bool:
+        with self.transactions.read() as session:
+            last = session.scalar(select(Job.last_event).where(Job.id == job_id, Job.owner == owner))
+            return last is None or last > after_event
+
+
+def open_store(settings: Settings) -> JobStore:
+    """The store of the settings; a SQLite database is made or upgraded, any other must be up to date.
+
+    Raises StoreUnavailable for a database that does not answer, InputError for one that needs an upgrade.
+    """
+    engine = open_database(settings.database_url)
+    upgrade(engine, check_only=engine.dialect.name != "sqlite")
+    return JobStore(
+        engine,
+        DataFolder(settings.data_dir, settings.min_free_disk_bytes),
+        max_queued_per_owner=settings.max_queued_per_owner,
+        shared_cache=settings.shared_cache,
+        timeout_of=settings.timeout_of,
+    )
+
+
+def _check_options(labels: Mapping[str, str], priority: int, idempotency_key: str | None) -> None:
+    texts = [("labels", text) for pair in labels.items() for text in pair]
+    texts += [] if idempotency_key is None else [("idempotency_key", idempotency_key)]
+    for field, text in texts:
+        if len(text) > LONGEST_TEXT or not text.isprintable():
+            raise InputError(field, f"must have at most {LONGEST_TEXT} printable characters each")
+    if len(labels) > MOST_LABELS:
+        raise InputError("labels", f"at most {MOST_LABELS} are allowed, not {len(labels)}")
+    if not -HIGHEST_PRIORITY <= priority <= HIGHEST_PRIORITY:
+        raise InputError("priority", f"must lie between -{HIGHEST_PRIORITY} and {HIGHEST_PRIORITY}, not {priority}")
+
+
+def _artifacts(owner: str, job_id: str):
+    return (
+        select(ArtifactFile)
+        .join(Job, Job.computation_id == ArtifactFile.computation_id)
+        .where(Job.id == job_id, Job.owner == owner, Job.state == JobState.SUCCEEDED)
+    )
+
+
+def _cursor(record: JobRecord) -> str:
+    text = f"{round(record.created_at.timestamp() * 1e6)}.{record.id}"
+    return base64.urlsafe_b64encode(text.encode()).decode().rstrip("=")
+
+
+def _place(cursor: str) -> tuple[datetime, str]:
+    try:
+        text = base64.urlsafe_b64decode(cursor + "=" * (-len(cursor) % 4)).decode("ascii")
+        time, job_id = text.split(".")
+        return datetime.fromtimestamp(int(time) / 1e6, UTC), job_id
+    except (binascii.Error, ValueError, OverflowError, OSError) as error:
+        raise InputError("cursor", "is not one that a list of jobs has given") from error

@@ -1,0 +1,78 @@
+"""Settings of the server: environment variables WSRENDER_…, options of the commands, defaults."""
+
+from functools import cached_property
+from pathlib import Path
+from typing import Self
+
+from pydantic import Field, model_validator
+from pydantic_settings import BaseSettings, SettingsConfigDict
+
+GIB = 2**30
+
+
+class Settings(BaseSettings):
+    """Everything that an administrator may set."""
+
+    model_config = SettingsConfigDict(env_prefix="WSRENDER_", extra="forbid", use_attribute_docstrings=True)
+
+    host: str = "127.0.0.1"
+    """Address to listen on; any other than loopback needs an API key."""
+    port: int = Field(default=8000, ge=0, le=65535)
+    """Port to listen on; 0 takes a free one."""
+    data_dir: Path = Path("wsrender-data")
+    """Folder of database, models, partial results and artifacts. Workers on other hosts need it shared."""
+    workers: int = Field(default=1, ge=0)
+    """Worker processes of the embedded cluster; each computes with all cores or its GPU."""
+    threads_per_worker: int | None = Field(default=None, ge=1)
+    """CPU threads of each worker's kernels; None: the machine's cores divided by the workers."""
+    api_key_file: Path | None = None
+    """File of API keys, one to a line."""
+    database: str | None = None
+    """SQLAlchemy URL of the database; None: SQLite in the data folder."""
+    scheduler: str | None = None
+    """Address of a Dask scheduler, tls://host:port; None: an embedded cluster."""
+    tls_ca_file: Path | None = None
+    """Certificate authority of the scheduler's cluster (PEM)."""
+    tls_cert_file: Path | None = None
+    """This process's certificate (PEM)."""
+    tls_key_file: Path | None = None
+    """This process's private key (PEM)."""
+    shared_cache: bool = False
+    """Whether owners share results of library robots."""
+
+    max_body_bytes: int = Field(default=16 * 2**20, ge=1)
+    """Largest request body."""
+    max_samples: int = Field(default=10**11, ge=1)
+    """Largest number of samples of a job."""
+    max_memory_bytes: int = Field(default=8 * GIB, ge=2**28)
+    """Resident memory at which a job's process is killed."""
+    max_queued_per_owner: int = Field(default=1000, ge=1)
+    """Unfinished jobs that an owner may have."""
+    min_free_disk_bytes: int = Field(default=GIB // 2, ge=0)
+    """Free disk below which nothing new is accepted."""
+    job_timeout_s: float | None = Field(default=None, gt=0)
+    """Timeout of jobs that ask for none; None: none."""
+    max_job_timeout_s: float | None = Field(default=None, gt=0)
+    """Longest timeout that a job may ask for, and the timeout of those that ask for none."""
+    shard_samples: int = Field(default=1 << 26, ge=1)
+    """Samples of a shard; large jobs get larger shards."""
+
+    @model_validator(mode="after")
+    def _complete_tls(self) -> Self:
+        files = (self.tls_ca_file, self.tls_cert_file, self.tls_key_file)
+        if self.scheduler is not None:
+            if not self.scheduler.startswith("tls://"):
+                raise ValueError(f"scheduler must be a tls:// address, not {self.scheduler!r}")
+            if None in files:
+                raise ValueError("a scheduler needs tls_ca_file, tls_cert_file and tls_key_file")
+        return self
+
+    @cached_property
+    def database_url(self) -> str:
+        """SQLAlchemy URL of the database."""
+        return self.database or f"sqlite:///{self.data_dir.absolute() / 'wsrender.db'}"
+
+    def timeout_of(self, requested: float | None) -> float | None:
+        """The timeout [s] of a job that asks for ``requested``; the shorter of it and the maximum."""
+        limits = [t for t in (requested or self.job_timeout_s, self.max_job_timeout_s) if t is not None]
+        return min(limits, default=None)
