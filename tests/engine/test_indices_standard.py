@@ -1,0 +1,134 @@
+"""The twelve indices of the standard convention against NumPy's singular value decomposition in float64."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+import wsrender as ws
+from tests.engine.test_kinematics import PLACEMENT, TOOL
+from tests.reference import local_indices
+from tests.reference.mujoco_library import MujocoRobot
+from tests.reference.postures import random_postures
+from wsrender.robots import library
+from wsrender.tolerances import TOLERANCES, epsilon
+
+LENGTH = 0.35
+TASKS = ["linear", "angular", "full", ("x", "y"), ("z",), ("x", "y", "rz")]
+# A task costs a kernel each for every number of joints, so the robots share few.
+CASES = [("ur5e", task) for task in TASKS] + [
+    (name, task)
+    for name in ("puma560", "stanford_arm", "franka_panda", "kuka_iiwa14")
+    for task in ("linear", "full")
+]
+KINEMATIC_CASES = [
+    ("phantom_omni", "linear"),
+    ("articulated", "linear"),
+    ("cartesian", "linear"),
+    ("dvrk_mtm", "linear"),
+    ("scara", "full"),
+    ("slave_5r", "full"),
+]
+
+
+@cache
+def robot_and_references(name):
+    robot = ws.load_robot(name, placement=PLACEMENT, tool=TOOL)
+    q = random_postures(robot.chain, 1000, seed=1)
+    reference = MujocoRobot(library.find(name), robot.joint_names, robot.tip_frame, PLACEMENT, TOOL)
+    return robot, q, reference.at(q)
+
+
+def task_matrix(name, task):
+    _, _, reference = robot_and_references(name)
+    return local_indices.task_matrix(reference.jacobian, task, LENGTH, PLACEMENT[:3, :3])
+
+
+def accelerations(A, M):
+    """J M^-1."""
+    return np.linalg.solve(M, A.transpose(0, 2, 1)).transpose(0, 2, 1)
+
+
+def assert_indices(found, expected, precision, A, prefix=""):
+    """Values (N,) against those expected for task matrices (N, m, n); 0 will do where A counts as singular."""
+    m, n = A.shape[1:]
+    sigma = np.linalg.svd(A, compute_uv=False)
+    # Twice the threshold of the definitions, since rounding decides at the threshold itself.
+    may_count_as_0 = sigma[:, -1] <= 2 * max(m, n) * epsilon(precision) * sigma[:, 0]
+    for name, exact in expected.items():
+        power = local_indices.power_without_root(name, m)
+        value = found[prefix + name].astype(np.float64)
+        assert np.isfinite(value).all() and (value >= 0).all(), prefix + name
+        error = np.abs(value**power - exact**power)
+        error[may_count_as_0 & (value == 0)] = 0
+        error = error.max() / max((exact**power).max(), np.finfo(float).tiny)
+        assert error <= TOLERANCES[precision].index, (prefix + name, error)
+
+
+@pytest.mark.parametrize(("name", "task"), CASES)
+def test_twelve_indices(name, task, precision, device):
+    robot, q, reference = robot_and_references(name)
+    A = task_matrix(name, task)
+    found = ws.evaluate_indices(
+        robot, q, "all", task, characteristic_length_m=LENGTH, precision=precision, device=device
+    )
+    assert_indices(found, local_indices.standard(A), precision, A)
+    expected = local_indices.standard(accelerations(A, reference.inertia))
+    assert_indices(found, expected, precision, A, "dynamic_")
+
+
+@pytest.mark.parametrize(("name", "task"), KINEMATIC_CASES)
+def test_six_indices_of_robots_without_inertias(name, task, precision, device):
+    robot, q, _ = robot_and_references(name)
+    A = task_matrix(name, task)
+    found = ws.evaluate_indices(
+        robot, q, "all", task, characteristic_length_m=LENGTH, precision=precision, device=device
+    )
+    assert tuple(found) == local_indices.NAMES
+    assert_indices(found, local_indices.standard(A), precision, A)
+    if A.shape[2] < A.shape[1]:
+        assert all((values == 0).all() for values in found.values())
+
+
+def test_torque_scaling(precision, device):
+    robot, q, reference = robot_and_references("ur5e")
+    A = task_matrix("ur5e", "linear")
+    scaled = accelerations(A, reference.inertia) * robot.chain.effort_limits
+    found = ws.evaluate_indices(
+        robot, q, "all", torque_scaling=True, precision=precision, device=device
+    )
+    assert_indices(found, local_indices.standard(scaled), precision, A, "dynamic_")
+
+
+def test_joint_limit_penalisation(precision, device):
+    robot, q, reference = robot_and_references("puma560")
+    lower, upper = robot.lower_limits, robot.upper_limits
+    # At the limits themselves float32's rounding of the limit decides, and a condition number of nothing.
+    inside = ((q - lower > 0.02) & (upper - q > 0.02)).all(axis=1)
+    q, J, M = q[inside], reference.jacobian[inside], reference.inertia[inside]
+    A = local_indices.task_matrix(local_indices.penalized(J, q, lower, upper, 10.0), "linear")
+    found = ws.evaluate_indices(
+        robot, q, "all", joint_limit_penalty=True, precision=precision, device=device
+    )
+    assert_indices(found, local_indices.standard(A), precision, A)
+    assert_indices(found, local_indices.standard(accelerations(A, M)), precision, A, "dynamic_")
+
+
+def test_the_penalty_is_1_at_mid_range_and_0_at_a_limit():
+    robot, _, _ = robot_and_references("puma560")
+    middle = (robot.lower_limits + robot.upper_limits) / 2
+    q = np.stack([middle, robot.lower_limits, robot.upper_limits])
+    free = ws.evaluate_indices(robot, q, "all")
+    held = ws.evaluate_indices(robot, q, "all", joint_limit_penalty=10.0)
+    for name in free:
+        assert held[name][0] == pytest.approx(free[name][0], rel=1e-9)
+        assert (held[name][1:] == 0).all()
+
+
+def test_inertia_evaluated_by_mujoco(device):
+    robot, q, reference = robot_and_references("franka_panda")
+    A = task_matrix("franka_panda", "linear")[:100]
+    found = ws.evaluate_indices(robot, q[:100], "all", inertia="mujoco", precision="float64", device=device)
+    assert_indices(found, local_indices.standard(A), "float64", A)
+    expected = local_indices.standard(accelerations(A, reference.inertia[:100]))
+    assert_indices(found, expected, "float64", A, "dynamic_")

@@ -1,0 +1,99 @@
+"""Random and boundary-biased samples: pure functions of the index, with the distributions they claim."""
+
+import numpy as np
+import pytest
+from scipy import stats
+
+import wsrender as ws
+from tests.reference.threefry import threefry_4x32
+from wsrender.engine import configurations
+from wsrender.sampling import plan_sampling
+from wsrender.tolerances import SMALLEST_P_VALUE, epsilon
+
+COUNT = 40_000
+CHAIN = ws.load_robot("ur5e").chain
+
+
+def fractions(method, seed, count=COUNT, precision="float64", first=0):
+    """Samples as fractions of the limits, (count, n)."""
+    plan = plan_sampling(CHAIN, method(2**40, seed=seed))
+    q = configurations(plan, np.arange(first, first + count), precision).astype(np.float64)
+    return (q - CHAIN.lower_limits) / (CHAIN.upper_limits - CHAIN.lower_limits)
+
+
+def twin(seed, index, n=6):
+    """The uniforms of samples with these indices: words of Threefry as 53-bit fractions, (N, n)."""
+    key = np.tile(np.array([seed & 0xFFFFFFFF, seed >> 32, 0, 0], np.uint32), (len(index), 1))
+    words = [
+        np.concatenate(
+            [
+                threefry_4x32(
+                    np.stack([index & 0xFFFFFFFF, index >> 32, np.full_like(index, group), np.full_like(index, part)], 1),
+                    key,
+                    13,
+                )
+                for group in range(-(-n // 4))
+            ],
+            axis=1,
+        )[:, :n].astype(np.uint64)
+        for part in (0, 1)
+    ]
+    return ((words[0] << np.uint64(32) | words[1]) >> np.uint64(11)) * 2.0**-53
+
+
+@pytest.mark.parametrize("seed", [0, 1, 2**32 + 5, 2**63 - 1])
+def test_random_samples_are_those_of_the_numpy_twin(seed):
+    index = np.array([0, 1, 255, 256, 257, 1000, 2**32 - 1, 2**32, 2**32 + 1, 2**39 + 77])
+    plan = plan_sampling(CHAIN, ws.Random(2**40, seed=seed))
+    expected = CHAIN.lower_limits + twin(seed, index) * (CHAIN.upper_limits - CHAIN.lower_limits)
+    assert np.abs(configurations(plan, index) - expected).max() <= 4 * epsilon("float64") * 2 * np.pi
+
+
+@pytest.mark.parametrize("method", [ws.Random, ws.BoundaryBiased])
+def test_float32_samples_are_the_rounded_float64_ones(method):
+    single, double = fractions(method, 7, precision="float32"), fractions(method, 7)
+    # Of 53 random bits float32 keeps 24, then rounds twice at the width of the interval.
+    assert np.abs(single - double).max() <= 4 * epsilon("float32")
+
+
+def test_random_samples_are_uniform_and_independent():
+    u = fractions(ws.Random, 12)
+    assert u.min() >= 0 and u.max() < 1
+    for column in u.T:
+        assert stats.kstest(column, "uniform").pvalue > SMALLEST_P_VALUE
+        counts, _ = np.histogram(column, 200, (0, 1))
+        assert stats.chisquare(counts).pvalue > SMALLEST_P_VALUE
+    for i in range(6):
+        for j in range(i):
+            counts, _, _ = np.histogram2d(u[:, i], u[:, j], 20, ((0, 1), (0, 1)))
+            assert stats.chisquare(counts.ravel()).pvalue > SMALLEST_P_VALUE
+    serial = np.corrcoef(np.concatenate([u[:-1], u[1:]], axis=1).T) - np.eye(12)
+    assert np.abs(serial).max() < 5 / np.sqrt(COUNT)
+
+
+def test_seeds_give_unrelated_samples():
+    a, b = fractions(ws.Random, 1), fractions(ws.Random, 2)
+    assert np.abs(np.corrcoef(a.T, b.T)[:6, 6:]).max() < 5 / np.sqrt(COUNT)
+
+
+def test_boundary_samples_are_beta_distributed(precision):
+    u = fractions(ws.BoundaryBiased, 3, precision=precision)
+    assert u.min() >= -epsilon(precision) and u.max() <= 1 + epsilon(precision)
+    for column in u.T:
+        assert stats.kstest(np.clip(column, 0, 1), stats.beta(0.5, 0.5).cdf).pvalue > SMALLEST_P_VALUE
+
+
+@pytest.mark.parametrize("method", [ws.Random, ws.BoundaryBiased, ws.Sobol])
+def test_a_sample_is_a_function_of_its_index(method, precision):
+    plan = plan_sampling(CHAIN, method(2**40, seed=5, locked={CHAIN.joint_names[2]: 0.5}))
+    for first in (0, 2**32 - 500, 2**39):
+        whole = configurations(plan, np.arange(first, first + 1000), precision)
+        order = np.random.default_rng(0).permutation(1000)[:257]
+        assert (configurations(plan, first + order, precision) == whole[order]).all()
+        assert (whole[:, 2] == 0.5).all()
+        assert np.ptp(whole[:, 0]) > 0.99 * (CHAIN.upper_limits[0] - CHAIN.lower_limits[0])
+
+
+@pytest.mark.parametrize("count", [1, 31, 255, 256, 257, 1000])
+def test_awkward_sizes_are_prefixes(count):
+    assert (fractions(ws.Random, 9, count) == fractions(ws.Random, 9, 1000)[:count]).all()
