@@ -65,6 +65,11 @@ class Shape:
         """Integers per voxel record."""
         return 1 + self.n_indices * (self.maximum + self.minimum)
 
+    @property
+    def bytes_per_voxel(self) -> int:
+        """Bytes of one voxel's record and its 64-bit sums."""
+        return self.record_size * (4 if self.real is wp.float32 else 8) + 8 * self.n_indices * self.sums
+
 
 @cache
 def _state(shape: Shape) -> SimpleNamespace:

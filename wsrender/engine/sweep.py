@@ -1,6 +1,5 @@
 """Sweeps a range of samples through the fused kernel, in chunks of bounded memory, on CPU threads or GPUs."""
 
-import os
 import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
@@ -16,15 +15,15 @@ from wsrender_kernels.voxels import lattice, lowest
 from wsrender.engine.configurations import configurations, device_space, given_space
 from wsrender.engine.devices import thread_count
 from wsrender.engine.evaluation import Evaluation, device_array, device_model, shape_of
+from wsrender.engine.memory import check_voxel_memory
 from wsrender.engine.partial import Partial, merge
-from wsrender.errors import NumericalError, ResourceError
+from wsrender.errors import NumericalError
 from wsrender.sampling import SamplingPlan
 from wsrender.volume.lattice import LatticeBlock
 
 CHUNK_CPU, CHUNK_CUDA, CHUNK_ROWS, CHUNK_GIVEN = 1 << 20, 1 << 28, 1 << 18, 1 << 14
 THREADS_PER_GPU = 1 << 19
 FOLD_AFTER = 2**31 - 2**29  # samples until 32-bit counts are moved to 64-bit ones
-MEMORY_SHARE = 0.8  # of the free memory that voxel records may take
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,7 +84,8 @@ def sweep(
     chunks = list(_chunks(first, count, chunk)) if count <= chunk * len(workers) else _chunks(first, count, chunk)
     if isinstance(chunks, list):
         workers = workers[: max(len(chunks), 1)]
-    _check_memory(plan, shape, workers)
+    if plan.block is not None:
+        check_voxel_memory(plan.block, shape.bytes_per_voxel, workers)
     queue = _Queue(iter(chunks))
     with ThreadPoolExecutor(len(workers)) as pool:
         futures = [pool.submit(_work, _Accumulator(plan, shape, device, chunk), queue) for device in workers]
@@ -255,27 +255,6 @@ def _device_lattice(block: LatticeBlock | None, real):
     grid.first_x, grid.first_y, grid.first_z = block.first_voxel if block else (0, 0, 0)
     grid.size_x, grid.size_y, grid.size_z = block.shape if block else (1, 1, 1)
     return grid
-
-
-def _check_memory(plan: SweepPlan, shape: Shape, workers: list[wp.Device]) -> None:
-    if plan.block is None:
-        return
-    voxels = plan.block.size
-    width = 4 if plan.precision == "float32" else 8
-    needed = voxels * (shape.record_size * width + shape.n_indices * shape.sums * 8)
-    device = workers[0]
-    if device.is_cuda:
-        free = device.free_memory
-    else:
-        needed *= len(workers)
-        free = os.sysconf("SC_AVPHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") if hasattr(os, "sysconf") else 2**63
-    if voxels >= 2**31 or needed > MEMORY_SHARE * free:
-        nx, ny, nz = plan.block.shape
-        raise ResourceError(
-            "voxel_size_m",
-            f"{plan.block.voxel_size_m} gives {nx} x {ny} x {nz} voxels, {needed / 2**30:.1f} GiB of records; "
-            f"{free / 2**30:.1f} GiB are free on {device.alias}: choose larger voxels or fewer statistics",
-        )
 
 
 def _check_values(plan: SweepPlan, partial: Partial) -> None:

@@ -27,6 +27,6 @@ def estimate(plan: SweepPlan, devices: list[Any]) -> dict[str, float]:
     width = 4 if plan.precision == "float32" else 8
     shape = plan.shape
     voxels = plan.block.size if plan.block else 0
-    records = voxels * (shape.record_size * width + 8 * shape.n_indices * shape.sums)
+    records = voxels * shape.bytes_per_voxel
     rows = samples * shape.n_outputs * width if plan.keep_rows else 0
     return {"samples": float(samples), "bytes": float(records * workers + rows), "seconds": samples / rate}

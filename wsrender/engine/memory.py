@@ -1,0 +1,62 @@
+"""Memory that voxel records may take."""
+
+import os
+from pathlib import Path
+
+import warp as wp
+
+from wsrender.errors import ResourceError
+from wsrender.volume.lattice import LatticeBlock
+
+SHARE = 0.8  # of the free memory
+
+
+def available_bytes() -> int:
+    """Host memory that can be taken without swapping, within the process's control group."""
+    limits = [_meminfo(), *_control_group()]
+    known = [limit for limit in limits if limit is not None]
+    return min(known) if known else 2**63
+
+
+def _meminfo() -> int | None:
+    try:
+        lines = Path("/proc/meminfo").read_text().splitlines()
+    except OSError:
+        return _physical_bytes()
+    return next((int(line.split()[1]) * 1024 for line in lines if line.startswith("MemAvailable")), None)
+
+
+def _physical_bytes() -> int | None:
+    try:
+        return os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    except (AttributeError, ValueError, OSError):
+        return None
+
+
+def _control_group() -> list[int]:
+    """What is left of a version 2 control group's limit, if there is one."""
+    folder = Path("/sys/fs/cgroup")
+    try:
+        limit = (folder / "memory.max").read_text().strip()
+        used = int((folder / "memory.current").read_text())
+    except (OSError, ValueError):
+        return []
+    return [] if limit == "max" else [int(limit) - used]
+
+
+def check_voxel_memory(block: LatticeBlock, bytes_per_voxel: int, workers: list[wp.Device]) -> None:
+    """ResourceError, with the numbers, where the workers' private voxel records do not fit."""
+    device = workers[0]
+    needed = block.size * bytes_per_voxel
+    if device.is_cuda:
+        free = min(worker.free_memory for worker in workers)
+    else:
+        needed *= len(workers)
+        free = available_bytes()
+    if block.size >= 2**31 or needed > SHARE * free:
+        nx, ny, nz = block.shape
+        raise ResourceError(
+            "voxel_size_m",
+            f"{block.voxel_size_m} gives {nx} x {ny} x {nz} voxels, {needed / 2**30:.1f} GiB of records; "
+            f"{free / 2**30:.1f} GiB are free on {device.alias}: choose larger voxels or fewer statistics",
+        )
