@@ -114,6 +114,7 @@ class Job:
         """
         pauses = self._connection.pauses(RECONNECT_S)
         while True:
+            finished = self.refresh().finished  # asked first: then the stream lacks nothing
             try:
                 for event in self._stream(after):
                     pauses.again()
@@ -121,11 +122,10 @@ class Job:
                     yield event
             except httpx2.TransportError as error:
                 pauses.after(error)
-            # A stream ends with the job, and with the server.
-            if self.refresh().finished:
-                yield from self._stream(after)
+                continue
+            if finished:
                 return
-            time.sleep(SHORTEST_POLL_S)
+            time.sleep(SHORTEST_POLL_S)  # a stream ends with its job, but also with the server
 
     def _stream(self, after: str) -> Iterator[dict[str, Any]]:
         headers = {"Accept": "text/event-stream"} | ({"Last-Event-ID": after} if after else {})

@@ -1,6 +1,8 @@
 """The result of a job on a server: the same object as a local run, its files downloaded when needed."""
 
+import shutil
 import tempfile
+import weakref
 from collections.abc import Iterable
 from functools import cached_property
 from importlib.util import find_spec
@@ -27,8 +29,13 @@ class RemoteFiles:
         self._connection = connection
         self._path = f"/v1/jobs/{quote(job_id, safe='')}/artifacts"
         self.records = dict(artifact_records(document))
-        self._folder = tempfile.TemporaryDirectory(prefix="wsrender-")
         self._downloaded: dict[tuple[str, str | None], Path] = {}
+
+    @cached_property
+    def _folder(self) -> Path:
+        folder = tempfile.mkdtemp(prefix="wsrender-")
+        weakref.finalize(self, shutil.rmtree, folder, ignore_errors=True)
+        return Path(folder)
 
     def fetch(self, name: str, target: Path, format: str | None = None) -> Path:
         """Download an artifact to the file ``target``."""
@@ -39,7 +46,7 @@ class RemoteFiles:
         """Path of a downloaded artifact."""
         key = (name, format)
         if key not in self._downloaded:
-            target = Path(self._folder.name) / f"{len(self._downloaded)}-{Path(name).name}"
+            target = self._folder / f"{len(self._downloaded)}-{Path(name).name}"
             self._downloaded[key] = self.fetch(name, target, format)
         return self._downloaded[key]
 

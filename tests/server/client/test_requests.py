@@ -1,0 +1,181 @@
+"""Requests: lost connections, busy servers, problem documents."""
+
+import json
+
+import httpx2
+import pytest
+
+import wsrender as ws
+from tests.server.client.recorded_server import refuses, says
+
+JOB = {"id": "j1", "state": "queued", "analysis": "workspace", "labels": {}, "progress": None, "error": None}
+DOCUMENT = {"analysis": "workspace", "robot": {"library": "ur5e"}}
+LOST = httpx2.ReadError("connection reset by peer")
+REFUSED = httpx2.ConnectError("[Errno 111] Connection refused")
+
+
+def test_submit_sends_document_options_and_key(server, client):
+    server.answer("POST", "/v1/jobs", says(JOB, 202))
+    job = client.submit(DOCUMENT, labels={"arm": "left"}, priority=3, timeout_s=60.0)
+    (request,) = server.requests
+    assert (job.id, job.state, job.finished) == ("j1", "queued", False)
+    assert request.headers["Authorization"] == "Bearer secret"
+    assert len(request.headers["Idempotency-Key"]) >= 32
+    assert json.loads(request.content) == {
+        "job": DOCUMENT, "labels": {"arm": "left"}, "priority": 3, "timeout_s": 60.0,
+    }  # fmt: skip
+
+
+def test_submit_takes_typed_jobs(server, client):
+    from wsrender.spec import parse_job
+
+    server.answer("POST", "/v1/jobs", says(JOB, 202))
+    job = parse_job({**DOCUMENT, "sampling": {"method": "grid", "per_joint": 3}})
+    client.submit(job)
+    assert parse_job(json.loads(server.requests[0].content)["job"]) == job
+
+
+@pytest.mark.parametrize("value", [None, "ur5e", 3])
+def test_what_is_no_job_is_refused(client, value):
+    with pytest.raises(ws.InputError, match="job: must be a job document"):
+        client.submit(value)
+
+
+def test_lost_answer_is_asked_again_with_the_same_key(server, client):
+    busy = refuses(409, "idempotency_key_in_flight", retryable=True, headers={"Retry-After": "1"})
+    server.answer("POST", "/v1/jobs", LOST, REFUSED, busy, says(JOB, 202))
+    server.answer("GET", "/v1/jobs/j1", says(JOB))
+    client._connection._reached = True
+    assert client.submit(DOCUMENT).id == "j1"
+    keys = {request.headers["Idempotency-Key"] for request in server.requests}
+    assert (len(server.requests), len(keys)) == (4, 1)
+    client.submit(DOCUMENT)
+    assert server.requests[-1].headers["Idempotency-Key"] not in keys
+
+
+def test_server_that_was_never_reached_is_told_at_once(server, client, clock):
+    server.answer("GET", "/v1/robots", REFUSED)
+    with pytest.raises(ws.ServerConnectionError, match=r"no server answers at http://lab:8000: .*refused"):
+        client.robots()
+    assert clock.pauses == []
+
+
+def test_patience_ends(server, clock):
+    server.answer("GET", "/v1/robots", says({"items": []}), REFUSED)
+    with ws.Client("http://lab:8000", transport=server, patience_s=20.0) as client:
+        assert client.robots() == []
+        with pytest.raises(ConnectionError, match="lost the server at http://lab:8000 for 20 s"):
+            client.robots()
+    assert clock.pauses == sorted(clock.pauses)
+    assert 10 < sum(clock.pauses) <= 20
+
+
+def test_cancel_is_not_sent_twice(server, client):
+    server.answer("GET", "/v1/jobs/j1", says(JOB))
+    server.answer("POST", "/v1/jobs/j1:cancel", LOST)
+    with pytest.raises(ws.ServerConnectionError, match="during a request"):
+        client.job("j1").cancel()
+    assert len(server.sent("POST", "/v1/jobs/j1:cancel")) == 1
+    server.answer("POST", "/v1/jobs/j1:cancel", REFUSED, says({**JOB, "state": "canceling"}))
+    assert client.job("j1").cancel().state == "canceling"
+
+
+def test_busy_server_is_asked_again_when_it_says(server, client, clock):
+    busy = refuses(503, "database_unavailable", retryable=True, headers={"Retry-After": "7"})
+    server.answer(
+        "GET", "/v1/robots", busy, (502, {}, b"<html>bad gateway</html>"), says({"items": [{"name": "ur5e"}]})
+    )
+    assert client.robots() == [{"name": "ur5e"}]
+    assert clock.pauses[0] == 7
+
+
+def test_refusal_that_will_not_pass_is_told_at_once(server, client, clock):
+    server.answer("GET", "/v1/robots", refuses(503, "broken", retryable=False, detail="out of order"))
+    with pytest.raises(ws.ServerError, match="out of order") as caught:
+        client.robots()
+    assert (caught.value.code, caught.value.status, caught.value.retryable) == ("broken", 503, False)
+    assert clock.pauses == []
+
+
+@pytest.mark.parametrize(
+    ("answer", "error", "message"),
+    [
+        (refuses(401, "unauthorized", detail="an API key is needed"), ws.AccessError, "an API key is needed"),
+        (refuses(403, "forbidden", detail="the key may only read"), ws.AccessError, "the key may only read"),
+        (refuses(404, "not_found", detail="no job j1"), ws.NotFoundError, "no job j1"),
+        (refuses(422, "invalid_model", errors=[{"pointer": "#/robot/mjcf", "detail": "has no joints"}]),
+         ws.ModelError, r"robot\.mjcf: has no joints"),
+        (refuses(422, "missing_inertia", detail="needs inertias"), ws.MissingInertiaError, "job: needs inertias"),
+        (refuses(422, "frame_not_found", errors=[{"pointer": "/tip", "detail": "no site; choose one of: a, b"}]),
+         ws.FrameNotFoundError, "tip: no site; choose one of: a, b"),
+        (refuses(413, "resource_limit", detail="too many samples"), ws.ResourceError, "too many samples"),
+        (refuses(422, "idempotency_key_reused", detail="another body"), ws.ServerError, "another body"),
+        ((500, {}, b"oops"), ws.ServerError, "Internal Server Error"),
+        ((418, {"Content-Type": "application/json"}, b"[1]"), ws.ServerError, "teapot"),
+    ],
+)  # fmt: skip
+def test_problem_documents_become_exceptions(server, client, answer, error, message):
+    server.answer("GET", "/v1/jobs/j1", answer)
+    with pytest.raises(error, match=message) as caught:
+        client.job("j1")
+    assert type(caught.value) is error
+
+
+def test_every_fault_of_a_document_is_told(server, client):
+    faults = [
+        {"pointer": "/sampling/per_joint", "detail": "must be at least 1, not 0"},
+        {"pointer": "#/robot/a~1b", "detail": "is unknown"},
+    ]
+    server.answer("POST", "/v1/jobs", refuses(422, "invalid_document", errors=faults))
+    with pytest.raises(ws.DocumentError) as caught:
+        client.submit(DOCUMENT)
+    assert caught.value.problems == [
+        ("sampling.per_joint", "must be at least 1, not 0"),
+        ("robot.a/b", "is unknown"),
+    ]
+
+
+def test_quota_says_when_to_try_again(server, client):
+    server.answer("POST", "/v1/jobs", refuses(429, "queue_full", detail="1000 jobs", headers={"Retry-After": "30"}))
+    with pytest.raises(ws.QuotaError, match="1000 jobs") as caught:
+        client.submit(DOCUMENT)
+    assert caught.value.retry_after_s == 30
+
+
+def test_jobs_are_listed_page_by_page(server, client):
+    pages = [[{**JOB, "id": str(100 * page + row)} for row in range(100)] for page in range(2)]
+    server.answer(
+        "GET",
+        "/v1/jobs",
+        says({"items": pages[0], "next_cursor": "c1"}),
+        says({"items": pages[1], "next_cursor": None}),
+    )
+    jobs = list(client.jobs(state="queued", label=("arm", "left")))
+    assert [job.id for job in jobs] == [str(row) for row in range(200)]
+    first, second = (dict(request.url.params) for request in server.requests)
+    assert (first["state"], first["limit"], "cursor" in first) == ("queued", "100", False)
+    assert second["cursor"] == "c1"
+    server.answer("GET", "/v1/jobs", says({"items": pages[0], "next_cursor": "c1"}))
+    assert len(list(client.jobs(limit=7))) == 7
+
+
+def test_robot_files_are_uploaded(server, client, tmp_path):
+    arm = tmp_path / "arm.urdf"
+    arm.write_text("<robot name='arm'/>")
+    server.answer("POST", "/v1/models", says({"sha256": "ab" * 32}, 201))
+    server.answer("POST", "/v1/jobs", says(JOB, 202))
+    document = {**DOCUMENT, "robot": {"path": str(arm), "placement": {"position_m": [1, 0, 0]}}}
+    client.submit(document)
+    upload, submission = server.requests
+    assert upload.content == arm.read_bytes()
+    assert json.loads(submission.content)["job"]["robot"] == {
+        "model": "ab" * 32, "placement": {"position_m": [1, 0, 0]},
+    }  # fmt: skip
+    assert document["robot"]["path"] == str(arm)
+    with pytest.raises(ws.InputError, match=r"robot\.path: .*missing\.urdf cannot be read: No such file"):
+        client.submit({**DOCUMENT, "robot": {"path": str(tmp_path / "missing.urdf")}})
+
+
+def test_wrong_address():
+    with pytest.raises(ws.InputError, match='url: must start with http:// or https://, not "lab:8000"'):
+        ws.Client("lab:8000")
