@@ -38,10 +38,12 @@ class HostRobot(Robot):
         self.spec = self.base = self.tip = None
         limits = _limits(user)
         n = len(limits)
-        names = tuple(getattr(user, "joint_names", None) or (f"joint{i + 1}" for i in range(n)))
+        names = tuple(str(name) for name in getattr(user, "joint_names", None) or (f"joint{i + 1}" for i in range(n)))
         self.name = str(getattr(user, "name", type(user).__name__))
         if len(names) != n:
             raise ModelError("joint_names", f"{len(names)} names for {n} rows of limits")
+        if len(set(names)) < n:
+            raise ModelError("joint_names", f"{', '.join(names)} are not distinct")
         self._chain = _chain_of_limits(self.name, names, limits, hasattr(user, "inertia_matrix"))
 
     @property
@@ -110,6 +112,8 @@ def as_robot(robot: Any) -> Robot:
     """A Robot as it is; a user-defined robot (see `UserRobot`) wrapped; InputError for anything else."""
     if isinstance(robot, Robot):
         return robot
+    if isinstance(robot, type):
+        raise InputError("robot", f"{robot.__name__} is a class; give an object of it: {robot.__name__}()")
     if isinstance(robot, UserRobot):
         return HostRobot(robot)
     raise InputError(

@@ -8,6 +8,7 @@ import numpy as np
 from wsrender.engine import Evaluated, Evaluation, configurations, evaluate_at
 from wsrender.engine.sums import bound_from_reach, scales_for
 from wsrender.robots.chain import Chain
+from wsrender.run.reachable_box import reachable_box
 from wsrender.sampling import plan_sampling
 from wsrender.spec.sampling import Sobol
 from wsrender.volume.lattice import LatticeBlock, block_around, default_voxel_size
@@ -40,8 +41,12 @@ class FirstPass:
     def block(self, voxel_size_m: float) -> LatticeBlock:
         """A block that holds every position the robot can reach."""
         if self.evaluation.host_kinematics is None:
-            center, reach = _sphere(self.evaluation.chain)
-            return block_around(center - reach, center + reach, voxel_size_m)
+            chain = self.evaluation.chain
+            center, reach = _sphere(chain)
+            held = [self.locked.get(name, np.nan) for name in chain.joint_names]
+            limits = [np.where(np.isnan(held), limit, held) for limit in (chain.lower_limits, chain.upper_limits)]
+            low, high = reachable_box(chain, *limits)
+            return block_around(np.maximum(low, center - reach), np.minimum(high, center + reach), voxel_size_m)
         low, high = self.evaluated.position.min(axis=0), self.evaluated.position.max(axis=0)
         margin = MARGIN * (high - low) + voxel_size_m
         return block_around(low - margin, high + margin, voxel_size_m)
