@@ -87,8 +87,9 @@ def wsrender_code(J, M=None):
     n = J.shape[2]
     six = J if M is None else J @ M
     s = np.linalg.svd(six, compute_uv=False)
-    core = J[:, :3] @ J[:, :3].transpose(0, 2, 1) if M is None else six @ six.transpose(0, 2, 1)
-    mu = np.sqrt(np.maximum(np.linalg.det(core), 0.0))
+    # √det(A Aᵀ) as the product of A's singular values: the determinant itself would leave half of the digits.
+    core = np.linalg.svd(J[:, :3] if M is None else six, compute_uv=False)
+    mu = core.prod(axis=1) if M is None or n >= 6 else np.zeros(len(J))
     return {
         "manipulability": mu,
         "inverse_condition_number": s[:, -1] / s[:, 0],

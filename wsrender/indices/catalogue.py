@@ -103,7 +103,7 @@ def register_index(
     if existing is not None and not existing.user_defined:
         raise InputError("name", f"{name!r} is taken by the catalogue ({existing.source})")
     try:
-        for m in (1, 3, 6):
+        for m in (3, 6):
             trace(function, m, m, 6)
     except Exception as error:
         raise InputError("function", f"{name} cannot be compiled: {error}") from error

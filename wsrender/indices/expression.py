@@ -8,6 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from wsrender.errors import InputError
+
 
 def _numpy_power(x, exponent):
     positive = np.greater(x, 0)
@@ -37,9 +39,27 @@ NUMPY_OPERATIONS = {
 
 def apply(operation: str, *arguments: Any) -> Any:
     """The operation on numbers and arrays, or its record where an argument is an Expression."""
-    if any(isinstance(a, Expression) for a in arguments):
-        return Expression(operation, tuple(_as_operand(a) for a in arguments))
-    return NUMPY_OPERATIONS[operation](*arguments)
+    if not any(isinstance(a, Expression) for a in arguments):
+        return NUMPY_OPERATIONS[operation](*arguments)
+    if operation == "where":
+        return _choice(*arguments)
+    return Expression(operation, tuple(_as_number(a) for a in arguments))
+
+
+def _choice(condition: Any, a: Any, b: Any) -> Any:
+    """``where``, decided at once where the condition does not depend on the singular values."""
+    if not isinstance(condition, Expression):
+        return a if condition else b
+    if condition.operation != "less":
+        raise TypeError("the condition of where must be a comparison by < or >")
+    return Expression("where", (condition, _as_number(a), _as_number(b)))
+
+
+def _as_number(value: Any) -> "Expression | float":
+    operand = _as_operand(value)
+    if isinstance(operand, Expression) and operand.operation == "less":
+        raise TypeError("an index function cannot calculate with a comparison: use wsrender.math.where")
+    return operand
 
 
 def _as_operand(value: Any) -> "Expression | float":
@@ -103,6 +123,12 @@ class Expression:
     def __gt__(self, other):
         return apply("less", other, self)
 
+    def __eq__(self, other):
+        raise TypeError("an index function may compare by < or > only: rounding decides whether values are equal")
+
+    __ne__ = __le__ = __ge__ = __eq__
+    __hash__ = object.__hash__
+
     def __bool__(self):
         raise TypeError("an index function cannot branch on a value: use wsrender.math.where")
 
@@ -111,6 +137,12 @@ class Expression:
 
 
 def trace(function, length: int, *arguments: int) -> Expression | float:
-    """Expression of ``function(sigma, *arguments)`` for a spectrum of ``length`` values."""
+    """Expression of ``function(sigma, *arguments)`` for a spectrum of ``length`` values.
+
+    Raises InputError where the function takes more values than there are, TypeError for what cannot be traced.
+    """
     sigma = tuple(Expression("input", (float(i),)) for i in range(length))
-    return _as_operand(function(sigma, *arguments))
+    try:
+        return _as_number(function(sigma, *arguments))
+    except IndexError as error:
+        raise InputError("indices", f"an index function takes more than the {length} values of this task") from error
