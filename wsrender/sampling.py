@@ -12,7 +12,7 @@ from wsrender.robots.chain import Chain
 from wsrender.spec.sampling import BoundaryBiased, Converge, Grid, Random, Sobol
 
 SOBOL_BITS = 52
-LARGEST_LEVELS = 2**31 - 1
+LARGEST_LEVELS = 2**31 - 256  # the kernel adds the place within a block of 256 in 32-bit integers
 
 # Primitive polynomials (degree, coefficients) and initial direction numbers of dimensions 2 to 16:
 # S. Joe, F. Y. Kuo, *Constructing Sobol sequences with better two-dimensional projections*, 2008, new-joe-kuo-6.

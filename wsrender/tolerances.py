@@ -30,12 +30,8 @@ TOLERANCES = {
     # Ten joints' rotations and translations of about unit length each add a few half-ulps: about 16 ulps in all.
     # M adds products of three such numbers for every body; J M^-1 multiplies its error by the ratio of the links'
     # inertias, up to 1e5 in the library (1e-10 would do in float64, but the reference's own error is of that order).
-    "float64": Tolerances(
-        kinematics=1e-12, inertia=1e-10, index=1e-9, elementary=8 * 2.0**-52, singular_value=1e-13
-    ),
-    "float32": Tolerances(
-        kinematics=2e-6, inertia=1e-5, index=1e-4, elementary=8 * 2.0**-23, singular_value=5e-6
-    ),
+    "float64": Tolerances(kinematics=1e-12, inertia=1e-10, index=1e-9, elementary=8 * 2.0**-52, singular_value=1e-13),
+    "float32": Tolerances(kinematics=2e-6, inertia=1e-5, index=1e-4, elementary=8 * 2.0**-23, singular_value=5e-6),
 }
 
 # A p-value below this fails a test of a distribution: with fixed seeds it either always or never does.

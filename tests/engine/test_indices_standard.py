@@ -17,9 +17,7 @@ LENGTH = 0.35
 TASKS = ["linear", "angular", "full", ("x", "y"), ("z",), ("x", "y", "rz")]
 # A task costs a kernel each for every number of joints, so the robots share few.
 CASES = [("ur5e", task) for task in TASKS] + [
-    (name, task)
-    for name in ("puma560", "stanford_arm", "franka_panda", "kuka_iiwa14")
-    for task in ("linear", "full")
+    (name, task) for name in ("puma560", "stanford_arm", "franka_panda", "kuka_iiwa14") for task in ("linear", "full")
 ]
 KINEMATIC_CASES = [
     ("phantom_omni", "linear"),
@@ -94,9 +92,7 @@ def test_torque_scaling(precision, device):
     robot, q, reference = robot_and_references("ur5e")
     A = task_matrix("ur5e", "linear")
     scaled = accelerations(A, reference.inertia) * robot.chain.effort_limits
-    found = ws.evaluate_indices(
-        robot, q, "all", torque_scaling=True, precision=precision, device=device
-    )
+    found = ws.evaluate_indices(robot, q, "all", torque_scaling=True, precision=precision, device=device)
     assert_indices(found, local_indices.standard(scaled), precision, A, "dynamic_")
 
 
@@ -107,9 +103,7 @@ def test_joint_limit_penalisation(precision, device):
     inside = ((q - lower > 0.02) & (upper - q > 0.02)).all(axis=1)
     q, J, M = q[inside], reference.jacobian[inside], reference.inertia[inside]
     A = local_indices.task_matrix(local_indices.penalized(J, q, lower, upper, 10.0), "linear")
-    found = ws.evaluate_indices(
-        robot, q, "all", joint_limit_penalty=True, precision=precision, device=device
-    )
+    found = ws.evaluate_indices(robot, q, "all", joint_limit_penalty=True, precision=precision, device=device)
     assert_indices(found, local_indices.standard(A), precision, A)
     assert_indices(found, local_indices.standard(accelerations(A, M)), precision, A, "dynamic_")
 

@@ -72,9 +72,11 @@ def test_folding_32_bit_counts_changes_nothing(precision, monkeypatch):
 
 @pytest.mark.parametrize("method", ["sobol", "boundary", "grid"])
 def test_other_sampling_methods(method):
-    sampling = {"method": "grid", "per_joint": [3, 31, 7, 1, 5, 2]} if method == "grid" else {
-        "method": method, "count": 5000, "seed": 3
-    }
+    sampling = (
+        {"method": "grid", "per_joint": [3, 31, 7, 1, 5, 2]}
+        if method == "grid"
+        else {"method": method, "count": 5000, "seed": 3}
+    )
     document = job("float32", voxel_statistics=["count"], indices=["manipulability"], keep_map=True)
     document["sampling"] = sampling
     _, one, _ = executed(document, threads=1, chunk_size=256)

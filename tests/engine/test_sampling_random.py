@@ -24,20 +24,12 @@ def fractions(method, seed, count=COUNT, precision="float64", first=0):
 def twin(seed, index, n=6):
     """The uniforms of samples with these indices: words of Threefry as 53-bit fractions, (N, n)."""
     key = np.tile(np.array([seed & 0xFFFFFFFF, seed >> 32, 0, 0], np.uint32), (len(index), 1))
-    words = [
-        np.concatenate(
-            [
-                threefry_4x32(
-                    np.stack([index & 0xFFFFFFFF, index >> 32, np.full_like(index, group), np.full_like(index, part)], 1),
-                    key,
-                    13,
-                )
-                for group in range(-(-n // 4))
-            ],
-            axis=1,
-        )[:, :n].astype(np.uint64)
-        for part in (0, 1)
-    ]
+    zero = np.zeros_like(index)
+    words = []
+    for part in (0, 1):
+        counters = [np.stack([index & 0xFFFFFFFF, index >> 32, zero + g, zero + part], 1) for g in range(-(-n // 4))]
+        drawn = np.concatenate([threefry_4x32(counter, key, 13) for counter in counters], axis=1)
+        words.append(drawn[:, :n].astype(np.uint64))
     return ((words[0] << np.uint64(32) | words[1]) >> np.uint64(11)) * 2.0**-53
 
 

@@ -29,16 +29,15 @@ def test_a_planar_arm_moves_in_no_third_direction(precision, device):
 
 def test_an_arm_of_no_length_does_not_move(precision, device):
     """Links of no length: all columns are zero."""
-    found = ws.evaluate_indices(planar_arm(0.0, 0.0), [[0.3, 0.4]], "kinematic", ("x", "y"), precision=precision, device=device)
+    arm, q = planar_arm(0.0, 0.0), [[0.3, 0.4]]
+    found = ws.evaluate_indices(arm, q, "kinematic", ("x", "y"), precision=precision, device=device)
     assert_zero(found)
 
 
 def test_a_stretched_arm(precision, device):
     q = np.zeros((500, 2))
     q[:, 0] = np.random.default_rng(1).uniform(-np.pi, np.pi, 500)
-    found = ws.evaluate_indices(
-        planar_arm(0.4, 0.3), q, "kinematic", ("x", "y"), precision=precision, device=device
-    )
+    found = ws.evaluate_indices(planar_arm(0.4, 0.3), q, "kinematic", ("x", "y"), precision=precision, device=device)
     assert_zero(found)
 
 
