@@ -13,8 +13,8 @@ import typer
 
 import wsrender as ws
 from wsrender import cli
-from wsrender.progress import LINE_EVERY_S, RunProgress
 from wsrender.errors import InputError, MissingExtraError, ModelError, NumericalError
+from wsrender.progress import LINE_EVERY_S, RunProgress
 
 
 @pytest.fixture
@@ -145,7 +145,8 @@ def test_outputs_that_cannot_be_saved_are_refused_before_the_run(wsrender, execu
 
 
 @pytest.mark.parametrize("command", ["serve", "worker", "keys", "database", "demo"])
-def test_server_commands_name_the_pip_command(wsrender, command):
+def test_server_commands_name_the_pip_command(wsrender, command, monkeypatch):
+    monkeypatch.setattr(cli, "entry_points", lambda group: [])
     code, _, err = wsrender(command, "--port", "8000")
     assert (code, err) == (1, pip("The server", "server"))
 
@@ -205,10 +206,7 @@ def lines_of(monkeypatch, reports):
 
 
 def test_work_below_a_second_shows_nothing(monkeypatch):
-    assert (
-        lines_of(monkeypatch, [(0.0, 0, "planning"), (0.5, 100, "samples"), (0.9, 4_000_000, "samples")])
-        == []
-    )
+    assert lines_of(monkeypatch, [(0.0, 0, "planning"), (0.5, 100, "samples"), (0.9, 4_000_000, "samples")]) == []
 
 
 def test_plain_lines_off_a_terminal_do_not_count_planning_in_the_rate(monkeypatch):

@@ -27,6 +27,11 @@ def check_output(output: Path, formats: list[str] | None) -> None:
 def save_and_report(result: Any, output: Path, formats: list[str] | None) -> None:
     """Save a result; print its summary and the files written."""
     result.save(output, formats=tuple(formats or ()))
+    report(result, output)
+
+
+def report(result: Any, output: Path) -> None:
+    """Print the summary of a saved result and its files."""
     console = Console(soft_wrap=True, highlight=False, markup=False)
     console.print(result.summary())
     for artifact in result.document["artifacts"]:

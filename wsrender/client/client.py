@@ -83,7 +83,7 @@ class Client:
         ``labels`` are free text to find the job by, larger ``priority`` goes first, ``timeout_s`` bounds the run. The
         idempotency key (default: a new one) makes sure that a request sent again after a lost connection is one job.
         """
-        body: dict[str, Any] = {"job": self._document(job)}
+        body = self._document(job)
         if labels:
             body["labels"] = dict(labels)
         if priority:

@@ -21,9 +21,7 @@ def test_submit_sends_document_options_and_key(server, client):
     assert (job.id, job.state, job.finished) == ("j1", "queued", False)
     assert request.headers["Authorization"] == "Bearer secret"
     assert len(request.headers["Idempotency-Key"]) >= 32
-    assert json.loads(request.content) == {
-        "job": DOCUMENT, "labels": {"arm": "left"}, "priority": 3, "timeout_s": 60.0,
-    }  # fmt: skip
+    assert json.loads(request.content) == {**DOCUMENT, "labels": {"arm": "left"}, "priority": 3, "timeout_s": 60.0}
 
 
 def test_submit_takes_typed_jobs(server, client):
@@ -32,7 +30,7 @@ def test_submit_takes_typed_jobs(server, client):
     server.answer("POST", "/v1/jobs", says(JOB, 202))
     job = parse_job({**DOCUMENT, "sampling": {"method": "grid", "per_joint": 3}})
     client.submit(job)
-    assert parse_job(json.loads(server.requests[0].content)["job"]) == job
+    assert parse_job(json.loads(server.requests[0].content)) == job
 
 
 @pytest.mark.parametrize("value", [None, "ur5e", 3])
@@ -168,7 +166,7 @@ def test_robot_files_are_uploaded(server, client, tmp_path):
     client.submit(document)
     upload, submission = server.requests
     assert upload.content == arm.read_bytes()
-    assert json.loads(submission.content)["job"]["robot"] == {
+    assert json.loads(submission.content)["robot"] == {
         "model": "ab" * 32, "placement": {"position_m": [1, 0, 0]},
     }  # fmt: skip
     assert document["robot"]["path"] == str(arm)

@@ -1,0 +1,197 @@
+"""Commands of the server: ``wsrender serve | worker | keys | database | demo``."""
+
+import signal
+import threading
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from pydantic import ValidationError
+
+from wsrender.cli.faults import one_line_faults
+from wsrender.errors import InputError, NotFoundError
+from wsrender_server.settings import Settings
+
+app = typer.Typer(no_args_is_help=True)
+keys = typer.Typer(no_args_is_help=True, help="Create, list and revoke API keys.")
+database = typer.Typer(no_args_is_help=True, help="The database of jobs.")
+app.add_typer(keys, name="keys")
+app.add_typer(database, name="database")
+
+_WORKERS = "Workers"
+_TLS = "Certificates of the cluster"
+
+DataDir = Annotated[Path | None, typer.Option(help="Folder of models, partial results and artifacts.")]
+Database = Annotated[
+    str | None, typer.Option(help="postgresql+psycopg://…; default: SQLite in the data folder.", metavar="URL")
+]
+Scheduler = Annotated[
+    str | None,
+    typer.Option(help="Dask scheduler, tls://host:port.", metavar="ADDRESS", rich_help_panel=_WORKERS),
+]
+CaFile = Annotated[Path | None, typer.Option(help="Certificate authority (PEM).", rich_help_panel=_TLS)]
+CertFile = Annotated[Path | None, typer.Option(help="Certificate of this process (PEM).", rich_help_panel=_TLS)]
+KeyFile = Annotated[Path | None, typer.Option(help="Private key of this process (PEM).", rich_help_panel=_TLS)]
+
+
+@app.command()
+def serve(
+    host: Annotated[
+        str | None, typer.Option(help="Address to listen on; other than loopback needs an API key. [127.0.0.1]")
+    ] = None,
+    port: Annotated[int | None, typer.Option(help="Port to listen on; 0 takes a free one. [8000]")] = None,
+    data_dir: DataDir = None,
+    workers: Annotated[
+        int | None, typer.Option(help="Processes that compute, without --scheduler.", rich_help_panel=_WORKERS)
+    ] = None,
+    api_key_file: Annotated[Path | None, typer.Option(help="API keys, one to a line.")] = None,
+    database: Database = None,
+    scheduler: Scheduler = None,
+    tls_ca_file: CaFile = None,
+    tls_cert_file: CertFile = None,
+    tls_key_file: KeyFile = None,
+) -> None:
+    """Run the job server.
+
+    Every option can be given by an environment variable as well, such as WSRENDER_PORT; server/README.md lists more.
+    """
+    with one_line_faults():
+        from wsrender_server.app import create_app
+        from wsrender_server.local_server import READY
+        from wsrender_server.serving import listen, serve_until_stopped
+
+        settings = settings_of(**_given(locals(), Settings))
+        listener = listen(settings)
+        app = create_app(settings)
+        serve_until_stopped(app, listener, lambda url: typer.echo(f"wsrender {READY}{url}"))
+
+
+@app.command()
+def worker(
+    scheduler: Scheduler = None,
+    data_dir: DataDir = None,
+    gpus: Annotated[
+        str | None,
+        typer.Option(help='"all", or numbers such as 0,1: one process per GPU. Default: one process.'),
+    ] = None,
+    tls_ca_file: CaFile = None,
+    tls_cert_file: CertFile = None,
+    tls_key_file: KeyFile = None,
+) -> None:
+    """Compute for a Dask scheduler; the data folder must be the server's, shared between the machines."""
+    with one_line_faults():
+        settings = settings_of(**_given(locals(), Settings))
+        if settings.scheduler is None:
+            raise InputError("--scheduler", "must be given, such as tls://lab:8786")
+        stop = threading.Event()
+        for number in (signal.SIGTERM, signal.SIGINT):
+            signal.signal(number, lambda number, frame: stop.set())
+        if gpus is not None:
+            _work_on(gpus, settings, stop)
+        else:
+            from wsrender_server.jobs.worker import serve_scheduler
+
+            serve_scheduler(settings, lambda: typer.echo(f"wsrender worker joined {settings.scheduler}"), stop)
+
+
+@keys.command("create")
+def create_key(
+    name: Annotated[str, typer.Option(help="Whose key it is.")] = "unnamed",
+    scope: Annotated[
+        list[str] | None, typer.Option(help="read, submit or admin; repeatable. [read and submit]")
+    ] = None,
+    data_dir: DataDir = None,
+    database: Database = None,
+) -> None:
+    """Make an API key and print it: it is kept as a hash only and never shown again."""
+    with one_line_faults():
+        store = _store(data_dir, database)
+        id, secret = store.create_key(name, *([scope] if scope else []))
+        typer.echo(secret)
+        typer.echo(f"key {id} of {name}: keep it now, it is never shown again", err=True)
+
+
+@keys.command("list")
+def list_keys(data_dir: DataDir = None, database: Database = None) -> None:
+    """List the API keys, without their secrets."""
+    with one_line_faults():
+        from rich.box import SIMPLE_HEAD
+        from rich.console import Console
+        from rich.table import Table
+
+        table = Table("id", "name", "scopes", "created", "revoked", box=SIMPLE_HEAD, show_edge=False)
+        for key in _store(data_dir, database).list_keys():
+            revoked = "" if key.revoked_at is None else f"{key.revoked_at:%Y-%m-%d %H:%M}"
+            table.add_row(key.id, key.name, " ".join(key.scopes), f"{key.created_at:%Y-%m-%d %H:%M}", revoked)
+        Console().print(table)
+
+
+@keys.command("revoke")
+def revoke_key(
+    id: Annotated[str, typer.Argument(metavar="ID")], data_dir: DataDir = None, database: Database = None
+) -> None:
+    """Revoke an API key: requests with it are refused from now on."""
+    with one_line_faults():
+        if _store(data_dir, database).revoke_key(id) is None:
+            raise NotFoundError(f"there is no key {id}")
+        typer.echo(f"key {id} is revoked")
+
+
+@database.command("upgrade")
+def upgrade_database(data_dir: DataDir = None, database: Database = None) -> None:
+    """Make the database, or bring it to this version's tables."""
+    with one_line_faults():
+        from wsrender_server.jobs.database import open_database
+        from wsrender_server.migrations import upgrade
+
+        settings = settings_of(**_given(locals(), Settings))
+        upgrade(open_database(settings.database_url))
+        typer.echo("the database is up to date")
+
+
+@app.command()
+def demo(
+    output: Annotated[Path, typer.Option("--output", "-o", help="Folder for the results.")] = Path("demo"),
+    robot: Annotated[str, typer.Option(help="A robot of the library.")] = "ur5e",
+) -> None:
+    """Start a server, analyse a robot through it, and leave maps, volume and pictures in a folder."""
+    with one_line_faults():
+        from wsrender.cli.saving import check_output, report
+        from wsrender_server.demo import demonstrate
+
+        check_output(output, None)
+        report(demonstrate(robot, output), output)
+
+
+def settings_of(**given: Any) -> Settings:
+    """Settings from options, then environment variables, then defaults. Raises InputError."""
+    try:
+        return Settings(**given)
+    except ValidationError as error:
+        fault = error.errors()[0]
+        field = ".".join(str(part) for part in fault["loc"]) or "settings"
+        raise InputError(field, fault["msg"].removeprefix("Value error, ")) from None
+
+
+def _given(options: dict[str, Any], kind: type[Settings]) -> dict[str, Any]:
+    """Those of a command's options that are settings and were given."""
+    return {name: options[name] for name in kind.model_fields if options.get(name) is not None}
+
+
+def _store(data_dir: Path | None, database: str | None) -> Any:
+    from wsrender_server.jobs.store import open_store
+
+    return open_store(settings_of(**_given(locals(), Settings)))
+
+
+def _work_on(gpus: str, settings: Settings, stop: threading.Event) -> None:
+    from wsrender_server.gpu_workers import gpu_numbers, run_workers
+
+    files = {
+        "--tls-ca-file": settings.tls_ca_file,
+        "--tls-cert-file": settings.tls_cert_file,
+        "--tls-key-file": settings.tls_key_file,
+    }
+    arguments = ["--scheduler", str(settings.scheduler), "--data-dir", str(settings.data_dir)]
+    arguments += [str(part) for option in files.items() for part in option]
+    run_workers(gpu_numbers(gpus), arguments, stop)
