@@ -1,5 +1,7 @@
 """Algorithm 1 of WSRender: finer grids until a global index settles."""
 
+from itertools import pairwise
+
 import pytest
 
 import wsrender as ws
@@ -12,7 +14,7 @@ def converged(**fields):
     return ws.analyze(planar_arm(), ws.Converge("manipulability", **fields), **OPTIONS).document
 
 
-@pytest.mark.parametrize(("by", "tolerance"), [("joint_mean", 1e-3), ("workspace_mean", 3e-2)])
+@pytest.mark.parametrize(("by", "tolerance"), [("joint_mean", 1e-3), ("workspace_mean", 5e-3)])
 def test_sequence_of_global_values(by, tolerance):
     document = converged(tolerance=tolerance, by=by)
     sequence = document["convergence"]
@@ -21,7 +23,7 @@ def test_sequence_of_global_values(by, tolerance):
     for step in (sequence[0], sequence[-1]):
         grid = ws.analyze(planar_arm(), ws.Grid(step["per_joint"]), **OPTIONS).document
         assert step["value"] == grid["indices"]["manipulability"][by]
-    changes = [abs(b["value"] - a["value"]) for a, b in zip(sequence, sequence[1:], strict=False)]
+    changes = [abs(b["value"] - a["value"]) for a, b in pairwise(sequence)]
     assert len(changes) > 1
     assert changes[-1] <= tolerance
     assert all(change > tolerance for change in changes[:-1])
@@ -41,7 +43,7 @@ def test_not_converged(limits):
 
 
 def test_even_the_first_grid_may_be_too_large():
-    with pytest.raises(ws.NotConvergedError, match="15 per joint, has 225 samples, .* so far: none"):
+    with pytest.raises(ws.NotConvergedError, match=r"15 per joint, has 225 samples, .* so far: none"):
         converged(max_samples=100)
 
 

@@ -86,14 +86,14 @@ def test_progress_ends_at_the_total():
 
 @pytest.mark.parametrize("chunk_size", [0, -1, 1.5, "many"])
 def test_chunk_size_is_a_positive_whole_number(chunk_size):
-    with pytest.raises(ws.InputError, match="chunk_size: .* is not allowed; a positive whole number is"):
+    with pytest.raises(ws.InputError, match=r"chunk_size: .* is not allowed; a positive whole number is"):
         analysis(chunk_size=chunk_size)
 
 
 def test_too_many_samples_name_the_remedy():
     with pytest.raises(ws.ResourceError, match=r"1e\+12 samples; .*max_samples = 1e\+10: use .*sobol"):
         ws.analyze("ur5e", ws.Grid(100), device="cpu")
-    with pytest.raises(ws.ResourceError, match="sampling.count: 5001 samples; at most max_samples = 5000"):
+    with pytest.raises(ws.ResourceError, match=r"sampling.count: 5001 samples; at most max_samples = 5000"):
         ws.analyze("ur5e", ws.Random(5001), max_samples=5000, device="cpu")
 
 

@@ -20,7 +20,7 @@ def reachable_box(chain: Chain, lower: np.ndarray, upper: np.ndarray) -> tuple[n
         if chain.joint_is_revolute[i]:
             low, high = _turned(low, high, first, last)
         else:
-            low, high = low + [0, 0, first], high + [0, 0, last]
+            low, high = low + np.array([0, 0, first]), high + np.array([0, 0, last])
         low, high = _transformed(chain.T_joint[i], low, high)
     return _transformed(chain.T_world_base, low, high)
 

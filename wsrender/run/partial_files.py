@@ -1,0 +1,64 @@
+"""Partial results ↔ npz files without pickles, so that a restart need not compute them again."""
+
+import json
+import zipfile
+import zlib
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from wsrender.engine import Evaluated, Partial
+from wsrender.errors import InputError
+from wsrender.export.atomic import new_file
+from wsrender.run.workspace import WorkspacePartial, WorkspacePlan
+from wsrender.spec.sampling import Converge
+
+SWEEP = ("extremes", "totals", "cells", "count", "records", "sums")
+EVALUATED = ("position", "values", "largest_sigma", "smallest_sigma", "quat_wxyz")
+ROWS = "rows_"
+
+
+def save_partial(partial: WorkspacePartial | Evaluated, path: str | Path) -> None:
+    """Write a partial result; the file appears complete or not at all."""
+    write = _workspace_arrays if isinstance(partial, WorkspacePartial) else _evaluated_arrays
+    with new_file(path) as temporary, temporary.open("wb") as file:
+        np.savez(file, allow_pickle=False, **write(partial))  # type: ignore[arg-type]
+
+
+def load_partial(path: str | Path, plan: Any) -> WorkspacePartial | Evaluated:
+    """Read what ``save_partial`` wrote of a shard of ``plan``; InputError where the file is missing or damaged."""
+    path = Path(path)
+    read: Callable[[Any, Any], Any] = _workspace if isinstance(plan, WorkspacePlan) else _evaluated
+    try:
+        with path.open("rb") as file, np.load(file, allow_pickle=False) as arrays:
+            return read(arrays, plan)
+    except (OSError, ValueError, KeyError, TypeError, EOFError, zipfile.BadZipFile, zlib.error) as error:
+        raise InputError(path.name, f"cannot be read as a partial result: {error}") from error
+
+
+def _workspace_arrays(partial: WorkspacePartial) -> dict[str, np.ndarray]:
+    sweep = partial.sweep
+    about = {"samples": sweep.samples, "convergence": partial.convergence}
+    rows = {f"{ROWS}{first}": block for first, block in sweep.rows.items()}
+    return {"about": np.array(json.dumps(about)), **{name: getattr(sweep, name) for name in SWEEP}, **rows}
+
+
+def _workspace(arrays: Any, plan: WorkspacePlan) -> WorkspacePartial:
+    about = json.loads(str(arrays["about"]))
+    rows = {int(name.removeprefix(ROWS)): arrays[name] for name in arrays.files if name.startswith(ROWS)}
+    sweep = Partial(about["samples"], **{name: arrays[name] for name in SWEEP}, rows=rows)
+    sequence, sampling = about["convergence"], plan.job.sampling
+    if sequence is None or not isinstance(sampling, Converge):
+        return WorkspacePartial(sweep, plan.sweep)
+    return WorkspacePartial(sweep, plan.with_grid(sequence[-1]["per_joint"], sampling), sequence)
+
+
+def _evaluated_arrays(partial: Evaluated) -> dict[str, np.ndarray]:
+    return {name: value for name in EVALUATED if (value := getattr(partial, name)) is not None}
+
+
+def _evaluated(arrays: Any, plan: Any) -> Evaluated:
+    optional = {"quat_wxyz": arrays["quat_wxyz"] if "quat_wxyz" in arrays.files else None}
+    return Evaluated(**{name: arrays[name] for name in EVALUATED if name not in optional}, **optional)
