@@ -1,6 +1,6 @@
 """Samples per second of wsrender beside NumPy, MuJoCo and Pinocchio, all in one run, repeats interleaved.
 
-    python benchmarks/throughput.py [--robots ur5e franka_panda] [--repeats 5] [--device auto]
+    python benchmarks/throughput.py [--robots ur5e franka_panda] [--repeats 5] [--devices cpu] [--without-analyze]
 
 A sample is a random configuration with its 3 x n Jacobian, singular values and six kinematic indices, or twelve with
 the inertia matrix and the six dynamic ones. Nothing is asserted but that all contenders compute the same numbers.
@@ -25,14 +25,14 @@ import wsrender as ws
 from wsrender.engine import SweepPlan, devices_of, sweep, thread_count
 
 AGREEMENT = 1e-6  # relative to the largest value, between contenders at the same configurations
-FIRST_GUESS, WANTED_SECONDS = 1 << 18, 0.3
-LOOP_SAMPLES, BATCH_SAMPLES = 3_000, 1 << 16
+FEW, FIRST_GUESS, WANTED_SECONDS = 256, 1 << 18, 0.2
+LOOP_SAMPLES, BATCH_SAMPLES = 1_000, 1 << 14
 WORKS = {False: "6 kinematic", True: "12"}
 
 
 @dataclass
 class Case:
-    """One row of the table; ``run(count)`` evaluates so many samples."""
+    """One row of the table; ``run(count)`` evaluates so many random samples."""
 
     contender: str
     work: str
@@ -45,9 +45,7 @@ class Case:
 
     def measure(self) -> None:
         """Adds one repeat."""
-        started = time.perf_counter()
-        self.run(self.samples)
-        self.rates.append(self.samples / (time.perf_counter() - started))
+        self.rates.append(self.samples / _seconds(self, self.samples))
 
     @property
     def rate(self) -> float:
@@ -55,7 +53,7 @@ class Case:
         return statistics.median(self.rates)
 
 
-def engine_cases(robot: ws.Robot, device: str, peaks: dict) -> list[Case]:
+def engine_cases(robot: ws.Robot, device: str, peaks: dict, with_analyze: bool = True) -> list[Case]:
     """Cases of the fused kernel: precisions, threads, with and without voxels; and of the whole of ws.analyze."""
     cases = []
     on_gpu = devices_of(device)[0].is_cuda
@@ -76,11 +74,13 @@ def engine_cases(robot: ws.Robot, device: str, peaks: dict) -> list[Case]:
                         peaks[precision, threads],
                     )
                     cases.append(_sized(case))
+                if not with_analyze:
+                    continue
                 case = Case(
                     f"ws.analyze {precision}, {where}",
                     f"{work}, voxels",
                     lambda count, p=precision, d=dynamic, t=threads: _analyze(robot, count, p, d, device, t),
-                    64 * FIRST_GUESS,
+                    FIRST_GUESS,
                 )
                 cases.append(_sized(case))
     return cases
@@ -104,11 +104,21 @@ def _analyze(robot: ws.Robot, count: int, precision: str, dynamic: bool, device:
 
 
 def _sized(case: Case) -> Case:
-    """The case with as many samples as take a few tenths of a second; compiles its kernel on the way."""
-    case.run(case.samples)
-    case.measure()
-    wanted = case.rates.pop() * WANTED_SECONDS
-    return replace(case, samples=max(case.samples, 1 << max(0, int(wanted).bit_length() - 1)))
+    """The case with enough samples that what a run costs at any size (voxel records) is a fifth of it at most.
+
+    Compiles its kernel on the way.
+    """
+    case.run(FEW)
+    fixed = _seconds(case, FEW)
+    while _seconds(case, case.samples) < 5 * fixed + WANTED_SECONDS:
+        case.samples *= 4
+    return case
+
+
+def _seconds(case: Case, count: int) -> float:
+    started = time.perf_counter()
+    case.run(count)
+    return time.perf_counter() - started
 
 
 def python_cases(robot: ws.Robot) -> list[Case]:
@@ -215,15 +225,17 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])  # type: ignore[union-attr]
     parser.add_argument("--robots", nargs="+", default=["ur5e", "franka_panda"])
     parser.add_argument("--repeats", type=int, default=5)
+    parser.add_argument("--without-analyze", action="store_true", help="leave out ws.analyze, which takes longest")
     parser.add_argument("--devices", nargs="+", help="default: cpu, and cuda:0 where there is a GPU")
     arguments = parser.parse_args()
+    full = not arguments.without_analyze
     devices = arguments.devices or ["cpu"] + ["cuda:0"] * devices_of("auto")[0].is_cuda
     peaks = {device: _peaks(device) for device in devices}
     for device in devices:
         print(machine(device, peaks[device]))
     for name in arguments.robots:
         robot = ws.load_robot(name)
-        cases = python_cases(robot) + [case for d in devices for case in engine_cases(robot, d, peaks[d])]
+        cases = python_cases(robot) + [case for d in devices for case in engine_cases(robot, d, peaks[d], full)]
         for _repeat in range(arguments.repeats):
             for case in cases:
                 case.measure()
