@@ -1,0 +1,126 @@
+"""What a submitted job document must fulfil before it is queued; nothing here runs native code on strangers' models."""
+
+import json
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from itertools import repeat
+from typing import Any
+from xml.sax import SAXException
+
+from wsrender.errors import DocumentError, InputError, ModelError, ResourceError
+from wsrender.indices.catalogue import find
+from wsrender.robots import library, xml_source
+from wsrender.spec import WorkspaceJob, canonical_json, parse_job
+from wsrender.spec.robot import RobotSpec
+from wsrender.spec.sampling import Converge, Grid
+from wsrender_server.jobs.store import JobStore
+from wsrender_server.problems import HttpProblem, pointer, problem_of_error, refusal
+
+BEYOND_LIMITS = 10**18  # samples
+
+
+@dataclass(frozen=True)
+class Admission:
+    """Admits the documents of one owner."""
+
+    store: JobStore
+    owner: str
+    max_samples: int
+    prefix: str
+    """Where in the body the document is, as a JSON pointer; empty: it is the body."""
+
+    def canonical(self, document: Mapping[str, Any]) -> dict[str, Any]:
+        """The canonical document, all defaults present.
+
+        Raises DocumentError, ModelError, InputError for a wrong document; HttpProblem 404 for a model that the owner
+        did not upload, 409 for text that is no XML; ResourceError for more samples than allowed.
+        """
+        job = parse_job(document)
+        self._check_robot(job.robot)
+        _check_indices(job)
+        if isinstance(job, WorkspaceJob):
+            self._check_samples(job)
+        elif job.configurations is None:
+            raise DocumentError([("configurations", "must be given: rows of joint values")])
+        return json.loads(canonical_json(job))
+
+    def _check_robot(self, robot: RobotSpec) -> None:
+        if robot.path is not None:
+            raise DocumentError([("robot.path", "is for local runs only; upload the model, or send its text")])
+        if robot.library is not None:
+            try:
+                library.find(robot.library)
+            except ModelError as error:
+                raise DocumentError([("robot.library", error.message)]) from None
+        for name, text in (("mjcf", robot.mjcf), ("urdf", robot.urdf)):
+            if text is not None:
+                self._check_xml(f"robot.{name}", text)
+        if robot.model is not None and self.store.get_model(self.owner, robot.model) is None:
+            raise HttpProblem(
+                404,
+                f"you have uploaded no model {robot.model}",
+                "model_not_found",
+                errors=[(pointer("robot.model", self.prefix), "is no model that you uploaded")],
+            )
+
+    def _check_xml(self, field: str, text: str) -> None:
+        try:
+            xml_source.parse(text, field)
+        except ModelError as error:
+            if isinstance(error.__cause__, SAXException):
+                raise refusal(problem_of_error(error, self.prefix), 409) from None
+            raise
+
+    def _check_samples(self, job: WorkspaceJob) -> None:
+        samples, asked = least_samples(job), job.sampling
+        if samples > self.max_samples:
+            raise ResourceError(
+                "sampling", f"has at least {samples:.4g} samples; this server allows {self.max_samples:.4g}"
+            )
+        if not isinstance(asked, Converge) and samples > job.max_samples:
+            raise ResourceError(
+                "sampling", f"has at least {samples:.4g} samples, above max_samples = {job.max_samples:.4g}"
+            )
+
+
+def least_samples(job: WorkspaceJob) -> int:
+    """Samples that a job takes at least; exact where the number of joints is known without compiling a model."""
+    sampling = job.sampling
+    if isinstance(sampling, Grid | Converge):
+        levels = sampling.per_joint if isinstance(sampling, Grid) else sampling.start
+        if isinstance(levels, int):
+            levels = repeat(levels, max(_joints(job.robot) - len(sampling.locked), 1))
+        return _product(levels)
+    return sampling.count
+
+
+def _product(factors: Iterable[int]) -> int:
+    """The product, or a part of it where that is beyond all limits."""
+    product = 1
+    for factor in factors:
+        product *= factor
+        if product > BEYOND_LIMITS:
+            break
+    return product
+
+
+def _joints(robot: RobotSpec) -> int:
+    if robot.dh is not None:
+        return len(robot.dh.rows)
+    if robot.library is not None:
+        return next(known.joints for known in library.describe() if known.name == robot.library)
+    return 1
+
+
+def _check_indices(job: Any) -> None:
+    names = [] if isinstance(job.indices, str) else [("indices", name) for name in job.indices]
+    if isinstance(job, WorkspaceJob) and isinstance(job.sampling, Converge):
+        names.append(("sampling.index", job.sampling.index))
+    problems = []
+    for field, name in names:
+        try:
+            find(name)
+        except InputError as error:
+            problems.append((field, error.message))
+    if problems:
+        raise DocumentError(problems)

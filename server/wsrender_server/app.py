@@ -1,0 +1,135 @@
+"""The application: routes, errors, documentation and the life of the parts behind them."""
+
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from pathlib import Path
+from typing import Any
+
+from fastapi import FastAPI, Request
+from fastapi.openapi.docs import get_swagger_ui_html
+from fastapi.openapi.utils import get_openapi
+from fastapi.routing import APIRoute
+from starlette.concurrency import run_in_threadpool
+from starlette.convertors import StringConvertor, register_url_convertor
+from starlette.responses import RedirectResponse, Response
+from starlette.routing import compile_path
+from starlette.staticfiles import StaticFiles
+
+from wsrender import __version__
+from wsrender_server.auth import Authenticator, check_binding
+from wsrender_server.job_body import body_schemas
+from wsrender_server.jobs.dispatcher import Dispatcher
+from wsrender_server.jobs.store import open_store
+from wsrender_server.parts import Executor, Parts
+from wsrender_server.problems import Problem, answer_errors
+from wsrender_server.requests import RequestLayer
+from wsrender_server.settings import Settings
+
+STATIC = Path(__file__).parent / "static"
+DESCRIPTION = """Workspace analysis of robotic manipulators. Submit a job document, follow the job, fetch its result.
+
+Errors are problem documents (RFC 9457) with a stable `code`, JSON pointers to the bad fields, and `retryable`."""
+
+
+class _IdConvertor(StringConvertor):
+    """A part of a path that is an id: no colon, so that ``{id}:cancel`` is another path than ``{id}``."""
+
+    regex = "[^/:]+"
+
+
+register_url_convertor("id", _IdConvertor())
+# After the convertor is known: routes are compiled when their modules are imported.
+from wsrender_server.routes import artifacts, catalogue, events, jobs, operation  # noqa: E402
+
+
+def create_app(settings: Settings, executor: Executor | None = None) -> FastAPI:
+    """The server's application; it starts and stops what computes (by default the Dask dispatcher) with itself.
+
+    Raises InputError where the settings would let other machines in without an API key, StoreUnavailable for a
+    database that does not answer.
+    """
+    store = open_store(settings)
+    authenticator = Authenticator(settings, store)
+    check_binding(settings.host, authenticator.required)
+    parts = Parts(settings, store, executor or Dispatcher(store, settings))
+    app = FastAPI(
+        title="wsrender",
+        version=__version__,
+        description=DESCRIPTION,
+        license_info={"name": "Apache-2.0", "identifier": "Apache-2.0"},
+        docs_url=None,
+        redoc_url=None,
+        redirect_slashes=False,
+        generate_unique_id_function=lambda route: route.name,
+        lifespan=_life,
+    )
+    app.state.parts = parts
+    app.state.authenticator = authenticator
+    app.state.keys_at_work = {}
+    for module in (jobs, events, artifacts, catalogue, operation):
+        app.include_router(module.router)
+    _add_documentation(app)
+    app.state.methods_by_path = [
+        (compile_path(route.path)[0], route.methods)
+        for module in (jobs, events, artifacts, catalogue, operation)
+        for route in module.router.routes
+        if isinstance(route, APIRoute)
+    ]
+    answer_errors(app)
+    app.add_middleware(RequestLayer, metrics=parts.metrics, max_body_bytes=settings.max_body_bytes)
+    schema = _openapi(app, authenticator.required)
+    app.openapi = lambda: schema
+    return app
+
+
+@asynccontextmanager
+async def _life(app: FastAPI) -> AsyncIterator[None]:
+    parts: Parts = app.state.parts
+    await run_in_threadpool(parts.executor.start)
+    try:
+        yield
+    finally:
+        await run_in_threadpool(parts.executor.stop)
+        await run_in_threadpool(parts.side_process.close)
+
+
+def _add_documentation(app: FastAPI) -> None:
+    """``/docs`` by files of our own: it works without internet."""
+    app.mount("/docs/files", StaticFiles(directory=STATIC / "swagger-ui"), name="swagger-ui")
+
+    @app.get("/docs", include_in_schema=False)
+    async def docs() -> Response:
+        return get_swagger_ui_html(
+            openapi_url="../openapi.json",
+            title="wsrender",
+            swagger_js_url="docs/files/swagger-ui-bundle.js",
+            swagger_css_url="docs/files/swagger-ui.css",
+            swagger_favicon_url="docs/files/favicon-32x32.png",
+        )
+
+    @app.get("/", include_in_schema=False)
+    async def home(request: Request) -> Response:
+        return RedirectResponse("docs")
+
+
+def _openapi(app: FastAPI, keys_needed: bool) -> dict[str, Any]:
+    """The OpenAPI document; without keys nothing in it asks for one."""
+    document = get_openapi(
+        title=app.title,
+        version=app.version,
+        description=app.description,
+        license_info=app.license_info,
+        routes=app.routes,
+        openapi_version=app.openapi_version,
+    )
+    schemas = document["components"]["schemas"]
+    schemas |= body_schemas()
+    schemas["Problem"] = Problem.model_json_schema(ref_template="#/components/schemas/{model}")
+    schemas |= schemas["Problem"].pop("$defs", {})
+    for unused in ("HTTPValidationError", "ValidationError"):
+        schemas.pop(unused, None)
+    if not keys_needed:
+        document["components"].pop("securitySchemes", None)
+        for operation in (operation for path in document["paths"].values() for operation in path.values()):
+            operation.pop("security", None)
+    return document

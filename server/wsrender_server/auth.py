@@ -1,0 +1,160 @@
+"""Who asks, and what they may: API keys with scopes, or one local user where no key exists."""
+
+import hashlib
+import ipaddress
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Literal
+
+from fastapi import Depends, Request, Security
+from fastapi.security import HTTPAuthorizationCredentials, HTTPBearer
+
+from wsrender.errors import InputError
+from wsrender_server.jobs.store import JobStore
+from wsrender_server.problems import HttpProblem
+from wsrender_server.settings import Settings
+
+Scope = Literal["read", "submit", "admin"]
+# What a key with a scope may do.
+GRANTS: dict[str, frozenset[str]] = {
+    "read": frozenset({"read"}),
+    "submit": frozenset({"read", "submit"}),
+    "admin": frozenset({"read", "submit", "admin"}),
+}
+LOCAL_NAMES = ("localhost", "ip6-localhost")
+SHORTEST_SECRET = 16  # characters
+
+
+@dataclass(frozen=True)
+class Principal:
+    """Who asks: whose jobs they see, and their rights."""
+
+    owner: str
+    rights: frozenset[str]
+
+
+LOCAL_USER = Principal("local", GRANTS["admin"])
+
+
+class Authenticator:
+    """Knows the keys of the key file and of the database.
+
+    ``required`` is False, once and for all while the server runs, where it started without any key. Raises InputError
+    for a malformed key file.
+    """
+
+    def __init__(self, settings: Settings, store: JobStore):
+        self._store = store
+        self._file_keys = {} if settings.api_key_file is None else read_key_file(settings.api_key_file)
+        self.required = bool(self._file_keys) or any(key.revoked_at is None for key in store.list_keys())
+
+    def principal(self, secret: str) -> Principal | None:
+        """Whose secret it is; None for an unknown or revoked key."""
+        # Looking up the hash of a secret tells nothing about other secrets, whatever time it takes.
+        known = self._file_keys.get(_digest(secret))
+        if known is not None:
+            return known
+        key = self._store.find_key(secret)
+        return None if key is None else Principal(key.id, _rights(key.scopes))
+
+
+def read_key_file(path: Path) -> dict[str, Principal]:
+    """Who each key of a file is, by the SHA-256 of its secret.
+
+    A line is ``secret``, ``secret name`` or ``secret name scope,scope`` (default: submit); # starts a comment. Keys of
+    one name share their jobs. Raises InputError naming the line.
+    """
+    try:
+        lines = path.read_text(encoding="utf-8").splitlines()
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError("api_key_file", f"{path} cannot be read: {error}") from error
+    principals = {}
+    for number, line in enumerate(lines, start=1):
+        words = line.partition("#")[0].split()
+        if not words:
+            continue
+        secret, name, scopes = (*words, *["", "submit"][len(words) - 1 :])[:3] if len(words) <= 3 else ("", "", "")
+        if len(secret) < SHORTEST_SECRET or not set(scopes.split(",")) <= set(GRANTS):
+            raise InputError(
+                "api_key_file",
+                f"{path}, line {number}: must be a secret of at least {SHORTEST_SECRET} characters, then if you like "
+                "a name and scopes from read,submit,admin",
+            )
+        digest = _digest(secret)
+        principals[digest] = Principal(f"file:{name or digest[:16]}", _rights(scopes.split(",")))
+    if not principals:
+        raise InputError("api_key_file", f"{path} holds no key")
+    return principals
+
+
+def check_binding(host: str, has_keys: bool) -> None:
+    """Refuse to listen on anything but loopback where there is no key; raises InputError."""
+    if has_keys or is_loopback(host):
+        return
+    raise InputError(
+        "host",
+        f"{host} can be reached from other machines, and there is no API key; make one (wsrender keys create) or give "
+        "--api-key-file, or listen on 127.0.0.1",
+    )
+
+
+def is_loopback(host: str) -> bool:
+    """Whether an address or name can only be reached from this machine."""
+    try:
+        return ipaddress.ip_address(host.strip("[]")).is_loopback
+    except ValueError:
+        return host.lower().rstrip(".") in LOCAL_NAMES
+
+
+def needs(right: Scope) -> Callable[..., Principal]:
+    """The dependency of a route that needs a right."""
+
+    def principal(
+        request: Request, credentials: Annotated[HTTPAuthorizationCredentials | None, Security(_bearer)]
+    ) -> Principal:
+        asking = _asking(request, credentials)
+        request.state.owner = asking.owner
+        if right not in asking.rights:
+            raise HttpProblem(403, f"this key lacks the scope {right!r}", "insufficient_scope")
+        return asking
+
+    return principal
+
+
+_bearer = HTTPBearer(scheme_name="api_key", description="An API key (`wsrender keys create`).", auto_error=False)
+Reader = Annotated[Principal, Depends(needs("read"))]
+Submitter = Annotated[Principal, Depends(needs("submit"))]
+
+
+def _asking(request: Request, credentials: HTTPAuthorizationCredentials | None) -> Principal:
+    authenticator: Authenticator = request.app.state.authenticator
+    if not authenticator.required:
+        _check_host(request)
+        return LOCAL_USER
+    if credentials is None:
+        raise _unauthorized("an API key is needed: Authorization: Bearer <key>", "Bearer")
+    principal = authenticator.principal(credentials.credentials)
+    if principal is None:
+        raise _unauthorized("the API key is unknown or was revoked", 'Bearer error="invalid_token"')
+    return principal
+
+
+def _check_host(request: Request) -> None:
+    """Without a key only names of this machine count: a web page must not reach it by a name of its own."""
+    if not is_loopback(request.url.hostname or ""):
+        raise HttpProblem(
+            403, f"without an API key the server answers to localhost only, not {request.url.hostname}", "wrong_host"
+        )
+
+
+def _unauthorized(detail: str, challenge: str) -> HttpProblem:
+    return HttpProblem(401, detail, "unauthorized", headers={"WWW-Authenticate": challenge})
+
+
+def _rights(scopes) -> frozenset[str]:
+    return frozenset().union(*(GRANTS[scope] for scope in scopes))
+
+
+def _digest(secret: str) -> str:
+    return hashlib.sha256(secret.encode()).hexdigest()

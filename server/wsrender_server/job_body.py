@@ -1,0 +1,214 @@
+"""Bodies of submissions: read strictly, and described by a JSON Schema that says as much as one can."""
+
+import copy
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from typing import Annotated, Any
+
+from fastapi import Request
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, StringConstraints, ValidationError
+
+from wsrender.errors import DocumentError, InputError
+from wsrender.indices import catalogue
+from wsrender.indices.catalogue import DYNAMIC_PREFIX
+from wsrender.robots import library
+from wsrender.spec import job_schema
+from wsrender.spec.json_text import read_json
+from wsrender.spec.problems import listed, worded
+from wsrender.spec.quantities import integer, real
+from wsrender_server.problems import HttpProblem, pointer, problem_of_error, refusal
+
+JSON_TYPES = ("application/json", "text/json")
+LABEL_KEY = r"^[A-Za-z0-9][A-Za-z0-9._/-]{0,62}$"
+LABEL_VALUE = r"^[^\x00-\x1f\x7f]{0,255}$"
+MOST_LABELS = 32
+LARGEST_CHECKED = 1 << 16  # bytes
+
+Labels = Annotated[
+    dict[Annotated[str, StringConstraints(pattern=LABEL_KEY)], Annotated[str, StringConstraints(pattern=LABEL_VALUE)]],
+    Field(max_length=MOST_LABELS),
+]
+
+
+class SubmissionOptions(BaseModel):
+    """What may stand beside a job document."""
+
+    labels: Labels = Field(default={}, examples=[{"study": "wrist-1"}])
+    """Free text to find the job by."""
+    priority: Annotated[int, BeforeValidator(integer), Field(ge=-1000, le=1000)] = 0
+    """Jobs of larger priority go first."""
+    timeout_s: Annotated[float, BeforeValidator(real), Field(gt=0, le=1e7)] | None = None
+    """Longest time that the job may run [s]; null: the server's default."""
+
+    model_config = ConfigDict(use_attribute_docstrings=True, extra="forbid")
+
+
+@dataclass(frozen=True)
+class JobBody:
+    """A submission: the job document as sent, what stood beside it, and where in the body the document is."""
+
+    document: Mapping[str, Any]
+    options: SubmissionOptions
+    prefix: str
+
+
+def read_body(text: bytes) -> JobBody:
+    """The submission of a JSON text: a job document with options beside its fields, or as ``{"job": document}``.
+
+    Raises HttpProblem 400 for text that is no JSON, DocumentError for wrong options.
+    """
+    body = _read_text(text)
+    if not isinstance(body, dict):
+        raise DocumentError([("document", f"must be a JSON object, not {_kind(body)}")])
+    options = {name: body.pop(name) for name in SubmissionOptions.model_fields if name in body}
+    wrapped = "job" in body
+    document = body.pop("job") if wrapped else body
+    if wrapped and body:
+        raise DocumentError([(name, 'is not a known field beside "job"') for name in body])
+    if not isinstance(document, dict):
+        raise DocumentError([("job", f"must be a job document (object), not {_kind(document)}")])
+    try:
+        return JobBody(document, SubmissionOptions.model_validate(options), "/job" if wrapped else "")
+    except ValidationError as error:
+        raise DocumentError(listed(worded(error, SubmissionOptions), options)) from None
+
+
+def _read_text(text: bytes) -> Any:
+    try:
+        value = read_json(text)
+        if b"\\u" in text:
+            json.dumps(value, ensure_ascii=False).encode()  # half of a surrogate pair is no text
+    except InputError as error:
+        raise HttpProblem(400, error.message, "malformed_json", errors=[(pointer("document"), error.message)]) from None
+    except UnicodeEncodeError as error:
+        raise HttpProblem(
+            400, f"holds {error.object[error.start]!r}, which is no character", "malformed_json"
+        ) from None
+    except RecursionError:
+        raise HttpProblem(400, "is nested too deeply", "malformed_json") from None
+    return value
+
+
+def _kind(value: Any) -> str:
+    kinds = {list: "a list", str: "a string", bool: "a boolean", int: "a number", float: "a number"}
+    return kinds.get(type(value), "null")
+
+
+def refused(error: DocumentError, text: bytes, schema: str, prefix: str) -> HttpProblem:
+    """The answer to a wrong document: 422 if the body breaks its published schema, 409 if it contradicts itself."""
+    keeps_to_schema = len(text) <= LARGEST_CHECKED and _validator(schema).is_valid(read_json(text))
+    return refusal(problem_of_error(error, prefix), 409 if keeps_to_schema else 422)
+
+
+@cache
+def _validator(name: str) -> Any:
+    from jsonschema import Draft202012Validator
+
+    return Draft202012Validator({"$ref": f"#/components/schemas/{name}", "components": {"schemas": body_schemas()}})
+
+
+async def json_body(request: Request) -> bytes:
+    """The body of a request that must be JSON; raises HttpProblem 415 for another media type."""
+    media_type = request.headers.get("content-type", "").partition(";")[0].strip().lower()
+    if media_type not in JSON_TYPES:
+        raise HttpProblem(415, f"the body must be application/json, not {media_type or 'of no type'}")
+    return await request.body()
+
+
+def body_schemas() -> dict[str, Any]:
+    """Schemas for OpenAPI's components: every part of a job document, ``JobDocument`` and ``JobSubmission``.
+
+    They are stricter than ``wsrender schema`` where JSON Schema can say what a server additionally refuses.
+    """
+    schema = copy.deepcopy(job_schema())
+    parts: dict[str, Any] = schema.pop("$defs")
+    _tighten_robot(parts["RobotSpec"])
+    analyses = {name: ref.rpartition("/")[2] for name, ref in schema["discriminator"]["mapping"].items()}
+    options = SubmissionOptions.model_json_schema()["properties"]
+    for model in analyses.values():
+        _tighten_job(parts[model])
+    submissions = {}
+    for name, model in analyses.items():
+        flat = copy.deepcopy(parts[model])
+        flat["properties"] |= options
+        flat["title"] = flat["title"].replace("Job", "Submission")
+        submissions[name] = flat["title"]
+        parts[flat["title"]] = flat
+    parts["JobDocument"] = _one_of(analyses, "A job document: what to analyse.")
+    parts["WrappedSubmission"] = {
+        "title": "WrappedSubmission",
+        "description": "A job document under the key job, with options beside it.",
+        "type": "object",
+        "additionalProperties": False,
+        "properties": {"job": {"$ref": "#/$defs/JobDocument"}, **options},
+        "required": ["job"],
+    }
+    parts["JobSubmission"] = {
+        "title": "JobSubmission",
+        "description": "A job document, with labels, priority and timeout_s beside its fields if you like.",
+        "anyOf": [*(_ref(name) for name in submissions.values()), _ref("WrappedSubmission")],
+        "examples": EXAMPLES,
+    }
+    parts["JobDocument"]["examples"] = EXAMPLES[:1]
+    return json.loads(json.dumps(parts).replace("#/$defs/", "#/components/schemas/"))
+
+
+EXAMPLES = [
+    {
+        "analysis": "workspace",
+        "robot": {"library": "phantom_omni"},
+        "tip": "tool",
+        "sampling": {"method": "grid", "per_joint": 5},
+        "indices": ["manipulability", "inverse_condition_number"],
+        "task": "linear",
+    },
+    {
+        "job": {"analysis": "indices_at", "robot": {"library": "scara"}, "configurations": [[0.1, 0.2, 0.05, 0.0]]},
+        "labels": {"study": "wrist-1"},
+        "priority": 1,
+        "timeout_s": 60,
+    },
+]
+
+
+def _one_of(tags: Mapping[str, str], description: str) -> dict[str, Any]:
+    return {"title": "JobDocument", "description": description, "oneOf": [_ref(name) for name in tags.values()]}
+
+
+def _ref(name: str) -> dict[str, str]:
+    return {"$ref": f"#/$defs/{name}"}
+
+
+def _tighten_robot(part: dict[str, Any]) -> None:
+    """Exactly one source; library robots by name; no paths."""
+    properties = part["properties"]
+    del properties["path"]
+    properties["library"] = {"enum": library.names(), "description": properties["library"]["description"]}
+    for name in ("mjcf", "urdf", "model"):
+        properties[name] = properties[name]["anyOf"][0] | {"description": properties[name]["description"]}
+    properties["dh"] = _ref("DHTable")
+    part["oneOf"] = [{"required": [source]} for source in ("library", "dh", "mjcf", "urdf", "model")]
+
+
+def _tighten_job(part: dict[str, Any]) -> None:
+    """Index names, lists without repetition, configurations that are there."""
+    properties = part["properties"]
+    part["required"] = ["analysis", "robot"]
+    plain = [name for index in catalogue().values() for name in (index.name, *index.aliases)]
+    lists = [choice for name in ("indices", "task") for choice in properties[name]["anyOf"] if "items" in choice]
+    lists[0]["items"] = {"enum": sorted({*plain, *(DYNAMIC_PREFIX + name for name in plain)})}
+    lists += [properties[name] for name in ("voxel_statistics", "map_columns") if name in properties]
+    for choice in lists:
+        choice["uniqueItems"] = True
+    for choice in lists[:2]:
+        choice["minItems"] = 1
+    if "configurations" in properties:
+        description = properties["configurations"]["description"].partition(";")[0]
+        properties["configurations"] = {
+            "type": "array",
+            "items": {"type": "array", "items": {"type": "number"}},
+            "description": description + ".",
+        }
+        part["required"].append("configurations")

@@ -1,0 +1,125 @@
+"""Slices and plots of a result's files, made in the side process."""
+
+import tempfile
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from wsrender.errors import InputError
+from wsrender.result import Result
+
+AXES = "xyz"
+PLOTS = ("robot", "scatter", "slices", "slice", "histogram")
+# Artifacts that a result's pictures are drawn from, and what reads them.
+SOURCES = {
+    "map.parquet": "read_map_parquet",
+    "sample.parquet": "read_map_parquet",
+    "volume.vtkhdf": "read_volume_vtkhdf",
+    "skeleton.npy": "read_skeleton",
+}
+
+
+def slice_values(
+    volume_file: str, axis: str, at: float | None, index: str | None, statistic: str | None
+) -> dict[str, Any]:
+    """The plane of voxels at a coordinate ``at`` [m] along an axis; by default the one with most occupied voxels.
+
+    Returns ``values``, float32 (a, b) over the two other axes in the order x, y, z, NaN where empty; ``origin_m``, the
+    lower corner of its first voxel (2,); ``voxel_size_m``; ``at_m``, the centre of the plane; ``name`` of the array.
+    Raises InputError for a plane outside the volume and an index or statistic that it does not hold.
+    """
+    import h5py
+
+    normal = AXES.index(axis)
+    with h5py.File(volume_file, "r") as file:
+        root: Any = file["VTKHDF"]
+        name = _array_name(root["CellData"], index, statistic)
+        size, first = float(root.attrs["Spacing"][0]), np.asarray(root.attrs["first_voxel"])
+        layer = _layer(root["CellData"]["count"], normal, at, size, int(first[normal]))
+        where: list[Any] = [slice(None)] * 3
+        where[2 - normal] = layer  # files hold z, y, x
+        counts = np.asarray(root["CellData"]["count"][tuple(where)]).T
+        values = np.asarray(root["CellData"][name][tuple(where)]).T.astype(np.float32)
+    values[counts == 0] = np.nan
+    across = [k for k in range(3) if k != normal]
+    return {
+        "values": np.ascontiguousarray(values),
+        "origin_m": [float(first[k] * size) for k in across],
+        "voxel_size_m": size,
+        "at_m": float((first[normal] + layer + 0.5) * size),
+        "name": name,
+    }
+
+
+def _array_name(cells: Any, index: str | None, statistic: str | None) -> str:
+    if statistic == "count":
+        return "count"
+    arrays = {
+        (str(data.attrs["statistic"]), str(data.attrs["index"])): name
+        for name, data in cells.items()
+        if "statistic" in data.attrs
+    }
+    if not arrays and index is None and statistic is None:
+        return "count"
+    order = sorted(arrays, key=lambda key: key[0] != "maximum")  # the maximum first, then as in the file
+    for found in order:
+        if statistic in (None, found[0]) and index in (None, found[1]):
+            return arrays[found]
+    held = ", ".join(["count", *(f"{statistic} of {name}" for statistic, name in arrays)])
+    raise InputError("index", f"the volume has no {statistic or 'statistic'} of {index or 'an index'}; it holds {held}")
+
+
+def _layer(counts: Any, normal: int, at: float | None, size: float, first: int) -> int:
+    layers = counts.shape[2 - normal]
+    if at is None:
+        across = tuple(k for k in range(3) if k != 2 - normal)
+        return int(np.count_nonzero(counts[...], axis=across).argmax())
+    cells = at / size - first
+    if not -1e-9 <= cells <= layers + 1e-9:
+        low, high = first * size, (first + layers) * size
+        raise InputError("at", f"the plane {AXES[normal]} = {at:g} m misses the workspace, {low:g} … {high:g} m")
+    return min(max(int(np.floor(cells + 1e-9)), 0), layers - 1)
+
+
+def draw(document: dict[str, Any], files: dict[str, str], plot: str, format: str, options: dict[str, Any]) -> bytes:
+    """A picture of a result as PNG or SVG; ``files`` maps names of its artifacts to paths.
+
+    ``options``: index, statistic, axis and at, where the plot has them. Raises InputError where the result does not
+    hold what the plot shows.
+    """
+    from wsrender import export
+    from wsrender.plots import save_figure
+
+    parts = {
+        name.partition(".")[0]: getattr(export, reader)(files[name])
+        for name, reader in SOURCES.items()
+        if name in files and name in _needed(plot, files)
+    }
+    plots = Result(document, **parts).plot
+    if plot == "slice":
+        place = {options.get("axis") or "z": options.get("at")}
+        figure = plots.slice(**place, index=options.get("index"), statistic=options.get("statistic"))
+    elif plot == "slices":
+        figure = plots.slices(index=options.get("index"), statistic=options.get("statistic"))
+    else:
+        figure = getattr(plots, plot)(options.get("index"))
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / f"plot.{format}"
+        save_figure(figure, path)
+        return path.read_bytes()
+
+
+def _needed(plot: str, files: dict[str, str]) -> set[str]:
+    if plot in ("slice", "slices"):
+        return {"volume.vtkhdf"}
+    # The whole map only where there is no sample of it.
+    samples = "sample.parquet" if "sample.parquet" in files else "map.parquet"
+    return {samples, "skeleton.npy"}
+
+
+def estimated(document: dict[str, Any]) -> dict[str, float]:
+    """What a job will take, by its plan: samples, bytes, seconds. Raises what planning raises."""
+    from wsrender.run import plan
+
+    return dict(plan(document).estimate)

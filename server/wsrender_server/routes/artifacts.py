@@ -1,0 +1,249 @@
+"""Results: the document, the files, slices and plots."""
+
+import json
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from fastapi import APIRouter, Depends, Header, Path, Query, Request, Response
+from starlette.concurrency import run_in_threadpool
+
+from wsrender_server.auth import Reader
+from wsrender_server.conversions import MEDIA_TYPES
+from wsrender_server.jobs.records import ArtifactRecord, JobRecord
+from wsrender_server.jobs.states import ENDED, JobState
+from wsrender_server.parts import Parts, Server
+from wsrender_server.pictures import SOURCES, draw, slice_values
+from wsrender_server.problems import HttpProblem, problem_responses
+from wsrender_server.routes.files import file_response
+from wsrender_server.routes.job_views import JobId, Page, View, found
+
+router = APIRouter(prefix="/v1", tags=["results"])
+
+_BINARY = {"schema": {"type": "string", "format": "binary"}}
+_ETAG = {"ETag": {"description": "SHA-256 of the content.", "schema": {"type": "string"}}}
+_FILE_RESPONSES: dict[int | str, dict[str, Any]] = {
+    200: {"description": "The file", "headers": _ETAG, "content": {"*/*": _BINARY}},
+    206: {"description": "The range asked for", "headers": _ETAG, "content": {"*/*": _BINARY}},
+    304: {"description": "The client has it already", "headers": _ETAG},
+}
+_INDEX = Query(max_length=256, description="Name of an index; the first by default.")
+_STATISTIC = Query(description="Statistic per voxel; the maximum by default, if it was kept.")
+_AT = Query(description="Coordinate of the plane [m]; the plane with most voxels by default.")
+Statistic = Literal["count", "maximum", "mean", "minimum"]
+
+
+class ArtifactView(View):
+    """A file of a result."""
+
+    name: str
+    """Its name in a result folder."""
+    media_type: str
+    """Its media type."""
+    bytes: int
+    """Its size."""
+    sha256: str
+    """SHA-256 of its content, also its entity tag."""
+    shape: list[int] | None
+    """Shape of what it holds."""
+    units: dict[str, str]
+    """Units of what it holds, by name."""
+    frame: str | None
+    """Frame that its coordinates refer to."""
+    href: str
+    """Where it is."""
+
+
+def _finished(server: Server, principal: Reader, job_id: JobId) -> JobRecord:
+    job = found(server.store.get(principal.owner, job_id))
+    if job.state != JobState.SUCCEEDED:
+        waiting = job.state not in ENDED
+        detail = f"the job is {job.state}; it has no result" + (" yet" if waiting else "")
+        raise HttpProblem(409, detail, "no_result", retryable=waiting)
+    return job
+
+
+Finished = Annotated[JobRecord, Depends(_finished)]
+
+
+@router.get(
+    "/jobs/{job_id:id}/result",
+    summary="The result document",
+    response_model=dict[str, Any],
+    responses=problem_responses(401, 403, 404, 409, 422),
+)
+def get_result(server: Server, job: Finished) -> Response:
+    """Values with units, volumes, hashes, versions, timings, and the list of files; 409 while there is none."""
+    document = server.store.result_document(job.owner, job.id)
+    if document is None:
+        raise _gone("result.json")
+    return Response(json.dumps(document, ensure_ascii=False), media_type="application/json")
+
+
+@router.get(
+    "/jobs/{job_id:id}/artifacts",
+    summary="List the files of a result",
+    response_model=Page[ArtifactView],
+    responses=problem_responses(401, 403, 404, 409, 422),
+)
+def list_artifacts(server: Server, job: Finished) -> Page[ArtifactView]:
+    """All files in one page; 409 while there is no result."""
+    records = server.store.artifacts(job.owner, job.id)
+    path = f"/v1/jobs/{job.id}/artifacts"
+    return Page(items=[ArtifactView(**vars(record), href=f"{path}/{record.name}") for record in records])
+
+
+@router.get(
+    "/jobs/{job_id:id}/artifacts/{name:path}",
+    summary="Download a file of a result",
+    response_class=Response,
+    responses=_FILE_RESPONSES | problem_responses(401, 403, 404, 409, 416, 422, 429),
+)
+async def get_artifact(
+    server: Server,
+    job: Finished,
+    request: Request,
+    name: Annotated[str, Path(description="Name of the file.", examples=["plots/robot.png"])],
+    format: Annotated[
+        Literal["csv", "glb", "mat", "npz", "ply", "stl", "vti"] | None,
+        Query(description="Another format: npz, csv, mat of maps and volumes, vti of volumes, meshes as each other."),
+    ] = None,
+) -> Response:
+    """With Range, If-Range and If-None-Match; the entity tag is the SHA-256 of the content. `format` converts."""
+    record, path = await run_in_threadpool(_artifact, server, job, name)
+    sha256, media_type = record.sha256, record.media_type
+    if format is not None and not name.endswith(f".{format}"):
+        path, sha256 = await server.converted.get(path, record, format)
+        name, media_type = f"{name.rpartition('.')[0]}.{format}", MEDIA_TYPES[format]
+    return file_response(request, path, sha256, media_type, name)
+
+
+router.add_api_route("/jobs/{job_id:id}/artifacts/{name:path}", get_artifact, methods=["HEAD"], include_in_schema=False)
+
+
+@router.get(
+    "/jobs/{job_id:id}/volume/slice",
+    summary="A plane of voxels",
+    response_class=Response,
+    responses={
+        200: {
+            "description": "The plane",
+            "content": dict.fromkeys(("application/x-npy", "application/octet-stream", "image/png"), _BINARY),
+        },
+        **problem_responses(401, 403, 404, 406, 409, 422, 429),
+    },
+)
+async def get_slice(
+    server: Server,
+    job: Finished,
+    axis: Annotated[Literal["x", "y", "z"], Query(description="Normal of the plane.")] = "z",
+    at: Annotated[float | None, _AT] = None,
+    index: Annotated[str | None, _INDEX] = None,
+    statistic: Annotated[Statistic | None, _STATISTIC] = None,
+    accept: Annotated[str, Header(include_in_schema=False)] = "*/*",
+) -> Response:
+    """By Accept: application/x-npy (default), application/octet-stream (float32, little-endian), or image/png.
+
+    The array runs over the two other axes in the order x, y, z, NaN where empty. Headers X-Shape, X-Origin-M (lower
+    corner of its first voxel), X-Voxel-Size-M, X-At-M (centre of the plane) and X-Array say where it is. 404 where the
+    volume does not hold what was asked for.
+    """
+    kind = _best(accept, ("application/x-npy", "application/octet-stream", "image/png"))
+    if kind == "image/png":
+        options = {"axis": axis, "at": at, "index": index, "statistic": statistic}
+        return await _drawn(server, job, "slice", "png", options)
+    _, path = await run_in_threadpool(_artifact, server, job, "volume.vtkhdf")
+    plane = await _or_404(server.side_process.run(slice_values, str(path), axis, at, index, statistic))
+    values: np.ndarray = plane["values"]
+    headers = {
+        "X-Shape": ",".join(map(str, values.shape)),
+        "X-Origin-M": ",".join(map(repr, plane["origin_m"])),
+        "X-Voxel-Size-M": repr(plane["voxel_size_m"]),
+        "X-At-M": repr(plane["at_m"]),
+        "X-Array": plane["name"],
+    }
+    content = values.astype("<f4").tobytes() if kind == "application/octet-stream" else _npy(values)
+    return Response(content, headers=headers, media_type=kind)
+
+
+@router.get(
+    "/jobs/{job_id:id}/plots/{plot}",
+    summary="Draw a plot",
+    response_class=Response,
+    responses={
+        200: {"description": "The plot", "content": {"image/png": _BINARY, "image/svg+xml": _BINARY}},
+        **problem_responses(401, 403, 404, 409, 422, 429),
+    },
+)
+async def get_plot(
+    server: Server,
+    job: Finished,
+    plot: Literal["robot", "scatter", "slices", "slice", "histogram"],
+    format: Annotated[Literal["png", "svg"], Query(description="Format of the picture.")] = "png",
+    index: Annotated[str | None, _INDEX] = None,
+    statistic: Annotated[Statistic | None, _STATISTIC] = None,
+    axis: Annotated[Literal["x", "y", "z"] | None, Query(description="Normal of the plane of `slice`.")] = None,
+    at: Annotated[float | None, _AT] = None,
+) -> Response:
+    """The arm in its workspace, the sampled positions, planes of voxels, or how values are spread."""
+    options = {"axis": axis, "at": at, "index": index, "statistic": statistic}
+    return await _drawn(server, job, plot, format, options)
+
+
+async def _drawn(server: Parts, job: JobRecord, plot: str, format: str, options: dict[str, Any]) -> Response:
+    document, files = await run_in_threadpool(_sources, server, job)
+    content = await _or_404(server.side_process.run(draw, document, files, plot, format, options))
+    media_type = "image/png" if format == "png" else "image/svg+xml"
+    return Response(content, media_type=media_type)
+
+
+def _sources(server: Parts, job: JobRecord) -> tuple[dict[str, Any], dict[str, str]]:
+    document = server.store.result_document(job.owner, job.id)
+    if document is None:
+        raise _gone("result.json")
+    paths = {name: server.store.artifact_path(job.owner, job.id, name) for name in SOURCES}
+    return document, {name: str(path) for name, path in paths.items() if path is not None}
+
+
+async def _or_404(answer: Any) -> Any:
+    """What was awaited; a picture or plane of what the result does not hold is not found."""
+    try:
+        return await answer
+    except HttpProblem as error:
+        if error.code == "invalid_input":
+            error.status = 404
+        raise
+
+
+def _artifact(server: Parts, job: JobRecord, name: str) -> tuple[ArtifactRecord, Any]:
+    record = next((record for record in server.store.artifacts(job.owner, job.id) if record.name == name), None)
+    path = None if record is None else server.store.artifact_path(job.owner, job.id, name)
+    if record is None or path is None:
+        raise _gone(name)
+    return record, path
+
+
+def _gone(name: str) -> HttpProblem:
+    return HttpProblem(404, f"the result has no file {name!r}", "artifact_not_found")
+
+
+def _best(accept: str, kinds: tuple[str, ...]) -> str:
+    """The kind that an Accept header likes best, the first of equals; HttpProblem 406 where it likes none."""
+    weights: dict[str, float] = {}
+    for part in accept.split(","):
+        name, *parameters = (word.strip() for word in part.lower().split(";"))
+        quality = next((word[2:] for word in parameters if word.startswith("q=")), "1")
+        weights[name] = float(quality) if quality.replace(".", "", 1).isdecimal() else 0.0
+    wildcard = weights.get("*/*", 0.0)
+    liked = {kind: weights.get(kind, weights.get(kind.partition("/")[0] + "/*", wildcard)) for kind in kinds}
+    best = max(kinds, key=lambda kind: liked[kind])
+    if liked[best] <= 0:
+        raise HttpProblem(406, f"comes as {', '.join(kinds)}; the request accepts {accept[:200]}")
+    return best
+
+
+def _npy(values: np.ndarray) -> bytes:
+    import io
+
+    file = io.BytesIO()
+    np.lib.format.write_array(file, values, allow_pickle=False)
+    return file.getvalue()

@@ -1,0 +1,174 @@
+"""What can be asked for: analyses with their JSON Schema, library robots; models uploaded by users."""
+
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Depends, Path, Request, Response
+from pydantic import Field
+
+from wsrender.errors import ModelError
+from wsrender.robots import library, xml_source
+from wsrender.spec import ANALYSES, job_schema
+from wsrender_server.auth import Reader, Submitter
+from wsrender_server.parts import Server
+from wsrender_server.problems import HttpProblem, problem_responses
+from wsrender_server.routes.files import has_it
+from wsrender_server.routes.job_views import Page, View
+
+XML_TYPES = ("application/xml", "text/xml")
+MODEL_TAGS = ("mujoco", "robot")
+
+router = APIRouter(prefix="/v1")
+
+
+class AnalysisView(View):
+    """An analysis."""
+
+    id: str
+    """Its name, the field `analysis` of its documents."""
+    title: str
+    """Its name in words."""
+    description: str
+    """What it does."""
+    schema_: dict[str, Any] = Field(alias="schema")
+    """JSON Schema of its documents."""
+
+
+class RobotView(View):
+    """A robot of the library."""
+
+    name: str
+    """Its name, for `{"library": name}`."""
+    joints: int
+    """Number of joints."""
+    description: str
+    """What it is."""
+    source: str
+    """Where its numbers come from."""
+
+
+class ModelView(View):
+    """An uploaded model."""
+
+    sha256: str
+    """SHA-256 of its text, for `{"model": sha256}`."""
+    bytes: int
+    """Its size."""
+    href: str
+    """Where it is."""
+
+
+@router.get(
+    "/analyses",
+    tags=["catalogue"],
+    summary="List the analyses",
+    response_model=Page[AnalysisView],
+    responses=problem_responses(401, 403),
+)
+def list_analyses(principal: Reader) -> Page[AnalysisView]:
+    """Every analysis, with the JSON Schema of its documents; all in one page."""
+    return Page(items=[_analysis(name) for name in ANALYSES])
+
+
+@router.get(
+    "/analyses/{analysis}",
+    tags=["catalogue"],
+    summary="Look at an analysis",
+    response_model=AnalysisView,
+    responses=problem_responses(401, 403, 404, 422),
+)
+def get_analysis(
+    principal: Reader, analysis: Annotated[str, Path(description="Its name.", examples=["workspace"])]
+) -> AnalysisView:
+    """One analysis, with the JSON Schema of its documents."""
+    if analysis not in ANALYSES:
+        raise HttpProblem(404, f"there is no analysis {analysis!r}; there are: {', '.join(ANALYSES)}")
+    return _analysis(analysis)
+
+
+@router.get(
+    "/robots",
+    tags=["catalogue"],
+    summary="List the library robots",
+    response_model=Page[RobotView],
+    responses=problem_responses(401, 403),
+)
+def list_robots(principal: Reader) -> Page[RobotView]:
+    """The robots that jobs can name; all in one page."""
+    robots = library.describe()
+    return Page(
+        items=[RobotView(**{name: getattr(robot, name) for name in RobotView.model_fields}) for robot in robots]
+    )
+
+
+async def _xml_body(request: Request) -> bytes:
+    media_type = request.headers.get("content-type", "").partition(";")[0].strip().lower()
+    if media_type not in XML_TYPES:
+        raise HttpProblem(415, f"the body must be application/xml, not {media_type or 'of no type'}")
+    return await request.body()
+
+
+_MODEL_BODY = {
+    "requestBody": {
+        "required": True,
+        "content": {
+            "application/xml": {
+                "schema": {"type": "object", "xml": {"name": "mujoco"}, "additionalProperties": False},
+                "example": "<mujoco><worldbody/></mujoco>",
+            }
+        },
+    }
+}
+
+
+@router.post(
+    "/models", tags=["models"], summary="Upload a robot model", status_code=201, response_model=ModelView,
+    responses={
+        201: {"headers": {"Location": {"description": "The model.", "schema": {"type": "string"}}}},
+        **problem_responses(401, 403, 413, 415, 422),
+    },
+    openapi_extra=_MODEL_BODY,
+)  # fmt: skip
+def upload_model(
+    server: Server, principal: Submitter, response: Response, text: Annotated[bytes, Depends(_xml_body)]
+) -> ModelView:
+    """MJCF or URDF text, root element `<mujoco>` or `<robot>`, without document types, entities or outside files.
+
+    It is compiled by the jobs that name it. Meshes do not travel.
+    """
+    root = xml_source.parse(text, "model")
+    if root.tag not in MODEL_TAGS:
+        raise ModelError("model", f"the root element is <{root.tag}>; <mujoco> or <robot> (URDF) is needed")
+    sha256 = server.store.put_model(principal.owner, text)
+    response.headers["Location"] = f"/v1/models/{sha256}"
+    return ModelView(sha256=sha256, bytes=len(text), href=f"/v1/models/{sha256}")
+
+
+@router.get(
+    "/models/{sha256}", tags=["models"], summary="Get back a model", response_class=Response,
+    responses={
+        200: {"description": "The model", "content": {"application/xml": {"schema": {"type": "string"}}}},
+        304: {"description": "The client has it already"},
+        **problem_responses(401, 403, 404, 422),
+    },
+)  # fmt: skip
+def get_model(
+    server: Server,
+    principal: Reader,
+    request: Request,
+    sha256: Annotated[str, Path(pattern="^[0-9a-f]{64}$", description="SHA-256 of the model.")],
+) -> Response:
+    """The text as it was uploaded."""
+    content = server.store.get_model(principal.owner, sha256)
+    if content is None:
+        raise HttpProblem(404, "there is no such model, or it is not yours", "model_not_found")
+    etag = f'"{sha256}"'
+    headers = {"ETag": etag, "Content-Disposition": "attachment"}
+    if has_it(request, etag):
+        return Response(status_code=304, headers={"ETag": etag})
+    return Response(content, headers=headers, media_type="application/xml")
+
+
+def _analysis(name: str) -> AnalysisView:
+    schema = job_schema(name)
+    title = name.replace("_", " ").capitalize()
+    return AnalysisView(id=name, title=title, description=schema.get("description", title), schema=schema)

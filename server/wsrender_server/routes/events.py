@@ -1,0 +1,62 @@
+"""Events of a job as a stream (server-sent events), with replay."""
+
+from collections.abc import AsyncIterator
+from time import monotonic
+from typing import Annotated
+
+from fastapi import APIRouter, Depends, Header
+from fastapi.sse import EventSourceResponse, ServerSentEvent
+from starlette.concurrency import run_in_threadpool
+
+from wsrender_server.auth import Reader
+from wsrender_server.jobs.records import JobRecord
+from wsrender_server.jobs.states import ENDED
+from wsrender_server.parts import Server
+from wsrender_server.problems import problem_responses
+from wsrender_server.routes.job_views import JobId, event_data, found
+
+# A client that goes on with Last-Event-ID misses nothing; one that has silently gone does not stay for ever.
+LONGEST_STREAM_S = 3600.0
+CHECK_S = 30.0
+RECONNECT_MS = 1000
+
+router = APIRouter(prefix="/v1", tags=["jobs"])
+
+
+def _job(server: Server, principal: Reader, job_id: JobId) -> JobRecord:
+    return found(server.store.get(principal.owner, job_id))
+
+
+@router.get(
+    "/jobs/{job_id:id}/events",
+    summary="Follow a job",
+    response_class=EventSourceResponse,
+    responses={
+        200: {"description": "Events until the job has ended", "content": {"text/event-stream": {}}},
+        **problem_responses(401, 403, 404, 422),
+    },
+)
+async def follow_job(
+    server: Server,
+    job: Annotated[JobRecord, Depends(_job)],
+    last_event_id: Annotated[
+        int, Header(ge=0, le=2**31 - 1, description="Start after this event; 0: from the beginning.")
+    ] = 0,
+) -> AsyncIterator[ServerSentEvent]:
+    """Server-sent events `state` (state, attempt, error) and `progress`, with ids that count from 1.
+
+    The stream ends with the job. A client that reconnects with `Last-Event-ID` gets what it missed; of the events of
+    progress the newest is kept.
+    """
+    store, seen, ends = server.store, last_event_id, monotonic() + LONGEST_STREAM_S
+    while monotonic() < ends:
+        current = await run_in_threadpool(store.get, job.owner, job.id)
+        if current is None:
+            return
+        for event in await run_in_threadpool(store.events, job.owner, job.id, seen):
+            seen = event.id
+            yield ServerSentEvent(data=event_data(event), event=event.type, id=str(event.id), retry=RECONNECT_MS)
+        # The state was read before the events: an ended job has no more of them.
+        if current.state in ENDED:
+            return
+        await store.wait_for_change(job.owner, job.id, seen, CHECK_S)

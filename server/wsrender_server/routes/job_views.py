@@ -1,0 +1,121 @@
+"""Jobs as JSON."""
+
+from dataclasses import asdict
+from datetime import datetime
+from typing import Annotated, Any, Generic, TypeVar
+
+from fastapi import Path
+from pydantic import BaseModel, ConfigDict, Field
+
+from wsrender_server.jobs.records import EventRecord, JobRecord
+from wsrender_server.jobs.states import JobState
+from wsrender_server.problems import HttpProblem, Problem, problem_of_job
+
+ItemT = TypeVar("ItemT")
+JobId = Annotated[
+    str,
+    Path(pattern="^[0-9a-f]{32}$", description="Id of a job.", examples=["3f2b8c1d9e4a4b5c8d7e6f5a4b3c2d1e"]),
+]
+
+
+class View(BaseModel):
+    """Base of what the server answers."""
+
+    model_config = ConfigDict(use_attribute_docstrings=True)
+
+
+class Page(View, Generic[ItemT]):
+    """A part of a list."""
+
+    items: list[ItemT]
+    """The items."""
+    next_cursor: str | None = None
+    """Cursor of the next page; null: there is none."""
+
+
+class ProgressView(View):
+    """How far a job is."""
+
+    fraction: float = Field(ge=0, le=1, examples=[0.5])
+    """0 … 1."""
+    samples_done: int = Field(ge=0)
+    """Samples taken."""
+    samples_total: int | None
+    """Samples to take; null: not known yet."""
+    rate_per_s: float | None
+    """Samples per second; null: not known yet."""
+    eta_s: float | None
+    """Seconds to go; null: not known yet."""
+    message: str
+    """What is being done."""
+
+
+class JobLinks(View):
+    """Where else to look."""
+
+    self: str
+    """The job."""
+    events: str
+    """Its events, as a stream."""
+    result: str
+    """Its result document."""
+    artifacts: str
+    """Its files."""
+
+
+class JobView(View):
+    """A job."""
+
+    id: str = Field(pattern="^[0-9a-f]{32}$")
+    """Name of the job."""
+    analysis: str = Field(examples=["workspace"])
+    """What is analysed."""
+    state: JobState
+    """queued, running, canceling, succeeded, failed, canceled or timed_out."""
+    created_at: datetime
+    """When it was submitted."""
+    started_at: datetime | None
+    """When its last attempt started."""
+    finished_at: datetime | None
+    """When it ended."""
+    labels: dict[str, str]
+    """Free text of its owner."""
+    priority: int
+    """Jobs of larger priority go first."""
+    attempt: int = Field(ge=1)
+    """Counts from 1; a retry adds one."""
+    timeout_s: float | None
+    """Longest time that it may run [s]; null: no limit."""
+    progress: ProgressView
+    """How far it is."""
+    error: Problem | None
+    """Why it failed."""
+    last_event: int = Field(ge=0)
+    """Id of its newest event."""
+    links: JobLinks
+    """Where else to look."""
+
+
+def job_view(job: JobRecord) -> JobView:
+    """A job as JSON."""
+    path = f"/v1/jobs/{job.id}"
+    return JobView(
+        **{name: getattr(job, name) for name in JobView.model_fields if name not in ("progress", "error", "links")},
+        progress=ProgressView(**asdict(job.progress)),
+        error=None if job.error is None else Problem(**problem_of_job(job.error)),
+        links=JobLinks(self=path, events=f"{path}/events", result=f"{path}/result", artifacts=f"{path}/artifacts"),
+    )
+
+
+def event_data(event: EventRecord) -> dict[str, Any]:
+    """The data of an event as JSON; errors as problem documents."""
+    if not event.data.get("error"):
+        return event.data
+    return {**event.data, "error": problem_of_job(event.data["error"])}
+
+
+def found(job: JobRecord | None) -> JobRecord:
+    """The job; HttpProblem 404 where there is none, or not for this owner."""
+    if job is None:
+        raise HttpProblem(404, "there is no such job, or it is not yours", "job_not_found")
+    return job

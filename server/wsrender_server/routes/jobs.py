@@ -1,0 +1,263 @@
+"""Jobs: submit, validate, list, look, cancel, retry, delete."""
+
+import hashlib
+import json
+from collections.abc import Iterator
+from contextlib import contextmanager
+from time import monotonic
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Depends, Query, Request, Response
+from starlette.concurrency import run_in_threadpool
+
+from wsrender.errors import DocumentError, InputError
+from wsrender.spec import ANALYSES
+from wsrender_server.admission import Admission
+from wsrender_server.auth import Principal, Reader, Submitter
+from wsrender_server.job_body import JobBody, json_body, read_body, refused
+from wsrender_server.jobs.states import ENDED, JobState
+from wsrender_server.parts import Parts, Server
+from wsrender_server.pictures import estimated
+from wsrender_server.problems import HttpProblem, problem_responses
+from wsrender_server.routes.job_views import JobId, JobView, Page, View, found, job_view
+
+LONGEST_WAIT_S = 60.0
+POLL_AGAIN_S = "1"
+
+router = APIRouter(prefix="/v1", tags=["jobs"])
+_Body = Annotated[bytes, Depends(json_body)]
+
+
+class Estimate(View):
+    """What a job would take: orders of magnitude."""
+
+    valid: bool
+    """True: the job can be submitted."""
+    samples: float
+    """Samples."""
+    bytes: float
+    """Memory [bytes]."""
+    seconds: float
+    """Time on this server [s]."""
+
+
+def _body_of(schema: str) -> dict[str, Any]:
+    reference = {"$ref": f"#/components/schemas/{schema}"}
+    return {"requestBody": {"required": True, "content": {"application/json": {"schema": reference}}}}
+
+
+_JOB_LINKS = {
+    name: {"operationId": operation, "parameters": {"job_id": "$response.body#/id"}}
+    for name, operation in (("job", "get_job"), ("cancel", "cancel_job"), ("delete", "delete_job"))
+}
+_LOCATION = {"Location": {"description": "The job.", "schema": {"type": "string"}}}
+_SOON = {"Retry-After": {"description": "When to look again [s].", "schema": {"type": "integer"}}}
+
+
+@router.post(
+    "/jobs",
+    summary="Submit a job",
+    status_code=202,
+    response_model=JobView,
+    responses={
+        200: {"model": JobView, "description": "From the cache, or replayed", "headers": _LOCATION},
+        202: {"description": "Queued", "headers": _LOCATION | _SOON, "links": _JOB_LINKS},
+        **problem_responses(401, 403, 404, 409, 413, 415, 422, 429),
+    },
+    openapi_extra=_body_of("JobSubmission"),
+)
+def submit_job(server: Server, principal: Submitter, request: Request, text: _Body) -> Response:
+    """Queue a job document; labels, priority and timeout_s may stand beside its fields.
+
+    Equal jobs of one owner are computed once: a job whose result is there already succeeds at once (200). The header
+    `Idempotency-Key` (1 to 255 printable characters) makes a request safe to repeat: the same key with the same body
+    gives the same job (200), with another body 422, while the first request is still at work 409.
+    """
+    key = _idempotency_key(request)
+    body = _read(text)
+    document = _admitted(server, principal, body, text, "JobSubmission")
+    options = body.options
+    with _one_at_a_time(request.app.state.keys_at_work, principal.owner, key):
+        submission = server.store.submit(
+            principal.owner,
+            document,
+            labels=options.labels,
+            priority=options.priority,
+            timeout_s=server.settings.timeout_of(options.timeout_s),
+            idempotency_key=key,
+            body_hash=_hash([document, options.model_dump()]),
+        )
+    job = submission.job
+    request.state.job_id = job.id
+    outcome = "replayed" if submission.replayed else "cached" if submission.cached else "queued"
+    server.metrics.submissions.labels(outcome).inc()
+    headers = {"Location": f"/v1/jobs/{job.id}"}
+    if outcome == "queued":
+        headers["Retry-After"] = POLL_AGAIN_S
+    content = job_view(job).model_dump_json()
+    return Response(content, 202 if outcome == "queued" else 200, headers, "application/json")
+
+
+@router.post(
+    "/jobs:validate",
+    summary="Check a job and estimate what it would take",
+    response_model=Estimate,
+    responses=problem_responses(401, 403, 404, 409, 413, 415, 422, 429),
+    openapi_extra=_body_of("JobSubmission"),
+)
+async def validate_job(server: Server, principal: Submitter, text: _Body) -> Estimate:
+    """Everything that can be wrong with a job is found here, the robot's model included; nothing is queued."""
+    document = await run_in_threadpool(
+        lambda: _with_model(server, principal, _admitted(server, principal, _read(text), text, "JobSubmission"))
+    )
+    return Estimate(valid=True, **await server.side_process.run(estimated, document))
+
+
+@router.get(
+    "/jobs",
+    summary="List your jobs, newest first",
+    response_model=Page[JobView],
+    responses=problem_responses(401, 403, 404, 422),
+)
+def list_jobs(
+    server: Server,
+    principal: Reader,
+    state: Annotated[JobState | None, Query(description="Only jobs in this state.")] = None,
+    analysis: Annotated[
+        str | None, Query(description="Only jobs of this analysis.", json_schema_extra={"enum": [*ANALYSES]})
+    ] = None,
+    label: Annotated[
+        str | None,
+        Query(pattern=r"^[^=\x00]{1,63}=[^\x00]{0,255}$", description="Only jobs with this label, key=value."),
+    ] = None,
+    limit: Annotated[int, Query(ge=1, le=200, description="Jobs of a page.")] = 50,
+    cursor: Annotated[
+        str | None, Query(pattern="^[A-Za-z0-9_-]{1,200}$", description="next_cursor of the page before.")
+    ] = None,
+) -> Page[JobView]:
+    """Filters are combined. Follow `next_cursor` until it is null."""
+    if analysis is not None and analysis not in ANALYSES:
+        raise InputError("analysis", f"must be one of {', '.join(ANALYSES)}")
+    key_value = None if label is None else (label.partition("=")[0], label.partition("=")[2])
+    try:
+        jobs, following = server.store.list(
+            principal.owner, state=state, analysis=analysis, label=key_value, limit=limit, cursor=cursor
+        )
+    except InputError as error:  # only the cursor can still be wrong
+        raise HttpProblem(404, str(error), "unknown_cursor", errors=[("cursor", error.message)]) from None
+    return Page(items=[job_view(job) for job in jobs], next_cursor=following)
+
+
+@router.get(
+    "/jobs/{job_id:id}",
+    summary="Look at a job",
+    response_model=JobView,
+    responses=problem_responses(401, 403, 404, 422),
+)
+async def get_job(
+    server: Server,
+    principal: Reader,
+    job_id: JobId,
+    wait: Annotated[float, Query(ge=0, le=LONGEST_WAIT_S, description="Wait so long for the job to end [s].")] = 0,
+    after: Annotated[
+        int | None, Query(ge=0, le=2**31 - 1, description="Wait only until there is an event newer than this one.")
+    ] = None,
+) -> JobView:
+    """With `wait` the answer comes when the job has ended, with `after` when anything has happened to it."""
+    store, owner = server.store, principal.owner
+    job = found(await run_in_threadpool(store.get, owner, job_id))
+    ends = monotonic() + wait
+    while job.state not in ENDED and (after is None or job.last_event <= after):
+        left = ends - monotonic()
+        if left <= 0 or not await store.wait_for_change(owner, job_id, job.last_event, left):
+            break
+        job = found(await run_in_threadpool(store.get, owner, job_id))
+    return job_view(job)
+
+
+@router.post(
+    "/jobs/{job_id:id}:cancel",
+    summary="Cancel a job",
+    response_model=JobView,
+    responses=problem_responses(401, 403, 404, 409, 422),
+)
+def cancel_job(server: Server, principal: Submitter, job_id: JobId) -> JobView:
+    """Its state becomes canceling, then canceled; what another job waits for goes on. 409 for a job that has ended."""
+    return job_view(found(server.store.cancel(principal.owner, job_id)))
+
+
+@router.post(
+    "/jobs/{job_id:id}:retry",
+    summary="Retry a job",
+    response_model=JobView,
+    responses=problem_responses(401, 403, 404, 409, 422, 429),
+)
+def retry_job(server: Server, principal: Submitter, job_id: JobId) -> JobView:
+    """Queue a job again that failed, was canceled or timed out; 409 for any other."""
+    return job_view(found(server.store.retry(principal.owner, job_id)))
+
+
+@router.delete(
+    "/jobs/{job_id:id}",
+    summary="Delete a job",
+    status_code=204,
+    response_class=Response,
+    responses=problem_responses(401, 403, 404, 409, 422),
+)
+def delete_job(server: Server, principal: Submitter, job_id: JobId) -> Response:
+    """Forget an ended job and, with the last job that shares it, its result; 409 for a job that has not ended."""
+    found(server.store.delete(principal.owner, job_id))
+    return Response(status_code=204)
+
+
+def _read(text: bytes) -> JobBody:
+    try:
+        return read_body(text)
+    except DocumentError as error:
+        raise refused(error, text, "JobSubmission", "") from None
+
+
+def _admitted(server: Parts, principal: Principal, body: JobBody, text: bytes, schema: str) -> dict[str, Any]:
+    admission = Admission(server.store, principal.owner, server.settings.max_samples, body.prefix)
+    try:
+        return admission.canonical(body.document)
+    except DocumentError as error:
+        raise refused(error, text, schema, body.prefix) from None
+
+
+def _with_model(server: Parts, principal: Principal, document: dict[str, Any]) -> dict[str, Any]:
+    """The document with the text of an uploaded model in the place of its hash."""
+    sha256 = document["robot"]["model"]
+    content = None if sha256 is None else server.store.get_model(principal.owner, sha256)
+    if content is None:
+        return document
+    text = content.decode("utf-8", "replace")
+    kind = "urdf" if "<robot" in text else "mjcf"
+    return {**document, "robot": {**document["robot"], "model": None, kind: text}}
+
+
+def _idempotency_key(request: Request) -> str | None:
+    key = request.headers.get("idempotency-key")
+    if key is not None and not (1 <= len(key) <= 255 and key.isascii() and key.isprintable()):
+        detail = "must have 1 to 255 printable ASCII characters"
+        raise HttpProblem(422, f"Idempotency-Key {detail}", "invalid_request", errors=[("Idempotency-Key", detail)])
+    return key
+
+
+@contextmanager
+def _one_at_a_time(at_work: dict[tuple[str, str], object], owner: str, key: str | None) -> Iterator[None]:
+    """Refuse a request whose idempotency key is that of another one at work."""
+    if key is None:
+        yield
+        return
+    mine = object()
+    if at_work.setdefault((owner, key), mine) is not mine:
+        raise HttpProblem(409, "a request with this idempotency key is at work", "in_flight", retryable=True)
+    try:
+        yield
+    finally:
+        del at_work[owner, key]
+
+
+def _hash(content: Any) -> str:
+    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()

@@ -1,0 +1,75 @@
+"""One child process for heavy work on behalf of requests: estimates, conversions, slices, pictures.
+
+It keeps native code that reads strangers' models, and long holds of Python's lock, away from the process that answers.
+"""
+
+import asyncio
+import multiprocessing
+import threading
+from collections.abc import Callable
+from concurrent.futures import TimeoutError as FutureTimeoutError
+from typing import Any
+
+from pebble import ProcessExpired, ProcessPool
+
+from wsrender.errors import WsrenderError
+from wsrender_server.problems import HttpProblem, problem_of_error, refusal
+
+MOST_WAITING = 32
+TASKS_PER_CHILD = 200  # what Python and native libraries do not give back goes with the child
+
+
+class SideProcess:
+    """Runs module-level functions one after another in a child that is started when first needed.
+
+    A function that crashes or is too slow costs its own request only. Close it with ``close``.
+    """
+
+    def __init__(self):
+        self._pool: ProcessPool | None = None
+        self._lock = threading.Lock()
+        self._waiting = 0
+
+    async def run(self, function: Callable[..., Any], *arguments: Any, timeout_s: float = 60.0) -> Any:
+        """What ``function(*arguments)`` returns; arguments and value are pickled.
+
+        Raises HttpProblem for the function's own errors (409: the request kept to its schema), 429 where many wait.
+        """
+        if self._waiting >= MOST_WAITING:
+            raise HttpProblem(429, "too many requests of this kind are waiting", "busy", retryable=True)
+        self._waiting += 1
+        try:
+            future = self._open_pool().schedule(_guarded, args=(function, arguments), timeout=timeout_s)
+            value, problem = await asyncio.wrap_future(future)
+        except FutureTimeoutError as error:
+            raise HttpProblem(409, f"took longer than {timeout_s:g} s", "too_slow") from error
+        except ProcessExpired as error:
+            raise HttpProblem(409, "the process that worked on this request crashed", "crashed") from error
+        finally:
+            self._waiting -= 1
+        if problem is not None:
+            raise refusal(problem, 409 if problem["status"] == 422 else problem["status"])
+        return value
+
+    def close(self) -> None:
+        """Stop the child."""
+        with self._lock:
+            if self._pool is not None:
+                self._pool.stop()
+                self._pool.join()
+                self._pool = None
+
+    def _open_pool(self) -> ProcessPool:
+        with self._lock:
+            if self._pool is None:
+                context = multiprocessing.get_context("spawn")
+                self._pool = ProcessPool(max_workers=1, max_tasks=TASKS_PER_CHILD, context=context)
+            return self._pool
+
+
+def _guarded(function: Callable[..., Any], arguments: tuple[Any, ...]) -> tuple[Any, dict[str, Any] | None]:
+    """(value, None) or (None, problem): exceptions of wsrender do not survive pickling."""
+    try:
+        return function(*arguments), None
+    except WsrenderError as error:
+        return None, problem_of_error(error)
