@@ -139,7 +139,7 @@ class Job:
         self.record = self._connection.request(
             "GET",
             self._path,
-            params={"wait": f"{wait_s:.3f}"},
+            params={"wait": f"{wait_s:.3f}", "after": self.record.get("last_event") or 0},
             timeout=wait_s + self._connection.timeout_s,
             patience_s=patience_s,
             on_loss=lambda reason: bar(0, 1, f"server lost ({reason}), trying again") if bar else None,
