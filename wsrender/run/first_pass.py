@@ -26,6 +26,7 @@ class FirstPass:
 
     evaluation: Evaluation
     locked: dict[str, float]
+    known_bounds: np.ndarray | None = None  # settled by an earlier plan of the same job
 
     @cached_property
     def evaluated(self) -> Evaluated:
@@ -53,13 +54,19 @@ class FirstPass:
 
     def sum_scales(self, samples: int, precision: str) -> tuple[np.ndarray, np.ndarray]:
         """Scales and bounds (K,) of the fixed-point sums: from the reach, else from the coarse maximum."""
+        return scales_for(self._bounds, samples, precision), self._bounds
+
+    @cached_property
+    def _bounds(self) -> np.ndarray:
+        if self.known_bounds is not None:
+            return self.known_bounds
         bounds = np.array([bound_from_reach(self.evaluation, name) for name in self.evaluation.indices])
         unknown = np.isnan(bounds)
         if unknown.any():
             headroom = HEADROOM_CODE if self.evaluation.convention == "wsrender_code" else HEADROOM
             largest = headroom * np.abs(self.evaluated.values[unknown]).max(axis=1)
             bounds[unknown] = np.where(largest > 0, largest, 1.0)
-        return scales_for(bounds, samples, precision), bounds
+        return bounds
 
 
 def _sphere(chain: Chain) -> tuple[np.ndarray, float]:

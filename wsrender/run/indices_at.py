@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from wsrender.engine import Evaluated, Evaluation, devices_of, evaluate_at, target_of
+from wsrender.engine import Evaluated, Evaluation, evaluate_at
 from wsrender.errors import InputError
 from wsrender.indices.catalogue import unit
 from wsrender.result import Result
@@ -14,6 +14,7 @@ from wsrender.robot import Robot
 from wsrender.robot.indices import evaluation_of
 from wsrender.robot.model_robot import configuration_rows
 from wsrender.run.provenance import index_choices, job_entry, provenance, robot_entry
+from wsrender.run.settled_device import settled_device
 from wsrender.spec import IndicesAtJob
 from wsrender.volume.distribution_map import DistributionMap
 
@@ -26,18 +27,22 @@ class IndicesAtPlan:
     robot: Robot
     evaluation: Evaluation
     q: np.ndarray
+    device: str
     target: str
     shards: list[tuple[int, int]] = field(default_factory=list)
     estimate: dict[str, float] = field(default_factory=dict)
 
+    def resolved(self) -> dict[str, Any]:
+        """What is settled once: the device that "auto" means, target, shards."""
+        return {"device": self.device, "target": self.target, "shards": [list(shard) for shard in self.shards]}
+
     def run_shard(self, shard: int, progress: Callable[[int], None] | None, **execution: Any) -> Evaluated:
         """Positions and values of all rows."""
-        device = self.job.device
         return evaluate_at(
             self.evaluation,
             self.q,
             self.job.precision,
-            device,
+            self.device,
             with_orientation=self.evaluation.host_kinematics is None,
             threads=execution.get("threads"),
         )
@@ -72,8 +77,11 @@ class IndicesAtPlan:
         return Result(document, map=rows)
 
 
-def plan_indices_at(job: IndicesAtJob, robot: Robot) -> IndicesAtPlan:
-    """Resolve the job; InputError for configurations that are missing or of the wrong length."""
+def plan_indices_at(job: IndicesAtJob, robot: Robot, resolved: dict[str, Any] | None = None) -> IndicesAtPlan:
+    """Resolve the job, or take what `IndicesAtPlan.resolved` of an earlier plan of it says.
+
+    Raises InputError for configurations that are missing or of the wrong length.
+    """
     n = robot.chain.n
     if not job.configurations:
         raise InputError("configurations", f"must be given: rows of {n} joint values, {', '.join(robot.joint_names)}")
@@ -89,4 +97,4 @@ def plan_indices_at(job: IndicesAtJob, robot: Robot) -> IndicesAtPlan:
         inertia=job.inertia,
         precision=job.precision,
     )
-    return IndicesAtPlan(job, robot, evaluation, q, target_of(devices_of(job.device)), [(0, len(q))])
+    return IndicesAtPlan(job, robot, evaluation, q, *settled_device(job.device, resolved), [(0, len(q))])

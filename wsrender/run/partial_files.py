@@ -22,9 +22,9 @@ ROWS = "rows_"
 
 def save_partial(partial: WorkspacePartial | Evaluated, path: str | Path) -> None:
     """Write a partial result; the file appears complete or not at all."""
-    write = _workspace_arrays if isinstance(partial, WorkspacePartial) else _evaluated_arrays
+    arrays = _workspace_arrays(partial) if isinstance(partial, WorkspacePartial) else _evaluated_arrays(partial)
     with new_file(path) as temporary, temporary.open("wb") as file:
-        np.savez(file, allow_pickle=False, **write(partial))  # type: ignore[arg-type]
+        np.savez(file, allow_pickle=False, **arrays)
 
 
 def load_partial(path: str | Path, plan: Any) -> WorkspacePartial | Evaluated:
@@ -60,5 +60,5 @@ def _evaluated_arrays(partial: Evaluated) -> dict[str, np.ndarray]:
 
 
 def _evaluated(arrays: Any, plan: Any) -> Evaluated:
-    optional = {"quat_wxyz": arrays["quat_wxyz"] if "quat_wxyz" in arrays.files else None}
-    return Evaluated(**{name: arrays[name] for name in EVALUATED if name not in optional}, **optional)
+    quat_wxyz = arrays["quat_wxyz"] if "quat_wxyz" in arrays.files else None
+    return Evaluated(arrays["position"], arrays["values"], arrays["largest_sigma"], arrays["smallest_sigma"], quat_wxyz)

@@ -28,6 +28,10 @@ class Plan(Protocol):
     target: str
     estimate: dict[str, float]
 
+    def resolved(self) -> dict[str, Any]:
+        """What planning settled, as plain JSON values; ``plan(…, resolved=…)`` elsewhere gives the same plan."""
+        ...
+
     def run_shard(self, shard: int, progress: Callable[[int], None] | None, **execution: Any) -> Any:
         """The partial result of a shard."""
         ...
@@ -41,14 +45,18 @@ class Plan(Protocol):
         ...
 
 
-def plan(document: Any, robot: Any = None) -> Plan:
+def plan(document: Any, robot: Any = None, *, resolved: dict[str, Any] | None = None) -> Plan:
     """Resolve a job: a document (dict or JSON text) or a parsed job; ``robot`` replaces the document's.
+
+    ``resolved`` is `Plan.resolved` of an earlier plan of the same job: nothing in it is settled again, so that
+    partial results of different processes merge. Its ``shards`` may divide the samples differently, at multiples of
+    65536.
 
     Raises DocumentError, InputError, ModelError, ResourceError; nothing has run then.
     """
     job = document if isinstance(document, tuple(PLANNERS)) else parse_job(document)
     subject: Robot = robot_of_spec(job.robot, job.base, job.tip) if robot is None else as_robot(robot)
-    return PLANNERS[type(job)](job, subject)
+    return PLANNERS[type(job)](job, subject, resolved)
 
 
 def run_shard(plan: Plan, shard: int, progress: Callable[[int], None] | None = None, **execution: Any) -> Any:

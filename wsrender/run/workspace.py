@@ -1,10 +1,12 @@
 """The analysis ``workspace``: plan, shards, merge."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
-from wsrender.engine import Partial, SweepPlan, devices_of, merge, sweep, target_of
+import numpy as np
+
+from wsrender.engine import Partial, SweepPlan, devices_of, merge, sweep
 from wsrender.engine.voxel_data import volume_data
 from wsrender.errors import InputError, NotConvergedError
 from wsrender.global_indices import joint_means, workspace_mean
@@ -13,10 +15,12 @@ from wsrender.robot import Robot
 from wsrender.robot.indices import evaluation_of
 from wsrender.run.estimate import estimate
 from wsrender.run.first_pass import FirstPass
+from wsrender.run.settled_device import settled_device
 from wsrender.run.workspace_result import workspace_result
 from wsrender.sampling import SamplingPlan, plan_sampling
 from wsrender.spec import WorkspaceJob
 from wsrender.spec.sampling import Converge, Grid
+from wsrender.volume.lattice import LatticeBlock
 
 SHARD_SAMPLES = 1 << 30  # a multiple of the kernels' block of samples
 
@@ -38,13 +42,26 @@ class WorkspacePlan:
     robot: Robot
     sweep: SweepPlan
     first_pass: FirstPass
+    device: str
     target: str
     shards: list[tuple[int, int]]
     estimate: dict[str, float]
 
+    def resolved(self) -> dict[str, Any]:
+        """What is settled once: the device that "auto" means, target, lattice block, bounds, scales, shards."""
+        assert self.sweep.block is not None
+        return {
+            "device": self.device,
+            "target": self.target,
+            **asdict(self.sweep.block),
+            "bounds": self.sweep.bounds.tolist(),
+            "scales": self.sweep.scales.tolist(),
+            "shards": [list(shard) for shard in self.shards],
+        }
+
     def run_shard(self, shard: int, progress: Callable[[int], None] | None, **execution: Any) -> WorkspacePartial:
         """Sweep the shard's samples; a converging job has one shard, its sequence of grids."""
-        devices = devices_of(self.job.device)
+        devices = devices_of(self.device)
         if isinstance(self.job.sampling, Converge):
             return self._converge(self.job.sampling, progress, **execution)
         first, count = self.shards[shard]
@@ -68,7 +85,7 @@ class WorkspacePlan:
         sequence: list[dict[str, float]] = []
         levels, before = sampling.start, 0
         while True:
-            plan = self._with_grid(levels, sampling)
+            plan = self.with_grid(levels, sampling)
             count = plan.sampling.count
             if count > (limit := min(sampling.max_samples, self.job.max_samples)):
                 values = ", ".join(f"{s['value']:.6g} ({s['per_joint']})" for s in sequence)
@@ -82,14 +99,14 @@ class WorkspacePlan:
                 if progress:
                     progress(before + done)
 
-            partial = sweep(plan, 0, count, devices_of(self.job.device), progress=report, **execution)
+            partial = sweep(plan, 0, count, devices_of(self.device), progress=report, **execution)
             value = self._global_value(plan, partial, position, sampling.by)
             sequence.append({"per_joint": levels, "samples": count, "value": value})
             if len(sequence) > 1 and abs(value - sequence[-2]["value"]) <= sampling.tolerance:
                 return WorkspacePartial(partial, plan, sequence)
             levels, before = levels + sampling.step, before + count
 
-    def _with_grid(self, levels: int, sampling: Converge) -> SweepPlan:
+    def with_grid(self, levels: int, sampling: Converge) -> SweepPlan:
         """The plan of one grid; the voxel size is that of the job for all of them."""
         grid = plan_sampling(self.robot.chain, Grid(levels, locked=sampling.locked))
         scales, bounds = self.first_pass.sum_scales(grid.count, self.job.precision)
@@ -103,9 +120,13 @@ class WorkspacePlan:
         return value
 
 
-def plan_workspace(job: WorkspaceJob, robot: Robot) -> WorkspacePlan:
-    """Resolve the job. Raises InputError, MissingInertiaError, ResourceError."""
-    devices = devices_of(job.device)
+def plan_workspace(job: WorkspaceJob, robot: Robot, resolved: dict[str, Any] | None = None) -> WorkspacePlan:
+    """Resolve the job, or take what `WorkspacePlan.resolved` of an earlier plan of it says.
+
+    Raises InputError, MissingInertiaError, ResourceError.
+    """
+    device, target = settled_device(job.device, resolved)
+    devices = devices_of(device)
     evaluation = evaluation_of(
         robot,
         indices=job.indices,
@@ -119,12 +140,17 @@ def plan_workspace(job: WorkspaceJob, robot: Robot) -> WorkspacePlan:
     )
     sampling = _first_sampling(job, robot)
     first_pass = FirstPass(evaluation, dict(job.sampling.locked))
-    voxel_size = job.voxel_size_m or first_pass.voxel_size()
-    scales, bounds = first_pass.sum_scales(sampling.count, job.precision)
+    if resolved is None:
+        block = first_pass.block(job.voxel_size_m or first_pass.voxel_size())
+        scales, bounds = first_pass.sum_scales(sampling.count, job.precision)
+    else:
+        block = _settled_block(resolved)
+        first_pass.known_bounds = bounds = np.array(resolved["bounds"], np.float64)
+        scales = np.array(resolved["scales"], np.float64)
     plan = SweepPlan(
         evaluation,
         sampling,
-        first_pass.block(voxel_size),
+        block,
         frozenset(job.voxel_statistics),
         scales,
         bounds,
@@ -144,7 +170,14 @@ def plan_workspace(job: WorkspaceJob, robot: Robot) -> WorkspacePlan:
         shards = [
             (first, min(SHARD_SAMPLES, sampling.count - first)) for first in range(0, sampling.count, SHARD_SAMPLES)
         ]
-    return WorkspacePlan(job, robot, plan, first_pass, target_of(devices), shards, estimate(plan, devices))
+    if resolved is not None:
+        shards = [(first, count) for first, count in resolved["shards"]]
+    return WorkspacePlan(job, robot, plan, first_pass, device, target, shards, estimate(plan, devices))
+
+
+def _settled_block(resolved: dict[str, Any]) -> LatticeBlock:
+    first, shape = ((x, y, z) for x, y, z in (resolved["first_voxel"], resolved["shape"]))
+    return LatticeBlock(resolved["voxel_size_m"], first, shape)
 
 
 def _first_sampling(job: WorkspaceJob, robot: Robot) -> SamplingPlan:
