@@ -259,22 +259,28 @@ def _lower_factor(real, m: int, n: int):
 def _wsrender_code(real, n: int, rows: tuple[int, ...], torque):
     Model = model_arrays(real)
     mat_6n, mat_nn = wp.types.matrix((6, n), real), wp.types.matrix((n, n), real)
-    mat_3n = wp.types.matrix((3, n), real)
     COUNT = min(6, n)
     FULL_RANK = n >= 6
     out_type = wp.types.vector(1 + COUNT, real)
-    of_three, of_six = singular_values(real, 3, n), singular_values(real, 6, n)
+    of_six = singular_values(real, 6, n)
     ONE, ZERO = real(1.0), real(0.0)
 
     @wp.func
     def kinematic(model: Model, J: mat_6n):
-        linear = mat_3n()
-        for r in range(3):
-            linear[r] = J[r]
-        three = of_three(linear)
         six = of_six(J)
+        a = J[0]
+        b = J[1]
+        c = J[2]
+        aa = wp.dot(a, a)
+        ab = wp.dot(a, b)
+        ac = wp.dot(a, c)
+        bb = wp.dot(b, b)
+        bc = wp.dot(b, c)
+        cc = wp.dot(c, c)
+        # The program's determinant, rounding noise at singular postures included: its sixth root is in the tables.
+        determinant = aa * (bb * cc - bc * bc) - ab * (ab * cc - bc * ac) + ac * (ab * bc - bb * ac)
         out = out_type()
-        out[0] = three[0] * three[1] * three[2]
+        out[0] = wp.sqrt(wp.abs(determinant))
         for i in range(COUNT):
             out[1 + i] = six[i]
         return out

@@ -4,11 +4,13 @@ import os
 from pathlib import Path
 
 import warp as wp
+from wsrender_kernels.sweep import Shape
 
 from wsrender.errors import ResourceError
 from wsrender.volume.lattice import LatticeBlock
 
 SHARE = 0.8  # of the free memory
+LARGEST_ARRAY = 2**31  # elements of a Warp array
 
 
 def available_bytes() -> int:
@@ -44,19 +46,20 @@ def _control_group() -> list[int]:
     return [] if limit == "max" else [int(limit) - used]
 
 
-def check_voxel_memory(block: LatticeBlock, bytes_per_voxel: int, workers: list[wp.Device]) -> None:
+def check_voxel_memory(block: LatticeBlock, shape: Shape, workers: list[wp.Device]) -> None:
     """ResourceError, with the numbers, where the workers' private voxel records do not fit."""
     device = workers[0]
-    needed = block.size * bytes_per_voxel
+    needed = block.size * shape.bytes_per_voxel
+    elements = block.size * max(shape.record_size, shape.n_indices * shape.sums)
     if device.is_cuda:
         free = min(worker.free_memory for worker in workers)
     else:
         needed *= len(workers)
         free = available_bytes()
-    if block.size >= 2**31 or needed > SHARE * free:
+    if elements >= LARGEST_ARRAY or needed > SHARE * free:
         nx, ny, nz = block.shape
         raise ResourceError(
             "voxel_size_m",
             f"{block.voxel_size_m} gives {nx} x {ny} x {nz} voxels, {needed / 2**30:.1f} GiB of records; "
-            f"{free / 2**30:.1f} GiB are free on {device.alias}: choose larger voxels or fewer statistics",
+            f"{free / 2**30:.1f} GiB are free on {device.alias}: choose larger voxels or fewer statistics or indices",
         )

@@ -85,7 +85,7 @@ def sweep(
     if isinstance(chunks, list):
         workers = workers[: max(len(chunks), 1)]
     if plan.block is not None:
-        check_voxel_memory(plan.block, shape.bytes_per_voxel, workers)
+        check_voxel_memory(plan.block, shape, workers)
     queue = _Queue(iter(chunks))
     with ThreadPoolExecutor(len(workers)) as pool:
         futures = [pool.submit(_work, _Accumulator(plan, shape, device, chunk), queue) for device in workers]
