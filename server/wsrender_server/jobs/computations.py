@@ -5,7 +5,7 @@ from collections.abc import Iterable, Mapping
 from datetime import UTC, datetime
 from typing import Any
 
-from sqlalchemy import delete, func, select
+from sqlalchemy import delete, func, select, update
 from sqlalchemy.orm import Session
 
 from wsrender_server.jobs.changes import Changes
@@ -26,17 +26,19 @@ class ComputationStore:
     files: DataFolder
     identity: Identity
 
-    def unfinished(self, known: Iterable[str] = ()) -> list[ComputationRecord]:
-        """Computations that wait, run or are to stop, the most urgent first, except the waiting ones ``known``."""
-        query = select(Computation).where(Computation.state.in_(UNFINISHED))
+    def unfinished(self) -> dict[str, tuple[ComputationState, int]]:
+        """State and attempt of the computations that wait, run or are to stop, the most urgent first."""
+        query = select(Computation.id, Computation.state, Computation.attempt)
+        query = query.where(Computation.state.in_(UNFINISHED))
         query = query.order_by(Computation.priority.desc(), Computation.created_at)
-        known = set(known)
         with self.transactions.read() as session:
-            return [
-                _record(row)
-                for row in session.scalars(query)
-                if row.state != ComputationState.WAITING or row.id not in known
-            ]
+            return {row.id: (ComputationState(row.state), row.attempt) for row in session.execute(query)}
+
+    def computation(self, computation_id: str) -> ComputationRecord | None:
+        """A computation with its document."""
+        with self.transactions.read() as session:
+            row = session.get(Computation, computation_id)
+            return None if row is None else _record(row)
 
     def begin(self, computation_id: str, attempt: int) -> bool:
         """A waiting computation runs, and its queued jobs with it; False where it no longer should."""
@@ -150,19 +152,10 @@ class ComputationStore:
         return ids
 
     def recover(self) -> None:
-        """At the start, when nothing runs yet: what was running waits again, what was to stop has stopped."""
+        """At the start, when this server has nothing out yet: what was running waits again."""
         with self.transactions.write() as session:
-            rows = session.scalars(
-                select(Computation)
-                .where(Computation.state.in_([ComputationState.RUNNING, ComputationState.STOPPING]))
-                .with_for_update()
-            ).all()
-            stopping = [(row.id, row.attempt) for row in rows if row.state == ComputationState.STOPPING]
-            for row in rows:
-                if row.state == ComputationState.RUNNING:
-                    row.state = ComputationState.WAITING
-        for computation_id, attempt in stopping:
-            self.stopped(computation_id, attempt)
+            running = Computation.state == ComputationState.RUNNING
+            session.execute(update(Computation).where(running).values(state=ComputationState.WAITING))
 
     def set_targets(self, targets: Mapping[str, str]) -> None:
         """Keep which target a request for a device ("auto", "cpu", "cuda", …) means on the workers there are."""

@@ -1,0 +1,257 @@
+"""The dispatcher: brings the computations of the job table to the engine, and their ends back."""
+
+import logging
+import queue
+import threading
+import time
+from collections.abc import Callable
+from typing import Any
+
+from distributed import Future
+
+from wsrender_server.jobs.attempt import Attempt
+from wsrender_server.jobs.computations import ComputationStore
+from wsrender_server.jobs.engine import Engine, outcome_of
+from wsrender_server.jobs.faults import EngineUnavailable, StoreUnavailable
+from wsrender_server.jobs.records import ArtifactRecord, ComputationRecord
+from wsrender_server.jobs.states import ComputationState
+from wsrender_server.jobs.task import Outcome, Step, Verdict, error
+from wsrender_server.settings import Settings
+
+TICK_S = 0.1
+RECORD_S = 0.5
+PAUSE_S = 1.0
+MOST_LOSSES = 4
+
+log = logging.getLogger(__name__)
+
+
+class Dispatcher:
+    """A thread between job table and engine. The table alone knows what is to be done: whatever is lost is done again.
+
+    At the start, and after the scheduler was lost, everything unfinished is submitted anew; partial results that are
+    on disk are not computed again.
+    """
+
+    def __init__(self, store: ComputationStore, settings: Settings):
+        self.store = store
+        self.engine = Engine(settings, self._on_message)
+        self._attempts: dict[str, Attempt] = {}
+        self._inbox: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
+        self._deferred: list[Callable[[], None]] = []
+        self._targets: dict[str, str] = {}
+        self._generation = 0  # of the scheduler's losses
+        self._recorded = 0.0
+        self._end = threading.Event()
+        self._wake = threading.Event()
+        self._thread = threading.Thread(target=self._loop, name="dispatcher", daemon=True)
+
+    def start(self) -> None:
+        """Start the thread; the engine starts within it."""
+        self._thread.start()
+
+    def stop(self) -> None:
+        """End thread and engine; what is unfinished stays in the table."""
+        self._end.set()
+        self._wake.set()
+        self._thread.join()
+        self.engine.close()
+
+    @property
+    def alive(self) -> bool:
+        """Whether the thread runs, the scheduler answers and a worker is there."""
+        return self._thread.is_alive() and self.engine.connected and bool(self._targets)
+
+    def _loop(self) -> None:
+        recovered = joined = False
+        while not self._end.is_set():
+            try:
+                if not recovered:
+                    self.store.recover()
+                    self.store.files.empty_scratch()
+                    recovered = True
+                if not joined or not self.engine.connected:
+                    self._join_engine()
+                    joined = True
+                self._tick()
+            except StoreUnavailable as fault:
+                log.warning("%s; trying again", fault)
+                self._end.wait(PAUSE_S)
+            except EngineUnavailable as fault:
+                log.warning("%s; joining again", fault)
+                joined = False
+                self._end.wait(PAUSE_S)
+            except Exception:
+                log.exception("the dispatcher goes on after a fault")
+                self._end.wait(PAUSE_S)
+            self._wake.wait(TICK_S)
+            self._wake.clear()
+
+    def _join_engine(self) -> None:
+        """Connect; what the lost scheduler knew is forgotten, so that it is submitted again."""
+        self._generation += bool(self._attempts)
+        self._attempts.clear()
+        self._targets.clear()
+        self.engine.connect()
+        log.info("connected to the scheduler")
+
+    def _tick(self) -> None:
+        self._handle_inbox()
+        self.store.time_out()
+        self._update_targets()
+        known = self.store.unfinished()
+        for computation_id, attempt in list(self._attempts.items()):
+            if known.get(computation_id, (None, 0))[1] != attempt.record.attempt:
+                self._stop(computation_id)
+        for computation_id, (state, _) in known.items():
+            if state == ComputationState.STOPPING:
+                self._stop(computation_id)
+            elif computation_id not in self._attempts and self._targets:
+                self._launch(computation_id)
+        self._record_progress()
+
+    def _handle_inbox(self) -> None:
+        """Handle what came in; where the database does not answer, keep the rest for later."""
+        while not self._inbox.empty():
+            self._deferred.append(self._inbox.get())
+        while self._deferred:
+            self._deferred[0]()
+            self._deferred.pop(0)
+
+    def _update_targets(self) -> None:
+        if self._targets and time.monotonic() - self._recorded < RECORD_S:
+            return
+        targets = self.engine.targets()
+        if targets != self._targets:
+            if targets:
+                self.store.set_targets(targets)
+            self._targets = targets
+
+    def _launch(self, computation_id: str) -> None:
+        record = self.store.computation(computation_id)
+        if record is None:
+            return
+        kind = record.document["device"].partition(":")[0]
+        target, resolved = self._targets.get(kind, self._targets["auto"]), record.resolved
+        if resolved is not None and record.target in self._targets.values():
+            target = record.target or target
+        elif resolved is not None:
+            # The hardware is another one now; partial results of two targets do not mix.
+            self.store.files.forget_partials(computation_id)
+            resolved = None
+        attempt = self._attempts[computation_id] = Attempt(record, target, resolved, self._generation)
+        if resolved is None:
+            self._submit(attempt, Step.PLAN)
+        else:
+            self._submit_shards(attempt)
+
+    def _submit(self, attempt: Attempt, step: Step, shard: int = 0) -> None:
+        key = attempt.key(step, shard)
+        future = self.engine.submit(attempt.task(step, shard), attempt.record.priority, attempt.target, key)
+        attempt.futures[step, shard] = future
+        future.add_done_callback(lambda done: self._put(lambda: self._ended(attempt, step, shard, done)))
+
+    def _submit_shards(self, attempt: Attempt) -> None:
+        missing = attempt.begin_shards(self.store.files)
+        for shard in missing:
+            self._submit(attempt, Step.SHARD, shard)
+        if not missing:
+            self._submit_finish(attempt)
+
+    def _submit_finish(self, attempt: Attempt) -> None:
+        attempt.seconds["sweep"] = time.monotonic() - attempt.started
+        attempt.step, attempt.stale = Step.FINISH, True
+        self._submit(attempt, Step.FINISH)
+
+    def _put(self, action: Callable[[], None]) -> None:
+        self._inbox.put(action)
+        self._wake.set()
+
+    def _on_message(self, message: dict[str, Any]) -> None:
+        self._put(lambda: self._reported(message))
+
+    def _reported(self, message: dict[str, Any]) -> None:
+        """A worker began a step or did samples of a shard."""
+        computation_id = message["token"].partition("-")[0]
+        attempt = self._attempts.get(computation_id)
+        if attempt is None or attempt.token != message["token"]:
+            return
+        if "step" in message:
+            self.store.begin(computation_id, attempt.record.attempt)
+            attempt.stale = True
+        else:
+            attempt.reported(message["shard"], message["done"])
+
+    def _ended(self, attempt: Attempt, step: Step, shard: int, future: Future) -> None:
+        """A task ended: go on with the next step, or end the attempt."""
+        computation_id = attempt.record.id
+        if self._attempts.get(computation_id) is not attempt or attempt.futures.get((step, shard)) is not future:
+            return
+        if future.status in ("cancelled", "lost"):  # with the scheduler
+            self._generation += 1
+            del self._attempts[computation_id]
+            return
+        outcome = outcome_of(future)
+        if outcome is None or outcome.verdict in (Verdict.LOST, Verdict.STOPPED):
+            self._lost(attempt, step, shard, outcome)
+        elif outcome.verdict == Verdict.FAILED:
+            if outcome.value:
+                log.error("computation %s, %s: %s", computation_id, step, outcome.value)
+            self._fail(attempt, outcome.error or {})
+        elif step == Step.PLAN:
+            self.store.settle(computation_id, outcome.value["resolved"], outcome.value["target"])
+            attempt.resolved = outcome.value["resolved"]
+            attempt.seconds["plan"] = outcome.value["seconds"]
+            del attempt.futures[step, shard]
+            self._submit_shards(attempt)
+        elif step == Step.SHARD:
+            attempt.reported(shard, attempt.shards[shard][1])
+            del attempt.futures[step, shard]
+            if not attempt.futures:
+                self._submit_finish(attempt)
+        else:
+            records = [ArtifactRecord(**record) for record in outcome.value]
+            self.store.complete(computation_id, attempt.record.attempt, records)
+            del self._attempts[computation_id]
+
+    def _lost(self, attempt: Attempt, step: Step, shard: int, outcome: Outcome | None) -> None:
+        """A task was lost with its worker, or a partial result was: do it again, a few times."""
+        attempt.losses += 1
+        if attempt.losses > MOST_LOSSES:
+            reason = (outcome and outcome.error) or error(
+                "worker_lost", "the workers that ran the job were lost, again and again", retryable=True
+            )
+            self._fail(attempt, reason)
+        elif step == Step.FINISH:
+            self._submit_shards(attempt)  # those whose files are there are not computed again
+        else:
+            self._submit(attempt, step, shard)
+
+    def _fail(self, attempt: Attempt, reason: dict[str, Any]) -> None:
+        """End an attempt that failed; its other tasks are stopped first, so that a retry meets none of them."""
+        self.engine.stop(attempt.token, list(attempt.futures.values()))
+        self.store.fail(attempt.record.id, attempt.record.attempt, reason)
+        self._attempts.pop(attempt.record.id, None)
+
+    def _stop(self, computation_id: str) -> None:
+        """Kill what runs of a computation that nobody wants any more."""
+        record: ComputationRecord | None
+        attempt = self._attempts.get(computation_id)
+        record = attempt.record if attempt else self.store.computation(computation_id)
+        if record is None:
+            return
+        attempt = attempt or Attempt(record, "", None, self._generation)
+        self.engine.stop(attempt.token, list(attempt.futures.values()))
+        self.store.stopped(computation_id, record.attempt)
+        self._attempts.pop(computation_id, None)
+
+    def _record_progress(self) -> None:
+        now = time.monotonic()
+        if now - self._recorded < RECORD_S:
+            return
+        self._recorded = now
+        stale = {key: attempt for key, attempt in self._attempts.items() if attempt.stale}
+        if stale:
+            self.store.report({key: attempt.progress() for key, attempt in stale.items()})
+        for attempt in stale.values():
+            attempt.stale = False

@@ -1,0 +1,175 @@
+"""Dask distributed, embedded or elsewhere: the only execution engine."""
+
+import contextlib
+import logging
+import threading
+from collections.abc import Callable
+from typing import Any
+
+from dask import config
+from distributed import Client, Future, LocalCluster
+from distributed.comm import CommClosedError
+
+from wsrender_server.jobs import worker as workers_side
+from wsrender_server.jobs.faults import EngineUnavailable
+from wsrender_server.jobs.records import WorkerRecord
+from wsrender_server.jobs.task import Outcome, Step, Task
+from wsrender_server.settings import Settings
+
+CONNECT_S = 10
+ANSWER_S = 3
+# A later step goes before the earlier steps of other jobs: what has begun is finished first.
+URGENCY = {Step.PLAN: 0, Step.SHARD: 1, Step.FINISH: 2}
+
+LOST = (CommClosedError, OSError, TimeoutError, RuntimeError, ValueError)
+
+log = logging.getLogger(__name__)
+
+
+class Engine:
+    """A Dask client and, without a scheduler in the settings, the cluster behind it.
+
+    ``on_message(message)`` is called in a thread of Dask for everything that workers report.
+    """
+
+    def __init__(self, settings: Settings, on_message: Callable[[dict[str, Any]], None]):
+        self._settings = settings
+        self._on_message = on_message
+        self._cluster: LocalCluster | None = None
+        self._client: Client | None = None
+        self._lock = threading.Lock()
+
+    @property
+    def connected(self) -> bool:
+        """Whether the scheduler answers."""
+        return self._client is not None and self._client.status == "running"
+
+    def connect(self) -> None:
+        """Start the cluster or join it; after a loss, join it anew. Raises EngineUnavailable."""
+        self._leave()
+        try:
+            # Where an embedded scheduler listens is nobody's business but its own workers'.
+            with config.set({"distributed.worker.daemon": False, "distributed.comm.timeouts.connect": CONNECT_S}):
+                if self._settings.scheduler is None:
+                    client = Client(self._embedded(), timeout=CONNECT_S, set_as_default=False)
+                else:
+                    client = Client(
+                        self._settings.scheduler,
+                        security=workers_side.security(self._settings),
+                        timeout=CONNECT_S,
+                        set_as_default=False,
+                    )
+            client.subscribe_topic(workers_side.TOPIC, lambda event: self._on_message(event[1]))
+        except LOST as error:
+            raise EngineUnavailable(f"the scheduler does not answer: {error}") from error
+        self._client = client
+
+    def close(self) -> None:
+        """Leave the scheduler; end an embedded cluster."""
+        self._leave()
+        cluster, self._cluster = self._cluster, None
+        if cluster is not None:
+            with contextlib.suppress(*LOST):
+                cluster.close(timeout=ANSWER_S)
+
+    def submit(self, task: Task, priority: int, target: str, key: str) -> Future:
+        """Hand a task to the scheduler; workers of ``target`` run it. Raises EngineUnavailable."""
+        try:
+            return self._connected().submit(
+                workers_side.run_task,
+                task,
+                key=key,
+                priority=priority * len(URGENCY) + URGENCY[task.step],
+                resources={target: 1},
+                retries=0,
+                pure=False,
+            )
+        except LOST as error:
+            raise EngineUnavailable(f"the scheduler does not answer: {error}") from error
+
+    def stop(self, token: str, futures: list[Future]) -> None:
+        """End an attempt: nothing of it starts any more, and its kernel processes are killed when this returns."""
+        client = self._connected()
+        try:
+            client.cancel(futures, force=True)
+            self._ask(workers_side.stop_token, token)
+        except LOST as error:
+            raise EngineUnavailable(f"the scheduler does not answer: {error}") from error
+
+    def workers(self) -> list[WorkerRecord]:
+        """The workers there are; none where the scheduler does not answer."""
+        if not self.connected:
+            return []
+        try:
+            known = self._connected().scheduler_info()["workers"]
+            busy = self._ask(workers_side.is_busy)
+        except (EngineUnavailable, *LOST):
+            return []
+        return [
+            WorkerRecord(
+                address=address,
+                host=info["host"],
+                target=(sorted(info["resources"], reverse=True) or [None])[0],
+                devices=tuple(sorted({target.partition(":")[0] for target in info["resources"]})),
+                busy=busy.get(address) is True,
+            )
+            for address, info in known.items()
+        ]
+
+    def targets(self) -> dict[str, str]:
+        """The target that each kind of device ("auto", "cpu", "cuda") means on the workers there are."""
+        try:
+            known = self._connected().scheduler_info()["workers"].values()
+        except LOST as error:
+            raise EngineUnavailable(f"the scheduler does not answer: {error}") from error
+        names = sorted({target for info in known for target in info["resources"]})
+        targets = {device: name for name in names for device in [name.partition(":")[0]]}
+        if targets:
+            targets["auto"] = targets.get("cuda", targets.get("cpu", ""))
+        return targets
+
+    def kernel_pids(self) -> dict[str, int | None]:
+        """Process ids of the kernel processes by worker address."""
+        return self._ask(workers_side.kernel_pid)
+
+    def _ask(self, function: Callable[..., Any], *arguments: Any) -> dict[str, Any]:
+        """Answers of all workers by address; of a worker that does not answer, the exception."""
+        return dict(self._connected().run(function, *arguments, on_error="return"))
+
+    def _connected(self) -> Client:
+        client = self._client
+        if client is None or client.status != "running":
+            raise EngineUnavailable("there is no connection to the scheduler")
+        return client
+
+    def _embedded(self) -> LocalCluster:
+        if self._cluster is None:
+            self._cluster = LocalCluster(
+                n_workers=self._settings.workers,
+                threads_per_worker=1,
+                processes=True,
+                host="127.0.0.1",
+                protocol="tls://",
+                security=True,
+                dashboard_address="127.0.0.1:0",
+                silence_logs=logging.ERROR,
+                **{k: v for k, v in workers_side.worker_options(self._settings).items() if k != "nthreads"},
+            )
+        return self._cluster
+
+    def _leave(self) -> None:
+        client, self._client = self._client, None
+        if client is not None:
+            with contextlib.suppress(*LOST):
+                client.close(timeout=ANSWER_S)
+
+
+def outcome_of(future: Future) -> Outcome | None:
+    """How a finished future's task ended; None where its worker or the scheduler was lost."""
+    if future.status != "finished":
+        return None
+    try:
+        return future.result(timeout=ANSWER_S)
+    except Exception as error:
+        log.warning("a task's outcome was lost: %r", error)
+        return None

@@ -1,0 +1,184 @@
+"""The one process of a worker in which kernels run: persistent, watched, and killed where it must end."""
+
+import multiprocessing
+import os
+import signal
+import threading
+import time
+from collections import OrderedDict
+from collections.abc import Callable
+from concurrent.futures import CancelledError, TimeoutError
+from concurrent.futures.process import BrokenProcessPool
+from multiprocessing.sharedctypes import RawArray
+from typing import Any
+
+import psutil
+from pebble import ProcessExpired, ProcessPool
+
+from wsrender.errors import DocumentError, InputError, WsrenderError
+from wsrender_server.jobs import steps
+from wsrender_server.jobs.files import FULL
+from wsrender_server.jobs.task import Outcome, Task, Verdict, error
+from wsrender_server.settings import Settings
+
+LOOK_S = 0.05
+REPORT_S = 0.4
+REMEMBERED_TOKENS = 1000
+
+
+class KernelProcess:
+    """Runs one task at a time in a spawned process.
+
+    A native crash, too much memory or a kill ends that process and its task only; the next task gets a new one.
+    """
+
+    def __init__(self, settings: Settings):
+        self._limit = settings.max_memory_bytes
+        self._gauges = RawArray("q", 2)
+        threads = settings.threads_per_worker or max(1, (os.cpu_count() or 1) // max(1, settings.workers))
+        self._start = (settings.data_dir.absolute(), threads, settings.shard_samples, self._gauges)
+        self._pool: ProcessPool | None = None
+        self._lock = threading.Lock()
+        self._token: str | None = None
+        self._stopped: OrderedDict[str, None] = OrderedDict()
+
+    @property
+    def pid(self) -> int | None:
+        """The process, None where it has not started."""
+        return self._gauges[0] or None
+
+    @property
+    def busy(self) -> bool:
+        """Whether a task runs."""
+        return self._token is not None
+
+    def describe(self) -> dict[str, str]:
+        """Start the process; the target of each kind of device (see `steps.describe`)."""
+        return self._ready().schedule(steps.describe).result()
+
+    def run(self, task: Task, report: Callable[[int], None]) -> Outcome:
+        """Run a task to its end; ``report(samples done)`` is called a few times a second. Never raises."""
+        with self._lock:
+            if task.token in self._stopped:
+                return Outcome(Verdict.STOPPED)
+            self._token = task.token
+        try:
+            future = self._ready().schedule(steps.run, args=[task])
+            return self._watched(task, future, report)
+        except (BrokenProcessPool, RuntimeError) as fault:
+            self._discard()
+            return Outcome(Verdict.LOST, error=error("worker_lost", f"the kernel process did not start: {fault}"))
+        finally:
+            self._token = None
+
+    def stop(self, token: str) -> None:
+        """Kill the process if it works on an attempt; none of the attempt's tasks will start here any more."""
+        with self._lock:
+            self._stopped[token] = None
+            while len(self._stopped) > REMEMBERED_TOKENS:
+                self._stopped.popitem(last=False)
+            if self._token == token:
+                self._kill()
+
+    def close(self) -> None:
+        """End the process."""
+        self._kill()
+        self._discard()
+
+    def _ready(self) -> ProcessPool:
+        if self._pool is None or not self._pool.active:
+            self._discard()
+            self._pool = ProcessPool(
+                max_workers=1,
+                initializer=steps.start,
+                initargs=self._start,
+                context=multiprocessing.get_context("spawn"),
+            )
+        return self._pool
+
+    def _watched(self, task: Task, future: Any, report: Callable[[int], None]) -> Outcome:
+        reported = time.monotonic()
+        too_much = False
+        while True:
+            try:
+                return Outcome(Verdict.DONE, future.result(timeout=LOOK_S))
+            except TimeoutError:
+                if task.token in self._stopped:
+                    self._kill()  # again: the process may have been starting when the stop came
+                    if self.pid is None:
+                        future.cancel()
+                too_much = too_much or self._check_memory()
+                if time.monotonic() - reported > REPORT_S:
+                    reported = time.monotonic()
+                    report(self._gauges[1])
+            except (ProcessExpired, BrokenProcessPool, CancelledError) as fault:
+                self._discard()
+                return self._death(task, getattr(fault, "exitcode", None), too_much)
+            except BaseException as fault:
+                return _failure(fault)
+
+    def _check_memory(self) -> bool:
+        """Kill a process that holds more memory than allowed; whether it was killed."""
+        pid = self.pid
+        if pid is None:
+            return False
+        try:
+            held = psutil.Process(pid).memory_info().rss
+        except psutil.Error:
+            return False
+        if held <= self._limit:
+            return False
+        self._kill()
+        return True
+
+    def _death(self, task: Task, exit_code: int | None, too_much: bool) -> Outcome:
+        if task.token in self._stopped:
+            return Outcome(Verdict.STOPPED)
+        if too_much:
+            allowed = f"{self._limit / 2**30:.3g} GiB"
+            message = f"the job took more memory than the {allowed} allowed; choose larger voxels or keep no map"
+            return Outcome(Verdict.FAILED, error=error("out_of_memory", message))
+        if exit_code is None or exit_code == -signal.SIGKILL:
+            # Killed from outside: by an administrator, or by a system short of memory.
+            return Outcome(Verdict.LOST, error=error("worker_lost", "the kernel process was killed", retryable=True))
+        name = signal.Signals(-exit_code).name if exit_code < 0 else f"exit code {exit_code}"
+        message = f"the kernel process crashed ({name}); other jobs are not affected"
+        return Outcome(Verdict.FAILED, error=error("kernel_crash", message))
+
+    def _kill(self) -> None:
+        pid = self.pid
+        if pid is None:
+            return
+        try:
+            os.kill(pid, signal.SIGKILL)
+        except ProcessLookupError:
+            return
+
+    def _discard(self) -> None:
+        """Forget the pool: a process killed in the middle may have left its pipes locked."""
+        pool, self._pool = self._pool, None
+        self._gauges[0] = 0
+        if pool is not None:
+            pool.stop()
+            pool.join()
+
+
+def _failure(fault: BaseException) -> Outcome:
+    """An exception of a step as an outcome."""
+    if isinstance(fault, steps.DamagedPartialError):
+        return Outcome(Verdict.LOST, error=error("partial_damaged", str(fault), retryable=True))
+    if isinstance(fault, DocumentError):
+        problems = [{"field": field, "message": message} for field, message in fault.problems]
+        return Outcome(Verdict.FAILED, error=error(fault.code, str(fault), field=fault.field, problems=problems))
+    if isinstance(fault, InputError):
+        return Outcome(Verdict.FAILED, error=error(fault.code, fault.message, field=fault.field))
+    if isinstance(fault, WsrenderError):
+        return Outcome(Verdict.FAILED, error=error(fault.code, str(fault)))
+    if isinstance(fault, MemoryError):
+        return Outcome(Verdict.FAILED, error=error("out_of_memory", "the job needs more memory than there is"))
+    if isinstance(fault, OSError) and fault.errno in FULL:
+        message = "the server's disk is full; nothing computed so far is lost, retry the job later"
+        return Outcome(Verdict.FAILED, error=error("disk_full", message, retryable=True))
+    # What went wrong belongs into the server's log, not into an answer.
+    message = f"internal error ({type(fault).__name__}); the server's log says more"
+    return Outcome(Verdict.FAILED, value=repr(fault), error=error("internal_error", message))

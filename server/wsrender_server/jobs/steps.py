@@ -1,0 +1,222 @@
+"""The steps of a computation, as they run in a kernel process: plan, shards, finish, all by `wsrender.run`."""
+
+import ctypes
+import errno
+import multiprocessing
+import os
+import shutil
+import signal
+import threading
+import time
+from collections import OrderedDict
+from functools import reduce
+from multiprocessing.connection import wait
+from pathlib import Path
+from typing import Any
+
+from wsrender_server.jobs.files import DataFolder
+from wsrender_server.jobs.task import Step, Task
+
+MOST_SHARDS = 1024
+SHARD_UNIT = 1 << 16  # a multiple of the kernels' block of samples
+KEPT_PLANS = 4
+
+_state: dict[str, Any] = {}
+_plans: "OrderedDict[str, Any]" = OrderedDict()
+
+
+def start(data_dir: Path, threads: int, shard_samples: int, gauges: "ctypes.Array[ctypes.c_int64]") -> None:
+    """Set up a kernel process; ``gauges`` (2,), shared with the worker: process id, samples done of the shard."""
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)  # native code never returns to a handler
+    threading.Thread(target=_die_with_parent, daemon=True).start()
+    _offer_to_be_killed_first()
+    os.environ["WSRENDER_THREADS"] = str(threads)
+    _state.update(files=DataFolder(data_dir), shard_samples=shard_samples, gauges=gauges)
+    gauges[1] = 0
+    gauges[0] = os.getpid()
+
+
+def describe() -> dict[str, str]:
+    """The target of each kind of device here: "cpu", and "cuda" where there is a GPU."""
+    from wsrender.engine import devices_of, target_of
+    from wsrender.errors import InputError
+
+    targets = {}
+    for device in ("cpu", "cuda"):
+        try:
+            targets[device] = target_of(devices_of(device))
+        except InputError:
+            continue
+    return targets
+
+
+def run(task: Task) -> Any:
+    """Run a step. PLAN gives what was settled, FINISH the records of the artifacts, SHARD None."""
+    _state["gauges"][1] = 0
+    return {Step.PLAN: _plan, Step.SHARD: _shard, Step.FINISH: _finish}[task.step](task)
+
+
+def _plan(task: Task) -> dict[str, Any]:
+    started = time.perf_counter()
+    plan = _planned(task)
+    resolved = plan.resolved()
+    if _divisible(task.document):
+        resolved["shards"] = _divided(resolved["shards"], _state["shard_samples"])
+    return {
+        "resolved": resolved,
+        "target": plan.target,
+        "estimate": plan.estimate,
+        "seconds": time.perf_counter() - started,
+    }
+
+
+def _shard(task: Task) -> None:
+    """Compute and keep one partial result."""
+    from wsrender.run import run_shard
+    from wsrender.run.partial_files import save_partial
+
+    gauges = _state["gauges"]
+
+    def report(done: int) -> None:
+        gauges[1] = done
+
+    partial = run_shard(_planned(task), task.shard, report)
+    folder = _files().partials(task.computation)
+    folder.mkdir(exist_ok=True)
+    save_partial(partial, folder / partial_name(task.shard))
+
+
+def _finish(task: Task) -> list[dict[str, Any]]:
+    """Merge all partial results, in one pass that holds two of them, and write the artifacts."""
+    from wsrender.run import finish, merge
+
+    plan = _planned(task)
+    partials = (_load(task, shard, plan) for shard in range(len(plan.shards)))
+    partial = reduce(lambda a, b: merge(plan, a, b), partials)
+    result = finish(plan, partial, task.seconds)
+    staging = _files().root / "scratch" / f"{task.computation}.{os.getpid()}"
+    try:
+        result.save(staging)
+        return _publish(result.document, staging, task.computation)
+    finally:
+        shutil.rmtree(staging, ignore_errors=True)
+
+
+def _publish(document: dict[str, Any], staging: Path, computation: str) -> list[dict[str, Any]]:
+    """Move the artifacts to where their hashes say, the document first in the list."""
+    from wsrender.export.artifacts import DOCUMENT, sha256
+
+    path = staging / DOCUMENT
+    own = {
+        "name": DOCUMENT,
+        "media_type": "application/json",
+        "bytes": path.stat().st_size,
+        "sha256": sha256(path),
+    }
+    records = [own, *document["artifacts"]]
+    for record in records:
+        target = _files().artifact(computation, record["sha256"])
+        target.parent.mkdir(exist_ok=True)
+        source = staging / record["name"]
+        with source.open("rb") as file:
+            os.fsync(file.fileno())
+        if source.exists():
+            source.replace(target)
+    return records
+
+
+class DamagedPartialError(Exception):
+    """A file of a partial result cannot be read; it has been removed, so that its shard is computed again."""
+
+
+def _load(task: Task, shard: int, plan: Any) -> Any:
+    from wsrender.errors import InputError
+    from wsrender.run.partial_files import load_partial
+
+    path = _files().partials(task.computation) / partial_name(shard)
+    try:
+        return load_partial(path, plan)
+    except InputError as error:
+        path.unlink(missing_ok=True)
+        raise DamagedPartialError(str(error)) from error
+
+
+def partial_name(shard: int) -> str:
+    """File name of a shard's partial result."""
+    return f"{shard}.npz"
+
+
+def _planned(task: Task) -> Any:
+    """The plan of a computation, made once per process."""
+    from wsrender.run import plan
+    from wsrender.spec import parse_job
+
+    key = f"{task.token}:{task.resolved is not None}"
+    if key not in _plans:
+        job = parse_job(task.document)
+        _plans[key] = plan(job, _uploaded_robot(job), resolved=task.resolved)
+        while len(_plans) > KEPT_PLANS:
+            _plans.popitem(last=False)
+    return _plans[key]
+
+
+def _uploaded_robot(job: Any) -> Any:
+    """The robot of an uploaded model, so that the document goes on naming it by its hash; None for any other."""
+    from wsrender.errors import InputError
+    from wsrender.robot import robot_of_spec
+
+    spec = job.robot
+    if spec.source == "path":
+        raise InputError("robot.path", "is for local runs; upload the model and give robot.model")
+    if spec.source != "model":
+        return None
+    text = _files().model(spec.model).read_text(encoding="utf-8")
+    return robot_of_spec(spec.model_copy(update={"model": None, _language(text): text}), job.base, job.tip)
+
+
+def _language(text: str) -> str:
+    """What a model is written in, by its root element."""
+    from defusedxml.ElementTree import ParseError, fromstring
+
+    from wsrender.errors import ModelError
+
+    try:
+        tag = fromstring(text).tag
+    except (ParseError, ValueError) as error:
+        raise ModelError("robot.model", f"is not XML: {error}") from error
+    languages = {"mujoco": "mjcf", "robot": "urdf"}
+    if tag not in languages:
+        raise ModelError("robot.model", f"has the root element <{tag}>; <mujoco> (MJCF) or <robot> (URDF) is needed")
+    return languages[tag]
+
+
+def _divisible(document: dict[str, Any]) -> bool:
+    return document["analysis"] == "workspace" and document["sampling"]["method"] != "converge"
+
+
+def _divided(shards: list[list[int]], size: int) -> list[list[int]]:
+    """Finer shards of about ``size`` samples, but never more than MOST_SHARDS."""
+    total = sum(count for _, count in shards)
+    size = max(size, -(-total // MOST_SHARDS))
+    size = -(-size // SHARD_UNIT) * SHARD_UNIT
+    return [[first, min(size, total - first)] for first in range(0, total, size)]
+
+
+def _files() -> DataFolder:
+    return _state["files"]
+
+
+def _die_with_parent() -> None:
+    """A process whose worker was killed would compute on for nobody."""
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        wait([parent.sentinel])
+        os._exit(errno.EOWNERDEAD)
+
+
+def _offer_to_be_killed_first() -> None:
+    """Where memory runs out, Linux should end this process rather than a server."""
+    try:
+        Path("/proc/self/oom_score_adj").write_text("1000")
+    except OSError:
+        return  # another system, or not allowed: the worker watches the memory anyway
