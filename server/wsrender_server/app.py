@@ -1,5 +1,6 @@
 """The application: routes, errors, documentation and the life of the parts behind them."""
 
+import logging
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from pathlib import Path
@@ -18,9 +19,9 @@ from starlette.staticfiles import StaticFiles
 from wsrender import __version__
 from wsrender_server.auth import Authenticator, check_binding
 from wsrender_server.job_body import body_schemas
-from wsrender_server.jobs.dispatcher import Dispatcher
-from wsrender_server.jobs.store import open_store
-from wsrender_server.parts import Executor, Parts
+from wsrender_server.jobs.service import JobService
+from wsrender_server.logs import configure_logs
+from wsrender_server.parts import Jobs, Parts
 from wsrender_server.problems import Problem, answer_errors
 from wsrender_server.requests import RequestLayer
 from wsrender_server.settings import Settings
@@ -39,19 +40,25 @@ class _IdConvertor(StringConvertor):
 
 register_url_convertor("id", _IdConvertor())
 # After the convertor is known: routes are compiled when their modules are imported.
-from wsrender_server.routes import artifacts, catalogue, events, jobs, operation  # noqa: E402
+from wsrender_server.routes import artifacts, catalogue, events, operation  # noqa: E402
+from wsrender_server.routes import jobs as job_routes  # noqa: E402
+
+ROUTERS = [module.router for module in (job_routes, events, artifacts, catalogue, operation)]
 
 
-def create_app(settings: Settings, executor: Executor | None = None) -> FastAPI:
-    """The server's application; it starts and stops what computes (by default the Dask dispatcher) with itself.
+def create_app(settings: Settings, jobs: Jobs | None = None) -> FastAPI:
+    """The server's application; it starts and stops with itself what computes the jobs (by default on Dask).
+
+    Logs become JSON lines unless logging was set up before.
 
     Raises InputError where the settings would let other machines in without an API key, StoreUnavailable for a
     database that does not answer.
     """
-    store = open_store(settings)
-    authenticator = Authenticator(settings, store)
+    if not logging.getLogger().handlers:
+        configure_logs()
+    parts = Parts(settings, jobs or JobService(settings))
+    authenticator = Authenticator(settings, parts.store)
     check_binding(settings.host, authenticator.required)
-    parts = Parts(settings, store, executor or Dispatcher(store, settings))
     app = FastAPI(
         title="wsrender",
         version=__version__,
@@ -66,13 +73,13 @@ def create_app(settings: Settings, executor: Executor | None = None) -> FastAPI:
     app.state.parts = parts
     app.state.authenticator = authenticator
     app.state.keys_at_work = {}
-    for module in (jobs, events, artifacts, catalogue, operation):
-        app.include_router(module.router)
+    for router in ROUTERS:
+        app.include_router(router)
     _add_documentation(app)
     app.state.methods_by_path = [
         (compile_path(route.path)[0], route.methods)
-        for module in (jobs, events, artifacts, catalogue, operation)
-        for route in module.router.routes
+        for router in ROUTERS
+        for route in router.routes
         if isinstance(route, APIRoute)
     ]
     answer_errors(app)
@@ -85,11 +92,11 @@ def create_app(settings: Settings, executor: Executor | None = None) -> FastAPI:
 @asynccontextmanager
 async def _life(app: FastAPI) -> AsyncIterator[None]:
     parts: Parts = app.state.parts
-    await run_in_threadpool(parts.executor.start)
+    await run_in_threadpool(parts.jobs.start)
     try:
         yield
     finally:
-        await run_in_threadpool(parts.executor.stop)
+        await run_in_threadpool(parts.jobs.stop)
         await run_in_threadpool(parts.side_process.close)
 
 

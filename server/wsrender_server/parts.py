@@ -1,7 +1,7 @@
 """The parts of a running server, as routes use them."""
 
 from dataclasses import dataclass, field
-from typing import Annotated, Any, Protocol
+from typing import Annotated, Protocol
 
 from fastapi import Depends, Request
 
@@ -13,28 +13,10 @@ from wsrender_server.settings import Settings
 from wsrender_server.side_process import SideProcess
 
 
-class Engine(Protocol):
-    """The scheduler and its workers, as far as routes ask."""
+class Jobs(Protocol):
+    """The job table and what computes it, as far as routes ask; `jobs.service.JobService` is one."""
 
-    @property
-    def connected(self) -> bool:
-        """Whether the scheduler answers."""
-        ...
-
-    def workers(self) -> list[WorkerRecord]:
-        """Workers that answer."""
-        ...
-
-
-class Executor(Protocol):
-    """What computes the jobs of the store: started with the server and stopped with it."""
-
-    engine: Any  # an Engine; protocols do not take subtypes of plain attributes
-
-    @property
-    def alive(self) -> bool:
-        """Whether the scheduler answers and a worker is there."""
-        ...
+    store: JobStore
 
     def start(self) -> None:
         """Start, and take up unfinished jobs; returns at once."""
@@ -44,24 +26,33 @@ class Executor(Protocol):
         """Stop; unfinished jobs are taken up at the next start."""
         ...
 
+    def workers(self) -> list[WorkerRecord]:
+        """The workers that answer."""
+        ...
+
+    @property
+    def scheduler_ready(self) -> bool:
+        """Whether the scheduler answers."""
+        ...
+
+    @property
+    def worker_ready(self) -> bool:
+        """Whether a live worker is there."""
+        ...
+
 
 @dataclass(eq=False)
 class Parts:
     """Everything that routes need beside the request."""
 
     settings: Settings
-    store: JobStore
-    executor: Executor
+    jobs: Jobs
     side_process: SideProcess = field(default_factory=SideProcess)
     metrics: Metrics = field(default_factory=Metrics)
 
     def __post_init__(self):
+        self.store = self.jobs.store
         self.converted = ConvertedFiles(self.store.files, self.side_process)
-
-    @property
-    def engine(self) -> Engine:
-        """The scheduler and its workers."""
-        return self.executor.engine
 
 
 def _parts(request: Request) -> Parts:

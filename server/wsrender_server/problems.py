@@ -169,7 +169,10 @@ def problem_of_error(error: BaseException, prefix: str = "") -> dict[str, Any]:
     """The problem document of an exception; ``prefix`` is where in the body its fields are."""
     if isinstance(error, HttpProblem):
         code = error.code or CODES[error.status]
-        return problem(error.status, code, error.detail, retryable=error.retryable, errors=error.errors, **error.extra)
+        title, errors = error.title, error.errors
+        return problem(
+            error.status, code, error.detail, title=title, retryable=error.retryable, errors=errors, **error.extra
+        )
     if isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EDQUOT):
         return problem_of_error(DiskFull("the server's disk is full; nothing was changed"))
     answer = next((ANSWERS[kind] for kind in type(error).__mro__ if kind in ANSWERS), None)

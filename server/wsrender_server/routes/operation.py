@@ -86,7 +86,7 @@ def get_queue(server: Server, principal: Reader) -> QueueView:
 )
 def list_workers(server: Server, principal: Reader) -> Page[WorkerView]:
     """Workers that answer; all in one page."""
-    return Page(items=[WorkerView(**vars(worker)) for worker in server.engine.workers()])
+    return Page(items=[WorkerView(**vars(worker)) for worker in server.jobs.workers()])
 
 
 @router.get("/healthz", summary="Whether the server answers", response_model=Health, responses=problem_responses())
@@ -117,7 +117,7 @@ def get_readiness(server: Server) -> Readiness:
 def get_metrics(server: Server, principal: Reader) -> Response:
     """Requests, jobs, workers and disk."""
     store = server.store
-    text = server.metrics.text(store.queue_summary(), server.engine.workers(), store.files.free_bytes())
+    text = server.metrics.text(store.queue_summary(), server.jobs.workers(), store.files.free_bytes())
     return Response(text, media_type=MEDIA_TYPE)
 
 
@@ -136,11 +136,11 @@ def _database(server: Parts) -> str:
 
 
 def _scheduler(server: Parts) -> str:
-    return OK if server.engine.connected else "does not answer"
+    return OK if server.jobs.scheduler_ready else "does not answer"
 
 
 def _workers(server: Parts) -> str:
-    return OK if server.executor.alive else "none is there"
+    return OK if server.jobs.worker_ready else "none is there"
 
 
 def _disk(server: Parts) -> str:
