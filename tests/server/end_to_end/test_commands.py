@@ -1,0 +1,106 @@
+"""The server's commands, as an administrator types them."""
+
+import re
+import signal
+import socket
+import subprocess
+import sys
+import time
+
+import psutil
+import pytest
+from wsrender_server.local_server import LocalServer
+
+import wsrender as ws
+
+
+def wsrender(*arguments, **environment):
+    """Run the command line in a process of its own."""
+    import os
+
+    return subprocess.run(
+        [sys.executable, "-m", "wsrender", *arguments],
+        capture_output=True,
+        text=True,
+        timeout=300,
+        env={**os.environ, **environment},
+    )
+
+
+def test_keys_guard_the_server(tmp_path):
+    data = ("--data-dir", str(tmp_path / "data"))
+    made = wsrender("keys", "create", "--name", "ann", *data)
+    secret = made.stdout.strip()
+    reader = wsrender("keys", "create", "--name", "bob", "--scope", "read", *data).stdout.strip()
+    listed = wsrender("keys", "list", *data).stdout
+    assert (made.returncode, "ann" in listed, secret in listed) == (0, True, False)
+    with LocalServer(tmp_path / "data") as server:
+        with ws.Client(server.url) as client, pytest.raises(ws.AccessError):
+            list(client.jobs())
+        with ws.Client(server.url, token=reader) as client, pytest.raises(ws.AccessError, match="submit"):
+            client.submit({"analysis": "workspace", "robot": "scara"})
+        with ws.Client(server.url, token=secret) as client:
+            assert list(client.jobs()) == []
+            key_id = re.search(r"[0-9a-f]{16}", listed)[0]
+            assert wsrender("keys", "revoke", key_id, *data).returncode == 0
+            with pytest.raises(ws.AccessError, match="revoked"):
+                list(client.jobs())
+
+
+def test_other_addresses_need_a_key(tmp_path):
+    refused = wsrender("serve", "--host", "0.0.0.0", "--port", "0", "--data-dir", str(tmp_path))
+    assert refused.returncode == 2
+    assert refused.stderr.startswith("error: host: 0.0.0.0 can be reached from other machines")
+
+
+def test_taken_port(tmp_path):
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        port = str(taken.getsockname()[1])
+        refused = wsrender("serve", "--port", port, "--data-dir", str(tmp_path))
+    assert (refused.returncode, refused.stdout) == (1, "")
+    assert refused.stderr == f"error: cannot listen on 127.0.0.1:{port}: Address already in use\n"
+
+
+def test_wrong_settings_are_one_line(tmp_path):
+    wrong = wsrender("serve", "--scheduler", "tcp://lab:8786", "--data-dir", str(tmp_path))
+    assert wrong.returncode == 2
+    assert wrong.stderr == "error: settings: scheduler must be a tls:// address, not 'tcp://lab:8786'\n"
+    wrong = wsrender("serve", "--port", "70000")
+    assert (wrong.returncode, wrong.stderr.count("\n")) == (2, 1)
+    wrong = wsrender("worker", "--gpus", "all")
+    assert (wrong.returncode, wrong.stderr) == (2, "error: --scheduler: must be given, such as tls://lab:8786\n")
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+def test_signals_stop_the_server_and_all_of_its_processes(tmp_path, number):
+    server = LocalServer(tmp_path / "data").start()
+    with ws.Client(server.url) as client:
+        job = client.submit({"analysis": "workspace", "robot": "scara", "sampling": {"method": "grid", "per_joint": 3}})
+        job.wait(timeout=300)
+    family = [psutil.Process(server.process.pid), *psutil.Process(server.process.pid).children(recursive=True)]
+    assert len(family) > 2
+    server.process.send_signal(number)
+    assert server.process.wait(timeout=30) == 0
+    _, alive = psutil.wait_procs(family, timeout=10)
+    assert alive == []
+    assert "Traceback" not in server.log.read_text()
+
+
+def test_two_servers_do_not_share_a_data_folder(tmp_path):
+    with LocalServer(tmp_path / "data"):
+        started = time.monotonic()
+        second = wsrender("serve", "--port", "0", "--data-dir", str(tmp_path / "data"))
+        assert (second.returncode, time.monotonic() - started < 60) == (2, True)
+        assert "is in use by another server" in second.stderr
+
+
+def test_demo_leaves_map_volume_and_pictures(tmp_path):
+    done = wsrender("demo", "-o", str(tmp_path / "demo"), "--robot", "scara")
+    assert done.returncode == 0, done.stderr
+    result = ws.Result.load(tmp_path / "demo")
+    assert len(result.map) == result.document["sampling"]["samples"] == 1_000_000
+    assert result.volume.count.sum() == 1_000_000
+    assert {"robot.png", "scatter.png", "slices.png"} <= {path.name for path in (tmp_path / "demo/plots").iterdir()}
+    assert str(tmp_path / "demo" / "volume.vtkhdf") in done.stdout
