@@ -30,6 +30,16 @@ class WsrenderError(Exception):
 
     code = "error"
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        # Errors travel between processes; their constructors take other arguments than Exception keeps.
+        return _restored, (type(self), self.args, self.__dict__)
+
+
+def _restored(kind: type[WsrenderError], args: tuple[Any, ...], members: dict[str, Any]) -> WsrenderError:
+    error = kind.__new__(kind, *args)
+    error.__dict__.update(members)
+    return error
+
 
 class InputError(WsrenderError, ValueError):
     """A value given by the user is not allowed.
