@@ -166,10 +166,8 @@ class ComputationStore:
     def queue_summary(self) -> QueueSummary:
         """Jobs by state and computations waiting and running, of the whole server."""
         with self.transactions.read() as session:
-            jobs = dict(session.execute(select(Job.state, func.count()).group_by(Job.state)).tuples().all())
-            states = dict(
-                session.execute(select(Computation.state, func.count()).group_by(Computation.state)).tuples().all()
-            )
+            jobs = _counts(session, Job)
+            states = _counts(session, Computation)
             oldest = session.scalar(select(func.min(Job.created_at)).where(Job.state == JobState.QUEUED))
         return QueueSummary(
             {state.value: jobs.get(state, 0) for state in JobState},
@@ -224,6 +222,12 @@ class ComputationStore:
             computation.state = ComputationState.STOPPED
         waits = end == JobState.CANCELED and not others and running
         enter(session, job, JobState.CANCELING if waits else end, error)
+
+
+def _counts(session: Session, table: type[Job] | type[Computation]) -> dict[str, int]:
+    """Number of rows by state."""
+    rows = session.execute(select(table.state, func.count()).group_by(table.state))
+    return {state: count for state, count in rows}
 
 
 def _record(row: Computation) -> ComputationRecord:

