@@ -58,11 +58,9 @@ def serve(
     with one_line_faults():
         from wsrender_server.app import create_app
         from wsrender_server.local_server import READY
-        from wsrender_server.logs import configure_logs
         from wsrender_server.serving import listen, serve_until_stopped
 
         settings = settings_of(**_given(locals(), Settings))
-        configure_logs()
         listener = listen(settings)
         app = create_app(settings)
         serve_until_stopped(app, listener, lambda url: typer.echo(f"wsrender {READY}{url}"))

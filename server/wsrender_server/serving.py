@@ -2,12 +2,15 @@
 
 import signal
 import socket
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
+from typing import Any
 
 import uvicorn
 
-from wsrender.errors import ServerConnectionError
+from wsrender.errors import ServerConnectionError, WsrenderError
 from wsrender_server.settings import Settings
+
+Application = Callable[[Any, Any, Any], Awaitable[None]]  # ASGI
 
 STOP_S = 3  # for answers under way; event streams never end by themselves
 
@@ -31,21 +34,46 @@ def address(listener: socket.socket) -> str:
     return f"http://[{host}]:{port}" if ":" in host else f"http://{host}:{port}"
 
 
-def serve_until_stopped(app: Callable, listener: socket.socket, on_ready: Callable[[str], None]) -> None:
-    """Answer requests until SIGTERM or SIGINT; ``on_ready`` gets the URL once requests are answered."""
+def serve_until_stopped(app: Application, listener: socket.socket, on_ready: Callable[[str], None]) -> None:
+    """Answer requests until SIGTERM or SIGINT; ``on_ready`` gets the URL once requests are answered.
+
+    Raises what the application raised where it did not start.
+    """
     url = address(listener)
     # Uvicorn repeats the signal that stopped it, for whoever handled it before: nobody, the process ends by returning.
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, lambda number, frame: None)
+    guarded = _FaultsAtStart(app)
     config = uvicorn.Config(
-        app,
-        log_config=None,
-        access_log=False,
-        timeout_graceful_shutdown=STOP_S,
-        server_header=False,
-        proxy_headers=False,
+        guarded, log_config=None, access_log=False, timeout_graceful_shutdown=STOP_S, server_header=False
     )
-    _Announced(config, lambda: on_ready(url)).run(sockets=[listener])
+    try:
+        _Announced(config, lambda: on_ready(url)).run(sockets=[listener])
+    except SystemExit:
+        if guarded.fault is None:
+            raise
+        raise guarded.fault from None
+
+
+class _FaultsAtStart:
+    """The application; faults of its start are kept in ``fault`` rather than logged."""
+
+    def __init__(self, app: Application):
+        self._app = app
+        self.fault: Exception | None = None
+
+    async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
+        if scope["type"] != "lifespan":
+            await self._app(scope, receive, send)
+            return
+
+        async def send_without_traceback(message: dict[str, Any]) -> None:
+            await send({**message, "message": ""} if message["type"] == "lifespan.startup.failed" else message)
+
+        try:
+            await self._app(scope, receive, send_without_traceback)
+        except WsrenderError as fault:
+            self.fault = fault
 
 
 class _Announced(uvicorn.Server):
