@@ -57,6 +57,10 @@ class Client:
         """The robots of the server's library."""
         return _items(self._get("/v1/robots"))
 
+    def workers(self) -> list[dict[str, Any]]:
+        """The workers that compute for the server: address, host, target, devices, busy."""
+        return _items(self._get("/v1/workers"))
+
     def upload_model(self, model: str | Path | bytes) -> str:
         """Upload an MJCF or URDF file, or its bytes; the SHA-256 for ``robot: {"model": sha256}``.
 
