@@ -5,16 +5,16 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from itertools import repeat
 from typing import Any
-from xml.sax import SAXException
 
 from wsrender.errors import DocumentError, InputError, ModelError, ResourceError
 from wsrender.indices.catalogue import find
-from wsrender.robots import library, xml_source
+from wsrender.robots import library
 from wsrender.spec import WorkspaceJob, canonical_json, parse_job
 from wsrender.spec.robot import RobotSpec
 from wsrender.spec.sampling import Converge, Grid
 from wsrender_server.jobs.store import JobStore
-from wsrender_server.problems import HttpProblem, pointer, problem_of_error, refusal
+from wsrender_server.model_text import check_model
+from wsrender_server.problems import HttpProblem, pointer
 
 BEYOND_LIMITS = 10**18  # samples
 
@@ -54,7 +54,7 @@ class Admission:
                 raise DocumentError([("robot.library", error.message)]) from None
         for name, text in (("mjcf", robot.mjcf), ("urdf", robot.urdf)):
             if text is not None:
-                self._check_xml(f"robot.{name}", text)
+                check_model(f"robot.{name}", text, self.prefix)
         if robot.model is not None and self.store.get_model(self.owner, robot.model) is None:
             raise HttpProblem(
                 404,
@@ -62,14 +62,6 @@ class Admission:
                 "model_not_found",
                 errors=[(pointer("robot.model", self.prefix), "is no model that you uploaded")],
             )
-
-    def _check_xml(self, field: str, text: str) -> None:
-        try:
-            xml_source.parse(text, field)
-        except ModelError as error:
-            if isinstance(error.__cause__, SAXException):
-                raise refusal(problem_of_error(error, self.prefix), 409) from None
-            raise
 
     def _check_samples(self, job: WorkspaceJob) -> None:
         samples, asked = least_samples(job), job.sampling

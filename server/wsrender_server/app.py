@@ -98,6 +98,7 @@ async def _life(app: FastAPI) -> AsyncIterator[None]:
     finally:
         await run_in_threadpool(parts.jobs.stop)
         await run_in_threadpool(parts.side_process.close)
+        await run_in_threadpool(parts.estimates.close)
 
 
 def _add_documentation(app: FastAPI) -> None:

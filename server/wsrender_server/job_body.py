@@ -196,6 +196,8 @@ def _tighten_job(part: dict[str, Any]) -> None:
     """Index names, lists without repetition, configurations that are there."""
     properties = part["properties"]
     part["required"] = ["analysis", "robot"]
+    description = properties["robot"].pop("description")
+    properties["robot"] = {"anyOf": [_ref("RobotSpec"), {"enum": library.names()}], "description": description}
     plain = [name for index in catalogue().values() for name in (index.name, *index.aliases)]
     lists = [choice for name in ("indices", "task") for choice in properties[name]["anyOf"] if "items" in choice]
     lists[0]["items"] = {"enum": sorted({*plain, *(DYNAMIC_PREFIX + name for name in plain)})}

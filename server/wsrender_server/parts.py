@@ -6,6 +6,7 @@ from typing import Annotated, Protocol
 from fastapi import Depends, Request
 
 from wsrender_server.conversions import ConvertedFiles
+from wsrender_server.estimates import Estimates
 from wsrender_server.jobs.records import WorkerRecord
 from wsrender_server.jobs.store import JobStore
 from wsrender_server.metrics import Metrics
@@ -48,6 +49,7 @@ class Parts:
     settings: Settings
     jobs: Jobs
     side_process: SideProcess = field(default_factory=SideProcess)
+    estimates: Estimates = field(default_factory=Estimates)
     metrics: Metrics = field(default_factory=Metrics)
 
     def __post_init__(self):

@@ -116,10 +116,3 @@ def _needed(plot: str, files: dict[str, str]) -> set[str]:
     # The whole map only where there is no sample of it.
     samples = "sample.parquet" if "sample.parquet" in files else "map.parquet"
     return {samples, "skeleton.npy"}
-
-
-def estimated(document: dict[str, Any]) -> dict[str, float]:
-    """What a job will take, by its plan: samples, bytes, seconds. Raises what planning raises."""
-    from wsrender.run import plan
-
-    return dict(plan(document).estimate)

@@ -1,4 +1,4 @@
-"""One child process for heavy work on behalf of requests: estimates, conversions, slices, pictures.
+"""A child process for heavy work on behalf of requests: plans, conversions, slices, pictures.
 
 It keeps native code that reads strangers' models, and long holds of Python's lock, away from the process that answers.
 """
@@ -61,7 +61,7 @@ class SideProcess:
 
     def _open_pool(self) -> ProcessPool:
         with self._lock:
-            if self._pool is None:
+            if self._pool is None or not self._pool.active:
                 context = multiprocessing.get_context("spawn")
                 self._pool = ProcessPool(max_workers=1, max_tasks=TASKS_PER_CHILD, context=context)
             return self._pool

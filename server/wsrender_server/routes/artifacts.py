@@ -22,8 +22,8 @@ router = APIRouter(prefix="/v1", tags=["results"])
 _BINARY = {"schema": {"type": "string", "format": "binary"}}
 _ETAG = {"ETag": {"description": "SHA-256 of the content.", "schema": {"type": "string"}}}
 _FILE_RESPONSES: dict[int | str, dict[str, Any]] = {
-    200: {"description": "The file", "headers": _ETAG, "content": {"*/*": _BINARY}},
-    206: {"description": "The range asked for", "headers": _ETAG, "content": {"*/*": _BINARY}},
+    200: {"description": "The file, of its own media type", "headers": _ETAG, "content": {"*/*": {}}},
+    206: {"description": "The range asked for", "headers": _ETAG, "content": {"*/*": {}}},
     304: {"description": "The client has it already", "headers": _ETAG},
 }
 _INDEX = Query(max_length=256, description="Name of an index; the first by default.")

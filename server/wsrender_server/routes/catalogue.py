@@ -1,21 +1,21 @@
 """What can be asked for: analyses with their JSON Schema, library robots; models uploaded by users."""
 
+from functools import cache
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Depends, Path, Request, Response
 from pydantic import Field
 
-from wsrender.errors import ModelError
-from wsrender.robots import library, xml_source
+from wsrender.robots import library
 from wsrender.spec import ANALYSES, job_schema
 from wsrender_server.auth import Reader, Submitter
+from wsrender_server.model_text import check_model, decoded_model
 from wsrender_server.parts import Server
 from wsrender_server.problems import HttpProblem, problem_responses
 from wsrender_server.routes.files import has_it
 from wsrender_server.routes.job_views import Page, View
 
 XML_TYPES = ("application/xml", "text/xml")
-MODEL_TAGS = ("mujoco", "robot")
 
 router = APIRouter(prefix="/v1")
 
@@ -112,7 +112,7 @@ _MODEL_BODY = {
         "required": True,
         "content": {
             "application/xml": {
-                "schema": {"type": "object", "xml": {"name": "mujoco"}, "additionalProperties": False},
+                "schema": {"type": "string"},
                 "example": "<mujoco><worldbody/></mujoco>",
             }
         },
@@ -124,7 +124,7 @@ _MODEL_BODY = {
     "/models", tags=["models"], summary="Upload a robot model", status_code=201, response_model=ModelView,
     responses={
         201: {"headers": {"Location": {"description": "The model.", "schema": {"type": "string"}}}},
-        **problem_responses(401, 403, 413, 415, 422),
+        **problem_responses(401, 403, 409, 413, 415, 422),
     },
     openapi_extra=_MODEL_BODY,
 )  # fmt: skip
@@ -135,9 +135,7 @@ def upload_model(
 
     It is compiled by the jobs that name it. Meshes do not travel.
     """
-    root = xml_source.parse(text, "model")
-    if root.tag not in MODEL_TAGS:
-        raise ModelError("model", f"the root element is <{root.tag}>; <mujoco> or <robot> (URDF) is needed")
+    check_model("document", decoded_model(text))
     sha256 = server.store.put_model(principal.owner, text)
     response.headers["Location"] = f"/v1/models/{sha256}"
     return ModelView(sha256=sha256, bytes=len(text), href=f"/v1/models/{sha256}")
@@ -168,6 +166,7 @@ def get_model(
     return Response(content, headers=headers, media_type="application/xml")
 
 
+@cache
 def _analysis(name: str) -> AnalysisView:
     schema = job_schema(name)
     title = name.replace("_", " ").capitalize()

@@ -16,8 +16,8 @@ from wsrender_server.admission import Admission
 from wsrender_server.auth import Principal, Reader, Submitter
 from wsrender_server.job_body import JobBody, json_body, read_body, refused
 from wsrender_server.jobs.states import ENDED, JobState
+from wsrender_server.model_text import check_model, decoded_model
 from wsrender_server.parts import Parts, Server
-from wsrender_server.pictures import estimated
 from wsrender_server.problems import HttpProblem, problem_responses
 from wsrender_server.routes.job_views import JobId, JobView, Page, View, found, job_view
 
@@ -110,7 +110,7 @@ async def validate_job(server: Server, principal: Submitter, text: _Body) -> Est
     document = await run_in_threadpool(
         lambda: _with_model(server, principal, _admitted(server, principal, _read(text), text, "JobSubmission"))
     )
-    return Estimate(valid=True, **await server.side_process.run(estimated, document))
+    return Estimate(valid=True, **await server.estimates.of(document))
 
 
 @router.get(
@@ -231,8 +231,8 @@ def _with_model(server: Parts, principal: Principal, document: dict[str, Any]) -
     content = None if sha256 is None else server.store.get_model(principal.owner, sha256)
     if content is None:
         return document
-    text = content.decode("utf-8", "replace")
-    kind = "urdf" if "<robot" in text else "mjcf"
+    text = decoded_model(content)
+    kind = "urdf" if check_model("robot.model", text) == "robot" else "mjcf"
     return {**document, "robot": {**document["robot"], "model": None, kind: text}}
 
 

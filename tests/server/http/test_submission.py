@@ -1,0 +1,161 @@
+"""Submitting jobs: answers, caching, replay, quotas; wrong documents with pointers to what is wrong."""
+
+import json
+
+import pytest
+
+from tests.server.http.idle_server import DOCUMENT, problem_of
+from wsrender.spec import canonical_json, parse_job
+
+BOMB = '<!DOCTYPE m [<!ENTITY a "aaaaaaaaaa"><!ENTITY b "&a;&a;">]><mujoco>&b;</mujoco>'
+OUTSIDE = '<!DOCTYPE m [<!ENTITY a SYSTEM "file:///etc/passwd">]><mujoco>&a;</mujoco>'
+
+
+def test_a_new_job_is_queued(client, jobs):
+    response = client.post("/v1/jobs", json=DOCUMENT)
+    assert response.status_code == 202 and int(response.headers["retry-after"]) > 0
+    job = response.json()
+    assert response.headers["location"] == job["links"]["self"] == f"/v1/jobs/{job['id']}"
+    assert (job["state"], job["analysis"], job["attempt"], job["error"]) == ("queued", "workspace", 1, None)
+    assert jobs.store.get("local", job["id"]).document == json.loads(canonical_json(parse_job(DOCUMENT)))
+    assert client.get(job["links"]["self"]).json() == job
+
+
+@pytest.mark.parametrize("wrapped", [True, False])
+def test_options_stand_beside_the_document(client, wrapped):
+    options = {"labels": {"study": "wrist-1"}, "priority": 3, "timeout_s": 60}
+    body = {"job": DOCUMENT, **options} if wrapped else DOCUMENT | options
+    job = client.post("/v1/jobs", json=body).json()
+    assert {name: job[name] for name in options} == options
+
+
+def test_an_equal_job_is_answered_from_the_cache(client, submit, jobs, result_folder):
+    jobs.complete(submit()["id"], result_folder)
+    response = client.post("/v1/jobs", json=DOCUMENT | {"labels": {"again": "1"}})
+    assert response.status_code == 200 and response.json()["state"] == "succeeded"
+
+
+def test_a_key_makes_a_request_repeatable(client):
+    key = {"Idempotency-Key": "abc-1"}
+    first = client.post("/v1/jobs", json=DOCUMENT, headers=key)
+    again = client.post("/v1/jobs", json={"job": DOCUMENT}, headers=key)
+    assert (first.status_code, again.status_code) == (202, 200)
+    assert first.json()["id"] == again.json()["id"]
+    other = client.post("/v1/jobs", json=DOCUMENT | {"priority": 1}, headers=key)
+    problem_of(other, 422, "idempotency_key_reused")
+
+
+def test_a_key_at_work_is_refused(client):
+    client.app.state.keys_at_work["local", "abc-1"] = object()
+    problem = problem_of(client.post("/v1/jobs", json=DOCUMENT, headers={"Idempotency-Key": "abc-1"}), 409, "in_flight")
+    assert problem["retryable"]
+
+
+def test_an_odd_key_is_refused(client):
+    problem_of(client.post("/v1/jobs", json=DOCUMENT, headers={"Idempotency-Key": "x" * 256}), 422, "invalid_request")
+
+
+def test_more_unfinished_jobs_than_allowed(client, submit):
+    for seed in range(5):
+        submit(voxel_size_m=0.1 + seed)
+    response = client.post("/v1/jobs", json=DOCUMENT | {"voxel_size_m": 9.0})
+    assert problem_of(response, 429, "queue_full")["retryable"]
+    assert int(response.headers["retry-after"]) > 0
+
+
+@pytest.mark.parametrize(
+    ("body", "status", "code", "pointer"),
+    [
+        (b"{", 400, "malformed_json", "#"),
+        (b"\xff\xfe", 400, "malformed_json", "#"),
+        (b'{"analysis": NaN}', 400, "malformed_json", "#"),
+        (b'{"analysis": "workspace", "analysis": "workspace"}', 400, "malformed_json", "#"),
+        (b'{"analysis": "\\ud800"}', 400, "malformed_json", None),
+        (b"[" * 100_000, 400, "malformed_json", "#"),
+        (b"[" * 40 + b"]" * 40, 422, "invalid_document", "#"),
+        (b'{"a":' * 40 + b"1" + b"}" * 40, 422, "invalid_document", "#"),
+        (b"[]", 422, "invalid_document", "#"),
+        (b"{}", 422, "invalid_document", "#/analysis"),
+        (b'{"job": 1}', 422, "invalid_document", "#/job"),
+        (b'{"job": {}, "what": 1}', 422, "invalid_document", "#/what"),
+        (b'{"job": {"analysis": "workspace"}}', 422, "invalid_document", "#/job/robot"),
+        (b'{"analysis": "workspace", "robot": "scara", "labels": {"a b": "x"}}', 422, "invalid_document", "#/labels"),
+        (b'{"analysis": "workspace", "robot": "scara", "priority": 1e9}', 422, "invalid_document", "#/priority"),
+        (b'{"analysis": "workspace", "robot": "scara", "timeout_s": 1e999}', 422, "invalid_document", "#/timeout_s"),
+    ],
+)
+def test_wrong_bodies(client, body, status, code, pointer):
+    response = client.post("/v1/jobs", content=body, headers={"Content-Type": "application/json"})
+    problem = problem_of(response, status, code)
+    if pointer is not None:
+        assert problem["errors"][0]["pointer"].startswith(pointer)
+    assert not problem["retryable"]
+
+
+@pytest.mark.parametrize(
+    ("fields", "status", "code", "pointer"),
+    [
+        ({"robot": {"library": "../../etc/passwd"}}, 422, "invalid_document", "#/robot/library"),
+        ({"robot": {"path": "/etc/passwd"}}, 422, "invalid_document", "#/robot/path"),
+        ({"robot": {"model": "0" * 64}}, 404, "model_not_found", "#/robot/model"),
+        ({"robot": {"mjcf": BOMB}}, 422, "invalid_model", "#/robot/mjcf"),
+        ({"robot": {"urdf": OUTSIDE}}, 422, "invalid_model", "#/robot/urdf"),
+        ({"robot": {"mjcf": "<a>" * 300 + "</a>" * 300}}, 422, "invalid_model", "#/robot/mjcf"),
+        ({"robot": {"mjcf": "<mujoco>"}}, 409, "invalid_model", "#/robot/mjcf"),
+        ({"robot": {"mjcf": " "}}, 409, "invalid_model", "#/robot/mjcf"),
+        ({"robot": {"mjcf": "<other/>"}}, 409, "invalid_model", "#/robot/mjcf"),
+        ({"indices": ["beauty"]}, 422, "invalid_document", "#/indices"),
+        ({"sampling": {"method": "random", "count": 10**15}}, 409, "resource_limit", "#/sampling"),
+        ({"sampling": {"method": "random", "count": 10**16}}, 422, "invalid_document", "#/sampling/count"),
+        ({"sampling": {"method": "grid", "per_joint": 10**15}}, 409, "resource_limit", "#/sampling"),
+        ({"sampling": {"method": "grid", "per_joint": [10**15] * 5000}}, 409, "resource_limit", "#/sampling"),
+        ({"sampling": {"method": "sobol", "count": 101}, "max_samples": 100}, 409, "resource_limit", "#/sampling"),
+        ({"convention": "wsrender_code"}, 409, "invalid_document", "#/precision"),
+        ({"what": 1}, 422, "invalid_document", "#/what"),
+        ({"keep_map": "yes"}, 422, "invalid_document", "#/keep_map"),
+    ],
+)
+def test_wrong_documents(client, jobs, fields, status, code, pointer):
+    problem = problem_of(client.post("/v1/jobs", json=DOCUMENT | fields), status, code)
+    assert [error["pointer"] for error in problem["errors"]] == [pointer]
+    assert problem_of(client.post("/v1/jobs:validate", json=DOCUMENT | fields), status, code)["errors"]
+    assert jobs.store.list("local") == ([], None)
+
+
+def test_configurations_must_be_given(client):
+    document = {"analysis": "indices_at", "robot": {"library": "scara"}}
+    problem = problem_of(client.post("/v1/jobs", json=document), 422, "invalid_document")
+    assert problem["errors"][0]["pointer"] == "#/configurations"
+
+
+def test_only_json_is_read(client):
+    for media_type in ("text/plain", "application/x-www-form-urlencoded", ""):
+        response = client.post("/v1/jobs", content=json.dumps(DOCUMENT), headers={"Content-Type": media_type})
+        problem_of(response, 415, "unsupported_media_type")
+
+
+def test_a_large_body_is_refused_while_it_arrives(client):
+    sent = 0
+
+    def rows():
+        nonlocal sent
+        yield b'{"analysis": "indices_at", "robot": "scara", "configurations": ['
+        for _ in range(10_000):
+            sent += 1
+            yield b"[0, 0, 0, 0]," * 1000
+
+    response = client.post("/v1/jobs", content=rows(), headers={"Content-Type": "application/json"})
+    problem_of(response, 413, "body_too_large")
+    announced = client.post("/v1/jobs", content=b" " * 2_000_000, headers={"Content-Type": "application/json"})
+    problem_of(announced, 413, "body_too_large")
+
+
+def test_validation_plans_the_job(client, jobs):
+    response = client.post("/v1/jobs:validate", json=DOCUMENT)
+    while response.status_code == 409 and response.json()["code"] == "planning":
+        response = client.post("/v1/jobs:validate", json=DOCUMENT)
+    estimate = response.json()
+    assert response.status_code == 200 and estimate["valid"] and estimate["samples"] == 4**4
+    assert estimate["seconds"] > 0 and jobs.store.list("local") == ([], None)
+    problem = problem_of(client.post("/v1/jobs:validate", json=DOCUMENT | {"tip": "hand"}), 409, "frame_not_found")
+    assert "tool" in problem["choices"] and problem["errors"][0]["pointer"] == "#/tip"
