@@ -227,7 +227,7 @@ class ComputationStore:
 def _counts(session: Session, table: type[Job] | type[Computation]) -> dict[str, int]:
     """Number of rows by state."""
     rows = session.execute(select(table.state, func.count()).group_by(table.state))
-    return {state: count for state, count in rows}
+    return {row[0]: row[1] for row in rows}
 
 
 def _record(row: Computation) -> ComputationRecord:

@@ -8,7 +8,7 @@ from typing import Any
 
 from dask import config
 from distributed import Client, Future, LocalCluster
-from distributed.comm import CommClosedError
+from distributed.comm.core import CommClosedError
 
 from wsrender_server.jobs import worker as workers_side
 from wsrender_server.jobs.faults import EngineUnavailable
@@ -134,7 +134,8 @@ class Engine:
 
     def _ask(self, function: Callable[..., Any], *arguments: Any) -> dict[str, Any]:
         """Answers of all workers by address; of a worker that does not answer, the exception."""
-        return dict(self._connected().run(function, *arguments, on_error="return"))
+        answers: Any = self._connected().run(function, *arguments, on_error="return")
+        return answers
 
     def _connected(self) -> Client:
         client = self._client

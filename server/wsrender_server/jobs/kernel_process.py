@@ -1,5 +1,6 @@
 """The one process of a worker in which kernels run: persistent, watched, and killed where it must end."""
 
+import errno
 import multiprocessing
 import os
 import signal
@@ -115,7 +116,7 @@ class KernelProcess:
                 self._discard()
                 return self._death(task, getattr(fault, "exitcode", None), too_much)
             except BaseException as fault:
-                return _failure(fault)
+                return outcome_of_exception(fault)
 
     def _check_memory(self) -> bool:
         """Kill a process that holds more memory than allowed; whether it was killed."""
@@ -163,7 +164,7 @@ class KernelProcess:
             pool.join()
 
 
-def _failure(fault: BaseException) -> Outcome:
+def outcome_of_exception(fault: BaseException) -> Outcome:
     """An exception of a step as an outcome."""
     if isinstance(fault, steps.DamagedPartialError):
         return Outcome(Verdict.LOST, error=error("partial_damaged", str(fault), retryable=True))
@@ -176,7 +177,7 @@ def _failure(fault: BaseException) -> Outcome:
         return Outcome(Verdict.FAILED, error=error(fault.code, str(fault)))
     if isinstance(fault, MemoryError):
         return Outcome(Verdict.FAILED, error=error("out_of_memory", "the job needs more memory than there is"))
-    if isinstance(fault, OSError) and fault.errno in FULL:
+    if isinstance(fault, OSError) and (fault.errno in FULL or os.strerror(errno.ENOSPC) in str(fault)):
         message = "the server's disk is full; nothing computed so far is lost, retry the job later"
         return Outcome(Verdict.FAILED, error=error("disk_full", message, retryable=True))
     # What went wrong belongs into the server's log, not into an answer.

@@ -9,3 +9,8 @@ def canonical(**fields):
     """A canonical document of a small ``workspace`` job."""
     document = {"analysis": "workspace", "robot": "scara", "sampling": {"method": "grid", "per_joint": 3}}
     return json.loads(canonical_json(parse_job(document | fields)))
+
+
+def indices_at(**fields):
+    """A canonical document of an ``indices_at`` job."""
+    return json.loads(canonical_json(parse_job({"analysis": "indices_at", "robot": "scara"} | fields)))

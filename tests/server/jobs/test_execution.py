@@ -1,0 +1,234 @@
+"""Jobs on the embedded cluster: results, failures, cancel and timeout, with real processes."""
+
+import hashlib
+import os
+import signal
+import time
+from pathlib import Path
+
+import pytest
+from wsrender_server.jobs.service import JobService
+from wsrender_server.settings import Settings
+
+from tests.server.jobs.documents import canonical, indices_at
+from tests.server.jobs.waiting import (
+    PATIENCE_S,
+    comparable,
+    ended,
+    in_state,
+    local_document,
+    partial_times,
+    wait_until,
+)
+
+QUICK = {"sampling": {"method": "sobol", "count": 4096}, "voxel_size_m": 0.05, "device": "cpu"}
+LONG = {**QUICK, "robot": "ur5e", "sampling": {"method": "random", "count": 10**10, "seed": 1}, "voxel_size_m": 0.1}
+SHARDED = {**QUICK, "robot": "ur5e", "sampling": {"method": "sobol", "count": 2**20}, "voxel_size_m": 0.1}
+
+
+@pytest.fixture(scope="module")
+def service(tmp_path_factory):
+    settings = Settings(data_dir=tmp_path_factory.mktemp("data"), shard_samples=1 << 16, max_memory_bytes=2**30)
+    with JobService(settings) as service:
+        wait_until(lambda: service.worker_ready, what="a worker")
+        yield service
+
+
+@pytest.fixture(scope="module")
+def store(service):
+    return service.store
+
+
+def kernel_pid(service):
+    (pid,) = service.dispatcher.engine.kernel_pids().values()
+    return pid
+
+
+def long_job(service, **options):
+    """A job that would take minutes, in the middle of its samples."""
+    seed = time.monotonic_ns() % 2**31  # never from the cache
+    document = canonical(**{**LONG, "sampling": {**LONG["sampling"], "seed": seed}})
+    job = service.store.submit("ann", document, **options).job.id
+    wait_until(lambda: service.store.get("ann", job).progress.samples_done > 0, what="progress")
+    return job
+
+
+def quick_job(service):
+    """A new quick job, run to its end."""
+    seed = time.monotonic_ns() % 2**31
+    document = canonical(**{**QUICK, "sampling": {"method": "sobol", "count": 4096, "seed": seed}})
+    return ended(service.store, service.store.submit("ann", document).job.id)
+
+
+def test_a_result_equals_the_local_run(store, tmp_path):
+    job = ended(store, store.submit("ann", canonical(**SHARDED)).job.id)
+    assert job.state == "succeeded", job.error
+    document = store.result_document("ann", job.id)
+    assert comparable(document) == local_document(canonical(**SHARDED), tmp_path / "local")
+    for artifact in store.artifacts("ann", job.id):
+        content = store.artifact_path("ann", job.id, artifact.name).read_bytes()
+        assert (len(content), hashlib.sha256(content).hexdigest()) == (artifact.bytes, artifact.sha256)
+    assert {"result.json", "volume.vtkhdf", "plots/slices.png"} <= {a.name for a in store.artifacts("ann", job.id)}
+
+
+def test_a_kept_map_and_a_converging_job_equal_the_local_run(store, tmp_path):
+    converge = {"method": "converge", "tolerance": 1e3, "start": 2, "step": 1}
+    for number, fields in enumerate(
+        [
+            {"keep_map": True, "map_columns": ["configuration", "orientation"], "voxel_statistics": ["count", "mean"]},
+            {"sampling": converge},
+        ]
+    ):
+        document = canonical(**{**QUICK, **fields})
+        job = ended(store, store.submit("ann", document).job.id)
+        assert job.state == "succeeded", job.error
+        local = local_document(document, tmp_path / str(number))
+        assert comparable(store.result_document("ann", job.id)) == local
+
+
+def test_indices_at_equals_the_local_run(store, tmp_path):
+    configurations = [[0.1, 0.2, 0.05, 0.3], [0.4, 0.5, 0.02, 0.6]]
+    document = indices_at(configurations=configurations, device="cpu")
+    job = ended(store, store.submit("ann", document).job.id)
+    assert job.state == "succeeded", job.error
+    assert comparable(store.result_document("ann", job.id)) == local_document(document, tmp_path / "local")
+
+
+def test_an_uploaded_model_is_named_by_its_hash(store):
+    text = (
+        "<mujoco><worldbody><body><joint name='a' axis='0 0 1' range='-1 1' limited='true'/>"
+        "<geom size='.1'/><body pos='1 0 0'><joint name='b' axis='0 0 1' range='-1 1' limited='true'/>"
+        "<geom size='.1'/><site name='tool' pos='1 0 0'/></body></body></worldbody>"
+        "<compiler angle='radian'/></mujoco>"
+    )
+    sha256 = store.put_model("ann", text.encode())
+    job = ended(
+        store, store.submit("ann", canonical(**{**QUICK, "robot": {"model": sha256}, "task": ["x", "y"]})).job.id
+    )
+    assert job.state == "succeeded", job.error
+    assert store.result_document("ann", job.id)["job"]["robot"]["model"] == sha256
+
+
+@pytest.mark.parametrize(
+    ("fields", "code", "field"),
+    [
+        ({"tip": "no such frame"}, "frame_not_found", "tip"),
+        ({"indices": ["no_such_index"]}, "invalid_input", "indices"),
+        ({"voxel_size_m": 1e-5}, "resource_limit", "voxel_size_m"),
+        ({"device": "cuda:77"}, "invalid_input", "device"),
+    ],
+)
+def test_a_job_that_cannot_run_fails_with_its_reason(store, fields, code, field):
+    job = ended(store, store.submit("ann", canonical(**{**QUICK, **fields})).job.id)
+    assert job.state == "failed"
+    assert (job.error["code"], job.error["field"], job.error["retryable"]) == (code, field, False)
+
+
+def test_a_native_crash_fails_only_its_own_job(service):
+    job = long_job(service)
+    beside = service.store.submit("bob", canonical(**QUICK)).job.id
+    os.kill(kernel_pid(service), signal.SIGABRT)
+    assert ended(service.store, beside, "bob").state == "succeeded"
+    crashed = ended(service.store, job)
+    assert crashed.state == "failed" and crashed.error["code"] == "kernel_crash"
+
+
+def test_a_killed_kernel_process_is_no_fault_of_the_job(service, tmp_path):
+    document = canonical(**{**SHARDED, "sampling": {"method": "sobol", "count": 2**20, "seed": 7}})
+    job = service.store.submit("ann", document).job.id
+    kept = wait_until(lambda: partial_times(service.settings.data_dir), what="a partial result")
+    os.kill(kernel_pid(service), signal.SIGKILL)
+    again = []
+    while service.store.get("ann", job).state == "running":
+        now = partial_times(service.settings.data_dir)
+        again += [name for name in kept if name in now and now[name] != kept[name]]
+        time.sleep(0.02)
+    assert ended(service.store, job).state == "succeeded" and again == []
+    assert comparable(service.store.result_document("ann", job)) == local_document(document, tmp_path / "local")
+
+
+def test_too_much_memory_fails_only_its_own_job(service):
+    fields = {**LONG, "robot": "ur5e", "voxel_size_m": 0.0033, "voxel_statistics": ["count", "maximum", "minimum"]}
+    job = ended(service.store, service.store.submit("ann", canonical(**fields)).job.id)
+    assert job.state == "failed" and job.error["code"] == "out_of_memory", job.error
+    assert "GiB" in job.error["message"]
+    assert quick_job(service).state == "succeeded"
+
+
+def test_cancel_frees_the_slot_within_3_s(service):
+    job = long_job(service)
+    pid = kernel_pid(service)
+    started = time.monotonic()
+    service.store.cancel("ann", job)
+    in_state(service.store, job, "canceled", timeout=3)
+    assert time.monotonic() - started < 3 and not alive(pid)
+    assert quick_job(service).state == "succeeded"
+
+
+def test_a_timeout_is_enforced_within_1_s(service):
+    job = long_job(service, timeout_s=4)
+    pid = kernel_pid(service)
+    record = ended(service.store, job, timeout=10)
+    assert record.state == "timed_out" and record.error["code"] == "timed_out"
+    assert 4 <= (record.finished_at - record.started_at).total_seconds() < 5
+    wait_until(lambda: not alive(pid), timeout=1, what="the end of the kernel process")
+    assert not service.store.unfinished() or quick_job(service).state == "succeeded"
+
+
+def test_a_canceled_job_can_be_retried_and_keeps_its_partial_results(service):
+    document = canonical(**{**SHARDED, "sampling": {"method": "sobol", "count": 2**21, "seed": 8}})
+    job = service.store.submit("ann", document).job.id
+    wait_until(lambda: len(partial_times(service.settings.data_dir)) > 2, what="partial results")
+    service.store.cancel("ann", job)
+    in_state(service.store, job, "canceled", timeout=3)
+    kept = partial_times(service.settings.data_dir)
+    service.store.retry("ann", job)
+    again = []
+    while service.store.get("ann", job).state in ("queued", "running"):
+        now = partial_times(service.settings.data_dir)
+        again += [name for name in kept if name in now and now[name] != kept[name]]
+        time.sleep(0.02)
+    assert ended(service.store, job).state == "succeeded" and again == []
+
+
+def test_progress_grows_and_ends_at_one(service):
+    document = canonical(**{**SHARDED, "sampling": {"method": "sobol", "count": 2**22, "seed": 9}})
+    job = service.store.submit("ann", document).job.id
+    seen = []
+    while (record := service.store.get("ann", job)).state in ("queued", "running"):
+        if not seen or record.progress != seen[-1]:
+            seen.append(record.progress)
+        time.sleep(0.05)
+    fractions = [progress.fraction for progress in [*seen, record.progress]]
+    assert record.state == "succeeded" and fractions == sorted(fractions) and fractions[-1] == 1.0
+    under_way = [progress for progress in seen if progress.rate_per_s]
+    assert under_way and under_way[-1].samples_total == 2**22 and under_way[-1].eta_s is not None
+
+
+def test_an_urgent_job_goes_first(service):
+    running = long_job(service)
+    later = service.store.submit("ann", canonical(**{**QUICK, "precision": "float64"})).job.id
+    urgent = service.store.submit("ann", canonical(**{**QUICK, "task": "full"}), priority=5).job.id
+    time.sleep(0.5)
+    service.store.cancel("ann", running)
+    assert ended(service.store, urgent).finished_at < ended(service.store, later).finished_at
+
+
+def test_partial_results_and_scratch_do_not_stay(service):
+    assert quick_job(service).state == "succeeded"
+    computations = set(service.store.unfinished())
+    assert computations == set()
+    assert list((service.settings.data_dir / "scratch").iterdir()) == []
+
+
+def test_the_worker_is_described(service):
+    (worker,) = wait_until(service.workers, timeout=PATIENCE_S)
+    assert worker.target.startswith(("cpu:", "cuda:")) and "cpu" in worker.devices and not worker.busy
+
+
+def alive(pid):
+    try:
+        stat = Path(f"/proc/{pid}/stat").read_text()
+        return stat.rsplit(")", 1)[1].split()[0] != "Z"
+    except FileNotFoundError:
+        return False

@@ -1,0 +1,57 @@
+"""Waiting for jobs, and comparing what they give with a local run."""
+
+import json
+import time
+
+import wsrender as ws
+
+PATIENCE_S = 120.0  # machines are shared, and kernels may have to be compiled
+
+
+def wait_until(condition, timeout=PATIENCE_S, what="the condition"):
+    """The first true value of ``condition()``; the seconds that it took are for the caller to measure."""
+    ends = time.monotonic() + timeout
+    while not (value := condition()):
+        assert time.monotonic() < ends, f"{what} did not come true in {timeout} s"
+        time.sleep(0.02)
+    return value
+
+
+def ended(store, job, owner="ann", timeout=PATIENCE_S):
+    """The record of a job that has ended."""
+
+    def check():
+        record = store.get(owner, job)
+        return record if record.state not in ("queued", "running", "canceling") else None
+
+    return wait_until(check, timeout, f"the end of job {job}")
+
+
+def in_state(store, job, state, owner="ann", timeout=PATIENCE_S):
+    """Wait for a job to enter a state."""
+    return wait_until(lambda: store.get(owner, job).state == state, timeout, f"state {state}")
+
+
+def comparable(document):
+    """A result document without what may differ between two runs: seconds and host."""
+    copy = json.loads(json.dumps(document))
+    del copy["timing_s"], copy["provenance"]["host"]
+    return copy
+
+
+def local_document(document, folder):
+    """The result document of a local run, with the hashes of its artifacts."""
+    result = ws.execute(document)
+    result.save(folder)
+    return comparable(result.document)
+
+
+def partial_times(data_dir):
+    """Modification times of the partial results on disk, by file name [ns]."""
+    times = {}
+    for path in data_dir.glob("partials/*/[0-9]*.npz"):
+        try:
+            times[path.name] = path.stat().st_mtime_ns
+        except FileNotFoundError:
+            continue  # its computation ended a moment ago
+    return times
