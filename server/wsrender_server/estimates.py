@@ -7,7 +7,7 @@ from typing import Any
 from wsrender_server.problems import HttpProblem
 from wsrender_server.side_process import SideProcess
 
-PATIENCE_S = 8.0  # the first plan of a kind of robot compiles kernels
+PATIENCE_S = 5.0  # the first plan of a kind of robot compiles kernels
 TIMEOUT_S = 180.0
 MOST_KEPT = 64
 

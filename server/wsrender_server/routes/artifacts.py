@@ -28,7 +28,7 @@ _FILE_RESPONSES: dict[int | str, dict[str, Any]] = {
 }
 _INDEX = Query(max_length=256, description="Name of an index; the first by default.")
 _STATISTIC = Query(description="Statistic per voxel; the maximum by default, if it was kept.")
-_AT = Query(description="Coordinate of the plane [m]; the plane with most voxels by default.")
+_AT = Query(allow_inf_nan=False, description="Coordinate of the plane [m]; the plane with most voxels by default.")
 Statistic = Literal["count", "maximum", "mean", "minimum"]
 
 

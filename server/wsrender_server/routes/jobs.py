@@ -158,7 +158,9 @@ async def get_job(
     server: Server,
     principal: Reader,
     job_id: JobId,
-    wait: Annotated[float, Query(ge=0, le=LONGEST_WAIT_S, description="Wait so long for the job to end [s].")] = 0,
+    wait: Annotated[
+        float, Query(ge=0, le=LONGEST_WAIT_S, allow_inf_nan=False, description="Wait so long for the job to end [s].")
+    ] = 0,
     after: Annotated[
         int | None, Query(ge=0, le=2**31 - 1, description="Wait only until there is an event newer than this one.")
     ] = None,

@@ -1,0 +1,141 @@
+"""Keys, scopes, owners, and what listens where."""
+
+import pytest
+from fastapi.testclient import TestClient
+from wsrender_server.app import create_app
+from wsrender_server.auth import check_binding, read_key_file
+
+from tests.server.http.idle_server import DOCUMENT, HOST, problem_of
+from wsrender.errors import InputError
+
+PUBLIC = ("/healthz", "/readyz", "/v1/version", "/openapi.json", "/docs", "/docs/files/swagger-ui-bundle.js")
+PRIVATE = ("/v1/jobs", "/v1/analyses", "/v1/robots", "/v1/queue", "/v1/workers", "/metrics")
+
+
+@pytest.fixture
+def keys(jobs):
+    """Secrets by name."""
+    names = {"ann": ("read", "submit"), "bob": ("read", "submit"), "eve": ("read",), "root": ("admin",)}
+    return {name: jobs.store.create_key(name, scopes)[1] for name, scopes in names.items()}
+
+
+@pytest.fixture
+def keyed(keys, settings, jobs):
+    """A server that asks for keys."""
+    with TestClient(create_app(settings, jobs), base_url="http://lab:8000") as client:
+        yield client
+
+
+def bearer(secret):
+    return {"Authorization": f"Bearer {secret}"}
+
+
+def test_without_a_key_nothing_private(keyed, keys):
+    for path in PRIVATE:
+        for headers in ({}, bearer("wrong"), bearer(""), {"Authorization": "Basic YTpi"}, bearer("é" * 40)):
+            response = keyed.get(path, headers={name: value.encode() for name, value in headers.items()})
+            problem_of(response, 401, "unauthorized")
+            assert response.headers["www-authenticate"].startswith("Bearer")
+        assert keyed.get(path, headers=bearer(keys["eve"])).status_code == 200
+    for path in PUBLIC:
+        assert keyed.get(path).status_code == 200
+
+
+def test_scopes(keyed, keys):
+    problem_of(keyed.post("/v1/jobs", json=DOCUMENT, headers=bearer(keys["eve"])), 403, "insufficient_scope")
+    model = {"Content-Type": "application/xml"}
+    refused = keyed.post("/v1/models", content="<mujoco/>", headers=model | bearer(keys["eve"]))
+    problem_of(refused, 403, "insufficient_scope")
+    assert keyed.post("/v1/jobs", json=DOCUMENT, headers=bearer(keys["root"])).status_code == 202
+
+
+def test_a_revoked_key_is_refused_at_once(keyed, keys, jobs):
+    assert keyed.get("/v1/jobs", headers=bearer(keys["eve"])).status_code == 200
+    (key,) = [key for key in jobs.store.list_keys() if key.name == "eve"]
+    jobs.store.revoke_key(key.id)
+    problem_of(keyed.get("/v1/jobs", headers=bearer(keys["eve"])), 401, "unauthorized")
+
+
+def test_owners_see_only_their_own(keyed, keys, jobs, result_folder):
+    ann, bob = bearer(keys["ann"]), bearer(keys["bob"])
+    key = {"Idempotency-Key": "same"}
+    mine = keyed.post("/v1/jobs", json=DOCUMENT, headers=ann | key).json()
+    jobs.complete(mine["id"], result_folder)
+    theirs = keyed.post("/v1/jobs", json=DOCUMENT, headers=bob | key)
+    assert theirs.status_code == 202 and theirs.json()["id"] != mine["id"]
+    path = f"/v1/jobs/{mine['id']}"
+    unknown = keyed.get(f"/v1/jobs/{'0' * 32}", headers=bob).json()
+    for method, rest in (
+        ("GET", ""), ("DELETE", ""), ("POST", ":cancel"), ("POST", ":retry"), ("GET", "/events"), ("GET", "/result"),
+        ("GET", "/artifacts"), ("GET", "/artifacts/result.json"), ("GET", "/volume/slice"), ("GET", "/plots/robot"),
+    ):  # fmt: skip
+        problem = problem_of(keyed.request(method, path + rest, headers=bob), 404, "job_not_found")
+        assert problem["detail"] == unknown["detail"]
+    assert [job["id"] for job in keyed.get("/v1/jobs", headers=bob).json()["items"]] == [theirs.json()["id"]]
+    assert keyed.get(path + "/result", headers=ann).status_code == 200
+
+
+def test_models_belong_to_their_owner(keyed, keys):
+    ann, bob = bearer(keys["ann"]), bearer(keys["bob"])
+    model = keyed.post("/v1/models", content="<mujoco/>", headers=ann | {"Content-Type": "application/xml"}).json()
+    assert keyed.get(model["href"], headers=ann).text == "<mujoco/>"
+    problem_of(keyed.get(model["href"], headers=bob), 404, "model_not_found")
+    job = DOCUMENT | {"robot": {"model": model["sha256"]}}
+    problem_of(keyed.post("/v1/jobs", json=job, headers=bob), 404, "model_not_found")
+    assert keyed.post("/v1/jobs", json=job, headers=ann).status_code == 202
+
+
+def test_openapi_asks_for_a_key_where_the_server_does(keyed, client):
+    secured = keyed.get("/openapi.json").json()
+    assert secured["paths"]["/v1/jobs"]["post"]["security"] and secured["components"]["securitySchemes"]
+    assert "security" not in secured["paths"]["/healthz"]["get"]
+
+
+def test_openapi_without_keys(client):
+    document = client.get("/openapi.json").json()
+    assert "securitySchemes" not in document["components"]
+    assert "security" not in document["paths"]["/v1/jobs"]["post"]
+
+
+def test_without_keys_only_this_machine_by_name(client):
+    for host in ("evil.example", "127.0.0.1.evil.example", "192.168.1.2", "localhost.evil.example"):
+        problem_of(client.get("/v1/jobs", headers={"Host": host}), 403, "wrong_host")
+    for host in ("localhost:8000", "127.0.0.1:1", "[::1]:8000", "127.9.9.9"):
+        assert client.get("/v1/jobs", headers={"Host": host}).status_code == 200
+
+
+@pytest.mark.parametrize("host", ["0.0.0.0", "::", "192.168.1.2", "lab", "", "127.0.0.1.nip.io"])
+def test_other_addresses_need_a_key(host, settings, jobs, tmp_path):
+    check_binding(host, has_keys=True)
+    with pytest.raises(InputError, match="no API key"):
+        check_binding(host, has_keys=False)
+    with pytest.raises(InputError, match="host"):
+        create_app(settings.model_copy(update={"host": host}), jobs)
+
+
+@pytest.mark.parametrize("host", ["127.0.0.1", "127.0.0.2", "::1", "localhost", "LOCALHOST"])
+def test_loopback_needs_none(host):
+    check_binding(host, has_keys=False)
+
+
+def test_a_key_file(settings, jobs, tmp_path):
+    path = tmp_path / "keys"
+    path.write_text(
+        "# keys of the lab\nfirst-secret-123456 ann submit\nsecond-secret-12345 ann\nthird-secret-123456 eve read\n\n"
+    )
+    app = create_app(settings.model_copy(update={"api_key_file": path, "host": "0.0.0.0"}), jobs)
+    with TestClient(app, base_url=HOST) as client:
+        problem_of(client.get("/v1/jobs"), 401)
+        job = client.post("/v1/jobs", json=DOCUMENT, headers=bearer("first-secret-123456")).json()
+        assert client.get(job["links"]["self"], headers=bearer("second-secret-12345")).status_code == 200
+        problem_of(client.get(job["links"]["self"], headers=bearer("third-secret-123456")), 404)
+
+
+@pytest.mark.parametrize("text", ["", "# nothing\n", "short\n", "long-enough-secret ann everything\n", "a b c d\n"])
+def test_wrong_key_files(text, tmp_path):
+    path = tmp_path / "keys"
+    path.write_text(text)
+    with pytest.raises(InputError, match="api_key_file"):
+        read_key_file(path)
+    with pytest.raises(InputError, match="cannot be read"):
+        read_key_file(tmp_path / "missing")

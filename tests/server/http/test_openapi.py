@@ -1,0 +1,96 @@
+"""The OpenAPI document: complete, and kept to under fuzzing with all of schemathesis' checks."""
+
+import json
+import subprocess
+import sys
+import threading
+import time
+
+import pytest
+import uvicorn
+from wsrender_server.app import create_app
+from wsrender_server.job_body import EXAMPLES, body_schemas
+
+from tests.server.http.idle_server import DOCUMENT
+from wsrender.errors import DocumentError
+from wsrender.spec import parse_job
+
+
+@pytest.fixture
+def document(client):
+    return client.get("/openapi.json").json()
+
+
+def test_every_operation_is_described(document):
+    operations = [(p, m, o) for p, methods in document["paths"].items() for m, o in methods.items()]
+    names = [operation["operationId"] for _, _, operation in operations]
+    assert len(set(names)) == len(names) and {"submit_job", "get_job", "follow_job", "get_slice"} <= set(names)
+    for path, method, operation in operations:
+        assert operation["summary"] and operation["description"] and operation["tags"], (path, method)
+        for status, response in operation["responses"].items():
+            if int(status) >= 400:
+                schema = response["content"]["application/problem+json"]["schema"]
+                assert schema == {"$ref": "#/components/schemas/Problem"}
+
+
+def test_every_reference_is_there(document):
+    text = json.dumps(document)
+    names = {part.partition('"')[0] for part in text.split('"#/components/schemas/')[1:]}
+    assert names <= set(document["components"]["schemas"])
+
+
+def test_the_published_schema_is_that_of_the_documents():
+    jsonschema = pytest.importorskip("jsonschema")
+    schema = {"$ref": "#/components/schemas/JobSubmission", "components": {"schemas": body_schemas()}}
+    validator = jsonschema.Draft202012Validator(schema)
+    dh = {"convention": "modified", "rows": [{"a": 0.1, "limits": [-1, 1]}]}
+    robots = ["scara", {"library": "scara"}, {"dh": dh}, {"mjcf": "<mujoco/>"}, {"model": "0" * 64}]
+    robots += [{}, {"library": "nope"}, {"library": "scara", "dh": dh}, {"mjcf": ""}, {"model": "x"}]
+    bodies = [DOCUMENT | {"robot": robot} for robot in robots]
+    bodies += [DOCUMENT | {"indices": indices} for indices in (["yoshikawa"], ["dynamic_isotropy"], "all", [], ["x"])]
+    bodies += [DOCUMENT | {"task": task} for task in (["x", "rz"], ["x", "x"], [], "full")]
+    bodies += EXAMPLES
+    for body in bodies:
+        try:
+            job = parse_job(body.get("job", body))
+            allowed = job.robot.library in (None, "scara", "phantom_omni") and "x" not in job.indices
+        except DocumentError:
+            allowed = False
+        assert validator.is_valid(body) == allowed, body
+
+
+@pytest.fixture
+def url(settings, jobs, result_folder):
+    """A server on a socket; every job that is queued succeeds a moment later."""
+    settings = settings.model_copy(update={"max_queued_per_owner": 1000})
+    config = uvicorn.Config(create_app(settings, jobs), port=0, log_config=None, access_log=False)
+    server = uvicorn.Server(config)
+    thread = threading.Thread(target=server.run)
+    thread.start()
+    while not server.started:
+        time.sleep(0.01)
+    ended = threading.Event()
+    finisher = threading.Thread(target=_finish_all, args=(jobs, result_folder, ended))
+    finisher.start()
+    yield f"http://127.0.0.1:{server.servers[0].sockets[0].getsockname()[1]}"
+    ended.set()
+    finisher.join()
+    server.should_exit = True
+    thread.join()
+
+
+def _finish_all(jobs, folder, ended):
+    while not ended.wait(0.2):
+        for job in jobs.store.list("local", state="queued", limit=20)[0]:
+            jobs.complete(job.id, folder)
+
+
+def test_fuzzing_finds_nothing(url, tmp_path):
+    command = [
+        sys.executable, "-m", "schemathesis.cli", "run", f"{url}/openapi.json", "--checks", "all", "--seed", "7",
+        "--max-examples", "4", "--max-time", "60", "--request-timeout", "60", "--max-response-time", "60", "--no-color",
+        "--suppress-health-check", "all",
+    ]  # fmt: skip
+    report = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=240)
+    assert report.returncode == 0, report.stdout[-6000:] + report.stderr[-2000:]
+    assert "Tested" in report.stdout

@@ -1,0 +1,164 @@
+"""Operation: health, readiness, metrics, logs, documentation, catalogue, and answers to faults."""
+
+import errno
+import re
+
+import pytest
+import structlog
+from wsrender_server.jobs.faults import DiskFull, StoreUnavailable
+
+from tests.server.http.idle_server import DOCUMENT, problem_of
+from wsrender import __version__
+from wsrender.robots import library
+from wsrender.spec import job_schema
+
+
+def test_health_and_version(client):
+    assert client.get("/healthz").json() == {"status": "ok"}
+    assert client.get("/v1/version").json()["wsrender"] == __version__
+
+
+def test_readiness_names_what_is_missing(client, jobs, monkeypatch):
+    assert set(client.get("/readyz").json()["checks"].values()) == {"ok"}
+    jobs.scheduler_ready = jobs.worker_ready = False
+    monkeypatch.setattr(jobs.store.files, "reserve_bytes", 2**62)
+    monkeypatch.setattr(jobs.store, "ping", _raises(StoreUnavailable("the database is locked")))
+    problem = problem_of(client.get("/readyz"), 503, "not_ready")
+    assert "ok" not in problem["checks"].values()
+    assert set(problem["checks"]) == {"database", "scheduler", "workers", "disk"}
+    assert client.get("/healthz").status_code == 200
+
+
+@pytest.mark.parametrize(
+    ("error", "code"),
+    [
+        (StoreUnavailable("the database is locked"), "database_unavailable"),
+        (DiskFull("1 MiB is free"), "disk_full"),
+        (OSError(errno.ENOSPC, "No space left on device"), "disk_full"),
+    ],
+)
+def test_a_full_disk_or_locked_database_loses_nothing(client, jobs, monkeypatch, error, code):
+    with monkeypatch.context() as patch:
+        patch.setattr(jobs.store, "submit", _raises(error))
+        response = client.post("/v1/jobs", json=DOCUMENT)
+    assert problem_of(response, 503, code)["retryable"] and int(response.headers["retry-after"]) > 0
+    assert client.post("/v1/jobs", json=DOCUMENT).status_code == 202
+
+
+def test_an_unforeseen_fault_is_logged_and_says_nothing(client, jobs, monkeypatch):
+    monkeypatch.setattr(jobs.store, "list", _raises(RuntimeError("secret detail")))
+    with structlog.testing.capture_logs() as logs:
+        response = client.get("/v1/jobs", headers={"X-Request-Id": "my-request-1"})
+    problem = problem_of(response, 500, "internal_error")
+    assert "secret" not in response.text and problem["request_id"] == "my-request-1"
+    assert any(entry["event"] == "request failed" for entry in logs)
+    (line,) = [entry for entry in logs if entry["event"] == "request"]
+    assert (line["status"], line["path"], line["owner"]) == (500, "/v1/jobs", "local")
+
+
+def test_requests_are_logged_with_their_job(client, submit):
+    with structlog.testing.capture_logs() as logs:
+        job = submit()
+        client.get(f"/v1/jobs/{job['id']}")
+    assert [entry["job_id"] for entry in logs if entry["event"] == "request"] == [job["id"]] * 2
+
+
+def test_request_ids_are_plain(client):
+    given = client.get("/healthz", headers={"X-Request-Id": "abc-12345"}).headers["x-request-id"]
+    assert given == "abc-12345"
+    for odd in ("x", "a b c d e f g h", "<script>alert(1)</script>", "a" * 100):
+        made = client.get("/healthz", headers={"X-Request-Id": odd}).headers["x-request-id"]
+        assert re.fullmatch("[0-9a-f]{16}", made)
+
+
+def test_metrics(client, submit):
+    submit()
+    text = client.get("/metrics").text
+    assert 'wsrender_jobs{state="queued"} 1.0' in text and 'wsrender_workers{activity="idle"} 1.0' in text
+    assert 'wsrender_submissions_total{outcome="queued"} 1.0' in text
+    assert 'wsrender_http_requests_total{method="POST",route="/v1/jobs",status="202"} 1.0' in text
+    client.get("/secret-path-1")
+    client.get(f"/v1/jobs/{'0' * 32}")
+    text = client.get("/metrics").text
+    assert "secret-path" not in text and 'route="/v1/jobs/{job_id}"' in text and "0" * 32 not in text
+
+
+def test_workers(client):
+    (worker,) = client.get("/v1/workers").json()["items"]
+    assert worker["busy"] is False and worker["target"]
+
+
+def test_methods_that_are_not_there(client, submit):
+    path = f"/v1/jobs/{submit()['id']}"
+    for method, where, allowed in (
+        ("PUT", "/v1/jobs", "GET, POST"), ("OPTIONS", "/v1/jobs", "GET, POST"), ("PATCH", path, "DELETE, GET"),
+        ("GET", f"{path}:cancel", "POST"), ("POST", f"{path}/result", "GET"), ("POST", "/readyz", "GET"),
+        ("GET", "/v1/jobs:validate", "POST"), ("DELETE", f"{path}/artifacts/result.json", "GET, HEAD"),
+    ):  # fmt: skip
+        response = client.request(method, where)
+        problem_of(response, 405, "method_not_allowed")
+        assert response.headers["allow"] == allowed
+    problem_of(client.get("/v1/nothing"), 404, "not_found")
+    problem_of(client.get("/docs/files/../../app.py"), 404)
+    problem_of(client.get("/docs/files/%2e%2e/%2e%2e/app.py"), 404)
+
+
+def test_documentation_needs_no_internet(client):
+    page = client.get("/docs").text
+    files = re.findall(r'(?:href|src)="([^"]+)"', page)
+    assert len(files) == 3
+    for file in files:
+        assert not file.startswith(("http", "//"))
+        assert client.get(f"/{file}").status_code == 200
+    assert client.get("/", follow_redirects=False).headers["location"] == "docs"
+
+
+def test_analyses_carry_their_schema(client):
+    items = {item["id"]: item for item in client.get("/v1/analyses").json()["items"]}
+    assert set(items) == {"workspace", "indices_at"}
+    for name, item in items.items():
+        assert item["schema"] == job_schema(name) and item["description"]
+        assert client.get(f"/v1/analyses/{name}").json() == item
+    problem_of(client.get("/v1/analyses/nothing"), 404)
+
+
+def test_robots_are_those_of_the_library(client):
+    items = client.get("/v1/robots").json()["items"]
+    assert [item["name"] for item in items] == library.names()
+    assert all(item["joints"] > 0 and item["description"] and item["source"] for item in items)
+
+
+@pytest.mark.parametrize(
+    ("text", "status", "code"),
+    [
+        (b"<!DOCTYPE a [<!ENTITY b 'c'>]><mujoco>&b;</mujoco>", 422, "invalid_model"),
+        (b"<a>" * 300, 422, "invalid_model"),
+        (b"<mujoco>", 409, "invalid_model"),
+        (b"", 409, "invalid_model"),
+        (b"\x00\xff\xfe", 409, "invalid_model"),
+        (b"PK\x03\x04zip", 409, "invalid_model"),
+        (b"<html/>", 409, "invalid_model"),
+    ],
+)
+def test_models_that_are_none(client, text, status, code):
+    problem_of(client.post("/v1/models", content=text, headers={"Content-Type": "application/xml"}), status, code)
+
+
+def test_models(client, submit):
+    text = "<mujoco><!-- é --><worldbody/></mujoco>".encode()
+    response = client.post("/v1/models", content=text, headers={"Content-Type": "application/xml; charset=utf-8"})
+    model = response.json()
+    assert response.status_code == 201 and response.headers["location"] == model["href"]
+    got = client.get(model["href"])
+    assert got.content == text and got.headers["etag"] == f'"{model["sha256"]}"'
+    assert client.get(model["href"], headers={"If-None-Match": got.headers["etag"]}).status_code == 304
+    assert submit(robot={"model": model["sha256"]})["state"] == "queued"
+    problem_of(client.post("/v1/models", content=text), 415)
+    problem_of(client.get(f"/v1/models/{'0' * 64}"), 404, "model_not_found")
+
+
+def _raises(error):
+    def raising(*_, **__):
+        raise error
+
+    return raising

@@ -1,0 +1,189 @@
+"""Results over HTTP: document, files with ranges and entity tags, conversions, slices, plots."""
+
+import hashlib
+import io
+
+import numpy as np
+import pytest
+
+from tests.server.http.idle_server import problem_of
+from wsrender import export
+
+
+@pytest.fixture
+def volume(result):
+    return result.volume
+
+
+def test_the_document_is_that_of_the_run(client, finished, result):
+    assert client.get(f"{finished}/result").json() == result.document
+
+
+def test_no_result_yet(client, submit):
+    path = f"/v1/jobs/{submit()['id']}"
+    for rest in ("/result", "/artifacts", "/artifacts/result.json", "/volume/slice", "/plots/robot"):
+        assert problem_of(client.get(path + rest), 409, "no_result")["retryable"]
+
+
+def test_every_file_is_listed_and_arrives_unchanged(client, finished, result_folder):
+    items = client.get(f"{finished}/artifacts").json()["items"]
+    names = {path.relative_to(result_folder).as_posix() for path in result_folder.rglob("*") if path.is_file()}
+    assert {item["name"] for item in items} == names
+    for item in items:
+        response = client.get(item["href"])
+        assert response.content == (result_folder / item["name"]).read_bytes()
+        assert hashlib.sha256(response.content).hexdigest() == item["sha256"]
+        assert response.headers["etag"] == f'"{item["sha256"]}"'
+        assert response.headers["content-type"].startswith(item["media_type"])
+        assert response.headers["content-disposition"].startswith("attachment")
+        head = client.head(item["href"])
+        assert (head.content, head.headers["content-length"]) == (b"", str(item["bytes"]))
+
+
+@pytest.mark.parametrize(
+    ("asked", "expected"),
+    [
+        ("bytes=0-9", slice(0, 10)),
+        ("bytes=10-", slice(10, None)),
+        ("bytes=-5", slice(-5, None)),
+        ("bytes=5-999999999", slice(5, None)),
+        ("bytes=0-1,4-5", None),
+        ("bytes=9-5", None),
+        ("lines=1-2", None),
+        ("bytes=" + "9" * 100 + "-", None),
+        ("nonsense", None),
+    ],
+)
+def test_ranges(client, finished, result_folder, asked, expected):
+    content = (result_folder / "map.parquet").read_bytes()
+    response = client.get(f"{finished}/artifacts/map.parquet", headers={"Range": asked})
+    assert response.status_code == (200 if expected is None else 206)
+    assert response.content == (content if expected is None else content[expected])
+    if expected is not None:
+        start, stop, _ = expected.indices(len(content))
+        assert response.headers["content-range"] == f"bytes {start}-{stop - 1}/{len(content)}"
+
+
+def test_a_range_beyond_the_file(client, finished, result_folder):
+    size = (result_folder / "map.parquet").stat().st_size
+    for asked in (f"bytes={size}-", "bytes=-0"):
+        response = client.get(f"{finished}/artifacts/map.parquet", headers={"Range": asked})
+        problem_of(response, 416, "range_not_satisfiable")
+        assert response.headers["content-range"] == f"bytes */{size}"
+
+
+def test_a_download_goes_on_only_with_the_same_file(client, finished):
+    path = f"{finished}/artifacts/map.parquet"
+    etag = client.get(path).headers["etag"]
+    assert client.get(path, headers={"Range": "bytes=5-", "If-Range": etag}).status_code == 206
+    assert client.get(path, headers={"Range": "bytes=5-", "If-Range": '"other"'}).status_code == 200
+    for tags in (etag, f'"x", {etag}', f"W/{etag}", "*"):
+        response = client.get(path, headers={"If-None-Match": tags})
+        assert (response.status_code, response.content, response.headers["etag"]) == (304, b"", etag)
+    assert client.get(path, headers={"If-None-Match": '"other"'}).status_code == 200
+
+
+@pytest.mark.parametrize(
+    "name", ["nope", "../result.json", "..%2f..%2fwsrender.db", "plots", "%00", "a/" * 500, "C:\\x"]
+)
+def test_names_that_are_no_files(client, finished, name):
+    problem_of(client.get(f"{finished}/artifacts/{name}"), 404)
+
+
+def test_converted_files_hold_the_same(client, finished, result, tmp_path):
+    def fetched(name, format):
+        response = client.get(f"{finished}/artifacts/{name}", params={"format": format})
+        assert response.status_code == 200, response.text
+        assert response.headers["etag"] == f'"{hashlib.sha256(response.content).hexdigest()}"'
+        path = tmp_path / f"{name}.{format}"
+        path.write_bytes(response.content)
+        return path
+
+    samples = export.read_map_npz(fetched("map.parquet", "npz"))
+    np.testing.assert_array_equal(samples.position, result.map.position)
+    np.testing.assert_array_equal(samples.indices["manipulability"], result.map.indices["manipulability"])
+    assert export.read_volume_npz(fetched("volume.vtkhdf", "npz")).count.sum() == 4**4
+    assert fetched("sample.parquet", "csv").read_text().splitlines()[0].endswith('"joint4","manipulability"')
+    assert fetched("volume.vtkhdf", "mat").read_bytes().startswith(b"MATLAB")
+    assert len(fetched("surface.glb", "stl").read_bytes()) > 84
+    again = client.get(f"{finished}/artifacts/map.parquet", params={"format": "npz"}, headers={"Range": "bytes=0-3"})
+    assert (again.status_code, again.content) == (206, b"PK\x03\x04")
+    problem_of(client.get(f"{finished}/artifacts/map.parquet", params={"format": "vti"}), 404, "format_not_available")
+    problem_of(client.get(f"{finished}/artifacts/map.parquet", params={"format": "exe"}), 422, "invalid_request")
+
+
+def test_vti_is_what_vtk_reads(client, finished, volume, tmp_path):
+    vtk = pytest.importorskip("vtk")
+    from vtk.util.numpy_support import vtk_to_numpy
+
+    path = tmp_path / "volume.vti"
+    path.write_bytes(client.get(f"{finished}/artifacts/volume.vtkhdf", params={"format": "vti"}).content)
+    reader = vtk.vtkXMLImageDataReader()
+    reader.SetFileName(str(path))
+    reader.Update()
+    image = reader.GetOutput()
+    np.testing.assert_allclose(image.GetOrigin(), volume.origin_m, rtol=1e-15)
+    assert image.GetSpacing() == (volume.voxel_size_m,) * 3
+    cells = image.GetCellData()
+    shape = volume.count.shape[::-1]
+    np.testing.assert_array_equal(vtk_to_numpy(cells.GetArray("count")).reshape(shape).T, volume.count)
+    values = vtk_to_numpy(cells.GetArray("maximum_manipulability")).reshape(shape).T
+    np.testing.assert_array_equal(values, volume.statistics["maximum"]["manipulability"])
+
+
+@pytest.mark.parametrize("axis", "xyz")
+def test_slices_are_planes_of_the_volume(client, finished, volume, axis):
+    normal = "xyz".index(axis)
+    layer = volume.count.shape[normal] // 2
+    at = float(volume.centers(normal)[layer])
+    response = client.get(f"{finished}/volume/slice", params={"axis": axis, "at": at})
+    assert response.headers["content-type"] == "application/x-npy"
+    plane = np.load(io.BytesIO(response.content), allow_pickle=False)
+    expected = volume.statistics["maximum"]["manipulability"].take(layer, normal).astype(np.float32)
+    np.testing.assert_array_equal(plane, expected)
+    across = [k for k in range(3) if k != normal]
+    origin = [float(value) for value in response.headers["x-origin-m"].split(",")]
+    np.testing.assert_allclose(origin, volume.origin_m[across], atol=1e-12)
+    assert float(response.headers["x-at-m"]) == pytest.approx(at)
+    accept = {"Accept": "application/octet-stream"}
+    raw = client.get(f"{finished}/volume/slice", params={"axis": axis, "at": at, "statistic": "count"}, headers=accept)
+    shape = tuple(int(value) for value in raw.headers["x-shape"].split(","))
+    counts = volume.count.take(layer, normal)
+    np.testing.assert_array_equal(np.nan_to_num(np.frombuffer(raw.content, "<f4").reshape(shape)), counts)
+
+
+def test_slices_of_what_is_not_there(client, finished):
+    path = f"{finished}/volume/slice"
+    for query in ({"index": "isotropy"}, {"statistic": "mean"}, {"at": 1e6}, {"at": 1e300}):
+        problem_of(client.get(path, params=query), 404, "invalid_input")
+    for query in ({"axis": "w"}, {"at": "here"}, {"at": "nan"}, {"at": "inf"}):
+        problem_of(client.get(path, params=query), 422, "invalid_request")
+    problem_of(client.get(path, headers={"Accept": "text/html"}), 406, "not_acceptable")
+
+
+def test_pictures(client, finished):
+    png = b"\x89PNG\r\n"
+    picture = client.get(f"{finished}/volume/slice", headers={"Accept": "text/html;q=0.5, image/png"})
+    assert picture.headers["content-type"] == "image/png" and picture.content.startswith(png)
+    for plot in ("robot", "slices", "slice"):
+        assert client.get(f"{finished}/plots/{plot}").content.startswith(png)
+    svg = client.get(f"{finished}/plots/histogram", params={"format": "svg"})
+    assert svg.headers["content-type"].startswith("image/svg+xml") and b"<svg" in svg.content
+    problem_of(client.get(f"{finished}/plots/histogram", params={"index": "isotropy"}), 404, "invalid_input")
+    problem_of(client.get(f"{finished}/plots/sunset"), 422, "invalid_request")
+
+
+def test_a_result_without_a_volume(client, jobs, tmp_path):
+    from wsrender.run import execute
+
+    document = {
+        "analysis": "indices_at",
+        "robot": {"library": "scara"},
+        "configurations": [[0, 0, 0, 0]],
+        "device": "cpu",
+    }
+    execute(document).save(tmp_path / "out")
+    job = client.post("/v1/jobs", json=document).json()
+    jobs.complete(job["id"], tmp_path / "out")
+    problem_of(client.get(f"/v1/jobs/{job['id']}/volume/slice"), 404, "artifact_not_found")
+    problem_of(client.get(f"/v1/jobs/{job['id']}/plots/robot"), 404, "invalid_input")
