@@ -11,15 +11,17 @@ PATIENCE_S = 5.0  # the first plan of a kind of robot compiles kernels
 TIMEOUT_S = 180.0
 MOST_KEPT = 64
 
+Estimated = dict[str, float | None]
+
 
 class Estimates:
     """Plans documents; what takes longer than a request should goes on, and answers when it is asked for again."""
 
     def __init__(self):
         self._process = SideProcess()
-        self._tasks: dict[str, asyncio.Task[dict[str, float]]] = {}
+        self._tasks: dict[str, asyncio.Task[Estimated]] = {}
 
-    async def of(self, document: dict[str, Any]) -> dict[str, float]:
+    async def of(self, document: dict[str, Any]) -> Estimated:
         """Samples, bytes and seconds of a canonical document whose robot has a library name, a table or text.
 
         Raises HttpProblem 409 for whatever planning refuses, and, retryable, while planning goes on.
@@ -46,8 +48,10 @@ class Estimates:
             task.add_done_callback(lambda done: done.cancelled() or done.exception())
 
 
-def planned(document: dict[str, Any]) -> dict[str, float]:
-    """The estimate of a plan. Raises what planning raises."""
+def planned(document: dict[str, Any]) -> Estimated:
+    """The estimate of a plan; None for what the analysis does not estimate. Raises what planning raises."""
     from wsrender.run import plan
 
-    return dict(plan(document).estimate)
+    found = plan(document)
+    samples = float(sum(count for _, count in found.shards))
+    return {"samples": samples, "bytes": None, "seconds": None} | found.estimate

@@ -10,7 +10,9 @@ ROOTS = ("mujoco", "robot")
 
 
 def check_model(field: str, text: str, prefix: str = "") -> str:
-    """Look at XML without compiling it; its root element's name. ``field`` within ``prefix`` is where in the body it is.
+    """The name of the root element of XML that looks harmless; nothing is compiled.
+
+    ``field`` within ``prefix`` is where in the body the text is.
 
     Raises ModelError for hostile text: document types, entities, outside references, too large, too deep. Raises
     HttpProblem 409 for text that is no model: not well-formed, or of another root element.

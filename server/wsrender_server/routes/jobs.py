@@ -35,10 +35,10 @@ class Estimate(View):
     """True: the job can be submitted."""
     samples: float
     """Samples."""
-    bytes: float
-    """Memory [bytes]."""
-    seconds: float
-    """Time on this server [s]."""
+    bytes: float | None
+    """Memory [bytes]; null: little."""
+    seconds: float | None
+    """Time on this server [s]; null: little."""
 
 
 def _body_of(schema: str) -> dict[str, Any]:
@@ -110,7 +110,7 @@ async def validate_job(server: Server, principal: Submitter, text: _Body) -> Est
     document = await run_in_threadpool(
         lambda: _with_model(server, principal, _admitted(server, principal, _read(text), text, "JobSubmission"))
     )
-    return Estimate(valid=True, **await server.estimates.of(document))
+    return Estimate.model_validate({"valid": True} | await server.estimates.of(document))
 
 
 @router.get(

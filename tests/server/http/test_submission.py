@@ -157,5 +157,7 @@ def test_validation_plans_the_job(client, jobs):
     estimate = response.json()
     assert response.status_code == 200 and estimate["valid"] and estimate["samples"] == 4**4
     assert estimate["seconds"] > 0 and jobs.store.list("local") == ([], None)
+    rows = {"analysis": "indices_at", "robot": "scara", "configurations": [[0, 0, 0, 0]] * 3}
+    assert client.post("/v1/jobs:validate", json=rows).json()["samples"] == 3
     problem = problem_of(client.post("/v1/jobs:validate", json=DOCUMENT | {"tip": "hand"}), 409, "frame_not_found")
     assert "tool" in problem["choices"] and problem["errors"][0]["pointer"] == "#/tip"
