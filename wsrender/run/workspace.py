@@ -1,7 +1,7 @@
 """The analysis ``workspace``: plan, shards, merge."""
 
 from collections.abc import Callable
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -49,11 +49,14 @@ class WorkspacePlan:
 
     def resolved(self) -> dict[str, Any]:
         """What is settled once: the device that "auto" means, target, lattice block, bounds, scales, shards."""
-        assert self.sweep.block is not None
+        block = self.sweep.block
+        assert block is not None
         return {
             "device": self.device,
             "target": self.target,
-            **asdict(self.sweep.block),
+            "voxel_size_m": block.voxel_size_m,
+            "first_voxel": list(block.first_voxel),
+            "shape": list(block.shape),
             "bounds": self.sweep.bounds.tolist(),
             "scales": self.sweep.scales.tolist(),
             "shards": [list(shard) for shard in self.shards],

@@ -1,5 +1,6 @@
 """The one process of a worker in which kernels run: persistent, watched, and killed where it must end."""
 
+import contextlib
 import errno
 import multiprocessing
 import os
@@ -25,6 +26,7 @@ from wsrender_server.settings import Settings
 LOOK_S = 0.05
 REPORT_S = 0.4
 REMEMBERED_TOKENS = 1000
+KILLED = -9  # exit code of a process that was killed
 
 
 class KernelProcess:
@@ -36,7 +38,7 @@ class KernelProcess:
     def __init__(self, settings: Settings):
         self._limit = settings.max_memory_bytes
         self._gauges = RawArray("q", 2)
-        threads = settings.threads_per_worker or max(1, (os.cpu_count() or 1) // max(1, settings.workers))
+        threads = settings.threads_per_worker or max(1, _cores() // max(1, settings.workers))
         self._start = (settings.data_dir.absolute(), threads, settings.shard_samples, self._gauges)
         self._pool: ProcessPool | None = None
         self._lock = threading.Lock()
@@ -139,7 +141,7 @@ class KernelProcess:
             allowed = f"{self._limit / 2**30:.3g} GiB"
             message = f"the job took more memory than the {allowed} allowed; choose larger voxels or keep no map"
             return Outcome(Verdict.FAILED, error=error("out_of_memory", message))
-        if exit_code is None or exit_code == -signal.SIGKILL:
+        if exit_code is None or exit_code == KILLED:
             # Killed from outside: by an administrator, or by a system short of memory.
             return Outcome(Verdict.LOST, error=error("worker_lost", "the kernel process was killed", retryable=True))
         name = signal.Signals(-exit_code).name if exit_code < 0 else f"exit code {exit_code}"
@@ -150,10 +152,8 @@ class KernelProcess:
         pid = self.pid
         if pid is None:
             return
-        try:
-            os.kill(pid, signal.SIGKILL)
-        except ProcessLookupError:
-            return
+        with contextlib.suppress(psutil.Error):  # it may have ended by itself
+            psutil.Process(pid).kill()
 
     def _discard(self) -> None:
         """Forget the pool: a process killed in the middle may have left its pipes locked."""
@@ -162,6 +162,10 @@ class KernelProcess:
         if pool is not None:
             pool.stop()
             pool.join()
+
+
+def _cores() -> int:
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else (os.cpu_count() or 1)
 
 
 def outcome_of_exception(fault: BaseException) -> Outcome:

@@ -148,7 +148,9 @@ def test_a_killed_kernel_process_is_no_fault_of_the_job(service, tmp_path):
 
 
 def test_too_much_memory_fails_only_its_own_job(service):
-    fields = {**LONG, "robot": "ur5e", "voxel_size_m": 0.0033, "voxel_statistics": ["count", "maximum", "minimum"]}
+    # Records of 0.8 GiB for each thread.
+    statistics = {"indices": ["manipulability"], "voxel_statistics": ["count", "maximum", "minimum"]}
+    fields = {**LONG, **statistics, "voxel_size_m": 0.005}
     job = ended(service.store, service.store.submit("ann", canonical(**fields)).job.id)
     assert job.state == "failed" and job.error["code"] == "out_of_memory", job.error
     assert "GiB" in job.error["message"]
@@ -166,8 +168,10 @@ def test_cancel_frees_the_slot_within_3_s(service):
 
 
 def test_a_timeout_is_enforced_within_1_s(service):
-    job = long_job(service, timeout_s=4)
-    pid = kernel_pid(service)
+    document = canonical(**{**LONG, "sampling": {**LONG["sampling"], "seed": 2}})
+    job = service.store.submit("ann", document, timeout_s=4).job.id
+    in_state(service.store, job, "running")
+    pid = wait_until(lambda: kernel_pid(service), timeout=4, what="the kernel process")
     record = ended(service.store, job, timeout=10)
     assert record.state == "timed_out" and record.error["code"] == "timed_out"
     assert 4 <= (record.finished_at - record.started_at).total_seconds() < 5

@@ -47,11 +47,11 @@ def local_document(document, folder):
 
 
 def partial_times(data_dir):
-    """Modification times of the partial results on disk, by file name [ns]."""
+    """Modification times of the partial results on disk, by path [ns]."""
     times = {}
     for path in data_dir.glob("partials/*/[0-9]*.npz"):
         try:
-            times[path.name] = path.stat().st_mtime_ns
+            times[str(path.relative_to(data_dir))] = path.stat().st_mtime_ns
         except FileNotFoundError:
             continue  # its computation ended a moment ago
     return times
