@@ -153,6 +153,7 @@ class Engine:
                 protocol="tls://",
                 security=True,
                 dashboard_address="127.0.0.1:0",
+                worker_dashboard_address=None,
                 silence_logs=logging.ERROR,
                 **{k: v for k, v in workers_side.worker_options(self._settings).items() if k != "nthreads"},
             )

@@ -79,7 +79,8 @@ def serve_scheduler(
 
 async def _serve(settings: Settings, on_start: Callable[[], None] | None, stop: threading.Event) -> None:
     while not stop.is_set():
-        worker = Nanny(settings.scheduler, security=security(settings), **worker_options(settings))
+        options = {**worker_options(settings), "dashboard": False, "dashboard_address": "127.0.0.1:0"}
+        worker = Nanny(settings.scheduler, security=security(settings), **options)
         try:
             async with worker:
                 if on_start is not None:
@@ -95,11 +96,10 @@ async def _serve(settings: Settings, on_start: Callable[[], None] | None, stop: 
 
 
 def worker_options(settings: Settings) -> dict[str, Any]:
-    """Options of every Dask worker: one task at a time, a kernel process, no dashboard, memory watched by us."""
+    """Options of every Dask worker: one task at a time, a kernel process, memory watched by us."""
     return {
         "nthreads": 1,
         "memory_limit": 0,
-        "worker_dashboard_address": None,
         "death_timeout": 60,
         "plugins": (Kernels(settings.model_dump()),),
         "local_directory": str(settings.data_dir.absolute() / "dask"),
