@@ -20,11 +20,11 @@ def server(tmp_path, monkeypatch):
 
 
 def test_burst(server):
-    """Twenty computations, each asked for ten times: 200 jobs, of which the queue takes 150."""
+    """Five computations, each asked for forty times: 200 jobs, of which the queue takes 150."""
 
     def submit(number):
         with ws.Client(server.url, timeout_s=120) as client:
-            document = {**QUICK, "sampling": {"method": "random", "count": 2048, "seed": number % 20}}
+            document = {**QUICK, "sampling": {"method": "random", "count": 2048, "seed": number % 5}}
             try:
                 return client.submit(document, labels={"number": str(number)}).id
             except ws.QuotaError as error:
