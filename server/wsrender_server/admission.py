@@ -3,6 +3,7 @@
 import json
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from functools import cache
 from itertools import repeat
 from typing import Any
 
@@ -100,8 +101,13 @@ def _joints(robot: RobotSpec) -> int:
     if robot.dh is not None:
         return len(robot.dh.rows)
     if robot.library is not None:
-        return next(known.joints for known in library.describe() if known.name == robot.library)
+        return _library_joints()[robot.library]
     return 1
+
+
+@cache
+def _library_joints() -> dict[str, int]:
+    return {robot.name: robot.joints for robot in library.describe()}
 
 
 def _check_indices(job: Any) -> None:
