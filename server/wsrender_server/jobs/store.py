@@ -1,12 +1,9 @@
 """The job table seen by an owner: submit, look, cancel, retry, delete. Foreign jobs do not exist here."""
 
-import base64
-import binascii
 import json
 import uuid
 from collections.abc import Callable, Mapping
 from datetime import UTC, datetime
-from pathlib import Path
 from typing import Any
 
 from sqlalchemy import Engine, delete, func, literal, select, tuple_
@@ -16,12 +13,14 @@ from sqlalchemy.orm import Session
 from wsrender.errors import InputError
 from wsrender_server.jobs.changes import Changes
 from wsrender_server.jobs.computations import ComputationStore
+from wsrender_server.jobs.cursor import cursor_after, place_of
 from wsrender_server.jobs.database import Transactions, open_database
 from wsrender_server.jobs.faults import IdempotencyConflict, InvalidTransition, QueueFull, StoreUnavailable
 from wsrender_server.jobs.files import DataFolder
 from wsrender_server.jobs.identity import Identity
 from wsrender_server.jobs.keys import KeyStore
-from wsrender_server.jobs.records import ArtifactRecord, EventRecord, JobRecord, Submission
+from wsrender_server.jobs.records import EventRecord, JobRecord, Submission
+from wsrender_server.jobs.results import ResultStore
 from wsrender_server.jobs.rows import job_record, subscribe
 from wsrender_server.jobs.states import ENDED, LIVE, RETRYABLE, ComputationState, JobState
 from wsrender_server.jobs.tables import ArtifactFile, Computation, Event, Job, Label, Model, Timestamp
@@ -29,14 +28,13 @@ from wsrender_server.migrations import upgrade
 from wsrender_server.settings import Settings
 
 Events = list[EventRecord]  # "list" is a method below
-Artifacts = list[ArtifactRecord]
 Jobs = list[JobRecord]
 
 LONGEST_TEXT, MOST_LABELS, HIGHEST_PRIORITY = 255, 32, 1000
 ATTEMPTS = 5  # of a submission whose twin is submitted at the same moment
 
 
-class JobStore(ComputationStore, KeyStore):
+class JobStore(ComputationStore, ResultStore, KeyStore):
     """The only place with SQL. Methods block for milliseconds and may be called from any thread.
 
     Every method raises StoreUnavailable, and changes nothing, where the database is locked, gone or full.
@@ -127,14 +125,14 @@ class JobStore(ComputationStore, KeyStore):
             key, value = label
             query = query.join(Label, Label.job_id == Job.id).where(Label.key == key, Label.value == value)
         if cursor is not None:
-            time, last = _place(cursor)
+            time, last = place_of(cursor)
             place = tuple_(literal(time, Timestamp), literal(last))
             query = query.where(tuple_(Job.created_at, Job.id) < place)
         query = query.order_by(Job.created_at.desc(), Job.id.desc()).limit(limit + 1)
         with self.transactions.read() as session:
             records = [job_record(job) for job in session.scalars(query)]
         more = len(records) > limit
-        return records[:limit], _cursor(records[limit - 1]) if more else None
+        return records[:limit], cursor_after(records[limit - 1]) if more else None
 
     def cancel(self, owner: str, job_id: str) -> JobRecord | None:
         """Detach a job; its computation stops with its last job. Raises InvalidTransition for an ended job."""
@@ -203,37 +201,6 @@ class JobStore(ComputationStore, KeyStore):
     async def wait_for_change(self, owner: str, job_id: str, after_event: int, timeout_s: float) -> bool:
         """Wait until a job has an event with an id above ``after_event``, or is gone; False at the timeout."""
         return await self.changes.wait(job_id, lambda: self._changed(owner, job_id, after_event), timeout_s)
-
-    def artifacts(self, owner: str, job_id: str) -> Artifacts:
-        """Files of a succeeded job's result, ``result.json`` first; none for any other job."""
-        with self.transactions.read() as session:
-            rows = session.scalars(_artifacts(owner, job_id).order_by(ArtifactFile.position))
-            return [ArtifactRecord(**row.record) for row in rows]
-
-    def artifact_path(self, owner: str, job_id: str, name: str) -> Path | None:
-        """File of an artifact; None where the job has none of that name."""
-        with self.transactions.read() as session:
-            row = session.scalar(_artifacts(owner, job_id).where(ArtifactFile.name == name))
-            return None if row is None else self.files.artifact(row.computation_id, row.sha256)
-
-    def result_document(self, owner: str, job_id: str) -> dict[str, Any] | None:
-        """The result document of a succeeded job."""
-        path = self.artifact_path(owner, job_id, "result.json")
-        return None if path is None else json.loads(path.read_text(encoding="utf-8"))
-
-    def put_model(self, owner: str, content: bytes) -> str:
-        """Keep an uploaded model for its owner; its SHA-256. Raises DiskFull."""
-        sha256 = self.files.put_model(content)
-        with self.transactions.write() as session:
-            if session.get(Model, (owner, sha256)) is None:
-                session.add(Model(owner=owner, sha256=sha256, bytes=len(content), created_at=datetime.now(UTC)))
-        return sha256
-
-    def get_model(self, owner: str, sha256: str) -> bytes | None:
-        """A model that the owner uploaded."""
-        with self.transactions.read() as session:
-            known = session.get(Model, (owner, sha256)) is not None
-        return self.files.model(sha256).read_bytes() if known else None
 
     def _replay(self, session: Session, owner: str, key: str | None, body_hash: str) -> JobRecord | None:
         if key is None:
@@ -344,25 +311,3 @@ def _check_options(labels: Mapping[str, str], priority: int, idempotency_key: st
         raise InputError("labels", f"at most {MOST_LABELS} are allowed, not {len(labels)}")
     if not -HIGHEST_PRIORITY <= priority <= HIGHEST_PRIORITY:
         raise InputError("priority", f"must lie between -{HIGHEST_PRIORITY} and {HIGHEST_PRIORITY}, not {priority}")
-
-
-def _artifacts(owner: str, job_id: str):
-    return (
-        select(ArtifactFile)
-        .join(Job, Job.computation_id == ArtifactFile.computation_id)
-        .where(Job.id == job_id, Job.owner == owner, Job.state == JobState.SUCCEEDED)
-    )
-
-
-def _cursor(record: JobRecord) -> str:
-    text = f"{round(record.created_at.timestamp() * 1e6)}.{record.id}"
-    return base64.urlsafe_b64encode(text.encode()).decode().rstrip("=")
-
-
-def _place(cursor: str) -> tuple[datetime, str]:
-    try:
-        text = base64.urlsafe_b64decode(cursor + "=" * (-len(cursor) % 4)).decode("ascii")
-        time, job_id = text.split(".")
-        return datetime.fromtimestamp(int(time) / 1e6, UTC), job_id
-    except (binascii.Error, ValueError, OverflowError, OSError) as error:
-        raise InputError("cursor", "is not one that a list of jobs has given") from error
