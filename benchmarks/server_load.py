@@ -19,6 +19,7 @@ import numpy as np
 from wsrender_server.local_server import LocalServer
 
 import wsrender as ws
+from wsrender.client import Job
 
 QUICK = {
     "analysis": "workspace",
@@ -62,7 +63,7 @@ def listen(url: str, job_id: str, events: list[int], number: int) -> None:
             return
 
 
-def wait_for(background: ws.client.Job, state: str) -> None:
+def wait_for(background: Job, state: str) -> None:
     """Wait until a job has a state."""
     while background.refresh().state != state:
         time.sleep(0.1)

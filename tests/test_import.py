@@ -32,9 +32,7 @@ print(time.perf_counter() - started, *[name for name in {HEAVY!r} if name in sys
 
 def test_import_loads_nothing_heavy_and_takes_less_than_half_a_second():
     runs = [
-        subprocess.run(
-            [sys.executable, "-c", SCRIPT], capture_output=True, text=True, check=True
-        ).stdout.split()
+        subprocess.run([sys.executable, "-c", SCRIPT], capture_output=True, text=True, check=True).stdout.split()
         for _ in range(3)
     ]
     assert [loaded for _, *loaded in runs] == [[]] * 3
@@ -50,9 +48,7 @@ def test_public_name_is_importable(name):
 def test_all_is_sorted_and_complete():
     assert list(ws.__all__) == sorted(set(ws.__all__))
     lazy = {*ws._MODULE_OF_NAME, *ws._MODULES}
-    errors = {
-        name for name, value in vars(ws.errors).items() if isinstance(value, type) and name.endswith("Error")
-    }
+    errors = {name for name, value in vars(ws.errors).items() if isinstance(value, type) and name.endswith("Error")}
     assert lazy | errors | {"__version__"} == set(ws.__all__)
 
 
@@ -74,7 +70,5 @@ def test_a_missing_extra_names_the_pip_command(monkeypatch):
 
     monkeypatch.setattr(ws, "import_module", import_module)
     monkeypatch.delitem(vars(ws), "load_robot", raising=False)
-    with pytest.raises(
-        ws.MissingExtraError, match=r'warp is not installed; run: pip install "wsrender\[engine\]"'
-    ):
+    with pytest.raises(ws.MissingExtraError, match=r'warp is not installed; run: pip install "wsrender\[engine\]"'):
         ws.load_robot  # noqa: B018

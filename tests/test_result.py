@@ -61,16 +61,10 @@ def test_document_lists_every_file_with_its_hash(tmp_path, result):
     result.save(tmp_path / "out", formats=("npz", "csv", "mat", "stl", "svg"))
     records = {record["name"]: record for record in result.document["artifacts"]}
     assert names_in(tmp_path / "out") == {*records, "result.json"}
-    pictures = {
-        f"plots/{name}.{end}"
-        for name in ("robot", "scatter", "slices", "histogram")
-        for end in ("png", "svg")
-    }
+    pictures = {f"plots/{name}.{end}" for name in ("robot", "scatter", "slices", "histogram") for end in ("png", "svg")}
     assert pictures < set(records)
     assert {"map.parquet", "sample.parquet", "volume.vtkhdf", "surface.glb", "surface.ply"} < set(records)
-    assert {"map.csv", "map.npz", "map.mat", "volume.csv", "volume.npz", "volume.mat", "surface.stl"} < set(
-        records
-    )
+    assert {"map.csv", "map.npz", "map.mat", "volume.csv", "volume.npz", "volume.mat", "surface.stl"} < set(records)
     for name, record in records.items():
         path = tmp_path / "out" / name
         assert record["bytes"] == path.stat().st_size > 0

@@ -70,9 +70,7 @@ class _Bar:
 
     def show(self, done: int, total: int, message: str, rate: float | None) -> None:
         size = total if done else None  # None: a moving bar
-        self._bar.update(
-            self._task, completed=done, total=size, description=message, samples=_samples(done, rate)
-        )
+        self._bar.update(self._task, completed=done, total=size, description=message, samples=_samples(done, rate))
 
 
 class _Lines:

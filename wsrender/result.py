@@ -55,11 +55,7 @@ class Result:
     def global_indices(self) -> dict[str, Any]:
         """Global indices: those of the robot, and ``joint_mean`` and ``workspace_mean`` by index."""
         means = {
-            mean: {
-                name: values[mean]
-                for name, values in self.document.get("indices", {}).items()
-                if mean in values
-            }
+            mean: {name: values[mean] for name, values in self.document.get("indices", {}).items() if mean in values}
             for mean in ("joint_mean", "workspace_mean")
         }
         return {**self.document.get("global", {}), **means}

@@ -130,9 +130,10 @@ def _grid(chain: Chain, sampling: Grid, lower, upper, free, max_samples) -> Samp
     for level in levels:
         count *= int(level)
     _check_count(count, max_samples, "per_joint")
-    # A periodic joint takes -pi + 2 pi k / levels, k = 1 … levels: no posture twice. One level means mid-range.
+    # A periodic joint takes -pi + 2 pi k / levels, k = 1 … levels: no posture twice. One level of an interval is
+    # its middle.
     first = np.where(chain.periodic, lower + (upper - lower) / levels, lower)
-    single = free & (levels == 1)
+    single = free & (levels == 1) & ~chain.periodic
     middle = (lower + upper) / 2
     start = np.where(single, middle, np.where(free, first, lower))
     return SamplingPlan("grid", count, 0, start, np.where(single, middle, upper), levels)

@@ -68,6 +68,8 @@ def elementary(real) -> SimpleNamespace:
     MAGNITUDE = bits(2**31 - 1 if real is wp.float32 else 2**63 - 1)
     LOWEST, HIGHEST = real(-126.0 if real is wp.float32 else -1022.0), real(127.0 if real is wp.float32 else 1023.0)
 
+    INFINITE, UNDEFINED = real(math.inf), real(math.nan)
+
     @wp.func
     def sincos(a: real):
         k = wp.floor(a * TWO_OVER_PI + HALF)
@@ -108,7 +110,8 @@ def elementary(real) -> SimpleNamespace:
         series = LOG[LOG_TERMS - 1]
         for j in range(1, LOG_TERMS):
             series = series * z + LOG[LOG_TERMS - 1 - j]
-        return real(exponent) + s * series
+        value = wp.where(x == ZERO, -INFINITE, real(exponent) + s * series)
+        return wp.where(x < ZERO, UNDEFINED, wp.where(x == INFINITE, INFINITE, value))
 
     @wp.func
     def exp2(x: real):
@@ -119,7 +122,7 @@ def elementary(real) -> SimpleNamespace:
         for j in range(1, EXP_TERMS):
             series = series * f + EXP[EXP_TERMS - 1 - j]
         scale = wp.cast((bits(k) + BIAS) << MANTISSA, real)
-        return wp.where(x < LOWEST, ZERO, series * scale)
+        return wp.where(x < LOWEST, ZERO, wp.where(x > HIGHEST + ONE, INFINITE, series * scale))
 
     @wp.func
     def power(x: real, e: real):

@@ -45,9 +45,12 @@ def device_joint_frames(T_joint) -> np.ndarray:
 def _split_rotation(R: np.ndarray) -> tuple[float, float, float]:
     """(phi, alpha, psi) with R = Rz(phi) Rx(alpha) Rz(psi); phi = 0 where the axes are parallel."""
     sine = np.hypot(R[0, 2], R[1, 2])
-    if sine < 1e-12:
-        return 0.0, (0.0 if R[2, 2] > 0 else np.pi), np.arctan2(R[2, 2] * -R[0, 1], R[0, 0])
-    return np.arctan2(R[0, 2], -R[1, 2]), np.arctan2(sine, R[2, 2]), np.arctan2(R[2, 0], R[2, 1])
+    phi = np.arctan2(R[0, 2], -R[1, 2]) if sine > 0 else 0.0
+    alpha = np.arctan2(sine, R[2, 2])
+    # psi from what is left: for nearly parallel axes phi is noise, and their sum must still be right.
+    c, s = np.cos(alpha), np.sin(alpha)
+    rest = np.array([[1, 0, 0], [0, c, s], [0, -s, c]]) @ _rotation_z(-phi)[:3, :3] @ R
+    return phi, alpha, np.arctan2(rest[1, 0], rest[0, 0])
 
 
 def _rotation_z(angle: float) -> np.ndarray:

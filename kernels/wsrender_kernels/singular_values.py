@@ -2,8 +2,7 @@
 
 Up to three rows: an orthogonal factorisation of the rows gives det(A Aᵀ) without squaring the condition number; the
 largest eigenvalue and the gap of the others come from the angle between the deviators of H = A Aᵀ and of H², the
-smallest by deflation. Four to six rows: one-sided Jacobi (Hestenes 1958; Demmel & Veselić 1992). A value
-<= max(m, n) eps sigma_1 counts as 0.
+smallest by deflation. Four to six rows: one-sided Jacobi (Hestenes 1958; Demmel & Veselić 1992).
 
 The columns of J M^-1 differ by the ratio of the links' inertias, often 1e5. Errors then must stay relative to each
 column, or float32 loses the small singular values: ``graded`` matrices are rotated by their largest columns first, or
@@ -15,8 +14,9 @@ from functools import cache, partial
 import numpy as np
 import warp as wp
 
-SWEEPS = {wp.float32: 5, wp.float64: 6}
+SWEEPS = {wp.float32: 6, wp.float64: 7}
 NEWTON_STEPS = {wp.float32: 1, wp.float64: 2}
+UNROLLED_ROTATIONS = 150
 
 
 def epsilon(real) -> float:
@@ -26,30 +26,40 @@ def epsilon(real) -> float:
 
 @cache
 def singular_values(real, m: int, n: int, graded: bool = False):
-    """Device function ``(A: (m, n)) -> (m,)``, descending; exact zeros where the matrix is singular or n < m.
-
-    A ``graded`` matrix has small singular values that are no rounding noise: none counts as 0 there.
-    """
+    """Device function ``(A: (m, n)) -> (m,)``, descending, as computed; the last m - n are exactly 0."""
     by_columns = m > n or graded
     solver = {1: _one_row, 2: _two_rows, 3: _three_rows}.get(m) or partial(_jacobi, by_columns=by_columns)
     solver = solver(real, m, n)
     rotated = _by_largest_columns(real, n) if graded and m == 3 else _as_it_is(real, m, n)
     vec_m = wp.types.vector(m, real)
     mat_mn = wp.types.matrix((m, n), real)
-    NEGLIGIBLE = real(0.0 if graded else max(m, n) * epsilon(real))
     RANK = min(m, n)
-    ZERO = real(0.0)
 
     @wp.func
     def values(A: mat_mn):
         sigma = solver(rotated(A))
         out = vec_m()
-        out[0] = sigma[0]
-        for i in range(1, RANK):
-            out[i] = wp.where(sigma[i] > NEGLIGIBLE * sigma[0], sigma[i], ZERO)
+        for i in range(RANK):
+            out[i] = sigma[i]
         return out
 
     return values
+
+
+@cache
+def without_noise(real, m: int, n: int, length: int):
+    """Device function on ``length`` singular values: those <= max(m, n) eps sigma_1 become exactly 0."""
+    vec = wp.types.vector(length, real)
+    NEGLIGIBLE, ZERO = real(max(m, n) * epsilon(real)), real(0.0)
+
+    @wp.func
+    def regular(sigma: vec):
+        out = sigma
+        for i in range(1, length):
+            out[i] = wp.where(sigma[i] > NEGLIGIBLE * sigma[0], sigma[i], ZERO)
+        return out
+
+    return regular
 
 
 def _as_it_is(real, m: int, n: int):
@@ -158,6 +168,8 @@ def _three_rows(real, m: int, n: int):
     THIRD, SIXTH, TWO_SQRT_3 = real(1.0 / 3.0), real(1.0 / 6.0), real(2.0 * 3.0**0.5)
     TINY = _tiny(real)
     NEARLY_RANK_ONE = real(0.01)
+    # A row below the rounding noise of the others spans nothing: its reciprocal would overflow.
+    NOISE = real(1e-18 if real is wp.float32 else 1e-36)
 
     @wp.func
     def three_rows(A: mat_mn):
@@ -174,13 +186,13 @@ def _three_rows(real, m: int, n: int):
         unit = wp.where(trace > TINY, ONE / wp.max(trace, TINY), ZERO)
 
         # H / trace = L D Lᵀ with orthogonalised rows: the pivots keep the digits that H itself has lost.
-        ia = wp.where(aa > TINY, ONE / wp.max(aa, TINY), ZERO)
+        ia = wp.where(aa * unit > NOISE, ONE / wp.max(aa, TINY), ZERO)
         lb = ab * ia
         lc = ac * ia
         b1 = b - a * lb
         c1 = c - a * lc
         bb1 = wp.dot(b1, b1)
-        lcb = wp.dot(b1, c1) * wp.where(bb1 > TINY, ONE / wp.max(bb1, TINY), ZERO)
+        lcb = wp.dot(b1, c1) * wp.where(bb1 * unit > NOISE, ONE / wp.max(bb1, TINY), ZERO)
         c2 = c1 - b1 * lcb
         d1 = aa * unit
         d2 = bb1 * unit
@@ -304,6 +316,23 @@ def _jacobi(real, m: int, n: int, by_columns: bool):
         return out
 
     @wp.func
+    def unrolled(W: mat_work, count: wp.int32):
+        out = W
+        for _sweep in range(NUMBER_OF_SWEEPS):
+            out = sweep(out)
+        return out
+
+    @wp.func
+    def in_a_loop(W: mat_work, count: wp.int32):
+        out = W
+        for _sweep in range(count):
+            out = sweep(out)
+        return out
+
+    # SIMD needs straight-line code in the lane loop; beyond this size it would take minutes to compile.
+    sweeps = unrolled if COUNT * (COUNT - 1) // 2 * NUMBER_OF_SWEEPS <= UNROLLED_ROTATIONS else in_a_loop
+
+    @wp.func
     def jacobi(A: mat_mn):
         W = mat_work()
         for i in range(COUNT):
@@ -318,8 +347,7 @@ def _jacobi(real, m: int, n: int, by_columns: bool):
             scale = scale + wp.dot(W[i], W[i])
         scale = wp.sqrt(scale)
         W = W * (ONE / wp.max(scale, TINY))
-        for _sweep in range(NUMBER_OF_SWEEPS):
-            W = sweep(W)
+        W = sweeps(W, NUMBER_OF_SWEEPS)
         norms = vec_count()
         for i in range(COUNT):
             norms[i] = wp.sqrt(wp.dot(W[i], W[i])) * scale

@@ -5,8 +5,9 @@ those of J, and for the dynamic indices those whose squares are the eigenvalues 
 ``wsrender_code`` (the original program): mu = sqrt det of the linear rows of J, or of all rows of J M, followed by
 the singular values of all six rows of J, or of J M.
 
-M being regular, J M^-1 has the rank of J: which dynamic values count as 0 is decided on J, whose scale is uniform. The
-threshold of J M^-1 itself would call values of up to 1e-2 of their maximum zero in float32.
+A singular value of J counts as 0 up to max(m, n) eps sigma_1. M being regular, J M^-1 and J M have the rank of J: which
+of their values count as 0 is decided on J, whose scale is uniform. The threshold of J M^-1 itself would call values of
+up to 1e-2 of their maximum zero in float32.
 """
 
 from functools import cache
@@ -17,7 +18,7 @@ import warp as wp
 from wsrender_kernels.elementary import elementary
 from wsrender_kernels.inertia import inertia
 from wsrender_kernels.model import model_arrays
-from wsrender_kernels.singular_values import singular_values
+from wsrender_kernels.singular_values import singular_values, without_noise
 
 LINEAR, ALL_ROWS = (0, 1, 2), (0, 1, 2, 3, 4, 5)
 
@@ -34,7 +35,7 @@ def spectrum(real, n: int, rows: tuple[int, ...], convention: str, penalty: bool
     ``absent`` stands for ``dynamic`` where no index needs it.
     """
     make = {"standard": _standard, "table_1": _table_1, "wsrender_code": _wsrender_code}[convention]
-    kinematic, dynamic = make(real, n, rows, _torque_scaled(real, n) if torque else None)
+    kinematic, dynamic = make(real, n, rows, penalty, _torque_scaled(real, n) if torque else None)
     return SimpleNamespace(
         kinematic=kinematic,
         dynamic=dynamic,
@@ -144,15 +145,17 @@ def _task_matrix(real, n: int, rows: tuple[int, ...]):
     return task_matrix
 
 
-def _of_task(real, n: int, rows: tuple[int, ...]):
+def _of_task(real, n: int, rows: tuple[int, ...], graded: bool):
     """Device function (model, J) -> singular values of the task matrix."""
     Model = model_arrays(real)
     mat_6n = wp.types.matrix((6, n), real)
-    task_matrix, values = _task_matrix(real, n, rows), singular_values(real, len(rows), n)
+    m = len(rows)
+    task_matrix, values = _task_matrix(real, n, rows), singular_values(real, m, n, graded)
+    regular = without_noise(real, m, n, m)
 
     @wp.func
     def of_task(model: Model, J: mat_6n):
-        return values(task_matrix(model, J))
+        return regular(values(task_matrix(model, J)))
 
     return of_task
 
@@ -172,7 +175,7 @@ def _where_positive(real, m: int):
     return where_positive
 
 
-def _standard(real, n: int, rows: tuple[int, ...], torque):
+def _standard(real, n: int, rows: tuple[int, ...], penalty: bool, torque):
     Model = model_arrays(real)
     m = len(rows)
     mat_6n, mat_nn = wp.types.matrix((6, n), real), wp.types.matrix((n, n), real)
@@ -191,11 +194,11 @@ def _standard(real, n: int, rows: tuple[int, ...], torque):
     def dynamic(model: Model, J: mat_6n, M: mat_nn, kinematic: vec_m):
         return where_positive(kinematic, values(scaled(model, solve(M, task_matrix(model, J)))))
 
-    return _of_task(real, n, rows), dynamic
+    return _of_task(real, n, rows, penalty), dynamic
 
 
-def _table_1(real, n: int, rows: tuple[int, ...], torque):
-    """H = (L U^-1)(L U^-1)^T, with J = L Q (Q: orthonormal rows) and M Q^T = V U^T (V: orthonormal columns)."""
+def _table_1(real, n: int, rows: tuple[int, ...], penalty: bool, torque):
+    """H = X X^T with X = L U^-T, where J = L Q and Q M = U V (L, U lower triangular; Q, V with orthonormal rows)."""
     Model = model_arrays(real)
     m = len(rows)
     mat_6n, mat_nn = wp.types.matrix((6, n), real), wp.types.matrix((n, n), real)
@@ -221,15 +224,14 @@ def _table_1(real, n: int, rows: tuple[int, ...], torque):
         # Rows of X with X Uᵀ = L, that is the matrix whose singular values are the inverses of those of M J⁺.
         X = mat_mm()
         for r in range(m):
-            for back in range(m):
-                c = m - 1 - back
+            for c in range(m):
                 value = L[r, c]
-                for k in range(c + 1, m):
-                    value -= X[r, k] * U[k, c]
+                for k in range(c):
+                    value -= X[r, k] * U[c, k]
                 X[r, c] = wp.where(U[c, c] > ZERO, value / wp.where(U[c, c] > ZERO, U[c, c], ONE), ZERO)
         return where_positive(kinematic, values(X))
 
-    return _of_task(real, n, rows), singular if DEFICIENT else dynamic
+    return _of_task(real, n, rows, penalty), singular if DEFICIENT else dynamic
 
 
 def _lower_factor(real, m: int, n: int):
@@ -256,18 +258,19 @@ def _lower_factor(real, m: int, n: int):
     return lower_factor
 
 
-def _wsrender_code(real, n: int, rows: tuple[int, ...], torque):
+def _wsrender_code(real, n: int, rows: tuple[int, ...], penalty: bool, torque):
     Model = model_arrays(real)
     mat_6n, mat_nn = wp.types.matrix((6, n), real), wp.types.matrix((n, n), real)
     COUNT = min(6, n)
     FULL_RANK = n >= 6
     out_type = wp.types.vector(1 + COUNT, real)
-    of_six = singular_values(real, 6, n)
+    of_six, of_product = singular_values(real, 6, n, penalty), singular_values(real, 6, n, graded=True)
+    regular = without_noise(real, 6, n, 6)
     ONE, ZERO = real(1.0), real(0.0)
 
     @wp.func
     def kinematic(model: Model, J: mat_6n):
-        six = of_six(J)
+        six = regular(of_six(J))
         a = J[0]
         b = J[1]
         c = J[2]
@@ -287,12 +290,12 @@ def _wsrender_code(real, n: int, rows: tuple[int, ...], torque):
 
     @wp.func
     def dynamic(model: Model, J: mat_6n, M: mat_nn, kinematic: out_type):
-        six = of_six(J * M)
+        six = of_product(J * M)
         out = out_type()
         determinant = ONE
         for i in range(COUNT):
-            out[1 + i] = six[i]
-            determinant *= six[i]
+            out[1 + i] = wp.where(kinematic[1 + i] > ZERO, six[i], ZERO)
+            determinant *= out[1 + i]
         out[0] = wp.where(FULL_RANK, determinant, ZERO)
         return out
 

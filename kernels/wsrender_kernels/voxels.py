@@ -55,7 +55,10 @@ def voxels(real) -> SimpleNamespace:
 
     @wp.func
     def quantized32(value: real, scale: real):
-        return wp.int64(wp.int32(wp.floor(value * scale + HALF)))
+        # Adding a half would round again above 2^23.
+        x = value * scale
+        whole = wp.floor(x)
+        return wp.int64(wp.int32(whole) + wp.where(x - whole >= HALF, 1, 0))
 
     @wp.func
     def quantized64(value: real, scale: real):

@@ -65,9 +65,7 @@ def test_a_robot_file_becomes_a_path(run, name):
 def test_options_override_a_job_document(run, tmp_path):
     job = tmp_path / "job.json"
     sampling = {"method": "random", "count": 100, "seed": 1, "locked": {"a": 0.5}}
-    job.write_text(
-        json.dumps({"analysis": "workspace", "robot": "scara", "sampling": sampling, "task": "full"})
-    )
+    job.write_text(json.dumps({"analysis": "workspace", "robot": "scara", "sampling": sampling, "task": "full"}))
     kept = document(run, str(job))
     assert (kept["sampling"], kept["task"]) == (sampling, "full")
     changed = document(run, str(job), "--seed", "2", "--lock", "b=1", "--task", "linear")

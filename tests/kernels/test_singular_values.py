@@ -8,7 +8,7 @@ import warp as wp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from wsrender_kernels.options import MODULE_OPTIONS
-from wsrender_kernels.singular_values import singular_values
+from wsrender_kernels.singular_values import singular_values, without_noise
 
 from wsrender.tolerances import TOLERANCES, epsilon
 
@@ -21,12 +21,17 @@ def kernel_of(precision, m, n, graded):
     real = REAL[precision]
     values = singular_values(real, m, n, graded)
     mat, vec = wp.types.matrix((m, n), real), wp.types.vector(m, real)
+    regular = without_noise(real, m, n, m)
 
     @wp.kernel(module="unique", module_options=MODULE_OPTIONS, enable_backward=False)
-    def values_of(A: wp.array(dtype=mat), out: wp.array(dtype=vec)):
+    def values_as_computed(A: wp.array(dtype=mat), out: wp.array(dtype=vec)):
         out[wp.tid()] = values(A[wp.tid()])
 
-    return values_of
+    @wp.kernel(module="unique", module_options=MODULE_OPTIONS, enable_backward=False)
+    def values_without_noise(A: wp.array(dtype=mat), out: wp.array(dtype=vec)):
+        out[wp.tid()] = regular(values(A[wp.tid()]))
+
+    return values_as_computed if graded else values_without_noise
 
 
 def evaluated(A, precision, graded=False, device="cpu"):

@@ -178,9 +178,7 @@ def test_equal_pictures_are_equal_files(tmp_path, suffix):
         figures = (plots.scatter(random_map()), plots.slices(random_volume((5, 4, 3))))
         for number, figure in enumerate(figures):
             plots.save_figure(figure, tmp_path / f"{number}.{suffix}")
-        hashes.add(
-            b"".join(hashlib.sha256(path.read_bytes()).digest() for path in sorted(tmp_path.iterdir()))
-        )
+        hashes.add(b"".join(hashlib.sha256(path.read_bytes()).digest() for path in sorted(tmp_path.iterdir())))
     assert len(hashes) == 1
     assert mpl.rcParams["font.size"] == 11
 

@@ -90,12 +90,17 @@ def wsrender_code(J, M=None):
     # √det(A Aᵀ) as the product of A's singular values: the determinant itself would leave half of the digits.
     core = np.linalg.svd(J[:, :3] if M is None else six, compute_uv=False)
     mu = core.prod(axis=1) if M is None or n >= 6 else np.zeros(len(J))
+    if M is None:
+        harmonic = np.array([1 / np.sqrt(np.trace(code_pinv(a @ a.T))) for a in six])
+    else:  # the same by singular values: J M is so ill-conditioned that its square keeps few digits
+        kept = s**2 > 6 * np.spacing(s[:, :1] ** 2)
+        harmonic = 1 / np.sqrt(np.where(kept, 1 / s**2, 0).sum(axis=1))
     return {
         "manipulability": mu,
         "inverse_condition_number": s[:, -1] / s[:, 0],
         "minimum_singular_value": s[:, -1],
         "order_independent_manipulability": mu ** (1 / n),
-        "harmonic_mean_manipulability": np.array([1 / np.sqrt(np.trace(code_pinv(a @ a.T))) for a in six]),
+        "harmonic_mean_manipulability": harmonic,
         "isotropy": mu ** (1 / n) / s.mean(axis=1),
     }
 

@@ -45,10 +45,7 @@ def check(text, dependent, free):
         names = [name for name in "abcd" if name in full]
         J, M = by_mujoco.jacobian(model, data, "tool", names), by_mujoco.inertia_matrix(model, data, names)
         S = np.array(
-            [
-                [_slope(dependent, values, name, free[k], step[k, k]) for k in range(len(free))]
-                for name in names
-            ]
+            [[_slope(dependent, values, name, free[k], step[k, k]) for k in range(len(free))] for name in names]
         )
         np.testing.assert_allclose(reference.forward_kinematics(chain, q), T, atol=1e-12)
         np.testing.assert_allclose(reference.jacobian(chain, q), J @ S, atol=1e-12)

@@ -66,9 +66,7 @@ def product_of(rows, chain, q):
 @given(tables())
 def test_mujoco_moves_as_the_product_of_the_rows(case):
     dh, q = case
-    np.testing.assert_allclose(
-        pose_in_mujoco(to_mjcf(dh), q), dh_product.frames(dh, q)[-1], atol=1e-12, rtol=0
-    )
+    np.testing.assert_allclose(pose_in_mujoco(to_mjcf(dh), q), dh_product.frames(dh, q)[-1], atol=1e-12, rtol=0)
 
 
 @pytest.mark.parametrize("convention", ["modified", "standard"])
@@ -230,9 +228,7 @@ def test_skew_axes_give_back_the_table_whatever_the_joint_frames(case, seed):
     np.testing.assert_allclose(np.cos(joints[:, 1]), [math.cos(row.alpha) for row in dh.rows], atol=1e-9)
     np.testing.assert_allclose(joints[inner, 2], [row.d for row in dh.rows][inner], atol=1e-7)
     assert joints[-1, 2] + rows[-1, 2] == pytest.approx(dh.rows[-1].d, abs=1e-7)
-    np.testing.assert_allclose(
-        product_of(rows, moved, q), chain_kinematics.forward_kinematics(chain, q), atol=1e-7
-    )
+    np.testing.assert_allclose(product_of(rows, moved, q), chain_kinematics.forward_kinematics(chain, q), atol=1e-7)
 
 
 def with_other_joint_frames(chain, generator):

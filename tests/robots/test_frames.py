@@ -61,9 +61,7 @@ def test_a_site_goes_before_the_body_of_its_name():
 
 
 def test_a_tip_that_must_be_chosen_lists_the_choices():
-    with pytest.raises(
-        FrameNotFoundError, match="tip: the model ends in 2 places; its tip must be named"
-    ) as caught:
+    with pytest.raises(FrameNotFoundError, match="tip: the model ends in 2 places; its tip must be named") as caught:
         robots.load_mjcf(TWO_ARMS, base="pelvis")
     assert caught.value.choices == ["neck", "grip", "chest", "left", "left_hand", "right", "right_hand"]
 

@@ -28,9 +28,7 @@ def tetrahedron_stl():
     """A binary STL of the tetrahedron with the unit vectors and the origin as corners."""
     corners = np.vstack([np.zeros(3), np.eye(3)])
     faces = [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]
-    triangles = b"".join(
-        struct.pack("<12fH", *np.zeros(3), *corners[list(face)].ravel(), 0) for face in faces
-    )
+    triangles = b"".join(struct.pack("<12fH", *np.zeros(3), *corners[list(face)].ravel(), 0) for face in faces)
     return bytes(80) + struct.pack("<I", len(faces)) + triangles
 
 
@@ -40,9 +38,7 @@ def with_mesh(inertial, file="parts/body.stl", compiler='meshdir="meshes"'):
       <site name="tool" pos="1 0 0"/></body></worldbody></mujoco>"""
 
 
-@pytest.mark.parametrize(
-    ("text", "file"), [(MJCF, "arm.xml"), (URDF, "arm.urdf"), (URDF, "arm.xml"), (MJCF, "a.urdf")]
-)
+@pytest.mark.parametrize(("text", "file"), [(MJCF, "arm.xml"), (URDF, "arm.urdf"), (URDF, "arm.xml"), (MJCF, "a.urdf")])
 def test_files_are_told_apart_by_their_root(tmp_path, text, file):
     path = tmp_path / file
     path.write_text(text)
@@ -113,9 +109,7 @@ def test_meshes_that_no_inertia_needs_are_not_loaded(tmp_path):
 
 def test_missing_meshes_are_dropped_with_one_warning(tmp_path):
     (tmp_path / "arm.xml").write_text(with_mesh(INERTIAL))
-    with pytest.warns(
-        robots.ModelWarning, match="meshes/parts/body.stl, ….: the files are not there"
-    ) as caught:
+    with pytest.warns(robots.ModelWarning, match="meshes/parts/body.stl, ….: the files are not there") as caught:
         robot = robots.load(tmp_path / "arm.xml")
     assert len(caught) == 1
     assert (robot.model.ngeom, robot.chain.mass[0]) == (0, 1.0)
@@ -181,9 +175,7 @@ robots.load_urdf('''<robot name="r"><link name="a"/><link name="b"/><link name="
 """
     root = Path(__file__).parents[2]
     environment = os.environ | {"PYTHONPATH": str(root)}
-    subprocess.run(
-        [sys.executable, "-W", "error", "-c", code], cwd=tmp_path, env=environment, check=True, timeout=60
-    )
+    subprocess.run([sys.executable, "-W", "error", "-c", code], cwd=tmp_path, env=environment, check=True, timeout=60)
     assert list(tmp_path.iterdir()) == []
 
 

@@ -19,9 +19,7 @@ LINKS = '<link name="a"/><link name="b"/>'
 
 
 def joint(more=LIMIT, kind="revolute", parent="a", child="b", name="j"):
-    return (
-        f'<joint name="{name}" type="{kind}"><parent link="{parent}"/><child link="{child}"/>{more}</joint>'
-    )
+    return f'<joint name="{name}" type="{kind}"><parent link="{parent}"/><child link="{child}"/>{more}</joint>'
 
 
 def urdf(joints=None, links=LINKS):
@@ -174,8 +172,7 @@ URDF = {
     ),
     "mimics in a cycle": (
         urdf(
-            joint(LIMIT + '<mimic joint="k"/>')
-            + joint(LIMIT + '<mimic joint="j"/>', "revolute", "b", "c", "k"),
+            joint(LIMIT + '<mimic joint="k"/>') + joint(LIMIT + '<mimic joint="j"/>', "revolute", "b", "c", "k"),
             LINKS + '<link name="c"/>',
         ),
         "the couplings of joint 'j' form a cycle",
@@ -263,7 +260,5 @@ def test_urdf(text, message):
 def test_files(tmp_path, name):
     (tmp_path / "garbage.xml").write_bytes(b"\x00\x01\x02")
     (tmp_path / "wrong.urdf").write_text("<html/>")
-    with pytest.raises(
-        ModelError, match=r"not well-formed XML|<html>; <mujoco> or <robot> \(URDF\) is needed"
-    ):
+    with pytest.raises(ModelError, match=r"not well-formed XML|<html>; <mujoco> or <robot> \(URDF\) is needed"):
         robots.load(tmp_path / name)

@@ -173,9 +173,7 @@ def test_joints_of_several_freedoms_are_refused_on_the_chain_only(kind):
 
 
 def test_mimic_joints_follow():
-    mimic = (
-        '<limit lower="-3" upper="3" effort="1" velocity="1"/><mimic joint="{}" multiplier="{}" offset="{}"/>'
-    )
+    mimic = '<limit lower="-3" upper="3" effort="1" velocity="1"/><mimic joint="{}" multiplier="{}" offset="{}"/>'
     text = tree(
         joint("j1", "a", "b"), joint("j2", "b", "c", more=mimic.format("j1", -2, 0.5)),
         joint("j3", "c", "d", "prismatic", mimic.format("j2", 0.1, 0.2)),

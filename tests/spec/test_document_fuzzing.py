@@ -7,9 +7,7 @@ from wsrender.errors import DocumentError
 from wsrender.spec import IndicesAtJob, WorkspaceJob, canonical_json, parse_job
 
 FIELDS = sorted({*WorkspaceJob.model_fields, *IndicesAtJob.model_fields})
-KEYS = st.sampled_from(["method", "per_joint", "count", "locked", "library", "dh", "rows"]) | st.text(
-    max_size=3
-)
+KEYS = st.sampled_from(["method", "per_joint", "count", "locked", "library", "dh", "rows"]) | st.text(max_size=3)
 WORDS = st.sampled_from(["workspace", "indices_at", "grid", "random", "all", "full", "x", "cpu", "ur5e"])
 VALUES = st.recursive(
     st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=4) | WORDS,

@@ -154,9 +154,7 @@ def test_negative_zero_is_zero():
 
 def _properties(schema):
     models = [schema, *schema.get("$defs", {}).values()]
-    return [
-        (model.get("title"), name, p) for model in models for name, p in model.get("properties", {}).items()
-    ]
+    return [(model.get("title"), name, p) for model in models for name, p in model.get("properties", {}).items()]
 
 
 def test_schema_describes_every_field_and_shows_every_default():
@@ -178,9 +176,7 @@ def test_schema_covers_the_union_and_each_analysis():
 
 def test_every_problem_is_listed():
     with pytest.raises(DocumentError) as caught:
-        parse_job(
-            {"analysis": "workspace", "tipp": 1, "task": [], "sampling": {"method": "random", "seed": -1}}
-        )
+        parse_job({"analysis": "workspace", "tipp": 1, "task": [], "sampling": {"method": "random", "seed": -1}})
     assert [field for field, _ in caught.value.problems] == [
         "robot", "task", "sampling.count", "sampling.seed", "tipp",
     ]  # fmt: skip

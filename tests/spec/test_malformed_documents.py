@@ -161,9 +161,7 @@ def test_malformed_document_names_field_value_and_what_is_allowed(document, fiel
     assert message in caught.value.problems[0][1]
 
 
-@pytest.mark.parametrize(
-    "document", [row[0] for row in MALFORMED if isinstance(row[0], dict) and row[1] != "document"]
-)
+@pytest.mark.parametrize("document", [row[0] for row in MALFORMED if isinstance(row[0], dict) and row[1] != "document"])
 def test_text_and_dict_give_the_same_problems(document):
     text = json.dumps(document)
     if "NaN" in text or "Infinity" in text:

@@ -29,9 +29,7 @@ def test_degrees_and_radians_are_the_same_table():
 
 def test_rows_are_objects_or_dicts_and_numbers_may_be_numpys():
     row = DHRow(a=np.float32(0.5), limits_deg=np.array([-90, 90]), mass=np.int64(2), inertia=np.ones(3))
-    assert table(row) == table(
-        {"a": 0.5, "limits": (-math.pi / 2, math.pi / 2), "mass": 2, "inertia": [1, 1, 1]}
-    )
+    assert table(row) == table({"a": 0.5, "limits": (-math.pi / 2, math.pi / 2), "mass": 2, "inertia": [1, 1, 1]})
 
 
 def test_a_table_survives_json():
@@ -122,9 +120,7 @@ def test_angles_turn_as_the_conventions_say():
     rpy = Transform(rpy_deg=angles).matrix()[:3, :3]
     euler = Transform(euler_xyz_deg=angles).matrix()[:3, :3]
     np.testing.assert_allclose(rpy, Rotation.from_euler("xyz", angles, degrees=True).as_matrix(), atol=1e-15)
-    np.testing.assert_allclose(
-        euler, Rotation.from_euler("XYZ", angles, degrees=True).as_matrix(), atol=1e-15
-    )
+    np.testing.assert_allclose(euler, Rotation.from_euler("XYZ", angles, degrees=True).as_matrix(), atol=1e-15)
 
 
 def test_a_quaternion_has_its_scalar_first_and_any_length():

@@ -34,14 +34,18 @@ class _Writer:
     def __init__(self) -> None:
         self.lines: list[str] = []
         self._names: dict[str, str] = {}
+        self._written: dict[tuple[Expression, str], str] = {}
 
     def operand(self, value: Expression | float, spectrum: str) -> str:
+        """Text of a value: a literal, an input or the name that holds it."""
         if not isinstance(value, Expression):
             return f"real({value!r})" if value >= 0 else f"(-real({-value!r}))"
         if value.operation == "input":
             return f"{spectrum}[{int(value.operands[0])}]"  # type: ignore[arg-type]
-        operands = [self.operand(o, spectrum) for o in value.operands]
-        return self._assign(_code(value.operation, operands))
+        if (value, spectrum) not in self._written:
+            operands = [self.operand(o, spectrum) for o in value.operands]
+            self._written[value, spectrum] = self._assign(_code(value.operation, operands))
+        return self._written[value, spectrum]
 
     def _assign(self, code: str) -> str:
         if code not in self._names:

@@ -273,6 +273,8 @@ def _check_values(plan: SweepPlan, partial: Partial) -> None:
     if plan.block is not None:
         edge, first, shape = plan.block.voxel_size_m, plan.block.first_voxel, plan.block.shape
         for axis in range(3):
+            if not np.isfinite([low[axis], high[axis]]).all():
+                raise NumericalError(f"the end effector's {'xyz'[axis]} is not finite")
             if low[axis] < first[axis] * edge or high[axis] > (first[axis] + shape[axis]) * edge:
                 raise NumericalError(
                     f"the end effector reaches {'xyz'[axis]} = {low[axis]:.6g} … {high[axis]:.6g} m, outside the "

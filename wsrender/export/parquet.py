@@ -40,9 +40,7 @@ def write_map_parquet(samples: DistributionMap, path: str | Path) -> None:
 def _schema(columns: MapColumns, arrays: dict[str, np.ndarray]) -> pa.Schema:
     units = columns.column_units()
     types = {name: pa.from_numpy_dtype(arrays[name].dtype) for name in columns.names()}
-    fields = [
-        pa.field(name, kind, nullable=False, metadata={"unit": units[name]}) for name, kind in types.items()
-    ]
+    fields = [pa.field(name, kind, nullable=False, metadata={"unit": units[name]}) for name, kind in types.items()]
     return pa.schema(fields, metadata={_METADATA_KEY: columns.to_json()})
 
 

@@ -110,9 +110,7 @@ def _statistic(volume: VolumeData, index: str | None, statistic: str | None) -> 
     if statistic is None:
         statistic = next(iter(sorted(volume.statistics, key=lambda name: name != "maximum")), "maximum")
     if statistic not in volume.statistics:
-        raise InputError(
-            "statistic", f"the volume has no {statistic!r}; it holds {_listed(volume.statistics)}"
-        )
+        raise InputError("statistic", f"the volume has no {statistic!r}; it holds {_listed(volume.statistics)}")
     by_index = volume.statistics[statistic]
     if index is None:
         index = next(iter(by_index))

@@ -11,9 +11,7 @@ from wsrender.volume.distribution_map import DistributionMap
 
 
 @paper_style()
-def scatter(
-    samples: DistributionMap, index: str | None = None, *, title: str = "", frame: str = "world"
-) -> Figure:
+def scatter(samples: DistributionMap, index: str | None = None, *, title: str = "", frame: str = "world") -> Figure:
     """Positions [m] of at most 30,000 samples, coloured by ``index`` (by default the map's first).
 
     A map without indices is drawn in one colour. Raises InputError for an unknown index.

@@ -7,6 +7,8 @@ import numpy as np
 
 from wsrender.errors import ModelError
 
+LARGEST_ANGLE = 1e4  # rad
+
 
 @dataclass(frozen=True)
 class Drive:
@@ -34,7 +36,8 @@ def coordinate_limits(
     """Lower and upper limits [rad or m] and periodicity of the coordinates, (n,) each.
 
     ``leaders`` are the joints whose value is the coordinate. A coordinate is periodic, −π … π, if no joint
-    it drives has limits and all of them turn by whole turns; otherwise its interval is what all its joints
+    it drives has limits (or limits beyond 10⁴ rad, as some exporters write for none) and all of them turn by
+    whole turns; otherwise its interval is what all its joints
     allow. Raises ModelError where that is empty or has no end.
     """
     lower, upper = np.empty(len(leaders)), np.empty(len(leaders))
@@ -71,12 +74,18 @@ def _intersection(model: mujoco.MjModel, driven: list[Drive]) -> tuple[float, fl
     """What the limited joints of ``driven`` allow their coordinate; None if none is limited."""
     ends = []
     for drive in driven:
-        if model.jnt_limited[drive.joint]:
+        if model.jnt_limited[drive.joint] and not _no_limits(model, drive.joint):
             zero = model.qpos0[model.jnt_qposadr[drive.joint]] + drive.offset
             ends.append(sorted((model.jnt_range[drive.joint] - zero) / drive.scale))
     if not ends:
         return None
     return max(low for low, _ in ends), min(high for _, high in ends)
+
+
+def _no_limits(model: mujoco.MjModel, joint: int) -> bool:
+    """Whether a hinge's range is a way of writing none: its angles would have lost their digits."""
+    hinge = model.jnt_type[joint] == mujoco.mjtJoint.mjJNT_HINGE
+    return bool(hinge and np.abs(model.jnt_range[joint]).max() > LARGEST_ANGLE)
 
 
 def _whole_turns(model: mujoco.MjModel, drive: Drive) -> bool:

@@ -153,7 +153,7 @@ def _extracted(
 def _warn_of_reach(chain: "Chain") -> None:
     """Warns of lengths that were probably millimetres; a tip on the only axis has no reach at all."""
     low, high = PLAUSIBLE_REACH
-    if chain.reach > 0.0 and not low <= chain.reach <= high:
+    if chain.reach > 1e-9 and not low <= chain.reach <= high:
         warnings.warn(
             f"the reach of {chain.name!r} is {chain.reach:.3g} m; lengths must be in metres, not millimetres",
             ModelWarning,

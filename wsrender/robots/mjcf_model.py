@@ -75,9 +75,7 @@ def _check_ranges(spec: mujoco.MjSpec, field: str) -> None:
         low, high = joint.range
         if joint.limited != mujoco.mjtLimited.mjLIMITED_FALSE and low >= high and (low, high) != (0.0, 0.0):
             name = joint.name or joint.parent.name
-            raise ModelError(
-                field, f"joint {name!r}: its range is {low:g} … {high:g}; the first must be below"
-            )
+            raise ModelError(field, f"joint {name!r}: its range is {low:g} … {high:g}; the first must be below")
 
 
 def _file(file: str, folder: str, strip: bool) -> str:
@@ -103,9 +101,7 @@ def _drop_geometry(
         if gives_inertia and not inline and contents.get(file) is None:
             body = geom.parent
             source = file or "geometry"
-            faults.append(
-                (body, f"the inertia of body {body.name!r} comes from {source}, which is not there")
-            )
+            faults.append((body, f"the inertia of body {body.name!r} comes from {source}, which is not there"))
         if not gives_inertia or not (inline or contents.get(file) is not None):
             spec.delete(geom)
     _keep_meshes(spec, files, contents)

@@ -178,9 +178,7 @@ def _inertial(element: Element, field: str, where: str) -> Inertial:
     }
     rows = [["ixx", "ixy", "ixz"], ["ixy", "iyy", "iyz"], ["ixz", "iyz", "izz"]]
     matrix = np.array([[moments[key] for key in row] for row in rows])
-    return Inertial(
-        _pose(element, field, where), number(mass.get("value", ""), field, f"{where}: mass"), matrix
-    )
+    return Inertial(_pose(element, field, where), number(mass.get("value", ""), field, f"{where}: mass"), matrix)
 
 
 def _joint(element: Element, field: str) -> Joint:

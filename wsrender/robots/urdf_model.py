@@ -38,9 +38,7 @@ def compile_urdf(robot: Element, field: str) -> CompiledModel:
     _warn_of_unset_limits(urdf)
     model, inertia_faults = compile_with_inertials(spec, field)
     path_faults = {
-        model.body(joint.child).id: fault
-        for joint in urdf.joints.values()
-        if (fault := _fault(joint, urdf.joints))
+        model.body(joint.child).id: fault for joint in urdf.joints.values() if (fault := _fault(joint, urdf.joints))
     }
     return CompiledModel(model, urdf.name, path_faults, inertia_faults)
 
@@ -50,9 +48,7 @@ def _add_links(spec: mujoco.MjSpec, urdf: Urdf) -> None:
     bodies = {urdf.root: world if urdf.root == "world" else world.add_body(name=urdf.root)}
     _fill(bodies[urdf.root], urdf.links[urdf.root])
     for joint in urdf.joints.values():
-        body = bodies[joint.parent].add_body(
-            name=joint.child, pos=joint.pose.position, quat=joint.pose.quat_wxyz
-        )
+        body = bodies[joint.parent].add_body(name=joint.child, pos=joint.pose.position, quat=joint.pose.quat_wxyz)
         bodies[joint.child] = body
         _fill(body, urdf.links[joint.child])
         if joint.movable:
@@ -127,9 +123,7 @@ def _fault(joint: Joint, joints: dict[str, Joint]) -> str:
         return f"joint {joint.name!r} is {joint.kind}: name a base below it"
     if joint.mimic is not None:
         if _leader(joint.mimic, joint, joints) is None:
-            return (
-                f"joint {joint.name!r} mimics {joint.mimic.leader!r}, which is no other joint of one freedom"
-            )
+            return f"joint {joint.name!r} mimics {joint.mimic.leader!r}, which is no other joint of one freedom"
         return ""
     if joint.kind == "revolute" and joint.limits is None:
         return f"revolute joint {joint.name!r} has no <limit>: give its limits, or make it continuous"
@@ -145,19 +139,14 @@ def _warn_of_meshes(urdf: Urdf) -> None:
     files = [shape.file for link in urdf.links.values() for shape in link.shapes if shape.kind == "mesh"]
     if files:
         warnings.warn(
-            f"geometry of {len(files)} meshes is dropped ({files[0]}, …): kinematics and inertia do not "
-            "need it",
+            f"geometry of {len(files)} meshes is dropped ({files[0]}, …): kinematics and inertia do not need it",
             ModelWarning,
             stacklevel=2,
         )
 
 
 def _warn_of_unset_limits(urdf: Urdf) -> None:
-    names = [
-        joint.name
-        for joint in urdf.joints.values()
-        if joint.kind == "revolute" and joint.limits == (0.0, 0.0)
-    ]
+    names = [joint.name for joint in urdf.joints.values() if joint.kind == "revolute" and joint.limits == (0.0, 0.0)]
     if names:
         warnings.warn(
             f"the limits of {', '.join(names)} are both 0, which leaves no motion; taken as no limits",

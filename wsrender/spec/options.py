@@ -95,16 +95,10 @@ Indices = Annotated[
 Penalty = Annotated[
     float | None,
     BeforeValidator(_penalty),
-    WithJsonSchema(
-        {"anyOf": [{"type": "number", "exclusiveMinimum": 0}, {"type": "boolean"}, {"type": "null"}]}
-    ),
+    WithJsonSchema({"anyOf": [{"type": "number", "exclusiveMinimum": 0}, {"type": "boolean"}, {"type": "null"}]}),
 ]
-Statistics = Annotated[
-    tuple[Literal["count", "maximum", "mean", "minimum"], ...], BeforeValidator(_statistics)
-]
+Statistics = Annotated[tuple[Literal["count", "maximum", "mean", "minimum"], ...], BeforeValidator(_statistics)]
 MapColumns = Annotated[tuple[Literal["configuration", "orientation"], ...], BeforeValidator(_columns)]
 NotAvailable = Annotated[None, BeforeValidator(_nothing)]
-Device = Annotated[
-    str, BeforeValidator(_device), Field(json_schema_extra={"pattern": f"^({_DEVICE.pattern})$"})
-]
+Device = Annotated[str, BeforeValidator(_device), Field(json_schema_extra={"pattern": f"^({_DEVICE.pattern})$"})]
 Configurations = Annotated[tuple[tuple[Number, ...], ...] | None, BeforeValidator(_configurations)]

@@ -70,9 +70,7 @@ class _Counted(_Sampling):
     seed: Seed = 0
     """Seed of the sequence, 0 … 2^63 - 1."""
 
-    def __init__(
-        self, count: int, seed: int = 0, *, locked: Mapping[str, float] | None = None, **method: str
-    ):
+    def __init__(self, count: int, seed: int = 0, *, locked: Mapping[str, float] | None = None, **method: str):
         Document.__init__(self, count=count, seed=seed, locked={} if locked is None else locked, **method)
 
     __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
