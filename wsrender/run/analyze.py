@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from typing import Any
 
+from wsrender.progress import RunProgress
 from wsrender.result import Result
 from wsrender.robot import Robot, as_robot
 from wsrender.run.steps import Progress, execute
@@ -19,18 +20,19 @@ def analyze(
     indices: str | Sequence[str] = "kinematic",
     task: str | Sequence[str] = "linear",
     *,
-    progress: Progress | None = None,
+    progress: Progress | bool | None = None,
     threads: int | None = None,
     chunk_size: int | None = None,
     **fields: Any,
 ) -> Result:
     """Sample a robot's joint space: distribution map, volume data and global indices.
 
-    ``robot`` is a Robot, a user-defined robot or what `load_robot` takes; ``sampling`` one of Grid, Random,
-    Sobol, BoundaryBiased, Converge (default Grid(15)) or its part of a job document; ``fields`` are the
-    other fields of the job document ``workspace``: convention, joint_limit_penalty, characteristic_length_m,
-    torque_scaling, inertia, voxel_size_m, voxel_statistics, keep_map, map_columns, max_samples, precision,
-    device. Raises DocumentError, InputError, ModelError, ResourceError, NumericalError, NotConvergedError.
+    ``robot`` is a Robot, a user-defined robot or what `load_robot` takes; ``sampling`` one of Grid, Random, Sobol,
+    BoundaryBiased, Converge (default Grid(15)) or its part of a job document; ``fields`` are the other fields of the
+    job document ``workspace``: convention, joint_limit_penalty, characteristic_length_m, torque_scaling, inertia,
+    voxel_size_m, voxel_statistics, keep_map, map_columns, max_samples, precision, device. ``progress``: True shows a
+    bar on work of more than a second; or a function (done, total, message). ``threads`` and ``chunk_size`` change no
+    bit of the result. Raises DocumentError, InputError, ModelError, ResourceError, NumericalError, NotConvergedError.
     """
     subject = _robot(robot)
     job = parse_job(
@@ -46,7 +48,11 @@ def analyze(
         }
     )
     assert isinstance(job, WorkspaceJob)
-    return execute(job, progress, subject, threads=threads, chunk_size=chunk_size)
+    options: dict[str, Any] = {"robot": subject, "threads": threads, "chunk_size": chunk_size}
+    if progress is True:
+        with RunProgress() as bar:
+            return execute(job, bar, **options)
+    return execute(job, progress or None, **options)
 
 
 def _robot(robot: Any) -> Robot:
