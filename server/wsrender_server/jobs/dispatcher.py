@@ -22,6 +22,7 @@ TICK_S = 0.1
 RECORD_S = 0.5
 PAUSE_S = 1.0
 MOST_LOSSES = 4
+WORKERS_S = 90.0  # an embedded cluster without workers for so long is replaced
 
 log = logging.getLogger(__name__)
 
@@ -42,6 +43,7 @@ class Dispatcher:
         self._targets: dict[str, str] = {}
         self._generation = 0  # of the scheduler's losses
         self._recorded = 0.0
+        self._served = time.monotonic()  # when a worker was last there
         self._end = threading.Event()
         self._wake = threading.Event()
         self._thread = threading.Thread(target=self._loop, name="dispatcher", daemon=True)
@@ -122,6 +124,12 @@ class Dispatcher:
         if self._targets and time.monotonic() - self._recorded < RECORD_S:
             return
         targets = self.engine.targets()
+        if targets:
+            self._served = time.monotonic()
+        elif time.monotonic() - self._served > WORKERS_S and self.engine.embedded:
+            self._served = time.monotonic()
+            self.engine.close()
+            raise EngineUnavailable("the embedded cluster has no workers any more")
         if targets != self._targets:
             if targets:
                 self.store.set_targets(targets)

@@ -40,6 +40,11 @@ class Engine:
         self._lock = threading.Lock()
 
     @property
+    def embedded(self) -> bool:
+        """Whether the cluster is this server's own."""
+        return self._settings.scheduler is None
+
+    @property
     def connected(self) -> bool:
         """Whether the scheduler answers."""
         return self._client is not None and self._client.status == "running"

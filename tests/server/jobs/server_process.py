@@ -9,11 +9,12 @@ import time
 import psutil
 
 SERVE = """
-import signal, sys, threading
+import logging, signal, sys, threading
 from wsrender_server.jobs.service import JobService
 from wsrender_server.settings import Settings
 
 if __name__ == "__main__":
+    logging.basicConfig(level=logging.WARNING)
     end = threading.Event()
     signal.signal(signal.SIGTERM, lambda *_: end.set())
     with JobService(Settings.model_validate_json(sys.argv[1])):
