@@ -32,6 +32,7 @@ class JobService:
     def stop(self) -> None:
         """Stop dispatcher and engine; unfinished jobs go on at the next start."""
         self.dispatcher.stop()
+        self.store.close()
         self._guard.close()
 
     def workers(self) -> list[WorkerRecord]:

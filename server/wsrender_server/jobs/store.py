@@ -56,6 +56,10 @@ class JobStore(ComputationStore, ResultStore, KeyStore):
         self.max_queued_per_owner = max_queued_per_owner
         self.timeout_of = timeout_of
 
+    def close(self) -> None:
+        """Close the connections that are open; the next call opens new ones."""
+        self.transactions.engine.dispose()
+
     def submit(
         self,
         owner: str,

@@ -38,7 +38,7 @@ class ServerProcess:
         self.settings = settings
         self.script = folder / f"{id(program):x}.py"
         self.script.write_text(program)
-        self.log = (folder / f"{self.script.stem}.{time.monotonic_ns()}.log").open("wb")
+        self.log = folder / f"{self.script.stem}.{time.monotonic_ns()}.log"
         self.start()
 
     def start(self):
@@ -46,7 +46,8 @@ class ServerProcess:
         command = [sys.executable, self.script, self.settings.model_dump_json()]
         path = os.pathsep.join(folder for folder in sys.path if folder)
         environment = {**os.environ, "PYTHONPATH": path}
-        self.process = subprocess.Popen(command, stdout=self.log, stderr=self.log, env=environment)
+        with self.log.open("ab") as log:
+            self.process = subprocess.Popen(command, stdout=log, stderr=log, env=environment)
 
     def kill(self):
         """kill -9 of the one process."""
@@ -75,4 +76,3 @@ class ServerProcess:
             self.process.wait(20)
         except subprocess.TimeoutExpired:
             self.kill_all()
-        self.log.close()

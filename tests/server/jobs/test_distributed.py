@@ -123,6 +123,7 @@ def test_lost_processes_cost_only_what_they_had_in_hand(cluster, settings, expec
         assert ended(store, job).state == "succeeded"
         assert again == set()
         assert comparable(store.result_document("ann", job)) == expected
+        store.close()
     finally:
         server.kill_all()
 
