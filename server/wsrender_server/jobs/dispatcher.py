@@ -4,7 +4,8 @@ import logging
 import queue
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any
 
 from distributed import Future
@@ -153,17 +154,21 @@ class Dispatcher:
         else:
             self._submit_shards(attempt)
 
-    def _submit(self, attempt: Attempt, step: Step, shard: int = 0) -> None:
-        key = attempt.key(step, shard)
-        future = self.engine.submit(attempt.task(step, shard), attempt.record.priority, attempt.target, key)
-        attempt.futures[step, shard] = future
-        future.add_done_callback(lambda done: self._put(lambda: self._ended(attempt, step, shard, done)))
+    def _submit(self, attempt: Attempt, step: Step, shards: Sequence[int] = (0,)) -> None:
+        tasks = {attempt.key(step, shard): attempt.task(step, shard) for shard in shards}
+        futures = self.engine.submit(tasks, attempt.record.priority, attempt.target)
+        for shard, future in zip(shards, futures, strict=True):
+            attempt.futures[step, shard] = future
+            future.add_done_callback(partial(self._future_done, attempt, step, shard))
+
+    def _future_done(self, attempt: Attempt, step: Step, shard: int, future: Future) -> None:
+        self._put(lambda: self._ended(attempt, step, shard, future))
 
     def _submit_shards(self, attempt: Attempt) -> None:
         missing = attempt.begin_shards(self.store.files)
-        for shard in missing:
-            self._submit(attempt, Step.SHARD, shard)
-        if not missing:
+        if missing:
+            self._submit(attempt, Step.SHARD, missing)
+        else:
             self._submit_finish(attempt)
 
     def _submit_finish(self, attempt: Attempt) -> None:
@@ -233,7 +238,7 @@ class Dispatcher:
         elif step == Step.FINISH:
             self._submit_shards(attempt)  # those whose files are there are not computed again
         else:
-            self._submit(attempt, step, shard)
+            self._submit(attempt, step, [shard])
 
     def _fail(self, attempt: Attempt, reason: dict[str, Any]) -> None:
         """End an attempt that failed; its other tasks are stopped first, so that a retry meets none of them."""

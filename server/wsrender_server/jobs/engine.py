@@ -77,14 +77,19 @@ class Engine:
             with contextlib.suppress(*LOST):
                 cluster.close(timeout=ANSWER_S)
 
-    def submit(self, task: Task, priority: int, target: str, key: str) -> Future:
-        """Hand a task to the scheduler; workers of ``target`` run it. Raises EngineUnavailable."""
+    def submit(self, tasks: dict[str, Task], priority: int, target: str) -> list[Future]:
+        """Hand tasks of one step to the scheduler, by name; workers of ``target`` run them.
+
+        One message for all: a thousand messages would keep this process from anything else for seconds. Raises
+        EngineUnavailable.
+        """
+        (step,) = {task.step for task in tasks.values()}
         try:
-            return self._connected().submit(
+            return self._connected().map(
                 workers_side.run_task,
-                task,
-                key=key,
-                priority=priority * len(URGENCY) + URGENCY[task.step],
+                list(tasks.values()),
+                key=list(tasks),
+                priority=priority * len(URGENCY) + URGENCY[step],
                 resources={target: 1},
                 retries=0,
                 pure=False,

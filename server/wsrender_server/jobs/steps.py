@@ -17,7 +17,7 @@ from typing import Any
 from wsrender_server.jobs.files import DataFolder
 from wsrender_server.jobs.task import Step, Task
 
-MOST_SHARDS = 1024
+MOST_SHARDS = 256
 SHARD_UNIT = 1 << 16  # a multiple of the kernels' block of samples
 KEPT_PLANS = 4
 
