@@ -28,7 +28,7 @@ LARGEST_CHECKED = 1 << 16  # bytes
 
 Labels = Annotated[
     dict[Annotated[str, StringConstraints(pattern=LABEL_KEY)], Annotated[str, StringConstraints(pattern=LABEL_VALUE)]],
-    Field(max_length=MOST_LABELS),
+    Field(max_length=MOST_LABELS, json_schema_extra={"additionalProperties": False}),
 ]
 
 
@@ -37,9 +37,9 @@ class SubmissionOptions(BaseModel):
 
     labels: Labels = Field(default={}, examples=[{"study": "wrist-1"}])
     """Free text to find the job by."""
-    priority: Annotated[int, BeforeValidator(integer), Field(ge=-1000, le=1000)] = 0
+    priority: Annotated[int, Field(ge=-1000, le=1000), BeforeValidator(integer)] = 0
     """Jobs of larger priority go first."""
-    timeout_s: Annotated[float, BeforeValidator(real), Field(gt=0, le=1e7)] | None = None
+    timeout_s: Annotated[float, Field(gt=0, le=1e7), BeforeValidator(real)] | None = None
     """Longest time that the job may run [s]; null: the server's default."""
 
     model_config = ConfigDict(use_attribute_docstrings=True, extra="forbid")

@@ -95,7 +95,7 @@ ANSWERS: dict[type[BaseException], Answer] = {
     ResourceError: Answer(409, "The job is larger than allowed"),
     InputError: Answer(422, "A value is not allowed"),
     NotConvergedError: Answer(409, "The iteration has not converged"),
-    NumericalError: Answer(500, "The computation went wrong"),
+    NumericalError: Answer(409, "The computation went wrong"),
     MissingExtraError: Answer(503, "The server lacks a package"),
     IdempotencyConflict: Answer(422, "The idempotency key was used with another body"),
     InvalidTransition: Answer(409, "The job's state does not allow that"),
