@@ -3,6 +3,7 @@
 import logging
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -84,8 +85,8 @@ def create_app(settings: Settings, jobs: Jobs | None = None) -> FastAPI:
     ]
     answer_errors(app)
     app.add_middleware(RequestLayer, metrics=parts.metrics, max_body_bytes=settings.max_body_bytes)
-    schema = _openapi(app, authenticator.required)
-    app.openapi = lambda: schema
+    document = cache(lambda keys_needed: _openapi(app, keys_needed))
+    app.openapi = lambda: document(authenticator.required)
     return app
 
 

@@ -38,16 +38,21 @@ LOCAL_USER = Principal("local", GRANTS["admin"])
 
 
 class Authenticator:
-    """Knows the keys of the key file and of the database.
-
-    ``required`` is False, once and for all while the server runs, where it started without any key. Raises InputError
-    for a malformed key file.
-    """
+    """Knows the keys of the key file and of the database. Raises InputError for a malformed key file."""
 
     def __init__(self, settings: Settings, store: JobStore):
         self._store = store
         self._file_keys = {} if settings.api_key_file is None else read_key_file(settings.api_key_file)
-        self.required = bool(self._file_keys) or any(key.revoked_at is None for key in store.list_keys())
+        self._required = bool(self._file_keys)
+
+    @property
+    def required(self) -> bool:
+        """Whether a key is needed: from the moment that there is one, and then for as long as the server runs.
+
+        Revoking the last key does not open a running server to everyone.
+        """
+        self._required = self._required or self._store.has_key()
+        return self._required
 
     def principal(self, secret: str) -> Principal | None:
         """Whose secret it is; None for an unknown or revoked key."""

@@ -17,8 +17,8 @@ Estimated = dict[str, float | None]
 class Estimates:
     """Plans documents; what takes longer than a request should goes on, and answers when it is asked for again."""
 
-    def __init__(self):
-        self._process = SideProcess()
+    def __init__(self, max_memory_bytes: int):
+        self._process = SideProcess(max_memory_bytes)
         self._tasks: dict[str, asyncio.Task[Estimated]] = {}
 
     async def of(self, document: dict[str, Any]) -> Estimated:

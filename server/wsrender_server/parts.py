@@ -1,6 +1,6 @@
 """The parts of a running server, as routes use them."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Annotated, Protocol
 
 from fastapi import Depends, Request
@@ -48,12 +48,12 @@ class Parts:
 
     settings: Settings
     jobs: Jobs
-    side_process: SideProcess = field(default_factory=SideProcess)
-    estimates: Estimates = field(default_factory=Estimates)
-    metrics: Metrics = field(default_factory=Metrics)
 
     def __post_init__(self):
         self.store = self.jobs.store
+        self.metrics = Metrics()
+        self.side_process = SideProcess(self.settings.max_memory_bytes)
+        self.estimates = Estimates(self.settings.max_memory_bytes)
         self.converted = ConvertedFiles(self.store.files, self.side_process)
 
 

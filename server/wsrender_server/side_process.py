@@ -5,27 +5,34 @@ It keeps native code that reads strangers' models, and long holds of Python's lo
 
 import asyncio
 import multiprocessing
+import os
 import threading
 from collections.abc import Callable
 from concurrent.futures import TimeoutError as FutureTimeoutError
+from multiprocessing.sharedctypes import RawArray
 from typing import Any
 
-from pebble import ProcessExpired, ProcessPool
+from pebble import ProcessExpired, ProcessFuture, ProcessPool
 
 from wsrender.errors import WsrenderError
+from wsrender_server.jobs.child_process import resident_bytes, settle_in
 from wsrender_server.problems import HttpProblem, problem_of_error, refusal
 
 MOST_WAITING = 32
+LOOK_S = 0.1
 TASKS_PER_CHILD = 200  # what Python and native libraries do not give back goes with the child
 
 
 class SideProcess:
     """Runs module-level functions one after another in a child that is started when first needed.
 
-    A function that crashes or is too slow costs its own request only. Close it with ``close``.
+    A function that crashes, is too slow, or takes more than ``max_memory_bytes`` costs its own request only. Close it
+    with ``close``.
     """
 
-    def __init__(self):
+    def __init__(self, max_memory_bytes: int):
+        self._max_memory_bytes = max_memory_bytes
+        self._pid = RawArray("q", 1)
         self._pool: ProcessPool | None = None
         self._lock = threading.Lock()
         self._waiting = 0
@@ -33,14 +40,15 @@ class SideProcess:
     async def run(self, function: Callable[..., Any], *arguments: Any, timeout_s: float = 60.0) -> Any:
         """What ``function(*arguments)`` returns; arguments and value are pickled.
 
-        Raises HttpProblem for the function's own errors (409: the request kept to its schema), 429 where many wait.
+        Raises HttpProblem 409 for the function's own errors (the request kept to its schema) and for one that costs too
+        much, 429 where many wait.
         """
         if self._waiting >= MOST_WAITING:
             raise HttpProblem(429, "too many requests of this kind are waiting", "busy", retryable=True)
         self._waiting += 1
         try:
             future = self._open_pool().schedule(_guarded, args=(function, arguments), timeout=timeout_s)
-            value, problem = await asyncio.wrap_future(future)
+            value, problem = await self._watched(future)
         except FutureTimeoutError as error:
             raise HttpProblem(409, f"took longer than {timeout_s:g} s", "too_slow") from error
         except ProcessExpired as error:
@@ -50,6 +58,19 @@ class SideProcess:
         if problem is not None:
             raise refusal(problem, 409 if problem["status"] == 422 else problem["status"])
         return value
+
+    async def _watched(self, future: ProcessFuture) -> Any:
+        """The result of a future; what runs for it is killed if this ends before."""
+        answer = asyncio.wrap_future(future)
+        try:
+            while not answer.done():
+                await asyncio.wait({answer}, timeout=LOOK_S)
+                if future.running() and resident_bytes(self._pid[0] or None) > self._max_memory_bytes:
+                    allowed = f"{self._max_memory_bytes / 2**30:.3g} GiB"
+                    raise HttpProblem(409, f"took more memory than the {allowed} allowed", "out_of_memory")
+            return answer.result()
+        finally:
+            answer.cancel()
 
     def close(self) -> None:
         """Stop the child."""
@@ -63,8 +84,19 @@ class SideProcess:
         with self._lock:
             if self._pool is None or not self._pool.active:
                 context = multiprocessing.get_context("spawn")
-                self._pool = ProcessPool(max_workers=1, max_tasks=TASKS_PER_CHILD, context=context)
+                self._pool = ProcessPool(
+                    max_workers=1,
+                    max_tasks=TASKS_PER_CHILD,
+                    initializer=_start,
+                    initargs=(self._pid,),
+                    context=context,
+                )
             return self._pool
+
+
+def _start(pid: Any) -> None:
+    settle_in()
+    pid[0] = os.getpid()
 
 
 def _guarded(function: Callable[..., Any], arguments: tuple[Any, ...]) -> tuple[Any, dict[str, Any] | None]:

@@ -17,6 +17,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from wsrender.export.atomic import new_file
 from wsrender_server.jobs.faults import DiskFull
 
 FULL = (errno.ENOSPC, errno.EDQUOT)
@@ -67,9 +68,10 @@ class DataFolder:
         if not target.exists():
             with full_disk():
                 self.check_space()
-                temporary = self.root / "scratch" / f"{sha256}.{os.getpid()}"
-                temporary.write_bytes(content)
-                temporary.replace(target)
+                with new_file(target) as temporary, temporary.open("wb") as file:
+                    file.write(content)
+                    file.flush()
+                    os.fsync(file.fileno())
         return sha256
 
     def forget_partials(self, computation: str) -> None:

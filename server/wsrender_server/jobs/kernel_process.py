@@ -1,6 +1,5 @@
 """The one process of a worker in which kernels run: persistent, watched, and killed where it must end."""
 
-import contextlib
 import errno
 import multiprocessing
 import os
@@ -14,11 +13,11 @@ from concurrent.futures.process import BrokenProcessPool
 from multiprocessing.sharedctypes import RawArray
 from typing import Any
 
-import psutil
 from pebble import ProcessExpired, ProcessPool
 
 from wsrender.errors import DocumentError, InputError, WsrenderError
 from wsrender_server.jobs import steps
+from wsrender_server.jobs.child_process import kill, resident_bytes
 from wsrender_server.jobs.files import FULL
 from wsrender_server.jobs.task import Outcome, Task, Verdict, error
 from wsrender_server.settings import Settings
@@ -81,11 +80,11 @@ class KernelProcess:
             while len(self._stopped) > REMEMBERED_TOKENS:
                 self._stopped.popitem(last=False)
             if self._token == token:
-                self._kill()
+                kill(self.pid)
 
     def close(self) -> None:
         """End the process."""
-        self._kill()
+        kill(self.pid)
         self._discard()
 
     def _ready(self) -> ProcessPool:
@@ -107,10 +106,12 @@ class KernelProcess:
                 return Outcome(Verdict.DONE, future.result(timeout=LOOK_S))
             except TimeoutError:
                 if task.token in self._stopped:
-                    self._kill()  # again: the process may have been starting when the stop came
+                    kill(self.pid)  # again: the process may have been starting when the stop came
                     if self.pid is None:
                         future.cancel()
-                too_much = too_much or self._check_memory()
+                if resident_bytes(self.pid) > self._limit:
+                    too_much = True
+                    kill(self.pid)
                 if time.monotonic() - reported > REPORT_S:
                     reported = time.monotonic()
                     report(self._gauges[1])
@@ -119,20 +120,6 @@ class KernelProcess:
                 return self._death(task, getattr(fault, "exitcode", None), too_much)
             except BaseException as fault:
                 return outcome_of_exception(fault)
-
-    def _check_memory(self) -> bool:
-        """Kill a process that holds more memory than allowed; whether it was killed."""
-        pid = self.pid
-        if pid is None:
-            return False
-        try:
-            held = psutil.Process(pid).memory_info().rss
-        except psutil.Error:
-            return False
-        if held <= self._limit:
-            return False
-        self._kill()
-        return True
 
     def _death(self, task: Task, exit_code: int | None, too_much: bool) -> Outcome:
         if task.token in self._stopped:
@@ -147,13 +134,6 @@ class KernelProcess:
         name = signal.Signals(-exit_code).name if exit_code < 0 else f"exit code {exit_code}"
         message = f"the kernel process crashed ({name}); other jobs are not affected"
         return Outcome(Verdict.FAILED, error=error("kernel_crash", message))
-
-    def _kill(self) -> None:
-        pid = self.pid
-        if pid is None:
-            return
-        with contextlib.suppress(psutil.Error):  # it may have ended by itself
-            psutil.Process(pid).kill()
 
     def _discard(self) -> None:
         """Forget the pool: a process killed in the middle may have left its pipes locked."""

@@ -49,6 +49,11 @@ class KeyStore:
         with self.transactions.read() as session:
             return [_record(row) for row in session.scalars(select(Key).order_by(Key.created_at, Key.id))]
 
+    def has_key(self) -> bool:
+        """Whether there is a key that is not revoked."""
+        with self.transactions.read() as session:
+            return session.scalar(select(Key.id).where(Key.revoked_at.is_(None)).limit(1)) is not None
+
     def revoke_key(self, key_id: str) -> KeyRecord | None:
         """Revoke a key; None for an unknown one."""
         with self.transactions.write() as session:

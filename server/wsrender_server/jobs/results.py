@@ -1,11 +1,13 @@
 """Files of results, and models: the part of the store whose bytes lie in the data folder."""
 
+import contextlib
 import json
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
 from sqlalchemy import Select, select
+from sqlalchemy.exc import IntegrityError
 
 from wsrender_server.jobs.database import Transactions
 from wsrender_server.jobs.files import DataFolder
@@ -40,7 +42,8 @@ class ResultStore:
     def put_model(self, owner: str, content: bytes) -> str:
         """Keep an uploaded model for its owner; its SHA-256. Raises DiskFull."""
         sha256 = self.files.put_model(content)
-        with self.transactions.write() as session:
+        # IntegrityError: the same model arrived twice at once, and is kept.
+        with contextlib.suppress(IntegrityError), self.transactions.write() as session:
             if session.get(Model, (owner, sha256)) is None:
                 session.add(Model(owner=owner, sha256=sha256, bytes=len(content), created_at=datetime.now(UTC)))
         return sha256

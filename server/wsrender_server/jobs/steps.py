@@ -1,19 +1,15 @@
 """The steps of a computation, as they run in a kernel process: plan, shards, finish, all by `wsrender.run`."""
 
 import ctypes
-import errno
-import multiprocessing
 import os
 import shutil
-import signal
-import threading
 import time
 from collections import OrderedDict
 from functools import reduce
-from multiprocessing.connection import wait
 from pathlib import Path
 from typing import Any
 
+from wsrender_server.jobs.child_process import settle_in
 from wsrender_server.jobs.files import DataFolder
 from wsrender_server.jobs.task import Step, Task
 
@@ -27,9 +23,7 @@ _plans: "OrderedDict[str, Any]" = OrderedDict()
 
 def start(data_dir: Path, threads: int, shard_samples: int, gauges: "ctypes.Array[ctypes.c_int64]") -> None:
     """Set up a kernel process; ``gauges`` (2,), shared with the worker: process id, samples done of the shard."""
-    signal.signal(signal.SIGTERM, signal.SIG_DFL)  # native code never returns to a handler
-    threading.Thread(target=_die_with_parent, daemon=True).start()
-    _offer_to_be_killed_first()
+    settle_in()
     os.environ["WSRENDER_THREADS"] = str(threads)
     _state.update(files=DataFolder(data_dir), shard_samples=shard_samples, gauges=gauges)
     gauges[1] = 0
@@ -204,19 +198,3 @@ def _divided(shards: list[list[int]], size: int) -> list[list[int]]:
 
 def _files() -> DataFolder:
     return _state["files"]
-
-
-def _die_with_parent() -> None:
-    """A process whose worker was killed would compute on for nobody."""
-    parent = multiprocessing.parent_process()
-    if parent is not None:
-        wait([parent.sentinel])
-        os._exit(errno.EOWNERDEAD)
-
-
-def _offer_to_be_killed_first() -> None:
-    """Where memory runs out, Linux should end this process rather than a server."""
-    try:
-        Path("/proc/self/oom_score_adj").write_text("1000")
-    except OSError:
-        return  # another system, or not allowed: the worker watches the memory anyway

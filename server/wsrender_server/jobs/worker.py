@@ -1,6 +1,7 @@
 """Dask workers: one kernel process each, described to the scheduler by the targets that it can compute for."""
 
 import asyncio
+import logging
 import threading
 from collections.abc import Callable
 from typing import Any
@@ -15,6 +16,8 @@ from wsrender_server.settings import Settings
 TOPIC = "wsrender"
 PLUGIN = "wsrender-kernels"
 RECONNECT_S = 2.0
+
+log = logging.getLogger(__name__)
 
 config.set({"distributed.worker.daemon": False})  # daemons may not have processes of their own
 
@@ -89,8 +92,8 @@ async def _serve(settings: Settings, on_start: Callable[[], None] | None, stop: 
                 while not (stop.is_set() or finished.done()):
                     await asyncio.wait([finished], timeout=0.2)
                 finished.cancel()
-        except (OSError, TimeoutError):
-            pass  # the scheduler is not there (yet)
+        except (OSError, TimeoutError, RuntimeError) as error:  # RuntimeError: Dask's nanny could not start its worker
+            log.warning("no worker at %s: %s; trying again", settings.scheduler, error)
         if not stop.is_set():
             await asyncio.sleep(RECONNECT_S)
 

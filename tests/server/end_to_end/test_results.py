@@ -88,7 +88,8 @@ def test_wrong_documents_raise_what_a_local_run_raises(client):
             client.submit(wrong)
         with pytest.raises(ws.InputError) as local:
             ws.execute(wrong)
-        assert remote.value.message == local.value.message
+        # An index registered in this process is none of the server's: the lists of what is allowed may differ.
+        assert remote.value.message.partition("allowed:")[0] == local.value.message.partition("allowed:")[0]
     with pytest.raises(ws.NotFoundError):
         client.job("0" * 32)
 

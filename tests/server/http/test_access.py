@@ -56,6 +56,17 @@ def test_a_revoked_key_is_refused_at_once(keyed, keys, jobs):
     problem_of(keyed.get("/v1/jobs", headers=bearer(keys["eve"])), 401, "unauthorized")
 
 
+def test_the_first_key_guards_a_running_server(client, jobs):
+    assert client.get("/v1/jobs").status_code == 200
+    assert "security" not in client.get("/openapi.json").json()["paths"]["/v1/jobs"]["get"]
+    key, secret = jobs.store.create_key("ann")
+    problem_of(client.get("/v1/jobs"), 401, "unauthorized")
+    assert client.get("/v1/jobs", headers=bearer(secret)).status_code == 200
+    assert client.get("/openapi.json").json()["paths"]["/v1/jobs"]["get"]["security"]
+    jobs.store.revoke_key(key)
+    problem_of(client.get("/v1/jobs"), 401, "unauthorized")
+
+
 def test_owners_see_only_their_own(keyed, keys, jobs, result_folder):
     ann, bob = bearer(keys["ann"]), bearer(keys["bob"])
     key = {"Idempotency-Key": "same"}

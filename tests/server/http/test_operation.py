@@ -2,6 +2,8 @@
 
 import errno
 import re
+import sqlite3
+from contextlib import closing
 
 import pytest
 import structlog
@@ -11,6 +13,8 @@ from tests.server.http.idle_server import DOCUMENT, problem_of
 from wsrender import __version__
 from wsrender.robots import library
 from wsrender.spec import job_schema
+
+MODEL = {"content": "<mujoco/>", "headers": {"Content-Type": "application/xml"}}
 
 
 def test_health_and_version(client):
@@ -43,6 +47,27 @@ def test_a_full_disk_or_locked_database_loses_nothing(client, jobs, monkeypatch,
         response = client.post("/v1/jobs", json=DOCUMENT)
     assert problem_of(response, 503, code)["retryable"] and int(response.headers["retry-after"]) > 0
     assert client.post("/v1/jobs", json=DOCUMENT).status_code == 202
+
+
+def test_a_locked_database_answers_503_and_loses_nothing(client, settings, submit):
+    before = submit()
+    with closing(sqlite3.connect(settings.data_dir / "wsrender.db", isolation_level=None)) as other:
+        other.execute("BEGIN IMMEDIATE")
+        response = client.post("/v1/jobs", json=DOCUMENT | {"voxel_size_m": 0.2})
+        assert problem_of(response, 503, "database_unavailable")["retryable"]
+        assert [job["id"] for job in client.get("/v1/jobs").json()["items"]] == [before["id"]]
+    assert client.post("/v1/jobs", json=DOCUMENT | {"voxel_size_m": 0.2}).status_code == 202
+    assert len(client.get("/v1/jobs").json()["items"]) == 2
+
+
+def test_a_nearly_full_disk_answers_503_and_loses_nothing(client, jobs, submit, monkeypatch):
+    before = submit()
+    with monkeypatch.context() as patch:
+        patch.setattr(jobs.store.files, "reserve_bytes", 2**60)
+        for path, content in (("/v1/jobs", {"json": DOCUMENT}), ("/v1/models", MODEL)):
+            assert problem_of(client.post(path, **content), 503, "disk_full")["retryable"]
+        assert client.get(before["links"]["self"]).json() == before
+    assert client.post("/v1/models", **MODEL).status_code == 201
 
 
 def test_an_unforeseen_fault_is_logged_and_says_nothing(client, jobs, monkeypatch):

@@ -5,7 +5,6 @@ import sqlite3
 import threading
 import time
 from contextlib import closing
-from pathlib import Path
 
 import pytest
 from sqlalchemy import event
@@ -92,10 +91,10 @@ def test_a_full_database_refuses_and_forgets_nothing(settings, document):
 def test_a_full_disk_refuses_models(settings, monkeypatch):
     store = open_store(settings)
 
-    def full(self, content):
+    def full(file):
         raise OSError(errno.ENOSPC, "No space left on device")
 
-    monkeypatch.setattr(Path, "write_bytes", full)
+    monkeypatch.setattr("os.fsync", full)
     with pytest.raises(DiskFull) as fault:
         store.put_model("ann", b"<mujoco/>")
     assert fault.value.retryable and list((settings.data_dir / "models").iterdir()) == []

@@ -384,14 +384,24 @@ def test_models_belong_to_their_owner(store):
     assert store.submit("ann", canonical(robot={"model": sha256})).job.state == JobState.QUEUED
 
 
+def test_a_model_sent_many_times_at_once_is_kept_once(store):
+    content = b"<mujoco/>" + b" " * 2**20
+    with ThreadPoolExecutor(8) as pool:
+        (sha256,) = set(pool.map(lambda _: store.put_model("ann", content), range(24)))
+    assert [path.name for path in (store.files.root / "models").iterdir()] == [sha256]
+    assert store.get_model("ann", sha256) == content
+
+
 def test_keys_are_found_until_revoked(store):
+    assert not store.has_key()
     key, secret = store.create_key("lab", ["read", "submit"])
+    assert store.has_key()
     found = store.find_key(secret)
     assert (found.id, found.name, found.scopes) == (key, "lab", ("read", "submit"))
     for wrong in ("", "wsr", secret[:-1], secret + "x", secret.replace(key, "0" * 16), "wsr_é_x", "\ud800"):
         assert store.find_key(wrong) is None
     assert store.revoke_key(key).revoked_at is not None and store.revoke_key("0" * 16) is None
-    assert store.find_key(secret) is None and [k.id for k in store.list_keys()] == [key]
+    assert store.find_key(secret) is None and not store.has_key() and [k.id for k in store.list_keys()] == [key]
 
 
 def test_no_secret_is_kept(store, database):

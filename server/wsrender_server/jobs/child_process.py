@@ -1,0 +1,54 @@
+"""What every child process that runs native code is: quick to die, modest, and watched for its memory."""
+
+import contextlib
+import errno
+import multiprocessing
+import os
+import signal
+import threading
+from multiprocessing.connection import wait
+from pathlib import Path
+
+import psutil
+
+NICENESS = 10
+
+
+def settle_in() -> None:
+    """Set up this process as a child: it dies when it is told to or its parent died, and gives way to everyone."""
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)  # native code never returns to a handler
+    threading.Thread(target=_die_with_parent, daemon=True).start()
+    _offer_to_be_killed_first()
+    if hasattr(os, "nice"):
+        os.nice(NICENESS)  # whoever answers requests on the same machine goes first
+
+
+def kill(pid: int | None) -> None:
+    """Kill a process, if it is there."""
+    if pid is not None:
+        with contextlib.suppress(psutil.Error):  # it may have ended by itself
+            psutil.Process(pid).kill()
+
+
+def resident_bytes(pid: int | None) -> int:
+    """Memory that a process holds; 0 where it is not there."""
+    try:
+        return 0 if pid is None else psutil.Process(pid).memory_info().rss
+    except psutil.Error:
+        return 0
+
+
+def _die_with_parent() -> None:
+    """A process whose parent was killed would compute on for nobody."""
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        wait([parent.sentinel])
+        os._exit(errno.EOWNERDEAD)
+
+
+def _offer_to_be_killed_first() -> None:
+    """Where memory runs out, Linux should end this process rather than a server."""
+    try:
+        Path("/proc/self/oom_score_adj").write_text("1000")
+    except OSError:
+        return  # another system, or not allowed: the parent watches the memory anyway
