@@ -1,46 +1,80 @@
-"""Who waits for a change of a job, and who tells them: threads notify, coroutines wait."""
+"""Who follows a job, and who tells them: threads notify, coroutines read and wait."""
 
 import asyncio
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Hashable, Iterator
+from contextlib import contextmanager
+from typing import Any
 
 
 class Changes:
-    """Wakes the coroutines that wait for a job, from any thread of this process."""
+    """Wakes the coroutines that follow a job, from any thread of this process."""
 
     def __init__(self):
         self._lock = threading.Lock()
-        self._waiting: dict[str, set[tuple[asyncio.AbstractEventLoop, asyncio.Event]]] = {}
+        self._watches: dict[tuple[str, asyncio.AbstractEventLoop], Watch] = {}
 
     def notify(self, *jobs: str) -> None:
-        """Wake everyone who waits for one of these jobs."""
+        """Wake everyone who follows one of these jobs."""
         with self._lock:
-            woken = [waiter for job in jobs for waiter in self._waiting.get(job, ())]
-        for loop, event in woken:
-            if not loop.is_closed():
-                loop.call_soon_threadsafe(event.set)
+            watches = [watch for (job, _), watch in self._watches.items() if job in jobs]
+        for watch in watches:
+            if not watch.loop.is_closed():
+                watch.loop.call_soon_threadsafe(watch.changed)
 
-    async def wait(self, job: str, changed: Callable[[], bool], timeout_s: float) -> bool:
-        """Wait until ``changed()``, asked in a thread after each notification, holds; False at the timeout."""
-        loop = asyncio.get_running_loop()
-        waiter = (loop, asyncio.Event())
-        ends = loop.time() + timeout_s
+    @contextmanager
+    def watch(self, job: str) -> Iterator["Watch"]:
+        """Follow a job within a coroutine; what happens from now on is not missed."""
+        key = (job, asyncio.get_running_loop())
         with self._lock:
-            self._waiting.setdefault(job, set()).add(waiter)
+            watch = self._watches.setdefault(key, Watch(key[1]))
+            watch.followers += 1
         try:
-            while not await asyncio.to_thread(changed):
-                try:
-                    await asyncio.wait_for(waiter[1].wait(), ends - loop.time())
-                except TimeoutError:
-                    return False
-                waiter[1].clear()
-            return True
+            yield watch
         finally:
-            self._forget(job, waiter)
+            with self._lock:
+                watch.followers -= 1
+                if not watch.followers:
+                    del self._watches[key]
 
-    def _forget(self, job: str, waiter: tuple[asyncio.AbstractEventLoop, asyncio.Event]) -> None:
-        with self._lock:
-            waiters = self._waiting[job]
-            waiters.discard(waiter)
-            if not waiters:
-                del self._waiting[job]
+
+class Watch:
+    """A job as the coroutines of one event loop follow it: what one of them has read, all of them know."""
+
+    def __init__(self, loop: asyncio.AbstractEventLoop):
+        self.loop = loop
+        self.followers = 0
+        self._news = asyncio.Event()
+        self._read: dict[Hashable, asyncio.Task[Any]] = {}
+
+    def changed(self) -> None:
+        """What was read is old; wake everyone."""
+        self._read.clear()
+        self._news.set()
+        self._news = asyncio.Event()
+
+    async def read(self, key: Hashable, function: Callable[[], Any]) -> tuple[Any, asyncio.Event]:
+        """What ``function()`` returns, called in a thread, and what is set when that is old.
+
+        Equal keys share one call until the job changes.
+        """
+        news = self._news
+        task = self._read.get(key)
+        if task is None:
+            task = self._read[key] = asyncio.create_task(asyncio.to_thread(function))
+            task.add_done_callback(lambda done: self._forget_fault(key, done))
+        return await asyncio.shield(task), news
+
+    async def wait(self, news: asyncio.Event, timeout_s: float) -> bool:
+        """Wait until what was read with ``news`` is old; at the timeout it is taken to be, and False returned."""
+        try:
+            await asyncio.wait_for(news.wait(), timeout_s)
+        except TimeoutError:
+            self._read.clear()
+            return False
+        return True
+
+    def _forget_fault(self, key: Hashable, task: asyncio.Task[Any]) -> None:
+        """A database that did not answer is asked again by whoever reads next."""
+        if (task.cancelled() or task.exception()) and self._read.get(key) is task:
+            del self._read[key]

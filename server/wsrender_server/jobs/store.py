@@ -191,20 +191,14 @@ class JobStore(ComputationStore, ResultStore, KeyStore):
         self.changes.notify(job_id)
         return record
 
-    def events(self, owner: str, job_id: str, after: int = 0) -> Events:
-        """Events of a job with ids above ``after``, in order; none for an unknown job."""
-        query = (
-            select(Event)
-            .join(Job, Job.id == Event.job_id)
-            .where(Job.id == job_id, Job.owner == owner, Event.number > after)
-            .order_by(Event.number)
-        )
+    def news(self, owner: str, job_id: str, after: int) -> tuple[JobState | None, Events]:
+        """State of a job, None where there is none, and its events with ids above ``after``, in order."""
         with self.transactions.read() as session:
-            return [EventRecord(row.number, row.type, row.data) for row in session.scalars(query)]
-
-    async def wait_for_change(self, owner: str, job_id: str, after_event: int, timeout_s: float) -> bool:
-        """Wait until a job has an event with an id above ``after_event``, or is gone; False at the timeout."""
-        return await self.changes.wait(job_id, lambda: self._changed(owner, job_id, after_event), timeout_s)
+            state = session.scalar(select(Job.state).where(Job.id == job_id, Job.owner == owner))
+            if state is None:
+                return None, []
+            query = select(Event).where(Event.job_id == job_id, Event.number > after).order_by(Event.number)
+            return JobState(state), [EventRecord(row.number, row.type, row.data) for row in session.scalars(query)]
 
     def _replay(self, session: Session, owner: str, key: str | None, body_hash: str) -> JobRecord | None:
         if key is None:
@@ -282,11 +276,6 @@ class JobStore(ComputationStore, ResultStore, KeyStore):
             .with_for_update(of=Computation)
         )
         return (None, None) if computation is None else (session.get(Job, job_id), computation)
-
-    def _changed(self, owner: str, job_id: str, after_event: int) -> bool:
-        with self.transactions.read() as session:
-            last = session.scalar(select(Job.last_event).where(Job.id == job_id, Job.owner == owner))
-            return last is None or last > after_event
 
 
 def open_store(settings: Settings) -> JobStore:

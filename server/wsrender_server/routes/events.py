@@ -1,12 +1,12 @@
 """Events of a job as a stream (server-sent events), with replay."""
 
 from collections.abc import AsyncIterator
+from functools import partial
 from time import monotonic
 from typing import Annotated
 
 from fastapi import APIRouter, Depends, Header
 from fastapi.sse import EventSourceResponse, ServerSentEvent
-from starlette.concurrency import run_in_threadpool
 
 from wsrender_server.auth import Reader
 from wsrender_server.jobs.records import JobRecord
@@ -49,14 +49,12 @@ async def follow_job(
     progress the newest is kept.
     """
     store, seen, ends = server.store, last_event_id, monotonic() + LONGEST_STREAM_S
-    while monotonic() < ends:
-        current = await run_in_threadpool(store.get, job.owner, job.id)
-        if current is None:
-            return
-        for event in await run_in_threadpool(store.events, job.owner, job.id, seen):
-            seen = event.id
-            yield ServerSentEvent(data=event_data(event), event=event.type, id=str(event.id), retry=RECONNECT_MS)
-        # The state was read before the events: an ended job has no more of them.
-        if current.state in ENDED:
-            return
-        await store.wait_for_change(job.owner, job.id, seen, CHECK_S)
+    with store.changes.watch(job.id) as watch:
+        while monotonic() < ends:
+            (state, events), news = await watch.read((job.owner, seen), partial(store.news, job.owner, job.id, seen))
+            for event in events:
+                seen = event.id
+                yield ServerSentEvent(data=event_data(event), event=event.type, id=str(event.id), retry=RECONNECT_MS)
+            if state is None or state in ENDED:
+                return
+            await watch.wait(news, CHECK_S)

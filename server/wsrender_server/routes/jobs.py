@@ -4,6 +4,7 @@ import hashlib
 import json
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import partial
 from time import monotonic
 from typing import Annotated, Any
 
@@ -166,14 +167,14 @@ async def get_job(
     ] = None,
 ) -> JobView:
     """With `wait` the answer comes when the job has ended, with `after` when anything has happened to it."""
-    store, owner = server.store, principal.owner
-    job = found(await run_in_threadpool(store.get, owner, job_id))
-    ends = monotonic() + wait
-    while job.state not in ENDED and (after is None or job.last_event <= after):
-        left = ends - monotonic()
-        if left <= 0 or not await store.wait_for_change(owner, job_id, job.last_event, left):
-            break
-        job = found(await run_in_threadpool(store.get, owner, job_id))
+    store, owner, ends = server.store, principal.owner, monotonic() + wait
+    with store.changes.watch(job_id) as watch:
+        while True:
+            job, news = await watch.read(owner, partial(store.get, owner, job_id))
+            waiting = found(job).state not in ENDED and (after is None or job.last_event <= after)
+            left = ends - monotonic()
+            if not waiting or left <= 0 or not await watch.wait(news, left):
+                break
     return job_view(job)
 
 

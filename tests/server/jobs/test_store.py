@@ -5,7 +5,7 @@ import threading
 from concurrent.futures import ThreadPoolExecutor
 
 import pytest
-from wsrender_server.jobs.faults import DiskFull, IdempotencyConflict, InvalidTransition, QueueFull
+from wsrender_server.jobs.faults import DiskFull, IdempotencyConflict, InvalidTransition, QueueFull, StoreUnavailable
 from wsrender_server.jobs.files import DataFolder
 from wsrender_server.jobs.records import ArtifactRecord, Progress
 from wsrender_server.jobs.states import ComputationState, JobState
@@ -57,10 +57,10 @@ def test_a_job_lives_through_its_states_with_one_event_each(store, document):
     ended = store.get("ann", job)
     assert ended.state == JobState.SUCCEEDED and ended.progress.fraction == 1.0
     assert ended.created_at <= ended.started_at <= ended.finished_at
-    events = store.events("ann", job)
+    events = store.news("ann", job, 0)[1]
     assert [(e.id, e.type) for e in events] == [(1, "state"), (2, "state"), (4, "progress"), (5, "state")]
     assert [e.data["state"] for e in events if e.type == "state"] == ["queued", "running", "succeeded"]
-    assert [e.id for e in store.events("ann", job, after=2)] == [4, 5]
+    assert [e.id for e in store.news("ann", job, 2)[1]] == [4, 5]
     assert ended.last_event == 5
 
 
@@ -69,7 +69,7 @@ def test_foreign_jobs_do_not_exist(store, document):
     complete(store, computation)
     for method in (store.get, store.cancel, store.retry, store.delete, store.result_document):
         assert method("bob", job) is None
-    assert store.events("bob", job) == [] and store.artifacts("bob", job) == []
+    assert store.news("bob", job, 0)[1] == [] and store.artifacts("bob", job) == []
     assert store.artifact_path("bob", job, "result.json") is None
     assert store.list("bob") == ([], None)
     assert store.get("ann", job).state == JobState.SUCCEEDED
@@ -417,16 +417,58 @@ def test_unknown_scopes_are_refused(store, scopes):
         store.create_key("lab", scopes)
 
 
-def test_waiting_ends_with_a_change(store, document):
+def test_followers_are_woken_by_a_change_and_share_what_they_read(store, document):
     job, computation = running(store, document)
+    reads = []
 
-    async def wait():
-        threading.Timer(0.2, lambda: complete(store, computation)).start()
-        return await store.wait_for_change("ann", job, 2, 10)
+    def read():
+        reads.append(threading.get_ident())
+        return store.get("ann", job).state
 
-    assert asyncio.run(wait()) and store.get("ann", job).state == JobState.SUCCEEDED
-    assert asyncio.run(store.wait_for_change("ann", job, 0, 10))
-    assert not asyncio.run(store.wait_for_change("ann", job, 3, 0.05))
+    async def follow():
+        with store.changes.watch(job) as watch:
+            seen, news = await watch.read("state", read)
+            return seen, await watch.wait(news, 10), (await watch.read("state", read))[0]
+
+    async def follow_many():
+        threading.Timer(0.3, lambda: complete(store, computation)).start()
+        return await asyncio.gather(*(follow() for _ in range(20)))
+
+    assert set(asyncio.run(follow_many())) == {(JobState.RUNNING, True, JobState.SUCCEEDED)}
+    assert len(reads) == 2
+
+
+def test_waiting_ends_in_time_and_reads_anew(store, document):
+    job = store.submit("ann", document).job.id
+    reads = iter(range(3))
+
+    async def follow():
+        with store.changes.watch(job) as watch:
+            first, news = await watch.read("", lambda: next(reads))
+            assert (await watch.read("", lambda: next(reads)))[0] == first
+            assert not await watch.wait(news, 0.05)
+            return first, (await watch.read("", lambda: next(reads)))[0]
+
+    assert asyncio.run(follow()) == (0, 1)
+
+
+def test_a_read_that_failed_is_not_kept(store, document):
+    job = store.submit("ann", document).job.id
+    answers = iter([StoreUnavailable("locked"), None])
+
+    def read():
+        answer = next(answers)
+        if answer is not None:
+            raise answer
+        return "read"
+
+    async def follow():
+        with store.changes.watch(job) as watch:
+            with pytest.raises(StoreUnavailable):
+                await watch.read("", read)
+            return (await watch.read("", read))[0]
+
+    assert asyncio.run(follow()) == "read"
 
 
 def test_the_queue_is_summarised(store, document):
