@@ -5,7 +5,6 @@ from wsrender_server.local_server import LocalServer
 
 import wsrender as ws
 from tests.server.end_to_end.acceptance import LONG, LONG_SHARD_SAMPLES, QUICK, local_result
-from tests.server.end_to_end.base_environment import make_base_environment
 
 
 @pytest.fixture(scope="module")
@@ -37,9 +36,3 @@ def long_local(tmp_path_factory):
 def small_shards(monkeypatch):
     """Servers started from here divide the long job into many shards."""
     monkeypatch.setenv("WSRENDER_SHARD_SAMPLES", str(LONG_SHARD_SAMPLES))
-
-
-@pytest.fixture(scope="session")
-def base_python(tmp_path_factory):
-    """The interpreter of an environment without extras."""
-    return make_base_environment(tmp_path_factory.mktemp("base") / "venv")

@@ -1,8 +1,6 @@
 """A job over HTTP gives what a local run gives, bit for bit."""
 
 import json
-import subprocess
-import sys
 
 import numpy as np
 import pytest
@@ -125,25 +123,3 @@ def test_command_line_submits_and_downloads(server, capfd, tmp_path, quick_local
     assert json.loads(wsrender("jobs", "show", job_id))["labels"] == {"kind": "typed"}
     wsrender("jobs", "download", job_id, "-o", str(tmp_path / "b"))
     assert_same_files(tmp_path / "b", quick_local[1])
-
-
-def test_base_only_environment_completes_a_job(server, base_python, tmp_path):
-    script = f"""
-import importlib.util, json
-for heavy in ("warp", "mujoco", "h5py", "pyarrow", "scipy", "matplotlib", "fastapi", "wsrender_server"):
-    assert importlib.util.find_spec(heavy) is None, heavy
-import wsrender
-with wsrender.Client({server.url!r}) as client:
-    result = client.submit({QUICK!r}).wait(progress=True, timeout={PATIENCE_S}).result()
-    assert type(result.sample.position).__name__ == "ndarray"
-    print(int(result.volume.count.sum()), float(result.volume.statistics["maximum"]["manipulability"].max()))
-    result.save({str(tmp_path / "out")!r})
-"""
-    done = subprocess.run([base_python, "-c", script], capture_output=True, text=True, cwd=tmp_path, check=False)
-    assert done.returncode == 0, done.stderr
-    samples, _ = done.stdout.split()
-    assert samples == "4096"
-    assert (tmp_path / "out" / "surface.glb").is_file()
-    version = subprocess.run([base_python, "-m", "wsrender", "--version"], capture_output=True, text=True, cwd=tmp_path)
-    assert version.stdout == f"wsrender {ws.__version__}\n"
-    assert sys.executable != str(base_python)
