@@ -2,6 +2,7 @@
 
 import signal
 import threading
+from contextlib import AbstractContextManager, closing
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -105,10 +106,13 @@ def create_key(
 ) -> None:
     """Make an API key and print it: it is kept as a hash only and never shown again."""
     with one_line_faults():
-        store = _store(data_dir, database)
-        id, secret = store.create_key(name, *([scope] if scope else []))
+        with _store(data_dir, database) as store:
+            id, secret = store.create_key(name, *([scope] if scope else []))
         typer.echo(secret)
-        typer.echo(f"key {id} of {name}: keep it now, it is never shown again", err=True)
+        typer.echo(
+            f"key {id} of {name}: keep it now, it is never shown again; running servers ask for keys from now on",
+            err=True,
+        )
 
 
 @keys.command("list")
@@ -120,7 +124,9 @@ def list_keys(data_dir: DataDir = None, database: Database = None) -> None:
         from rich.table import Table
 
         table = Table("id", "name", "scopes", "created", "revoked", box=SIMPLE_HEAD, show_edge=False)
-        for key in _store(data_dir, database).list_keys():
+        with _store(data_dir, database) as store:
+            found = store.list_keys()
+        for key in found:
             revoked = "" if key.revoked_at is None else f"{key.revoked_at:%Y-%m-%d %H:%M}"
             table.add_row(key.id, key.name, " ".join(key.scopes), f"{key.created_at:%Y-%m-%d %H:%M}", revoked)
         Console().print(table)
@@ -132,7 +138,9 @@ def revoke_key(
 ) -> None:
     """Revoke an API key: requests with it are refused from now on."""
     with one_line_faults():
-        if _store(data_dir, database).revoke_key(id) is None:
+        with _store(data_dir, database) as store:
+            revoked = store.revoke_key(id)
+        if revoked is None:
             raise NotFoundError(f"there is no key {id}")
         typer.echo(f"key {id} is revoked")
 
@@ -178,10 +186,10 @@ def _given(options: dict[str, Any], kind: type[Settings]) -> dict[str, Any]:
     return {name: options[name] for name in kind.model_fields if options.get(name) is not None}
 
 
-def _store(data_dir: Path | None, database: str | None) -> Any:
+def _store(data_dir: Path | None, database: str | None) -> AbstractContextManager[Any]:
     from wsrender_server.jobs.store import open_store
 
-    return open_store(settings_of(**_given(locals(), Settings)))
+    return closing(open_store(settings_of(**_given(locals(), Settings))))
 
 
 def _work_on(gpus: str, settings: Settings, stop: threading.Event) -> None:

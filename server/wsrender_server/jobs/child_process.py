@@ -1,4 +1,4 @@
-"""What every child process that runs native code is: quick to die, modest, and watched for its memory."""
+"""What every child process that runs native code is: quick to die, and watched for its memory."""
 
 import contextlib
 import errno
@@ -11,16 +11,12 @@ from pathlib import Path
 
 import psutil
 
-NICENESS = 10
-
 
 def settle_in() -> None:
-    """Set up this process as a child: it dies when it is told to or its parent died, and gives way to everyone."""
+    """Set up this process as a child: it dies when it is told to, when its parent has died, or for want of memory."""
     signal.signal(signal.SIGTERM, signal.SIG_DFL)  # native code never returns to a handler
     threading.Thread(target=_die_with_parent, daemon=True).start()
     _offer_to_be_killed_first()
-    if hasattr(os, "nice"):
-        os.nice(NICENESS)  # whoever answers requests on the same machine goes first
 
 
 def kill(pid: int | None) -> None:

@@ -88,12 +88,16 @@ def _finish(task: Task) -> list[dict[str, Any]]:
     partials = (_load(task, shard, plan) for shard in range(len(plan.shards)))
     partial = reduce(lambda a, b: merge(plan, a, b), partials)
     result = finish(plan, partial, task.seconds)
-    staging = _files().root / "scratch" / f"{task.computation}.{os.getpid()}"
+    scratch = _files().root / "scratch"
+    for left in scratch.glob(f"{task.computation}.*"):  # by a process that was lost at this step
+        shutil.rmtree(left, ignore_errors=True)
+    own = scratch / f"{task.computation}.{os.getpid()}"
+    own.mkdir()
     try:
-        result.save(staging)
-        return _publish(result.document, staging, task.computation)
+        result.save(own / "result")
+        return _publish(result.document, own / "result", task.computation)
     finally:
-        shutil.rmtree(staging, ignore_errors=True)
+        shutil.rmtree(own, ignore_errors=True)
 
 
 def _publish(document: dict[str, Any], staging: Path, computation: str) -> list[dict[str, Any]]:

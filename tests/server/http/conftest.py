@@ -36,8 +36,10 @@ def settings(tmp_path: Path) -> Settings:
 
 
 @pytest.fixture
-def jobs(settings: Settings) -> IdleJobs:
-    return IdleJobs(open_store(settings))
+def jobs(settings: Settings) -> Iterator[IdleJobs]:
+    jobs = IdleJobs(open_store(settings))
+    yield jobs
+    jobs.store.close()
 
 
 @pytest.fixture

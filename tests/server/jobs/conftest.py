@@ -1,10 +1,12 @@
 """Stores on both databases."""
 
+from contextlib import ExitStack
+
 import pytest
 from sqlalchemy import text
 from wsrender_server.jobs.database import open_database
 from wsrender_server.jobs.files import DataFolder
-from wsrender_server.jobs.store import JobStore
+from wsrender_server.jobs.store import JobStore, open_store
 from wsrender_server.jobs.tables import Table
 from wsrender_server.migrations import upgrade
 
@@ -36,3 +38,16 @@ def store(database, tmp_path):
 def document():
     """A canonical job document."""
     return canonical()
+
+
+@pytest.fixture
+def opened():
+    """``opened(settings)`` is a store of the settings, closed at the end of the test."""
+    with ExitStack() as stores:
+
+        def open_and_close(settings):
+            store = open_store(settings)
+            stores.callback(store.close)
+            return store
+
+        yield open_and_close

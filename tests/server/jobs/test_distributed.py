@@ -9,7 +9,6 @@ from distributed import Security
 from sqlalchemy import text
 from wsrender_server.jobs.database import open_database
 from wsrender_server.jobs.service import JobService
-from wsrender_server.jobs.store import open_store
 from wsrender_server.jobs.tables import Table
 from wsrender_server.migrations import upgrade
 from wsrender_server.settings import Settings
@@ -97,10 +96,10 @@ def test_two_workers_give_the_bits_of_a_local_run(cluster, settings, expected):
 
 
 @pytest.mark.parametrize("victim", ["scheduler", "worker", "everything"])
-def test_lost_processes_cost_only_what_they_had_in_hand(cluster, settings, expected, victim, tmp_path):
+def test_lost_processes_cost_only_what_they_had_in_hand(cluster, settings, opened, expected, victim, tmp_path):
     server = ServerProcess(settings, tmp_path)
     try:
-        store = open_store(settings)
+        store = opened(settings)
         job = store.submit("ann", canonical(**JOB)).job.id
         kept = wait_until(lambda: len(times := partial_times(settings.data_dir)) >= 3 and times, what="partial results")
         if victim == "worker":
@@ -123,7 +122,6 @@ def test_lost_processes_cost_only_what_they_had_in_hand(cluster, settings, expec
         assert ended(store, job).state == "succeeded"
         assert again == set()
         assert comparable(store.result_document("ann", job)) == expected
-        store.close()
     finally:
         server.kill_all()
 

@@ -148,6 +148,23 @@ def test_a_killed_kernel_process_is_no_fault_of_the_job(service, tmp_path):
     assert comparable(service.store.result_document("ann", job)) == local_document(document, tmp_path / "local")
 
 
+def test_a_process_lost_while_it_merges_costs_no_partial_result(service, tmp_path):
+    document = canonical(**{**SHARDED, "sampling": {"method": "sobol", "count": 2**20, "seed": 12}})
+    job = service.store.submit("ann", document).job.id
+    wait_until(lambda: any((service.settings.data_dir / "scratch").iterdir()), what="the writing of the result")
+    kept = partial_times(service.settings.data_dir)
+    os.kill(kernel_pid(service), signal.SIGKILL)
+    again = []
+    while service.store.get("ann", job).state == "running":
+        now = partial_times(service.settings.data_dir)
+        again += [name for name in kept if name in now and now[name] != kept[name]]
+        time.sleep(0.02)
+    assert len(kept) == 16 and again == []
+    assert ended(service.store, job).state == "succeeded"
+    assert comparable(service.store.result_document("ann", job)) == local_document(document, tmp_path / "local")
+    assert list((service.settings.data_dir / "scratch").iterdir()) == []
+
+
 def test_too_much_memory_fails_only_its_own_job(service):
     # Records of 0.8 GiB for each thread.
     statistics = {"indices": ["manipulability"], "voxel_statistics": ["count", "maximum", "minimum"]}

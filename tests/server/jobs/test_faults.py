@@ -13,7 +13,7 @@ from wsrender_server.jobs.faults import DiskFull, StoreUnavailable
 from wsrender_server.jobs.files import DataFolder
 from wsrender_server.jobs.kernel_process import outcome_of_exception
 from wsrender_server.jobs.service import JobService
-from wsrender_server.jobs.store import JobStore, open_store
+from wsrender_server.jobs.store import JobStore
 from wsrender_server.migrations import upgrade
 from wsrender_server.settings import Settings
 
@@ -32,7 +32,8 @@ def impatient(settings):
     """A store that waits 0.2 s for a lock."""
     engine = open_database(settings.database_url, lock_wait_s=0.2)
     upgrade(engine)
-    return JobStore(engine, DataFolder(settings.data_dir))
+    yield JobStore(engine, DataFolder(settings.data_dir))
+    engine.dispose()
 
 
 def locked(settings):
@@ -71,8 +72,8 @@ def test_a_lock_in_mid_job_only_delays_it(impatient, settings):
         assert ended(impatient, job).state == "succeeded"
 
 
-def test_a_full_database_refuses_and_forgets_nothing(settings, document):
-    store = open_store(settings)
+def test_a_full_database_refuses_and_forgets_nothing(settings, opened, document):
+    store = opened(settings)
     before = store.submit("ann", document).job
     engine = open_database(settings.database_url)
 
@@ -85,11 +86,12 @@ def test_a_full_database_refuses_and_forgets_nothing(settings, document):
     table = {"dh": {"convention": "standard", "rows": [{"joint": "revolute", "a": 1.0}] * 200}}
     with pytest.raises(StoreUnavailable, match="full"):
         full.submit("ann", canonical(robot=table))
+    full.close()
     assert [job.id for job in store.list("ann")[0]] == [before.id] and len(store.unfinished()) == 1
 
 
-def test_a_full_disk_refuses_models(settings, monkeypatch):
-    store = open_store(settings)
+def test_a_full_disk_refuses_models(settings, opened, monkeypatch):
+    store = opened(settings)
 
     def full(file):
         raise OSError(errno.ENOSPC, "No space left on device")
@@ -122,6 +124,7 @@ def test_a_data_folder_has_one_server(settings):
     service, second = JobService(settings), JobService(settings)
     with service, pytest.raises(InputError, match="in use"):
         second.start()
+    second.store.close()
 
 
 def test_a_database_of_another_version_must_be_upgraded(tmp_path):
@@ -130,6 +133,7 @@ def test_a_database_of_another_version_must_be_upgraded(tmp_path):
         upgrade(engine, check_only=True)
     upgrade(engine)
     upgrade(engine, check_only=True)
+    engine.dispose()
 
 
 def test_a_database_that_is_not_there_is_named():

@@ -5,7 +5,6 @@ import time
 import psutil
 import pytest
 from wsrender_server.jobs.service import JobService
-from wsrender_server.jobs.store import open_store
 from wsrender_server.settings import Settings
 
 from tests.server.jobs.documents import canonical
@@ -59,8 +58,8 @@ def is_python(process):
 
 
 @pytest.mark.parametrize("victim", ["worker", "server", "everything"])
-def test_the_job_finishes_with_the_same_bits(server, settings, expected, victim):
-    store = open_store(settings)
+def test_the_job_finishes_with_the_same_bits(server, settings, opened, expected, victim):
+    store = opened(settings)
     job = store.submit("ann", canonical(**JOB)).job.id
     kept = wait_until(lambda: len(times := partial_times(settings.data_dir)) >= 3 and times, what="partial results")
     orphans = kernels(server)
@@ -90,8 +89,8 @@ def test_the_number_of_workers_changes_no_bit(settings, expected, workers):
         assert comparable(service.store.result_document("ann", job)) == expected
 
 
-def test_a_stopped_server_leaves_nothing_and_goes_on(server, settings, expected):
-    store = open_store(settings)
+def test_a_stopped_server_leaves_nothing_and_goes_on(server, settings, opened, expected):
+    store = opened(settings)
     job = store.submit("ann", canonical(**JOB)).job.id
     wait_until(lambda: partial_times(settings.data_dir), what="a partial result")
     children = server.children()
