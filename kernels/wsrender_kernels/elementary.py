@@ -46,9 +46,10 @@ def bits_type(real):
 
 @cache
 def elementary(real) -> SimpleNamespace:
-    """Device functions of one precision: ``sincos``, ``sine``, ``cosine``, ``log2``, ``exp2``, ``power``, ``ordered``.
+    """Device functions of one precision.
 
-    ``sincos(a) -> (sin a, cos a)``; ``log2`` for positive normal numbers; ``power(x, e) = 2^(e log2 x)``, 0 for
+    ``sincos(a) -> (sin a, cos a)``; ``sincos_from(a, rest, 1/2 + rest 2/pi, quarters)`` gives those of a + rest +
+    quarters pi/2, where abs(rest) <= pi/4; ``log2`` for positive normal numbers; ``power(x, e) = 2^(e log2 x)``, 0 for
     x <= 0; ``ordered(x)`` maps a float to an integer that sorts alike (NaN sorts outside the infinities).
     """
     bits = bits_type(real)
@@ -71,24 +72,29 @@ def elementary(real) -> SimpleNamespace:
     INFINITE, UNDEFINED = real(math.inf), real(math.nan)
 
     @wp.func
-    def sincos(a: real):
-        k = wp.floor(a * TWO_OVER_PI + HALF)
-        r = ((a - k * PART_1) - k * PART_2) - k * PART_3
+    def sincos_from(a: real, rest: real, rounding: real, quarters: real):
+        # Reduced before the rest is added, the angle loses nothing to the sum.
+        k = wp.floor(a * TWO_OVER_PI + rounding)
+        r = (((a - k * PART_1) + rest) - k * PART_2) - k * PART_3
         z = r * r
         s = SIN[DEGREE - 1]
         c = COS[DEGREE - 1]
         for i in range(1, DEGREE):
-            s = s * z + SIN[DEGREE - 1 - i]
-            c = c * z + COS[DEGREE - 1 - i]
+            s = s * z + SIN[wp.static(DEGREE - 1 - i)]
+            c = c * z + COS[wp.static(DEGREE - 1 - i)]
         s = r + r * z * s
         c = ONE - HALF * z + z * z * c
-        quadrant = wp.int32(k)
+        quadrant = wp.int32(k + quarters)
         swap = (quadrant & 1) != 0
         sine = wp.where(swap, c, s)
         cosine = wp.where(swap, s, c)
         sine = wp.where((quadrant & 2) != 0, -sine, sine)
         cosine = wp.where(((quadrant + 1) & 2) != 0, -cosine, cosine)
         return sine, cosine
+
+    @wp.func
+    def sincos(a: real):
+        return sincos_from(a, ZERO, HALF, ZERO)
 
     @wp.func
     def sine(a: real):
@@ -134,4 +140,13 @@ def elementary(real) -> SimpleNamespace:
         i = wp.cast(x, bits)
         return i ^ ((i >> SIGN) & MAGNITUDE)
 
-    return SimpleNamespace(sincos=sincos, sine=sine, cosine=cosine, log2=log2, exp2=exp2, power=power, ordered=ordered)
+    return SimpleNamespace(
+        sincos=sincos,
+        sincos_from=sincos_from,
+        sine=sine,
+        cosine=cosine,
+        log2=log2,
+        exp2=exp2,
+        power=power,
+        ordered=ordered,
+    )

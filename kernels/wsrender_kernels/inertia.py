@@ -2,8 +2,9 @@
 
 Featherstone, *Rigid Body Dynamics Algorithms*, 2008, chapter 6.
 
-Composite inertias are taken about each joint's own origin in world axes: about the base, float32 would lose the
-small inertias of the last links.
+Composite inertias are taken about each joint's own origin, in its own frame: about the base, float32 would lose the
+small inertias of the last links. Passing to the frame before costs a rotation about z, a slide along it, a rotation
+about x and a shift whose constant part is packed with the links.
 """
 
 from functools import cache
@@ -12,9 +13,11 @@ from types import SimpleNamespace
 import numpy as np
 import warp as wp
 
-from wsrender_kernels.kinematics import JOINT_STRIDE, device_joint_frames, kinematics
+from wsrender_kernels.kinematics import JOINT_STRIDE, chain_type, device_joint_frames, device_positions, kinematics
 
-BODY_STRIDE = 11  # mass, first moment xyz, inertia about the joint origin xx yy zz xy xz yz, armature
+# Mass of the joint's link and all after it; of these, as if at the next joint's origin, with the link: first moment
+# xyz and inertia xx yy zz xy xz yz about the joint's origin; armature.
+BODY_STRIDE = 11
 
 
 def pack_inertia(T_joint, mass, center_of_mass, inertia, armature) -> np.ndarray:
@@ -23,126 +26,183 @@ def pack_inertia(T_joint, mass, center_of_mass, inertia, armature) -> np.ndarray
     ``mass`` (L,), ``center_of_mass`` (L, 3), ``inertia`` (L, 3, 3) about the centre of mass, ``armature`` (L,), in
     the joint frames (``T_joint``, (L, 4, 4)) of the Chain.
     """
+    L = len(mass)
+    frames, positions = device_joint_frames(T_joint), device_positions(T_joint)
     rows = []
-    frames = device_joint_frames(T_joint)
-    for m, c, inertia_c, a, R in zip(mass, center_of_mass, inertia, armature, frames, strict=True):
-        c = R @ c
-        about_origin = R @ inertia_c @ R.T + m * (c @ c * np.eye(3) - np.outer(c, c))
+    for i, R in enumerate(frames):
+        after = float(np.sum(mass[i + 1 :]))
+        p = positions[i + 1] if i + 1 < L else np.zeros(3)
+        c = R @ center_of_mass[i]
+        about_origin = R @ inertia[i] @ R.T + _of_point(mass[i], c) + _of_point(after, p)
         (xx, xy, xz), (_, yy, yz), (_, _, zz) = about_origin
-        rows += [m, *(m * c), xx, yy, zz, xy, xz, yz, a]
+        rows += [after + mass[i], *(mass[i] * c + after * p), xx, yy, zz, xy, xz, yz, armature[i]]
     return np.array(rows)
 
 
+def _of_point(mass: float, at: np.ndarray) -> np.ndarray:
+    return mass * (at @ at * np.eye(3) - np.outer(at, at))
+
+
 @cache
-def inertia(real, n: int, sources: tuple[int, ...]) -> SimpleNamespace:
-    """Device functions ``inertia_matrix(chain, bodies, levers, X, Y, Z) -> (n, n)`` and ``solve(M, A) -> A M^-1``."""
+def inertia(real, n: int, sources: tuple[int, ...], plain: bool) -> SimpleNamespace:
+    """Device functions ``inertia_matrix(chain, bodies, frames) -> (n, n)`` and ``solve(m)``: (M, A (m, n)) -> A M^-1.
+
+    ``frames`` and ``plain`` as in `kinematics`.
+    """
     L = len(sources)
     SOURCE = wp.types.vector(L, wp.int32)(*sources)
     CHAIN = JOINT_STRIDE
     BODY = BODY_STRIDE
-    kin = kinematics(real, n, sources)
-    vec3 = kin.vec3
-    mat33 = wp.types.matrix((3, 3), real)
+    kin = kinematics(real, n, sources, plain)
+    vec3, Frames = kin.vec3, kin.Frames
     axes_type = wp.types.matrix((L, 3), real)
+    sym3 = wp.types.vector(6, real)  # xx yy zz xy xz yz
     joint_inertia_type = wp.types.matrix((n, n), real)
-    ZERO, ONE, TWO = real(0.0), real(1.0), real(2.0)
+    ONE, TWO = real(1.0), real(2.0)
+    Chain, Bodies = chain_type(real, L), wp.types.vector(L * BODY_STRIDE, real)
+    PLAIN = plain
 
     @wp.func
-    def rotated(R: mat33, bodies: wp.array(dtype=real), b: wp.int32):
-        xx = bodies[b + 4]
-        yy = bodies[b + 5]
-        zz = bodies[b + 6]
-        xy = bodies[b + 7]
-        xz = bodies[b + 8]
-        yz = bodies[b + 9]
-        local = mat33(xx, xy, xz, xy, yy, yz, xz, yz, zz)
-        return R * local * wp.transpose(R)
+    def turned_z(S: sym3, c: real, s: real):
+        cc = c * c
+        ss = s * s
+        cs = c * s
+        twice = TWO * cs * S[3]
+        return sym3(
+            cc * S[0] + ss * S[1] - twice,
+            ss * S[0] + cc * S[1] + twice,
+            S[2],
+            cs * (S[0] - S[1]) + (cc - ss) * S[3],
+            c * S[4] - s * S[5],
+            s * S[4] + c * S[5],
+        )
 
     @wp.func
-    def shifted(about: mat33, m: real, h: vec3, d: vec3):
-        # Parallel axis theorem for a first moment h about the old origin, which lies at d from the new one.
-        s = m * wp.dot(d, d) + TWO * wp.dot(h, d)
-        out = mat33()
-        for r in range(3):
-            for c in range(3):
-                out[r, c] = about[r, c] - m * d[r] * d[c] - h[r] * d[c] - d[r] * h[c]
-            out[r, r] += s
-        return out
+    def turned_x(S: sym3, c: real, s: real):
+        cc = c * c
+        ss = s * s
+        cs = c * s
+        twice = TWO * cs * S[5]
+        return sym3(
+            S[0],
+            cc * S[1] + ss * S[2] - twice,
+            ss * S[1] + cc * S[2] + twice,
+            c * S[3] - s * S[4],
+            s * S[3] + c * S[4],
+            cs * (S[1] - S[2]) + (cc - ss) * S[5],
+        )
 
     @wp.func
-    def inertia_matrix(
-        chain: wp.array(dtype=real),
-        bodies: wp.array(dtype=real),
-        levers: axes_type,
-        X: axes_type,
-        Y: axes_type,
-        Z: axes_type,
-    ):
+    def with_first_moment(S: sym3, h: vec3, d: vec3):
+        # Parallel axis theorem: the old origin lies at d from the new one, h is the first moment about the old.
+        x = TWO * h[0] * d[0]
+        y = TWO * h[1] * d[1]
+        z = TWO * h[2] * d[2]
+        return sym3(
+            S[0] + (y + z),
+            S[1] + (x + z),
+            S[2] + (x + y),
+            S[3] - h[0] * d[1] - h[1] * d[0],
+            S[4] - h[0] * d[2] - h[2] * d[0],
+            S[5] - h[1] * d[2] - h[2] * d[1],
+        )
+
+    @wp.func
+    def inertia_matrix(chain: Chain, bodies: Bodies, frames: Frames):
         M = joint_inertia_type()
-        to_tip = axes_type()
-        for i in range(L):
-            to_tip[i] = X[i] * levers[i, 0] + Y[i] * levers[i, 1] + Z[i] * levers[i, 2]
-        m = ZERO
+        links = axes_type()  # from each joint's origin to the next, in the world
+        for i in range(wp.static(L - 1)):
+            a = wp.static(i + 1) * CHAIN
+            links[i] = frames.X[i] * chain[a + 2] + frames.Y[i] * chain[a + 3] + frames.Z[i] * chain[a + 4]
+            if wp.static(not PLAIN):
+                links[i] = links[i] + frames.Z[i + 1] * frames.slides[i + 1]
         h = vec3()
-        composite = mat33()
+        composite = sym3()
         for back in range(L):
-            i = L - 1 - back
+            i = wp.static(L - 1 - back)
             b = i * BODY
-            x = X[i]
-            y = Y[i]
-            z = Z[i]
-            o = to_tip[i]
-            if back > 0:
-                d = o - to_tip[wp.min(i + 1, L - 1)]
-                composite = shifted(composite, m, h, d)
-                h = h + d * m
-            R = mat33(x[0], y[0], z[0], x[1], y[1], z[1], x[2], y[2], z[2])
-            composite = composite + rotated(R, bodies, b)
-            h = h + x * bodies[b + 1] + y * bodies[b + 2] + z * bodies[b + 3]
-            m = m + bodies[b]
-            angle = chain[i * CHAIN + 7]
-            slide = chain[i * CHAIN + 8]
-            momentum = wp.cross(z, h) * angle + z * (m * slide)
-            moment = (composite * z) * angle + wp.cross(h, z) * slide
-            for j in range(i + 1):
-                zj = Z[j]
-                value = (
-                    wp.dot(zj, moment + wp.cross(to_tip[j] - o, momentum)) * chain[j * CHAIN + 7]
-                    + wp.dot(zj, momentum) * chain[j * CHAIN + 8]
-                )
+            if wp.static(back > 0):
+                a = (i + 1) * CHAIN
+                c = frames.cosines[i + 1]
+                s = frames.sines[i + 1]
+                p = vec3(chain[a + 2], chain[a + 3], chain[a + 4])
+                composite = turned_z(composite, c, s)
+                h = vec3(c * h[0] - s * h[1], s * h[0] + c * h[1], h[2])
+                if wp.static(not PLAIN):
+                    slide = frames.slides[i + 1]
+                    m = bodies[b + BODY]
+                    along = slide * (m * slide + TWO * h[2])
+                    composite[0] += along
+                    composite[1] += along
+                    composite[4] -= slide * h[0]
+                    composite[5] -= slide * h[1]
+                    h[2] += m * slide
+                composite = turned_x(composite, chain[a], chain[a + 1])
+                h = vec3(h[0], chain[a] * h[1] - chain[a + 1] * h[2], chain[a + 1] * h[1] + chain[a] * h[2])
+                composite = with_first_moment(composite, h, p)
+            h = h + vec3(bodies[b + 1], bodies[b + 2], bodies[b + 3])
+            for k in range(6):
+                composite[k] += bodies[b + 4 + k]
+            # Momentum and its moment about the joint's origin, of everything beyond it, at unit joint velocity.
+            x = frames.X[i]
+            y = frames.Y[i]
+            z = frames.Z[i]
+            momentum = y * h[0] - x * h[1]
+            moment = x * composite[4] + y * composite[5] + z * composite[2]
+            diagonal = composite[2] + bodies[b + 10]
+            if wp.static(not PLAIN):
+                angle = chain[i * CHAIN + 8]
+                slide = chain[i * CHAIN + 9]
+                m = bodies[b]
+                moment = moment * angle + (x * h[1] - y * h[0]) * slide
+                momentum = momentum * angle + z * (m * slide)
+                diagonal = composite[2] * angle * angle + m * slide * slide
+                diagonal += bodies[b + 10] * (angle + slide) * (angle + slide)
+            M[SOURCE[i], SOURCE[i]] += diagonal
+            for before in range(wp.static(L - 1 - back)):
+                j = wp.static(L - 2 - back - before)
+                moment = moment + wp.cross(links[j], momentum)
+                value = wp.dot(frames.Z[j], moment)
+                if wp.static(not PLAIN):
+                    value = value * chain[j * CHAIN + 8] + wp.dot(frames.Z[j], momentum) * chain[j * CHAIN + 9]
                 M[SOURCE[i], SOURCE[j]] += value
-                if j != i:
-                    M[SOURCE[j], SOURCE[i]] += value
-            scale = angle + slide
-            M[SOURCE[i], SOURCE[i]] += bodies[b + 10] * scale * scale
+                M[SOURCE[j], SOURCE[i]] += value
         return M
 
     @cache
     def solve(m_rows: int):
         rows_type = wp.types.matrix((m_rows, n), real)
+        vec_n = wp.types.vector(n, real)
 
         @wp.func
         def solve_rows(M: joint_inertia_type, A: rows_type):
-            # L D L^T of M in place, then the rows of A M^-1, M being symmetric.
-            F = M
+            # L D L^T of M, then the rows of A M^-1, M being symmetric.
+            F = joint_inertia_type()
+            D = vec_n()
+            inverse = vec_n()
             for j in range(n):
+                scaled = vec_n()
+                D[j] = M[j, j]
                 for k in range(j):
-                    F[j, j] -= F[j, k] * F[j, k] * F[k, k]
-                inverse = ONE / F[j, j]
-                for i in range(j + 1, n):
+                    scaled[k] = F[j, k] * D[k]
+                    D[j] -= F[j, k] * scaled[k]
+                inverse[j] = ONE / D[j]
+                for i in range(wp.static(j + 1), n):
+                    value = M[i, j]
                     for k in range(j):
-                        F[i, j] -= F[i, k] * F[j, k] * F[k, k]
-                    F[i, j] *= inverse
+                        value -= F[i, k] * scaled[k]
+                    F[i, j] = value * inverse[j]
             out = A
             for r in range(m_rows):
                 for i in range(n):
                     for k in range(i):
                         out[r, i] -= F[i, k] * out[r, k]
                 for i in range(n):
-                    out[r, i] /= F[i, i]
+                    out[r, i] *= inverse[i]
                 for back in range(n):
-                    for k in range(n - back, n):
-                        out[r, n - 1 - back] -= F[k, n - 1 - back] * out[r, k]
+                    i = wp.static(n - 1 - back)
+                    for k in range(wp.static(n - back), n):
+                        out[r, i] -= F[k, i] * out[r, k]
             return out
 
         return solve_rows

@@ -13,7 +13,7 @@ import warp as wp
 
 from wsrender_kernels.elementary import elementary
 
-JOINT_STRIDE = 10  # cos α, sin α, translation xyz, cos ψ, sin ψ, angle per q, slide per q, slide at q = 0
+JOINT_STRIDE = 11  # cos α, sin α, translation xyz, offset (3), angle per q, slide per q, slide at q = 0
 FRAME_STRIDE = 24  # base axes x, y, z and origin; tip origin and axes x, y, z
 
 
@@ -25,12 +25,14 @@ def pack_kinematics(T_base, T_joint, T_tip, revolute, scale, offset) -> np.ndarr
     """
     split = [_split_rotation(T[:3, :3]) for T in T_joint]
     before = [phi for phi, _, _ in split] + [0.0]
+    positions = device_positions(T_joint)
     rows = []
     base = T_base @ _rotation_z(before[0])
-    for i, (phi, alpha, psi) in enumerate(split):
-        position = _rotation_z(-phi)[:3, :3] @ T_joint[i, :3, 3]
+    for i, (_phi, alpha, psi) in enumerate(split):
         angle = psi + before[i + 1] + (offset[i] if revolute[i] else 0.0)
-        rows += [np.cos(alpha), np.sin(alpha), *position, np.cos(angle), np.sin(angle)]
+        quarters = np.round(angle * 2 / np.pi)
+        rest = angle - quarters * np.pi / 2
+        rows += [np.cos(alpha), np.sin(alpha), *positions[i], rest, 0.5 + rest * 2 / np.pi, quarters % 4]
         rows += [scale[i], 0.0, 0.0] if revolute[i] else [0.0, scale[i], offset[i]]
     frames = [*base[:3, :3].T.ravel(), *base[:3, 3], *T_tip[:3, 3], *T_tip[:3, :3].T.ravel()]
     return np.array(rows + frames)
@@ -40,6 +42,11 @@ def device_joint_frames(T_joint) -> np.ndarray:
     """Rotations (L, 3, 3) from the Chain's joint frames to those of ``forward``, which absorb the next Rz(phi)."""
     following = [_split_rotation(T[:3, :3])[0] for T in T_joint[1:]] + [0.0]
     return np.array([_rotation_z(-phi)[:3, :3] for phi in following])
+
+
+def device_positions(T_joint) -> np.ndarray:
+    """Origins (L, 3) of the joints in the frame of ``forward`` before each."""
+    return np.array([_rotation_z(-_split_rotation(T[:3, :3])[0])[:3, :3] @ T[:3, 3] for T in T_joint])
 
 
 def _split_rotation(R: np.ndarray) -> tuple[float, float, float]:
@@ -57,6 +64,12 @@ def _rotation_z(angle: float) -> np.ndarray:
     T = np.eye(4)
     T[:2, :2] = [[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]]
     return T
+
+
+@cache
+def chain_type(real, joints: int):
+    """Vector type of `pack_kinematics`."""
+    return wp.types.vector(joints * JOINT_STRIDE + FRAME_STRIDE, real)
 
 
 @cache
@@ -94,12 +107,14 @@ def orientation(real):
 
 
 @cache
-def kinematics(real, n: int, sources: tuple[int, ...]) -> SimpleNamespace:
+def kinematics(real, n: int, sources: tuple[int, ...], plain: bool) -> SimpleNamespace:
     """Device functions for a chain whose joint i is driven by coordinate ``sources[i]`` of ``n``.
 
-    ``forward(chain, q) -> tip, x, y, z, levers, X, Y, Z``: tip position and axes in the world; for every joint frame
-    after its motion, (L, 3) each, its axes in the world and the tip's position in it [m]. ``jacobian(chain, levers, X,
-    Y, Z)`` is (6, n), rows linear then angular at the tip in world axes, as MuJoCo's mj_jacSite.
+    ``plain``: every joint is revolute and turns by its own coordinate, so that scales and slides need no arithmetic.
+    ``forward(chain, q) -> tip, x, y, z, frames`` gives the tip's position and axes in the world; ``frames`` holds for
+    every joint frame after its motion, (L, 3) each, its axes X, Y, Z in the world and the tip's position in it
+    (``levers``) [m], and of the motion (L,) each the ``sines``, ``cosines`` and ``slides`` [m]. ``jacobian(chain,
+    frames)`` is (6, n), rows linear then angular at the tip in world axes, as MuJoCo's mj_jacSite.
 
     The tip's position is accumulated from the tip to the base: the levers of the last joints, which move the least
     inertia, then err by their own small length times epsilon and not by the arm's.
@@ -111,43 +126,56 @@ def kinematics(real, n: int, sources: tuple[int, ...]) -> SimpleNamespace:
     vec_n, vec_l = wp.types.vector(n, real), wp.types.vector(L, real)
     axes_type = wp.types.matrix((L, 3), real)
     jacobian_type = wp.types.matrix((6, n), real)
-    sincos = elementary(real).sincos
+    sincos = elementary(real).sincos_from
+    Chain = chain_type(real, L)
+    PLAIN = plain
+
+    @wp.struct
+    class Frames:
+        X: axes_type
+        Y: axes_type
+        Z: axes_type
+        levers: axes_type
+        sines: vec_l
+        cosines: vec_l
+        slides: vec_l
 
     @wp.func
-    def forward(chain: wp.array(dtype=real), q: vec_n):
+    def forward(chain: Chain, q: vec_n):
         b = L * STRIDE
         x = vec3(chain[b], chain[b + 1], chain[b + 2])
         y = vec3(chain[b + 3], chain[b + 4], chain[b + 5])
         z = vec3(chain[b + 6], chain[b + 7], chain[b + 8])
-        X = axes_type()
-        Y = axes_type()
-        Z = axes_type()
-        sines = vec_l()
-        cosines = vec_l()
+        frames = Frames()
         for i in range(L):
             a = i * STRIDE
             tilted = y * chain[a] + z * chain[a + 1]
             z = z * chain[a] - y * chain[a + 1]
-            s, c = sincos(q[SOURCE[i]] * chain[a + 7])
-            sine = s * chain[a + 5] + c * chain[a + 6]
-            cosine = c * chain[a + 5] - s * chain[a + 6]
+            angle = q[SOURCE[i]]
+            if wp.static(not PLAIN):
+                frames.slides[i] = angle * chain[a + 9] + chain[a + 10]
+                angle = angle * chain[a + 8]
+            sine, cosine = sincos(angle, chain[a + 5], chain[a + 6], chain[a + 7])
             y = tilted * cosine - x * sine
             x = x * cosine + tilted * sine
-            sines[i] = sine
-            cosines[i] = cosine
-            X[i] = x
-            Y[i] = y
-            Z[i] = z
+            frames.sines[i] = sine
+            frames.cosines[i] = cosine
+            frames.X[i] = x
+            frames.Y[i] = y
+            frames.Z[i] = z
         t = b + 12
-        levers = axes_type()
         r = vec3(chain[t], chain[t + 1], chain[t + 2])
         for back in range(L):
             i = L - 1 - back
             a = i * STRIDE
-            levers[i] = r
-            rx = cosines[i] * r[0] - sines[i] * r[1]
-            ry = sines[i] * r[0] + cosines[i] * r[1]
-            rz = r[2] + (q[SOURCE[i]] * chain[a + 8] + chain[a + 9])
+            frames.levers[i] = r
+            sine = frames.sines[i]
+            cosine = frames.cosines[i]
+            rx = cosine * r[0] - sine * r[1]
+            ry = sine * r[0] + cosine * r[1]
+            rz = r[2]
+            if wp.static(not PLAIN):
+                rz = rz + frames.slides[i]
             r = vec3(
                 chain[a + 2] + rx,
                 chain[a + 3] + (chain[a] * ry - chain[a + 1] * rz),
@@ -159,20 +187,23 @@ def kinematics(real, n: int, sources: tuple[int, ...]) -> SimpleNamespace:
         tip_x = x * chain[t + 3] + y * chain[t + 4] + z * chain[t + 5]
         tip_y = x * chain[t + 6] + y * chain[t + 7] + z * chain[t + 8]
         tip_z = x * chain[t + 9] + y * chain[t + 10] + z * chain[t + 11]
-        return tip, tip_x, tip_y, tip_z, levers, X, Y, Z
+        return tip, tip_x, tip_y, tip_z, frames
 
     @wp.func
-    def jacobian(chain: wp.array(dtype=real), levers: axes_type, X: axes_type, Y: axes_type, Z: axes_type):
+    def jacobian(chain: Chain, frames: Frames):
         J = jacobian_type()
         for i in range(L):
-            per_angle = chain[i * STRIDE + 7]
-            per_slide = chain[i * STRIDE + 8]
-            z = Z[i]
+            z = frames.Z[i]
             # z x lever, exactly 0 for a tip on the axis.
-            linear = (Y[i] * levers[i, 0] - X[i] * levers[i, 1]) * per_angle + z * per_slide
+            linear = frames.Y[i] * frames.levers[i, 0] - frames.X[i] * frames.levers[i, 1]
+            if wp.static(not PLAIN):
+                linear = linear * chain[i * STRIDE + 8] + z * chain[i * STRIDE + 9]
+                z = z * chain[i * STRIDE + 8]
             for r in range(3):
                 J[r, SOURCE[i]] += linear[r]
-                J[3 + r, SOURCE[i]] += z[r] * per_angle
+                J[3 + r, SOURCE[i]] += z[r]
         return J
 
-    return SimpleNamespace(forward=forward, jacobian=jacobian, vec3=vec3, vec_n=vec_n, jacobian_type=jacobian_type)
+    return SimpleNamespace(
+        forward=forward, jacobian=jacobian, vec3=vec3, vec_n=vec_n, jacobian_type=jacobian_type, Frames=Frames
+    )

@@ -4,21 +4,30 @@ from functools import cache
 
 import warp as wp
 
+from wsrender_kernels.inertia import BODY_STRIDE
+from wsrender_kernels.kinematics import chain_type
+
 
 @cache
-def model_arrays(real):
-    """Struct with a robot's numbers; arrays that a kernel's shape does not use are empty."""
+def model_type(real, n: int, joints: int):
+    """Struct with the numbers of a robot of n coordinates; what a kernel's shape does not use is empty or 0.
+
+    Vectors in the struct, not arrays: on the CPU the compiler then sees that nothing written in the lane loop changes
+    them, on CUDA they are read from constant memory.
+    """
+    vec_n = wp.types.vector(n, real)
+    bodies_type = wp.types.vector(joints * BODY_STRIDE, real)
 
     @wp.struct
     class Model:
         base_axes: wp.types.matrix((3, 3), real)  # rows: axes of the base in the world, for tasks given row by row
-        chain: wp.array(dtype=real)  # kinematics.pack_kinematics
-        bodies: wp.array(dtype=real)  # inertia.pack_inertia
-        lower: wp.array(dtype=real)  # (n,) limits for the penalisation
-        upper: wp.array(dtype=real)  # (n,)
-        limited: wp.array(dtype=real)  # (n,) 1 where the limits count, else 0
+        chain: chain_type(real, joints)  # kinematics.pack_kinematics
+        bodies: bodies_type  # inertia.pack_inertia
+        lower: vec_n  # limits for the penalisation
+        upper: vec_n
+        limited: vec_n  # 1 where the limits count, else 0
         penalty: real  # K of the penalisation
-        torque: wp.array(dtype=real)  # (n,) largest joint efforts
+        torque: vec_n  # largest joint efforts
         linear_scale: real  # 1 / characteristic length where a task mixes linear and angular rows, else 1
         position_given: wp.array(dtype=real)  # (3 * stride,) value r of given sample s at [r * stride + s]
         jacobian_given: wp.array(dtype=real)  # (6 n * stride,)

@@ -6,7 +6,7 @@ import warp as wp
 
 from wsrender_kernels.inertia import inertia
 from wsrender_kernels.kinematics import kinematics
-from wsrender_kernels.model import model_arrays
+from wsrender_kernels.model import model_type
 from wsrender_kernels.options import MODULE_OPTIONS
 from wsrender_kernels.sampling import LANES, sample_space, sampling
 
@@ -16,7 +16,7 @@ def configuration_kernel(real, n: int, method: str) -> wp.Kernel:
     """Kernel: configurations ``q_out`` (N, n) of the samples with these 64-bit indices (N,)."""
     sampler = sampling(real, n, method)
     prepare, draw = sampler.prepare, sampler.draw
-    Space = sample_space(real)
+    Space = sample_space(real, n)
     LANE_MASK = wp.int64(LANES - 1)
 
     @wp.kernel(module="unique", module_options=MODULE_OPTIONS, enable_backward=False)
@@ -38,12 +38,12 @@ def configuration_kernel(real, n: int, method: str) -> wp.Kernel:
 
 
 @cache
-def kinematics_kernel(real, n: int, sources: tuple[int, ...], with_inertia: bool) -> wp.Kernel:
+def kinematics_kernel(real, n: int, sources: tuple[int, ...], plain: bool, with_inertia: bool) -> wp.Kernel:
     """Kernel: tip pose (N, 12: axes x, y, z, origin), Jacobian (N, 6, n) and, if asked, M (N, n, n) at ``q`` (N, n)."""
-    kin, dyn = kinematics(real, n, sources), inertia(real, n, sources)
+    kin, dyn = kinematics(real, n, sources, plain), inertia(real, n, sources, plain)
     forward, jacobian, inertia_matrix = kin.forward, kin.jacobian, dyn.inertia_matrix
     vec_n = kin.vec_n
-    Model = model_arrays(real)
+    Model = model_type(real, n, len(sources))
     WITH_INERTIA = with_inertia
 
     @wp.kernel(module="unique", module_options=MODULE_OPTIONS, enable_backward=False)
@@ -60,18 +60,18 @@ def kinematics_kernel(real, n: int, sources: tuple[int, ...], with_inertia: bool
         q = vec_n()
         for i in range(n):
             q[i] = q_in[sample, i]
-        tip, x, y, z, levers, X, Y, Z = forward(model.chain, q)
+        tip, x, y, z, frames = forward(model.chain, q)
         for r in range(3):
             pose_out[sample, r] = x[r]
             pose_out[sample, 3 + r] = y[r]
             pose_out[sample, 6 + r] = z[r]
             pose_out[sample, 9 + r] = tip[r]
-        J = jacobian(model.chain, levers, X, Y, Z)
+        J = jacobian(model.chain, frames)
         for r in range(6):
             for c in range(n):
                 jacobian_out[sample, r, c] = J[r, c]
         if wp.static(WITH_INERTIA):
-            M = inertia_matrix(model.chain, model.bodies, levers, X, Y, Z)
+            M = inertia_matrix(model.chain, model.bodies, frames)
             for r in range(n):
                 for c in range(n):
                     inertia_out[sample, r, c] = M[r, c]

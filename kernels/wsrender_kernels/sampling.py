@@ -27,15 +27,16 @@ _PARITY = 0x1BD11BDA
 
 
 @cache
-def sample_space(real):
-    """Struct with the numbers of a sampling, n = joints: see `pack_sample_space` for what each method fills."""
+def sample_space(real, n: int):
+    """Struct with the numbers of a sampling, n = joints: each method fills what it needs."""
+    vec_n, int_n = wp.types.vector(n, real), wp.types.vector(n, wp.int32)
 
     @wp.struct
     class SampleSpace:
-        lower: wp.array(dtype=real)  # (n,)
-        upper: wp.array(dtype=real)  # (n,)
-        step: wp.array(dtype=real)  # (n,) grid: interval between levels; else: upper - lower
-        levels: wp.array(dtype=wp.int32)  # (n,) grid
+        lower: vec_n
+        upper: vec_n
+        step: vec_n  # grid: interval between levels; else: upper - lower
+        levels: int_n  # grid
         key_0: wp.uint32  # random, boundary: the seed
         key_1: wp.uint32
         sobol_high: wp.array(dtype=wp.uint32)  # (n * SOBOL_BITS + n,) direction numbers, then the shift
@@ -126,7 +127,7 @@ def sampling(real, n: int, method: str) -> SimpleNamespace:
 
 def _grid(real, n: int):
     """Mixed-radix digits of the index, the last joint fastest; both limits included."""
-    Space = sample_space(real)
+    Space = sample_space(real, n)
     vec_n = wp.types.vector(n, real)
     int_n = wp.types.vector(n, wp.int32)
     f32 = wp.float32
@@ -177,7 +178,7 @@ def _stateless(Space):
 
 def _uniforms(real, n: int):
     """Device function giving n independent uniforms of a sample; float32 takes the leading bits of float64's."""
-    Space = sample_space(real)
+    Space = sample_space(real, n)
     vec_n = wp.types.vector(n, real)
     u32 = wp.uint32
     words_n = wp.types.vector(4 * ((n + 3) // 4), u32)
@@ -221,7 +222,7 @@ def _uniforms(real, n: int):
 
 
 def _random(real, n: int):
-    Space = sample_space(real)
+    Space = sample_space(real, n)
     uniforms = _uniforms(real, n)
 
     @wp.func
@@ -236,7 +237,7 @@ def _random(real, n: int):
 
 def _boundary(real, n: int):
     """Beta(1/2, 1/2) between the limits, by its inverse distribution function (1 - cos(pi u)) / 2."""
-    Space = sample_space(real)
+    Space = sample_space(real, n)
     uniforms, sincos = _uniforms(real, n), elementary(real).sincos
     PI, HALF, ONE = real(math.pi), real(0.5), real(1.0)
 
@@ -253,7 +254,7 @@ def _boundary(real, n: int):
 
 def _sobol(real, n: int):
     """Scrambled Sobol points in Gray-code order: the exclusive or of a direction number per bit of the index."""
-    Space = sample_space(real)
+    Space = sample_space(real, n)
     vec_n = wp.types.vector(n, real)
     words_type = wp.types.vector(2 * n, wp.uint32)
     unit = uniform(real)
@@ -290,7 +291,7 @@ def _sobol(real, n: int):
 
 
 def _given(real, n: int):
-    Space = sample_space(real)
+    Space = sample_space(real, n)
     vec_n = wp.types.vector(n, real)
 
     @wp.func

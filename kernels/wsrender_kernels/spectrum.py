@@ -12,12 +12,12 @@ up to 1e-2 of their maximum zero in float32.
 
 from functools import cache
 from types import SimpleNamespace
+from typing import Any
 
 import warp as wp
 
 from wsrender_kernels.elementary import elementary
 from wsrender_kernels.inertia import inertia
-from wsrender_kernels.model import model_arrays
 from wsrender_kernels.singular_values import singular_values, without_noise
 
 LINEAR, ALL_ROWS = (0, 1, 2), (0, 1, 2, 3, 4, 5)
@@ -45,23 +45,21 @@ def spectrum(real, n: int, rows: tuple[int, ...], convention: str, penalty: bool
 
 
 def _absent(real, n: int, length: int):
-    Model = model_arrays(real)
     mat_6n, mat_nn = wp.types.matrix((6, n), real), wp.types.matrix((n, n), real)
     spectrum_type = wp.types.vector(length, real)
 
     @wp.func
-    def absent(model: Model, J: mat_6n, M: mat_nn, kinematic: spectrum_type):
+    def absent(model: Any, J: mat_6n, M: mat_nn, kinematic: spectrum_type):
         return kinematic
 
     return absent
 
 
 def _unchanged(real, n: int):
-    Model = model_arrays(real)
     vec_n, mat_6n = wp.types.vector(n, real), wp.types.matrix((6, n), real)
 
     @wp.func
-    def unchanged(model: Model, q: vec_n, J: mat_6n):
+    def unchanged(model: Any, q: vec_n, J: mat_6n):
         return J
 
     return unchanged
@@ -69,13 +67,12 @@ def _unchanged(real, n: int):
 
 def _penalized(real, n: int):
     """Columns times (1 - exp(-4 K t)) / (1 - exp(-K)), t = (q_max - q)(q - q_min) / range² (WSRender eq. 3)."""
-    Model = model_arrays(real)
     vec_n, mat_6n = wp.types.vector(n, real), wp.types.matrix((6, n), real)
     exp2 = elementary(real).exp2
     ZERO, ONE, FOUR, LOG2_E = real(0.0), real(1.0), real(4.0), real(1.4426950408889634)
 
     @wp.func
-    def penalized(model: Model, q: vec_n, J: mat_6n):
+    def penalized(model: Any, q: vec_n, J: mat_6n):
         out = J
         K = model.penalty * LOG2_E
         scale = ONE / (ONE - exp2(-K))
@@ -93,14 +90,13 @@ def _penalized(real, n: int):
 
 def _torque_scaled(real, n: int):
     """Device function factory: columns of an (m, n) matrix times the largest joint efforts."""
-    Model = model_arrays(real)
 
     @cache
     def make(m: int):
         mat_mn = wp.types.matrix((m, n), real)
 
         @wp.func
-        def torque_scaled(model: Model, A: mat_mn):
+        def torque_scaled(model: Any, A: mat_mn):
             out = A
             for r in range(m):
                 for i in range(n):
@@ -117,7 +113,6 @@ def _task_matrix(real, n: int, rows: tuple[int, ...]):
 
     Whole triads are taken in world axes, which changes no singular value; single rows mean base axes.
     """
-    Model = model_arrays(real)
     m = len(rows)
     IN_BASE_AXES = any(len({r for r in rows if r // 3 == part}) in (1, 2) for part in (0, 1))
     vec3 = wp.types.vector(3, real)
@@ -125,7 +120,7 @@ def _task_matrix(real, n: int, rows: tuple[int, ...]):
     mat_6n, mat_mn = wp.types.matrix((6, n), real), wp.types.matrix((m, n), real)
 
     @wp.func
-    def task_matrix(model: Model, J: mat_6n):
+    def task_matrix(model: Any, J: mat_6n):
         B = J
         if wp.static(IN_BASE_AXES):
             for i in range(n):
@@ -147,14 +142,13 @@ def _task_matrix(real, n: int, rows: tuple[int, ...]):
 
 def _of_task(real, n: int, rows: tuple[int, ...], graded: bool):
     """Device function (model, J) -> singular values of the task matrix."""
-    Model = model_arrays(real)
     mat_6n = wp.types.matrix((6, n), real)
     m = len(rows)
     task_matrix, values = _task_matrix(real, n, rows), singular_values(real, m, n, graded)
     regular = without_noise(real, m, n, m)
 
     @wp.func
-    def of_task(model: Model, J: mat_6n):
+    def of_task(model: Any, J: mat_6n):
         return regular(values(task_matrix(model, J)))
 
     return of_task
@@ -176,22 +170,21 @@ def _where_positive(real, m: int):
 
 
 def _standard(real, n: int, rows: tuple[int, ...], penalty: bool, torque):
-    Model = model_arrays(real)
     m = len(rows)
     mat_6n, mat_nn = wp.types.matrix((6, n), real), wp.types.matrix((n, n), real)
     mat_mn, vec_m = wp.types.matrix((m, n), real), wp.types.vector(m, real)
     task_matrix, values = _task_matrix(real, n, rows), singular_values(real, m, n, graded=True)
     where_positive = _where_positive(real, m)
-    solve = inertia(real, n, tuple(range(n))).solve(m)
+    solve = inertia(real, n, tuple(range(n)), True).solve(m)
 
     @wp.func
-    def unscaled(model: Model, A: mat_mn):
+    def unscaled(model: Any, A: mat_mn):
         return A
 
     scaled = torque(m) if torque else unscaled
 
     @wp.func
-    def dynamic(model: Model, J: mat_6n, M: mat_nn, kinematic: vec_m):
+    def dynamic(model: Any, J: mat_6n, M: mat_nn, kinematic: vec_m):
         return where_positive(kinematic, values(scaled(model, solve(M, task_matrix(model, J)))))
 
     return _of_task(real, n, rows, penalty), dynamic
@@ -199,7 +192,6 @@ def _standard(real, n: int, rows: tuple[int, ...], penalty: bool, torque):
 
 def _table_1(real, n: int, rows: tuple[int, ...], penalty: bool, torque):
     """H = X X^T with X = L U^-T, where J = L Q and Q M = U V (L, U lower triangular; Q, V with orthonormal rows)."""
-    Model = model_arrays(real)
     m = len(rows)
     mat_6n, mat_nn = wp.types.matrix((6, n), real), wp.types.matrix((n, n), real)
     mat_mn, mat_mm = wp.types.matrix((m, n), real), wp.types.matrix((m, m), real)
@@ -211,11 +203,11 @@ def _table_1(real, n: int, rows: tuple[int, ...], penalty: bool, torque):
     ZERO, ONE = real(0.0), real(1.0)
 
     @wp.func
-    def singular(model: Model, J: mat_6n, M: mat_nn, kinematic: vec_m):
+    def singular(model: Any, J: mat_6n, M: mat_nn, kinematic: vec_m):
         return vec_m()
 
     @wp.func
-    def dynamic(model: Model, J: mat_6n, M: mat_nn, kinematic: vec_m):
+    def dynamic(model: Any, J: mat_6n, M: mat_nn, kinematic: vec_m):
         L, Q = lower_factor(task_matrix(model, J))
         W = mat_mn()
         for r in range(m):
@@ -259,7 +251,6 @@ def _lower_factor(real, m: int, n: int):
 
 
 def _wsrender_code(real, n: int, rows: tuple[int, ...], penalty: bool, torque):
-    Model = model_arrays(real)
     mat_6n, mat_nn = wp.types.matrix((6, n), real), wp.types.matrix((n, n), real)
     COUNT = min(6, n)
     FULL_RANK = n >= 6
@@ -269,7 +260,7 @@ def _wsrender_code(real, n: int, rows: tuple[int, ...], penalty: bool, torque):
     ONE, ZERO = real(1.0), real(0.0)
 
     @wp.func
-    def kinematic(model: Model, J: mat_6n):
+    def kinematic(model: Any, J: mat_6n):
         six = regular(of_six(J))
         a = J[0]
         b = J[1]
@@ -289,7 +280,7 @@ def _wsrender_code(real, n: int, rows: tuple[int, ...], penalty: bool, torque):
         return out
 
     @wp.func
-    def dynamic(model: Model, J: mat_6n, M: mat_nn, kinematic: out_type):
+    def dynamic(model: Any, J: mat_6n, M: mat_nn, kinematic: out_type):
         six = of_product(J * M)
         out = out_type()
         determinant = ONE

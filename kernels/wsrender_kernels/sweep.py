@@ -17,7 +17,7 @@ import warp as wp
 from wsrender_kernels.elementary import bits_type, elementary
 from wsrender_kernels.inertia import inertia
 from wsrender_kernels.kinematics import kinematics, orientation
-from wsrender_kernels.model import model_arrays
+from wsrender_kernels.model import model_type
 from wsrender_kernels.options import MODULE_OPTIONS
 from wsrender_kernels.sampling import LANES, sample_space, sampling
 from wsrender_kernels.spectrum import spectrum
@@ -37,6 +37,7 @@ class Shape:
     real: type  # wp.float32 or wp.float64
     n: int  # coordinates
     sources: tuple[int, ...]  # coordinate that drives each joint
+    plain: bool  # every joint is revolute and turns by its own coordinate: see `kinematics`
     method: str  # of sampling
     rows: tuple[int, ...]  # task rows of the Jacobian
     convention: str
@@ -62,24 +63,38 @@ class Shape:
 
     @property
     def record_size(self) -> int:
-        """Integers per voxel record."""
-        return 1 + self.n_indices * (self.maximum + self.minimum)
+        """Integers per voxel record: a power of two, so that no record lies across two cache lines."""
+        return _power_of_two(1 + self.extremes)
+
+    @property
+    def extremes(self) -> int:
+        """Extremes kept per voxel."""
+        return self.n_indices * (self.maximum + self.minimum)
+
+    @property
+    def sums_size(self) -> int:
+        """64-bit integers per voxel for its sums, padded likewise; 0 where none are kept."""
+        return _power_of_two(self.n_indices) if self.sums else 0
 
     @property
     def bytes_per_voxel(self) -> int:
         """Bytes of one voxel's record and its 64-bit sums."""
-        return self.record_size * (4 if self.real is wp.float32 else 8) + 8 * self.n_indices * self.sums
+        return self.record_size * (4 if self.real is wp.float32 else 8) + 8 * self.sums_size
+
+
+def _power_of_two(size: int) -> int:
+    return 1 << (size - 1).bit_length()
 
 
 @cache
 def _state(shape: Shape) -> SimpleNamespace:
     """Device function ``(model, q, at, stride) -> tip, tip axes (3 x 3), J, M`` from the chain or from given arrays."""
     real, n = shape.real, shape.n
-    kin = kinematics(real, n, shape.sources)
+    kin = kinematics(real, n, shape.sources, shape.plain)
     forward, jacobian, jacobian_type = kin.forward, kin.jacobian, kin.jacobian_type
-    dyn = inertia(real, n, shape.sources)
+    dyn = inertia(real, n, shape.sources, shape.plain)
     inertia_matrix, inertia_type = dyn.inertia_matrix, dyn.joint_inertia_type
-    Model = model_arrays(real)
+    Model = model_type(real, n, len(shape.sources))
     vec3, vec_n, mat33 = kin.vec3, kin.vec_n, wp.types.matrix((3, 3), real)
 
     @wp.func
@@ -109,15 +124,15 @@ def _state(shape: Shape) -> SimpleNamespace:
 
     @wp.func
     def from_chain(model: Model, q: vec_n, at: wp.int64, stride: wp.int64):
-        tip, x, y, z, levers, X, Y, Z = forward(model.chain, q)
-        J = jacobian(model.chain, levers, X, Y, Z)
+        tip, x, y, z, frames = forward(model.chain, q)
+        J = jacobian(model.chain, frames)
         return tip, wp.matrix_from_cols(x, y, z), J, read_inertia(model, at, stride)
 
     @wp.func
     def with_inertia(model: Model, q: vec_n, at: wp.int64, stride: wp.int64):
-        tip, x, y, z, levers, X, Y, Z = forward(model.chain, q)
-        J = jacobian(model.chain, levers, X, Y, Z)
-        M = inertia_matrix(model.chain, model.bodies, levers, X, Y, Z)
+        tip, x, y, z, frames = forward(model.chain, q)
+        J = jacobian(model.chain, frames)
+        M = inertia_matrix(model.chain, model.bodies, frames)
         return tip, wp.matrix_from_cols(x, y, z), J, M
 
     if shape.given_jacobian:
@@ -135,7 +150,7 @@ def _outputs(shape: Shape):
     penalized, kinematic = spectra.penalized, spectra.kinematic
     dynamic_spectrum = spectra.dynamic if shape.dynamic else spectra.absent
     indices = shape.indices
-    Model, Space = model_arrays(real), sample_space(real)
+    Model, Space = model_type(real, n, len(shape.sources)), sample_space(real, n)
     output_type = wp.types.vector(shape.n_outputs, real)
     to_quaternion = orientation(real)
     K = shape.n_indices
@@ -171,8 +186,33 @@ def _outputs(shape: Shape):
 
 
 @cache
+def outputs_type(shape: Shape):
+    """Struct with what a sweep adds to: extremes and totals of all samples, voxel records and sums, rows.
+
+    ``extremes`` (2 R,), R = 5 + K reduced outputs: largest value and largest complement; ``totals`` (K,): fixed-point
+    sums of the indices, scaled by ``scales`` (K,); ``records``, ``sums``: one vector per voxel; ``rows_out``
+    (n_outputs * rows_stride,): value r of the chunk's sample s at [r * rows_stride + s].
+    """
+    real, bits = shape.real, bits_type(shape.real)
+    record_type = wp.types.vector(shape.record_size, bits)
+    sums_type = wp.types.vector(max(shape.sums_size, 1), wp.int64)
+
+    @wp.struct
+    class Outputs:
+        scales: wp.array(dtype=real)
+        extremes: wp.array(dtype=bits)
+        totals: wp.array(dtype=wp.int64)
+        records: wp.array(dtype=record_type)
+        sums: wp.array(dtype=sums_type)
+        rows_out: wp.array(dtype=real)
+        rows_stride: wp.int64
+
+    return Outputs
+
+
+@cache
 def sweep_kernel(shape: Shape, cuda: bool) -> wp.Kernel:
-    """The kernel of a shape for the CPU (one task per block) or CUDA (one task per thread)."""
+    """The kernel of a shape for the CPU (one task per block) or CUDA (threads that stride through the chunk)."""
     return _cuda_kernel(shape) if cuda else _cpu_kernel(shape)
 
 
@@ -181,13 +221,22 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
     prepare, evaluate = sampling(real, shape.n, shape.method).prepare, _outputs(shape)
     ordered = elementary(real).ordered
     cell, quantized = voxels(real).cell, voxels(real).quantized
-    Model, Space, Lattice, bits = model_arrays(real), sample_space(real), lattice(real), bits_type(real)
+    Model, Space = model_type(real, shape.n, len(shape.sources)), sample_space(real, shape.n)
+    Lattice, Outputs, bits = lattice(real), outputs_type(shape), bits_type(real)
     vec3 = wp.types.vector(3, real)
-    N_OUTPUTS = shape.n_outputs
-    VOXELS, MAXIMUM, MINIMUM, SUMS, ROWS = shape.voxels, shape.maximum, shape.minimum, shape.sums, shape.keep_rows
-    FIRST_MINIMUM = 1 + K * shape.maximum
+    record_type, sums_type = Outputs.vars["records"].type.dtype, Outputs.vars["sums"].type.dtype
+    N_OUTPUTS, REDUCED, RECORD = shape.n_outputs, 5 + K, shape.record_size
+    VOXELS, SUMS, ROWS = shape.voxels, shape.sums, shape.keep_rows
     LOWEST = bits(lowest(real))
-    BLOCK, BLOCK_64, K_64, RECORD_64 = LANES, wp.int64(LANES), wp.int64(K), wp.int64(shape.record_size)
+    LOWEST_ROW = REDUCED * LANES
+    KEY_ROW, KEY_MASK = _record_keys(shape)
+    BLOCK, BLOCK_64 = LANES, wp.int64(LANES)
+    # Scratch in rows of LANES. Vectors on the stack: of an array, neither the stride nor what else points to it is
+    # known when the kernel is compiled, and the lane loop would be compiled twice, without SIMD the second time.
+    values_type = wp.types.vector(N_OUTPUTS * LANES, real)
+    keys_type = wp.types.vector((REDUCED + 1) * LANES, bits)
+    quanta_type = wp.types.vector(K * LANES, bits)
+    cells_type = wp.types.vector(LANES, wp.int32)
 
     @wp.kernel(module="unique", module_options=MODULE_OPTIONS, enable_backward=False)
     def sweep_cpu(
@@ -197,76 +246,96 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
         grid: Lattice,
         first: wp.int64,
         count: wp.int64,
-        scales: wp.array(dtype=real),
-        reduced: wp.int32,
-        # scratch, one row of LANES per output and one value
-        scratch: wp.array(dtype=real),
-        cells: wp.array(dtype=wp.int32),
         # out
-        extremes: wp.array(dtype=bits),
-        totals: wp.array(dtype=wp.int64),
-        records: wp.array(dtype=bits),
-        sums: wp.array(dtype=wp.int64),
-        rows_out: wp.array(dtype=real),
-        rows_stride: wp.int64,
+        to: Outputs,
     ):
         task = wp.tid()
         start = first + wide(task * BLOCK)
         valid = wp.int32(wp.min(BLOCK_64, first + count - start))
         block = prepare(space, start)
+        values = values_type()
+        keys = keys_type()
+        quanta = quanta_type()
+        cells = cells_type()
 
         for lane in range(BLOCK):
             # The lanes past the end repeat the last sample: harmless in extremes, masked in counts and sums.
             out = evaluate(model, space, block, start, wp.min(lane, valid - 1))
             for r in range(N_OUTPUTS):
-                scratch[r * BLOCK + lane] = out[r]
+                values[r * BLOCK + lane] = out[r]
             if wp.static(VOXELS):
                 cells[lane] = cell(grid, vec3(out[0], out[1], out[2]))
 
-        for r in range(reduced):
+        for r in range(REDUCED):
             largest = LOWEST
             smallest = LOWEST
+            row = r * BLOCK
             for lane in range(BLOCK):
-                key = ordered(scratch[r * BLOCK + lane])
+                key = ordered(values[row + lane])
+                keys[row + lane] = key
                 largest = wp.max(largest, key)
                 smallest = wp.max(smallest, ~key)
-            extremes[2 * r] = wp.max(extremes[2 * r], largest)
-            extremes[2 * r + 1] = wp.max(extremes[2 * r + 1], smallest)
+            to.extremes[2 * r] = wp.max(to.extremes[2 * r], largest)
+            to.extremes[2 * r + 1] = wp.max(to.extremes[2 * r + 1], smallest)
 
         for k in range(K):
             total = wp.int64(0)
+            scale = to.scales[k]
+            row = (3 + k) * BLOCK
+            target = k * BLOCK
             for lane in range(BLOCK):
-                total += wp.where(lane < valid, quantized(scratch[(3 + k) * BLOCK + lane], scales[k]), wp.int64(0))
-            totals[k] = totals[k] + total
+                quantum = quantized(values[row + lane], scale)
+                quanta[target + lane] = quantum
+                total += wp.where(lane < valid, wp.int64(quantum), wp.int64(0))
+            to.totals[k] = to.totals[k] + total
 
         if wp.static(VOXELS):
             # Touch all target records first: their cache misses then overlap, twice as fast as one after the other.
             touched = bits(0)
             for lane in range(BLOCK):
-                touched += records[wp.int64(cells[lane]) * RECORD_64]
-            scratch[N_OUTPUTS * BLOCK] = real(touched)
+                touched = wp.max(touched, to.records[cells[lane]][0])
+                if wp.static(SUMS):
+                    touched = wp.max(touched, bits(to.sums[cells[lane]][0]))
+            for lane in range(BLOCK):
+                # No count reaches the largest integer, but the compiler must not know: it would drop the loop above.
+                keys[LOWEST_ROW + lane] = wp.where(touched == ~LOWEST, touched, LOWEST)
             for lane in range(valid):
-                voxel = wp.int64(cells[lane])
-                at = voxel * RECORD_64
-                records[at] = records[at] + bits(1)
-                for k in range(K):
-                    if wp.static(MAXIMUM):
-                        slot = at + wide(1 + k)
-                        records[slot] = wp.max(records[slot], ordered(scratch[(3 + k) * BLOCK + lane]))
-                    if wp.static(MINIMUM):
-                        slot = at + wide(FIRST_MINIMUM + k)
-                        records[slot] = wp.max(records[slot], ~ordered(scratch[(3 + k) * BLOCK + lane]))
-                    if wp.static(SUMS):
-                        slot = voxel * K_64 + wide(k)
-                        sums[slot] = sums[slot] + quantized(scratch[(3 + k) * BLOCK + lane], scales[k])
+                voxel = cells[lane]
+                # Every slot is read and compared alike, the count's and the padding against LOWEST: one SIMD operation.
+                sample = record_type()
+                for k in range(RECORD):
+                    sample[k] = keys[KEY_ROW[k] * BLOCK + lane] ^ KEY_MASK[k]
+                record = to.records[voxel]
+                for k in range(RECORD):
+                    record[k] = wp.max(record[k], sample[k])
+                record[0] += bits(1)
+                to.records[voxel] = record
+                if wp.static(SUMS):
+                    addend = sums_type()
+                    for k in range(K):
+                        addend[k] = wp.int64(quanta[k * BLOCK + lane])
+                    to.sums[voxel] = to.sums[voxel] + addend
 
         if wp.static(ROWS):
             for r in range(N_OUTPUTS):
-                target = wide(r) * rows_stride + wide(task * BLOCK)
+                at = wide(r) * to.rows_stride + wide(task * BLOCK)
                 for lane in range(valid):
-                    rows_out[target + wide(lane)] = scratch[r * BLOCK + lane]
+                    to.rows_out[at + wide(lane)] = values[r * BLOCK + lane]
 
     return sweep_cpu
+
+
+def _record_keys(shape: Shape):
+    """Of every slot of a record: its row among the ordered values, and what complements it (minima)."""
+    K, lowest_row = shape.n_indices, 5 + shape.n_indices
+    rows, masks = [lowest_row], [0]
+    for kept, mask in ((shape.maximum, 0), (shape.minimum, -1)):
+        rows += [3 + k for k in range(K) if kept]
+        masks += [mask] * (K * kept)
+    padding = shape.record_size - len(rows)
+    rows, masks = rows + [lowest_row] * padding, masks + [0] * padding
+    size = shape.record_size
+    return wp.types.vector(size, wp.int32)(*rows), wp.types.vector(size, bits_type(shape.real))(*masks)
 
 
 def _cuda_kernel(shape: Shape) -> wp.Kernel:
@@ -275,15 +344,16 @@ def _cuda_kernel(shape: Shape) -> wp.Kernel:
     prepare, evaluate = sampling(real, shape.n, shape.method).prepare, _outputs(shape)
     ordered = elementary(real).ordered
     cell, quantized = voxels(real).cell, voxels(real).quantized
-    Model, Space, Lattice, bits = model_arrays(real), sample_space(real), lattice(real), bits_type(real)
+    Model, Space = model_type(real, shape.n, len(shape.sources)), sample_space(real, shape.n)
+    Lattice, Outputs, bits = lattice(real), outputs_type(shape), bits_type(real)
     vec3 = wp.types.vector(3, real)
     REDUCED = 5 + K
     extremes_type, totals_type = wp.types.vector(2 * REDUCED, bits), wp.types.vector(K, wp.int64)
-    N_OUTPUTS, RECORD = shape.n_outputs, shape.record_size
+    N_OUTPUTS, RECORD_64, SUMS_64 = shape.n_outputs, wp.int64(shape.record_size), wp.int64(shape.sums_size)
     VOXELS, MAXIMUM, MINIMUM, SUMS, ROWS = shape.voxels, shape.maximum, shape.minimum, shape.sums, shape.keep_rows
     FIRST_MINIMUM = 1 + K * shape.maximum
     LOWEST = bits(lowest(real))
-    LANE_MASK, K_64 = wp.int64(LANES - 1), wp.int64(K)
+    LANE_MASK = wp.int64(LANES - 1)
 
     @wp.kernel(module="unique", module_options=MODULE_OPTIONS, enable_backward=False, grid_stride=False)
     def sweep_cuda(
@@ -293,20 +363,17 @@ def _cuda_kernel(shape: Shape) -> wp.Kernel:
         grid: Lattice,
         first: wp.int64,
         count: wp.int64,
-        scales: wp.array(dtype=real),
         threads: wp.int64,
         # out
-        extremes: wp.array(dtype=bits),
-        totals: wp.array(dtype=wp.int64),
+        to: Outputs,
+        # the memory of to.records and to.sums, integer by integer
         records: wp.array(dtype=bits),
         sums: wp.array(dtype=wp.int64),
-        rows_out: wp.array(dtype=real),
-        rows_stride: wp.int64,
     ):
         thread = wp.tid()
         largest = extremes_type()
         total = totals_type()
-        for r in range(2 * REDUCED):
+        for r in range(wp.static(2 * REDUCED)):
             largest[r] = LOWEST
         offset = wp.int64(thread)
         while offset < count:
@@ -319,26 +386,32 @@ def _cuda_kernel(shape: Shape) -> wp.Kernel:
                 largest[2 * r] = wp.max(largest[2 * r], key)
                 largest[2 * r + 1] = wp.max(largest[2 * r + 1], ~key)
             for k in range(K):
-                total[k] += quantized(out[3 + k], scales[k])
+                total[k] += wp.int64(quantized(out[3 + k], to.scales[k]))
             if wp.static(VOXELS):
-                voxel = wp.int64(cell(grid, vec3(out[0], out[1], out[2])))
-                at = voxel * wp.int64(RECORD)
+                voxel = cell(grid, vec3(out[0], out[1], out[2]))
+                at = wp.int64(voxel) * RECORD_64
                 wp.atomic_add(records, at, bits(1))
+                # Extremes only grow: a value that an old reading already covers needs no atomic operation.
+                seen = to.records[voxel]
                 for k in range(K):
-                    if wp.static(MAXIMUM):
-                        wp.atomic_max(records, at + wide(1 + k), ordered(out[3 + k]))
-                    if wp.static(MINIMUM):
-                        wp.atomic_max(records, at + wide(FIRST_MINIMUM + k), ~ordered(out[3 + k]))
+                    key = ordered(out[3 + k])
+                    if wp.static(MAXIMUM):  # noqa: SIM102 - compiled out before seen is indexed
+                        if key > seen[1 + k]:
+                            wp.atomic_max(records, at + wide(1 + k), key)
+                    if wp.static(MINIMUM):  # noqa: SIM102
+                        if ~key > seen[FIRST_MINIMUM + k]:
+                            wp.atomic_max(records, at + wide(FIRST_MINIMUM + k), ~key)
                     if wp.static(SUMS):
-                        wp.atomic_add(sums, voxel * K_64 + wide(k), quantized(out[3 + k], scales[k]))
+                        slot = wp.int64(voxel) * SUMS_64 + wide(k)
+                        wp.atomic_add(sums, slot, wp.int64(quantized(out[3 + k], to.scales[k])))
             if wp.static(ROWS):
                 for r in range(N_OUTPUTS):
-                    rows_out[wide(r) * rows_stride + offset] = out[r]
+                    to.rows_out[wide(r) * to.rows_stride + offset] = out[r]
             offset += threads
         if wp.int64(thread) < count:
-            for r in range(2 * REDUCED):
-                wp.atomic_max(extremes, r, largest[r])
+            for r in range(wp.static(2 * REDUCED)):
+                wp.atomic_max(to.extremes, r, largest[r])
             for k in range(K):
-                wp.atomic_add(totals, k, total[k])
+                wp.atomic_add(to.totals, k, total[k])
 
     return sweep_cuda

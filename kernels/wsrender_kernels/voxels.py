@@ -58,7 +58,7 @@ def voxels(real) -> SimpleNamespace:
         # Adding a half would round again above 2^23.
         x = value * scale
         whole = wp.floor(x)
-        return wp.int64(wp.int32(whole) + wp.where(x - whole >= HALF, 1, 0))
+        return wp.int32(whole) + wp.where(x - whole >= HALF, 1, 0)
 
     @wp.func
     def quantized64(value: real, scale: real):

@@ -6,18 +6,16 @@ from wsrender_kernels.pointwise import configuration_kernel
 from wsrender_kernels.sampling import lane_table, sample_space
 
 from wsrender.engine.devices import devices_of
-from wsrender.engine.evaluation import REAL, device_array
+from wsrender.engine.evaluation import REAL, device_array, vector_of
 from wsrender.sampling import SamplingPlan
 
 
 def device_space(plan: SamplingPlan, precision: str, device: wp.Device):
     """The SampleSpace struct of a plan on a device."""
     real = REAL[precision]
-    space = sample_space(real)()
-    space.lower = device_array(plan.lower, real, device)
-    space.upper = device_array(plan.upper, real, device)
-    space.step = device_array(plan.step, real, device)
-    space.levels = device_array(plan.levels, wp.int32, device)
+    space = sample_space(real, len(plan.lower))()
+    space.lower, space.upper = vector_of(plan.lower, real), vector_of(plan.upper, real)
+    space.step, space.levels = vector_of(plan.step, real), vector_of(plan.levels, wp.int32)
     space.key_0 = plan.seed & 0xFFFFFFFF
     space.key_1 = plan.seed >> 32
     if plan.directions is not None and plan.shift is not None:
@@ -32,7 +30,7 @@ def device_space(plan: SamplingPlan, precision: str, device: wp.Device):
 def given_space(q: np.ndarray, first: int, precision: str, device: wp.Device):
     """The SampleSpace struct of configurations (N, n) given by the host, sample ``first`` being the first."""
     real = REAL[precision]
-    space = sample_space(real)()
+    space = sample_space(real, q.shape[1])()
     space.given = device_array(q.T.ravel(), real, device)
     space.given_first = first
     space.given_stride = len(q)

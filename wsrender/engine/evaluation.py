@@ -2,12 +2,13 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import warp as wp
 from wsrender_kernels.inertia import pack_inertia
 from wsrender_kernels.kinematics import pack_kinematics
-from wsrender_kernels.model import model_arrays
+from wsrender_kernels.model import model_type
 from wsrender_kernels.spectrum import spectrum_length
 from wsrender_kernels.sweep import Shape
 
@@ -60,7 +61,7 @@ def shape_of(evaluation: Evaluation, precision: str, method: str, **outputs: boo
     return Shape(
         real=real,
         n=n,
-        sources=tuple(int(s) for s in evaluation.chain.joint_source),
+        **drive(evaluation.chain),
         method="given" if evaluation.on_host else method,
         rows=evaluation.rows,
         convention=evaluation.convention,
@@ -75,17 +76,25 @@ def shape_of(evaluation: Evaluation, precision: str, method: str, **outputs: boo
     )
 
 
+def drive(chain: Chain) -> dict[str, Any]:
+    """How coordinates drive joints, as `kinematics` of the kernels takes it."""
+    own = np.array_equal(chain.joint_source, np.arange(chain.n)) and np.all(chain.joint_scale == 1)
+    return {
+        "sources": tuple(int(s) for s in chain.joint_source),
+        "plain": bool(own and np.all(chain.joint_is_revolute)),
+    }
+
+
 def device_model(evaluation: Evaluation, precision: str, device: wp.Device):
     """The Model struct of an evaluation's chain on a device."""
     chain, real = evaluation.chain, REAL[precision]
     model = chain_model(chain, precision, device)
-    model.lower = device_array(chain.lower_limits, real, device)
-    model.upper = device_array(chain.upper_limits, real, device)
+    model.lower, model.upper = vector_of(chain.lower_limits, real), vector_of(chain.upper_limits, real)
     limited = ~chain.periodic & (chain.upper_limits > chain.lower_limits)
-    model.limited = device_array(limited, real, device)
+    model.limited = vector_of(limited, real)
     model.penalty = evaluation.penalty or 0.0
     if evaluation.torque_scaling and chain.effort_limits is not None:
-        model.torque = device_array(chain.effort_limits, real, device)
+        model.torque = vector_of(chain.effort_limits, real)
     mixed = evaluation.mixed_rows
     model.linear_scale = 1.0 / evaluation.characteristic_length_m if mixed else 1.0
     return model
@@ -94,7 +103,7 @@ def device_model(evaluation: Evaluation, precision: str, device: wp.Device):
 def chain_model(chain: Chain, precision: str, device: wp.Device):
     """The Model struct with a chain's kinematics and inertias alone."""
     real = REAL[precision]
-    model = model_arrays(real)()
+    model = model_type(real, chain.n, len(chain.joint_source))()
     kinematics = pack_kinematics(
         chain.T_world_base,
         chain.T_joint,
@@ -104,11 +113,15 @@ def chain_model(chain: Chain, precision: str, device: wp.Device):
         chain.joint_offset,
     )
     bodies = pack_inertia(chain.T_joint, chain.mass, chain.center_of_mass, chain.inertia, chain.armature)
-    model.chain = device_array(kinematics, real, device)
-    model.bodies = device_array(bodies, real, device)
+    model.chain, model.bodies = vector_of(kinematics, real), vector_of(bodies, real)
     model.base_axes = wp.types.matrix((3, 3), real)(*chain.T_world_base[:3, :3].T.ravel().tolist())
     model.linear_scale = 1.0
     return model
+
+
+def vector_of(values: np.ndarray, dtype):
+    """NumPy values as a Warp vector."""
+    return wp.types.vector(len(values), dtype)(*values.tolist())
 
 
 def device_array(values: np.ndarray, dtype, device: wp.Device) -> wp.array:

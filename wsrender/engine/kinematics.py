@@ -7,7 +7,7 @@ import warp as wp
 from wsrender_kernels.pointwise import kinematics_kernel
 
 from wsrender.engine.devices import devices_of
-from wsrender.engine.evaluation import REAL, chain_model, device_array
+from wsrender.engine.evaluation import REAL, chain_model, device_array, drive
 from wsrender.robots.chain import Chain
 
 BATCH = 1 << 20
@@ -43,9 +43,8 @@ def _evaluate(chain: Chain, q: np.ndarray, with_inertia: bool, precision: str, d
     jacobian = wp.empty((len(q), 6, n), dtype=real, device=device)
     inertia = wp.empty((len(q) if with_inertia else 0, n, n), dtype=real, device=device)
     if len(q):
-        sources = tuple(int(s) for s in chain.joint_source)
         wp.launch(
-            kinematics_kernel(real, n, sources, with_inertia),
+            kinematics_kernel(real, n, with_inertia=with_inertia, **drive(chain)),
             dim=len(q),
             inputs=[chain_model(chain, precision, device), device_array(q, real, device)],
             outputs=[pose, jacobian, inertia],

@@ -3,6 +3,7 @@
 import os
 from pathlib import Path
 
+import numpy as np
 import warp as wp
 from wsrender_kernels.sweep import Shape
 
@@ -10,7 +11,7 @@ from wsrender.errors import ResourceError
 from wsrender.volume.lattice import LatticeBlock
 
 SHARE = 0.8  # of the free memory
-LARGEST_ARRAY = 2**31  # elements of a Warp array
+LARGEST_ARRAY = 2**31  # elements of a Warp array along one axis
 
 
 def available_bytes() -> int:
@@ -46,17 +47,34 @@ def _control_group() -> list[int]:
     return [] if limit == "max" else [int(limit) - used]
 
 
+def voxel_array(size: int, dtype, device: wp.Device) -> wp.array:
+    """Uninitialised memory for voxel records; on the CPU from NumPy, which asks for huge pages.
+
+    Random access to a large grid otherwise spends half its time on page tables.
+    """
+    if device.is_cuda:
+        return wp.empty(size, dtype=dtype, device=device)
+    return wp.array(np.empty(size, wp.dtype_to_numpy(dtype)), dtype=dtype, device=device, copy=False)
+
+
+def in_vectors(values: wp.array, length: int) -> wp.array:
+    """The same memory as an array of vectors."""
+    dtype = wp.types.vector(length, values.dtype)
+    return wp.array(
+        ptr=values.ptr, dtype=dtype, shape=values.size // length, device=values.device, capacity=values.capacity
+    )
+
+
 def check_voxel_memory(block: LatticeBlock, shape: Shape, workers: list[wp.Device]) -> None:
     """ResourceError, with the numbers, where the workers' private voxel records do not fit."""
     device = workers[0]
     needed = block.size * shape.bytes_per_voxel
-    elements = block.size * max(shape.record_size, shape.n_indices * shape.sums)
     if device.is_cuda:
         free = min(worker.free_memory for worker in workers)
     else:
         needed *= len(workers)
         free = available_bytes()
-    if elements >= LARGEST_ARRAY or needed > SHARE * free:
+    if block.size >= LARGEST_ARRAY or needed > SHARE * free:
         nx, ny, nz = block.shape
         raise ResourceError(
             "voxel_size_m",

@@ -9,13 +9,13 @@ import numpy as np
 import warp as wp
 from wsrender_kernels.elementary import bits_type
 from wsrender_kernels.sampling import LANES
-from wsrender_kernels.sweep import Shape, sweep_kernel
+from wsrender_kernels.sweep import Shape, outputs_type, sweep_kernel
 from wsrender_kernels.voxels import lattice, lowest
 
 from wsrender.engine.configurations import configurations, device_space, given_space
 from wsrender.engine.devices import thread_count
 from wsrender.engine.evaluation import Evaluation, device_array, device_model, shape_of
-from wsrender.engine.memory import check_voxel_memory
+from wsrender.engine.memory import check_voxel_memory, in_vectors, voxel_array
 from wsrender.engine.partial import Partial, merge
 from wsrender.errors import NumericalError
 from wsrender.sampling import SamplingPlan
@@ -164,16 +164,20 @@ class _Accumulator:
         given = shape.method == "given"
         self._space = None if given else device_space(plan.sampling, plan.precision, device)
         self._lattice = _device_lattice(plan.block, real)
-        self._scales = device_array(plan.scales, real, device)
-        self._reduced = 5 + shape.n_indices
-        self._extremes = wp.full(2 * self._reduced, self._lowest, dtype=bits, device=device)
+        reduced = 5 + shape.n_indices
+        self._extremes = wp.full(2 * reduced, self._lowest, dtype=bits, device=device)
         self._totals = wp.zeros(shape.n_indices, dtype=wp.int64, device=device)
-        self._records = wp.full(voxels * shape.record_size, self._lowest, dtype=bits, device=device)
-        self._sums = wp.zeros(voxels * shape.n_indices * shape.sums, dtype=wp.int64, device=device)
+        self._records = voxel_array(voxels * shape.record_size, bits, device)
+        self._records.fill_(self._lowest)
+        self._sums = voxel_array(voxels * shape.sums_size, wp.int64, device)
+        self._sums.zero_()
         self._rows_out = wp.empty(shape.n_outputs * chunk * shape.keep_rows, dtype=real, device=device)
-        if not device.is_cuda:
-            self._scratch = wp.empty(shape.n_outputs * LANES + 1, dtype=real, device=device)
-            self._cells = wp.zeros(LANES, dtype=wp.int32, device=device)
+        outputs = self._outputs = outputs_type(shape)()
+        outputs.scales = device_array(plan.scales, real, device)
+        outputs.extremes, outputs.totals = self._extremes, self._totals
+        outputs.records = in_vectors(self._records, shape.record_size)
+        outputs.sums = in_vectors(self._sums, max(shape.sums_size, 1))
+        outputs.rows_out, outputs.rows_stride = self._rows_out, chunk
         self._folded: Partial | None = None
         self._rows: dict[int, np.ndarray] = {}
         self._samples = 0
@@ -196,16 +200,15 @@ class _Accumulator:
 
     def _launch(self, first: int, count: int) -> None:
         space = self._space or self._given(first, count)
-        inputs = [self._model, space, self._lattice, first, count, self._scales]
-        outputs = [self._extremes, self._totals, self._records, self._sums, self._rows_out, self.chunk]
+        inputs = [self._model, space, self._lattice, first, count]
         if self.device.is_cuda:
             threads = min(count, THREADS_PER_GPU)
+            outputs = [self._outputs, self._records, self._sums]
             wp.launch(self._kernel, dim=threads, inputs=[*inputs, threads], outputs=outputs, device=self.device)
             wp.synchronize_device(self.device)
         else:
             tasks = -(-count // LANES)
-            scratch = [self._reduced, self._scratch, self._cells]
-            wp.launch(self._kernel, dim=tasks, inputs=[*inputs, *scratch], outputs=outputs, device=self.device)
+            wp.launch(self._kernel, dim=tasks, inputs=inputs, outputs=[self._outputs], device=self.device)
 
     def _given(self, first: int, count: int):
         """Configurations and what the host computes of them; puts the latter into the model."""
@@ -230,15 +233,15 @@ class _Accumulator:
         records = self._records.numpy().reshape(-1, self.shape.record_size)
         cells = np.flatnonzero(records[:, 0] != self._lowest)
         occupied = records[cells]
-        sums = self._sums.numpy().reshape(-1, self.shape.n_indices)
+        sums = self._sums.numpy().reshape(-1, max(self.shape.sums_size, 1))
         held = Partial(
             self._samples,
             self._extremes.numpy().copy(),
             self._totals.numpy().copy(),
             cells,
             occupied[:, 0].astype(np.int64) - self._lowest,
-            occupied[:, 1:].copy(),
-            sums[cells] if self.shape.sums else np.zeros((len(cells), 0), np.int64),
+            occupied[:, 1 : 1 + self.shape.extremes].copy(),
+            sums[cells, : self.shape.n_indices] if self.shape.sums else np.zeros((len(cells), 0), np.int64),
             self._rows,
         )
         self._folded = held if self._folded is None else merge(self._folded, held)
