@@ -1,6 +1,5 @@
 """Errors as problem documents (RFC 9457): one table from exceptions to status, title and ``retryable``."""
 
-import errno
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from http import HTTPStatus
@@ -33,6 +32,7 @@ from wsrender_server.jobs.faults import (
     QueueFull,
     StoreUnavailable,
 )
+from wsrender_server.jobs.files import FULL
 
 MEDIA_TYPE = "application/problem+json"
 TRY_AGAIN_S = 5
@@ -173,7 +173,7 @@ def problem_of_error(error: BaseException, prefix: str = "") -> dict[str, Any]:
         return problem(
             error.status, code, error.detail, title=title, retryable=error.retryable, errors=errors, **error.extra
         )
-    if isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EDQUOT):
+    if isinstance(error, OSError) and error.errno in FULL:
         return problem_of_error(DiskFull("the server's disk is full; nothing was changed"))
     answer = next((ANSWERS[kind] for kind in type(error).__mro__ if kind in ANSWERS), None)
     if answer is None:

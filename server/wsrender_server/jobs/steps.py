@@ -74,10 +74,12 @@ def _shard(task: Task) -> None:
     def report(done: int) -> None:
         gauges[1] = done
 
+    path = _files().partials(task.computation) / partial_name(task.shard)
+    if path.exists():  # kept by a process that was lost before it could say so
+        return
     partial = run_shard(_planned(task), task.shard, report)
-    folder = _files().partials(task.computation)
-    folder.mkdir(exist_ok=True)
-    save_partial(partial, folder / partial_name(task.shard))
+    path.parent.mkdir(exist_ok=True)
+    save_partial(partial, path)
 
 
 def _finish(task: Task) -> list[dict[str, Any]]:

@@ -84,7 +84,7 @@ def submit_job(server: Server, principal: Submitter, request: Request, text: _Bo
             document,
             labels=options.labels,
             priority=options.priority,
-            timeout_s=server.settings.timeout_of(options.timeout_s),
+            timeout_s=options.timeout_s,  # the store applies the limits of the settings
             idempotency_key=key,
             body_hash=_hash([document, options.model_dump()]),
         )
