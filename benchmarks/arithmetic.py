@@ -3,7 +3,7 @@
 An addition, subtraction, multiplication, division or square root counts as one operation, a fused multiply-add as
 two; comparisons, selections, sign changes and integer work (the random bits) count as none, and neither does what
 the compiler removes (angular rows and orientation of a linear task). The counts are for a chain of n uncoupled
-joints, random sampling, the task "linear" and the standard convention. n = 6, float32: 1,053 kinematic, 4,212 twelve.
+joints, random sampling, the task "linear" and the standard convention. n = 6, float32: 951 kinematic, 2,846 twelve.
 """
 
 FLOAT_BYTES = {"float32": 4, "float64": 8}
@@ -12,7 +12,7 @@ SUM_BYTES = 8  # a voxel's sum of an index
 
 def operations(n: int, precision: str, dynamic: bool, voxels: bool) -> int:
     """Operations of one sample with the six kinematic indices, or all twelve."""
-    count = draw(n, precision) + forward(n, precision) + 18 * n + three_singular_values(n, precision)
+    count = draw(n, precision) + forward(n, precision) + 9 * n + three_singular_values(n, precision)
     count += six_indices(precision) + totals(12 if dynamic else 6)
     if dynamic:
         count += inertia(n) + solve(3, n) + largest_columns(n)
@@ -26,14 +26,14 @@ def draw(n: int, precision: str) -> int:
 
 
 def sincos(precision: str) -> int:
-    """Range reduction 8, square 1, two polynomials, their ends 3 + 5."""
+    """Range reduction 9, quarter turns 1, square 1, two polynomials, their ends 3 + 5."""
     terms = 2 if precision == "float32" else 5
-    return 9 + 4 * terms + 8
+    return 11 + 4 * terms + 8
 
 
 def forward(n: int, precision: str) -> int:
-    """Per joint: angle 1, sum of angles 6, axes 36, lever 18; once: the tip in the world 18."""
-    return n * (1 + sincos(precision) + 6 + 36 + 18) + 18
+    """Per joint: axes 36, lever 15; once: the tip in the world 18."""
+    return n * (sincos(precision) + 36 + 15) + 18
 
 
 def three_singular_values(n: int, precision: str) -> int:
@@ -58,14 +58,15 @@ def totals(indices: int) -> int:
 
 
 def inertia(n: int) -> int:
-    """Composite inertias: 189 per joint, 88 per shift to the joint before, 29 per entry, mirrored once."""
-    return 189 * n + 88 * (n - 1) + 29 * n * (n + 1) // 2 + n * (n - 1) // 2
+    """Per joint: link 9, momentum and its moment 25; per step towards the base: two turns 60, shift 24, link vector 15;
+    per entry before the diagonal: 17."""
+    return 34 * n + 99 * (n - 1) + 17 * n * (n - 1) // 2
 
 
 def solve(m: int, n: int) -> int:
     """A M^-1 for m rows by L D L^T."""
     pivots = 3 * n * (n - 1) // 2 + n
-    columns = sum((n - 1 - j) * (3 * j + 1) for j in range(n))
+    columns = sum((n - 1 - j) * (2 * j + 1) for j in range(n))
     return pivots + columns + m * (2 * n * (n - 1) + n)
 
 

@@ -212,7 +212,8 @@ def _version(name: str) -> str:
         return "absent"
 
 
-def _peaks(device: str) -> dict[tuple[str, int], float]:
+def peaks(device: str) -> dict[tuple[str, int], float]:
+    """Operations per second by precision and threads (1 on a GPU)."""
     target = devices_of(device)[0]
     if target.is_cuda:
         return {(precision, 1): gpu_peak(precision, target) for precision in ("float32", "float64")}
@@ -230,12 +231,12 @@ def main() -> None:
     arguments = parser.parse_args()
     full = not arguments.without_analyze
     devices = arguments.devices or ["cpu"] + ["cuda:0"] * devices_of("auto")[0].is_cuda
-    peaks = {device: _peaks(device) for device in devices}
+    peak = {device: peaks(device) for device in devices}
     for device in devices:
-        print(machine(device, peaks[device]))
+        print(machine(device, peak[device]))
     for name in arguments.robots:
         robot = ws.load_robot(name)
-        cases = python_cases(robot) + [case for d in devices for case in engine_cases(robot, d, peaks[d], full)]
+        cases = python_cases(robot) + [case for d in devices for case in engine_cases(robot, d, peak[d], full)]
         for _repeat in range(arguments.repeats):
             for case in cases:
                 case.measure()

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import warp as wp
@@ -58,10 +57,12 @@ def shape_of(evaluation: Evaluation, precision: str, method: str, **outputs: boo
     real, n = REAL[precision], evaluation.chain.n
     body = index_source(evaluation.indices, evaluation.rows, n, evaluation.convention)
     length = spectrum_length(n, evaluation.rows, evaluation.convention)
+    sources, plain = drive(evaluation.chain)
     return Shape(
         real=real,
         n=n,
-        **drive(evaluation.chain),
+        sources=sources,
+        plain=plain,
         method="given" if evaluation.on_host else method,
         rows=evaluation.rows,
         convention=evaluation.convention,
@@ -76,13 +77,10 @@ def shape_of(evaluation: Evaluation, precision: str, method: str, **outputs: boo
     )
 
 
-def drive(chain: Chain) -> dict[str, Any]:
-    """How coordinates drive joints, as `kinematics` of the kernels takes it."""
+def drive(chain: Chain) -> tuple[tuple[int, ...], bool]:
+    """How coordinates drive joints: ``sources`` and ``plain`` of the kernels' `kinematics`."""
     own = np.array_equal(chain.joint_source, np.arange(chain.n)) and np.all(chain.joint_scale == 1)
-    return {
-        "sources": tuple(int(s) for s in chain.joint_source),
-        "plain": bool(own and np.all(chain.joint_is_revolute)),
-    }
+    return tuple(int(s) for s in chain.joint_source), bool(own and np.all(chain.joint_is_revolute))
 
 
 def device_model(evaluation: Evaluation, precision: str, device: wp.Device):

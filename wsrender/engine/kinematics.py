@@ -44,7 +44,7 @@ def _evaluate(chain: Chain, q: np.ndarray, with_inertia: bool, precision: str, d
     inertia = wp.empty((len(q) if with_inertia else 0, n, n), dtype=real, device=device)
     if len(q):
         wp.launch(
-            kinematics_kernel(real, n, with_inertia=with_inertia, **drive(chain)),
+            kinematics_kernel(real, n, *drive(chain), with_inertia),
             dim=len(q),
             inputs=[chain_model(chain, precision, device), device_array(q, real, device)],
             outputs=[pose, jacobian, inertia],

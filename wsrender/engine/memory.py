@@ -47,10 +47,10 @@ def _control_group() -> list[int]:
     return [] if limit == "max" else [int(limit) - used]
 
 
-def voxel_array(size: int, dtype, device: wp.Device) -> wp.array:
-    """Uninitialised memory for voxel records; on the CPU from NumPy, which asks for huge pages.
+def device_memory(size: int, dtype, device: wp.Device) -> wp.array:
+    """Uninitialised memory; on the CPU from NumPy, which asks for huge pages.
 
-    Random access to a large grid otherwise spends half its time on page tables.
+    Random access to many voxel records otherwise spends half its time on page tables.
     """
     if device.is_cuda:
         return wp.empty(size, dtype=dtype, device=device)

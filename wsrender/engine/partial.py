@@ -38,8 +38,7 @@ class Partial:
 
 def merge(a: Partial, b: Partial) -> Partial:
     """The partial result of both ranges of samples; associative and commutative, bit for bit."""
-    cells, inverse = np.unique(np.concatenate([a.cells, b.cells]), return_inverse=True)
-    where_a, where_b = inverse[: len(a.cells)], inverse[len(a.cells) :]
+    cells, where_a, where_b = _union(a.cells, b.cells)
     count = np.zeros(len(cells), np.int64)
     count[where_a] = a.count
     count[where_b] += b.count
@@ -60,3 +59,18 @@ def merge(a: Partial, b: Partial) -> Partial:
         sums,
         {**a.rows, **b.rows},
     )
+
+
+def _union(a: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Sorted union of two sorted sets of cells, and where the cells of each stand in it."""
+    at = np.searchsorted(a, b)
+    known = np.zeros(len(b), bool)
+    inside = at < len(a)
+    known[inside] = a[at[inside]] == b[inside]
+    new = b[~known]
+    where_a = np.arange(len(a)) + np.searchsorted(new, a)
+    cells = np.empty(len(a) + len(new), np.int64)
+    cells[where_a] = a
+    where_b = at + np.cumsum(~known) - ~known
+    cells[where_b] = b
+    return cells, where_a, where_b

@@ -15,7 +15,7 @@ from wsrender_kernels.voxels import lattice, lowest
 from wsrender.engine.configurations import configurations, device_space, given_space
 from wsrender.engine.devices import thread_count
 from wsrender.engine.evaluation import Evaluation, device_array, device_model, shape_of
-from wsrender.engine.memory import check_voxel_memory, in_vectors, voxel_array
+from wsrender.engine.memory import check_voxel_memory, in_vectors, device_memory
 from wsrender.engine.partial import Partial, merge
 from wsrender.errors import NumericalError
 from wsrender.sampling import SamplingPlan
@@ -88,7 +88,7 @@ def sweep(
         check_voxel_memory(plan.block, shape, workers)
     queue = _Queue(iter(chunks))
     with ThreadPoolExecutor(len(workers)) as pool:
-        futures = [pool.submit(_work, _Accumulator(plan, shape, device, chunk), queue) for device in workers]
+        futures = [pool.submit(_work, Accumulator(plan, shape, device, chunk), queue) for device in workers]
         try:
             pending = set(futures)
             while pending:
@@ -142,7 +142,7 @@ class _Queue:
         self.stopped = True
 
 
-def _work(accumulator: "_Accumulator", queue: _Queue) -> Partial:
+def _work(accumulator: "Accumulator", queue: _Queue) -> Partial:
     with wp.ScopedDevice(accumulator.device):
         while (chunk := queue.take()) is not None:
             accumulator.add(*chunk)
@@ -150,13 +150,13 @@ def _work(accumulator: "_Accumulator", queue: _Queue) -> Partial:
         return accumulator.partial()
 
 
-class _Accumulator:
+class Accumulator:
     """One worker's private voxel records and totals on its device."""
 
     def __init__(self, plan: SweepPlan, shape: Shape, device: wp.Device, chunk: int):
         self.plan, self.shape, self.device, self.chunk = plan, shape, device, chunk
-        real, bits = shape.real, bits_type(shape.real)
-        self._bits = wp.dtype_to_numpy(bits)
+        real = shape.real
+        bits = bits_type(real)
         self._lowest = lowest(real)
         voxels = plan.block.size if plan.block else 0
         self._kernel = sweep_kernel(shape, device.is_cuda)
@@ -165,12 +165,10 @@ class _Accumulator:
         self._space = None if given else device_space(plan.sampling, plan.precision, device)
         self._lattice = _device_lattice(plan.block, real)
         reduced = 5 + shape.n_indices
-        self._extremes = wp.full(2 * reduced, self._lowest, dtype=bits, device=device)
-        self._totals = wp.zeros(shape.n_indices, dtype=wp.int64, device=device)
-        self._records = voxel_array(voxels * shape.record_size, bits, device)
-        self._records.fill_(self._lowest)
-        self._sums = voxel_array(voxels * shape.sums_size, wp.int64, device)
-        self._sums.zero_()
+        self._extremes = device_memory(2 * reduced, bits, device)
+        self._totals = device_memory(shape.n_indices, wp.int64, device)
+        self._records = device_memory(voxels * shape.record_size, bits, device)
+        self._sums = device_memory(voxels * shape.sums_size, wp.int64, device)
         self._rows_out = wp.empty(shape.n_outputs * chunk * shape.keep_rows, dtype=real, device=device)
         outputs = self._outputs = outputs_type(shape)()
         outputs.scales = device_array(plan.scales, real, device)
@@ -179,14 +177,14 @@ class _Accumulator:
         outputs.sums = in_vectors(self._sums, max(shape.sums_size, 1))
         outputs.rows_out, outputs.rows_stride = self._rows_out, chunk
         self._folded: Partial | None = None
-        self._rows: dict[int, np.ndarray] = {}
-        self._samples = 0
+        self._clear()
 
     def add(self, first: int, count: int) -> None:
         """Sweep one chunk."""
         if self._samples + count > FOLD_AFTER:
             self._fold()
-        self._launch(first, count)
+            self._clear()
+        self.launch(first, count)
         self._samples += count
         if self.shape.keep_rows:
             rows = self._rows_out.numpy().reshape(self.shape.n_outputs, self.chunk)
@@ -198,7 +196,8 @@ class _Accumulator:
         assert self._folded is not None
         return self._folded
 
-    def _launch(self, first: int, count: int) -> None:
+    def launch(self, first: int, count: int) -> None:
+        """Run the kernel over one chunk."""
         space = self._space or self._given(first, count)
         inputs = [self._model, space, self._lattice, first, count]
         if self.device.is_cuda:
@@ -245,7 +244,10 @@ class _Accumulator:
             self._rows,
         )
         self._folded = held if self._folded is None else merge(self._folded, held)
-        self._samples, self._rows = 0, {}
+
+    def _clear(self) -> None:
+        self._samples = 0
+        self._rows: dict[int, np.ndarray] = {}
         self._records.fill_(self._lowest)
         self._sums.zero_()
         self._totals.zero_()
