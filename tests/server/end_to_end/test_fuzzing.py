@@ -3,7 +3,7 @@
 import subprocess
 import sys
 
-SECONDS = 40
+SECONDS = 30
 
 
 def test_fuzzing_finds_nothing(server, tmp_path):
