@@ -7,3 +7,5 @@ CPU_FLAGS = (
     " -mllvm=-inline-cold-callsite-threshold=3000 -mllvm=-slp-recursion-max-depth=4 -mllvm=-force-vector-interleave=2"
 )
 MODULE_OPTIONS = {"enable_backward": False, "cpu_compiler_flags": CPU_FLAGS}
+# Division and square root of float32 to 2 units in the last place: a third faster.
+CUDA_OPTIONS = {**MODULE_OPTIONS, "fast_math": True}

@@ -18,10 +18,12 @@ from wsrender_kernels.elementary import bits_type, elementary
 from wsrender_kernels.inertia import inertia
 from wsrender_kernels.kinematics import kinematics, orientation
 from wsrender_kernels.model import model_type
-from wsrender_kernels.options import MODULE_OPTIONS
+from wsrender_kernels.options import CUDA_OPTIONS, MODULE_OPTIONS
 from wsrender_kernels.sampling import LANES, sample_space, sampling
 from wsrender_kernels.spectrum import spectrum
 from wsrender_kernels.voxels import lattice, lowest, voxels
+
+TOTAL_SLOTS = 64  # parts in which CUDA threads add totals: on one address they would wait for each other
 
 
 @wp.func
@@ -64,7 +66,12 @@ class Shape:
     @property
     def record_size(self) -> int:
         """Integers per voxel record: a power of two, so that no record lies across two cache lines."""
-        return _power_of_two(1 + self.extremes)
+        return _power_of_two(self.count_size + self.extremes)
+
+    @property
+    def count_size(self) -> int:
+        """Integers of a record that hold the 64-bit count."""
+        return 2 if self.real is wp.float32 else 1
 
     @property
     def extremes(self) -> int:
@@ -189,9 +196,9 @@ def _outputs(shape: Shape):
 def outputs_type(shape: Shape):
     """Struct with what a sweep adds to: extremes and totals of all samples, voxel records and sums, rows.
 
-    ``extremes`` (2 R,), R = 5 + K reduced outputs: largest value and largest complement; ``totals`` (K,): fixed-point
-    sums of the indices, scaled by ``scales`` (K,); ``records``, ``sums``: one vector per voxel; ``rows_out``
-    (n_outputs * rows_stride,): value r of the chunk's sample s at [r * rows_stride + s].
+    ``extremes`` (2 R,), R = 5 + K reduced outputs: largest value and largest complement; ``totals`` (TOTAL_SLOTS * K,):
+    fixed-point sums of the indices, scaled by ``scales`` (K,), in parts; ``records``, ``sums``: one vector per voxel;
+    ``rows_out`` (n_outputs * rows_stride,): value r of the chunk's sample s at [r * rows_stride + s].
     """
     real, bits = shape.real, bits_type(shape.real)
     record_type = wp.types.vector(shape.record_size, bits)
@@ -308,7 +315,7 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
                 record = to.records[voxel]
                 for k in range(RECORD):
                     record[k] = wp.max(record[k], sample[k])
-                record[0] += bits(1)
+                record[0] += bits(1)  # no carry: see FOLD_AFTER of the engine
                 to.records[voxel] = record
                 if wp.static(SUMS):
                     addend = sums_type()
@@ -328,7 +335,7 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
 def _record_keys(shape: Shape):
     """Of every slot of a record: its row among the ordered values, and what complements it (minima)."""
     K, lowest_row = shape.n_indices, 5 + shape.n_indices
-    rows, masks = [lowest_row], [0]
+    rows, masks = [lowest_row] * shape.count_size, [0] * shape.count_size
     for kept, mask in ((shape.maximum, 0), (shape.minimum, -1)):
         rows += [3 + k for k in range(K) if kept]
         masks += [mask] * (K * kept)
@@ -351,11 +358,12 @@ def _cuda_kernel(shape: Shape) -> wp.Kernel:
     extremes_type, totals_type = wp.types.vector(2 * REDUCED, bits), wp.types.vector(K, wp.int64)
     N_OUTPUTS, RECORD_64, SUMS_64 = shape.n_outputs, wp.int64(shape.record_size), wp.int64(shape.sums_size)
     VOXELS, MAXIMUM, MINIMUM, SUMS, ROWS = shape.voxels, shape.maximum, shape.minimum, shape.sums, shape.keep_rows
-    FIRST_MINIMUM = 1 + K * shape.maximum
+    FIRST_MAXIMUM, FIRST_MINIMUM = shape.count_size, shape.count_size + K * shape.maximum
     LOWEST = bits(lowest(real))
     LANE_MASK = wp.int64(LANES - 1)
+    COUNT_64 = wp.int64(shape.record_size // shape.count_size)
 
-    @wp.kernel(module="unique", module_options=MODULE_OPTIONS, enable_backward=False, grid_stride=False)
+    @wp.kernel(module="unique", module_options=CUDA_OPTIONS, enable_backward=False, grid_stride=False)
     def sweep_cuda(
         # in
         model: Model,
@@ -366,7 +374,8 @@ def _cuda_kernel(shape: Shape) -> wp.Kernel:
         threads: wp.int64,
         # out
         to: Outputs,
-        # the memory of to.records and to.sums, integer by integer
+        # the memory of to.records, as 64-bit counts and integer by integer, and of to.sums
+        counts: wp.array(dtype=wp.int64),
         records: wp.array(dtype=bits),
         sums: wp.array(dtype=wp.int64),
     ):
@@ -381,7 +390,7 @@ def _cuda_kernel(shape: Shape) -> wp.Kernel:
             start = index - (index & LANE_MASK)
             block = prepare(space, start)
             out = evaluate(model, space, block, start, wp.int32(index & LANE_MASK))
-            for r in range(REDUCED):
+            for r in range(wp.static(REDUCED)):
                 key = ordered(out[r])
                 largest[2 * r] = wp.max(largest[2 * r], key)
                 largest[2 * r + 1] = wp.max(largest[2 * r + 1], ~key)
@@ -390,28 +399,31 @@ def _cuda_kernel(shape: Shape) -> wp.Kernel:
             if wp.static(VOXELS):
                 voxel = cell(grid, vec3(out[0], out[1], out[2]))
                 at = wp.int64(voxel) * RECORD_64
-                wp.atomic_add(records, at, bits(1))
+                wp.atomic_add(counts, wp.int64(voxel) * COUNT_64, wp.int64(1))
                 # Extremes only grow: a value that an old reading already covers needs no atomic operation.
                 seen = to.records[voxel]
                 for k in range(K):
                     key = ordered(out[3 + k])
                     if wp.static(MAXIMUM):  # noqa: SIM102 - compiled out before seen is indexed
-                        if key > seen[1 + k]:
-                            wp.atomic_max(records, at + wide(1 + k), key)
+                        if key > seen[FIRST_MAXIMUM + k]:
+                            wp.atomic_max(records, at + wide(FIRST_MAXIMUM + k), key)
                     if wp.static(MINIMUM):  # noqa: SIM102
                         if ~key > seen[FIRST_MINIMUM + k]:
                             wp.atomic_max(records, at + wide(FIRST_MINIMUM + k), ~key)
                     if wp.static(SUMS):
-                        slot = wp.int64(voxel) * SUMS_64 + wide(k)
-                        wp.atomic_add(sums, slot, wp.int64(quantized(out[3 + k], to.scales[k])))
+                        wp.atomic_add(
+                            sums, wp.int64(voxel) * SUMS_64 + wide(k), wp.int64(quantized(out[3 + k], to.scales[k]))
+                        )
             if wp.static(ROWS):
-                for r in range(N_OUTPUTS):
+                for r in range(wp.static(N_OUTPUTS)):
                     to.rows_out[wide(r) * to.rows_stride + offset] = out[r]
             offset += threads
         if wp.int64(thread) < count:
             for r in range(wp.static(2 * REDUCED)):
-                wp.atomic_max(to.extremes, r, largest[r])
+                if largest[r] > to.extremes[r]:
+                    wp.atomic_max(to.extremes, r, largest[r])
+            slot = (thread % TOTAL_SLOTS) * K
             for k in range(K):
-                wp.atomic_add(to.totals, k, total[k])
+                wp.atomic_add(to.totals, slot + k, total[k])
 
     return sweep_cuda

@@ -1,8 +1,8 @@
 """Accumulation of samples into voxel records and totals, in integers only: the result does not depend on the order.
 
-A voxel record is ``1 + E`` integers of the precision's width: the count, then one per extreme (a maximum, or a
-minimum as the maximum of the complement) in `elementary.ordered` form. All start at `lowest`, the count too, so
-that filling needs no pattern. Sums are 64-bit fixed point.
+A voxel record is a row of integers of the precision's width: the count in the first 64 bits, then one per extreme (a
+maximum, or a minimum as the maximum of the complement) in `elementary.ordered` form. All start at `lowest`, the count
+too, so that filling needs no pattern. Sums are 64-bit fixed point.
 """
 
 from functools import cache
@@ -21,6 +21,7 @@ def lattice(real):
     @wp.struct
     class Lattice:
         edge: real
+        per_edge: real  # 1 / edge, rounded
         first_x: wp.int32
         first_y: wp.int32
         first_z: wp.int32
@@ -42,15 +43,18 @@ def voxels(real) -> SimpleNamespace:
     MAGIC_BITS = wp.int64(0x4338000000000000)
 
     @wp.func
-    def along(p: real, edge: real, first: wp.int32, size: wp.int32):
-        # A true division, so that voxels agree with floor(p / r) of any other program.
-        return wp.min(wp.max(wp.int32(wp.floor(p / edge)) - first, 0), size - 1)
+    def along(p: real, edge: real, per_edge: real, first: wp.int32, size: wp.int32):
+        # p / edge correctly rounded (Markstein 1990; the remainder is a fused multiply-add), so that voxels agree with
+        # floor(p / r) of any other program, whatever the division of the device.
+        quotient = p * per_edge
+        quotient = quotient + (p - quotient * edge) * per_edge
+        return wp.min(wp.max(wp.int32(wp.floor(quotient)) - first, 0), size - 1)
 
     @wp.func
     def cell(grid: Lattice, p: vec3):
-        x = along(p[0], grid.edge, grid.first_x, grid.size_x)
-        y = along(p[1], grid.edge, grid.first_y, grid.size_y)
-        z = along(p[2], grid.edge, grid.first_z, grid.size_z)
+        x = along(p[0], grid.edge, grid.per_edge, grid.first_x, grid.size_x)
+        y = along(p[1], grid.edge, grid.per_edge, grid.first_y, grid.size_y)
+        z = along(p[2], grid.edge, grid.per_edge, grid.first_z, grid.size_z)
         return (x * grid.size_y + y) * grid.size_z + z
 
     @wp.func

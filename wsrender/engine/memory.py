@@ -57,12 +57,10 @@ def device_memory(size: int, dtype, device: wp.Device) -> wp.array:
     return wp.array(np.empty(size, wp.dtype_to_numpy(dtype)), dtype=dtype, device=device, copy=False)
 
 
-def in_vectors(values: wp.array, length: int) -> wp.array:
-    """The same memory as an array of vectors."""
-    dtype = wp.types.vector(length, values.dtype)
-    return wp.array(
-        ptr=values.ptr, dtype=dtype, shape=values.size // length, device=values.device, capacity=values.capacity
-    )
+def as_type(values: wp.array, dtype) -> wp.array:
+    """The same memory as an array of another type."""
+    size = values.capacity // wp.types.type_size_in_bytes(dtype)
+    return wp.array(ptr=values.ptr, dtype=dtype, shape=size, device=values.device, capacity=values.capacity)
 
 
 def check_voxel_memory(block: LatticeBlock, shape: Shape, workers: list[wp.Device]) -> None:

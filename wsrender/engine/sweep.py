@@ -9,21 +9,21 @@ import numpy as np
 import warp as wp
 from wsrender_kernels.elementary import bits_type
 from wsrender_kernels.sampling import LANES
-from wsrender_kernels.sweep import Shape, outputs_type, sweep_kernel
+from wsrender_kernels.sweep import TOTAL_SLOTS, Shape, outputs_type, sweep_kernel
 from wsrender_kernels.voxels import lattice, lowest
 
 from wsrender.engine.configurations import configurations, device_space, given_space
 from wsrender.engine.devices import thread_count
 from wsrender.engine.evaluation import Evaluation, device_array, device_model, shape_of
-from wsrender.engine.memory import check_voxel_memory, in_vectors, device_memory
+from wsrender.engine.memory import as_type, check_voxel_memory, device_memory
 from wsrender.engine.partial import Partial, merge
 from wsrender.errors import NumericalError
 from wsrender.sampling import SamplingPlan
 from wsrender.volume.lattice import LatticeBlock
 
 CHUNK_CPU, CHUNK_CUDA, CHUNK_ROWS, CHUNK_GIVEN = 1 << 20, 1 << 28, 1 << 18, 1 << 14
-THREADS_PER_GPU = 1 << 19
-FOLD_AFTER = 2**31 - 2**29  # samples until 32-bit counts are moved to 64-bit ones
+THREADS_PER_GPU = 1 << 18
+FOLD_AFTER = 2**31 - 2**29  # samples until the CPU, which counts in 32 bits, moves its counts to 64-bit ones
 
 
 @dataclass(frozen=True, eq=False)
@@ -158,6 +158,7 @@ class Accumulator:
         real = shape.real
         bits = bits_type(real)
         self._lowest = lowest(real)
+        self._empty_count = int(np.full(shape.count_size, self._lowest, wp.dtype_to_numpy(bits)).view(np.int64)[0])
         voxels = plan.block.size if plan.block else 0
         self._kernel = sweep_kernel(shape, device.is_cuda)
         self._model = device_model(plan.evaluation, plan.precision, device)
@@ -166,22 +167,23 @@ class Accumulator:
         self._lattice = _device_lattice(plan.block, real)
         reduced = 5 + shape.n_indices
         self._extremes = device_memory(2 * reduced, bits, device)
-        self._totals = device_memory(shape.n_indices, wp.int64, device)
+        self._totals = device_memory(TOTAL_SLOTS * shape.n_indices, wp.int64, device)
         self._records = device_memory(voxels * shape.record_size, bits, device)
         self._sums = device_memory(voxels * shape.sums_size, wp.int64, device)
         self._rows_out = wp.empty(shape.n_outputs * chunk * shape.keep_rows, dtype=real, device=device)
         outputs = self._outputs = outputs_type(shape)()
         outputs.scales = device_array(plan.scales, real, device)
         outputs.extremes, outputs.totals = self._extremes, self._totals
-        outputs.records = in_vectors(self._records, shape.record_size)
-        outputs.sums = in_vectors(self._sums, max(shape.sums_size, 1))
+        self._counts = as_type(self._records, wp.int64)
+        outputs.records = as_type(self._records, wp.types.vector(shape.record_size, bits))
+        outputs.sums = as_type(self._sums, wp.types.vector(max(shape.sums_size, 1), wp.int64))
         outputs.rows_out, outputs.rows_stride = self._rows_out, chunk
         self._folded: Partial | None = None
         self._clear()
 
     def add(self, first: int, count: int) -> None:
         """Sweep one chunk."""
-        if self._samples + count > FOLD_AFTER:
+        if not self.device.is_cuda and self._samples + count > FOLD_AFTER:
             self._fold()
             self._clear()
         self.launch(first, count)
@@ -202,7 +204,7 @@ class Accumulator:
         inputs = [self._model, space, self._lattice, first, count]
         if self.device.is_cuda:
             threads = min(count, THREADS_PER_GPU)
-            outputs = [self._outputs, self._records, self._sums]
+            outputs = [self._outputs, self._counts, self._records, self._sums]
             wp.launch(self._kernel, dim=threads, inputs=[*inputs, threads], outputs=outputs, device=self.device)
             wp.synchronize_device(self.device)
         else:
@@ -230,16 +232,17 @@ class Accumulator:
     def _fold(self) -> None:
         """Move what the device holds to 64-bit host arrays and start afresh."""
         records = self._records.numpy().reshape(-1, self.shape.record_size)
-        cells = np.flatnonzero(records[:, 0] != self._lowest)
-        occupied = records[cells]
+        counts = records.view(np.int64)[:, 0] - self._empty_count
+        cells = np.flatnonzero(counts)
+        occupied, width = records[cells], self.shape.count_size
         sums = self._sums.numpy().reshape(-1, max(self.shape.sums_size, 1))
         held = Partial(
             self._samples,
             self._extremes.numpy().copy(),
-            self._totals.numpy().copy(),
+            self._totals.numpy().reshape(TOTAL_SLOTS, -1).sum(axis=0),
             cells,
-            occupied[:, 0].astype(np.int64) - self._lowest,
-            occupied[:, 1 : 1 + self.shape.extremes].copy(),
+            counts[cells],
+            occupied[:, width : width + self.shape.extremes].copy(),
             sums[cells, : self.shape.n_indices] if self.shape.sums else np.zeros((len(cells), 0), np.int64),
             self._rows,
         )
@@ -256,7 +259,9 @@ class Accumulator:
 
 def _device_lattice(block: LatticeBlock | None, real):
     grid = lattice(real)()
-    grid.edge = block.voxel_size_m if block else 1.0
+    # The reciprocal of the edge as the kernel holds it, rounded once.
+    edge = wp.dtype_to_numpy(real)(block.voxel_size_m if block else 1.0)
+    grid.edge, grid.per_edge = float(edge), float(1 / edge)
     grid.first_x, grid.first_y, grid.first_z = block.first_voxel if block else (0, 0, 0)
     grid.size_x, grid.size_y, grid.size_z = block.shape if block else (1, 1, 1)
     return grid
