@@ -3,6 +3,8 @@
 from collections.abc import Iterator
 from typing import Any
 
+from wsrender.indices.units import pretty_unit
+
 
 def sampling_text(document: dict[str, Any]) -> str:
     """Robot and sampling of a result in one line, such as ``ur5e · 1,000,000 samples (sobol)``."""
@@ -41,12 +43,18 @@ def _facts(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
 def _index_table(indices: dict[str, dict[str, Any]]) -> Iterator[str]:
     if not indices:
         return
-    columns = ("minimum", "maximum", "joint_mean", "workspace_mean")
+    extremes, means = ("minimum", "maximum"), ("joint_mean", "workspace_mean")
     width = max(map(len, indices))
-    yield "  " + " " * width + "".join(f"{name.replace('_', ' '):>16}" for name in columns) + "  unit"
+    units = {name: pretty_unit(values.get("unit", "")) for name, values in indices.items()}
+    unit_width = max(4, *map(len, units.values()))
+    heads = [f"{name:>14}" for name in extremes], [f"{name.replace('_', ' '):>17}" for name in means]
+    yield "  " + " " * width + "".join(heads[0]) + f"  {'unit':<{unit_width}}" + "".join(heads[1])
     for name, values in indices.items():
-        numbers = "".join(f"{_number(values.get(column)):>16}" for column in columns)
-        yield f"  {name:<{width}}{numbers}  {values.get('unit', '')}".rstrip()
+        low_high = "".join(f"{_number(values.get(column)):>14}" for column in extremes)
+        relative = "".join(f"{_number(values.get(column)):>17}" for column in means)
+        yield f"  {name:<{width}}{low_high}  {units[name]:<{unit_width}}{relative}".rstrip()
+    if any(values.get("joint_mean") is not None for values in indices.values()):
+        yield "  means are of value / maximum: over the samples, and over the occupied voxels"
 
 
 def _number(value: float | None) -> str:

@@ -14,6 +14,7 @@ from matplotlib.colors import Colormap, Normalize
 from matplotlib.figure import Figure
 
 from wsrender.errors import InputError
+from wsrender.indices.units import pretty_unit
 
 COLOR_MAP = "viridis"
 INK = "#222222"
@@ -70,7 +71,7 @@ def quantity(name: str, unit: str | None) -> str:
     """Label of an axis or colour bar: ``Inverse condition number`` or ``Manipulability [m³]``."""
     text = name.replace("_", " ").strip()
     text = text[:1].upper() + text[1:]
-    return text if unit in (None, "", "1", "-") else f"{text} [{unit}]"
+    return text if unit in (None, "", "1", "-") else f"{text} [{pretty_unit(unit)}]"
 
 
 def value_range(lowest: float, highest: float) -> Normalize:

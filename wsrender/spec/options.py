@@ -13,6 +13,7 @@ INDEX_GROUPS = ("kinematic", "dynamic", "all")
 STATISTICS = ("count", "maximum", "mean", "minimum")
 MAP_COLUMNS = ("configuration", "orientation")
 DEFAULT_PENALTY = 10.0  # K of [WSR] eq. 3 when the penalisation is on
+SMALLEST_PENALTY, LARGEST_PENALTY = 1e-3, 1e6  # beyond them float32 cannot tell the penalisation from a constant
 _DEVICE = re.compile(r"auto|cpu|cuda(:\d{1,3})?")
 
 
@@ -50,8 +51,8 @@ def _penalty(value: Any) -> float | None:
     if value is None or value is False:
         return None
     number = real(value)
-    if number <= 0:
-        raise ValueError("must be greater than 0 (the K of the penalisation), true (10) or null (off)")
+    if not SMALLEST_PENALTY <= number <= LARGEST_PENALTY:
+        raise ValueError("must be 0.001 … 1e6 (the K of the penalisation), true (10) or null (off)")
     return number
 
 
@@ -95,7 +96,15 @@ Indices = Annotated[
 Penalty = Annotated[
     float | None,
     BeforeValidator(_penalty),
-    WithJsonSchema({"anyOf": [{"type": "number", "exclusiveMinimum": 0}, {"type": "boolean"}, {"type": "null"}]}),
+    WithJsonSchema(
+        {
+            "anyOf": [
+                {"type": "number", "minimum": SMALLEST_PENALTY, "maximum": LARGEST_PENALTY},
+                {"type": "boolean"},
+                {"type": "null"},
+            ]
+        }
+    ),
 ]
 Statistics = Annotated[tuple[Literal["count", "maximum", "mean", "minimum"], ...], BeforeValidator(_statistics)]
 MapColumns = Annotated[tuple[Literal["configuration", "orientation"], ...], BeforeValidator(_columns)]

@@ -7,6 +7,8 @@ import numpy as np
 
 from wsrender.errors import InputError
 
+LARGEST_COORDINATE = 2.0**30  # of a voxel; the kernels hold 32-bit integers
+
 
 @dataclass(frozen=True)
 class LatticeBlock:
@@ -25,11 +27,11 @@ class LatticeBlock:
 
 def block_around(lower: np.ndarray, upper: np.ndarray, voxel_size_m: float) -> LatticeBlock:
     """The block that contains the box lower … upper [m], with one voxel to spare for rounding."""
-    first = np.floor(np.asarray(lower) / voxel_size_m).astype(np.int64) - 1
-    last = np.floor(np.asarray(upper) / voxel_size_m).astype(np.int64) + 1
-    if np.abs([first, last]).max() >= 2**30:
+    if max(np.abs(lower).max(), np.abs(upper).max()) >= LARGEST_COORDINATE * voxel_size_m:
         extent = float(np.ptp([lower, upper]))
         raise InputError("voxel_size_m", f"{voxel_size_m} is too small for a workspace of {extent:.3g} m")
+    first = np.floor(np.asarray(lower) / voxel_size_m).astype(np.int64) - 1
+    last = np.floor(np.asarray(upper) / voxel_size_m).astype(np.int64) + 1
     x, y, z = (int(v) for v in first)
     nx, ny, nz = (int(v) for v in last - first + 1)
     return LatticeBlock(float(voxel_size_m), (x, y, z), (nx, ny, nz))
