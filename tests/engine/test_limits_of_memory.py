@@ -11,7 +11,7 @@ import pytest
 import wsrender as ws
 from tests.engine.test_voxels import job
 from wsrender import run
-from wsrender.errors import NumericalError, ResourceError
+from wsrender.errors import InputError, NumericalError, ResourceError
 
 
 def peak_bytes():
@@ -60,3 +60,9 @@ def test_the_folding_threshold_leaves_room_for_a_chunk():
     """Counts are 32-bit until they are folded: threshold and chunk together must stay below 2^31."""
     module = importlib.import_module("wsrender.engine.sweep")
     assert module.FOLD_AFTER + 0 < 2**31 and module.CHUNK_CUDA < 2**31
+
+
+@pytest.mark.parametrize("voxel_size_m", [1e-9, 1e-300, 5e-324])
+def test_voxels_too_small_to_number_are_refused(voxel_size_m):
+    with pytest.raises(InputError, match="voxel_size_m: .* is too small for a workspace of"):
+        ws.analyze("phantom_omni", ws.Random(256), voxel_size_m=voxel_size_m, device="cpu")
