@@ -62,7 +62,7 @@ def test_the_folding_threshold_leaves_room_for_a_chunk():
     assert module.FOLD_AFTER + 0 < 2**31 and module.CHUNK_CUDA < 2**31
 
 
-@pytest.mark.parametrize("voxel_size_m", [1e-9, 1e-300, 5e-324])
+@pytest.mark.parametrize("voxel_size_m", [1e-10, 1e-300, 5e-324])
 def test_voxels_too_small_to_number_are_refused(voxel_size_m):
-    with pytest.raises(InputError, match="voxel_size_m: .* is too small for a workspace of"):
+    with pytest.raises(InputError, match=r"voxel_size_m: .* is too small for a workspace of"):
         ws.analyze("phantom_omni", ws.Random(256), voxel_size_m=voxel_size_m, device="cpu")
