@@ -22,6 +22,7 @@ from wsrender.sampling import SamplingPlan
 from wsrender.volume.lattice import LatticeBlock
 
 CHUNK_CPU, CHUNK_CUDA, CHUNK_ROWS, CHUNK_GIVEN = 1 << 20, 1 << 28, 1 << 18, 1 << 14
+CHUNK_LEAST, CHUNKS_PER_THREAD = 1 << 15, 8
 THREADS_PER_GPU = 1 << 18
 FOLD_AFTER = 2**31 - 2**29  # samples until the CPU, which counts in 32 bits, moves its counts to 64-bit ones
 
@@ -80,7 +81,7 @@ def sweep(
     """
     shape = plan.shape
     workers = devices if devices[0].is_cuda else devices * thread_count(threads)
-    chunk = _chunk_size(plan, devices[0], chunk_size)
+    chunk = _chunk_size(plan, chunk_size or _fair_share(count, workers))
     chunks = list(_chunks(first, count, chunk)) if count <= chunk * len(workers) else _chunks(first, count, chunk)
     if isinstance(chunks, list):
         workers = workers[: max(len(chunks), 1)]
@@ -107,8 +108,14 @@ def sweep(
     return result
 
 
-def _chunk_size(plan: SweepPlan, device: wp.Device, requested: int | None) -> int:
-    size = requested or (CHUNK_CUDA if device.is_cuda else CHUNK_CPU)
+def _fair_share(count: int, workers: list[wp.Device]) -> int:
+    """Chunk size (samples) that keeps all workers busy to the end."""
+    if workers[0].is_cuda:
+        return CHUNK_CUDA
+    return min(CHUNK_CPU, max(CHUNK_LEAST, count // (CHUNKS_PER_THREAD * len(workers))))
+
+
+def _chunk_size(plan: SweepPlan, size: int) -> int:
     if plan.keep_rows:
         size = min(size, CHUNK_ROWS)
     if plan.shape.method == "given":
