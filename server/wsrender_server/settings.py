@@ -55,7 +55,7 @@ class Settings(BaseSettings):
     max_job_timeout_s: float | None = Field(default=None, gt=0)
     """Longest timeout that a job may ask for, and the timeout of those that ask for none."""
     shard_samples: int = Field(default=1 << 26, ge=1)
-    """Samples of a shard; large jobs get larger shards."""
+    """Samples of a shard on the CPU, 256 times as many on a GPU; large jobs get larger shards."""
 
     @model_validator(mode="after")
     def _complete_tls(self) -> Self:

@@ -50,7 +50,7 @@ def test_chunks_and_threads_change_no_bit(execution):
 
 def test_shards_merged_in_any_order_are_the_whole(monkeypatch):
     whole = analysis()
-    monkeypatch.setattr(workspace, "SHARD_SAMPLES", 2048)
+    monkeypatch.setattr(workspace, "SHARD_CPU", 2048)
     planned = plan(whole.document["job"])
     assert [first for first, _ in planned.shards] == [0, 2048, 4096, 6144]
     assert sum(count for _, count in planned.shards) == 90**2

@@ -1,8 +1,7 @@
-"""The four steps of a job, and a local run as the loop over them."""
+"""The four steps of a job, and a local run of them."""
 
 import time
 from collections.abc import Callable
-from functools import reduce
 from typing import Any, Protocol
 
 from wsrender.errors import InputError
@@ -91,18 +90,14 @@ def execute(document: Any, progress: Progress | None = None, robot: Any = None, 
         progress(0, 1, "planning")
     planned = plan(document, robot)
     total = sum(count for _, count in planned.shards)
+    planned.shards = [(planned.shards[0][0], total)]  # one process: each division would cost a merge
     planned_at = time.perf_counter()
-    partials = []
-    before = 0
-    for shard, (_, count) in enumerate(planned.shards):
 
-        def report(done: int, before: int = before) -> None:
-            if progress:
-                progress(before + done, max(total, before + done), "samples")  # converging jobs exceed it
+    def report(done: int) -> None:
+        if progress:
+            progress(done, max(total, done), "samples")  # converging jobs exceed it
 
-        partials.append(run_shard(planned, shard, report, **execution))
-        before += count
-    partial = reduce(planned.merge, partials)
+    partial = run_shard(planned, 0, report, **execution)
     swept_at = time.perf_counter()
     if progress:
         progress(total, total, "finishing")

@@ -16,6 +16,7 @@ from wsrender_server.jobs.task import Step, Task
 MOST_SHARDS = 256
 SHARD_UNIT = 1 << 16  # a multiple of the kernels' block of samples
 KEPT_PLANS = 4
+GPU_FACTOR = 256  # samples of a GPU in the time of one of the CPU, roughly
 
 _state: dict[str, Any] = {}
 _plans: "OrderedDict[str, Any]" = OrderedDict()
@@ -55,7 +56,8 @@ def _plan(task: Task) -> dict[str, Any]:
     plan = _planned(task)
     resolved = plan.resolved()
     if _divisible(task.document):
-        resolved["shards"] = _divided(resolved["shards"], _state["shard_samples"])
+        faster = GPU_FACTOR if plan.target.startswith("cuda:") else 1
+        resolved["shards"] = _divided(resolved["shards"], faster * _state["shard_samples"])
     return {
         "resolved": resolved,
         "target": plan.target,
