@@ -22,9 +22,14 @@ from tests.server.jobs.waiting import (
 )
 
 QUICK = {"sampling": {"method": "sobol", "count": 4096}, "voxel_size_m": 0.05, "device": "cpu"}
-# Both with one kernel, so that it is compiled once.
 SHARDED = {**QUICK, "robot": "ur5e", "sampling": {"method": "sobol", "count": 2**20}, "voxel_size_m": 0.1}
-LONG = {**SHARDED, "sampling": {"method": "sobol", "count": 10**10, "seed": 1}}
+# Each of its shards takes seconds: what happens to it happens in the middle of one.
+LONG = {
+    **SHARDED,
+    "indices": "all",
+    "precision": "float64",
+    "sampling": {"method": "sobol", "count": 10**10, "seed": 1},
+}
 
 
 @pytest.fixture(scope="module")

@@ -96,7 +96,7 @@ def test_a_stopped_server_leaves_nothing_and_goes_on(server, settings, opened, e
     children = server.children()
     server.process.terminate()
     assert server.process.wait(20) == 0
-    assert not any(alive(child) for child in children)
+    wait_until(lambda: not any(alive(child) for child in children), 5, "the end of the children")
     server.start()
     assert ended(store, job).state == "succeeded"
     assert comparable(store.result_document("ann", job)) == expected
