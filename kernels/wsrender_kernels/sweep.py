@@ -236,6 +236,7 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
     VOXELS, SUMS, ROWS = shape.voxels, shape.sums, shape.keep_rows
     LOWEST = bits(lowest(real))
     LOWEST_ROW = REDUCED * LANES
+    LEAST_SUM = wp.int64(-(2**62) - 2**61)
     KEY_ROW, KEY_MASK = _record_keys(shape)
     BLOCK, BLOCK_64 = LANES, wp.int64(LANES)
     # Scratch in rows of LANES. Vectors on the stack: of an array, neither the stride nor what else points to it is
@@ -298,14 +299,17 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
 
         if wp.static(VOXELS):
             # Touch all target records first: their cache misses then overlap, twice as fast as one after the other.
-            touched = bits(0)
+            largest_count = LOWEST
+            smallest_sum = wp.int64(0)
             for lane in range(BLOCK):
-                touched = wp.max(touched, to.records[cells[lane]][0])
+                largest_count = wp.max(largest_count, to.records[cells[lane]][0])
                 if wp.static(SUMS):
-                    touched = wp.max(touched, bits(to.sums[cells[lane]][0]))
+                    smallest_sum = wp.min(smallest_sum, to.sums[cells[lane]][0])
+            # Neither is ever true (a count has no such value, a sum fewer bits), but the compiler does not know: it
+            # would drop the loop above.
+            lowest_key = wp.where(largest_count == ~LOWEST or smallest_sum < LEAST_SUM, ~LOWEST, LOWEST)
             for lane in range(BLOCK):
-                # No count reaches the largest integer, but the compiler must not know: it would drop the loop above.
-                keys[LOWEST_ROW + lane] = wp.where(touched == ~LOWEST, touched, LOWEST)
+                keys[LOWEST_ROW + lane] = lowest_key
             for lane in range(valid):
                 voxel = cells[lane]
                 # Every slot is read and compared alike, the count's and the padding against LOWEST: one SIMD operation.
