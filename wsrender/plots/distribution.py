@@ -35,13 +35,14 @@ def histogram(samples: DistributionMap, index: str | None = None, *, title: str 
         edges, share = histogram_data(values)
         axes.stairs(100 * share, edges, fill=True, color=color_map()(0.35), zorder=2)
         axes.set_ylim(bottom=0)
-        axes.axvline(values.mean(dtype=np.float64), color=INK, lw=0.9, ls=(0, (4, 2)), zorder=3)
+        axes.axvline(values.mean(dtype=np.float64), color=INK, lw=0.9, ls=(0, (4, 2)), zorder=3, label="mean")
         axes.set_xlabel(quantity(name, samples.units.get(name)))
         axes.xaxis.set_major_locator(MaxNLocator(4))
         axes.yaxis.set_major_locator(MaxNLocator(4))
         axes.grid(axis="y", zorder=0)
     for axes in panels[:, 0]:
         axes.set_ylabel("Share of samples [%]")
+    panels.flat[0].legend(frameon=False, loc="upper right")
     add_title(figure, title)
     return figure
 
