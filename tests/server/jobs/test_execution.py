@@ -139,6 +139,22 @@ def test_a_native_crash_fails_only_its_own_job(service):
     assert crashed.state == "failed" and crashed.error["code"] == "kernel_crash"
 
 
+def test_a_native_crash_leaves_the_job_beside_it_running(tmp_path):
+    settings = Settings(data_dir=tmp_path, workers=2, threads_per_worker=1, shard_samples=1 << 26)
+    with JobService(settings) as service:
+        wait_until(lambda: len(service.dispatcher.engine.workers()) == 2, what="two workers")
+        documents = [
+            canonical(**{**LONG, "sampling": {"method": "sobol", "count": 2**25, "seed": s}}) for s in (21, 22)
+        ]
+        jobs = [service.store.submit("ann", document).job.id for document in documents]
+        running = lambda: all(service.store.get("ann", job).progress.samples_done > 0 for job in jobs)  # noqa: E731
+        wait_until(running, what="progress of both")
+        os.kill(next(iter(service.dispatcher.engine.kernel_pids().values())), signal.SIGABRT)
+        crashed, beside = sorted((ended(service.store, job) for job in jobs), key=lambda job: job.state)
+        assert (crashed.state, crashed.error["code"]) == ("failed", "kernel_crash")
+        assert beside.state == "succeeded", beside.error
+
+
 def test_a_killed_kernel_process_is_no_fault_of_the_job(service, tmp_path):
     document = canonical(**{**SHARDED, "sampling": {"method": "sobol", "count": 2**20, "seed": 7}})
     job = service.store.submit("ann", document).job.id
