@@ -1,6 +1,7 @@
 """The job table seen by an owner: submit, look, cancel, retry, delete. Foreign jobs do not exist here."""
 
 import json
+import re
 import uuid
 from collections.abc import Callable, Mapping
 from datetime import UTC, datetime
@@ -31,6 +32,7 @@ Events = list[EventRecord]  # "list" is a method below
 Jobs = list[JobRecord]
 
 LONGEST_TEXT, MOST_LABELS, HIGHEST_PRIORITY = 255, 32, 1000
+NOT_IN_TEXT = re.compile("[\x00-\x1f\x7f\ud800-\udfff]")  # controls, and lone surrogates, which no database keeps
 ATTEMPTS = 5  # of a submission whose twin is submitted at the same moment
 
 
@@ -298,8 +300,8 @@ def _check_options(labels: Mapping[str, str], priority: int, idempotency_key: st
     texts = [("labels", text) for pair in labels.items() for text in pair]
     texts += [] if idempotency_key is None else [("idempotency_key", idempotency_key)]
     for field, text in texts:
-        if len(text) > LONGEST_TEXT or not text.isprintable():
-            raise InputError(field, f"must have at most {LONGEST_TEXT} printable characters each")
+        if len(text) > LONGEST_TEXT or NOT_IN_TEXT.search(text):
+            raise InputError(field, f"must have at most {LONGEST_TEXT} characters each, and no control characters")
     if len(labels) > MOST_LABELS:
         raise InputError("labels", f"at most {MOST_LABELS} are allowed, not {len(labels)}")
     if not -HIGHEST_PRIORITY <= priority <= HIGHEST_PRIORITY:

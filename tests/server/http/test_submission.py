@@ -23,7 +23,7 @@ def test_a_new_job_is_queued(client, jobs):
 
 @pytest.mark.parametrize("wrapped", [True, False])
 def test_options_stand_beside_the_document(client, wrapped):
-    options = {"labels": {"study": "wrist-1"}, "priority": 3, "timeout_s": 60}
+    options = {"labels": {"study": "wrist-1 \u0096 Ē"}, "priority": 3, "timeout_s": 60}
     body = {"job": DOCUMENT, **options} if wrapped else DOCUMENT | options
     job = client.post("/v1/jobs", json=body).json()
     assert {name: job[name] for name in options} == options
