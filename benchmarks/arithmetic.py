@@ -7,7 +7,6 @@ joints, random sampling, the task "linear" and the standard convention. n = 6, f
 """
 
 FLOAT_BYTES = {"float32": 4, "float64": 8}
-SUM_BYTES = 8  # a voxel's sum of an index
 
 
 def operations(n: int, precision: str, dynamic: bool, voxels: bool) -> int:
@@ -76,5 +75,9 @@ def largest_columns(n: int) -> int:
 
 
 def bytes_moved(precision: str, dynamic: bool, voxels: bool) -> int:
-    """Bytes read and written per sample in voxel records (count and maxima); without voxels nothing is stored."""
-    return 2 * (1 + (12 if dynamic else 6)) * FLOAT_BYTES[precision] if voxels else 0
+    """Bytes read and written per sample in voxel records (64-bit count and maxima, padded to a power of two)."""
+    if not voxels:
+        return 0
+    width = FLOAT_BYTES[precision]
+    integers = 8 // width + (12 if dynamic else 6)
+    return 2 * width * 2 ** (integers - 1).bit_length()

@@ -14,7 +14,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 from arithmetic import operations
-from throughput import machine, peaks
+from throughput import machine, peaks, plan_of
 
 import wsrender as ws
 from wsrender.engine import SweepPlan, devices_of, sweep
@@ -42,21 +42,6 @@ class Case:
         self.rates.append(1 / slope if slope > 0 else float("nan"))
 
 
-def plan_of(robot: ws.Robot, device: str, precision: str, **fields) -> SweepPlan:
-    """The sweep plan of a job with 2^40 random samples."""
-    document = {
-        "analysis": "workspace",
-        "robot": {"library": robot.name},
-        "sampling": {"method": "random", "count": 1 << 40, "seed": 1},
-        "voxel_statistics": ["maximum"],
-        "voxel_size_m": 2 * robot.chain.reach / 100,
-        "max_samples": 1 << 41,
-        "precision": precision,
-        "device": device,
-    }
-    return ws.run.plan({**document, **fields}, robot).sweep  # type: ignore[attr-defined]
-
-
 def cases_of(robot: ws.Robot, device: str, threads: int, peak: dict) -> list[Case]:
     """The kernel's cases on one device."""
     on_gpu = devices_of(device)[0].is_cuda
@@ -64,19 +49,19 @@ def cases_of(robot: ws.Robot, device: str, threads: int, peak: dict) -> list[Cas
     cases = []
     for precision in PRECISIONS:
 
-        def add(name: str, plan: SweepPlan, share: int, flop: int | None = None, precision: str = precision) -> None:
-            counts = (size // share, 5 * size // share)
+        def add(name: str, plan: SweepPlan, slower: int, flop: int | None = None, precision: str = precision) -> None:
+            counts = (size // slower, 5 * size // slower)
             run = _rows_stored if plan.keep_rows else _swept
-            case = Case(name, precision, lambda count: run(plan, count, device, threads), counts)
-            case.share = flop / peak[precision, threads] if flop else None
-            cases.append(case)
+            share_of_peak = flop / peak[precision, threads] if flop else None
+            cases.append(Case(name, precision, lambda count: run(plan, count, device, threads), counts, share_of_peak))
 
         n = robot.chain.n
         six, twelve = (operations(n, precision, dynamic, voxels=False) for dynamic in (False, True))
-        kinematic = plan_of(robot, device, precision)
-        every = plan_of(robot, device, precision, indices="all")
-        full = plan_of(robot, device, precision, task="full")
-        sums = plan_of(robot, device, precision, voxel_statistics=["maximum", "mean"])
+        fields = {"voxel_statistics": ["maximum"], "voxel_size_m": 2 * robot.chain.reach / 100}
+        kinematic = plan_of(robot, precision, device, **fields)
+        every = plan_of(robot, precision, device, **fields, indices="all")
+        full = plan_of(robot, precision, device, **fields, task="full")
+        sums = plan_of(robot, precision, device, **fields | {"voxel_statistics": ["maximum", "mean"]})
         without = {"block": None, "statistics": frozenset[str]()}
         rows = {**without, "keep_rows": True}
         add("6 kinematic", replace(kinematic, **without), 1, six)

@@ -60,7 +60,7 @@ def engine_cases(robot: ws.Robot, device: str, peaks: dict, with_analyze: bool =
     for precision in ("float32", "float64"):
         for threads in [1] if on_gpu else sorted({1, thread_count()}):
             for dynamic, work in WORKS.items():
-                plan = _plan(robot, dynamic, precision, device)
+                plan = plan_of(robot, precision, device, indices="all" if dynamic else "kinematic")
                 bare = replace(plan, block=None, statistics=frozenset())
                 where = device if on_gpu else f"{threads} thread{'s' * (threads > 1)}"
                 for voxels, what in ((False, bare), (True, plan)):
@@ -86,12 +86,17 @@ def engine_cases(robot: ws.Robot, device: str, peaks: dict, with_analyze: bool =
     return cases
 
 
-def _plan(robot: ws.Robot, dynamic: bool, precision: str, device: str) -> SweepPlan:
-    """The sweep plan of the job that ws.analyze would run: default voxel size, count and maximum per voxel."""
-    library = {"library": robot.name}
-    job = {"analysis": "workspace", "robot": library, "sampling": {"method": "random", "count": 1 << 40, "seed": 1}}
-    choices = {"indices": "all" if dynamic else "kinematic", "precision": precision, "device": device}
-    return ws.run.plan({**job, **choices, "max_samples": 1 << 41}, robot).sweep  # type: ignore[attr-defined]
+def plan_of(robot: ws.Robot, precision: str, device: str, **fields) -> SweepPlan:
+    """The sweep plan of a job with 2^40 random samples; by default as ws.analyze: count and maximum per voxel."""
+    job = {
+        "analysis": "workspace",
+        "robot": {"library": robot.name},
+        "sampling": {"method": "random", "count": 1 << 40, "seed": 1},
+        "max_samples": 1 << 41,
+        "precision": precision,
+        "device": device,
+    }
+    return ws.run.plan({**job, **fields}, robot).sweep  # type: ignore[attr-defined]
 
 
 def _sweep(plan: SweepPlan, count: int, device: str, threads: int) -> None:

@@ -192,6 +192,16 @@ def _outputs(shape: Shape):
     return evaluate
 
 
+def record_type_of(shape: Shape):
+    """Vector type of a voxel's record."""
+    return wp.types.vector(shape.record_size, bits_type(shape.real))
+
+
+def sums_type_of(shape: Shape):
+    """Vector type of a voxel's sums."""
+    return wp.types.vector(max(shape.sums_size, 1), wp.int64)
+
+
 @cache
 def outputs_type(shape: Shape):
     """Struct with what a sweep adds to: extremes and totals of all samples, voxel records and sums, rows.
@@ -201,8 +211,7 @@ def outputs_type(shape: Shape):
     ``rows_out`` (n_outputs * rows_stride,): value r of the chunk's sample s at [r * rows_stride + s].
     """
     real, bits = shape.real, bits_type(shape.real)
-    record_type = wp.types.vector(shape.record_size, bits)
-    sums_type = wp.types.vector(max(shape.sums_size, 1), wp.int64)
+    record_type, sums_type = record_type_of(shape), sums_type_of(shape)
 
     @wp.struct
     class Outputs:
@@ -231,7 +240,7 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
     Model, Space = model_type(real, shape.n, len(shape.sources)), sample_space(real, shape.n)
     Lattice, Outputs, bits = lattice(real), outputs_type(shape), bits_type(real)
     vec3 = wp.types.vector(3, real)
-    record_type, sums_type = Outputs.vars["records"].type.dtype, Outputs.vars["sums"].type.dtype
+    record_type, sums_type = record_type_of(shape), sums_type_of(shape)
     N_OUTPUTS, REDUCED, RECORD = shape.n_outputs, 5 + K, shape.record_size
     VOXELS, SUMS, ROWS = shape.voxels, shape.sums, shape.keep_rows
     LOWEST = bits(lowest(real))

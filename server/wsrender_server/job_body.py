@@ -18,12 +18,12 @@ from wsrender.spec import job_schema
 from wsrender.spec.json_text import read_json
 from wsrender.spec.problems import listed, worded
 from wsrender.spec.quantities import integer, real
+from wsrender_server.jobs.store import HIGHEST_PRIORITY, LONGEST_TEXT, MOST_LABELS
 from wsrender_server.problems import HttpProblem, pointer, problem_of_error, refusal
 
 JSON_TYPES = ("application/json", "text/json")
 LABEL_KEY = r"^[A-Za-z0-9][A-Za-z0-9._/-]{0,62}$"
-LABEL_VALUE = r"^[^\x00-\x1f\x7f]{0,255}$"
-MOST_LABELS = 32
+LABEL_VALUE = rf"^[^\x00-\x1f\x7f]{{0,{LONGEST_TEXT}}}$"
 LARGEST_CHECKED = 1 << 16  # bytes
 
 Labels = Annotated[
@@ -37,7 +37,7 @@ class SubmissionOptions(BaseModel):
 
     labels: Labels = Field(default={}, examples=[{"study": "wrist-1"}])
     """Free text to find the job by."""
-    priority: Annotated[int, Field(ge=-1000, le=1000), BeforeValidator(integer)] = 0
+    priority: Annotated[int, Field(ge=-HIGHEST_PRIORITY, le=HIGHEST_PRIORITY), BeforeValidator(integer)] = 0
     """Jobs of larger priority go first."""
     timeout_s: Annotated[float, Field(gt=0, le=1e7), BeforeValidator(real)] | None = None
     """Longest time that the job may run [s]; null: the server's default."""

@@ -56,10 +56,11 @@ def test_a_value_beyond_its_bound_fails_the_job():
         run.run_shard(plan, 0)
 
 
-def test_the_folding_threshold_leaves_room_for_a_chunk():
-    """Counts are 32-bit until they are folded: threshold and chunk together must stay below 2^31."""
+@pytest.mark.parametrize("chunk_size", [1, 2**20, 2**31, 2**40])
+def test_no_chunk_overflows_32_bit_counts(chunk_size):
     module = importlib.import_module("wsrender.engine.sweep")
-    assert module.FOLD_AFTER + 0 < 2**31 and module.CHUNK_CUDA < 2**31
+    plan = run.plan(job("float32", keep_map=False)).sweep
+    assert 256 <= module._chunk_size(plan, chunk_size) <= module.FOLD_AFTER < 2**31
 
 
 @pytest.mark.parametrize("voxel_size_m", [1e-10, 1e-300, 5e-324])

@@ -3,17 +3,17 @@
 import numpy as np
 import pytest
 import warp as wp
-from wsrender_kernels.options import CUDA_OPTIONS
+from wsrender_kernels.options import CUDA_OPTIONS, MODULE_OPTIONS
 from wsrender_kernels.voxels import lattice, voxels
 
 EDGES = (0.001, 0.02, 0.025, 0.1, 1 / 3, 0.7)
 
 
-def cells_kernel(real):
+def cells_kernel(real, options):
     cell, vec3 = voxels(real).cell, wp.types.vector(3, real)
     Lattice = lattice(real)
 
-    @wp.kernel(module="unique", module_options=CUDA_OPTIONS, enable_backward=False)
+    @wp.kernel(module="unique", module_options=options, enable_backward=False)
     def cells(grid: Lattice, x: wp.array(dtype=real), out: wp.array(dtype=wp.int32)):
         i = wp.tid()
         out[i] = cell(grid, vec3(x[i], real(0.0), real(0.0)))
@@ -24,7 +24,8 @@ def cells_kernel(real):
 @pytest.mark.parametrize("real", [wp.float32, wp.float64], ids=["float32", "float64"])
 def test_voxels_are_the_rounded_quotients_floor(real, device):
     number = wp.dtype_to_numpy(real)
-    kernel, grid = cells_kernel(real), lattice(real)()
+    kernel = cells_kernel(real, CUDA_OPTIONS if device.startswith("cuda") else MODULE_OPTIONS)
+    grid = lattice(real)()
     grid.first_x, grid.size_x, grid.size_y, grid.size_z = -(10**6), 2 * 10**6, 1, 1
     rng = np.random.default_rng(0)
     for edge in map(number, EDGES):

@@ -8,7 +8,7 @@ import pytest
 
 import wsrender as ws
 from tests.run.simple_robots import PLANAR, planar_arm
-from wsrender.run import execute, finish, merge, plan, run_shard, workspace
+from wsrender.run import execute, finish, merge, plan, run_shard
 from wsrender.run.steps import Progress
 
 FULL = {
@@ -48,10 +48,11 @@ def test_chunks_and_threads_change_no_bit(execution):
     assert_same_bits(analysis(), analysis(**execution))
 
 
-def test_shards_merged_in_any_order_are_the_whole(monkeypatch):
+def test_shards_merged_in_any_order_are_the_whole():
     whole = analysis()
-    monkeypatch.setattr(workspace, "SHARD_CPU", 2048)
-    planned = plan(whole.document["job"])
+    resolved = plan(whole.document["job"]).resolved()
+    shards = [[0, 2048], [2048, 2048], [4096, 2048], [6144, 90**2 - 6144]]
+    planned = plan(whole.document["job"], resolved={**resolved, "shards": shards})
     assert [first for first, _ in planned.shards] == [0, 2048, 4096, 6144]
     assert sum(count for _, count in planned.shards) == 90**2
     partials = [run_shard(planned, shard) for shard in range(4)]

@@ -83,10 +83,10 @@ def drive(chain: Chain) -> tuple[tuple[int, ...], bool]:
     return tuple(int(s) for s in chain.joint_source), bool(own and np.all(chain.joint_is_revolute))
 
 
-def device_model(evaluation: Evaluation, precision: str, device: wp.Device):
-    """The Model struct of an evaluation's chain on a device."""
+def evaluation_model(evaluation: Evaluation, precision: str):
+    """The Model struct of an evaluation, without what the host computes."""
     chain, real = evaluation.chain, REAL[precision]
-    model = chain_model(chain, precision, device)
+    model = chain_model(chain, precision)
     model.lower, model.upper = vector_of(chain.lower_limits, real), vector_of(chain.upper_limits, real)
     limited = ~chain.periodic & (chain.upper_limits > chain.lower_limits)
     model.limited = vector_of(limited, real)
@@ -98,7 +98,7 @@ def device_model(evaluation: Evaluation, precision: str, device: wp.Device):
     return model
 
 
-def chain_model(chain: Chain, precision: str, device: wp.Device):
+def chain_model(chain: Chain, precision: str):
     """The Model struct with a chain's kinematics and inertias alone."""
     real = REAL[precision]
     model = model_type(real, chain.n, len(chain.joint_source))()

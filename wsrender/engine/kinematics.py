@@ -46,7 +46,7 @@ def _evaluate(chain: Chain, q: np.ndarray, with_inertia: bool, precision: str, d
         wp.launch(
             kinematics_kernel(real, n, *drive(chain), with_inertia),
             dim=len(q),
-            inputs=[chain_model(chain, precision, device), device_array(q, real, device)],
+            inputs=[chain_model(chain, precision), device_array(q, real, device)],
             outputs=[pose, jacobian, inertia],
             device=device,
         )

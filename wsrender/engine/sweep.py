@@ -9,12 +9,12 @@ import numpy as np
 import warp as wp
 from wsrender_kernels.elementary import bits_type
 from wsrender_kernels.sampling import LANES
-from wsrender_kernels.sweep import TOTAL_SLOTS, Shape, outputs_type, sweep_kernel
+from wsrender_kernels.sweep import TOTAL_SLOTS, Shape, outputs_type, record_type_of, sums_type_of, sweep_kernel
 from wsrender_kernels.voxels import lattice, lowest
 
 from wsrender.engine.configurations import configurations, device_space, given_space
 from wsrender.engine.devices import thread_count
-from wsrender.engine.evaluation import Evaluation, device_array, device_model, shape_of
+from wsrender.engine.evaluation import Evaluation, device_array, evaluation_model, shape_of
 from wsrender.engine.memory import as_type, check_voxel_memory, device_memory
 from wsrender.engine.partial import Partial, merge
 from wsrender.errors import NumericalError
@@ -116,6 +116,7 @@ def _fair_share(count: int, workers: list[wp.Device]) -> int:
 
 
 def _chunk_size(plan: SweepPlan, size: int) -> int:
+    size = min(size, FOLD_AFTER)
     if plan.keep_rows:
         size = min(size, CHUNK_ROWS)
     if plan.shape.method == "given":
@@ -168,7 +169,7 @@ class Accumulator:
         self._empty_count = int(np.full(shape.count_size, self._lowest, wp.dtype_to_numpy(bits)).view(np.int64)[0])
         voxels = plan.block.size if plan.block else 0
         self._kernel = sweep_kernel(shape, device.is_cuda)
-        self._model = device_model(plan.evaluation, plan.precision, device)
+        self._model = evaluation_model(plan.evaluation, plan.precision)
         given = shape.method == "given"
         self._space = None if given else device_space(plan.sampling, plan.precision, device)
         self._lattice = _device_lattice(plan.block, real)
@@ -182,8 +183,8 @@ class Accumulator:
         outputs.scales = device_array(plan.scales, real, device)
         outputs.extremes, outputs.totals = self._extremes, self._totals
         self._counts = as_type(self._records, wp.int64)
-        outputs.records = as_type(self._records, wp.types.vector(shape.record_size, bits))
-        outputs.sums = as_type(self._sums, wp.types.vector(max(shape.sums_size, 1), wp.int64))
+        outputs.records = as_type(self._records, record_type_of(shape))
+        outputs.sums = as_type(self._sums, sums_type_of(shape))
         outputs.rows_out, outputs.rows_stride = self._rows_out, chunk
         self._folded: Partial | None = None
         self._clear()
@@ -237,7 +238,7 @@ class Accumulator:
         return given_space(q, first, precision, device)
 
     def _fold(self) -> None:
-        """Move what the device holds to 64-bit host arrays and start afresh."""
+        """Add what the device holds to the 64-bit host arrays."""
         records = self._records.numpy().reshape(-1, self.shape.record_size)
         counts = records.view(np.int64)[:, 0] - self._empty_count
         cells = np.flatnonzero(counts)

@@ -47,8 +47,9 @@ def _index_table(indices: dict[str, dict[str, Any]]) -> Iterator[str]:
     width = max(map(len, indices))
     units = {name: pretty_unit(values.get("unit", "")) for name, values in indices.items()}
     unit_width = max(4, *map(len, units.values()))
-    heads = [f"{name:>14}" for name in extremes], [f"{name.replace('_', ' '):>17}" for name in means]
-    yield "  " + " " * width + "".join(heads[0]) + f"  {'unit':<{unit_width}}" + "".join(heads[1])
+    low_high = "".join(f"{name:>14}" for name in extremes)
+    relative = "".join(f"{name.replace('_', ' '):>17}" for name in means)
+    yield f"  {'':<{width}}{low_high}  {'unit':<{unit_width}}{relative}"
     for name, values in indices.items():
         low_high = "".join(f"{_number(values.get(column)):>14}" for column in extremes)
         relative = "".join(f"{_number(values.get(column)):>17}" for column in means)

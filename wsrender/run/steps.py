@@ -48,8 +48,8 @@ def plan(document: Any, robot: Any = None, *, resolved: dict[str, Any] | None = 
     """Resolve a job: a document (dict or JSON text) or a parsed job; ``robot`` replaces the document's.
 
     ``resolved`` is `Plan.resolved` of an earlier plan of the same job: nothing in it is settled again, so that
-    partial results of different processes merge. Its ``shards`` may divide the samples differently, at multiples of
-    65536.
+    partial results of different processes merge. A plan has one shard; ``shards`` of ``resolved`` may divide it, at
+    multiples of 65536.
 
     Raises DocumentError, InputError, ModelError, ResourceError; nothing has run then.
     """
@@ -89,8 +89,7 @@ def execute(document: Any, progress: Progress | None = None, robot: Any = None, 
     if progress:
         progress(0, 1, "planning")
     planned = plan(document, robot)
-    total = sum(count for _, count in planned.shards)
-    planned.shards = [(planned.shards[0][0], total)]  # one process: each division would cost a merge
+    ((_, total),) = planned.shards
     planned_at = time.perf_counter()
 
     def report(done: int) -> None:

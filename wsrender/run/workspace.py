@@ -22,9 +22,6 @@ from wsrender.spec import WorkspaceJob
 from wsrender.spec.sampling import Converge, Grid
 from wsrender.volume.lattice import LatticeBlock
 
-# Seconds of work: far more than a shard costs. Multiples of the kernels' block of samples.
-SHARD_CPU, SHARD_GPU = 1 << 30, 1 << 36
-
 
 @dataclass(frozen=True, eq=False)
 class WorkspacePartial:
@@ -169,12 +166,7 @@ def plan_workspace(job: WorkspaceJob, robot: Robot, resolved: dict[str, Any] | N
         _converging_index(plan, job.sampling)
         if job.sampling.by == "workspace_mean" and not {"maximum", "mean"} & set(job.voxel_statistics):
             raise InputError("sampling.by", "workspace_mean needs the voxel statistic maximum or mean")
-        shards = [(0, sampling.count)]
-    else:
-        size = SHARD_GPU if devices[0].is_cuda else SHARD_CPU
-        shards = [(first, min(size, sampling.count - first)) for first in range(0, sampling.count, size)]
-    if resolved is not None:
-        shards = [(first, count) for first, count in resolved["shards"]]
+    shards = [(0, sampling.count)] if resolved is None else [(first, count) for first, count in resolved["shards"]]
     return WorkspacePlan(job, robot, plan, first_pass, device, target, shards, estimate(plan, devices))
 
 
