@@ -4,11 +4,13 @@ import sys
 
 import numpy as np
 import pytest
+import trimesh
 
 from tests.export.sample_data import assert_same_map, assert_same_volume, random_map, random_volume
 from wsrender.errors import InputError
 from wsrender.export.artifacts import sha256
 from wsrender.result import Result
+from wsrender.volume.table import Table
 
 SKELETON = np.cumsum(np.ones((2, 5, 3)), axis=1)
 
@@ -37,9 +39,20 @@ def document() -> dict:
     }
 
 
+def curve() -> Table:
+    return Table({"offset": np.arange(4.0), "label": np.array(list("abcd"))}, {"offset": "m"})
+
+
+def whole() -> Result:
+    meshes = {"surface": trimesh.creation.box((1, 2, 3)), "hull": trimesh.creation.icosphere(subdivisions=1)}
+    volumes = {"left": random_volume((2, 3, 4))}
+    data = (random_map(50), random_map(20), random_volume((5, 4, 3)), SKELETON)
+    return Result(document(), *data, meshes, {"scan": curve()}, volumes)
+
+
 @pytest.fixture
 def result() -> Result:
-    return Result(document(), random_map(50), random_map(20), random_volume((5, 4, 3)), SKELETON)
+    return whole()
 
 
 def names_in(folder) -> set[str]:
@@ -55,6 +68,12 @@ def test_load_restores_what_save_wrote(tmp_path, result):
     assert_same_map(loaded.sample, result.sample)
     assert_same_volume(loaded.volume, result.volume)
     np.testing.assert_array_equal(loaded.skeleton, SKELETON)
+    assert (set(loaded.meshes), set(loaded.tables), set(loaded.volumes)) == ({"surface", "hull"}, {"scan"}, {"left"})
+    for name, mesh in result.meshes.items():
+        np.testing.assert_allclose(loaded.meshes[name].triangles, mesh.triangles, rtol=1e-7)  # float32 in files
+        assert loaded.meshes[name].is_watertight
+    assert loaded.tables["scan"]["label"].tolist() == list("abcd")
+    assert_same_volume(loaded.volumes["left"], result.volumes["left"])
 
 
 def test_document_lists_every_file_with_its_hash(tmp_path, result):
@@ -65,6 +84,9 @@ def test_document_lists_every_file_with_its_hash(tmp_path, result):
     assert pictures < set(records)
     assert {"map.parquet", "sample.parquet", "volume.vtkhdf", "surface.glb", "surface.ply"} < set(records)
     assert {"map.csv", "map.npz", "map.mat", "volume.csv", "volume.npz", "volume.mat", "surface.stl"} < set(records)
+    for stem, endings in (("hull", "glb ply stl"), ("scan", "parquet npz csv mat"), ("left", "vtkhdf npz csv mat")):
+        assert {f"{stem}.{ending}" for ending in endings.split()} < set(records)
+    assert (records["scan.parquet"]["units"], records["scan.parquet"]["frame"]) == ({"offset": "m", "label": "1"}, None)
     for name, record in records.items():
         path = tmp_path / "out" / name
         assert record["bytes"] == path.stat().st_size > 0
@@ -82,7 +104,7 @@ def test_document_lists_every_file_with_its_hash(tmp_path, result):
 
 def test_equal_results_have_equal_artifacts(tmp_path, result):
     result.save(tmp_path / "a")
-    again = Result(document(), random_map(50), random_map(20), random_volume((5, 4, 3)), SKELETON)
+    again = whole()
     again.save(tmp_path / "b")
     assert again.document["artifacts"] == result.document["artifacts"]
 
@@ -133,7 +155,8 @@ def test_saving_again_replaces_the_result_and_keeps_other_files(tmp_path):
 
 
 def test_failed_save_changes_nothing(tmp_path, monkeypatch):
-    result = Result(document(), volume=random_volume((5, 4, 3)))
+    meshes = {"surface": trimesh.creation.box()}
+    result = Result(document(), volume=random_volume((5, 4, 3)), meshes=meshes)
     folder = tmp_path / "out"
     result.save(folder)
     before = {name: (folder / name).read_bytes() for name in names_in(folder)}
@@ -141,7 +164,7 @@ def test_failed_save_changes_nothing(tmp_path, monkeypatch):
     monkeypatch.setattr(
         "wsrender.export.write_mesh", lambda *_: (_ for _ in ()).throw(OSError("disk full")), raising=False
     )
-    changed = Result(result.document, map=random_map(7), volume=result.volume)
+    changed = Result(result.document, map=random_map(7), volume=result.volume, meshes=meshes)
     for target in (folder, tmp_path / "fresh"):
         with pytest.raises(OSError, match="disk full"):
             changed.save(target)

@@ -1,7 +1,7 @@
 """The result of an analysis: a document, the data behind it, its files and pictures."""
 
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -13,6 +13,7 @@ from wsrender.errors import InputError
 from wsrender.export.artifacts import (
     DOCUMENT,
     Artifact,
+    named_data,
     publish,
     read_document,
     verified_artifacts,
@@ -21,12 +22,14 @@ from wsrender.export.artifacts import (
 )
 from wsrender.export.atomic import staging_folder
 from wsrender.export.cells import cell_names
-from wsrender.export.columns import MapColumns
+from wsrender.export.columns import columns_of
 from wsrender.export.text import sampling_text, summary_text
 from wsrender.volume.distribution_map import DistributionMap
+from wsrender.volume.table import Table
 from wsrender.volume.volume_data import VolumeData
 
 if TYPE_CHECKING:
+    import trimesh
     from matplotlib.figure import Figure
 
     from wsrender.plots.result_plots import ResultPlots
@@ -42,7 +45,8 @@ class Result:
     ``document`` is the result document, a plain dict. ``map`` has one row per sample where it was kept
     (for ``indices_at``: one per configuration, in the order asked); ``sample`` is the fixed subsample that
     pictures use. ``skeleton`` (K, L+2, 3) holds world positions [m] of base, joint origins and tip at K
-    representative configurations.
+    representative configurations. ``meshes`` [m, world frame], ``tables`` and ``volumes`` hold what else the analysis
+    gives, by name: ``meshes["surface"]`` is the surface of the workspace.
     """
 
     document: dict[str, Any]
@@ -50,6 +54,9 @@ class Result:
     sample: DistributionMap | None = None
     volume: VolumeData | None = None
     skeleton: np.ndarray | None = None
+    meshes: "dict[str, trimesh.Trimesh]" = field(default_factory=dict)
+    tables: dict[str, Table] = field(default_factory=dict)
+    volumes: dict[str, VolumeData] = field(default_factory=dict)
 
     @property
     def global_indices(self) -> dict[str, Any]:
@@ -71,11 +78,12 @@ class Result:
         return summary_text(self.document)
 
     def save(self, folder: str | Path, formats: Iterable[str] = ()) -> None:
-        """Write document, data, surface and pictures to a folder, and list them in ``document["artifacts"]``.
+        """Write document, data, meshes and pictures to a folder, and list them in ``document["artifacts"]``.
 
         Always written, as far as the result holds the data: ``result.json``, ``map.parquet``,
-        ``sample.parquet``, ``volume.vtkhdf``, ``surface.glb``, ``surface.ply``, ``skeleton.npy`` and
-        ``plots/*.png`` with ``plots/histogram.csv``. ``formats`` adds npz, csv, mat, stl and svg. A result
+        ``sample.parquet``, ``volume.vtkhdf``, ``skeleton.npy``, ``<name>.parquet`` of each table, ``<name>.vtkhdf``
+        of each further volume, ``<name>.glb`` and ``<name>.ply`` of each mesh, and ``plots/*.png`` with
+        ``plots/histogram.csv``. ``formats`` adds npz, csv, mat, stl and svg. A result
         that was in the folder before is replaced, other files stay; if writing fails nothing changes.
 
         Raises InputError for an unknown format or a folder that is a file.
@@ -103,10 +111,13 @@ class Result:
 
         return cls(
             document=document,
-            map=_restored(files, "map.parquet", "read_map_parquet"),
-            sample=_restored(files, "sample.parquet", "read_map_parquet"),
+            map=_restored(files, "map.parquet", "read_table_parquet"),
+            sample=_restored(files, "sample.parquet", "read_table_parquet"),
             volume=_restored(files, "volume.vtkhdf", "read_volume_vtkhdf"),
             skeleton=_restored(files, "skeleton.npy", "read_skeleton"),
+            meshes=_all_restored(files, ".ply", "read_mesh"),
+            tables=_all_restored(files, ".parquet", "read_table_parquet"),
+            volumes=_all_restored(files, ".vtkhdf", "read_volume_vtkhdf"),
         )
 
 
@@ -115,14 +126,21 @@ def _restored(files: dict[str, Path], name: str, reader: str) -> Any:
     return getattr(export, reader)(files[name]) if name in files else None
 
 
+def _all_restored(files: dict[str, Path], ending: str, reader: str) -> dict[str, Any]:
+    """What the function ``reader`` of ``wsrender.export`` reads from the named files of an ending, by name."""
+    return {name: _restored(files, file, reader) for name, file in named_data(files, ending).items()}
+
+
 def _artifacts(result: Result, formats: tuple[str, ...]) -> Iterator[Artifact]:
-    """Every file of a result but its document; surfaces and pictures are made when their turn comes."""
-    for name, samples in (("map", result.map), ("sample", result.sample)):
-        if samples is not None:
-            yield from _map_files(name, samples, formats)
-    if result.volume is not None:
-        yield from _volume_files(result.volume, formats)
-        yield from _surface_files(result.volume, formats)
+    """Every file of a result but its document; pictures are made when their turn comes."""
+    for name, data in {"map": result.map, "sample": result.sample, **result.tables}.items():
+        if data is not None:
+            yield from _table_files(name, data, formats)
+    for name, volume in {"volume": result.volume, **result.volumes}.items():
+        if volume is not None:
+            yield from _volume_files(name, volume, formats)
+    for name, mesh in result.meshes.items():
+        yield from _mesh_files(name, mesh, formats)
     if result.skeleton is not None:
         skeleton = np.asarray(result.skeleton)
         write = partial(export.write_skeleton, skeleton)
@@ -130,28 +148,26 @@ def _artifacts(result: Result, formats: tuple[str, ...]) -> Iterator[Artifact]:
     yield from _picture_files(result, formats)
 
 
-def _map_files(name: str, samples: DistributionMap, formats: tuple[str, ...]) -> Iterator[Artifact]:
-    units = MapColumns.of(samples).column_units()
+def _table_files(name: str, data: DistributionMap | Table, formats: tuple[str, ...]) -> Iterator[Artifact]:
+    units = columns_of(data).column_units()
+    frame = "world" if isinstance(data, DistributionMap) else None
     for ending in ("parquet", *(ending for ending in ("npz", "csv", "mat") if ending in formats)):
-        write = partial(getattr(export, f"write_map_{ending}"), samples)
-        yield Artifact(f"{name}.{ending}", write, (len(samples), len(units)), units)
+        write = partial(getattr(export, f"write_table_{ending}"), data)
+        yield Artifact(f"{name}.{ending}", write, (len(data), len(units)), units, frame)
 
 
-def _volume_files(volume: VolumeData, formats: tuple[str, ...]) -> Iterator[Artifact]:
+def _volume_files(name: str, volume: VolumeData, formats: tuple[str, ...]) -> Iterator[Artifact]:
     names = cell_names(volume, taken={"count"})
-    units = {"count": "samples"} | {name: volume.units.get(index, "1") for (_, index), name in names.items()}
+    units = {"count": "samples"} | {array: volume.units.get(index, "1") for (_, index), array in names.items()}
     for ending in ("vtkhdf", *(ending for ending in ("npz", "csv", "mat") if ending in formats)):
         write = partial(getattr(export, f"write_volume_{ending}"), volume)
-        yield Artifact(f"volume.{ending}", write, volume.count.shape, units)
+        yield Artifact(f"{name}.{ending}", write, volume.count.shape, units)
 
 
-def _surface_files(volume: VolumeData, formats: tuple[str, ...]) -> Iterator[Artifact]:
-    if not volume.occupied.any():
-        return
-    mesh = export.occupied_surface(volume)
+def _mesh_files(name: str, mesh: "trimesh.Trimesh", formats: tuple[str, ...]) -> Iterator[Artifact]:
     for ending in ("glb", "ply", *(["stl"] if "stl" in formats else [])):
         write = partial(export.write_mesh, mesh)
-        yield Artifact(f"surface.{ending}", write, mesh.vertices.shape, {"vertices": "m"})
+        yield Artifact(f"{name}.{ending}", write, mesh.vertices.shape, {"vertices": "m"})
 
 
 def _picture_files(result: Result, formats: tuple[str, ...]) -> Iterator[Artifact]:

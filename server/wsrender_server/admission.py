@@ -10,7 +10,8 @@ from typing import Any
 from wsrender.errors import DocumentError, InputError, ModelError, ResourceError
 from wsrender.indices.catalogue import find
 from wsrender.robots import library
-from wsrender.spec import WorkspaceJob, canonical_json, parse_job
+from wsrender.spec import IndicesAtJob, WorkspaceJob, canonical_json, parse_job
+from wsrender.spec.arm import ArmPath, dotted
 from wsrender.spec.robot import RobotSpec
 from wsrender.spec.sampling import Converge, Grid
 from wsrender_server.jobs.store import JobStore
@@ -37,31 +38,32 @@ class Admission:
         did not upload, 409 for text that is no XML; ResourceError for more samples than allowed.
         """
         job = parse_job(document)
-        self._check_robot(job.robot)
+        for path, arm in job.arms().items():
+            self._check_robot(arm.robot, (*path, "robot"))
         _check_indices(job)
         if isinstance(job, WorkspaceJob):
             self._check_samples(job)
-        elif job.configurations is None:
+        if isinstance(job, IndicesAtJob) and job.configurations is None:
             raise DocumentError([("configurations", "must be given: rows of joint values")])
         return json.loads(canonical_json(job))
 
-    def _check_robot(self, robot: RobotSpec) -> None:
+    def _check_robot(self, robot: RobotSpec, path: ArmPath) -> None:
         if robot.path is not None:
-            raise DocumentError([("robot.path", "is for local runs only; upload the model, or send its text")])
+            raise DocumentError([(dotted(path, "path"), "is for local runs only; upload the model, or send its text")])
         if robot.library is not None:
             try:
                 library.find(robot.library)
             except ModelError as error:
-                raise DocumentError([("robot.library", error.message)]) from None
+                raise DocumentError([(dotted(path, "library"), error.message)]) from None
         for name, text in (("mjcf", robot.mjcf), ("urdf", robot.urdf)):
             if text is not None:
-                check_model(f"robot.{name}", text, self.prefix)
+                check_model(dotted(path, name), text, self.prefix)
         if robot.model is not None and self.store.get_model(self.owner, robot.model) is None:
             raise HttpProblem(
                 404,
                 f"you have uploaded no model {robot.model}",
                 "model_not_found",
-                errors=[(pointer("robot.model", self.prefix), "is no model that you uploaded")],
+                errors=[(pointer(dotted(path, "model"), self.prefix), "is no model that you uploaded")],
             )
 
     def _check_samples(self, job: WorkspaceJob) -> None:

@@ -81,15 +81,12 @@ def convert(source: str, ending: str, target: str) -> str:
     """
     format = Path(target).suffix.removeprefix(".")
     if ending == ".parquet":
-        getattr(export, f"write_map_{format}")(export.read_map_parquet(source), target)
+        getattr(export, f"write_table_{format}")(export.read_table_parquet(source), target)
     elif ending == ".vtkhdf":
         volume = export.read_volume_vtkhdf(source)
         _volume_writer(format)(volume, target)
     else:
-        import trimesh
-
-        mesh = trimesh.load(source, file_type=ending.removeprefix("."), force="mesh")
-        export.write_mesh(mesh, target)  # pyright: ignore[reportArgumentType] (force="mesh" gives one)
+        export.write_mesh(export.read_mesh(source, ending), target)
     with Path(target).open("rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
 

@@ -127,6 +127,9 @@ def body_schemas() -> dict[str, Any]:
     _tighten_robot(parts["RobotSpec"])
     analyses = {name: ref.rpartition("/")[2] for name, ref in schema["discriminator"]["mapping"].items()}
     options = SubmissionOptions.model_json_schema()["properties"]
+    for part in parts.values():
+        if "robot" in part.get("properties", {}):
+            _tighten_arm(part)
     for model in analyses.values():
         _tighten_job(parts[model])
     submissions = {}
@@ -192,20 +195,31 @@ def _tighten_robot(part: dict[str, Any]) -> None:
     part["oneOf"] = [{"required": [source]} for source in ("library", "dh", "mjcf", "urdf", "model")]
 
 
+def _tighten_arm(part: dict[str, Any]) -> None:
+    """Library robots by name."""
+    description = part["properties"]["robot"].pop("description")
+    robots = [_ref("RobotSpec"), {"enum": library.names()}]
+    part["properties"]["robot"] = {"anyOf": robots, "description": description}
+
+
 def _tighten_job(part: dict[str, Any]) -> None:
     """Index names, lists without repetition, configurations that are there."""
     properties = part["properties"]
-    part["required"] = ["analysis", "robot"]
-    description = properties["robot"].pop("description")
-    properties["robot"] = {"anyOf": [_ref("RobotSpec"), {"enum": library.names()}], "description": description}
+    part["required"] = ["analysis", *part.get("required", [])]
     plain = [name for index in catalogue().values() for name in (index.name, *index.aliases)]
-    lists = [choice for name in ("indices", "task") for choice in properties[name]["anyOf"] if "items" in choice]
-    lists[0]["items"] = {"enum": sorted({*plain, *(DYNAMIC_PREFIX + name for name in plain)})}
-    lists += [properties[name] for name in ("voxel_statistics", "map_columns") if name in properties]
-    for choice in lists:
-        choice["uniqueItems"] = True
-    for choice in lists[:2]:
+    named = {
+        name: choice
+        for name in ("indices", "task")
+        for choice in properties.get(name, {}).get("anyOf", ())
+        if "items" in choice
+    }
+    if "indices" in named:
+        named["indices"]["items"] = {"enum": sorted({*plain, *(DYNAMIC_PREFIX + name for name in plain)})}
+    for choice in named.values():
         choice["minItems"] = 1
+    lists = [properties[name] for name in ("voxel_statistics", "map_columns") if name in properties]
+    for choice in [*named.values(), *lists]:
+        choice["uniqueItems"] = True
     if "configurations" in properties:
         description = properties["configurations"]["description"].partition(";")[0]
         properties["configurations"] = {

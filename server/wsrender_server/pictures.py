@@ -13,8 +13,8 @@ AXES = "xyz"
 PLOTS = ("robot", "scatter", "slices", "slice", "histogram")
 # Artifacts that a result's pictures are drawn from, and what reads them.
 SOURCES = {
-    "map.parquet": "read_map_parquet",
-    "sample.parquet": "read_map_parquet",
+    "map.parquet": "read_table_parquet",
+    "sample.parquet": "read_table_parquet",
     "volume.vtkhdf": "read_volume_vtkhdf",
     "skeleton.npy": "read_skeleton",
 }

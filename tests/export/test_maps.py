@@ -11,18 +11,18 @@ from tests.export.sample_data import ODD_NAMES, assert_same_map, random_map
 from wsrender.errors import InputError
 from wsrender.export import (
     parquet,
-    read_map_npz,
-    read_map_parquet,
-    write_map_csv,
-    write_map_mat,
-    write_map_npz,
-    write_map_parquet,
+    read_table_npz,
+    read_table_parquet,
+    write_table_csv,
+    write_table_mat,
+    write_table_npz,
+    write_table_parquet,
 )
 from wsrender.volume.distribution_map import DistributionMap
 
 FORMATS = [
-    pytest.param(write_map_parquet, read_map_parquet, ".parquet", id="parquet"),
-    pytest.param(write_map_npz, read_map_npz, ".npz", id="npz"),
+    pytest.param(write_table_parquet, read_table_parquet, ".parquet", id="parquet"),
+    pytest.param(write_table_npz, read_table_npz, ".npz", id="npz"),
 ]
 
 
@@ -44,7 +44,7 @@ def test_positions_alone_are_restored(tmp_path, write, read, suffix):
 
 @pytest.mark.parametrize(
     ("write", "suffix"),
-    [(w.values[0], w.values[2]) for w in FORMATS] + [(write_map_csv, ".csv"), (write_map_mat, ".mat")],
+    [(w.values[0], w.values[2]) for w in FORMATS] + [(write_table_csv, ".csv"), (write_table_mat, ".mat")],
 )
 def test_equal_maps_give_equal_bytes(tmp_path, monkeypatch, write, suffix):
     write(random_map(), tmp_path / f"a{suffix}")
@@ -56,7 +56,7 @@ def test_equal_maps_give_equal_bytes(tmp_path, monkeypatch, write, suffix):
 
 
 def test_parquet_columns_and_units(tmp_path):
-    write_map_parquet(random_map(), tmp_path / "map.parquet")
+    write_table_parquet(random_map(), tmp_path / "map.parquet")
     schema = pq.read_schema(tmp_path / "map.parquet")
     assert schema.names[:10] == ["x", "y", "z", "joint.x", "elbow", "wrist, 'roll'", "qw", "qx", "qy", "qz"]
     assert schema.names[10:] == ["manipulability", "index.x", 'a_b "c", d', "..", "file"]
@@ -66,7 +66,7 @@ def test_parquet_columns_and_units(tmp_path):
 
 
 def test_parquet_encoding_is_byte_stream_split_zstd_without_dictionary(tmp_path):
-    write_map_parquet(random_map(), tmp_path / "map.parquet")
+    write_table_parquet(random_map(), tmp_path / "map.parquet")
     group = pq.read_metadata(tmp_path / "map.parquet").row_group(0)
     for k in range(group.num_columns):
         column = group.column(k)
@@ -77,14 +77,14 @@ def test_parquet_encoding_is_byte_stream_split_zstd_without_dictionary(tmp_path)
 
 def test_map_is_written_and_read_by_row_groups(tmp_path, monkeypatch):
     monkeypatch.setattr(parquet, "ROWS_PER_GROUP", 300)
-    write_map_parquet(random_map(), tmp_path / "map.parquet")
+    write_table_parquet(random_map(), tmp_path / "map.parquet")
     assert pq.read_metadata(tmp_path / "map.parquet").num_row_groups == 4
-    assert_same_map(random_map(), read_map_parquet(tmp_path / "map.parquet"))
+    assert_same_map(random_map(), read_table_parquet(tmp_path / "map.parquet"))
 
 
 def test_pandas_free_readers_see_the_values(tmp_path):
     samples = random_map()
-    write_map_parquet(samples, tmp_path / "map.parquet")
+    write_table_parquet(samples, tmp_path / "map.parquet")
     table = pq.read_table(tmp_path / "map.parquet")
     np.testing.assert_array_equal(table["joint.x"].to_numpy(), samples.configuration[:, 0])
     np.testing.assert_array_equal(table["qz"].to_numpy(), samples.quat_wxyz[:, 3])
@@ -92,7 +92,7 @@ def test_pandas_free_readers_see_the_values(tmp_path):
 
 def test_csv_header_is_quoted_and_values_are_exact(tmp_path):
     samples = random_map(50)
-    write_map_csv(samples, tmp_path / "map.csv")
+    write_table_csv(samples, tmp_path / "map.csv")
     text = (tmp_path / "map.csv").read_text()
     header, *rows = csv.reader(io.StringIO(text))
     assert header[3:6] == ["joint.x", "elbow", "wrist, 'roll'"]
@@ -103,13 +103,13 @@ def test_csv_header_is_quoted_and_values_are_exact(tmp_path):
 
 
 def test_csv_of_no_rows_has_a_header(tmp_path):
-    write_map_csv(random_map(0), tmp_path / "map.csv")
+    write_table_csv(random_map(0), tmp_path / "map.csv")
     assert (tmp_path / "map.csv").read_text().startswith('"x","y","z"')
 
 
 def test_mat_holds_valid_identifiers_and_units(tmp_path):
     samples = random_map()
-    write_map_mat(samples, tmp_path / "map.mat")
+    write_table_mat(samples, tmp_path / "map.mat")
     content = scipy.io.loadmat(tmp_path / "map.mat")
     np.testing.assert_array_equal(content["joint_x"][:, 0], samples.configuration[:, 0])
     np.testing.assert_array_equal(content["a_b__c___d"][:, 0], samples.indices[ODD_NAMES[2]])
@@ -118,7 +118,7 @@ def test_mat_holds_valid_identifiers_and_units(tmp_path):
 
 def test_unequal_lengths_are_refused_and_leave_no_file(tmp_path):
     samples = DistributionMap(position=np.zeros((3, 3)), indices={"w": np.zeros(2)})
-    for write, suffix in ((write_map_parquet, "parquet"), (write_map_npz, "npz"), (write_map_csv, "csv")):
+    for write, suffix in ((write_table_parquet, "parquet"), (write_table_npz, "npz"), (write_table_csv, "csv")):
         with pytest.raises(InputError, match=r"w: has shape \(2,\); the map has 3 rows"):
             write(samples, tmp_path / f"map.{suffix}")
     assert not list(tmp_path.iterdir())
@@ -126,14 +126,14 @@ def test_unequal_lengths_are_refused_and_leave_no_file(tmp_path):
 
 def test_failure_while_writing_keeps_the_old_file(tmp_path, monkeypatch):
     path = tmp_path / "map.parquet"
-    write_map_parquet(random_map(3), path)
+    write_table_parquet(random_map(3), path)
     monkeypatch.setattr(parquet, "ROWS_PER_GROUP", 100)
     broken = random_map()
     monkeypatch.setattr(parquet.np, "ascontiguousarray", _fails_after(5))
     with pytest.raises(MemoryError):
-        write_map_parquet(broken, path)
+        write_table_parquet(broken, path)
     monkeypatch.undo()
-    assert len(read_map_parquet(path)) == 3
+    assert len(read_table_parquet(path)) == 3
     assert [file.name for file in tmp_path.iterdir()] == ["map.parquet"]
 
 
@@ -167,8 +167,8 @@ def test_foreign_parquet_is_refused(tmp_path):
     import pyarrow as pa
 
     pq.write_table(pa.table({"x": [1.0]}), tmp_path / "map.parquet")
-    with pytest.raises(InputError, match="not a distribution map"):
-        read_map_parquet(tmp_path / "map.parquet")
+    with pytest.raises(InputError, match="not a map or table"):
+        read_table_parquet(tmp_path / "map.parquet")
 
 
 def test_pickled_array_is_never_loaded(tmp_path):
@@ -177,4 +177,4 @@ def test_pickled_array_is_never_loaded(tmp_path):
         np.lib.format.write_array(buffer, np.array([{}]), allow_pickle=True)
         file.writestr("wsrender.npy", buffer.getvalue())
     with pytest.raises(InputError, match="allow_pickle"):
-        read_map_npz(tmp_path / "map.npz")
+        read_table_npz(tmp_path / "map.npz")

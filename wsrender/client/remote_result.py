@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from functools import cached_property
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
 
 import numpy as np
@@ -15,11 +15,15 @@ import numpy as np
 from wsrender import export
 from wsrender.client.connection import Connection
 from wsrender.client.downloads import download
-from wsrender.export.artifacts import DOCUMENT, artifact_records, publish, write_document
+from wsrender.export.artifacts import DOCUMENT, artifact_records, named_data, publish, write_document
 from wsrender.export.atomic import staging_folder
 from wsrender.result import Result
 from wsrender.volume.distribution_map import DistributionMap
+from wsrender.volume.table import Table
 from wsrender.volume.volume_data import VolumeData
+
+if TYPE_CHECKING:
+    import trimesh
 
 
 class RemoteFiles:
@@ -60,7 +64,7 @@ class RemoteFiles:
 
 
 class RemoteResult(Result):
-    """A Result whose map, sample, volume and skeleton are downloaded when they are first used.
+    """A Result whose map, sample, volumes, tables, meshes and skeleton are downloaded when they are first used.
 
     They raise ServerConnectionError where the server is gone by then; ``save`` keeps everything.
     """
@@ -72,12 +76,12 @@ class RemoteResult(Result):
     @cached_property
     def map(self) -> DistributionMap | None:  # type: ignore[override]
         """One row per sample, where it was kept."""
-        return self._files.read("map.parquet", "map", "pyarrow")
+        return self._files.read("map.parquet", "table", "pyarrow")
 
     @cached_property
     def sample(self) -> DistributionMap | None:  # type: ignore[override]
         """The fixed subsample that pictures use."""
-        return self._files.read("sample.parquet", "map", "pyarrow")
+        return self._files.read("sample.parquet", "table", "pyarrow")
 
     @cached_property
     def volume(self) -> VolumeData | None:  # type: ignore[override]
@@ -89,6 +93,24 @@ class RemoteResult(Result):
         """World positions [m] of base, joint origins and tip, (K, L+2, 3)."""
         name = "skeleton.npy"
         return export.read_skeleton(self._files.local(name)) if name in self._files.records else None
+
+    @cached_property
+    def meshes(self) -> "dict[str, trimesh.Trimesh]":  # type: ignore[override]
+        """Meshes by name [m, world frame]; they need the extra [engine]."""
+        files = named_data(self._files.records, ".ply")
+        return {name: export.read_mesh(self._files.local(file)) for name, file in files.items()}
+
+    @cached_property
+    def tables(self) -> dict[str, Table]:  # type: ignore[override]
+        """Tables by name."""
+        files = named_data(self._files.records, ".parquet")
+        return {name: self._files.read(file, "table", "pyarrow") for name, file in files.items()}
+
+    @cached_property
+    def volumes(self) -> dict[str, VolumeData]:  # type: ignore[override]
+        """Further volumes by name."""
+        files = named_data(self._files.records, ".vtkhdf")
+        return {name: self._files.read(file, "volume", "h5py") for name, file in files.items()}
 
     def save(self, folder: str | Path, formats: Iterable[str] = ()) -> None:
         """Download every file of the result to a folder, as a local run would have written it.

@@ -1,4 +1,4 @@
-"""Files: maps, volumes and surfaces in formats that other programs read.
+"""Files: maps, tables, volumes and surfaces in formats that other programs read.
 
 Every writer is atomic (a file appears complete or not at all) and deterministic (equal data give equal
 bytes). The functions are loaded on first use, because they import h5py, pyarrow, scipy or trimesh.
@@ -10,25 +10,25 @@ from typing import TYPE_CHECKING
 from wsrender.errors import MissingExtraError
 
 if TYPE_CHECKING:
-    from wsrender.export.csv import write_map_csv, write_volume_csv
-    from wsrender.export.mat import write_map_mat, write_volume_mat
-    from wsrender.export.meshes import occupied_surface, write_mesh
-    from wsrender.export.npz import read_map_npz, read_volume_npz, write_map_npz, write_volume_npz
-    from wsrender.export.parquet import read_map_parquet, write_map_parquet
+    from wsrender.export.csv import write_table_csv, write_volume_csv
+    from wsrender.export.mat import write_table_mat, write_volume_mat
+    from wsrender.export.meshes import read_mesh, write_mesh
+    from wsrender.export.npz import read_table_npz, read_volume_npz, write_table_npz, write_volume_npz
+    from wsrender.export.parquet import read_table_parquet, write_table_parquet
     from wsrender.export.skeleton import read_skeleton, write_skeleton
     from wsrender.export.vtkhdf import read_volume_vtkhdf, write_volume_vtkhdf
 
 _MODULES = {
-    "occupied_surface": "meshes",
-    "read_map_npz": "npz",
-    "read_map_parquet": "parquet",
+    "read_mesh": "meshes",
+    "read_table_npz": "npz",
+    "read_table_parquet": "parquet",
     "read_skeleton": "skeleton",
     "read_volume_npz": "npz",
     "read_volume_vtkhdf": "vtkhdf",
-    "write_map_csv": "csv",
-    "write_map_mat": "mat",
-    "write_map_npz": "npz",
-    "write_map_parquet": "parquet",
+    "write_table_csv": "csv",
+    "write_table_mat": "mat",
+    "write_table_npz": "npz",
+    "write_table_parquet": "parquet",
     "write_mesh": "meshes",
     "write_skeleton": "skeleton",
     "write_volume_csv": "csv",
@@ -38,18 +38,18 @@ _MODULES = {
 }
 
 __all__ = [
-    "occupied_surface",
-    "read_map_npz",
-    "read_map_parquet",
+    "read_mesh",
     "read_skeleton",
+    "read_table_npz",
+    "read_table_parquet",
     "read_volume_npz",
     "read_volume_vtkhdf",
-    "write_map_csv",
-    "write_map_mat",
-    "write_map_npz",
-    "write_map_parquet",
     "write_mesh",
     "write_skeleton",
+    "write_table_csv",
+    "write_table_mat",
+    "write_table_npz",
+    "write_table_parquet",
     "write_volume_csv",
     "write_volume_mat",
     "write_volume_npz",

@@ -12,6 +12,7 @@ import numpy as np
 from wsrender.errors import InputError
 
 DOCUMENT = "result.json"
+UNNAMED = ("map.parquet", "sample.parquet", "volume.vtkhdf")
 
 MEDIA_TYPES = {
     ".csv": "text/csv",
@@ -125,6 +126,15 @@ def artifact_records(document: dict[str, Any]) -> Iterator[tuple[str, dict[str, 
         if not isinstance(name, str) or not _stays_inside(name):
             raise InputError("artifacts", f"{name!r} is not the name of a file in the result folder")
         yield name, record
+
+
+def named_data(names: Iterable[str], ending: str) -> dict[str, str]:
+    """Artifact by name, such as ``scan`` → ``scan.parquet``, of those of an ending that hold a named part of a result.
+
+    The map, its sample and the volume are parts of their own; folders hold pictures.
+    """
+    named = (name for name in names if name.endswith(ending) and "/" not in name and name not in UNNAMED)
+    return {name.removesuffix(ending): name for name in named}
 
 
 def _stays_inside(name: str) -> bool:

@@ -1,4 +1,4 @@
-"""Maps and volumes as CSV: a quoted header, then one row per sample or per occupied voxel."""
+"""Maps, tables and volumes as CSV: a quoted header, then one row per sample or per occupied voxel."""
 
 from pathlib import Path
 
@@ -8,20 +8,22 @@ import pyarrow.csv
 
 from wsrender.export.atomic import new_file
 from wsrender.export.cells import cell_array, cell_names
-from wsrender.export.columns import MapColumns, arrays_by_column
+from wsrender.export.column_type import column_type
+from wsrender.export.columns import arrays_by_column, columns_of
 from wsrender.volume.distribution_map import DistributionMap
+from wsrender.volume.table import Table
 from wsrender.volume.volume_data import VolumeData
 
 ROWS_PER_BLOCK = 1 << 18
 
 
-def write_map_csv(samples: DistributionMap, path: str | Path) -> None:
-    """Write a map; columns as in Parquet, values with the digits that restore them exactly."""
-    columns = MapColumns.of(samples)
-    arrays = arrays_by_column(samples, columns)
-    schema = pa.schema([(name, pa.from_numpy_dtype(arrays[name].dtype)) for name in columns.names()])
+def write_table_csv(data: DistributionMap | Table, path: str | Path) -> None:
+    """Write a map or table; columns as in Parquet, values with the digits that restore them exactly."""
+    columns = columns_of(data)
+    arrays = arrays_by_column(data, columns)
+    schema = pa.schema([(name, column_type(arrays[name])) for name in columns.names()])
     with new_file(path) as temporary, pyarrow.csv.CSVWriter(temporary, schema) as writer:
-        for start in range(0, len(samples), ROWS_PER_BLOCK):
+        for start in range(0, len(data), ROWS_PER_BLOCK):
             rows = slice(start, start + ROWS_PER_BLOCK)
             writer.write_batch(_batch([arrays[name][rows] for name in columns.names()], schema))
 

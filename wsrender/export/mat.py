@@ -1,4 +1,4 @@
-"""Maps and volumes for MATLAB (version 5 MAT files, which GNU Octave and SciPy read too)."""
+"""Maps, tables and volumes for MATLAB (version 5 MAT files, which GNU Octave and SciPy read too)."""
 
 import re
 from pathlib import Path
@@ -9,17 +9,18 @@ from scipy.io import savemat
 
 from wsrender.export.atomic import new_file
 from wsrender.export.cells import cell_array, cell_names
-from wsrender.export.columns import MapColumns, arrays_by_column
+from wsrender.export.columns import arrays_by_column, columns_of
 from wsrender.volume.distribution_map import DistributionMap
+from wsrender.volume.table import Table
 from wsrender.volume.volume_data import VolumeData
 
 _HEADER = b"MATLAB 5.0 MAT-file, written by wsrender".ljust(116)
 
 
-def write_map_mat(samples: DistributionMap, path: str | Path) -> None:
-    """Write a map as one column vector (N, 1) per column, named as in Parquet but as MATLAB allows."""
-    columns = MapColumns.of(samples)
-    arrays = arrays_by_column(samples, columns)
+def write_table_mat(data: DistributionMap | Table, path: str | Path) -> None:
+    """Write a map or table as one column vector (N, 1) per column, named as in Parquet but as MATLAB allows."""
+    columns = columns_of(data)
+    arrays = arrays_by_column(data, columns)
     _write(path, arrays, columns.column_units())
 
 

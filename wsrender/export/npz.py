@@ -1,4 +1,4 @@
-"""Maps and volumes ↔ NumPy's npz: one plain array per column or statistic, never a pickle.
+"""Maps, tables and volumes ↔ NumPy's npz: one plain array per column or statistic, never a pickle.
 
 The array ``wsrender`` holds a description as JSON text: names, units and frame.
 """
@@ -13,25 +13,26 @@ import numpy as np
 from wsrender.errors import InputError
 from wsrender.export.atomic import new_file
 from wsrender.export.cells import cell_array, cell_names
-from wsrender.export.columns import DESCRIPTION, MapColumns, arrays_by_column, map_from_columns
+from wsrender.export.columns import DESCRIPTION, arrays_by_column, columns_from_json, columns_of
 from wsrender.volume.distribution_map import DistributionMap
+from wsrender.volume.table import Table
 from wsrender.volume.volume_data import VolumeData
 
 
-def write_map_npz(samples: DistributionMap, path: str | Path) -> None:
-    """Write a map as one array (N,) per column, named as in Parquet."""
-    columns = MapColumns.of(samples)
-    _write(path, columns.to_json(), arrays_by_column(samples, columns))
+def write_table_npz(data: DistributionMap | Table, path: str | Path) -> None:
+    """Write a map or table as one array (N,) per column, named as in Parquet."""
+    columns = columns_of(data)
+    _write(path, columns.to_json(), arrays_by_column(data, columns))
 
 
-def read_map_npz(path: str | Path) -> DistributionMap:
-    """Read a map that ``write_map_npz`` wrote; InputError where the file is none or damaged."""
+def read_table_npz(path: str | Path) -> DistributionMap | Table:
+    """Read the map or table that ``write_table_npz`` wrote; InputError where the file is none or damaged."""
     description, arrays = _read(Path(path))
-    columns = MapColumns.from_json(description, Path(path).name)
+    columns = columns_from_json(description, Path(path).name)
     missing = set(columns.names()) - set(arrays)
     if missing:
         raise InputError(Path(path).name, f"lacks the arrays {', '.join(sorted(missing))}")
-    return map_from_columns(columns, lambda names: np.stack([arrays[name] for name in names], axis=1))
+    return columns.restored(lambda names: np.stack([arrays[name] for name in names], axis=1))
 
 
 def write_volume_npz(volume: VolumeData, path: str | Path) -> None:

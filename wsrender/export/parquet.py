@@ -1,11 +1,12 @@
-"""Distribution map ↔ Parquet: plain columns, no dictionary, zstd, byte-stream-split.
+"""Distribution maps and tables ↔ Parquet: plain columns, no dictionary, zstd, byte-stream-split.
 
-Columns are ``x``, ``y``, ``z`` [m, world frame], the joint values by joint name, ``qw``, ``qx``, ``qy``,
-``qz`` and one per index. Units, frame and roles stand in the schema metadata under ``wsrender``, as JSON.
+Columns of a map are ``x``, ``y``, ``z`` [m, world frame], the joint values by joint name, ``qw``, ``qx``, ``qy``,
+``qz`` and one per index. Units and roles stand in the schema metadata under ``wsrender``, as JSON.
 """
 
 from collections.abc import Iterable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pyarrow as pa
@@ -13,60 +14,67 @@ import pyarrow.parquet as pq
 
 from wsrender.errors import InputError
 from wsrender.export.atomic import new_file
-from wsrender.export.columns import DESCRIPTION, MapColumns, arrays_by_column, map_from_columns
+from wsrender.export.column_type import column_type
+from wsrender.export.columns import DESCRIPTION, arrays_by_column, columns_from_json, columns_of
 from wsrender.volume.distribution_map import DistributionMap
+from wsrender.volume.table import Table
 
 ROWS_PER_GROUP = 1 << 18
 _METADATA_KEY = DESCRIPTION.encode()
 
 
-def write_map_parquet(samples: DistributionMap, path: str | Path) -> None:
-    """Write a map; each row group holds 2¹⁸ rows, so memory does not grow with their number."""
-    columns = MapColumns.of(samples)
-    arrays = arrays_by_column(samples, columns)
+def write_table_parquet(data: DistributionMap | Table, path: str | Path) -> None:
+    """Write a map or table; each row group holds 2¹⁸ rows, so memory does not grow with their number."""
+    columns = columns_of(data)
+    arrays = arrays_by_column(data, columns)
     schema = _schema(columns, arrays)
     with (
         new_file(path) as temporary,
         pq.ParquetWriter(
-            temporary, schema, compression="zstd", use_dictionary=False, use_byte_stream_split=True
+            temporary, schema, compression="zstd", use_dictionary=False, use_byte_stream_split=_split(schema)
         ) as writer,
     ):
-        for start in range(0, len(samples), ROWS_PER_GROUP):
+        for start in range(0, len(data), ROWS_PER_GROUP):
             rows = slice(start, start + ROWS_PER_GROUP)
             batch = [pa.array(np.ascontiguousarray(arrays[name][rows])) for name in schema.names]
             writer.write_batch(pa.RecordBatch.from_arrays(batch, schema=schema))
 
 
-def _schema(columns: MapColumns, arrays: dict[str, np.ndarray]) -> pa.Schema:
+def _split(schema: pa.Schema) -> Any:  # the type stubs know truth values only
+    """The columns that byte-stream-split is for: numbers."""
+    return [f.name for f in schema if pa.types.is_integer(f.type) or pa.types.is_floating(f.type)]
+
+
+def _schema(columns: Any, arrays: dict[str, np.ndarray]) -> pa.Schema:
     units = columns.column_units()
-    types = {name: pa.from_numpy_dtype(arrays[name].dtype) for name in columns.names()}
+    types = {name: column_type(arrays[name]) for name in columns.names()}
     fields = [pa.field(name, kind, nullable=False, metadata={"unit": units[name]}) for name, kind in types.items()]
     return pa.schema(fields, metadata={_METADATA_KEY: columns.to_json()})
 
 
-def read_map_parquet(path: str | Path) -> DistributionMap:
-    """Read a map that ``write_map_parquet`` wrote, row group by row group.
+def read_table_parquet(path: str | Path) -> DistributionMap | Table:
+    """Read the map or table that ``write_table_parquet`` wrote, row group by row group.
 
-    Raises InputError where the file is not Parquet, not a distribution map or damaged.
+    Raises InputError where the file is not Parquet, not of wsrender or damaged.
     """
     path = Path(path)
     try:
         with pq.ParquetFile(path) as file:
             return _read(file, path.name)
     except (pa.ArrowException, OSError) as error:
-        raise InputError(path.name, f"cannot be read as a distribution map: {error}") from error
+        raise InputError(path.name, f"cannot be read as a table: {error}") from error
 
 
-def _read(file: pq.ParquetFile, source: str) -> DistributionMap:
+def _read(file: pq.ParquetFile, source: str) -> DistributionMap | Table:
     schema = file.schema_arrow
     metadata = schema.metadata or {}
     if _METADATA_KEY not in metadata:
-        raise InputError(source, "is a Parquet file, but not a distribution map written by wsrender")
-    columns = MapColumns.from_json(metadata[_METADATA_KEY], source)
+        raise InputError(source, "is a Parquet file, but not a map or table written by wsrender")
+    columns = columns_from_json(metadata[_METADATA_KEY], source)
     missing = set(columns.names()) - set(schema.names)
     if missing:
         raise InputError(source, f"lacks the columns {', '.join(sorted(missing))}")
-    return map_from_columns(columns, lambda names: _block(file, list(names)))
+    return columns.restored(lambda names: _block(file, list(names)))
 
 
 def _block(file: pq.ParquetFile, names: Iterable[str]) -> np.ndarray:

@@ -12,6 +12,7 @@ import numpy as np
 from wsrender.engine import Evaluated, Partial
 from wsrender.errors import InputError
 from wsrender.export.atomic import new_file
+from wsrender.run.indices_at import IndicesAtPlan
 from wsrender.run.workspace import WorkspacePartial, WorkspacePlan
 from wsrender.spec.sampling import Converge
 
@@ -20,17 +21,27 @@ EVALUATED = ("position", "values", "largest_sigma", "smallest_sigma", "quat_wxyz
 ROWS = "rows_"
 
 
-def save_partial(partial: WorkspacePartial | Evaluated, path: str | Path) -> None:
+Partials = WorkspacePartial | Evaluated | dict[str, np.ndarray]
+"""Partial results: of the analyses without a type of their own, plain arrays by name."""
+
+
+def save_partial(partial: Partials, path: str | Path) -> None:
     """Write a partial result; the file appears complete or not at all."""
-    arrays = _workspace_arrays(partial) if isinstance(partial, WorkspacePartial) else _evaluated_arrays(partial)
+    match partial:
+        case WorkspacePartial():
+            arrays = _workspace_arrays(partial)
+        case Evaluated():
+            arrays = _evaluated_arrays(partial)
+        case _:
+            arrays = partial
     with new_file(path) as temporary, temporary.open("wb") as file:
         np.savez(file, allow_pickle=False, **arrays)
 
 
-def load_partial(path: str | Path, plan: Any) -> WorkspacePartial | Evaluated:
+def load_partial(path: str | Path, plan: Any) -> Partials:
     """Read what ``save_partial`` wrote of a shard of ``plan``; InputError where the file is missing or damaged."""
     path = Path(path)
-    read: Callable[[Any, Any], Any] = _workspace if isinstance(plan, WorkspacePlan) else _evaluated
+    read: Callable[[Any, Any], Any] = READERS.get(type(plan), _arrays)
     try:
         with path.open("rb") as file, np.load(file, allow_pickle=False) as arrays:
             return read(arrays, plan)
@@ -55,6 +66,10 @@ def _workspace(arrays: Any, plan: WorkspacePlan) -> WorkspacePartial:
     return WorkspacePartial(sweep, plan.with_grid(sequence[-1]["per_joint"], sampling), sequence)
 
 
+def _arrays(arrays: Any, plan: Any) -> dict[str, np.ndarray]:
+    return {name: arrays[name] for name in arrays.files}
+
+
 def _evaluated_arrays(partial: Evaluated) -> dict[str, np.ndarray]:
     return {name: value for name in EVALUATED if (value := getattr(partial, name)) is not None}
 
@@ -62,3 +77,6 @@ def _evaluated_arrays(partial: Evaluated) -> dict[str, np.ndarray]:
 def _evaluated(arrays: Any, plan: Any) -> Evaluated:
     quat_wxyz = arrays["quat_wxyz"] if "quat_wxyz" in arrays.files else None
     return Evaluated(arrays["position"], arrays["values"], arrays["largest_sigma"], arrays["smallest_sigma"], quat_wxyz)
+
+
+READERS: dict[type, Callable[[Any, Any], Any]] = {WorkspacePlan: _workspace, IndicesAtPlan: _evaluated}

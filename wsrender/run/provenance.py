@@ -7,6 +7,7 @@ from typing import Any
 from wsrender import __version__
 from wsrender.robot import Robot
 from wsrender.robot.user_robot import HostRobot
+from wsrender.spec.arm import at_path
 from wsrender.spec.options import TASK_ROWS
 
 
@@ -29,12 +30,13 @@ def robot_entry(robot: Robot) -> dict[str, Any]:
     }
 
 
-def job_entry(job: Any, robot: Robot) -> dict[str, Any]:
+def job_entry(job: Any, *robots: Robot) -> dict[str, Any]:
     """The job document that gave a result; a robot that is a Python class has no form that could be run again."""
     entry = job.model_dump(mode="json")
-    if isinstance(robot, HostRobot):
-        cls = type(robot.user)
-        entry["robot"] = {"user_defined": f"{cls.__module__}.{cls.__qualname__}"}
+    for path, robot in zip(job.arms(), robots, strict=True):
+        if isinstance(robot, HostRobot):
+            cls = type(robot.user)
+            at_path(entry, path)["robot"] = {"user_defined": f"{cls.__module__}.{cls.__qualname__}"}
     return entry
 
 

@@ -10,10 +10,11 @@ from wsrender.robot import Robot, as_robot, robot_of_spec
 from wsrender.run.indices_at import plan_indices_at
 from wsrender.run.workspace import plan_workspace
 from wsrender.spec import IndicesAtJob, WorkspaceJob, parse_job
+from wsrender.spec.arm import Arm, ArmPath, dotted
 
 Progress = Callable[[int, int, str], None]
 
-PLANNERS = {WorkspaceJob: plan_workspace, IndicesAtJob: plan_indices_at}
+PLANNERS: dict[type, Callable[..., "Plan"]] = {WorkspaceJob: plan_workspace, IndicesAtJob: plan_indices_at}
 
 
 class Plan(Protocol):
@@ -45,7 +46,9 @@ class Plan(Protocol):
 
 
 def plan(document: Any, robot: Any = None, *, resolved: dict[str, Any] | None = None) -> Plan:
-    """Resolve a job: a document (dict or JSON text) or a parsed job; ``robot`` replaces the document's.
+    """Resolve a job: a document (dict or JSON text) or a parsed job.
+
+    ``robot`` replaces the document's; where a job has several, a list with a robot or None for each.
 
     ``resolved`` is `Plan.resolved` of an earlier plan of the same job: nothing in it is settled again, so that
     partial results of different processes merge. A plan has one shard; ``shards`` of ``resolved`` may divide it, at
@@ -54,8 +57,23 @@ def plan(document: Any, robot: Any = None, *, resolved: dict[str, Any] | None = 
     Raises DocumentError, InputError, ModelError, ResourceError; nothing has run then.
     """
     job = document if isinstance(document, tuple(PLANNERS)) else parse_job(document)
-    subject: Robot = robot_of_spec(job.robot, job.base, job.tip) if robot is None else as_robot(robot)
-    return PLANNERS[type(job)](job, subject, resolved)
+    arms = job.arms()
+    given = robot if isinstance(robot, list) else [robot] * len(arms)
+    robots = [_robot(*item, here) for item, here in zip(arms.items(), given, strict=True)]
+    return PLANNERS[type(job)](job, *robots, resolved=resolved)
+
+
+def _robot(path: ArmPath, arm: Arm, given: Any) -> Robot:
+    """The robot given, or else that of the document; errors say where in the document it is."""
+    if given is not None:
+        return as_robot(given)
+    try:
+        return robot_of_spec(arm.robot, arm.base, arm.tip)
+    except InputError as error:
+        if path:
+            error.field = dotted(path, error.field)
+            error.args = (f"{error.field}: {error.message}",)
+        raise
 
 
 def run_shard(plan: Plan, shard: int, progress: Callable[[int], None] | None = None, **execution: Any) -> Any:

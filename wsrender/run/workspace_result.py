@@ -35,7 +35,9 @@ def workspace_result(
     target: str,
     seconds: dict[str, float],
 ) -> Result:
-    """Map, picture sample, volume data, skeleton and result document."""
+    """Map, picture sample, volume data, skeleton, surface and result document."""
+    from wsrender.boundary.voxel_surface import occupied_surface
+
     started = time.perf_counter()
     evaluation = plan.evaluation
     units = {name: unit(name, evaluation.rows, evaluation.convention) for name in evaluation.indices}
@@ -76,6 +78,7 @@ def workspace_result(
         sample=sample,
         volume=volume,
         skeleton=robot.skeleton(_middle(plan)),
+        meshes={"surface": occupied_surface(volume)},
     )
     document["timing_s"] = {**seconds, "finish": time.perf_counter() - started}
     return result

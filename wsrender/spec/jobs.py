@@ -1,10 +1,11 @@
 """Job documents: what to analyse, one discriminated union on ``analysis``."""
 
 from collections.abc import Iterator
-from typing import Annotated, Any, Literal, get_args
+from typing import Annotated, Literal, get_args
 
 from pydantic import BeforeValidator, Discriminator, StrictBool
 
+from wsrender.spec.arm import Arm
 from wsrender.spec.document import Document
 from wsrender.spec.options import (
     Configurations,
@@ -17,24 +18,13 @@ from wsrender.spec.options import (
     Task,
 )
 from wsrender.spec.problems import tagged
-from wsrender.spec.quantities import Count, Name, PositiveNumber
-from wsrender.spec.robot import RobotSpec
+from wsrender.spec.quantities import Count, PositiveNumber
 from wsrender.spec.sampling import Grid, Sampling
 
 
-def _robot(value: Any) -> Any:
-    return {"library": value} if isinstance(value, str) else value
-
-
-class _IndexedJob(Document):
+class _IndexedJob(Arm):
     """The fields shared by all jobs that evaluate local indices of one robot."""
 
-    robot: Annotated[RobotSpec, BeforeValidator(_robot)]
-    """The robot and where it stands; a string is the name of a library robot."""
-    base: Name | None = None
-    """Body, link or site at which the chain starts; null: the world."""
-    tip: Name | None = None
-    """Site, body or link at the end of the chain; null: the site "tool", or else the only end there is."""
     indices: Indices = "kinematic"
     """Local indices: "kinematic", "dynamic", "all", or a list of names."""
     task: Task = "linear"

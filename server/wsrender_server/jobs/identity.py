@@ -9,6 +9,7 @@ from typing import Any
 from wsrender import __version__
 from wsrender.errors import InputError
 from wsrender.robots.library import find
+from wsrender.spec.arm import dotted, robots_in
 
 
 class Identity:
@@ -23,12 +24,13 @@ class Identity:
         With a shared cache, jobs of library robots have the same key for every owner. Raises InputError for a robot
         given by a path: the server reads no files for its users.
         """
-        robot = document["robot"]
-        if robot.get("path") is not None:
-            raise InputError("robot.path", "is for local runs; upload the model and give robot.model")
-        library = robot.get("library")
-        anyone = self.shared_cache and library is not None
-        parts = ["" if anyone else owner, document, _library_hash(library), __version__, target]
+        libraries = []
+        for path, robot in robots_in(document):
+            if robot.get("path") is not None:
+                raise InputError(dotted(path, "path"), "is for local runs; upload the model and give robot.model")
+            libraries.append(robot.get("library"))
+        anyone = self.shared_cache and None not in libraries
+        parts = ["" if anyone else owner, document, [_library_hash(name) for name in libraries], __version__, target]
         return hashlib.sha256(json.dumps(parts, sort_keys=True).encode()).hexdigest()
 
 

@@ -156,24 +156,26 @@ def _planned(task: Task) -> Any:
     key = f"{task.token}:{task.resolved is not None}"
     if key not in _plans:
         job = parse_job(task.document)
-        _plans[key] = plan(job, _uploaded_robot(job), resolved=task.resolved)
+        robots = [_uploaded_robot(path, arm) for path, arm in job.arms().items()]
+        _plans[key] = plan(job, robots, resolved=task.resolved)
         while len(_plans) > KEPT_PLANS:
             _plans.popitem(last=False)
     return _plans[key]
 
 
-def _uploaded_robot(job: Any) -> Any:
+def _uploaded_robot(path: Any, arm: Any) -> Any:
     """The robot of an uploaded model, so that the document goes on naming it by its hash; None for any other."""
     from wsrender.errors import InputError
     from wsrender.robot import robot_of_spec
+    from wsrender.spec.arm import dotted
 
-    spec = job.robot
+    spec = arm.robot
     if spec.source == "path":
-        raise InputError("robot.path", "is for local runs; upload the model and give robot.model")
+        raise InputError(dotted(path, "robot", "path"), "is for local runs; upload the model and give robot.model")
     if spec.source != "model":
         return None
     text = _files().model(spec.model).read_text(encoding="utf-8")
-    return robot_of_spec(spec.model_copy(update={"model": None, _language(text): text}), job.base, job.tip)
+    return robot_of_spec(spec.model_copy(update={"model": None, _language(text): text}), arm.base, arm.tip)
 
 
 def _language(text: str) -> str:

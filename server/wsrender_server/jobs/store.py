@@ -12,6 +12,7 @@ from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
 from wsrender.errors import InputError
+from wsrender.spec.arm import dotted, robots_in
 from wsrender_server.jobs.changes import Changes
 from wsrender_server.jobs.computations import ComputationStore
 from wsrender_server.jobs.cursor import cursor_after, place_of
@@ -242,9 +243,10 @@ class JobStore(ComputationStore, ResultStore, KeyStore):
 
     def _computation(self, session: Session, owner: str, document, priority: int) -> Computation:
         """The computation of a document, locked until the transaction ends; a new one if there is none."""
-        model = document["robot"].get("model")
-        if model is not None and session.get(Model, (owner, model)) is None:
-            raise InputError("robot.model", f"{model} is not among your models; upload it first")
+        for path, robot in robots_in(document):
+            model = robot.get("model")
+            if model is not None and session.get(Model, (owner, model)) is None:
+                raise InputError(dotted(path, "model"), f"{model} is not among your models; upload it first")
         key = self.identity.key(owner, document, self._target(session, document["device"]))
         found = session.scalar(select(Computation).where(Computation.key == key).with_for_update())
         if found is not None:

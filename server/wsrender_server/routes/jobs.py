@@ -1,5 +1,6 @@
 """Jobs: submit, validate, list, look, cancel, retry, delete."""
 
+import copy
 import hashlib
 import json
 from collections.abc import Iterator
@@ -13,6 +14,7 @@ from starlette.concurrency import run_in_threadpool
 
 from wsrender.errors import DocumentError, InputError
 from wsrender.spec import ANALYSES
+from wsrender.spec.arm import dotted, robots_in
 from wsrender_server.admission import Admission
 from wsrender_server.auth import Principal, Reader, Submitter
 from wsrender_server.job_body import JobBody, json_body, read_body, refused
@@ -229,14 +231,15 @@ def _admitted(server: Parts, principal: Principal, body: JobBody, text: bytes, s
 
 
 def _with_model(server: Parts, principal: Principal, document: dict[str, Any]) -> dict[str, Any]:
-    """The document with the text of an uploaded model in the place of its hash."""
-    sha256 = document["robot"]["model"]
-    content = None if sha256 is None else server.store.get_model(principal.owner, sha256)
-    if content is None:
-        return document
-    text = decoded_model(content)
-    kind = "urdf" if check_model("robot.model", text) == "robot" else "mjcf"
-    return {**document, "robot": {**document["robot"], "model": None, kind: text}}
+    """The document with the texts of uploaded models in the place of their hashes."""
+    document = copy.deepcopy(document)
+    for path, robot in robots_in(document):
+        content = None if robot["model"] is None else server.store.get_model(principal.owner, robot["model"])
+        if content is not None:
+            text = decoded_model(content)
+            kind = "urdf" if check_model(dotted(path, "model"), text) == "robot" else "mjcf"
+            robot |= {"model": None, kind: text}
+    return document
 
 
 def _idempotency_key(request: Request) -> str | None:

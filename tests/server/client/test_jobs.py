@@ -3,12 +3,14 @@
 import httpx2
 import numpy as np
 import pytest
+import trimesh
 
 import wsrender as ws
 from tests.export.sample_data import assert_same_map, assert_same_volume, random_map, random_volume
 from tests.server.client.recorded_server import Lost, refuses, says, serves
 from wsrender import export
 from wsrender.result import Result
+from wsrender.volume.table import Table
 
 LOST = httpx2.ReadError("connection reset by peer")
 REFUSED = httpx2.ConnectError("connection refused")
@@ -28,6 +30,9 @@ def local(tmp_path_factory):
         sample=random_map(20),
         volume=random_volume((4, 3, 2)),
         skeleton=np.cumsum(np.ones((2, 5, 3)), axis=1),
+        meshes={"surface": trimesh.creation.box()},
+        tables={"scan": Table({"offset": np.arange(3.0)}, {"offset": "m"})},
+        volumes={"left": random_volume((2, 2, 2))},
     )
     result.save(folder)
     return result, folder
@@ -115,6 +120,9 @@ def test_result_is_that_of_a_local_run(finished, client, local):
     assert result.volume is result.volume
     assert len(finished.requests) == 6
     assert result.plot.slice(z=0.6) is not None
+    np.testing.assert_allclose(result.meshes["surface"].triangles, expected.meshes["surface"].triangles)
+    np.testing.assert_array_equal(result.tables["scan"]["offset"], expected.tables["scan"]["offset"])
+    assert_same_volume(result.volumes["left"], expected.volumes["left"])
 
 
 def test_save_writes_what_a_local_run_writes(finished, client, local, tmp_path):
@@ -143,7 +151,7 @@ def test_failed_save_leaves_nothing(finished, client, tmp_path):
 def test_without_h5py_and_pyarrow_npz_is_asked(finished, client, local, tmp_path, monkeypatch):
     expected, _ = local
     export.write_volume_npz(expected.volume, tmp_path / "volume.npz")
-    export.write_map_npz(expected.sample, tmp_path / "sample.npz")
+    export.write_table_npz(expected.sample, tmp_path / "sample.npz")
     finished.answer("GET", "/v1/jobs/j1/artifacts/volume.vtkhdf", serves(tmp_path / "volume.npz"))
     finished.answer("GET", "/v1/jobs/j1/artifacts/sample.parquet", serves(tmp_path / "sample.npz"))
     monkeypatch.setattr("wsrender.client.remote_result.find_spec", lambda package: None)

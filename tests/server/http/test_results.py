@@ -99,7 +99,7 @@ def test_converted_files_hold_the_same(client, finished, result, tmp_path):
         path.write_bytes(response.content)
         return path
 
-    samples = export.read_map_npz(fetched("map.parquet", "npz"))
+    samples = export.read_table_npz(fetched("map.parquet", "npz"))
     np.testing.assert_array_equal(samples.position, result.map.position)
     np.testing.assert_array_equal(samples.indices["manipulability"], result.map.indices["manipulability"])
     assert export.read_volume_npz(fetched("volume.vtkhdf", "npz")).count.sum() == 4**4

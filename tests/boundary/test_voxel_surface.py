@@ -5,8 +5,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.export.sample_data import random_volume
+from wsrender.boundary import voxel_surface
+from wsrender.boundary.voxel_surface import occupied_surface
 from wsrender.errors import InputError
-from wsrender.export import meshes, occupied_surface, write_mesh
+from wsrender.export import write_mesh
 from wsrender.volume.volume_data import VolumeData
 
 
@@ -67,7 +69,7 @@ def test_files_are_deterministic_and_in_world_metres(tmp_path, suffix):
 
 
 def test_surface_with_too_many_faces_is_coarsened_around_all_voxels(monkeypatch):
-    monkeypatch.setattr(meshes, "MAX_VOXEL_FACES", 200)
+    monkeypatch.setattr(voxel_surface, "MAX_VOXEL_FACES", 200)
     volume = random_volume((9, 8, 7))
     mesh = occupied_surface(volume)
     assert mesh.is_watertight

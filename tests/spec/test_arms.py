@@ -1,0 +1,22 @@
+"""The robots of a job: found by path in documents and in parsed jobs."""
+
+import json
+
+from wsrender.spec import canonical_json, parse_job
+from wsrender.spec.arm import at_path, dotted, robots_in
+
+
+def test_a_job_of_one_robot_is_an_arm():
+    job = parse_job({"analysis": "workspace", "robot": "scara", "tip": "tool"})
+    assert job.arms() == {(): job}
+    document = json.loads(canonical_json(job))
+    ((path, robot),) = robots_in(document)
+    assert (path, robot["library"]) == (("robot",), "scara")
+
+
+def test_robots_anywhere_in_a_document_are_found():
+    document = {"robots": [{"robot": {"library": "a"}}, {"robot": {"path": "b"}}], "master": {"robot": {"dh": {}}}}
+    found = dict(robots_in(document))
+    assert list(found) == [("robots", 0, "robot"), ("robots", 1, "robot"), ("master", "robot")]
+    assert all(at_path(document, path) is robot for path, robot in found.items())
+    assert [dotted(path, "path") for path in found][1] == "robots.1.robot.path"

@@ -1,0 +1,54 @@
+"""A robot with the frames between which its chain runs, and every robot of a document."""
+
+from collections.abc import Iterator
+from typing import Annotated, Any
+
+from pydantic import BeforeValidator
+
+from wsrender.spec.document import Document
+from wsrender.spec.quantities import Name
+from wsrender.spec.robot import RobotSpec
+
+ArmPath = tuple[str | int, ...]
+"""Keys from a job document to an arm in it; empty: the job itself is one."""
+
+
+def _robot(value: Any) -> Any:
+    return {"library": value} if isinstance(value, str) else value
+
+
+class Arm(Document):
+    """A robot and the frames between which its chain runs."""
+
+    robot: Annotated[RobotSpec, BeforeValidator(_robot)]
+    """The robot and where it stands; a string is the name of a library robot."""
+    base: Name | None = None
+    """Body, link or site at which the chain starts; null: the world."""
+    tip: Name | None = None
+    """Site, body or link at the end of the chain; null: the site "tool", or else the only end there is."""
+
+    def arms(self) -> "dict[ArmPath, Arm]":
+        """Every arm of a job by its path, in the order of its robots; a job of one robot is an arm itself."""
+        return {(): self}
+
+
+def robots_in(document: Any, path: ArmPath = ()) -> Iterator[tuple[ArmPath, dict[str, Any]]]:
+    """(path, robot) of every robot of a canonical document."""
+    items = document.items() if isinstance(document, dict) else enumerate(document)
+    for key, value in items:
+        if key == "robot":
+            yield (*path, key), value
+        elif isinstance(value, dict | list):
+            yield from robots_in(value, (*path, key))
+
+
+def at_path(document: Any, path: ArmPath) -> Any:
+    """What a document holds at a path."""
+    for key in path:
+        document = document[key]
+    return document
+
+
+def dotted(path: ArmPath, *fields: str) -> str:
+    """A path as errors write it, with fields below it: ``robots.0.robot.path``."""
+    return ".".join(map(str, (*path, *fields)))
