@@ -20,6 +20,7 @@ from wsrender.run.workspace_result import workspace_result
 from wsrender.sampling import SamplingPlan, plan_sampling
 from wsrender.spec import WorkspaceJob
 from wsrender.spec.sampling import Converge, Grid
+from wsrender.spec.surfaces import IsoSurface
 from wsrender.volume.lattice import LatticeBlock
 
 
@@ -166,8 +167,21 @@ def plan_workspace(job: WorkspaceJob, robot: Robot, resolved: dict[str, Any] | N
         _converging_index(plan, job.sampling)
         if job.sampling.by == "workspace_mean" and not {"maximum", "mean"} & set(job.voxel_statistics):
             raise InputError("sampling.by", "workspace_mean needs the voxel statistic maximum or mean")
+    _check_surfaces(job, evaluation.indices)
     shards = [(0, sampling.count)] if resolved is None else [(first, count) for first, count in resolved["shards"]]
     return WorkspacePlan(job, robot, plan, first_pass, device, target, shards, estimate(plan, devices))
+
+
+def _check_surfaces(job: WorkspaceJob, indices: tuple[str, ...]) -> None:
+    """Whether the volume will hold what iso-surfaces are made of; raises InputError."""
+    for surface in job.surfaces:
+        if not isinstance(surface, IsoSurface):
+            continue
+        if surface.iso_surface not in indices:
+            choices = ", ".join(indices)
+            raise InputError("surfaces", f"{surface.iso_surface!r} is not among the job's indices: {choices}")
+        if not {"maximum", "mean"} & set(job.voxel_statistics):
+            raise InputError("surfaces", "an iso-surface needs the voxel statistic maximum or mean")
 
 
 def _settled_block(resolved: dict[str, Any]) -> LatticeBlock:

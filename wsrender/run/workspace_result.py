@@ -36,13 +36,15 @@ def workspace_result(
     seconds: dict[str, float],
 ) -> Result:
     """Map, picture sample, volume data, skeleton, surface and result document."""
-    from wsrender.boundary.voxel_surface import occupied_surface
+    from wsrender.boundary.surfaces import surfaces
 
     started = time.perf_counter()
     evaluation = plan.evaluation
     units = {name: unit(name, evaluation.rows, evaluation.convention) for name in evaluation.indices}
     volume = volume_data(plan, partial, units)
     volumes = voxel_volumes(volume)
+    sample = _picture_sample(plan, robot, units)
+    meshes, surface_entries = surfaces(job.surfaces, volume, sample.position)
     document: dict[str, Any] = {
         "analysis": "workspace",
         "job": job_entry(job, robot),
@@ -57,6 +59,7 @@ def workspace_result(
             "outer": volumes.outer,
             "refined": None,
         },
+        "surfaces": surface_entries,
         "bounds_m": {
             "lower": [float(v) for v in partial.minimum[:3]],
             "upper": [float(v) for v in partial.maximum[:3]],
@@ -71,14 +74,13 @@ def workspace_result(
         "convergence": convergence,
         "provenance": provenance(job.precision, target, sampling_path="direct", seed=plan.sampling.seed),
     }
-    sample = _picture_sample(plan, robot, units)
     result = Result(
         document,
         map=_kept_map(plan, partial, robot, units) if plan.keep_rows else None,
         sample=sample,
         volume=volume,
         skeleton=robot.skeleton(_middle(plan)),
-        meshes={"surface": occupied_surface(volume)},
+        meshes=meshes,
     )
     document["timing_s"] = {**seconds, "finish": time.perf_counter() - started}
     return result

@@ -20,6 +20,7 @@ from wsrender.spec.options import (
 from wsrender.spec.problems import tagged
 from wsrender.spec.quantities import Count, PositiveNumber
 from wsrender.spec.sampling import Grid, Sampling
+from wsrender.spec.surfaces import Surfaces
 
 
 class _IndexedJob(Arm):
@@ -70,6 +71,9 @@ class WorkspaceJob(_IndexedJob):
     """What is kept per voxel, from count, maximum, mean, minimum; count always is."""
     refined_volume: NotAvailable = None
     """Relative tolerance of the refined volume [1]; not available in this version: null."""
+    surfaces: Surfaces = ("marching_cubes",)
+    """Meshes of the workspace, each with its volume: "marching_cubes" of the voxels, "convex_hull" and {"alpha_shape":
+    α in metres} of the picture's subsample, {"iso_surface": index, "fraction": μ} of the voxels."""
     keep_map: StrictBool = False
     """Whether the distribution map, one row per sample, is kept."""
     map_columns: MapColumns = ()
