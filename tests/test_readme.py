@@ -14,13 +14,15 @@ def blocks(language):
 
 def test_python_example(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    (example,) = blocks("python")
+    example = "\n".join(blocks("python"))
     names = {}
     exec(compile(example, "README.md", "exec"), names)
     assert "manipulability" in capsys.readouterr().out
     assert (tmp_path / "slice.png").read_bytes().startswith(b"\x89PNG")
     assert (tmp_path / "out" / "result.json").is_file()
     assert names["robot"].forward_kinematics([0, -1.5, 1.5, 0, 1, 0]).shape == (1, 4, 4)
+    assert list(names["found"].labels) == ["reachable", "unreachable"]
+    assert list(names["found"].reasons) == ["", "out of reach"]
 
 
 def test_job_document():

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from wsrender import run
     from wsrender.client import Client
     from wsrender.indices import Index, math, register_index
+    from wsrender.reachability import Reachability, reachable
     from wsrender.result import Result
     from wsrender.robot import Robot, evaluate_indices, load_robot
     from wsrender.run import analyze, execute
@@ -60,6 +61,7 @@ __all__ = [
     "NumericalError",
     "QuotaError",
     "Random",
+    "Reachability",
     "ResourceError",
     "Result",
     "Robot",
@@ -75,6 +77,7 @@ __all__ = [
     "execute",
     "load_robot",
     "math",
+    "reachable",
     "register_index",
     "run",
 ]
@@ -82,6 +85,7 @@ __all__ = [
 _NAMES_OF_MODULE = {
     "wsrender.client": ("Client",),
     "wsrender.indices": ("Index", "register_index"),
+    "wsrender.reachability": ("Reachability", "reachable"),
     "wsrender.result": ("Result",),
     "wsrender.robot": ("Robot", "evaluate_indices", "load_robot"),
     "wsrender.run": ("analyze", "execute"),

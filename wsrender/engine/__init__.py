@@ -4,21 +4,25 @@ from wsrender.engine.at_configurations import Evaluated, evaluate_at
 from wsrender.engine.configurations import configurations
 from wsrender.engine.devices import devices_of, target_of, thread_count
 from wsrender.engine.evaluation import Evaluation
+from wsrender.engine.inverse import Accuracy, Tries, solve_inverse
 from wsrender.engine.kinematics import Kinematics, evaluate_kinematics
 from wsrender.engine.partial import Partial, merge
 from wsrender.engine.sweep import SweepPlan, sweep
 
 __all__ = [
+    "Accuracy",
     "Evaluated",
     "Evaluation",
     "Kinematics",
     "Partial",
     "SweepPlan",
+    "Tries",
     "configurations",
     "devices_of",
     "evaluate_at",
     "evaluate_kinematics",
     "merge",
+    "solve_inverse",
     "sweep",
     "target_of",
     "thread_count",

@@ -8,7 +8,7 @@ import numpy as np
 from wsrender.engine import Evaluated, Evaluation, configurations, evaluate_at
 from wsrender.engine.sums import bound_from_reach, scales_for
 from wsrender.robots.chain import Chain
-from wsrender.run.reachable_box import reachable_box
+from wsrender.robots.reachable_box import reachable_box
 from wsrender.sampling import plan_sampling
 from wsrender.spec.sampling import Sobol
 from wsrender.volume.lattice import LatticeBlock, block_around, default_voxel_size

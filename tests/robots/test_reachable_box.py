@@ -6,7 +6,7 @@ import pytest
 import wsrender as ws
 from tests.run.simple_robots import gantry, planar_arm
 from wsrender.robots import library
-from wsrender.run.reachable_box import reachable_box
+from wsrender.robots.reachable_box import reachable_box
 
 ROBOTS = [name for name in library.names() if name not in ("five_bar", "delta")]
 

@@ -1,0 +1,213 @@
+"""Reachable or not, against closed-form inverse kinematics and workspaces that are known exactly."""
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+import wsrender as ws
+from tests.reference import closed_form_inverse as closed_form
+from tests.run.simple_robots import PlanarClass, gantry
+from wsrender.reachability.moving_joints import moving_joints
+from wsrender.robots.reachable_box import reachable_box
+
+RECOVERED = 0.995  # share of targets made by forward kinematics, to 1e-4 m
+EXACT = 1e-9  # m and rad: nothing lies so near the boundary by chance
+UNDECIDED = 0.01
+
+
+def forward(robot, count, seed=0):
+    random = np.random.default_rng(seed)
+    q = random.uniform(robot.lower_limits, robot.upper_limits, (count, robot.chain.n))
+    return robot.forward_kinematics(q, device="cpu")
+
+
+def quat_wxyz(T):
+    return Rotation.from_matrix(T[:, :3, :3]).as_quat(scalar_first=True)
+
+
+def in_the_box(robot, count, seed=0):
+    low, high = reachable_box(robot.chain, robot.lower_limits, robot.upper_limits)
+    return np.random.default_rng(seed).uniform(low, high, (count, 3))
+
+
+@pytest.mark.parametrize("with_orientation", [False, True], ids=["position", "pose"])
+@pytest.mark.parametrize("name", ["ur5e", "franka_panda", "puma560", "spherical"])
+def test_recovers_what_forward_kinematics_gave(name, with_orientation):
+    robot = ws.load_robot(name, placement=ws.Transform(position_m=(0.3, -0.2, 0.1), rpy_deg=(20, -30, 140)))
+    T = forward(robot, 10_000)
+    found = ws.reachable(robot, T[:, :3, 3], quat_wxyz(T) if with_orientation else None, device="cpu")
+    reached = found.labels == "reachable"
+    assert reached.mean() >= RECOVERED
+    q = found.configurations
+    assert ((q >= robot.lower_limits - 1e-12) & (q <= robot.upper_limits + 1e-12)).all()
+    back = robot.forward_kinematics(q, device="cpu")
+    distance = np.linalg.norm(back[:, :3, 3] - T[:, :3, 3], axis=1)
+    assert (distance[reached] < 1e-4).all()
+    assert distance == pytest.approx(found.residual_m, abs=1e-12)
+    if with_orientation:
+        turned = Rotation.from_matrix(back[:, :3, :3]).inv() * Rotation.from_matrix(T[:, :3, :3])
+        assert turned.magnitude() == pytest.approx(found.residual_rad, abs=1e-9)
+        assert (found.residual_rad[reached] < 1e-4).all()
+
+
+ARMS = {
+    "puma560": closed_form.puma560_arm,
+    "articulated": closed_form.articulated_arm,
+    "spherical": closed_form.spherical_arm,
+}
+
+
+@pytest.mark.parametrize("name", ARMS)
+def test_positions_agree_with_the_closed_form(name):
+    robot = ws.load_robot(name)
+    points = in_the_box(robot, 5_000)
+    found = ws.reachable(robot, points, position_tolerance_m=EXACT, device="cpu")
+    with np.errstate(invalid="ignore"):
+        arm = ARMS[name](points)
+    limits = robot.lower_limits[:3], robot.upper_limits[:3], robot.chain.revolute[:3]
+    check_labels(found, closed_form.within_limits(arm, *limits).any(axis=1))
+
+
+@pytest.mark.parametrize("name", ["puma560", "ur5e", "spherical"])
+def test_poses_agree_with_the_closed_form(name):
+    robot = ws.load_robot(name)
+    points = in_the_box(robot, 2_000)
+    rotations = Rotation.random(len(points), random_state=1).as_matrix()
+    T = np.concatenate([rotations, points[:, :, None]], axis=2)
+    found = ws.reachable(
+        robot, points, quat_wxyz(T), position_tolerance_m=EXACT, angle_tolerance_rad=EXACT, device="cpu"
+    )
+    with np.errstate(invalid="ignore", divide="ignore"):
+        if name == "ur5e":
+            solutions = closed_form.ur5e(points, rotations)
+        else:
+            solutions = closed_form.with_spherical_wrist(name, ARMS[name](points), rotations)
+    limits = robot.lower_limits, robot.upper_limits, robot.chain.revolute
+    check_labels(found, closed_form.within_limits(solutions, *limits).any(axis=1))
+
+
+def check_labels(found, truth):
+    assert 0.05 < truth.mean() < 0.95
+    assert not truth[found.labels == "unreachable"].any()
+    assert truth[found.labels == "reachable"].all()
+    assert (found.labels == "undecided").mean() <= UNDECIDED
+
+
+@pytest.mark.parametrize("precision", ["float32", "float64"])
+@pytest.mark.parametrize("name", ["ur5e", "puma560"])
+def test_nothing_beyond_the_reach_is_reachable(name, precision, device):
+    robot = ws.load_robot(name)
+    random = np.random.default_rng(3)
+    points = random.normal(size=(5_000, 3))
+    points *= (robot.chain.reach * random.uniform(1.01, 3, 5_000) / np.linalg.norm(points, axis=1))[:, None]
+    points += (robot.chain.T_world_base @ robot.chain.T_joint[0])[:3, 3]
+    found = ws.reachable(robot, points, precision=precision, device=device)
+    assert (found.labels == "unreachable").all()
+    assert (found.reasons == "out of reach").all()
+
+
+def test_residual_is_the_distance_to_the_workspace():
+    robot = gantry()
+    low, high = np.array([0.005, -0.395, 0.005]), np.array([0.295, -0.005, 0.195])
+    points = np.random.default_rng(0).uniform(low - 0.2, high + 0.2, (2_000, 3))
+    found = ws.reachable(robot, points, device="cpu")
+    expected = np.linalg.norm(points - np.clip(points, low, high), axis=1)
+    assert found.residual_m == pytest.approx(expected, abs=1e-5)
+    assert ((found.labels == "reachable") == (expected == 0)).all()
+    assert set(found.reasons[expected > 0]) == {"joint limits"}
+
+
+def test_reasons():
+    robot = ws.load_robot("articulated")  # links of 0.2 m; the first joint turns 45 … 135°
+    in_front, behind, far = (0.0, 0.3, -0.15), (0.0, -0.3, -0.15), (0.0, 0.5, -0.15)
+    found = ws.reachable(robot, [in_front, behind, far], device="cpu")
+    assert list(found.labels) == ["reachable", "unreachable", "unreachable"]
+    assert list(found.reasons) == ["", "joint limits", "out of reach"]
+
+
+def test_a_target_as_far_off_as_the_tolerance_is_undecided():
+    robot = ws.load_robot("spherical")  # its slide starts at 0.2 m
+    middle = robot.forward_kinematics((robot.lower_limits + robot.upper_limits) / 2, device="cpu")[0, :3, 3]
+    point = middle / np.linalg.norm(middle) * (0.2 - 1.5e-3)
+    found = ws.reachable(robot, point, position_tolerance_m=1e-3, device="cpu")
+    assert (found.labels[0], found.reasons[0]) == ("undecided", "too close to the tolerance")
+
+
+def test_a_label_depends_on_its_target_alone(precision):
+    robot = ws.load_robot("puma560")
+    points = in_the_box(robot, 3_000)
+    options = {"precision": precision, "device": "cpu", "position_tolerance_m": 1e-4}
+    whole = ws.reachable(robot, points, **options, threads=1)
+    order = np.random.default_rng(0).permutation(len(points))
+    part = ws.reachable(robot, points[order][:1_000], **options, threads=2)
+    assert (part.configurations == whole.configurations[order][:1_000]).all()
+    assert (part.labels == whole.labels[order][:1_000]).all()
+    assert (part.reasons == whole.reasons[order][:1_000]).all()
+
+
+def test_positions_in_float32_on_every_device(device):
+    robot = ws.load_robot("puma560")
+    T = forward(robot, 20_000)
+    found = ws.reachable(robot, T[:, :3, 3], precision="float32", device=device)
+    assert (found.labels == "reachable").mean() >= RECOVERED
+
+
+def test_coupled_joints():
+    text = """<mujoco><compiler angle="radian"/><worldbody><body><joint name="a" axis="0 0 1" range="-1 1"/>
+      <geom size="0.01" mass="1"/><body pos="0.4 0 0"><joint name="b" axis="0 0 1" range="-3 3"/>
+      <geom size="0.01" mass="1"/><site name="tool" pos="0.3 0 0"/></body></body></worldbody>
+      <equality><joint joint1="b" joint2="a" polycoef="0.2 2 0 0 0"/></equality></mujoco>"""
+    from wsrender.robot import robot_of_spec
+    from wsrender.spec.robot import RobotSpec
+
+    robot = robot_of_spec(RobotSpec(mjcf=text))
+    assert robot.chain.n == 1
+    q = np.linspace(-1, 1, 101)
+    points = np.stack(
+        [0.4 * np.cos(q) + 0.3 * np.cos(3 * q + 0.2), 0.4 * np.sin(q) + 0.3 * np.sin(3 * q + 0.2), 0 * q], axis=1
+    )
+    found = ws.reachable(robot, points, device="cpu")
+    assert (found.labels == "reachable").all()
+    assert found.configurations[:, 0] == pytest.approx(q, abs=1e-3)
+    assert (ws.reachable(robot, points + np.array([0, 0, 0.01]), device="cpu").labels != "reachable").all()
+
+
+@pytest.mark.parametrize("name", ["ur5e", "franka_panda", "puma560", "spherical", "slave_5r"])
+def test_joints_that_do_not_move_the_point_are_left_out(name):
+    robot = ws.load_robot(name)
+    chain, kept = moving_joints(robot.chain)
+    expected = {"ur5e": 5, "franka_panda": 6, "puma560": 3, "spherical": 3, "slave_5r": 2}[name]
+    assert (chain.n, list(kept)) == (expected, list(range(expected)))
+    from wsrender.engine import evaluate_kinematics
+
+    q = np.random.default_rng(0).uniform(robot.lower_limits, robot.upper_limits, (100, robot.chain.n))
+    shorter = evaluate_kinematics(chain, q[:, kept], device="cpu").pose[:, :3, 3]
+    assert shorter == pytest.approx(robot.forward_kinematics(q, device="cpu")[:, :3, 3], abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("points", "options", "field"),
+    [
+        ([[0.0, 0.1]], {}, "points"),
+        ([[0.0, 0.1, np.nan]], {}, "points"),
+        ("here", {}, "points"),
+        ([[0.0, 0.1, 0.2]], {"orientations": [[1, 0, 0, 0], [1, 0, 0, 0]]}, "orientations"),
+        ([[0.0, 0.1, 0.2]], {"orientations": [0, 0, 0, 0]}, "orientations"),
+        ([[0.0, 0.1, 0.2]], {"precision": "float32", "position_tolerance_m": 1e-7}, "position_tolerance_m"),
+    ],
+)
+def test_wrong_arguments(points, options, field):
+    with pytest.raises(ws.InputError) as error:
+        ws.reachable(ws.load_robot("ur5e"), points, **options)
+    assert error.value.field == field
+
+
+def test_a_robot_without_a_model_is_refused():
+    with pytest.raises(ws.InputError, match="model or a DH table"):
+        ws.reachable(PlanarClass(), [0.1, 0.2, 0.0])
+
+
+def test_no_targets():
+    found = ws.reachable(ws.load_robot("puma560"), np.zeros((0, 3)), device="cpu")
+    assert found.configurations.shape == (0, 6)
+    assert len(found.labels) == 0

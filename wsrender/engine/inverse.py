@@ -1,0 +1,107 @@
+"""Inverse kinematics of many targets: tries from given starts, on CPU threads or a GPU."""
+
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+
+import numpy as np
+import warp as wp
+from wsrender_kernels.inverse import LANES, REACHED, STATIONARY, inverse_kernel, inverse_model
+
+from wsrender.engine.devices import devices_of, thread_count
+from wsrender.engine.evaluation import REAL, chain_model, device_array, drive, vector_of
+from wsrender.robots.chain import Chain
+
+BATCH = 1 << 17  # tries of a launch
+LEAST_SHARE = 8 * LANES  # tries that are worth a thread
+
+
+@dataclass(frozen=True)
+class Accuracy:
+    """What counts as reached: distance [m] and angle [rad]; ``length`` [m] makes angles comparable to distances."""
+
+    position_m: float
+    angle_rad: float
+    length: float
+
+
+@dataclass(frozen=True, eq=False)
+class Tries:
+    """Where tries ended: configurations (N, n) [rad or m], distances (N,) [m] and angles (N,) [rad] to the target.
+
+    ``reached``: within the accuracy; ``stationary``: at a nearest point within the limits that is not the target;
+    neither: the steps did not suffice.
+    """
+
+    q: np.ndarray
+    distance: np.ndarray
+    angle: np.ndarray
+    reached: np.ndarray
+    stationary: np.ndarray
+
+
+def solve_inverse(
+    chain: Chain,
+    targets: np.ndarray,
+    starts: np.ndarray,
+    accuracy: Accuracy,
+    *,
+    without_limits: bool = False,
+    steps: int = 100,
+    precision: str = "float64",
+    device: str = "auto",
+    threads: int | None = None,
+) -> Tries:
+    """One try from each start (N, n) to its target: positions (N, 3) [m], or (N, 12) with the axes x, y, z.
+
+    ``without_limits`` lets hinges turn for ever; slides keep their limits, which are their length.
+    """
+    devices = devices_of(device)
+    workers = devices if devices[0].is_cuda else devices * thread_count(threads)
+    size = min(BATCH, max(LEAST_SHARE, -(-len(targets) // len(workers))))
+    model = _model(chain, accuracy, without_limits, precision)
+    batches = [slice(first, first + size) for first in range(0, max(len(targets), 1), size)]
+
+    def run(numbered: tuple[int, slice]) -> list[np.ndarray]:
+        number, batch = numbered
+        worker = workers[number % len(workers)]
+        return _launch(chain, model, targets[batch], starts[batch], steps, precision, worker)
+
+    with ThreadPoolExecutor(len(workers)) as pool:
+        parts = list(pool.map(run, enumerate(batches)))
+    q, distance_2, rotation_2, verdict = (np.concatenate(part) for part in zip(*parts, strict=True))
+    # The squared differences of the axes add up to 8 sin²(angle / 2).
+    angle = 2 * np.arcsin(np.minimum(np.sqrt(rotation_2.astype(np.float64) / 8), 1.0))
+    distance = np.sqrt(distance_2.astype(np.float64))
+    return Tries(q.astype(np.float64), distance, angle, verdict == REACHED, verdict == STATIONARY)
+
+
+def _launch(chain, model, targets, starts, steps, precision, device) -> list[np.ndarray]:
+    real, n, count = REAL[precision], chain.n, len(targets)
+    kernel = inverse_kernel(real, n, *drive(chain), targets.shape[1] > 3, device.is_cuda)
+    q = wp.empty(n * count, dtype=real, device=device)
+    distance_2, rotation_2 = (wp.empty(count, dtype=real, device=device) for _ in range(2))
+    verdict = wp.empty(count, dtype=wp.int32, device=device)  # type: ignore[arg-type]
+    inputs = [model, device_array(targets.T.ravel(), real, device), device_array(starts.T.ravel(), real, device), count]
+    if count:
+        wp.launch(
+            kernel,
+            dim=count if device.is_cuda else 1,
+            inputs=[*inputs, steps],
+            outputs=[q, distance_2, rotation_2, verdict],
+            device=device,
+        )
+    return [q.numpy().reshape(n, count).T, distance_2.numpy(), rotation_2.numpy(), verdict.numpy()]
+
+
+def _model(chain: Chain, accuracy: Accuracy, without_limits: bool, precision: str):
+    real = REAL[precision]
+    model = inverse_model(real, chain.n, len(chain.joint_source))()
+    model.chain = chain_model(chain, precision).chain
+    endless = chain.periodic | (chain.revolute & without_limits)
+    model.lower = vector_of(np.where(endless, -np.inf, chain.lower_limits), real)
+    model.upper = vector_of(np.where(endless, np.inf, chain.upper_limits), real)
+    model.scale = vector_of(np.where(chain.revolute, 1.0, accuracy.length), real)
+    model.length = accuracy.length
+    model.position_2 = accuracy.position_m**2
+    model.rotation_2 = 8 * np.sin(min(accuracy.angle_rad, np.pi) / 2) ** 2
+    return model

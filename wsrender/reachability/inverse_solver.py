@@ -1,0 +1,197 @@
+"""Inverse kinematics that decides: a target is reachable, unreachable, or undecided."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.spatial import KDTree
+
+from wsrender.engine import Accuracy, Tries, configurations, evaluate_kinematics, solve_inverse
+from wsrender.reachability.moving_joints import moving_joints
+from wsrender.robots.chain import Chain
+from wsrender.robots.reachable_box import reachable_box
+from wsrender.sampling import plan_sampling
+from wsrender.spec.sampling import Sobol
+
+REACHABLE, UNREACHABLE, UNDECIDED = 1, 0, -1
+LABELS = {REACHABLE: "reachable", UNREACHABLE: "unreachable", UNDECIDED: "undecided"}
+
+NEAREST = 8  # first starts: the nearest of a set of samples
+FRESH = 56  # then the same further samples for every target, so that a label depends on its target alone
+GROUPS = (1, 7, 8, 16, 32)  # starts between two looks at what they found
+SAMPLES = {False: 1 << 15, True: 1 << 13}  # of the set, for positions and for poses
+# Evidence that a target is unreachable: so many tries (for positions, for poses) came to rest where no motion within
+# the limits leads nearer, clearly off the target, and so many of them at the least residual of all, within 1 %.
+LEAST_ENDS, LEAST_AGREEING, AGREEING, CLEARLY = {False: 12, True: 32}, 3, 1.01, 2.0
+
+
+@dataclass(frozen=True, eq=False)
+class Solutions:
+    """Configurations (N, n) nearest to the targets, what is left to them, and labels (N,) int8.
+
+    ``distance_m``, ``angle_rad`` (N,): residuals. ``proven`` (N,) bool: the target lies outside a sphere and a box
+    that hold every position of the chain.
+    """
+
+    q: np.ndarray
+    distance_m: np.ndarray
+    angle_rad: np.ndarray
+    label: np.ndarray
+    proven: np.ndarray
+
+
+class InverseSolver:
+    """Solves for positions, or for poses with ``pose``, of one chain.
+
+    ``position_m`` and ``angle_rad`` are the largest residuals that count as reached; ``length_m`` makes an angle
+    comparable to a distance (None: half the reach). Starts depend on ``seed`` alone.
+    """
+
+    def __init__(
+        self,
+        chain: Chain,
+        *,
+        pose: bool = False,
+        position_m: float = 1e-6,
+        angle_rad: float = 1e-6,
+        length_m: float | None = None,
+        seed: int = 0,
+        precision: str = "float64",
+        device: str = "cpu",
+        threads: int | None = None,
+    ):
+        self.whole, self.pose, self.seed = chain, pose, seed
+        self.chain, self._kept = (chain, np.arange(chain.n)) if pose else moving_joints(chain)
+        self.accuracy = Accuracy(position_m, angle_rad, length_m or chain.reach / 2 or 1.0)
+        self._execution = {"precision": precision, "device": device, "threads": threads}
+
+    def solve(self, position: np.ndarray, axes: np.ndarray | None = None) -> Solutions:
+        """Decide targets: positions (N, 3) [m] and, for poses, rotation matrices (N, 3, 3), in the world."""
+        targets = _targets(position, axes)
+        search = _Search(targets, self.chain.n, self.accuracy, self._out_of_reach(position))
+        for starts in self._starts(targets, search):
+            pending = search.pending
+            each = starts.shape[1]
+            tries = self._tries(np.repeat(targets[pending], each, axis=0), starts.reshape(-1, self.chain.n))
+            search.record(pending, tries, each)
+        q = np.tile((self.whole.lower_limits + self.whole.upper_limits) / 2, (len(targets), 1))
+        q[:, self._kept] = self._within_a_turn(search.q)
+        return Solutions(q, search.distance, search.angle, search.label, search.proven)
+
+    def without_limits(self, q: np.ndarray, position: np.ndarray, axes: np.ndarray | None = None) -> np.ndarray:
+        """Whether targets are reached where hinges may turn for ever, (N,) bool; ``q`` (N, n): a first start."""
+        targets = _targets(position, axes)
+        fresh = np.tile(self._fresh(0, NEAREST - 1), (len(targets), 1, 1))
+        starts = np.concatenate([q[:, None, self._kept], fresh], axis=1).reshape(-1, self.chain.n)
+        tries = self._tries(np.repeat(targets, NEAREST, axis=0), starts, without_limits=True)
+        return np.any(tries.reached.reshape(-1, NEAREST), axis=1)
+
+    def _tries(self, targets: np.ndarray, starts: np.ndarray, without_limits: bool = False) -> Tries:
+        return solve_inverse(
+            self.chain, targets, starts, self.accuracy, without_limits=without_limits, **self._execution
+        )
+
+    def _starts(self, targets: np.ndarray, search: "_Search") -> Iterator[np.ndarray]:
+        """Starts (P, g, m) of the targets that are pending when each group's turn comes."""
+        first = 0
+        for each in GROUPS:
+            if not len(search.pending):
+                return
+            last = first + each
+            if last <= NEAREST:
+                features = self._features(targets[search.pending])
+                # k as a list gives a column per neighbour.
+                _, near = self._tree.query(features, k=list(range(first + 1, last + 1)), workers=-1)  # type: ignore[arg-type]
+                yield self._samples[near]
+            else:
+                yield np.tile(self._fresh(first - NEAREST, last - NEAREST), (len(search.pending), 1, 1))
+            first = last
+
+    def _fresh(self, first: int, last: int) -> np.ndarray:
+        return self._samples[SAMPLES[self.pose] :][first:last]
+
+    def _out_of_reach(self, position: np.ndarray) -> np.ndarray:
+        """Whether positions (N, 3) are farther than the tolerance from a sphere or a box that hold the workspace."""
+        chain, slack = self.chain, self.accuracy.position_m
+        center = (chain.T_world_base @ chain.T_joint[0])[:3, 3]
+        far = np.linalg.norm(position - center, axis=1) > chain.reach + slack
+        low, high = reachable_box(chain, chain.lower_limits, chain.upper_limits)
+        return far | (position < low - slack).any(axis=1) | (position > high + slack).any(axis=1)
+
+    @cached_property
+    def _samples(self) -> np.ndarray:
+        """Configurations to start from (S, m): those of the tree, then the fresh ones."""
+        count = SAMPLES[self.pose] + FRESH
+        return configurations(plan_sampling(self.chain, Sobol(count, seed=self.seed)), np.arange(count))
+
+    @cached_property
+    def _tree(self) -> KDTree:
+        pose = evaluate_kinematics(self.chain, self._samples[: SAMPLES[self.pose]], device="cpu").pose
+        return KDTree(self._features(_targets(pose[:, :3, 3], pose[:, :3, :3] if self.pose else None)))
+
+    def _features(self, targets: np.ndarray) -> np.ndarray:
+        """Coordinates whose distance is the residual that the solver reduces."""
+        scale = np.full(targets.shape[1], self.accuracy.length / np.sqrt(2))
+        scale[:3] = 1.0
+        return targets * scale
+
+    def _within_a_turn(self, q: np.ndarray) -> np.ndarray:
+        """Hinges without limits brought into -pi … pi."""
+        return np.where(self.chain.periodic, np.remainder(q + np.pi, 2 * np.pi) - np.pi, q)
+
+
+def _targets(position: np.ndarray, axes: np.ndarray | None) -> np.ndarray:
+    """Positions (N, 3), or with rotation matrices (N, 3, 3) rows (N, 12) of position and axes x, y, z."""
+    return position if axes is None else np.hstack([position, axes.transpose(0, 2, 1).reshape(-1, 9)])
+
+
+class _Search:
+    """The best of all tries of every target, and the evidence that nothing better exists."""
+
+    def __init__(self, targets: np.ndarray, n: int, accuracy: Accuracy, proven: np.ndarray):
+        count = len(targets)
+        self.accuracy, self.proven = accuracy, proven
+        self.q = np.zeros((count, n))
+        self.distance, self.angle = np.full(count, np.inf), np.full(count, np.inf)
+        self.label = np.full(count, UNDECIDED, np.int8)
+        self.pending = np.arange(count)
+        self._residual = np.full(count, np.inf)  # of the best try
+        self._nearest_end = np.full(count, np.inf)  # least residual at which a try came to rest
+        pose = targets.shape[1] > 3
+        self._least_ends = LEAST_ENDS[pose]
+        self._tolerance = np.hypot(accuracy.position_m, accuracy.length * accuracy.angle_rad * pose)
+        self._ends, self._agreeing = np.zeros(count, np.int32), np.zeros(count, np.int32)
+
+    def record(self, pending: np.ndarray, tries: Tries, each: int) -> None:
+        """Take in ``each`` tries of every pending target, and settle those that are decided."""
+        size = (len(pending), each)
+        residual = np.hypot(tries.distance, 2 * self.accuracy.length * np.sin(tries.angle / 2)).reshape(size)
+        reached, ended = tries.reached.reshape(size), tries.stationary.reshape(size)
+        best = np.argmin(np.where(reached, -1.0, residual), axis=1)
+        chosen = np.arange(len(pending)) * each + best
+        found = reached.any(axis=1)
+        better = found | (residual.ravel()[chosen] < self._residual[pending])
+        at, chosen = pending[better], chosen[better]
+        self._residual[at] = residual.ravel()[chosen]
+        self.q[at], self.distance[at], self.angle[at] = tries.q[chosen], tries.distance[chosen], tries.angle[chosen]
+        self._count_ends(pending, np.where(ended, residual, np.inf))
+        self.label[pending] = np.where(found, REACHABLE, np.where(self._unreachable(pending), UNREACHABLE, UNDECIDED))
+        self.pending = pending[self.label[pending] == UNDECIDED]
+
+    def _count_ends(self, pending: np.ndarray, ends: np.ndarray) -> None:
+        """Count tries that came to rest (residuals ``ends`` (P, g), infinite for others), and those at the best."""
+        before = self._nearest_end[pending]
+        nearest = np.minimum(before, ends.min(axis=1))
+        limit = AGREEING * nearest + self.accuracy.position_m
+        still = np.where(before <= limit, self._agreeing[pending], 0)
+        self._agreeing[pending] = still + (ends <= limit[:, None]).sum(axis=1) * np.isfinite(nearest)
+        self._ends[pending] += np.isfinite(ends).sum(axis=1)
+        self._nearest_end[pending] = nearest
+
+    def _unreachable(self, pending: np.ndarray) -> np.ndarray:
+        nearest = self._nearest_end[pending]
+        consistent = (self._ends[pending] >= self._least_ends) & (self._agreeing[pending] >= LEAST_AGREEING)
+        clear = np.isfinite(nearest) & (self._residual[pending] * AGREEING >= nearest)
+        off = self._residual[pending] > CLEARLY * self._tolerance
+        return self.proven[pending] | (consistent & clear & off)

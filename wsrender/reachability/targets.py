@@ -1,0 +1,130 @@
+"""Whether a robot reaches given targets, with what configuration, or why not."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from wsrender.errors import InputError
+from wsrender.reachability.inverse_solver import CLEARLY, LABELS, UNDECIDED, UNREACHABLE, InverseSolver, Solutions
+from wsrender.robot import Robot, as_robot
+from wsrender.robot.user_robot import HostRobot
+from wsrender.tolerances import TOLERANCES
+
+POSITION_TOLERANCE_M, ANGLE_TOLERANCE_RAD = 1e-5, 1e-5
+AT_LIMIT = 1e-9  # share of a slide's range within which it stands at its end
+
+JOINT_LIMITS, OUT_OF_REACH = "joint limits", "out of reach"
+TOO_CLOSE, INCONCLUSIVE = "too close to the tolerance", "search not conclusive"
+
+
+@dataclass(frozen=True, eq=False)
+class Reachability:
+    """What inverse kinematics found of N targets.
+
+    ``configurations`` (N, n) [rad or m]: those that reach the target, or come nearest; joints that do not matter stand
+    in the middle of their range. ``residual_m``, ``residual_rad`` (N,): what is left to the target; 0 rad where no
+    orientation was asked. ``labels`` (N,): "reachable", "unreachable" or "undecided". ``reasons`` (N,): of unreachable
+    targets "out of reach" (no configuration, limits or not) or "joint limits" (hinges without limits would reach it,
+    or a slide is at its end); of undecided ones "too close to the tolerance" or "search not conclusive"; else "".
+    """
+
+    configurations: np.ndarray
+    residual_m: np.ndarray
+    residual_rad: np.ndarray
+    labels: np.ndarray
+    reasons: np.ndarray
+
+
+def reachable(
+    robot: Any,
+    points: Any,
+    orientations: Any = None,
+    *,
+    position_tolerance_m: float = POSITION_TOLERANCE_M,
+    angle_tolerance_rad: float = ANGLE_TOLERANCE_RAD,
+    characteristic_length_m: float | None = None,
+    seed: int = 0,
+    precision: str = "float64",
+    device: str = "auto",
+    threads: int | None = None,
+) -> Reachability:
+    """Decide which ``points`` (N, 3) [m], or poses with ``orientations`` (N, 4) quat_wxyz, the end effector reaches.
+
+    Positions and orientations are in the world frame. Every target is tried from many starts within the joint limits
+    (`InverseSolver`); "unreachable" needs a proof or consistent evidence, else the label is "undecided". A label
+    depends on its target and ``seed`` alone. ``characteristic_length_m`` makes an angle comparable to a distance
+    while both shrink (default: half the reach). Raises InputError.
+    """
+    subject = model_robot(robot)
+    position = rows_of(points, 3, "points")
+    axes = None if orientations is None else rotations(orientations, len(position))
+    if position_tolerance_m < (least := 2 * TOLERANCES[precision].position(subject.chain.reach)):
+        raise InputError("position_tolerance_m", f"{position_tolerance_m:g} is below the {least:.1g} of {precision}")
+    solver = InverseSolver(
+        subject.chain,
+        pose=axes is not None,
+        position_m=position_tolerance_m,
+        angle_rad=angle_tolerance_rad,
+        length_m=characteristic_length_m,
+        seed=seed,
+        precision=precision,
+        device=device,
+        threads=threads,
+    )
+    found = solver.solve(position, axes)
+    labels = np.array([LABELS[label] for label in found.label.tolist()], dtype="<U11")
+    reasons = _reasons(solver, found, position, axes)
+    return Reachability(found.q, found.distance_m, found.angle_rad, labels, reasons)
+
+
+def model_robot(robot: Any) -> Robot:
+    """The robot, if it has a chain; InputError for one that is defined by a Python class."""
+    subject = as_robot(robot)
+    if isinstance(subject, HostRobot):
+        raise InputError(
+            "robot", f"{subject.name} is defined by a Python class; inverse kinematics needs a model or a DH table"
+        )
+    return subject
+
+
+def rows_of(values: Any, width: int, field: str) -> np.ndarray:
+    """Finite numbers of shape (N, width); a single row may be given as (width,). InputError names ``field``."""
+    try:
+        rows = np.atleast_2d(np.asarray(values, np.float64))
+    except (TypeError, ValueError) as error:
+        raise InputError(field, f"is not an array of numbers: {error}") from error
+    if rows.ndim != 2 or rows.shape[1] != width:
+        raise InputError(field, f"has shape {np.shape(values)}; (N, {width}) is needed")
+    finite = np.isfinite(rows).all(axis=1)
+    if not finite.all():
+        raise InputError(field, f"row {int(np.argmin(finite))} has a value that is not finite")
+    return rows
+
+
+def rotations(quat_wxyz: Any, count: int) -> np.ndarray:
+    """Rotation matrices (N, 3, 3) of quaternions (N, 4) of any length but 0; InputError names ``orientations``."""
+    quat = rows_of(quat_wxyz, 4, "orientations")
+    if len(quat) != count:
+        raise InputError("orientations", f"has {len(quat)} rows for {count} points")
+    length = np.linalg.norm(quat, axis=1)
+    if (length < 1e-6).any():
+        raise InputError("orientations", f"row {int(np.argmin(length))} has length 0: it says no rotation")
+    return Rotation.from_quat(quat, scalar_first=True).as_matrix()
+
+
+def _reasons(solver: InverseSolver, found: Solutions, position: np.ndarray, axes: np.ndarray | None) -> np.ndarray:
+    reasons = np.full(len(position), "", dtype="<U26")
+    undecided, missed = found.label == UNDECIDED, found.label == UNREACHABLE
+    accuracy = solver.accuracy
+    close = (found.distance_m <= CLEARLY * accuracy.position_m) & (found.angle_rad <= CLEARLY * accuracy.angle_rad)
+    reasons[undecided] = np.where(close[undecided], TOO_CLOSE, INCONCLUSIVE)
+    chain = solver.whole
+    free = solver.without_limits(found.q[missed], position[missed], None if axes is None else axes[missed])
+    slides, width = ~chain.revolute, chain.upper_limits - chain.lower_limits
+    margin = AT_LIMIT * width
+    ended = (found.q <= chain.lower_limits + margin) | (found.q >= chain.upper_limits - margin)
+    at_end = np.any(ended[missed] & slides, axis=1)
+    reasons[missed] = np.where(free | at_end, JOINT_LIMITS, OUT_OF_REACH)
+    return reasons
