@@ -10,8 +10,9 @@ from typing import Any
 from wsrender.errors import DocumentError, InputError, ModelError, ResourceError
 from wsrender.indices.catalogue import find
 from wsrender.robots import library
-from wsrender.spec import IndicesAtJob, WorkspaceJob, canonical_json, parse_job
+from wsrender.spec import IndicesAtJob, canonical_json, parse_job
 from wsrender.spec.arm import ArmPath, dotted
+from wsrender.spec.document import Document
 from wsrender.spec.robot import RobotSpec
 from wsrender.spec.sampling import Converge, Grid
 from wsrender_server.jobs.store import JobStore
@@ -23,7 +24,7 @@ BEYOND_LIMITS = 10**18  # samples
 
 @dataclass(frozen=True)
 class Admission:
-    """Admits the documents of one owner."""
+    """Admits the documents of one owner, whatever their analysis."""
 
     store: JobStore
     owner: str
@@ -38,13 +39,14 @@ class Admission:
         did not upload, 409 for text that is no XML; ResourceError for more samples than allowed.
         """
         job = parse_job(document)
-        for path, arm in job.arms().items():
-            self._check_robot(arm.robot, (*path, "robot"))
-        _check_indices(job)
-        if isinstance(job, WorkspaceJob):
-            self._check_samples(job)
         if isinstance(job, IndicesAtJob) and job.configurations is None:
             raise DocumentError([("configurations", "must be given: rows of joint values")])
+        arms = job.arms()
+        for path, arm in arms.items():
+            self._check_robot(arm.robot, (*path, "robot"))
+        for path, part in ({(): job} | arms).items():
+            _check_indices(part, path)
+            self._check_samples(part, path, job)
         return json.loads(canonical_json(job))
 
     def _check_robot(self, robot: RobotSpec, path: ArmPath) -> None:
@@ -66,27 +68,29 @@ class Admission:
                 errors=[(pointer(dotted(path, "model"), self.prefix), "is no model that you uploaded")],
             )
 
-    def _check_samples(self, job: WorkspaceJob) -> None:
-        samples, asked = least_samples(job), job.sampling
-        if samples > self.max_samples:
-            raise ResourceError(
-                "sampling", f"has at least {samples:.4g} samples; this server allows {self.max_samples:.4g}"
-            )
-        if not isinstance(asked, Converge) and samples > job.max_samples:
-            raise ResourceError(
-                "sampling", f"has at least {samples:.4g} samples, above max_samples = {job.max_samples:.4g}"
-            )
+    def _check_samples(self, part: Document, path: ArmPath, job: Document) -> None:
+        sampling = getattr(part, "sampling", None)
+        if sampling is None:
+            return
+        samples = least_samples(sampling, getattr(part, "robot", None))
+        limits = {"this server allows": self.max_samples}
+        if not isinstance(sampling, Converge):  # which stops by itself where a grid would be too large
+            limits["max_samples is"] = getattr(part, "max_samples", getattr(job, "max_samples", BEYOND_LIMITS))
+        for who, limit in limits.items():
+            if samples > limit:
+                message = f"has at least {samples:.4g} samples; {who} {limit:.4g}"
+                raise ResourceError(dotted(path, "sampling"), message)
 
 
-def least_samples(job: WorkspaceJob) -> int:
-    """Samples that a job takes at least; exact where the number of joints is known without compiling a model."""
-    sampling = job.sampling
-    if isinstance(sampling, Grid | Converge):
-        levels = sampling.per_joint if isinstance(sampling, Grid) else sampling.start
-        if isinstance(levels, int):
-            levels = repeat(levels, max(_joints(job.robot) - len(sampling.locked), 1))
-        return _product(levels)
-    return sampling.count
+def least_samples(sampling: Any, robot: RobotSpec | None) -> int:
+    """Samples taken at least; exact where the number of joints is known without compiling a model."""
+    if not isinstance(sampling, Grid | Converge):
+        return sampling.count
+    levels = sampling.per_joint if isinstance(sampling, Grid) else sampling.start
+    if isinstance(levels, int):
+        joints = 1 if robot is None else _joints(robot)
+        levels = repeat(levels, max(joints - len(sampling.locked), 1))
+    return _product(levels)
 
 
 def _product(factors: Iterable[int]) -> int:
@@ -112,15 +116,17 @@ def _library_joints() -> dict[str, int]:
     return {robot.name: robot.joints for robot in library.describe()}
 
 
-def _check_indices(job: Any) -> None:
-    names = [] if isinstance(job.indices, str) else [("indices", name) for name in job.indices]
-    if isinstance(job, WorkspaceJob) and isinstance(job.sampling, Converge):
-        names.append(("sampling.index", job.sampling.index))
+def _check_indices(part: Document, path: ArmPath) -> None:
+    """Check the local indices that a part of a document names, those it converges by among them."""
+    indices, sampling = getattr(part, "indices", ()), getattr(part, "sampling", None)
+    names = [] if isinstance(indices, str) else [("indices", name) for name in indices]
+    if isinstance(sampling, Converge):
+        names.append(("sampling.index", sampling.index))
     problems = []
     for field, name in names:
         try:
             find(name)
         except InputError as error:
-            problems.append((field, error.message))
+            problems.append((dotted(path, field), error.message))
     if problems:
         raise DocumentError(problems)

@@ -17,12 +17,12 @@ Estimated = dict[str, float | None]
 class Estimates:
     """Plans documents; what takes longer than a request should goes on, and answers when it is asked for again."""
 
-    def __init__(self, max_memory_bytes: int):
-        self._process = SideProcess(max_memory_bytes)
+    def __init__(self, process: SideProcess):
+        self._process = process
         self._tasks: dict[str, asyncio.Task[Estimated]] = {}
 
     async def of(self, document: dict[str, Any]) -> Estimated:
-        """Samples, bytes and seconds of a canonical document whose robot has a library name, a table or text.
+        """Samples, bytes and seconds of a canonical document.
 
         Raises HttpProblem 409 for whatever planning refuses, and, retryable, while planning goes on.
         """

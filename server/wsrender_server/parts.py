@@ -52,8 +52,9 @@ class Parts:
     def __post_init__(self):
         self.store = self.jobs.store
         self.metrics = Metrics()
-        self.side_process = SideProcess(self.settings.max_memory_bytes)
-        self.estimates = Estimates(self.settings.max_memory_bytes)
+        limits = self.settings.max_memory_bytes, self.store.files.models
+        self.side_process = SideProcess(*limits)
+        self.estimates = Estimates(SideProcess(*limits))  # of its own: a plan may take long
         self.converted = ConvertedFiles(self.store.files, self.side_process)
 
 

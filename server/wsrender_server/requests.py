@@ -7,6 +7,7 @@ from collections.abc import MutableMapping
 from typing import Any
 
 import structlog
+from anyio import BrokenResourceError
 from starlette.datastructures import MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
@@ -53,6 +54,8 @@ class RequestLayer:
             try:
                 await self.app(scope, self._limited(scope, receive), send_with_headers)
             except Exception as error:
+                if status and _client_left(error):
+                    return
                 log.exception("request failed", path=scope["path"])
                 if status:  # the answer is on its way and breaks off
                     raise
@@ -89,6 +92,11 @@ class RequestLayer:
         log.info(
             "request", method=scope["method"], path=scope["path"], status=status, seconds=round(seconds, 4), **known
         )
+
+
+def _client_left(error: Exception) -> bool:
+    """Whether an exception is only what FastAPI's event streams end with when their client is gone."""
+    return isinstance(error, ExceptionGroup) and error.split(BrokenResourceError)[1] is None
 
 
 def _too_large(limit: int) -> HttpProblem:

@@ -10,11 +10,13 @@ import threading
 from collections.abc import Callable
 from concurrent.futures import TimeoutError as FutureTimeoutError
 from multiprocessing.sharedctypes import RawArray
+from pathlib import Path
 from typing import Any
 
 from pebble import ProcessExpired, ProcessFuture, ProcessPool
 
 from wsrender.errors import WsrenderError
+from wsrender.robots.uploaded import MODELS_VARIABLE
 from wsrender_server.jobs.child_process import resident_bytes, settle_in
 from wsrender_server.problems import HttpProblem, problem_of_error, refusal
 
@@ -26,12 +28,13 @@ TASKS_PER_CHILD = 200  # what Python and native libraries do not give back goes 
 class SideProcess:
     """Runs module-level functions one after another in a child that is started when first needed.
 
-    A function that crashes, is too slow, or takes more than ``max_memory_bytes`` costs its own request only. Close it
-    with ``close``.
+    A function that crashes, is too slow, or takes more than ``max_memory_bytes`` costs its own request only. It finds
+    uploaded models in the folder ``models``. Close it with ``close``.
     """
 
-    def __init__(self, max_memory_bytes: int):
+    def __init__(self, max_memory_bytes: int, models: Path):
         self._max_memory_bytes = max_memory_bytes
+        self._models = models
         self._pid = RawArray("q", 1)
         self._pool: ProcessPool | None = None
         self._lock = threading.Lock()
@@ -88,14 +91,15 @@ class SideProcess:
                     max_workers=1,
                     max_tasks=TASKS_PER_CHILD,
                     initializer=_start,
-                    initargs=(self._pid,),
+                    initargs=(self._pid, self._models),
                     context=context,
                 )
             return self._pool
 
 
-def _start(pid: Any) -> None:
+def _start(pid: Any, models: Path) -> None:
     settle_in()
+    os.environ[MODELS_VARIABLE] = str(models)
     pid[0] = os.getpid()
 
 

@@ -10,6 +10,7 @@ from PIL import Image
 from tests.export.sample_data import ODD_NAMES, random_map, random_volume
 from wsrender import plots
 from wsrender.errors import InputError
+from wsrender.plots.distribution import histogram_data
 from wsrender.volume.distribution_map import DistributionMap
 from wsrender.volume.volume_data import VolumeData
 
@@ -123,6 +124,12 @@ def test_histogram_csv_holds_what_is_drawn(tmp_path):
     assert header == "index,unit,lower,upper,share"
     assert rows[0].startswith("manipulability,m³,")
     assert sum(float(row.split(",")[4]) for row in rows) == pytest.approx(1)
+
+
+@pytest.mark.parametrize("noise", [0.0, 2.0**-52, 1e-12])
+def test_an_index_that_is_constant_but_for_rounding_is_one_bar(noise):
+    edges, share = histogram_data(1.0 + noise * np.arange(-3.0, 4.0))
+    assert (edges[0], edges[-1]) == pytest.approx((0.5, 1.5)) and share.max() == share.sum() == pytest.approx(1)
 
 
 def test_robot_is_drawn_through_its_joints():

@@ -13,6 +13,7 @@ from wsrender.plots.style import INK, add_title, color_map, new_figure, paper_st
 from wsrender.volume.distribution_map import DistributionMap
 
 BINS = 50
+ROUNDING = 1e-9  # of the values: a spread below it is that of their computation, and too small for 50 intervals
 
 
 @paper_style()
@@ -62,7 +63,7 @@ def write_histogram_csv(samples: DistributionMap, path: str | Path) -> None:
 def histogram_data(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Edges (51,) in the unit of the index and share of the values (50,) in each interval."""
     low, high = float(values.min()), float(values.max())
-    if not high > low:
+    if high - low <= ROUNDING * max(abs(low), abs(high)):
         low, high = (low - 0.5, low + 0.5)
     counts, edges = np.histogram(values.astype(np.float64), BINS, (low, high))
     return edges, counts / len(values)

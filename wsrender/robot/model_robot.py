@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from wsrender.errors import InputError, MissingInertiaError
-from wsrender.robots import load, load_dh, load_library, load_mjcf, load_path, load_urdf
+from wsrender.robots import load, load_dh, load_library, load_mjcf, load_path, load_uploaded, load_urdf
 from wsrender.robots.chain import Chain
 from wsrender.spec.robot import DHTable, RobotSpec, Transform
 
@@ -219,9 +219,8 @@ def robot_of_spec(spec: RobotSpec, base: str | None = None, tip: str | None = No
         "mjcf": load_mjcf,
         "urdf": load_urdf,
         "path": load_path,
+        "model": load_uploaded,
     }
-    if spec.source not in loaders:
-        raise InputError("robot.model", "an uploaded model is known to its server only; give path, mjcf or urdf")
     loaded = loaders[spec.source](getattr(spec, spec.source), **options)
     return Robot(loaded, spec, base=base, tip=tip)
 

@@ -2,5 +2,6 @@
 
 from wsrender.robots.loading import load, load_dh, load_library, load_mjcf, load_path, load_urdf
 from wsrender.robots.model_warning import ModelWarning
+from wsrender.robots.uploaded import load_uploaded
 
-__all__ = ["ModelWarning", "load", "load_dh", "load_library", "load_mjcf", "load_path", "load_urdf"]
+__all__ = ["ModelWarning", "load", "load_dh", "load_library", "load_mjcf", "load_path", "load_uploaded", "load_urdf"]

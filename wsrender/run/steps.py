@@ -29,7 +29,12 @@ class Plan(Protocol):
     estimate: dict[str, float]
 
     def resolved(self) -> dict[str, Any]:
-        """What planning settled, as plain JSON values; ``plan(…, resolved=…)`` elsewhere gives the same plan."""
+        """What planning settled, as plain JSON values; ``plan(…, resolved=…)`` elsewhere gives the same plan.
+
+        Keys that those who run plans look at: ``device``, ``target``, ``shards``; ``shard_unit``, the number of samples
+        at whose multiples the samples may be divided into shards (absent or null: not at all); ``iterates``, true
+        where nobody knows beforehand how many samples it takes.
+        """
         ...
 
     def run_shard(self, shard: int, progress: Callable[[int], None] | None, **execution: Any) -> Any:
@@ -52,7 +57,7 @@ def plan(document: Any, robot: Any = None, *, resolved: dict[str, Any] | None = 
 
     ``resolved`` is `Plan.resolved` of an earlier plan of the same job: nothing in it is settled again, so that
     partial results of different processes merge. A plan has one shard; ``shards`` of ``resolved`` may divide it, at
-    multiples of 65536.
+    multiples of its ``shard_unit``.
 
     Raises DocumentError, InputError, ModelError, ResourceError; nothing has run then.
     """

@@ -23,6 +23,8 @@ from wsrender.spec.sampling import Converge, Grid
 from wsrender.spec.surfaces import IsoSurface
 from wsrender.volume.lattice import LatticeBlock
 
+SHARD_UNIT = 1 << 16  # samples; a multiple of what kernels handle at a time
+
 
 @dataclass(frozen=True, eq=False)
 class WorkspacePartial:
@@ -59,7 +61,13 @@ class WorkspacePlan:
             "bounds": self.sweep.bounds.tolist(),
             "scales": self.sweep.scales.tolist(),
             "shards": [list(shard) for shard in self.shards],
+            "shard_unit": None if self._iterates else SHARD_UNIT,
+            "iterates": self._iterates,
         }
+
+    @property
+    def _iterates(self) -> bool:
+        return isinstance(self.job.sampling, Converge)
 
     def run_shard(self, shard: int, progress: Callable[[int], None] | None, **execution: Any) -> WorkspacePartial:
         """Sweep the shard's samples; a converging job has one shard, its sequence of grids."""

@@ -36,7 +36,7 @@ def robots_in(document: Any, path: ArmPath = ()) -> Iterator[tuple[ArmPath, dict
     """(path, robot) of every robot of a canonical document."""
     items = document.items() if isinstance(document, dict) else enumerate(document)
     for key, value in items:
-        if key == "robot":
+        if key == "robot" and isinstance(value, dict):
             yield (*path, key), value
         elif isinstance(value, dict | list):
             yield from robots_in(value, (*path, key))

@@ -81,8 +81,8 @@ class Attempt:
         """How far the attempt is."""
         total = sum(count for _, count in self.shards) or None
         done = sum(self.done.values())
-        if self.record.document.get("sampling", {}).get("method") == "converge":
-            total = None  # nobody knows how many grids it takes
+        if self.resolved and self.resolved.get("iterates"):
+            total = None
         elapsed = time.monotonic() - self.started
         rate = (done - self.kept) / elapsed if self.step == Step.SHARD and elapsed > 0 and done > self.kept else None
         return Progress(

@@ -14,6 +14,7 @@ from wsrender_server.jobs.attempt import Attempt
 from wsrender_server.jobs.computations import ComputationStore
 from wsrender_server.jobs.engine import Engine, outcome_of
 from wsrender_server.jobs.faults import EngineUnavailable, StoreUnavailable
+from wsrender_server.jobs.identity import device_of
 from wsrender_server.jobs.records import ArtifactRecord, ComputationRecord
 from wsrender_server.jobs.states import ComputationState
 from wsrender_server.jobs.task import Outcome, Step, Verdict, error
@@ -140,7 +141,7 @@ class Dispatcher:
         record = self.store.computation(computation_id)
         if record is None:
             return
-        kind = record.document["device"].partition(":")[0]
+        kind = device_of(record.document).partition(":")[0]
         target, resolved = self._targets.get(kind, self._targets["auto"]), record.resolved
         if resolved is not None and record.target in self._targets.values():
             target = record.target or target

@@ -36,9 +36,14 @@ class DataFolder:
         for name in ("models", "partials", "results", "scratch"):
             (self.root / name).mkdir(parents=True, exist_ok=True)
 
+    @property
+    def models(self) -> Path:
+        """Folder of the uploaded models."""
+        return self.root / "models"
+
     def model(self, sha256: str) -> Path:
         """File of an uploaded model."""
-        return self.root / "models" / _plain(sha256)
+        return self.models / _plain(sha256)
 
     def partials(self, computation: str) -> Path:
         """Folder of a computation's partial results."""

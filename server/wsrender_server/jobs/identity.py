@@ -21,17 +21,22 @@ class Identity:
     def key(self, owner: str, document: Mapping[str, Any], target: str | None) -> str:
         """SHA-256 of owner, document, model, version and target.
 
-        With a shared cache, jobs of library robots have the same key for every owner. Raises InputError for a robot
-        given by a path: the server reads no files for its users.
+        With a shared cache, jobs of nothing but library robots have the same key for every owner. Raises InputError
+        for a robot given by a path: the server reads no files for its users.
         """
         libraries = []
         for path, robot in robots_in(document):
             if robot.get("path") is not None:
                 raise InputError(dotted(path, "path"), "is for local runs; upload the model and give robot.model")
             libraries.append(robot.get("library"))
-        anyone = self.shared_cache and None not in libraries
+        anyone = self.shared_cache and bool(libraries) and None not in libraries
         parts = ["" if anyone else owner, document, [_library_hash(name) for name in libraries], __version__, target]
         return hashlib.sha256(json.dumps(parts, sort_keys=True).encode()).hexdigest()
+
+
+def device_of(document: Mapping[str, Any]) -> str:
+    """What a document asks to be computed on; any device where its analysis has no such choice."""
+    return document.get("device", "auto")
 
 
 @cache

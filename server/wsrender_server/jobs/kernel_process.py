@@ -38,7 +38,7 @@ class KernelProcess:
         self._limit = settings.max_memory_bytes
         self._gauges = RawArray("q", 2)
         threads = settings.threads_per_worker or max(1, _cores() // max(1, settings.workers))
-        self._start = (settings.data_dir.absolute(), threads, settings.shard_samples, self._gauges)
+        self._start = (settings, threads, self._gauges)
         self._pool: ProcessPool | None = None
         self._lock = threading.Lock()
         self._token: str | None = None

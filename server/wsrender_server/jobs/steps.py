@@ -9,12 +9,14 @@ from functools import reduce
 from pathlib import Path
 from typing import Any
 
+from wsrender.errors import ResourceError
+from wsrender.robots.uploaded import MODELS_VARIABLE
 from wsrender_server.jobs.child_process import settle_in
 from wsrender_server.jobs.files import DataFolder
 from wsrender_server.jobs.task import Step, Task
+from wsrender_server.settings import Settings
 
 MOST_SHARDS = 256
-SHARD_UNIT = 1 << 16  # a multiple of the kernels' block of samples
 KEPT_PLANS = 4
 GPU_FACTOR = 256  # samples of a GPU in the time of one of the CPU, roughly
 
@@ -22,11 +24,12 @@ _state: dict[str, Any] = {}
 _plans: "OrderedDict[str, Any]" = OrderedDict()
 
 
-def start(data_dir: Path, threads: int, shard_samples: int, gauges: "ctypes.Array[ctypes.c_int64]") -> None:
+def start(settings: Settings, threads: int, gauges: "ctypes.Array[ctypes.c_int64]") -> None:
     """Set up a kernel process; ``gauges`` (2,), shared with the worker: process id, samples done of the shard."""
     settle_in()
-    os.environ["WSRENDER_THREADS"] = str(threads)
-    _state.update(files=DataFolder(data_dir), shard_samples=shard_samples, gauges=gauges)
+    files = DataFolder(settings.data_dir)
+    os.environ.update({"WSRENDER_THREADS": str(threads), MODELS_VARIABLE: str(files.models)})
+    _state.update(files=files, shard_samples=settings.shard_samples, max_samples=settings.max_samples, gauges=gauges)
     gauges[1] = 0
     gauges[0] = os.getpid()
 
@@ -55,9 +58,13 @@ def _plan(task: Task) -> dict[str, Any]:
     started = time.perf_counter()
     plan = _planned(task)
     resolved = plan.resolved()
-    if _divisible(task.document):
+    samples = sum(count for _, count in resolved["shards"])
+    if samples > _state["max_samples"]:
+        allowed = _state["max_samples"]
+        raise ResourceError("sampling", f"has {samples:.4g} samples; this server allows {allowed:.4g}")
+    if unit := resolved.get("shard_unit"):
         faster = GPU_FACTOR if plan.target.startswith("cuda:") else 1
-        resolved["shards"] = _divided(resolved["shards"], faster * _state["shard_samples"])
+        resolved["shards"] = _divided(samples, faster * _state["shard_samples"], unit)
     return {
         "resolved": resolved,
         "target": plan.target,
@@ -151,58 +158,19 @@ def partial_name(shard: int) -> str:
 def _planned(task: Task) -> Any:
     """The plan of a computation, made once per process."""
     from wsrender.run import plan
-    from wsrender.spec import parse_job
 
     key = f"{task.token}:{task.resolved is not None}"
     if key not in _plans:
-        job = parse_job(task.document)
-        robots = [_uploaded_robot(path, arm) for path, arm in job.arms().items()]
-        _plans[key] = plan(job, robots, resolved=task.resolved)
+        _plans[key] = plan(task.document, resolved=task.resolved)
         while len(_plans) > KEPT_PLANS:
             _plans.popitem(last=False)
     return _plans[key]
 
 
-def _uploaded_robot(path: Any, arm: Any) -> Any:
-    """The robot of an uploaded model, so that the document goes on naming it by its hash; None for any other."""
-    from wsrender.errors import InputError
-    from wsrender.robot import robot_of_spec
-    from wsrender.spec.arm import dotted
-
-    spec = arm.robot
-    if spec.source == "path":
-        raise InputError(dotted(path, "robot", "path"), "is for local runs; upload the model and give robot.model")
-    if spec.source != "model":
-        return None
-    text = _files().model(spec.model).read_text(encoding="utf-8")
-    return robot_of_spec(spec.model_copy(update={"model": None, _language(text): text}), arm.base, arm.tip)
-
-
-def _language(text: str) -> str:
-    """What a model is written in, by its root element."""
-    from defusedxml.ElementTree import ParseError, fromstring
-
-    from wsrender.errors import ModelError
-
-    try:
-        tag = fromstring(text).tag
-    except (ParseError, ValueError) as error:
-        raise ModelError("robot.model", f"is not XML: {error}") from error
-    languages = {"mujoco": "mjcf", "robot": "urdf"}
-    if tag not in languages:
-        raise ModelError("robot.model", f"has the root element <{tag}>; <mujoco> (MJCF) or <robot> (URDF) is needed")
-    return languages[tag]
-
-
-def _divisible(document: dict[str, Any]) -> bool:
-    return document["analysis"] == "workspace" and document["sampling"]["method"] != "converge"
-
-
-def _divided(shards: list[list[int]], size: int) -> list[list[int]]:
-    """Finer shards of about ``size`` samples, but never more than MOST_SHARDS."""
-    total = sum(count for _, count in shards)
+def _divided(total: int, size: int, unit: int) -> list[list[int]]:
+    """Shards of about ``size`` samples, a multiple of ``unit``, but never more than MOST_SHARDS."""
     size = max(size, -(-total // MOST_SHARDS))
-    size = -(-size // SHARD_UNIT) * SHARD_UNIT
+    size = -(-size // unit) * unit
     return [[first, min(size, total - first)] for first in range(0, total, size)]
 
 

@@ -19,7 +19,7 @@ from wsrender_server.jobs.cursor import cursor_after, place_of
 from wsrender_server.jobs.database import Transactions, open_database
 from wsrender_server.jobs.faults import IdempotencyConflict, InvalidTransition, QueueFull, StoreUnavailable
 from wsrender_server.jobs.files import DataFolder
-from wsrender_server.jobs.identity import Identity
+from wsrender_server.jobs.identity import Identity, device_of
 from wsrender_server.jobs.keys import KeyStore
 from wsrender_server.jobs.records import EventRecord, JobRecord, Submission
 from wsrender_server.jobs.results import ResultStore
@@ -247,7 +247,7 @@ class JobStore(ComputationStore, ResultStore, KeyStore):
             model = robot.get("model")
             if model is not None and session.get(Model, (owner, model)) is None:
                 raise InputError(dotted(path, "model"), f"{model} is not among your models; upload it first")
-        key = self.identity.key(owner, document, self._target(session, document["device"]))
+        key = self.identity.key(owner, document, self._target(session, device_of(document)))
         found = session.scalar(select(Computation).where(Computation.key == key).with_for_update())
         if found is not None:
             return found

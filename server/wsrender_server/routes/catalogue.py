@@ -123,7 +123,10 @@ _MODEL_BODY = {
 @router.post(
     "/models", tags=["models"], summary="Upload a robot model", status_code=201, response_model=ModelView,
     responses={
-        201: {"headers": {"Location": {"description": "The model.", "schema": {"type": "string"}}}},
+        201: {
+            "headers": {"Location": {"description": "The model.", "schema": {"type": "string"}}},
+            "links": {"model": {"operationId": "get_model", "parameters": {"sha256": "$response.body#/sha256"}}},
+        },
         **problem_responses(401, 403, 409, 413, 415, 422),
     },
     openapi_extra=_MODEL_BODY,

@@ -1,6 +1,5 @@
 """Jobs: submit, validate, list, look, cancel, retry, delete."""
 
-import copy
 import hashlib
 import json
 from collections.abc import Iterator
@@ -14,17 +13,16 @@ from starlette.concurrency import run_in_threadpool
 
 from wsrender.errors import DocumentError, InputError
 from wsrender.spec import ANALYSES
-from wsrender.spec.arm import dotted, robots_in
 from wsrender_server.admission import Admission
 from wsrender_server.auth import Principal, Reader, Submitter
 from wsrender_server.job_body import JobBody, json_body, read_body, refused
 from wsrender_server.jobs.states import ENDED, JobState
-from wsrender_server.model_text import check_model, decoded_model
 from wsrender_server.parts import Parts, Server
 from wsrender_server.problems import HttpProblem, problem_responses
 from wsrender_server.routes.job_views import JobId, JobView, Page, View, found, job_view
 
 LONGEST_WAIT_S = 60.0
+ANSWER_WITHIN_S = 8.0  # many clients and proxies give up after ten
 POLL_AGAIN_S = "1"
 
 router = APIRouter(prefix="/v1", tags=["jobs"])
@@ -49,9 +47,17 @@ def _body_of(schema: str) -> dict[str, Any]:
     return {"requestBody": {"required": True, "content": {"application/json": {"schema": reference}}}}
 
 
+def _link(operation: str, **parameters: str) -> dict[str, Any]:
+    return {"operationId": operation, "parameters": {"job_id": "$response.body#/id", **parameters}}
+
+
 _JOB_LINKS = {
-    name: {"operationId": operation, "parameters": {"job_id": "$response.body#/id"}}
-    for name, operation in (("job", "get_job"), ("cancel", "cancel_job"), ("delete", "delete_job"))
+    "job": _link("get_job"),
+    "cancel": _link("cancel_job"),
+    "delete": _link("delete_job"),
+    "result": _link("get_result"),
+    "artifacts": _link("list_artifacts"),
+    "artifact": _link("get_artifact", name="result.json"),
 }
 _LOCATION = {"Location": {"description": "The job.", "schema": {"type": "string"}}}
 _SOON = {"Retry-After": {"description": "When to look again [s].", "schema": {"type": "integer"}}}
@@ -63,7 +69,12 @@ _SOON = {"Retry-After": {"description": "When to look again [s].", "schema": {"t
     status_code=202,
     response_model=JobView,
     responses={
-        200: {"model": JobView, "description": "From the cache, or replayed", "headers": _LOCATION},
+        200: {
+            "model": JobView,
+            "description": "From the cache, or replayed",
+            "headers": _LOCATION,
+            "links": _JOB_LINKS,
+        },
         202: {"description": "Queued", "headers": _LOCATION | _SOON, "links": _JOB_LINKS},
         **problem_responses(401, 403, 404, 409, 413, 415, 422, 429),
     },
@@ -110,9 +121,7 @@ def submit_job(server: Server, principal: Submitter, request: Request, text: _Bo
 )
 async def validate_job(server: Server, principal: Submitter, text: _Body) -> Estimate:
     """Everything that can be wrong with a job is found here, the robot's model included; nothing is queued."""
-    document = await run_in_threadpool(
-        lambda: _with_model(server, principal, _admitted(server, principal, _read(text), text, "JobSubmission"))
-    )
+    document = await run_in_threadpool(lambda: _admitted(server, principal, _read(text), text, "JobSubmission"))
     return Estimate.model_validate({"valid": True} | await server.estimates.of(document))
 
 
@@ -162,14 +171,23 @@ async def get_job(
     principal: Reader,
     job_id: JobId,
     wait: Annotated[
-        float, Query(ge=0, le=LONGEST_WAIT_S, allow_inf_nan=False, description="Wait so long for the job to end [s].")
+        float,
+        Query(
+            ge=0,
+            le=LONGEST_WAIT_S,
+            allow_inf_nan=False,
+            description=f"Wait so long for the job to end [s], {ANSWER_WITHIN_S:g} s at most: then ask again.",
+        ),
     ] = 0,
     after: Annotated[
         int | None, Query(ge=0, le=2**31 - 1, description="Wait only until there is an event newer than this one.")
     ] = None,
 ) -> JobView:
-    """With `wait` the answer comes when the job has ended, with `after` when anything has happened to it."""
-    store, owner, ends = server.store, principal.owner, monotonic() + wait
+    """With `wait` the answer comes when the job has ended, with `after` when anything has happened to it.
+
+    An answer whose state is not final says that the time is up: ask again.
+    """
+    store, owner, ends = server.store, principal.owner, monotonic() + min(wait, ANSWER_WITHIN_S)
     with store.changes.watch(job_id) as watch:
         while True:
             job, news = await watch.read(owner, partial(store.get, owner, job_id))
@@ -228,18 +246,6 @@ def _admitted(server: Parts, principal: Principal, body: JobBody, text: bytes, s
         return admission.canonical(body.document)
     except DocumentError as error:
         raise refused(error, text, schema, body.prefix) from None
-
-
-def _with_model(server: Parts, principal: Principal, document: dict[str, Any]) -> dict[str, Any]:
-    """The document with the texts of uploaded models in the place of their hashes."""
-    document = copy.deepcopy(document)
-    for path, robot in robots_in(document):
-        content = None if robot["model"] is None else server.store.get_model(principal.owner, robot["model"])
-        if content is not None:
-            text = decoded_model(content)
-            kind = "urdf" if check_model(dotted(path, "model"), text) == "robot" else "mjcf"
-            robot |= {"model": None, kind: text}
-    return document
 
 
 def _idempotency_key(request: Request) -> str | None:

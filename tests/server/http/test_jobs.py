@@ -5,6 +5,7 @@ import threading
 import time
 
 import pytest
+from wsrender_server.routes import jobs as job_routes
 
 from tests.server.http.idle_server import problem_of
 
@@ -48,6 +49,13 @@ def test_waiting_ends_in_time(client, submit):
     job = submit()
     started = time.monotonic()
     assert client.get(f"/v1/jobs/{job['id']}", params={"wait": 0.3}).json()["state"] == "queued"
+    assert 0.3 <= time.monotonic() - started < 5
+
+
+def test_a_long_wait_is_answered_before_clients_give_up(client, submit, monkeypatch):
+    monkeypatch.setattr(job_routes, "ANSWER_WITHIN_S", 0.3)
+    job, started = submit(), time.monotonic()
+    assert client.get(f"/v1/jobs/{job['id']}", params={"wait": 60}).json()["state"] == "queued"
     assert 0.3 <= time.monotonic() - started < 5
 
 

@@ -34,8 +34,8 @@ def refuse():
 
 
 @pytest.fixture(scope="module")
-def process():
-    process = SideProcess(LIMIT)
+def process(tmp_path_factory):
+    process = SideProcess(LIMIT, tmp_path_factory.mktemp("models"))
     yield process
     process.close()
 

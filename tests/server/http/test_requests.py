@@ -1,0 +1,49 @@
+"""The outermost layer around requests."""
+
+import asyncio
+
+import pytest
+import structlog
+from anyio import BrokenResourceError
+from wsrender_server.metrics import Metrics
+from wsrender_server.requests import RequestLayer
+
+SCOPE = {"type": "http", "method": "GET", "path": "/v1/jobs/x/events", "headers": []}
+
+
+def logged(fault: BaseException, *, answering: bool) -> tuple[list[str], list[int]]:
+    """What is logged of a request that ends with a fault, and the statuses sent."""
+    statuses = []
+
+    async def app(scope, receive, send):
+        if answering:
+            await send({"type": "http.response.start", "status": 200, "headers": []})
+        raise fault
+
+    async def send(message):
+        if message["type"] == "http.response.start":
+            statuses.append(message["status"])
+
+    async def receive():
+        return {"type": "http.disconnect"}
+
+    layer = RequestLayer(app, Metrics(), 1)
+    with structlog.testing.capture_logs() as logs:
+        try:
+            asyncio.run(layer(dict(SCOPE), receive, send))
+        except Exception as raised:
+            assert raised is fault
+    return [entry["event"] for entry in logs], statuses
+
+
+LEFT = ExceptionGroup("unhandled errors in a TaskGroup", [BrokenResourceError()])
+MIXED = ExceptionGroup("unhandled errors in a TaskGroup", [BrokenResourceError(), ValueError()])
+
+
+def test_a_client_that_leaves_an_event_stream_is_no_fault():
+    assert logged(LEFT, answering=True) == (["request"], [200])
+
+
+@pytest.mark.parametrize(("fault", "answering"), [(MIXED, True), (ValueError(), True), (LEFT, False)])
+def test_any_other_fault_is_logged(fault, answering):
+    assert logged(fault, answering=answering) == (["request failed", "request"], [200 if answering else 500])

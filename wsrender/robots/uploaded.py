@@ -1,0 +1,36 @@
+"""Models that are named by their hash: those that were uploaded to a server, in the folder where it keeps them."""
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from wsrender.errors import InputError, ModelError
+from wsrender.robots import xml_source
+from wsrender.robots.loading import load_mjcf, load_urdf
+
+if TYPE_CHECKING:
+    from wsrender.robots.loaded_robot import LoadedRobot
+
+MODELS_VARIABLE = "WSRENDER_MODELS"
+
+_FIELD = "robot.model"
+
+
+def load_uploaded(sha256: str, **options) -> "LoadedRobot":
+    """The robot of the file ``sha256`` in the folder WSRENDER_MODELS, read as text: nothing beside it is opened.
+
+    ``options`` as in `wsrender.robots.loading.load`. Raises InputError where this process has no such folder or the
+    folder no such file, ModelError for a file that is no model.
+    """
+    folder = os.environ.get(MODELS_VARIABLE)
+    if folder is None:
+        raise InputError(_FIELD, "an uploaded model is known to its server only; give path, mjcf or urdf")
+    path = Path(folder) / sha256
+    if not path.is_file():
+        raise InputError(_FIELD, f"{sha256} is not among the uploaded models")
+    content = path.read_bytes()
+    root = xml_source.parse(content, _FIELD)
+    loaders = {"mujoco": load_mjcf, "robot": load_urdf}
+    if root.tag not in loaders:
+        raise ModelError(_FIELD, f"the root element is <{root.tag}>; <mujoco> or <robot> (URDF) is needed")
+    return loaders[root.tag](content, **options)
