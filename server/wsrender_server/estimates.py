@@ -30,7 +30,9 @@ class Estimates:
         task = self._tasks.get(key)
         if task is None:
             task = self._tasks[key] = asyncio.create_task(self._process.run(planned, document, timeout_s=TIMEOUT_S))
-            self._forget_oldest()
+            task.add_done_callback(lambda done: done.cancelled() or done.exception())  # nobody may ask again
+            for old in list(self._tasks)[:-MOST_KEPT]:
+                del self._tasks[old]
         await asyncio.wait({task}, timeout=PATIENCE_S)
         if not task.done():
             detail = "the job is being planned, which takes longer the first time; ask again"
@@ -41,11 +43,6 @@ class Estimates:
     def close(self) -> None:
         """Stop the process."""
         self._process.close()
-
-    def _forget_oldest(self) -> None:
-        for key in list(self._tasks)[:-MOST_KEPT]:
-            task = self._tasks.pop(key)
-            task.add_done_callback(lambda done: done.cancelled() or done.exception())
 
 
 def planned(document: dict[str, Any]) -> Estimated:
