@@ -7,6 +7,7 @@ import numpy as np
 from wsrender.engine import Partial, SweepPlan
 from wsrender.robots.chain import Chain
 from wsrender.robots.dh import structural_length
+from wsrender.volume.neighbours import inner_and_outer
 from wsrender.volume.volume_data import VolumeData
 
 
@@ -44,13 +45,9 @@ class VoxelVolumes:
 
 def voxel_volumes(volume: VolumeData) -> VoxelVolumes:
     """Estimates of the reachable volume from occupied voxels; inner and outer are no rigorous bounds."""
-    occupied = np.pad(volume.occupied, 2)
-    inner, outer = occupied, occupied
-    for axis in range(3):
-        inner = inner & np.roll(inner, 1, axis) & np.roll(inner, -1, axis)
-        outer = outer | np.roll(outer, 1, axis) | np.roll(outer, -1, axis)
     voxel = volume.voxel_size_m**3
-    return VoxelVolumes(*(float(np.count_nonzero(cells)) * voxel for cells in (occupied, inner, outer)))
+    cells = volume.occupied, *inner_and_outer(volume.occupied)
+    return VoxelVolumes(*(float(np.count_nonzero(voxels)) * voxel for voxels in cells))
 
 
 def global_isotropy(partial: Partial) -> float:

@@ -30,7 +30,7 @@ GOOD, POOR, RELAX, STIFFEN, SHORTEN = 0.75, 0.25, 0.1, 10.0, 0.25
 LARGEST_STEP = 1.0  # rad, or metres over the reach: linearised, a longer one means nothing
 # A try has ended where the slope of the distance along any free joint is below so much of its largest possible value,
 # or where a step has become shorter than rounding.
-FLAT = {wp.float32: 1e-3, wp.float64: 1e-5}
+FLAT = {wp.float32: 1e-3, wp.float64: 3e-4}
 FAR_AWAY = 1e30  # squared errors before the first step, which any trial improves
 SHORTEST_STEP = {wp.float32: 1e-7, wp.float64: 1e-13}
 

@@ -13,6 +13,7 @@ from wsrender.robots.chain import Chain
 
 BATCH = 1 << 17  # tries of a launch
 LEAST_SHARE = 8 * LANES  # tries that are worth a thread
+STEPS = 300  # of a try: ten suffice where the target is reached, slow ones come to rest far from their targets
 
 
 @dataclass(frozen=True)
@@ -46,7 +47,7 @@ def solve_inverse(
     accuracy: Accuracy,
     *,
     without_limits: bool = False,
-    steps: int = 100,
+    steps: int = STEPS,
     precision: str = "float64",
     device: str = "auto",
     threads: int | None = None,

@@ -1,6 +1,30 @@
-"""What a robot can reach, decided by inverse kinematics."""
+"""What a robot can reach, decided by inverse kinematics.
+
+`reachable` decides targets. `refined_volume(chain, tolerance)` gives the reachable volume with a 95 % interval, and
+`refined_volumes(chains, events, tolerance)` those of the points that so many of several placed chains reach:
+
+    found = refined_volumes(
+        [left.chain, right.chain],
+        {"any": Event(1, 2), "all": Event(2, 2), "exactly_1": Event(1, 1, precise=False)},
+        tolerance=0.005,
+    )
+    found.volumes["all"].value, found.volumes["all"].low, found.volumes["all"].high  # m³
+"""
 
 from wsrender.reachability.inverse_solver import InverseSolver, Solutions
+from wsrender.reachability.refined_volume import RefinedVolumes, refined_volume, refined_volumes
 from wsrender.reachability.targets import Reachability, reachable
+from wsrender.reachability.volume_estimate import Event, VolumeEstimate, estimate_volumes
 
-__all__ = ["InverseSolver", "Reachability", "Solutions", "reachable"]
+__all__ = [
+    "Event",
+    "InverseSolver",
+    "Reachability",
+    "RefinedVolumes",
+    "Solutions",
+    "VolumeEstimate",
+    "estimate_volumes",
+    "reachable",
+    "refined_volume",
+    "refined_volumes",
+]

@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 from scipy.spatial import KDTree
 
-from wsrender.engine import Accuracy, Tries, configurations, evaluate_kinematics, solve_inverse
+from wsrender.engine import Accuracy, Tries, configurations, evaluate_kinematics, solve_inverse, thread_count
 from wsrender.reachability.moving_joints import moving_joints
 from wsrender.robots.chain import Chain
 from wsrender.robots.reachable_box import reachable_box
@@ -18,8 +18,8 @@ REACHABLE, UNREACHABLE, UNDECIDED = 1, 0, -1
 LABELS = {REACHABLE: "reachable", UNREACHABLE: "unreachable", UNDECIDED: "undecided"}
 
 NEAREST = 8  # first starts: the nearest of a set of samples
-FRESH = 56  # then the same further samples for every target, so that a label depends on its target alone
-GROUPS = (1, 7, 8, 16, 32)  # starts between two looks at what they found
+FRESH = 248  # then the same further samples for every target, so that a label depends on its target alone
+GROUPS = (1, 7, 8, 16, 32, 64, 128)  # starts between two looks at what they found
 SAMPLES = {False: 1 << 15, True: 1 << 13}  # of the set, for positions and for poses
 # Evidence that a target is unreachable: so many tries (for positions, for poses) came to rest where no motion within
 # the limits leads nearer, clearly off the target, and so many of them at the least residual of all, within 1 %.
@@ -64,6 +64,7 @@ class InverseSolver:
         self.whole, self.pose, self.seed = chain, pose, seed
         self.chain, self._kept = (chain, np.arange(chain.n)) if pose else moving_joints(chain)
         self.accuracy = Accuracy(position_m, angle_rad, length_m or chain.reach / 2 or 1.0)
+        self._workers = thread_count(threads)
         self._execution = {"precision": precision, "device": device, "threads": threads}
 
     def solve(self, position: np.ndarray, axes: np.ndarray | None = None) -> Solutions:
@@ -102,7 +103,7 @@ class InverseSolver:
             if last <= NEAREST:
                 features = self._features(targets[search.pending])
                 # k as a list gives a column per neighbour.
-                _, near = self._tree.query(features, k=list(range(first + 1, last + 1)), workers=-1)  # type: ignore[arg-type]
+                _, near = self._tree.query(features, k=list(range(first + 1, last + 1)), workers=self._workers)  # type: ignore[arg-type]
                 yield self._samples[near]
             else:
                 yield np.tile(self._fresh(first - NEAREST, last - NEAREST), (len(search.pending), 1, 1))

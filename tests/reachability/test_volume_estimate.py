@@ -1,0 +1,117 @@
+"""Volumes of sets that are known exactly: intervals that hold them as often as they claim, and how the work grows."""
+
+from functools import partial
+
+import numpy as np
+import pytest
+
+from wsrender.reachability.volume_estimate import Event, estimate_volumes, wilson
+from wsrender.volume.neighbours import inner_and_outer
+
+EDGE, HALF = 0.1, 1.8
+IN_ONE = {"in": Event(1, 1)}
+LENS = 5 * np.pi / 12  # unit balls at x = ±0.5
+UNION = 8 * np.pi / 3 - LENS
+
+
+def in_shell(points, radius=1.0, hole=0.4):
+    distance = np.linalg.norm(points, axis=1)
+    return ((distance <= radius) & (distance >= hole)).astype(np.int8)[:, None]
+
+
+def in_balls(points):
+    centers = np.array([[0.5, 0, 0], [-0.5, 0, 0]])
+    return (np.linalg.norm(points[:, None] - centers, axis=2) <= 1).astype(np.int8)
+
+
+def strata(membership, edge=EDGE):
+    """Inner, border and outer cells by what falls into them, as for a robot's samples."""
+    points = np.random.default_rng(0).uniform(-HALF, HALF, (400_000, 3))
+    points = points[membership(points).any(axis=1)]
+    cells = round(HALF / edge)
+    occupied = np.zeros((2 * cells,) * 3, bool)
+    occupied[tuple((np.floor(points / edge).astype(int) + cells).T)] = True
+    inner, outer = (part[1:-1, 1:-1, 1:-1] for part in inner_and_outer(occupied))
+    return [np.argwhere(part) - cells for part in (inner, outer & ~inner, ~outer)]
+
+
+SHELL = 4 / 3 * np.pi * (1 - 0.4**3)
+
+
+@pytest.mark.parametrize("tolerance", [0.02, 0.005])
+def test_intervals_hold_the_volume_as_often_as_they_claim(tolerance):
+    cells = strata(in_shell)
+    held = 0
+    for seed in range(100):
+        estimate = estimate_volumes(in_shell, cells, EDGE, IN_ONE, tolerance, seed=seed).volumes["in"]
+        assert estimate.met
+        assert estimate.high - estimate.low <= 2 * tolerance * estimate.value
+        held += estimate.low <= SHELL <= estimate.high
+    assert 90 <= held <= 99
+
+
+def test_exactly_so_many_sets():
+    events = {"any": Event(1, 2), "all": Event(2, 2), "one": Event(1, 1, precise=False)}
+    cells = strata(in_balls)
+    held = dict.fromkeys(events, 0)
+    for seed in range(100):
+        volumes = estimate_volumes(in_balls, cells, EDGE, events, 0.01, seed=seed).volumes
+        assert volumes["any"].value == pytest.approx(volumes["all"].value + volumes["one"].value)
+        for name, volume in {"any": UNION, "all": LENS, "one": UNION - LENS}.items():
+            held[name] += volumes[name].low <= volume <= volumes[name].high
+    assert min(held.values()) >= 90
+    assert held["all"] <= 99
+
+
+def test_work_grows_with_the_boundary_not_with_the_volume():
+    cells = strata(in_shell)
+    points = [estimate_volumes(in_shell, cells, EDGE, IN_ONE, t).points for t in (0.008, 0.004, 0.002, 0.001)]
+    # Without cutting the border it would take 64 times as many.
+    assert points[-1] < 24 * points[0]
+
+
+def test_undecided_points_count_both_ways():
+    def unsure(points):
+        labels = in_shell(points)
+        labels[(points[:, 0] > 0.9)] = -1  # the true volume may lie anywhere between
+        return labels
+
+    without = estimate_volumes(in_shell, strata(in_shell), EDGE, IN_ONE, 0.01).volumes["in"]
+    estimate = estimate_volumes(unsure, strata(in_shell), EDGE, IN_ONE, 0.01, max_points=100_000).volumes["in"]
+    cap = np.pi * 0.1**2 * (3 - 0.1) / 3
+    box = (HALF - 0.9) * (2 * HALF) ** 2
+    assert estimate.low == pytest.approx(SHELL - cap, rel=0.03)
+    assert estimate.high == pytest.approx(SHELL - cap + box, rel=0.02)
+    assert estimate.undecided == pytest.approx(box / 2, rel=0.02)
+    assert not estimate.met
+    assert without.undecided == 0
+
+
+def test_missed_points_raise_the_upper_end_alone():
+    cells = strata(in_shell)
+    exact = estimate_volumes(in_shell, cells, EDGE, IN_ONE, 0.02, seed=1).volumes["in"]
+    hiding = estimate_volumes(in_shell, cells, EDGE, IN_ONE, 0.02, seed=1, missed=lambda v: 0.001 * v).volumes["in"]
+    assert hiding.low == exact.low
+    assert hiding.high == pytest.approx(exact.high + 0.001 * exact.value, rel=1e-3)
+
+
+def test_nothing_inside_ends_with_an_upper_bound():
+    empty = partial(in_shell, radius=-1.0)
+    found = estimate_volumes(empty, strata(in_shell), EDGE, IN_ONE, 0.01)
+    estimate = found.volumes["in"]
+    assert (estimate.value, estimate.low, estimate.met) == (0.0, 0.0, True)
+    assert 0 < estimate.high <= 0.02 * (2 * HALF) ** 3
+    assert found.points < 100_000
+
+
+def test_voids_inside_are_found():
+    full = [np.argwhere(np.ones((36, 36, 36), bool)) - 18]  # one stratum: nobody said where the hole is
+    estimate = estimate_volumes(in_shell, full, EDGE, IN_ONE, 0.005).volumes["in"]
+    assert estimate.low <= SHELL <= estimate.high
+
+
+def test_wilson():
+    # Agresti & Coull 1998, and Wilson's own formula at the ends.
+    low, high = wilson(np.array([0, 5, 10]), np.array([10, 10, 10]))
+    assert low == pytest.approx([0, 0.2366, 0.7225], abs=1e-4)
+    assert high == pytest.approx([0.2775, 0.7634, 1], abs=1e-4)

@@ -1,0 +1,211 @@
+"""Volumes with confidence intervals from points whose membership is decided one by one (stratified sampling).
+
+A stratum is a set of cells of one size. Points are drawn uniformly and independently within a stratum, so that the
+share found is binomial, and more of them where they narrow the interval most (Neyman, *On the two different aspects of
+the representative method*, 1934). Where a stratum would need many more points than it has cells, a pilot of a few
+points per cell sorts its cells: those whose points agree become strata of their own, nearly without variance, the
+others are cut in eight. So the work grows with the boundary of what is measured, not with its volume. Pilot points
+only sort cells; they do not enter the estimate, whose points are drawn afterwards.
+"""
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+Membership = Callable[[np.ndarray], np.ndarray]
+"""Points (N, 3) [m] → labels (N, K) int8 for K sets: 1 inside, 0 outside, -1 undecided."""
+
+QUANTILE = 1.959963984540054  # of the normal distribution: 95 %
+FIRST_POINTS = 500  # of every stratum
+PILOT_POINTS, DEEPEST, PAYS = 4, 6, 2.0  # points per cell; cuts; needed points per pilot point that make it pay
+GROWTH = 4.0  # largest factor by which a stratum's points grow between two looks
+SAFETY = 0.9  # of the tolerance that is aimed at
+PURE_SHARE = 0.4  # of the half width that strata without any variance may take together
+OCTANTS = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)])
+
+
+@dataclass(frozen=True)
+class Event:
+    """Points inside at least ``least`` and at most ``most`` of the sets; ``precise``: to the tolerance asked."""
+
+    least: int
+    most: int
+    precise: bool = True
+
+
+@dataclass(frozen=True)
+class VolumeEstimate:
+    """A volume [m³] with its 95 % interval, what undecided points may add to its half, and whether it is as asked."""
+
+    value: float
+    low: float
+    high: float
+    undecided: float
+    met: bool
+
+
+@dataclass(frozen=True)
+class VolumeEstimates:
+    """Estimates by event, and the number of points decided for them (pilots included)."""
+
+    volumes: dict[str, VolumeEstimate]
+    points: int
+
+
+@dataclass(eq=False)
+class _Stratum:
+    cells: np.ndarray  # (M, 3) int64
+    edge: float  # [m]; a cell covers [i, i + 1) edge
+    events: int
+    depth: int = 0
+    count: int = 0
+    surely: np.ndarray = field(init=False)  # (E,) points in the event however undecided ones turn out
+    possibly: np.ndarray = field(init=False)
+
+    def __post_init__(self):
+        self.surely = np.zeros(self.events, np.int64)
+        self.possibly = np.zeros(self.events, np.int64)
+
+    @property
+    def volume(self) -> float:
+        return len(self.cells) * self.edge**3
+
+
+def estimate_volumes(
+    membership: Membership,
+    strata: Iterable[np.ndarray],
+    cell_edge_m: float,
+    events: Mapping[str, Event],
+    tolerance: float,
+    *,
+    missed: Callable[[float], float] = lambda value: 0.0,
+    seed: int = 0,
+    max_points: int = 10_000_000,
+    progress: Callable[[int], None] | None = None,
+) -> VolumeEstimates:
+    """Volumes of events to a relative ``tolerance`` of half the 95 % interval, from at most ``max_points`` points.
+
+    Relative to the volume, or to that of all strata where no point was found.
+
+    ``strata``: sets of cells (M, 3) int64 of the lattice of edge ``cell_edge_m`` that together hold everything to be
+    measured; cell (i, j, k) covers [i, i + 1) edge, and so on. ``missed`` (value) is the volume that wrong "outside"
+    labels may hide [m³]: it widens the interval.
+    """
+    return _Estimation(membership, events, tolerance, missed, seed, max_points, progress).run(strata, cell_edge_m)
+
+
+class _Estimation:
+    def __init__(self, membership, events, tolerance, missed, seed, max_points, progress):
+        self.membership, self.events, self.tolerance, self.missed = membership, events, tolerance, missed
+        self.max_points, self.progress = max_points, progress
+        self.random = np.random.Generator(np.random.Philox(key=seed))
+        self.points = 0
+        self.strata: list[_Stratum] = []
+
+    def run(self, strata: Iterable[np.ndarray], edge: float) -> VolumeEstimates:
+        self.strata = [_Stratum(cells, edge, len(self.events)) for cells in strata if len(cells)]
+        while True:
+            for stratum in self.strata:
+                if not stratum.count:
+                    self._add(stratum, FIRST_POINTS)
+            volumes = self._volumes()
+            wanted = [v for v, e in zip(volumes.values(), self.events.values(), strict=True) if e.precise]
+            if all(v.met for v in wanted) or self.points >= self.max_points:
+                return VolumeEstimates(volumes, self.points)
+            self._narrow(volumes)
+
+    def _narrow(self, volumes: dict[str, VolumeEstimate]) -> None:
+        """Take more points, or cut strata, as the widest of the intervals needs it."""
+        needed = np.max([self._needed(k, v) for k, v in enumerate(volumes.values())], axis=0)
+        left = self.max_points - self.points
+        for stratum, target in zip(list(self.strata), needed, strict=True):
+            more = int(min(target - stratum.count, (GROWTH - 1) * stratum.count, left))
+            if more <= 0:
+                continue
+            if target > PAYS * PILOT_POINTS * len(stratum.cells) and stratum.depth < DEEPEST:
+                self._sort(stratum)
+            else:
+                self._add(stratum, more)
+            left = self.max_points - self.points
+        if not (needed > [s.count for s in self.strata[: len(needed)]]).any() and len(needed) == len(self.strata):
+            for stratum in self.strata:  # so near the goal that nothing is missing on paper
+                self._add(stratum, max(stratum.count // 4, 1))
+
+    def _needed(self, event: int, volume: VolumeEstimate) -> np.ndarray:
+        """Points of every stratum for one event: Neyman's, and enough where all points agree."""
+        if volume.met or not list(self.events.values())[event].precise:
+            return np.zeros(len(self.strata))
+        half = SAFETY * self.tolerance * volume.value - volume.undecided
+        half = max(half, 0.1 * self.tolerance * volume.value) or self.tolerance * sum(s.volume for s in self.strata)
+        share = np.array([(s.surely[event] + s.possibly[event]) / (2 * s.count) for s in self.strata])
+        size = np.array([s.volume for s in self.strata])
+        spread = size * np.sqrt(share * (1 - share))
+        neyman = (QUANTILE / half) ** 2 * spread.sum() * spread
+        return np.maximum(neyman, size * QUANTILE**2 * np.sqrt(len(size)) / (PURE_SHARE * half))
+
+    def _volumes(self) -> dict[str, VolumeEstimate]:
+        return {name: self._volume(k, event) for k, (name, event) in enumerate(self.events.items())}
+
+    def _volume(self, k: int, event: Event) -> VolumeEstimate:
+        """Intervals of the strata combined by the square-and-add method (Zou & Donner 2008)."""
+        size = np.array([s.volume for s in self.strata])
+        count = np.array([s.count for s in self.strata])
+        surely = np.array([s.surely[k] for s in self.strata])
+        possibly = np.array([s.possibly[k] for s in self.strata])
+        least, most = (size * surely / count).sum(), (size * possibly / count).sum()
+        below = least - np.sqrt(((size * (surely / count - wilson(surely, count)[0])) ** 2).sum())
+        above = most + np.sqrt(((size * (wilson(possibly, count)[1] - possibly / count)) ** 2).sum())
+        value, hidden = (least + most) / 2, self.missed(most)
+        above += hidden
+        if event.most < max(e.most for e in self.events.values()):
+            below -= hidden  # a point missed by one set may count for this event wrongly
+        below = max(below, 0.0)
+        met = bool(above - below <= 2 * self.tolerance * (value or size.sum()))
+        return VolumeEstimate(float(value), float(below), float(above), float(most - least) / 2, met)
+
+    def _add(self, stratum: _Stratum, count: int) -> None:
+        """Decide more points of a stratum."""
+        cells = stratum.cells[self.random.integers(len(stratum.cells), size=count)]
+        surely, possibly = self._happens(self._labels(cells, stratum.edge))
+        stratum.surely += surely.sum(axis=0)
+        stratum.possibly += possibly.sum(axis=0)
+        stratum.count += count
+
+    def _happens(self, labels: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Whether each event surely or possibly happens at points with these labels, (N, E) bool each."""
+        inside, undecided = (labels == 1).sum(axis=1), (labels < 0).sum(axis=1)
+        most = inside + undecided
+        events = self.events.values()
+        surely = [(inside >= e.least) & (most <= e.most) for e in events]
+        possibly = [(most >= e.least) & (inside <= e.most) for e in events]
+        return np.stack(surely, axis=1), np.stack(possibly, axis=1)
+
+    def _sort(self, stratum: _Stratum) -> None:
+        """Replace a stratum by those of its cells whose pilot points agree, label by label, and the others' octants."""
+        cells = np.repeat(stratum.cells, PILOT_POINTS, axis=0)
+        labels = self._labels(cells, stratum.edge).astype(np.int64)
+        code = (labels + 1) @ 3 ** np.arange(labels.shape[1])
+        code = code.reshape(-1, PILOT_POINTS)
+        agree = (code == code[:, :1]).all(axis=1)
+        octants = (2 * stratum.cells[~agree, None] + OCTANTS).reshape(-1, 3)
+        parts = [stratum.cells[agree & (code[:, 0] == c)] for c in np.unique(code[agree, 0])]
+        new = [_Stratum(part, stratum.edge, stratum.events, DEEPEST) for part in parts]
+        new += [_Stratum(octants, stratum.edge / 2, stratum.events, stratum.depth + 1)] * bool(len(octants))
+        self.strata.remove(stratum)
+        self.strata += new
+
+    def _labels(self, cells: np.ndarray, edge: float) -> np.ndarray:
+        labels = self.membership((cells + self.random.random(cells.shape)) * edge)
+        self.points += len(cells)
+        if self.progress:
+            self.progress(self.points)
+        return labels
+
+
+def wilson(successes: np.ndarray, count: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """95 % interval of a share (Wilson 1927)."""
+    z2 = QUANTILE**2
+    center = (successes + z2 / 2) / (count + z2)
+    half = QUANTILE / (count + z2) * np.sqrt(successes * (count - successes) / count + z2 / 4)
+    return np.maximum(center - half, 0.0), np.minimum(center + half, 1.0)
