@@ -115,13 +115,14 @@ def kinematics(real, n: int, sources: tuple[int, ...], plain: bool) -> SimpleNam
     every joint frame after its motion, (L, 3) each, its axes X, Y, Z in the world and the tip's position in it
     (``levers``) [m], and of the motion (L,) each the ``sines``, ``cosines`` and ``slides`` [m]. ``jacobian(chain,
     frames)`` is (6, n), rows linear then angular at the tip in world axes, as MuJoCo's mj_jacSite.
+    ``moved_base(chain, value, levers[0])`` is the tip for another value of the first joint, bit for bit.
 
     The tip's position is accumulated from the tip to the base: the levers of the last joints, which move the least
     inertia, then err by their own small length times epsilon and not by the arm's.
     """
     L = len(sources)
     SOURCE = wp.types.vector(L, wp.int32)(*sources)
-    STRIDE = JOINT_STRIDE
+    STRIDE, B = JOINT_STRIDE, L * JOINT_STRIDE
     vec3 = wp.types.vector(3, real)
     vec_n, vec_l = wp.types.vector(n, real), wp.types.vector(L, real)
     axes_type = wp.types.matrix((L, 3), real)
@@ -141,49 +142,68 @@ def kinematics(real, n: int, sources: tuple[int, ...], plain: bool) -> SimpleNam
         slides: vec_l
 
     @wp.func
+    def motion(chain: Chain, i: int, value: real):
+        a = i * STRIDE
+        slide = real(0.0)
+        angle = value
+        if wp.static(not PLAIN):
+            slide = value * chain[a + 9] + chain[a + 10]
+            angle = value * chain[a + 8]
+        sine, cosine = sincos(angle, chain[a + 5], chain[a + 6], chain[a + 7])
+        return sine, cosine, slide
+
+    @wp.func
+    def before(chain: Chain, i: int, sine: real, cosine: real, slide: real, r: vec3):
+        a = i * STRIDE
+        rx = cosine * r[0] - sine * r[1]
+        ry = sine * r[0] + cosine * r[1]
+        rz = r[2]
+        if wp.static(not PLAIN):
+            rz = rz + slide
+        return vec3(
+            chain[a + 2] + rx,
+            chain[a + 3] + (chain[a] * ry - chain[a + 1] * rz),
+            chain[a + 4] + (chain[a + 1] * ry + chain[a] * rz),
+        )
+
+    @wp.func
+    def in_world(chain: Chain, r: vec3):
+        tip = vec3()
+        for k in range(3):
+            tip[k] = chain[B + 9 + k] + (chain[B + k] * r[0] + chain[B + 3 + k] * r[1] + chain[B + 6 + k] * r[2])
+        return tip
+
+    @wp.func
+    def moved_base(chain: Chain, value: real, lever: vec3):
+        sine, cosine, slide = motion(chain, 0, value)
+        return in_world(chain, before(chain, 0, sine, cosine, slide, lever))
+
+    @wp.func
     def forward(chain: Chain, q: vec_n):
-        b = L * STRIDE
-        x = vec3(chain[b], chain[b + 1], chain[b + 2])
-        y = vec3(chain[b + 3], chain[b + 4], chain[b + 5])
-        z = vec3(chain[b + 6], chain[b + 7], chain[b + 8])
+        x = vec3(chain[B], chain[B + 1], chain[B + 2])
+        y = vec3(chain[B + 3], chain[B + 4], chain[B + 5])
+        z = vec3(chain[B + 6], chain[B + 7], chain[B + 8])
         frames = Frames()
         for i in range(L):
             a = i * STRIDE
             tilted = y * chain[a] + z * chain[a + 1]
             z = z * chain[a] - y * chain[a + 1]
-            angle = q[SOURCE[i]]
-            if wp.static(not PLAIN):
-                frames.slides[i] = angle * chain[a + 9] + chain[a + 10]
-                angle = angle * chain[a + 8]
-            sine, cosine = sincos(angle, chain[a + 5], chain[a + 6], chain[a + 7])
+            sine, cosine, slide = motion(chain, i, q[SOURCE[i]])
             y = tilted * cosine - x * sine
             x = x * cosine + tilted * sine
             frames.sines[i] = sine
             frames.cosines[i] = cosine
+            frames.slides[i] = slide
             frames.X[i] = x
             frames.Y[i] = y
             frames.Z[i] = z
-        t = b + 12
+        t = B + 12
         r = vec3(chain[t], chain[t + 1], chain[t + 2])
         for back in range(L):
             i = L - 1 - back
-            a = i * STRIDE
             frames.levers[i] = r
-            sine = frames.sines[i]
-            cosine = frames.cosines[i]
-            rx = cosine * r[0] - sine * r[1]
-            ry = sine * r[0] + cosine * r[1]
-            rz = r[2]
-            if wp.static(not PLAIN):
-                rz = rz + frames.slides[i]
-            r = vec3(
-                chain[a + 2] + rx,
-                chain[a + 3] + (chain[a] * ry - chain[a + 1] * rz),
-                chain[a + 4] + (chain[a + 1] * ry + chain[a] * rz),
-            )
-        tip = vec3()
-        for k in range(3):
-            tip[k] = chain[b + 9 + k] + (chain[b + k] * r[0] + chain[b + 3 + k] * r[1] + chain[b + 6 + k] * r[2])
+            r = before(chain, i, frames.sines[i], frames.cosines[i], frames.slides[i], r)
+        tip = in_world(chain, r)
         tip_x = x * chain[t + 3] + y * chain[t + 4] + z * chain[t + 5]
         tip_y = x * chain[t + 6] + y * chain[t + 7] + z * chain[t + 8]
         tip_z = x * chain[t + 9] + y * chain[t + 10] + z * chain[t + 11]
@@ -205,5 +225,11 @@ def kinematics(real, n: int, sources: tuple[int, ...], plain: bool) -> SimpleNam
         return J
 
     return SimpleNamespace(
-        forward=forward, jacobian=jacobian, vec3=vec3, vec_n=vec_n, jacobian_type=jacobian_type, Frames=Frames
+        forward=forward,
+        jacobian=jacobian,
+        moved_base=moved_base,
+        vec3=vec3,
+        vec_n=vec_n,
+        jacobian_type=jacobian_type,
+        Frames=Frames,
     )

@@ -132,6 +132,7 @@ def _grid(real, n: int):
     int_n = wp.types.vector(n, wp.int32)
     f32 = wp.float32
     ONE = wp.float32(1.0)
+    at_level = grid_level(real)
 
     @wp.func
     def prepare(space: Space, first: wp.int64):
@@ -161,11 +162,35 @@ def _grid(real, n: int):
             high = value >= levels
             carry = wp.where(high, carry + 1, carry)
             value = wp.where(high, value - levels, value)
-            last = value == levels - 1
-            q[i] = wp.where(last, space.upper[i], space.lower[i] + real(value) * space.step[i])
+            q[i] = at_level(space.lower[i], space.upper[i], space.step[i], value, levels)
         return q
 
     return prepare, draw
+
+
+@cache
+def grid_level(real):
+    """Device function (lower, upper, step, level, levels) -> value of a coordinate; both limits are met exactly."""
+
+    @wp.func
+    def at_level(lower: real, upper: real, step: real, level: wp.int32, levels: wp.int32):
+        return wp.where(level == levels - 1, upper, lower + real(level) * step)
+
+    return at_level
+
+
+@cache
+def base_levels(real):
+    """Struct with the levels of a first joint that the sampling itself leaves at one value."""
+
+    @wp.struct
+    class BaseLevels:
+        lower: real
+        upper: real
+        step: real
+        levels: wp.int32
+
+    return BaseLevels
 
 
 def _stateless(Space):

@@ -23,6 +23,11 @@ from wsrender_kernels.singular_values import singular_values, without_noise
 LINEAR, ALL_ROWS = (0, 1, 2), (0, 1, 2, 3, 4, 5)
 
 
+def in_base_axes(rows: tuple[int, ...]) -> bool:
+    """Whether a task has some rows of a triad (linear, angular) but not all: then its axes matter."""
+    return any(len({r for r in rows if r // 3 == part}) in (1, 2) for part in (0, 1))
+
+
 def spectrum_length(n: int, rows: tuple[int, ...], convention: str) -> int:
     """Number of values that an index function of this convention receives."""
     return 1 + min(6, n) if convention == "wsrender_code" else len(rows)
@@ -114,7 +119,7 @@ def _task_matrix(real, n: int, rows: tuple[int, ...]):
     Whole triads are taken in world axes, which changes no singular value; single rows mean base axes.
     """
     m = len(rows)
-    IN_BASE_AXES = any(len({r for r in rows if r // 3 == part}) in (1, 2) for part in (0, 1))
+    IN_BASE_AXES = in_base_axes(rows)
     vec3 = wp.types.vector(3, real)
     ROW = wp.types.vector(m, wp.int32)(*rows)
     mat_6n, mat_mn = wp.types.matrix((6, n), real), wp.types.matrix((m, n), real)

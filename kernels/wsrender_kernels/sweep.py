@@ -19,7 +19,7 @@ from wsrender_kernels.inertia import inertia
 from wsrender_kernels.kinematics import kinematics, orientation
 from wsrender_kernels.model import model_type
 from wsrender_kernels.options import CUDA_OPTIONS, MODULE_OPTIONS
-from wsrender_kernels.sampling import LANES, sample_space, sampling
+from wsrender_kernels.sampling import LANES, base_levels, grid_level, sample_space, sampling
 from wsrender_kernels.spectrum import spectrum
 from wsrender_kernels.voxels import lattice, lowest, voxels
 
@@ -50,6 +50,7 @@ class Shape:
     given_inertia: bool = False  # M(q) is an input (MuJoCo's own)
     penalty: bool = False  # joint-limit penalisation
     torque_scaling: bool = False
+    base_levels: bool = False  # whether a sample stands for every level of the base joint
     voxels: bool = True
     maximum: bool = True  # per voxel
     minimum: bool = False
@@ -95,7 +96,10 @@ def _power_of_two(size: int) -> int:
 
 @cache
 def _state(shape: Shape) -> SimpleNamespace:
-    """Device function ``(model, q, at, stride) -> tip, tip axes (3 x 3), J, M`` from the chain or from given arrays."""
+    """Device function ``(model, q, at, stride) -> tip, tip axes (3 x 3), J, M`` from the chain or from given arrays.
+
+    With ``base_levels`` the tip's place in the first joint's frame stands for the tip: see `kinematics.moved_base`.
+    """
     real, n = shape.real, shape.n
     kin = kinematics(real, n, shape.sources, shape.plain)
     forward, jacobian, jacobian_type = kin.forward, kin.jacobian, kin.jacobian_type
@@ -103,6 +107,7 @@ def _state(shape: Shape) -> SimpleNamespace:
     inertia_matrix, inertia_type = dyn.inertia_matrix, dyn.joint_inertia_type
     Model = model_type(real, n, len(shape.sources))
     vec3, vec_n, mat33 = kin.vec3, kin.vec_n, wp.types.matrix((3, 3), real)
+    BASE_LEVELS = shape.base_levels
 
     @wp.func
     def no_inertia(model: Model, at: wp.int64, stride: wp.int64):
@@ -132,12 +137,16 @@ def _state(shape: Shape) -> SimpleNamespace:
     @wp.func
     def from_chain(model: Model, q: vec_n, at: wp.int64, stride: wp.int64):
         tip, x, y, z, frames = forward(model.chain, q)
+        if wp.static(BASE_LEVELS):
+            tip = frames.levers[0]
         J = jacobian(model.chain, frames)
         return tip, wp.matrix_from_cols(x, y, z), J, read_inertia(model, at, stride)
 
     @wp.func
     def with_inertia(model: Model, q: vec_n, at: wp.int64, stride: wp.int64):
         tip, x, y, z, frames = forward(model.chain, q)
+        if wp.static(BASE_LEVELS):
+            tip = frames.levers[0]
         J = jacobian(model.chain, frames)
         M = inertia_matrix(model.chain, model.bodies, frames)
         return tip, wp.matrix_from_cols(x, y, z), J, M
@@ -239,10 +248,11 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
     cell, quantized = voxels(real).cell, voxels(real).quantized
     Model, Space = model_type(real, shape.n, len(shape.sources)), sample_space(real, shape.n)
     Lattice, Outputs, bits = lattice(real), outputs_type(shape), bits_type(real)
-    vec3 = wp.types.vector(3, real)
+    vec3, Base, at_level = wp.types.vector(3, real), base_levels(real), grid_level(real)
+    moved_base = kinematics(real, shape.n, shape.sources, shape.plain).moved_base
     record_type, sums_type = record_type_of(shape), sums_type_of(shape)
     N_OUTPUTS, REDUCED, RECORD = shape.n_outputs, 5 + K, shape.record_size
-    VOXELS, SUMS, ROWS = shape.voxels, shape.sums, shape.keep_rows
+    VOXELS, SUMS, ROWS, BASE_LEVELS = shape.voxels, shape.sums, shape.keep_rows, shape.base_levels
     LOWEST = bits(lowest(real))
     LOWEST_ROW = REDUCED * LANES
     LEAST_SUM = wp.int64(-(2**62) - 2**61)
@@ -254,12 +264,14 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
     keys_type = wp.types.vector((REDUCED + 1) * LANES, bits)
     quanta_type = wp.types.vector(K * LANES, bits)
     cells_type = wp.types.vector(LANES, wp.int32)
+    levers_type = wp.types.vector(3 * LANES, real)
 
     @wp.kernel(module="unique", module_options=MODULE_OPTIONS, enable_backward=False)
     def sweep_cpu(
         # in
         model: Model,
         space: Space,
+        base: Base,
         grid: Lattice,
         first: wp.int64,
         count: wp.int64,
@@ -274,67 +286,81 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
         keys = keys_type()
         quanta = quanta_type()
         cells = cells_type()
+        levers = levers_type()
 
         for lane in range(BLOCK):
             # The lanes past the end repeat the last sample: harmless in extremes, masked in counts and sums.
             out = evaluate(model, space, block, start, wp.min(lane, valid - 1))
             for r in range(N_OUTPUTS):
                 values[r * BLOCK + lane] = out[r]
+            if wp.static(BASE_LEVELS):
+                for r in range(3):
+                    levers[r * BLOCK + lane] = out[r]
+
+        for level in range(base.levels):
+            if wp.static(BASE_LEVELS):
+                angle = at_level(base.lower, base.upper, base.step, level, base.levels)
+                for lane in range(BLOCK):
+                    lever = vec3(levers[lane], levers[BLOCK + lane], levers[2 * BLOCK + lane])
+                    tip = moved_base(model.chain, angle, lever)
+                    for r in range(3):
+                        values[r * BLOCK + lane] = tip[r]
             if wp.static(VOXELS):
-                cells[lane] = cell(grid, vec3(out[0], out[1], out[2]))
+                for lane in range(BLOCK):
+                    cells[lane] = cell(grid, vec3(values[lane], values[BLOCK + lane], values[2 * BLOCK + lane]))
 
-        for r in range(REDUCED):
-            largest = LOWEST
-            smallest = LOWEST
-            row = r * BLOCK
-            for lane in range(BLOCK):
-                key = ordered(values[row + lane])
-                keys[row + lane] = key
-                largest = wp.max(largest, key)
-                smallest = wp.max(smallest, ~key)
-            to.extremes[2 * r] = wp.max(to.extremes[2 * r], largest)
-            to.extremes[2 * r + 1] = wp.max(to.extremes[2 * r + 1], smallest)
+            for r in range(REDUCED):
+                largest = LOWEST
+                smallest = LOWEST
+                row = r * BLOCK
+                for lane in range(BLOCK):
+                    key = ordered(values[row + lane])
+                    keys[row + lane] = key
+                    largest = wp.max(largest, key)
+                    smallest = wp.max(smallest, ~key)
+                to.extremes[2 * r] = wp.max(to.extremes[2 * r], largest)
+                to.extremes[2 * r + 1] = wp.max(to.extremes[2 * r + 1], smallest)
 
-        for k in range(K):
-            total = wp.int64(0)
-            scale = to.scales[k]
-            row = (3 + k) * BLOCK
-            target = k * BLOCK
-            for lane in range(BLOCK):
-                quantum = quantized(values[row + lane], scale)
-                quanta[target + lane] = quantum
-                total += wp.where(lane < valid, wp.int64(quantum), wp.int64(0))
-            to.totals[k] = to.totals[k] + total
+            for k in range(K):
+                total = wp.int64(0)
+                scale = to.scales[k]
+                row = (3 + k) * BLOCK
+                target = k * BLOCK
+                for lane in range(BLOCK):
+                    quantum = quantized(values[row + lane], scale)
+                    quanta[target + lane] = quantum
+                    total += wp.where(lane < valid, wp.int64(quantum), wp.int64(0))
+                to.totals[k] = to.totals[k] + total
 
-        if wp.static(VOXELS):
-            # Touch all target records first: their cache misses then overlap, twice as fast as one after the other.
-            largest_count = LOWEST
-            smallest_sum = wp.int64(0)
-            for lane in range(BLOCK):
-                largest_count = wp.max(largest_count, to.records[cells[lane]][0])
-                if wp.static(SUMS):
-                    smallest_sum = wp.min(smallest_sum, to.sums[cells[lane]][0])
-            # Neither is ever true (a count has no such value, a sum fewer bits), but the compiler does not know: it
-            # would drop the loop above.
-            lowest_key = wp.where(largest_count == ~LOWEST or smallest_sum < LEAST_SUM, ~LOWEST, LOWEST)
-            for lane in range(BLOCK):
-                keys[LOWEST_ROW + lane] = lowest_key
-            for lane in range(valid):
-                voxel = cells[lane]
-                # Every slot is read and compared alike, the count's and the padding against LOWEST: one SIMD operation.
-                sample = record_type()
-                for k in range(RECORD):
-                    sample[k] = keys[KEY_ROW[k] * BLOCK + lane] ^ KEY_MASK[k]
-                record = to.records[voxel]
-                for k in range(RECORD):
-                    record[k] = wp.max(record[k], sample[k])
-                record[0] += bits(1)  # no carry: see FOLD_AFTER of the engine
-                to.records[voxel] = record
-                if wp.static(SUMS):
-                    addend = sums_type()
-                    for k in range(K):
-                        addend[k] = wp.int64(quanta[k * BLOCK + lane])
-                    to.sums[voxel] = to.sums[voxel] + addend
+            if wp.static(VOXELS):
+                # Touch all target records first: their cache misses then overlap, which halves the time.
+                largest_count = LOWEST
+                smallest_sum = wp.int64(0)
+                for lane in range(BLOCK):
+                    largest_count = wp.max(largest_count, to.records[cells[lane]][0])
+                    if wp.static(SUMS):
+                        smallest_sum = wp.min(smallest_sum, to.sums[cells[lane]][0])
+                # Neither is ever true (a count has no such value, a sum fewer bits), but the compiler does not know:
+                # it would drop the loop above.
+                lowest_key = wp.where(largest_count == ~LOWEST or smallest_sum < LEAST_SUM, ~LOWEST, LOWEST)
+                for lane in range(BLOCK):
+                    keys[LOWEST_ROW + lane] = lowest_key
+                for lane in range(valid):
+                    voxel = cells[lane]
+                    # Every slot is read and compared alike, count and padding against LOWEST: one SIMD operation.
+                    sample = record_type()
+                    for k in range(RECORD):
+                        sample[k] = keys[KEY_ROW[k] * BLOCK + lane] ^ KEY_MASK[k]
+                    record = to.records[voxel]
+                    for k in range(RECORD):
+                        record[k] = wp.max(record[k], sample[k])
+                    record[0] += bits(1)  # no carry: see FOLD_AFTER of the engine
+                    to.records[voxel] = record
+                    if wp.static(SUMS):
+                        addend = sums_type()
+                        for k in range(K):
+                            addend[k] = wp.int64(quanta[k * BLOCK + lane])
+                        to.sums[voxel] = to.sums[voxel] + addend
 
         if wp.static(ROWS):
             for r in range(N_OUTPUTS):
@@ -366,11 +392,13 @@ def _cuda_kernel(shape: Shape) -> wp.Kernel:
     cell, quantized = voxels(real).cell, voxels(real).quantized
     Model, Space = model_type(real, shape.n, len(shape.sources)), sample_space(real, shape.n)
     Lattice, Outputs, bits = lattice(real), outputs_type(shape), bits_type(real)
-    vec3 = wp.types.vector(3, real)
+    vec3, Base, at_level = wp.types.vector(3, real), base_levels(real), grid_level(real)
+    moved_base = kinematics(real, shape.n, shape.sources, shape.plain).moved_base
     REDUCED = 5 + K
     extremes_type, totals_type = wp.types.vector(2 * REDUCED, bits), wp.types.vector(K, wp.int64)
     N_OUTPUTS, RECORD_64, SUMS_64 = shape.n_outputs, wp.int64(shape.record_size), wp.int64(shape.sums_size)
     VOXELS, MAXIMUM, MINIMUM, SUMS, ROWS = shape.voxels, shape.maximum, shape.minimum, shape.sums, shape.keep_rows
+    BASE_LEVELS = shape.base_levels
     FIRST_MAXIMUM, FIRST_MINIMUM = shape.count_size, shape.count_size + K * shape.maximum
     LOWEST = bits(lowest(real))
     LANE_MASK = wp.int64(LANES - 1)
@@ -381,6 +409,7 @@ def _cuda_kernel(shape: Shape) -> wp.Kernel:
         # in
         model: Model,
         space: Space,
+        base: Base,
         grid: Lattice,
         first: wp.int64,
         count: wp.int64,
@@ -403,30 +432,37 @@ def _cuda_kernel(shape: Shape) -> wp.Kernel:
             start = index - (index & LANE_MASK)
             block = prepare(space, start)
             out = evaluate(model, space, block, start, wp.int32(index & LANE_MASK))
-            for r in range(wp.static(REDUCED)):
-                key = ordered(out[r])
-                largest[2 * r] = wp.max(largest[2 * r], key)
-                largest[2 * r + 1] = wp.max(largest[2 * r + 1], ~key)
-            for k in range(K):
-                total[k] += wp.int64(quantized(out[3 + k], to.scales[k]))
-            if wp.static(VOXELS):
-                voxel = cell(grid, vec3(out[0], out[1], out[2]))
-                at = wp.int64(voxel) * RECORD_64
-                wp.atomic_add(counts, wp.int64(voxel) * COUNT_64, wp.int64(1))
-                # Extremes only grow: a value that an old reading already covers needs no atomic operation.
-                seen = to.records[voxel]
+            lever = vec3(out[0], out[1], out[2])
+            for level in range(base.levels):
+                if wp.static(BASE_LEVELS):
+                    angle = at_level(base.lower, base.upper, base.step, level, base.levels)
+                    tip = moved_base(model.chain, angle, lever)
+                    for r in range(3):
+                        out[r] = tip[r]
+                for r in range(wp.static(REDUCED)):
+                    key = ordered(out[r])
+                    largest[2 * r] = wp.max(largest[2 * r], key)
+                    largest[2 * r + 1] = wp.max(largest[2 * r + 1], ~key)
                 for k in range(K):
-                    key = ordered(out[3 + k])
-                    if wp.static(MAXIMUM):  # noqa: SIM102 - compiled out before seen is indexed
-                        if key > seen[FIRST_MAXIMUM + k]:
-                            wp.atomic_max(records, at + wide(FIRST_MAXIMUM + k), key)
-                    if wp.static(MINIMUM):  # noqa: SIM102
-                        if ~key > seen[FIRST_MINIMUM + k]:
-                            wp.atomic_max(records, at + wide(FIRST_MINIMUM + k), ~key)
-                    if wp.static(SUMS):
-                        wp.atomic_add(
-                            sums, wp.int64(voxel) * SUMS_64 + wide(k), wp.int64(quantized(out[3 + k], to.scales[k]))
-                        )
+                    total[k] += wp.int64(quantized(out[3 + k], to.scales[k]))
+                if wp.static(VOXELS):
+                    voxel = cell(grid, vec3(out[0], out[1], out[2]))
+                    at = wp.int64(voxel) * RECORD_64
+                    wp.atomic_add(counts, wp.int64(voxel) * COUNT_64, wp.int64(1))
+                    # Extremes only grow: a value that an old reading already covers needs no atomic operation.
+                    seen = to.records[voxel]
+                    for k in range(K):
+                        key = ordered(out[3 + k])
+                        if wp.static(MAXIMUM):  # noqa: SIM102 - compiled out before seen is indexed
+                            if key > seen[FIRST_MAXIMUM + k]:
+                                wp.atomic_max(records, at + wide(FIRST_MAXIMUM + k), key)
+                        if wp.static(MINIMUM):  # noqa: SIM102
+                            if ~key > seen[FIRST_MINIMUM + k]:
+                                wp.atomic_max(records, at + wide(FIRST_MINIMUM + k), ~key)
+                        if wp.static(SUMS):
+                            wp.atomic_add(
+                                sums, wp.int64(voxel) * SUMS_64 + wide(k), wp.int64(quantized(out[3 + k], to.scales[k]))
+                            )
             if wp.static(ROWS):
                 for r in range(wp.static(N_OUTPUTS)):
                     to.rows_out[wide(r) * to.rows_stride + offset] = out[r]

@@ -4,6 +4,7 @@ import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 import warp as wp
@@ -15,6 +16,7 @@ from wsrender_kernels.voxels import lattice, lowest
 from wsrender.engine.configurations import configurations, device_space, given_space
 from wsrender.engine.devices import thread_count
 from wsrender.engine.evaluation import Evaluation, device_array, evaluation_model, shape_of
+from wsrender.engine.grid_structure import GridStructure, device_base, structure_of
 from wsrender.engine.memory import as_type, check_voxel_memory, device_memory
 from wsrender.engine.partial import Partial, merge
 from wsrender.errors import NumericalError
@@ -32,7 +34,7 @@ class SweepPlan:
     """Everything a range of samples needs: evaluation, sampling, lattice block, statistics, scales, target.
 
     ``scales`` (K,): power of two by which each index is multiplied for its fixed-point sums; ``bounds`` (K,): the
-    largest absolute value for which they were chosen.
+    largest absolute value for which they were chosen. ``collapse``: whether the structure of a grid is used.
     """
 
     evaluation: Evaluation
@@ -45,6 +47,23 @@ class SweepPlan:
     keep_rows: bool = False
     keep_configuration: bool = False
     keep_orientation: bool = False
+    collapse: bool = True
+
+    @cached_property
+    def structure(self) -> GridStructure:
+        """The samples that are evaluated, and those that each of them stands for."""
+        direct = self.keep_rows or not self.collapse
+        return GridStructure(self.sampling) if direct else structure_of(self.evaluation, self.sampling)
+
+    @property
+    def sampling_path(self) -> str:
+        """How the samples are evaluated: "direct", one by one, or "collapsed", by the structure of a grid."""
+        return "collapsed" if self.structure.multiplicity > 1 else "direct"
+
+    @property
+    def division(self) -> int:
+        """Samples at multiples of which a range may start."""
+        return LANES * self.structure.multiplicity
 
     @property
     def shape(self) -> Shape:
@@ -53,6 +72,7 @@ class SweepPlan:
             self.evaluation,
             self.precision,
             self.sampling.method,
+            base_levels=self.structure.base_levels > 1,
             voxels=self.block is not None,
             maximum="maximum" in self.statistics,
             minimum="minimum" in self.statistics,
@@ -73,13 +93,14 @@ def sweep(
     chunk_size: int | None = None,
     progress: Callable[[int], None] | None = None,
 ) -> Partial:
-    """Evaluate samples first … first + count - 1; ``first`` is a multiple of LANES.
+    """Evaluate samples first … first + count - 1; ``first`` is a multiple of the plan's ``division``.
 
-    ``chunk_size`` is rounded up to a multiple of LANES; neither it nor ``threads`` changes a bit of the result.
+    ``chunk_size`` is rounded up to a multiple of that; neither it nor ``threads`` changes a bit of the result.
     ``progress`` is called in this thread with the number of samples done. Raises ResourceError where voxel records do
     not fit in memory, NumericalError for a value that is not finite or beyond its bound.
     """
-    shape = plan.shape
+    shape, each = plan.shape, plan.structure.multiplicity
+    first, count, chunk_size = first // each, count // each, chunk_size and -(-chunk_size // each)
     workers = devices if devices[0].is_cuda else devices * thread_count(threads)
     chunk = _chunk_size(plan, chunk_size or _fair_share(count, workers))
     chunks = list(_chunks(first, count, chunk)) if count <= chunk * len(workers) else _chunks(first, count, chunk)
@@ -95,7 +116,7 @@ def sweep(
             while pending:
                 done, pending = wait(pending, timeout=0.1, return_when=FIRST_COMPLETED)
                 if progress:
-                    progress(queue.done)
+                    progress(queue.done * each)
                 for future in done:
                     future.result()
         except BaseException:
@@ -116,7 +137,7 @@ def _fair_share(count: int, workers: list[wp.Device]) -> int:
 
 
 def _chunk_size(plan: SweepPlan, size: int) -> int:
-    size = min(size, FOLD_AFTER)
+    size = min(size, FOLD_AFTER // plan.structure.base_levels)
     if plan.keep_rows:
         size = min(size, CHUNK_ROWS)
     if plan.shape.method == "given":
@@ -171,7 +192,8 @@ class Accumulator:
         self._kernel = sweep_kernel(shape, device.is_cuda)
         self._model = evaluation_model(plan.evaluation, plan.precision)
         given = shape.method == "given"
-        self._space = None if given else device_space(plan.sampling, plan.precision, device)
+        self._space = None if given else device_space(plan.structure.evaluated, plan.precision, device)
+        self._base = device_base(plan.structure, plan.sampling, real)
         self._lattice = _device_lattice(plan.block, real)
         reduced = 5 + shape.n_indices
         self._extremes = device_memory(2 * reduced, bits, device)
@@ -191,11 +213,12 @@ class Accumulator:
 
     def add(self, first: int, count: int) -> None:
         """Sweep one chunk."""
-        if not self.device.is_cuda and self._samples + count > FOLD_AFTER:
+        counted = count * self.plan.structure.base_levels
+        if not self.device.is_cuda and self._counted + counted > FOLD_AFTER:
             self._fold()
             self._clear()
         self.launch(first, count)
-        self._samples += count
+        self._counted += counted
         if self.shape.keep_rows:
             rows = self._rows_out.numpy().reshape(self.shape.n_outputs, self.chunk)
             self._rows[first] = rows[:, :count].copy()
@@ -209,7 +232,7 @@ class Accumulator:
     def launch(self, first: int, count: int) -> None:
         """Run the kernel over one chunk."""
         space = self._space or self._given(first, count)
-        inputs = [self._model, space, self._lattice, first, count]
+        inputs = [self._model, space, self._base, self._lattice, first, count]
         if self.device.is_cuda:
             threads = min(count, THREADS_PER_GPU)
             outputs = [self._outputs, self._counts, self._records, self._sums]
@@ -244,20 +267,22 @@ class Accumulator:
         cells = np.flatnonzero(counts)
         occupied, width = records[cells], self.shape.count_size
         sums = self._sums.numpy().reshape(-1, max(self.shape.sums_size, 1))
+        sums = sums[cells, : self.shape.n_indices] if self.shape.sums else np.zeros((len(cells), 0), np.int64)
+        weight = self.plan.structure.weight
         held = Partial(
-            self._samples,
+            self._counted * weight,
             self._extremes.numpy().copy(),
-            self._totals.numpy().reshape(TOTAL_SLOTS, -1).sum(axis=0),
+            self._totals.numpy().reshape(TOTAL_SLOTS, -1).sum(axis=0) * weight,
             cells,
-            counts[cells],
+            counts[cells] * weight,
             occupied[:, width : width + self.shape.extremes].copy(),
-            sums[cells, : self.shape.n_indices] if self.shape.sums else np.zeros((len(cells), 0), np.int64),
+            sums * weight,
             self._rows,
         )
         self._folded = held if self._folded is None else merge(self._folded, held)
 
     def _clear(self) -> None:
-        self._samples = 0
+        self._counted = 0
         self._rows: dict[int, np.ndarray] = {}
         self._records.fill_(self._lowest)
         self._sums.zero_()

@@ -29,4 +29,5 @@ def estimate(plan: SweepPlan, devices: list[Any]) -> dict[str, float]:
     voxels = plan.block.size if plan.block else 0
     records = voxels * shape.bytes_per_voxel
     rows = samples * shape.n_outputs * width if plan.keep_rows else 0
-    return {"samples": float(samples), "bytes": float(records * workers + rows), "seconds": samples / rate}
+    seconds = samples / plan.structure.weight / rate
+    return {"samples": float(samples), "bytes": float(records * workers + rows), "seconds": seconds}

@@ -23,8 +23,6 @@ from wsrender.spec.sampling import Converge, Grid
 from wsrender.spec.surfaces import IsoSurface
 from wsrender.volume.lattice import LatticeBlock
 
-SHARD_UNIT = 1 << 16  # samples; a multiple of what kernels handle at a time
-
 
 @dataclass(frozen=True, eq=False)
 class WorkspacePartial:
@@ -49,7 +47,7 @@ class WorkspacePlan:
     estimate: dict[str, float]
 
     def resolved(self) -> dict[str, Any]:
-        """What is settled once: the device that "auto" means, target, lattice block, bounds, scales, shards."""
+        """What is settled once: the device of "auto", target, lattice block, bounds, scales, sampling path, shards."""
         block = self.sweep.block
         assert block is not None
         return {
@@ -60,8 +58,9 @@ class WorkspacePlan:
             "shape": list(block.shape),
             "bounds": self.sweep.bounds.tolist(),
             "scales": self.sweep.scales.tolist(),
+            "sampling_path": self.sweep.sampling_path,
             "shards": [list(shard) for shard in self.shards],
-            "shard_unit": None if self._iterates else SHARD_UNIT,
+            "shard_unit": None if self._iterates else self.sweep.division,
             "iterates": self._iterates,
         }
 
@@ -168,6 +167,7 @@ def plan_workspace(job: WorkspaceJob, robot: Robot, resolved: dict[str, Any] | N
         keep_rows=job.keep_map,
         keep_configuration="configuration" in job.map_columns,
         keep_orientation="orientation" in job.map_columns,
+        collapse=resolved is None or resolved["sampling_path"] == "collapsed",
     )
     if job.keep_map and "orientation" in job.map_columns and evaluation.host_kinematics is not None:
         raise InputError("map_columns", "orientation is not kept for a user-defined robot")

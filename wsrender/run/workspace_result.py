@@ -72,7 +72,7 @@ def workspace_result(
             "structural_length_volume": "occupied",
         },
         "convergence": convergence,
-        "provenance": provenance(job.precision, target, sampling_path="direct", seed=plan.sampling.seed),
+        "provenance": provenance(job.precision, target, sampling_path=plan.sampling_path, seed=plan.sampling.seed),
     }
     result = Result(
         document,

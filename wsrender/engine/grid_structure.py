@@ -1,0 +1,83 @@
+"""What the structure of a grid spares: samples that differ only in joints whose effect is known are not evaluated.
+
+Two cases, detected from the chain and the request:
+
+- Base joint: turning or sliding the whole arm changes neither the singular values of whole triads of Jacobian rows nor
+  the inertia matrix. One evaluation serves all levels of the first joint; only the end effector's position is moved.
+  Not so with joint-limit penalisation, with single rows in base axes, or under ``wsrender_code``, whose tables keep
+  the rounding noise of singular postures.
+- Trailing joints whose axes pass through the end effector: they change neither its position nor the linear rows. One
+  evaluation stands for all their levels. Not so for angular rows or dynamic indices.
+"""
+
+from dataclasses import dataclass, replace
+from math import prod
+
+import numpy as np
+from wsrender_kernels.sampling import base_levels
+from wsrender_kernels.spectrum import LINEAR, in_base_axes
+
+from wsrender.engine.evaluation import Evaluation
+from wsrender.robots.chain import Chain
+from wsrender.sampling import SamplingPlan
+
+ON_AXIS = 1e-12  # of the reach: rounding of a model file's numbers
+MOST_BASE_LEVELS = 2**20  # counts of one block of samples stay far below 32 bits
+
+
+@dataclass(frozen=True, eq=False)
+class GridStructure:
+    """The samples ``evaluated`` instead of all; each stands for ``base_levels`` positions and ``weight`` repeats."""
+
+    evaluated: SamplingPlan
+    base_levels: int = 1
+    weight: int = 1
+
+    @property
+    def multiplicity(self) -> int:
+        """Samples that an evaluated one stands for."""
+        return self.base_levels * self.weight
+
+
+def structure_of(evaluation: Evaluation, sampling: SamplingPlan) -> GridStructure:
+    """The structure that a sampling has under an evaluation; mostly none: every sample is evaluated."""
+    chain, levels = evaluation.chain, sampling.levels.copy()
+    own = np.array_equal(chain.joint_source, np.arange(chain.n))
+    if sampling.method != "grid" or evaluation.on_host or evaluation.convention == "wsrender_code" or not own:
+        return GridStructure(sampling)
+    free = chain.n - _trailing(chain) if _linear_kinematic(evaluation) else chain.n
+    weight = prod(int(level) for level in levels[free:])
+    levels[free:] = 1
+    base = 1
+    if _invariant(evaluation) and free > 0 and levels[0] <= MOST_BASE_LEVELS:
+        base, levels[0] = int(levels[0]), 1
+    # A coordinate of one level takes its upper value.
+    upper = np.where(levels < sampling.levels, sampling.lower, sampling.upper)
+    evaluated = replace(sampling, levels=levels, upper=upper, count=sampling.count // (base * weight))
+    return GridStructure(evaluated, base, weight)
+
+
+def _invariant(evaluation: Evaluation) -> bool:
+    return evaluation.penalty is None and not in_base_axes(evaluation.rows)
+
+
+def _linear_kinematic(evaluation: Evaluation) -> bool:
+    return not evaluation.dynamic and set(evaluation.rows) <= set(LINEAR)
+
+
+def _trailing(chain: Chain) -> int:
+    """Number of last joints whose axes pass through the end effector, in any configuration."""
+    tip = (chain.T_tip @ chain.T_tip_tool)[:3, 3]
+    for number, i in enumerate(reversed(range(chain.n))):
+        if not chain.joint_is_revolute[i] or np.hypot(*tip[:2]) > ON_AXIS * chain.reach:
+            return number
+        tip = chain.T_joint[i][:3, :3] @ tip + chain.T_joint[i][:3, 3]
+    return chain.n
+
+
+def device_base(structure: GridStructure, sampling: SamplingPlan, real):
+    """The BaseLevels struct of a sampling's structure."""
+    base = base_levels(real)()
+    base.lower, base.upper, base.step = (float(v[0]) for v in (sampling.lower, sampling.upper, sampling.step))
+    base.levels = structure.base_levels
+    return base
