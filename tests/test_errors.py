@@ -14,6 +14,7 @@ ERRORS = [
     ws.MissingExtraError("warp", "engine"),
     ws.NotConvergedError("not converged", [{"value": 0.5}]),
     ws.NumericalError("a value is not finite"),
+    ws.RenderError("no OpenGL"),
     ws.QuotaError("busy", {"status": 429}, retry_after_s=3.0),
 ]
 

@@ -11,6 +11,7 @@
     │   └── ResourceError              the request needs more memory or samples than allowed
     ├── NotConvergedError              an iteration reached its limit before its tolerance
     ├── NumericalError                 a kernel reported a value that it must not produce
+    ├── RenderError                    a 3-D picture cannot be drawn: no OpenGL, a crash, too slow
     ├── MissingExtraError (ImportError) an optional dependency is not installed
     ├── ServerError                    a server refused a request or failed; keeps its problem document
     │   ├── AccessError                no key, an unknown key, or one without the right
@@ -110,6 +111,12 @@ class NumericalError(WsrenderError):
     """A kernel reported a value that it must not produce: not finite, or beyond its stated bound."""
 
     code = "numerical_fault"
+
+
+class RenderError(WsrenderError):
+    """A 3-D picture cannot be drawn: OpenGL is missing, or the process that drew it crashed or was too slow."""
+
+    code = "render_failed"
 
 
 class MissingExtraError(WsrenderError, ImportError):

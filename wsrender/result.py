@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from wsrender import export, plots
+from wsrender import export, plots, render
 from wsrender.errors import InputError
 from wsrender.export.artifacts import (
     DOCUMENT,
@@ -70,8 +70,41 @@ class Result:
     @property
     def plot(self) -> "ResultPlots":
         """Pictures as matplotlib Figures, such as ``plot.slice(z=0.3)`` or ``plot.scatter(index)``."""
-        samples = self.sample if self.sample is not None else self.map
-        return plots.ResultPlots(sampling_text(self.document), samples, self.volume, self.skeleton)
+        return plots.ResultPlots(sampling_text(self.document), *self._drawable())
+
+    def render(
+        self,
+        view: str = "boundary",
+        path: "str | Path | None" = None,
+        *,
+        others: "Iterable[Result]" = (),
+        robot: Any = None,
+        configuration: Any = None,
+        title: str | None = None,
+        **options: Any,
+    ) -> "Figure":
+        """A 3-D picture of the workspace with its arm, as a matplotlib Figure.
+
+        It is written to ``path`` (.png, .svg) if given.
+        ``view``: boundary, solid, scatter, volume, slice or isosurface; ``others``: results drawn in the same box.
+        ``robot`` adds the bodies of the links, if the robot's model has any, at ``configuration`` [rad or m].
+        ``options``: index, statistic, threshold (of the iso-surface, share of the maximum), alpha, at (x, y, z of the
+        slices [m]), environment (a list of ``wsrender.render`` Floor, Table, Box), azimuth_deg and elevation_deg of the
+        eye. Needs the extra ``render``. Raises InputError, MissingExtraError; RenderError where VTK cannot draw.
+        """
+        results = [self, *others]
+        subjects = [render.Subject(name, *result._drawable()) for name, result in named_results(results).items()]
+        if robot is not None:
+            subjects[0] = subjects[0].with_robot(robot, configuration, self.document.get("sampling") or {})
+        names = " + ".join(subject.name for subject in subjects)
+        title = title or (sampling_text(self.document) if len(results) == 1 else names)
+        figure = render.picture(subjects, view, title=title, **options)
+        if path is not None:
+            plots.save_figure(figure, path)
+        return figure
+
+    def _drawable(self) -> tuple[DistributionMap | None, VolumeData | None, np.ndarray | None]:
+        return self.sample if self.sample is not None else self.map, self.volume, self.skeleton
 
     def summary(self) -> str:
         """The main numbers as a few lines of text."""
@@ -119,6 +152,16 @@ class Result:
             tables=_all_restored(files, ".parquet", "read_table_parquet"),
             volumes=_all_restored(files, ".vtkhdf", "read_volume_vtkhdf"),
         )
+
+
+def named_results(results: Iterable[Result]) -> dict[str, Result]:
+    """Results by the names of their robots, numbered where several have the same."""
+    results = list(results)
+    names = [str((result.document.get("robot") or {}).get("name", "robot")) for result in results]
+    return {
+        f"{name} {names[: k + 1].count(name)}" if names.count(name) > 1 else name: result
+        for k, (name, result) in enumerate(zip(names, results, strict=True))
+    }
 
 
 def _restored(files: dict[str, Path], name: str, reader: str) -> Any:

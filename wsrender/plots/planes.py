@@ -26,7 +26,7 @@ _THINNEST = 0.25  # least extent of a drawn plane, relative to its longest: plan
 
 
 @dataclass(frozen=True)
-class _Field:
+class Field:
     """A scalar per voxel, (nx, ny, nz), NaN where empty, with its label; colours span all its values."""
 
     values: np.ndarray
@@ -55,12 +55,12 @@ def slice_plane(
     Raises InputError for more than one coordinate, a plane outside the volume, an unknown index or
     statistic, or a volume without occupied voxels.
     """
-    field = _field(volume, index, statistic)
+    field = voxel_field(volume, index, statistic)
     given = [(axis, at) for axis, at in enumerate((x, y, z)) if at is not None]
     if len(given) > 1:
         raise InputError("slice", "takes one of x, y, z; use slices for all three")
     axis, at = given[0] if given else (2, None)
-    layer = _layer(volume, axis, at)
+    layer = layer_at(volume, axis, at)
     width, height = _extents(volume, axis)
     scale = min(4.6 / width, 4.4 / height)
     figure = new_figure(width * scale + 1.8, max(height * scale + 1.0, 2.6))
@@ -82,7 +82,7 @@ def slices(
     frame: str = "world",
 ) -> Figure:
     """Three panels: the planes normal to x, y and z at the coordinates ``at`` [m]; see ``slice_plane``."""
-    field = _field(volume, index, statistic)
+    field = voxel_field(volume, index, statistic)
     extents = [_extents(volume, axis) for axis in range(3)]
     widths = [width for width, _ in extents]
     scale = min(9.6 / sum(widths), 4.0 / max(height for _, height in extents))
@@ -90,20 +90,24 @@ def slices(
     figure = new_figure(max(sum(widths) * scale + 2.6, 6.0), max(tallest + 1.0, 2.4))
     panels = figure.subplots(1, 3, width_ratios=widths)
     for axis, (axes, coordinate) in enumerate(zip(panels, at, strict=True)):
-        _draw(axes, volume, field, axis, _layer(volume, axis, coordinate), frame)
+        _draw(axes, volume, field, axis, layer_at(volume, axis, coordinate), frame)
     add_color_bar(figure, field.norm, field.label, ax=list(panels), shrink=0.8, aspect=28, pad=0.02)
     add_title(figure, title)
     return figure
 
 
-def _field(volume: VolumeData, index: str | None, statistic: str | None) -> _Field:
+def voxel_field(volume: VolumeData, index: str | None, statistic: str | None) -> Field:
+    """A statistic of an index per voxel: by default the maximum of the first, or the count of samples.
+
+    Raises InputError for an unknown index or statistic, or a volume without occupied voxels.
+    """
     if not volume.occupied.any():
         raise InputError("volume", "has no occupied voxel, so there is nothing to draw")
     if statistic == "count" or not (volume.statistics or statistic or index):
         values, label = np.where(volume.occupied, volume.count, np.nan), "Samples per voxel"
     else:
         values, label = _statistic(volume, index, statistic)
-    return _Field(values, label, value_range(np.nanmin(values), np.nanmax(values)))
+    return Field(values, label, value_range(np.nanmin(values), np.nanmax(values)))
 
 
 def _statistic(volume: VolumeData, index: str | None, statistic: str | None) -> tuple[np.ndarray, str]:
@@ -123,8 +127,12 @@ def _listed(names) -> str:
     return ", ".join([*names, "count"])
 
 
-def _layer(volume: VolumeData, axis: int, at: float | None) -> int:
-    """Number of the voxel layer cut at a coordinate [m] along an axis."""
+def layer_at(volume: VolumeData, axis: int, at: float | None) -> int:
+    """Number of the voxel layer cut at a coordinate [m] along an axis.
+
+    Without a coordinate: the one at 0, or the one with most voxels where nothing is occupied there. Raises
+    InputError for a coordinate outside the volume.
+    """
     size, layers = volume.voxel_size_m, volume.count.shape[axis]
     first = volume.first_voxel[axis]
     if at is None:
@@ -145,7 +153,7 @@ def _extents(volume: VolumeData, axis: int) -> tuple[float, float]:
     return width, height
 
 
-def _draw(axes: Axes, volume: VolumeData, field: _Field, axis: int, layer: int, frame: str) -> None:
+def _draw(axes: Axes, volume: VolumeData, field: Field, axis: int, layer: int, frame: str) -> None:
     horizontal, vertical = _ACROSS[axis]
     edges = [
         volume.first_voxel[across] * volume.voxel_size_m

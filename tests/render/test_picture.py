@@ -1,0 +1,238 @@
+"""What pictures show, with and without OpenGL."""
+
+import sys
+from dataclasses import replace
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+from PIL import Image
+from scipy.spatial import ConvexHull
+
+import wsrender as ws
+from tests.export.sample_data import random_volume
+from wsrender.errors import InputError
+from wsrender.render import VIEWS, Box, Floor, Subject, composition, picture
+from wsrender.render.environment import surfaces
+from wsrender.render.process import drawn
+from wsrender.render.scene import Points, Rods, Scene, Surface
+from wsrender.render.space import space_around
+from wsrender.render.views import Choice
+from wsrender.volume.volume_data import VolumeData
+
+SIZE = (240, 200)
+CHOICE = Choice(index=None, statistic=None, threshold=0.6, alpha=0.02, at=(None, None, None), azimuth_deg=-58.0)
+
+
+@pytest.fixture
+def blank(monkeypatch):
+    """Pictures without OpenGL: the scene that would be drawn is kept, and the picture is white."""
+    scenes = []
+
+    def draw(scene):
+        scenes.append(scene)
+        return np.full((*scene.size[::-1], 3), 255, np.uint8)
+
+    monkeypatch.setattr(composition, "drawn", draw)
+    return scenes
+
+
+def seen(camera, points):
+    """Pixels (N, 2), from the upper left, where points appear."""
+    width, height = SIZE
+    x, y = (camera.to_picture(np.asarray(points, float)) * height / 2).T
+    return np.stack([width / 2 + x, height / 2 - y], axis=1)
+
+
+def bounds_of(layers):
+    return np.concatenate([composition._layer_points(layer) for layer in layers])
+
+
+def render(layers, camera=None):
+    camera = camera or space_around(bounds_of(layers), SIZE, -58, 24).camera
+    return drawn(Scene(camera, SIZE, layers)), camera
+
+
+@pytest.mark.usefixtures("opengl")
+def test_things_appear_where_the_camera_says():
+    space = space_around(np.array([[-1, -1, -1], [1, 1, 1]]), SIZE, -58, 24)
+    points = np.array([[0.5, -0.7, 0.2], [-0.8, 0.1, 0.9]])
+    colors = np.array([[200, 0, 0], [0, 0, 200]], np.uint8)
+    image, _ = render([Points(points, colors, 6)], space.camera)
+    for place, channel in zip(seen(space.camera, points), (0, 2), strict=True):
+        ink = np.delete(255 - image.astype(float), channel, axis=2).sum(axis=2) * (image[:, :, channel] > 150)
+        rows, columns = np.indices(ink.shape) + 0.5
+        np.testing.assert_allclose([(ink * columns).sum() / ink.sum(), (ink * rows).sum() / ink.sum()], place, atol=0.6)
+
+
+@pytest.mark.usefixtures("opengl")
+@pytest.mark.parametrize(
+    ("view", "lower", "upper"),
+    [
+        ("boundary", (-0.6, -0.5, 0.2), (0.6, 0.5, 1.0)),
+        ("volume", (-0.6, -0.5, 0.2), (0.6, 0.5, 1.0)),
+        ("isosurface", (-0.6, -0.5, 0.6), (0.6, 0.5, 1.0)),  # values from 5 of 8 up
+    ],
+)
+def test_a_block_covers_the_area_of_its_outline(block, view, lower, upper):
+    choice = CHOICE if view == "isosurface" else replace(CHOICE, alpha=0.99)
+    layers = VIEWS[view]([block], choice).layers
+    corners = np.stack(np.meshgrid(*zip(lower, upper, strict=True)), axis=-1).reshape(-1, 3)
+    if view != "volume":  # marching cubes cuts the edges; the block is convex
+        corners = layers[0].vertices
+        np.testing.assert_allclose([corners.min(axis=0), corners.max(axis=0)], [lower, upper], atol=1e-6)
+        layers[0] = replace(layers[0], smooth=False)
+    image, camera = render(layers)
+    covered = np.count_nonzero(image.min(axis=2) < 200)
+    # Half a voxel between the samples of a ray leaves the very edges of a cloud pale.
+    assert covered == pytest.approx(ConvexHull(seen(camera, corners)).volume, rel=0.04 if view == "volume" else 0.015)
+
+
+@pytest.mark.usefixtures("opengl")
+def test_slices_show_the_exact_colours_of_their_voxels(block):
+    drawing = VIEWS["slice"]([block], CHOICE)
+    image, camera = render(drawing.layers)
+    norm, label = drawing.scale
+    assert label == "Maximum of reach [m²]"
+    for z in (0.75, 0.95):  # on the plane x = 0.05, y towards the eye, nothing before it
+        column, row = seen(camera, [[0.05, -0.4, z]])[0].astype(int)
+        value = np.floor((z - 0.2) / 0.1) + 1
+        expected = np.array(mpl.colormaps["viridis"](norm(value))[:3]) * 255
+        np.testing.assert_allclose(image[row, column], expected, atol=10)  # seen through the faint boundary
+
+
+@pytest.mark.parametrize("view", ["solid", "scatter"])
+def test_views_cut_open_leave_out_the_quarter_towards_the_eye(block, view):
+    (layer,) = VIEWS[view]([block], CHOICE).layers
+    points = layer.vertices if view == "solid" else layer.positions
+    centers = block.samples.position
+    kept = centers[~in_quarter(centers)]
+    assert 0 < len(kept) < len(centers)
+    np.testing.assert_allclose(
+        [points.min(axis=0), points.max(axis=0)], [kept.min(axis=0), kept.max(axis=0)], atol=0.051
+    )
+    if view == "scatter":
+        np.testing.assert_array_equal(points, kept)
+    else:  # every vertex is half a voxel from a kept centre
+        assert (np.abs(points[:, None] - kept).max(axis=2).min(axis=1) < 0.051).all()
+
+
+def in_quarter(points):
+    """Within 45° of the direction of the eye, -58°, from the upright line through the base (0, 0)."""
+    azimuth = np.degrees(np.arctan2(points[:, 1], points[:, 0]))
+    return (azimuth > -58 - 45) & (azimuth < -58 + 45)
+
+
+@pytest.mark.usefixtures("opengl")
+def test_the_arm_shines_through_what_hides_it():
+    (plate,) = surfaces(Box((0, -0.5, 0), (2, 0.1, 2)), np.zeros(3), np.ones(3))
+    arm = Rods(np.array([[0, 0.5, -0.5], [0, 0.5, 0.5]]), 0.08, (1.0, 0.0, 0.0))
+    camera = space_around(np.array([[-1, -1, -1], [1, 1, 1]]), SIZE, -90, 0).camera
+    image, _ = render([plate, arm], camera)
+    (column, row), (beside, _) = seen(camera, [[0, 0.5, 0], [0.4, 0.5, 0]]).astype(int)
+    red, plain = image[row, column].astype(int), image[row, beside].astype(int)
+    assert red[0] - red[1] > plain[0] - plain[1] + 40
+
+
+@pytest.mark.usefixtures("opengl")
+def test_a_saved_result_is_drawn_in_a_process_of_its_own(tmp_path, planar_result):
+    planar_result.render("boundary", tmp_path / "view.png", environment=[Floor(-0.2)])
+    with Image.open(tmp_path / "view.png") as image:
+        assert image.size == (1400, 1080)
+        assert len(image.convert("RGB").getcolors(2**20)) > 100
+    assert not {"pyvista", "vtkmodules"} & set(sys.modules)
+
+
+@pytest.fixture(scope="module")
+def planar_result():
+    table = ws.DHTable(convention="standard", rows=[ws.DHRow(a=0.5), ws.DHRow(a=0.4)], name="planar & <2R>")
+    return ws.analyze(
+        ws.load_robot(table), ws.Grid(40), ["manipulability"], ["x", "y"], voxel_size_m=0.05, device="cpu"
+    )
+
+
+@pytest.mark.parametrize("view", list(VIEWS))
+def test_every_picture_has_axes_colour_bar_legend_and_robot(blank, planar_result, view):
+    figure = planar_result.render(view, environment=[Floor(-0.2), Box((1, 0, 0), (0.2, 0.2, 0.2))])
+    texts = [text.get_text() for text in figure.axes[0].texts]
+    assert {"x [m]", "y [m]", "z [m]"} <= set(texts)
+    assert figure.axes[1].get_ylabel().lower().endswith("manipulability [m²]")
+    labels = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert labels[:3] == ["planar & <2R>", "joint", "tip"]
+    assert labels[-2:] == ["floor", "box"]
+    assert figure.get_suptitle() == "planar & <2R> · 1,600 samples (grid)"
+    (rods,) = [layer for layer in blank[0].layers if isinstance(layer, Rods)]
+    np.testing.assert_array_equal(rods.points, planar_result.skeleton[0])
+
+
+def test_several_results_share_one_box_and_tell_robots_apart(blank, planar_result):
+    figure = planar_result.render(others=[planar_result], alpha=0.3)
+    labels = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert labels[:2] == ["planar & <2R> 1", "planar & <2R> 2"]
+    bodies = [layer for layer in blank[0].layers if isinstance(layer, Surface)]
+    assert len({body.color for body in bodies}) == 2
+    assert {body.alpha for body in bodies} == {0.3}
+    shared = planar_result.render(others=[planar_result], index="manipulability")
+    assert len(shared.axes) == 2  # one colour bar
+
+
+def test_colours_of_a_surface_are_those_of_the_nearest_voxels(block):
+    drawing = VIEWS["boundary"]([block], CHOICE)
+    (surface,) = drawing.layers
+    norm, _ = drawing.scale
+    for z, value in ((0.25, 1), (0.95, 8)):
+        rows = np.abs(surface.vertices[:, 2] - z) < 1e-6
+        expected = np.array(mpl.colormaps["viridis"](norm(value), bytes=True)[:3])
+        assert rows.any()
+        np.testing.assert_allclose(surface.colors[rows].astype(int), np.broadcast_to(expected, (rows.sum(), 3)), atol=2)
+
+
+def test_links_are_drawn_with_the_bodies_of_the_model(blank, planar_result, tmp_path):
+    (tmp_path / "arm.xml").write_text(
+        '<mujoco><worldbody><body><joint axis="0 0 1" range="-1 1"/>'
+        '<geom type="capsule" fromto="0 0 0 .5 0 0" size=".03"/>'
+        '<body pos=".5 0 0"><joint axis="0 0 1" range="-1 1"/><geom size=".05"/><site name="tool" pos=".4 0 0"/></body>'
+        "</body></worldbody></mujoco>"
+    )
+    planar_result.render(robot=str(tmp_path / "arm.xml"), configuration=[0.3, 0.4])
+    scene = blank[0]
+    links = [layer for layer in scene.layers if isinstance(layer, Surface) and layer.colors is None]
+    assert len(links) == 2
+    (rods,) = [layer for layer in scene.layers if isinstance(layer, Rods)]
+    tip = [0.5 * np.cos(0.3) + 0.4 * np.cos(0.7), 0.5 * np.sin(0.3) + 0.4 * np.sin(0.7), 0]
+    np.testing.assert_allclose(rods.points[-1], tip)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"view": "side"}, "view: 'side' is not a view; allowed: boundary, solid"),
+        ({"index": "speed"}, "index: the volume has no 'speed'; it holds manipulability"),
+        ({"view": "scatter", "index": "speed"}, "index: the map has no 'speed'"),
+        ({"statistic": "mode"}, "the volume has no 'mode'"),
+        ({"threshold": 0}, "threshold: is 0; allowed are values above 0, up to 1"),
+        ({"alpha": 1.5}, "alpha: is 1.5"),
+        ({"elevation_deg": 90}, "elevation_deg: is 90"),
+        ({"view": "slice", "at": (9, None, None)}, "x: the plane x = 9 m misses the workspace"),
+        ({"view": "slice", "at": (0, 0)}, "at: must be the three planes x, y, z"),
+    ],
+)
+def test_errors_name_what_is_there(planar_result, options, message):
+    with pytest.raises(InputError, match=message):
+        planar_result.render(**options)
+
+
+def test_results_without_volume_say_so():
+    with pytest.raises(InputError, match="the result of bare holds no occupied voxel"):
+        picture([Subject("bare")])
+    with pytest.raises(InputError, match="the result of bare holds neither a map nor a sample"):
+        picture([Subject("bare")], "scatter")
+
+
+def test_sparse_voxels_are_merged_until_gaps_close():
+    count = np.random.default_rng(0).poisson(1.0, (96, 96, 96))
+    dense = Subject("sparse", volume=VolumeData(0.01, (0, 0, 0), count)).dense_voxels()
+    assert dense.voxel_size_m == pytest.approx(0.02)
+    assert dense.count.sum() == count.sum()
+    full = random_volume((30, 20, 10))
+    assert Subject("coarse", volume=full).dense_voxels() is full

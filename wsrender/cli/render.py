@@ -1,0 +1,85 @@
+"""``wsrender render``: a 3-D picture of saved results."""
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from wsrender.cli.faults import one_line_faults
+from wsrender.errors import InputError
+
+_SURROUNDINGS = "Surroundings"
+
+
+def render(
+    folder: Annotated[Path, typer.Argument(metavar="FOLDER", help="Folder of a saved result.")],
+    output: Annotated[Path, typer.Option("--output", "-o", help="Picture to write, .png or .svg.")] = Path("view.png"),
+    view: Annotated[str, typer.Option(help="boundary, solid, scatter, volume, slice or isosurface.")] = "boundary",
+    other: Annotated[
+        list[Path] | None, typer.Option("--with", help="Folder of a result to draw in the same box; repeatable.")
+    ] = None,
+    index: Annotated[str | None, typer.Option(help="Index that gives the colours; by default the first.")] = None,
+    statistic: Annotated[str | None, typer.Option(help="maximum, mean, minimum or count, of a voxel.")] = None,
+    threshold: Annotated[float, typer.Option(help="Iso-surface, as a share of the maximum.")] = 0.9,
+    alpha: Annotated[float, typer.Option(help="1: opaque.")] = 0.1,
+    x: Annotated[float | None, typer.Option(help="Slice normal to x [m].")] = None,
+    y: Annotated[float | None, typer.Option(help="Slice normal to y [m].")] = None,
+    z: Annotated[float | None, typer.Option(help="Slice normal to z [m].")] = None,
+    azimuth: Annotated[float, typer.Option(help="Direction of the eye about z, from x [deg].")] = -58.0,
+    elevation: Annotated[float, typer.Option(help="Height of the eye [deg].")] = 24.0,
+    robot: Annotated[str | None, typer.Option(help="Robot file or name: draws the bodies of its links.")] = None,
+    floor: Annotated[float | None, typer.Option(help="Height of a floor [m].", rich_help_panel=_SURROUNDINGS)] = None,
+    table: Annotated[
+        list[str] | None,
+        typer.Option(help="X,Y,Z of the top's middle, size along x, y [m]; repeatable.", rich_help_panel=_SURROUNDINGS),
+    ] = None,
+    box: Annotated[
+        list[str] | None,
+        typer.Option(help="X,Y,Z of its centre, size along x, y, z [m]; repeatable.", rich_help_panel=_SURROUNDINGS),
+    ] = None,
+    traceback: Annotated[bool, typer.Option("--traceback", help="Show where an error came from.")] = False,
+) -> None:
+    """Draw the workspace of a saved result in three dimensions (needs the extra "render")."""
+    with one_line_faults(traceback):
+        from wsrender.render import Box, Floor, Table
+        from wsrender.result import Result
+
+        environment: list[Any] = [] if floor is None else [Floor(floor)]
+        for cx, cy, cz, dx, dy in (_numbers("--table", text, 5) for text in table or []):
+            environment.append(Table((cx, cy, cz), (dx, dy), floor or 0.0))
+        for cx, cy, cz, dx, dy, dz in (_numbers("--box", text, 6) for text in box or []):
+            environment.append(Box((cx, cy, cz), (dx, dy, dz)))
+        _check_output(output)
+        Result.load(folder).render(
+            view,
+            output,
+            others=[Result.load(path) for path in other or []],
+            robot=robot,
+            index=index,
+            statistic=statistic,
+            threshold=threshold,
+            alpha=alpha,
+            at=(x, y, z),
+            environment=environment,
+            azimuth_deg=azimuth,
+            elevation_deg=elevation,
+        )
+        typer.echo(output)
+
+
+def _check_output(output: Path) -> None:
+    """Refuse before the picture is drawn what writing it would refuse after."""
+    if output.suffix.lower() not in (".png", ".svg"):
+        raise InputError("--output", f'must end in .png or .svg, not "{output.name}"')
+    if not output.absolute().parent.is_dir():
+        raise InputError("--output", f"the folder {output.parent} does not exist")
+
+
+def _numbers(option: str, text: str, count: int) -> tuple[float, ...]:
+    try:
+        numbers = tuple(float(part) for part in text.split(","))
+    except ValueError:
+        numbers = ()
+    if len(numbers) != count:
+        raise InputError(option, f'must be {count} numbers separated by commas, not "{text}"')
+    return numbers

@@ -1,0 +1,128 @@
+"""A 3-D picture of one or several robots in their workspaces."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from wsrender.errors import InputError
+from wsrender.plots.style import INK
+from wsrender.render import environment as surroundings
+from wsrender.render.environment import Floor, Item
+from wsrender.render.figure import PANEL_PIXELS, figure_of
+from wsrender.render.process import drawn
+from wsrender.render.scene import Cloud, Color, Layer, Plates, Points, Rods, Scene, Surface
+from wsrender.render.space import AZIMUTH_DEG, ELEVATION_DEG, Space, space_around
+from wsrender.render.subject import Subject
+from wsrender.render.views import ROBOT_COLORS, VIEWS, Choice
+
+_DARK: Color = (0.15, 0.15, 0.17)
+_TIP: Color = (0.784, 0.063, 0.18)
+_ROD = 0.006  # radius of a rod, relative to the longest edge of the picture's box
+
+
+def picture(
+    subjects: Sequence[Subject],
+    view: str = "boundary",
+    *,
+    index: str | None = None,
+    statistic: str | None = None,
+    threshold: float = 0.9,
+    alpha: float = 0.1,
+    at: tuple[float | None, float | None, float | None] = (None, None, None),
+    environment: Sequence[Item] = (),
+    azimuth_deg: float = AZIMUTH_DEG,
+    elevation_deg: float = ELEVATION_DEG,
+    title: str = "",
+) -> Figure:
+    """Draw subjects in one box, with axes in metres, legend and colour bar; the defaults are those of [WSR] Table II.
+
+    Raises InputError for a view, index or number that is not allowed; MissingExtraError without PyVista; RenderError
+    where it cannot draw.
+    """
+    _check(view, threshold, alpha, elevation_deg)
+    if len(at) != 3:
+        raise InputError("at", f"must be the three planes x, y, z, each a number [m] or None, not {at}")
+    choice = Choice(index, statistic, threshold, alpha, at, azimuth_deg)
+    drawing = VIEWS[view](subjects, choice)
+    space = space_around(_extent(subjects, drawing.layers, environment), PANEL_PIXELS, azimuth_deg, elevation_deg)
+    layers = [*space.panes(), *_around(environment, space), *_robots(subjects, space), *drawing.layers]
+    image = drawn(Scene(space.camera, PANEL_PIXELS, layers))
+    handles = [*_robot_handles(subjects), *drawing.handles, *_environment_handles(environment)]
+    return figure_of(image, space, title=title, notes=drawing.notes, handles=handles, scale=drawing.scale)
+
+
+def _check(view: str, threshold: float, alpha: float, elevation_deg: float) -> None:
+    if view not in VIEWS:
+        raise InputError("view", f"{view!r} is not a view; allowed: {', '.join(VIEWS)}")
+    if not 0 < threshold <= 1:
+        raise InputError("threshold", f"is {threshold}; allowed are values above 0, up to 1")
+    if not 0 < alpha <= 1:
+        raise InputError("alpha", f"is {alpha}; allowed are values above 0 (invisible), up to 1 (opaque)")
+    if not -80 <= elevation_deg <= 80:
+        raise InputError("elevation_deg", f"is {elevation_deg}; allowed are -80 … 80")
+
+
+def _extent(subjects: Sequence[Subject], layers: Sequence[Layer], environment: Sequence[Item]) -> np.ndarray:
+    """Points (N, 3) [m] that the picture must hold."""
+    points = [_layer_points(layer) for layer in layers]
+    points += [subject.arm for subject in subjects if subject.arm is not None]
+    points += [link.vertices for subject in subjects for link in subject.body]
+    points += [surroundings.corners(item) for item in environment]
+    ends = np.concatenate([np.stack([p.min(axis=0), p.max(axis=0)]) for p in points if len(p)])
+    heights = [item.height_m for item in environment if isinstance(item, Floor)]
+    middle = ends.mean(axis=0)
+    return np.concatenate([ends, *[[[*middle[:2], height]] for height in heights]])
+
+
+def _layer_points(layer: Layer) -> np.ndarray:
+    match layer:
+        case Surface():
+            return layer.vertices
+        case Plates():
+            return layer.corners.reshape(-1, 3)
+        case Points():
+            return layer.positions
+        case Cloud():
+            return np.stack([layer.origin, layer.origin + np.array(layer.levels.shape) * layer.voxel_size])
+    return np.empty((0, 3))
+
+
+def _around(environment: Sequence[Item], space: Space) -> list[Surface]:
+    return [part for item in environment for part in surroundings.surfaces(item, space.lower, space.upper)]
+
+
+def _robots(subjects: Sequence[Subject], space: Space) -> list[Layer]:
+    """The arms as rods, thin where the bodies of their links are known."""
+    radius = _ROD * float((space.upper - space.lower).max())
+    layers: list[Layer] = []
+    for k, subject in enumerate(subjects):
+        layers += subject.body
+        if subject.arm is not None:
+            layers.append(Rods(subject.arm, radius * (0.5 if subject.body else 1.0), _color(k, subjects)))
+    return layers
+
+
+def _color(k: int, subjects: Sequence[Subject]) -> Color:
+    return ROBOT_COLORS[k % len(ROBOT_COLORS)] if len(subjects) > 1 else _DARK
+
+
+def _robot_handles(subjects: Sequence[Subject]) -> list[Artist]:
+    arms = [(k, subject) for k, subject in enumerate(subjects) if subject.arm is not None]
+    if not arms:
+        return []
+    handles: list[Artist] = [
+        Line2D([], [], color=_color(k, subjects), lw=2.5, marker="s", markevery=[0], ms=6, label=subject.name)
+        for k, subject in arms
+    ]
+    handles.append(Line2D([], [], ls="", marker="o", ms=5, mfc="white", mec=INK, mew=1.0, label="joint"))
+    handles.append(Line2D([], [], ls="", marker="o", ms=6, mfc=_TIP, mec=_TIP, label="tip"))
+    return handles
+
+
+def _environment_handles(environment: Sequence[Item]) -> list[Artist]:
+    kinds = dict.fromkeys(type(item) for item in environment)
+    return [Patch(facecolor=surroundings.COLORS[kind], label=surroundings.LABELS[kind]) for kind in kinds]

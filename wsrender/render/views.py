@@ -1,0 +1,261 @@
+"""The views: what each draws of its subjects."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.colors import Normalize
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from wsrender.boundary.voxel_surface import occupied_surface
+from wsrender.errors import InputError
+from wsrender.plots.planes import Field, layer_at, voxel_field
+from wsrender.plots.space import checked_index
+from wsrender.plots.style import color_map, quantity, value_range
+from wsrender.render.scene import Cloud, Color, Layer, Plates, Points, Surface
+from wsrender.render.subject import Subject
+from wsrender.volume.volume_data import VolumeData
+
+ROBOT_COLORS: list[Color] = [
+    (0.0, 0.447, 0.698), (0.835, 0.369, 0.0), (0.0, 0.62, 0.451),
+    (0.8, 0.475, 0.655), (0.902, 0.624, 0.0), (0.337, 0.706, 0.914),
+]  # Okabe and Ito 2008: told apart by the colour-blind  # fmt: skip
+DOT = 2.2  # diameter of a sample in pixels
+_SHELL_GREY: Color = (0.55, 0.6, 0.66)
+
+
+@dataclass(frozen=True)
+class Choice:
+    """What a view shows.
+
+    ``index`` and ``statistic`` are its colours (None: the first, the maximum), ``threshold`` is the iso-surface's share
+    of the maximum, ``alpha`` the transparency, ``at`` the planes x, y, z [m]; views are cut open towards
+    ``azimuth_deg``, the direction of the eye.
+    """
+
+    index: str | None
+    statistic: str | None
+    threshold: float
+    alpha: float
+    at: tuple[float | None, float | None, float | None]
+    azimuth_deg: float
+
+
+@dataclass
+class Drawing:
+    """What a view adds to a picture: layers, legend entries, colour scale, remarks."""
+
+    layers: list[Layer] = field(default_factory=list)
+    handles: list[Artist] = field(default_factory=list)
+    scale: tuple[Normalize, str] | None = None
+    notes: list[str] = field(default_factory=list)
+
+
+def boundary(subjects: Sequence[Subject], choice: Choice) -> Drawing:
+    """Translucent surfaces of the occupied voxels; of several robots each in its colour, unless an index is asked."""
+    volumes = [subject.dense_voxels() for subject in subjects]
+    if len(subjects) > 1 and choice.index is None and choice.statistic is None:
+        return _plain_boundaries(subjects, volumes, choice.alpha)
+    fields, drawing = _fields(volumes, choice)
+    for volume, values in zip(volumes, fields, strict=True):
+        mesh = occupied_surface(volume)
+        colors = _vertex_colors(mesh.vertices, volume, values, drawing)
+        drawing.layers.append(Surface(mesh.vertices, mesh.faces, colors=colors, alpha=choice.alpha, smooth=True))
+    drawing.handles.append(Patch(facecolor=color_map()(0.5), alpha=max(choice.alpha, 0.3), label="workspace boundary"))
+    drawing.notes.append(_lattice_note(volumes))
+    return drawing
+
+
+def solid(subjects: Sequence[Subject], choice: Choice) -> Drawing:
+    """Opaque bodies of occupied voxels, cut open towards the eye and coloured by an index."""
+    volumes = [_cut_open(subject, choice.azimuth_deg) for subject in subjects]
+    fields, drawing = _fields(volumes, choice)
+    for volume, values in zip(volumes, fields, strict=True):
+        mesh = occupied_surface(volume)
+        colors = _vertex_colors(mesh.vertices, volume, values, drawing)
+        drawing.layers.append(Surface(mesh.vertices, mesh.faces, colors=colors, smooth=True))
+    drawing.handles.append(Patch(facecolor=color_map()(0.5), label="workspace"))
+    drawing.notes.append(_lattice_note(volumes))
+    return drawing
+
+
+def scatter(subjects: Sequence[Subject], choice: Choice) -> Drawing:
+    """The sampled positions, cut open towards the eye and coloured by an index."""
+    clouds = [subject.cloud() for subject in subjects]
+    if not all(cloud.indices for cloud in clouds):
+        raise InputError("view", "scatter needs a map that holds an index")
+    name = checked_index(clouds[0], choice.index)
+    for cloud in clouds:
+        checked_index(cloud, name)
+    values = [cloud.indices[name] for cloud in clouds]
+    norm = value_range(min(map(np.min, values)), max(map(np.max, values)))
+    drawing = Drawing(scale=(norm, quantity(name, clouds[0].units.get(name))))
+    label = "samples"
+    for subject, cloud, value in zip(subjects, clouds, values, strict=True):
+        kept = ~_towards_eye(cloud.position, subject, choice.azimuth_deg)
+        label = label if kept.all() else "samples, cut open"
+        drawing.layers.append(Points(cloud.position[kept], _colors(norm(value[kept])), DOT))
+    drawing.handles.append(Line2D([], [], ls="", marker="o", ms=3, color=color_map()(0.5), label=label))
+    return drawing
+
+
+def volume(subjects: Sequence[Subject], choice: Choice) -> Drawing:
+    """Voxels as coloured mist whose transparency is alpha per voxel."""
+    volumes = [subject.dense_voxels() for subject in subjects]
+    fields, drawing = _fields(volumes, choice)
+    norm, _ = drawing.scale or (Normalize(), "")
+    table = np.ones((256, 4))
+    table[1:, :3] = color_map()(np.linspace(0, 1, 255))[:, :3]
+    table[:, 3] = choice.alpha
+    table[0] = 0
+    for voxels, values in zip(volumes, fields, strict=True):
+        levels = np.where(voxels.occupied, 1 + np.round(254 * np.nan_to_num(np.asarray(norm(values)))), 0)
+        drawing.layers.append(Cloud(levels.astype(np.uint8), table, voxels.origin_m, voxels.voxel_size_m))
+    drawing.handles.append(Patch(facecolor=color_map()(0.5), alpha=0.6, label="voxels"))
+    drawing.notes.append(_lattice_note(volumes))
+    return drawing
+
+
+def slice(subjects: Sequence[Subject], choice: Choice) -> Drawing:
+    """Three planes of voxels in the translucent boundary, coloured by an index; all robots share the planes.
+
+    Where a plane is not given it is the one at 0, or the fullest of the first robot if that misses its workspace.
+    """
+    volumes = [subject.voxels() for subject in subjects]
+    fields, drawing = _fields(volumes, choice)
+    norm, _ = drawing.scale or (Normalize(), "")
+    layers = [layer_at(volumes[0], axis, at) for axis, at in enumerate(choice.at)]
+    planes = [float(volumes[0].centers(axis)[layer]) for axis, layer in enumerate(layers)]
+    for voxels, values in zip(volumes, fields, strict=True):
+        for axis, at in enumerate(planes):
+            if abs(at - voxels.centers(axis).mean()) < voxels.count.shape[axis] * voxels.voxel_size_m / 2:
+                drawing.layers.append(_plates(voxels, values, axis, layer_at(voxels, axis, at), norm))
+    drawing.layers += _shells(subjects, choice.alpha)
+    drawing.handles.append(Patch(facecolor=color_map()(0.5), label="slices"))
+    drawing.handles.append(Patch(facecolor=_SHELL_GREY, alpha=0.3, label="workspace boundary"))
+    where = ", ".join(f"{name} = {at:.3g}" for name, at in zip("xyz", planes, strict=True))
+    drawing.notes.append(f"slices at {where} m")
+    return drawing
+
+
+def isosurface(subjects: Sequence[Subject], choice: Choice) -> Drawing:
+    """Surface around the voxels whose value is at least a share of the maximum, in the translucent boundary."""
+    volumes = [subject.dense_voxels() for subject in subjects]
+    fields, drawing = _fields(volumes, choice)
+    for voxels, values in zip(volumes, fields, strict=True):
+        inside = voxels.occupied & (values >= choice.threshold * np.nanmax(values))
+        kept = VolumeData(voxels.voxel_size_m, voxels.first_voxel, inside.astype(np.int64))
+        mesh = occupied_surface(kept)
+        colors = _vertex_colors(mesh.vertices, kept, np.where(inside, values, np.nan), drawing)
+        drawing.layers.append(Surface(mesh.vertices, mesh.faces, colors=colors, smooth=True))
+    drawing.layers += _shells(subjects, choice.alpha)
+    label = f"at least {choice.threshold:g} of the maximum"
+    drawing.handles.append(Patch(facecolor=color_map()((1 + choice.threshold) / 2), label=label))
+    drawing.handles.append(Patch(facecolor=_SHELL_GREY, alpha=0.3, label="workspace boundary"))
+    drawing.notes.append(_lattice_note(volumes))
+    return drawing
+
+
+VIEWS: dict[str, Callable[[Sequence[Subject], Choice], Drawing]] = {
+    "boundary": boundary,
+    "solid": solid,
+    "scatter": scatter,
+    "volume": volume,
+    "slice": slice,
+    "isosurface": isosurface,
+}
+
+
+def _fields(volumes: Sequence[VolumeData], choice: Choice) -> tuple[list[np.ndarray], Drawing]:
+    """The values per voxel of each volume, and a drawing whose scale spans them all."""
+    fields: list[Field] = [voxel_field(volume, choice.index, choice.statistic) for volume in volumes]
+    if len({field.label for field in fields}) > 1:
+        labels = ", ".join(field.label for field in fields)
+        raise InputError("index", f"the results show different quantities ({labels}); name an index that all hold")
+    norm = value_range(
+        min(float(np.nanmin(field.values)) for field in fields), max(float(np.nanmax(field.values)) for field in fields)
+    )
+    return [field.values for field in fields], Drawing(scale=(norm, fields[0].label))
+
+
+def _plain_boundaries(subjects: Sequence[Subject], volumes: Sequence[VolumeData], alpha: float) -> Drawing:
+    drawing = Drawing(notes=[_lattice_note(volumes)])
+    for k, (subject, voxels) in enumerate(zip(subjects, volumes, strict=True)):
+        color = ROBOT_COLORS[k % len(ROBOT_COLORS)]
+        mesh = occupied_surface(voxels)
+        drawing.layers.append(Surface(mesh.vertices, mesh.faces, color, alpha=alpha, smooth=True))
+        drawing.handles.append(Patch(facecolor=color, alpha=max(alpha, 0.3), label=f"boundary of {subject.name}"))
+    return drawing
+
+
+def _shells(subjects: Sequence[Subject], alpha: float) -> list[Layer]:
+    meshes = [occupied_surface(subject.dense_voxels()) for subject in subjects]
+    return [Surface(mesh.vertices, mesh.faces, _SHELL_GREY, alpha=alpha, smooth=True) for mesh in meshes]
+
+
+def _vertex_colors(vertices: np.ndarray, volume: VolumeData, values: np.ndarray, drawing: Drawing) -> np.ndarray:
+    """Colours (V, 3) of the nearest voxels' values, blended between them."""
+    from scipy.ndimage import distance_transform_edt, map_coordinates
+
+    padded = np.pad(values, 1, constant_values=np.nan)
+    nearest: Any = distance_transform_edt(np.isnan(padded), return_distances=False, return_indices=True)
+    filled = padded[tuple(nearest)].astype(np.float64)
+    places = vertices / volume.voxel_size_m - np.array(volume.first_voxel) + 0.5
+    norm, _ = drawing.scale or (Normalize(), "")
+    return _colors(norm(map_coordinates(filled, places.T, order=1, mode="nearest")))
+
+
+def _colors(shares: np.ndarray) -> np.ndarray:
+    """Colours (N, 3) uint8 of numbers 0 … 1."""
+    return color_map()(np.asarray(shares), bytes=True)[:, :3]
+
+
+def _plates(volume: VolumeData, values: np.ndarray, axis: int, layer: int, norm: Normalize) -> Plates:
+    """The occupied voxels of a layer as squares through their centres."""
+    plane = values.take(layer, axis)
+    cells = np.argwhere(np.isfinite(plane))
+    across = [k for k in range(3) if k != axis]
+    corners = np.empty((len(cells), 4, 3))
+    corners[:, :, axis] = volume.first_voxel[axis] + layer + 0.5
+    square = np.array([[0, 0], [1, 0], [1, 1], [0, 1]])
+    corners[:, :, across] = cells[:, None] + square + np.array(volume.first_voxel)[across]
+    colors = _colors(norm(plane[tuple(cells.T)]))
+    return Plates(corners * volume.voxel_size_m, colors)
+
+
+def _cut_open(subject: Subject, azimuth_deg: float) -> VolumeData:
+    """The volume without the voxels between the arm and the eye."""
+    volume = subject.dense_voxels()
+    centers = np.stack(np.meshgrid(*map(volume.centers, range(3)), indexing="ij"), axis=-1)
+    hidden = _towards_eye(centers[volume.occupied], subject, azimuth_deg)
+    count = volume.count.copy()
+    count[volume.occupied] = np.where(hidden, 0, count[volume.occupied])
+    statistics = {
+        statistic: {name: np.where(count > 0, values, np.nan) for name, values in by_index.items()}
+        for statistic, by_index in volume.statistics.items()
+    }
+    return replace(volume, count=count, statistics=statistics)
+
+
+def _towards_eye(points: np.ndarray, subject: Subject, azimuth_deg: float) -> np.ndarray:
+    """Which points (N, 3) lie in the quarter that the eye looks into, around the upright line through the base.
+
+    None do where they form a thin sheet, or where nothing would be left.
+    """
+    span = np.ptp(points, axis=0)
+    none = np.zeros(len(points), bool)
+    if span.min() < 0.1 * span.max():
+        return none
+    middle = (points.min(axis=0) + points.max(axis=0)) / 2 if subject.arm is None else subject.arm[0]
+    offset = points[:, :2] - middle[:2]
+    azimuth = np.arctan2(offset[:, 1], offset[:, 0]) - np.deg2rad(azimuth_deg)
+    quarter = np.cos(azimuth) > np.cos(np.pi / 4)
+    return none if quarter.all() else quarter
+
+
+def _lattice_note(volumes: Sequence[VolumeData]) -> str:
+    sizes = sorted({round(volume.voxel_size_m, 9) for volume in volumes})
+    return f"drawn with voxels of {' and '.join(f'{1000 * size:.3g}' for size in sizes)} mm"
