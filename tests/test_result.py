@@ -40,7 +40,8 @@ def document() -> dict:
 
 
 def curve() -> Table:
-    return Table({"offset": np.arange(4.0), "label": np.array(list("abcd"))}, {"offset": "m"})
+    columns = {"offset": np.arange(4.0), "shared": np.ones(4), "label": np.array(list("abcd"))}
+    return Table(columns, {"offset": "m"})
 
 
 def whole() -> Result:
@@ -86,7 +87,10 @@ def test_document_lists_every_file_with_its_hash(tmp_path, result):
     assert {"map.csv", "map.npz", "map.mat", "volume.csv", "volume.npz", "volume.mat", "surface.stl"} < set(records)
     for stem, endings in (("hull", "glb ply stl"), ("scan", "parquet npz csv mat"), ("left", "vtkhdf npz csv mat")):
         assert {f"{stem}.{ending}" for ending in endings.split()} < set(records)
-    assert (records["scan.parquet"]["units"], records["scan.parquet"]["frame"]) == ({"offset": "m", "label": "1"}, None)
+    assert (records["scan.parquet"]["units"], records["scan.parquet"]["frame"]) == (
+        {"offset": "m", "shared": "1", "label": "1"},
+        None,
+    )
     for name, record in records.items():
         path = tmp_path / "out" / name
         assert record["bytes"] == path.stat().st_size > 0

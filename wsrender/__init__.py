@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from wsrender.reachability import Reachability, reachable
     from wsrender.result import Result
     from wsrender.robot import Robot, evaluate_indices, load_robot
-    from wsrender.run import analyze, execute
+    from wsrender.run import analyze, execute, robot_comparison, shared_workspace
     from wsrender.spec.robot import DHRow, DHTable, Transform
     from wsrender.spec.sampling import BoundaryBiased, Converge, Grid, Random, Sobol
 
@@ -81,7 +81,9 @@ __all__ = [
     "math",
     "reachable",
     "register_index",
+    "robot_comparison",
     "run",
+    "shared_workspace",
 ]
 
 _NAMES_OF_MODULE = {
@@ -90,7 +92,7 @@ _NAMES_OF_MODULE = {
     "wsrender.reachability": ("Reachability", "reachable"),
     "wsrender.result": ("Result",),
     "wsrender.robot": ("Robot", "evaluate_indices", "load_robot"),
-    "wsrender.run": ("analyze", "execute"),
+    "wsrender.run": ("analyze", "execute", "robot_comparison", "shared_workspace"),
     "wsrender.spec.robot": ("DHRow", "DHTable", "Transform"),
     "wsrender.spec.sampling": ("BoundaryBiased", "Converge", "Grid", "Random", "Sobol"),
 }

@@ -55,6 +55,12 @@ class InputError(WsrenderError, ValueError):
         self.message = message
         super().__init__(f"{field}: {message}")
 
+    def within(self, path: str) -> "InputError":
+        """The same error, its field below ``path`` of the job document."""
+        self.field = f"{path}.{self.field}" if path else self.field
+        self.args = (f"{self.field}: {self.message}",)
+        return self
+
 
 class DocumentError(InputError):
     """A job document does not follow its schema; ``problems`` holds (field, message) of every fault."""

@@ -37,6 +37,8 @@ if TYPE_CHECKING:
 STANDARD_FORMATS = ("parquet", "vtkhdf", "glb", "ply", "png")
 EXTRA_FORMATS = ("npz", "csv", "mat", "stl", "svg")
 
+CURVES = ("scan",)  # tables that are drawn
+
 
 @dataclass(eq=False)
 class Result:
@@ -70,7 +72,7 @@ class Result:
     @property
     def plot(self) -> "ResultPlots":
         """Pictures as matplotlib Figures, such as ``plot.slice(z=0.3)`` or ``plot.scatter(index)``."""
-        return plots.ResultPlots(sampling_text(self.document), *self._drawable())
+        return plots.ResultPlots(sampling_text(self.document), *self._drawable(), self.tables, self.volumes)
 
     def render(
         self,
@@ -228,6 +230,11 @@ def _picture_files(result: Result, formats: tuple[str, ...]) -> Iterator[Artifac
         pictures["histogram"] = plot.histogram
         write = partial(plots.write_histogram_csv, plot.samples)
         yield Artifact("plots/histogram.csv", write, frame=None)
+    pictures |= {name: partial(plot.curves, name) for name in CURVES if len(result.tables.get(name, ()))}
+    if result.document.get("analysis") == "robot_comparison":
+        pictures["comparison"] = plot.side_by_side
+    if result.volume is not None and result.volume.statistics.get("product"):
+        pictures["product"] = partial(plot.slices, statistic="product")
     for name, draw in pictures.items():
         figure = draw()
         for ending in ("png", *(["svg"] if "svg" in formats else [])):

@@ -47,6 +47,10 @@ class Admission:
         for path, part in ({(): job} | arms).items():
             _check_indices(part, path)
             self._check_samples(part, path, job)
+        total = sum(least_samples(each.sampling, each.robot) for each in job.sweeps())
+        if total > self.max_samples:
+            message = f"have at least {total:.4g} samples together; this server allows {self.max_samples:.4g}"
+            raise ResourceError("sampling", message)
         return json.loads(canonical_json(job))
 
     def _check_robot(self, robot: RobotSpec, path: ArmPath) -> None:

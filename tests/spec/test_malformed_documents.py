@@ -5,8 +5,9 @@ import json
 import pytest
 
 from wsrender.errors import DocumentError
-from wsrender.spec import parse_job
+from wsrender.spec import ANALYSES, parse_job
 from wsrender.spec.json_text import LARGEST_DOCUMENT
+from wsrender.spec.quantities import quoted
 
 NAN, INF = float("nan"), float("inf")
 WORKSPACE = {"analysis": "workspace", "robot": {"library": "ur5e"}}
@@ -61,8 +62,8 @@ MALFORMED = [
     ('{"a": ' + "1" * 5000 + "}", "document", "is not JSON: Exceeds the limit"),
     (42, "document", "must be an object, not int"),
     # the analysis
-    ({}, "analysis", 'must be one of "workspace", "indices_at"; it is required'),
-    ({"analysis": "worksapce"}, "analysis", 'must be one of "workspace", "indices_at", not "worksapce"'),
+    ({}, "analysis", f"must be one of {quoted(ANALYSES)}; it is required"),
+    ({"analysis": "worksapce"}, "analysis", f'must be one of {quoted(ANALYSES)}, not "worksapce"'),
     ({"analysis": ["workspace"]}, "analysis", 'not ["workspace"]'),
     # the robot
     ({"analysis": "workspace"}, "robot", "is required"),

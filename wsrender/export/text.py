@@ -9,7 +9,8 @@ from wsrender.indices.units import pretty_unit
 def sampling_text(document: dict[str, Any]) -> str:
     """Robot and sampling of a result in one line, such as ``ur5e · 1,000,000 samples (sobol)``."""
     robot, sampling = document.get("robot") or {}, document.get("sampling") or {}
-    parts = [str(robot.get("name", "robot"))]
+    names = [str(each.get("name")) for each in document.get("robots", ())] or [str(robot.get("name", "robot"))]
+    parts = [" + ".join(names)]
     if "samples" in sampling:
         method = f" ({sampling['method']})" if "method" in sampling else ""
         parts.append(f"{sampling['samples']:,} samples{method}")
@@ -20,14 +21,16 @@ def summary_text(document: dict[str, Any]) -> str:
     """Volume, bounds, global indices, and the range and means of each local index; several lines."""
     facts = [f"  {name:<24}{value}" for name, value in _facts(document)]
     table = _index_table(document.get("indices") or {})
-    return "\n".join([sampling_text(document), *facts, *table])
+    return "\n".join([sampling_text(document), *facts, *table, *_difference_table(document)])
 
 
 def _facts(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
     volume = document.get("volume_m3") or {}
-    for name in ("occupied", "inner", "outer"):
-        if name in volume:
-            yield f"{name} volume", f"{volume[name]:.4g} m³"
+    for name, value in volume.items():
+        if isinstance(value, int | float):
+            yield f"{name} volume", f"{value:.4g} m³"
+    if "shared_ratio" in document:
+        yield "shared / any", f"{document['shared_ratio']:.4g}"
     if volume.get("refined"):
         low, high = volume["refined"]["ci95"]
         yield "refined volume", f"{volume['refined']['value']:.4g} m³ (95 %: {low:.4g} … {high:.4g})"
@@ -56,6 +59,19 @@ def _index_table(indices: dict[str, dict[str, Any]]) -> Iterator[str]:
         yield f"  {name:<{width}}{low_high}  {units[name]:<{unit_width}}{relative}".rstrip()
     if any(values.get("joint_mean") is not None for values in indices.values()):
         yield "  means are of value / maximum: over the samples, and over the occupied voxels"
+
+
+def _difference_table(document: dict[str, Any]) -> Iterator[str]:
+    """The values of a comparison, one column for each robot."""
+    rows = document.get("comparison") or []
+    if not rows:
+        return
+    names = [str(robot["name"]) for robot in document["robots"]]
+    width, columns = max(len(row["quantity"]) for row in rows), [max(12, len(name)) for name in names]
+    yield f"  {'':<{width}}" + "".join(f"  {name:>{w}}" for name, w in zip(names, columns, strict=True)) + "  unit"
+    for row in rows:
+        values = "".join(f"  {_number(value):>{w}}" for value, w in zip(row["values"], columns, strict=True))
+        yield f"  {row['quantity']:<{width}}{values}  {pretty_unit(row['unit'])}".rstrip()
 
 
 def _number(value: float | None) -> str:

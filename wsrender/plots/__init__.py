@@ -10,20 +10,24 @@ from typing import TYPE_CHECKING
 from wsrender.errors import MissingExtraError
 
 if TYPE_CHECKING:
+    from wsrender.plots.comparison import side_by_side
     from wsrender.plots.distribution import histogram, write_histogram_csv
     from wsrender.plots.planes import slice_plane, slices
     from wsrender.plots.point_cloud import scatter
     from wsrender.plots.result_plots import ResultPlots
     from wsrender.plots.stick_figure import robot
     from wsrender.plots.style import save_figure
+    from wsrender.plots.table_curves import curves
 
 # Modules are not called like their functions: importing one would hide the function.
 _MODULES = {
     "ResultPlots": "result_plots",
+    "curves": "table_curves",
     "histogram": "distribution",
     "robot": "stick_figure",
     "save_figure": "style",
     "scatter": "point_cloud",
+    "side_by_side": "comparison",
     "slice_plane": "planes",
     "slices": "planes",
     "write_histogram_csv": "distribution",
@@ -31,10 +35,12 @@ _MODULES = {
 
 __all__ = [
     "ResultPlots",
+    "curves",
     "histogram",
     "robot",
     "save_figure",
     "scatter",
+    "side_by_side",
     "slice_plane",
     "slices",
     "write_histogram_csv",

@@ -20,8 +20,8 @@ from wsrender.plots.style import (
 )
 from wsrender.volume.volume_data import VolumeData
 
-_NAMES = "xyz"
-_ACROSS = ((1, 2), (0, 2), (0, 1))  # horizontal and vertical axis of the plane normal to x, y, z
+NAMES = "xyz"
+ACROSS = ((1, 2), (0, 2), (0, 1))  # horizontal and vertical axis of the plane normal to x, y, z
 _THINNEST = 0.25  # least extent of a drawn plane, relative to its longest: planar sets keep a legible panel
 
 
@@ -61,11 +61,11 @@ def slice_plane(
         raise InputError("slice", "takes one of x, y, z; use slices for all three")
     axis, at = given[0] if given else (2, None)
     layer = layer_at(volume, axis, at)
-    width, height = _extents(volume, axis)
+    width, height = plane_extents(volume, axis)
     scale = min(4.6 / width, 4.4 / height)
     figure = new_figure(width * scale + 1.8, max(height * scale + 1.0, 2.6))
     axes = figure.add_subplot()
-    _draw(axes, volume, field, axis, layer, frame)
+    draw_plane(axes, volume, field, axis, layer, frame)
     add_color_bar(figure, field.norm, field.label, ax=axes, shrink=0.9, aspect=28)
     add_title(figure, title)
     return figure
@@ -83,14 +83,14 @@ def slices(
 ) -> Figure:
     """Three panels: the planes normal to x, y and z at the coordinates ``at`` [m]; see ``slice_plane``."""
     field = voxel_field(volume, index, statistic)
-    extents = [_extents(volume, axis) for axis in range(3)]
+    extents = [plane_extents(volume, axis) for axis in range(3)]
     widths = [width for width, _ in extents]
     scale = min(9.6 / sum(widths), 4.0 / max(height for _, height in extents))
     tallest = max(height for _, height in extents) * scale
     figure = new_figure(max(sum(widths) * scale + 2.6, 6.0), max(tallest + 1.0, 2.4))
     panels = figure.subplots(1, 3, width_ratios=widths)
     for axis, (axes, coordinate) in enumerate(zip(panels, at, strict=True)):
-        _draw(axes, volume, field, axis, layer_at(volume, axis, coordinate), frame)
+        draw_plane(axes, volume, field, axis, layer_at(volume, axis, coordinate), frame)
     add_color_bar(figure, field.norm, field.label, ax=list(panels), shrink=0.8, aspect=28, pad=0.02)
     add_title(figure, title)
     return figure
@@ -136,25 +136,26 @@ def layer_at(volume: VolumeData, axis: int, at: float | None) -> int:
     size, layers = volume.voxel_size_m, volume.count.shape[axis]
     first = volume.first_voxel[axis]
     if at is None:
-        occupied = np.count_nonzero(volume.count, axis=_ACROSS[axis])
+        occupied = np.count_nonzero(volume.count, axis=ACROSS[axis])
         zero = -first
         return zero if 0 <= zero < layers and occupied[zero] else int(occupied.argmax())
     cells = at / size - first
     if not -1e-9 <= cells <= layers + 1e-9:
-        name, low, high = _NAMES[axis], first * size, (first + layers) * size
+        name, low, high = NAMES[axis], first * size, (first + layers) * size
         raise InputError(name, f"the plane {name} = {at:g} m misses the workspace, {low:g} … {high:g} m")
     return min(max(int(np.floor(cells + 1e-9)), 0), layers - 1)
 
 
-def _extents(volume: VolumeData, axis: int) -> tuple[float, float]:
+def plane_extents(volume: VolumeData, axis: int) -> tuple[float, float]:
     """Width and height of the drawn plane [m]."""
-    size = [volume.count.shape[across] * volume.voxel_size_m for across in _ACROSS[axis]]
+    size = [volume.count.shape[across] * volume.voxel_size_m for across in ACROSS[axis]]
     width, height = (max(extent, _THINNEST * max(size)) * 1.04 for extent in size)
     return width, height
 
 
-def _draw(axes: Axes, volume: VolumeData, field: Field, axis: int, layer: int, frame: str) -> None:
-    horizontal, vertical = _ACROSS[axis]
+def draw_plane(axes: Axes, volume: VolumeData, field: Field, axis: int, layer: int, frame: str) -> None:
+    """Draw one layer of voxels normal to an axis, with the labels of its axes."""
+    horizontal, vertical = ACROSS[axis]
     edges = [
         volume.first_voxel[across] * volume.voxel_size_m
         + np.array([0, volume.count.shape[across]]) * volume.voxel_size_m
@@ -170,7 +171,7 @@ def _draw(axes: Axes, volume: VolumeData, field: Field, axis: int, layer: int, f
         interpolation="nearest",
         zorder=2,
     )
-    extents = _extents(volume, axis)
+    extents = plane_extents(volume, axis)
     for (low, high), extent, ticks, limit in zip(
         edges, extents, (axes.xaxis, axes.yaxis), (axes.set_xlim, axes.set_ylim), strict=True
     ):
@@ -178,6 +179,6 @@ def _draw(axes: Axes, volume: VolumeData, field: Field, axis: int, layer: int, f
         ticks.set_major_locator(MaxNLocator(5 if extent > 0.6 * max(extents) else 2))
     axes.grid(zorder=0)
     axes.set_axisbelow(True)
-    axes.set_xlabel(f"{_NAMES[horizontal]} [m]")
-    axes.set_ylabel(f"{_NAMES[vertical]} [m]")
-    axes.set_title(f"{_NAMES[axis]} = {volume.centers(axis)[layer]:.3g} m ({frame})")
+    axes.set_xlabel(f"{NAMES[horizontal]} [m]")
+    axes.set_ylabel(f"{NAMES[vertical]} [m]")
+    axes.set_title(f"{NAMES[axis]} = {volume.centers(axis)[layer]:.3g} m ({frame})")

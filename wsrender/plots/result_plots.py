@@ -1,17 +1,21 @@
 """The pictures of one result: what ``result.plot`` offers."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
 
 from wsrender.errors import InputError
+from wsrender.plots.comparison import side_by_side
 from wsrender.plots.distribution import histogram
 from wsrender.plots.planes import slice_plane, slices
 from wsrender.plots.point_cloud import scatter
 from wsrender.plots.stick_figure import robot
+from wsrender.plots.table_curves import curves
 from wsrender.volume.distribution_map import DistributionMap
+from wsrender.volume.table import Table
 from wsrender.volume.volume_data import VolumeData
 
 
@@ -23,6 +27,21 @@ class ResultPlots:
     samples: DistributionMap | None
     volume: VolumeData | None
     skeleton: np.ndarray | None
+    tables: Mapping[str, Table] = field(default_factory=dict)
+    volumes: Mapping[str, VolumeData] = field(default_factory=dict)
+
+    def curves(self, table: str) -> Figure:
+        """A table as curves over its first column."""
+        if table not in self.tables:
+            raise InputError("table", f"the result has no {table!r}; it holds {', '.join(self.tables) or 'no table'}")
+        return curves(self.tables[table], title=self.title)
+
+    def side_by_side(self, index: str | None = None, *, statistic: str | None = None) -> Figure:
+        """The robots of a comparison in the same planes, with the same axes and one colour scale."""
+        if not self.volumes:
+            raise InputError("volumes", "the result holds no volumes of several robots")
+        robots = {name.removeprefix("robot_"): volume for name, volume in self.volumes.items()}
+        return side_by_side(robots, index=index, statistic=statistic, title=self.title)
 
     def scatter(self, index: str | None = None) -> Figure:
         """Sampled positions in space, coloured by an index (by default the first)."""

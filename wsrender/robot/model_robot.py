@@ -1,5 +1,6 @@
 """A robot compiled by MuJoCo."""
 
+from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -125,6 +126,12 @@ class Robot:
             mujoco.mj_fullM(model, data, full)
             out[i] = loaded.coupling.T @ full[dofs] @ loaded.coupling
         return out
+
+    def placed(self, placement: Transform) -> "Robot":
+        """The same robot with its base frame elsewhere in the world."""
+        loaded = replace(self._loaded, chain=self.chain.placed(placement.matrix()))
+        spec = self.spec and self.spec.model_copy(update={"placement": placement})
+        return Robot(loaded, spec, self.name, self.base, self.tip)
 
     def skeleton(self, q: Any) -> np.ndarray:
         """World positions [m] of base, joint origins and tip, (N, L + 2, 3), for drawing the arm."""

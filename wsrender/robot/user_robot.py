@@ -8,6 +8,7 @@ import numpy as np
 from wsrender.errors import InputError, ModelError
 from wsrender.robot.model_robot import Robot, configuration_rows
 from wsrender.robots.chain import Chain
+from wsrender.spec.robot import Transform
 
 HASHED_POSES = 16
 STEP = 6e-6  # rad or m: the cube root of float64's epsilon, where central differences err least (about 1e-11)
@@ -82,6 +83,10 @@ class HostRobot(Robot):
             raise InputError("inertia_matrix", f"{self.name} does not define inertia_matrix")
         n = self.chain.n
         return _checked("inertia_matrix", self.user.inertia_matrix(rows), (len(rows), n, n))  # type: ignore[attr-defined]
+
+    def placed(self, placement: Transform) -> Robot:
+        """Raises InputError: where the robot stands is part of the user's own forward kinematics."""
+        raise InputError("placement", f"of {self.name} cannot be changed: a user-defined robot stands where it says")
 
     def position_and_jacobian(self, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Tip positions (N, 3) and Jacobians (N, 6, n)."""

@@ -3,15 +3,9 @@
 from collections.abc import Sequence
 from typing import Any
 
-from wsrender.progress import RunProgress
 from wsrender.result import Result
-from wsrender.robot import Robot, as_robot
-from wsrender.run.steps import Progress, execute
-from wsrender.spec import WorkspaceJob
-from wsrender.spec.document import Document
-from wsrender.spec.parsing import parse_job
-from wsrender.spec.robot import RobotSpec
-from wsrender.spec.sampling import Grid
+from wsrender.run.from_python import arm_entry, as_subject, execute_here, plain, sampling_entry
+from wsrender.run.steps import Progress
 
 
 def analyze(
@@ -34,43 +28,13 @@ def analyze(
     bar on work of more than a second; or a function (done, total, message). ``threads`` and ``chunk_size`` change no
     bit of the result. Raises DocumentError, InputError, ModelError, ResourceError, NumericalError, NotConvergedError.
     """
-    subject = _robot(robot)
-    job = parse_job(
-        {
-            "analysis": "workspace",
-            "robot": _spec(subject),
-            "base": subject.base,
-            "tip": subject.tip,
-            "sampling": _sampling(sampling),
-            "indices": indices if isinstance(indices, str) else list(indices),
-            "task": task if isinstance(task, str) else list(task),
-            **{name: list(v) if isinstance(v, tuple | set) else v for name, v in fields.items()},
-        }
-    )
-    assert isinstance(job, WorkspaceJob)
-    options: dict[str, Any] = {"robot": subject, "threads": threads, "chunk_size": chunk_size}
-    if progress is True:
-        with RunProgress() as bar:
-            return execute(job, bar, **options)
-    return execute(job, progress or None, **options)
-
-
-def _robot(robot: Any) -> Robot:
-    from pathlib import Path
-
-    from wsrender.robot import load_robot
-    from wsrender.spec.robot import DHTable
-
-    return load_robot(robot) if isinstance(robot, str | Path | DHTable) else as_robot(robot)
-
-
-def _sampling(sampling: Any) -> Any:
-    if sampling is None:
-        return Grid().model_dump(mode="json")
-    return sampling.model_dump(mode="json") if isinstance(sampling, Document) else sampling
-
-
-def _spec(robot: Robot) -> dict[str, Any]:
-    """The document form of a robot; a user-defined one has none, and its result document says so."""
-    spec = robot.spec or RobotSpec(path="user-defined")
-    return spec.model_dump(mode="json", exclude_none=True)
+    subject = as_subject(robot)
+    document = {
+        "analysis": "workspace",
+        **arm_entry(subject),
+        "sampling": sampling_entry(sampling),
+        "indices": indices if isinstance(indices, str) else list(indices),
+        "task": task if isinstance(task, str) else list(task),
+        **plain(fields),
+    }
+    return execute_here(document, subject, progress, threads=threads, chunk_size=chunk_size)

@@ -7,26 +7,42 @@ from typing import Any, Protocol
 from wsrender.errors import InputError
 from wsrender.result import Result
 from wsrender.robot import Robot, as_robot, robot_of_spec
+from wsrender.run.comparison import plan_robot_comparison
 from wsrender.run.indices_at import plan_indices_at
+from wsrender.run.shared import plan_shared_workspace
 from wsrender.run.workspace import plan_workspace
-from wsrender.spec import IndicesAtJob, WorkspaceJob, parse_job
+from wsrender.spec import IndicesAtJob, RobotComparisonJob, SharedWorkspaceJob, WorkspaceJob, parse_job
 from wsrender.spec.arm import Arm, ArmPath, dotted
 
 Progress = Callable[[int, int, str], None]
 
-PLANNERS: dict[type, Callable[..., "Plan"]] = {WorkspaceJob: plan_workspace, IndicesAtJob: plan_indices_at}
+PLANNERS: dict[type, Callable[..., "Plan"]] = {
+    WorkspaceJob: plan_workspace,
+    IndicesAtJob: plan_indices_at,
+    SharedWorkspaceJob: plan_shared_workspace,
+    RobotComparisonJob: plan_robot_comparison,
+}
 
 
 class Plan(Protocol):
-    """A job with everything resolved: device target, voxel size, sampling path, shards, estimate.
-
-    ``shards`` holds (first sample, number of samples); ``estimate`` says samples, bytes and seconds.
-    """
+    """A job with everything resolved: device target, voxel size, sampling path, shards, estimate."""
 
     job: Any
-    shards: list[tuple[int, int]]
-    target: str
-    estimate: dict[str, float]
+
+    @property
+    def shards(self) -> list[tuple[int, int]]:
+        """(first sample, number of samples) of every shard."""
+        ...
+
+    @property
+    def target(self) -> str:
+        """Target of the kernels."""
+        ...
+
+    @property
+    def estimate(self) -> dict[str, float]:
+        """Samples, bytes and seconds."""
+        ...
 
     def resolved(self) -> dict[str, Any]:
         """What planning settled, as plain JSON values; ``plan(…, resolved=…)`` elsewhere gives the same plan.
@@ -64,7 +80,7 @@ def plan(document: Any, robot: Any = None, *, resolved: dict[str, Any] | None = 
     job = document if isinstance(document, tuple(PLANNERS)) else parse_job(document)
     arms = job.arms()
     given = robot if isinstance(robot, list) else [robot] * len(arms)
-    robots = [_robot(*item, here) for item, here in zip(arms.items(), given, strict=True)]
+    robots = [_robot(path, arm, one) for (path, arm), one in zip(arms.items(), given, strict=True)]
     return PLANNERS[type(job)](job, *robots, resolved=resolved)
 
 
@@ -75,10 +91,7 @@ def _robot(path: ArmPath, arm: Arm, given: Any) -> Robot:
     try:
         return robot_of_spec(arm.robot, arm.base, arm.tip)
     except InputError as error:
-        if path:
-            error.field = dotted(path, error.field)
-            error.args = (f"{error.field}: {error.message}",)
-        raise
+        raise error.within(dotted(path)) from None
 
 
 def run_shard(plan: Plan, shard: int, progress: Callable[[int], None] | None = None, **execution: Any) -> Any:
@@ -112,7 +125,7 @@ def execute(document: Any, progress: Progress | None = None, robot: Any = None, 
     if progress:
         progress(0, 1, "planning")
     planned = plan(document, robot)
-    ((_, total),) = planned.shards
+    total = sum(count for _, count in planned.shards)
     planned_at = time.perf_counter()
 
     def report(done: int) -> None:

@@ -46,6 +46,12 @@ class WorkspacePlan:
     shards: list[tuple[int, int]]
     estimate: dict[str, float]
 
+    @property
+    def voxel_size_m(self) -> float:
+        """Edge of a voxel [m]."""
+        assert self.sweep.block is not None
+        return self.sweep.block.voxel_size_m
+
     def resolved(self) -> dict[str, Any]:
         """What is settled once: the device of "auto", target, lattice block, bounds, scales, sampling path, shards."""
         block = self.sweep.block

@@ -2,5 +2,16 @@
 
 from wsrender.spec.jobs import ANALYSES, IndicesAtJob, Job, WorkspaceJob
 from wsrender.spec.parsing import canonical_json, job_schema, parse_job
+from wsrender.spec.several_robots import RobotComparisonJob, SharedWorkspaceJob
 
-__all__ = ["ANALYSES", "IndicesAtJob", "Job", "WorkspaceJob", "canonical_json", "job_schema", "parse_job"]
+__all__ = [
+    "ANALYSES",
+    "IndicesAtJob",
+    "Job",
+    "RobotComparisonJob",
+    "SharedWorkspaceJob",
+    "WorkspaceJob",
+    "canonical_json",
+    "job_schema",
+    "parse_job",
+]

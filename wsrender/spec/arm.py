@@ -31,6 +31,10 @@ class Arm(Document):
         """Every arm of a job by its path, in the order of its robots; a job of one robot is an arm itself."""
         return {(): self}
 
+    def sweeps(self) -> list[Any]:
+        """The arms whose joint spaces a job samples, each as often as it does."""
+        return [arm for arm in self.arms().values() if hasattr(arm, "sampling")]
+
 
 def robots_in(document: Any, path: ArmPath = ()) -> Iterator[tuple[ArmPath, dict[str, Any]]]:
     """(path, robot) of every robot of a canonical document."""

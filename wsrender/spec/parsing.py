@@ -9,18 +9,18 @@ from pydantic import TypeAdapter, ValidationError
 
 from wsrender.errors import DocumentError, InputError
 from wsrender.spec.document import Document
-from wsrender.spec.jobs import ANALYSES, IndicesAtJob, Job, WorkspaceJob
+from wsrender.spec.jobs import ANALYSES, Job
 from wsrender.spec.json_text import check_depth, read_json
 from wsrender.spec.problems import listed
 from wsrender.spec.quantities import quoted
 
 
-def parse_job(document: Mapping[str, Any] | str | bytes | Document) -> WorkspaceJob | IndicesAtJob:
+def parse_job(document: Mapping[str, Any] | str | bytes | Document) -> Any:
     """The job of a document: a dict, JSON text, or a job already parsed (returned as it is).
 
     Raises DocumentError listing every problem as (dotted path, what is allowed and what was found).
     """
-    if isinstance(document, WorkspaceJob | IndicesAtJob):
+    if isinstance(document, tuple(ANALYSES.values())):
         return document
     value = read_json(document) if isinstance(document, str | bytes) else document
     if not isinstance(value, Mapping):
@@ -52,7 +52,7 @@ def job_schema(analysis: str | None = None) -> dict[str, Any]:
 
 
 @cache
-def _adapter() -> TypeAdapter[WorkspaceJob | IndicesAtJob]:
+def _adapter() -> TypeAdapter[Any]:
     return TypeAdapter(Job)
 
 

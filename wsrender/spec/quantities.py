@@ -1,6 +1,7 @@
 """Numbers, names and lists as job documents write them: strict, finite, never a string or a bool."""
 
 import math
+import re
 from collections.abc import Iterable
 from numbers import Integral, Real
 from typing import Annotated, Any
@@ -9,6 +10,7 @@ from pydantic import BeforeValidator, Field, StrictStr
 
 LARGEST_COUNT = 10**15
 LARGEST_SEED = 2**63 - 1
+_FILE_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
 
 
 def real(value: Any) -> float:
@@ -64,4 +66,13 @@ Number = Annotated[float, BeforeValidator(real)]
 PositiveNumber = Annotated[float, Field(gt=0), BeforeValidator(real)]
 Count = Annotated[int, Field(ge=1, le=LARGEST_COUNT), BeforeValidator(integer)]
 Seed = Annotated[int, Field(ge=0, le=LARGEST_SEED), BeforeValidator(integer)]
+
+
+def _file_name(value: Any) -> Any:
+    if isinstance(value, str) and not _FILE_NAME.fullmatch(value):
+        raise ValueError("must have 1 to 64 letters, digits, and . _ - after the first")
+    return value
+
+
 Name = Annotated[StrictStr, Field(min_length=1)]
+FileName = Annotated[StrictStr, Field(pattern=f"^{_FILE_NAME.pattern}$"), BeforeValidator(_file_name)]

@@ -1,0 +1,185 @@
+"""Several robots: gantries, whose unions and intersections are boxes; arms of one model; malformed jobs."""
+
+import numpy as np
+import pytest
+
+import wsrender as ws
+from tests.run.simple_robots import PlanarClass, gantry
+from wsrender.result import Result
+from wsrender.run import finish, plan, run_shard
+from wsrender.run.partial_files import load_partial, save_partial
+
+OPTIONS = {"indices": ["manipulability"], "device": "cpu", "voxel_size_m": 0.01}
+FULL = ws.Grid([20, 40, 30])  # one sample at the centre of each voxel of .3 × .4 × .2 m
+BOX = 0.3 * 0.4 * 0.2
+
+TWO_ARMS = """
+<mujoco><worldbody>
+  <body name="torso">
+    <body name="left0"><joint name="lx" type="slide" axis="1 0 0" range=".005 .295"/>
+      <body name="left1"><joint name="ly" type="slide" axis="0 1 0" range=".005 .195"/>
+        <body name="left2"><joint name="lz" type="slide" axis="0 0 1" range=".005 .095"/>
+          <geom size=".01" mass="1"/><site name="left"/></body></body></body>
+    <body name="right0"><joint name="rx" type="slide" axis="1 0 0" range=".105 .495"/>
+      <body name="right1"><joint name="ry" type="slide" axis="0 1 0" range=".005 .195"/>
+        <body name="right2"><joint name="rz" type="slide" axis="0 0 1" range=".005 .095"/>
+          <geom size=".01" mass="1"/><site name="right"/></body></body></body>
+  </body>
+</worldbody></mujoco>
+"""
+
+
+def moved(*position):
+    return gantry(placement=ws.Transform(position_m=position))
+
+
+def test_two_boxes_share_a_box():
+    result = ws.shared_workspace([gantry(), moved(0.1, 0.2, 0.05)], FULL, **OPTIONS)
+    volume = result.document["volume_m3"]
+    common = 0.2 * 0.2 * 0.15
+    assert volume["shared"] == pytest.approx(common)
+    assert volume["any"] == pytest.approx(2 * BOX - common)
+    assert volume["exactly"] == {"1": pytest.approx(2 * (BOX - common)), "2": pytest.approx(common)}
+    assert result.document["shared_ratio"] == pytest.approx(common / (2 * BOX - common))
+    # Marching cubes cut the edges of the voxels.
+    assert result.meshes["union"].volume == pytest.approx(2 * BOX - common, rel=0.02)
+    assert result.meshes["intersection"].volume == pytest.approx(common, rel=0.02)
+    assert result.meshes["intersection"].is_volume
+    np.testing.assert_allclose(result.meshes["intersection"].bounds, [[0.1, -0.2, 0.05], [0.3, 0, 0.2]], atol=1e-9)
+    # Every cell of a gantry has the same manipulability.
+    assert result.document["quality"]["manipulability"] == {"maximum": pytest.approx(1.0), "mean": pytest.approx(1.0)}
+    assert [robot["name"] for robot in result.document["robots"]] == ["gantry", "gantry_2"]
+
+
+def test_three_boxes_and_those_that_do_not_meet():
+    robots = [gantry(), moved(0.1, 0, 0), moved(0.2, 0, 0)]
+    document = ws.shared_workspace(robots, FULL, names=["a", "b", "c"], **OPTIONS).document
+    step = 0.1 * 0.4 * 0.2
+    assert list(document["volume_m3"]["exactly"].values()) == pytest.approx([2 * step, 2 * step, step])
+    assert document["volume_m3"]["shared"] == pytest.approx(3 * step)
+    apart = ws.shared_workspace([gantry(), moved(1, 0, 0)], FULL, **OPTIONS)
+    assert (apart.document["volume_m3"]["shared"], apart.document["shared_ratio"]) == (0.0, 0.0)
+    assert set(apart.meshes) == {"union"}
+    assert apart.document["quality"]["manipulability"] == {"maximum": None, "mean": None}
+
+
+def test_scan_of_an_offset():
+    values = [0.0, 0.1, 0.25, 0.4]
+    result = ws.shared_workspace([gantry(), gantry()], FULL, scan={"axis": "x", "values": values}, **OPTIONS)
+    table = result.tables["scan"]
+    common = np.maximum(0.3 - np.array(values), 0) * 0.4 * 0.2
+    assert table["x"].tolist() == values
+    assert table["shared"] == pytest.approx(common)
+    assert table["any"] == pytest.approx(2 * BOX - common)
+    assert table.units == {"x": "m", "shared": "m^3", "any": "m^3"}
+
+
+def test_scan_of_an_angle():
+    """Turned by 90° about z, .3 × .4 m lies beside itself; by 180° too, on the other side."""
+    scan = {"robot": 0, "axis": "yaw", "values": [0, 90, 180]}
+    result = ws.shared_workspace([gantry(), gantry()], FULL, scan=scan, **OPTIONS)
+    # The box x 0….3, y -.4…0 turned by 90° is x 0….4, y 0….3.
+    assert result.tables["scan"]["shared"] == pytest.approx([BOX, 0, 0])
+    assert result.tables["scan"].units["yaw"] == "deg"
+
+
+def test_two_arms_of_one_model():
+    arms = [{"robot": {"mjcf": TWO_ARMS}, "tip": tip, "name": tip} for tip in ("left", "right")]
+    for arm, levels in zip(arms, ([30, 20, 10], [40, 20, 10]), strict=True):
+        arm["sampling"] = {"method": "grid", "per_joint": levels}
+    document = ws.execute({"analysis": "shared_workspace", "robots": arms, **OPTIONS}).document
+    assert document["volume_m3"]["shared"] == pytest.approx(0.2 * 0.2 * 0.1)
+    assert document["volume_m3"]["any"] == pytest.approx(0.5 * 0.2 * 0.1)
+    assert [robot["robot"]["tip_frame"] for robot in document["robots"]] == ["left", "right"]
+    assert ws.execute(document["job"]).document["volume_m3"] == document["volume_m3"]
+
+
+def test_the_smallest_voxel_size_is_that_of_all():
+    options = {"indices": ["manipulability"], "device": "cpu"}
+    small = gantry(x=(0.005, 0.095), y=(0.005, 0.095), z=(0.005, 0.095))
+    sizes = [ws.analyze(robot, ws.Grid(2), **options).document["voxel_size_m"] for robot in (gantry(), small)]
+    document = ws.shared_workspace([gantry(), small], ws.Grid(2), **options).document
+    assert document["voxel_size_m"] == min(sizes) < max(sizes)
+
+
+def test_saved_shards_and_files_hold_everything(tmp_path):
+    scan = {"axis": "x", "values": [0.0, 0.2]}
+    whole = ws.shared_workspace([gantry(), moved(0.1, 0, 0)], ws.Random(5000), scan=scan, **OPTIONS)
+    first = plan(whole.document["job"])
+    assert first.shards == [(0, 20_000)]
+    assert first.estimate["samples"] == 20_000
+    save_partial(run_shard(first, 0), tmp_path / "0.npz")
+    again = plan(whole.document["job"], resolved=first.resolved())
+    result = finish(again, load_partial(tmp_path / "0.npz", again))
+    assert result.document["volume_m3"] == whole.document["volume_m3"]
+    np.testing.assert_array_equal(result.tables["scan"]["shared"], whole.tables["scan"]["shared"])
+    result.save(tmp_path / "out")
+    names = {record["name"] for record in result.document["artifacts"]}
+    assert {"scan.parquet", "robot_gantry_2.vtkhdf", "union.glb", "plots/scan.png", "plots/product.png"} < names
+    loaded = Result.load(tmp_path / "out")
+    assert set(loaded.volumes) == {"robot_gantry", "robot_gantry_2"}
+    assert "shared volume" in loaded.summary() and "gantry + gantry_2" in loaded.summary()
+
+
+def test_a_comparison_lists_values_and_differences(tmp_path):
+    small = gantry(x=(0.005, 0.195))
+    samplings = [FULL, ws.Grid([20, 40, 20])]
+    result = ws.robot_comparison([gantry(), small], samplings, names=["large", "small"], **OPTIONS)
+    rows = {row["quantity"]: row for row in result.document["comparison"]}
+    assert rows["volume.occupied"]["values"] == pytest.approx([BOX, BOX * 2 / 3])
+    assert rows["volume.occupied"]["differences"] == pytest.approx([0, -BOX / 3])
+    assert rows["extent.x"]["values"] == pytest.approx([0.29, 0.19], abs=1e-6)
+    assert rows["manipulability.joint_mean"]["values"] == pytest.approx([1.0, 1.0])
+    table = result.tables["comparison"]
+    assert table["difference_small"][table["quantity"] == "extent.x"] == pytest.approx([-0.1], abs=1e-6)
+    assert set(result.volumes) == {"robot_large", "robot_small"}
+    figure = result.plot.side_by_side()
+    panels = [axes for axes in figure.axes if axes.get_images()]
+    assert len(panels) == 6
+    assert len({axes.get_images()[0].norm.vmax for axes in panels}) == 1
+    for axis in range(3):
+        assert panels[axis].get_xlim() == panels[axis + 3].get_xlim()
+    result.save(tmp_path / "out")
+    assert "plots/comparison.png" in {record["name"] for record in result.document["artifacts"]}
+    assert "large" in result.summary() and "volume.occupied" in result.summary()
+
+
+@pytest.mark.parametrize(
+    ("fields", "message"),
+    [
+        ({"robots": [{"robot": "scara"}]}, "robots: must have at least 2 items"),
+        ({"robots": [{"robot": "scara"}, {"robot": "nobody"}]}, r'robots.1.library: has no robot "nobody"'),
+        ({"robots": [{"robot": "scara", "name": "../a"}] * 2}, "robots.0.name: must have 1 to 64 letters"),
+        ({"robots": [{"robot": "scara", "name": "a"}] * 2}, "robots: must not give two robots the same name: a, a"),
+        ({"scan": {"robot": 2, "values": [1]}}, r"scan: must name a robot by its place, 0 … 1, not 2"),
+        ({"scan": {"axis": "w", "values": [1]}}, r'scan.axis: must be "x", "y"'),
+        ({"scan": {"values": []}}, "scan.values: must not be empty"),
+        ({"scan": {"values": [1, 1]}}, "scan.values: must not repeat"),
+        ({"indices": ["speed"]}, "robots.0.indices: "),
+        ({"robots": [{"robot": "scara"}, {"robot": "scara", "sampling": {"method": "grid", "per_joint": [2]}}]},
+         r"robots.1.sampling.per_joint"),
+    ],
+)  # fmt: skip
+def test_malformed_jobs(fields, message):
+    job = {"analysis": "shared_workspace", "robots": [{"robot": "scara"}] * 2, "device": "cpu"}
+    with pytest.raises(ws.InputError, match=message):
+        ws.execute({**job, **fields})
+
+
+def test_a_scanned_angle_needs_an_angle():
+    placed = {"library": "scara", "placement": {"quat_wxyz": [1, 0, 0, 0]}}
+    job = {"analysis": "shared_workspace", "robots": [{"robot": "scara"}, {"robot": placed}]}
+    with pytest.raises(ws.DocumentError, match="scan: of yaw needs a placement without quat_wxyz"):
+        ws.execute({**job, "scan": {"axis": "yaw", "values": [1]}})
+
+
+def test_a_user_defined_robot_takes_part_but_is_not_scanned():
+    options = {"indices": ["manipulability"], "task": ["x", "y"], "device": "cpu", "voxel_size_m": 0.05}
+    result = ws.shared_workspace([PlanarClass(), PlanarClass()], ws.Grid(20), **options)
+    volume = result.document["volume_m3"]
+    assert volume["shared"] == volume["any"] > 0
+    assert result.document["job"]["robots"][1]["robot"] == {"user_defined": "tests.run.simple_robots.PlanarClass"}
+    with pytest.raises(ws.InputError, match="placement: of PlanarClass cannot be changed"):
+        ws.shared_workspace([PlanarClass()] * 2, ws.Grid(5), scan={"values": [0.1]}, **options)
+    with pytest.raises(ws.InputError, match="robots: there are 3 samplings and 2 names for 2 robots"):
+        ws.shared_workspace([gantry()] * 2, [FULL] * 3, **options)

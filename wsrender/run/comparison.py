@@ -1,0 +1,114 @@
+"""The analysis ``robot_comparison``: several robots side by side, and a table of their differences."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from wsrender.result import Result
+from wsrender.robot import Robot
+from wsrender.run.provenance import job_entry, provenance
+from wsrender.run.several_result import common_entries, skeletons
+from wsrender.run.several_robots import SeveralPlans, plan_several
+from wsrender.spec import RobotComparisonJob
+from wsrender.volume.table import Table
+
+
+@dataclass(eq=False)
+class RobotComparisonPlan:
+    """A resolved ``robot_comparison`` job: one shard, in which the robots are swept one after the other."""
+
+    job: RobotComparisonJob
+    robots: tuple[Robot, ...]
+    several: SeveralPlans
+
+    @property
+    def target(self) -> str:
+        """Target of the kernels."""
+        return self.several.plans[0].target
+
+    @property
+    def shards(self) -> list[tuple[int, int]]:
+        """One shard of all samples."""
+        return [(0, self.several.samples)]
+
+    @property
+    def estimate(self) -> dict[str, float]:
+        """Samples, bytes and seconds."""
+        return self.several.estimate
+
+    def resolved(self) -> dict[str, Any]:
+        """What is settled once, for every robot."""
+        return self.several.resolved()
+
+    def run_shard(self, shard: int, progress: Callable[[int], None] | None, **execution: Any) -> dict[str, np.ndarray]:
+        """Partial results of the robots."""
+        return self.several.run(progress, **execution)
+
+    def merge(self, a: Any, b: Any) -> Any:
+        """There is one shard: nothing to merge."""
+        raise ValueError("robot_comparison has one shard")
+
+    def finish(self, partial: dict[str, np.ndarray], seconds: dict[str, float]) -> Result:
+        """Every robot's volume, and the table of values and differences from the first robot."""
+        results = self.several.results(partial)
+        names = self.several.names
+        common = common_entries(self.job, self.several, results)
+        rows = _rows(common["robots"])
+        document = {
+            "analysis": "robot_comparison",
+            "job": job_entry(self.job, *self.robots),
+            **common,
+            "comparison": rows,
+            "provenance": provenance(self.job.precision, self.target, sampling_path="direct"),
+            "timing_s": seconds,
+        }
+        volumes = {f"robot_{name}": r.volume for name, r in zip(names, results, strict=True) if r.volume is not None}
+        tables = {"comparison": _table(names, rows)}
+        return Result(document, skeleton=skeletons(results), tables=tables, volumes=volumes)
+
+
+def plan_robot_comparison(
+    job: RobotComparisonJob, *robots: Robot, resolved: dict[str, Any] | None = None
+) -> RobotComparisonPlan:
+    """Resolve the job, or take what `RobotComparisonPlan.resolved` of an earlier plan of it says.
+
+    Raises InputError, MissingInertiaError, ResourceError.
+    """
+    return RobotComparisonPlan(job, robots, plan_several(job, robots, resolved))
+
+
+def _rows(robots: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Quantity, unit, value of each robot, and difference of each from the first (None where it has none)."""
+    facts = [dict(_facts(robot)) for robot in robots]
+    rows = []
+    for quantity, unit in dict.fromkeys(key for fact in facts for key in fact):
+        values = [fact.get((quantity, unit)) for fact in facts]
+        differences = [None if v is None or values[0] is None else v - values[0] for v in values]
+        rows.append({"quantity": quantity, "unit": unit, "values": values, "differences": differences})
+    return rows
+
+
+def _facts(robot: dict[str, Any]) -> Iterator[tuple[tuple[str, str], float]]:
+    for name, value in robot["volume_m3"].items():
+        if isinstance(value, float):
+            yield (f"volume.{name}", "m^3"), value
+    for axis, low, high in zip("xyz", robot["bounds_m"]["lower"], robot["bounds_m"]["upper"], strict=True):
+        yield (f"extent.{axis}", "m"), high - low
+    for name, value in robot["global"].items():
+        if isinstance(value, float):
+            yield (name, "1"), value
+    for index, entry in robot["indices"].items():
+        for name in ("maximum", "minimum", "joint_mean", "workspace_mean"):
+            if isinstance(entry[name], float):
+                yield (f"{index}.{name}", entry["unit"] if name in ("maximum", "minimum") else "1"), entry[name]
+
+
+def _table(names: list[str], rows: list[dict[str, Any]]) -> Table:
+    """The rows as columns: quantity, unit, value of each robot, difference of the others from the first."""
+    columns = {key: np.array([row[key] for row in rows]) for key in ("quantity", "unit")}
+    for prefix, key, first in (("", "values", 0), ("difference_", "differences", 1)):
+        for k, name in list(enumerate(names))[first:]:
+            columns[prefix + name] = np.array([row[key][k] for row in rows], np.float64)
+    return Table(columns)

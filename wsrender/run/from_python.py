@@ -1,0 +1,45 @@
+"""From Python objects to job documents, and their execution here."""
+
+from pathlib import Path
+from typing import Any
+
+from wsrender.progress import RunProgress
+from wsrender.result import Result
+from wsrender.robot import Robot, as_robot, load_robot
+from wsrender.run.steps import Progress, execute
+from wsrender.spec import parse_job
+from wsrender.spec.document import Document
+from wsrender.spec.robot import DHTable, RobotSpec
+from wsrender.spec.sampling import Grid
+
+
+def as_subject(robot: Any) -> Robot:
+    """The robot of a Robot, a user-defined robot, or what `load_robot` takes."""
+    return load_robot(robot) if isinstance(robot, str | Path | DHTable) else as_robot(robot)
+
+
+def arm_entry(robot: Robot) -> dict[str, Any]:
+    """Robot, base and tip of a job document; a user-defined robot has no form, and its result document says so."""
+    spec = robot.spec or RobotSpec(path="user-defined")
+    return {"robot": spec.model_dump(mode="json", exclude_none=True), "base": robot.base, "tip": robot.tip}
+
+
+def sampling_entry(sampling: Any) -> Any:
+    """Sampling of a job document; None is Grid(15)."""
+    if sampling is None:
+        return Grid().model_dump(mode="json")
+    return sampling.model_dump(mode="json") if isinstance(sampling, Document) else sampling
+
+
+def plain(fields: dict[str, Any]) -> dict[str, Any]:
+    """Fields of a job document, tuples and sets as lists."""
+    return {name: list(value) if isinstance(value, tuple | set) else value for name, value in fields.items()}
+
+
+def execute_here(document: Any, robots: Any, progress: Progress | bool | None, **execution: Any) -> Result:
+    """Run a job here; ``progress`` True shows a bar."""
+    job = parse_job(document)
+    if progress is True:
+        with RunProgress() as bar:
+            return execute(job, bar, robot=robots, **execution)
+    return execute(job, progress or None, robot=robots, **execution)

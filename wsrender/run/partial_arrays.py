@@ -1,0 +1,58 @@
+"""Partial results ↔ plain arrays by name, so that they can be kept in files and in partial results of others."""
+
+import json
+from typing import Any
+
+import numpy as np
+
+from wsrender.engine import Evaluated, Partial
+from wsrender.run.indices_at import IndicesAtPlan
+from wsrender.run.workspace import WorkspacePartial, WorkspacePlan
+from wsrender.spec.sampling import Converge
+
+Arrays = dict[str, np.ndarray]
+Partials = WorkspacePartial | Evaluated | Arrays
+"""Partial results: of the analyses without a type of their own, arrays by name."""
+
+SWEEP = ("extremes", "totals", "cells", "count", "records", "sums")
+EVALUATED = ("position", "values", "largest_sigma", "smallest_sigma", "quat_wxyz")
+ROWS = "rows_"
+
+
+def partial_to_arrays(partial: Partials) -> Arrays:
+    """The arrays of a partial result."""
+    match partial:
+        case WorkspacePartial():
+            return _workspace_arrays(partial)
+        case Evaluated():
+            return {name: value for name in EVALUATED if (value := getattr(partial, name)) is not None}
+        case _:
+            return partial
+
+
+def partial_of_arrays(arrays: Arrays, plan: Any) -> Any:
+    """The partial result of a plan's shard; KeyError, TypeError or ValueError where the arrays are not of one."""
+    match plan:
+        case WorkspacePlan():
+            return _workspace_partial(arrays, plan)
+        case IndicesAtPlan():
+            return Evaluated(**{name: arrays[name] for name in EVALUATED if name in arrays})
+        case _:
+            return arrays
+
+
+def _workspace_arrays(partial: WorkspacePartial) -> Arrays:
+    sweep = partial.sweep
+    about = {"samples": sweep.samples, "convergence": partial.convergence}
+    rows = {f"{ROWS}{first}": block for first, block in sweep.rows.items()}
+    return {"about": np.array(json.dumps(about)), **{name: getattr(sweep, name) for name in SWEEP}, **rows}
+
+
+def _workspace_partial(arrays: Arrays, plan: WorkspacePlan) -> WorkspacePartial:
+    about = json.loads(str(arrays["about"]))
+    rows = {int(name.removeprefix(ROWS)): array for name, array in arrays.items() if name.startswith(ROWS)}
+    sweep = Partial(about["samples"], **{name: arrays[name] for name in SWEEP}, rows=rows)
+    sequence, sampling = about["convergence"], plan.job.sampling
+    if sequence is None or not isinstance(sampling, Converge):
+        return WorkspacePartial(sweep, plan.sweep)
+    return WorkspacePartial(sweep, plan.with_grid(sequence[-1]["per_joint"], sampling), sequence)

@@ -1,0 +1,50 @@
+"""The analyses of several robots from Python."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from wsrender.errors import InputError
+from wsrender.result import Result
+from wsrender.run.from_python import arm_entry, as_subject, execute_here, plain, sampling_entry
+from wsrender.run.steps import Progress
+
+
+def shared_workspace(
+    robots: Sequence[Any], sampling: Any = None, *, progress: Progress | bool | None = None, **fields: Any
+) -> Result:
+    """What several robots reach together: union, shared volume, volume by number of robots, shared quality.
+
+    ``robots`` are Robots (placed by ``load_robot(…, placement=…)``), user-defined robots or what `load_robot` takes;
+    the arms of one model are loaded with other ``base`` and ``tip``. ``sampling`` is one for all or a list of one for
+    each (default Grid(15)). ``fields`` are the other fields of the job document ``shared_workspace``: scan, indices,
+    task, voxel_size_m, max_samples, precision, device …; ``names`` says what the result calls the robots.
+
+    Raises DocumentError, InputError, ModelError, ResourceError, NumericalError, NotConvergedError.
+    """
+    return _several("shared_workspace", robots, sampling, progress, fields)
+
+
+def robot_comparison(
+    robots: Sequence[Any], sampling: Any = None, *, progress: Progress | bool | None = None, **fields: Any
+) -> Result:
+    """Several robots, or placements of one, on one lattice: a table of differences, pictures of one scale.
+
+    The arguments are those of `shared_workspace`, without ``scan``.
+    """
+    return _several("robot_comparison", robots, sampling, progress, fields)
+
+
+def _several(
+    analysis: str, robots: Sequence[Any], sampling: Any, progress: Progress | bool | None, fields: dict[str, Any]
+) -> Result:
+    subjects = [as_subject(robot) for robot in robots]
+    samplings = sampling if isinstance(sampling, list | tuple) else [sampling] * len(subjects)
+    names = fields.pop("names", None) or [None] * len(subjects)
+    if not len(subjects) == len(samplings) == len(names):
+        counts = f"{len(samplings)} samplings and {len(names)} names for {len(subjects)} robots"
+        raise InputError("robots", f"there are {counts}; one for each is needed")
+    arms = [
+        {**arm_entry(subject), "sampling": sampling_entry(own), "name": name}
+        for subject, own, name in zip(subjects, samplings, names, strict=True)
+    ]
+    return execute_here({"analysis": analysis, "robots": arms, **plain(fields)}, subjects, progress)

@@ -1,0 +1,27 @@
+"""What the results of all analyses of several robots say of each of them."""
+
+from typing import Any
+
+import numpy as np
+
+from wsrender.result import Result
+from wsrender.run.several_robots import SeveralPlans
+
+OF_EACH = ("robot", "sampling", "indices", "volume_m3", "bounds_m", "global", "convergence")
+
+
+def common_entries(job: Any, several: SeveralPlans, results: list[Result]) -> dict[str, Any]:
+    """Robots with the values of each alone, the choices they share and the voxel size."""
+    documents = [result.document for result in results]
+    robots = [
+        {"name": name, **{key: document[key] for key in OF_EACH}}
+        for name, document in zip(several.names, documents, strict=True)
+    ]
+    return {"robots": robots, "choices": documents[0]["choices"], "voxel_size_m": several.plans[0].voxel_size_m}
+
+
+def skeletons(results: list[Result]) -> np.ndarray:
+    """Every robot at mid-range, (K, L + 2, 3) [m]; shorter arms repeat their tip."""
+    arms = [result.skeleton[1] for result in results if result.skeleton is not None]
+    length = max(map(len, arms))
+    return np.stack([np.concatenate([arm, np.repeat(arm[-1:], length - len(arm), axis=0)]) for arm in arms])

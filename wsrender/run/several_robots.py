@@ -1,0 +1,107 @@
+"""Several robots on one lattice: a workspace plan for each, swept one after the other."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import count
+from typing import Any
+
+import numpy as np
+
+from wsrender.errors import InputError
+from wsrender.result import Result
+from wsrender.robot import Robot
+from wsrender.run.partial_arrays import partial_of_arrays, partial_to_arrays
+from wsrender.run.workspace import WorkspacePlan, plan_workspace
+from wsrender.spec import WorkspaceJob
+from wsrender.spec.arm import dotted
+from wsrender.spec.index_choices import IndexChoices
+from wsrender.spec.several_robots import PlacedRobot
+
+
+@dataclass(eq=False)
+class SeveralPlans:
+    """Workspace plans of K robots at one voxel size, device and target."""
+
+    names: list[str]
+    plans: list[WorkspacePlan]
+
+    @property
+    def samples(self) -> int:
+        """Samples of all robots; a converging sampling takes more."""
+        return sum(plan.shards[0][1] for plan in self.plans)
+
+    @property
+    def estimate(self) -> dict[str, float]:
+        """Samples and seconds of all, bytes of the largest: they are swept one after the other."""
+        estimates = [plan.estimate for plan in self.plans]
+        totals = {name: sum(each[name] for each in estimates) for name in ("samples", "seconds")}
+        return totals | {"bytes": max(each["bytes"] for each in estimates)}
+
+    def resolved(self) -> dict[str, Any]:
+        """What is settled once: device, target, the shard, and what each robot's plan says."""
+        first = self.plans[0]
+        robots = [plan.resolved() for plan in self.plans]
+        return {"device": first.device, "target": first.target, "shards": [[0, self.samples]], "robots": robots}
+
+    def run(self, progress: Callable[[int], None] | None, **execution: Any) -> dict[str, np.ndarray]:
+        """Sweep every robot; the partial results as arrays, their names led by the robot's number."""
+        arrays, done = {}, 0
+        for k, plan in enumerate(self.plans):
+            partial = plan.run_shard(0, progress_after(done, progress), **execution)
+            arrays |= {f"{k}_{name}": array for name, array in partial_to_arrays(partial).items()}
+            done += plan.shards[0][1]
+        return arrays
+
+    def results(self, arrays: dict[str, np.ndarray]) -> list[Result]:
+        """The workspace result of every robot."""
+        found = []
+        for k, plan in enumerate(self.plans):
+            own = {name.partition("_")[2]: array for name, array in arrays.items() if name.startswith(f"{k}_")}
+            found.append(plan.finish(partial_of_arrays(own, plan), {}))
+        return found
+
+
+def plan_several(job: Any, robots: tuple[Robot, ...], resolved: dict[str, Any] | None) -> SeveralPlans:
+    """Workspace plans of a job's robots at its voxel size, or at the smallest that one of them would have."""
+    settled = resolved["robots"] if resolved else [None] * len(robots)
+    names = robot_names(job.robots, robots)
+    jobs = [workspace_job(job, arm) for arm in job.robots]
+    plans = [_planned(k, *each) for k, each in enumerate(zip(jobs, robots, settled, strict=True))]
+    size = min(plan.voxel_size_m for plan in plans)
+    if resolved is None and job.voxel_size_m is None:
+        jobs = [each.model_copy(update={"voxel_size_m": size}) for each in jobs]
+        plans = [_planned(k, *each, None) for k, each in enumerate(zip(jobs, robots, strict=True))]
+    return SeveralPlans(names, plans)
+
+
+def workspace_job(job: Any, arm: PlacedRobot) -> WorkspaceJob:
+    """The workspace job of one robot of a job of several."""
+    choices = {name: getattr(job, name) for name in (*IndexChoices.model_fields, "voxel_size_m", "max_samples")}
+    own = {"robot": arm.robot, "base": arm.base, "tip": arm.tip, "sampling": arm.sampling}
+    return WorkspaceJob(**choices, **own, surfaces=())
+
+
+def robot_names(arms: tuple[PlacedRobot, ...], robots: tuple[Robot, ...]) -> list[str]:
+    """What each robot is called: its name in the job, else its own, with a number where that is taken."""
+    taken = {arm.name for arm in arms if arm.name}
+    names = []
+    for arm, robot in zip(arms, robots, strict=True):
+        name = arm.name
+        if name is None:
+            choices = (robot.name if k == 1 else f"{robot.name}_{k}" for k in count(1))
+            name = next(choice for choice in choices if choice not in taken)
+            taken.add(name)
+        names.append(name)
+    return names
+
+
+def _planned(number: int, job: WorkspaceJob, robot: Robot, resolved: dict[str, Any] | None) -> WorkspacePlan:
+    try:
+        return plan_workspace(job, robot, resolved)
+    except InputError as error:
+        raise error.within(dotted(("robots", number))) from None
+
+
+def progress_after(before: int, progress: Callable[[int], None] | None) -> Callable[[int], None] | None:
+    """A progress that adds to what was done before."""
+    return None if progress is None else lambda done: progress(before + done)

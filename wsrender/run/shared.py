@@ -1,0 +1,157 @@
+"""The analysis ``shared_workspace``: what several robots reach together."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from wsrender.multi.shared_volume import NUMBER, PRODUCT, reached_by, shared_volume, volume_by_number
+from wsrender.result import Result
+from wsrender.robot import Robot
+from wsrender.run.provenance import job_entry, provenance
+from wsrender.run.several_result import common_entries, skeletons
+from wsrender.run.several_robots import SeveralPlans, plan_several, progress_after, workspace_job
+from wsrender.run.workspace import WorkspacePlan, plan_workspace
+from wsrender.spec import SharedWorkspaceJob
+from wsrender.spec.placement_scan import PlacementScan
+from wsrender.volume.table import Table
+from wsrender.volume.volume_data import VolumeData
+
+if TYPE_CHECKING:
+    import trimesh
+
+
+@dataclass(eq=False)
+class SharedWorkspacePlan:
+    """A resolved ``shared_workspace`` job: one shard, in which the robots are swept one after the other."""
+
+    job: SharedWorkspaceJob
+    robots: tuple[Robot, ...]
+    several: SeveralPlans
+    scanned: list[WorkspacePlan]  # of the moved robot, one for each value of the scan
+
+    @property
+    def target(self) -> str:
+        """Target of the kernels."""
+        return self.several.plans[0].target
+
+    @property
+    def shards(self) -> list[tuple[int, int]]:
+        """One shard of all samples."""
+        return [(0, self.several.samples + sum(plan.shards[0][1] for plan in self.scanned))]
+
+    @property
+    def estimate(self) -> dict[str, float]:
+        """Samples, bytes and seconds."""
+        return SeveralPlans([], [*self.several.plans, *self.scanned]).estimate
+
+    def resolved(self) -> dict[str, Any]:
+        """What is settled once, for every robot."""
+        return self.several.resolved() | {"shards": [list(shard) for shard in self.shards]}
+
+    def run_shard(self, shard: int, progress: Callable[[int], None] | None, **execution: Any) -> dict[str, np.ndarray]:
+        """Partial results of the robots, and the volumes of every step of the scan."""
+        arrays = self.several.run(progress, **execution)
+        if self.job.scan is not None:
+            arrays["scan"] = self._scan(self.job.scan, arrays, progress, **execution)
+        return arrays
+
+    def merge(self, a: Any, b: Any) -> Any:
+        """There is one shard: nothing to merge."""
+        raise ValueError("shared_workspace has one shard")
+
+    def finish(self, partial: dict[str, np.ndarray], seconds: dict[str, float]) -> Result:
+        """Number of robots by voxel, product of their normalised indices, union and intersection."""
+        results = self.several.results(partial)
+        volumes = {f"robot_{name}": r.volume for name, r in zip(self.several.names, results, strict=True) if r.volume}
+        shared = shared_volume(list(volumes.values()))
+        by_number = volume_by_number(shared, len(volumes))
+        meshes, surfaces = _meshes(shared)
+        any_m3, shared_m3 = float(by_number.sum()), float(by_number[2:].sum())
+        document = {
+            "analysis": "shared_workspace",
+            "job": job_entry(self.job, *self.robots),
+            **common_entries(self.job, self.several, results),
+            "volume_m3": {
+                "any": any_m3,
+                "shared": shared_m3,
+                "exactly": {str(k): float(by_number[k]) for k in range(1, len(by_number))},
+            },
+            "shared_ratio": shared_m3 / any_m3,
+            "quality": _quality(shared),
+            "surfaces": surfaces,
+            "provenance": provenance(self.job.precision, self.target, sampling_path="direct"),
+            "timing_s": seconds,
+        }
+        tables = {"scan": _scan_table(self.job.scan, partial["scan"])} if self.job.scan else {}
+        return Result(
+            document, volume=shared, skeleton=skeletons(results), meshes=meshes, tables=tables, volumes=volumes
+        )
+
+    def _scan(
+        self,
+        scan: PlacementScan,
+        arrays: dict[str, np.ndarray],
+        progress: Callable[[int], None] | None,
+        **execution: Any,
+    ) -> np.ndarray:
+        """Volumes (values, K) [m³] reached by at least 1 … K robots at each value."""
+        volumes = [result.volume for result in self.several.results(arrays)]
+        before, rows = self.several.samples, []
+        for plan in self.scanned:
+            moved = SeveralPlans([""], [plan])
+            (result,) = moved.results(moved.run(progress_after(before, progress), **execution))
+            volumes[scan.robot] = result.volume
+            by_number = volume_by_number(shared_volume([v for v in volumes if v is not None]), len(volumes))
+            rows.append(np.cumsum(by_number[:0:-1])[::-1])
+            before += plan.shards[0][1]
+        return np.array(rows)
+
+
+def plan_shared_workspace(
+    job: SharedWorkspaceJob, *robots: Robot, resolved: dict[str, Any] | None = None
+) -> SharedWorkspacePlan:
+    """Resolve the job, or take what `SharedWorkspacePlan.resolved` of an earlier plan of it says.
+
+    Raises InputError, MissingInertiaError, ResourceError.
+    """
+    several = plan_several(job, robots, resolved)
+    scanned = []
+    if job.scan is not None:
+        arm, robot = job.robots[job.scan.robot], robots[job.scan.robot]
+        settled = {"voxel_size_m": several.plans[0].voxel_size_m, "device": several.plans[0].device}
+        at = workspace_job(job, arm).model_copy(update=settled)
+        placements = job.scan.placements(arm.robot.placement)
+        scanned = [plan_workspace(at, robot.placed(placement)) for placement in placements]
+    return SharedWorkspacePlan(job, robots, several, scanned)
+
+
+def _meshes(shared: VolumeData) -> "tuple[dict[str, trimesh.Trimesh], dict[str, Any]]":
+    """Surfaces of the union and, where there is one, of the intersection, with their entries."""
+    from wsrender.boundary.surfaces import surface_entry
+    from wsrender.boundary.voxel_surface import occupied_surface
+
+    meshes = {"union": occupied_surface(shared)}
+    both = reached_by(shared, 2)
+    if both.occupied.any():
+        meshes["intersection"] = occupied_surface(both)
+    return meshes, {name: surface_entry(name, mesh) for name, mesh in meshes.items()}
+
+
+def _quality(shared: VolumeData) -> dict[str, Any]:
+    """Largest and mean product of each index over the shared voxels; None where there are none."""
+    entries = {}
+    for name, product in shared.statistics[PRODUCT].items():
+        values = product[np.nan_to_num(shared.statistics[NUMBER]["robots"]) > 1].astype(np.float64)
+        there = len(values) > 0
+        entries[name] = {
+            "maximum": float(values.max()) if there else None,
+            "mean": float(values.mean()) if there else None,
+        }
+    return entries
+
+
+def _scan_table(scan: PlacementScan, at_least: np.ndarray) -> Table:
+    columns = {scan.axis: np.array(scan.values), "shared": at_least[:, 1], "any": at_least[:, 0]}
+    return Table(columns, {scan.axis: scan.unit, "shared": "m^3", "any": "m^3"})
