@@ -134,7 +134,7 @@ MALFORMED = [
     (job(voxel_statistics=["median"]), "voxel_statistics", "must be a list of items from count maximum"),
     (job(voxel_statistics="count"), "voxel_statistics", 'must be a list, not "count"'),
     (job(voxel_statistics=["mean", "mean"]), "voxel_statistics", 'must not repeat "mean"'),
-    (job(refined_volume=0.005), "refined_volume", "must be null (not available in this version), not 0.005"),
+    (job(refined_volume=0), "refined_volume", "must be at least 0.0001, not 0"),
     (job(keep_map="yes"), "keep_map", 'must be true or false, not "yes"'),
     (job(map_columns=["speed"], keep_map=True), "map_columns", "items from configuration orientation"),
     (job(map_columns=["orientation"]), "map_columns", 'must be empty unless "keep_map" is true'),

@@ -24,6 +24,7 @@ SAMPLES = {False: 1 << 15, True: 1 << 13}  # of the set, for positions and for p
 # Evidence that a target is unreachable: so many tries (for positions, for poses) came to rest where no motion within
 # the limits leads nearer, clearly off the target, and so many of them at the least residual of all, within 1 %.
 LEAST_ENDS, LEAST_AGREEING, AGREEING, CLEARLY = {False: 12, True: 32}, 3, 1.01, 2.0
+AT_END = 1e-6  # share of a slide's range within which it stands at its end
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,18 +76,30 @@ class InverseSolver:
             pending = search.pending
             each = starts.shape[1]
             tries = self._tries(np.repeat(targets[pending], each, axis=0), starts.reshape(-1, self.chain.n))
-            search.record(pending, tries, each)
+            search.record(pending, tries, self._residual(tries).reshape(-1, each))
         q = np.tile((self.whole.lower_limits + self.whole.upper_limits) / 2, (len(targets), 1))
         q[:, self._kept] = self._within_a_turn(search.q)
         return Solutions(q, search.distance, search.angle, search.label, search.proven)
 
-    def without_limits(self, q: np.ndarray, position: np.ndarray, axes: np.ndarray | None = None) -> np.ndarray:
-        """Whether targets are reached where hinges may turn for ever, (N,) bool; ``q`` (N, n): a first start."""
+    def held_by_limits(self, q: np.ndarray, position: np.ndarray, axes: np.ndarray | None = None) -> np.ndarray:
+        """Whether limits alone keep the chain from targets, (N,) bool; ``q`` (N, n): a first start.
+
+        So it is where hinges that turn for ever reach the target, or come nearest with a slide at its end.
+        """
         targets = _targets(position, axes)
         fresh = np.tile(self._fresh(0, NEAREST - 1), (len(targets), 1, 1))
         starts = np.concatenate([q[:, None, self._kept], fresh], axis=1).reshape(-1, self.chain.n)
         tries = self._tries(np.repeat(targets, NEAREST, axis=0), starts, without_limits=True)
-        return np.any(tries.reached.reshape(-1, NEAREST), axis=1)
+        residual = np.where(tries.reached, 0.0, self._residual(tries)).reshape(-1, NEAREST)
+        best = np.arange(len(targets)) * NEAREST + np.argmin(residual, axis=1)
+        chain, nearest = self.chain, tries.q[best]
+        margin = AT_END * (chain.upper_limits - chain.lower_limits)
+        ended = (nearest <= chain.lower_limits + margin) | (nearest >= chain.upper_limits - margin)
+        return tries.reached[best] | np.any(ended & ~chain.revolute, axis=1)
+
+    def _residual(self, tries: Tries) -> np.ndarray:
+        """What the solver reduces, (N,) [m]."""
+        return np.hypot(tries.distance, 2 * self.accuracy.length * np.sin(tries.angle / 2))
 
     def _tries(self, targets: np.ndarray, starts: np.ndarray, without_limits: bool = False) -> Tries:
         return solve_inverse(
@@ -164,11 +177,10 @@ class _Search:
         self._tolerance = np.hypot(accuracy.position_m, accuracy.length * accuracy.angle_rad * pose)
         self._ends, self._agreeing = np.zeros(count, np.int32), np.zeros(count, np.int32)
 
-    def record(self, pending: np.ndarray, tries: Tries, each: int) -> None:
-        """Take in ``each`` tries of every pending target, and settle those that are decided."""
-        size = (len(pending), each)
-        residual = np.hypot(tries.distance, 2 * self.accuracy.length * np.sin(tries.angle / 2)).reshape(size)
-        reached, ended = tries.reached.reshape(size), tries.stationary.reshape(size)
+    def record(self, pending: np.ndarray, tries: Tries, residual: np.ndarray) -> None:
+        """Take in the tries of every pending target, residuals (P, tries each), and settle what is decided."""
+        each = residual.shape[1]
+        reached, ended = tries.reached.reshape(residual.shape), tries.stationary.reshape(residual.shape)
         best = np.argmin(np.where(reached, -1.0, residual), axis=1)
         chosen = np.arange(len(pending)) * each + best
         found = reached.any(axis=1)

@@ -13,7 +13,6 @@ from wsrender.robot.user_robot import HostRobot
 from wsrender.tolerances import TOLERANCES
 
 POSITION_TOLERANCE_M, ANGLE_TOLERANCE_RAD = 1e-5, 1e-5
-AT_LIMIT = 1e-9  # share of a slide's range within which it stands at its end
 
 JOINT_LIMITS, OUT_OF_REACH = "joint limits", "out of reach"
 TOO_CLOSE, INCONCLUSIVE = "too close to the tolerance", "search not conclusive"
@@ -27,7 +26,8 @@ class Reachability:
     in the middle of their range. ``residual_m``, ``residual_rad`` (N,): what is left to the target; 0 rad where no
     orientation was asked. ``labels`` (N,): "reachable", "unreachable" or "undecided". ``reasons`` (N,): of unreachable
     targets "out of reach" (no configuration, limits or not) or "joint limits" (hinges without limits would reach it,
-    or a slide is at its end); of undecided ones "too close to the tolerance" or "search not conclusive"; else "".
+    or come nearest with a slide at its end); of undecided ones "too close to the tolerance" or "search not
+    conclusive"; else "".
     """
 
     configurations: np.ndarray
@@ -75,7 +75,7 @@ def reachable(
     )
     found = solver.solve(position, axes)
     labels = np.array([LABELS[label] for label in found.label.tolist()], dtype="<U11")
-    reasons = _reasons(solver, found, position, axes)
+    reasons = reasons_of(solver, found, position, axes)
     return Reachability(found.q, found.distance_m, found.angle_rad, labels, reasons)
 
 
@@ -114,17 +114,15 @@ def rotations(quat_wxyz: Any, count: int) -> np.ndarray:
     return Rotation.from_quat(quat, scalar_first=True).as_matrix()
 
 
-def _reasons(solver: InverseSolver, found: Solutions, position: np.ndarray, axes: np.ndarray | None) -> np.ndarray:
+def reasons_of(
+    solver: InverseSolver, found: Solutions, position: np.ndarray, axes: np.ndarray | None = None
+) -> np.ndarray:
+    """Why targets are not reachable, as in `Reachability`, (N,) text."""
     reasons = np.full(len(position), "", dtype="<U26")
     undecided, missed = found.label == UNDECIDED, found.label == UNREACHABLE
     accuracy = solver.accuracy
     close = (found.distance_m <= CLEARLY * accuracy.position_m) & (found.angle_rad <= CLEARLY * accuracy.angle_rad)
     reasons[undecided] = np.where(close[undecided], TOO_CLOSE, INCONCLUSIVE)
-    chain = solver.whole
-    free = solver.without_limits(found.q[missed], position[missed], None if axes is None else axes[missed])
-    slides, width = ~chain.revolute, chain.upper_limits - chain.lower_limits
-    margin = AT_LIMIT * width
-    ended = (found.q <= chain.lower_limits + margin) | (found.q >= chain.upper_limits - margin)
-    at_end = np.any(ended[missed] & slides, axis=1)
-    reasons[missed] = np.where(free | at_end, JOINT_LIMITS, OUT_OF_REACH)
+    held = solver.held_by_limits(found.q[missed], position[missed], None if axes is None else axes[missed])
+    reasons[missed] = np.where(held, JOINT_LIMITS, OUT_OF_REACH)
     return reasons

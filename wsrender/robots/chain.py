@@ -1,6 +1,7 @@
 """The kinematic chain from a base to an end effector, taken from a compiled MuJoCo model."""
 
 import hashlib
+from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 
@@ -81,6 +82,17 @@ class Chain:
         """The same chain with its base placed in the world and a tool added at its tip ((4, 4) each)."""
         changes = {"T_world_base": T_world_base, "T_tip_tool": T_tip_tool}
         return replace(self, **{name: value for name, value in changes.items() if value is not None})
+
+    def held(self, values: Mapping[str, float]) -> "Chain":
+        """The same chain with joints, by name, held at a value [rad or m]."""
+        held = np.array([name in values for name in self.joint_names])
+        value = np.array([values.get(name, 0.0) for name in self.joint_names])
+        return replace(
+            self,
+            lower_limits=np.where(held, value, self.lower_limits),
+            upper_limits=np.where(held, value, self.upper_limits),
+            periodic=self.periodic & ~held,
+        )
 
     @cached_property
     def reach(self) -> float:

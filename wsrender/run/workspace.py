@@ -89,7 +89,7 @@ class WorkspacePlan:
     def finish(self, partial: WorkspacePartial, seconds: dict[str, float]) -> Result:
         """Map, volume, global values and the result document."""
         return workspace_result(
-            self.job, self.robot, partial.plan, partial.sweep, partial.convergence, self.target, seconds
+            self.job, self.robot, partial.plan, partial.sweep, partial.convergence, self.device, self.target, seconds
         )
 
     def _converge(
@@ -153,6 +153,8 @@ def plan_workspace(job: WorkspaceJob, robot: Robot, resolved: dict[str, Any] | N
         inertia=job.inertia,
         precision=job.precision,
     )
+    if job.refined_volume is not None and evaluation.host_kinematics is not None:
+        raise InputError("refined_volume", "needs inverse kinematics, which a robot defined by a Python class has not")
     sampling = _first_sampling(job, robot)
     first_pass = FirstPass(evaluation, dict(job.sampling.locked))
     if resolved is None:

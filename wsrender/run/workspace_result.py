@@ -18,6 +18,7 @@ from wsrender.indices.catalogue import unit
 from wsrender.result import Result
 from wsrender.robot import Robot
 from wsrender.run.provenance import index_choices, job_entry, provenance, robot_entry
+from wsrender.run.refined import refined
 from wsrender.sampling import subsample
 from wsrender.spec import WorkspaceJob
 from wsrender.volume.distribution_map import DistributionMap
@@ -32,6 +33,7 @@ def workspace_result(
     plan: SweepPlan,
     partial: Partial,
     convergence: list[dict[str, float]] | None,
+    device: str,
     target: str,
     seconds: dict[str, float],
 ) -> Result:
@@ -44,6 +46,11 @@ def workspace_result(
     volume = volume_data(plan, partial, units)
     volumes = voxel_volumes(volume)
     sample = _picture_sample(plan, robot, units)
+    entry, labelled = None, {}
+    if job.refined_volume is not None:
+        chain = robot.chain.held(job.sampling.locked)
+        entry, labelled["reachability"] = refined(chain, job.refined_volume, volume, plan.sampling.seed, device)
+    known = entry["value"] if entry else volumes.occupied
     meshes, surface_entries = surfaces(job.surfaces, volume, sample.position)
     document: dict[str, Any] = {
         "analysis": "workspace",
@@ -57,7 +64,7 @@ def workspace_result(
             "occupied": volumes.occupied,
             "inner": volumes.inner,
             "outer": volumes.outer,
-            "refined": None,
+            "refined": entry,
         },
         "surfaces": surface_entries,
         "bounds_m": {
@@ -68,8 +75,8 @@ def workspace_result(
             "global_isotropy": global_isotropy(partial),
             "structural_length_index": None
             if evaluation.host_kinematics
-            else structural_length_index(robot.chain, volumes.occupied),
-            "structural_length_volume": "occupied",
+            else structural_length_index(robot.chain, known),
+            "structural_length_volume": "refined" if entry else "occupied",
         },
         "convergence": convergence,
         "provenance": provenance(job.precision, target, sampling_path=plan.sampling_path, seed=plan.sampling.seed),
@@ -81,6 +88,7 @@ def workspace_result(
         volume=volume,
         skeleton=robot.skeleton(_middle(plan)),
         meshes=meshes,
+        volumes=labelled,
     )
     document["timing_s"] = {**seconds, "finish": time.perf_counter() - started}
     return result

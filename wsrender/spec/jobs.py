@@ -8,9 +8,9 @@ from pydantic import BeforeValidator, Discriminator, StrictBool
 from wsrender.spec.arm import Arm
 from wsrender.spec.document import Document
 from wsrender.spec.index_choices import IndexChoices
-from wsrender.spec.options import Configurations, MapColumns, NotAvailable, Statistics
+from wsrender.spec.options import Configurations, MapColumns, Statistics
 from wsrender.spec.problems import tagged
-from wsrender.spec.quantities import Count, PositiveNumber
+from wsrender.spec.quantities import Count, PositiveNumber, RelativeTolerance
 from wsrender.spec.sampling import Grid, Sampling
 from wsrender.spec.several_robots import RobotComparisonJob, SharedWorkspaceJob
 from wsrender.spec.surfaces import Surfaces
@@ -27,8 +27,9 @@ class WorkspaceJob(IndexChoices, Arm):
     """Edge of a voxel [m]; null: a hundredth of the cube root of the workspace's convex-hull volume."""
     voxel_statistics: Statistics = ("count", "maximum")
     """What is kept per voxel, from count, maximum, mean, minimum; count always is."""
-    refined_volume: NotAvailable = None
-    """Relative tolerance of the refined volume [1]; not available in this version: null."""
+    refined_volume: RelativeTolerance | None = None
+    """Half width of the refined volume's 95 % interval, relative to the volume [1]; null: it is not computed. With it,
+    every voxel is labelled reachable, unreachable or undecided by inverse kinematics."""
     surfaces: Surfaces = ("marching_cubes",)
     """Meshes of the workspace, each with its volume: "marching_cubes" of the voxels, "convex_hull" and {"alpha_shape":
     α in metres} of the picture's subsample, {"iso_surface": index, "fraction": μ} of the voxels."""

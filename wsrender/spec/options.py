@@ -71,11 +71,6 @@ def _configurations(value: Any) -> tuple[tuple[float, ...], ...] | None:
     return rows
 
 
-def _nothing(value: Any) -> None:
-    if value is not None:
-        raise ValueError("must be null (not available in this version)")
-
-
 def _ordered(value: Any, allowed: tuple[str, ...]) -> tuple[str, ...]:
     """The distinct items of a list in the order of ``allowed``, so that equal jobs have equal documents."""
     items = distinct(sequence(value))
@@ -108,6 +103,5 @@ Penalty = Annotated[
 ]
 Statistics = Annotated[tuple[Literal["count", "maximum", "mean", "minimum"], ...], BeforeValidator(_statistics)]
 MapColumns = Annotated[tuple[Literal["configuration", "orientation"], ...], BeforeValidator(_columns)]
-NotAvailable = Annotated[None, BeforeValidator(_nothing)]
 Device = Annotated[str, BeforeValidator(_device), Field(json_schema_extra={"pattern": f"^({_DEVICE.pattern})$"})]
 Configurations = Annotated[tuple[tuple[Number, ...], ...] | None, BeforeValidator(_configurations)]

@@ -1,0 +1,60 @@
+"""The refined volume and the labelled voxels of a workspace job."""
+
+import numpy as np
+import pytest
+
+import wsrender as ws
+from tests.reference import closed_form_inverse as closed_form
+from tests.run.simple_robots import PlanarClass
+from wsrender.reachability.voxel_labels import REASONS
+
+EXACT = np.pi / 2 * np.sqrt(2) * (0.4**3 - 0.2**3) / 3
+
+
+@pytest.fixture(scope="module")
+def result():
+    return ws.analyze(
+        ws.load_robot("spherical"), ws.Sobol(20_000), voxel_size_m=0.02, refined_volume=0.02, device="cpu"
+    )
+
+
+def test_refined_volume_stands_beside_the_counts(result):
+    refined = result.document["volume_m3"]["refined"]
+    low, high = refined["ci95"]
+    assert low <= EXACT <= high
+    assert high - low <= 2 * 0.02 * refined["value"]
+    assert (refined["met"], refined["tolerance"]) == (True, 0.02)
+    assert result.document["global"]["structural_length_volume"] == "refined"
+    assert "refined volume" in result.summary()
+
+
+def test_every_voxel_near_the_workspace_has_its_label(result, tmp_path):
+    labelled = result.volumes["reachability"]
+    label, reason = (labelled.statistics["center"][name] for name in ("label", "reason"))
+    centers = np.stack(np.meshgrid(*(labelled.centers(axis) for axis in range(3)), indexing="ij"), axis=-1)
+    robot, decided = ws.load_robot("spherical"), ~np.isnan(label)
+    arm = closed_form.spherical_arm(centers[decided])
+    limits = robot.lower_limits[:3], robot.upper_limits[:3], robot.chain.revolute[:3]
+    truth = closed_form.within_limits(arm, *limits).any(axis=1)
+    assert (label[decided] == truth).all()
+    # What its hinges could reach without limits lies in the shell of its slide.
+    radius = np.linalg.norm(centers[decided], axis=1)
+    expected = np.where(truth, "", "joint limits")
+    assert (np.array(REASONS)[reason[decided].astype(int)] == expected).all()
+    assert ((radius < 0.2) | (radius > 0.4)).any()
+    voxels = result.document["volume_m3"]["refined"]["voxels"]
+    assert voxels["labels"] == {"reachable": truth.sum(), "unreachable": (~truth).sum(), "undecided": 0}
+    result.save(tmp_path)
+    restored = ws.Result.load(tmp_path).volumes["reachability"]
+    assert np.array_equal(restored.statistics["center"]["label"], label, equal_nan=True)
+
+
+def test_a_held_joint_holds_for_the_refined_volume_too():
+    held = ws.Sobol(20_000, locked={"joint3": 0.3})
+    result = ws.analyze(ws.load_robot("spherical"), held, voxel_size_m=0.02, refined_volume=0.02, device="cpu")
+    assert result.document["volume_m3"]["refined"]["value"] == 0.0
+
+
+def test_the_refined_volume_needs_a_model():
+    with pytest.raises(ws.InputError, match="refined_volume"):
+        ws.analyze(PlanarClass(), ws.Grid(5), refined_volume=0.01)
