@@ -4,7 +4,7 @@ import logging
 import queue
 import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from typing import Any
 
@@ -15,7 +15,7 @@ from wsrender_server.jobs.computations import ComputationStore
 from wsrender_server.jobs.engine import Engine, outcome_of
 from wsrender_server.jobs.faults import EngineUnavailable, StoreUnavailable
 from wsrender_server.jobs.identity import device_of
-from wsrender_server.jobs.records import ArtifactRecord, ComputationRecord
+from wsrender_server.jobs.records import ArtifactRecord
 from wsrender_server.jobs.states import ComputationState
 from wsrender_server.jobs.task import Outcome, Step, Verdict, error
 from wsrender_server.settings import Settings
@@ -104,13 +104,11 @@ class Dispatcher:
         self.store.time_out()
         self._update_targets()
         known = self.store.unfinished()
-        for computation_id, attempt in list(self._attempts.items()):
-            if known.get(computation_id, (None, 0))[1] != attempt.record.attempt:
-                self._stop(computation_id)
+        old = [key for key, attempt in self._attempts.items() if known.get(key, (None, 0))[1] != attempt.record.attempt]
+        unwanted = [key for key, (state, _) in known.items() if state == ComputationState.STOPPING]
+        self._stop(set(old + unwanted))
         for computation_id, (state, _) in known.items():
-            if state == ComputationState.STOPPING:
-                self._stop(computation_id)
-            elif computation_id not in self._attempts and self._targets:
+            if state != ComputationState.STOPPING and computation_id not in self._attempts and self._targets:
                 self._launch(computation_id)
         self._record_progress()
 
@@ -243,21 +241,26 @@ class Dispatcher:
 
     def _fail(self, attempt: Attempt, reason: dict[str, Any]) -> None:
         """End an attempt that failed; its other tasks are stopped first, so that a retry meets none of them."""
-        self.engine.stop(attempt.token, list(attempt.futures.values()))
+        self.engine.stop([attempt.token], list(attempt.futures.values()))
         self.store.fail(attempt.record.id, attempt.record.attempt, reason)
         self._attempts.pop(attempt.record.id, None)
 
-    def _stop(self, computation_id: str) -> None:
-        """Kill what runs of a computation that nobody wants any more."""
-        record: ComputationRecord | None
-        attempt = self._attempts.get(computation_id)
-        record = attempt.record if attempt else self.store.computation(computation_id)
-        if record is None:
+    def _stop(self, computations: Iterable[str]) -> None:
+        """Kill what runs of computations that nobody wants any more, all at once: a worker may be slow to answer."""
+        found = {key: self._attempts.get(key) or self._unknown_attempt(key) for key in computations}
+        attempts = {key: attempt for key, attempt in found.items() if attempt is not None}
+        if not attempts:
             return
-        attempt = attempt or Attempt(record, "", None, self._generation)
-        self.engine.stop(attempt.token, list(attempt.futures.values()))
-        self.store.stopped(computation_id, record.attempt)
-        self._attempts.pop(computation_id, None)
+        futures = [future for attempt in attempts.values() for future in attempt.futures.values()]
+        self.engine.stop([attempt.token for attempt in attempts.values()], futures)
+        for computation_id, attempt in attempts.items():
+            self.store.stopped(computation_id, attempt.record.attempt)
+            self._attempts.pop(computation_id, None)
+
+    def _unknown_attempt(self, computation_id: str) -> Attempt | None:
+        """The attempt at a computation that this server has not launched: an earlier run of it may have."""
+        record = self.store.computation(computation_id)
+        return None if record is None else Attempt(record, "", None, self._generation)
 
     def _record_progress(self) -> None:
         now = time.monotonic()

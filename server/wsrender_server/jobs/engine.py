@@ -1,9 +1,11 @@
 """Dask distributed, embedded or elsewhere: the only execution engine."""
 
+import asyncio
 import contextlib
 import logging
 import threading
-from collections.abc import Callable
+import time
+from collections.abc import Callable, Iterable
 from typing import Any
 
 from dask import config
@@ -17,7 +19,10 @@ from wsrender_server.jobs.task import Outcome, Step, Task
 from wsrender_server.settings import Settings
 
 CONNECT_S = 10
-ANSWER_S = 3
+ANSWER_S = 3  # of the scheduler
+WORKER_ANSWER_S = 1.5  # whoever is canceled waits no longer for a worker that hangs
+QUIET_S = 20.0  # a worker gives a sign of life every second or so
+WORKER_TTL_S = 30  # a worker without one for so long is lost, and its tasks go to others
 # A later step goes before the earlier steps of other jobs: what has begun is finished first.
 URGENCY = {Step.PLAN: 0, Step.SHARD: 1, Step.FINISH: 2}
 
@@ -38,6 +43,7 @@ class Engine:
         self._cluster: LocalCluster | None = None
         self._client: Client | None = None
         self._lock = threading.Lock()
+        self._heard: dict[str, tuple[float, float]] = {}  # last sign of life of each worker, and when it was new here
 
     @property
     def embedded(self) -> bool:
@@ -54,7 +60,13 @@ class Engine:
         self._leave()
         try:
             # Where an embedded scheduler listens is nobody's business but its own workers'.
-            with config.set({"distributed.worker.daemon": False, "distributed.comm.timeouts.connect": CONNECT_S}):
+            with config.set(
+                {
+                    "distributed.worker.daemon": False,
+                    "distributed.comm.timeouts.connect": CONNECT_S,
+                    "distributed.scheduler.worker-ttl": f"{WORKER_TTL_S}s",
+                }
+            ):
                 if self._settings.scheduler is None:
                     client = Client(self._embedded(), timeout=CONNECT_S, set_as_default=False)
                 else:
@@ -97,22 +109,25 @@ class Engine:
         except LOST as error:
             raise EngineUnavailable(f"the scheduler does not answer: {error}") from error
 
-    def stop(self, token: str, futures: list[Future]) -> None:
-        """End an attempt: nothing of it starts any more, and its kernel processes are killed when this returns."""
+    def stop(self, tokens: list[str], futures: list[Future]) -> None:
+        """End attempts: nothing of them starts any more, and their kernel processes are killed when this returns.
+
+        A worker that does not answer within 1.5 s does so as soon as it can.
+        """
         client = self._connected()
         try:
             client.cancel(futures, force=True)
-            self._ask(workers_side.stop_token, token)
+            self._ask(self._known(), workers_side.stop_tokens, tokens)
         except LOST as error:
             raise EngineUnavailable(f"the scheduler does not answer: {error}") from error
 
     def workers(self) -> list[WorkerRecord]:
-        """The workers there are; none where the scheduler does not answer."""
+        """The workers that answer; none where the scheduler does not."""
         if not self.connected:
             return []
         try:
-            known = self._connected().scheduler_info()["workers"]
-            busy = self._ask(workers_side.is_busy)
+            known = self._known()
+            busy = self._ask(known, workers_side.is_busy)
         except (EngineUnavailable, *LOST):
             return []
         return [
@@ -121,18 +136,21 @@ class Engine:
                 host=info["host"],
                 target=(sorted(info["resources"], reverse=True) or [None])[0],
                 devices=tuple(sorted({target.partition(":")[0] for target in info["resources"]})),
-                busy=busy.get(address) is True,
+                busy=busy[address],
             )
             for address, info in known.items()
+            if address in busy
         ]
 
     def targets(self) -> dict[str, str]:
-        """The target that each kind of device ("auto", "cpu", "cuda") means on the workers there are."""
+        """The target that each kind of device ("auto", "cpu", "cuda") means on the workers that are alive."""
         try:
-            known = self._connected().scheduler_info()["workers"].values()
+            known = self._known()
         except LOST as error:
             raise EngineUnavailable(f"the scheduler does not answer: {error}") from error
-        names = sorted({target for info in known for target in info["resources"]})
+        self._heard = {address: self._news(address, info["last_seen"]) for address, info in known.items()}
+        alive = [info for address, info in known.items() if time.monotonic() - self._heard[address][1] < QUIET_S]
+        names = sorted({target for info in alive for target in info["resources"]})
         targets = {device: name for name in names for device in [name.partition(":")[0]]}
         if targets:
             targets["auto"] = targets.get("cuda", targets.get("cpu", ""))
@@ -140,12 +158,24 @@ class Engine:
 
     def kernel_pids(self) -> dict[str, int | None]:
         """Process ids of the kernel processes by worker address."""
-        return self._ask(workers_side.kernel_pid)
+        return self._ask(self._known(), workers_side.kernel_pid)
 
-    def _ask(self, function: Callable[..., Any], *arguments: Any) -> dict[str, Any]:
-        """Answers of all workers by address; of a worker that does not answer, the exception."""
-        answers: Any = self._connected().run(function, *arguments, on_error="return")
-        return answers
+    def _known(self) -> dict[str, Any]:
+        """What the scheduler knows of its workers, by address."""
+        client = self._connected()
+        scheduler: Any = client.scheduler  # there is one while the client runs
+        identity: Any = client.sync(scheduler.identity, n_workers=-1, callback_timeout=ANSWER_S)
+        return identity["workers"]
+
+    def _news(self, address: str, last_seen: float) -> tuple[float, float]:
+        """A worker's last sign of life by the scheduler's clock, and when it was new by ours."""
+        before = self._heard.get(address)
+        return before if before is not None and before[0] == last_seen else (last_seen, time.monotonic())
+
+    def _ask(self, addresses: Iterable[str], function: Callable[..., Any], *arguments: Any) -> dict[str, Any]:
+        """Answers of workers by address, of those that answer in time."""
+        client = self._connected()
+        return client.sync(_answers, client, list(addresses), function, arguments)  # pyright: ignore[reportReturnType]
 
     def _connected(self) -> Client:
         client = self._client
@@ -174,6 +204,27 @@ class Engine:
         if client is not None:
             with contextlib.suppress(*LOST):
                 client.close(timeout=ANSWER_S)
+
+
+async def _answers(
+    client: Client, addresses: list[str], function: Callable[..., Any], arguments: tuple[Any, ...]
+) -> dict[str, Any]:
+    """What ``function(*arguments)`` returns on each worker that answers within WORKER_ANSWER_S."""
+
+    async def ask(address: str) -> Any:
+        answer: Any = client.run(function, *arguments, workers=[address], asynchronous=True)
+        return (await answer)[address]
+
+    asked = {address: asyncio.ensure_future(ask(address)) for address in addresses}
+    if asked:
+        await asyncio.wait(asked.values(), timeout=WORKER_ANSWER_S)
+    for task in asked.values():
+        task.cancel()  # of one that has ended, nothing
+    return {address: task.result() for address, task in asked.items() if task.done() and not _failed(task)}
+
+
+def _failed(task: asyncio.Task[Any]) -> bool:
+    return task.cancelled() or task.exception() is not None
 
 
 def outcome_of(future: Future) -> Outcome | None:

@@ -58,9 +58,10 @@ def run_task(task: Task) -> Outcome:
     return _process(worker).run(task, report)
 
 
-def stop_token(token: str, dask_worker: Worker) -> None:
-    """Called on every worker's event loop to stop an attempt (see `KernelProcess.stop`)."""
-    _process(dask_worker).stop(token)
+def stop_tokens(tokens: list[str], dask_worker: Worker) -> None:
+    """Called on every worker's event loop to stop attempts (see `KernelProcess.stop`)."""
+    for token in tokens:
+        _process(dask_worker).stop(token)
 
 
 def is_busy(dask_worker: Worker) -> bool:
