@@ -35,9 +35,12 @@ class ResultStore:
             return None if row is None else self.files.artifact(row.computation_id, row.sha256)
 
     def result_document(self, owner: str, job_id: str) -> dict[str, Any] | None:
-        """The result document of a succeeded job."""
+        """The result document of a succeeded job; None where there is none, or no more."""
         path = self.artifact_path(owner, job_id, "result.json")
-        return None if path is None else json.loads(path.read_text(encoding="utf-8"))
+        try:
+            return None if path is None else json.loads(path.read_text(encoding="utf-8"))
+        except FileNotFoundError:  # the job was deleted a moment ago
+            return None
 
     def put_model(self, owner: str, content: bytes) -> str:
         """Keep an uploaded model for its owner; its SHA-256. Raises DiskFull."""

@@ -1,10 +1,14 @@
 """Results: the document, the files, slices and plots."""
 
 import json
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from fastapi import APIRouter, Depends, Header, Path, Query, Request, Response
+from fastapi import APIRouter, Depends, Header, Query, Request, Response
+from fastapi import Path as PathParameter
 from starlette.concurrency import run_in_threadpool
 
 from wsrender_server.auth import Reader
@@ -102,7 +106,7 @@ async def get_artifact(
     server: Server,
     job: Finished,
     request: Request,
-    name: Annotated[str, Path(description="Name of the file.", examples=["plots/robot.png"])],
+    name: Annotated[str, PathParameter(description="Name of the file.", examples=["plots/robot.png"])],
     format: Annotated[
         Literal["csv", "glb", "mat", "npz", "ply", "stl", "vti"] | None,
         Query(description="Another format: npz, csv, mat of maps and volumes, vti of volumes, meshes as each other."),
@@ -110,11 +114,12 @@ async def get_artifact(
 ) -> Response:
     """With Range, If-Range and If-None-Match; the entity tag is the SHA-256 of the content. `format` converts."""
     record, path = await run_in_threadpool(_artifact, server, job, name)
-    sha256, media_type = record.sha256, record.media_type
-    if format is not None and not name.endswith(f".{format}"):
-        path, sha256 = await server.converted.get(path, record, format)
-        name, media_type = f"{name.rpartition('.')[0]}.{format}", MEDIA_TYPES[format]
-    return file_response(request, path, sha256, media_type, name)
+    sha256, media_type, own_name = record.sha256, record.media_type, name
+    with _not_found_if_gone(name, path):
+        if format is not None and not name.endswith(f".{format}"):
+            path, sha256 = await server.converted.get(path, record, format)
+            own_name, media_type = f"{name.rpartition('.')[0]}.{format}", MEDIA_TYPES[format]
+        return await run_in_threadpool(file_response, request, path, sha256, media_type, own_name)
 
 
 router.add_api_route("/jobs/{job_id:id}/artifacts/{name:path}", get_artifact, methods=["HEAD"], include_in_schema=False)
@@ -152,7 +157,8 @@ async def get_slice(
         options = {"axis": axis, "at": at, "index": index, "statistic": statistic}
         return await _drawn(server, job, "slice", "png", options)
     _, path = await run_in_threadpool(_artifact, server, job, "volume.vtkhdf")
-    plane = await _or_404(server.side_process.run(slice_values, str(path), axis, at, index, statistic))
+    with _not_found_if_gone("volume.vtkhdf", path):
+        plane = await _or_404(server.side_process.run(slice_values, str(path), axis, at, index, statistic))
     values: np.ndarray = plane["values"]
     headers = {
         "X-Shape": ",".join(map(str, values.shape)),
@@ -191,7 +197,8 @@ async def get_plot(
 
 async def _drawn(server: Parts, job: JobRecord, plot: str, format: str, options: dict[str, Any]) -> Response:
     document, files = await run_in_threadpool(_sources, server, job)
-    content = await _or_404(server.side_process.run(draw, document, files, plot, format, options))
+    with _not_found_if_gone(", ".join(files), *map(Path, files.values())):
+        content = await _or_404(server.side_process.run(draw, document, files, plot, format, options))
     media_type = "image/png" if format == "png" else "image/svg+xml"
     return Response(content, media_type=media_type)
 
@@ -214,12 +221,23 @@ async def _or_404(answer: Any) -> Any:
         raise
 
 
-def _artifact(server: Parts, job: JobRecord, name: str) -> tuple[ArtifactRecord, Any]:
+def _artifact(server: Parts, job: JobRecord, name: str) -> tuple[ArtifactRecord, Path]:
     record = next((record for record in server.store.artifacts(job.owner, job.id) if record.name == name), None)
     path = None if record is None else server.store.artifact_path(job.owner, job.id, name)
     if record is None or path is None:
         raise _gone(name)
     return record, path
+
+
+@contextmanager
+def _not_found_if_gone(name: str, *paths: Path) -> Iterator[None]:
+    """Whatever goes wrong with files that were there a moment ago, and are not: they went with their job."""
+    try:
+        yield
+    except (OSError, HttpProblem):
+        if all(path.exists() for path in paths):
+            raise
+        raise _gone(name) from None
 
 
 def _gone(name: str) -> HttpProblem:
