@@ -41,10 +41,11 @@ class _IdConvertor(StringConvertor):
 
 register_url_convertor("id", _IdConvertor())
 # After the convertor is known: routes are compiled when their modules are imported.
-from wsrender_server.routes import artifacts, catalogue, events, operation  # noqa: E402
+from wsrender_server.routes import artifacts, catalogue, events, keys, operation  # noqa: E402
 from wsrender_server.routes import jobs as job_routes  # noqa: E402
 
-ROUTERS = [module.router for module in (job_routes, events, artifacts, catalogue, operation)]
+KEY_PATHS = {route.path_format for route in keys.router.routes if isinstance(route, APIRoute)}
+ROUTERS = [module.router for module in (job_routes, events, artifacts, catalogue, keys, operation)]
 
 
 def create_app(settings: Settings, jobs: Jobs | None = None) -> FastAPI:
@@ -122,7 +123,7 @@ def _add_documentation(app: FastAPI) -> None:
 
 
 def _openapi(app: FastAPI, keys_needed: bool) -> dict[str, Any]:
-    """The OpenAPI document; without keys nothing in it asks for one."""
+    """The OpenAPI document; without keys nothing in it asks for one, or manages them."""
     document = get_openapi(
         title=app.title,
         version=app.version,
@@ -139,6 +140,7 @@ def _openapi(app: FastAPI, keys_needed: bool) -> dict[str, Any]:
         schemas.pop(unused, None)
     if not keys_needed:
         document["components"].pop("securitySchemes", None)
+        document["paths"] = {path: methods for path, methods in document["paths"].items() if path not in KEY_PATHS}
         for operation in (operation for path in document["paths"].values() for operation in path.values()):
             operation.pop("security", None)
     return document

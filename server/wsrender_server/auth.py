@@ -5,6 +5,7 @@ import ipaddress
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from time import monotonic
 from typing import Annotated, Literal
 
 from fastapi import Depends, Request, Security
@@ -16,7 +17,7 @@ from wsrender_server.problems import HttpProblem
 from wsrender_server.settings import Settings
 
 Scope = Literal["read", "submit", "admin"]
-# What a key with a scope may do.
+# What a key with a scope may do; the right "admin" is that to manage keys.
 GRANTS: dict[str, frozenset[str]] = {
     "read": frozenset({"read"}),
     "submit": frozenset({"read", "submit"}),
@@ -34,7 +35,8 @@ class Principal:
     rights: frozenset[str]
 
 
-LOCAL_USER = Principal("local", GRANTS["admin"])
+LOCAL_USER = Principal("local", GRANTS["submit"])  # the first key is made by the command line
+LOOK_AGAIN_S = 0.5  # for the first key
 
 
 class Authenticator:
@@ -44,14 +46,17 @@ class Authenticator:
         self._store = store
         self._file_keys = {} if settings.api_key_file is None else read_key_file(settings.api_key_file)
         self._required = bool(self._file_keys)
+        self._looked = -LOOK_AGAIN_S
 
     @property
     def required(self) -> bool:
-        """Whether a key is needed: from the moment that there is one, and then for as long as the server runs.
+        """Whether a key is needed: half a second after there is one, and then for as long as the server runs.
 
         Revoking the last key does not open a running server to everyone.
         """
-        self._required = self._required or self._store.has_key()
+        now = monotonic()
+        if not self._required and now - self._looked >= LOOK_AGAIN_S:
+            self._required, self._looked = self._store.has_key(), now
         return self._required
 
     def principal(self, secret: str) -> Principal | None:
@@ -121,7 +126,8 @@ def needs(right: Scope) -> Callable[..., Principal]:
         asking = _asking(request, credentials)
         request.state.owner = asking.owner
         if right not in asking.rights:
-            raise HttpProblem(403, f"this key lacks the scope {right!r}", "insufficient_scope")
+            who = "a server without keys" if asking is LOCAL_USER else "this key"
+            raise HttpProblem(403, f"{who} lacks the scope {right!r}", "insufficient_scope")
         return asking
 
     return principal
@@ -130,6 +136,7 @@ def needs(right: Scope) -> Callable[..., Principal]:
 _bearer = HTTPBearer(scheme_name="api_key", description="An API key (`wsrender keys create`).", auto_error=False)
 Reader = Annotated[Principal, Depends(needs("read"))]
 Submitter = Annotated[Principal, Depends(needs("submit"))]
+Administrator = Annotated[Principal, Depends(needs("admin"))]
 
 
 def _asking(request: Request, credentials: HTTPAuthorizationCredentials | None) -> Principal:

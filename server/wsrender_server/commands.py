@@ -107,10 +107,10 @@ def create_key(
     """Make an API key and print it: it is kept as a hash only and never shown again."""
     with one_line_faults():
         with _store(data_dir, database) as store:
-            id, secret = store.create_key(name, *([scope] if scope else []))
+            key, secret = store.create_key(name, *([scope] if scope else []))
         typer.echo(secret)
         typer.echo(
-            f"key {id} of {name}: keep it now, it is never shown again; running servers ask for keys from now on",
+            f"key {key.id} of {name}: keep it now, it is never shown again; running servers ask for keys from now on",
             err=True,
         )
 

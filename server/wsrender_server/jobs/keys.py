@@ -22,8 +22,8 @@ class KeyStore:
 
     transactions: Transactions
 
-    def create_key(self, name: str, scopes: Iterable[str] = ("read", "submit")) -> tuple[str, str]:
-        """A new key: (id, secret). The secret, ``wsr_<id>_<43 characters>``, is not kept and never shown again."""
+    def create_key(self, name: str, scopes: Iterable[str] = ("read", "submit")) -> tuple[KeyRecord, str]:
+        """A new key and its secret, ``wsr_<id>_<43 characters>``, which is not kept and never shown again."""
         scopes = tuple(dict.fromkeys(scopes))
         if not scopes or not set(scopes) <= set(SCOPES):
             raise InputError("scopes", f"must be some of {', '.join(SCOPES)}, not {', '.join(scopes) or 'none'}")
@@ -42,7 +42,7 @@ class KeyStore:
         )
         with self.transactions.write() as session:
             session.add(row)
-        return key_id, secret
+            return _record(row), secret
 
     def list_keys(self) -> list[KeyRecord]:
         """All keys, oldest first, revoked ones included."""

@@ -1,9 +1,11 @@
 """Keys, scopes, owners, and what listens where."""
 
+import time
+
 import pytest
 from fastapi.testclient import TestClient
 from wsrender_server.app import create_app
-from wsrender_server.auth import check_binding, read_key_file
+from wsrender_server.auth import LOOK_AGAIN_S, check_binding, read_key_file
 
 from tests.server.http.idle_server import DOCUMENT, HOST, problem_of
 from wsrender.errors import InputError
@@ -60,11 +62,52 @@ def test_the_first_key_guards_a_running_server(client, jobs):
     assert client.get("/v1/jobs").status_code == 200
     assert "security" not in client.get("/openapi.json").json()["paths"]["/v1/jobs"]["get"]
     key, secret = jobs.store.create_key("ann")
+    time.sleep(LOOK_AGAIN_S)
     problem_of(client.get("/v1/jobs"), 401, "unauthorized")
     assert client.get("/v1/jobs", headers=bearer(secret)).status_code == 200
     assert client.get("/openapi.json").json()["paths"]["/v1/jobs"]["get"]["security"]
-    jobs.store.revoke_key(key)
+    jobs.store.revoke_key(key.id)
+    time.sleep(LOOK_AGAIN_S)
     problem_of(client.get("/v1/jobs"), 401, "unauthorized")
+
+
+def test_without_keys_the_database_is_not_asked_for_one_each_time(client, jobs, monkeypatch):
+    asked = []
+    monkeypatch.setattr(jobs.store, "has_key", lambda: bool(asked.append(1)))
+    started = time.monotonic()
+    for _ in range(50):
+        assert client.get("/v1/robots").status_code == 200
+    assert len(asked) <= 1 + (time.monotonic() - started) / LOOK_AGAIN_S
+
+
+def test_an_administrator_manages_keys(keyed, keys):
+    root = bearer(keys["root"])
+    made = keyed.post("/v1/keys", json={"name": "dan", "scopes": ["read"]}, headers=root)
+    assert made.status_code == 201 and made.headers["cache-control"] == "no-store"
+    dan = bearer(made.json()["secret"])
+    assert keyed.get("/v1/jobs", headers=dan).status_code == 200
+    problem_of(keyed.post("/v1/jobs", json=DOCUMENT, headers=dan), 403, "insufficient_scope")
+    listed = keyed.get("/v1/keys", headers=root)
+    assert [key["name"] for key in listed.json()["items"]] == ["ann", "bob", "eve", "root", "dan"]
+    assert not any(secret in listed.text for secret in keys.values()) and "hash" not in listed.text
+    path = f"/v1/keys/{made.json()['id']}:revoke"
+    assert keyed.post(path, headers=root).json()["revoked_at"]
+    problem_of(keyed.get("/v1/jobs", headers=dan), 401, "unauthorized")
+    problem_of(keyed.post(f"/v1/keys/{'0' * 16}:revoke", headers=root), 404, "key_not_found")
+    for body in ({"name": ""}, {"name": "a\x00"}, {"name": "a", "scopes": []}, {"name": "a", "scopes": ["all"]}, {}):
+        problem_of(keyed.post("/v1/keys", json=body, headers=root), 422, "invalid_request")
+
+
+def test_nobody_else_manages_keys(keyed, keys):
+    requests = (("GET", "/v1/keys"), ("POST", "/v1/keys"), ("POST", f"/v1/keys/{'0' * 16}:revoke"))
+    for method, path in requests:
+        problem_of(keyed.request(method, path, json={"name": "x"}, headers=bearer(keys["ann"])), 403)
+        problem_of(keyed.request(method, path, json={"name": "x"}), 401)
+
+
+def test_without_keys_the_first_is_made_by_the_command_line(client):
+    problem_of(client.post("/v1/keys", json={"name": "x"}), 403, "insufficient_scope")
+    assert not any(path.startswith("/v1/keys") for path in client.get("/openapi.json").json()["paths"])
 
 
 def test_owners_see_only_their_own(keyed, keys, jobs, result_folder):
@@ -98,6 +141,7 @@ def test_models_belong_to_their_owner(keyed, keys):
 
 def test_openapi_asks_for_a_key_where_the_server_does(keyed, client):
     secured = keyed.get("/openapi.json").json()
+    assert "/v1/keys" in secured["paths"]
     assert secured["paths"]["/v1/jobs"]["post"]["security"] and secured["components"]["securitySchemes"]
     assert "security" not in secured["paths"]["/healthz"]["get"]
 

@@ -394,7 +394,8 @@ def test_a_model_sent_many_times_at_once_is_kept_once(store):
 
 def test_keys_are_found_until_revoked(store):
     assert not store.has_key()
-    key, secret = store.create_key("lab", ["read", "submit"])
+    made, secret = store.create_key("lab", ["read", "submit"])
+    key = made.id
     assert store.has_key()
     found = store.find_key(secret)
     assert (found.id, found.name, found.scopes) == (key, "lab", ("read", "submit"))

@@ -1,0 +1,90 @@
+"""API keys, managed by whoever holds one of the scope admin."""
+
+from datetime import datetime
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Path, Response
+from pydantic import BaseModel, ConfigDict, Field
+
+from wsrender_server.auth import Administrator, Scope
+from wsrender_server.jobs.records import KeyRecord
+from wsrender_server.parts import Server
+from wsrender_server.problems import HttpProblem, problem_responses
+from wsrender_server.routes.job_views import Page, View
+
+router = APIRouter(prefix="/v1", tags=["keys"])
+
+
+class KeyRequest(BaseModel):
+    """A key to be made."""
+
+    name: str = Field(pattern=r"^[^\x00-\x1f\x7f]{1,255}$", examples=["ann"])
+    """Whose key it is."""
+    scopes: list[Scope] = Field(default=["read", "submit"], min_length=1)
+    """What it may do."""
+
+    model_config = ConfigDict(use_attribute_docstrings=True, extra="forbid")
+
+
+class KeyView(View):
+    """An API key, without its secret."""
+
+    id: str
+    """Its name for revoking."""
+    name: str
+    """Whose key it is."""
+    scopes: list[Scope]
+    """What it may do."""
+    created_at: datetime
+    """When it was made."""
+    revoked_at: datetime | None
+    """When it was revoked."""
+
+
+class NewKey(KeyView):
+    """An API key that was just made."""
+
+    secret: str
+    """The key itself; the server keeps only its hash, and never shows it again."""
+
+
+@router.get("/keys", summary="List the API keys", response_model=Page[KeyView], responses=problem_responses(401, 403))
+def list_keys(server: Server, principal: Administrator) -> Page[KeyView]:
+    """All keys of the database, oldest first, revoked ones included; those of a key file are not listed."""
+    return Page(items=[KeyView(**_fields(key)) for key in server.store.list_keys()])
+
+
+@router.post(
+    "/keys",
+    summary="Make an API key",
+    status_code=201,
+    response_model=NewKey,
+    responses=problem_responses(401, 403, 413, 422),
+)
+def create_key(server: Server, principal: Administrator, response: Response, key: KeyRequest) -> NewKey:
+    """The answer holds the secret, this once."""
+    made, secret = server.store.create_key(key.name, key.scopes)
+    response.headers["Cache-Control"] = "no-store"
+    return NewKey(**_fields(made), secret=secret)
+
+
+@router.post(
+    "/keys/{key_id:id}:revoke",
+    summary="Revoke an API key",
+    response_model=KeyView,
+    responses=problem_responses(401, 403, 404, 422),
+)
+def revoke_key(
+    server: Server,
+    principal: Administrator,
+    key_id: Annotated[str, Path(pattern="^[0-9a-f]{16}$", description="Id of a key.")],
+) -> KeyView:
+    """Requests with it are refused from now on; its jobs stay."""
+    key = server.store.revoke_key(key_id)
+    if key is None:
+        raise HttpProblem(404, f"there is no key {key_id}", "key_not_found")
+    return KeyView(**_fields(key))
+
+
+def _fields(key: KeyRecord) -> dict[str, Any]:
+    return {name: getattr(key, name) for name in KeyView.model_fields}
