@@ -2,6 +2,9 @@
 
 import json
 
+import pytest
+
+from wsrender.errors import DocumentError
 from wsrender.spec import canonical_json, parse_job
 from wsrender.spec.arm import at_path, dotted, robots_in
 
@@ -20,3 +23,12 @@ def test_robots_anywhere_in_a_document_are_found():
     assert list(found) == [("robots", 0, "robot"), ("robots", 1, "robot"), ("master", "robot")]
     assert all(at_path(document, path) is robot for path, robot in found.items())
     assert [dotted(path, "path") for path in found][1] == "robots.1.robot.path"
+
+
+def test_a_number_of_a_robot_is_no_robot():
+    assert list(robots_in({"scan": {"robot": 1, "axis": "x"}, "robots": []})) == []
+
+
+def test_robots_are_few():
+    with pytest.raises(DocumentError, match="at most 64"):
+        parse_job({"analysis": "shared_workspace", "robots": [{"robot": "scara"}] * 65})

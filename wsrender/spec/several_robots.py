@@ -11,6 +11,8 @@ from wsrender.spec.placement_scan import PlacementScan
 from wsrender.spec.quantities import Count, FileName, PositiveNumber, sequence
 from wsrender.spec.sampling import Grid, Sampling
 
+MOST_ROBOTS = 64
+
 
 class PlacedRobot(Arm):
     """One of several robots, with its own sampling."""
@@ -22,7 +24,7 @@ class PlacedRobot(Arm):
 
 
 class _SeveralRobotsJob(IndexChoices):
-    robots: Annotated[tuple[PlacedRobot, ...], Field(min_length=2), BeforeValidator(sequence)]
+    robots: Annotated[tuple[PlacedRobot, ...], Field(min_length=2, max_length=MOST_ROBOTS), BeforeValidator(sequence)]
     """The robots and where they stand; the arms of one model are the same robot with other base and tip."""
     voxel_size_m: PositiveNumber | None = None
     """Edge of a voxel [m]; null: the smallest of those that the robots would have by themselves."""

@@ -1,0 +1,63 @@
+"""Every analysis over HTTP gives what a local run gives: the server knows none of them by name."""
+
+import pytest
+
+import wsrender as ws
+from tests.server.end_to_end.acceptance import PATIENCE_S, QUICK, assert_same_files, comparable, local_result
+from wsrender.spec import ANALYSES
+
+ARM = """<mujoco><worldbody><body><joint name="a" axis="0 0 1" range="-1 1"/><geom size="0.1"/>
+<body pos="0.5 0 0"><joint name="b" axis="0 1 0" range="-1 1"/><geom size="0.1"/>
+<site name="tool" pos="0.4 0 0"/></body></body></worldbody><compiler angle="radian"/></mujoco>"""
+SAMPLING = {"method": "sobol", "count": 2048}
+ROBOTS = [
+    {"robot": {"library": "scara"}, "sampling": SAMPLING},
+    {"robot": {"library": "scara", "placement": {"position_m": [0.3, 0, 0]}}, "sampling": SAMPLING},
+]
+DOCUMENTS = {
+    "workspace": QUICK,
+    "indices_at": {"analysis": "indices_at", "robot": "scara", "configurations": [[0, 0, 0, 0]], "device": "cpu"},
+    "shared_workspace": {"analysis": "shared_workspace", "robots": ROBOTS, "voxel_size_m": 0.05, "device": "cpu"},
+    "robot_comparison": {"analysis": "robot_comparison", "robots": ROBOTS, "voxel_size_m": 0.05, "device": "cpu"},
+}
+
+
+@pytest.mark.parametrize("analysis", [name for name in DOCUMENTS if name in ANALYSES])
+def test_a_job_equals_the_local_run(client, tmp_path, analysis):
+    document = DOCUMENTS[analysis]
+    local = local_result(document, tmp_path / "local")
+    job = client.submit(document)
+    assert job.record["analysis"] == analysis
+    result = job.wait(timeout=PATIENCE_S).result()
+    assert comparable(result.document) == comparable(local.document)
+    result.save(tmp_path / "remote")
+    assert_same_files(tmp_path / "remote", tmp_path / "local")
+    assert [found.id for found in client.jobs(analysis=analysis)] == [job.id]
+
+
+@pytest.mark.parametrize("analysis", [name for name in DOCUMENTS if name in ANALYSES])
+def test_a_job_is_estimated(client, analysis):
+    assert client.estimate(DOCUMENTS[analysis])["samples"] > 0
+
+
+def test_uploaded_robots_of_a_job_of_several(client):
+    sha256 = client.upload_model(ARM.encode())
+    robots = [{"robot": {"model": sha256}, "sampling": SAMPLING}, ROBOTS[1]]
+    document = {**DOCUMENTS["shared_workspace"], "robots": robots, "indices": ["manipulability"], "task": ["y", "z"]}
+    result = client.submit(document).wait(timeout=PATIENCE_S).result()
+    local = ws.execute({**document, "robots": [{**robots[0], "robot": {"mjcf": ARM}}, robots[1]]})
+    assert result.document["volume_m3"] == local.document["volume_m3"]
+    assert result.document["job"]["robots"][0]["robot"]["model"] == sha256
+    with pytest.raises(ws.NotFoundError):
+        client.submit({**document, "robots": [robots[1], {**robots[0], "robot": {"model": "0" * 64}}]})
+
+
+@pytest.mark.parametrize(
+    ("robot", "field"),
+    [({"library": "nobody"}, "robots.1.robot.library"), ({"mjcf": "<!DOCTYPE a><mujoco/>"}, "robots.1.robot.mjcf")],
+)
+def test_faults_say_which_of_several_robots(client, robot, field):
+    document = {**DOCUMENTS["shared_workspace"], "robots": [ROBOTS[0], {"robot": robot, "sampling": SAMPLING}]}
+    with pytest.raises(ws.InputError) as fault:
+        client.submit(document)
+    assert fault.value.field == field
