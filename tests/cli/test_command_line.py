@@ -15,6 +15,8 @@ import wsrender as ws
 from wsrender import cli
 from wsrender.errors import InputError, MissingExtraError, ModelError, NumericalError
 from wsrender.progress import LINE_EVERY_S, RunProgress
+from wsrender.spec import ANALYSES
+from wsrender.spec.quantities import quoted
 
 
 @pytest.fixture
@@ -62,7 +64,7 @@ def test_schema(wsrender):
     assert (code, json.loads(out)["title"]) == (0, "IndicesAtJob")
     assert json.loads(wsrender("schema")[1])["discriminator"]["propertyName"] == "analysis"
     code, _, err = wsrender("schema", "--analysis", "nope")
-    assert (code, err) == (2, 'error: analysis: must be one of "workspace", "indices_at", not "nope"\n')
+    assert (code, err) == (2, f'error: analysis: must be one of {quoted(ANALYSES)}, not "nope"\n')
 
 
 def test_robots(wsrender):

@@ -22,6 +22,10 @@ def at(**fields):
     return {**INDICES_AT, **fields}
 
 
+def to(**fields):
+    return {"analysis": "reachability", "robot": {"library": "ur5e"}, "points_m": [[0, 0, 1]], **fields}
+
+
 def sampled(**fields):
     return job(sampling={"method": "grid", **fields})
 
@@ -122,6 +126,14 @@ MALFORMED = [
     (job(joint_limit_penalty="10"), "joint_limit_penalty", 'must be a number, not "10"'),
     (job(torque_scaling=1), "torque_scaling", "must be true or false, not 1"),
     (job(inertia="mj"), "inertia", 'must be "kernel" or "mujoco", not "mj"'),
+    # targets
+    (to(points_m=[]), "points_m", "must have at least 1 item"),
+    (to(points_m=None), "points_m", "must be a list, not null"),
+    (to(points_m=[[0, 1]]), "points_m.0.2", "is required"),
+    (to(points_m=[[0, 1, "2"]]), "points_m", "must be a number"),
+    (to(quats_wxyz=[[1, 0, 0, 0], [1, 0, 0, 0]]), "quats_wxyz", "must have as many rows as points_m, 1, not 2"),
+    (to(quats_wxyz=[[0, 0, 0, 0]]), "quats_wxyz", "must not have length 0: row 0 says no rotation"),
+    (to(angle_tolerance_rad=0), "angle_tolerance_rad", "must be greater than 0, not 0"),
     # voxels, map, execution
     (job(voxel_size_m=0), "voxel_size_m", "must be greater than 0"),
     (job(voxel_size_m=-0.01), "voxel_size_m", "must be greater than 0, not -0.01"),

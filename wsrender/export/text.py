@@ -34,6 +34,10 @@ def _facts(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
     if volume.get("refined"):
         low, high = volume["refined"]["ci95"]
         yield "refined volume", f"{volume['refined']['value']:.4g} m³ (95 %: {low:.4g} … {high:.4g})"
+    targets = document.get("targets") or {}
+    for name in ("reachable", "unreachable", "undecided"):
+        if name in targets:
+            yield f"{name} targets", f"{targets[name]:,}"
     bounds = document.get("bounds_m") or {}
     if {"lower", "upper"} <= set(bounds):
         for axis, low, high in zip("xyz", bounds["lower"], bounds["upper"], strict=True):

@@ -10,6 +10,7 @@ from wsrender.errors import InputError
 from wsrender.reachability.inverse_solver import CLEARLY, LABELS, UNDECIDED, UNREACHABLE, InverseSolver, Solutions
 from wsrender.robot import Robot, as_robot
 from wsrender.robot.user_robot import HostRobot
+from wsrender.robots.chain import Chain
 from wsrender.tolerances import TOLERANCES
 
 POSITION_TOLERANCE_M, ANGLE_TOLERANCE_RAD = 1e-5, 1e-5
@@ -60,8 +61,7 @@ def reachable(
     subject = model_robot(robot)
     position = rows_of(points, 3, "points")
     axes = None if orientations is None else rotations(orientations, len(position))
-    if position_tolerance_m < (least := 2 * TOLERANCES[precision].position(subject.chain.reach)):
-        raise InputError("position_tolerance_m", f"{position_tolerance_m:g} is below the {least:.1g} of {precision}")
+    check_tolerance(subject.chain, position_tolerance_m, precision)
     solver = InverseSolver(
         subject.chain,
         pose=axes is not None,
@@ -77,6 +77,15 @@ def reachable(
     labels = np.array([LABELS[label] for label in found.label.tolist()], dtype="<U11")
     reasons = reasons_of(solver, found, position, axes)
     return Reachability(found.q, found.distance_m, found.angle_rad, labels, reasons)
+
+
+def check_tolerance(chain: Chain, position_tolerance_m: float, precision: str) -> None:
+    """InputError where a distance is below what a precision can tell."""
+    least = 2 * TOLERANCES[precision].position(chain.reach)
+    if not position_tolerance_m >= least:
+        raise InputError(
+            "position_tolerance_m", f"{position_tolerance_m:g} is not allowed; {precision} tells {least:.1g} m or more"
+        )
 
 
 def model_robot(robot: Any) -> Robot:

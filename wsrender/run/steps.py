@@ -9,9 +9,17 @@ from wsrender.result import Result
 from wsrender.robot import Robot, as_robot, robot_of_spec
 from wsrender.run.comparison import plan_robot_comparison
 from wsrender.run.indices_at import plan_indices_at
+from wsrender.run.reachability import plan_reachability
 from wsrender.run.shared import plan_shared_workspace
 from wsrender.run.workspace import plan_workspace
-from wsrender.spec import IndicesAtJob, RobotComparisonJob, SharedWorkspaceJob, WorkspaceJob, parse_job
+from wsrender.spec import (
+    IndicesAtJob,
+    ReachabilityJob,
+    RobotComparisonJob,
+    SharedWorkspaceJob,
+    WorkspaceJob,
+    parse_job,
+)
 from wsrender.spec.arm import Arm, ArmPath, dotted
 
 Progress = Callable[[int, int, str], None]
@@ -19,6 +27,7 @@ Progress = Callable[[int, int, str], None]
 PLANNERS: dict[type, Callable[..., "Plan"]] = {
     WorkspaceJob: plan_workspace,
     IndicesAtJob: plan_indices_at,
+    ReachabilityJob: plan_reachability,
     SharedWorkspaceJob: plan_shared_workspace,
     RobotComparisonJob: plan_robot_comparison,
 }

@@ -2,12 +2,14 @@
 
 from wsrender.spec.jobs import ANALYSES, IndicesAtJob, Job, WorkspaceJob
 from wsrender.spec.parsing import canonical_json, job_schema, parse_job
+from wsrender.spec.reachability import ReachabilityJob
 from wsrender.spec.several_robots import RobotComparisonJob, SharedWorkspaceJob
 
 __all__ = [
     "ANALYSES",
     "IndicesAtJob",
     "Job",
+    "ReachabilityJob",
     "RobotComparisonJob",
     "SharedWorkspaceJob",
     "WorkspaceJob",

@@ -11,6 +11,7 @@ from wsrender.spec.index_choices import IndexChoices
 from wsrender.spec.options import Configurations, MapColumns, Statistics
 from wsrender.spec.problems import tagged
 from wsrender.spec.quantities import Count, PositiveNumber, RelativeTolerance
+from wsrender.spec.reachability import ReachabilityJob
 from wsrender.spec.sampling import Grid, Sampling
 from wsrender.spec.several_robots import RobotComparisonJob, SharedWorkspaceJob
 from wsrender.spec.surfaces import Surfaces
@@ -58,7 +59,7 @@ class IndicesAtJob(IndexChoices, Arm):
     """Floating-point type of the kernels."""
 
 
-_AnyJob = WorkspaceJob | IndicesAtJob | SharedWorkspaceJob | RobotComparisonJob
+_AnyJob = WorkspaceJob | IndicesAtJob | ReachabilityJob | SharedWorkspaceJob | RobotComparisonJob
 ANALYSES: dict[str, type[Document]] = {job.model_fields["analysis"].default: job for job in get_args(_AnyJob)}
 
 Job = Annotated[_AnyJob, Discriminator("analysis"), BeforeValidator(tagged("analysis", ANALYSES))]

@@ -1,0 +1,54 @@
+"""The job ``reachability``: which of given targets a robot reaches."""
+
+from collections.abc import Iterator
+from typing import Annotated, Any, Literal
+
+from pydantic import BeforeValidator, Field
+
+from wsrender.spec.arm import Arm
+from wsrender.spec.options import Device
+from wsrender.spec.quantities import Number, PositiveNumber, Seed, real, sequence
+
+SMALLEST_LENGTH = 1e-6  # of a quaternion that says a rotation
+
+
+def _rows(value: Any) -> tuple[tuple[float, ...], ...]:
+    return tuple(tuple(real(item) for item in sequence(row)) for row in sequence(value))
+
+
+Points = Annotated[tuple[tuple[Number, Number, Number], ...], Field(min_length=1), BeforeValidator(_rows)]
+Quaternions = Annotated[tuple[tuple[Number, Number, Number, Number], ...], Field(min_length=1), BeforeValidator(_rows)]
+
+
+class ReachabilityJob(Arm):
+    """Which of given targets a robot reaches within its joint limits, by inverse kinematics from many starts."""
+
+    analysis: Literal["reachability"] = "reachability"
+    """Name of the analysis."""
+    points_m: Points
+    """Positions of the targets in the world frame, rows of x, y, z [m]."""
+    quats_wxyz: Quaternions | None = None
+    """Orientations of the targets, a quaternion w, x, y, z for each point; null: any orientation will do."""
+    position_tolerance_m: PositiveNumber = 1e-5
+    """Largest distance to a target that counts as reached [m]."""
+    angle_tolerance_rad: Annotated[float, Field(gt=0, le=3.14), BeforeValidator(real)] = 1e-5
+    """Largest angle to a target's orientation that counts as reached [rad]."""
+    characteristic_length_m: PositiveNumber | None = None
+    """Length that makes an angle comparable to a distance while both shrink [m]; null: half the reach."""
+    seed: Seed = 0
+    """Seed of the starts."""
+    precision: Literal["float32", "float64"] = "float64"
+    """Floating-point type of the kernels."""
+    device: Device = "auto"
+    """Where the kernels run: "auto" (a GPU if there is one), "cpu", "cuda" or "cuda:N"."""
+
+    def conflicts(self) -> Iterator[tuple[str, str]]:
+        """(field, message) of every pair of fields that do not go together."""
+        if self.quats_wxyz is None:
+            return
+        if len(self.quats_wxyz) != len(self.points_m):
+            yield "quats_wxyz", f"must have as many rows as points_m, {len(self.points_m)}, not {len(self.quats_wxyz)}"
+        for k, quat in enumerate(self.quats_wxyz):
+            if sum(x * x for x in quat) < SMALLEST_LENGTH**2:
+                yield "quats_wxyz", f"must not have length 0: row {k} says no rotation"
+                return
