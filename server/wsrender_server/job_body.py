@@ -25,6 +25,14 @@ JSON_TYPES = ("application/json", "text/json")
 LABEL_KEY = r"^[A-Za-z0-9][A-Za-z0-9._/-]{0,62}$"
 LABEL_VALUE = rf"^[^\x00-\x1f\x7f]{{0,{LONGEST_TEXT}}}$"
 LARGEST_CHECKED = 1 << 16  # bytes
+ROBOT = "#/$defs/RobotSpec"
+# Lists that hold nothing twice, and what else their schema says.
+LISTS: dict[str, dict[str, int]] = {
+    "indices": {"minItems": 1},
+    "task": {"minItems": 1},
+    "voxel_statistics": {},
+    "map_columns": {},
+}
 
 Labels = Annotated[
     dict[Annotated[str, StringConstraints(pattern=LABEL_KEY)], Annotated[str, StringConstraints(pattern=LABEL_VALUE)]],
@@ -128,10 +136,9 @@ def body_schemas() -> dict[str, Any]:
     analyses = {name: ref.rpartition("/")[2] for name, ref in schema["discriminator"]["mapping"].items()}
     options = SubmissionOptions.model_json_schema()["properties"]
     for part in parts.values():
-        if "robot" in part.get("properties", {}):
-            _tighten_arm(part)
+        _tighten(part)
     for model in analyses.values():
-        _tighten_job(parts[model])
+        parts[model]["required"] = ["analysis", *parts[model].get("required", [])]
     submissions = {}
     for name, model in analyses.items():
         flat = copy.deepcopy(parts[model])
@@ -195,31 +202,18 @@ def _tighten_robot(part: dict[str, Any]) -> None:
     part["oneOf"] = [{"required": [source]} for source in ("library", "dh", "mjcf", "urdf", "model")]
 
 
-def _tighten_arm(part: dict[str, Any]) -> None:
-    """Library robots by name."""
-    description = part["properties"]["robot"].pop("description")
-    robots = [_ref("RobotSpec"), {"enum": library.names()}]
-    part["properties"]["robot"] = {"anyOf": robots, "description": description}
-
-
-def _tighten_job(part: dict[str, Any]) -> None:
-    """Index names, lists without repetition, configurations that are there."""
-    properties = part["properties"]
-    part["required"] = ["analysis", *part.get("required", [])]
-    plain = [name for index in catalogue().values() for name in (index.name, *index.aliases)]
-    named = {
-        name: choice
-        for name in ("indices", "task")
-        for choice in properties.get(name, {}).get("anyOf", ())
-        if "items" in choice
-    }
-    if "indices" in named:
-        named["indices"]["items"] = {"enum": sorted({*plain, *(DYNAMIC_PREFIX + name for name in plain)})}
-    for choice in named.values():
-        choice["minItems"] = 1
-    lists = [properties[name] for name in ("voxel_statistics", "map_columns") if name in properties]
-    for choice in [*named.values(), *lists]:
-        choice["uniqueItems"] = True
+def _tighten(part: dict[str, Any]) -> None:
+    """Robots also by name, index names, lists without repetition, configurations that are there."""
+    properties = part.get("properties", {})
+    for name, schema in properties.items():
+        if schema.get("$ref") == ROBOT:
+            robots = [_ref("RobotSpec"), {"enum": library.names()}]
+            properties[name] = {"anyOf": robots, "description": schema["description"]}
+        for choice in [schema, *schema.get("anyOf", [])] if name in LISTS else []:
+            if "items" in choice:
+                choice |= {"uniqueItems": True} | LISTS[name]
+                if name == "indices":
+                    choice["items"] = {"enum": _index_names()}
     if "configurations" in properties:
         description = properties["configurations"]["description"].partition(";")[0]
         properties["configurations"] = {
@@ -228,3 +222,9 @@ def _tighten_job(part: dict[str, Any]) -> None:
             "description": description + ".",
         }
         part["required"].append("configurations")
+
+
+def _index_names() -> list[str]:
+    """Names and aliases of all indices, of their dynamic forms too."""
+    plain = [name for index in catalogue().values() for name in (index.name, *index.aliases)]
+    return sorted({*plain, *(DYNAMIC_PREFIX + name for name in plain)})

@@ -44,10 +44,14 @@ def test_the_published_schema_is_that_of_the_documents():
     bodies += [DOCUMENT | {"indices": indices} for indices in (["yoshikawa"], ["dynamic_isotropy"], "all", [], ["x"])]
     bodies += [DOCUMENT | {"task": task} for task in (["x", "rz"], ["x", "x"], [], "full")]
     bodies += EXAMPLES
+    pair = {"analysis": "shared_workspace", "robots": [{"robot": "scara"}, {"robot": "scara"}]}
+    bodies += [pair | {"scan": {"robot": robot, "values": [0]}} for robot in (1, "scara", {"library": "scara"})]
+    bodies += [pair, pair | {"robots": pair["robots"][:1]}, pair | {"robots": ["scara", "scara"]}]
     for body in bodies:
         try:
             job = parse_job(body.get("job", body))
-            allowed = job.robot.library in (None, "scara", "phantom_omni") and "x" not in job.indices
+            robots = {arm.robot.library for arm in job.arms().values()}
+            allowed = robots <= {None, "scara", "phantom_omni"} and "x" not in job.indices
         except DocumentError:
             allowed = False
         assert validator.is_valid(body) == allowed, body
