@@ -125,6 +125,10 @@ class RenderError(WsrenderError):
     code = "render_failed"
 
 
+class RenderWarning(UserWarning):
+    """3-D pictures were left out of a report."""
+
+
 class MissingExtraError(WsrenderError, ImportError):
     """An optional dependency is not installed; the message is the pip command that installs it."""
 

@@ -1,5 +1,6 @@
 """The result of an analysis: a document, the data behind it, its files and pictures."""
 
+import warnings
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from functools import partial
@@ -9,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from wsrender import export, plots, render
-from wsrender.errors import InputError
+from wsrender.errors import InputError, MissingExtraError, RenderError, RenderWarning
 from wsrender.export.artifacts import (
     DOCUMENT,
     Artifact,
@@ -20,10 +21,12 @@ from wsrender.export.artifacts import (
     write_artifacts,
     write_document,
 )
-from wsrender.export.atomic import staging_folder
+from wsrender.export.atomic import new_file, staging_folder
 from wsrender.export.cells import cell_names
 from wsrender.export.columns import columns_of
 from wsrender.export.text import sampling_text, summary_text
+from wsrender.report import Picture, report_page
+from wsrender.report.entries import label
 from wsrender.volume.distribution_map import DistributionMap
 from wsrender.volume.table import Table
 from wsrender.volume.volume_data import VolumeData
@@ -35,6 +38,7 @@ if TYPE_CHECKING:
     from wsrender.plots.result_plots import ResultPlots
 
 STANDARD_FORMATS = ("parquet", "vtkhdf", "glb", "ply", "png")
+REPORT_VIEWS = ("boundary", "isosurface")
 EXTRA_FORMATS = ("npz", "csv", "mat", "stl", "svg")
 
 CURVES = ("scan",)  # tables that are drawn
@@ -95,7 +99,7 @@ class Result:
         eye. Needs the extra ``render``. Raises InputError, MissingExtraError; RenderError where VTK cannot draw.
         """
         results = [self, *others]
-        subjects = [render.Subject(name, *result._drawable()) for name, result in named_results(results).items()]
+        subjects = [each for name, result in named_results(results).items() for each in result._subjects(name)]
         if robot is not None:
             subjects[0] = subjects[0].with_robot(robot, configuration, self.document.get("sampling") or {})
         names = " + ".join(subject.name for subject in subjects)
@@ -105,8 +109,40 @@ class Result:
             plots.save_figure(figure, path)
         return figure
 
+    def _subjects(self, name: str) -> "list[render.Subject]":
+        """What a 3-D picture shows of the result: its robot, or each of several with its own volume."""
+        robots = {key.removeprefix("robot_"): data for key, data in self.volumes.items() if key.startswith("robot_")}
+        if not robots:
+            return [render.Subject(name, *self._drawable())]
+        arms = [None] * len(robots) if self.skeleton is None else [arm[None] for arm in self.skeleton]
+        return [
+            render.Subject(key, volume=volume, skeleton=arm)
+            for (key, volume), arm in zip(robots.items(), arms, strict=True)
+        ]
+
     def _drawable(self) -> tuple[DistributionMap | None, VolumeData | None, np.ndarray | None]:
         return self.sample if self.sample is not None else self.map, self.volume, self.skeleton
+
+    def report(self, path: str | Path, views: Iterable[str] = REPORT_VIEWS) -> None:
+        """Write one HTML page with pictures, tables, provenance and the job document; it needs no network.
+
+        ``views`` are the 3-D pictures, of those of ``render``; without the extra ``render`` or OpenGL they are left
+        out, with a RenderWarning and a note in the page. Raises InputError for an unknown view.
+        """
+        pictures = [Picture(name, plots.png(draw())) for name, draw in _pictures(self).items()]
+        notes = []
+        has_volume = any(each.volume is not None and each.volume.occupied.any() for each in self._subjects(""))
+        for view in views if has_volume else ():
+            try:
+                pictures.append(Picture(view, plots.png(self.render(view))))
+            except (MissingExtraError, RenderError) as error:
+                notes.append(f"3-D pictures are left out: {error}")
+                warnings.warn(notes[-1], RenderWarning, stacklevel=2)
+                break
+        title = f"{sampling_text(self.document)} · {label(str(self.document.get('analysis', 'result')))}"
+        page = report_page(title, self.document, pictures, self.tables, notes)
+        with new_file(path) as temporary:
+            temporary.write_text(page, encoding="utf-8")
 
     def summary(self) -> str:
         """The main numbers as a few lines of text."""
@@ -217,6 +253,18 @@ def _mesh_files(name: str, mesh: "trimesh.Trimesh", formats: tuple[str, ...]) ->
 
 def _picture_files(result: Result, formats: tuple[str, ...]) -> Iterator[Artifact]:
     """PNG, and SVG if asked, of each picture that the result has data for."""
+    pictures = _pictures(result)
+    if "histogram" in pictures and result.plot.samples is not None:
+        write = partial(plots.write_histogram_csv, result.plot.samples)
+        yield Artifact("plots/histogram.csv", write, frame=None)
+    for name, draw in pictures.items():
+        figure = draw()
+        for ending in ("png", *(["svg"] if "svg" in formats else [])):
+            yield Artifact(f"plots/{name}.{ending}", partial(plots.save_figure, figure))
+
+
+def _pictures(result: Result) -> "dict[str, Callable[[], Figure]]":
+    """What draws each picture that the result has data for, by its name."""
     plot = result.plot
     rows = 0 if plot.samples is None else len(plot.samples)
     pictures: dict[str, Callable[[], Figure]] = {}
@@ -228,14 +276,9 @@ def _picture_files(result: Result, formats: tuple[str, ...]) -> Iterator[Artifac
         pictures["slices"] = plot.slices
     if plot.samples is not None and plot.samples.indices and rows:
         pictures["histogram"] = plot.histogram
-        write = partial(plots.write_histogram_csv, plot.samples)
-        yield Artifact("plots/histogram.csv", write, frame=None)
     pictures |= {name: partial(plot.curves, name) for name in CURVES if len(result.tables.get(name, ()))}
     if result.document.get("analysis") == "robot_comparison":
         pictures["comparison"] = plot.side_by_side
     if result.volume is not None and result.volume.statistics.get("product"):
         pictures["product"] = partial(plot.slices, statistic="product")
-    for name, draw in pictures.items():
-        figure = draw()
-        for ending in ("png", *(["svg"] if "svg" in formats else [])):
-            yield Artifact(f"plots/{name}.{ending}", partial(plots.save_figure, figure))
+    return pictures

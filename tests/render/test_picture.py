@@ -176,6 +176,18 @@ def test_several_results_share_one_box_and_tell_robots_apart(blank, planar_resul
     assert len(shared.axes) == 2  # one colour bar
 
 
+def test_the_robots_of_one_result_are_drawn_each_with_its_volume(blank):
+    volumes = {f"robot_{name}": VolumeData(0.1, (k, 0, 0), np.full((3, 3, 3), 9)) for k, name in enumerate("ab")}
+    arms = np.arange(12.0).reshape(2, 2, 3)
+    figure = ws.Result({"robots": [{"name": "a"}, {"name": "b"}]}, skeleton=arms, volumes=volumes).render()
+    labels = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert {"a", "b", "boundary of a", "boundary of b"} <= set(labels)
+    rods = [layer.points for layer in blank[0].layers if isinstance(layer, Rods)]
+    np.testing.assert_array_equal(rods, arms)
+    lows = [layer.vertices[:, 0].min() for layer in blank[0].layers if isinstance(layer, Surface)]
+    np.testing.assert_allclose(lows, [0.0, 0.1], atol=1e-9)
+
+
 def test_colours_of_a_surface_are_those_of_the_nearest_voxels(block):
     drawing = VIEWS["boundary"]([block], CHOICE)
     (surface,) = drawing.layers

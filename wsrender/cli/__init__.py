@@ -1,4 +1,4 @@
-"""The command line: ``wsrender robots | schema | run | render | submit | jobs …`` and what the server adds to it."""
+"""The command line: ``wsrender run | render | report | submit | jobs …``, and what the server adds to it."""
 
 import sys
 from collections.abc import Sequence
@@ -11,11 +11,12 @@ from wsrender.cli.faults import one_line_faults
 from wsrender.cli.jobs import jobs
 from wsrender.cli.listing import robots, schema
 from wsrender.cli.render import render
+from wsrender.cli.report import report
 from wsrender.cli.run import run
 from wsrender.cli.submit import submit
 from wsrender.errors import MissingExtraError
 
-COMMANDS = {"run": run, "render": render, "robots": robots, "schema": schema, "submit": submit}
+COMMANDS = {"run": run, "render": render, "report": report, "robots": robots, "schema": schema, "submit": submit}
 GROUPS = {"jobs": jobs}
 # Typer apps whose commands join these; loaded only where none of these is asked for.
 EXTENSIONS = "wsrender.commands"

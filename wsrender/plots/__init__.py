@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from wsrender.plots.point_cloud import scatter
     from wsrender.plots.result_plots import ResultPlots
     from wsrender.plots.stick_figure import robot
-    from wsrender.plots.style import save_figure
+    from wsrender.plots.style import png, save_figure
     from wsrender.plots.table_curves import curves
 
 # Modules are not called like their functions: importing one would hide the function.
@@ -24,6 +24,7 @@ _MODULES = {
     "ResultPlots": "result_plots",
     "curves": "table_curves",
     "histogram": "distribution",
+    "png": "style",
     "robot": "stick_figure",
     "save_figure": "style",
     "scatter": "point_cloud",
@@ -37,6 +38,7 @@ __all__ = [
     "ResultPlots",
     "curves",
     "histogram",
+    "png",
     "robot",
     "save_figure",
     "scatter",

@@ -3,6 +3,7 @@
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
+from io import BytesIO
 from pathlib import Path
 from typing import Any, Literal
 
@@ -92,6 +93,14 @@ def add_title(figure: Figure, title: str) -> None:
     """What robot and samples the figure shows, above all axes."""
     if title:
         figure.suptitle(title, fontsize=11, y=0.98 if figure.get_layout_engine() is None else None)
+
+
+def png(figure: Figure) -> bytes:
+    """A figure as a PNG file; equal figures give equal bytes."""
+    file = BytesIO()
+    with paper_style():
+        figure.savefig(file, format="png", metadata={"Software": None})
+    return file.getvalue()
 
 
 def save_figure(figure: Figure, path: str | Path) -> None:

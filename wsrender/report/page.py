@@ -1,0 +1,144 @@
+"""The page: title, main values, pictures, tables, provenance and the job document."""
+
+import base64
+import json
+import struct
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from html import escape
+from typing import Any
+
+from wsrender.report.entries import facts_html, label, records_html, table_html, value_html
+from wsrender.volume.table import Table
+
+# Nothing but what is in the page itself: whatever a name may hold, no script runs and nothing is fetched.
+_POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'"
+_MOST_JOB_TEXT = 100_000  # characters of the job document; result.json has all
+_FIRST = ("volume_m3", "surfaces", "indices", "global", "bounds_m")  # before the pictures
+_LAST = ("job", "artifacts", "provenance", "timing_s")  # sections of their own, at the end
+_WIDE = 1.6  # width by height from which a picture takes the whole width
+_CAPTIONS = {
+    "robot": "The arm in its workspace",
+    "scatter": "Samples",
+    "slices": "Voxels in three planes",
+    "histogram": "Distribution of the indices over the samples",
+    "boundary": "Boundary of the workspace",
+    "isosurface": "Voxels of at least 0.9 of the maximum",
+}
+
+_STYLE = """
+:root { color-scheme: light; }
+body { font: 15px/1.5 system-ui, "DejaVu Sans", sans-serif; color: #222; background: #fff; margin: 0 auto;
+  max-width: 60rem; padding: 2rem 1.5rem; }
+h1 { font-size: 1.6rem; margin: 0 0 .2rem; overflow-wrap: anywhere; }
+h2 { font-size: 1.15rem; margin: 2.2rem 0 .6rem; border-bottom: 1px solid #ddd; padding-bottom: .2rem; }
+h3 { font-size: 1rem; margin: 1.4rem 0 .4rem; }
+p.note, figcaption { color: #666; font-size: .85rem; }
+table { border-collapse: collapse; font-size: .85rem; margin: .3rem 0; }
+th, td { text-align: left; vertical-align: top; padding: .18rem .9rem .18rem 0; overflow-wrap: anywhere; }
+th { font-weight: 600; }
+thead th { border-bottom: 1px solid #bbb; overflow-wrap: normal; white-space: nowrap; }
+td.number, table.matrix td { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
+table.facts th { font-weight: 400; color: #555; white-space: nowrap; }
+div.wide { overflow-x: auto; }
+figure { display: inline-block; width: 49%; min-width: 20rem; margin: 0 0 1rem; vertical-align: top; }
+figure.wide { width: 100%; } figure img { width: 100%; height: auto; }
+pre { background: #f6f6f4; padding: .8rem; font-size: .8rem; white-space: pre-wrap; overflow-wrap: anywhere; }
+code { font-size: .8rem; overflow-wrap: anywhere; }
+@media print {
+  @page { margin: 15mm; }
+  body { max-width: none; padding: 0; font-size: 10pt; }
+  figure, tr { break-inside: avoid; } h2, h3 { break-after: avoid; }
+  div.wide { overflow: visible; } figure { min-width: 0; }
+}
+"""
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A PNG picture and its name, such as ``slices``."""
+
+    name: str
+    png: bytes
+
+    @property
+    def caption(self) -> str:
+        """What it shows."""
+        return _CAPTIONS.get(self.name) or label(self.name)[:1].upper() + label(self.name)[1:]
+
+    @property
+    def is_wide(self) -> bool:
+        """Whether it is much wider than high."""
+        width, height = struct.unpack(">II", self.png[16:24])  # of the header that every PNG starts with
+        return width > _WIDE * height
+
+
+def report_page(
+    title: str,
+    document: Mapping[str, Any],
+    pictures: Sequence[Picture],
+    tables: Mapping[str, Table],
+    notes: Sequence[str] = (),
+) -> str:
+    """The HTML text of a report: every value of the document, pictures inside, no link to anything outside."""
+    single = {
+        key: value for key, value in document.items() if not isinstance(value, Mapping | list) and value is not None
+    }
+    nested: dict[str, Any] = {
+        key: value for key, value in document.items() if isinstance(value, Mapping | list) and value
+    }
+    sections = [_section("Main values", facts_html(single))]
+    sections += [_section(label(key), value_html(nested[key])) for key in _FIRST if key in nested]
+    sections += [_section("Pictures", _pictures(pictures, notes))]
+    others = [key for key in nested if key not in _FIRST + _LAST]
+    sections += [_section(label(key), value_html(nested[key])) for key in others]
+    sections += [_section(f"Table: {label(name)}", table_html(table)) for name, table in tables.items() if len(table)]
+    sections += [_section(label(key), facts_html(nested[key])) for key in ("provenance", "timing_s") if key in nested]
+    sections += [_section("Files", _files(nested["artifacts"]))] if "artifacts" in nested else []
+    sections += [_section("Job document", _job(nested["job"]))] if "job" in nested else []
+    return _PAGE.format(policy=escape(_POLICY), title=escape(title), style=_STYLE, body="\n".join(sections))
+
+
+_PAGE = """<!DOCTYPE html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta http-equiv="Content-Security-Policy" content="{policy}">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>{title}</title>
+<style>{style}</style>
+</head>
+<body>
+<h1>{title}</h1>
+<p class="note">Lengths in metres, angles in radians, positions in the world frame. wsrender.</p>
+{body}
+</body>
+</html>
+"""
+
+
+def _section(heading: str, content: str) -> str:
+    heading = heading[:1].upper() + heading[1:]
+    return f"<section><h2>{escape(heading)}</h2><div class=wide>{content}</div></section>"
+
+
+def _pictures(pictures: Sequence[Picture], notes: Sequence[str]) -> str:
+    figures = "".join(map(_figure, pictures))
+    return figures + "".join(f"<p class=note>{escape(note)}</p>" for note in notes)
+
+
+def _figure(picture: Picture) -> str:
+    caption, wide = escape(picture.caption), " class=wide" if picture.is_wide else ""
+    source = f"data:image/png;base64,{base64.b64encode(picture.png).decode()}"
+    return f'<figure{wide}><img alt="{caption}" src="{source}"><figcaption>{caption}</figcaption></figure>'
+
+
+def _files(artifacts: Sequence[Mapping[str, Any]]) -> str:
+    return records_html([{key: record.get(key) for key in ("name", "bytes", "sha256")} for record in artifacts])
+
+
+def _job(job: Mapping[str, Any]) -> str:
+    text = json.dumps(job, indent=2, ensure_ascii=False)
+    cut = len(text) > _MOST_JOB_TEXT
+    note = "<p class=note>Cut here; result.json has all of it.</p>" if cut else ""
+    return f"<pre>{escape(text[:_MOST_JOB_TEXT])}</pre>{note}"
