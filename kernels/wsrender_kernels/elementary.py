@@ -80,8 +80,8 @@ def elementary(real) -> SimpleNamespace:
         s = SIN[DEGREE - 1]
         c = COS[DEGREE - 1]
         for i in range(1, DEGREE):
-            s = s * z + SIN[wp.static(DEGREE - 1 - i)]
-            c = c * z + COS[wp.static(DEGREE - 1 - i)]
+            s = s * z + SIN[DEGREE - 1 - i]
+            c = c * z + COS[DEGREE - 1 - i]
         s = r + r * z * s
         c = ONE - HALF * z + z * z * c
         quadrant = wp.int32(k + quarters)

@@ -50,6 +50,7 @@ def inertia(real, n: int, sources: tuple[int, ...], plain: bool) -> SimpleNamesp
     ``frames`` and ``plain`` as in `kinematics`.
     """
     L = len(sources)
+    LAST = L - 1
     SOURCE = wp.types.vector(L, wp.int32)(*sources)
     CHAIN = JOINT_STRIDE
     BODY = BODY_STRIDE
@@ -111,17 +112,16 @@ def inertia(real, n: int, sources: tuple[int, ...], plain: bool) -> SimpleNamesp
     def inertia_matrix(chain: Chain, bodies: Bodies, frames: Frames):
         M = joint_inertia_type()
         links = axes_type()  # from each joint's origin to the next, in the world
-        for i in range(wp.static(L - 1)):
-            a = wp.static(i + 1) * CHAIN
+        for i in range(LAST):
+            a = (i + 1) * CHAIN
             links[i] = frames.X[i] * chain[a + 2] + frames.Y[i] * chain[a + 3] + frames.Z[i] * chain[a + 4]
             if wp.static(not PLAIN):
                 links[i] = links[i] + frames.Z[i + 1] * frames.slides[i + 1]
         h = vec3()
         composite = sym3()
-        for back in range(L):
-            i = wp.static(L - 1 - back)
+        for i in range(LAST, -1, -1):
             b = i * BODY
-            if wp.static(back > 0):
+            if i < LAST:
                 a = (i + 1) * CHAIN
                 c = frames.cosines[i + 1]
                 s = frames.sines[i + 1]
@@ -159,8 +159,8 @@ def inertia(real, n: int, sources: tuple[int, ...], plain: bool) -> SimpleNamesp
                 diagonal = composite[2] * angle * angle + m * slide * slide
                 diagonal += bodies[b + 10] * (angle + slide) * (angle + slide)
             M[SOURCE[i], SOURCE[i]] += diagonal
-            for before in range(wp.static(L - 1 - back)):
-                j = wp.static(L - 2 - back - before)
+            for before in range(i):
+                j = i - 1 - before
                 moment = moment + wp.cross(links[j], momentum)
                 value = wp.dot(frames.Z[j], moment)
                 if wp.static(not PLAIN):
@@ -180,18 +180,16 @@ def inertia(real, n: int, sources: tuple[int, ...], plain: bool) -> SimpleNamesp
             F = joint_inertia_type()
             D = vec_n()
             inverse = vec_n()
-            for j in range(n):
-                scaled = vec_n()
-                D[j] = M[j, j]
-                for k in range(j):
-                    scaled[k] = F[j, k] * D[k]
-                    D[j] -= F[j, k] * scaled[k]
-                inverse[j] = ONE / D[j]
-                for i in range(wp.static(j + 1), n):
-                    value = M[i, j]
+            for i in range(n):
+                scaled = vec_n()  # row i of F D
+                D[i] = M[i, i]
+                for j in range(i):
+                    scaled[j] = M[i, j]
                     for k in range(j):
-                        value -= F[i, k] * scaled[k]
-                    F[i, j] = value * inverse[j]
+                        scaled[j] -= scaled[k] * F[j, k]
+                    F[i, j] = scaled[j] * inverse[j]
+                    D[i] -= F[i, j] * scaled[j]
+                inverse[i] = ONE / D[i]
             out = A
             for r in range(m_rows):
                 for i in range(n):
@@ -199,10 +197,9 @@ def inertia(real, n: int, sources: tuple[int, ...], plain: bool) -> SimpleNamesp
                         out[r, i] -= F[i, k] * out[r, k]
                 for i in range(n):
                     out[r, i] *= inverse[i]
-                for back in range(n):
-                    i = wp.static(n - 1 - back)
-                    for k in range(wp.static(n - back), n):
-                        out[r, i] -= F[k, i] * out[r, k]
+                for i in range(wp.static(n - 1), 0, -1):
+                    for k in range(i):
+                        out[r, k] -= F[i, k] * out[r, i]
             return out
 
         return solve_rows

@@ -85,27 +85,23 @@ def advance(real, n: int, sources: tuple[int, ...], plain: bool, pose: bool) -> 
         L = mat_mm()
         inverse = vec_m()
         x = vec_m()
-        for j in range(M):
-            d = A[j, j]
-            for k in range(wp.static(j)):
-                d = d - L[j, k] * L[j, k]
-            root = ONE / wp.sqrt(wp.max(d, TINY))
-            inverse[j] = root
-            y = b[j]
-            for k in range(wp.static(j)):
-                y = y - L[j, k] * x[k]
-            x[j] = y * root
-            for i in range(wp.static(j + 1), M):
+        for i in range(M):
+            d = A[i, i]
+            y = b[i]
+            for j in range(i):
                 a = A[i, j]
-                for k in range(wp.static(j)):
+                for k in range(j):
                     a = a - L[i, k] * L[j, k]
-                L[i, j] = a * root
-        for back in range(M):
-            j = wp.static(M - 1 - back)
-            y = x[j]
-            for i in range(wp.static(M - back), M):
-                y = y - L[i, j] * x[i]
-            x[j] = y * inverse[j]
+                a = a * inverse[j]
+                L[i, j] = a
+                d = d - a * a
+                y = y - a * x[j]
+            inverse[i] = ONE / wp.sqrt(wp.max(d, TINY))
+            x[i] = y * inverse[i]
+        for i in range(wp.static(M - 1), -1, -1):
+            x[i] = x[i] * inverse[i]
+            for k in range(i):
+                x[k] = x[k] - L[i, k] * x[i]
         return x
 
     @wp.func
@@ -154,7 +150,7 @@ def advance(real, n: int, sources: tuple[int, ...], plain: bool, pose: bool) -> 
             down = ZERO
             for r in range(M):
                 a = J[r, i] * model.scale[i]
-                if wp.static(r >= 3):
+                if r >= 3:
                     a = a * model.length
                 A[r, i] = a
                 size = size + a * a
@@ -170,12 +166,9 @@ def advance(real, n: int, sources: tuple[int, ...], plain: bool, pose: bool) -> 
         new_damping = wp.min(wp.max(damping * change, LEAST), LARGEST)
         H = mat_mm()
         for r in range(M):
-            for c in range(wp.static(r + 1)):
-                h = ZERO
-                for i in range(n):
-                    h = h + A[r, i] * A[c, i]
-                H[r, c] = h
-            H[r, r] = H[r, r] + new_damping * MEAN * size + TINY
+            for c in range(r):
+                H[r, c] = wp.dot(A[r], A[c])
+            H[r, r] = wp.dot(A[r], A[r]) + new_damping * MEAN * size + TINY
         solution = damped_solution(H, error)
         largest = ZERO
         along = ZERO

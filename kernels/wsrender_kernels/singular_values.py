@@ -300,8 +300,8 @@ def _jacobi(real, m: int, n: int, by_columns: bool):
     @wp.func
     def sweep(W: mat_work):
         out = W
-        for i in range(wp.static(COUNT - 1)):
-            for j in range(wp.static(i + 1), COUNT):
+        for j in range(1, COUNT):
+            for i in range(j):
                 a = out[i]
                 b = out[j]
                 difference = wp.dot(b, b) - wp.dot(a, a)
@@ -351,8 +351,8 @@ def _jacobi(real, m: int, n: int, by_columns: bool):
         norms = vec_count()
         for i in range(COUNT):
             norms[i] = wp.sqrt(wp.dot(W[i], W[i])) * scale
-        for last in range(wp.static(COUNT - 1)):
-            for i in range(wp.static(COUNT - 1 - last)):
+        for last in range(wp.static(COUNT - 1), 0, -1):
+            for i in range(last):
                 larger = wp.max(norms[i], norms[i + 1])
                 norms[i + 1] = wp.min(norms[i], norms[i + 1])
                 norms[i] = larger

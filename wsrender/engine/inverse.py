@@ -9,6 +9,7 @@ from wsrender_kernels.inverse import LANES, REACHED, STATIONARY, inverse_kernel,
 
 from wsrender.engine.devices import devices_of, thread_count
 from wsrender.engine.evaluation import REAL, chain_model, device_array, drive, vector_of
+from wsrender.engine.kernel_cache import loaded
 from wsrender.robots.chain import Chain
 
 BATCH = 1 << 17  # tries of a launch
@@ -85,7 +86,7 @@ def _launch(chain, model, targets, starts, steps, precision, device) -> list[np.
     inputs = [model, device_array(targets.T.ravel(), real, device), device_array(starts.T.ravel(), real, device), count]
     if count:
         wp.launch(
-            kernel,
+            loaded(kernel, device),
             dim=count if device.is_cuda else 1,
             inputs=[*inputs, steps],
             outputs=[q, distance_2, rotation_2, verdict],

@@ -17,6 +17,7 @@ from wsrender.engine.configurations import configurations, device_space, given_s
 from wsrender.engine.devices import thread_count
 from wsrender.engine.evaluation import Evaluation, device_array, evaluation_model, shape_of
 from wsrender.engine.grid_structure import GridStructure, device_base, structure_of
+from wsrender.engine.kernel_cache import loaded
 from wsrender.engine.memory import as_type, check_voxel_memory, device_memory
 from wsrender.engine.partial import Partial, merge
 from wsrender.errors import NumericalError
@@ -189,7 +190,7 @@ class Accumulator:
         self._lowest = lowest(real)
         self._empty_count = int(np.full(shape.count_size, self._lowest, wp.dtype_to_numpy(bits)).view(np.int64)[0])
         voxels = plan.block.size if plan.block else 0
-        self._kernel = sweep_kernel(shape, device.is_cuda)
+        self._kernel = loaded(sweep_kernel(shape, device.is_cuda), device)
         self._model = evaluation_model(plan.evaluation, plan.precision)
         given = shape.method == "given"
         self._space = None if given else device_space(plan.structure.evaluated, plan.precision, device)

@@ -1,0 +1,40 @@
+"""Each kernel is compiled once: by one of the processes that need it, and whatever was compiled before it."""
+
+import os
+import subprocess
+import sys
+
+SCRIPT = """
+import sys
+import warp as wp
+import wsrender as ws
+from wsrender.engine import devices_of
+
+devices_of("cpu")
+wp.config.log_level = wp.LOG_INFO
+for indices in sys.argv[1:]:
+    ws.analyze("phantom_omni", sampling=ws.Random(300, seed=1), indices=[indices], voxel_size_m=0.02, device="cpu")
+"""
+
+
+def start(cache, *indices):
+    environment = {**os.environ, "WARP_CACHE_PATH": str(cache)}
+    command = [sys.executable, "-c", SCRIPT, *indices]
+    return subprocess.Popen(command, env=environment, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+
+
+def compiled(processes):
+    """Names of the modules that each process compiled."""
+    logs = [process.communicate(timeout=300)[0] for process in processes]
+    for process, log in zip(processes, logs, strict=True):
+        assert process.returncode == 0, log
+    return [[line.split()[1] for line in log.splitlines() if "(compiled)" in line] for log in logs]
+
+
+def test_processes_share_what_one_of_them_compiles(tmp_path):
+    one, other = compiled([start(tmp_path, "manipulability"), start(tmp_path, "manipulability")])
+    assert one + other
+    assert len(set(one + other)) == len(one + other)
+    # A kernel is the same after others as before them.
+    after, alone = compiled([start(tmp_path, "manipulability", "isotropy")]), compiled([start(tmp_path, "isotropy")])
+    assert after[0] and not alone[0]
