@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from wsrender.reachability import Reachability, reachable
     from wsrender.result import Result
     from wsrender.robot import Robot, evaluate_indices, load_robot
-    from wsrender.run import analyze, execute, robot_comparison, shared_workspace
+    from wsrender.run import analyze, collaborative_volume, execute, robot_comparison, shared_workspace
     from wsrender.spec.robot import DHRow, DHTable, Transform
     from wsrender.spec.sampling import BoundaryBiased, Converge, Grid, Random, Sobol
 
@@ -75,6 +75,7 @@ __all__ = [
     "WsrenderError",
     "__version__",
     "analyze",
+    "collaborative_volume",
     "evaluate_indices",
     "execute",
     "load_robot",
@@ -92,7 +93,7 @@ _NAMES_OF_MODULE = {
     "wsrender.reachability": ("Reachability", "reachable"),
     "wsrender.result": ("Result",),
     "wsrender.robot": ("Robot", "evaluate_indices", "load_robot"),
-    "wsrender.run": ("analyze", "execute", "robot_comparison", "shared_workspace"),
+    "wsrender.run": ("analyze", "collaborative_volume", "execute", "robot_comparison", "shared_workspace"),
     "wsrender.spec.robot": ("DHRow", "DHTable", "Transform"),
     "wsrender.spec.sampling": ("BoundaryBiased", "Converge", "Grid", "Random", "Sobol"),
 }

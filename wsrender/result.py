@@ -41,7 +41,7 @@ STANDARD_FORMATS = ("parquet", "vtkhdf", "glb", "ply", "png")
 REPORT_VIEWS = ("boundary", "isosurface")
 EXTRA_FORMATS = ("npz", "csv", "mat", "stl", "svg")
 
-CURVES = ("scan",)  # tables that are drawn
+CURVES = ("scan", "refinements")  # tables that are drawn
 
 
 @dataclass(eq=False)

@@ -11,7 +11,7 @@ from wsrender.errors import DocumentError, InputError, ModelError, ResourceError
 from wsrender.indices.catalogue import find
 from wsrender.robots import library
 from wsrender.spec import IndicesAtJob, canonical_json, parse_job
-from wsrender.spec.arm import ArmPath, dotted
+from wsrender.spec.arm import ArmPath, dotted, local_paths
 from wsrender.spec.document import Document
 from wsrender.spec.robot import RobotSpec
 from wsrender.spec.sampling import Converge, Grid
@@ -41,6 +41,8 @@ class Admission:
         job = parse_job(document)
         if isinstance(job, IndicesAtJob) and job.configurations is None:
             raise DocumentError([("configurations", "must be given: rows of joint values")])
+        for path in local_paths(job.model_dump(mode="json")):
+            raise DocumentError([(dotted(path), "is for local runs only; upload the model, or send text or points")])
         arms = job.arms()
         for path, arm in arms.items():
             self._check_robot(arm.robot, (*path, "robot"))
@@ -54,8 +56,6 @@ class Admission:
         return json.loads(canonical_json(job))
 
     def _check_robot(self, robot: RobotSpec, path: ArmPath) -> None:
-        if robot.path is not None:
-            raise DocumentError([(dotted(path, "path"), "is for local runs only; upload the model, or send its text")])
         if robot.library is not None:
             try:
                 library.find(robot.library)

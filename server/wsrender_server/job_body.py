@@ -134,6 +134,7 @@ def body_schemas() -> dict[str, Any]:
     parts: dict[str, Any] = schema.pop("$defs")
     _tighten_robot(parts["RobotSpec"])
     analyses = {name: ref.rpartition("/")[2] for name, ref in schema["discriminator"]["mapping"].items()}
+    _tighten_points(parts["PointSet"])
     options = SubmissionOptions.model_json_schema()["properties"]
     for part in parts.values():
         _tighten(part)
@@ -200,6 +201,14 @@ def _tighten_robot(part: dict[str, Any]) -> None:
         properties[name] = properties[name]["anyOf"][0] | {"description": properties[name]["description"]}
     properties["dh"] = _ref("DHTable")
     part["oneOf"] = [{"required": [source]} for source in ("library", "dh", "mjcf", "urdf", "model")]
+
+
+def _tighten_points(part: dict[str, Any]) -> None:
+    """Points in the document: a server reads no files."""
+    del part["properties"]["path"]
+    points = part["properties"]["points"]
+    part["properties"]["points"] = points["anyOf"][0] | {"minItems": 1, "description": points["description"]}
+    part["required"] = ["points"]
 
 
 def _tighten(part: dict[str, Any]) -> None:

@@ -1,12 +1,13 @@
 """Running a job, in the four steps that every door uses: plan, run_shard, merge, finish."""
 
 from wsrender.run.analyze import analyze
-from wsrender.run.several_from_python import robot_comparison, shared_workspace
+from wsrender.run.several_from_python import collaborative_volume, robot_comparison, shared_workspace
 from wsrender.run.steps import Plan, execute, finish, merge, plan, run_shard
 
 __all__ = [
     "Plan",
     "analyze",
+    "collaborative_volume",
     "execute",
     "finish",
     "merge",

@@ -3,6 +3,8 @@
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from wsrender.progress import RunProgress
 from wsrender.result import Result
 from wsrender.robot import Robot, as_robot, load_robot
@@ -16,6 +18,16 @@ from wsrender.spec.sampling import Grid
 def as_subject(robot: Any) -> Robot:
     """The robot of a Robot, a user-defined robot, or what `load_robot` takes."""
     return load_robot(robot) if isinstance(robot, str | Path | DHTable) else as_robot(robot)
+
+
+def as_source(source: Any) -> Robot | np.ndarray:
+    """Points as they are, anything else as a robot."""
+    return source if isinstance(source, np.ndarray) else as_subject(source)
+
+
+def source_entry(source: Robot | np.ndarray) -> dict[str, Any]:
+    """A robot or points in a job document."""
+    return arm_entry(source) if isinstance(source, Robot) else {"points": source}
 
 
 def arm_entry(robot: Robot) -> dict[str, Any]:

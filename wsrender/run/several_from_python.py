@@ -5,7 +5,16 @@ from typing import Any
 
 from wsrender.errors import InputError
 from wsrender.result import Result
-from wsrender.run.from_python import arm_entry, as_subject, execute_here, plain, sampling_entry
+from wsrender.robot import Robot
+from wsrender.run.from_python import (
+    arm_entry,
+    as_source,
+    as_subject,
+    execute_here,
+    plain,
+    sampling_entry,
+    source_entry,
+)
 from wsrender.run.steps import Progress
 
 
@@ -32,6 +41,20 @@ def robot_comparison(
     The arguments are those of `shared_workspace`, without ``scan``.
     """
     return _several("robot_comparison", robots, sampling, progress, fields)
+
+
+def collaborative_volume(left: Any, right: Any, *, progress: Progress | bool | None = None, **fields: Any) -> Result:
+    """Collaborative volume of two arms by the body-elemental algorithm, and its true value if asked.
+
+    ``left`` and ``right`` are robots as in `shared_workspace`, or points (N, 3) [m]. ``fields`` are the other fields of
+    the job document ``collaborative_volume``: samples, seeds, seed, cells, refinements, neighbours, refined_volume …
+
+    Raises DocumentError, InputError, ModelError, ResourceError.
+    """
+    subjects = [as_source(source) for source in (left, right)]
+    entries = dict(zip(("left", "right"), map(source_entry, subjects), strict=True))
+    robots = [subject for subject in subjects if isinstance(subject, Robot)]
+    return execute_here({"analysis": "collaborative_volume", **entries, **plain(fields)}, robots, progress)
 
 
 def _several(

@@ -7,12 +7,14 @@ from typing import Any, Protocol
 from wsrender.errors import InputError
 from wsrender.result import Result
 from wsrender.robot import Robot, as_robot, robot_of_spec
+from wsrender.run.collaborative import plan_collaborative
 from wsrender.run.comparison import plan_robot_comparison
 from wsrender.run.indices_at import plan_indices_at
 from wsrender.run.reachability import plan_reachability
 from wsrender.run.shared import plan_shared_workspace
 from wsrender.run.workspace import plan_workspace
 from wsrender.spec import (
+    CollaborativeVolumeJob,
     IndicesAtJob,
     ReachabilityJob,
     RobotComparisonJob,
@@ -30,6 +32,7 @@ PLANNERS: dict[type, Callable[..., "Plan"]] = {
     ReachabilityJob: plan_reachability,
     SharedWorkspaceJob: plan_shared_workspace,
     RobotComparisonJob: plan_robot_comparison,
+    CollaborativeVolumeJob: plan_collaborative,
 }
 
 

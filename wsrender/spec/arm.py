@@ -46,6 +46,16 @@ def robots_in(document: Any, path: ArmPath = ()) -> Iterator[tuple[ArmPath, dict
             yield from robots_in(value, (*path, key))
 
 
+def local_paths(document: Any, path: ArmPath = ()) -> Iterator[ArmPath]:
+    """Where a canonical document names a file of the machine that runs it."""
+    items = document.items() if isinstance(document, dict) else enumerate(document)
+    for key, value in items:
+        if key == "path" and isinstance(value, str):
+            yield (*path, key)
+        elif isinstance(value, dict | list):
+            yield from local_paths(value, (*path, key))
+
+
 def at_path(document: Any, path: ArmPath) -> Any:
     """What a document holds at a path."""
     for key in path:

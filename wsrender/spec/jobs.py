@@ -6,6 +6,7 @@ from typing import Annotated, Literal, get_args
 from pydantic import BeforeValidator, Discriminator, StrictBool
 
 from wsrender.spec.arm import Arm
+from wsrender.spec.collaborative import CollaborativeVolumeJob
 from wsrender.spec.document import Document
 from wsrender.spec.index_choices import IndexChoices
 from wsrender.spec.options import Configurations, MapColumns, Statistics
@@ -59,7 +60,14 @@ class IndicesAtJob(IndexChoices, Arm):
     """Floating-point type of the kernels."""
 
 
-_AnyJob = WorkspaceJob | IndicesAtJob | ReachabilityJob | SharedWorkspaceJob | RobotComparisonJob
+_AnyJob = (
+    WorkspaceJob
+    | IndicesAtJob
+    | ReachabilityJob
+    | SharedWorkspaceJob
+    | RobotComparisonJob
+    | CollaborativeVolumeJob
+)
 ANALYSES: dict[str, type[Document]] = {job.model_fields["analysis"].default: job for job in get_args(_AnyJob)}
 
 Job = Annotated[_AnyJob, Discriminator("analysis"), BeforeValidator(tagged("analysis", ANALYSES))]

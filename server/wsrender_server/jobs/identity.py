@@ -9,7 +9,7 @@ from typing import Any
 from wsrender import __version__
 from wsrender.errors import InputError
 from wsrender.robots.library import find
-from wsrender.spec.arm import dotted, robots_in
+from wsrender.spec.arm import dotted, local_paths, robots_in
 
 
 class Identity:
@@ -22,13 +22,11 @@ class Identity:
         """SHA-256 of owner, document, model, version and target.
 
         With a shared cache, jobs of nothing but library robots have the same key for every owner. Raises InputError
-        for a robot given by a path: the server reads no files for its users.
+        for a robot or points given by a path: the server reads no files for its users.
         """
-        libraries = []
-        for path, robot in robots_in(document):
-            if robot.get("path") is not None:
-                raise InputError(dotted(path, "path"), "is for local runs; upload the model and give robot.model")
-            libraries.append(robot.get("library"))
+        for path in local_paths(document):
+            raise InputError(dotted(path), "is for local runs; send the points, or upload the model")
+        libraries = [robot.get("library") for _, robot in robots_in(document)]
         anyone = self.shared_cache and bool(libraries) and None not in libraries
         parts = ["" if anyone else owner, document, [_library_hash(name) for name in libraries], __version__, target]
         return hashlib.sha256(json.dumps(parts, sort_keys=True).encode()).hexdigest()

@@ -1,0 +1,94 @@
+"""The collaborative volume of jobs: the outward pair of arms, points in documents and files, malformed jobs."""
+
+import numpy as np
+import pytest
+
+import wsrender as ws
+from tests.multi.test_body_elements import LENS, ball
+from wsrender.multi.body_elements import body_elements
+from wsrender.run import finish, plan, run_shard
+from wsrender.run.partial_files import load_partial, save_partial
+
+OUTWARD = {
+    "left": {"robot": "gao_6r"},
+    "right": {"robot": {"library": "gao_6r", "placement": {"rpy_deg": [0, 0, 180]}}},
+}
+
+
+def job(**fields):
+    return {"analysis": "collaborative_volume", "device": "cpu", **fields}
+
+
+def test_the_outward_pair_of_arms(tmp_path):
+    """DEFINITIONS 6: V₃ about 4.94e-3 m³ with 2e5 points and 20³ cells, against a true 6.2190e-3."""
+    document = job(**OUTWARD, seeds=4)
+    result = ws.execute(document)
+    entries = result.document["refinements"]
+    assert entries[3]["mean_m3"] == pytest.approx(4.94e-3, rel=0.03)
+    volumes = result.tables["seeds"]["volume"]
+    assert volumes.shape == (4, 4)
+    assert entries[3]["variance_m6"] == pytest.approx(volumes[:, 3].var(ddof=1))
+    assert result.document["volume_m3"] == {"body_elemental": entries[3]["mean_m3"], "true": None}
+    assert len(set(volumes[:, 3])) == 4
+    planned = plan(document)
+    save_partial(run_shard(planned, 0), tmp_path / "0.npz")
+    again = finish(planned, load_partial(tmp_path / "0.npz", planned))
+    np.testing.assert_array_equal(again.tables["seeds"]["volume"], volumes)
+    result.save(tmp_path / "out")
+    assert "plots/refinements.png" in {record["name"] for record in result.document["artifacts"]}
+
+
+def test_the_true_volume_stands_beside_it():
+    result = ws.execute(job(**OUTWARD, seeds=2, samples=50_000, refined_volume=0.05))
+    true = result.document["volume_m3"]["true"]
+    low, high = true["ci95"]
+    assert low < 6.2190e-3 < high
+    assert high - low < 0.11 * 6.2190e-3
+    (first, *_, last) = result.document["refinements"]
+    assert last["bias"] == pytest.approx(last["mean_m3"] / true["value"] - 1)
+    assert last["bias"] < first["bias"]
+    assert "true_low" in result.tables["refinements"].columns
+
+
+def test_points_in_documents_and_files(tmp_path):
+    left, right = ball(0.5, 2000, 0), ball(-0.5, 2000, 1)
+    expected = body_elements(left, right, (6, 6, 6)).volumes_m3
+    np.save(tmp_path / "left.npy", left)
+    np.savetxt(tmp_path / "right.csv", right, delimiter=",", header="x,y,z", comments="")
+    np.savetxt(tmp_path / "bare.csv", right, delimiter=",")
+    inline = [{"points": left.tolist()}, {"points": right.tolist()}]
+    files = [{"path": str(tmp_path / name)} for name in ("left.npy", "right.csv", "bare.csv")]
+    from_python = ws.collaborative_volume(left, right, cells=(6, 6, 6), seeds=1, device="cpu")
+    assert from_python.tables["seeds"]["volume"][0] == pytest.approx(expected)
+    for sources in (inline, files[:2], files[::2], [{"points": left}, files[1]]):
+        found = ws.execute(job(left=sources[0], right=sources[1], cells=[6, 6, 6], seeds=1))
+        assert found.tables["seeds"]["volume"][0] == pytest.approx(expected)
+        assert found.document["refinements"][0]["variance_m6"] is None
+    assert expected[0] == pytest.approx(LENS, rel=0.5)
+
+
+def test_mirrored_arms_do_not_draw_mirrored_configurations():
+    """The same robot twice in one place shares its whole volume, but not its points."""
+    result = ws.collaborative_volume("gao_6r", ws.load_robot("gao_6r"), seeds=1, samples=20_000, device="cpu")
+    assert 0 < result.document["volume_m3"]["body_elemental"] < 0.403721
+
+
+@pytest.mark.parametrize(
+    ("fields", "message"),
+    [
+        ({"left": {"robot": "gao_6r"}}, "right: is required"),
+        ({**OUTWARD, "left": {"points": []}}, r"left.points: must be a list of points \[x, y, z\]"),
+        ({**OUTWARD, "left": {"points": [[0, 1]]}}, r"left.points: must be a list of points"),
+        ({**OUTWARD, "left": {"points": [[0, 1, float("nan")]]}}, "left.points: must be a list of points"),
+        ({**OUTWARD, "left": {"points": [[0, 1, 2]], "path": "a.npy"}}, "left.points: must be given, or else"),
+        ({**OUTWARD, "left": {"path": "/nowhere/a.npy"}}, "path: /nowhere/a.npy cannot be read as points"),
+        ({**OUTWARD, "left": {"points": [[0, 0, 0]]}, "refined_volume": 0.1}, "refined_volume: must be null"),
+        ({**OUTWARD, "cells": [1, 2]}, "cells: must be a list of 3 whole numbers"),
+        ({**OUTWARD, "neighbours": 5}, "neighbours: must be 4 or 6"),
+        ({**OUTWARD, "max_samples": 1000}, "samples: makes 4e\\+06 configurations, above max_samples"),
+        ({**OUTWARD, "left": {"robot": "nobody"}}, 'left.library: has no robot "nobody"'),
+    ],
+)
+def test_malformed_jobs(fields, message):
+    with pytest.raises(ws.InputError, match=message):
+        ws.execute(job(**fields))

@@ -1,0 +1,153 @@
+"""The analysis ``collaborative_volume``: the body-elemental algorithm over seeds, and the true volume beside it."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from wsrender.multi.body_elements import body_elements
+from wsrender.reachability import Event, refined_volumes
+from wsrender.reachability.targets import model_robot
+from wsrender.result import Result
+from wsrender.robot import Robot
+from wsrender.run.provenance import job_entry, provenance, robot_entry
+from wsrender.run.sampled_positions import sampled_positions
+from wsrender.run.settled_device import settled_device
+from wsrender.spec import CollaborativeVolumeJob
+from wsrender.spec.point_sets import PointSet
+from wsrender.spec.sampling import Random
+from wsrender.volume.table import Table
+
+POSITIONS_PER_S = 2e6  # of one CPU core
+
+
+@dataclass(eq=False)
+class CollaborativePlan:
+    """A resolved ``collaborative_volume`` job: one shard."""
+
+    job: CollaborativeVolumeJob
+    robots: tuple[Robot, ...]
+    sources: tuple[Robot | np.ndarray, Robot | np.ndarray]  # of the left and right points
+    device: str
+    target: str
+
+    @property
+    def shards(self) -> list[tuple[int, int]]:
+        """One shard of all samples."""
+        return [(0, max(self.job.samples * self.job.seeds * len(self.robots), 1))]
+
+    @property
+    def estimate(self) -> dict[str, float]:
+        """Samples, bytes of the points of one run, and seconds without the true volume."""
+        samples = float(self.job.samples * self.job.seeds * len(self.robots))
+        return {"samples": samples, "bytes": 48.0 * self.job.samples, "seconds": samples / POSITIONS_PER_S}
+
+    def resolved(self) -> dict[str, Any]:
+        """What is settled once: the device that "auto" means, target, shards."""
+        return {"device": self.device, "target": self.target, "shards": [list(shard) for shard in self.shards]}
+
+    def run_shard(self, shard: int, progress: Callable[[int], None] | None, **execution: Any) -> dict[str, np.ndarray]:
+        """V₀ … V_d of every seed, and the true volume if asked."""
+        job, done, rows, cells = self.job, 0, [], []
+        for seed in range(job.seed, job.seed + job.seeds):
+            points = []
+            # The arms draw different configurations, or two equal arms would reach mirrored points.
+            for side, source in enumerate(self.sources):
+                if isinstance(source, Robot):
+                    sampling = Random(job.samples, seed=(2 * seed + side) % 2**63)
+                    source = sampled_positions(source, sampling, self.device)
+                    done += job.samples
+                points.append(source)
+                if progress:
+                    progress(done)
+            left, right = points
+            found = body_elements(left, right, job.cells, job.refinements, job.neighbours)
+            rows.append(found.volumes_m3)
+            cells.append([np.count_nonzero(found.collaborative), np.count_nonzero(found.boundary)])
+        arrays = {"volumes": np.array(rows), "cells": np.array(cells)}
+        return arrays if job.refined_volume is None else arrays | self._true_volume(job.refined_volume, **execution)
+
+    def merge(self, a: Any, b: Any) -> Any:
+        """There is one shard: nothing to merge."""
+        raise ValueError("collaborative_volume has one shard")
+
+    def finish(self, partial: dict[str, np.ndarray], seconds: dict[str, float]) -> Result:
+        """Means and variances over the seeds, and the bias where the true volume is known."""
+        volumes, job = partial["volumes"], self.job
+        mean, variance = volumes.mean(axis=0), _variance(volumes)
+        true = _true_entry(partial["true"]) if "true" in partial else None
+        document = {
+            "analysis": "collaborative_volume",
+            "job": job_entry(job, *self.robots),
+            "robots": [{"name": robot.name, "robot": robot_entry(robot)} for robot in self.robots],
+            "sampling": {"method": "random", "samples": job.samples * job.seeds * len(self.robots), "seed": job.seed},
+            "refinements": [
+                {
+                    "refinement": i,
+                    "mean_m3": float(mean[i]),
+                    "variance_m6": None if variance is None else float(variance[i]),
+                    "bias": None if true is None or not true["value"] else float(mean[i] / true["value"] - 1),
+                }
+                for i in range(len(mean))
+            ],
+            "cells": {
+                "collaborative": float(partial["cells"][:, 0].mean()),
+                "boundary": float(partial["cells"][:, 1].mean()),
+            },
+            "volume_m3": {"body_elemental": float(mean[-1]), "true": true},
+            "provenance": provenance("float64", self.target, seed=job.seed),
+            "timing_s": seconds,
+        }
+        tables = {"refinements": _curve(mean, variance, true), "seeds": _seeds(job.seed, volumes)}
+        return Result(document, tables=tables)
+
+    def _true_volume(self, tolerance: float, threads: int | None = None, **_: Any) -> dict[str, np.ndarray]:
+        chains = [robot.chain for robot in self.robots]
+        found = refined_volumes(chains, {"both": Event(2, 2)}, tolerance, device=self.device, threads=threads)
+        both = found.volumes["both"]
+        return {"true": np.array([both.value, both.low, both.high, both.met])}
+
+
+def plan_collaborative(
+    job: CollaborativeVolumeJob, *robots: Robot, resolved: dict[str, Any] | None = None
+) -> CollaborativePlan:
+    """Resolve the job, or take what `CollaborativePlan.resolved` of an earlier plan of it says.
+
+    Raises InputError for points that cannot be read, and for a true volume of user-defined robots.
+    """
+    if job.refined_volume is not None:
+        for robot in robots:
+            model_robot(robot)
+    left_to_place = list(robots)
+    left, right = (
+        source.array() if isinstance(source, PointSet) else left_to_place.pop(0) for source in (job.left, job.right)
+    )
+    return CollaborativePlan(job, robots, (left, right), *settled_device(job.device, resolved))
+
+
+def _variance(volumes: np.ndarray) -> np.ndarray | None:
+    """Unbiased variance over the seeds [m⁶]; None of one."""
+    return volumes.var(axis=0, ddof=1) if len(volumes) > 1 else None
+
+
+def _true_entry(row: np.ndarray) -> dict[str, Any]:
+    value, low, high, met = row.tolist()
+    return {"value": value, "ci95": [low, high], "tolerance_met": bool(met)}
+
+
+def _curve(mean: np.ndarray, variance: np.ndarray | None, true: dict[str, Any] | None) -> Table:
+    """Volume by refinement, with a band of one standard deviation, and the true volume with its interval."""
+    columns = {"refinement": np.arange(len(mean)), "body_elemental": mean}
+    if variance is not None:
+        deviation = np.sqrt(variance)
+        columns |= {"body_elemental_low": mean - deviation, "body_elemental_high": mean + deviation}
+    if true is not None:
+        values = {"true": true["value"], "true_low": true["ci95"][0], "true_high": true["ci95"][1]}
+        columns |= {name: np.full(len(mean), value) for name, value in values.items()}
+    return Table(columns, dict.fromkeys(list(columns)[1:], "m^3"))
+
+
+def _seeds(first: int, volumes: np.ndarray) -> Table:
+    columns = {"seed": first + np.arange(len(volumes)), "volume": volumes}
+    return Table(columns, {"volume": "m^3"})

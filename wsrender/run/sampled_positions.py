@@ -1,0 +1,40 @@
+"""Positions of an end effector at the samples of a joint space."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from wsrender.engine import configurations, evaluate_kinematics
+from wsrender.robot import Robot
+from wsrender.robot.user_robot import HostRobot
+from wsrender.sampling import plan_sampling
+
+CHUNK = 1 << 17
+
+
+def sampled_positions(
+    robot: Robot,
+    sampling: Any,
+    device: str,
+    *,
+    max_samples: int | None = None,
+    progress: Callable[[int], None] | None = None,
+) -> np.ndarray:
+    """World positions (N, 3) float64 [m] at the N samples of a sampling of the job document, in their order.
+
+    Raises InputError, ResourceError as `plan_sampling` does.
+    """
+    plan = plan_sampling(robot.chain, sampling, max_samples)
+    positions = np.empty((plan.count, 3))
+    for first in range(0, plan.count, CHUNK):
+        rows = configurations(plan, np.arange(first, min(first + CHUNK, plan.count)))
+        poses = (
+            robot.forward_kinematics(rows)
+            if isinstance(robot, HostRobot)
+            else evaluate_kinematics(robot.chain, rows, False, "float64", device).pose
+        )
+        positions[first : first + len(rows)] = poses[:, :3, 3]
+        if progress:
+            progress(first + len(rows))
+    return positions
