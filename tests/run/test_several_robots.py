@@ -121,6 +121,35 @@ def test_saved_shards_and_files_hold_everything(tmp_path):
     assert "shared volume" in loaded.summary() and "gantry + gantry_2" in loaded.summary()
 
 
+TABLE_5 = [
+    ("articulated", [0.1, 0, 0.4], 0, 0.0542, 0.0128, 5e-5),
+    # Spherical shells of .2….4 m: R and R / V_a from the closed-form volume of one, 2 V = V_a + V_s.
+    ("spherical", [0.1, 0.4, 0], 90, None, None, None),
+]
+
+
+@pytest.mark.parametrize(("name", "position", "yaw", "any_m3", "shared_m3", "rounding"), TABLE_5)
+def test_refined_volumes_of_the_published_pairs(name, position, yaw, any_m3, shared_m3, rounding):
+    """DEFINITIONS 6: exact volumes inside the interval; for the spherical pair V_a + V_s is twice the volume of one."""
+    turn = {"rpy_deg": (0, 0, yaw)}
+    x, y, z = position
+    pair = [ws.load_robot(name, placement=ws.Transform(position_m=(at, y, z), **turn)) for at in (-x, x)]
+    options = {"indices": ["manipulability"], "device": "cpu", "voxel_size_m": 0.02, "refined_volume": 0.02}
+    locked = {"joint4": 0.0, "joint5": np.pi / 2, "joint6": 0.0}
+    result = ws.shared_workspace(pair, ws.Grid(30, locked=locked), **options)
+    document = result.document
+    assert "refined shared volume" in result.summary()
+    refined = document["volume_m3"]["refined"]
+    both, shared = refined["any"], refined["shared"]
+    assert both["met"] and shared["met"]
+    if any_m3 is not None:
+        for entry, exact in ((both, any_m3), (shared, shared_m3)):
+            assert entry["ci95"][0] - rounding < exact < entry["ci95"][1] + rounding
+    one = {"articulated": 0.03348, "spherical": np.pi / 2 * np.sqrt(2) * (0.4**3 - 0.2**3) / 3}[name]
+    widths = sum((entry["ci95"][1] - entry["ci95"][0]) / 2 for entry in (both, shared))
+    assert both["value"] + shared["value"] == pytest.approx(2 * one, abs=widths)
+
+
 def test_a_comparison_lists_values_and_differences(tmp_path):
     small = gantry(x=(0.005, 0.195))
     samplings = [FULL, ws.Grid([20, 40, 20])]

@@ -25,15 +25,9 @@ def summary_text(document: dict[str, Any]) -> str:
 
 
 def _facts(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
-    volume = document.get("volume_m3") or {}
-    for name, value in volume.items():
-        if isinstance(value, int | float):
-            yield f"{name} volume", f"{value:.4g} m³"
+    yield from _volumes(document.get("volume_m3") or {})
     if "shared_ratio" in document:
         yield "shared / any", f"{document['shared_ratio']:.4g}"
-    if volume.get("refined"):
-        low, high = volume["refined"]["ci95"]
-        yield "refined volume", f"{volume['refined']['value']:.4g} m³ (95 %: {low:.4g} … {high:.4g})"
     targets = document.get("targets") or {}
     for name in ("reachable", "unreachable", "undecided"):
         if name in targets:
@@ -45,6 +39,19 @@ def _facts(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
     for name, value in (document.get("global") or {}).items():
         if isinstance(value, int | float):
             yield name.replace("_", " "), f"{value:.4g}"
+
+
+def _volumes(volumes: dict[str, Any], prefix: str = "") -> Iterator[tuple[str, str]]:
+    """Numbers, and values with their interval, at any depth."""
+    for name, value in volumes.items():
+        words = prefix + name.replace("_", " ")
+        if isinstance(value, int | float):
+            yield f"{words} volume", f"{value:.4g} m³"
+        elif isinstance(value, dict) and "ci95" in value:
+            low, high = value["ci95"]
+            yield f"{words} volume", f"{value['value']:.4g} m³ (95 %: {low:.4g} … {high:.4g})"
+        elif isinstance(value, dict):
+            yield from _volumes(value, f"{words} ")
 
 
 def _index_table(indices: dict[str, dict[str, Any]]) -> Iterator[str]:

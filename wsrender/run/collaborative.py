@@ -1,5 +1,6 @@
 """The analysis ``collaborative_volume``: the body-elemental algorithm over seeds, and the true volume beside it."""
 
+import json
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -7,11 +8,12 @@ from typing import Any
 import numpy as np
 
 from wsrender.multi.body_elements import body_elements
-from wsrender.reachability import Event, refined_volumes
+from wsrender.reachability import Event
 from wsrender.reachability.targets import model_robot
 from wsrender.result import Result
 from wsrender.robot import Robot
 from wsrender.run.provenance import job_entry, provenance, robot_entry
+from wsrender.run.refined import refined_together
 from wsrender.run.sampled_positions import sampled_positions
 from wsrender.run.settled_device import settled_device
 from wsrender.spec import CollaborativeVolumeJob
@@ -66,7 +68,11 @@ class CollaborativePlan:
             rows.append(found.volumes_m3)
             cells.append([np.count_nonzero(found.collaborative), np.count_nonzero(found.boundary)])
         arrays = {"volumes": np.array(rows), "cells": np.array(cells)}
-        return arrays if job.refined_volume is None else arrays | self._true_volume(job.refined_volume, **execution)
+        if job.refined_volume is not None:
+            chains = [robot.chain for robot in self.robots]
+            events, threads = {"true": Event(2, 2)}, execution.get("threads")
+            arrays["refined"] = refined_together(chains, events, job.refined_volume, self.device, threads)
+        return arrays
 
     def merge(self, a: Any, b: Any) -> Any:
         """There is one shard: nothing to merge."""
@@ -76,7 +82,7 @@ class CollaborativePlan:
         """Means and variances over the seeds, and the bias where the true volume is known."""
         volumes, job = partial["volumes"], self.job
         mean, variance = volumes.mean(axis=0), _variance(volumes)
-        true = _true_entry(partial["true"]) if "true" in partial else None
+        true = json.loads(str(partial["refined"]))["true"] if "refined" in partial else None
         document = {
             "analysis": "collaborative_volume",
             "job": job_entry(job, *self.robots),
@@ -102,12 +108,6 @@ class CollaborativePlan:
         tables = {"refinements": _curve(mean, variance, true), "seeds": _seeds(job.seed, volumes)}
         return Result(document, tables=tables)
 
-    def _true_volume(self, tolerance: float, threads: int | None = None, **_: Any) -> dict[str, np.ndarray]:
-        chains = [robot.chain for robot in self.robots]
-        found = refined_volumes(chains, {"both": Event(2, 2)}, tolerance, device=self.device, threads=threads)
-        both = found.volumes["both"]
-        return {"true": np.array([both.value, both.low, both.high, both.met])}
-
 
 def plan_collaborative(
     job: CollaborativeVolumeJob, *robots: Robot, resolved: dict[str, Any] | None = None
@@ -129,11 +129,6 @@ def plan_collaborative(
 def _variance(volumes: np.ndarray) -> np.ndarray | None:
     """Unbiased variance over the seeds [m⁶]; None of one."""
     return volumes.var(axis=0, ddof=1) if len(volumes) > 1 else None
-
-
-def _true_entry(row: np.ndarray) -> dict[str, Any]:
-    value, low, high, met = row.tolist()
-    return {"value": value, "ci95": [low, high], "tolerance_met": bool(met)}
 
 
 def _curve(mean: np.ndarray, variance: np.ndarray | None, true: dict[str, Any] | None) -> Table:

@@ -1,8 +1,19 @@
-"""The refined volume of a ``workspace`` job, and the labels of its voxels."""
+"""Refined volumes in result documents, and the labels of voxels."""
 
+import json
+from collections.abc import Mapping, Sequence
 from typing import Any
 
-from wsrender.reachability.refined_volume import POSITION_M, RefinedVolumes, VolumeEstimate, refined_volume
+import numpy as np
+
+from wsrender.reachability.refined_volume import (
+    POSITION_M,
+    Event,
+    RefinedVolumes,
+    VolumeEstimate,
+    refined_volume,
+    refined_volumes,
+)
 from wsrender.reachability.voxel_labels import counts, label_voxels
 from wsrender.robots.chain import Chain
 from wsrender.volume.volume_data import VolumeData
@@ -15,6 +26,15 @@ def refined(
     estimate, found = refined_volume(chain, tolerance, seed=seed, device=device)
     labelled = label_voxels(chain, volume, seed=seed, device=device)
     return {**volume_entry(estimate, found, tolerance), "voxels": counts(labelled)}, labelled
+
+
+def refined_together(
+    chains: Sequence[Chain], events: Mapping[str, Event], tolerance: float, device: str, threads: int | None
+) -> np.ndarray:
+    """Entries of volumes that so many of several placed chains reach, by event, as JSON text."""
+    found = refined_volumes(chains, events, tolerance, device=device, threads=threads)
+    entries = {name: volume_entry(estimate, found, tolerance) for name, estimate in found.volumes.items()}
+    return np.array(json.dumps(entries))
 
 
 def volume_entry(estimate: VolumeEstimate, found: RefinedVolumes, tolerance: float) -> dict[str, Any]:

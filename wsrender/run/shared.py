@@ -1,5 +1,6 @@
 """The analysis ``shared_workspace``: what several robots reach together."""
 
+import json
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -7,9 +8,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from wsrender.multi.shared_volume import NUMBER, PRODUCT, reached_by, shared_volume, volume_by_number
+from wsrender.reachability import Event
+from wsrender.reachability.targets import model_robot
 from wsrender.result import Result
 from wsrender.robot import Robot
 from wsrender.run.provenance import job_entry, provenance
+from wsrender.run.refined import refined_together
 from wsrender.run.several_result import common_entries, skeletons
 from wsrender.run.several_robots import SeveralPlans, plan_several, progress_after, workspace_job
 from wsrender.run.workspace import WorkspacePlan, plan_workspace
@@ -53,6 +57,12 @@ class SharedWorkspacePlan:
     def run_shard(self, shard: int, progress: Callable[[int], None] | None, **execution: Any) -> dict[str, np.ndarray]:
         """Partial results of the robots, and the volumes of every step of the scan."""
         arrays = self.several.run(progress, **execution)
+        if self.job.refined_volume is not None:
+            robots = zip(self.robots, self.job.robots, strict=True)
+            chains = [robot.chain.held(arm.sampling.locked) for robot, arm in robots]
+            events = {"any": Event(1, len(chains)), "shared": Event(2, len(chains))}
+            device, threads = self.several.plans[0].device, execution.get("threads")
+            arrays["refined"] = refined_together(chains, events, self.job.refined_volume, device, threads)
         if self.job.scan is not None:
             arrays["scan"] = self._scan(self.job.scan, arrays, progress, **execution)
         return arrays
@@ -77,6 +87,7 @@ class SharedWorkspacePlan:
                 "any": any_m3,
                 "shared": shared_m3,
                 "exactly": {str(k): float(by_number[k]) for k in range(1, len(by_number))},
+                "refined": json.loads(str(partial["refined"])) if "refined" in partial else None,
             },
             "shared_ratio": shared_m3 / any_m3,
             "quality": _quality(shared),
@@ -116,6 +127,9 @@ def plan_shared_workspace(
 
     Raises InputError, MissingInertiaError, ResourceError.
     """
+    if job.refined_volume is not None:
+        for robot in robots:
+            model_robot(robot)
     several = plan_several(job, robots, resolved)
     scanned = []
     if job.scan is not None:

@@ -61,12 +61,7 @@ class IndicesAtJob(IndexChoices, Arm):
 
 
 _AnyJob = (
-    WorkspaceJob
-    | IndicesAtJob
-    | ReachabilityJob
-    | SharedWorkspaceJob
-    | RobotComparisonJob
-    | CollaborativeVolumeJob
+    WorkspaceJob | IndicesAtJob | ReachabilityJob | SharedWorkspaceJob | RobotComparisonJob | CollaborativeVolumeJob
 )
 ANALYSES: dict[str, type[Document]] = {job.model_fields["analysis"].default: job for job in get_args(_AnyJob)}
 

@@ -8,7 +8,7 @@ from pydantic import BeforeValidator, Field
 from wsrender.spec.arm import Arm, ArmPath
 from wsrender.spec.index_choices import IndexChoices
 from wsrender.spec.placement_scan import PlacementScan
-from wsrender.spec.quantities import Count, FileName, PositiveNumber, sequence
+from wsrender.spec.quantities import Count, FileName, PositiveNumber, RelativeTolerance, sequence
 from wsrender.spec.sampling import Grid, Sampling
 
 MOST_ROBOTS = 64
@@ -52,6 +52,9 @@ class SharedWorkspaceJob(_SeveralRobotsJob):
 
     analysis: Literal["shared_workspace"] = "shared_workspace"
     """Name of the analysis."""
+    refined_volume: RelativeTolerance | None = None
+    """Relative tolerance of the refined volumes that any and that at least two robots reach [1]: by inverse kinematics,
+    each with a 95 % interval. null: none."""
     scan: PlacementScan | None = None
     """A coordinate of a robot's placement to vary; gives shared volume against it. null: none."""
 
