@@ -31,6 +31,7 @@ def configure_logs(level: str = "INFO") -> None:
             ],
         )
     )
+    logging.captureWarnings(True)
     root = logging.getLogger()
     root.handlers[:] = [handler]
     root.setLevel(level)

@@ -11,10 +11,13 @@ from pathlib import Path
 
 import psutil
 
+from wsrender_server.logs import configure_logs
+
 
 def settle_in() -> None:
     """Set up this process as a child: it dies when it is told to, when its parent has died, or for want of memory."""
     signal.signal(signal.SIGTERM, signal.SIG_DFL)  # native code never returns to a handler
+    configure_logs()
     threading.Thread(target=_die_with_parent, daemon=True).start()
     _offer_to_be_killed_first()
 

@@ -4,12 +4,15 @@ from dataclasses import asdict
 from datetime import UTC, datetime, timedelta
 from typing import Any
 
+import structlog
 from sqlalchemy import delete
 from sqlalchemy.orm import Session
 
 from wsrender_server.jobs.records import JobRecord, Progress
 from wsrender_server.jobs.states import ENDED, NEXT, ComputationState, JobState
 from wsrender_server.jobs.tables import Computation, Event, Job
+
+log = structlog.get_logger("wsrender.jobs")
 
 
 def job_record(job: Job, document: dict[str, Any] | None = None) -> JobRecord:
@@ -41,9 +44,12 @@ def move(session: Session, job: Job, state: JobState, error: dict[str, Any] | No
 
 
 def enter(session: Session, job: Job, state: JobState, error: dict[str, Any] | None = None) -> None:
-    """Record that a job is in a state, whatever it was in before."""
+    """Record, and log, that a job is in a state, whatever it was in before."""
     now = datetime.now(UTC)
     job.state, job.error = state, error
+    log.info(
+        "job", job_id=job.id, owner=job.owner, state=str(state), attempt=job.attempt, code=(error or {}).get("code")
+    )
     if state == JobState.RUNNING:
         job.started_at = now
         job.deadline = None if job.timeout_s is None else now + timedelta(seconds=job.timeout_s)

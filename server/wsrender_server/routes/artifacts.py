@@ -1,9 +1,10 @@
 """Results: the document, the files, slices and plots."""
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
+from types import MappingProxyType
 from typing import Annotated, Any, Literal
 
 import numpy as np
@@ -31,6 +32,7 @@ _FILE_RESPONSES: dict[int | str, dict[str, Any]] = {
     304: {"description": "The client has it already", "headers": _ETAG},
 }
 _INDEX = Query(max_length=256, description="Name of an index; the first by default.")
+_VOLUME = Query(max_length=256, description="Which volume, where the result has several: name of its file.")
 _STATISTIC = Query(description="Statistic per voxel; the maximum by default, if it was kept.")
 _AT = Query(allow_inf_nan=False, description="Coordinate of the plane [m]; the plane with most voxels by default.")
 Statistic = Literal["count", "maximum", "mean", "minimum"]
@@ -144,6 +146,7 @@ async def get_slice(
     at: Annotated[float | None, _AT] = None,
     index: Annotated[str | None, _INDEX] = None,
     statistic: Annotated[Statistic | None, _STATISTIC] = None,
+    volume: Annotated[str, _VOLUME] = "volume",
     accept: Annotated[str, Header(include_in_schema=False)] = "*/*",
 ) -> Response:
     """By Accept: application/x-npy (default), application/octet-stream (float32, little-endian), or image/png.
@@ -153,11 +156,11 @@ async def get_slice(
     volume does not hold what was asked for.
     """
     kind = _best(accept, ("application/x-npy", "application/octet-stream", "image/png"))
+    _, path = await run_in_threadpool(_artifact, server, job, f"{volume}.vtkhdf")
     if kind == "image/png":
         options = {"axis": axis, "at": at, "index": index, "statistic": statistic}
-        return await _drawn(server, job, "slice", "png", options)
-    _, path = await run_in_threadpool(_artifact, server, job, "volume.vtkhdf")
-    with _not_found_if_gone("volume.vtkhdf", path):
+        return await _drawn(server, job, "slice", "png", options, {"volume.vtkhdf": str(path)})
+    with _not_found_if_gone(f"{volume}.vtkhdf", path):
         plane = await _or_404(server.side_process.run(slice_values, str(path), axis, at, index, statistic))
     values: np.ndarray = plane["values"]
     headers = {
@@ -195,8 +198,17 @@ async def get_plot(
     return await _drawn(server, job, plot, format, options)
 
 
-async def _drawn(server: Parts, job: JobRecord, plot: str, format: str, options: dict[str, Any]) -> Response:
+async def _drawn(
+    server: Parts,
+    job: JobRecord,
+    plot: str,
+    format: str,
+    options: dict[str, Any],
+    instead: Mapping[str, str] = MappingProxyType({}),
+) -> Response:
+    """A picture of the result's files, or of those ``instead`` of them."""
     document, files = await run_in_threadpool(_sources, server, job)
+    files |= instead
     with _not_found_if_gone(", ".join(files), *map(Path, files.values())):
         content = await _or_404(server.side_process.run(draw, document, files, plot, format, options))
     media_type = "image/png" if format == "png" else "image/svg+xml"

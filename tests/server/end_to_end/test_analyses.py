@@ -1,5 +1,9 @@
 """Every analysis over HTTP gives what a local run gives: the server knows none of them by name."""
 
+import io
+
+import httpx2
+import numpy as np
 import pytest
 
 import wsrender as ws
@@ -18,6 +22,12 @@ DOCUMENTS = {
     "workspace": QUICK,
     "indices_at": {"analysis": "indices_at", "robot": "scara", "configurations": [[0, 0, 0, 0]], "device": "cpu"},
     "shared_workspace": {"analysis": "shared_workspace", "robots": ROBOTS, "voxel_size_m": 0.05, "device": "cpu"},
+    "reachability": {
+        "analysis": "reachability",
+        "robot": "scara",
+        "points_m": [[0.2, 0.1, 0.0], [9.0, 0.0, 0.0]],
+        "device": "cpu",
+    },
     "robot_comparison": {"analysis": "robot_comparison", "robots": ROBOTS, "voxel_size_m": 0.05, "device": "cpu"},
 }
 
@@ -61,3 +71,19 @@ def test_faults_say_which_of_several_robots(client, robot, field):
     with pytest.raises(ws.InputError) as fault:
         client.submit(document)
     assert fault.value.field == field
+
+
+def test_planes_of_a_volume_by_name(client, server):
+    job = client.submit(DOCUMENTS["shared_workspace"]).wait(timeout=PATIENCE_S)
+    volume = job.result().volumes["robot_scara"]
+    path = f"{server.url}/v1/jobs/{job.id}/volume/slice"
+    plane = httpx2.get(path, params={"volume": "robot_scara", "statistic": "count"}, timeout=60)
+    assert plane.headers["x-array"] == "count"
+    counts = np.load(io.BytesIO(plane.content), allow_pickle=False)
+    layer = int(np.floor(float(plane.headers["x-at-m"]) / volume.voxel_size_m)) - round(
+        volume.origin_m[2] / volume.voxel_size_m
+    )
+    np.testing.assert_array_equal(np.nan_to_num(counts), volume.count[:, :, layer])
+    picture = httpx2.get(path, params={"volume": "robot_scara"}, headers={"Accept": "image/png"}, timeout=60)
+    assert picture.content.startswith(b"\x89PNG")
+    assert httpx2.get(path, params={"volume": "nobody"}, timeout=60).status_code == 404

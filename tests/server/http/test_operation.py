@@ -88,6 +88,15 @@ def test_requests_are_logged_with_their_job(client, submit):
     assert [entry["job_id"] for entry in logs if entry["event"] == "request"] == [job["id"]] * 2
 
 
+def test_states_of_jobs_are_logged(submit, jobs):
+    with structlog.testing.capture_logs() as logs:
+        job = submit()
+        jobs.fail(job["id"], {"code": "frame_not_found", "message": "tip: no such", "retryable": False})
+    lines = [entry for entry in logs if entry["event"] == "job"]
+    assert [line["state"] for line in lines] == ["queued", "running", "failed"]
+    assert {line["job_id"] for line in lines} == {job["id"]} and lines[-1]["code"] == "frame_not_found"
+
+
 def test_request_ids_are_plain(client):
     given = client.get("/healthz", headers={"X-Request-Id": "abc-12345"}).headers["x-request-id"]
     assert given == "abc-12345"

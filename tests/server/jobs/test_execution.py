@@ -218,6 +218,20 @@ def test_a_timeout_is_enforced_within_1_s(service):
     assert not service.store.unfinished() or quick_job(service).state == "succeeded"
 
 
+@pytest.mark.parametrize(("end", "options"), [("canceled", {}), ("timed_out", {"timeout_s": 3})])
+def test_a_job_that_iterates_ends_as_any(service, end, options):
+    sampling = {"method": "converge", "tolerance": 1e-300, "start": 20, "step": 1, "max_samples": 10**12}
+    document = canonical(**{**LONG, "sampling": sampling, "voxel_size_m": 0.1 + 0.01 * len(end), "max_samples": 10**12})
+    job = service.store.submit("ann", document, **options).job.id
+    in_state(service.store, job, "running")
+    wait_until(lambda: service.store.get("ann", job).progress.message == "samples" or options, what="the samples")
+    assert service.store.get("ann", job).progress.samples_total is None
+    if end == "canceled":
+        service.store.cancel("ann", job)
+    in_state(service.store, job, end, timeout=5)
+    assert quick_job(service).state == "succeeded"
+
+
 def test_a_canceled_job_can_be_retried_and_keeps_its_partial_results(service):
     document = canonical(**{**SHARDED, "sampling": {"method": "sobol", "count": 2**21, "seed": 8}})
     job = service.store.submit("ann", document).job.id
