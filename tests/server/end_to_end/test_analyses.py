@@ -28,6 +28,14 @@ DOCUMENTS = {
         "points_m": [[0.2, 0.1, 0.0], [9.0, 0.0, 0.0]],
         "device": "cpu",
     },
+    "collaborative_volume": {
+        "analysis": "collaborative_volume",
+        "left": {"robot": ROBOTS[0]["robot"]},
+        "right": {"robot": ROBOTS[1]["robot"]},
+        "samples": 2048,
+        "seeds": 2,
+        "device": "cpu",
+    },
     "robot_comparison": {"analysis": "robot_comparison", "robots": ROBOTS, "voxel_size_m": 0.05, "device": "cpu"},
 }
 
