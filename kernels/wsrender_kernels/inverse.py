@@ -19,6 +19,7 @@ from wsrender_kernels.kinematics import chain_type, kinematics
 from wsrender_kernels.options import CUDA_OPTIONS, MODULE_OPTIONS
 
 LANES = 64
+TARGET_SIZES = {"position": 3, "axis": 6, "pose": 12}  # position; with the direction of the tip's z; with x, y and z
 RUNNING, REACHED, STATIONARY = 0, 1, 2
 
 # Damping relative to the mean square of the Jacobian's rows, and its change where a step gains more than GOOD, or less
@@ -54,24 +55,23 @@ def inverse_model(real, n: int, joints: int):
 
 
 @cache
-def advance(real, n: int, sources: tuple[int, ...], plain: bool, pose: bool) -> SimpleNamespace:
+def advance(real, n: int, sources: tuple[int, ...], plain: bool, kind: str) -> SimpleNamespace:
     """Device function that takes one step of a try.
 
     ``step(model, target, q, dq, distance², rotation², damping, expected)`` returns the last six anew, and a verdict:
     ``q`` is the best configuration so far and ``dq`` the step to try from it; ``distance²`` [m²] and ``rotation²``,
-    the sum of the squared differences of the axes or 8 sin²(angle / 2), are those at q; ``expected`` is the decrease
-    of half their weighted sum that the linearised chain promises [m²]. ``target``: position [m], and for a pose the
-    axes x, y, z.
+    8 sin²(angle / 2), are those at q; ``expected`` is the decrease of half their weighted sum that the linearised
+    chain promises [m²]. ``target``: see TARGET_SIZES [m, 1].
     """
     kin = kinematics(real, n, sources, plain)
     forward, jacobian = kin.forward, kin.jacobian
-    M = 6 if pose else 3
-    target_type = wp.types.vector(12 if pose else 3, real)
+    M = 3 if kind == "position" else 6
+    target_type = wp.types.vector(TARGET_SIZES[kind], real)
     vec3, vec_n, vec_m = kin.vec3, kin.vec_n, wp.types.vector(M, real)
     mat_mn, mat_mm = wp.types.matrix((M, n), real), wp.types.matrix((M, M), real)
     Model = inverse_model(real, n, len(sources))
-    POSE = pose
-    ZERO, HALF, ONE, QUARTER = real(0.0), real(0.5), real(1.0), real(0.25)
+    POSE, AXIS = kind == "pose", kind == "axis"
+    TWO, ZERO, HALF, ONE, QUARTER = real(2.0), real(0.0), real(0.5), real(1.0), real(0.25)
     RELAXED, STIFFENED, SHORTER = real(RELAX), real(STIFFEN), real(SHORTEN)
     MOST, LITTLE = real(GOOD), real(POOR)
     LEAST, LARGEST, MEAN = real(LEAST_DAMPING[real]), real(LARGEST_DAMPING), real(1.0 / M)
@@ -137,6 +137,12 @@ def advance(real, n: int, sources: tuple[int, ...], plain: bool, pose: bool) -> 
             rotation = wp.length_sq(x - tx) + wp.length_sq(y - ty) + wp.length_sq(z - tz)
             for r in range(3):
                 error[wp.static(M - 3) + r] = turn[r]
+        if wp.static(AXIS):
+            tz = vec3(target[3], target[4], target[5])
+            turn = wp.cross(z, tz) * model.length
+            rotation = TWO * wp.length_sq(z - tz)
+            for r in range(3):
+                error[wp.static(M - 3) + r] = turn[r]
         weight = QUARTER * model.length * model.length
         gain = HALF * (distance_2 - distance) + weight * (rotation_2 - rotation)
         better = gain > ZERO
@@ -148,6 +154,10 @@ def advance(real, n: int, sources: tuple[int, ...], plain: bool, pose: bool) -> 
         slopes = vec_n()
         for i in range(n):
             down = ZERO
+            if wp.static(AXIS):  # a turn about the axis itself changes nothing
+                about = z[0] * J[3, i] + z[1] * J[4, i] + z[2] * J[5, i]
+                for r in range(3):
+                    J[3 + r, i] = J[3 + r, i] - z[r] * about
             for r in range(M):
                 a = J[r, i] * model.scale[i]
                 if r >= 3:
@@ -201,19 +211,19 @@ def advance(real, n: int, sources: tuple[int, ...], plain: bool, pose: bool) -> 
 
 
 @cache
-def inverse_kernel(real, n: int, sources: tuple[int, ...], plain: bool, pose: bool, cuda: bool) -> wp.Kernel:
+def inverse_kernel(real, n: int, sources: tuple[int, ...], plain: bool, kind: str, cuda: bool) -> wp.Kernel:
     """Kernel that takes every try to its end, or through ``steps`` steps.
 
     In: ``targets`` (T * count,), value r of try i at [r * count + i]; ``starts`` (n * count,) likewise; out: ``q``,
     squared errors ``distance`` and ``rotation`` (count,) there, and the ``verdict`` (count,).
     """
-    return (_cuda_kernel if cuda else _cpu_kernel)(real, n, sources, plain, pose)
+    return (_cuda_kernel if cuda else _cpu_kernel)(real, n, sources, plain, kind)
 
 
-def _cpu_kernel(real, n: int, sources: tuple[int, ...], plain: bool, pose: bool) -> wp.Kernel:
-    device = advance(real, n, sources, plain, pose)
+def _cpu_kernel(real, n: int, sources: tuple[int, ...], plain: bool, kind: str) -> wp.Kernel:
+    device = advance(real, n, sources, plain, kind)
     step, target_type, vec_n, Model = device.step, device.target_type, device.vec_n, device.Model
-    T, BLOCK = 12 if pose else 3, LANES
+    T, BLOCK = TARGET_SIZES[kind], LANES
     n_type, t_type = wp.types.vector(n * LANES, real), wp.types.vector(T * LANES, real)
     one_type, int_type = wp.types.vector(LANES, real), wp.types.vector(LANES, wp.int32)
     DAMPING, FAR, ZERO = real(FIRST_DAMPING), real(FAR_AWAY), real(0.0)
@@ -302,10 +312,10 @@ def _cpu_kernel(real, n: int, sources: tuple[int, ...], plain: bool, pose: bool)
     return inverse_cpu
 
 
-def _cuda_kernel(real, n: int, sources: tuple[int, ...], plain: bool, pose: bool) -> wp.Kernel:
-    device = advance(real, n, sources, plain, pose)
+def _cuda_kernel(real, n: int, sources: tuple[int, ...], plain: bool, kind: str) -> wp.Kernel:
+    device = advance(real, n, sources, plain, kind)
     step, target_type, vec_n, Model = device.step, device.target_type, device.vec_n, device.Model
-    T = 12 if pose else 3
+    T = TARGET_SIZES[kind]
     DAMPING, FAR, GOING = real(FIRST_DAMPING), real(FAR_AWAY), wp.int32(RUNNING)
 
     @wp.kernel(module="unique", module_options=CUDA_OPTIONS, enable_backward=False)

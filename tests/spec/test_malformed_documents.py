@@ -26,6 +26,10 @@ def to(**fields):
     return {"analysis": "reachability", "robot": {"library": "ur5e"}, "points_m": [[0, 0, 1]], **fields}
 
 
+def approach(**fields):
+    return {"analysis": "capability", "robot": {"library": "ur5e"}, **fields}
+
+
 def sampled(**fields):
     return job(sampling={"method": "grid", **fields})
 
@@ -134,6 +138,10 @@ MALFORMED = [
     (to(quats_wxyz=[[1, 0, 0, 0], [1, 0, 0, 0]]), "quats_wxyz", "must have as many rows as points_m, 1, not 2"),
     (to(quats_wxyz=[[0, 0, 0, 0]]), "quats_wxyz", "must not have length 0: row 0 says no rotation"),
     (to(angle_tolerance_rad=0), "angle_tolerance_rad", "must be greater than 0, not 0"),
+    (approach(directions=0), "directions", "must be at least 1, not 0"),
+    (approach(directions=10_001), "directions", "must be at most 10000, not 10001"),
+    (approach(approach_axis="w"), "approach_axis", 'must be "x", "y", "z", "-x", "-y" or "-z", not "w"'),
+    (approach(dexterous_threshold=1.5), "dexterous_threshold", "must be at most 1"),
     # voxels, map, execution
     (job(voxel_size_m=0), "voxel_size_m", "must be greater than 0"),
     (job(voxel_size_m=-0.01), "voxel_size_m", "must be greater than 0, not -0.01"),

@@ -5,13 +5,14 @@ from dataclasses import dataclass
 
 import numpy as np
 import warp as wp
-from wsrender_kernels.inverse import LANES, REACHED, STATIONARY, inverse_kernel, inverse_model
+from wsrender_kernels.inverse import LANES, REACHED, STATIONARY, TARGET_SIZES, inverse_kernel, inverse_model
 
 from wsrender.engine.devices import devices_of, thread_count
 from wsrender.engine.evaluation import REAL, chain_model, device_array, drive, vector_of
 from wsrender.engine.kernel_cache import loaded
 from wsrender.robots.chain import Chain
 
+KINDS = {size: kind for kind, size in TARGET_SIZES.items()}
 BATCH = 1 << 17  # tries of a launch
 LEAST_SHARE = 8 * LANES  # tries that are worth a thread
 STEPS = 300  # of a try: ten suffice where the target is reached, slow ones come to rest far from their targets
@@ -53,8 +54,9 @@ def solve_inverse(
     device: str = "auto",
     threads: int | None = None,
 ) -> Tries:
-    """One try from each start (N, n) to its target: positions (N, 3) [m], or (N, 12) with the axes x, y, z.
+    """One try from each start (N, n) to its target.
 
+    ``targets``: positions (N, 3) [m], with the direction of the tip's z (N, 6), or with its axes x, y, z (N, 12).
     ``without_limits`` lets hinges turn for ever; slides keep their limits, which are their length.
     """
     devices = devices_of(device)
@@ -79,7 +81,7 @@ def solve_inverse(
 
 def _launch(chain, model, targets, starts, steps, precision, device) -> list[np.ndarray]:
     real, n, count = REAL[precision], chain.n, len(targets)
-    kernel = inverse_kernel(real, n, *drive(chain), targets.shape[1] > 3, device.is_cuda)
+    kernel = inverse_kernel(real, n, *drive(chain), KINDS[targets.shape[1]], device.is_cuda)
     q = wp.empty(n * count, dtype=real, device=device)
     distance_2, rotation_2 = (wp.empty(count, dtype=real, device=device) for _ in range(2))
     verdict = wp.empty(count, dtype=wp.int32, device=device)  # type: ignore[arg-type]

@@ -32,6 +32,9 @@ def _facts(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
     for name in ("reachable", "unreachable", "undecided"):
         if name in targets:
             yield f"{name} targets", f"{targets[name]:,}"
+    if capability := document.get("capability"):
+        yield "reachability index", f"{capability['mean_index']:.4g} on average"
+        yield "dexterous volume", f"{capability['dexterous_volume_m3']:.4g} m³"
     bounds = document.get("bounds_m") or {}
     if {"lower", "upper"} <= set(bounds):
         for axis, low, high in zip("xyz", bounds["lower"], bounds["upper"], strict=True):

@@ -20,10 +20,11 @@ LABELS = {REACHABLE: "reachable", UNREACHABLE: "unreachable", UNDECIDED: "undeci
 NEAREST = 8  # first starts: the nearest of a set of samples
 FRESH = 248  # then the same further samples for every target, so that a label depends on its target alone
 GROUPS = (1, 7, 8, 16, 32, 64, 128)  # starts between two looks at what they found
-SAMPLES = {False: 1 << 15, True: 1 << 13}  # of the set, for positions and for poses
-# Evidence that a target is unreachable: so many tries (for positions, for poses) came to rest where no motion within
-# the limits leads nearer, clearly off the target, and so many of them at the least residual of all, within 1 %.
-LEAST_ENDS, LEAST_AGREEING, AGREEING, CLEARLY = {False: 12, True: 32}, 3, 1.01, 2.0
+SAMPLES = {"position": 1 << 15, "axis": 1 << 13, "pose": 1 << 13}  # of the set
+# Evidence that a target is unreachable: so many tries came to rest where no motion within the limits leads nearer,
+# clearly off the target, and so many of them at the least residual of all, within 1 %.
+LEAST_ENDS = {"position": 12, "axis": 32, "pose": 32}
+LEAST_AGREEING, AGREEING, CLEARLY = 3, 1.01, 2.0
 AT_END = 1e-6  # share of a slide's range within which it stands at its end
 
 
@@ -43,7 +44,7 @@ class Solutions:
 
 
 class InverseSolver:
-    """Solves for positions, or for poses with ``pose``, of one chain.
+    """Solves for one ``kind`` of targets of one chain: "position", "axis" (with the direction of the tip's z), "pose".
 
     ``position_m`` and ``angle_rad`` are the largest residuals that count as reached; ``length_m`` makes an angle
     comparable to a distance (None: half the reach). Starts depend on ``seed`` alone.
@@ -53,7 +54,7 @@ class InverseSolver:
         self,
         chain: Chain,
         *,
-        pose: bool = False,
+        kind: str = "position",
         position_m: float = 1e-6,
         angle_rad: float = 1e-6,
         length_m: float | None = None,
@@ -62,16 +63,20 @@ class InverseSolver:
         device: str = "cpu",
         threads: int | None = None,
     ):
-        self.whole, self.pose, self.seed = chain, pose, seed
-        self.chain, self._kept = (chain, np.arange(chain.n)) if pose else moving_joints(chain)
+        self.whole, self.kind, self.seed = chain, kind, seed
+        whole = chain, np.arange(chain.n)
+        self.chain, self._kept = whole if kind == "pose" else moving_joints(chain, axis=kind == "axis")
         self.accuracy = Accuracy(position_m, angle_rad, length_m or chain.reach / 2 or 1.0)
         self._workers = thread_count(threads)
         self._execution = {"precision": precision, "device": device, "threads": threads}
 
-    def solve(self, position: np.ndarray, axes: np.ndarray | None = None) -> Solutions:
-        """Decide targets: positions (N, 3) [m] and, for poses, rotation matrices (N, 3, 3), in the world."""
-        targets = _targets(position, axes)
-        search = _Search(targets, self.chain.n, self.accuracy, self._out_of_reach(position))
+    def solve(self, position: np.ndarray, orientation: np.ndarray | None = None) -> Solutions:
+        """Decide targets in the world: positions (N, 3) [m], and ``orientation``.
+
+        That is nothing for positions, unit vectors (N, 3) for the tip's z, rotation matrices (N, 3, 3) for poses.
+        """
+        targets = _targets(position, orientation)
+        search = _Search(len(targets), self.chain.n, self.kind, self.accuracy, self._out_of_reach(position))
         for starts in self._starts(targets, search):
             pending = search.pending
             each = starts.shape[1]
@@ -81,12 +86,12 @@ class InverseSolver:
         q[:, self._kept] = self._within_a_turn(search.q)
         return Solutions(q, search.distance, search.angle, search.label, search.proven)
 
-    def held_by_limits(self, q: np.ndarray, position: np.ndarray, axes: np.ndarray | None = None) -> np.ndarray:
+    def held_by_limits(self, q: np.ndarray, position: np.ndarray, orientation: np.ndarray | None = None) -> np.ndarray:
         """Whether limits alone keep the chain from targets, (N,) bool; ``q`` (N, n): a first start.
 
         So it is where hinges that turn for ever reach the target, or come nearest with a slide at its end.
         """
-        targets = _targets(position, axes)
+        targets = _targets(position, orientation)
         fresh = np.tile(self._fresh(0, NEAREST - 1), (len(targets), 1, 1))
         starts = np.concatenate([q[:, None, self._kept], fresh], axis=1).reshape(-1, self.chain.n)
         tries = self._tries(np.repeat(targets, NEAREST, axis=0), starts, without_limits=True)
@@ -123,7 +128,7 @@ class InverseSolver:
             first = last
 
     def _fresh(self, first: int, last: int) -> np.ndarray:
-        return self._samples[SAMPLES[self.pose] :][first:last]
+        return self._samples[SAMPLES[self.kind] :][first:last]
 
     def _out_of_reach(self, position: np.ndarray) -> np.ndarray:
         """Whether positions (N, 3) are farther than the tolerance from a sphere or a box that hold the workspace."""
@@ -136,17 +141,18 @@ class InverseSolver:
     @cached_property
     def _samples(self) -> np.ndarray:
         """Configurations to start from (S, m): those of the tree, then the fresh ones."""
-        count = SAMPLES[self.pose] + FRESH
+        count = SAMPLES[self.kind] + FRESH
         return configurations(plan_sampling(self.chain, Sobol(count, seed=self.seed)), np.arange(count))
 
     @cached_property
     def _tree(self) -> KDTree:
-        pose = evaluate_kinematics(self.chain, self._samples[: SAMPLES[self.pose]], device="cpu").pose
-        return KDTree(self._features(_targets(pose[:, :3, 3], pose[:, :3, :3] if self.pose else None)))
+        pose = evaluate_kinematics(self.chain, self._samples[: SAMPLES[self.kind]], device="cpu").pose
+        orientation = {"position": None, "axis": pose[:, :3, 2], "pose": pose[:, :3, :3]}[self.kind]
+        return KDTree(self._features(_targets(pose[:, :3, 3], orientation)))
 
     def _features(self, targets: np.ndarray) -> np.ndarray:
         """Coordinates whose distance is the residual that the solver reduces."""
-        scale = np.full(targets.shape[1], self.accuracy.length / np.sqrt(2))
+        scale = np.full(targets.shape[1], self.accuracy.length / (np.sqrt(2) if self.kind == "pose" else 1.0))
         scale[:3] = 1.0
         return targets * scale
 
@@ -155,16 +161,18 @@ class InverseSolver:
         return np.where(self.chain.periodic, np.remainder(q + np.pi, 2 * np.pi) - np.pi, q)
 
 
-def _targets(position: np.ndarray, axes: np.ndarray | None) -> np.ndarray:
-    """Positions (N, 3), or with rotation matrices (N, 3, 3) rows (N, 12) of position and axes x, y, z."""
-    return position if axes is None else np.hstack([position, axes.transpose(0, 2, 1).reshape(-1, 9)])
+def _targets(position: np.ndarray, orientation: np.ndarray | None) -> np.ndarray:
+    """Rows of targets as `solve_inverse` takes them: position (3), and the columns of ``orientation``."""
+    if orientation is None:
+        return position
+    columns = orientation if orientation.ndim == 2 else orientation.transpose(0, 2, 1).reshape(-1, 9)
+    return np.hstack([position, columns])
 
 
 class _Search:
     """The best of all tries of every target, and the evidence that nothing better exists."""
 
-    def __init__(self, targets: np.ndarray, n: int, accuracy: Accuracy, proven: np.ndarray):
-        count = len(targets)
+    def __init__(self, count: int, n: int, kind: str, accuracy: Accuracy, proven: np.ndarray):
         self.accuracy, self.proven = accuracy, proven
         self.q = np.zeros((count, n))
         self.distance, self.angle = np.full(count, np.inf), np.full(count, np.inf)
@@ -172,9 +180,8 @@ class _Search:
         self.pending = np.arange(count)
         self._residual = np.full(count, np.inf)  # of the best try
         self._nearest_end = np.full(count, np.inf)  # least residual at which a try came to rest
-        pose = targets.shape[1] > 3
-        self._least_ends = LEAST_ENDS[pose]
-        self._tolerance = np.hypot(accuracy.position_m, accuracy.length * accuracy.angle_rad * pose)
+        self._least_ends = LEAST_ENDS[kind]
+        self._tolerance = np.hypot(accuracy.position_m, accuracy.length * accuracy.angle_rad * (kind != "position"))
         self._ends, self._agreeing = np.zeros(count, np.int32), np.zeros(count, np.int32)
 
     def record(self, pending: np.ndarray, tries: Tries, residual: np.ndarray) -> None:

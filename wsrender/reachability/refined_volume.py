@@ -11,8 +11,9 @@ from functools import cached_property
 
 import numpy as np
 
-from wsrender.engine import Evaluation, SweepPlan, configurations, devices_of, evaluate_kinematics, sweep
+from wsrender.engine import configurations, evaluate_kinematics
 from wsrender.reachability.inverse_solver import UNREACHABLE, InverseSolver
+from wsrender.reachability.occupied_cells import occupied_cells
 from wsrender.reachability.volume_estimate import Event, VolumeEstimate, estimate_volumes
 from wsrender.robots.chain import Chain
 from wsrender.robots.reachable_box import reachable_box
@@ -125,7 +126,8 @@ class _Arm:
 
     def classes(self, block: LatticeBlock) -> np.ndarray:
         """Of every cell: 0 rest, 1 border, 2 inner, (nx, ny, nz)."""
-        inner, outer = inner_and_outer(self._occupied(block))
+        occupied = occupied_cells(self.chain, block, SAMPLES_PER_CELL * CELLS**3, self.seed, self.device, self.threads)
+        inner, outer = inner_and_outer(occupied)
         return (inner.astype(np.int8) + outer)[1:-1, 1:-1, 1:-1]
 
     def false_negatives(self, block: LatticeBlock) -> FalseNegatives:
@@ -143,20 +145,3 @@ class _Arm:
         """Positions (N, 3) of a Sobol set of another seed than the solver's."""
         plan = plan_sampling(self.chain, Sobol(count, seed=(self.seed + 1) % 2**63))
         return evaluate_kinematics(self.chain, configurations(plan, np.arange(count)), device="cpu").pose[:, :3, 3]
-
-    def _occupied(self, block: LatticeBlock) -> np.ndarray:
-        """Cells that a Sobol set of configurations reaches, (nx, ny, nz) bool."""
-        count = SAMPLES_PER_CELL * CELLS**3
-        plan = SweepPlan(
-            Evaluation(self.chain, ("manipulability",)),
-            plan_sampling(self.chain, Sobol(count, seed=self.seed)),
-            block,
-            frozenset(),
-            scales=np.zeros(1),
-            bounds=np.full(1, np.inf),
-            precision="float32",
-        )
-        swept = sweep(plan, 0, count, devices_of(self.device), threads=self.threads)
-        occupied = np.zeros(block.size, bool)
-        occupied[swept.cells] = True
-        return occupied.reshape(block.shape)

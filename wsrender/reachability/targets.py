@@ -64,7 +64,7 @@ def reachable(
     check_tolerance(subject.chain, position_tolerance_m, precision)
     solver = InverseSolver(
         subject.chain,
-        pose=axes is not None,
+        kind="position" if axes is None else "pose",
         position_m=position_tolerance_m,
         angle_rad=angle_tolerance_rad,
         length_m=characteristic_length_m,

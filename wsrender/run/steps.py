@@ -7,6 +7,7 @@ from typing import Any, Protocol
 from wsrender.errors import InputError
 from wsrender.result import Result
 from wsrender.robot import Robot, as_robot, robot_of_spec
+from wsrender.run.capability import plan_capability
 from wsrender.run.collaborative import plan_collaborative
 from wsrender.run.comparison import plan_robot_comparison
 from wsrender.run.indices_at import plan_indices_at
@@ -14,6 +15,7 @@ from wsrender.run.reachability import plan_reachability
 from wsrender.run.shared import plan_shared_workspace
 from wsrender.run.workspace import plan_workspace
 from wsrender.spec import (
+    CapabilityJob,
     CollaborativeVolumeJob,
     IndicesAtJob,
     ReachabilityJob,
@@ -30,6 +32,7 @@ PLANNERS: dict[type, Callable[..., "Plan"]] = {
     WorkspaceJob: plan_workspace,
     IndicesAtJob: plan_indices_at,
     ReachabilityJob: plan_reachability,
+    CapabilityJob: plan_capability,
     SharedWorkspaceJob: plan_shared_workspace,
     RobotComparisonJob: plan_robot_comparison,
     CollaborativeVolumeJob: plan_collaborative,

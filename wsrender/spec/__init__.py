@@ -1,5 +1,6 @@
 """Job documents (pydantic), shared by Python, the command line and the server."""
 
+from wsrender.spec.capability import CapabilityJob
 from wsrender.spec.collaborative import CollaborativeVolumeJob
 from wsrender.spec.jobs import ANALYSES, IndicesAtJob, Job, WorkspaceJob
 from wsrender.spec.parsing import canonical_json, job_schema, parse_job
@@ -8,6 +9,7 @@ from wsrender.spec.several_robots import RobotComparisonJob, SharedWorkspaceJob
 
 __all__ = [
     "ANALYSES",
+    "CapabilityJob",
     "CollaborativeVolumeJob",
     "IndicesAtJob",
     "Job",

@@ -6,6 +6,7 @@ from typing import Annotated, Literal, get_args
 from pydantic import BeforeValidator, Discriminator, StrictBool
 
 from wsrender.spec.arm import Arm
+from wsrender.spec.capability import CapabilityJob
 from wsrender.spec.collaborative import CollaborativeVolumeJob
 from wsrender.spec.document import Document
 from wsrender.spec.index_choices import IndexChoices
@@ -61,7 +62,13 @@ class IndicesAtJob(IndexChoices, Arm):
 
 
 _AnyJob = (
-    WorkspaceJob | IndicesAtJob | ReachabilityJob | SharedWorkspaceJob | RobotComparisonJob | CollaborativeVolumeJob
+    WorkspaceJob
+    | IndicesAtJob
+    | ReachabilityJob
+    | CapabilityJob
+    | SharedWorkspaceJob
+    | RobotComparisonJob
+    | CollaborativeVolumeJob
 )
 ANALYSES: dict[str, type[Document]] = {job.model_fields["analysis"].default: job for job in get_args(_AnyJob)}
 

@@ -21,6 +21,14 @@ ROBOTS = [
 DOCUMENTS = {
     "workspace": QUICK,
     "indices_at": {"analysis": "indices_at", "robot": "scara", "configurations": [[0, 0, 0, 0]], "device": "cpu"},
+    "capability": {
+        "analysis": "capability",
+        "robot": "scara",
+        "voxel_size_m": 0.1,
+        "directions": 7,
+        "angle_tolerance_rad": 0.5,
+        "device": "cpu",
+    },
     "shared_workspace": {"analysis": "shared_workspace", "robots": ROBOTS, "voxel_size_m": 0.05, "device": "cpu"},
     "reachability": {
         "analysis": "reachability",

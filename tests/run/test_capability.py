@@ -1,0 +1,106 @@
+"""Capability against arms whose approach directions have a closed form."""
+
+import numpy as np
+import pytest
+
+import wsrender as ws
+from tests.reference.published_robots import dh_table
+from wsrender.reachability.capability import capability, fibonacci_directions
+from wsrender.run import execute, finish, plan, run_shard
+from wsrender.run.partial_files import load_partial, save_partial
+
+JOB = {
+    "analysis": "capability",
+    "robot": "spherical",
+    "voxel_size_m": 0.05,
+    "directions": 60,
+    "dexterous_threshold": 0.94,
+    "device": "cpu",
+}
+
+
+def test_directions_are_spread_evenly():
+    directions = fibonacci_directions(500)
+    assert np.linalg.norm(directions, axis=1) == pytest.approx(1)
+    assert np.abs(directions.mean(axis=0)).max() < 1e-3
+    cap = (directions @ fibonacci_directions(20).T > np.cos(0.5)).mean(axis=0)
+    assert cap == pytest.approx((1 - np.cos(0.5)) / 2, abs=0.006)
+
+
+def test_a_wrist_without_limits_approaches_from_everywhere():
+    rows = [
+        row.model_copy(update={"limits": None}) if k > 2 else row for k, row in enumerate(dh_table("spherical").rows)
+    ]
+    robot = ws.load_robot(ws.DHTable(convention="modified", rows=rows))
+    found = capability(robot.chain, 0.05, fibonacci_directions(50))
+    assert len(found.cells) > 200
+    assert (found.index == 1).all()
+    assert (found.undecided == 0).all()
+
+
+@pytest.fixture(scope="module")
+def result():
+    return execute(JOB)
+
+
+def test_a_wrist_that_bends_20_to_160_degrees(result):
+    """Its axis points along the slide: a direction is reached iff its angle to the radius lies in this range."""
+    table, directions = result.tables["capability"], result.tables["directions"]["direction"]
+    reached = np.unpackbits(table["direction_bits"], axis=1, count=60).astype(bool)
+    radial = table["position"] / np.linalg.norm(table["position"], axis=1)[:, None]
+    angle = np.degrees(np.arccos(radial @ directions.T))
+    clear = np.minimum(np.abs(angle - 20), np.abs(angle - 160)) > 0.1
+    expected = (angle >= 20) & (angle <= 160)
+    assert (reached == expected)[clear & (table["undecided"] == 0)[:, None]].all()
+    assert table["undecided"].sum() < 0.01 * reached.size
+    assert result.document["capability"]["mean_index"] == pytest.approx(np.cos(np.radians(20)), abs=0.01)
+
+
+def test_document_and_volume_say_the_same(result, tmp_path):
+    entry, table = result.document["capability"], result.tables["capability"]
+    assert entry["voxels"] == len(table) == np.count_nonzero(~np.isnan(index_of(result.volume)))
+    assert entry["reachable_volume_m3"] == pytest.approx(len(table) * 0.05**3)
+    dexterous = (table["reachability_index"] >= 0.94).sum()
+    assert entry["dexterous_volume_m3"] == pytest.approx(dexterous * 0.05**3)
+    assert 0 < dexterous < len(table)
+    cells = np.round(table["position"] / 0.05 - 0.5).astype(int) - result.volume.first_voxel
+    assert index_of(result.volume)[tuple(cells.T)] == pytest.approx(table["reachability_index"])
+    assert result.tables["directions"]["voxels"].sum() == result.volume.count.sum()
+    result.save(tmp_path)
+    restored = ws.Result.load(tmp_path)
+    assert (restored.tables["capability"]["direction_bits"] == table["direction_bits"]).all()
+    assert "dexterous volume" in restored.summary()
+
+
+def index_of(volume):
+    return volume.statistics["center"]["reachability_index"]
+
+
+def test_a_planar_arm_approaches_in_its_plane():
+    """3R, links 0.4, 0.2, 0.1 m: everywhere between 0.3 and 0.5 m the last link may point anywhere in the plane."""
+    size, tilt = 0.08, 0.3
+    rows = [ws.DHRow(a=a) for a in (0.4, 0.2, 0.1)]
+    placement = ws.Transform(position_m=(0, 0, size / 2))  # centres of voxels lie in the plane
+    robot = ws.load_robot(ws.DHTable(convention="standard", rows=rows), placement=placement)
+    directions = fibonacci_directions(40)
+    found = capability(robot.chain, size, directions, approach_axis="x", angle_rad=tilt)
+    radius = np.hypot(*((found.cells[:, :2] + 0.5) * size).T)
+    assert (found.cells[:, 2] == 0).all()
+    inside = (radius > 0.301) & (radius < 0.499)
+    assert inside.sum() > 40
+    assert (found.reached[inside] == (np.abs(np.arcsin(directions[:, 2])) <= tilt)).all()
+    assert found.index[~inside].min() < found.index[inside].min()
+
+
+def test_a_partial_result_travels(result, tmp_path):
+    here = plan(JOB)
+    save_partial(run_shard(here, 0), tmp_path / "partial.npz")
+    there = plan(JOB, resolved=here.resolved())
+    again = finish(there, load_partial(tmp_path / "partial.npz", there))
+    bits = [r.tables["capability"]["direction_bits"] for r in (again, result)]
+    assert np.array_equal(*bits)
+    assert again.document["capability"] == result.document["capability"]
+
+
+def test_default_voxels_are_a_twentieth_of_the_workspace():
+    assert plan({"analysis": "capability", "robot": "ur5e", "device": "cpu"}).resolved()["voxel_size_m"] == 0.075

@@ -1,0 +1,103 @@
+"""Capability: from which directions an end effector can approach each point of its workspace.
+
+After Zacharias, Borst, Hirzinger, *Capturing robot workspace structure*, 2007, and [CB] 4.3; every pair of a voxel's
+centre and a direction is decided by inverse kinematics, the turn about the direction being free.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from wsrender.reachability.inverse_solver import REACHABLE, UNDECIDED, InverseSolver
+from wsrender.reachability.occupied_cells import occupied_cells
+from wsrender.robots.chain import Chain
+from wsrender.robots.reachable_box import reachable_box
+from wsrender.volume.lattice import block_around
+from wsrender.volume.neighbours import inner_and_outer
+
+SAMPLES_PER_CELL, LEAST_SAMPLES = 16, 1 << 20
+BATCH = 1 << 16  # pairs decided at a time
+# Columns: the tip frame turned so that its z is the axis that approaches.
+AXES = {
+    "x": ((0, 0, 1), (1, 0, 0), (0, 1, 0)),
+    "y": ((0, 1, 0), (0, 0, 1), (1, 0, 0)),
+    "z": ((1, 0, 0), (0, 1, 0), (0, 0, 1)),
+    "-x": ((0, 0, -1), (1, 0, 0), (0, -1, 0)),
+    "-y": ((0, 1, 0), (0, 0, -1), (-1, 0, 0)),
+    "-z": ((1, 0, 0), (0, -1, 0), (0, 0, -1)),
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Capability:
+    """Of the voxels whose centre is reached: cells (V, 3) int64, and from which of D directions they are, (V, D) bool.
+
+    ``undecided`` (V,): directions about which the search was not conclusive; they count as not reached.
+    """
+
+    cells: np.ndarray
+    reached: np.ndarray
+    undecided: np.ndarray
+
+    @property
+    def index(self) -> np.ndarray:
+        """Reachability index: share of the directions that are reached, (V,)."""
+        return self.reached.mean(axis=1)
+
+
+def fibonacci_directions(count: int) -> np.ndarray:
+    """Unit vectors (D, 3), spread evenly over the sphere (González, *Measurement of areas on a sphere*, 2010)."""
+    k = np.arange(count)
+    z = 1 - (2 * k + 1) / count
+    angle = k * np.pi * (3 - np.sqrt(5))
+    r = np.sqrt(1 - z**2)
+    return np.stack([r * np.cos(angle), r * np.sin(angle), z], axis=1)
+
+
+def capability(
+    chain: Chain,
+    voxel_size_m: float,
+    directions: np.ndarray,
+    *,
+    approach_axis: str = "z",
+    position_m: float = 1e-5,
+    angle_rad: float = 1e-3,
+    seed: int = 0,
+    precision: str = "float64",
+    device: str = "cpu",
+    threads: int | None = None,
+    progress: Callable[[int], None] | None = None,
+) -> Capability:
+    """Decide which voxel centres the end effector reaches with its ``approach_axis`` along each direction (D, 3).
+
+    ``position_m`` and ``angle_rad``: what counts as there. ``progress``: called with the pairs decided.
+    """
+    execution = {"seed": seed, "precision": precision, "device": device, "threads": threads}
+    accuracy = {"position_m": position_m, "angle_rad": angle_rad}
+    cells = _candidates(chain, voxel_size_m, seed, device, threads)
+    centers = (cells + 0.5) * voxel_size_m
+    found = InverseSolver(chain, kind="position", **accuracy, **execution).solve(centers)
+    cells, centers = cells[found.label == REACHABLE], centers[found.label == REACHABLE]
+
+    turned = np.eye(4)
+    turned[:3, :3] = AXES[approach_axis]
+    solver = InverseSolver(chain.placed(T_tip_tool=chain.T_tip_tool @ turned), kind="axis", **accuracy, **execution)
+    labels = np.zeros((len(cells), len(directions)), np.int8)
+    each = max(1, BATCH // len(directions))
+    for first in range(0, len(cells), each):
+        batch = slice(first, first + each)
+        position = np.repeat(centers[batch], len(directions), axis=0)
+        axes = np.tile(directions, (len(centers[batch]), 1))
+        labels[batch] = solver.solve(position, axes).label.reshape(-1, len(directions))
+        if progress:
+            progress(min(first + each, len(cells)) * len(directions))
+    return Capability(cells, labels == REACHABLE, (labels == UNDECIDED).sum(axis=1))
+
+
+def _candidates(chain: Chain, voxel_size_m: float, seed: int, device: str, threads: int | None) -> np.ndarray:
+    """Cells (V, 3) that samples of the chain reach, and their neighbours."""
+    block = block_around(*reachable_box(chain, chain.lower_limits, chain.upper_limits), voxel_size_m)
+    count = max(LEAST_SAMPLES, SAMPLES_PER_CELL * block.size)
+    _, outer = inner_and_outer(occupied_cells(chain, block, count, seed, device, threads))
+    return np.argwhere(outer) + block.first_voxel - 1

@@ -1,0 +1,28 @@
+"""Cells of a lattice block that samples of a chain reach."""
+
+import numpy as np
+
+from wsrender.engine import Evaluation, SweepPlan, devices_of, sweep
+from wsrender.robots.chain import Chain
+from wsrender.sampling import plan_sampling
+from wsrender.spec.sampling import Sobol
+from wsrender.volume.lattice import LatticeBlock
+
+
+def occupied_cells(
+    chain: Chain, block: LatticeBlock, count: int, seed: int, device: str, threads: int | None
+) -> np.ndarray:
+    """Whether one of ``count`` Sobol samples falls into a cell of a block that holds the reach, (nx, ny, nz) bool."""
+    plan = SweepPlan(
+        Evaluation(chain, ("manipulability",)),
+        plan_sampling(chain, Sobol(count, seed=seed)),
+        block,
+        frozenset(),
+        scales=np.zeros(1),
+        bounds=np.full(1, np.inf),
+        precision="float32",
+    )
+    swept = sweep(plan, 0, count, devices_of(device), threads=threads)
+    occupied = np.zeros(block.size, bool)
+    occupied[swept.cells] = True
+    return occupied.reshape(block.shape)

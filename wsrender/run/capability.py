@@ -1,0 +1,154 @@
+"""The analysis ``capability``: reachability index per voxel, dexterous workspace."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from wsrender.engine import configurations, evaluate_kinematics
+from wsrender.reachability.capability import capability, fibonacci_directions
+from wsrender.reachability.targets import check_tolerance, model_robot
+from wsrender.result import Result
+from wsrender.robot import Robot
+from wsrender.robots.chain import Chain
+from wsrender.run.provenance import job_entry, provenance, robot_entry
+from wsrender.run.settled_device import settled_device
+from wsrender.sampling import plan_sampling
+from wsrender.spec.capability import CapabilityJob
+from wsrender.spec.sampling import Sobol
+from wsrender.volume.lattice import default_voxel_size, round_to_digits
+from wsrender.volume.table import Table
+from wsrender.volume.volume_data import VolumeData
+
+RATE = 2e4  # pairs of voxel and direction per second of one core, rounded down from benchmarks/inverse.py
+COARSER = 5.0  # than the voxels of a workspace: every one has many directions
+FIRST_SAMPLES = 1 << 16
+
+
+@dataclass(eq=False)
+class CapabilityPlan:
+    """A resolved ``capability`` job: one shard."""
+
+    job: CapabilityJob
+    robot: Robot
+    voxel_size_m: float
+    device: str
+    target: str
+    shards: list[tuple[int, int]]
+    estimate: dict[str, float] = field(default_factory=dict)
+
+    def resolved(self) -> dict[str, Any]:
+        """What is settled once: the device that "auto" means, target, voxel size, shards."""
+        return {
+            "device": self.device,
+            "target": self.target,
+            "voxel_size_m": self.voxel_size_m,
+            "shards": [list(shard) for shard in self.shards],
+        }
+
+    def run_shard(self, shard: int, progress: Callable[[int], None] | None, **execution: Any) -> dict[str, np.ndarray]:
+        """Cells (V, 3), from which directions they are reached (V, bytes, a bit each), undecided directions (V,)."""
+        job = self.job
+        found = capability(
+            self.robot.chain,
+            self.voxel_size_m,
+            fibonacci_directions(job.directions),
+            approach_axis=job.approach_axis,
+            position_m=job.position_tolerance_m,
+            angle_rad=job.angle_tolerance_rad,
+            seed=job.seed,
+            precision=job.precision,
+            device=self.device,
+            threads=execution.get("threads"),
+            progress=progress,
+        )
+        return {"cells": found.cells, "bits": np.packbits(found.reached, axis=1), "undecided": found.undecided}
+
+    def merge(self, a: dict[str, np.ndarray], b: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+        """There is one shard: nothing to merge."""
+        raise ValueError("capability has one shard")
+
+    def finish(self, partial: dict[str, np.ndarray], seconds: dict[str, float]) -> Result:
+        """Volume data, the table ``capability`` of reached voxels, the table ``directions``, and the document."""
+        job, cells = self.job, partial["cells"]
+        reached = np.unpackbits(partial["bits"], axis=1, count=job.directions).astype(bool)
+        index = reached.mean(axis=1)
+        voxel = self.voxel_size_m**3
+        document = {
+            "analysis": "capability",
+            "job": job_entry(job, self.robot),
+            "robot": robot_entry(self.robot),
+            "voxel_size_m": self.voxel_size_m,
+            "capability": {
+                "method": "inverse kinematics at the centres of voxels",
+                "directions": job.directions,
+                "approach_axis": job.approach_axis,
+                "voxels": len(cells),
+                "mean_index": float(index.mean()) if len(cells) else 0.0,
+                "maximum_index": float(index.max(initial=0.0)),
+                "undecided_pairs": int(partial["undecided"].sum()),
+                "reachable_volume_m3": len(cells) * voxel,
+                "dexterous_threshold": job.dexterous_threshold,
+                "dexterous_volume_m3": int((index >= job.dexterous_threshold).sum()) * voxel,
+            },
+            "provenance": provenance(job.precision, self.target, seed=job.seed),
+            "timing_s": seconds,
+        }
+        tables = {
+            "capability": Table(
+                {
+                    "position": (cells + 0.5) * self.voxel_size_m,
+                    "reachability_index": index,
+                    "undecided": partial["undecided"],
+                    "direction_bits": partial["bits"],
+                },
+                {"position": "m"},
+            ),
+            "directions": Table(
+                {"direction": fibonacci_directions(job.directions), "voxels": reached.sum(axis=0)},
+            ),
+        }
+        chain = self.robot.chain
+        skeleton = self.robot.skeleton((chain.lower_limits + chain.upper_limits) / 2)
+        return Result(document, volume=self._volume(cells, reached), tables=tables, skeleton=skeleton)
+
+    def _volume(self, cells: np.ndarray, reached: np.ndarray) -> VolumeData | None:
+        """``count``: directions reached; statistic "center" of "reachability_index"; None where nothing is reached."""
+        if not len(cells):
+            return None
+        first = cells.min(axis=0)
+        at = tuple((cells - first).T)
+        count = np.zeros(cells.max(axis=0) - first + 1, np.int64)
+        count[at] = reached.sum(axis=1)
+        index = np.full(count.shape, np.nan, np.float32)
+        index[at] = reached.mean(axis=1)
+        x, y, z = (int(v) for v in first)
+        statistics = {"center": {"reachability_index": index}}
+        return VolumeData(self.voxel_size_m, (x, y, z), count, statistics, {"reachability_index": "1"})
+
+
+def plan_capability(job: CapabilityJob, robot: Robot, resolved: dict[str, Any] | None = None) -> CapabilityPlan:
+    """Resolve the job, or take what `CapabilityPlan.resolved` of an earlier plan of it says.
+
+    Raises InputError for a robot without a model or a tolerance below what is computed.
+    """
+    chain = model_robot(robot).chain
+    check_tolerance(chain, job.position_tolerance_m, job.precision)
+    device, target = settled_device(job.device, resolved)
+    if resolved is None:
+        positions = _positions(chain)
+        size = job.voxel_size_m or round_to_digits(COARSER * default_voxel_size(positions), 2)
+        voxels = len(np.unique(np.floor(positions / size), axis=0))
+        shards = [(0, voxels * job.directions)]
+    else:
+        size, shards = resolved["voxel_size_m"], [(first, count) for first, count in resolved["shards"]]
+    pairs = float(shards[0][1])
+    estimate = {"samples": pairs, "bytes": pairs, "seconds": pairs / RATE}
+    return CapabilityPlan(job, robot, size, device, target, shards, estimate)
+
+
+def _positions(chain: Chain) -> np.ndarray:
+    """Positions (N, 3) of the first samples of a Sobol set [m]."""
+    plan = plan_sampling(chain, Sobol(FIRST_SAMPLES))
+    return evaluate_kinematics(chain, configurations(plan, np.arange(FIRST_SAMPLES)), device="cpu").pose[:, :3, 3]
