@@ -447,22 +447,22 @@ def _cuda_kernel(shape: Shape) -> wp.Kernel:
                     total[k] += wp.int64(quantized(out[3 + k], to.scales[k]))
                 if wp.static(VOXELS):
                     voxel = cell(grid, vec3(out[0], out[1], out[2]))
-                    at = wp.int64(voxel) * RECORD_64
-                    wp.atomic_add(counts, wp.int64(voxel) * COUNT_64, wp.int64(1))
-                    # Extremes only grow: a value that an old reading already covers needs no atomic operation.
-                    seen = to.records[voxel]
-                    for k in range(K):
-                        key = ordered(out[3 + k])
-                        if wp.static(MAXIMUM):  # noqa: SIM102 - compiled out before seen is indexed
-                            if key > seen[FIRST_MAXIMUM + k]:
-                                wp.atomic_max(records, at + wide(FIRST_MAXIMUM + k), key)
-                        if wp.static(MINIMUM):  # noqa: SIM102
-                            if ~key > seen[FIRST_MINIMUM + k]:
-                                wp.atomic_max(records, at + wide(FIRST_MINIMUM + k), ~key)
-                        if wp.static(SUMS):
-                            wp.atomic_add(
-                                sums, wp.int64(voxel) * SUMS_64 + wide(k), wp.int64(quantized(out[3 + k], to.scales[k]))
-                            )
+                    if voxel != grid.spare:
+                        at = wp.int64(voxel) * RECORD_64
+                        wp.atomic_add(counts, wp.int64(voxel) * COUNT_64, wp.int64(1))
+                        # Extremes only grow: a value that an old reading already covers needs no atomic operation.
+                        seen = to.records[voxel]
+                        for k in range(K):
+                            key = ordered(out[3 + k])
+                            if wp.static(MAXIMUM):  # noqa: SIM102 - compiled out before seen is indexed
+                                if key > seen[FIRST_MAXIMUM + k]:
+                                    wp.atomic_max(records, at + wide(FIRST_MAXIMUM + k), key)
+                            if wp.static(MINIMUM):  # noqa: SIM102
+                                if ~key > seen[FIRST_MINIMUM + k]:
+                                    wp.atomic_max(records, at + wide(FIRST_MINIMUM + k), ~key)
+                            if wp.static(SUMS):
+                                quantum = wp.int64(quantized(out[3 + k], to.scales[k]))
+                                wp.atomic_add(sums, wp.int64(voxel) * SUMS_64 + wide(k), quantum)
             if wp.static(ROWS):
                 for r in range(wp.static(N_OUTPUTS)):
                     to.rows_out[wide(r) * to.rows_stride + offset] = out[r]

@@ -16,7 +16,7 @@ from wsrender_kernels.elementary import bits_type
 
 @cache
 def lattice(real):
-    """Struct with the lattice: voxel edge [m], first voxel and shape of the dense block."""
+    """Struct with the lattice: voxel edge [m], first voxel and shape of a dense block or of a slab of it along x."""
 
     @wp.struct
     class Lattice:
@@ -28,13 +28,14 @@ def lattice(real):
         size_x: wp.int32
         size_y: wp.int32
         size_z: wp.int32
+        spare: wp.int32  # index after the last voxel: for positions outside the slab
 
     return Lattice
 
 
 @cache
 def voxels(real) -> SimpleNamespace:
-    """Device functions ``cell(lattice, position)`` and ``quantized(value, scale)``."""
+    """Device functions ``cell(lattice, position) -> index of the voxel, or spare`` and ``quantized(value, scale)``."""
     Lattice = lattice(real)
     vec3 = wp.types.vector(3, real)
     HALF = real(0.5)
@@ -43,19 +44,23 @@ def voxels(real) -> SimpleNamespace:
     MAGIC_BITS = wp.int64(0x4338000000000000)
 
     @wp.func
-    def along(p: real, edge: real, per_edge: real, first: wp.int32, size: wp.int32):
+    def along(p: real, edge: real, per_edge: real, first: wp.int32):
         # p / edge correctly rounded (Markstein 1990; the remainder is a fused multiply-add), so that voxels agree with
         # floor(p / r) of any other program, whatever the division of the device.
         quotient = p * per_edge
         quotient = quotient + (p - quotient * edge) * per_edge
-        return wp.min(wp.max(wp.int32(wp.floor(quotient)) - first, 0), size - 1)
+        return wp.int32(wp.floor(quotient)) - first
 
     @wp.func
     def cell(grid: Lattice, p: vec3):
-        x = along(p[0], grid.edge, grid.per_edge, grid.first_x, grid.size_x)
-        y = along(p[1], grid.edge, grid.per_edge, grid.first_y, grid.size_y)
-        z = along(p[2], grid.edge, grid.per_edge, grid.first_z, grid.size_z)
-        return (x * grid.size_y + y) * grid.size_z + z
+        x = along(p[0], grid.edge, grid.per_edge, grid.first_x)
+        y = along(p[1], grid.edge, grid.per_edge, grid.first_y)
+        z = along(p[2], grid.edge, grid.per_edge, grid.first_z)
+        y = wp.min(wp.max(y, 0), grid.size_y - 1)
+        z = wp.min(wp.max(z, 0), grid.size_z - 1)
+        # The arithmetic stays within 32 bits whatever x is.
+        inside = wp.min(wp.max(x, 0), grid.size_x - 1)
+        return wp.where(inside == x, (inside * grid.size_y + y) * grid.size_z + z, grid.spare)
 
     @wp.func
     def quantized32(value: real, scale: real):

@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 import wsrender as ws
-from tests.engine.test_voxels import job
+from tests.engine.test_voxels import executed, job
 from wsrender import run
+from wsrender.engine import devices_of
 from wsrender.errors import InputError, NumericalError, ResourceError
 
 
@@ -30,21 +31,41 @@ def swept(count):
 
 
 def test_memory_does_not_grow_with_the_samples():
-    swept(4_000_000)
+    swept(20_000_000)
     before = peak_bytes()
-    result = swept(20_000_000)
-    assert result.volume.count.sum() == 20_000_000
+    result = swept(40_000_000)
+    assert result.volume.count.sum() == 40_000_000
     # A single byte kept per sample would show.
     assert peak_bytes() - before < 15_000_000
 
 
 def test_voxels_that_do_not_fit_are_refused_with_their_numbers():
     message = (
-        r"voxel_size_m: 2e-05 gives \d+ x \d+ x \d+ voxels, [\d.]+ GiB of records; [\d.]+ GiB are free on cpu: "
-        r"choose larger voxels or fewer statistics"
+        r"voxel_size_m: 2e-05 gives \d+ x \d+ x \d+ voxels, [\d.]+ GiB of records; [\d.]+ GiB are free on cpu, "
+        r"too little for 32 parts: choose larger voxels or fewer statistics"
     )
     with pytest.raises(ResourceError, match=message):
         ws.analyze("phantom_omni", ws.Random(1000), voxel_size_m=2e-5, device="cpu")
+
+
+@pytest.mark.parametrize("method", ["random", "grid"])
+def test_slabs_of_the_lattice_change_no_bit(method, precision, device, monkeypatch):
+    sampling = {"grid": {"method": "grid", "per_joint": 7}, "random": {"method": "random", "count": 20_000, "seed": 1}}
+    document = job(precision, device=device, keep_map=False, sampling=sampling[method])
+    _, expected, plan = executed(document)
+    shape, done = plan.sweep.shape, []
+    block_bytes = plan.sweep.block.size * shape.bytes_per_voxel
+    slabs = importlib.import_module("wsrender.engine.slabs")
+    monkeypatch.setattr(slabs, "SHARE", 0.0)
+    free = block_bytes // 3 / slabs.SHARE_SLAB  # of one worker
+    if device == "cuda":
+        monkeypatch.setattr(slabs, "SHARE_SLAB", free * slabs.SHARE_SLAB / devices_of(device)[0].free_memory)
+    monkeypatch.setattr(slabs, "available_bytes", lambda: free)
+    assert len(slabs.slabs_of(plan.sweep.block, shape, devices_of(device)[:1])) in (4, 5)
+    found = run.run_shard(plan, 0, done.append, threads=1).sweep
+    for name in ("extremes", "totals", "cells", "count", "records", "sums"):
+        assert getattr(found, name).tobytes() == getattr(expected, name).tobytes(), name
+    assert found.samples == expected.samples and len(np.unique(np.diff(done) >= 0)) == 1 and done[-1] <= found.samples
 
 
 def test_a_value_beyond_its_bound_fails_the_job():

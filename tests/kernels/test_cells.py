@@ -26,7 +26,7 @@ def test_voxels_are_the_rounded_quotients_floor(real, device):
     number = wp.dtype_to_numpy(real)
     kernel = cells_kernel(real, CUDA_OPTIONS if device.startswith("cuda") else MODULE_OPTIONS)
     grid = lattice(real)()
-    grid.first_x, grid.size_x, grid.size_y, grid.size_z = -(10**6), 2 * 10**6, 1, 1
+    grid.first_x, grid.size_x, grid.size_y, grid.size_z, grid.spare = -(10**6), 2 * 10**6, 1, 1, 2 * 10**6
     rng = np.random.default_rng(0)
     for edge in map(number, EDGES):
         multiples = (np.arange(-900, 900) * edge).astype(number)

@@ -1,17 +1,10 @@
-"""Memory that voxel records may take."""
+"""Memory of the host and of devices."""
 
 import os
 from pathlib import Path
 
 import numpy as np
 import warp as wp
-from wsrender_kernels.sweep import Shape
-
-from wsrender.errors import ResourceError
-from wsrender.volume.lattice import LatticeBlock
-
-SHARE = 0.8  # of the free memory
-LARGEST_ARRAY = 2**31  # elements of a Warp array along one axis
 
 
 def available_bytes() -> int:
@@ -61,21 +54,3 @@ def as_type(values: wp.array, dtype) -> wp.array:
     """The same memory as an array of another type."""
     size = values.capacity // wp.types.type_size_in_bytes(dtype)
     return wp.array(ptr=values.ptr, dtype=dtype, shape=size, device=values.device, capacity=values.capacity)
-
-
-def check_voxel_memory(block: LatticeBlock, shape: Shape, workers: list[wp.Device]) -> None:
-    """ResourceError, with the numbers, where the workers' private voxel records do not fit."""
-    device = workers[0]
-    needed = block.size * shape.bytes_per_voxel
-    if device.is_cuda:
-        free = min(worker.free_memory for worker in workers)
-    else:
-        needed *= len(workers)
-        free = available_bytes()
-    if block.size >= LARGEST_ARRAY or needed > SHARE * free:
-        nx, ny, nz = block.shape
-        raise ResourceError(
-            "voxel_size_m",
-            f"{block.voxel_size_m} gives {nx} x {ny} x {nz} voxels, {needed / 2**30:.1f} GiB of records; "
-            f"{free / 2**30:.1f} GiB are free on {device.alias}: choose larger voxels or fewer statistics or indices",
-        )

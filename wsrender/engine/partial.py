@@ -1,6 +1,6 @@
 """Partial results of a sweep: integers that merge associatively, so the order of the parts does not matter."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from wsrender_kernels.voxels import decode_extreme
@@ -58,6 +58,17 @@ def merge(a: Partial, b: Partial) -> Partial:
         records,
         sums,
         {**a.rows, **b.rows},
+    )
+
+
+def joined(partials: list[Partial], voxels: int) -> Partial:
+    """The partial result of a block from those of its slabs of so many voxels each, over the same samples."""
+    if len(partials) == 1:
+        return partials[0]
+    return replace(
+        partials[0],
+        cells=np.concatenate([partial.cells + slab * voxels for slab, partial in enumerate(partials)]),
+        **{name: np.concatenate([getattr(p, name) for p in partials]) for name in ("count", "records", "sums")},
     )
 
 

@@ -4,7 +4,7 @@ import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, reduce
 
 import numpy as np
 import warp as wp
@@ -18,8 +18,9 @@ from wsrender.engine.devices import thread_count
 from wsrender.engine.evaluation import Evaluation, device_array, evaluation_model, shape_of
 from wsrender.engine.grid_structure import GridStructure, device_base, structure_of
 from wsrender.engine.kernel_cache import loaded
-from wsrender.engine.memory import as_type, check_voxel_memory, device_memory
-from wsrender.engine.partial import Partial, merge
+from wsrender.engine.memory import as_type, device_memory
+from wsrender.engine.partial import Partial, joined, merge
+from wsrender.engine.slabs import slabs_of
 from wsrender.errors import NumericalError
 from wsrender.sampling import SamplingPlan
 from wsrender.volume.lattice import LatticeBlock
@@ -97,37 +98,45 @@ def sweep(
     """Evaluate samples first … first + count - 1; ``first`` is a multiple of the plan's ``division``.
 
     ``chunk_size`` is rounded up to a multiple of that; neither it nor ``threads`` changes a bit of the result.
-    ``progress`` is called in this thread with the number of samples done. Raises ResourceError where voxel records do
-    not fit in memory, NumericalError for a value that is not finite or beyond its bound.
+    ``progress`` is called in this thread with the number of samples done. Where the voxel records do not fit in memory
+    the samples are swept once for every slab of the lattice block. Raises ResourceError where that would take too
+    many, NumericalError for a value that is not finite or beyond its bound.
     """
     shape, each = plan.shape, plan.structure.multiplicity
     first, count, chunk_size = first // each, count // each, chunk_size and -(-chunk_size // each)
     workers = devices if devices[0].is_cuda else devices * thread_count(threads)
     chunk = _chunk_size(plan, chunk_size or _fair_share(count, workers))
-    chunks = list(_chunks(first, count, chunk)) if count <= chunk * len(workers) else _chunks(first, count, chunk)
-    if isinstance(chunks, list):
-        workers = workers[: max(len(chunks), 1)]
-    if plan.block is not None:
-        check_voxel_memory(plan.block, shape, workers)
-    queue = _Queue(iter(chunks))
-    with ThreadPoolExecutor(len(workers)) as pool:
-        futures = [pool.submit(_work, Accumulator(plan, shape, device, chunk), queue) for device in workers]
+    workers = workers[: max(-(-count // chunk), 1)]
+    slabs = [None] if plan.block is None else slabs_of(plan.block, shape, workers)
+    partials = []
+    for number, slab in enumerate(slabs):
+
+        def report(done: int, before: int = number * count) -> None:
+            if progress:
+                progress((before + done) * each // len(slabs))
+
+        accumulators = [Accumulator(plan, shape, slab, device, chunk) for device in workers]
+        partials.append(_swept(accumulators, _Queue(_chunks(first, count, chunk)), report))
+    result = joined(partials, slabs[0].size if slabs[0] else 0)
+    _check_values(plan, result)
+    return result
+
+
+def _swept(accumulators: list["Accumulator"], queue: "_Queue", report: Callable[[int], None]) -> Partial:
+    """What the accumulators make of the chunks of a queue, each in a thread of its own."""
+    with ThreadPoolExecutor(len(accumulators)) as pool:
+        futures = [pool.submit(_work, accumulator, queue) for accumulator in accumulators]
         try:
             pending = set(futures)
             while pending:
                 done, pending = wait(pending, timeout=0.1, return_when=FIRST_COMPLETED)
-                if progress:
-                    progress(queue.done * each)
+                report(queue.done)
                 for future in done:
                     future.result()
         except BaseException:
             queue.stop()
             raise
-    result = futures[0].result()
-    for future in futures[1:]:
-        result = merge(result, future.result())
-    _check_values(plan, result)
-    return result
+    return reduce(merge, (future.result() for future in futures))
 
 
 def _fair_share(count: int, workers: list[wp.Device]) -> int:
@@ -181,21 +190,21 @@ def _work(accumulator: "Accumulator", queue: _Queue) -> Partial:
 
 
 class Accumulator:
-    """One worker's private voxel records and totals on its device."""
+    """One worker's private totals, and its voxel records of a slab of the lattice block, on its device."""
 
-    def __init__(self, plan: SweepPlan, shape: Shape, device: wp.Device, chunk: int):
+    def __init__(self, plan: SweepPlan, shape: Shape, slab: LatticeBlock | None, device: wp.Device, chunk: int):
         self.plan, self.shape, self.device, self.chunk = plan, shape, device, chunk
         real = shape.real
         bits = bits_type(real)
         self._lowest = lowest(real)
         self._empty_count = int(np.full(shape.count_size, self._lowest, wp.dtype_to_numpy(bits)).view(np.int64)[0])
-        voxels = plan.block.size if plan.block else 0
+        voxels = slab.size + 1 if slab else 0  # one to spare for positions outside
         self._kernel = loaded(sweep_kernel(shape, device.is_cuda), device)
         self._model = evaluation_model(plan.evaluation, plan.precision)
         given = shape.method == "given"
         self._space = None if given else device_space(plan.structure.evaluated, plan.precision, device)
         self._base = device_base(plan.structure, plan.sampling, real)
-        self._lattice = _device_lattice(plan.block, real)
+        self._lattice = _device_lattice(slab, real)
         reduced = 5 + shape.n_indices
         self._extremes = device_memory(2 * reduced, bits, device)
         self._totals = device_memory(TOTAL_SLOTS * shape.n_indices, wp.int64, device)
@@ -263,11 +272,11 @@ class Accumulator:
 
     def _fold(self) -> None:
         """Add what the device holds to the 64-bit host arrays."""
-        records = self._records.numpy().reshape(-1, self.shape.record_size)
-        counts = records.view(np.int64)[:, 0] - self._empty_count
-        cells = np.flatnonzero(counts)
-        occupied, width = records[cells], self.shape.count_size
+        records = self._records.numpy().reshape(-1, self.shape.record_size)[:-1]
         sums = self._sums.numpy().reshape(-1, max(self.shape.sums_size, 1))
+        counts = records.view(np.int64)[:, 0]
+        cells = np.flatnonzero(counts != self._empty_count)
+        occupied, width = records[cells], self.shape.count_size
         sums = sums[cells, : self.shape.n_indices] if self.shape.sums else np.zeros((len(cells), 0), np.int64)
         weight = self.plan.structure.weight
         held = Partial(
@@ -275,7 +284,7 @@ class Accumulator:
             self._extremes.numpy().copy(),
             self._totals.numpy().reshape(TOTAL_SLOTS, -1).sum(axis=0) * weight,
             cells,
-            counts[cells] * weight,
+            (counts[cells] - self._empty_count) * weight,
             occupied[:, width : width + self.shape.extremes].copy(),
             sums * weight,
             self._rows,
@@ -298,6 +307,7 @@ def _device_lattice(block: LatticeBlock | None, real):
     grid.edge, grid.per_edge = float(edge), float(1 / edge)
     grid.first_x, grid.first_y, grid.first_z = block.first_voxel if block else (0, 0, 0)
     grid.size_x, grid.size_y, grid.size_z = block.shape if block else (1, 1, 1)
+    grid.spare = block.size if block else 1
     return grid
 
 
