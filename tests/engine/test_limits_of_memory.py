@@ -48,6 +48,15 @@ def test_voxels_that_do_not_fit_are_refused_with_their_numbers():
         ws.analyze("phantom_omni", ws.Random(1000), voxel_size_m=2e-5, device="cpu")
 
 
+def test_values_that_do_not_fit_are_refused_with_their_numbers(monkeypatch):
+    plan = run.plan(job("float32", keep_map=False))
+    partial = run.run_shard(plan, 0)
+    monkeypatch.setattr(importlib.import_module("wsrender.engine.voxel_data"), "available_bytes", lambda: 2**20)
+    message = r"voxel_size_m: the \d+ x \d+ x \d+ voxels of the workspace need [\d.]+ GiB .* 0\.0 GiB are free: choose"
+    with pytest.raises(ResourceError, match=message):
+        run.finish(plan, partial)
+
+
 @pytest.mark.parametrize("method", ["random", "grid"])
 def test_slabs_of_the_lattice_change_no_bit(method, precision, device, monkeypatch):
     sampling = {"grid": {"method": "grid", "per_joint": 7}, "random": {"method": "random", "count": 20_000, "seed": 1}}
