@@ -51,7 +51,7 @@ def test_voxels_that_do_not_fit_are_refused_with_their_numbers():
 def test_values_that_do_not_fit_are_refused_with_their_numbers(monkeypatch):
     plan = run.plan(job("float32", keep_map=False))
     partial = run.run_shard(plan, 0)
-    monkeypatch.setattr(importlib.import_module("wsrender.engine.voxel_data"), "available_bytes", lambda: 2**20)
+    monkeypatch.setattr(importlib.import_module("wsrender.engine.voxel_data"), "available_bytes", lambda: 1000)
     message = r"voxel_size_m: the \d+ x \d+ x \d+ voxels of the workspace need [\d.]+ GiB .* 0\.0 GiB are free: choose"
     with pytest.raises(ResourceError, match=message):
         run.finish(plan, partial)
