@@ -12,11 +12,20 @@ from wsrender.cli.jobs import jobs
 from wsrender.cli.listing import robots, schema
 from wsrender.cli.render import render
 from wsrender.cli.report import report
+from wsrender.cli.reproduce import reproduce
 from wsrender.cli.run import run
 from wsrender.cli.submit import submit
 from wsrender.errors import MissingExtraError
 
-COMMANDS = {"run": run, "render": render, "report": report, "robots": robots, "schema": schema, "submit": submit}
+COMMANDS = {
+    "run": run,
+    "render": render,
+    "report": report,
+    "reproduce": reproduce,
+    "robots": robots,
+    "schema": schema,
+    "submit": submit,
+}
 GROUPS = {"jobs": jobs}
 # Typer apps whose commands join these; loaded only where none of these is asked for.
 EXTENSIONS = "wsrender.commands"

@@ -1,0 +1,161 @@
+"""Rows hold what the papers print; what is run is what they describe."""
+
+import json
+from types import SimpleNamespace
+
+import pytest
+
+from wsrender import cli
+from wsrender.errors import InputError
+from wsrender.indices.catalogue import DYNAMIC, KINEMATIC
+from wsrender.reproduce import CASES, Row, cases, gao, reproduce, wsrender_tables
+from wsrender.spec import parse_job
+
+
+@pytest.fixture
+def documents(monkeypatch):
+    """Job documents instead of runs; every value comes out as 0.5 (m³)."""
+    seen = []
+    refined = {"value": 0.5, "ci95": [0.4, 0.6]}
+
+    def execute(document, progress=None):
+        job = parse_job(document)
+        seen.append(job)
+        several = job.analysis == "shared_workspace"
+        volumes = {"any": 0.5, "shared": 0.5, "true": refined}
+        volumes["refined"] = {"any": refined, "shared": refined} if several else refined
+        levels = [{"refinement": k, "mean_m3": 0.5, "variance_m6": 0.5} for k in range(4)]
+        return SimpleNamespace(
+            document={"volume_m3": volumes, "refinements": levels},
+            global_indices={"joint_mean": dict.fromkeys([*KINEMATIC, *DYNAMIC], 0.5)},
+        )
+
+    monkeypatch.setattr(wsrender_tables, "execute", execute)
+    monkeypatch.setattr(gao, "execute", execute)
+    return seen
+
+
+def published(rows, case):
+    return [row.published for row in rows if row.case == case]
+
+
+def test_table_3_is_the_table_of_the_paper(documents):
+    rows = reproduce("wsrender-table-3")
+    assert published(rows, "phantom_omni") == [0.553, 0.524, 0.525, 0.855, 0.273, 0.860]
+    assert published(rows, "puma560") == [0.053, 0.029, 0.036, 0.605, 0.634, 0.655]
+    assert published(rows, "stanford_arm") == [0.061, 0.070, 0.072, 0.619, 0.592, 0.722]
+    assert [row.quantity.split()[0] for row in rows] == [f"G{k}" for k in [*range(1, 7), *range(7, 13), *range(7, 13)]]
+    assert [row.reproduced for row in rows] == [0.5] * 12 + [None] * 6
+    noise = [row.quantity.split()[0] for row in rows if row.case == "puma560" and "noise" in row.note]
+    assert noise == ["G7", "G8", "G9", "G10", "G12"]
+    omni, puma = documents
+    assert (omni.sampling.per_joint, omni.convention, omni.precision) == (60, "wsrender_code", "float64")
+    assert 'range="-180 180"' in puma.robot.mjcf and puma.sampling.locked["joint5"] == 0.0
+
+
+def test_table_6_is_the_table_of_the_paper(documents):
+    rows = reproduce("wsrender-table-6")
+    printed = {(row.case, row.quantity.partition(",")[0]): row.published for row in rows if row.published}
+    assert printed == {
+        ("articulated", "V_a"): 0.0606, ("articulated", "V_s"): 0.0139, ("articulated", "R = V_s/V_a"): 0.229,
+        ("spherical", "V_a"): 0.0646, ("spherical", "V_s"): 0.0204, ("spherical", "R = V_s/V_a"): 0.316,
+    }  # fmt: skip
+    pairs = [job for job in documents if job.analysis == "shared_workspace"]
+    positions = [[robot.robot.placement.position_m for robot in job.robots] for job in pairs]
+    assert positions == [[(0.1, 0.0, 0.4), (-0.1, 0.0, 0.4)], [(0.1, 0.4, 0.0), (-0.1, 0.4, 0.0)]]
+    assert all(job.voxel_size_m == 0.01 for job in pairs)
+
+
+def test_volumes_of_table_6_hold_what_is_exact(monkeypatch):
+    """Run for real, at a coarser tolerance than the command's."""
+    monkeypatch.setattr(wsrender_tables, "TOLERANCE", 0.02)
+    monkeypatch.setattr(wsrender_tables, "PER_JOINT", 40)
+    rows = [row for row in wsrender_tables._pair("articulated", None) if row.low is not None]
+    assert [row.quantity for row in rows] == ["V_a, refined", "V_s, refined", "one arm, refined"]
+    for row in rows:
+        assert row.low <= row.exact <= row.high
+        assert row.high - row.low < 0.06 * row.exact
+        assert row.from_exact == row.reproduced - row.exact
+
+
+def test_gao_is_the_value_of_the_paper(documents):
+    rows = {(row.case, row.quantity): row for row in reproduce("gao")}
+    assert rows["two arms", "V3, mean"].published == 3.3577e-3
+    assert rows["two arms", "V3, variance"].published == 9.2569e-10
+    assert (rows["two arms", "true volume"].exact, rows["one arm", "volume"].exact) == (6.2190e-3, 0.403721)
+    assert rows["two arms", "V0, mean"].published is None
+    job = documents[0]
+    assert (job.samples, job.seeds, job.cells, job.refinements, job.neighbours) == (200_000, 10, (20, 20, 20), 3, 4)
+
+
+def test_differences():
+    row = Row("arm", "V", "m³", 0.6, published=0.5, exact=0.8)
+    assert (row.from_published, row.from_exact) == (pytest.approx(0.1), pytest.approx(-0.2))
+    assert Row("arm", "V", "m³", None, published=0.5).from_published is None
+
+
+@pytest.fixture
+def case(monkeypatch):
+    rows = [Row("arm", "volume", "m³", 0.6, 0.5, 0.8, 0.55, 0.65, "noise"), Row("arm", "G7", "1", None, 0.1)]
+    monkeypatch.setitem(CASES, "paper", lambda progress: rows)
+
+
+def run(capsys, *arguments):
+    with pytest.raises(SystemExit) as ended:
+        cli.main(["reproduce", *arguments])
+    written = capsys.readouterr()
+    return ended.value.code, written.out, written.err
+
+
+def test_command_prints_a_table(case, capsys):
+    code, out, _ = run(capsys, "paper")
+    head, _, first, second = (line.split() for line in out.splitlines())
+    assert code == 0
+    assert head == [
+        "case",
+        "quantity",
+        "published",
+        "reproduced",
+        "exact",
+        "−",
+        "published",
+        "−",
+        "exact",
+        "unit",
+        "note",
+    ]
+    assert first == [
+        "arm",
+        "volume",
+        "0.5",
+        "0.6",
+        "0.8",
+        "+0.1",
+        "(+20",
+        "%)",
+        "-0.2",
+        "(-25",
+        "%)",
+        "m³",
+        "95",
+        "%:",
+        "0.55",
+        "…",
+        "0.65;",
+        "noise",
+    ]
+    assert second == ["arm", "G7", "0.1", "–", "–", "–", "–"]
+
+
+def test_command_prints_json(case, capsys):
+    _, out, _ = run(capsys, "paper", "--json")
+    first, second = json.loads(out)
+    assert first["from_published"] == pytest.approx(0.1) and first["low"] == 0.55
+    assert second["reproduced"] is None
+
+
+def test_unknown_names_list_what_there_is(capsys):
+    with pytest.raises(InputError, match="allowed: wsrender-table-3, wsrender-table-6, gao"):
+        cases.reproduce("table-9")
+    code, _, err = run(capsys, "table-9")
+    assert (code, err.startswith("error: NAME: 'table-9' is not a reproduction")) == (2, True)

@@ -1,0 +1,22 @@
+"""The reproductions by name."""
+
+from collections.abc import Callable
+
+from wsrender.errors import InputError
+from wsrender.reproduce.gao import gao
+from wsrender.reproduce.row import Row
+from wsrender.reproduce.wsrender_tables import table_3, table_6
+from wsrender.run.steps import Progress
+
+CASES: dict[str, Callable[[Progress | None], list[Row]]] = {
+    "wsrender-table-3": table_3,
+    "wsrender-table-6": table_6,
+    "gao": gao,
+}
+
+
+def reproduce(name: str, progress: Progress | None = None) -> list[Row]:
+    """Run the published cases of a name; InputError lists the names."""
+    if name not in CASES:
+        raise InputError("NAME", f"{name!r} is not a reproduction; allowed: {', '.join(CASES)}")
+    return CASES[name](progress)

@@ -1,0 +1,138 @@
+"""Tables III and VI of Zhang, Cursi, Yang, WSRender, IEEE RA-L 4(4), 2019 ([WSR])."""
+
+import math
+import re
+from typing import Any
+
+from wsrender.indices.catalogue import DYNAMIC, KINEMATIC
+from wsrender.reproduce.row import Row
+from wsrender.robots import library
+from wsrender.run import execute
+from wsrender.run.steps import Progress
+
+PER_JOINT = 60  # samples of each of the first three joints; the wrist is held at mid-range
+TOLERANCE = 0.005  # of refined volumes, relative
+
+# Table III as printed, three digits. The limits for ever finer grids are known for the Phantom Omni only.
+OMNI = (0.553, 0.524, 0.525, 0.855, 0.273, 0.860)
+OMNI_LIMITS = (0.5587, 0.5251, 0.5262, 0.8648, None, 0.8702)
+PUMA = (0.053, 0.029, 0.036, 0.605, 0.634, 0.655)
+STANFORD = (0.061, 0.070, 0.072, 0.619, 0.592, 0.722)
+ROUNDING = "±3e-4: the program's determinant is not exactly 0 where the elbow is straight"
+NOISE = "rounding noise in the paper: the wrist is singular in every sample"
+STANFORD_NOTE = "cannot be run: the published inertias are not physical (link 5, three centres of mass)"
+
+# Table VI as printed: volumes of alpha shapes [m³], ratio; and what is exact.
+PAIRS: dict[str, dict[str, Any]] = {
+    "articulated": {"published": (0.0606, 0.0139, 0.229), "exact": (0.0542, 0.0128), "alone": 0.03348},
+    "spherical": {
+        "published": (0.0646, 0.0204, 0.316),
+        "exact": (None, None),
+        "alone": math.pi / 2 * math.sqrt(2) * (0.4**3 - 0.2**3) / 3,
+    },
+}
+PLACEMENTS: dict[str, dict[str, Any]] = {  # [WSR] Table V; its two rows are swapped in print
+    "articulated": {"position_m": [0.1, 0.0, 0.4]},
+    "spherical": {"position_m": [0.1, 0.4, 0.0], "rpy_deg": [0.0, 0.0, 90.0]},
+}
+
+
+def table_3(progress: Progress | None = None) -> list[Row]:
+    """Global indices G1–G6 of the Phantom Omni and G7–G12 of the Puma 560, by the convention of the program."""
+    omni = _means({"library": "phantom_omni"}, math.pi / 2, KINEMATIC, progress)
+    puma = _means({"mjcf": _puma()}, 0.0, DYNAMIC, progress)
+    rows = []
+    for k, name in enumerate(KINEMATIC):
+        note = ROUNDING if name in ("order_independent_manipulability", "isotropy") else ""
+        rows.append(_row("phantom_omni", k + 1, name, omni[name], OMNI[k], OMNI_LIMITS[k], note))
+    for k, name in enumerate(DYNAMIC):
+        note = "" if k == 4 else NOISE
+        rows.append(_row("puma560", k + 7, name, puma[name], PUMA[k], None, note))
+    for k, name in enumerate(DYNAMIC):
+        rows.append(_row("stanford_arm", k + 7, name, None, STANFORD[k], None, STANFORD_NOTE))
+    return rows
+
+
+def _row(case: str, number: int, name: str, value: float | None, published: float, limit: float | None, note: str):
+    return Row(case, f"G{number} {name}", "1", value, published, limit, note=note)
+
+
+def _puma() -> str:
+    """The library's Puma 560 with the joint limits of the paper, ±180°."""
+    return re.sub(r'range="[^"]*"', 'range="-180 180"', library.find("puma560").read_text(encoding="utf-8"))
+
+
+def _means(
+    robot: dict[str, str], wrist: float, indices: tuple[str, ...], progress: Progress | None
+) -> dict[str, float]:
+    """``joint_mean`` of each index over the paper's grid."""
+    document = {
+        "analysis": "workspace",
+        "robot": robot,
+        "sampling": _grid(wrist),
+        "indices": list(indices),
+        "convention": "wsrender_code",
+        "precision": "float64",
+        "device": "cpu",
+        "voxel_size_m": 0.05,
+    }
+    return execute(document, progress).global_indices["joint_mean"]
+
+
+def _grid(wrist: float) -> dict[str, Any]:
+    return {"method": "grid", "per_joint": PER_JOINT, "locked": {"joint4": 0.0, "joint5": wrist, "joint6": 0.0}}
+
+
+def table_6(progress: Progress | None = None) -> list[Row]:
+    """Volumes that two articulated and two spherical arms reach, alone, together and both."""
+    return [row for robot in PAIRS for row in _pair(robot, progress)]
+
+
+def _pair(robot: str, progress: Progress | None) -> list[Row]:
+    document = {
+        "analysis": "shared_workspace",
+        "robots": [_placed(robot, sign) for sign in (1, -1)],
+        "indices": ["manipulability"],
+        "voxel_size_m": 0.01,
+        "refined_volume": TOLERANCE,
+    }
+    volumes = execute(document, progress).document["volume_m3"]
+    refined, known = volumes["refined"], PAIRS[robot]
+    rows = []
+    for k, (name, symbol) in enumerate((("any", "V_a"), ("shared", "V_s"))):
+        published, exact = known["published"][k], known["exact"][k]
+        voxels = "voxels of 0.01 m; the paper: alpha shapes of its samples"
+        rows.append(Row(robot, f"{symbol}, voxels", "m³", volumes[name], published, exact, note=voxels))
+        rows.append(_refined(robot, f"{symbol}, refined", refined[name], exact, published))
+    exact_ratio = known["exact"][1] / known["exact"][0] if known["exact"][0] else None
+    found = {"voxels": volumes, "refined": {name: entry["value"] for name, entry in refined.items()}}
+    for name, values in found.items():
+        ratio = values["shared"] / values["any"]
+        rows.append(Row(robot, f"R = V_s/V_a, {name}", "1", ratio, known["published"][2], exact_ratio))
+    return [*rows, _alone(robot, progress)]
+
+
+def _alone(robot: str, progress: Progress | None) -> Row:
+    """The volume of one arm, whose exact value is known for both."""
+    document = {
+        "analysis": "workspace",
+        "robot": {"library": robot},
+        "sampling": _grid(math.pi / 2),
+        "indices": ["manipulability"],
+        "voxel_size_m": 0.01,
+        "refined_volume": TOLERANCE,
+    }
+    refined = execute(document, progress).document["volume_m3"]["refined"]
+    return _refined(robot, "one arm, refined", refined, PAIRS[robot]["alone"], None)
+
+
+def _refined(robot: str, quantity: str, found: dict[str, Any], exact: float | None, published: float | None) -> Row:
+    low, high = found["ci95"]
+    return Row(robot, quantity, "m³", found["value"], published, exact, low, high, "by inverse kinematics")
+
+
+def _placed(robot: str, sign: int) -> dict[str, Any]:
+    placement = dict(PLACEMENTS[robot])
+    x, y, z = placement["position_m"]
+    placement["position_m"] = [sign * x, y, z]
+    return {"robot": {"library": robot, "placement": placement}, "sampling": _grid(math.pi / 2)}
