@@ -12,7 +12,10 @@ LARGEST_SET = 10_000
 
 
 class CapabilityJob(Arm):
-    """Per voxel, the share of approach directions from which its centre is reached, by inverse kinematics."""
+    """Per voxel, the share of approach directions from which its centre is reached, by inverse kinematics.
+
+    An arm that moves in a plane reaches the centres of voxels only where it stands half a voxel off the lattice.
+    """
 
     analysis: Literal["capability"] = "capability"
     """Name of the analysis."""

@@ -23,7 +23,7 @@ DOCUMENTS = {
     "indices_at": {"analysis": "indices_at", "robot": "scara", "configurations": [[0, 0, 0, 0]], "device": "cpu"},
     "capability": {
         "analysis": "capability",
-        "robot": "scara",
+        "robot": {"library": "scara", "placement": {"position_m": [0, 0, 0.05]}},
         "voxel_size_m": 0.1,
         "directions": 7,
         "angle_tolerance_rad": 0.5,
