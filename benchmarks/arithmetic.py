@@ -81,3 +81,14 @@ def bytes_moved(precision: str, dynamic: bool, voxels: bool) -> int:
     width = FLOAT_BYTES[precision]
     integers = 8 // width + (12 if dynamic else 6)
     return 2 * width * 2 ** (integers - 1).bit_length()
+
+
+def inverse_step(n: int, precision: str, pose: bool) -> int:
+    """Operations of one step of inverse kinematics: chain, Jacobian, residual, damped solution, next step."""
+    m = 6 if pose else 3
+    residual = 8 + (53 if pose else 0)
+    slopes = n * (6 * m + 3 + (1 if pose else 0))
+    normal = n * m * (m + 1) + 3 * m
+    solution = m * (m + 1) * (m - 1) // 3 + 2 * m * m + 3 * m
+    orientation = 45 + 9 * n if pose else 0
+    return forward(n, precision) + 9 * n + orientation + residual + slopes + normal + solution + n * (2 * m + 6) + 20
