@@ -104,7 +104,8 @@ class Result:
             subjects[0] = subjects[0].with_robot(robot, configuration, self.document.get("sampling") or {})
         names = " + ".join(subject.name for subject in subjects)
         title = title or (sampling_text(self.document) if len(results) == 1 else names)
-        figure = render.picture(subjects, view, title=title, **options)
+        shared = self.meshes.get("intersection") if len(results) == 1 and len(subjects) > 1 else None
+        figure = render.picture(subjects, view, title=title, shared=shared, **options)
         if path is not None:
             plots.save_figure(figure, path)
         return figure

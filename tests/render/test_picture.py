@@ -6,6 +6,7 @@ from dataclasses import replace
 import matplotlib as mpl
 import numpy as np
 import pytest
+import trimesh
 from PIL import Image
 from scipy.spatial import ConvexHull
 
@@ -186,6 +187,16 @@ def test_the_robots_of_one_result_are_drawn_each_with_its_volume(blank):
     np.testing.assert_array_equal(rods, arms)
     lows = [layer.vertices[:, 0].min() for layer in blank[0].layers if isinstance(layer, Surface)]
     np.testing.assert_allclose(lows, [0.0, 0.1], atol=1e-9)
+
+
+def test_what_two_robots_share_stands_out(blank):
+    volumes = {f"robot_{name}": VolumeData(0.1, (k, 0, 0), np.full((3, 3, 3), 9)) for k, name in enumerate("ab")}
+    both = trimesh.creation.box((0.2, 0.3, 0.3))
+    result = ws.Result({"robots": [{"name": "a"}, {"name": "b"}]}, volumes=volumes, meshes={"intersection": both})
+    figure = result.render()
+    *_, surface = [layer for layer in blank[0].layers if isinstance(layer, Surface)]
+    np.testing.assert_array_equal(surface.vertices, both.vertices)
+    assert figure.legends[0].get_texts()[-1].get_text() == "shared by at least two"
 
 
 def test_colours_of_a_surface_are_those_of_the_nearest_voxels(block):

@@ -1,6 +1,7 @@
 """A 3-D picture of one or several robots in their workspaces."""
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -17,10 +18,14 @@ from wsrender.render.process import drawn
 from wsrender.render.scene import Cloud, Color, Layer, Plates, Points, Rods, Scene, Surface
 from wsrender.render.space import AZIMUTH_DEG, ELEVATION_DEG, Space, space_around
 from wsrender.render.subject import Subject
-from wsrender.render.views import ROBOT_COLORS, VIEWS, Choice
+from wsrender.render.views import ROBOT_COLORS, SHARED_COLOR, VIEWS, Choice
+
+if TYPE_CHECKING:
+    import trimesh
 
 _DARK: Color = (0.15, 0.15, 0.17)
 _TIP: Color = (0.784, 0.063, 0.18)
+_SHARED_ALPHA = 0.4
 _ROD = 0.006  # radius of a rod, relative to the longest edge of the picture's box
 
 
@@ -34,11 +39,14 @@ def picture(
     alpha: float = 0.1,
     at: tuple[float | None, float | None, float | None] = (None, None, None),
     environment: Sequence[Item] = (),
+    shared: "trimesh.Trimesh | None" = None,
     azimuth_deg: float = AZIMUTH_DEG,
     elevation_deg: float = ELEVATION_DEG,
     title: str = "",
 ) -> Figure:
     """Draw subjects in one box, with axes in metres, legend and colour bar; the defaults are those of [WSR] Table II.
+
+    ``shared`` is the surface of what several subjects reach together, drawn where they differ by colour.
 
     Raises InputError for a view, index or number that is not allowed; MissingExtraError without PyVista; RenderError
     where it cannot draw.
@@ -48,6 +56,9 @@ def picture(
         raise InputError("at", f"must be the three planes x, y, z, each a number [m] or None, not {at}")
     choice = Choice(index, statistic, threshold, alpha, at, azimuth_deg)
     drawing = VIEWS[view](subjects, choice)
+    if shared is not None and drawing.scale is None:
+        drawing.layers.append(Surface(shared.vertices, shared.faces, SHARED_COLOR, alpha=_SHARED_ALPHA, smooth=True))
+        drawing.handles.append(Patch(facecolor=SHARED_COLOR, alpha=_SHARED_ALPHA, label="shared by at least two"))
     space = space_around(_extent(subjects, drawing.layers, environment), PANEL_PIXELS, azimuth_deg, elevation_deg)
     layers = [*space.panes(), *_around(environment, space), *_robots(subjects, space), *drawing.layers]
     image = drawn(Scene(space.camera, PANEL_PIXELS, layers))

@@ -19,8 +19,9 @@ from wsrender.render.scene import Cloud, Color, Layer, Plates, Points, Surface
 from wsrender.render.subject import Subject
 from wsrender.volume.volume_data import VolumeData
 
+SHARED_COLOR: Color = (0.0, 0.62, 0.451)
 ROBOT_COLORS: list[Color] = [
-    (0.0, 0.447, 0.698), (0.835, 0.369, 0.0), (0.0, 0.62, 0.451),
+    (0.0, 0.447, 0.698), (0.835, 0.369, 0.0),
     (0.8, 0.475, 0.655), (0.902, 0.624, 0.0), (0.337, 0.706, 0.914),
 ]  # Okabe and Ito 2008: told apart by the colour-blind  # fmt: skip
 DOT = 2.2  # diameter of a sample in pixels
