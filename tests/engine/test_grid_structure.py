@@ -141,7 +141,7 @@ def test_robots(robot, precision, device):
         ({"indices": ("dynamic_isotropy",), "host_inertia": lambda q: np.eye(6)}, (1, 1)),
         ({"host_kinematics": lambda q: None}, (1, 1)),
     ],
-    ids=str,
+    ids=lambda value: "-".join(value) if isinstance(value, dict) else str(value),
 )
 def test_what_is_spared(changes, spared):
     """Nothing where it would change a number: see the documentation of the structure."""
