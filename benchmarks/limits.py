@@ -83,7 +83,7 @@ def _swept(plan: SweepPlan, count: int, device: str, threads: int) -> float:
 
 def _rows_stored(plan: SweepPlan, count: int, device: str, _threads: int) -> float:
     target = devices_of(device)[0]
-    accumulator = Accumulator(plan, plan.shape, target, ROWS)
+    accumulator = Accumulator(plan, plan.shape, None, target, ROWS)
     started = time.perf_counter()
     for first in range(0, count, ROWS):
         accumulator.launch(first, min(ROWS, count - first))

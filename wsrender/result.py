@@ -52,7 +52,7 @@ class Result:
     (for ``indices_at``: one per configuration, in the order asked); ``sample`` is the fixed subsample that
     pictures use. ``skeleton`` (K, L+2, 3) holds world positions [m] of base, joint origins and tip at K
     representative configurations. ``meshes`` [m, world frame], ``tables`` and ``volumes`` hold what else the analysis
-    gives, by name: ``meshes["surface"]`` is the surface of the workspace.
+    gives, by name: a result without meshes is saved with the ``surface`` of its voxels.
     """
 
     document: dict[str, Any]
@@ -213,6 +213,15 @@ def _all_restored(files: dict[str, Path], ending: str, reader: str) -> dict[str,
     return {name: _restored(files, file, reader) for name, file in named_data(files, ending).items()}
 
 
+def _meshes(result: Result) -> "dict[str, trimesh.Trimesh]":
+    """The result's meshes; where it has none, the surface of its occupied voxels."""
+    if result.meshes or result.volume is None or not result.volume.occupied.any():
+        return result.meshes
+    from wsrender.boundary.voxel_surface import occupied_surface
+
+    return {"surface": occupied_surface(result.volume)}
+
+
 def _artifacts(result: Result, formats: tuple[str, ...]) -> Iterator[Artifact]:
     """Every file of a result but its document; pictures are made when their turn comes."""
     for name, data in {"map": result.map, "sample": result.sample, **result.tables}.items():
@@ -221,7 +230,7 @@ def _artifacts(result: Result, formats: tuple[str, ...]) -> Iterator[Artifact]:
     for name, volume in {"volume": result.volume, **result.volumes}.items():
         if volume is not None:
             yield from _volume_files(name, volume, formats)
-    for name, mesh in result.meshes.items():
+    for name, mesh in _meshes(result).items():
         yield from _mesh_files(name, mesh, formats)
     if result.skeleton is not None:
         skeleton = np.asarray(result.skeleton)

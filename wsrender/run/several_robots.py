@@ -78,7 +78,7 @@ def workspace_job(job: Any, arm: PlacedRobot) -> WorkspaceJob:
     """The workspace job of one robot of a job of several."""
     choices = {name: getattr(job, name) for name in (*IndexChoices.model_fields, "voxel_size_m", "max_samples")}
     own = {"robot": arm.robot, "base": arm.base, "tip": arm.tip, "sampling": arm.sampling}
-    return WorkspaceJob(**choices, **own, surfaces=())
+    return WorkspaceJob(**choices, **own)
 
 
 def robot_names(arms: tuple[PlacedRobot, ...], robots: tuple[Robot, ...]) -> list[str]:

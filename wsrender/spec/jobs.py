@@ -33,9 +33,10 @@ class WorkspaceJob(IndexChoices, Arm):
     refined_volume: RelativeTolerance | None = None
     """Half width of the refined volume's 95 % interval, relative to the volume [1]; null: it is not computed. With it,
     every voxel is labelled reachable, unreachable or undecided by inverse kinematics."""
-    surfaces: Surfaces = ("marching_cubes",)
+    surfaces: Surfaces = ()
     """Meshes of the workspace, each with its volume: "marching_cubes" of the voxels, "convex_hull" and {"alpha_shape":
-    α in metres} of the picture's subsample, {"iso_surface": index, "fraction": μ} of the voxels."""
+    α in metres} of the picture's subsample, {"iso_surface": index, "fraction": μ} of the voxels. Where none is asked
+    for, that of the voxels is among the files all the same."""
     keep_map: StrictBool = False
     """Whether the distribution map, one row per sample, is kept."""
     map_columns: MapColumns = ()

@@ -31,7 +31,7 @@ def local(tmp_path_factory):
         volume=random_volume((4, 3, 2)),
         skeleton=np.cumsum(np.ones((2, 5, 3)), axis=1),
         meshes={"surface": trimesh.creation.box()},
-        tables={"scan": Table({"offset": np.arange(3.0)}, {"offset": "m"})},
+        tables={"scan": Table({"offset": np.arange(3.0), "V_s": np.ones(3)}, {"offset": "m", "V_s": "m^3"})},
         volumes={"left": random_volume((2, 2, 2))},
     )
     result.save(folder)
