@@ -35,7 +35,14 @@ if TYPE_CHECKING:
     from wsrender.reachability import Reachability, reachable
     from wsrender.result import Result
     from wsrender.robot import Robot, evaluate_indices, load_robot
-    from wsrender.run import analyze, collaborative_volume, execute, robot_comparison, shared_workspace
+    from wsrender.run import (
+        analyze,
+        collaborative_volume,
+        execute,
+        master_slave_mapping,
+        robot_comparison,
+        shared_workspace,
+    )
     from wsrender.spec.robot import DHRow, DHTable, Transform
     from wsrender.spec.sampling import BoundaryBiased, Converge, Grid, Random, Sobol
 
@@ -79,6 +86,7 @@ __all__ = [
     "evaluate_indices",
     "execute",
     "load_robot",
+    "master_slave_mapping",
     "math",
     "reachable",
     "register_index",
@@ -93,7 +101,14 @@ _NAMES_OF_MODULE = {
     "wsrender.reachability": ("Reachability", "reachable"),
     "wsrender.result": ("Result",),
     "wsrender.robot": ("Robot", "evaluate_indices", "load_robot"),
-    "wsrender.run": ("analyze", "collaborative_volume", "execute", "robot_comparison", "shared_workspace"),
+    "wsrender.run": (
+        "analyze",
+        "collaborative_volume",
+        "execute",
+        "master_slave_mapping",
+        "robot_comparison",
+        "shared_workspace",
+    ),
     "wsrender.spec.robot": ("DHRow", "DHTable", "Transform"),
     "wsrender.spec.sampling": ("BoundaryBiased", "Converge", "Grid", "Random", "Sobol"),
 }

@@ -41,7 +41,7 @@ STANDARD_FORMATS = ("parquet", "vtkhdf", "glb", "ply", "png")
 REPORT_VIEWS = ("boundary", "isosurface")
 EXTRA_FORMATS = ("npz", "csv", "mat", "stl", "svg")
 
-CURVES = ("scan", "refinements")  # tables that are drawn
+CURVES = ("scan", "refinements", "scales")  # tables that are drawn
 
 
 @dataclass(eq=False)
@@ -287,6 +287,8 @@ def _pictures(result: Result) -> "dict[str, Callable[[], Figure]]":
     if plot.samples is not None and plot.samples.indices and rows:
         pictures["histogram"] = plot.histogram
     pictures |= {name: partial(plot.curves, name) for name in CURVES if len(result.tables.get(name, ()))}
+    if "mapping" in result.tables:
+        pictures["mapping"] = plot.mapping
     if result.document.get("analysis") == "robot_comparison":
         pictures["comparison"] = plot.side_by_side
     if result.volume is not None and result.volume.statistics.get("product"):

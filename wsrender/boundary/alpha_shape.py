@@ -28,13 +28,20 @@ class AlphaShape:
     alpha_m: float
 
     @classmethod
-    def of(cls, points: np.ndarray, alpha_m: float) -> "AlphaShape":
-        """The shape of points (N, 3) [m]; InputError where they lie in a plane or the radius keeps nothing."""
+    def of(cls, points: np.ndarray, alpha_m: float | None = None) -> "AlphaShape":
+        """The shape of points (N, 3) [m], by default of twice the smallest radius with which all of them belong to it.
+
+        Twice, so that chance gaps between samples do not look like voids.
+
+        Raises InputError where they lie in a plane or the radius keeps nothing.
+        """
         points = spatial(points)
-        if not (np.isfinite(alpha_m) and alpha_m > 0):
+        if alpha_m is not None and not (np.isfinite(alpha_m) and alpha_m > 0):
             raise InputError("alpha_shape", f"{alpha_m!r} is not allowed; a radius above 0 [m] is")
         delaunay = Delaunay(_in_general_position(points))
         radii = _circumradii(delaunay)
+        if alpha_m is None:
+            alpha_m = 2 * _covering_radius(delaunay, radii)
         kept = radii <= alpha_m
         if not kept.any():
             smallest = f"the smallest tetrahedron has {radii.min():.3g} m"
@@ -46,7 +53,7 @@ class AlphaShape:
         inside = self.delaunay.find_simplex(points)
         return (inside >= 0) & self.kept[inside]
 
-    @cached_property
+    @property
     def volume_m3(self) -> float:
         """Volume of the kept tetrahedra."""
         a, b, c, d = np.moveaxis(self.points[self.delaunay.simplices[self.kept]], 1, 0)
@@ -143,6 +150,16 @@ class _Surface:
     def _face_of(self) -> dict[tuple[int, int], int]:
         places = zip(self.tetrahedron.tolist(), self.opposite.tolist(), strict=True)
         return {place: face for face, place in enumerate(places)}
+
+
+def _covering_radius(delaunay: Delaunay, radii: np.ndarray) -> float:
+    """The smallest radius of circumspheres with which every point is a corner of a kept, not flat tetrahedron."""
+    a, b, c, d = np.moveaxis(delaunay.points[delaunay.simplices], 1, 0)
+    sixfold = np.abs(np.einsum("ij,ij->i", b - a, np.cross(c - a, d - a)))
+    solid = sixfold > _FLATTEST * radii**3
+    smallest = np.full(len(delaunay.points), np.inf)
+    np.minimum.at(smallest, delaunay.simplices[solid].ravel(), np.repeat(radii[solid], 4))
+    return float(smallest[np.isfinite(smallest)].max()) * (1 + _FLATTEST)  # points on one sphere, to rounding
 
 
 def spatial(points: np.ndarray) -> np.ndarray:

@@ -28,6 +28,11 @@ def _facts(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
     yield from _volumes(document.get("volume_m3") or {})
     if "shared_ratio" in document:
         yield "shared / any", f"{document['shared_ratio']:.4g}"
+    mapping = document.get("mapping") or {}
+    if "succeeded" in mapping:
+        scale, offset = (", ".join(f"{number:.4g}" for number in mapping[name]) for name in ("scale", "offset_m"))
+        outside = "all points inside" if mapping["succeeded"] else f"{mapping['failing_points']:,} points outside"
+        yield "mapping", f"{outside}; scale {scale}; offset {offset} m; efficiency {mapping['efficiency']:.4g}"
     targets = document.get("targets") or {}
     for name in ("reachable", "unreachable", "undecided"):
         if name in targets:

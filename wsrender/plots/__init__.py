@@ -12,6 +12,7 @@ from wsrender.errors import MissingExtraError
 if TYPE_CHECKING:
     from wsrender.plots.comparison import side_by_side
     from wsrender.plots.distribution import histogram, write_histogram_csv
+    from wsrender.plots.master_slave import mapped_points
     from wsrender.plots.planes import slice_plane, slices
     from wsrender.plots.point_cloud import scatter
     from wsrender.plots.result_plots import ResultPlots
@@ -25,6 +26,7 @@ _MODULES = {
     "curves": "table_curves",
     "histogram": "distribution",
     "png": "style",
+    "mapped_points": "master_slave",
     "robot": "stick_figure",
     "save_figure": "style",
     "scatter": "point_cloud",
@@ -38,6 +40,7 @@ __all__ = [
     "ResultPlots",
     "curves",
     "histogram",
+    "mapped_points",
     "png",
     "robot",
     "save_figure",

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from wsrender.errors import InputError
 from wsrender.plots.comparison import side_by_side
 from wsrender.plots.distribution import histogram
+from wsrender.plots.master_slave import mapped_points
 from wsrender.plots.planes import slice_plane, slices
 from wsrender.plots.point_cloud import scatter
 from wsrender.plots.stick_figure import robot
@@ -35,6 +36,12 @@ class ResultPlots:
         if table not in self.tables:
             raise InputError("table", f"the result has no {table!r}; it holds {', '.join(self.tables) or 'no table'}")
         return curves(self.tables[table], title=self.title)
+
+    def mapping(self) -> Figure:
+        """A slave's points in its master's workspace: green inside, red outside."""
+        if "mapping" not in self.tables:
+            raise InputError("table", "the result holds no mapping of a slave to its master")
+        return mapped_points(self.tables["mapping"], title=self.title)
 
     def side_by_side(self, index: str | None = None, *, statistic: str | None = None) -> Figure:
         """The robots of a comparison in the same planes, with the same axes and one colour scale."""

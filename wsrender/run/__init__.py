@@ -1,7 +1,12 @@
 """Running a job, in the four steps that every door uses: plan, run_shard, merge, finish."""
 
 from wsrender.run.analyze import analyze
-from wsrender.run.several_from_python import collaborative_volume, robot_comparison, shared_workspace
+from wsrender.run.several_from_python import (
+    collaborative_volume,
+    master_slave_mapping,
+    robot_comparison,
+    shared_workspace,
+)
 from wsrender.run.steps import Plan, execute, finish, merge, plan, run_shard
 
 __all__ = [
@@ -10,6 +15,7 @@ __all__ = [
     "collaborative_volume",
     "execute",
     "finish",
+    "master_slave_mapping",
     "merge",
     "plan",
     "robot_comparison",

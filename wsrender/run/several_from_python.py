@@ -51,10 +51,34 @@ def collaborative_volume(left: Any, right: Any, *, progress: Progress | bool | N
 
     Raises DocumentError, InputError, ModelError, ResourceError.
     """
-    subjects = [as_source(source) for source in (left, right)]
-    entries = dict(zip(("left", "right"), map(source_entry, subjects), strict=True))
-    robots = [subject for subject in subjects if isinstance(subject, Robot)]
-    return execute_here({"analysis": "collaborative_volume", **entries, **plain(fields)}, robots, progress)
+    return _two("collaborative_volume", {"left": left, "right": right}, {}, progress, fields)
+
+
+def master_slave_mapping(master: Any, slave: Any, *, progress: Progress | bool | None = None, **fields: Any) -> Result:
+    """Whether a slave's workspace, scaled, turned and shifted, lies in its master's, and the largest that does.
+
+    ``master`` and ``slave`` are robots as in `shared_workspace`, or points (N, 3) [m]. ``sampling`` is one for both
+    robots (default Sobol(20000)); ``fields`` are the other fields of the job document ``master_slave_mapping``: scale,
+    rotation, offsets_m, containment, search, device.
+
+    Raises DocumentError, InputError, ModelError, ResourceError.
+    """
+    sampling = fields.pop("sampling", None)
+    sampled = {} if sampling is None else {"sampling": sampling_entry(sampling)}
+    return _two("master_slave_mapping", {"master": master, "slave": slave}, sampled, progress, fields)
+
+
+def _two(
+    analysis: str, sources: dict[str, Any], sampled: dict[str, Any], progress: Progress | bool | None, fields: Any
+) -> Result:
+    """Run an analysis of two robots or sets of points, by their fields of the document."""
+    subjects = {name: as_source(source) for name, source in sources.items()}
+    robots = [subject for subject in subjects.values() if isinstance(subject, Robot)]
+    entries = {
+        name: source_entry(subject) | (sampled if isinstance(subject, Robot) else {})
+        for name, subject in subjects.items()
+    }
+    return execute_here({"analysis": analysis, **entries, **plain(fields)}, robots, progress)
 
 
 def _several(

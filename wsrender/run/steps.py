@@ -11,6 +11,7 @@ from wsrender.run.capability import plan_capability
 from wsrender.run.collaborative import plan_collaborative
 from wsrender.run.comparison import plan_robot_comparison
 from wsrender.run.indices_at import plan_indices_at
+from wsrender.run.mapping import plan_mapping
 from wsrender.run.reachability import plan_reachability
 from wsrender.run.shared import plan_shared_workspace
 from wsrender.run.workspace import plan_workspace
@@ -18,6 +19,7 @@ from wsrender.spec import (
     CapabilityJob,
     CollaborativeVolumeJob,
     IndicesAtJob,
+    MasterSlaveMappingJob,
     ReachabilityJob,
     RobotComparisonJob,
     SharedWorkspaceJob,
@@ -36,6 +38,7 @@ PLANNERS: dict[type, Callable[..., "Plan"]] = {
     SharedWorkspaceJob: plan_shared_workspace,
     RobotComparisonJob: plan_robot_comparison,
     CollaborativeVolumeJob: plan_collaborative,
+    MasterSlaveMappingJob: plan_mapping,
 }
 
 

@@ -3,6 +3,7 @@
 from wsrender.spec.capability import CapabilityJob
 from wsrender.spec.collaborative import CollaborativeVolumeJob
 from wsrender.spec.jobs import ANALYSES, IndicesAtJob, Job, WorkspaceJob
+from wsrender.spec.mapping import MasterSlaveMappingJob
 from wsrender.spec.parsing import canonical_json, job_schema, parse_job
 from wsrender.spec.reachability import ReachabilityJob
 from wsrender.spec.several_robots import RobotComparisonJob, SharedWorkspaceJob
@@ -13,6 +14,7 @@ __all__ = [
     "CollaborativeVolumeJob",
     "IndicesAtJob",
     "Job",
+    "MasterSlaveMappingJob",
     "ReachabilityJob",
     "RobotComparisonJob",
     "SharedWorkspaceJob",

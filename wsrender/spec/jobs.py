@@ -10,6 +10,7 @@ from wsrender.spec.capability import CapabilityJob
 from wsrender.spec.collaborative import CollaborativeVolumeJob
 from wsrender.spec.document import Document
 from wsrender.spec.index_choices import IndexChoices
+from wsrender.spec.mapping import MasterSlaveMappingJob
 from wsrender.spec.options import Configurations, MapColumns, Statistics
 from wsrender.spec.problems import tagged
 from wsrender.spec.quantities import Count, PositiveNumber, RelativeTolerance
@@ -70,6 +71,7 @@ _AnyJob = (
     | SharedWorkspaceJob
     | RobotComparisonJob
     | CollaborativeVolumeJob
+    | MasterSlaveMappingJob
 )
 ANALYSES: dict[str, type[Document]] = {job.model_fields["analysis"].default: job for job in get_args(_AnyJob)}
 

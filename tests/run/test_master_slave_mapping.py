@@ -1,0 +1,175 @@
+"""Mappings with known answers: boxes, balls, a turned ellipsoid; failures; the project's own pair."""
+
+import numpy as np
+import pytest
+
+import wsrender as ws
+from wsrender.mapping.voxel_set import VoxelSet
+from wsrender.result import Result
+from wsrender.run import finish, plan, run_shard
+from wsrender.run.partial_files import load_partial, save_partial
+
+UNIT = np.stack(np.meshgrid(*[np.linspace(-0.5, 0.5, 11)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
+MASTER_BOX = UNIT * [1.0, 0.8, 0.6]
+SLAVE_BOX = UNIT * 0.2
+CPU = {"device": "cpu"}
+
+
+def fibonacci_ball(count=1500):
+    """Points even in the unit ball, and on its surface."""
+    k = np.arange(count) + 0.5
+    polar, turn = np.arccos(1 - 2 * k / count), np.pi * (1 + 5**0.5) * k
+    surface = np.stack([np.sin(polar) * np.cos(turn), np.sin(polar) * np.sin(turn), np.cos(polar)], axis=1)
+    radii = np.random.default_rng(0).random(count) ** (1 / 3)
+    return np.concatenate([surface, surface * radii[:, None]])
+
+
+def mapped(master, slave, **fields):
+    return ws.master_slave_mapping(master, slave, **CPU, **fields)
+
+
+def test_a_box_in_a_box():
+    """The largest uniform scale of a cube of .2 m in a box .6 m high is 3, whatever the offset along the others."""
+    search = {"scale": [0.5, 5], "steps": 18}
+    result = mapped(MASTER_BOX, SLAVE_BOX, search=search, offsets_m=[[0, 0, 0], [0.1, 0, 0.1]])
+    centred, shifted = result.document["offsets"]
+    assert centred["scale"] == pytest.approx([3, 3, 3], rel=1e-6)
+    assert shifted["scale"] == pytest.approx([2, 2, 2], rel=1e-6)
+    assert result.document["mapping"] == centred
+    assert centred["succeeded"] and centred["failing_points"] == 0
+    assert centred["volume_m3"] == pytest.approx(0.6**3, rel=1e-5)
+    assert centred["efficiency"] == pytest.approx(0.6**3 / 0.48, rel=1e-5)
+    curve = result.tables["scales"]
+    assert curve["scale"] == pytest.approx(np.linspace(0.5, 5, 18))
+    assert curve["volume"] == pytest.approx((0.2 * curve["scale"]) ** 3, rel=1e-5)
+    assert (np.isfinite(curve["volume_inside"]) == (curve["scale"] <= 3 + 1e-9)).all()
+    assert (np.diff(curve["share_inside"]) <= 0).all()
+
+
+def test_three_scales_fill_the_box():
+    result = mapped(MASTER_BOX, SLAVE_BOX, search={"scale": [0.5, 10], "uniform": False})
+    assert result.document["mapping"]["scale"] == pytest.approx([5, 4, 3], rel=1e-6)
+    assert result.document["mapping"]["efficiency"] == pytest.approx(1, rel=1e-5)
+
+
+def test_the_offset_is_found():
+    away = SLAVE_BOX + np.array([0.7, -0.3, 0.2])
+    search = {"scale": [0.5, 5], "offset_m": [[-3, 3]] * 3}
+    found = mapped(MASTER_BOX, away, search=search).document["mapping"]
+    assert found["succeeded"]
+    assert found["scale"][0] == pytest.approx(3, rel=0.03)
+    center = np.array([0.7, -0.3, 0.2]) * found["scale"] + found["offset_m"]
+    assert (np.abs(center) <= np.array([0.2, 0.1, 0.01])).all()
+    assert found["efficiency"] == pytest.approx(0.45, rel=0.09)
+
+
+def test_a_ball_in_a_ball():
+    """Radius .3 m in radius 1 m: 10/3 at the same centre, (1 - .4)/.3 = 2 at an offset of .4 m."""
+    ball = fibonacci_ball()
+    offsets = [[0, 0, 0], [0.4, 0, 0]]
+    entries = mapped(ball, 0.3 * ball, search={"scale": [0.5, 5]}, offsets_m=offsets).document["offsets"]
+    assert entries[0]["scale"][0] == pytest.approx(10 / 3, rel=1e-4)
+    # The surface between points lies inside the sphere by about (spacing)² / 8.
+    assert entries[1]["scale"][0] == pytest.approx(2, rel=0.005)
+
+
+def test_a_turned_ellipsoid():
+    """Semi-axes (1, .5, .25) m of the master along x, y, z; half of them along z, y, x of the slave until turned."""
+    ball = fibonacci_ball()
+    master, slave = ball * [1, 0.5, 0.25], ball * [0.125, 0.25, 0.5]
+    search = {"scale": [0.1, 5]}
+    turned = mapped(master, slave, rotation={"rpy_deg": [0, 90, 0]}, search=search).document["mapping"]
+    assert turned["scale"][0] == pytest.approx(2, rel=0.005)
+    plain = mapped(master, slave, search=search).document["mapping"]
+    assert plain["scale"][0] == pytest.approx(0.5, rel=0.01)
+
+
+def test_points_that_fail_are_returned(tmp_path):
+    """A cube of 1 m in a box of 1 × .8 × .6 m: the outer layers in y and z fail."""
+    result = mapped(MASTER_BOX, UNIT * 0.999, scale=[1, 1, 1])
+    failing = result.tables["failing"]
+    outside = (np.abs(UNIT[:, 1]) > 0.41) | (np.abs(UNIT[:, 2]) > 0.31)
+    assert result.document["mapping"]["failing_points"] == outside.sum() == len(failing)
+    np.testing.assert_allclose(failing["position"], (UNIT * 0.999)[outside])
+    np.testing.assert_array_equal(failing["slave_position"], (UNIT * 0.999)[outside])
+    assert not result.document["mapping"]["succeeded"]
+    result.save(tmp_path / "out")
+    names = {record["name"] for record in result.document["artifacts"]}
+    assert {"plots/mapping.png", "failing.parquet", "master.glb", "slave.glb"} < names
+    assert len(Result.load(tmp_path / "out").tables["failing"]) == len(failing)
+    colors = {tuple(artist.get_facecolor()[0][:3].round(2)) for artist in result.plot.mapping().axes[0].collections}
+    assert len(colors) == 3
+
+
+def test_no_scale_succeeds_far_away():
+    found = mapped(MASTER_BOX, SLAVE_BOX, offsets_m=[[9, 9, 9]], search={"scale": [0.5, 2]}).document["mapping"]
+    assert (found["succeeded"], found["inside"], found["scale"]) == (False, 0.0, [1, 1, 1])
+    everywhere = mapped(MASTER_BOX, SLAVE_BOX, scale=20, search={"scale": [1, 1.5], "offset_m": [[-1, 1]] * 3})
+    assert not everywhere.document["mapping"]["succeeded"]
+
+
+def test_scales_are_along_the_axes_of_the_master():
+    """slave' = S R slave + offset: a bar along x, turned to y, is stretched by the scale of y."""
+    bar = UNIT * [0.2, 0.1, 0.1]
+    result = mapped(MASTER_BOX, bar, scale=[1, 3, 1], rotation={"rpy_deg": [0, 0, 90]}, offsets_m=[[0, 0.05, 0]])
+    position = result.tables["mapping"]["position"][len(MASTER_BOX) :]
+    np.testing.assert_allclose(np.ptp(position, axis=0), [0.1, 0.6, 0.1])
+    np.testing.assert_allclose(position.mean(axis=0), [0, 0.05, 0], atol=1e-12)
+
+
+def test_voxels_decide_too():
+    containment = {"kind": "voxels", "voxel_size_m": 0.1}
+    ring = UNIT[np.hypot(UNIT[:, 0], UNIT[:, 1]) > 0.3]
+    found = mapped(ring, SLAVE_BOX, containment=containment).document["mapping"]
+    assert not found["succeeded"]
+    voxels = VoxelSet.of(ring, 0.1)
+    probes = np.random.default_rng(0).uniform(-1, 1, (2000, 3))
+    occupied = {tuple(cell) for cell in np.floor(ring / 0.1).astype(int)}
+    expected = [tuple(cell) in occupied for cell in np.floor(probes / 0.1).astype(int)]
+    np.testing.assert_array_equal(voxels.contains(probes), expected)
+    assert voxels.volume_m3 == pytest.approx(len(occupied) * 1e-3)
+
+
+def test_the_slave_of_the_project_in_a_haptic_device(tmp_path):
+    """slave_5r in phantom_omni; the same after its partial result was kept in a file."""
+    sampling = {"method": "sobol", "count": 3000}
+    document = {
+        "analysis": "master_slave_mapping",
+        "master": {"robot": "phantom_omni", "sampling": sampling},
+        "slave": {"robot": "slave_5r", "sampling": sampling},
+        "search": {"scale": [0.05, 2.0], "offset_m": [[-0.3, 0.3]] * 3},
+        **CPU,
+    }
+    planned = plan(document)
+    assert planned.shards == [(0, 6000)]
+    save_partial(run_shard(planned, 0), tmp_path / "0.npz")
+    result = finish(planned, load_partial(tmp_path / "0.npz", planned))
+    found = result.document["mapping"]
+    assert found["succeeded"] and found["efficiency"] > 0
+    assert result.tables["mapping"]["inside"].all()
+    larger = {**document, "scale": 1.05 * found["scale"][0], "offsets_m": [found["offset_m"]], "search": None}
+    assert not ws.execute(larger).document["mapping"]["succeeded"]
+
+
+@pytest.mark.parametrize(
+    ("fields", "message"),
+    [
+        ({"scale": 0}, "scale: must be a number above 0, or a list of three, not 0"),
+        ({"scale": [1, 2]}, "scale: must be a number above 0"),
+        ({"rotation": {"position_m": [1, 0, 0]}}, "rotation: must not shift"),
+        ({"offsets_m": []}, r"offsets_m: must be a list of 1 … 100 offsets"),
+        ({"search": {"scale": [2, 1]}}, r"search.scale: must be \[low, high\], low below high"),
+        ({"search": {"scale": [-1, 1]}}, r"search.scale: must be \[low, high\], both above 0"),
+        ({"search": {"offset_m": [[0, 1]] * 3}, "offsets_m": [[0, 0, 0], [1, 0, 0]]}, "offsets_m: must be one"),
+        ({"containment": {"kind": "voxels"}}, "containment.voxel_size_m: must be given"),
+        ({"containment": {"alpha_m": 1e-6}}, "alpha_shape: 1e-06 m is too small"),
+        ({"slave": {"points": [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]]}}, "points: are 4 points in a plane"),
+        ({"slave": {"robot": "scara", "sampling": {"method": "converge"}}}, 'slave.sampling: must not be "converge"'),
+        ({"slave": {"robot": "scara", "sampling": {"method": "sobol", "count": 2e6}}}, "slave: has 2e.06 points"),
+        ({"slave": {"robot": "nobody"}}, 'slave.library: has no robot "nobody"'),
+    ],
+)
+def test_malformed_jobs(fields, message):
+    job = {"analysis": "master_slave_mapping", "master": {"points": MASTER_BOX}, "slave": {"points": SLAVE_BOX}, **CPU}
+    with pytest.raises(ws.InputError, match=message):
+        ws.execute({**job, **fields})

@@ -1,0 +1,1 @@
+"""Mapping of a slave robot's workspace into that of its master ([WSR] III.D)."""

@@ -1,0 +1,222 @@
+"""The analysis ``master_slave_mapping``: a slave's workspace in its master's ([WSR] III.D)."""
+
+import json
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from wsrender.boundary.alpha_shape import AlphaShape
+from wsrender.boundary.surfaces import surface_entry
+from wsrender.errors import ResourceError
+from wsrender.mapping.linear_mapping import LinearMapping, Space
+from wsrender.mapping.scale_search import best_mapping, largest_factor, scale_curve
+from wsrender.mapping.voxel_set import VoxelSet
+from wsrender.result import Result
+from wsrender.robot import Robot
+from wsrender.run.provenance import job_entry, provenance, robot_entry
+from wsrender.run.sampled_positions import sampled_positions
+from wsrender.run.settled_device import settled_device
+from wsrender.sampling import plan_sampling
+from wsrender.spec import MasterSlaveMappingJob
+from wsrender.spec.mapping import MOST_POINTS, Containment, MappingSearch
+from wsrender.spec.point_sets import PointSet
+from wsrender.volume.table import Table
+
+POSITIONS = {"position": "m", "slave_position": "m"}
+POINTS_PER_S = 2e4  # from the configuration to the end of an alpha shape, one CPU core
+
+
+@dataclass(eq=False)
+class MappingPlan:
+    """A resolved ``master_slave_mapping`` job: one shard."""
+
+    job: MasterSlaveMappingJob
+    robots: tuple[Robot, ...]
+    sources: tuple[Robot | np.ndarray, Robot | np.ndarray]  # of the master's and the slave's points
+    device: str
+    target: str
+    samples: int
+
+    @property
+    def shards(self) -> list[tuple[int, int]]:
+        """One shard of all points."""
+        return [(0, self.samples)]
+
+    @property
+    def estimate(self) -> dict[str, float]:
+        """Points, their bytes with those of the shapes, and seconds without the search."""
+        points = float(self.samples)
+        return {"samples": points, "bytes": 1000.0 * points, "seconds": points / POINTS_PER_S}
+
+    def resolved(self) -> dict[str, Any]:
+        """What is settled once: the device that "auto" means, target, shards."""
+        return {"device": self.device, "target": self.target, "shards": [list(shard) for shard in self.shards]}
+
+    def run_shard(self, shard: int, progress: Callable[[int], None] | None, **execution: Any) -> dict[str, np.ndarray]:
+        """Points of both robots, the mapping of each offset, and the curve of the best."""
+        master, slave = (self._points(source, side) for side, source in enumerate(self.sources))
+        space, own = (_space(points, self.job.containment) for points in (master, slave))
+        found = [self._mapping(space, master, slave, np.array(offset)) for offset in self.job.offsets_m]
+        entries = [_entry(mapping, space, own, slave) for mapping in found]
+        # The largest of those that succeed, else the one with most points inside.
+        best = max(range(len(entries)), key=lambda k: (entries[k]["succeeded"], _merit(entries[k])))
+        about = {"best": best, "offsets": entries, "master_m3": space.volume_m3, "slave_m3": own.volume_m3}
+        arrays = {"master": master, "slave": slave, "about": np.array(json.dumps(about))}
+        if self.job.search is not None:
+            curve = scale_curve(space, slave, self._of_factor_one(found[best]), _factors(self.job.search))
+            arrays |= {"factors": curve.factors, "inside": curve.inside}
+        if progress:
+            progress(self.samples)
+        return arrays
+
+    def merge(self, a: Any, b: Any) -> Any:
+        """There is one shard: nothing to merge."""
+        raise ValueError("master_slave_mapping has one shard")
+
+    def finish(self, partial: dict[str, np.ndarray], seconds: dict[str, float]) -> Result:
+        """The best mapping, the others beside it, the points that fail, and the shapes."""
+        about, master = json.loads(str(partial["about"])), partial["master"]
+        best = about["offsets"][about["best"]]
+        mapping = LinearMapping(np.array(best["scale"]), self._rotation(), np.array(best["offset_m"]))
+        mapped = mapping.apply(partial["slave"])
+        inside = _space(master, self.job.containment).contains(mapped)
+        meshes = {
+            "master": AlphaShape.of(master, self.job.containment.alpha_m).mesh(),
+            "slave": AlphaShape.of(mapped).mesh(),
+        }
+        document = {
+            "analysis": "master_slave_mapping",
+            "job": job_entry(self.job, *self.robots),
+            "robots": [{"name": robot.name, "robot": robot_entry(robot)} for robot in self.robots],
+            "sampling": {"samples": self.samples},
+            "mapping": best,
+            "offsets": about["offsets"],
+            "volume_m3": {"master": about["master_m3"], "slave": about["slave_m3"], "mapped": best["volume_m3"]},
+            "surfaces": {name: surface_entry(name, mesh) for name, mesh in meshes.items()},
+            "provenance": provenance("float64", self.target),
+            "timing_s": seconds,
+        }
+        failing = {"position": mapped[~inside], "slave_position": partial["slave"][~inside]}
+        tables = {"failing": Table(failing, POSITIONS), "mapping": _points_table(master, mapped, inside)}
+        if "factors" in partial:
+            tables["scales"] = _curve_table(partial, about["slave_m3"] * self._of_factor_one(mapping).volume_factor)
+        return Result(document, tables=tables, meshes=meshes)
+
+    def _points(self, source: Robot | np.ndarray, side: int) -> np.ndarray:
+        if isinstance(source, np.ndarray):
+            return source
+        return sampled_positions(source, _sampling(self.job, side), self.device, max_samples=MOST_POINTS)
+
+    def _rotation(self) -> np.ndarray:
+        return self.job.rotation.matrix()[:3, :3] if self.job.rotation else np.eye(3)
+
+    def _of_factor_one(self, found: LinearMapping) -> LinearMapping:
+        """The found mapping shrunk or grown to the volume of the job's own scales."""
+        return found.scaled(float(np.cbrt(np.prod(self.job.scale) / found.volume_factor)))
+
+    def _mapping(self, space: Space, master: np.ndarray, slave: np.ndarray, offset: np.ndarray) -> LinearMapping:
+        """The mapping at one offset: the job's, or the largest that the search finds; the job's where it finds none."""
+        given = LinearMapping(np.array(self.job.scale), self._rotation(), offset)
+        search = self.job.search
+        if search is None:
+            return given
+        if search.uniform and search.offset_m is None:
+            factor = largest_factor(space, slave, given, scale_curve(space, slave, given, _factors(search)))
+            return given if factor is None else given.scaled(factor)
+        found = best_mapping(
+            space,
+            (master.min(axis=0), master.max(axis=0)),
+            slave,
+            given,
+            scale_bounds=search.scale,
+            uniform=search.uniform,
+            offset_bounds=search.offset_m,
+            seed=search.seed,
+        )
+        return found or given
+
+
+def plan_mapping(job: MasterSlaveMappingJob, *robots: Robot, resolved: dict[str, Any] | None = None) -> MappingPlan:
+    """Resolve the job, or take what `MappingPlan.resolved` of an earlier plan of it says.
+
+    Raises InputError for points that cannot be read, ResourceError for more points than shapes are made of.
+    """
+    to_place = list(robots)
+    master, slave = (
+        source.array() if isinstance(source, PointSet) else to_place.pop(0) for source in (job.master, job.slave)
+    )
+    counts = [_count(job, side, source) for side, source in enumerate((master, slave))]
+    for name, count in zip(("master", "slave"), counts, strict=True):
+        if count > MOST_POINTS:
+            raise ResourceError(name, f"has {count:.4g} points; at most {MOST_POINTS:.4g} are mapped")
+    return MappingPlan(job, robots, (master, slave), *settled_device(job.device, resolved), sum(counts))
+
+
+def _sampling(job: MasterSlaveMappingJob, side: int) -> Any:
+    source = (job.master, job.slave)[side]
+    assert not isinstance(source, PointSet)
+    return source.sampling
+
+
+def _count(job: MasterSlaveMappingJob, side: int, source: Robot | np.ndarray) -> int:
+    if isinstance(source, np.ndarray):
+        return len(source)
+    return plan_sampling(source.chain, _sampling(job, side)).count
+
+
+def _space(points: np.ndarray, containment: Containment) -> Space:
+    if containment.kind == "voxels":
+        assert containment.voxel_size_m is not None
+        return VoxelSet.of(points, containment.voxel_size_m)
+    return AlphaShape.of(points, containment.alpha_m)
+
+
+def _entry(mapping: LinearMapping, space: Space, own: Space, slave: np.ndarray) -> dict[str, Any]:
+    """What the result document says of one mapping.
+
+    ``efficiency`` is the mapping efficiency of [WSR] III.D: volume of the mapped slave over that of the master.
+    """
+    inside = space.contains(mapping.apply(slave))
+    volume = own.volume_m3 * mapping.volume_factor
+    return {
+        "scale": mapping.scale.tolist(),
+        "offset_m": mapping.offset.tolist(),
+        "succeeded": bool(inside.all()),
+        "failing_points": int(np.count_nonzero(~inside)),
+        "inside": float(inside.mean()),
+        "volume_m3": volume,
+        "efficiency": volume / space.volume_m3,
+    }
+
+
+def _merit(entry: dict[str, Any]) -> float:
+    return entry["volume_m3"] if entry["succeeded"] else entry["inside"]
+
+
+def _factors(search: MappingSearch) -> np.ndarray:
+    return np.linspace(*search.scale, search.steps)
+
+
+def _points_table(master: np.ndarray, mapped: np.ndarray, inside: np.ndarray) -> Table:
+    """The points of both robots in the master's world: which are the slave's, and which lie in the master's space."""
+    columns = {
+        "position": np.concatenate([master, mapped]),
+        "slave": np.arange(len(master) + len(mapped)) >= len(master),
+        "inside": np.concatenate([np.ones(len(master), bool), inside]),
+    }
+    return Table(columns, POSITIONS)
+
+
+def _curve_table(partial: dict[str, np.ndarray], unit_volume_m3: float) -> Table:
+    """Volume of the mapped slave against the factor on its scales, and where all of it lies inside."""
+    factors, inside = partial["factors"], partial["inside"]
+    volume = unit_volume_m3 * factors**3
+    columns = {
+        "scale": factors,
+        "volume": volume,
+        "volume_inside": np.where(inside == 1.0, volume, np.nan),
+        "share_inside": inside,
+    }
+    return Table(columns, {"volume": "m^3", "volume_inside": "m^3"})
