@@ -158,7 +158,9 @@ class InverseSolver:
 
     def _within_a_turn(self, q: np.ndarray) -> np.ndarray:
         """Hinges without limits brought into -pi … pi."""
-        return np.where(self.chain.periodic, np.remainder(q + np.pi, 2 * np.pi) - np.pi, q)
+        turning = self.chain.periodic
+        q[:, turning] = np.remainder(q[:, turning] + np.pi, 2 * np.pi) - np.pi
+        return q
 
 
 def _targets(position: np.ndarray, orientation: np.ndarray | None) -> np.ndarray:
