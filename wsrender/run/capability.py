@@ -114,7 +114,7 @@ class CapabilityPlan:
         return Result(document, volume=self._volume(cells, reached), tables=tables, skeleton=skeleton)
 
     def _volume(self, cells: np.ndarray, reached: np.ndarray) -> VolumeData | None:
-        """``count``: directions reached; statistic "center" of "reachability_index"; None where nothing is reached."""
+        """``count``: directions reached; "fraction" of "approach_directions": the index; None: nothing is reached."""
         if not len(cells):
             return None
         first = cells.min(axis=0)
@@ -124,8 +124,8 @@ class CapabilityPlan:
         index = np.full(count.shape, np.nan, np.float32)
         index[at] = reached.mean(axis=1)
         x, y, z = (int(v) for v in first)
-        statistics = {"center": {"reachability_index": index}}
-        return VolumeData(self.voxel_size_m, (x, y, z), count, statistics, {"reachability_index": "1"})
+        statistics = {"fraction": {"approach_directions": index}}
+        return VolumeData(self.voxel_size_m, (x, y, z), count, statistics, {"approach_directions": "1"})
 
 
 def plan_capability(job: CapabilityJob, robot: Robot, resolved: dict[str, Any] | None = None) -> CapabilityPlan:
