@@ -29,6 +29,14 @@ DOCUMENTS = {
         "angle_tolerance_rad": 0.5,
         "device": "cpu",
     },
+    "master_slave_mapping": {
+        "analysis": "master_slave_mapping",
+        "master": {"robot": "spherical", "sampling": SAMPLING},
+        "slave": {"points": [[0, 0, 0], [0.1, 0, 0], [0, 0.1, 0], [0, 0, 0.1]]},
+        "offsets_m": [[0.3, 0, 0], [0.25, 0, 0]],
+        "search": {"scale": [0.1, 2.0], "steps": 10},
+        "device": "cpu",
+    },
     "shared_workspace": {"analysis": "shared_workspace", "robots": ROBOTS, "voxel_size_m": 0.05, "device": "cpu"},
     "reachability": {
         "analysis": "reachability",

@@ -5,6 +5,7 @@ import json
 import pytest
 
 from tests.server.http.idle_server import DOCUMENT, problem_of
+from wsrender.errors import InputError
 from wsrender.spec import canonical_json, parse_job
 
 BOMB = '<!DOCTYPE m [<!ENTITY a "aaaaaaaaaa"><!ENTITY b "&a;&a;">]><mujoco>&b;</mujoco>'
@@ -161,3 +162,13 @@ def test_validation_plans_the_job(client, jobs):
     assert client.post("/v1/jobs:validate", json=rows).json()["samples"] == 3
     problem = problem_of(client.post("/v1/jobs:validate", json=DOCUMENT | {"tip": "hand"}), 409, "frame_not_found")
     assert "tool" in problem["choices"] and problem["errors"][0]["pointer"] == "#/tip"
+
+
+@pytest.mark.parametrize("path", ["/etc/passwd", "points.npy"])
+def test_points_in_files_are_not_opened(client, jobs, path):
+    document = {"analysis": "collaborative_volume", "left": {"path": path}, "right": {"points": [[0, 0, 0]]}}
+    problem = problem_of(client.post("/v1/jobs", json=document), 422)
+    assert problem["errors"][0]["pointer"] == "#/left/path"
+    assert "is for local runs" in problem["errors"][0]["detail"]
+    with pytest.raises(InputError, match=r"left\.path: is for local runs"):
+        jobs.store.identity.key("local", json.loads(canonical_json(parse_job(document))), None)
