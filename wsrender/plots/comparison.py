@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 from matplotlib.figure import Figure
 
-from wsrender.plots.planes import draw_plane, layer_at, plane_extents, voxel_field
+from wsrender.plots.planes import ACROSS, draw_plane, plane_extents, voxel_field
 from wsrender.plots.style import INK, add_color_bar, add_title, new_figure, paper_style, value_range
 from wsrender.volume.registration import registered
 from wsrender.volume.volume_data import VolumeData
@@ -36,7 +36,8 @@ def side_by_side(
     panels = figure.subplots(len(placed), 3, width_ratios=widths, squeeze=False)
     for row, name, volume, field in zip(panels, volumes, placed, fields, strict=True):
         for axis, axes in enumerate(row):
-            draw_plane(axes, volume, replace(field, norm=norm), axis, layer_at(together, axis, None), frame)
+            layer = int(np.count_nonzero(together.count, axis=ACROSS[axis]).argmax())
+            draw_plane(axes, volume, replace(field, norm=norm), axis, layer, frame)
         row[0].annotate(
             name, (-0.42, 0.5), xycoords="axes fraction", rotation=90, va="center", ha="center", color=INK, fontsize=10
         )

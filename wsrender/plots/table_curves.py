@@ -36,6 +36,7 @@ def curves(table: Table, *, title: str = "") -> Figure:
                 axes.fill_between(x, low[order], high[order], color=color, alpha=0.25, linewidth=0, zorder=2)
         axes.set_xlabel(quantity(across, table.units.get(across)))
         axes.set_ylabel(quantity(names[0] if len(names) == 1 else _kind(unit), unit))
+        axes.xaxis.set_major_locator(MaxNLocator(8, integer=numbers[across].dtype.kind == "i"))
         axes.yaxis.set_major_locator(MaxNLocator(5))
         axes.grid(zorder=0)
         if len(names) > 1:
