@@ -10,7 +10,7 @@ from wsrender.indices.units import pretty_unit
 from wsrender.volume.table import Table
 
 MOST_ROWS = 40  # of a table; the file beside the report has all
-_UNITS = {"m3": "m³", "m2": "m²", "m": "m", "s": "s", "rad": "rad", "deg": "°"}
+_UNITS = {"m6": "m⁶", "m3": "m³", "m2": "m²", "m": "m", "s": "s", "rad": "rad", "deg": "°"}
 
 
 def label(key: str) -> str:
@@ -109,10 +109,12 @@ def _cells(values: Sequence[Any]) -> str:
 
 
 def _alike(values: Any) -> bool:
-    """Whether values are mappings without further nesting that share their first key."""
+    """Whether values are mappings of plain values that share their first key."""
     records = list(values)
     flat = all(
-        isinstance(record, Mapping) and record and not any(isinstance(value, Mapping) for value in record.values())
+        isinstance(record, Mapping)
+        and record
+        and not any(isinstance(value, Mapping | list | tuple) for value in record.values())
         for record in records
     )
     return len(records) > 0 and flat and len({next(iter(record)) for record in records}) == 1

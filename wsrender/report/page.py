@@ -14,7 +14,7 @@ from wsrender.volume.table import Table
 # Nothing but what is in the page itself: whatever a name may hold, no script runs and nothing is fetched.
 _POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'"
 _MOST_JOB_TEXT = 100_000  # characters of the job document; result.json has all
-_FIRST = ("volume_m3", "surfaces", "indices", "global", "bounds_m")  # before the pictures
+_LATER = ("robot", "robots", "sampling", "choices")  # after the pictures; results come before them
 _LAST = ("job", "artifacts", "provenance", "timing_s")  # sections of their own, at the end
 _WIDE = 1.6  # width by height from which a picture takes the whole width
 _CAPTIONS = {
@@ -49,7 +49,7 @@ code { font-size: .8rem; overflow-wrap: anywhere; }
   @page { margin: 15mm; }
   body { max-width: none; padding: 0; font-size: 10pt; }
   figure, tr { break-inside: avoid; } h2, h3 { break-after: avoid; }
-  div.wide { overflow: visible; } figure { min-width: 0; }
+  div.wide { overflow: visible; orphans: 1; widows: 1; } figure { min-width: 0; }
 }
 """
 
@@ -88,10 +88,10 @@ def report_page(
         key: value for key, value in document.items() if isinstance(value, Mapping | list) and value
     }
     sections = [_section("Main values", facts_html(single))]
-    sections += [_section(label(key), value_html(nested[key])) for key in _FIRST if key in nested]
+    results = [key for key in nested if key not in _LATER + _LAST]
+    sections += [_section(label(key), value_html(nested[key])) for key in results]
     sections += [_section("Pictures", _pictures(pictures, notes))]
-    others = [key for key in nested if key not in _FIRST + _LAST]
-    sections += [_section(label(key), value_html(nested[key])) for key in others]
+    sections += [_section(label(key), value_html(nested[key])) for key in _LATER if key in nested]
     sections += [_section(f"Table: {label(name)}", table_html(table)) for name, table in tables.items() if len(table)]
     sections += [_section(label(key), facts_html(nested[key])) for key in ("provenance", "timing_s") if key in nested]
     sections += [_section("Files", _files(nested["artifacts"]))] if "artifacts" in nested else []
