@@ -297,7 +297,10 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
                 for r in range(3):
                     levers[r * BLOCK + lane] = out[r]
 
-        for level in range(base.levels):
+        levels = wp.int32(1)
+        if wp.static(BASE_LEVELS):
+            levels = base.levels
+        for level in range(levels):
             if wp.static(BASE_LEVELS):
                 angle = at_level(base.lower, base.upper, base.step, level, base.levels)
                 for lane in range(BLOCK):
@@ -433,7 +436,10 @@ def _cuda_kernel(shape: Shape) -> wp.Kernel:
             block = prepare(space, start)
             out = evaluate(model, space, block, start, wp.int32(index & LANE_MASK))
             lever = vec3(out[0], out[1], out[2])
-            for level in range(base.levels):
+            levels = wp.int32(1)
+            if wp.static(BASE_LEVELS):
+                levels = base.levels
+            for level in range(levels):
                 if wp.static(BASE_LEVELS):
                     angle = at_level(base.lower, base.upper, base.step, level, base.levels)
                     tip = moved_base(model.chain, angle, lever)
