@@ -76,7 +76,8 @@ class Result:
     @property
     def plot(self) -> "ResultPlots":
         """Pictures as matplotlib Figures, such as ``plot.slice(z=0.3)`` or ``plot.scatter(index)``."""
-        return plots.ResultPlots(sampling_text(self.document), *self._drawable(), self.tables, self.volumes)
+        arms = len(self.document.get("robots", [None]))
+        return plots.ResultPlots(sampling_text(self.document), *self._drawable(), self.tables, self.volumes, arms)
 
     def render(
         self,

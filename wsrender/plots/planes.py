@@ -33,6 +33,12 @@ class Field:
     label: str
     norm: Normalize
 
+    @property
+    def ticks(self) -> MaxNLocator | None:
+        """Whole numbers on the colour bar of what is counted; None leaves them to matplotlib."""
+        known = self.values[~np.isnan(self.values)]
+        return MaxNLocator(integer=True) if np.array_equal(known, np.floor(known)) else None
+
 
 @paper_style()
 def slice_plane(
@@ -66,7 +72,7 @@ def slice_plane(
     figure = new_figure(width * scale + 1.8, max(height * scale + 1.0, 2.6))
     axes = figure.add_subplot()
     draw_plane(axes, volume, field, axis, layer, frame)
-    add_color_bar(figure, field.norm, field.label, ax=axes, shrink=0.9, aspect=28)
+    add_color_bar(figure, field.norm, field.label, ax=axes, shrink=0.9, aspect=28, ticks=field.ticks)
     add_title(figure, title)
     return figure
 
@@ -91,7 +97,8 @@ def slices(
     panels = figure.subplots(1, 3, width_ratios=widths)
     for axis, (axes, coordinate) in enumerate(zip(panels, at, strict=True)):
         draw_plane(axes, volume, field, axis, layer_at(volume, axis, coordinate), frame)
-    add_color_bar(figure, field.norm, field.label, ax=list(panels), shrink=0.8, aspect=28, pad=0.02)
+    place = {"ax": list(panels), "shrink": 0.8, "aspect": 28, "pad": 0.02}
+    add_color_bar(figure, field.norm, field.label, ticks=field.ticks, **place)
     add_title(figure, title)
     return figure
 

@@ -30,6 +30,7 @@ class ResultPlots:
     skeleton: np.ndarray | None
     tables: Mapping[str, Table] = field(default_factory=dict)
     volumes: Mapping[str, VolumeData] = field(default_factory=dict)
+    arms: int = 1  # robots whose skeletons stand one after the other
 
     def curves(self, table: str) -> Figure:
         """A table as curves over its first column."""
@@ -85,7 +86,7 @@ class ResultPlots:
         """The arm as a stick figure in its workspace, coloured by an index (by default the first)."""
         if self.skeleton is None:
             raise InputError("skeleton", "the result holds no configurations of the arm to draw")
-        return robot(self.skeleton, self.samples, index, title=self.title)
+        return robot(self.skeleton, self.samples, index, arms=self.arms, title=self.title)
 
     def _samples(self) -> DistributionMap:
         if self.samples is None:

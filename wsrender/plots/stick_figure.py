@@ -20,13 +20,14 @@ def robot(
     samples: DistributionMap | None = None,
     index: str | None = None,
     *,
+    arms: int = 1,
     title: str = "",
     frame: str = "world",
 ) -> Figure:
     """Stick figures of the arm in representative configurations, before the far half of its workspace.
 
-    ``skeleton`` (K, L+2, 3) holds world positions [m] of base, joint origins and tip; the first of the K
-    configurations is drawn in full, the others pale. The cloud is coloured by ``index`` (by default the
+    ``skeleton`` (K, L+2, 3) holds world positions [m] of base, joint origins and tip; the first ``arms`` of the K are
+    drawn in full, the others, configurations of the first, pale. The cloud is coloured by ``index`` (by default the
     map's first). Raises InputError for another shape or an unknown index.
     """
     skeleton = np.asarray(skeleton, np.float64)
@@ -41,10 +42,17 @@ def robot(
         colors = color_points(figure, samples, index, rows)
         cloud = samples.position[rows].T
         axes.scatter(*cloud, s=5, c=colors, alpha=0.6, linewidths=0, depthshade=False, rasterized=True)
-    for arm in skeleton[:0:-1]:
+    for arm in skeleton[: arms - 1 : -1]:
         axes.plot(*arm.T, color="white", lw=4.0, alpha=0.8, solid_capstyle="round", zorder=3)
         axes.plot(*arm.T, color=GREY, lw=2.0, marker="o", ms=3, zorder=4)
-    _draw_arm(axes, skeleton[0])
+    for arm in skeleton[:arms]:
+        _draw_arm(axes, arm)
+    handles = [
+        Line2D([], [], ls="", marker="s", ms=6, mfc=INK, mec="white", label="base"),
+        Line2D([], [], ls="", marker="o", ms=5, mfc="white", mec=INK, mew=1.2, label="joint"),
+        Line2D([], [], ls="", marker="*", ms=10, mfc=_ACCENT, mec="white", label="tip"),
+    ]
+    axes.legend(handles=handles, loc="upper left", frameon=False, fontsize=8)
     add_title(figure, title)
     return figure
 
@@ -55,9 +63,3 @@ def _draw_arm(axes: Axes3D, arm: np.ndarray) -> None:
     axes.plot(*arm[1:-1].T, ls="", marker="o", ms=6, mfc="white", mec=INK, mew=1.4, zorder=7)
     axes.plot(*arm[:1].T, ls="", marker="s", ms=8, mfc=INK, mec="white", zorder=8)
     axes.plot(*arm[-1:].T, ls="", marker="*", ms=13, mfc=_ACCENT, mec="white", mew=0.7, zorder=9)
-    handles = [
-        Line2D([], [], ls="", marker="s", ms=6, mfc=INK, mec="white", label="base"),
-        Line2D([], [], ls="", marker="o", ms=5, mfc="white", mec=INK, mew=1.2, label="joint"),
-        Line2D([], [], ls="", marker="*", ms=10, mfc=_ACCENT, mec="white", label="tip"),
-    ]
-    axes.legend(handles=handles, loc="upper left", frameon=False, fontsize=8)
