@@ -9,7 +9,7 @@ from pydantic import BeforeValidator
 
 from wsrender.errors import InputError
 from wsrender.spec.document import Document
-from wsrender.spec.quantities import Name
+from wsrender.spec.quantities import Name, real, sequence
 
 MOST_POINTS = 10_000_000
 
@@ -18,12 +18,12 @@ def _points(value: Any) -> tuple[Any, ...] | None:
     if value is None:
         return None
     try:
-        points: np.ndarray = np.asarray(value, np.float64)
-    except (TypeError, ValueError):
-        points = np.empty((0, 3))
-    if points.ndim != 2 or points.shape[1] != 3 or not len(points) or not np.isfinite(points).all():
+        points = tuple(tuple(map(real, sequence(point))) for point in sequence(value))
+    except ValueError:
+        points = ()
+    if not points or any(len(point) != 3 for point in points):
         raise ValueError("must be a list of points [x, y, z], finite numbers")
-    return tuple(map(tuple, points.tolist()))
+    return points
 
 
 class PointSet(Document):
