@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 import pytest
-from pydantic import ValidationError
 
+from wsrender.errors import DocumentError
 from wsrender.spec.point_sets import PointSet
 
 
@@ -13,7 +13,7 @@ from wsrender.spec.point_sets import PointSet
     "points", [[[0, 0, False]], [["0", "0", "0"]], [[0, 0]], [], [[0, 0, math.nan]], "abc", 3, [1, 2, 3]], ids=str
 )
 def test_what_is_no_list_of_points_is_refused(points):
-    with pytest.raises(ValidationError, match=r"list of points \[x, y, z\], finite numbers"):
+    with pytest.raises(DocumentError, match=r"list of points \[x, y, z\], finite numbers"):
         PointSet(points=points)
 
 
