@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from wsrender import run
     from wsrender.client import Client
     from wsrender.indices import Index, math, register_index
+    from wsrender.kinetostatics import ForceField, force_field
     from wsrender.reachability import Reachability, reachable
     from wsrender.result import Result
     from wsrender.robot import Robot, evaluate_indices, load_robot
@@ -39,6 +40,7 @@ if TYPE_CHECKING:
         analyze,
         collaborative_volume,
         execute,
+        kinetostatic_field,
         master_slave_mapping,
         robot_comparison,
         shared_workspace,
@@ -56,6 +58,7 @@ __all__ = [
     "DHRow",
     "DHTable",
     "DocumentError",
+    "ForceField",
     "FrameNotFoundError",
     "Grid",
     "Index",
@@ -85,6 +88,8 @@ __all__ = [
     "collaborative_volume",
     "evaluate_indices",
     "execute",
+    "force_field",
+    "kinetostatic_field",
     "load_robot",
     "master_slave_mapping",
     "math",
@@ -98,6 +103,7 @@ __all__ = [
 _NAMES_OF_MODULE = {
     "wsrender.client": ("Client",),
     "wsrender.indices": ("Index", "register_index"),
+    "wsrender.kinetostatics": ("ForceField", "force_field"),
     "wsrender.reachability": ("Reachability", "reachable"),
     "wsrender.result": ("Result",),
     "wsrender.robot": ("Robot", "evaluate_indices", "load_robot"),
@@ -105,6 +111,7 @@ _NAMES_OF_MODULE = {
         "analyze",
         "collaborative_volume",
         "execute",
+        "kinetostatic_field",
         "master_slave_mapping",
         "robot_comparison",
         "shared_workspace",

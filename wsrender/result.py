@@ -251,6 +251,7 @@ def _table_files(name: str, data: DistributionMap | Table, formats: tuple[str, .
 def _volume_files(name: str, volume: VolumeData, formats: tuple[str, ...]) -> Iterator[Artifact]:
     names = cell_names(volume, taken={"count"})
     units = {"count": "samples"} | {array: volume.units.get(index, "1") for (_, index), array in names.items()}
+    units |= {vector: volume.units.get(vector, "1") for vector in volume.vectors}
     for ending in ("vtkhdf", *(ending for ending in ("npz", "csv", "mat") if ending in formats)):
         write = partial(getattr(export, f"write_volume_{ending}"), volume)
         yield Artifact(f"{name}.{ending}", write, volume.count.shape, units)
@@ -288,6 +289,8 @@ def _pictures(result: Result) -> "dict[str, Callable[[], Figure]]":
     if plot.samples is not None and plot.samples.indices and rows:
         pictures["histogram"] = plot.histogram
     pictures |= {name: partial(plot.curves, name) for name in CURVES if len(result.tables.get(name, ()))}
+    if result.volume is not None and result.volume.vectors:
+        pictures["field"] = plot.vectors
     if "mapping" in result.tables:
         pictures["mapping"] = plot.mapping
     if result.document.get("analysis") == "robot_comparison":

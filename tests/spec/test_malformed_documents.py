@@ -30,6 +30,10 @@ def approach(**fields):
     return {"analysis": "capability", "robot": {"library": "ur5e"}, **fields}
 
 
+def felt(**fields):
+    return {"analysis": "kinetostatic_field", "robot": {"library": "ur5e"}, "field": fields}
+
+
 def sampled(**fields):
     return job(sampling={"method": "grid", **fields})
 
@@ -142,6 +146,36 @@ MALFORMED = [
     (approach(directions=10_001), "directions", "must be at most 10000, not 10001"),
     (approach(approach_axis="w"), "approach_axis", 'must be "x", "y", "z", "-x", "-y" or "-z", not "w"'),
     (approach(dexterous_threshold=1.5), "dexterous_threshold", "must be at most 1"),
+    # force fields
+    (felt(form="soft"), "field.form", 'must be "normalised" or "potential", not "soft"'),
+    (felt(haptic_device={"kind": "gripper"}), "field.haptic_device.kind", 'must be "force" or "wrench", not "gripper"'),
+    (
+        felt(haptic_device={"continuous_force_n": 9}),
+        "field.haptic_device.continuous_force_n",
+        "at most peak_force_n, 6.4",
+    ),
+    (felt(haptic_device={"period_s": 1}), "field.haptic_device.period_s", "must be at most 0.1, not 1"),
+    (felt(characteristic_length={"method": "given"}), "field.characteristic_length.length_m", "must be given with"),
+    (felt(characteristic_length={"length_m": 1}), "field.characteristic_length.length_m", "and with no other"),
+    (felt(joint_limits={"margin_rad": 0}), "field.joint_limits.margin_rad", "must be greater than 0, not 0"),
+    (
+        felt(conditioning={"condition_threshold": 4}),
+        "field.conditioning.condition_threshold",
+        "must be above 1 / inverse_condition_on, 5",
+    ),
+    (felt(boundary={"cells": 2}), "field.boundary.cells", "must be at least 16, not 2"),
+    (felt(obstacles={"items": [{"shape": "cone"}]}), "field.obstacles.items.0.shape", 'must be one of "sphere", "box"'),
+    (felt(obstacles={"items": []}), "field.obstacles.items", "must have at least 1 items"),
+    (
+        felt(obstacles={"items": [{"shape": "mesh", "vertices_m": [[0, 0, 0]]}]}),
+        "field.obstacles.items.0.vertices_m",
+        "must be a list of 4 … 10000 points [x, y, z]",
+    ),
+    (
+        {"analysis": "kinetostatic_field", "robot": "ur5e", "sampling": {"method": "converge"}},
+        "sampling",
+        'must not be "converge"',
+    ),
     # voxels, map, execution
     (job(voxel_size_m=0), "voxel_size_m", "must be greater than 0"),
     (job(voxel_size_m=-0.01), "voxel_size_m", "must be greater than 0, not -0.01"),

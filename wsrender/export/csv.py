@@ -7,7 +7,7 @@ import pyarrow as pa
 import pyarrow.csv
 
 from wsrender.export.atomic import new_file
-from wsrender.export.cells import cell_array, cell_names
+from wsrender.export.cells import cell_array, cell_names, vector_array
 from wsrender.export.column_type import column_type
 from wsrender.export.columns import arrays_by_column, columns_of
 from wsrender.volume.distribution_map import DistributionMap
@@ -32,13 +32,16 @@ def write_volume_csv(volume: VolumeData, path: str | Path) -> None:
     """Write the occupied voxels, z fastest.
 
     Columns ``i``, ``j``, ``k`` (lattice index), ``x``, ``y``, ``z`` (centre [m], world frame), ``count``
-    and ``<statistic>_<index>``.
+    and ``<statistic>_<index>``; vectors as ``<name>_x``, ``<name>_y``, ``<name>_z``.
     """
     lattice = ("i", "j", "k", "x", "y", "z", "count")
     names = cell_names(volume, taken=set(lattice))
-    arrays = [volume.count, *(cell_array(volume, *key) for key in names)]
+    components = {
+        f"{name}_{axis}": vector_array(volume, name)[..., k] for name in volume.vectors for k, axis in enumerate("xyz")
+    }
+    arrays = [volume.count, *(cell_array(volume, *key) for key in names), *components.values()]
     types = [pa.int64()] * 3 + [pa.float64()] * 3 + [pa.from_numpy_dtype(array.dtype) for array in arrays]
-    header = [*lattice, *names.values()]
+    header = [*lattice, *names.values(), *components]
     schema = pa.schema(list(zip(header, types, strict=True)))
     with new_file(path) as temporary, pyarrow.csv.CSVWriter(temporary, schema) as writer:
         for i in range(volume.count.shape[0]):

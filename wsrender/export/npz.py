@@ -12,7 +12,7 @@ import numpy as np
 
 from wsrender.errors import InputError
 from wsrender.export.atomic import new_file
-from wsrender.export.cells import cell_array, cell_names
+from wsrender.export.cells import cell_array, cell_names, vector_array, vector_names
 from wsrender.export.columns import DESCRIPTION, arrays_by_column, columns_from_json, columns_of
 from wsrender.volume.distribution_map import DistributionMap
 from wsrender.volume.table import Table
@@ -36,17 +36,20 @@ def read_table_npz(path: str | Path) -> DistributionMap | Table:
 
 
 def write_volume_npz(volume: VolumeData, path: str | Path) -> None:
-    """Write volume data: ``count`` and ``<statistic>_<index>``, each (nx, ny, nz)."""
-    names = cell_names(volume, taken={"count", DESCRIPTION})
+    """Write volume data: ``count`` and ``<statistic>_<index>``, each (nx, ny, nz); vectors (nx, ny, nz, 3)."""
+    taken = {"count", DESCRIPTION}
+    names, vectors = cell_names(volume, taken), vector_names(volume, taken)
     description = {
         "frame": "world",
         "voxel_size_m": float(volume.voxel_size_m),
         "first_voxel": [int(i) for i in volume.first_voxel],
         "arrays": [[statistic, index, name] for (statistic, index), name in names.items()],
+        "vectors": vectors,
         "units": volume.units,
     }
     arrays = {"count": volume.count}
     arrays |= {name: cell_array(volume, *key) for key, name in names.items()}
+    arrays |= {name: vector_array(volume, vector) for vector, name in vectors.items()}
     _write(path, json.dumps(description), arrays)
 
 
@@ -65,6 +68,7 @@ def read_volume_npz(path: str | Path) -> VolumeData:
             count=arrays["count"],
             statistics=statistics,
             units=description["units"],
+            vectors={vector: arrays[name] for vector, name in description["vectors"].items()},
         )
     except (ValueError, KeyError, TypeError) as error:
         raise InputError(path.name, f"is not volume data of wsrender: {error!r}") from error

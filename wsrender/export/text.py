@@ -40,6 +40,13 @@ def _facts(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
     if capability := document.get("capability"):
         yield "reachability index", f"{capability['mean_index']:.4g} on average"
         yield "dexterous volume", f"{capability['dexterous_volume_m3']:.4g} m³"
+    if found := document.get("kinetostatic_field"):
+        length, passivity = found["characteristic_length"], found["passivity"]
+        yield "characteristic length", f"{length['length_m']:.4g} m ({length['method']})"
+        yield "force", f"{found['mean_force_n']:.4g} N on average, {found['largest_force_n']:.4g} N at most"
+        share, bound = passivity["share_of_postures_within_bound"], passivity["stiffness_bound_n_per_m"]
+        yield "passive stiffness", f"{100 * share:.3g} % of postures are below {bound:.4g} N/m"
+        yield "work of closed paths", f"{passivity['largest_loop_work_j']:.3g} J at most"
     bounds = document.get("bounds_m") or {}
     if {"lower", "upper"} <= set(bounds):
         for axis, low, high in zip("xyz", bounds["lower"], bounds["upper"], strict=True):

@@ -1,8 +1,8 @@
 """Volume data ↔ VTKHDF ImageData, which ParaView, VTK, MATLAB and h5py open.
 
 Format: VTK's *VTKHDF File Format*, ImageData. Cell arrays ``count`` and ``<statistic>_<index>`` have shape
-(nz, ny, nx), NaN in empty voxels; ``Origin`` and ``Spacing`` are in metres in the world frame. Units stand
-in the attribute ``unit`` of each array. The file holds no time stamps.
+(nz, ny, nx), vectors (nz, ny, nx, 3), NaN in empty voxels; ``Origin`` and ``Spacing`` are in metres in the world
+frame. Units stand in the attribute ``unit`` of each array. The file holds no time stamps.
 """
 
 import json
@@ -16,7 +16,7 @@ import numpy as np
 
 from wsrender.errors import InputError
 from wsrender.export.atomic import new_file
-from wsrender.export.cells import cell_array, cell_names
+from wsrender.export.cells import cell_array, cell_names, vector_array, vector_names
 from wsrender.volume.volume_data import VolumeData
 
 _CHUNK_BYTES = 1 << 21
@@ -25,7 +25,8 @@ _COMPRESSION_LEVEL = 1  # voxel values are mostly noise in their low bits: highe
 
 def write_volume_vtkhdf(volume: VolumeData, path: str | Path) -> None:
     """Write volume data as one ImageData with cell arrays; InputError where an array's shape differs."""
-    names = cell_names(volume, taken={"count"})
+    taken = {"count"}
+    names, vectors = cell_names(volume, taken), vector_names(volume, taken)
     with new_file(path) as temporary, h5py.File(temporary, "w") as file:
         root = file.create_group("VTKHDF")
         root.attrs.create("Version", np.array([1, 0], np.int64))
@@ -44,6 +45,11 @@ def write_volume_vtkhdf(volume: VolumeData, path: str | Path) -> None:
             dataset = _write_array(cells, name, cell_array(volume, statistic, index))
             unit = volume.units.get(index, "1")
             dataset.attrs.update({"statistic": statistic, "index": index, "unit": unit})
+        for vector, name in vectors.items():
+            values = vector_array(volume, vector).transpose(2, 1, 0, 3)
+            options = {"compression": "gzip", "compression_opts": _COMPRESSION_LEVEL, "track_times": False}
+            dataset = cells.create_dataset(name, data=values, **options)
+            dataset.attrs.update({"vector": vector, "unit": volume.units.get(vector, "1")})
 
 
 def _write_array(group: h5py.Group, name: str, array: np.ndarray) -> h5py.Dataset:
@@ -98,10 +104,13 @@ def _read(file: Any) -> VolumeData:  # h5py's own types are unions of all that a
     root = file["VTKHDF"]
     cells = root["CellData"]
     statistics: dict[str, dict[str, np.ndarray]] = {}
+    vectors: dict[str, np.ndarray] = {}
     for dataset in cells.values():
         if "statistic" in dataset.attrs:
             by_index = statistics.setdefault(str(dataset.attrs["statistic"]), {})
             by_index[str(dataset.attrs["index"])] = _read_array(dataset)
+        elif "vector" in dataset.attrs:
+            vectors[str(dataset.attrs["vector"])] = dataset[...].transpose(2, 1, 0, 3)
     i, j, k = root.attrs["first_voxel"]
     return VolumeData(
         voxel_size_m=float(root.attrs["Spacing"][0]),
@@ -109,6 +118,7 @@ def _read(file: Any) -> VolumeData:  # h5py's own types are unions of all that a
         count=_read_array(cells["count"]),
         statistics=statistics,
         units=dict(json.loads(root.attrs["units"])),
+        vectors=vectors,
     )
 
 

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from wsrender.plots.stick_figure import robot
     from wsrender.plots.style import png, save_figure
     from wsrender.plots.table_curves import curves
+    from wsrender.plots.vector_field import vector_planes
 
 # Modules are not called like their functions: importing one would hide the function.
 _MODULES = {
@@ -33,6 +34,7 @@ _MODULES = {
     "side_by_side": "comparison",
     "slice_plane": "planes",
     "slices": "planes",
+    "vector_planes": "vector_field",
     "write_histogram_csv": "distribution",
 }
 
@@ -48,6 +50,7 @@ __all__ = [
     "side_by_side",
     "slice_plane",
     "slices",
+    "vector_planes",
     "write_histogram_csv",
 ]
 

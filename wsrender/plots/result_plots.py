@@ -15,6 +15,7 @@ from wsrender.plots.planes import slice_plane, slices
 from wsrender.plots.point_cloud import scatter
 from wsrender.plots.stick_figure import robot
 from wsrender.plots.table_curves import curves
+from wsrender.plots.vector_field import vector_planes
 from wsrender.volume.distribution_map import DistributionMap
 from wsrender.volume.table import Table
 from wsrender.volume.volume_data import VolumeData
@@ -81,6 +82,12 @@ class ResultPlots:
     ) -> Figure:
         """Three planes, normal to x, y and z at the coordinates ``at`` [m]."""
         return slices(self._volume(), at=at, index=index, statistic=statistic, title=self.title)
+
+    def vectors(
+        self, name: str | None = None, at: tuple[float | None, float | None, float | None] = (None, None, None)
+    ) -> Figure:
+        """Stream lines of a vector (by default the first) in three planes, normal to x, y and z at ``at`` [m]."""
+        return vector_planes(self._volume(), name, at=at, title=self.title)
 
     def robot(self, index: str | None = None) -> Figure:
         """The arm as a stick figure in its workspace, coloured by an index (by default the first)."""

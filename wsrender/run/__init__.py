@@ -1,6 +1,6 @@
 """Running a job, in the four steps that every door uses: plan, run_shard, merge, finish."""
 
-from wsrender.run.analyze import analyze
+from wsrender.run.analyze import analyze, kinetostatic_field
 from wsrender.run.several_from_python import (
     collaborative_volume,
     master_slave_mapping,
@@ -15,6 +15,7 @@ __all__ = [
     "collaborative_volume",
     "execute",
     "finish",
+    "kinetostatic_field",
     "master_slave_mapping",
     "merge",
     "plan",

@@ -1,4 +1,4 @@
-"""The workspace analysis from Python."""
+"""The analyses of one robot from Python."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -38,3 +38,20 @@ def analyze(
         **plain(fields),
     }
     return execute_here(document, subject, progress, threads=threads, chunk_size=chunk_size)
+
+
+def kinetostatic_field(
+    robot: Any, sampling: Any = None, *, progress: Progress | bool | None = None, **fields: Any
+) -> Result:
+    """The force field of a robot's limits and conditioning over its workspace, as a volume of vectors.
+
+    ``robot`` is as in `analyze`; ``sampling`` one of Grid, Random, Sobol, BoundaryBiased (default Sobol(100000));
+    ``fields`` are the other fields of the job document ``kinetostatic_field``: field (which forces act), voxel_size_m,
+    device. `force_field` gives the forces of single configurations.
+
+    Raises DocumentError, InputError, ModelError, ResourceError.
+    """
+    subject = as_subject(robot)
+    sampled = {} if sampling is None else {"sampling": sampling_entry(sampling)}
+    document = {"analysis": "kinetostatic_field", **arm_entry(subject), **sampled, **plain(fields)}
+    return execute_here(document, subject, progress)

@@ -11,6 +11,7 @@ from wsrender.run.capability import plan_capability
 from wsrender.run.collaborative import plan_collaborative
 from wsrender.run.comparison import plan_robot_comparison
 from wsrender.run.indices_at import plan_indices_at
+from wsrender.run.kinetostatics import plan_kinetostatic_field
 from wsrender.run.mapping import plan_mapping
 from wsrender.run.reachability import plan_reachability
 from wsrender.run.shared import plan_shared_workspace
@@ -19,6 +20,7 @@ from wsrender.spec import (
     CapabilityJob,
     CollaborativeVolumeJob,
     IndicesAtJob,
+    KinetostaticFieldJob,
     MasterSlaveMappingJob,
     ReachabilityJob,
     RobotComparisonJob,
@@ -39,6 +41,7 @@ PLANNERS: dict[type, Callable[..., "Plan"]] = {
     RobotComparisonJob: plan_robot_comparison,
     CollaborativeVolumeJob: plan_collaborative,
     MasterSlaveMappingJob: plan_mapping,
+    KinetostaticFieldJob: plan_kinetostatic_field,
 }
 
 

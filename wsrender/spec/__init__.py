@@ -3,6 +3,7 @@
 from wsrender.spec.capability import CapabilityJob
 from wsrender.spec.collaborative import CollaborativeVolumeJob
 from wsrender.spec.jobs import ANALYSES, IndicesAtJob, Job, WorkspaceJob
+from wsrender.spec.kinetostatics import KinetostaticFieldJob
 from wsrender.spec.mapping import MasterSlaveMappingJob
 from wsrender.spec.parsing import canonical_json, job_schema, parse_job
 from wsrender.spec.reachability import ReachabilityJob
@@ -14,6 +15,7 @@ __all__ = [
     "CollaborativeVolumeJob",
     "IndicesAtJob",
     "Job",
+    "KinetostaticFieldJob",
     "MasterSlaveMappingJob",
     "ReachabilityJob",
     "RobotComparisonJob",

@@ -10,6 +10,7 @@ from wsrender.spec.capability import CapabilityJob
 from wsrender.spec.collaborative import CollaborativeVolumeJob
 from wsrender.spec.document import Document
 from wsrender.spec.index_choices import IndexChoices
+from wsrender.spec.kinetostatics import KinetostaticFieldJob
 from wsrender.spec.mapping import MasterSlaveMappingJob
 from wsrender.spec.options import Configurations, MapColumns, Statistics
 from wsrender.spec.problems import tagged
@@ -72,6 +73,7 @@ _AnyJob = (
     | RobotComparisonJob
     | CollaborativeVolumeJob
     | MasterSlaveMappingJob
+    | KinetostaticFieldJob
 )
 ANALYSES: dict[str, type[Document]] = {job.model_fields["analysis"].default: job for job in get_args(_AnyJob)}
 

@@ -37,6 +37,7 @@ _ALLOWED = {
 }
 _WORDED = "problem"  # type of the errors whose message is already in plain words
 _LONGEST_VALUE = 60
+_TAGS = ("analysis", "method", "shape")  # fields that tell the members of a union apart
 
 
 def worded(error: ValidationError, model: type[BaseModel] | None = None) -> ValidationError:
@@ -129,7 +130,7 @@ def _path(loc: tuple[int | str, ...], document: Any) -> str:
     """The dotted path of a location, without the union tags that pydantic puts in between."""
     steps, node, entered = [], document, False
     for step in loc:
-        if not entered and isinstance(node, Mapping) and step in (node.get("analysis"), node.get("method")):
+        if not entered and isinstance(node, Mapping) and step in map(node.get, _TAGS):
             entered = True
             continue
         steps.append(str(step))

@@ -12,6 +12,7 @@ class VolumeData:
     Voxel (i, j, k) of the arrays covers [(first_voxel + (i, j, k)) r, … + r) with r = ``voxel_size_m``;
     x runs along the first axis. ``count`` is int64 of shape (nx, ny, nz); ``statistics[s][name]`` holds
     statistic s ("maximum", "minimum", "mean") of index ``name``, float64 or float32, NaN in empty voxels.
+    ``vectors[name]`` (nx, ny, nz, 3) holds the mean of a vector in world axes. ``units`` are of both.
     """
 
     voxel_size_m: float
@@ -19,6 +20,7 @@ class VolumeData:
     count: np.ndarray
     statistics: dict[str, dict[str, np.ndarray]] = field(default_factory=dict)
     units: dict[str, str] = field(default_factory=dict)
+    vectors: dict[str, np.ndarray] = field(default_factory=dict)
 
     @property
     def occupied(self) -> np.ndarray:

@@ -37,6 +37,16 @@ DOCUMENTS = {
         "search": {"scale": [0.1, 2.0], "steps": 10},
         "device": "cpu",
     },
+    "kinetostatic_field": {
+        "analysis": "kinetostatic_field",
+        "robot": "scara",
+        "field": {
+            "task": ["x", "y"],
+            "obstacles": {"items": [{"shape": "sphere", "center_m": [0.3, 0, 0], "radius_m": 0.1}]},
+        },
+        "sampling": SAMPLING,
+        "device": "cpu",
+    },
     "shared_workspace": {"analysis": "shared_workspace", "robots": ROBOTS, "voxel_size_m": 0.05, "device": "cpu"},
     "reachability": {
         "analysis": "reachability",

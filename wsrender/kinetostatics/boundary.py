@@ -1,0 +1,167 @@
+"""A smooth signed distance to the boundary of a workspace."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.ndimage import binary_closing, gaussian_filter
+from scipy.spatial import KDTree
+from scipy.special import ndtri
+
+from wsrender.engine import configurations, evaluate_kinematics
+from wsrender.errors import InputError
+from wsrender.reachability.inverse_solver import REACHABLE, InverseSolver
+from wsrender.reachability.refined_volume import POSITION_M
+from wsrender.robots.chain import Chain
+from wsrender.sampling import plan_sampling
+from wsrender.spec.kinetostatics import BoundaryForce
+from wsrender.spec.sampling import Sobol
+
+SAMPLES_PER_CELL = 8
+FIRST, CHUNK = 1 << 14, 1 << 17
+FLAT = 1e-6  # extent of a set of positions that counts as none, relative to its size
+DECIDED = 2.0  # [cells] from the boundary of the samples within which cells are decided one by one
+EDGE = 4  # cells around the workspace: the distance is known that far outside
+NEAR, LEAST_SHARE = 1.5, 1e-6  # [cells] within which a Gaussian tells the distance; share that tells no more
+
+
+@dataclass(frozen=True, eq=False)
+class BoundaryDistance:
+    """Distance to the boundary of a workspace [m], positive inside, twice differentiable.
+
+    A uniform cubic B-spline over distances at the centres of cells of edge ``cell_m``. Axes (d, 3) span the workspace:
+    a planar one is measured in its plane. Right to about half a cell; edges are rounded off over two cells.
+    """
+
+    values: np.ndarray  # (cells…) of d axes [m], at the centres of cells
+    axes: np.ndarray  # (d, 3) orthonormal
+    origin: np.ndarray  # (d,) centre of the first cell along the axes [m]
+    cell_m: float
+
+    def at(self, position: np.ndarray) -> tuple[float, np.ndarray]:
+        """(distance [m], gradient (3,)) at a position (3,) in the world."""
+        u = (self.axes @ position - self.origin) / self.cell_m
+        first = np.minimum(np.maximum(np.floor(u).astype(np.int64), 1), np.array(self.values.shape) - 3)
+        weights, slopes = _spline(np.minimum(np.maximum(u - first, 0.0), 1.0))
+        block = self.values[tuple(slice(k - 1, k + 3) for k in first.tolist())]
+        return _contracted(block, weights), self._gradient(block, weights, slopes) / self.cell_m
+
+    def _gradient(self, block: np.ndarray, weights: np.ndarray, slopes: np.ndarray) -> np.ndarray:
+        parts = np.empty(len(weights))
+        for axis in range(len(weights)):
+            mixed = weights.copy()
+            mixed[axis] = slopes[axis]
+            parts[axis] = _contracted(block, mixed)
+        return parts @ self.axes
+
+
+def _spline(t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Weights (d, 4) of the uniform cubic B-spline at t (d,) in 0 … 1, and their derivatives."""
+    s = 1 - t
+    weights = np.stack([s**3, 4 - 6 * t**2 + 3 * t**3, 4 - 6 * s**2 + 3 * s**3, t**3], axis=1) / 6
+    slopes = np.stack([-(s**2), 3 * t**2 - 4 * t, 4 * s - 3 * s**2, t**2], axis=1) / 2
+    return weights, slopes
+
+
+def _contracted(block: np.ndarray, weights: np.ndarray) -> float:
+    for axis in range(len(weights) - 1, -1, -1):
+        block = block @ weights[axis]
+    return float(block)
+
+
+def boundary_distance(chain: Chain, choice: BoundaryForce, device: str = "cpu") -> BoundaryDistance:
+    """The distance to the boundary of all positions that a chain reaches within its joint limits.
+
+    Raises InputError for an end effector that does not move.
+    """
+    positions = next(_positions(chain, FIRST, choice.seed, device))
+    axes = _spanning_axes(positions)
+    low, high = (positions @ axes.T).min(axis=0), (positions @ axes.T).max(axis=0)
+    cell = float(np.prod(high - low) ** (1 / len(axes))) / choice.cells
+    origin = low - (EDGE + 0.5) * cell
+    shape = np.ceil((high - low) / cell).astype(int) + 2 * EDGE + 2
+    inside = np.zeros(shape, bool)
+    _fill(inside, chain, axes, origin, cell, choice, device)
+    if choice.refined:
+        _decide(inside, chain, axes, origin, cell, choice, device)
+    # A cell counts where a sample falls into any part of it: on average half a cell too far out.
+    values = (_signed_distance(inside) - (0.0 if choice.refined else 0.5)) * cell
+    return BoundaryDistance(values, axes, origin, cell)
+
+
+def _fill(
+    inside: np.ndarray,
+    chain: Chain,
+    axes: np.ndarray,
+    origin: np.ndarray,
+    cell: float,
+    choice: BoundaryForce,
+    device: str,
+) -> None:
+    """Mark the cells that samples reach; gaps of one cell between samples are closed."""
+    last = np.array(inside.shape) - 1
+    for positions in _positions(chain, SAMPLES_PER_CELL * inside.size, choice.seed, device):
+        at = np.round((positions @ axes.T - origin) / cell).astype(np.int64)
+        inside[tuple(np.clip(at, 0, last).T)] = True
+    inside |= binary_closing(inside)
+
+
+def _decide(
+    inside: np.ndarray,
+    chain: Chain,
+    axes: np.ndarray,
+    origin: np.ndarray,
+    cell: float,
+    choice: BoundaryForce,
+    device: str,
+) -> None:
+    """Decide the cells at the boundary by inverse kinematics of their centres."""
+    near = np.argwhere(np.abs(_signed_distance(inside)) < DECIDED)
+    plane = (np.eye(3) - axes.T @ axes) @ next(_positions(chain, 1, choice.seed, device))[0]
+    centers = (origin + near * cell) @ axes + plane
+    solver = InverseSolver(chain, position_m=POSITION_M, seed=choice.seed, device=device)
+    inside[tuple(near.T)] = solver.solve(centers).label == REACHABLE
+
+
+def _signed_distance(inside: np.ndarray) -> np.ndarray:
+    """Distance of every cell's centre to the boundary [cells], positive inside.
+
+    The share of inner cells under a Gaussian is Φ(distance) near a flat boundary: its inverse gives distances to a
+    fraction of a cell, and where they change sign the boundary, from which farther cells are measured.
+    """
+    share = gaussian_filter(inside.astype(np.float64), 1.0)
+    near = np.asarray(ndtri(np.clip(share, LEAST_SHARE, 1 - LEAST_SHARE)))
+    crossings = np.concatenate([_crossings(near, axis) for axis in range(near.ndim)])
+    if not len(crossings):
+        raise InputError("boundary.cells", "leaves nothing of the workspace: it is thinner than two cells; use more")
+    cells = np.indices(near.shape).reshape(near.ndim, -1).T
+    far, _ = KDTree(crossings).query(cells)
+    far = np.where(near > 0, 1.0, -1.0) * far.reshape(near.shape)
+    return np.where(np.abs(near) < NEAR, near, far)
+
+
+def _crossings(near: np.ndarray, axis: int) -> np.ndarray:
+    """Points (K, d) [cells] at which the distance changes its sign between neighbours along an axis."""
+    before, after = (near.take(range(*ends), axis) for ends in ((0, near.shape[axis] - 1), (1, near.shape[axis])))
+    changes = (before > 0) != (after > 0)
+    points = np.argwhere(changes).astype(np.float64)
+    points[:, axis] += before[changes] / (before[changes] - after[changes])
+    return points
+
+
+def _spanning_axes(positions: np.ndarray) -> np.ndarray:
+    """Orthonormal axes (d, 3) of what positions (N, 3) span; the world's where they fill space."""
+    centered = positions - positions.mean(axis=0)
+    _, sizes, axes = np.linalg.svd(centered, full_matrices=False)
+    dimensions = int((sizes > FLAT * max(sizes[0], 1e-12)).sum()) if sizes[0] > 1e-9 else 0
+    if dimensions == 0:
+        raise InputError("boundary", "cannot be felt: the end effector does not move")
+    return np.eye(3) if dimensions == 3 else axes[:dimensions]
+
+
+def _positions(chain: Chain, count: int, seed: int, device: str) -> Iterator[np.ndarray]:
+    """World positions (N, 3) of a Sobol set of configurations [m], piece by piece."""
+    plan = plan_sampling(chain, Sobol(count, seed=seed))
+    for first in range(0, count, CHUNK):
+        rows = configurations(plan, np.arange(first, min(first + CHUNK, count)))
+        yield evaluate_kinematics(chain, rows, False, "float64", device).pose[:, :3, 3]

@@ -1,0 +1,235 @@
+"""The force field of a robot's limits and conditioning ([CB]), as a function of its configuration.
+
+Two forms. ``normalised``: every term is a ramp of force along a unit direction; these directions are no gradient, so a
+closed path can do net work. ``potential``: F = −∇U. A quantity g(q) has the Cartesian gradient (J⁺)ᵀ ∂g/∂q with the
+damped pseudo-inverse J⁺, which is the exact one unless a singular value is below a hundredth of the largest: it is the
+gradient along motions q̇ = J⁺ ẋ, and F·ẋ = −dU/dt along them.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from wsrender.errors import InputError
+from wsrender.kinetostatics.boundary import boundary_distance
+from wsrender.kinetostatics.characteristic_length import characteristic_length
+from wsrender.kinetostatics.conditioning import Condition, Conditioning, ConditioningRamp
+from wsrender.kinetostatics.joint_limits import JointLimits
+from wsrender.kinetostatics.kinematics import Kinematics, Posture
+from wsrender.kinetostatics.obstacles import ObstacleDistance
+from wsrender.kinetostatics.singular_values import damped_inverse
+from wsrender.kinetostatics.surfaces import SurfaceRamp
+from wsrender.robot import Robot, as_robot
+from wsrender.robot.indices import task_rows
+from wsrender.robot.model_robot import configuration_rows
+from wsrender.spec.kinetostatics import ForceFieldChoice, JointLimitForce
+
+FELT = 1e-6  # least norm of a limit's direction that can be felt, relative to the largest
+STEP = 1e-6  # of central differences [m]; torque devices turn by as many metres over the characteristic length
+
+
+@dataclass(eq=False, slots=True)
+class FieldState:
+    """What a posture feels.
+
+    ``force`` (3,) [N] and ``torque`` (3,) [N m] at the tip, world axes, clipped at the device's peak. ``energy`` [J] of
+    the form "potential", else 0. ``limit_distances`` (n,) [rad or m], ``boundary_m`` and ``obstacle_m`` [m] (infinite
+    where there is none). ``nearness`` 0 … 1 to the nearest of these limits, ``ill_conditioning`` 0 … 1 the share of
+    the conditioning ramp. ``unfelt``: joints at a limit whose direction no force of the device shows.
+    """
+
+    posture: Posture
+    force: np.ndarray
+    torque: np.ndarray
+    energy: float
+    inverse_condition: float
+    limit_distances: np.ndarray
+    boundary_m: float
+    obstacle_m: float
+    nearness: float
+    ill_conditioning: float
+    unfelt: tuple[str, ...]
+
+
+@dataclass(eq=False, slots=True)
+class _Pushes:
+    """What the terms of a posture add up: joint torques, and forces (with torques / length, or without)."""
+
+    torques: np.ndarray  # (n,)
+    wrench: np.ndarray  # (3,) or (6,)
+    energy: float = 0.0
+    nearness: float = 0.0
+    unfelt: tuple[str, ...] = ()
+
+
+class ForceField:
+    """The forces of a `ForceFieldChoice` for a robot; build it with `force_field`.
+
+    ``length`` is the characteristic length with its method. Not for several threads at once.
+    """
+
+    def __init__(self, robot: Robot, choice: ForceFieldChoice, device: str = "auto"):
+        self.robot, self.choice, self.device = robot, choice, choice.haptic_device
+        self.kinematics = Kinematics(robot)
+        self.chain = chain = self.kinematics.chain
+        rows = task_rows(choice.task)
+        self.length = characteristic_length(self.kinematics, choice.characteristic_length, rows)
+        peak, length = self.device.peak_force_n, self.length.length_m
+        self.conditioning = Conditioning(self.kinematics, rows, length)
+        limits = choice.joint_limits
+        self.joint_limits = JointLimits(chain, limits or JointLimitForce(), peak, length)
+        self._has_limits = limits is not None
+        self._ramp = ConditioningRamp(choice.conditioning, peak, length) if choice.conditioning else None
+        self._boundary = self._obstacles = None
+        if wall := choice.boundary:
+            distance = boundary_distance(chain, wall, device)
+            self._boundary = SurfaceRamp(distance, wall.margin_m, wall.stiffness_n_per_m, peak)
+        if things := choice.obstacles:
+            self._obstacles = SurfaceRamp(ObstacleDistance(things), things.margin_m, things.stiffness_n_per_m, peak)
+        self.is_wrench = self.device.kind == "wrench"
+        self._normalised = choice.form == "normalised"
+        self._ones = np.ones(6 if self.is_wrench else 3)
+        self._row_scale = np.array([1 / length] * 3 + [1.0] * 3)[:, None]
+
+    def force(self, q: Any) -> np.ndarray:
+        """Force (3,) [N] at a configuration (n,), or force and torque (6,) [N, N m] of a wrench device.
+
+        World axes, at the tip, clipped at the device's peak.
+        """
+        state = self.evaluate(q)
+        return np.concatenate([state.force, state.torque]) if self.is_wrench else state.force
+
+    def forces(self, q: Any) -> np.ndarray:
+        """Forces (N, 3) or (N, 6) at configurations (N, n)."""
+        return np.array([self.force(row) for row in configuration_rows(q, self.chain.n)])
+
+    def energy(self, q: Any) -> float:
+        """Potential energy U [J] of the form "potential"; InputError for the other, which has none."""
+        if self._normalised:
+            raise InputError("form", '"normalised" has no energy: its forces are no gradient')
+        return self.evaluate(q).energy
+
+    def joint_forces(self, q: Any) -> np.ndarray:
+        """The joint-limit ramps f_i (n,) [N] at a configuration (n,)."""
+        limits = self.joint_limits
+        return limits.ramps(limits.penetration(self._checked(q)))
+
+    def evaluate(self, q: Any) -> FieldState:
+        """Everything that a configuration (n,) feels. Raises InputError for a wrong shape or a number not finite."""
+        posture = self.kinematics.at(self._checked(q))
+        condition = self.conditioning.at(posture)
+        pushes = _Pushes(np.zeros(self.chain.n), np.zeros(6 if self.is_wrench else 3))
+        penetration = self.joint_limits.penetration(posture.q)
+        at_limits = self._has_limits and bool(penetration.any())
+        share = self._ramp.share(condition.inverse) if self._ramp else 0.0
+        if at_limits or share > 0.0:
+            inverse = self._inverse(posture)
+            if at_limits:
+                self._add_limits(pushes, penetration, inverse)
+            if share > 0.0:
+                self._add_conditioning(pushes, posture, condition, inverse)
+            if not self._normalised:
+                pushes.wrench += self._dual(inverse.T @ pushes.torques)
+        boundary = self._add_surface(pushes, self._boundary, posture.position)
+        obstacle = self._add_surface(pushes, self._obstacles, posture.position)
+        force, torque = self._clipped(pushes.wrench)
+        return FieldState(
+            posture, force, torque, pushes.energy, condition.inverse, self.joint_limits.distances(posture.q),
+            boundary, obstacle, pushes.nearness, share, pushes.unfelt,
+        )  # fmt: skip
+
+    def inverse_jacobian(self, posture: Posture) -> np.ndarray:
+        """Damped pseudo-inverse (n, 3) of the linear Jacobian, or (n, 6) of the whole one for a wrench device."""
+        inverse = self._inverse(posture)
+        return inverse * self._row_scale.T if self.is_wrench else inverse
+
+    def stiffness(self, q: Any) -> np.ndarray:
+        """∂F/∂x by central differences along q̇ = J⁺ ẋ, (3, 3) [N/m]; of a wrench device, its forces by positions."""
+        q = self._checked(q)
+        inverse = self.inverse_jacobian(self.kinematics.at(q))[:, :3]
+        K = np.empty((3, 3))
+        for axis in range(3):
+            step = STEP * inverse[:, axis]
+            K[:, axis] = (self.evaluate(q + step).force - self.evaluate(q - step).force) / (2 * STEP)
+        return K
+
+    def _checked(self, q: Any) -> np.ndarray:
+        q = np.asarray(q, np.float64)
+        if q.shape != (self.chain.n,) or not np.isfinite(q).all():
+            return configuration_rows(q, self.chain.n)[0]  # says what is wrong, or takes a single row
+        return q
+
+    def _inverse(self, posture: Posture) -> np.ndarray:
+        """Damped pseudo-inverse of the linear, or of the homogeneous Jacobian."""
+        return damped_inverse(posture.J * self._row_scale if self.is_wrench else posture.J[:3])
+
+    def _dual(self, homogeneous: np.ndarray) -> np.ndarray:
+        """Dual of a homogeneous velocity (v/L, ω) as force and torque / L, both [N]."""
+        return homogeneous / self.length.length_m if self.is_wrench else homogeneous
+
+    def _add_limits(self, pushes: _Pushes, penetration: np.ndarray, inverse: np.ndarray) -> None:
+        limits = self.joint_limits
+        ramps = limits.ramps(penetration)
+        pushes.nearness = float(max(ramps.max(), -ramps.min())) / limits.peak
+        norms = np.sqrt((inverse * inverse) @ self._ones)
+        least = FELT * norms.max()
+        if norms.min() <= least:
+            unfelt = norms <= least
+            hidden = zip(self.chain.joint_names, unfelt.tolist(), penetration.tolist(), strict=True)
+            pushes.unfelt = tuple(name for name, is_unfelt, depth in hidden if is_unfelt and depth)
+            ramps[unfelt], norms[unfelt] = 0.0, 1.0
+        if self._normalised:
+            pushes.wrench += _bounded((ramps / norms) @ inverse, limits.peak)
+        else:
+            pushes.torques += limits.torques(penetration)
+            pushes.energy += limits.energy(penetration)
+
+    def _add_conditioning(self, pushes: _Pushes, posture: Posture, condition: Condition, inverse: np.ndarray) -> None:
+        assert self._ramp is not None
+        gradient = self.conditioning.gradient(posture, condition)
+        if self._normalised:
+            direction = gradient @ inverse
+            size = math.sqrt(direction @ direction)
+            if size > 1e-9:
+                pushes.wrench += direction * (self._ramp.peak * self._ramp.share(condition.inverse) / size)
+        else:
+            pushes.torques += self._ramp.slope(condition.inverse) * gradient
+            pushes.energy += self._ramp.energy(condition.inverse)
+
+    def _add_surface(self, pushes: _Pushes, ramp: SurfaceRamp | None, position: np.ndarray) -> float:
+        """Add the force of a surface; the distance to it [m]."""
+        if ramp is None:
+            return np.inf
+        distance, gradient = ramp.distance.at(position)
+        if distance < ramp.margin:
+            force = ramp.normalised if self._normalised else ramp.potential
+            pushes.wrench[:3] += force(distance, gradient)
+            pushes.energy += 0.0 if self._normalised else ramp.energy(distance)
+            pushes.nearness = max(pushes.nearness, ramp.share(distance))
+        return distance
+
+    def _clipped(self, wrench: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Force [N] and torque [N m], no larger together than the device's peak."""
+        wrench = _bounded(wrench, self.device.peak_force_n)
+        return wrench[:3], wrench[3:] * self.length.length_m if self.is_wrench else np.zeros(3)
+
+
+def _bounded(vector: np.ndarray, most: float) -> np.ndarray:
+    """The vector, shortened to a length of ``most`` where it is longer."""
+    size = math.sqrt(vector @ vector)
+    return vector * (most / size) if size > most else vector
+
+
+def force_field(robot: Any, *, device: str = "auto", **choices: Any) -> ForceField:
+    """The force field of a robot: a Robot, or a library name, file or DH table as `load_robot` takes.
+
+    ``choices`` are the fields of ``field`` in the job document ``kinetostatic_field``: form, haptic_device, task,
+    characteristic_length, joint_limits, conditioning, boundary, obstacles, as dicts or documents. ``device`` is where
+    the workspace's boundary is sampled. Raises DocumentError, InputError, ModelError.
+    """
+    from wsrender.robot import load_robot
+
+    subject = robot if isinstance(robot, Robot) or hasattr(robot, "forward_kinematics") else load_robot(robot)
+    return ForceField(as_robot(subject), ForceFieldChoice(**choices), device)

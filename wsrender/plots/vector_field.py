@@ -1,0 +1,79 @@
+"""A vector per voxel as stream lines in three planes, over its size."""
+
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from wsrender.errors import InputError
+from wsrender.plots.planes import ACROSS, Field, draw_plane, layer_at, plane_extents
+from wsrender.plots.style import INK, add_color_bar, add_title, new_figure, paper_style, quantity, value_range
+from wsrender.volume.volume_data import VolumeData
+
+_FELT = 0.02  # of the largest size: shorter vectors show no line
+_ARROWS = 22  # along the longer side of a plane too narrow for lines
+_STREAMS: dict[str, Any] = {"density": 2.2, "linewidth": 0.7, "arrowsize": 0.7, "minlength": 0.015, "zorder": 3}
+_FEWEST_CELLS = 6  # across a plane for stream lines
+
+
+@paper_style()
+def vector_planes(
+    volume: VolumeData,
+    name: str | None = None,
+    *,
+    at: tuple[float | None, float | None, float | None] = (None, None, None),
+    title: str = "",
+    frame: str = "world",
+) -> Figure:
+    """Three planes, normal to x, y and z at ``at`` [m] (by default those with most voxels): stream lines of a vector.
+
+    Lines follow the vector's part in the plane, colours are its whole size. Raises InputError for a volume without
+    vectors or without the one asked, and a plane outside.
+    """
+    if not volume.vectors:
+        raise InputError("volume", "holds no vectors")
+    name = next(iter(volume.vectors)) if name is None else name
+    if name not in volume.vectors:
+        raise InputError("vector", f"the volume has no {name!r}; it holds {', '.join(volume.vectors)}")
+    vectors = volume.vectors[name].astype(np.float64)
+    size = np.linalg.norm(vectors, axis=3)
+    field = Field(size, quantity(f"mean {name}", volume.units.get(name)), value_range(0.0, float(np.nanmax(size))))
+    extents = [plane_extents(volume, axis) for axis in range(3)]
+    widths = [width for width, _ in extents]
+    scale = min(11.0 / sum(widths), 4.4 / max(height for _, height in extents))
+    tallest = max(height for _, height in extents) * scale
+    figure = new_figure(max(sum(widths) * scale + 2.6, 6.0), max(tallest + 1.0, 2.4))
+    panels = figure.subplots(1, 3, width_ratios=widths)
+    for axis, (axes, coordinate) in enumerate(zip(panels, at, strict=True)):
+        fullest = volume.centers(axis)[np.count_nonzero(volume.count, axis=ACROSS[axis]).argmax()]
+        layer = layer_at(volume, axis, float(fullest) if coordinate is None else coordinate)
+        draw_plane(axes, volume, field, axis, layer, frame)
+        _draw_lines(axes, volume, vectors, axis, layer)
+    add_color_bar(figure, field.norm, field.label, ax=list(panels), shrink=0.8, aspect=28, pad=0.02)
+    add_title(figure, title)
+    return figure
+
+
+def _draw_lines(axes: Axes, volume: VolumeData, vectors: np.ndarray, axis: int, layer: int) -> None:
+    """Stream lines of the part in the plane; arrows where the plane has too few cells for lines."""
+    plane = vectors.take(layer, axis)  # (a, b, 3) over the two other axes
+    along, across = ACROSS[axis]
+    u, v = plane[..., along].T, plane[..., across].T
+    felt = np.hypot(u, v) > _FELT * np.nanmax(np.linalg.norm(vectors, axis=3), initial=0.0)
+    if not felt.any():
+        return
+    x, y = volume.centers(along), volume.centers(across)
+    limits = axes.get_xlim(), axes.get_ylim()
+    if min(len(x), len(y)) >= _FEWEST_CELLS:
+        u, v = (np.ma.masked_array(np.nan_to_num(part), ~felt) for part in (u, v))
+        axes.streamplot(x, y, u, v, color=INK, **_STREAMS)
+    else:
+        step = max(1, max(len(x), len(y)) // _ARROWS)
+        rows, columns = np.nonzero(felt)
+        kept = (rows % step == 0) & (columns % step == 0)
+        rows, columns = rows[kept], columns[kept]
+        parts = u[rows, columns], v[rows, columns]
+        axes.quiver(x[columns], y[rows], *parts, color=INK, angles="xy", width=0.005, zorder=3)
+    axes.set_xlim(*limits[0])
+    axes.set_ylim(*limits[1])

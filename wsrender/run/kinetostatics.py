@@ -1,0 +1,180 @@
+"""The analysis ``kinetostatic_field``: forces of limits and conditioning over the workspace."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from wsrender.engine import configurations, evaluate_kinematics
+from wsrender.kinetostatics.force_field import ForceField
+from wsrender.kinetostatics.passivity import LoopWork, largest_loop_work, stiffness_bound, stiffnesses
+from wsrender.result import Result
+from wsrender.robot import Robot
+from wsrender.run.provenance import job_entry, provenance, robot_entry
+from wsrender.run.settled_device import settled_device
+from wsrender.sampling import plan_sampling
+from wsrender.spec.kinetostatics import KinetostaticFieldJob
+from wsrender.spec.sampling import Sobol
+from wsrender.volume.lattice import default_voxel_size, round_to_digits
+from wsrender.volume.volume_data import VolumeData
+
+RATE = 1e4  # configurations per second of one core, rounded down
+COARSER = 4.0  # than the voxels of a workspace: a mean needs several configurations
+FIRST_SAMPLES, DRAWN = 1 << 14, 3
+MOST_SAMPLES = 100_000_000
+CHUNK = 1 << 12
+ON_FACE = 1e-9  # of a voxel below its face counts as on it: a planar arm would be torn in two by rounding
+SCALARS = ("force", "inverse_condition_number", "limit_nearness")
+UNITS = {"force": "N", "torque": "N m", "inverse_condition_number": "1", "limit_nearness": "1"}
+
+
+@dataclass(eq=False)
+class KinetostaticFieldPlan:
+    """A resolved ``kinetostatic_field`` job: one shard."""
+
+    job: KinetostaticFieldJob
+    robot: Robot
+    voxel_size_m: float
+    device: str
+    target: str
+    shards: list[tuple[int, int]]
+    estimate: dict[str, float] = field(default_factory=dict)
+
+    def resolved(self) -> dict[str, Any]:
+        """What is settled once: the device that "auto" means, target, voxel size, shards."""
+        return {
+            "device": self.device,
+            "target": self.target,
+            "voxel_size_m": self.voxel_size_m,
+            "shards": [list(shard) for shard in self.shards],
+        }
+
+    def run_shard(self, shard: int, progress: Callable[[int], None] | None, **execution: Any) -> dict[str, np.ndarray]:
+        """Of every voxel: cell (V, 3), number of configurations (V,), sums (V, 6 + scalars), greatest force (V,).
+
+        ``stiffness`` (P,) [N/m] at random postures; ``loop`` (3,): most work of closed paths [J], length [m], how many.
+        """
+        force_field = ForceField(self.robot, self.job.field, self.device)
+        sampling = plan_sampling(self.robot.chain, self.job.sampling, MOST_SAMPLES)
+        cells, rows = np.empty((sampling.count, 3), np.int64), np.empty((sampling.count, 6 + len(SCALARS)))
+        for first in range(0, sampling.count, CHUNK):
+            numbers = np.arange(first, min(first + CHUNK, sampling.count))
+            for k, q in zip(numbers, configurations(sampling, numbers), strict=True):
+                state = force_field.evaluate(q)
+                cells[k] = np.floor(state.posture.position / self.voxel_size_m + ON_FACE)
+                size = np.sqrt(state.force @ state.force)
+                rows[k] = *state.force, *state.torque, size, state.inverse_condition, state.nearness
+            if progress:
+                progress(int(numbers[-1]) + 1)
+        found, voxel, count = np.unique(cells, axis=0, return_inverse=True, return_counts=True)
+        sums = np.stack([np.bincount(voxel.ravel(), column, len(found)) for column in rows.T], axis=1)
+        greatest = np.zeros(len(found))
+        np.maximum.at(greatest, voxel.ravel(), rows[:, 6])
+        loop = largest_loop_work(force_field)
+        arrays = {"cells": found, "count": count, "sums": sums, "greatest": greatest}
+        energetics = {"stiffness": stiffnesses(force_field), "loop": np.array([loop.work_j, loop.length_m, loop.paths])}
+        return arrays | energetics
+
+    def merge(self, a: dict[str, np.ndarray], b: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+        """There is one shard: nothing to merge."""
+        raise ValueError("kinetostatic_field has one shard")
+
+    def finish(self, partial: dict[str, np.ndarray], seconds: dict[str, float]) -> Result:
+        """Volume data with the vector "force" (and "torque") per voxel, and the document."""
+        job, count = self.job, partial["count"]
+        means = partial["sums"] / count[:, None]
+        length = self._length()
+        document = {
+            "analysis": "kinetostatic_field",
+            "job": job_entry(job, self.robot),
+            "robot": robot_entry(self.robot),
+            "sampling": {"method": job.sampling.method, "samples": int(count.sum())},
+            "voxel_size_m": self.voxel_size_m,
+            "kinetostatic_field": {
+                "form": job.field.form,
+                "characteristic_length": length,
+                "voxels": len(count),
+                "share_of_voxels_with_force": float((partial["greatest"] > 0).mean()),
+                "largest_force_n": float(partial["greatest"].max()),
+                "mean_force_n": float(partial["sums"][:, 6].sum() / count.sum()),
+                "passivity": self._passivity(partial["stiffness"], LoopWork(*partial["loop"].tolist())),
+            },
+            "provenance": provenance("float64", self.target),
+            "timing_s": seconds,
+        }
+        chain = self.robot.chain
+        spread = np.linspace(0.25, 0.75, DRAWN)[:, None]
+        skeleton = self.robot.skeleton(chain.lower_limits + spread * (chain.upper_limits - chain.lower_limits))
+        return Result(document, volume=self._volume(partial["cells"], count, means, partial), skeleton=skeleton)
+
+    def _length(self) -> dict[str, Any]:
+        plain = self.job.field.model_copy(update={"boundary": None, "obstacles": None})  # which are slow to build
+        length = ForceField(self.robot, plain, self.device).length
+        return {
+            "length_m": length.length_m,
+            "method": length.method,
+            "posture": None if length.posture is None else length.posture.tolist(),
+            "condition_number": length.condition_number,
+        }
+
+    def _passivity(self, stiffness: np.ndarray, loop: LoopWork) -> dict[str, float]:
+        """Stiffness beside what the device renders, and the work of closed paths beside what would dissipate it."""
+        bound = stiffness_bound(self.job.field.haptic_device)
+        return {
+            "stiffness_bound_n_per_m": bound,
+            "largest_stiffness_n_per_m": float(stiffness.max()),
+            "share_of_postures_within_bound": float((stiffness < bound).mean()),
+            "largest_loop_work_j": loop.work_j,
+            "loop_length_m": loop.length_m,
+            "loops": int(loop.paths),
+            "damping_that_dissipates_it_n_s_per_m": loop.damping_n_s_per_m,
+            "at_speed_m_per_s": loop.speed_m_per_s,
+        }
+
+    def _volume(
+        self, cells: np.ndarray, count: np.ndarray, means: np.ndarray, partial: dict[str, np.ndarray]
+    ) -> VolumeData:
+        first = cells.min(axis=0)
+        shape, at = tuple(cells.max(axis=0) - first + 1), tuple((cells - first).T)
+
+        def dense(values: np.ndarray) -> np.ndarray:
+            array = np.full((*shape, *values.shape[1:]), np.nan, np.float32)
+            array[at] = values
+            return array
+
+        counts = np.zeros(shape, np.int64)
+        counts[at] = count
+        x, y, z = (int(v) for v in first)
+        statistics = {
+            "maximum": {"force": dense(partial["greatest"])},
+            "mean": {name: dense(values) for name, values in zip(SCALARS, means[:, 6:].T, strict=True)},
+        }
+        vectors = {"force": dense(means[:, :3])}
+        if self.job.field.haptic_device.kind == "wrench":
+            vectors["torque"] = dense(means[:, 3:6])
+        units = {name: unit for name, unit in UNITS.items() if name in vectors or name in SCALARS}
+        return VolumeData(self.voxel_size_m, (x, y, z), counts, statistics, units, vectors)
+
+
+def plan_kinetostatic_field(
+    job: KinetostaticFieldJob, robot: Robot, resolved: dict[str, Any] | None = None
+) -> KinetostaticFieldPlan:
+    """Resolve the job, or take what `KinetostaticFieldPlan.resolved` of an earlier plan of it says.
+
+    Raises InputError for a robot without a model, and a posture or obstacle that cannot be.
+    """
+    checked = job.field.model_copy(update={"boundary": None})  # whose samples are slow
+    force_field = ForceField(robot, checked)
+    device, target = settled_device(job.device, resolved)
+    count = plan_sampling(robot.chain, job.sampling, MOST_SAMPLES).count
+    size = resolved["voxel_size_m"] if resolved else job.voxel_size_m or _voxel_size(force_field)
+    estimate = {"samples": float(count), "bytes": 100.0 * count, "seconds": count / RATE}
+    return KinetostaticFieldPlan(job, robot, size, device, target, [(0, count)], estimate)
+
+
+def _voxel_size(force_field: ForceField) -> float:
+    chain = force_field.chain
+    q = configurations(plan_sampling(chain, Sobol(FIRST_SAMPLES)), np.arange(FIRST_SAMPLES))
+    positions = evaluate_kinematics(chain, q, device="cpu").pose[:, :3, 3]
+    return round_to_digits(COARSER * default_voxel_size(positions), 2)
