@@ -1,0 +1,67 @@
+"""Methods C and D on the 6-PUS of Shah, Narayanan and Krovi (2010): CPU time of one core, and errors.
+
+python benchmarks/parallel_exact.py [--repeat 20]
+"""
+
+import argparse
+import os
+import time
+
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+
+import numpy as np
+from pydantic import TypeAdapter
+
+from wsrender.parallel.ball_region import ball_region
+from wsrender.parallel.exact import ExactWorkspace, exact_volumes
+from wsrender.parallel.mechanism import mechanism_of
+from wsrender.parallel.solids import solid_workspace
+from wsrender.spec.mechanism import MechanismSpec
+
+KNOWN_M3 = 0.717344315
+SPEC = TypeAdapter(MechanismSpec)
+
+
+def six_pus(**parameters):
+    return ball_region(mechanism_of(SPEC.validate_python({"library": "six_pus", **parameters})), np.eye(3))
+
+
+def cpu_seconds(work, repeat):
+    work()
+    started = time.process_time()
+    for _ in range(repeat):
+        found = work()
+    return (time.process_time() - started) / repeat, found
+
+
+def report(name, seconds, volume, exact=KNOWN_M3):
+    print(f"{name:44s} {1e3 * seconds:9.2f} ms   volume {volume:.9f} m³, error {volume / exact - 1:+.1e}")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--repeat", type=int, default=20)
+    repeat = parser.parse_args().repeat
+    region = six_pus()
+
+    def vertices():
+        workspace = ExactWorkspace.of(region)
+        return workspace.volume_m3, workspace.vertices
+
+    seconds, (volume, points) = cpu_seconds(vertices, repeat)
+    report(f"C, volume and {len(points)} vertices", seconds, volume)
+    seconds, mesh = cpu_seconds(lambda: ExactWorkspace.of(region).mesh, repeat)
+    report(f"C, faces and mesh of {len(mesh.faces)} triangles", seconds, mesh.volume)
+    for subdivisions in (4, 5):
+        seconds, mesh = cpu_seconds(lambda n=subdivisions: solid_workspace(region, n), 2)
+        report(f"D, balls of {20 * 4**subdivisions} triangles", seconds, mesh.volume)
+    steps = np.linspace(0, 2, 21)
+    designs = [six_pus(platform_m=1 + side, link_m=2.3 + link) for side in steps for link in steps]
+    seconds, found = cpu_seconds(lambda: exact_volumes(designs).volume, 3)
+    print(
+        f"C, 441 volumes at once {1e3 * seconds:31.2f} ms   {found.min():.3f} … {found.max():.3f} m³ (0.43 s to beat)"
+    )
+
+
+if __name__ == "__main__":
+    main()
