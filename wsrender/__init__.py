@@ -42,6 +42,7 @@ if TYPE_CHECKING:
         execute,
         kinetostatic_field,
         master_slave_mapping,
+        parallel_workspace,
         robot_comparison,
         shared_workspace,
     )
@@ -93,6 +94,7 @@ __all__ = [
     "load_robot",
     "master_slave_mapping",
     "math",
+    "parallel_workspace",
     "reachable",
     "register_index",
     "robot_comparison",
@@ -113,6 +115,7 @@ _NAMES_OF_MODULE = {
         "execute",
         "kinetostatic_field",
         "master_slave_mapping",
+        "parallel_workspace",
         "robot_comparison",
         "shared_workspace",
     ),

@@ -76,7 +76,8 @@ class Result:
     @property
     def plot(self) -> "ResultPlots":
         """Pictures as matplotlib Figures, such as ``plot.slice(z=0.3)`` or ``plot.scatter(index)``."""
-        arms = len(self.document.get("robots", [None]))
+        mechanism = self.document.get("mechanism") or {}
+        arms = len(self.document.get("robots") or mechanism.get("legs") or [None])
         return plots.ResultPlots(sampling_text(self.document), *self._drawable(), self.tables, self.volumes, arms)
 
     def render(
@@ -293,6 +294,8 @@ def _pictures(result: Result) -> "dict[str, Callable[[], Figure]]":
         pictures["field"] = plot.vectors
     if "mapping" in result.tables:
         pictures["mapping"] = plot.mapping
+    if "orientations" in result.tables:
+        pictures["orientations"] = plot.orientations
     if result.document.get("analysis") == "robot_comparison":
         pictures["comparison"] = plot.side_by_side
     if result.volume is not None and result.volume.statistics.get("product"):

@@ -34,6 +34,10 @@ def felt(**fields):
     return {"analysis": "kinetostatic_field", "robot": {"library": "ur5e"}, "field": fields}
 
 
+def legs(**fields):
+    return {"analysis": "parallel_workspace", "mechanism": "six_pus", **fields}
+
+
 def sampled(**fields):
     return job(sampling={"method": "grid", **fields})
 
@@ -206,6 +210,35 @@ MALFORMED = [
     (at(configurations=[[0, 1], [0]]), "configurations", "must hold rows of one length"),
     (at(configurations=[[0, "1"]]), "configurations", "must be a number"),
     (at(configurations=[[0, NAN]]), "configurations", "must be a finite number"),
+    # parallel mechanisms
+    ({"analysis": "parallel_workspace"}, "mechanism", "is required"),
+    (legs(mechanism="seven_pus"), "mechanism", 'one of "stewart_gough", "six_pus", "delta", not "seven_pus"'),
+    (legs(mechanism={"library": "six_pus", "link_m": -1}), "mechanism.link_m", "must be a number above 0"),
+    (legs(kind="reachable"), "kind", 'must be "constant_orientation", "orientation", "dexterous" or'),
+    (legs(kind="dexterous"), "orientations", 'must be given with kind "dexterous"'),
+    (legs(kind="orientation", orientations={"tilt_deg": 3}), "position_m", "must be given"),
+    (legs(position_m=[0, 0, 1]), "position_m", 'must be null with kind "constant_orientation"'),
+    (legs(orientations={"tilt_deg": 3}), "orientations", 'must be null with kind "constant_orientation"'),
+    (legs(kind="dexterous", orientations={"tilt_deg": 0}), "orientations.tilt_deg", "must be greater than 0"),
+    (legs(kind="dexterous", orientations={}), "orientations", 'either "euler_xyz_deg" or "tilt_deg"'),
+    (
+        legs(kind="dexterous", orientations={"euler_xyz_deg": [[3, -3], [0, 0], [0, 0]]}),
+        "orientations.euler_xyz_deg.0",
+        "lower not above upper",
+    ),
+    (
+        legs(kind="dexterous", orientations={"euler_xyz_deg": [[-9, 9]] * 3, "per_angle": 1000}),
+        "orientations",
+        "at most 1e+07 are tested",
+    ),
+    (
+        legs(kind="dexterous", orientations={"tilt_deg": 9}, indices="kinematic"),
+        "indices",
+        "an index belongs to one pose",
+    ),
+    (legs(orientation={"position_m": [0, 0, 1]}), "orientation", "must not shift"),
+    (legs(method="guess"), "method", 'must be "grid"'),
+    (legs(dexterous_threshold=0), "dexterous_threshold", "must be greater than 0"),
 ]
 
 

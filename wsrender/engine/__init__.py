@@ -6,6 +6,13 @@ from wsrender.engine.devices import devices_of, target_of, thread_count
 from wsrender.engine.evaluation import Evaluation
 from wsrender.engine.inverse import Accuracy, Tries, solve_inverse
 from wsrender.engine.kinematics import Kinematics, evaluate_kinematics
+from wsrender.engine.membership import (
+    LegTest,
+    OrientationCounts,
+    count_orientations,
+    count_orientations_at,
+    poses_reached,
+)
 from wsrender.engine.partial import Partial, merge
 from wsrender.engine.sweep import SweepPlan, sweep
 
@@ -14,14 +21,19 @@ __all__ = [
     "Evaluated",
     "Evaluation",
     "Kinematics",
+    "LegTest",
+    "OrientationCounts",
     "Partial",
     "SweepPlan",
     "Tries",
     "configurations",
+    "count_orientations",
+    "count_orientations_at",
     "devices_of",
     "evaluate_at",
     "evaluate_kinematics",
     "merge",
+    "poses_reached",
     "solve_inverse",
     "sweep",
     "target_of",

@@ -8,7 +8,8 @@ from wsrender.indices.units import pretty_unit
 
 def sampling_text(document: dict[str, Any]) -> str:
     """Robot and sampling of a result in one line, such as ``ur5e · 1,000,000 samples (sobol)``."""
-    robot, sampling = document.get("robot") or {}, document.get("sampling") or {}
+    robot = document.get("robot") or document.get("mechanism") or {}
+    sampling = document.get("sampling") or {}
     names = [str(each.get("name")) for each in document.get("robots", ())] or [str(robot.get("name", "robot"))]
     parts = [" + ".join(names)]
     if "samples" in sampling:

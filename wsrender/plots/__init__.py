@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from wsrender.plots.comparison import side_by_side
     from wsrender.plots.distribution import histogram, write_histogram_csv
     from wsrender.plots.master_slave import mapped_points
+    from wsrender.plots.orientation_map import orientations
     from wsrender.plots.planes import slice_plane, slices
     from wsrender.plots.point_cloud import scatter
     from wsrender.plots.result_plots import ResultPlots
@@ -28,6 +29,7 @@ _MODULES = {
     "histogram": "distribution",
     "png": "style",
     "mapped_points": "master_slave",
+    "orientations": "orientation_map",
     "robot": "stick_figure",
     "save_figure": "style",
     "scatter": "point_cloud",
@@ -43,6 +45,7 @@ __all__ = [
     "curves",
     "histogram",
     "mapped_points",
+    "orientations",
     "png",
     "robot",
     "save_figure",

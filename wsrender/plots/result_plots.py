@@ -11,6 +11,7 @@ from wsrender.errors import InputError
 from wsrender.plots.comparison import side_by_side
 from wsrender.plots.distribution import histogram
 from wsrender.plots.master_slave import mapped_points
+from wsrender.plots.orientation_map import orientations
 from wsrender.plots.planes import slice_plane, slices
 from wsrender.plots.point_cloud import scatter
 from wsrender.plots.stick_figure import robot
@@ -44,6 +45,12 @@ class ResultPlots:
         if "mapping" not in self.tables:
             raise InputError("table", "the result holds no mapping of a slave to its master")
         return mapped_points(self.tables["mapping"], title=self.title)
+
+    def orientations(self) -> Figure:
+        """Which orientations of a mechanism's platform are reached at a point."""
+        if "orientations" not in self.tables:
+            raise InputError("table", "the result holds no orientations at a point")
+        return orientations(self.tables["orientations"], title=self.title)
 
     def side_by_side(self, index: str | None = None, *, statistic: str | None = None) -> Figure:
         """The robots of a comparison in the same planes, with the same axes and one colour scale."""

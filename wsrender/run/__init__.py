@@ -1,6 +1,7 @@
 """Running a job, in the four steps that every door uses: plan, run_shard, merge, finish."""
 
 from wsrender.run.analyze import analyze, kinetostatic_field
+from wsrender.run.mechanisms_from_python import parallel_workspace
 from wsrender.run.several_from_python import (
     collaborative_volume,
     master_slave_mapping,
@@ -18,6 +19,7 @@ __all__ = [
     "kinetostatic_field",
     "master_slave_mapping",
     "merge",
+    "parallel_workspace",
     "plan",
     "robot_comparison",
     "run_shard",

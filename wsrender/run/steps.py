@@ -13,6 +13,7 @@ from wsrender.run.comparison import plan_robot_comparison
 from wsrender.run.indices_at import plan_indices_at
 from wsrender.run.kinetostatics import plan_kinetostatic_field
 from wsrender.run.mapping import plan_mapping
+from wsrender.run.parallel import plan_parallel
 from wsrender.run.reachability import plan_reachability
 from wsrender.run.shared import plan_shared_workspace
 from wsrender.run.workspace import plan_workspace
@@ -22,6 +23,7 @@ from wsrender.spec import (
     IndicesAtJob,
     KinetostaticFieldJob,
     MasterSlaveMappingJob,
+    ParallelWorkspaceJob,
     ReachabilityJob,
     RobotComparisonJob,
     SharedWorkspaceJob,
@@ -42,6 +44,7 @@ PLANNERS: dict[type, Callable[..., "Plan"]] = {
     CollaborativeVolumeJob: plan_collaborative,
     MasterSlaveMappingJob: plan_mapping,
     KinetostaticFieldJob: plan_kinetostatic_field,
+    ParallelWorkspaceJob: plan_parallel,
 }
 
 

@@ -5,6 +5,7 @@ from wsrender.spec.collaborative import CollaborativeVolumeJob
 from wsrender.spec.jobs import ANALYSES, IndicesAtJob, Job, WorkspaceJob
 from wsrender.spec.kinetostatics import KinetostaticFieldJob
 from wsrender.spec.mapping import MasterSlaveMappingJob
+from wsrender.spec.parallel_workspace import ParallelWorkspaceJob
 from wsrender.spec.parsing import canonical_json, job_schema, parse_job
 from wsrender.spec.reachability import ReachabilityJob
 from wsrender.spec.several_robots import RobotComparisonJob, SharedWorkspaceJob
@@ -17,6 +18,7 @@ __all__ = [
     "Job",
     "KinetostaticFieldJob",
     "MasterSlaveMappingJob",
+    "ParallelWorkspaceJob",
     "ReachabilityJob",
     "RobotComparisonJob",
     "SharedWorkspaceJob",

@@ -13,6 +13,7 @@ from wsrender.spec.index_choices import IndexChoices
 from wsrender.spec.kinetostatics import KinetostaticFieldJob
 from wsrender.spec.mapping import MasterSlaveMappingJob
 from wsrender.spec.options import Configurations, MapColumns, Statistics
+from wsrender.spec.parallel_workspace import ParallelWorkspaceJob
 from wsrender.spec.problems import tagged
 from wsrender.spec.quantities import Count, PositiveNumber, RelativeTolerance
 from wsrender.spec.reachability import ReachabilityJob
@@ -74,6 +75,7 @@ _AnyJob = (
     | CollaborativeVolumeJob
     | MasterSlaveMappingJob
     | KinetostaticFieldJob
+    | ParallelWorkspaceJob
 )
 ANALYSES: dict[str, type[Document]] = {job.model_fields["analysis"].default: job for job in get_args(_AnyJob)}
 

@@ -48,6 +48,13 @@ DOCUMENTS = {
         "device": "cpu",
     },
     "shared_workspace": {"analysis": "shared_workspace", "robots": ROBOTS, "voxel_size_m": 0.05, "device": "cpu"},
+    "parallel_workspace": {
+        "analysis": "parallel_workspace",
+        "mechanism": {"library": "six_pus", "link_m": 2.5},
+        "voxel_size_m": 0.1,
+        "indices": ["manipulability"],
+        "device": "cpu",
+    },
     "reachability": {
         "analysis": "reachability",
         "robot": "scara",

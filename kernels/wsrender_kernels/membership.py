@@ -1,0 +1,385 @@
+"""Which poses a parallel mechanism reaches: positions of a lattice at several orientations, or poses given one by one.
+
+On the CPU a task is a block of LANES poses and each leg a lane loop over them, which LLVM turns into SIMD; on CUDA a
+thread takes a pose. Method A asks every leg at every pose; method B goes on to the next subsystem of legs only where a
+pose of the block has survived ([SNK]). Both are one kernel, so that they give the same bits.
+"""
+
+from dataclasses import dataclass
+from functools import cache
+
+import warp as wp
+
+from wsrender_kernels.legs import LEG_STRIDE, PLATFORM, PLATFORM_CONE, leg_solver
+from wsrender_kernels.options import CUDA_OPTIONS, MODULE_OPTIONS
+from wsrender_kernels.sampling import LANES
+from wsrender_kernels.sweep import wide
+
+TURNED_STRIDE = 6  # of a leg at an orientation: its platform joint and the axis of its cone, turned
+POSE_ROWS = 12  # of a pose: position, then the rows of the rotation
+
+
+@dataclass(frozen=True)
+class MembershipShape:
+    """The compile-time part: precision, kinds of legs (of `legs.KINDS`), number of legs, cones, leg distances."""
+
+    real: type
+    kinds: tuple[str, ...]
+    legs: int
+    cones: bool
+    distances: bool
+    given: bool = False  # positions come from an array, not from the lattice
+
+
+@cache
+def mechanism_type(shape: MembershipShape):
+    """Struct with the numbers of a mechanism."""
+    real, L = shape.real, shape.legs
+    vec3 = wp.types.vector(3, real)
+
+    @wp.struct
+    class MechanismModel:
+        legs: wp.types.vector(L * LEG_STRIDE, real)  # legs.pack_legs, row by row
+        ends: wp.types.vector(L, wp.int32)  # 1 where a leg is the last of its subsystem
+        pairs: wp.types.vector(L * L, wp.int32)  # 1 where the distance of two legs counts
+        clearance_2: real  # square of the least distance [m²]
+        lower: vec3  # of the platform's origin, base frame [m]
+        upper: vec3
+        axes: wp.types.matrix((3, 3), real)  # world -> base
+        origin: vec3  # of the base in the world [m]
+
+    return MechanismModel
+
+
+@cache
+def lattice_type(real):
+    """Struct with a block of the lattice, z fastest: voxel edge [m], first voxel, shape."""
+
+    @wp.struct
+    class LatticeBlock:
+        edge: real
+        first_x: wp.int32
+        first_y: wp.int32
+        first_z: wp.int32
+        size_y: wp.int32
+        size_z: wp.int32
+
+    return LatticeBlock
+
+
+@cache
+def lattice_kernel(shape: MembershipShape, cuda: bool) -> wp.Kernel:
+    """At how many orientations the voxel centres of a range of a lattice block are reached, or given positions.
+
+    ``points`` (3 * count,), where they are given: coordinate r of position i at [r * count + i], base frame; ``turned``
+    (orientations * L * TURNED_STRIDE,), ``weights`` (orientations,); ``by_subsystem``: 1 for method B. Out: ``reached``
+    (count,), the sum of their weights ``weighted`` (count,), and ``asked``, per task or thread the number of
+    (pose, leg) pairs that were evaluated.
+    """
+    return (_lattice_cuda if cuda else _lattice_cpu)(shape)
+
+
+@cache
+def poses_kernel(shape: MembershipShape, cuda: bool) -> wp.Kernel:
+    """Which given poses are reached: ``poses`` (POSE_ROWS * count,), row r of pose i at [r * count + i], base frame."""
+    return (_poses_cuda if cuda else _poses_cpu)(shape)
+
+
+@cache
+def _parts(shape: MembershipShape):
+    """Device functions ``leg_of(model, k)``, ``in_region(model, p)`` and ``place(model, grid, x, y, z) -> p``."""
+    real = shape.real
+    solver = leg_solver(real, shape.kinds, shape.cones)
+    vec3, leg_type = solver.vec3, solver.leg_type
+    Model, Block = mechanism_type(shape), lattice_type(real)
+    HALF, STRIDE = real(0.5), LEG_STRIDE
+
+    @wp.func
+    def leg_of(model: Model, k: wp.int32):
+        leg = leg_type()
+        for i in range(STRIDE):
+            leg[i] = model.legs[k * STRIDE + i]
+        return leg
+
+    @wp.func
+    def in_region(model: Model, p: vec3):
+        low = p[0] >= model.lower[0] and p[1] >= model.lower[1] and p[2] >= model.lower[2]
+        high = p[0] <= model.upper[0] and p[1] <= model.upper[1] and p[2] <= model.upper[2]
+        return wp.where(low and high, 1, 0)
+
+    @wp.func
+    def place(model: Model, grid: Block, x: real, y: real, z: real):
+        """The centre of a voxel of the block, counted from its first, in the base frame [m]."""
+        world = vec3(
+            (real(grid.first_x) + x + HALF) * grid.edge,
+            (real(grid.first_y) + y + HALF) * grid.edge,
+            (real(grid.first_z) + z + HALF) * grid.edge,
+        )
+        return model.axes * (world - model.origin)
+
+    return leg_of, in_region, place, solver
+
+
+def _lattice_cpu(shape: MembershipShape) -> wp.Kernel:
+    leg_of, in_region, place, solver = _parts(shape)
+    solve, distance, vec3 = solver.solve, solver.distance, solver.vec3
+    real, Model, Block = shape.real, mechanism_type(shape), lattice_type(shape.real)
+    L, BLOCK, BLOCK_64, STRIDE, DISTANCES = shape.legs, LANES, wp.int64(LANES), TURNED_STRIDE, shape.distances
+    GIVEN = shape.given
+    lane_type, flags_type = wp.types.vector(LANES, real), wp.types.vector(LANES, wp.int32)
+    HALF, ONE = real(0.5), real(1.0)
+
+    @wp.kernel(module="unique", module_options=MODULE_OPTIONS, enable_backward=False)
+    def lattice_cpu(
+        # in
+        model: Model,
+        grid: Block,
+        points: wp.array(dtype=real),
+        turned: wp.array(dtype=real),
+        weights: wp.array(dtype=wp.int32),
+        orientations: wp.int32,
+        first: wp.int64,
+        count: wp.int64,
+        by_subsystem: wp.int32,
+        # out
+        reached: wp.array(dtype=wp.int32),
+        weighted: wp.array(dtype=wp.int32),
+        asked: wp.array(dtype=wp.int32),
+    ):
+        task = wp.tid()
+        start = first + wide(task * BLOCK)
+        valid = wp.int32(wp.min(BLOCK_64, first + count - start))
+        last = count - wp.int64(1)
+        row = start / wp.int64(grid.size_z)
+        x_start = row / wp.int64(grid.size_y)
+        z_first = real(wp.int32(start - row * wp.int64(grid.size_z)))
+        y_first = real(wp.int32(row - x_start * wp.int64(grid.size_y)))
+        x_first = real(wp.int32(x_start))
+        per_z = ONE / real(grid.size_z)
+        per_y = ONE / real(grid.size_y)
+        px = lane_type()
+        py = lane_type()
+        pz = lane_type()
+        inside = flags_type()
+        total = flags_type()
+        weight_sum = flags_type()
+        for lane in range(BLOCK):
+            # Whole numbers that a float holds exactly: a division of integers would not vectorise.
+            z = z_first + real(lane)
+            rows = wp.floor((z + HALF) * per_z)
+            y = y_first + rows
+            layers = wp.floor((y + HALF) * per_y)
+            p = place(model, grid, x_first + layers, y - layers * real(grid.size_y), z - rows * real(grid.size_z))
+            if wp.static(GIVEN):
+                i = wp.min(start + wp.int64(lane), last)
+                p = vec3(points[i], points[count + i], points[wp.int64(2) * count + i])
+            px[lane] = p[0]
+            py[lane] = p[1]
+            pz[lane] = p[2]
+            inside[lane] = in_region(model, p)
+        pairs = wp.int32(0)
+        for o in range(orientations):
+            alive = flags_type()
+            running = wp.int32(0)
+            for lane in range(BLOCK):
+                alive[lane] = inside[lane]
+                running = wp.max(running, inside[lane])
+            if by_subsystem == 0:
+                running = wp.int32(1)
+            k = wp.int32(0)
+            while k < L and running > 0:
+                leg = leg_of(model, k)
+                at = (o * L + k) * STRIDE
+                shift = vec3(turned[at], turned[at + 1], turned[at + 2])
+                cone = vec3(turned[at + 3], turned[at + 4], turned[at + 5])
+                for lane in range(BLOCK):
+                    fits, _elbow = solve(leg, vec3(px[lane], py[lane], pz[lane]) + shift, cone)
+                    alive[lane] = alive[lane] & fits
+                pairs += valid
+                if by_subsystem > 0 and model.ends[k] > 0:
+                    running = wp.int32(0)
+                    for lane in range(BLOCK):
+                        running = wp.max(running, alive[lane])
+                k += 1
+            if wp.static(DISTANCES):
+                for pair in range(wp.static(L * L)):
+                    if model.pairs[pair] > 0 and running > 0:
+                        a = pair / L
+                        b = pair - a * L
+                        leg_a = leg_of(model, a)
+                        leg_b = leg_of(model, b)
+                        at = (o * L + a) * STRIDE
+                        shift_a = vec3(turned[at], turned[at + 1], turned[at + 2])
+                        cone_a = vec3(turned[at + 3], turned[at + 4], turned[at + 5])
+                        at = (o * L + b) * STRIDE
+                        shift_b = vec3(turned[at], turned[at + 1], turned[at + 2])
+                        cone_b = vec3(turned[at + 3], turned[at + 4], turned[at + 5])
+                        for lane in range(BLOCK):
+                            end_a = vec3(px[lane], py[lane], pz[lane]) + shift_a
+                            end_b = vec3(px[lane], py[lane], pz[lane]) + shift_b
+                            _fits_a, elbow_a = solve(leg_a, end_a, cone_a)
+                            _fits_b, elbow_b = solve(leg_b, end_b, cone_b)
+                            far = distance(elbow_a, end_a, elbow_b, end_b) >= model.clearance_2
+                            alive[lane] = alive[lane] & wp.where(far, 1, 0)
+            weight = weights[o]
+            for lane in range(BLOCK):
+                total[lane] = total[lane] + alive[lane]
+                weight_sum[lane] = weight_sum[lane] + alive[lane] * weight
+        for lane in range(valid):
+            reached[task * BLOCK + lane] = total[lane]
+            weighted[task * BLOCK + lane] = weight_sum[lane]
+        asked[task] = pairs
+
+    return lattice_cpu
+
+
+def _lattice_cuda(shape: MembershipShape) -> wp.Kernel:
+    leg_of, in_region, place, solver = _parts(shape)
+    solve, distance, vec3 = solver.solve, solver.distance, solver.vec3
+    real, Model, Block = shape.real, mechanism_type(shape), lattice_type(shape.real)
+    L, STRIDE, DISTANCES, GIVEN = shape.legs, TURNED_STRIDE, shape.distances, shape.given
+
+    @wp.kernel(module="unique", module_options=CUDA_OPTIONS, enable_backward=False)
+    def lattice_cuda(
+        # in
+        model: Model,
+        grid: Block,
+        points: wp.array(dtype=real),
+        turned: wp.array(dtype=real),
+        weights: wp.array(dtype=wp.int32),
+        orientations: wp.int32,
+        first: wp.int64,
+        count: wp.int64,
+        by_subsystem: wp.int32,
+        # out
+        reached: wp.array(dtype=wp.int32),
+        weighted: wp.array(dtype=wp.int32),
+        asked: wp.array(dtype=wp.int32),
+    ):
+        i = wp.tid()
+        at_voxel = first + wp.int64(i)
+        row = at_voxel / wp.int64(grid.size_z)
+        layer = row / wp.int64(grid.size_y)
+        z = real(wp.int32(at_voxel - row * wp.int64(grid.size_z)))
+        y = real(wp.int32(row - layer * wp.int64(grid.size_y)))
+        p = place(model, grid, real(wp.int32(layer)), y, z)
+        if wp.static(GIVEN):
+            p = vec3(points[at_voxel], points[count + at_voxel], points[wp.int64(2) * count + at_voxel])
+        inside = in_region(model, p)
+        total = wp.int32(0)
+        weight_sum = wp.int32(0)
+        pairs = wp.int32(0)
+        for o in range(orientations):
+            alive = inside
+            k = wp.int32(0)
+            while k < L and (alive > 0 or by_subsystem == 0):
+                at = (o * L + k) * STRIDE
+                shift = vec3(turned[at], turned[at + 1], turned[at + 2])
+                cone = vec3(turned[at + 3], turned[at + 4], turned[at + 5])
+                fits, _elbow = solve(leg_of(model, k), p + shift, cone)
+                alive = alive & fits
+                pairs += 1
+                k += 1
+            if wp.static(DISTANCES):
+                for pair in range(wp.static(L * L)):
+                    if model.pairs[pair] > 0 and alive > 0:
+                        a = pair / L
+                        b = pair - a * L
+                        at = (o * L + a) * STRIDE
+                        end_a = p + vec3(turned[at], turned[at + 1], turned[at + 2])
+                        cone_a = vec3(turned[at + 3], turned[at + 4], turned[at + 5])
+                        at = (o * L + b) * STRIDE
+                        end_b = p + vec3(turned[at], turned[at + 1], turned[at + 2])
+                        cone_b = vec3(turned[at + 3], turned[at + 4], turned[at + 5])
+                        _fits_a, elbow_a = solve(leg_of(model, a), end_a, cone_a)
+                        _fits_b, elbow_b = solve(leg_of(model, b), end_b, cone_b)
+                        far = distance(elbow_a, end_a, elbow_b, end_b) >= model.clearance_2
+                        alive = alive & wp.where(far, 1, 0)
+            total += alive
+            weight_sum += alive * weights[o]
+        reached[i] = total
+        weighted[i] = weight_sum
+        asked[i] = pairs
+
+    return lattice_cuda
+
+
+@cache
+def _pose_test(shape: MembershipShape):
+    """Device function ``reaches(model, p, R) -> 1 or 0`` of a pose in the base frame."""
+    leg_of, in_region, _place, solver = _parts(shape)
+    solve, distance, at, vec3 = solver.solve, solver.distance, solver.at, solver.vec3
+    real, Model = shape.real, mechanism_type(shape)
+    L, JOINT, CONE, DISTANCES = shape.legs, PLATFORM, PLATFORM_CONE, shape.distances
+    mat33 = wp.types.matrix((3, 3), real)
+
+    @wp.func
+    def reaches(model: Model, p: vec3, R: mat33):
+        alive = in_region(model, p)
+        for k in range(wp.static(L)):
+            leg = leg_of(model, k)
+            fits, _elbow = solve(leg, p + R * at(leg, JOINT), R * at(leg, CONE))
+            alive = alive & fits
+        if wp.static(DISTANCES):
+            for pair in range(wp.static(L * L)):
+                if model.pairs[pair] > 0:
+                    leg_a = leg_of(model, pair / L)
+                    leg_b = leg_of(model, pair % L)
+                    end_a = p + R * at(leg_a, JOINT)
+                    end_b = p + R * at(leg_b, JOINT)
+                    _fits_a, elbow_a = solve(leg_a, end_a, R * at(leg_a, CONE))
+                    _fits_b, elbow_b = solve(leg_b, end_b, R * at(leg_b, CONE))
+                    far = distance(elbow_a, end_a, elbow_b, end_b) >= model.clearance_2
+                    alive = alive & wp.where(far, 1, 0)
+        return alive
+
+    return reaches, vec3, mat33
+
+
+def _poses_cpu(shape: MembershipShape) -> wp.Kernel:
+    reaches, vec3, mat33 = _pose_test(shape)
+    real, Model, BLOCK = shape.real, mechanism_type(shape), LANES
+
+    @wp.kernel(module="unique", module_options=MODULE_OPTIONS, enable_backward=False)
+    def poses_cpu(
+        # in
+        model: Model,
+        poses: wp.array(dtype=real),
+        count: wp.int32,
+        # out
+        reached: wp.array(dtype=wp.int32),
+    ):
+        start = wp.tid() * BLOCK
+        valid = wp.min(BLOCK, count - start)
+        for lane in range(valid):
+            i = start + lane
+            R = mat33()
+            for r in range(3):
+                for c in range(3):
+                    R[r, c] = poses[(3 + 3 * r + c) * count + i]
+            reached[i] = reaches(model, vec3(poses[i], poses[count + i], poses[2 * count + i]), R)
+
+    return poses_cpu
+
+
+def _poses_cuda(shape: MembershipShape) -> wp.Kernel:
+    reaches, vec3, mat33 = _pose_test(shape)
+    real, Model = shape.real, mechanism_type(shape)
+
+    @wp.kernel(module="unique", module_options=CUDA_OPTIONS, enable_backward=False)
+    def poses_cuda(
+        # in
+        model: Model,
+        poses: wp.array(dtype=real),
+        count: wp.int32,
+        # out
+        reached: wp.array(dtype=wp.int32),
+    ):
+        i = wp.tid()
+        R = mat33()
+        for r in range(3):
+            for c in range(3):
+                R[r, c] = poses[(3 + 3 * r + c) * count + i]
+        reached[i] = reaches(model, vec3(poses[i], poses[count + i], poses[2 * count + i]), R)
+
+    return poses_cuda

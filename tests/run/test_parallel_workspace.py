@@ -1,0 +1,212 @@
+"""Workspaces of parallel mechanisms through the four steps, against the values of DEFINITIONS section 9."""
+
+import numpy as np
+import pytest
+
+import wsrender as ws
+from tests.parallel.mechanisms import known_ups, mechanism, poses_of, ups
+from wsrender.parallel.inverse_kinematics import inverse_kinematics
+from wsrender.parallel.singularities import sign_changes
+from wsrender.result import Result
+from wsrender.run import execute, finish, merge, plan, run_shard
+from wsrender.run.partial_files import load_partial, save_partial
+
+SIX_PUS = {"analysis": "parallel_workspace", "mechanism": "six_pus", "voxel_size_m": 0.05, "device": "cpu"}
+STEWART = {"analysis": "parallel_workspace", "mechanism": "stewart_gough", "voxel_size_m": 0.04, "device": "cpu"}
+TILTS = {"tilt_deg": 15, "tilts": 3, "azimuths": 8}
+
+
+@pytest.mark.parametrize("method", ["grid", "grid_by_subsystem"])
+@pytest.mark.parametrize(
+    ("document", "exact"),
+    [
+        ("six_pus", 0.717344315),
+        ({"library": "six_pus", "link_m": 2.5}, 0.963565768),
+        (known_ups(), 5.352588701),
+        (ups([[0, 0, 0]] * 6, [[0, 0, 0]] * 6, [1.0, 1.5]), 9.948376737),
+    ],
+)
+def test_known_volumes(document, exact, method):
+    result = execute({**SIX_PUS, "mechanism": document, "method": method})
+    assert result.document["volume_m3"]["occupied"] == pytest.approx(exact, rel=5e-3)
+    assert result.volume.count.sum() * 0.05**3 == pytest.approx(exact, rel=5e-3)
+
+
+def test_the_tilted_workspace_of_the_paper():
+    """[SNK]: .126 at (30, 20, 0)°."""
+    result = execute({**SIX_PUS, "orientation": {"euler_xyz_deg": [30, 20, 0]}})
+    assert result.document["volume_m3"]["occupied"] == pytest.approx(0.126, abs=5e-4)
+
+
+def test_the_interval_of_the_refined_volume_holds_the_exact_one():
+    found = execute({**SIX_PUS, "voxel_size_m": 0.1, "refined_volume": 0.01}).document["volume_m3"]["refined"]
+    low, high = found["ci95"]
+    assert low < 0.717344315 < high and found["met"]
+    assert (high - low) / 2 <= 0.01 * found["value"]
+
+
+def test_bounds_of_the_workspace():
+    """The exact bounds of DEFINITIONS section 12 lie within a voxel of those of the voxels."""
+    document = execute({**SIX_PUS, "mechanism": {"library": "six_pus", "link_m": [2.6, 2.7, 2.5]}}).document
+    np.testing.assert_allclose(document["bounds_m"]["lower"], [-0.875, -0.918, 1.333], atol=0.1)
+    np.testing.assert_allclose(document["bounds_m"]["upper"], [0.797, 0.775, 2.420], atol=0.1)
+
+
+def test_a_placed_mechanism_has_its_workspace_elsewhere():
+    """A quarter turn and a shift by whole voxels map voxels to voxels."""
+    here = execute(SIX_PUS)
+    placement = {"position_m": [1.0, 2.0, -0.5], "rpy_deg": [0, 0, 90]}
+    there = execute({**SIX_PUS, "mechanism": {"library": "six_pus", "placement": placement}})
+    turned = np.rot90(here.volume.count, axes=(0, 1))
+    np.testing.assert_array_equal(there.volume.count, turned)
+    x, y, z = here.volume.first_voxel
+    width = here.volume.count.shape[1]
+    assert there.volume.first_voxel == (20 - y - width, 40 + x, z - 10)
+
+
+def test_indices_and_singularities_of_the_stewart_platform():
+    """Values at the voxels are those at the poses; det A changes sign where the platform passes its singular height."""
+    mech = {"library": "stewart_gough", "length_m": [0.2, 0.9], "region": {"lower_m": [None, None, -0.3]}}
+    result = execute({**STEWART, "mechanism": mech, "indices": "kinematic", "characteristic_length_m": 0.3})
+    values = result.volume.statistics["maximum"]["inverse_condition_number"]
+    occupied = result.volume.occupied
+    assert np.isfinite(values[occupied]).all() and (values[occupied] >= 0).all() and (values[occupied] <= 1).all()
+    assert np.isnan(values[~occupied]).all()
+    assert result.document["indices"]["manipulability"]["maximum"] > 0
+    entry = result.document["singularities"]
+    assert entry["type_1"]["sign_changes"] == 0  # lengths always act
+    assert entry["type_2"]["sign_changes"] > 0 and entry["type_2"]["negative_voxels"] > 0
+    # Base and platform are parallel and alike: the platform's plane meets the base's at z = 0, where A is singular.
+    table = result.tables["singularities"]
+    heights = table["position"][:, 2]
+    assert np.abs(heights).min() < 1e-9
+    changes = sign_changes(result.volume)[2]
+    np.testing.assert_array_equal(changes, table["position"][table["type"] == 2])
+
+
+def test_the_dexterous_workspace_lies_in_that_of_each_orientation():
+    result = execute({**STEWART, "kind": "dexterous", "orientations": TILTS})
+    volume = result.volume
+    share = volume.statistics["fraction"]["orientations"]
+    assert volume.count.max() == 24 and np.nanmax(share) == 1
+    np.testing.assert_array_equal(share == 1, volume.count == 24)
+    entry = result.document["volume_m3"]
+    assert 0 < entry["dexterous"] == entry["all_orientations"] < entry["occupied"]
+    # The voxels reached at every orientation are those of the kind total_orientation.
+    total = execute({**STEWART, "kind": "total_orientation", "orientations": TILTS, "refined_volume": 0.03})
+    assert total.document["volume_m3"]["occupied"] == pytest.approx(entry["dexterous"])
+    refined = total.document["volume_m3"]["refined"]
+    assert refined["ci95"][0] < refined["value"] < refined["ci95"][1]
+    # One of its voxels, by inverse kinematics at tilts in between.
+    at = np.argwhere(volume.count == 24)[0]
+    position = (at + volume.first_voxel + 0.5) * volume.voxel_size_m
+    c, s = np.cos(np.deg2rad(15)), np.sin(np.deg2rad(15))
+    assert inverse_kinematics(mechanism("stewart_gough"), poses_of([position])).feasible[0]
+    tilted = np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]])
+    assert inverse_kinematics(mechanism("stewart_gough"), poses_of([position], tilted)).feasible[0]
+
+
+def test_a_lower_threshold_gives_a_larger_dexterous_volume():
+    job = {**STEWART, "kind": "dexterous", "orientations": TILTS}
+    all_of, half = (execute({**job, "dexterous_threshold": t}).document["volume_m3"] for t in (1.0, 0.5))
+    assert all_of["dexterous"] < half["dexterous"] < half["occupied"]
+
+
+def test_orientations_at_a_point_are_those_of_inverse_kinematics():
+    job = {**STEWART, "voxel_size_m": None, "kind": "orientation", "position_m": [0.02, 0, 0.55]}
+    result = execute({**job, "orientations": {"euler_xyz_deg": [[-50, 50]] * 3, "per_angle": 9}})
+    table, mech = result.tables["orientations"], mechanism("stewart_gough")
+    rotations = [ws.Transform(quat_wxyz=tuple(quat)).matrix()[:3, :3] for quat in table["quat_wxyz"]]
+    expected = [inverse_kinematics(mech, poses_of([[0.02, 0, 0.55]], R)).feasible[0] for R in rotations]
+    np.testing.assert_array_equal(table["reached"], expected)
+    entry = result.document["orientation_workspace"]
+    assert entry["reached"] == sum(expected) and 0 < entry["share"] < 1
+    assert result.volume is None and result.skeleton.shape == (6, 4, 3)
+
+
+def test_shards_merge_to_the_whole(tmp_path):
+    whole = plan({**SIX_PUS, "voxel_size_m": 0.1, "indices": ["manipulability"]})
+    resolved = whole.resolved()
+    unit, total = resolved["shard_unit"], sum(count for _, count in resolved["shards"])
+    resolved["shards"] = [[0, 5 * unit], [5 * unit, 20 * unit], [25 * unit, total - 25 * unit]]
+    parts = plan(whole.job, resolved=resolved)
+    partials = [run_shard(parts, k) for k in range(3)]
+    save_partial(partials[1], tmp_path / "partial")
+    partials[1] = load_partial(tmp_path / "partial", parts)
+    one = merge(parts, merge(parts, partials[0], partials[1]), partials[2])
+    other = merge(parts, partials[0], merge(parts, partials[2], partials[1]))
+    expected = run_shard(whole, 0)
+    for name, values in expected.items():
+        np.testing.assert_array_equal(one[name], values)
+        np.testing.assert_array_equal(other[name], values)
+    assert finish(parts, one).document["volume_m3"] == finish(whole, expected).document["volume_m3"]
+
+
+def test_a_default_voxel_size_is_a_hundredth_of_the_workspace():
+    planned = plan({**SIX_PUS, "voxel_size_m": None})
+    assert planned.block.voxel_size_m == pytest.approx(np.cbrt(0.717344) / 100, rel=0.06)
+
+
+@pytest.mark.parametrize(
+    ("fields", "reason"),
+    [
+        ({"mechanism": {"library": "stewart_gough", "length_m": [0.01, 0.1]}}, "no position is within the reach"),
+        ({"mechanism": {"library": "stewart_gough", "region": {"lower_m": [None, None, 5]}}}, "no position is within"),
+        (
+            {
+                "mechanism": {"library": "stewart_gough", "length_m": [0.45, 0.451]},
+                "orientation": {"rpy_deg": [40, 0, 0]},
+            },
+            "no pose tested is reached; at",
+        ),
+        ({"kind": "orientation", "position_m": [0, 0, 3], "orientations": TILTS}, "leg 1 (UPS) at 3"),
+        ({"kind": "total_orientation", "orientations": {"tilt_deg": 120}}, "no p"),
+    ],
+)
+def test_an_empty_workspace_is_a_result(fields, reason, tmp_path):
+    result = execute({**STEWART, **fields})
+    assert reason in result.document["empty"]
+    assert result.volume is None
+    if "volume_m3" in result.document:
+        assert result.document["volume_m3"]["occupied"] == 0
+    result.save(tmp_path / "out")
+    assert Result.load(tmp_path / "out").document["empty"] == result.document["empty"]
+
+
+@pytest.mark.parametrize(
+    ("fields", "field", "message"),
+    [
+        (
+            {"mechanism": {"library": "delta", "home": {"position_m": [0, 0, -5]}}},
+            "mechanism.home",
+            "must be reached, but leg 1 (delta) is out of reach",
+        ),
+        (
+            {"mechanism": {"library": "stewart_gough", "home": {"position_m": [0, 0, 0.9]}}},
+            "mechanism.home",
+            "is above its upper limit (limits 0.5 … 0.8 m)",
+        ),
+        ({"mechanism": "delta", "orientation": {"rpy_deg": [0, 5, 0]}}, "orientation", "do not let its platform turn"),
+        ({"mechanism": "delta", "indices": "kinematic", "task": "full"}, "task", "the platform of a delta"),
+        ({"indices": ["dynamic_manipulability"]}, "indices", "must be kinematic for a mechanism"),
+        ({"indices": ["beauty"]}, "indices", "unknown index"),
+        ({"mechanism": {"legs": known_ups()["legs"][:5]}, "indices": "kinematic"}, "mechanism.legs", "must be 6"),
+        ({"voxel_size_m": 1e-10}, "voxel_size_m", "is too small"),
+        ({"max_poses": 100}, "max_poses", "the job has"),
+    ],
+)
+def test_jobs_that_cannot_be_planned(fields, field, message):
+    with pytest.raises(ws.InputError) as caught:
+        plan({**STEWART, **fields})
+    assert caught.value.field == field
+    assert message in str(caught.value)
+
+
+def test_a_result_survives_its_files(tmp_path):
+    result = ws.parallel_workspace("delta", voxel_size_m=0.05, indices=["manipulability"], device="cpu")
+    result.save(tmp_path / "out")
+    back = Result.load(tmp_path / "out")
+    np.testing.assert_array_equal(back.volume.count, result.volume.count)
+    assert (tmp_path / "out/plots/robot.png").exists()
+    assert "delta" in back.summary()
+    assert len(back.plot.robot().axes) == 2

@@ -1,0 +1,217 @@
+"""Which poses a parallel mechanism reaches: the lattice at several orientations, or given poses."""
+
+from collections.abc import Callable
+from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import warp as wp
+from wsrender_kernels.legs import kind_of, pack_legs
+from wsrender_kernels.membership import (
+    LANES,
+    MembershipShape,
+    lattice_kernel,
+    lattice_type,
+    mechanism_type,
+    poses_kernel,
+)
+
+from wsrender.engine.devices import devices_of, thread_count
+from wsrender.engine.evaluation import REAL, device_array, vector_of
+from wsrender.engine.kernel_cache import loaded
+from wsrender.volume.lattice import LatticeBlock
+
+CHUNK_CPU, CHUNK_CUDA, LEAST_CHUNK = 1 << 20, 1 << 26, 1 << 14
+POSES_BATCH = 1 << 20
+CHUNKS_PER_THREAD = 8
+
+
+@dataclass(frozen=True, eq=False)
+class LegTest:
+    """Legs, and what is asked of them.
+
+    ``legs`` has the fields of `wsrender.parallel.mechanism.Mechanism`, which stands above the engine. ``ends`` (L,)
+    bool: whether a leg is the last of its subsystem; ``pairs``: legs whose distance counts.
+    """
+
+    legs: Any
+    ends: np.ndarray
+    pairs: list[tuple[int, int]]
+    precision: str = "float64"
+
+    @property
+    def shape(self) -> MembershipShape:
+        """Compile-time part of the kernels."""
+        legs = self.legs
+        cones = max(legs.base_cone_cosine.max(), legs.platform_cone_cosine.max()) > -1
+        kinds = tuple(sorted({kind_of(kind) for kind in legs.kinds}))
+        return MembershipShape(REAL[self.precision], kinds, len(legs.kinds), bool(cones), bool(self.pairs))
+
+    def model(self, shape: MembershipShape | None = None):
+        """The struct of the kernels of a shape, by default the test's own."""
+        legs, real, count = self.legs, REAL[self.precision], len(self.legs.kinds)
+        model = mechanism_type(shape or self.shape)()
+        model.legs = vector_of(pack_legs(legs).ravel(), real)
+        model.ends = vector_of(self.ends.astype(np.int32), wp.int32)
+        pairs = np.zeros((count, count), np.int32)
+        for a, b in self.pairs:
+            pairs[a, b] = 1
+        model.pairs = vector_of(pairs.ravel(), wp.int32)
+        model.clearance_2 = legs.clearance_m**2
+        model.lower, model.upper = vector_of(legs.region_lower, real), vector_of(legs.region_upper, real)
+        model.axes = wp.types.matrix((3, 3), real)(*legs.T_world_base[:3, :3].T.ravel().tolist())
+        model.origin = vector_of(legs.T_world_base[:3, 3], real)
+        return model
+
+
+@dataclass(frozen=True, eq=False)
+class OrientationCounts:
+    """Of every voxel: orientations ``reached`` (V,) int32 and the sum of their ``weights`` (V,) int32.
+
+    ``asked``: the number of (pose, leg) pairs that were evaluated.
+    """
+
+    reached: np.ndarray
+    weights: np.ndarray
+    asked: int
+
+
+def count_orientations(
+    test: LegTest,
+    block: LatticeBlock,
+    rotations: np.ndarray,
+    first: int,
+    count: int,
+    *,
+    weights: np.ndarray | None = None,
+    by_subsystem: bool = True,
+    device: str = "auto",
+    threads: int | None = None,
+    chunk_size: int | None = None,
+    progress: Callable[[int], None] | None = None,
+) -> OrientationCounts:
+    """At how many of the platform orientations (N, 3, 3), base frame, each voxel centre is reached.
+
+    Voxels are those first … first + count - 1 of the block, z fastest. ``weights`` (N,) whole numbers, whose sum is
+    below 2^31; by default 1. All (pose, leg) pairs are evaluated (method A), or ``by_subsystem`` only those of
+    survivors (method B), with the same result.
+    """
+    devices = devices_of(device)
+    on_gpu = devices[0].is_cuda
+    workers = devices if on_gpu else devices * thread_count(threads)
+    fair = max(LEAST_CHUNK, count // (CHUNKS_PER_THREAD * len(workers)))
+    chunk = chunk_size or (CHUNK_CUDA if on_gpu else min(CHUNK_CPU, fair))
+    chunk = -(-max(chunk // len(rotations), 1) // LANES) * LANES
+    if weights is None:
+        weights = np.ones(len(rotations), np.int32)
+    launches = [_Lattice(test, block, rotations, weights, by_subsystem, worker) for worker in devices]
+    ranges = [(start, min(chunk, first + count - start)) for start in range(first, first + count, chunk)]
+
+    def run(number: int) -> OrientationCounts:
+        return launches[number % len(launches)](*ranges[number])
+
+    with ThreadPoolExecutor(len(workers)) as pool:
+        futures = [pool.submit(run, number) for number in range(len(ranges))]
+        try:
+            pending = set(futures)
+            while pending:
+                done, pending = wait(pending, timeout=0.1, return_when=FIRST_COMPLETED)
+                for future in done:
+                    future.result()
+                if progress:
+                    progress(min((len(futures) - len(pending)) * chunk, count))
+        except BaseException:
+            pool.shutdown(cancel_futures=True)
+            raise
+    return _joined([future.result() for future in futures])
+
+
+def count_orientations_at(
+    test: LegTest,
+    positions: np.ndarray,
+    rotations: np.ndarray,
+    *,
+    weights: np.ndarray | None = None,
+    device: str = "auto",
+    threads: int | None = None,
+) -> OrientationCounts:
+    """At how many of the orientations given positions (N, 3), base frame [m], are reached; as `count_orientations`."""
+    devices = devices_of(device)
+    workers = devices if devices[0].is_cuda else devices * thread_count(threads)
+    if weights is None:
+        weights = np.ones(len(rotations), np.int32)
+    size = max(LEAST_CHUNK, -(-len(positions) // len(workers)))
+    parts = [positions[first : first + size] for first in range(0, len(positions), size)]
+    launches = [_Lattice(test, part, rotations, weights, True, workers[k]) for k, part in enumerate(parts)]
+    with ThreadPoolExecutor(len(workers)) as pool:
+        return _joined(list(pool.map(lambda launch: launch(0, launch.given), launches)))
+
+
+def _joined(parts: list[OrientationCounts]) -> OrientationCounts:
+    none = np.zeros(0, np.int32)
+    reached, weights = (np.concatenate([none, *(getattr(p, name) for p in parts)]) for name in ("reached", "weights"))
+    return OrientationCounts(reached, weights, sum(part.asked for part in parts))
+
+
+class _Lattice:
+    """The lattice kernel with everything but the range of its places: voxels of a block, or given positions."""
+
+    def __init__(
+        self, test: LegTest, places: LatticeBlock | np.ndarray, rotations, weights, by_subsystem: bool, device
+    ):
+        real = REAL[test.precision]
+        points = np.zeros((0, 3)) if isinstance(places, LatticeBlock) else places
+        self.given = len(points)
+        shape = replace(test.shape, given=not isinstance(places, LatticeBlock))
+        self.device, self.by_subsystem, self.orientations = device, int(by_subsystem), len(rotations)
+        self.kernel = loaded(lattice_kernel(shape, device.is_cuda), device)
+        self.model = test.model(shape)
+        joints = np.einsum("nij,lj->nli", rotations, test.legs.platform)
+        cones = np.einsum("nij,lj->nli", rotations, test.legs.platform_cone_axis)
+        self.points = device_array(points.T.ravel(), real, device)
+        self.turned = device_array(np.concatenate([joints, cones], axis=2).ravel(), real, device)
+        self.weights = device_array(weights, wp.int32, device)
+        self.grid = lattice_type(real)()
+        self.grid.size_y = self.grid.size_z = 1
+        if isinstance(places, LatticeBlock):
+            self.grid.edge = places.voxel_size_m
+            self.grid.first_x, self.grid.first_y, self.grid.first_z = places.first_voxel
+            _, self.grid.size_y, self.grid.size_z = places.shape
+
+    def __call__(self, first: int, count: int) -> OrientationCounts:
+        tasks = count if self.device.is_cuda else -(-count // LANES)
+        sizes = (count, count, tasks)
+        out = [wp.empty(size, dtype=wp.int32, device=self.device) for size in sizes]  # type: ignore[arg-type]
+        places = [self.model, self.grid, self.points, self.turned, self.weights, self.orientations]
+        inputs = [*places, first, count, self.by_subsystem]
+        wp.launch(self.kernel, dim=tasks, inputs=inputs, outputs=out, device=self.device)
+        reached, weighted, asked = (array.numpy() for array in out)
+        return OrientationCounts(reached, weighted, int(asked.sum(dtype=np.int64)))
+
+
+def poses_reached(test: LegTest, poses: np.ndarray, *, device: str = "auto", threads: int | None = None) -> np.ndarray:
+    """Whether platform poses (N, 4, 4), base frame [m], are reached, (N,) bool."""
+    devices = devices_of(device)
+    workers = devices if devices[0].is_cuda else devices * thread_count(threads)
+    model = test.model()
+    size = min(POSES_BATCH, max(LEAST_CHUNK, -(-len(poses) // len(workers))))
+    batches = [poses[first : first + size] for first in range(0, len(poses), size)]
+
+    def run(numbered: tuple[int, np.ndarray]) -> np.ndarray:
+        number, batch = numbered
+        return _poses_launch(test, model, batch, workers[number % len(workers)])
+
+    with ThreadPoolExecutor(len(workers)) as pool:
+        return np.concatenate([np.zeros(0, bool), *pool.map(run, enumerate(batches))])
+
+
+def _poses_launch(test: LegTest, model, poses: np.ndarray, device) -> np.ndarray:
+    count = len(poses)
+    rows = np.concatenate([poses[:, :3, 3], poses[:, :3, :3].reshape(count, 9)], axis=1)
+    given = device_array(rows.T.ravel(), REAL[test.precision], device)
+    reached = wp.empty(count, dtype=wp.int32, device=device)  # type: ignore[arg-type]
+    tasks = count if device.is_cuda else -(-count // LANES)
+    kernel = loaded(poses_kernel(test.shape, device.is_cuda), device)
+    wp.launch(kernel, dim=tasks, inputs=[model, given, count], outputs=[reached], device=device)
+    return reached.numpy() > 0

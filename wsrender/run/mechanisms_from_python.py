@@ -1,0 +1,19 @@
+"""The analyses of parallel mechanisms from Python."""
+
+from typing import Any
+
+from wsrender.result import Result
+from wsrender.run.from_python import execute_here, plain
+from wsrender.run.steps import Progress
+
+
+def parallel_workspace(mechanism: Any, *, progress: Progress | bool | None = None, **fields: Any) -> Result:
+    """Workspace of a parallel mechanism.
+
+    ``mechanism`` is a name of the library (stewart_gough, six_pus, delta) or a document: {"library": name, …} with
+    other parameters, or {"legs": […]}. ``fields`` are the other fields of the job document ``parallel_workspace``:
+    kind, orientation, position_m, orientations, method, voxel_size_m, indices, refined_volume …
+
+    Raises DocumentError, InputError, ResourceError.
+    """
+    return execute_here({"analysis": "parallel_workspace", "mechanism": mechanism, **plain(fields)}, [], progress)

@@ -1,0 +1,303 @@
+"""The result of a ``parallel_workspace`` job."""
+
+import time
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from wsrender.engine import count_orientations_at
+from wsrender.global_indices import voxel_volumes, workspace_mean
+from wsrender.indices.catalogue import unit
+from wsrender.parallel.inverse_kinematics import fault_text, inverse_kinematics
+from wsrender.parallel.local_indices import OF_MECHANISMS
+from wsrender.parallel.mechanism import Mechanism
+from wsrender.parallel.membership import in_base_frame, in_world
+from wsrender.parallel.singularities import TYPES, sign_changes
+from wsrender.reachability import Event, estimate_volumes
+from wsrender.result import Result
+from wsrender.run.provenance import job_entry, provenance
+from wsrender.sampling import subsample
+from wsrender.spec.options import TASK_ROWS
+from wsrender.volume.distribution_map import DistributionMap
+from wsrender.volume.neighbours import inner_and_outer
+from wsrender.volume.table import Table
+from wsrender.volume.volume_data import VolumeData
+
+if TYPE_CHECKING:
+    from wsrender.run.parallel import Arrays, ParallelPlan
+
+PICTURE_SAMPLES = 30_000
+EVENTS = {"constant_orientation": "reached", "total_orientation": "all orientations", "dexterous": "dexterous"}
+
+
+def positions_result(plan: "ParallelPlan", partial: "Arrays", seconds: dict[str, float]) -> Result:
+    """Of the kinds whose positions vary."""
+    started = time.perf_counter()
+    job, found = plan.job, _counted(plan, partial)
+    volume = _volume(plan, partial, found)
+    document = _document(plan) | {
+        "sampling": {
+            "method": job.method,
+            "samples": sum(count for _, count in plan.shards),
+            "legs_evaluated": int(partial["asked"].sum()),
+        },
+        "voxel_size_m": plan.block.voxel_size_m if plan.block else job.voxel_size_m,
+        "volume_m3": _volumes(plan, partial, volume),
+        "indices": _index_entries(plan, volume) if volume else {},
+        "bounds_m": _bounds(volume),
+    }
+    if volume is None:
+        document["empty"] = _reason(plan)
+    tables = {}
+    if volume and plan.names:
+        changes = sign_changes(volume)
+        document["singularities"] = _singularity_entry(volume, changes)
+        tables["singularities"] = _singularity_table(changes)
+    document["timing_s"] = {**seconds, "finish": time.perf_counter() - started}
+    skeleton = None if volume is None else _skeleton(plan.mechanism, _pose(plan, _middle(volume)))
+    return Result(document, volume=volume, sample=_sample(plan, volume), skeleton=skeleton, tables=tables)
+
+
+def orientation_result(plan: "ParallelPlan", is_reached: np.ndarray, seconds: dict[str, float]) -> Result:
+    """Of the orientations at a point."""
+    orientations, job = plan.orientations, plan.job
+    share = float(orientations.weights[is_reached].sum())
+    columns = {name: orientations.angles[:, k] for k, name in enumerate(orientations.names)}
+    table = Table(
+        {**columns, "quat_wxyz": orientations.quat_wxyz, "reached": is_reached},
+        dict.fromkeys(orientations.names, "rad"),
+    )
+    document = _document(plan) | {
+        "sampling": {"method": "grid", "samples": len(is_reached), "levels": list(orientations.levels)},
+        "orientation_workspace": {
+            "position_m": list(job.position_m or ()),
+            "orientations": len(is_reached),
+            "reached": int(is_reached.sum()),
+            "share": share,
+            "measure": "invariant measure of rotations over the ranges given",
+        },
+        "timing_s": seconds,
+    }
+    if not is_reached.any():
+        document["empty"] = _reason(plan)
+    skeleton = None
+    if is_reached.any():  # the one that is turned least
+        turns = np.trace(orientations.rotations, axis1=1, axis2=2)
+        shown = int(np.where(is_reached, turns, -np.inf).argmax())
+        skeleton = _skeleton(plan.mechanism, _pose(plan, np.array(job.position_m), shown))
+    return Result(document, tables={"orientations": table}, skeleton=skeleton)
+
+
+def _document(plan: "ParallelPlan") -> dict[str, Any]:
+    return {
+        "analysis": "parallel_workspace",
+        "job": job_entry(plan.job),
+        "mechanism": mechanism_entry(plan.mechanism),
+        "kind": plan.job.kind,
+        "orientations": len(plan.orientations.rotations),
+        "provenance": provenance(plan.job.precision, plan.target, seed=plan.job.seed),
+    }
+
+
+def mechanism_entry(mechanism: Mechanism) -> dict[str, Any]:
+    """Name, placement and legs of a mechanism, for the result document."""
+    units = ["m" if kind in ("UPS", "PUS") else "rad" for kind in mechanism.kinds]
+    legs = zip(mechanism.kinds, mechanism.lower.tolist(), mechanism.upper.tolist(), units, strict=True)
+    return {
+        "name": mechanism.name,
+        "T_world_base": mechanism.T_world_base.tolist(),
+        "degrees_of_freedom": mechanism.degrees_of_freedom,
+        "legs": [{"type": kind, "lower": low, "upper": high, "unit": unit} for kind, low, high, unit in legs],
+    }
+
+
+def _counted(plan: "ParallelPlan", partial: "Arrays") -> np.ndarray:
+    """Which of the partial's voxels belong to the workspace: all but those that miss one of all orientations."""
+    if plan.job.kind == "total_orientation":
+        return partial["orientations"] == len(plan.orientations.rotations)
+    return np.ones(len(partial["cells"]), bool)
+
+
+def _shares(plan: "ParallelPlan", partial: "Arrays") -> np.ndarray:
+    """The share of the orientations reached per voxel, by their measure; exactly 1 where all are."""
+    return partial["weights"] / plan.orientations.whole_weights.sum(dtype=np.int64)
+
+
+def _volume(plan: "ParallelPlan", partial: "Arrays", found: np.ndarray) -> VolumeData | None:
+    """``count``: orientations reached; statistics by kind; None where nothing is reached."""
+    if plan.block is None or not found.any():
+        return None
+    at = np.stack(np.unravel_index(partial["cells"][found], plan.block.shape))
+    low = at.min(axis=1)
+    shape = tuple(at.max(axis=1) - low + 1)
+    place = tuple(at - low[:, None])
+
+    def dense(values: np.ndarray, empty, dtype) -> np.ndarray:
+        block = np.full(shape, empty, dtype)
+        block[place] = values[found]
+        return block
+
+    statistics: dict[str, dict[str, np.ndarray]] = {}
+    units: dict[str, str] = {}
+    if plan.names:
+        values = {name: dense(partial[f"index_{name}"], np.nan, np.float64) for name in (*plan.names, *OF_MECHANISMS)}
+        statistics["maximum"] = {name: values[name] for name in plan.names}
+        statistics["center"] = {name: values[name] for name in OF_MECHANISMS}
+        units = {name: unit(name, plan.rows, "standard") for name in plan.names} | dict.fromkeys(OF_MECHANISMS, "1")
+        units["determinant_A"] = "m^3" if not plan.mechanism.translational else "1"
+    if plan.job.kind == "dexterous":
+        statistics["fraction"] = {"orientations": dense(_shares(plan, partial), np.nan, np.float64)}
+        units["orientations"] = "1"
+    x, y, z = (int(f + o) for f, o in zip(plan.block.first_voxel, low, strict=True))
+    count = dense(partial["orientations"], 0, np.int64)
+    return VolumeData(plan.block.voxel_size_m, (x, y, z), count, statistics, units)
+
+
+def _volumes(plan: "ParallelPlan", partial: "Arrays", volume: VolumeData | None) -> dict[str, Any]:
+    """Volumes [m³] by voxels, and the refined one if asked."""
+    refined = _refined(plan, volume) if plan.job.refined_volume is not None else None
+    if volume is None:
+        return {"occupied": 0.0, "inner": 0.0, "outer": 0.0, "refined": refined}
+    found, voxel = voxel_volumes(volume), volume.voxel_size_m**3
+    entry: dict[str, Any] = {"occupied": found.occupied, "inner": found.inner, "outer": found.outer}
+    if plan.job.kind == "dexterous":
+        shares = _shares(plan, partial)
+        entry["dexterous"] = float((shares >= plan.job.dexterous_threshold).sum() * voxel)
+        entry["all_orientations"] = float((partial["orientations"] == len(plan.orientations.rotations)).sum() * voxel)
+    return entry | {"refined": refined}
+
+
+def _refined(plan: "ParallelPlan", volume: VolumeData | None) -> dict[str, Any]:
+    """The volume with its 95 % interval from uniform points that inverse kinematics decides.
+
+    The strata are the inner voxels, the border and the rest of the lattice block.
+    """
+    job, tolerance = plan.job, plan.job.refined_volume
+    assert tolerance is not None
+    if plan.block is None:
+        return {"value": 0.0, "ci95": [0.0, 0.0], "tolerance": tolerance, "met": True, "points": 0}
+    classes = np.zeros(plan.block.shape, np.int8)
+    if volume is not None:
+        inner, outer = inner_and_outer(volume.occupied)
+        around = tuple(
+            slice(f - o - 1, f - o + n + 1)
+            for f, o, n in zip(volume.first_voxel, plan.block.first_voxel, volume.count.shape, strict=True)
+        )
+        padded = np.pad(classes, 1)
+        padded[tuple(slice(s.start + 1, s.stop + 1) for s in around)] = inner.astype(np.int8) + outer
+        classes = padded[1:-1, 1:-1, 1:-1]
+    strata = [np.argwhere(classes == code) + plan.block.first_voxel for code in np.unique(classes)]
+    rotations, weights = plan.orientations.rotations, plan.orientations.whole_weights
+    least = int(np.ceil(job.dexterous_threshold * weights.sum(dtype=np.int64))) if job.kind == "dexterous" else 0
+
+    def membership(points: np.ndarray) -> np.ndarray:
+        positions = in_base_frame(plan.mechanism, points)
+        found = count_orientations_at(plan.test, positions, rotations, weights=weights, device=plan.device)
+        inside = found.weights >= least if least else found.reached == len(rotations)
+        return inside.astype(np.int8)[:, None]
+
+    events = {EVENTS[job.kind]: Event(1, 1)}
+    found = estimate_volumes(membership, strata, plan.block.voxel_size_m, events, tolerance, seed=job.seed)
+    (estimate,) = found.volumes.values()
+    return {
+        "value": estimate.value,
+        "ci95": [estimate.low, estimate.high],
+        "tolerance": tolerance,
+        "met": estimate.met,
+        "of": EVENTS[job.kind],
+        "points": found.points,
+    }
+
+
+def _index_entries(plan: "ParallelPlan", volume: VolumeData) -> dict[str, Any]:
+    return {
+        name: {
+            "maximum": float(np.nanmax(volume.statistics["maximum"][name])),
+            "minimum": float(np.nanmin(volume.statistics["maximum"][name])),
+            "workspace_mean": workspace_mean(volume, name),
+            "unit": volume.units[name],
+            "task": [TASK_ROWS[r] for r in plan.rows],
+        }
+        for name in plan.names
+    }
+
+
+def _bounds(volume: VolumeData | None) -> dict[str, list[float]]:
+    """Outer faces of the occupied voxels [m]."""
+    if volume is None:
+        return {}
+    lower = volume.origin_m
+    return {"lower": lower.tolist(), "upper": (lower + np.array(volume.count.shape) * volume.voxel_size_m).tolist()}
+
+
+def _singularity_entry(volume: VolumeData, changes: dict[int, np.ndarray]) -> dict[str, Any]:
+    """How often the determinants change sign; a determinant that is 0 everywhere says so."""
+    entry: dict[str, Any] = {}
+    for kind, name in TYPES.items():
+        values = volume.statistics["center"][name][volume.occupied]
+        entry[f"type_{kind}"] = {
+            "determinant": name,
+            "sign_changes": len(changes[kind]),
+            "positive_voxels": int((values > 0).sum()),
+            "negative_voxels": int((values < 0).sum()),
+            "everywhere": bool((values == 0).all()),
+        }
+    return entry
+
+
+def _singularity_table(changes: dict[int, np.ndarray]) -> Table:
+    kinds = np.repeat(np.array(list(changes), np.int64), [len(points) for points in changes.values()])
+    return Table({"position": np.concatenate(list(changes.values())), "type": kinds}, {"position": "m"})
+
+
+def _reason(plan: "ParallelPlan") -> str:
+    """Why nothing is reached."""
+    if plan.block is None and plan.job.kind != "orientation":
+        return "no position is within the reach of all legs and the region of the platform"
+    if plan.job.kind == "orientation":
+        position = np.array(plan.job.position_m)
+    else:
+        assert plan.block is not None
+        position = (np.array(plan.block.first_voxel) + np.array(plan.block.shape) / 2) * plan.block.voxel_size_m
+    pose = _pose(plan, position)
+    legs = inverse_kinematics(plan.mechanism, pose[None])
+    return f"no pose tested is reached; at {np.round(position, 6).tolist()} m {fault_text(plan.mechanism, legs, 0)}"
+
+
+def _pose(plan: "ParallelPlan", position_world: np.ndarray, orientation: int = 0) -> np.ndarray:
+    """The platform there at one of the orientations, base frame, (4, 4)."""
+    pose = np.eye(4)
+    pose[:3, :3], pose[:3, 3] = plan.orientations.rotations[orientation], in_base_frame(plan.mechanism, position_world)
+    return pose
+
+
+def _middle(volume: VolumeData) -> np.ndarray:
+    """The centre of the reached voxel that is nearest to their mean [m]."""
+    cells = np.argwhere(volume.count == volume.count.max())
+    nearest = cells[((cells - cells.mean(axis=0)) ** 2).sum(axis=1).argmin()]
+    return (nearest + volume.first_voxel + 0.5) * volume.voxel_size_m
+
+
+def _skeleton(mechanism: Mechanism, pose: np.ndarray) -> np.ndarray | None:
+    """Every leg from its base over its joints to the middle of the platform, (L, 4, 3) [m]; None if not reached.
+
+    At the mechanism's home, if it has one, else at the pose (4, 4), base frame.
+    """
+    pose = pose if mechanism.home is None else mechanism.home
+    legs = inverse_kinematics(mechanism, pose[None])
+    if not legs.feasible[0]:
+        return None
+    middle = np.broadcast_to(pose[:3, 3], mechanism.base.shape)
+    return in_world(mechanism, np.stack([mechanism.base, legs.elbows[0], legs.joints[0], middle], axis=1))
+
+
+def _sample(plan: "ParallelPlan", volume: VolumeData | None) -> DistributionMap | None:
+    """A fixed subsample of the voxels' centres with their values."""
+    if volume is None:
+        return None
+    cells = np.argwhere(volume.occupied)
+    cells = cells[subsample(len(cells), PICTURE_SAMPLES)]
+    at = tuple(cells.T)
+    kept = volume.statistics.get("maximum") or volume.statistics.get("fraction") or {}
+    positions = (cells + volume.first_voxel + 0.5) * volume.voxel_size_m
+    return DistributionMap(positions, {name: values[at] for name, values in kept.items()}, dict(volume.units))

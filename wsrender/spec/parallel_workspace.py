@@ -1,0 +1,87 @@
+"""The job ``parallel_workspace``: where, and in which orientations, a parallel mechanism holds its platform."""
+
+from collections.abc import Iterator
+from typing import Annotated, Any, Literal
+
+from pydantic import BeforeValidator, Field
+
+from wsrender.spec.arm import Arm, ArmPath
+from wsrender.spec.document import Document
+from wsrender.spec.mechanism import MechanismSpec
+from wsrender.spec.options import Device, Indices, Task
+from wsrender.spec.orientations import MOST_ORIENTATIONS, Orientations
+from wsrender.spec.quantities import Count, PositiveNumber, RelativeTolerance, Seed, real
+from wsrender.spec.robot import Transform, Vector
+
+KINDS = ("constant_orientation", "orientation", "dexterous", "total_orientation")
+
+
+class ParallelWorkspaceJob(Document):
+    """Workspace of a parallel mechanism: the poses for which every leg has a solution within its limits.
+
+    ``constant_orientation``: positions at one orientation; ``orientation``: orientations at one position;
+    ``total_orientation``: positions at which all of a set of orientations are reached (Merlet 2006); ``dexterous``: the
+    share of a set of orientations that is reached at each position.
+    """
+
+    analysis: Literal["parallel_workspace"] = "parallel_workspace"
+    """Name of the analysis."""
+    mechanism: MechanismSpec
+    """The mechanism; a string is a name of the library: stewart_gough, six_pus, delta."""
+    kind: Literal["constant_orientation", "orientation", "dexterous", "total_orientation"] = "constant_orientation"
+    """Which workspace."""
+    orientation: Transform | None = None
+    """Orientation of the platform in the base frame, without position_m; null: none. Of constant_orientation only."""
+    position_m: Vector | None = None
+    """Position of the platform in the world [m]. Of the kind orientation, which needs it."""
+    orientations: Orientations = None
+    """Orientations in the base frame: {"euler_xyz_deg": …} or {"tilt_deg": …}. All kinds but constant_orientation."""
+    method: Literal["grid", "grid_by_subsystem"] = "grid_by_subsystem"
+    """"grid" asks every leg at every point, "grid_by_subsystem" the next subsystem of legs where the last ones reach:
+    the same voxels, sooner."""
+    voxel_size_m: PositiveNumber | None = None
+    """Edge of a voxel [m]; null: a hundredth of the cube root of the workspace's volume, estimated."""
+    indices: Annotated[Indices | tuple[()], Field(union_mode="left_to_right")] = ()
+    """Local indices at the voxels' centres: "kinematic" or a list of names; []: none. Of constant_orientation."""
+    task: Task | None = None
+    """Rows of the Jacobian, in base axes: "linear", "angular", "full" or a list; null: "full", "linear" of a delta."""
+    characteristic_length_m: PositiveNumber = 1.0
+    """Length that divides the linear rows where a task has angular ones too [m]."""
+    dexterous_threshold: Annotated[float, Field(gt=0, le=1), BeforeValidator(real)] = 1.0
+    """Least share of the orientations that counts as dexterous [1]."""
+    refined_volume: RelativeTolerance | None = None
+    """Half width of the 95 % interval of the volume, relative to it [1], from random points; null: not computed."""
+    seed: Seed = 0
+    """Seed of the random points."""
+    max_poses: Count = 10_000_000_000
+    """Largest number of poses that the job may test."""
+    precision: Literal["float32", "float64"] = "float64"
+    """Floating-point type of the kernels."""
+    device: Device = "auto"
+    """Where the kernels run: "auto" (a GPU if there is one), "cpu", "cuda" or "cuda:N"."""
+
+    def arms(self) -> dict[ArmPath, Arm]:
+        """No serial robots."""
+        return {}
+
+    def sweeps(self) -> list[Any]:
+        """No joint spaces are sampled."""
+        return []
+
+    def conflicts(self) -> Iterator[tuple[str, str]]:
+        """(field, message) of every pair of fields that do not go together."""
+        constant, at_point = self.kind == "constant_orientation", self.kind == "orientation"
+        if self.orientation is not None and not constant:
+            yield "orientation", f'must be null with kind "{self.kind}": use "orientations"'
+        if self.orientation is not None and any(self.orientation.position_m):
+            yield "orientation", "must not shift: its position_m must be 0"
+        if (self.position_m is not None) != at_point:
+            yield "position_m", f'must be {"given" if at_point else "null"} with kind "{self.kind}"'
+        if (self.orientations is None) != constant:
+            yield "orientations", f'must be {"null" if constant else "given"} with kind "{self.kind}"'
+        if self.indices and not constant:
+            yield "indices", f'must be [] with kind "{self.kind}": an index belongs to one pose'
+        if at_point and self.refined_volume is not None:
+            yield "refined_volume", "must be null where only the orientation varies"
+        if self.orientations is not None and self.orientations.count > min(MOST_ORIENTATIONS, self.max_poses):
+            yield "orientations", f"are {self.orientations.count:.4g}; at most {MOST_ORIENTATIONS:.4g} are tested"
