@@ -13,6 +13,7 @@ from wsrender.run.partial_files import load_partial, save_partial
 
 SIX_PUS = {"analysis": "parallel_workspace", "mechanism": "six_pus", "voxel_size_m": 0.05, "device": "cpu"}
 STEWART = {"analysis": "parallel_workspace", "mechanism": "stewart_gough", "voxel_size_m": 0.04, "device": "cpu"}
+NOWHERE = {"library": "stewart_gough", "length_m": [0.01, 0.1]}
 TILTS = {"tilt_deg": 15, "tilts": 3, "azimuths": 8}
 
 
@@ -30,6 +31,27 @@ def test_known_volumes(document, exact, method):
     result = execute({**SIX_PUS, "mechanism": document, "method": method})
     assert result.document["volume_m3"]["occupied"] == pytest.approx(exact, rel=5e-3)
     assert result.volume.count.sum() * 0.05**3 == pytest.approx(exact, rel=5e-3)
+
+
+@pytest.mark.parametrize(("method", "tolerance"), [("exact", 1e-8), ("solids", 1e-3)])
+@pytest.mark.parametrize(("link", "exact"), [([2.5, 2.7, 2.6], 0.717344315), (2.5, 0.963565768)])
+def test_methods_by_the_boundary_agree(method, tolerance, link, exact, tmp_path):
+    mech = {"library": "six_pus", "link_m": link, "placement": {"position_m": [1, 0, 0], "rpy_deg": [90, 0, 0]}}
+    job = {"analysis": "parallel_workspace", "mechanism": mech, "method": method, "device": "cpu"}
+    result = execute(job)
+    assert result.document["volume_m3"][method] == pytest.approx(exact, rel=tolerance)
+    assert result.meshes["workspace"].is_watertight
+    assert result.meshes["workspace"].volume == pytest.approx(exact, rel=2e-3)
+    # The mechanism stands upright no more: its z points along -y, around x = 1.
+    lower, upper = result.meshes["workspace"].bounds
+    assert upper[1] < -0.9 and lower[0] > 0 and upper[0] < 2
+    result.save(tmp_path / "out")
+    assert (tmp_path / "out/workspace.glb").exists()
+
+
+def test_topology_of_the_known_six_pus():
+    topology = execute({**SIX_PUS, "voxel_size_m": None, "method": "exact"}).document["topology"]
+    assert (topology["vertices"], topology["edges"], topology["faces"]) == (18, 27, 11)
 
 
 def test_the_tilted_workspace_of_the_paper():
@@ -161,6 +183,8 @@ def test_a_default_voxel_size_is_a_hundredth_of_the_workspace():
         ),
         ({"kind": "orientation", "position_m": [0, 0, 3], "orientations": TILTS}, "leg 1 (UPS) at 3"),
         ({"kind": "total_orientation", "orientations": {"tilt_deg": 120}}, "no p"),
+        ({"mechanism": NOWHERE, "method": "exact", "voxel_size_m": None}, "enclose none"),
+        ({"mechanism": NOWHERE, "method": "solids", "voxel_size_m": None}, "enclose none"),
     ],
 )
 def test_an_empty_workspace_is_a_result(fields, reason, tmp_path):
@@ -168,7 +192,7 @@ def test_an_empty_workspace_is_a_result(fields, reason, tmp_path):
     assert reason in result.document["empty"]
     assert result.volume is None
     if "volume_m3" in result.document:
-        assert result.document["volume_m3"]["occupied"] == 0
+        assert next(iter(result.document["volume_m3"].values())) == 0
     result.save(tmp_path / "out")
     assert Result.load(tmp_path / "out").document["empty"] == result.document["empty"]
 
@@ -192,6 +216,7 @@ def test_an_empty_workspace_is_a_result(fields, reason, tmp_path):
         ({"indices": ["beauty"]}, "indices", "unknown index"),
         ({"mechanism": {"legs": known_ups()["legs"][:5]}, "indices": "kinematic"}, "mechanism.legs", "must be 6"),
         ({"voxel_size_m": 1e-10}, "voxel_size_m", "is too small"),
+        ({"mechanism": "delta", "method": "exact", "voxel_size_m": None}, "mechanism.legs.0", 'use the method "grid"'),
         ({"max_poses": 100}, "max_poses", "the job has"),
     ],
 )

@@ -237,6 +237,8 @@ MALFORMED = [
         "an index belongs to one pose",
     ),
     (legs(orientation={"position_m": [0, 0, 1]}), "orientation", "must not shift"),
+    (legs(method="exact", voxel_size_m=0.1), "voxel_size_m", 'must not be given with the method "exact"'),
+    (legs(method="solids", kind="dexterous", orientations={"tilt_deg": 9}), "method", 'with kind "dexterous"'),
     (legs(method="guess"), "method", 'must be "grid"'),
     (legs(dexterous_threshold=0), "dexterous_threshold", "must be greater than 0"),
 ]

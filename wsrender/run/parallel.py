@@ -25,9 +25,10 @@ from wsrender.parallel.membership import (
 from wsrender.parallel.orientations import OrientationSet, orientation_set
 from wsrender.result import Result
 from wsrender.robot.indices import task_rows
+from wsrender.run.parallel_exact import boundary_partial, boundary_result, region_of
 from wsrender.run.parallel_result import orientation_result, positions_result
 from wsrender.run.settled_device import settled_device
-from wsrender.spec.parallel_workspace import ParallelWorkspaceJob
+from wsrender.spec.parallel_workspace import BY_BOUNDARY, ParallelWorkspaceJob
 from wsrender.spec.robot import Transform
 from wsrender.volume.lattice import LatticeBlock, block_around, round_to_digits
 
@@ -40,7 +41,7 @@ LEAST_SHARE = 1e-3  # of the box: where hardly anything is reached
 
 @dataclass(eq=False)
 class ParallelPlan:
-    """A resolved ``parallel_workspace`` job; ``block`` is None at a point, or where the legs' reaches do not meet."""
+    """A resolved ``parallel_workspace`` job; ``block`` is None where no lattice is tested."""
 
     job: ParallelWorkspaceJob
     mechanism: Mechanism
@@ -77,6 +78,8 @@ class ParallelPlan:
         """Of the shard's voxels that are reached: flat number in the block, orientations, weights, indices."""
         if self.job.kind == "orientation":
             return self._at_point(progress, **execution)
+        if self.job.method in BY_BOUNDARY:
+            return boundary_partial(self)
         if self.block is None:
             return self._partial(np.zeros(0, np.int64), np.zeros(0, np.int32), np.zeros(0, np.int32), 0)
         first, poses = (number // self._count for number in self.shards[shard])
@@ -131,7 +134,9 @@ class ParallelPlan:
         return {"asked": asked, **{name: values[order] for name, values in merged.items()}}
 
     def finish(self, partial: Arrays, seconds: dict[str, float]) -> Result:
-        """Volume data, document, tables and the legs in a typical pose."""
+        """Volume data or mesh, document, tables and the legs in a typical pose."""
+        if self.job.method in BY_BOUNDARY:
+            return boundary_result(self, partial, seconds)
         if self.job.kind == "orientation":
             return orientation_result(self, partial["reached"], seconds)
         return positions_result(self, partial, seconds)
@@ -150,8 +155,11 @@ def plan_parallel(job: ParallelWorkspaceJob, resolved: dict[str, Any] | None = N
     rows = task_rows(job.task or ("linear" if mechanism.translational else "full"))
     _check_indices(mechanism, names, rows)
     device, target = settled_device(job.device, resolved)
+    if job.method in BY_BOUNDARY:
+        region_of(mechanism, orientations.rotations[0])
     if resolved is None:
-        block = None if job.kind == "orientation" else _block(job, mechanism, orientations, device)
+        on_lattice = job.kind != "orientation" and job.method not in BY_BOUNDARY
+        block = _block(job, mechanism, orientations, device) if on_lattice else None
         poses = len(orientations.rotations) * (block.size if block else 1)
         if poses > job.max_poses:
             raise ResourceError("max_poses", f"is {job.max_poses:.4g}; the job has {poses:.4g} poses: larger voxels?")

@@ -35,7 +35,7 @@ def positions_result(plan: "ParallelPlan", partial: "Arrays", seconds: dict[str,
     started = time.perf_counter()
     job, found = plan.job, _counted(plan, partial)
     volume = _volume(plan, partial, found)
-    document = _document(plan) | {
+    document = mechanism_document(plan) | {
         "sampling": {
             "method": job.method,
             "samples": sum(count for _, count in plan.shards),
@@ -54,7 +54,7 @@ def positions_result(plan: "ParallelPlan", partial: "Arrays", seconds: dict[str,
         document["singularities"] = _singularity_entry(volume, changes)
         tables["singularities"] = _singularity_table(changes)
     document["timing_s"] = {**seconds, "finish": time.perf_counter() - started}
-    skeleton = None if volume is None else _skeleton(plan.mechanism, _pose(plan, _middle(volume)))
+    skeleton = None if volume is None else skeleton_at(plan, _middle(volume))
     return Result(document, volume=volume, sample=_sample(plan, volume), skeleton=skeleton, tables=tables)
 
 
@@ -67,7 +67,7 @@ def orientation_result(plan: "ParallelPlan", is_reached: np.ndarray, seconds: di
         {**columns, "quat_wxyz": orientations.quat_wxyz, "reached": is_reached},
         dict.fromkeys(orientations.names, "rad"),
     )
-    document = _document(plan) | {
+    document = mechanism_document(plan) | {
         "sampling": {"method": "grid", "samples": len(is_reached), "levels": list(orientations.levels)},
         "orientation_workspace": {
             "position_m": list(job.position_m or ()),
@@ -84,11 +84,12 @@ def orientation_result(plan: "ParallelPlan", is_reached: np.ndarray, seconds: di
     if is_reached.any():  # the one that is turned least
         turns = np.trace(orientations.rotations, axis1=1, axis2=2)
         shown = int(np.where(is_reached, turns, -np.inf).argmax())
-        skeleton = _skeleton(plan.mechanism, _pose(plan, np.array(job.position_m), shown))
+        skeleton = skeleton_at(plan, np.array(job.position_m), shown)
     return Result(document, tables={"orientations": table}, skeleton=skeleton)
 
 
-def _document(plan: "ParallelPlan") -> dict[str, Any]:
+def mechanism_document(plan: "ParallelPlan") -> dict[str, Any]:
+    """What the documents of all kinds and methods begin with."""
     return {
         "analysis": "parallel_workspace",
         "job": job_entry(plan.job),
@@ -278,12 +279,13 @@ def _middle(volume: VolumeData) -> np.ndarray:
     return (nearest + volume.first_voxel + 0.5) * volume.voxel_size_m
 
 
-def _skeleton(mechanism: Mechanism, pose: np.ndarray) -> np.ndarray | None:
+def skeleton_at(plan: "ParallelPlan", position_world: np.ndarray, orientation: int = 0) -> np.ndarray | None:
     """Every leg from its base over its joints to the middle of the platform, (L, 4, 3) [m]; None if not reached.
 
-    At the mechanism's home, if it has one, else at the pose (4, 4), base frame.
+    At the mechanism's home, if it has one, else at the position, world, in one of the orientations.
     """
-    pose = pose if mechanism.home is None else mechanism.home
+    mechanism = plan.mechanism
+    pose = _pose(plan, position_world, orientation) if mechanism.home is None else mechanism.home
     legs = inverse_kinematics(mechanism, pose[None])
     if not legs.feasible[0]:
         return None

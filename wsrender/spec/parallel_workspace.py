@@ -13,7 +13,7 @@ from wsrender.spec.orientations import MOST_ORIENTATIONS, Orientations
 from wsrender.spec.quantities import Count, PositiveNumber, RelativeTolerance, Seed, real
 from wsrender.spec.robot import Transform, Vector
 
-KINDS = ("constant_orientation", "orientation", "dexterous", "total_orientation")
+BY_BOUNDARY = ("exact", "solids")
 
 
 class ParallelWorkspaceJob(Document):
@@ -36,9 +36,10 @@ class ParallelWorkspaceJob(Document):
     """Position of the platform in the world [m]. Of the kind orientation, which needs it."""
     orientations: Orientations = None
     """Orientations in the base frame: {"euler_xyz_deg": …} or {"tilt_deg": …}. All kinds but constant_orientation."""
-    method: Literal["grid", "grid_by_subsystem"] = "grid_by_subsystem"
+    method: Literal["grid", "grid_by_subsystem", "exact", "solids"] = "grid_by_subsystem"
     """"grid" asks every leg at every point, "grid_by_subsystem" the next subsystem of legs where the last ones reach:
-    the same voxels, sooner."""
+    the same voxels, sooner. "exact" (faces, volume, topology) and "solids" (boolean operations on meshes) are for the
+    constant orientation of mechanisms whose workspace only spheres bound: UPS legs, pairs of PUS legs."""
     voxel_size_m: PositiveNumber | None = None
     """Edge of a voxel [m]; null: a hundredth of the cube root of the workspace's volume, estimated."""
     indices: Annotated[Indices | tuple[()], Field(union_mode="left_to_right")] = ()
@@ -79,6 +80,12 @@ class ParallelWorkspaceJob(Document):
             yield "position_m", f'must be {"given" if at_point else "null"} with kind "{self.kind}"'
         if (self.orientations is None) != constant:
             yield "orientations", f'must be {"null" if constant else "given"} with kind "{self.kind}"'
+        if self.method in BY_BOUNDARY:
+            if not constant:
+                yield "method", f'must be "grid" or "grid_by_subsystem" with kind "{self.kind}"'
+            for name in ("indices", "refined_volume", "voxel_size_m"):
+                if getattr(self, name):
+                    yield name, f'must not be given with the method "{self.method}": it has no voxels'
         if self.indices and not constant:
             yield "indices", f'must be [] with kind "{self.kind}": an index belongs to one pose'
         if at_point and self.refined_volume is not None:
