@@ -15,15 +15,16 @@ PIPED_WIDTH = 240  # columns off a terminal: one robot a line
 
 
 def robots() -> None:
-    """List the robots of the library."""
+    """List the robots and the mechanisms of the library."""
     with one_line_faults():
         from wsrender.robots import library
 
-        table = Table("name", "joints", "description", "source", box=SIMPLE_HEAD, show_edge=False, pad_edge=False)
-        for robot in library.describe():
-            table.add_row(robot.name, str(robot.joints), robot.description, robot.source)
         console = Console() if sys.stdout.isatty() else Console(width=PIPED_WIDTH)
-        console.print(table)
+        for kind, listed in (("robot", library.describe()), ("mechanism", library.mechanisms())):
+            table = Table(kind, "joints", "description", "source", box=SIMPLE_HEAD, show_edge=False, pad_edge=False)
+            for robot in listed:
+                table.add_row(robot.name, str(robot.joints), robot.description, robot.source)
+            console.print(table)
 
 
 def schema(

@@ -1,4 +1,8 @@
-"""The robot library: one folder per robot under ``mjcf/``, with its model and the source of every number."""
+"""The robot library: one folder per robot under ``mjcf/``, with its model and the source of every number.
+
+Mechanisms with closed loops have theirs under ``mjcf/mechanisms/``: they are no serial robots, and their analyses take
+their own documents; the models are for simulation, and check the analyses.
+"""
 
 from dataclasses import dataclass
 from difflib import get_close_matches
@@ -37,14 +41,19 @@ def find(name: str) -> Path:
 
 def describe() -> list[LibraryRobot]:
     """Every robot of the library, sorted by name, as its model file describes it."""
-    return [_described(name) for name in names()]
+    return [_described(name, find(name), "worldbody//joint") for name in names()]
 
 
-def _described(name: str) -> LibraryRobot:
-    path = find(name)
+def mechanisms() -> list[LibraryRobot]:
+    """Every model of a mechanism with closed loops, sorted by name; ``joints`` counts the actuated ones."""
+    paths = sorted(_folder().glob("mechanisms/*/*.xml"))
+    return [_described(path.stem, path, "actuator/*") for path in paths]
+
+
+def _described(name: str, path: Path, counted: str) -> LibraryRobot:
     model = ElementTree.parse(path).getroot()  # our own file: the parser need not distrust it
     texts = {text.get("name"): text.get("data", "") for text in model.iterfind("custom/text")}
-    joints = sum(1 for _ in model.iterfind("worldbody//joint"))
+    joints = sum(1 for _ in model.iterfind(counted))
     return LibraryRobot(name, joints, texts["description"], texts["source"], path)
 
 
