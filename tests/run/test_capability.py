@@ -76,11 +76,15 @@ def index_of(volume):
     return volume.statistics["fraction"]["approach_directions"]
 
 
-def test_a_planar_arm_approaches_in_its_plane():
-    """3R, links 0.4, 0.2, 0.1 m: everywhere between 0.3 and 0.5 m the last link may point anywhere in the plane."""
+@pytest.mark.parametrize("height", [0.04, 0.01])
+def test_a_planar_arm_approaches_in_its_plane(height):
+    """3R, links 0.4, 0.2, 0.1 m: everywhere between 0.3 and 0.5 m the last link may point anywhere in the plane.
+
+    The plane holds the centres of voxels, or lies beside them.
+    """
     size, tilt = 0.08, 0.3
     rows = [ws.DHRow(a=a) for a in (0.4, 0.2, 0.1)]
-    placement = ws.Transform(position_m=(0, 0, size / 2))  # centres of voxels lie in the plane
+    placement = ws.Transform(position_m=(0, 0, height))
     robot = ws.load_robot(ws.DHTable(convention="standard", rows=rows), placement=placement)
     directions = fibonacci_directions(40)
     found = capability(robot.chain, size, directions, approach_axis="x", angle_rad=tilt)

@@ -49,6 +49,35 @@ def test_every_voxel_near_the_workspace_has_its_label(result, tmp_path):
     assert np.array_equal(restored.statistics["center"]["label"], label, equal_nan=True)
 
 
+def test_voxels_of_an_arm_in_a_plane_beside_their_centres():
+    """2R in a plane that is turned and lies off the lattice: reached is a ring, .15 … .45 m around the base."""
+    rows = [ws.DHRow(a=0.3), ws.DHRow(a=0.15)]
+    table = ws.DHTable(convention="standard", rows=rows)
+    robot = ws.load_robot(table, placement=ws.Transform(position_m=(0.1, 0, 0.037), rpy_deg=(30, 0, 0)))
+    result = ws.analyze(robot, ws.Sobol(200_000), voxel_size_m=0.02, refined_volume=0.01, device="cpu")
+    labelled = result.volumes["reachability"]
+    label = labelled.statistics["center"]["label"]
+    assert (label[labelled.occupied] == 1).all()
+    local = np.argwhere(~np.isnan(label)) + labelled.first_voxel + 0.5
+    local = (local * 0.02 - [0.1, 0, 0.037]) @ robot.chain.T_world_base[:3, :3]
+    radius, height = np.hypot(*local[:, :2].T), np.abs(local[:, 2])
+    found = label[~np.isnan(label)] == 1
+    # The inscribed ball of a voxel is .01 m, the circumscribed one .0173 m.
+    assert found[(height < 0.01) & (radius > 0.15) & (radius < 0.45)].all()
+    assert not found[(height > 0.0174) | (radius < 0.13) | (radius > 0.47)].any()
+    assert result.document["volume_m3"]["refined"]["value"] == 0.0
+    assert result.document["volume_m3"]["refined"]["voxels"]["labels"]["reachable"] == found.sum()
+
+
+def test_it_says_how_far_it_is():
+    seen = []
+    job = {"analysis": "workspace", "robot": "spherical", "voxel_size_m": 0.02, "refined_volume": 0.02, "device": "cpu"}
+    ws.execute({**job, "sampling": {"method": "sobol", "count": 20_000}}, progress=lambda *report: seen.append(report))
+    for message in ("refined volume", "labels of voxels"):
+        done, total = zip(*(report[:2] for report in seen if report[2] == message), strict=True)
+        assert done[0] > 0 and done[-1] <= total[-1] and list(done) == sorted(done)
+
+
 def test_a_held_joint_holds_for_the_refined_volume_too():
     held = ws.Sobol(20_000, locked={"joint3": 0.3})
     result = ws.analyze(ws.load_robot("spherical"), held, voxel_size_m=0.02, refined_volume=0.02, device="cpu")

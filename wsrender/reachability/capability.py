@@ -9,6 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from wsrender.engine import evaluate_kinematics
+from wsrender.reachability.dimension import fills_volume, in_own_voxel
 from wsrender.reachability.inverse_solver import REACHABLE, UNDECIDED, InverseSolver
 from wsrender.reachability.occupied_cells import occupied_cells
 from wsrender.robots.chain import Chain
@@ -31,7 +33,7 @@ AXES = {
 
 @dataclass(frozen=True, eq=False)
 class Capability:
-    """Of the voxels whose centre is reached: cells (V, 3) int64, and from which of D directions they are, (V, D) bool.
+    """Of the voxels that are reached: cells (V, 3) int64, and from which of D directions they are, (V, D) bool.
 
     ``undecided`` (V,): directions about which the search was not conclusive; they count as not reached.
     """
@@ -71,14 +73,16 @@ def capability(
 ) -> Capability:
     """Decide which voxel centres the end effector reaches with its ``approach_axis`` along each direction (D, 3).
 
+    Where its positions fill no volume, as those of an arm that moves in a plane, the reachable point nearest to a
+    centre stands for the voxel, if it lies in it.
+
     ``position_m`` and ``angle_rad``: what counts as there. ``progress``: called with the pairs decided.
     """
     execution = {"seed": seed, "precision": precision, "device": device, "threads": threads}
     accuracy = {"position_m": position_m, "angle_rad": angle_rad}
     cells = _candidates(chain, voxel_size_m, seed, device, threads)
-    centers = (cells + 0.5) * voxel_size_m
-    found = InverseSolver(chain, kind="position", **accuracy, **execution).solve(centers)
-    cells, centers = cells[found.label == REACHABLE], centers[found.label == REACHABLE]
+    points, reached = _points(InverseSolver(chain, kind="position", **accuracy, **execution), cells, voxel_size_m)
+    cells, points = cells[reached], points[reached]
 
     turned = np.eye(4)
     turned[:3, :3] = AXES[approach_axis]
@@ -87,12 +91,22 @@ def capability(
     each = max(1, BATCH // len(directions))
     for first in range(0, len(cells), each):
         batch = slice(first, first + each)
-        position = np.repeat(centers[batch], len(directions), axis=0)
-        axes = np.tile(directions, (len(centers[batch]), 1))
+        position = np.repeat(points[batch], len(directions), axis=0)
+        axes = np.tile(directions, (len(points[batch]), 1))
         labels[batch] = solver.solve(position, axes).label.reshape(-1, len(directions))
         if progress:
             progress(min(first + each, len(cells)) * len(directions))
     return Capability(cells, labels == REACHABLE, (labels == UNDECIDED).sum(axis=1))
+
+
+def _points(solver: InverseSolver, cells: np.ndarray, voxel_size_m: float) -> tuple[np.ndarray, np.ndarray]:
+    """The point (V, 3) [m] that stands for each cell, and whether it is reached (V,)."""
+    centers = (cells + 0.5) * voxel_size_m
+    found = solver.solve(centers)
+    if fills_volume(solver.whole):
+        return centers, found.label == REACHABLE
+    nearest = evaluate_kinematics(solver.whole, found.q, device="cpu").pose[:, :3, 3]
+    return nearest, in_own_voxel(nearest, cells, voxel_size_m)
 
 
 def _candidates(chain: Chain, voxel_size_m: float, seed: int, device: str, threads: int | None) -> np.ndarray:

@@ -1,7 +1,7 @@
 """Inverse kinematics that decides: a target is reachable, unreachable, or undecided."""
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, fields
 from functools import cached_property
 
 import numpy as np
@@ -18,9 +18,11 @@ REACHABLE, UNREACHABLE, UNDECIDED = 1, 0, -1
 LABELS = {REACHABLE: "reachable", UNREACHABLE: "unreachable", UNDECIDED: "undecided"}
 
 NEAREST = 8  # first starts: the nearest of a set of samples
+EPS = 1.0  # they may be farther by this share: exact neighbours of far targets cost more than the tries
 FRESH = 248  # then the same further samples for every target, so that a label depends on its target alone
+BATCH = 1 << 15  # targets that are solved together: their starts are held in memory
 GROUPS = (1, 7, 8, 16, 32, 64, 128)  # starts between two looks at what they found
-SAMPLES = {"position": 1 << 15, "axis": 1 << 13, "pose": 1 << 13}  # of the set
+SAMPLES = {"position": 1 << 12, "axis": 1 << 13, "pose": 1 << 13}  # of the set
 # Evidence that a target is unreachable: so many tries came to rest where no motion within the limits leads nearer,
 # clearly off the target, and so many of them at the least residual of all, within 1 %.
 LEAST_ENDS = {"position": 12, "axis": 32, "pose": 32}
@@ -70,11 +72,26 @@ class InverseSolver:
         self._workers = thread_count(threads)
         self._execution = {"precision": precision, "device": device, "threads": threads}
 
-    def solve(self, position: np.ndarray, orientation: np.ndarray | None = None) -> Solutions:
+    def solve(
+        self,
+        position: np.ndarray,
+        orientation: np.ndarray | None = None,
+        progress: Callable[[int], None] | None = None,
+    ) -> Solutions:
         """Decide targets in the world: positions (N, 3) [m], and ``orientation``.
 
         That is nothing for positions, unit vectors (N, 3) for the tip's z, rotation matrices (N, 3, 3) for poses.
+        ``progress``: called with the targets decided.
         """
+        parts = []
+        for first in range(0, max(len(position), 1), BATCH):
+            batch = slice(first, first + BATCH)
+            parts.append(self._solve(position[batch], None if orientation is None else orientation[batch]))
+            if progress:
+                progress(min(first + BATCH, len(position)))
+        return Solutions(*(np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(Solutions)))
+
+    def _solve(self, position: np.ndarray, orientation: np.ndarray | None) -> Solutions:
         targets = _targets(position, orientation)
         search = _Search(len(targets), self.chain.n, self.kind, self.accuracy, self._out_of_reach(position))
         for starts in self._starts(targets, search):
@@ -121,7 +138,8 @@ class InverseSolver:
             if last <= NEAREST:
                 features = self._features(targets[search.pending])
                 # k as a list gives a column per neighbour.
-                _, near = self._tree.query(features, k=list(range(first + 1, last + 1)), workers=self._workers)  # type: ignore[arg-type]
+                neighbours = list(range(first + 1, last + 1))
+                _, near = self._tree.query(features, k=neighbours, eps=EPS, workers=self._workers)  # type: ignore[arg-type]
                 yield self._samples[near]
             else:
                 yield np.tile(self._fresh(first - NEAREST, last - NEAREST), (len(search.pending), 1, 1))

@@ -12,6 +12,7 @@ from functools import cached_property
 import numpy as np
 
 from wsrender.engine import configurations, evaluate_kinematics
+from wsrender.reachability.dimension import fills_volume
 from wsrender.reachability.inverse_solver import UNREACHABLE, InverseSolver
 from wsrender.reachability.occupied_cells import occupied_cells
 from wsrender.reachability.volume_estimate import Event, VolumeEstimate, estimate_volumes
@@ -22,13 +23,12 @@ from wsrender.spec.sampling import Sobol
 from wsrender.volume.lattice import LatticeBlock, block_around
 from wsrender.volume.neighbours import inner_and_outer
 
-POSITION_M = 1e-6  # residual that counts as reached: a shell so thin adds nothing at any tolerance allowed
+POSITION = 1e-8  # of the reach
 SAMPLES_PER_CELL = 16
 # Cells along the box's mean edge: as many as make the border's share fit a tolerance of 0.5 %; finer tolerances cut
 # the border further (`estimate_volumes`).
 CELLS = 64
 TESTS, TEST_SAMPLES = 4096, 1 << 16  # targets of the measured false-negative rate, chosen from so many samples
-FLAT = 1e-6  # thickness of a set of positions that counts as none, relative to its size
 
 
 @dataclass(frozen=True)
@@ -46,11 +46,15 @@ class FalseNegatives:
 
 @dataclass(frozen=True)
 class RefinedVolumes:
-    """Volumes by event [m³], the points decided for them, and each robot's measured false negatives."""
+    """Volumes by event [m³], the points decided for them, and each robot's measured false negatives.
+
+    ``position_m``: the largest residual that counted as reached [m].
+    """
 
     volumes: dict[str, VolumeEstimate]
     points: int
     false_negatives: tuple[FalseNegatives, ...]
+    position_m: float
 
 
 def refined_volume(chain: Chain, tolerance: float, **options) -> tuple[VolumeEstimate, RefinedVolumes]:
@@ -68,28 +72,31 @@ def refined_volumes(
     max_points: int = 10_000_000,
     device: str = "cpu",
     threads: int | None = None,
-    progress: Callable[[int], None] | None = None,
+    progress: Callable[[int, int], None] | None = None,
 ) -> RefinedVolumes:
     """Volumes of the points that so many of the placed ``chains`` reach, to a relative ``tolerance``.
 
     ``events``: by name the least and largest number of chains, such as ``{"any": Event(1, 2), "all": Event(2, 2)}``;
-    those that are not ``precise`` are estimated from the same points. ``progress``: called with the points decided.
+    those that are not ``precise`` are estimated from the same points. ``progress``: called with the points decided
+    and about how many there will be.
     """
     arms = [_Arm(chain, seed, device, threads) for chain in chains]
     low = np.min([arm.low for arm in arms], axis=0)
     high = np.max([arm.high for arm in arms], axis=0)
     solid = [arm for arm in arms if arm.solid]
+    position_m = max(map(tolerance_m, chains))
     if not solid:
         volumes = {name: VolumeEstimate(0.0, 0.0, 0.0, 0.0, met=True) for name in events}
-        return RefinedVolumes(volumes, 0, tuple(FalseNegatives(0, 0) for _ in arms))
+        return RefinedVolumes(volumes, 0, tuple(FalseNegatives(0, 0) for _ in arms), position_m)
     block = block_around(low, high, float(np.cbrt(np.prod(high - low))) / CELLS)
     classes = sum(arm.classes(block).astype(np.int64) * 3**k for k, arm in enumerate(solid))
     strata = [np.argwhere(classes == code) + block.first_voxel for code in np.unique(classes)]
     misses = [arm.false_negatives(block) for arm in arms]
     hidden = sum(miss.rate / (1 - miss.rate) if miss.rate < 1 else np.inf for miss in misses)
 
-    def membership(points: np.ndarray) -> np.ndarray:
-        return np.stack([arm.labels(points) for arm in arms], axis=1)
+    def membership(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        decided = [arm.decided(points) for arm in arms]
+        return np.stack([label for label, _ in decided], axis=1), np.stack([far for _, far in decided], axis=1)
 
     found = estimate_volumes(
         membership,
@@ -102,27 +109,36 @@ def refined_volumes(
         max_points=max_points,
         progress=progress,
     )
-    return RefinedVolumes(found.volumes, found.points, tuple(misses))
+    return RefinedVolumes(found.volumes, found.points, tuple(misses), position_m)
+
+
+def tolerance_m(chain: Chain) -> float:
+    """Residual that counts as reached [m]: a shell so thin adds nothing to any volume that is not flat."""
+    return POSITION * (chain.reach or 1.0)
 
 
 class _Arm:
     """One chain: its box, what its samples reach, and its solver."""
 
     def __init__(self, chain: Chain, seed: int, device: str, threads: int | None):
-        self.solver = InverseSolver(chain, position_m=POSITION_M, seed=seed, device=device, threads=threads)
+        self.solver = InverseSolver(chain, position_m=tolerance_m(chain), seed=seed, device=device, threads=threads)
         self.chain, self.seed, self.device, self.threads = self.solver.chain, seed, device, threads
         self.low, self.high = reachable_box(self.chain, self.chain.lower_limits, self.chain.upper_limits)
 
     @cached_property
     def solid(self) -> bool:
-        """Whether the positions can fill a volume: three joints move them, and not in a plane."""
-        positions = self._positions(1 << 10)
-        sizes = np.linalg.svd(positions - positions.mean(axis=0), compute_uv=False)
-        return self.chain.n >= 3 and bool(sizes[2] > FLAT * sizes[0])
+        """Whether the positions fill a volume."""
+        return fills_volume(self.chain)
 
-    def labels(self, points: np.ndarray) -> np.ndarray:
-        """Labels (N,) int8 of points (N, 3); a surface or a line has no volume, so nothing lies in it by chance."""
-        return self.solver.solve(points).label if self.solid else np.full(len(points), UNREACHABLE, np.int8)
+    def decided(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Labels (N,) int8 of points (N, 3), and distances (N,) [m] to the nearest reachable point that was found.
+
+        A surface or a line has no volume: nothing lies in it by chance, and nothing has to be looked for near it.
+        """
+        if not self.solid:
+            return np.full(len(points), UNREACHABLE, np.int8), np.full(len(points), np.inf)
+        found = self.solver.solve(points)
+        return found.label, found.distance_m
 
     def classes(self, block: LatticeBlock) -> np.ndarray:
         """Of every cell: 0 rest, 1 border, 2 inner, (nx, ny, nz)."""
@@ -138,7 +154,7 @@ class _Arm:
         cells = np.floor(positions / block.voxel_size_m).astype(np.int64) - block.first_voxel
         _, chosen = np.unique(np.ravel_multi_index(tuple(cells.T), block.shape), return_index=True)
         chosen = np.random.Generator(np.random.Philox(key=self.seed)).permutation(chosen)[:TESTS]
-        labels = self.labels(positions[chosen])
+        labels, _ = self.decided(positions[chosen])
         return FalseNegatives(len(chosen), int((labels == UNREACHABLE).sum()))
 
     def _positions(self, count: int) -> np.ndarray:

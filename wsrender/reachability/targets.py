@@ -1,5 +1,6 @@
 """Whether a robot reaches given targets, with what configuration, or why not."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -50,13 +51,14 @@ def reachable(
     precision: str = "float64",
     device: str = "auto",
     threads: int | None = None,
+    progress: Callable[[int], None] | None = None,
 ) -> Reachability:
     """Decide which ``points`` (N, 3) [m], or poses with ``orientations`` (N, 4) quat_wxyz, the end effector reaches.
 
     Positions and orientations are in the world frame. Every target is tried from many starts within the joint limits
     (`InverseSolver`); "unreachable" needs a proof or consistent evidence, else the label is "undecided". A label
     depends on its target and ``seed`` alone. ``characteristic_length_m`` makes an angle comparable to a distance
-    while both shrink (default: half the reach). Raises InputError.
+    while both shrink (default: half the reach). ``progress``: called with the targets decided. Raises InputError.
     """
     subject = model_robot(robot)
     position = rows_of(points, 3, "points")
@@ -73,7 +75,7 @@ def reachable(
         device=device,
         threads=threads,
     )
-    found = solver.solve(position, axes)
+    found = solver.solve(position, axes, progress)
     labels = np.array([LABELS[label] for label in found.label.tolist()], dtype="<U11")
     reasons = reasons_of(solver, found, position, axes)
     return Reachability(found.q, found.distance_m, found.angle_rad, labels, reasons)

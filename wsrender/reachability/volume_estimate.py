@@ -4,8 +4,9 @@ A stratum is a set of cells of one size. Points are drawn uniformly and independ
 share found is binomial, and more of them where they narrow the interval most (Neyman, *On the two different aspects of
 the representative method*, 1934). Where a stratum would need many more points than it has cells, a pilot of a few
 points per cell sorts its cells: those whose points agree become strata of their own, nearly without variance, the
-others are cut in eight. So the work grows with the boundary of what is measured, not with its volume. Pilot points
-only sort cells; they do not enter the estimate, whose points are drawn afterwards.
+others are cut in eight, and so are cells outside that a set comes near to, for thin sets pass between few points. So
+the work grows with the boundary of what is measured, not with its volume. Pilot points only sort cells; they do not
+enter the estimate, whose points are drawn afterwards.
 """
 
 from collections.abc import Callable, Iterable, Mapping
@@ -13,14 +14,17 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-Membership = Callable[[np.ndarray], np.ndarray]
-"""Points (N, 3) [m] → labels (N, K) int8 for K sets: 1 inside, 0 outside, -1 undecided."""
+Membership = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
+"""Points (N, 3) [m] → labels (N, K) int8 for K sets: 1 inside, 0 outside, -1 undecided; and about how far each point is
+from the sets, (N, K) [m]."""
 
 QUANTILE = 1.959963984540054  # of the normal distribution: 95 %
 FIRST_POINTS = 500  # of every stratum
 PILOT_POINTS, DEEPEST, PAYS = 4, 6, 2.0  # points per cell; cuts; needed points per pilot point that make it pay
+NEAR = 0.5  # edges of a cell: a pilot point outside a set that is nearer to it does not speak for its cell
 GROWTH = 4.0  # largest factor by which a stratum's points grow between two looks
 SAFETY = 0.9  # of the tolerance that is aimed at
+BATCH = 1 << 15  # points decided at a time
 PURE_SHARE = 0.4  # of the half width that strata without any variance may take together
 OCTANTS = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)])
 
@@ -71,6 +75,11 @@ class _Stratum:
     def volume(self) -> float:
         return len(self.cells) * self.edge**3
 
+    @property
+    def mixed(self) -> bool:
+        """Whether some of its points, not all, were in an event, or may have been."""
+        return bool(((self.possibly > 0) & (self.surely < self.count)).any())
+
 
 def estimate_volumes(
     membership: Membership,
@@ -82,7 +91,7 @@ def estimate_volumes(
     missed: Callable[[float], float] = lambda value: 0.0,
     seed: int = 0,
     max_points: int = 10_000_000,
-    progress: Callable[[int], None] | None = None,
+    progress: Callable[[int, int], None] | None = None,
 ) -> VolumeEstimates:
     """Volumes of events to a relative ``tolerance`` of half the 95 % interval, from at most ``max_points`` points.
 
@@ -90,7 +99,8 @@ def estimate_volumes(
 
     ``strata``: sets of cells (M, 3) int64 of the lattice of edge ``cell_edge_m`` that together hold everything to be
     measured; cell (i, j, k) covers [i, i + 1) edge, and so on. ``missed`` (value) is the volume that wrong "outside"
-    labels may hide [m³]: it widens the interval.
+    labels may hide [m³]: it widens the interval. ``progress``: called with the points decided and about how many there
+    will be.
     """
     return _Estimation(membership, events, tolerance, missed, seed, max_points, progress).run(strata, cell_edge_m)
 
@@ -100,7 +110,7 @@ class _Estimation:
         self.membership, self.events, self.tolerance, self.missed = membership, events, tolerance, missed
         self.max_points, self.progress = max_points, progress
         self.random = np.random.Generator(np.random.Philox(key=seed))
-        self.points = 0
+        self.points = self.expected = 0
         self.strata: list[_Stratum] = []
 
     def run(self, strata: Iterable[np.ndarray], edge: float) -> VolumeEstimates:
@@ -118,12 +128,15 @@ class _Estimation:
     def _narrow(self, volumes: dict[str, VolumeEstimate]) -> None:
         """Take more points, or cut strata, as the widest of the intervals needs it."""
         needed = np.max([self._needed(k, v) for k, v in enumerate(volumes.values())], axis=0)
+        missing = np.maximum(needed - [s.count for s in self.strata], 0).sum()
+        self.expected = int(min(self.points + missing, self.max_points))
         left = self.max_points - self.points
         for stratum, target in zip(list(self.strata), needed, strict=True):
             more = int(min(target - stratum.count, (GROWTH - 1) * stratum.count, left))
             if more <= 0:
                 continue
-            if target > PAYS * PILOT_POINTS * len(stratum.cells) and stratum.depth < DEEPEST:
+            pays = target > PAYS * PILOT_POINTS * len(stratum.cells) and stratum.depth < DEEPEST
+            if pays and stratum.mixed:
                 self._sort(stratum)
             else:
                 self._add(stratum, more)
@@ -167,7 +180,7 @@ class _Estimation:
     def _add(self, stratum: _Stratum, count: int) -> None:
         """Decide more points of a stratum."""
         cells = stratum.cells[self.random.integers(len(stratum.cells), size=count)]
-        surely, possibly = self._happens(self._labels(cells, stratum.edge))
+        surely, possibly = self._happens(self._decided(cells, stratum.edge)[0])
         stratum.surely += surely.sum(axis=0)
         stratum.possibly += possibly.sum(axis=0)
         stratum.count += count
@@ -184,10 +197,11 @@ class _Estimation:
     def _sort(self, stratum: _Stratum) -> None:
         """Replace a stratum by those of its cells whose pilot points agree, label by label, and the others' octants."""
         cells = np.repeat(stratum.cells, PILOT_POINTS, axis=0)
-        labels = self._labels(cells, stratum.edge).astype(np.int64)
-        code = (labels + 1) @ 3 ** np.arange(labels.shape[1])
+        labels, distance = self._decided(cells, stratum.edge)
+        code = (labels.astype(np.int64) + 1) @ 3 ** np.arange(labels.shape[1])
         code = code.reshape(-1, PILOT_POINTS)
-        agree = (code == code[:, :1]).all(axis=1)
+        near = ((labels == 0) & (distance < NEAR * stratum.edge)).any(axis=1).reshape(-1, PILOT_POINTS)
+        agree = (code == code[:, :1]).all(axis=1) & ~near.any(axis=1)
         octants = (2 * stratum.cells[~agree, None] + OCTANTS).reshape(-1, 3)
         parts = [stratum.cells[agree & (code[:, 0] == c)] for c in np.unique(code[agree, 0])]
         new = [_Stratum(part, stratum.edge, stratum.events, DEEPEST) for part in parts]
@@ -195,12 +209,17 @@ class _Estimation:
         self.strata.remove(stratum)
         self.strata += new
 
-    def _labels(self, cells: np.ndarray, edge: float) -> np.ndarray:
-        labels = self.membership((cells + self.random.random(cells.shape)) * edge)
-        self.points += len(cells)
-        if self.progress:
-            self.progress(self.points)
-        return labels
+    def _decided(self, cells: np.ndarray, edge: float) -> tuple[np.ndarray, np.ndarray]:
+        """Labels and distances of a random point in each cell."""
+        points = (cells + self.random.random(cells.shape)) * edge
+        parts = []
+        for first in range(0, len(points), BATCH):
+            parts.append(self.membership(points[first : first + BATCH]))
+            self.points += len(parts[-1][0])
+            if self.progress:
+                self.progress(self.points, max(self.points, self.expected))
+        labels, distance = zip(*parts, strict=True)
+        return np.concatenate(labels), np.concatenate(distance)
 
 
 def wilson(successes: np.ndarray, count: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

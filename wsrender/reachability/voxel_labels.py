@@ -1,9 +1,13 @@
 """Voxels labelled by whether a robot reaches their centres."""
 
+from collections.abc import Callable
+
 import numpy as np
 
-from wsrender.reachability.inverse_solver import LABELS, InverseSolver
-from wsrender.reachability.refined_volume import POSITION_M
+from wsrender.engine import evaluate_kinematics
+from wsrender.reachability.dimension import fills_volume, in_own_voxel
+from wsrender.reachability.inverse_solver import LABELS, REACHABLE, InverseSolver
+from wsrender.reachability.refined_volume import tolerance_m
 from wsrender.reachability.targets import INCONCLUSIVE, JOINT_LIMITS, OUT_OF_REACH, TOO_CLOSE, reasons_of
 from wsrender.robots.chain import Chain
 from wsrender.volume.neighbours import inner_and_outer
@@ -17,9 +21,18 @@ UNITS = {
 
 
 def label_voxels(
-    chain: Chain, volume: VolumeData, *, seed: int = 0, device: str = "cpu", threads: int | None = None
+    chain: Chain,
+    volume: VolumeData,
+    *,
+    seed: int = 0,
+    device: str = "cpu",
+    threads: int | None = None,
+    progress: Callable[[int, int], None] | None = None,
 ) -> VolumeData:
     """Labels of the occupied voxels of a workspace and their neighbours, decided at their centres.
+
+    Where the positions fill no volume, as those of an arm that moves in a plane, a centre lies beside them: then a
+    voxel is decided at the reachable point that is nearest to its centre, and one that holds a sample is reachable.
 
     ``statistics["center"]`` holds "label" (1 reachable, 0 unreachable, -1 undecided) and "reason" (the place in
     REASONS), float32, NaN in voxels farther off; the block has one more layer of voxels on every side.
@@ -27,13 +40,19 @@ def label_voxels(
     _, outer = inner_and_outer(volume.occupied)
     cells = np.argwhere(outer)
     x, y, z = (first - 1 for first in volume.first_voxel)
-    points = (cells + (x, y, z) + 0.5) * volume.voxel_size_m
-    solver = InverseSolver(chain, position_m=POSITION_M, seed=seed, device=device, threads=threads)
-    found = solver.solve(points)
+    places = cells + np.array([x, y, z])
+    points = (places + 0.5) * volume.voxel_size_m
+    solver = InverseSolver(chain, position_m=tolerance_m(chain), seed=seed, device=device, threads=threads)
+    found = solver.solve(points, progress=progress and (lambda done: progress(done, len(points))))
     reasons = reasons_of(solver, found, points)
+    label = found.label
+    if not fills_volume(chain):
+        nearest = evaluate_kinematics(chain, found.q, device="cpu").pose[:, :3, 3]
+        held = in_own_voxel(nearest, places, volume.voxel_size_m) | (np.pad(volume.count, 1)[outer] > 0)
+        label, reasons = np.where(held, REACHABLE, label), np.where(held, "", reasons)
     code = np.select([reasons == name for name in REASONS], list(range(len(REASONS))))
     arrays = {}
-    for name, values in {"label": found.label, "reason": code}.items():
+    for name, values in {"label": label, "reason": code}.items():
         arrays[name] = np.full(outer.shape, np.nan, np.float32)
         arrays[name][outer] = values
     return VolumeData(volume.voxel_size_m, (x, y, z), np.pad(volume.count, 1), {"center": arrays}, dict(UNITS))

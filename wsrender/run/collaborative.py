@@ -13,7 +13,7 @@ from wsrender.reachability.targets import model_robot
 from wsrender.result import Result
 from wsrender.robot import Robot
 from wsrender.run.provenance import job_entry, provenance, robot_entry
-from wsrender.run.refined import refined_together
+from wsrender.run.refined import Progress, refined_together
 from wsrender.run.sampled_positions import sampled_positions
 from wsrender.run.settled_device import settled_device
 from wsrender.spec import CollaborativeVolumeJob
@@ -50,7 +50,7 @@ class CollaborativePlan:
         return {"device": self.device, "target": self.target, "shards": [list(shard) for shard in self.shards]}
 
     def run_shard(self, shard: int, progress: Callable[[int], None] | None, **execution: Any) -> dict[str, np.ndarray]:
-        """V₀ … V_d of every seed, and the true volume if asked."""
+        """V₀ … V_d of every seed."""
         job, done, rows, cells = self.job, 0, [], []
         for seed in range(job.seed, job.seed + job.seeds):
             points = []
@@ -68,15 +68,19 @@ class CollaborativePlan:
             rows.append(found.volumes_m3)
             cells.append([np.count_nonzero(found.collaborative), np.count_nonzero(found.boundary)])
         arrays = {"volumes": np.array(rows), "cells": np.array(cells)}
-        if job.refined_volume is not None:
-            chains = [robot.chain for robot in self.robots]
-            events, threads = {"true": Event(2, 2)}, execution.get("threads")
-            arrays["refined"] = refined_together(chains, events, job.refined_volume, self.device, threads)
         return arrays
 
     def merge(self, a: Any, b: Any) -> Any:
         """There is one shard: nothing to merge."""
         raise ValueError("collaborative_volume has one shard")
+
+    def refine(self, partial: dict[str, np.ndarray], progress: Progress | None) -> dict[str, np.ndarray]:
+        """With the true volume, if asked."""
+        if self.job.refined_volume is None:
+            return partial
+        chains = [robot.chain for robot in self.robots]
+        true = refined_together(chains, {"true": Event(2, 2)}, self.job.refined_volume, self.device, progress)
+        return partial | {"refined": true}
 
     def finish(self, partial: dict[str, np.ndarray], seconds: dict[str, float]) -> Result:
         """Means and variances over the seeds, and the bias where the true volume is known."""

@@ -47,6 +47,7 @@ class ReachabilityPlan:
             precision=job.precision,
             device=self.device,
             threads=execution.get("threads"),
+            progress=progress,
         )
         return vars(found)
 

@@ -13,7 +13,7 @@ from wsrender.reachability.targets import model_robot
 from wsrender.result import Result
 from wsrender.robot import Robot
 from wsrender.run.provenance import job_entry, provenance
-from wsrender.run.refined import refined_together
+from wsrender.run.refined import Progress, refined_together
 from wsrender.run.several_result import common_entries, skeletons
 from wsrender.run.several_robots import SeveralPlans, plan_several, progress_after, workspace_job
 from wsrender.run.workspace import WorkspacePlan, plan_workspace
@@ -57,12 +57,6 @@ class SharedWorkspacePlan:
     def run_shard(self, shard: int, progress: Callable[[int], None] | None, **execution: Any) -> dict[str, np.ndarray]:
         """Partial results of the robots, and the volumes of every step of the scan."""
         arrays = self.several.run(progress, **execution)
-        if self.job.refined_volume is not None:
-            robots = zip(self.robots, self.job.robots, strict=True)
-            chains = [robot.chain.held(arm.sampling.locked) for robot, arm in robots]
-            events = {"any": Event(1, len(chains)), "shared": Event(2, len(chains))}
-            device, threads = self.several.plans[0].device, execution.get("threads")
-            arrays["refined"] = refined_together(chains, events, self.job.refined_volume, device, threads)
         if self.job.scan is not None:
             arrays["scan"] = self._scan(self.job.scan, arrays, progress, **execution)
         return arrays
@@ -70,6 +64,16 @@ class SharedWorkspacePlan:
     def merge(self, a: Any, b: Any) -> Any:
         """There is one shard: nothing to merge."""
         raise ValueError("shared_workspace has one shard")
+
+    def refine(self, partial: dict[str, np.ndarray], progress: Progress | None) -> dict[str, np.ndarray]:
+        """With the refined volumes, if asked."""
+        if self.job.refined_volume is None:
+            return partial
+        robots = zip(self.robots, self.job.robots, strict=True)
+        chains = [robot.chain.held(arm.sampling.locked) for robot, arm in robots]
+        events = {"any": Event(1, len(chains)), "shared": Event(2, len(chains))}
+        device = self.several.plans[0].device
+        return partial | {"refined": refined_together(chains, events, self.job.refined_volume, device, progress)}
 
     def finish(self, partial: dict[str, np.ndarray], seconds: dict[str, float]) -> Result:
         """Number of robots by voxel, product of their normalised indices, union and intersection."""

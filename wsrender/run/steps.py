@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Callable
-from typing import Any, Protocol
+from typing import Any, Protocol, runtime_checkable
 
 from wsrender.errors import InputError
 from wsrender.result import Result
@@ -90,6 +90,15 @@ class Plan(Protocol):
         ...
 
 
+@runtime_checkable
+class Refining(Protocol):
+    """A plan with work between the last merge and the result, such as a refined volume: it reports how far that is."""
+
+    def refine(self, partial: Any, progress: Progress | None) -> Any:
+        """The merged partial result with what was asked beside the samples."""
+        ...
+
+
 def plan(document: Any, robot: Any = None, *, resolved: dict[str, Any] | None = None) -> Plan:
     """Resolve a job: a document (dict or JSON text) or a parsed job.
 
@@ -134,9 +143,20 @@ def merge(plan: Plan, a: Any, b: Any) -> Any:
     return plan.merge(a, b)
 
 
-def finish(plan: Plan, partial: Any, seconds: dict[str, float] | None = None) -> Result:
-    """The result of the merged partial results; ``seconds`` goes into ``timing_s``."""
-    return plan.finish(partial, seconds or {})
+def finish(
+    plan: Plan, partial: Any, seconds: dict[str, float] | None = None, progress: Progress | None = None
+) -> Result:
+    """The result of the merged partial results; ``seconds`` goes into ``timing_s``.
+
+    ``progress(done, total, message)`` is called while a plan refines, with points and about how many there will be.
+    """
+    seconds = dict(seconds or {})
+    if isinstance(plan, Refining):
+        started, merged = time.perf_counter(), partial
+        partial = plan.refine(merged, progress)
+        if partial is not merged:
+            seconds["refine"] = time.perf_counter() - started
+    return plan.finish(partial, seconds)
 
 
 def execute(document: Any, progress: Progress | None = None, robot: Any = None, **execution: Any) -> Result:
@@ -160,4 +180,4 @@ def execute(document: Any, progress: Progress | None = None, robot: Any = None, 
     swept_at = time.perf_counter()
     if progress:
         progress(total, total, "finishing")
-    return finish(planned, partial, {"plan": planned_at - started, "sweep": swept_at - planned_at})
+    return finish(planned, partial, {"plan": planned_at - started, "sweep": swept_at - planned_at}, progress)

@@ -15,6 +15,7 @@ from wsrender.robot import Robot
 from wsrender.robot.indices import evaluation_of
 from wsrender.run.estimate import estimate
 from wsrender.run.first_pass import FirstPass
+from wsrender.run.refined import Progress, Refined, refined
 from wsrender.run.settled_device import settled_device
 from wsrender.run.workspace_result import workspace_result
 from wsrender.sampling import SamplingPlan, plan_sampling
@@ -31,6 +32,7 @@ class WorkspacePartial:
     sweep: Partial
     plan: SweepPlan
     convergence: list[dict[str, float]] | None = None
+    refined: Refined | None = None
 
 
 @dataclass(eq=False)
@@ -86,10 +88,26 @@ class WorkspacePlan:
         """The partial result of both; bit for bit the same in any order."""
         return WorkspacePartial(merge(a.sweep, b.sweep), self.sweep)
 
+    def refine(self, partial: WorkspacePartial, progress: Progress | None) -> WorkspacePartial:
+        """With the refined volume and the labels of the voxels, if asked."""
+        tolerance, sampling = self.job.refined_volume, partial.plan.sampling
+        if tolerance is None:
+            return partial
+        counts = volume_data(replace(partial.plan, statistics=frozenset()), partial.sweep, {})
+        chain = self.robot.chain.held(self.job.sampling.locked)
+        return replace(partial, refined=refined(chain, tolerance, counts, sampling.seed, self.device, progress))
+
     def finish(self, partial: WorkspacePartial, seconds: dict[str, float]) -> Result:
         """Map, volume, global values and the result document."""
         return workspace_result(
-            self.job, self.robot, partial.plan, partial.sweep, partial.convergence, self.device, self.target, seconds
+            self.job,
+            self.robot,
+            partial.plan,
+            partial.sweep,
+            partial.convergence,
+            partial.refined,
+            self.target,
+            seconds,
         )
 
     def _converge(

@@ -18,7 +18,7 @@ from wsrender.indices.catalogue import unit
 from wsrender.result import Result
 from wsrender.robot import Robot
 from wsrender.run.provenance import index_choices, job_entry, provenance, robot_entry
-from wsrender.run.refined import refined
+from wsrender.run.refined import Refined
 from wsrender.sampling import subsample
 from wsrender.spec import WorkspaceJob
 from wsrender.volume.distribution_map import DistributionMap
@@ -33,7 +33,7 @@ def workspace_result(
     plan: SweepPlan,
     partial: Partial,
     convergence: list[dict[str, float]] | None,
-    device: str,
+    refined: Refined | None,
     target: str,
     seconds: dict[str, float],
 ) -> Result:
@@ -46,11 +46,7 @@ def workspace_result(
     volume = volume_data(plan, partial, units)
     volumes = voxel_volumes(volume)
     sample = _picture_sample(plan, robot, units)
-    entry, labelled = None, {}
-    if job.refined_volume is not None:
-        chain = robot.chain.held(job.sampling.locked)
-        entry, labelled["reachability"] = refined(chain, job.refined_volume, volume, plan.sampling.seed, device)
-    known = entry["value"] if entry else volumes.occupied
+    known = refined.entry["value"] if refined else volumes.occupied
     meshes, surface_entries = surfaces(job.surfaces, volume, sample.position)
     document: dict[str, Any] = {
         "analysis": "workspace",
@@ -64,7 +60,7 @@ def workspace_result(
             "occupied": volumes.occupied,
             "inner": volumes.inner,
             "outer": volumes.outer,
-            "refined": entry,
+            "refined": refined.entry if refined else None,
         },
         "surfaces": surface_entries,
         "bounds_m": {
@@ -76,7 +72,7 @@ def workspace_result(
             "structural_length_index": None
             if evaluation.host_kinematics
             else structural_length_index(robot.chain, known),
-            "structural_length_volume": "refined" if entry else "occupied",
+            "structural_length_volume": "refined" if refined else "occupied",
         },
         "convergence": convergence,
         "provenance": provenance(job.precision, target, sampling_path=plan.sampling_path, seed=plan.sampling.seed),
@@ -88,7 +84,7 @@ def workspace_result(
         volume=volume,
         skeleton=robot.skeleton(_middle(plan)),
         meshes=meshes,
-        volumes=labelled,
+        volumes={"reachability": refined.voxels} if refined else {},
     )
     document["timing_s"] = {**seconds, "finish": time.perf_counter() - started}
     return result

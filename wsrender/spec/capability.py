@@ -14,7 +14,7 @@ LARGEST_SET = 10_000
 class CapabilityJob(Arm):
     """Per voxel, the share of approach directions from which its centre is reached, by inverse kinematics.
 
-    An arm that moves in a plane reaches the centres of voxels only where it stands half a voxel off the lattice.
+    Where the arm's positions fill no volume, as in a plane, the reachable point nearest to the centre stands for it.
     """
 
     analysis: Literal["capability"] = "capability"

@@ -25,6 +25,7 @@ class Attempt:
     futures: dict[tuple[Step, int], Future] = field(default_factory=dict)
     step: Step = Step.PLAN
     done: dict[int, int] = field(default_factory=dict)  # samples done by shard
+    decided: tuple[int, int] = (0, 0)  # points of the last step, and about how many there will be
     kept: int = 0  # samples that an earlier run of the server had done
     losses: int = 0
     started: float = 0.0
@@ -77,6 +78,10 @@ class Attempt:
         self.done[shard] = max(done, self.done.get(shard, 0))
         self.stale = True
 
+    def refined(self, done: int, total: int) -> None:
+        """The last step has decided so many points, of about so many."""
+        self.decided, self.stale = (done, total), True
+
     def progress(self) -> Progress:
         """How far the attempt is."""
         total = sum(count for _, count in self.shards) or None
@@ -86,10 +91,16 @@ class Attempt:
         elapsed = time.monotonic() - self.started
         rate = (done - self.kept) / elapsed if self.step == Step.SHARD and elapsed > 0 and done > self.kept else None
         return Progress(
-            fraction=0.0 if not total else min(done / total, 1.0) * (1.0 if self.step == Step.FINISH else 0.99),
+            fraction=0.0 if not total else 0.99 * min(done / total, 1.0),
             samples_done=done,
             samples_total=total,
             rate_per_s=rate,
             eta_s=None if rate is None or total is None else max(total - done, 0) / rate,
-            message=MESSAGES[self.step],
+            message=self._message(),
         )
+
+    def _message(self) -> str:
+        done, total = self.decided
+        if self.step == Step.FINISH and done:
+            return f"finishing: {done:,} of about {total:,} points decided by inverse kinematics"
+        return MESSAGES[self.step]

@@ -191,6 +191,8 @@ class Dispatcher:
         if "step" in message:
             self.store.begin(computation_id, attempt.record.attempt)
             attempt.stale = True
+        elif "decided" in message:
+            attempt.refined(*message["decided"])
         else:
             attempt.reported(message["shard"], message["done"])
 

@@ -36,7 +36,7 @@ class KernelProcess:
 
     def __init__(self, settings: Settings):
         self._limit = settings.max_memory_bytes
-        self._gauges = RawArray("q", 2)
+        self._gauges = RawArray("q", 3)
         threads = settings.threads_per_worker or max(1, _cores() // max(1, settings.workers))
         self._start = (settings, threads, self._gauges)
         self._pool: ProcessPool | None = None
@@ -58,8 +58,8 @@ class KernelProcess:
         """Start the process; the target of each kind of device (see `steps.describe`)."""
         return self._ready().schedule(steps.describe).result()
 
-    def run(self, task: Task, report: Callable[[int], None]) -> Outcome:
-        """Run a task to its end; ``report(samples done)`` is called a few times a second. Never raises."""
+    def run(self, task: Task, report: Callable[[int, int], None]) -> Outcome:
+        """Run a task to its end; ``report`` gets the gauges (see `steps.start`) a few times a second. Never raises."""
         with self._lock:
             if task.token in self._stopped:
                 return Outcome(Verdict.STOPPED)
@@ -98,7 +98,7 @@ class KernelProcess:
             )
         return self._pool
 
-    def _watched(self, task: Task, future: Any, report: Callable[[int], None]) -> Outcome:
+    def _watched(self, task: Task, future: Any, report: Callable[[int, int], None]) -> Outcome:
         reported = time.monotonic()
         too_much = False
         while True:
@@ -114,7 +114,7 @@ class KernelProcess:
                     kill(self.pid)
                 if time.monotonic() - reported > REPORT_S:
                     reported = time.monotonic()
-                    report(self._gauges[1])
+                    report(self._gauges[1], self._gauges[2])
             except (ProcessExpired, BrokenProcessPool, CancelledError) as fault:
                 self._discard()
                 return self._death(task, getattr(fault, "exitcode", None), too_much)

@@ -25,12 +25,16 @@ _plans: "OrderedDict[str, Any]" = OrderedDict()
 
 
 def start(settings: Settings, threads: int, gauges: "ctypes.Array[ctypes.c_int64]") -> None:
-    """Set up a kernel process; ``gauges`` (2,), shared with the worker: process id, samples done of the shard."""
+    """Set up a kernel process; ``gauges`` (3,), shared with the worker.
+
+    They hold the process id, the samples done of the shard or the points that the last step has decided, and how many
+    of these there will be.
+    """
     settle_in()
     files = DataFolder(settings.data_dir)
     os.environ.update({"WSRENDER_THREADS": str(threads), MODELS_VARIABLE: str(files.models)})
     _state.update(files=files, shard_samples=settings.shard_samples, max_samples=settings.max_samples, gauges=gauges)
-    gauges[1] = 0
+    gauges[1] = gauges[2] = 0
     gauges[0] = os.getpid()
 
 
@@ -50,7 +54,7 @@ def describe() -> dict[str, str]:
 
 def run(task: Task) -> Any:
     """Run a step. PLAN gives what was settled, FINISH the records of the artifacts, SHARD None."""
-    _state["gauges"][1] = 0
+    _state["gauges"][1] = _state["gauges"][2] = 0
     return {Step.PLAN: _plan, Step.SHARD: _shard, Step.FINISH: _finish}[task.step](task)
 
 
@@ -98,7 +102,12 @@ def _finish(task: Task) -> list[dict[str, Any]]:
     plan = _planned(task)
     partials = (_load(task, shard, plan) for shard in range(len(plan.shards)))
     partial = reduce(lambda a, b: merge(plan, a, b), partials)
-    result = finish(plan, partial, task.seconds)
+    gauges = _state["gauges"]
+
+    def report(done: int, total: int, message: str) -> None:
+        gauges[1], gauges[2] = done, total
+
+    result = finish(plan, partial, task.seconds, report)
     scratch = _files().root / "scratch"
     for left in scratch.glob(f"{task.computation}.*"):  # by a process that was lost at this step
         shutil.rmtree(left, ignore_errors=True)

@@ -10,7 +10,7 @@ from dask import config
 from distributed import Nanny, Security, Worker, WorkerPlugin, get_worker
 
 from wsrender_server.jobs.kernel_process import KernelProcess
-from wsrender_server.jobs.task import Outcome, Task
+from wsrender_server.jobs.task import Outcome, Step, Task
 from wsrender_server.settings import Settings
 
 TOPIC = "wsrender"
@@ -51,8 +51,9 @@ def run_task(task: Task) -> Outcome:
     """What Dask runs in a worker's thread: the task, in the worker's kernel process."""
     worker = get_worker()
 
-    def report(done: int) -> None:
-        worker.log_event(TOPIC, {"token": task.token, "shard": task.shard, "done": done})
+    def report(done: int, total: int) -> None:
+        news = {"decided": (done, total)} if task.step == Step.FINISH else {"shard": task.shard, "done": done}
+        worker.log_event(TOPIC, {"token": task.token, **news})
 
     worker.log_event(TOPIC, {"token": task.token, "step": str(task.step)})
     return _process(worker).run(task, report)

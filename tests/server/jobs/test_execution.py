@@ -232,6 +232,17 @@ def test_a_job_that_iterates_ends_as_any(service, end, options):
     assert quick_job(service).state == "succeeded"
 
 
+def test_a_refined_volume_says_how_far_it_is_and_ends_as_any(service):
+    document = canonical(**{**QUICK, "robot": "gao_6r", "refined_volume": 0.001, "voxel_size_m": 0.02})
+    job = service.store.submit("ann", document).job.id
+    finishing = lambda: "decided by inverse kinematics" in service.store.get("ann", job).progress.message  # noqa: E731
+    wait_until(finishing, what="the refined volume")
+    assert service.store.get("ann", job).progress.fraction == 0.99
+    service.store.cancel("ann", job)
+    in_state(service.store, job, "canceled", timeout=3)
+    assert quick_job(service).state == "succeeded"
+
+
 def test_a_canceled_job_can_be_retried_and_keeps_its_partial_results(service):
     document = canonical(**{**SHARDED, "sampling": {"method": "sobol", "count": 2**21, "seed": 8}})
     job = service.store.submit("ann", document).job.id
