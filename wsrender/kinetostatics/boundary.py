@@ -11,13 +11,13 @@ from scipy.special import ndtri
 from wsrender.engine import configurations, evaluate_kinematics
 from wsrender.errors import InputError
 from wsrender.reachability.inverse_solver import REACHABLE, InverseSolver
-from wsrender.reachability.refined_volume import POSITION_M
 from wsrender.robots.chain import Chain
 from wsrender.sampling import plan_sampling
 from wsrender.spec.kinetostatics import BoundaryForce
 from wsrender.spec.sampling import Sobol
 
 SAMPLES_PER_CELL = 8
+POSITION_M = 1e-6  # residual that counts as reached, far below any cell
 FIRST, CHUNK = 1 << 14, 1 << 17
 FLAT = 1e-6  # extent of a set of positions that counts as none, relative to its size
 DECIDED = 2.0  # [cells] from the boundary of the samples within which cells are decided one by one

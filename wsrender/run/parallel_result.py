@@ -191,11 +191,12 @@ def _refined(plan: "ParallelPlan", volume: VolumeData | None) -> dict[str, Any]:
     rotations, weights = plan.orientations.rotations, plan.orientations.whole_weights
     least = int(np.ceil(job.dexterous_threshold * weights.sum(dtype=np.int64))) if job.kind == "dexterous" else 0
 
-    def membership(points: np.ndarray) -> np.ndarray:
+    def membership(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         positions = in_base_frame(plan.mechanism, points)
         found = count_orientations_at(plan.test, positions, rotations, weights=weights, device=plan.device)
         inside = found.weights >= least if least else found.reached == len(rotations)
-        return inside.astype(np.int8)[:, None]
+        unknown = np.full((len(points), 1), np.inf)  # how far points outside are: cells are judged by labels alone
+        return inside.astype(np.int8)[:, None], unknown
 
     events = {EVENTS[job.kind]: Event(1, 1)}
     found = estimate_volumes(membership, strata, plan.block.voxel_size_m, events, tolerance, seed=job.seed)
