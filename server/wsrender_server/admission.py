@@ -45,7 +45,7 @@ class Admission:
             raise DocumentError([(dotted(path), "is for local runs only; upload the model, or send text or points")])
         arms = job.arms()
         for path, arm in arms.items():
-            self._check_robot(arm.robot, (*path, "robot"))
+            self.check_robot(arm.robot, (*path, "robot"))
         for path, part in ({(): job} | arms).items():
             _check_indices(part, path)
             self._check_samples(part, path, job)
@@ -55,7 +55,8 @@ class Admission:
             raise ResourceError("sampling", message)
         return json.loads(canonical_json(job))
 
-    def _check_robot(self, robot: RobotSpec, path: ArmPath) -> None:
+    def check_robot(self, robot: RobotSpec, path: ArmPath) -> None:
+        """Raises DocumentError, ModelError or HttpProblem for a robot that the owner cannot have."""
         if robot.library is not None:
             try:
                 library.find(robot.library)

@@ -41,11 +41,11 @@ class _IdConvertor(StringConvertor):
 
 register_url_convertor("id", _IdConvertor())
 # After the convertor is known: routes are compiled when their modules are imported.
-from wsrender_server.routes import artifacts, catalogue, events, keys, operation  # noqa: E402
+from wsrender_server.routes import artifacts, catalogue, events, keys, kinetostatic_stream, operation  # noqa: E402
 from wsrender_server.routes import jobs as job_routes  # noqa: E402
 
 KEY_PATHS = {route.path_format for route in keys.router.routes if isinstance(route, APIRoute)}
-ROUTERS = [module.router for module in (job_routes, events, artifacts, catalogue, keys, operation)]
+ROUTERS = [module.router for module in (job_routes, events, artifacts, catalogue, keys, kinetostatic_stream, operation)]
 
 
 def create_app(settings: Settings, jobs: Jobs | None = None) -> FastAPI:
@@ -99,6 +99,7 @@ async def _life(app: FastAPI) -> AsyncIterator[None]:
         yield
     finally:
         await run_in_threadpool(parts.jobs.stop)
+        await run_in_threadpool(parts.streams.close)
         await run_in_threadpool(parts.side_process.close)
         await run_in_threadpool(parts.estimates.close)
 

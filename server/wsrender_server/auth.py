@@ -10,6 +10,7 @@ from typing import Annotated, Literal
 
 from fastapi import Depends, Request, Security
 from fastapi.security import HTTPAuthorizationCredentials, HTTPBearer
+from starlette.requests import HTTPConnection
 
 from wsrender.errors import InputError
 from wsrender_server.jobs.store import JobStore
@@ -123,14 +124,20 @@ def needs(right: Scope) -> Callable[..., Principal]:
     def principal(
         request: Request, credentials: Annotated[HTTPAuthorizationCredentials | None, Security(_bearer)]
     ) -> Principal:
-        asking = _asking(request, credentials)
+        asking = entitled(request, credentials and credentials.credentials, right)
         request.state.owner = asking.owner
-        if right not in asking.rights:
-            who = "a server without keys" if asking is LOCAL_USER else "this key"
-            raise HttpProblem(403, f"{who} lacks the scope {right!r}", "insufficient_scope")
         return asking
 
     return principal
+
+
+def entitled(connection: HTTPConnection, secret: str | None, right: Scope) -> Principal:
+    """Who asks by a secret, if they have a right; raises HttpProblem 401 or 403."""
+    asking = _asking(connection, secret)
+    if right not in asking.rights:
+        who = "a server without keys" if asking is LOCAL_USER else "this key"
+        raise HttpProblem(403, f"{who} lacks the scope {right!r}", "insufficient_scope")
+    return asking
 
 
 _bearer = HTTPBearer(scheme_name="api_key", description="An API key (`wsrender keys create`).", auto_error=False)
@@ -139,25 +146,24 @@ Submitter = Annotated[Principal, Depends(needs("submit"))]
 Administrator = Annotated[Principal, Depends(needs("admin"))]
 
 
-def _asking(request: Request, credentials: HTTPAuthorizationCredentials | None) -> Principal:
-    authenticator: Authenticator = request.app.state.authenticator
+def _asking(connection: HTTPConnection, secret: str | None) -> Principal:
+    authenticator: Authenticator = connection.app.state.authenticator
     if not authenticator.required:
-        _check_host(request)
+        _check_host(connection)
         return LOCAL_USER
-    if credentials is None:
+    if secret is None:
         raise _unauthorized("an API key is needed: Authorization: Bearer <key>", "Bearer")
-    principal = authenticator.principal(credentials.credentials)
+    principal = authenticator.principal(secret)
     if principal is None:
         raise _unauthorized("the API key is unknown or was revoked", 'Bearer error="invalid_token"')
     return principal
 
 
-def _check_host(request: Request) -> None:
+def _check_host(connection: HTTPConnection) -> None:
     """Without a key only names of this machine count: a web page must not reach it by a name of its own."""
-    if not is_loopback(request.url.hostname or ""):
-        raise HttpProblem(
-            403, f"without an API key the server answers to localhost only, not {request.url.hostname}", "wrong_host"
-        )
+    host = connection.url.hostname or ""
+    if not is_loopback(host):
+        raise HttpProblem(403, f"without an API key the server answers to localhost only, not {host}", "wrong_host")
 
 
 def _unauthorized(detail: str, challenge: str) -> HttpProblem:

@@ -12,6 +12,7 @@ from wsrender_server.jobs.store import JobStore
 from wsrender_server.metrics import Metrics
 from wsrender_server.settings import Settings
 from wsrender_server.side_process import SideProcess
+from wsrender_server.streams.sessions import Streams
 
 
 class Jobs(Protocol):
@@ -55,6 +56,7 @@ class Parts:
         limits = self.settings.max_memory_bytes, self.store.files.models
         self.side_process = SideProcess(*limits)
         self.estimates = Estimates(SideProcess(*limits))  # of its own: a plan may take long
+        self.streams = Streams(self.settings, self.store.files.models)
         self.converted = ConvertedFiles(self.store.files, self.side_process)
 
 

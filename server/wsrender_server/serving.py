@@ -46,7 +46,12 @@ def serve_until_stopped(app: Application, listener: socket.socket, on_ready: Cal
         signal.signal(number, lambda number, frame: None)
     guarded = _FaultsAtStart(app)
     config = uvicorn.Config(
-        guarded, log_config=None, access_log=False, timeout_graceful_shutdown=STOP_S, server_header=False
+        guarded,
+        log_config=None,
+        access_log=False,
+        timeout_graceful_shutdown=STOP_S,
+        server_header=False,
+        ws_per_message_deflate=False,  # messages are small, and must be quick
     )
     try:
         _Announced(config, lambda: on_ready(url)).run(sockets=[listener])

@@ -54,6 +54,10 @@ class Settings(BaseSettings):
     """Timeout of jobs that ask for none; None: none."""
     max_job_timeout_s: float | None = Field(default=None, gt=0)
     """Longest timeout that a job may ask for, and the timeout of those that ask for none."""
+    max_streams: int = Field(default=4, ge=0)
+    """Live streams at a time; each has a process with a loop of a kilohertz."""
+    max_streams_per_owner: int = Field(default=2, ge=0)
+    """Live streams that an owner may have at a time."""
     shard_samples: int = Field(default=1 << 26, ge=1)
     """Samples of a shard on the CPU, 256 times as many on a GPU; large jobs get larger shards."""
 

@@ -2,5 +2,6 @@
 
 from wsrender.client.client import Client
 from wsrender.client.job import Job
+from wsrender.client.kinetostatic_stream import KinetostaticStream
 
-__all__ = ["Client", "Job"]
+__all__ = ["Client", "Job", "KinetostaticStream"]

@@ -11,6 +11,7 @@ import httpx2
 
 from wsrender.client.connection import Connection
 from wsrender.client.job import Job
+from wsrender.client.kinetostatic_stream import KinetostaticStream
 from wsrender.errors import InputError
 
 PAGE = 100  # jobs in one answer
@@ -35,6 +36,7 @@ class Client:
         patience_s: float = 60.0,
         transport: httpx2.BaseTransport | None = None,
     ):
+        self._url, self._token, self._timeout_s = url, token, timeout_s
         self._connection = Connection(url, token, timeout_s, patience_s, transport)
 
     def close(self) -> None:
@@ -126,6 +128,17 @@ class Client:
             params["cursor"] = page.get("next_cursor")
             if params["cursor"] is None:
                 return
+
+    def kinetostatic_stream(self, robot: Any, **choices: Any) -> KinetostaticStream:
+        """A live stream of a robot's limits and conditioning as forces; a context manager (extra ``stream``).
+
+        ``robot`` is the name of a library robot or its part of a job document; ``choices`` are the other fields of the
+        message ``open``: field (which forces, as in `wsrender.force_field`), input ("configuration" or "pose"), base,
+        tip, start, cues, stale_after_s, rise_s. Raises what the server refuses: DocumentError, ModelError,
+        AccessError, QuotaError; MissingExtraError without the package websockets.
+        """
+        document = self._document({"robot": {"library": robot} if isinstance(robot, str) else robot, **choices})
+        return KinetostaticStream(self._url, self._token, document, self._timeout_s)
 
     def _get(self, path: str, params: dict[str, Any] | None = None) -> Any:
         return self._connection.request("GET", path, params=params or {}).json()
