@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from wsrender.client import Client
     from wsrender.indices import Index, math, register_index
     from wsrender.kinetostatics import ForceField, force_field
+    from wsrender.parallel.five_bar import FiveBar
     from wsrender.reachability import Reachability, reachable
     from wsrender.result import Result
     from wsrender.robot import Robot, evaluate_indices, load_robot
@@ -40,6 +41,7 @@ if TYPE_CHECKING:
         analyze,
         collaborative_volume,
         execute,
+        five_bar,
         kinetostatic_field,
         master_slave_mapping,
         parallel_workspace,
@@ -59,6 +61,7 @@ __all__ = [
     "DHRow",
     "DHTable",
     "DocumentError",
+    "FiveBar",
     "ForceField",
     "FrameNotFoundError",
     "Grid",
@@ -89,6 +92,7 @@ __all__ = [
     "collaborative_volume",
     "evaluate_indices",
     "execute",
+    "five_bar",
     "force_field",
     "kinetostatic_field",
     "load_robot",
@@ -106,6 +110,7 @@ _NAMES_OF_MODULE = {
     "wsrender.client": ("Client",),
     "wsrender.indices": ("Index", "register_index"),
     "wsrender.kinetostatics": ("ForceField", "force_field"),
+    "wsrender.parallel.five_bar": ("FiveBar",),
     "wsrender.reachability": ("Reachability", "reachable"),
     "wsrender.result": ("Result",),
     "wsrender.robot": ("Robot", "evaluate_indices", "load_robot"),
@@ -113,6 +118,7 @@ _NAMES_OF_MODULE = {
         "analyze",
         "collaborative_volume",
         "execute",
+        "five_bar",
         "kinetostatic_field",
         "master_slave_mapping",
         "parallel_workspace",

@@ -300,4 +300,15 @@ def _pictures(result: Result) -> "dict[str, Callable[[], Figure]]":
         pictures["comparison"] = plot.side_by_side
     if result.volume is not None and result.volume.statistics.get("product"):
         pictures["product"] = partial(plot.slices, statistic="product")
+    if "aspect_outlines" in result.tables:
+        pictures |= _five_bar_pictures(plot)
+    return pictures
+
+
+def _five_bar_pictures(plot: "ResultPlots") -> "dict[str, Callable[[], Figure]]":
+    """κ(A), κ(B) and κ(J) in both spaces, and the aspects."""
+    pictures: dict[str, Callable[[], Figure]] = {"aspects": plot.aspects}
+    for space in ("cartesian", "joint"):
+        for matrix in "abj":
+            pictures[f"kappa_{matrix}_{space}"] = partial(plot.conditioning, matrix, space)
     return pictures

@@ -41,3 +41,8 @@ SMALLEST_P_VALUE = 1e-3
 def epsilon(precision: str) -> float:
     """Spacing of floating-point numbers at 1 in a precision."""
     return float(np.finfo(precision).eps)
+
+
+# How far rounding may push a posture at the end of a link's reach or of a joint's limit beyond it: the law of cosines
+# adds and subtracts a few squares, each with an error of half an ulp (relative to the squared size; angles [rad]).
+CLOSURE = 64 * 2.0**-52

@@ -6,6 +6,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from tests.parallel.mechanisms import mechanism, poses_of
+from wsrender.parallel.five_bar import WORKING_MODES, FiveBar
 from wsrender.parallel.inverse_kinematics import inverse_kinematics
 from wsrender.robots import library
 
@@ -136,6 +137,34 @@ def test_the_five_bar_of_the_paper():
     mujoco.mj_resetDataKeyframe(model, data, 0)
     mujoco.mj_forward(model, data)
     np.testing.assert_allclose(data.site("tool").xpos, [3, 12, 0], atol=1e-9)
+
+
+@pytest.mark.parametrize("mode", WORKING_MODES)
+def test_the_five_bar_closes_its_loop_where_it_reaches(mode):
+    """At 1,000 points with the angles of the inverse kinematics; a point a little outside leaves it open."""
+    model, five_bar = model_of("five_bar"), FiveBar.symmetric(6, 8, 5)
+    data = mujoco.MjData(model)
+
+    def opening(theta_1, theta_2, theta_3, theta_4):
+        values = {"theta1": theta_1, "elbow1": theta_3 - theta_1, "theta2": theta_2, "elbow2": theta_4 - theta_2}
+        for joint, value in values.items():
+            data.joint(joint).qpos[0] = value
+        mujoco.mj_forward(model, data)
+        closed = data.efc_type == mujoco.mjtConstraint.mjCNSTR_EQUALITY
+        return np.abs(data.efc_pos[closed]).max(), data.site("tool").xpos[:2]
+
+    points = np.random.default_rng(5).uniform([-7, -13], [13, 13], (3 * POSES, 2))
+    angles = five_bar.inverse_kinematics(points, mode)
+    reached = np.flatnonzero(~np.isnan(angles[:, 0]))[:POSES]
+    assert len(reached) == POSES
+    for k in reached:
+        gap, tool = opening(*angles[k])
+        assert gap < 1e-12 and np.abs(tool - points[k]).max() < 1e-12
+    for angle in np.linspace(0.2, 1.2, 20):  # the left leg stretched towards points 1e-6 beyond its reach
+        point = (13 + 1e-6) * np.array([np.cos(angle), np.sin(angle)])
+        assert np.isnan(five_bar.inverse_kinematics(point, mode)).all()
+        right = five_bar.leg_angles(point[None], 1, 1 if mode[1] == "+" else -1)
+        assert opening(angle, right[0][0], angle, right[1][0])[0] > 1e-7
 
 
 def test_models_are_listed_apart_from_robots():

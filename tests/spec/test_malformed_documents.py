@@ -38,6 +38,10 @@ def legs(**fields):
     return {"analysis": "parallel_workspace", "mechanism": "six_pus", **fields}
 
 
+def five_bar(**fields):
+    return {"analysis": "five_bar", "base_m": 6, "proximal_m": 8, "distal_m": 5, **fields}
+
+
 def sampled(**fields):
     return job(sampling={"method": "grid", **fields})
 
@@ -210,6 +214,28 @@ MALFORMED = [
     (at(configurations=[[0, 1], [0]]), "configurations", "must hold rows of one length"),
     (at(configurations=[[0, "1"]]), "configurations", "must be a number"),
     (at(configurations=[[0, NAN]]), "configurations", "must be a finite number"),
+    # the five-bar
+    ({"analysis": "five_bar", "proximal_m": 8, "distal_m": 5}, "base_m", "is required"),
+    (five_bar(base_m=0), "base_m", "must be greater than 0, not 0"),
+    (five_bar(base_m=1e-9), "base_m", "within 1/10000 of the longest link"),
+    (five_bar(distal_m=1e7), "base_m", "must lie within 1e-06 … 1e+06 m"),
+    (five_bar(proximal_m=[8, 0]), "proximal_m", "must be a number above 0, or a list of two: left and right"),
+    (five_bar(distal_m=[5, 5, 5]), "distal_m", "must be a number above 0, or a list of two"),
+    (five_bar(limits_rad=[[0, 1]]), "limits_rad", "must be a list of two: [low, high] or null"),
+    (
+        five_bar(limits_rad=[[1, 0], None]),
+        "limits_rad",
+        "must be [low, high] for each leg, high 0.001 rad to a turn above low",
+    ),
+    (five_bar(limits_rad=[None, [0, 7]]), "limits_rad", "to a turn above low"),
+    (five_bar(working_modes=["+"]), "working_modes", 'must be a list of items from "++", "+-", "-+", "--"'),
+    (five_bar(working_modes=[]), "working_modes", "must not be empty"),
+    (five_bar(levels=[1]), "levels", "must be a list of at most 50 different numbers above 1"),
+    (five_bar(voxel_size_m=1e-4), "voxel_size_m", "must be at least 0.026 for links of these lengths"),
+    (five_bar(joint_steps=4), "joint_steps", "must be at least 8, not 4"),
+    (five_bar(points_m=[[1, 2, 3]]), "points_m", "must be a list of at most 10000 pairs of numbers"),
+    (five_bar(joint_angles_rad=[[NAN, 0]]), "joint_angles_rad", "must be a finite number"),
+    (five_bar(robot="ur5e"), "robot", "is not a known field"),
     # parallel mechanisms
     ({"analysis": "parallel_workspace"}, "mechanism", "is required"),
     (legs(mechanism="seven_pus"), "mechanism", 'one of "stewart_gough", "six_pus", "delta", not "seven_pus"'),

@@ -48,6 +48,10 @@ def _facts(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
         share, bound = passivity["share_of_postures_within_bound"], passivity["stiffness_bound_n_per_m"]
         yield "passive stiffness", f"{100 * share:.3g} % of postures are below {bound:.4g} N/m"
         yield "work of closed paths", f"{passivity['largest_loop_work_j']:.3g} J at most"
+    for found in document.get("workspaces", ()):
+        mode = found["working_mode"]
+        own = [each for each in document["aspects"] if each["working_mode"] == mode]
+        yield f"working mode {mode}", f"{found['area_m2']:.8g} m², {len(own)} aspects without type 2 singularities"
     bounds = document.get("bounds_m") or {}
     if {"lower", "upper"} <= set(bounds):
         for axis, low, high in zip("xyz", bounds["lower"], bounds["upper"], strict=True):

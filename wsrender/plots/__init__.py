@@ -12,6 +12,7 @@ from wsrender.errors import MissingExtraError
 if TYPE_CHECKING:
     from wsrender.plots.comparison import side_by_side
     from wsrender.plots.distribution import histogram, write_histogram_csv
+    from wsrender.plots.five_bar import aspect_maps, conditioning_maps
     from wsrender.plots.master_slave import mapped_points
     from wsrender.plots.orientation_map import orientations
     from wsrender.plots.planes import slice_plane, slices
@@ -25,6 +26,8 @@ if TYPE_CHECKING:
 # Modules are not called like their functions: importing one would hide the function.
 _MODULES = {
     "ResultPlots": "result_plots",
+    "aspect_maps": "five_bar",
+    "conditioning_maps": "five_bar",
     "curves": "table_curves",
     "histogram": "distribution",
     "png": "style",
@@ -42,6 +45,8 @@ _MODULES = {
 
 __all__ = [
     "ResultPlots",
+    "aspect_maps",
+    "conditioning_maps",
     "curves",
     "histogram",
     "mapped_points",

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from wsrender.errors import InputError
 from wsrender.plots.comparison import side_by_side
 from wsrender.plots.distribution import histogram
+from wsrender.plots.five_bar import MODE_VOLUMES, aspect_maps, conditioning_maps
 from wsrender.plots.master_slave import mapped_points
 from wsrender.plots.orientation_map import orientations
 from wsrender.plots.planes import slice_plane, slices
@@ -51,6 +52,15 @@ class ResultPlots:
         if "orientations" not in self.tables:
             raise InputError("table", "the result holds no orientations at a point")
         return orientations(self.tables["orientations"], title=self.title)
+
+    def conditioning(self, matrix: str = "j", space: str = "cartesian") -> Figure:
+        """κ of a five-bar's Jacobian A, B or J ("a", "b", "j") over P ("cartesian") or θ1 and θ2 ("joint")."""
+        volumes = {mode: self.volumes[name] for mode, name in MODE_VOLUMES.items() if name in self.volumes}
+        return conditioning_maps(volumes, self._five_bar_tables(), matrix, space, title=self.title)
+
+    def aspects(self) -> Figure:
+        """Singularity-free aspects of a five-bar with their areas, one panel for each working mode."""
+        return aspect_maps(self._five_bar_tables(), title=self.title)
 
     def side_by_side(self, index: str | None = None, *, statistic: str | None = None) -> Figure:
         """The robots of a comparison in the same planes, with the same axes and one colour scale."""
@@ -101,6 +111,11 @@ class ResultPlots:
         if self.skeleton is None:
             raise InputError("skeleton", "the result holds no configurations of the arm to draw")
         return robot(self.skeleton, self.samples, index, arms=self.arms, title=self.title)
+
+    def _five_bar_tables(self) -> Mapping[str, Table]:
+        if "aspect_outlines" not in self.tables:
+            raise InputError("tables", "the result is not one of a five-bar")
+        return self.tables
 
     def _samples(self) -> DistributionMap:
         if self.samples is None:

@@ -1,7 +1,7 @@
 """Running a job, in the four steps that every door uses: plan, run_shard, merge, finish."""
 
 from wsrender.run.analyze import analyze, kinetostatic_field
-from wsrender.run.mechanisms_from_python import parallel_workspace
+from wsrender.run.mechanisms_from_python import five_bar, parallel_workspace
 from wsrender.run.several_from_python import (
     collaborative_volume,
     master_slave_mapping,
@@ -16,6 +16,7 @@ __all__ = [
     "collaborative_volume",
     "execute",
     "finish",
+    "five_bar",
     "kinetostatic_field",
     "master_slave_mapping",
     "merge",

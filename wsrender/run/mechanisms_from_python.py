@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from wsrender.parallel.five_bar import FiveBar
 from wsrender.result import Result
 from wsrender.run.from_python import execute_here, plain
 from wsrender.run.steps import Progress
@@ -17,3 +18,15 @@ def parallel_workspace(mechanism: Any, *, progress: Progress | bool | None = Non
     Raises DocumentError, InputError, ResourceError.
     """
     return execute_here({"analysis": "parallel_workspace", "mechanism": mechanism, **plain(fields)}, [], progress)
+
+
+def five_bar(mechanism: FiveBar, *, progress: Progress | bool | None = None, **fields: Any) -> Result:
+    """Workspace, conditioning, singular loci and aspects of a planar five-bar.
+
+    ``fields`` are the other fields of the job document ``five_bar``: working_modes, voxel_size_m, joint_steps, levels,
+    points_m, joint_angles_rad.
+
+    Raises DocumentError, InputError.
+    """
+    lengths = {name: getattr(mechanism, name) for name in ("base_m", "proximal_m", "distal_m", "limits_rad")}
+    return execute_here({"analysis": "five_bar", **lengths, **plain(fields)}, [], progress)

@@ -2,6 +2,7 @@
 
 from wsrender.spec.capability import CapabilityJob
 from wsrender.spec.collaborative import CollaborativeVolumeJob
+from wsrender.spec.five_bar import FiveBarJob
 from wsrender.spec.jobs import ANALYSES, IndicesAtJob, Job, WorkspaceJob
 from wsrender.spec.kinetostatics import KinetostaticFieldJob
 from wsrender.spec.mapping import MasterSlaveMappingJob
@@ -14,6 +15,7 @@ __all__ = [
     "ANALYSES",
     "CapabilityJob",
     "CollaborativeVolumeJob",
+    "FiveBarJob",
     "IndicesAtJob",
     "Job",
     "KinetostaticFieldJob",

@@ -9,6 +9,7 @@ from wsrender.spec.arm import Arm
 from wsrender.spec.capability import CapabilityJob
 from wsrender.spec.collaborative import CollaborativeVolumeJob
 from wsrender.spec.document import Document
+from wsrender.spec.five_bar import FiveBarJob
 from wsrender.spec.index_choices import IndexChoices
 from wsrender.spec.kinetostatics import KinetostaticFieldJob
 from wsrender.spec.mapping import MasterSlaveMappingJob
@@ -76,6 +77,7 @@ _AnyJob = (
     | MasterSlaveMappingJob
     | KinetostaticFieldJob
     | ParallelWorkspaceJob
+    | FiveBarJob
 )
 ANALYSES: dict[str, type[Document]] = {job.model_fields["analysis"].default: job for job in get_args(_AnyJob)}
 

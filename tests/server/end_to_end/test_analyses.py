@@ -55,6 +55,17 @@ DOCUMENTS = {
         "indices": ["manipulability"],
         "device": "cpu",
     },
+    "five_bar": {
+        "analysis": "five_bar",
+        "base_m": 1,
+        "proximal_m": [1, 1.2],
+        "distal_m": 0.8,
+        "limits_rad": [[0, 3], None],
+        "working_modes": ["+-", "-+"],
+        "voxel_size_m": 0.05,
+        "joint_steps": 30,
+        "points_m": [[0.5, 0.9]],
+    },
     "reachability": {
         "analysis": "reachability",
         "robot": "scara",

@@ -1,0 +1,23 @@
+"""The five-bar: kinematics in all modes, workspace, singularities, aspects and conditioning ([CB])."""
+
+from wsrender.parallel.five_bar.conditioning import (
+    Conditioning,
+    conditioning,
+    jacobian,
+    parallel_jacobian,
+    serial_jacobian,
+)
+from wsrender.parallel.five_bar.mechanism import ASSEMBLY_MODES, WORKING_MODES, FiveBar
+from wsrender.parallel.five_bar.region import workspace
+
+__all__ = [
+    "ASSEMBLY_MODES",
+    "WORKING_MODES",
+    "Conditioning",
+    "FiveBar",
+    "conditioning",
+    "jacobian",
+    "parallel_jacobian",
+    "serial_jacobian",
+    "workspace",
+]

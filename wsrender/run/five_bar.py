@@ -1,0 +1,252 @@
+"""The analysis ``five_bar``: workspace, conditioning, singularities and aspects of a planar five-bar ([CB])."""
+
+import json
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from wsrender.parallel.five_bar import ASSEMBLY_MODES, FiveBar
+from wsrender.parallel.five_bar.aspects import Aspect, aspects
+from wsrender.parallel.five_bar.conditioning import conditioning
+from wsrender.parallel.five_bar.isotropy import isotropic_points
+from wsrender.parallel.five_bar.loci import Piece, end_point, pieces, postures, type_2_curves
+from wsrender.parallel.five_bar.maps import (
+    QUANTITIES,
+    PlaneLattice,
+    cartesian_map,
+    joint_axis,
+    joint_map,
+    plane_bounds,
+    plane_lattice,
+)
+from wsrender.parallel.five_bar.mechanism import wrapped
+from wsrender.parallel.five_bar.region import Region, workspace
+from wsrender.parallel.five_bar.tables import (
+    INDICES,
+    boundary_table,
+    iso_table,
+    joint_table,
+    loci_table,
+    outlines_table,
+    postures_table,
+)
+from wsrender.plots.five_bar import MODE_VOLUMES
+from wsrender.result import Result
+from wsrender.run.provenance import job_entry, provenance
+from wsrender.run.settled_device import settled_device
+from wsrender.spec import FiveBarJob
+from wsrender.volume.lattice import round_to_digits
+from wsrender.volume.table import Table
+from wsrender.volume.volume_data import VolumeData
+
+CELLS_ACROSS = 250  # of the default Cartesian maps
+CELLS_PER_S = 5e5  # of maps and their curves, one CPU core
+UNITS = {"det_a": "m^2", "det_b": "m^4"}
+
+
+@dataclass(eq=False)
+class FiveBarPlan:
+    """A resolved ``five_bar`` job: one shard."""
+
+    job: FiveBarJob
+    five_bar: FiveBar
+    lattice: PlaneLattice
+    device: str
+    target: str
+
+    @property
+    def shards(self) -> list[tuple[int, int]]:
+        """One shard of all cells of the maps."""
+        return [(0, self._cells + self._joint_cells)]
+
+    @property
+    def _cells(self) -> int:
+        return len(self.job.working_modes) * self.lattice.shape[0] * self.lattice.shape[1]
+
+    @property
+    def _joint_cells(self) -> int:
+        first, second = (len(joint_axis(self.five_bar, leg, self.job.joint_steps)) for leg in (0, 1))
+        return 2 * first * second
+
+    @property
+    def estimate(self) -> dict[str, float]:
+        """Cells of the maps, their bytes, and seconds."""
+        cells = float(self._cells + self._joint_cells)
+        return {"samples": cells, "bytes": 200.0 * cells, "seconds": cells / CELLS_PER_S}
+
+    def resolved(self) -> dict[str, Any]:
+        """What is settled once: device, target, shards."""
+        return {"device": self.device, "target": self.target, "shards": [list(shard) for shard in self.shards]}
+
+    def run_shard(self, shard: int, progress: Callable[[int], None] | None, **execution: Any) -> dict[str, np.ndarray]:
+        """Boundary, loci, aspects, maps and iso-curves of every working mode."""
+        five_bar, modes = self.five_bar, self.job.working_modes
+        regions = {mode: workspace(five_bar, mode) for mode in modes}
+        type_2 = [piece for curve in type_2_curves(five_bar) for piece in pieces(curve)]
+        found = [each for mode in modes for each in aspects(five_bar, mode, regions[mode], _of_mode(type_2, mode))]
+        maps: dict[str, dict[str, np.ndarray]] = {}
+        for done, mode in enumerate(modes, 1):
+            values = cartesian_map(five_bar, mode, self.lattice)
+            maps[mode] = {name: getattr(values, name).reshape(self.lattice.shape) for name in QUANTITIES}
+            if progress:
+                progress(done * self._cells // len(modes))
+        tables = {
+            "boundary": boundary_table(regions),
+            "loci": loci_table(five_bar, regions, type_2),
+            "iso_curves": iso_table(five_bar, self.lattice, maps, self.job.levels),
+            "aspect_outlines": outlines_table(found),
+            "drawn_postures": self._drawn_postures(maps),
+            "joint_space": joint_table(joint_map(five_bar, self.job.joint_steps)),
+        }
+        if progress:
+            progress(self._cells + self._joint_cells)
+        about = {
+            "workspaces": [_workspace_entry(mode, region) for mode, region in regions.items()],
+            "aspects": [_aspect_entry(each) for each in found],
+            "kappa": [_least_kappas(mode, values) for mode, values in maps.items()],
+            "isotropic_points": [entry for mode in modes for entry in self._isotropic_entries(mode)],
+            "points": [entry for point in self.job.points_m for entry in self._point_entries(point)],
+            "assemblies": [entry for theta in self.job.joint_angles_rad for entry in self._assembly_entries(theta)],
+            "units": {name: table.units for name, table in tables.items()},
+        }
+        arrays = {"about": np.array(json.dumps(about, allow_nan=False))}
+        arrays |= {f"table {t} {name}": column for t, table in tables.items() for name, column in table.columns.items()}
+        return arrays | {f"map {m} {name}": array for m, values in maps.items() for name, array in values.items()}
+
+    def merge(self, a: Any, b: Any) -> Any:
+        """There is one shard: nothing to merge."""
+        raise ValueError("five_bar has one shard")
+
+    def finish(self, partial: dict[str, np.ndarray], seconds: dict[str, float]) -> Result:
+        """Areas, aspects, least condition numbers, and the tables and maps behind the pictures."""
+        about = json.loads(str(partial["about"]))
+        units = about.pop("units")
+        tables = {name: Table(_parts(partial, f"table {name} "), units[name]) for name in units}
+        job = self.job
+        document = {
+            "analysis": "five_bar",
+            "job": job_entry(job),
+            "robot": {
+                "name": _name(job),
+                "base_m": job.base_m,
+                "proximal_m": list(job.proximal_m),
+                "distal_m": list(job.distal_m),
+                "limits_rad": [None if limits is None else list(limits) for limits in job.limits_rad],
+            },
+            "sampling": {"samples": self._cells + self._joint_cells, "method": "lattices"},
+            "voxel_size_m": self.lattice.cell_m,
+            **about,
+            "provenance": provenance("float64", self.target),
+            "timing_s": seconds,
+        }
+        volumes = {MODE_VOLUMES[mode]: self._volume(partial, mode) for mode in job.working_modes if self._cells}
+        return Result(document, tables=tables, volumes=volumes)
+
+    def _volume(self, partial: dict[str, np.ndarray], mode: str) -> VolumeData:
+        """The maps of a working mode as one layer of the lattice; "value" is that at the centre of a voxel."""
+        values = {name: array[:, :, None] for name, array in _parts(partial, f"map {mode} ").items()}
+        count = (~np.isnan(values["inverse_kappa_a"])).astype(np.int64)
+        first = (*self.lattice.first, 0)
+        return VolumeData(self.lattice.cell_m, first, count, {"value": values}, UNITS)
+
+    def _drawn_postures(self, maps: dict[str, dict[str, np.ndarray]]) -> Table:
+        """In each working mode the posture of the lattice with the least κ(J): the one that pictures draw."""
+        angles = np.full((len(maps), 4), np.nan)
+        for row, (mode, values) in enumerate(maps.items()):
+            found = values["inverse_kappa_j"].ravel()
+            if not np.isnan(found).all():
+                best = self.lattice.points()[np.nanargmax(found)]
+                angles[row] = self.five_bar.inverse_kinematics(best, mode)[0]
+        return postures_table(self.five_bar, list(maps), angles)
+
+    def _isotropic_entries(self, mode: str) -> list[dict[str, Any]]:
+        angles = isotropic_points(self.five_bar, mode)
+        points = end_point(self.five_bar, angles)
+        return [
+            {"working_mode": mode, "position_m": point.tolist(), "angles_rad": row.tolist()}
+            for point, row in zip(points, wrapped(angles), strict=True)
+        ]
+
+    def _point_entries(self, point: Sequence[float]) -> list[dict[str, Any]]:
+        """A point in every working mode."""
+        return [
+            {"position_m": list(point), "working_mode": mode, **self._posture_entry(angles)}
+            for mode in self.job.working_modes
+            for angles in self.five_bar.inverse_kinematics(point, mode)
+        ]
+
+    def _assembly_entries(self, theta: Sequence[float]) -> list[dict[str, Any]]:
+        """Actuated angles in both assembly modes."""
+        entries = []
+        for mode in ASSEMBLY_MODES:
+            position = self.five_bar.forward_kinematics(theta, mode)
+            angles = postures(self.five_bar, np.array([theta]), position)[0]
+            entries.append({"theta_rad": list(theta), "assembly_mode": mode, **self._posture_entry(angles)})
+            entries[-1]["position_m"] = None if np.isnan(position).any() else position[0].tolist()
+        return entries
+
+    def _posture_entry(self, angles: np.ndarray) -> dict[str, Any]:
+        """Reachability, angles and indices of a posture; what has no finite value is null."""
+        found = conditioning(self.five_bar, angles)
+        reached = not np.isnan(angles).any()
+        values = {name: float(getattr(found, name)[0]) for name in INDICES}
+        kappas = {f"kappa_{k}": 1 / v if (v := values[f"inverse_kappa_{k}"]) > 0 else None for k in "abj"}
+        manipulability = values["manipulability"] if np.isfinite(values["manipulability"]) else None
+        entry = {"reachable": reached, "angles_rad": angles.tolist() if reached else None, **kappas}
+        return entry | {"manipulability_m2": manipulability}
+
+
+def plan_five_bar(job: FiveBarJob, resolved: dict[str, Any] | None = None) -> FiveBarPlan:
+    """Resolve the job, or take what `FiveBarPlan.resolved` of an earlier plan of it says."""
+    five_bar = FiveBar(job.base_m, job.proximal_m, job.distal_m, job.limits_rad)
+    lower, upper = plane_bounds(five_bar)
+    extent = float((upper - lower).max())
+    cell = job.voxel_size_m or round_to_digits(extent / CELLS_ACROSS, 2)
+    return FiveBarPlan(job, five_bar, plane_lattice(five_bar, cell), *settled_device("cpu", resolved))
+
+
+def _name(job: FiveBarJob) -> str:
+    """Name with L0, L1, L2, both legs' where they differ."""
+    pairs = (f"{left:g}" if left == right else f"{left:g}/{right:g}" for left, right in (job.proximal_m, job.distal_m))
+    return f"five_bar ({', '.join([f'{job.base_m:g}', *pairs])})"
+
+
+def _of_mode(found: Sequence[Piece], mode: str) -> list[Piece]:
+    return [piece for piece in found if piece.working_mode == mode]
+
+
+def _parts(partial: dict[str, np.ndarray], prefix: str) -> dict[str, np.ndarray]:
+    return {name.removeprefix(prefix): array for name, array in partial.items() if name.startswith(prefix)}
+
+
+def _workspace_entry(mode: str, region: Region) -> dict[str, Any]:
+    return {
+        "working_mode": mode,
+        "area_m2": region.area_m2,
+        "perimeter_m": region.perimeter_m,
+        "arcs": sum(len(loop) for loop in region.loops),
+        "loops": len(region.loops),
+    }
+
+
+def _aspect_entry(aspect: Aspect) -> dict[str, Any]:
+    return {
+        "working_mode": aspect.working_mode,
+        "assembly_mode": aspect.assembly_mode,
+        "area_m2": aspect.area_m2,
+        "area_error_m2": aspect.area_error_m2,
+        "holes": len(aspect.loops) - 1,
+    }
+
+
+def _least_kappas(mode: str, values: dict[str, np.ndarray]) -> dict[str, Any]:
+    """Least κ of A, B and J on the lattice, and the mean of 1/κ over the cells reached; null where none is."""
+    entry: dict[str, Any] = {"working_mode": mode}
+    for matrix in "abj":
+        found = values[f"inverse_kappa_{matrix}"]
+        known = found[~np.isnan(found)]
+        entry[f"least_kappa_{matrix}"] = float(1 / known.max()) if known.size and known.max() > 0 else None
+        entry[f"mean_inverse_kappa_{matrix}"] = float(known.mean()) if known.size else None
+    return entry
