@@ -88,6 +88,18 @@ def test_gao_is_the_value_of_the_paper(documents):
     assert (job.samples, job.seeds, job.cells, job.refinements, job.neighbours) == (200_000, 10, (20, 20, 20), 3, 4)
 
 
+def test_five_bar_holds_what_is_exact():
+    """Run for real: it takes seconds."""
+    rows = reproduce("five-bar")
+    known = [row for row in rows if row.exact is not None]
+    assert len(known) == 4 + 4 + 4 + 6 + 4
+    for row in known:
+        assert abs(row.from_exact) < 1e-9
+    assert all(row.published is None for row in rows)
+    areas = [row.reproduced for row in rows if row.case == "working mode +-" and row.unit == "m²"]
+    assert areas[0] == pytest.approx(sum(areas[1:]), abs=1e-7)
+
+
 def test_differences():
     row = Row("arm", "V", "m³", 0.6, published=0.5, exact=0.8)
     assert (row.from_published, row.from_exact) == (pytest.approx(0.1), pytest.approx(-0.2))

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 
 from wsrender.errors import InputError
+from wsrender.reproduce.five_bar import five_bar
 from wsrender.reproduce.gao import gao
 from wsrender.reproduce.row import Row
 from wsrender.reproduce.wsrender_tables import table_3, table_6
@@ -12,6 +13,7 @@ CASES: dict[str, Callable[[Progress | None], list[Row]]] = {
     "wsrender-table-3": table_3,
     "wsrender-table-6": table_6,
     "gao": gao,
+    "five-bar": five_bar,
 }
 
 
