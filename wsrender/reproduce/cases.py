@@ -6,6 +6,7 @@ from wsrender.errors import InputError
 from wsrender.reproduce.five_bar import five_bar
 from wsrender.reproduce.gao import gao
 from wsrender.reproduce.row import Row
+from wsrender.reproduce.shah import shah
 from wsrender.reproduce.wsrender_tables import table_3, table_6
 from wsrender.run.steps import Progress
 
@@ -14,6 +15,7 @@ CASES: dict[str, Callable[[Progress | None], list[Row]]] = {
     "wsrender-table-6": table_6,
     "gao": gao,
     "five-bar": five_bar,
+    "shah": shah,
 }
 
 
