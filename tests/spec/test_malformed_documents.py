@@ -238,7 +238,7 @@ MALFORMED = [
     (five_bar(robot="ur5e"), "robot", "is not a known field"),
     # parallel mechanisms
     ({"analysis": "parallel_workspace"}, "mechanism", "is required"),
-    (legs(mechanism="seven_pus"), "mechanism", 'one of "stewart_gough", "six_pus", "delta", not "seven_pus"'),
+    (legs(mechanism="seven_pus"), "mechanism", 'one of "stewart_gough", "six_pus", "delta", "master_4dof", not'),
     (legs(mechanism={"library": "six_pus", "link_m": -1}), "mechanism.link_m", "must be a number above 0"),
     (legs(kind="reachable"), "kind", 'must be "constant_orientation", "orientation", "dexterous" or'),
     (legs(kind="dexterous"), "orientations", 'must be given with kind "dexterous"'),

@@ -5,7 +5,7 @@ from pydantic import Field
 
 from wsrender.errors import DocumentError
 from wsrender.spec.document import Document
-from wsrender.spec.mechanism import Delta, LegsMechanism, MechanismSpec, SixPUS, StewartGough
+from wsrender.spec.mechanism import Delta, LegsMechanism, Master4DOF, MechanismSpec, SixPUS, StewartGough
 
 
 class Holder(Document):
@@ -31,8 +31,12 @@ def without(leg, field):
 
 MALFORMED = [
     (3, "mechanism", "must be an object, or a name of the library of mechanisms, not 3"),
-    ({}, "mechanism", 'must have "library" (one of "stewart_gough", "six_pus", "delta") or "legs"'),
-    ("hexapod", "mechanism", 'must have as "library" one of "stewart_gough", "six_pus", "delta", not "hexapod"'),
+    ({}, "mechanism", 'must have "library" (one of "stewart_gough", "six_pus", "delta", "master_4dof") or "legs"'),
+    (
+        "hexapod",
+        "mechanism",
+        'must have as "library" one of "stewart_gough", "six_pus", "delta", "master_4dof", not "hexapod"',
+    ),
     ({"library": 6}, "mechanism", "one of"),
     ({"library": "delta", "legs": [UPS]}, "mechanism", "a mechanism has one source"),
     ({"library": "six_pus", "side": 5}, "mechanism.side", "is not a known field; did you mean side_m?"),
@@ -70,6 +74,24 @@ MALFORMED = [
     (legs({**PUS, "slide_m": [0, 1e9]}), "mechanism.legs.0.slide_m", "within ±1e+06"),
     (legs({**RUS, "zero": [1, 1, 0]}), "mechanism.legs.0.zero", "must be at right angles to axis"),
     (legs({**RUS, "angle_deg": [-200, 200]}), "mechanism.legs.0.angle_deg", "must not span more than 360°, here 400°"),
+    ({"library": "delta", "before": [{}]}, "mechanism.before.0.limits_deg", "must be given for a revolute joint"),
+    (
+        {"library": "delta", "after": [{"type": "prismatic", "limits_deg": [0, 1]}]},
+        "mechanism.after.0.limits_m",
+        "must be given for a prismatic joint",
+    ),
+    (
+        {"library": "delta", "before": [{"limits_deg": [0, 1]}] * 4},
+        "mechanism.before",
+        "must have at most 3 items",
+    ),
+    (
+        {"library": "delta", "before": [{"limits_deg": [0, 1], "axis": [0, 0, 0]}]},
+        "mechanism.before.0.axis",
+        "not all 0",
+    ),
+    ({"library": "delta", "before": [{"limits_deg": [0, 400]}]}, "mechanism.before.0.limits_deg", "more than 360"),
+    ({"library": "delta", "before": [{"limits_deg": [0, 9], "levels": 1}]}, "mechanism.before.0.levels", "at least 2"),
     (
         legs({**UPS, "base_cone": {"axis": [0, 0, 1], "half_angle_deg": 190}}),
         "mechanism.legs.0.base_cone.half_angle_deg",
@@ -89,7 +111,13 @@ def test_malformed(document, field, message):
 
 @pytest.mark.parametrize(
     ("document", "kind"),
-    [("six_pus", SixPUS), ({"library": "stewart_gough"}, StewartGough), ("delta", Delta), (legs(UPS), LegsMechanism)],
+    [
+        ("six_pus", SixPUS),
+        ({"library": "stewart_gough"}, StewartGough),
+        ("delta", Delta),
+        ("master_4dof", Master4DOF),
+        (legs(UPS), LegsMechanism),
+    ],
 )
 def test_kinds(document, kind):
     mechanism = Holder(mechanism=document).mechanism

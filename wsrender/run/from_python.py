@@ -20,13 +20,15 @@ def as_subject(robot: Any) -> Robot:
     return load_robot(robot) if isinstance(robot, str | Path | DHTable) else as_robot(robot)
 
 
-def as_source(source: Any) -> Robot | np.ndarray:
-    """Points as they are, anything else as a robot."""
-    return source if isinstance(source, np.ndarray) else as_subject(source)
+def as_source(source: Any) -> Robot | np.ndarray | dict[str, Any]:
+    """Points and documents as they are, anything else as a robot."""
+    return source if isinstance(source, np.ndarray | dict) else as_subject(source)
 
 
-def source_entry(source: Robot | np.ndarray) -> dict[str, Any]:
-    """A robot or points in a job document."""
+def source_entry(source: Robot | np.ndarray | dict[str, Any]) -> dict[str, Any]:
+    """A robot, points or a document of either in a job document."""
+    if isinstance(source, dict):
+        return source
     return arm_entry(source) if isinstance(source, Robot) else {"points": source}
 
 

@@ -13,6 +13,7 @@ from wsrender.errors import ResourceError
 from wsrender.mapping.linear_mapping import LinearMapping, Space
 from wsrender.mapping.scale_search import best_mapping, largest_factor, scale_curve
 from wsrender.mapping.voxel_set import VoxelSet
+from wsrender.parallel.workspace_points import workspace_points
 from wsrender.result import Result
 from wsrender.robot import Robot
 from wsrender.run.provenance import job_entry, provenance, robot_entry
@@ -20,12 +21,14 @@ from wsrender.run.sampled_positions import sampled_positions
 from wsrender.run.settled_device import settled_device
 from wsrender.sampling import plan_sampling
 from wsrender.spec import MasterSlaveMappingJob
-from wsrender.spec.mapping import MOST_POINTS, Containment, MappingSearch
+from wsrender.spec.mapping import MOST_POINTS, Containment, MappedMechanism, MappedRobot, MappingSearch
 from wsrender.spec.point_sets import PointSet
 from wsrender.volume.table import Table
 
 POSITIONS = {"position": "m", "slave_position": "m"}
 POINTS_PER_S = 2e4  # from the configuration to the end of an alpha shape, one CPU core
+
+Source = Robot | MappedMechanism | np.ndarray
 
 
 @dataclass(eq=False)
@@ -34,7 +37,7 @@ class MappingPlan:
 
     job: MasterSlaveMappingJob
     robots: tuple[Robot, ...]
-    sources: tuple[Robot | np.ndarray, Robot | np.ndarray]  # of the master's and the slave's points
+    sources: tuple[Source, Source]  # of the master's and the slave's points
     device: str
     target: str
     samples: int
@@ -104,9 +107,11 @@ class MappingPlan:
             tables["scales"] = _curve_table(partial, about["slave_m3"] * self._of_factor_one(mapping).volume_factor)
         return Result(document, tables=tables, meshes=meshes)
 
-    def _points(self, source: Robot | np.ndarray, side: int) -> np.ndarray:
+    def _points(self, source: Source, side: int) -> np.ndarray:
         if isinstance(source, np.ndarray):
             return source
+        if isinstance(source, MappedMechanism):
+            return workspace_points(source.mechanism, source.count, device=self.device)
         return sampled_positions(source, _sampling(self.job, side), self.device, max_samples=MOST_POINTS)
 
     def _rotation(self) -> np.ndarray:
@@ -144,9 +149,13 @@ def plan_mapping(job: MasterSlaveMappingJob, *robots: Robot, resolved: dict[str,
     Raises InputError for points that cannot be read, ResourceError for more points than shapes are made of.
     """
     to_place = list(robots)
-    master, slave = (
-        source.array() if isinstance(source, PointSet) else to_place.pop(0) for source in (job.master, job.slave)
-    )
+
+    def placed(source: MappedRobot | MappedMechanism | PointSet) -> Source:
+        if isinstance(source, PointSet):
+            return source.array()
+        return source if isinstance(source, MappedMechanism) else to_place.pop(0)
+
+    master, slave = placed(job.master), placed(job.slave)
     counts = [_count(job, side, source) for side, source in enumerate((master, slave))]
     for name, count in zip(("master", "slave"), counts, strict=True):
         if count > MOST_POINTS:
@@ -156,13 +165,15 @@ def plan_mapping(job: MasterSlaveMappingJob, *robots: Robot, resolved: dict[str,
 
 def _sampling(job: MasterSlaveMappingJob, side: int) -> Any:
     source = (job.master, job.slave)[side]
-    assert not isinstance(source, PointSet)
+    assert isinstance(source, MappedRobot)
     return source.sampling
 
 
-def _count(job: MasterSlaveMappingJob, side: int, source: Robot | np.ndarray) -> int:
+def _count(job: MasterSlaveMappingJob, side: int, source: Source) -> int:
     if isinstance(source, np.ndarray):
         return len(source)
+    if isinstance(source, MappedMechanism):
+        return source.count
     return plan_sampling(source.chain, _sampling(job, side)).count
 
 

@@ -1,32 +1,32 @@
 """The analysis ``parallel_workspace``: plan, shards, merge."""
 
+import json
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
-from wsrender.engine import LegTest, count_orientations, count_orientations_at, thread_count
+from wsrender.engine import LegTest, count_orientations, thread_count
 from wsrender.engine.membership import LANES
 from wsrender.errors import InputError, ResourceError
 from wsrender.indices.catalogue import is_dynamic, resolve
+from wsrender.parallel.hybrid import Variant, middle, reachable_box_of, reached_by_any, variants
 from wsrender.parallel.inverse_kinematics import SAME_ORIENTATION, fault_text, inverse_kinematics
 from wsrender.parallel.jacobians import check_square
 from wsrender.parallel.local_indices import pose_indices
-from wsrender.parallel.mechanism import Mechanism, mechanism_of
+from wsrender.parallel.mechanism import Mechanism
 from wsrender.parallel.membership import (
     Box,
     in_base_frame,
     leg_test,
     orientations_reached,
-    placed_box,
-    reachable_box,
 )
 from wsrender.parallel.orientations import OrientationSet, orientation_set
 from wsrender.result import Result
 from wsrender.robot.indices import task_rows
 from wsrender.run.parallel_exact import boundary_partial, boundary_result, region_of
-from wsrender.run.parallel_result import orientation_result, positions_result
+from wsrender.run.parallel_result import orientation_result, positions_result, refined_entry
 from wsrender.run.settled_device import settled_device
 from wsrender.spec.parallel_workspace import BY_BOUNDARY, ParallelWorkspaceJob
 from wsrender.spec.robot import Transform
@@ -41,10 +41,13 @@ LEAST_SHARE = 1e-3  # of the box: where hardly anything is reached
 
 @dataclass(eq=False)
 class ParallelPlan:
-    """A resolved ``parallel_workspace`` job; ``block`` is None where no lattice is tested."""
+    """A resolved ``parallel_workspace`` job; ``block`` is None where no lattice is tested.
+
+    ``variants``: the mechanism at every combination of values of its serial joints, one where it has none.
+    """
 
     job: ParallelWorkspaceJob
-    mechanism: Mechanism
+    variants: list[Variant]
     orientations: OrientationSet
     block: LatticeBlock | None
     rows: tuple[int, ...]
@@ -66,13 +69,18 @@ class ParallelPlan:
         }
 
     @property
-    def _count(self) -> int:
-        return len(self.orientations.rotations)
+    def mechanism(self) -> Mechanism:
+        """The mechanism, its serial joints in the middle of their ranges."""
+        return middle(self.variants).mechanism
 
     @property
-    def test(self) -> LegTest:
+    def _count(self) -> int:
+        """Poses of a voxel."""
+        return len(self.orientations.rotations) * len(self.variants)
+
+    def test(self, variant: Variant) -> LegTest:
         """What the kernels ask."""
-        return leg_test(self.mechanism, self.job.precision)
+        return leg_test(variant.mechanism, self.job.precision)
 
     def run_shard(self, shard: int, progress: Callable[[int], None] | None, **execution: Any) -> Arrays:
         """Of the shard's voxels that are reached: flat number in the block, orientations, weights, indices."""
@@ -81,22 +89,35 @@ class ParallelPlan:
         if self.job.method in BY_BOUNDARY:
             return boundary_partial(self)
         if self.block is None:
-            return self._partial(np.zeros(0, np.int64), np.zeros(0, np.int32), np.zeros(0, np.int32), 0)
-        first, poses = (number // self._count for number in self.shards[shard])
-        counts = count_orientations(
-            self.test,
-            self.block,
-            self.orientations.rotations,
-            first,
-            poses,
-            weights=self.orientations.whole_weights,
-            by_subsystem=self.job.method == "grid_by_subsystem",
-            device=self.device,
-            progress=progress and (lambda done: progress(done * self._count)),
-            **execution,
+            none = np.zeros(0, np.int64)
+            return self._partial(none, none, none, 0)
+        first, voxels = (number // self._count for number in self.shards[shard])
+        found = []
+        for number, variant in enumerate(self.variants):
+
+            def report(done: int, before: int = number * voxels) -> None:
+                if progress:
+                    progress((before + done) * len(self.orientations.rotations))
+
+            counts = count_orientations(
+                self.test(variant),
+                self.block,
+                variant.rotations(self.orientations.rotations),
+                first,
+                voxels,
+                weights=self.orientations.whole_weights,
+                by_subsystem=self.job.method == "grid_by_subsystem",
+                device=self.device,
+                progress=report,
+                **execution,
+            )
+            found.append(counts)
+        reached, weights = (
+            np.array([getattr(counts, name) for counts in found]).sum(axis=0, dtype=np.int64)
+            for name in ("reached", "weights")
         )
-        cells = np.flatnonzero(counts.reached)
-        return self._partial(cells + first, counts.reached[cells], counts.weights[cells], counts.asked)
+        cells = np.flatnonzero(reached)
+        return self._partial(cells + first, reached[cells], weights[cells], sum(counts.asked for counts in found))
 
     def _partial(self, cells: np.ndarray, orientations: np.ndarray, weights: np.ndarray, asked: int) -> Arrays:
         partial = {"cells": cells, "orientations": orientations, "weights": weights, "asked": np.array([asked])}
@@ -121,7 +142,8 @@ class ParallelPlan:
     def _at_point(self, progress: Callable[[int], None] | None, **execution: Any) -> Arrays:
         execution.pop("chunk_size", None)
         position = in_base_frame(self.mechanism, np.array(self.job.position_m))
-        found = orientations_reached(self.test, position, self.orientations.rotations, device=self.device, **execution)
+        test, rotations = self.test(self.variants[0]), self.orientations.rotations
+        found = orientations_reached(test, position, rotations, device=self.device, **execution)
         if progress:
             progress(self._count)
         return {"reached": found}
@@ -132,6 +154,17 @@ class ParallelPlan:
         order = np.argsort(merged["cells"], kind="stable")
         asked = merged.pop("asked").sum(keepdims=True)
         return {"asked": asked, **{name: values[order] for name, values in merged.items()}}
+
+    def refine(self, partial: Arrays, progress: Callable[[int, int, str], None] | None) -> Arrays:
+        """The merged partial result, with the refined volume if asked."""
+        if self.job.refined_volume is None:
+            return partial
+
+        def report(done: int, total: int) -> None:
+            if progress:
+                progress(done, max(total, done), "refining the volume")
+
+        return {**partial, "refined": np.array(json.dumps(refined_entry(self, partial, report)))}
 
     def finish(self, partial: Arrays, seconds: dict[str, float]) -> Result:
         """Volume data or mesh, document, tables and the legs in a typical pose."""
@@ -148,8 +181,10 @@ def plan_parallel(job: ParallelWorkspaceJob, resolved: dict[str, Any] | None = N
     Raises InputError for a home that is not reached, indices of a mechanism that has none, or a turned delta;
     ResourceError for more poses than allowed.
     """
-    mechanism = mechanism_of(job.mechanism)
+    found = variants(job.mechanism)
+    mechanism = middle(found).mechanism
     _check_home(mechanism)
+    _check_serial_joints(job, found)
     orientations = _orientations(job)
     names = resolve(job.indices, has_inertia=True) if job.indices else ()
     rows = task_rows(job.task or ("linear" if mechanism.translational else "full"))
@@ -159,8 +194,8 @@ def plan_parallel(job: ParallelWorkspaceJob, resolved: dict[str, Any] | None = N
         region_of(mechanism, orientations.rotations[0])
     if resolved is None:
         on_lattice = job.kind != "orientation" and job.method not in BY_BOUNDARY
-        block = _block(job, mechanism, orientations, device) if on_lattice else None
-        poses = len(orientations.rotations) * (block.size if block else 1)
+        block = _block(job, found, orientations, device) if on_lattice else None
+        poses = len(found) * len(orientations.rotations) * (block.size if block else 1)
         if poses > job.max_poses:
             raise ResourceError("max_poses", f"is {job.max_poses:.4g}; the job has {poses:.4g} poses: larger voxels?")
         shards = [(0, poses)]
@@ -170,7 +205,7 @@ def plan_parallel(job: ParallelWorkspaceJob, resolved: dict[str, Any] | None = N
     poses = float(sum(count for _, count in shards))
     rate = RATE_GPU if target.startswith("cuda") else RATE_CPU_CORE * thread_count()
     estimate = {"samples": poses, "bytes": 8 * poses / len(orientations.rotations), "seconds": poses / rate}
-    return ParallelPlan(job, mechanism, orientations, block, rows, names, device, target, shards, estimate)
+    return ParallelPlan(job, found, orientations, block, rows, names, device, target, shards, estimate)
 
 
 def _check_home(mechanism: Mechanism) -> None:
@@ -206,30 +241,36 @@ def _settled(block: list[Any] | None) -> LatticeBlock | None:
     return LatticeBlock(size, tuple(first), tuple(shape))
 
 
+def _check_serial_joints(job: ParallelWorkspaceJob, found: list[Variant]) -> None:
+    """Raise InputError for what is not offered of hybrid mechanisms."""
+    if len(found) == 1:
+        return
+    if job.kind != "constant_orientation":
+        raise InputError("kind", f'must be "constant_orientation" of a mechanism with serial joints, not "{job.kind}"')
+    if job.method in BY_BOUNDARY:
+        raise InputError("method", f'must be "grid" or "grid_by_subsystem" with serial joints, not "{job.method}"')
+    if job.indices:
+        raise InputError("indices", "must be [] of a mechanism with serial joints: it reaches a pose in many ways")
+
+
 def _block(
-    job: ParallelWorkspaceJob, mechanism: Mechanism, orientations: OrientationSet, device: str
+    job: ParallelWorkspaceJob, found: list[Variant], orientations: OrientationSet, device: str
 ) -> LatticeBlock | None:
     """The lattice around all that the legs can reach; None where that is nothing."""
-    box = reachable_box(mechanism, orientations.rotations)
-    if mechanism.translational and not np.allclose(orientations.rotations, np.eye(3), rtol=0, atol=SAME_ORIENTATION):
+    level = np.allclose(orientations.rotations, np.eye(3), rtol=0, atol=SAME_ORIENTATION)
+    if found[0].mechanism.translational and not level:
         raise InputError("orientation", "must be null: the parallelograms of a delta do not let its platform turn")
-    if box.empty:
+    box = reachable_box_of(found, orientations.rotations)
+    if box is None:
         return None
-    if not np.isfinite([box.lower, box.upper]).all():
-        raise InputError("mechanism", "must have finite reach")
-    around = placed_box(mechanism, box)
-    size = job.voxel_size_m or _voxel_size(mechanism, orientations, box, device)
-    return block_around(around.lower, around.upper, size)
+    return block_around(box.lower, box.upper, job.voxel_size_m or _voxel_size(found, orientations, box, device))
 
 
-def _voxel_size(mechanism: Mechanism, orientations: OrientationSet, box: Box, device: str) -> float:
+def _voxel_size(found: list[Variant], orientations: OrientationSet, box: Box, device: str) -> float:
     """A hundredth of the cube root of the volume reached at any orientation, estimated, to two significant digits."""
     from scipy.stats.qmc import Sobol
 
-    count = len(orientations.rotations)
-    points = max(FIRST_POINTS // count, FEWEST_POINTS)
+    points = max(FIRST_POINTS // len(orientations.rotations), FEWEST_POINTS)
     unit = Sobol(3, scramble=False).random_base2(int(points).bit_length() - 1)
-    positions = box.lower + unit * (box.upper - box.lower)
-    counts = count_orientations_at(leg_test(mechanism), positions, orientations.rotations, device=device)
-    share = max((counts.reached > 0).mean(), LEAST_SHARE)
-    return round_to_digits(float(np.cbrt(box.volume * share)) / 100.0, 2)
+    inside = reached_by_any(found, box.lower + unit * (box.upper - box.lower), orientations.rotations, device=device)
+    return round_to_digits(float(np.cbrt(box.volume * max(inside.mean(), LEAST_SHARE))) / 100.0, 2)

@@ -1,6 +1,8 @@
 """The result of a ``parallel_workspace`` job."""
 
+import json
 import time
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -8,6 +10,7 @@ import numpy as np
 from wsrender.engine import count_orientations_at
 from wsrender.global_indices import voxel_volumes, workspace_mean
 from wsrender.indices.catalogue import unit
+from wsrender.parallel.hybrid import reached_by_any
 from wsrender.parallel.inverse_kinematics import fault_text, inverse_kinematics
 from wsrender.parallel.local_indices import OF_MECHANISMS
 from wsrender.parallel.mechanism import Mechanism
@@ -96,6 +99,7 @@ def mechanism_document(plan: "ParallelPlan") -> dict[str, Any]:
         "mechanism": mechanism_entry(plan.mechanism),
         "kind": plan.job.kind,
         "orientations": len(plan.orientations.rotations),
+        "serial_configurations": len(plan.variants),
         "provenance": provenance(plan.job.precision, plan.target, seed=plan.job.seed),
     }
 
@@ -125,7 +129,7 @@ def _shares(plan: "ParallelPlan", partial: "Arrays") -> np.ndarray:
 
 
 def _volume(plan: "ParallelPlan", partial: "Arrays", found: np.ndarray) -> VolumeData | None:
-    """``count``: orientations reached; statistics by kind; None where nothing is reached."""
+    """``count``: poses reached (orientations, or serial configurations); None where nothing is reached."""
     if plan.block is None or not found.any():
         return None
     at = np.stack(np.unravel_index(partial["cells"][found], plan.block.shape))
@@ -156,7 +160,7 @@ def _volume(plan: "ParallelPlan", partial: "Arrays", found: np.ndarray) -> Volum
 
 def _volumes(plan: "ParallelPlan", partial: "Arrays", volume: VolumeData | None) -> dict[str, Any]:
     """Volumes [m³] by voxels, and the refined one if asked."""
-    refined = _refined(plan, volume) if plan.job.refined_volume is not None else None
+    refined = json.loads(str(partial["refined"])) if "refined" in partial else None
     if volume is None:
         return {"occupied": 0.0, "inner": 0.0, "outer": 0.0, "refined": refined}
     found, voxel = voxel_volumes(volume), volume.voxel_size_m**3
@@ -168,12 +172,14 @@ def _volumes(plan: "ParallelPlan", partial: "Arrays", volume: VolumeData | None)
     return entry | {"refined": refined}
 
 
-def _refined(plan: "ParallelPlan", volume: VolumeData | None) -> dict[str, Any]:
+def refined_entry(plan: "ParallelPlan", partial: "Arrays", progress: Callable[[int, int], None]) -> dict[str, Any]:
     """The volume with its 95 % interval from uniform points that inverse kinematics decides.
 
-    The strata are the inner voxels, the border and the rest of the lattice block.
+    The strata are the inner voxels, the border and the rest of the lattice block. ``progress``: points decided, and
+    about how many there will be.
     """
     job, tolerance = plan.job, plan.job.refined_volume
+    volume = _volume(plan, partial, _counted(plan, partial))
     assert tolerance is not None
     if plan.block is None:
         return {"value": 0.0, "ci95": [0.0, 0.0], "tolerance": tolerance, "met": True, "points": 0}
@@ -192,14 +198,20 @@ def _refined(plan: "ParallelPlan", volume: VolumeData | None) -> dict[str, Any]:
     least = int(np.ceil(job.dexterous_threshold * weights.sum(dtype=np.int64))) if job.kind == "dexterous" else 0
 
     def membership(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        positions = in_base_frame(plan.mechanism, points)
-        found = count_orientations_at(plan.test, positions, rotations, weights=weights, device=plan.device)
-        inside = found.weights >= least if least else found.reached == len(rotations)
         unknown = np.full((len(points), 1), np.inf)  # how far points outside are: cells are judged by labels alone
+        if job.kind == "constant_orientation":
+            hits = reached_by_any(plan.variants, points, rotations, device=plan.device)
+            return hits.astype(np.int8)[:, None], unknown
+        (variant,) = plan.variants
+        positions = in_base_frame(variant.mechanism, points)
+        found = count_orientations_at(plan.test(variant), positions, rotations, weights=weights, device=plan.device)
+        inside = found.weights >= least if least else found.reached == len(rotations)
         return inside.astype(np.int8)[:, None], unknown
 
     events = {EVENTS[job.kind]: Event(1, 1)}
-    found = estimate_volumes(membership, strata, plan.block.voxel_size_m, events, tolerance, seed=job.seed)
+    found = estimate_volumes(
+        membership, strata, plan.block.voxel_size_m, events, tolerance, seed=job.seed, progress=progress
+    )
     (estimate,) = found.volumes.values()
     return {
         "value": estimate.value,

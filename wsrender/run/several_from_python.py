@@ -57,7 +57,8 @@ def collaborative_volume(left: Any, right: Any, *, progress: Progress | bool | N
 def master_slave_mapping(master: Any, slave: Any, *, progress: Progress | bool | None = None, **fields: Any) -> Result:
     """Whether a slave's workspace, scaled, turned and shifted, lies in its master's, and the largest that does.
 
-    ``master`` and ``slave`` are robots as in `shared_workspace`, or points (N, 3) [m]. ``sampling`` is one for both
+    ``master`` and ``slave`` are robots as in `shared_workspace`, points (N, 3) [m], or the document of a mechanism,
+    {"mechanism": "master_4dof"}. ``sampling`` is one for both
     robots (default Sobol(20000)); ``fields`` are the other fields of the job document ``master_slave_mapping``: scale,
     rotation, offsets_m, containment, search, device.
 

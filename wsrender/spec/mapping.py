@@ -1,12 +1,13 @@
 """The job of master–slave mapping."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, StrictBool
 
 from wsrender.spec.arm import Arm, ArmPath
 from wsrender.spec.document import Document
+from wsrender.spec.mechanism import MechanismSpec
 from wsrender.spec.options import Device
 from wsrender.spec.point_sets import PointSet, is_point_set
 from wsrender.spec.quantities import Number, PositiveNumber, Seed, integer, real, sequence
@@ -28,9 +29,20 @@ class MappedRobot(Arm):
             yield "sampling", 'must not be "converge": the positions of one sampling are mapped'
 
 
+class MappedMechanism(Document):
+    """A parallel mechanism as master or slave: positions of its platform, which is not turned."""
+
+    mechanism: MechanismSpec
+    """The mechanism; a string is a name of the library, such as "master_4dof"."""
+    count: Annotated[int, Field(ge=4, le=MOST_POINTS), BeforeValidator(integer)] = 20_000
+    """Positions, spread evenly over the workspace."""
+
+
 def _source(value: Any) -> Any:
-    if isinstance(value, MappedRobot | PointSet):
+    if isinstance(value, MappedRobot | MappedMechanism | PointSet):
         return value
+    if isinstance(value, Mapping) and "mechanism" in value:
+        return MappedMechanism.model_validate(value)
     return (PointSet if is_point_set(value) else MappedRobot).model_validate(value)
 
 
@@ -62,7 +74,7 @@ def _vectors(value: Any) -> tuple[Any, ...]:
     return vectors
 
 
-RobotOrPoints = Annotated[MappedRobot | PointSet, BeforeValidator(_source)]
+RobotOrPoints = Annotated[MappedRobot | MappedMechanism | PointSet, BeforeValidator(_source)]
 Bounds = Annotated[tuple[float, float], BeforeValidator(_bounds)]
 PositiveBounds = Annotated[tuple[float, float], BeforeValidator(_positive_bounds)]
 

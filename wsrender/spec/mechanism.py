@@ -10,6 +10,7 @@ from wsrender.spec.legs import Interval, Leg, Lengths, Link
 from wsrender.spec.problems import shown
 from wsrender.spec.quantities import Name, PositiveNumber, quoted, real, sequence
 from wsrender.spec.robot import Transform, Vector
+from wsrender.spec.serial_joints import SerialJoint, SerialJoints
 
 MOST_LEGS = 12
 
@@ -66,8 +67,12 @@ class Region(Document):
 class _Mechanism(Document):
     placement: Transform | None = None
     """The base frame in the world; null: they coincide."""
+    before: SerialJoints = ()
+    """Serial joints that carry the base frame, from the ground on: a hybrid mechanism."""
+    after: SerialJoints = ()
+    """Serial joints that the platform carries; the end of the last one takes the place of the platform."""
     region: Region = Region()
-    """Where the origin of the platform may be."""
+    """Where the origin of the platform may be, in the frame of the base as it is carried."""
     home: Transform | None = None
     """A pose of the platform in the base frame, which it must reach; null: none."""
     minimum_leg_distance_m: PositiveNumber | None = None
@@ -140,6 +145,15 @@ class Delta(_Mechanism):
     """Where the middle of the platform may be; by default below the base."""
 
 
+class Master4DOF(Delta):
+    """A delta on a revolute base, the four-joint master of a teleoperation (as in Zhang, Cursi and Yang 2019)."""
+
+    library: Literal["master_4dof"] = "master_4dof"  # type: ignore[assignment]
+    """Name in the library."""
+    before: SerialJoints = (SerialJoint(axis=(1.0, 0.0, 0.0), limits_deg=(-60.0, 60.0)),)
+    """Serial joints that carry the base frame; by default one about x, ±60°, so that the delta swings sideways."""
+
+
 class LegsMechanism(_Mechanism):
     """Any parallel mechanism, as its legs."""
 
@@ -157,7 +171,12 @@ class LegsMechanism(_Mechanism):
             yield "legs", f'must be 3 where they are "delta", not {deltas}'
 
 
-LIBRARY: dict[str, type[_Mechanism]] = {"stewart_gough": StewartGough, "six_pus": SixPUS, "delta": Delta}
+LIBRARY: dict[str, type[_Mechanism]] = {
+    "stewart_gough": StewartGough,
+    "six_pus": SixPUS,
+    "delta": Delta,
+    "master_4dof": Master4DOF,
+}
 
 
 def _mechanism(value: Any) -> Any:
@@ -182,4 +201,4 @@ def _refuse_sourceless() -> None:
     raise ValueError(f'must have "library" (one of {quoted(LIBRARY)}) or "legs"')
 
 
-MechanismSpec = Annotated[StewartGough | SixPUS | Delta | LegsMechanism, BeforeValidator(_mechanism)]
+MechanismSpec = Annotated[StewartGough | SixPUS | Master4DOF | Delta | LegsMechanism, BeforeValidator(_mechanism)]
