@@ -18,6 +18,9 @@ _LATER = ("robot", "robots", "sampling", "choices")  # after the pictures; resul
 _LAST = ("job", "artifacts", "provenance", "timing_s")  # sections of their own, at the end
 _WIDE = 1.6  # width by height from which a picture takes the whole width
 _CAPTIONS = {
+    **{f"kappa_{m}_cartesian": f"κ({m.upper()}) over the points of each working mode" for m in "abj"},
+    **{f"kappa_{m}_joint": f"κ({m.upper()}) over the actuated angles of each working and assembly mode" for m in "abj"},
+    "aspects": "Parts of each working mode without type 2 singularities",
     "robot": "The arm in its workspace",
     "scatter": "Samples",
     "slices": "Voxels in three planes",
