@@ -240,6 +240,8 @@ MALFORMED = [
     ({"analysis": "parallel_workspace"}, "mechanism", "is required"),
     (legs(mechanism="seven_pus"), "mechanism", 'one of "stewart_gough", "six_pus", "delta", "master_4dof", not'),
     (legs(mechanism={"library": "six_pus", "link_m": -1}), "mechanism.link_m", "must be a number above 0"),
+    (legs(indices="manipulability"), "indices", f'{GROUPS}, not "manipulability"'),
+    (legs(indices=[1]), "indices", f"{GROUPS}, not [1]"),
     (legs(kind="reachable"), "kind", 'must be "constant_orientation", "orientation", "dexterous" or'),
     (legs(kind="dexterous"), "orientations", 'must be given with kind "dexterous"'),
     (legs(kind="orientation", orientations={"tilt_deg": 3}), "position_m", "must be given"),

@@ -35,6 +35,10 @@ def _indices(value: Any) -> str | tuple[str, ...]:
     return names
 
 
+def _indices_or_none(value: Any) -> str | tuple[str, ...]:
+    return () if isinstance(value, list | tuple) and not value else _indices(value)
+
+
 def _statistics(value: Any) -> tuple[str, ...]:
     asked = sequence(value)
     return _ordered(asked if "count" in asked else ["count", *asked], STATISTICS)
@@ -87,6 +91,10 @@ Task = Annotated[
 Indices = Annotated[
     Literal["kinematic", "dynamic", "all"] | tuple[Name, ...],
     BeforeValidator(_indices),
+]
+IndicesOrNone = Annotated[
+    Literal["kinematic", "dynamic", "all"] | tuple[Name, ...],
+    BeforeValidator(_indices_or_none),
 ]
 Penalty = Annotated[
     float | None,

@@ -8,7 +8,7 @@ from pydantic import BeforeValidator, Field
 from wsrender.spec.arm import Arm, ArmPath
 from wsrender.spec.document import Document
 from wsrender.spec.mechanism import MechanismSpec
-from wsrender.spec.options import Device, Indices, Task
+from wsrender.spec.options import Device, IndicesOrNone, Task
 from wsrender.spec.orientations import MOST_ORIENTATIONS, Orientations
 from wsrender.spec.quantities import Count, PositiveNumber, RelativeTolerance, Seed, real
 from wsrender.spec.robot import Transform, Vector
@@ -42,7 +42,7 @@ class ParallelWorkspaceJob(Document):
     constant orientation of mechanisms whose workspace only spheres bound: UPS legs, pairs of PUS legs."""
     voxel_size_m: PositiveNumber | None = None
     """Edge of a voxel [m]; null: a hundredth of the cube root of the workspace's volume, estimated."""
-    indices: Annotated[Indices | tuple[()], Field(union_mode="left_to_right")] = ()
+    indices: IndicesOrNone = ()
     """Local indices at the voxels' centres: "kinematic" or a list of names; []: none. Of constant_orientation."""
     task: Task | None = None
     """Rows of the Jacobian, in base axes: "linear", "angular", "full" or a list; null: "full", "linear" of a delta."""
