@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from wsrender.run import (
         analyze,
         collaborative_volume,
+        design_optimization,
         execute,
         five_bar,
         kinetostatic_field,
@@ -90,6 +91,7 @@ __all__ = [
     "__version__",
     "analyze",
     "collaborative_volume",
+    "design_optimization",
     "evaluate_indices",
     "execute",
     "five_bar",
@@ -117,6 +119,7 @@ _NAMES_OF_MODULE = {
     "wsrender.run": (
         "analyze",
         "collaborative_volume",
+        "design_optimization",
         "execute",
         "five_bar",
         "kinetostatic_field",

@@ -41,7 +41,7 @@ STANDARD_FORMATS = ("parquet", "vtkhdf", "glb", "ply", "png")
 REPORT_VIEWS = ("boundary", "isosurface")
 EXTRA_FORMATS = ("npz", "csv", "mat", "stl", "svg")
 
-CURVES = ("scan", "refinements", "scales")  # tables that are drawn
+CURVES = ("scan", "refinements", "scales", "convergence")  # tables that are drawn
 
 
 @dataclass(eq=False)
@@ -298,6 +298,8 @@ def _pictures(result: Result) -> "dict[str, Callable[[], Figure]]":
         pictures["orientations"] = plot.orientations
     if result.document.get("analysis") == "robot_comparison":
         pictures["comparison"] = plot.side_by_side
+    if result.document.get("analysis") == "design_optimization":
+        pictures |= _design_pictures(result)
     if result.volume is not None and result.volume.statistics.get("product"):
         pictures["product"] = partial(plot.slices, statistic="product")
     if "aspect_outlines" in result.tables:
@@ -311,4 +313,20 @@ def _five_bar_pictures(plot: "ResultPlots") -> "dict[str, Callable[[], Figure]]"
     for space in ("cartesian", "joint"):
         for matrix in "abj":
             pictures[f"kappa_{matrix}_{space}"] = partial(plot.conditioning, matrix, space)
+    return pictures
+
+
+def _design_pictures(result: Result) -> "dict[str, Callable[[], Figure]]":
+    """The values of a sweep over one or two parameters, and the first two objectives of a Pareto search."""
+    plot, parameters = result.plot, result.document["parameters"]
+    pictures: dict[str, Callable[[], Figure]] = {}
+    if "sweep" in result.tables and result.document["best"] is not None:
+        values = [array for name, array in list(result.tables["sweep"].columns.items())[:2]]
+        if len(parameters) == 1:
+            pictures["sweep"] = partial(plot.curves, "sweep")
+        elif len(parameters) == 2 and min(len(np.unique(array)) for array in values) > 1:
+            pictures["sweep"] = plot.sweep
+    if len(result.tables.get("pareto", ())):
+        names = [objective["name"] for objective in result.document["objectives"]]
+        pictures["pareto"] = partial(plot.trade_off, *names[:2])
     return pictures

@@ -199,6 +199,17 @@ def test_derivatives_of_the_volume_are_finite_differences():
         assert slopes[ball, number] == pytest.approx((values[0] - values[1]) / (2 * step), abs=2e-5)
 
 
+@pytest.mark.parametrize("gap", [1e-15, 1e-13, 1e-11, 1e-9, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4])
+def test_designs_near_one_whose_balls_coincide_in_pairs(gap):
+    """At l = 2 the balls of neighbouring pairs coincide, and six meet in the point at the top: V hardly changes."""
+    random = np.random.default_rng(int(-np.log10(gap)))
+    links = random.uniform(2.0, 2.5, 100)
+    areas = [six_pus(platform_m=2 + side * gap, link_m=link) for link in links for side in (-1, 0, 1)]
+    below, at, above = exact_volumes(areas).volume.reshape(-1, 3).T
+    np.testing.assert_allclose(below, at, atol=5 * gap + 1e-9)
+    np.testing.assert_allclose(above, at, atol=5 * gap + 1e-9)
+
+
 def test_many_volumes_at_once_are_those_of_each():
     areas = [six_pus(platform_m=side, link_m=link) for side in (1.0, 1.9, 3.0) for link in (2.3, 3.1, 4.3)]
     together = exact_volumes(areas).volume

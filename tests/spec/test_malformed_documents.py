@@ -30,6 +30,20 @@ def approach(**fields):
     return {"analysis": "capability", "robot": {"library": "ur5e"}, **fields}
 
 
+def design(**fields):
+    return {
+        "analysis": "design_optimization",
+        "design": {"analysis": "parallel_workspace", "mechanism": "six_pus"},
+        "parameters": [{"name": "side", "pointers": ["/mechanism/platform_m"], "bounds": [1, 3]}],
+        "objectives": [{"value": "exact_volume"}],
+        **fields,
+    }
+
+
+def side(**fields):
+    return design(parameters=[{"name": "side", "pointers": ["/mechanism/platform_m"], "bounds": [1, 3], **fields}])
+
+
 def felt(**fields):
     return {"analysis": "kinetostatic_field", "robot": {"library": "ur5e"}, "field": fields}
 
@@ -184,6 +198,53 @@ MALFORMED = [
         "sampling",
         'must not be "converge"',
     ),
+    # designs
+    (design(design={"analysis": "workspace"}), "design.robot", "is required"),
+    (design(design=design()), "design", "must be another analysis than design_optimization"),
+    (design(design={"analysis": "walk"}), "design.analysis", "must be one of"),
+    (design(parameters=[]), "parameters", "must have at least 1 items"),
+    (side(bounds=[3, 1]), "parameters.0.bounds", "must be [low, high], low below high"),
+    (side(name="a b"), "parameters.0.name", "must have 1 to 64 letters"),
+    (side(pointers=[]), "parameters.0.pointers", "must be a JSON pointer, or a list of them"),
+    (side(pointers=["mechanism"]), "parameters.0.pointers", 'must start with "/"'),
+    (
+        side(pointers=["/mechanism/size"]),
+        "parameters.0.pointers.0",
+        'points to nothing: /mechanism has no "size"; it has',
+    ),
+    (side(pointers=["/mechanism/library"]), "parameters.0.pointers.0", "must point to a number"),
+    (side(pointers=["/mechanism/link_m/0"] * 2), "parameters.0.pointers.1", "must not point where another"),
+    (design(objectives=[]), "objectives", "must have at least 1 items"),
+    (design(objectives=[{"value": "volume"}]), "objectives.0.value", "or a JSON pointer into the result document"),
+    (design(objectives=[{"value": "/side"}, {"value": "/side"}]), "objectives", "must be different values"),
+    (design(objectives=[{"value": "exact_volume", "goal": "least"}]), "objectives.0.goal", 'must be "maximize" or'),
+    (design(objectives=[{"value": "exact_volume", "weight": 0}]), "objectives.0.weight", "must be greater than 0"),
+    (
+        design(
+            design={"analysis": "workspace", "robot": "ur5e"},
+            parameters=[{"name": "size", "pointers": ["/max_samples"], "bounds": [1, 3]}],
+        ),
+        "objectives.0.value",
+        'is of the analysis parallel_workspace, kind "constant_orientation"',
+    ),
+    (
+        design(constraints=[{"coefficients": {"link": 1}, "lower": 0}]),
+        "constraints.0.coefficients",
+        'must name parameters, "side", not "link"',
+    ),
+    (design(constraints=[{"coefficients": {"side": 1}}]), "constraints.0.lower", 'must be given, or "upper", or both'),
+    (
+        design(constraints=[{"coefficients": {"side": 1}, "lower": 2, "upper": 1}]),
+        "constraints.0.upper",
+        "at least lower",
+    ),
+    (design(search={"method": "luck"}), "search.method", 'must be one of "differential_evolution", "sweep", "pareto"'),
+    (design(search={"method": "sweep", "steps": 0}), "search.steps", "must be a whole number of at least 1"),
+    (design(search={"method": "sweep", "steps": [3, 3]}), "search.steps", "must be one number, or 1"),
+    (design(search={"method": "pareto"}), "search", 'must not be "pareto" with one objective'),
+    (design(search={"method": "sweep", "steps": 1_000_000_0}), "search.steps", "must be a whole number"),
+    (design(evaluations=[[1.0]]), "evaluations", "must be rows of 2"),
+    (design(evaluations=[[None, 1.0]]), "evaluations", "must be rows of 2"),
     # voxels, map, execution
     (job(voxel_size_m=0), "voxel_size_m", "must be greater than 0"),
     (job(voxel_size_m=-0.01), "voxel_size_m", "must be greater than 0, not -0.01"),

@@ -52,6 +52,8 @@ def _facts(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
         mode = found["working_mode"]
         own = [each for each in document["aspects"] if each["working_mode"] == mode]
         yield f"working mode {mode}", f"{found['area_m2']:.8g} m², {len(own)} aspects without type 2 singularities"
+    if document.get("analysis") == "design_optimization":
+        yield from _design(document)
     bounds = document.get("bounds_m") or {}
     if {"lower", "upper"} <= set(bounds):
         for axis, low, high in zip("xyz", bounds["lower"], bounds["upper"], strict=True):
@@ -59,6 +61,23 @@ def _facts(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
     for name, value in (document.get("global") or {}).items():
         if isinstance(value, int | float):
             yield name.replace("_", " "), f"{value:.4g}"
+
+
+def _design(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
+    """The best design and what the search took."""
+    search, best = document["search"], document["best"]
+    yield "designs", f"{search['designs']:,}, {search['evaluated']:,} evaluated; {search['ended']}"
+    if best is None:
+        yield "best design", "none has a value"
+        return
+    yield "best design", ", ".join(f"{name} {value:.6g}" for name, value in best["parameters"].items())
+    units = {objective["name"]: objective["unit"] or "1" for objective in document["objectives"]}
+    values = (f"{name} {value:.6g} {pretty_unit(units[name])}" for name, value in best["values"].items())
+    yield "its values", ", ".join(value.removesuffix(" 1") for value in values)
+    if best["at_bounds"]:
+        yield "at a bound", ", ".join(best["at_bounds"])
+    if "pareto" in document:
+        yield "beaten by none", f"{len(document['pareto'])} designs"
 
 
 def _volumes(volumes: dict[str, Any], prefix: str = "") -> Iterator[tuple[str, str]]:

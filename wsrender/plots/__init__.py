@@ -11,6 +11,7 @@ from wsrender.errors import MissingExtraError
 
 if TYPE_CHECKING:
     from wsrender.plots.comparison import side_by_side
+    from wsrender.plots.designs import sweep_surface, trade_off
     from wsrender.plots.distribution import histogram, write_histogram_csv
     from wsrender.plots.five_bar import aspect_maps, conditioning_maps
     from wsrender.plots.master_slave import mapped_points
@@ -39,6 +40,8 @@ _MODULES = {
     "side_by_side": "comparison",
     "slice_plane": "planes",
     "slices": "planes",
+    "sweep_surface": "designs",
+    "trade_off": "designs",
     "vector_planes": "vector_field",
     "write_histogram_csv": "distribution",
 }
@@ -58,6 +61,8 @@ __all__ = [
     "side_by_side",
     "slice_plane",
     "slices",
+    "sweep_surface",
+    "trade_off",
     "vector_planes",
     "write_histogram_csv",
 ]

@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 
 from wsrender.errors import InputError
 from wsrender.plots.comparison import side_by_side
+from wsrender.plots.designs import sweep_surface, trade_off
 from wsrender.plots.distribution import histogram
 from wsrender.plots.five_bar import MODE_VOLUMES, aspect_maps, conditioning_maps
 from wsrender.plots.master_slave import mapped_points
@@ -37,9 +38,7 @@ class ResultPlots:
 
     def curves(self, table: str) -> Figure:
         """A table as curves over its first column."""
-        if table not in self.tables:
-            raise InputError("table", f"the result has no {table!r}; it holds {', '.join(self.tables) or 'no table'}")
-        return curves(self.tables[table], title=self.title)
+        return curves(self._table(table), title=self.title)
 
     def mapping(self) -> Figure:
         """A slave's points in its master's workspace: green inside, red outside."""
@@ -61,6 +60,14 @@ class ResultPlots:
     def aspects(self) -> Figure:
         """Singularity-free aspects of a five-bar with their areas, one panel for each working mode."""
         return aspect_maps(self._five_bar_tables(), title=self.title)
+
+    def sweep(self, value: str | None = None) -> Figure:
+        """A value of a design sweep over its first two parameters, as a surface and as contours."""
+        return sweep_surface(self._table("sweep"), value, title=self.title)
+
+    def trade_off(self, x: str, y: str) -> Figure:
+        """Two objectives of a Pareto search against each other."""
+        return trade_off(self._table("evaluations"), self._table("pareto"), x, y, title=self.title)
 
     def side_by_side(self, index: str | None = None, *, statistic: str | None = None) -> Figure:
         """The robots of a comparison in the same planes, with the same axes and one colour scale."""
@@ -116,6 +123,11 @@ class ResultPlots:
         if "aspect_outlines" not in self.tables:
             raise InputError("tables", "the result is not one of a five-bar")
         return self.tables
+
+    def _table(self, name: str) -> Table:
+        if name not in self.tables:
+            raise InputError("table", f"the result has no {name!r}; it holds {', '.join(self.tables) or 'no table'}")
+        return self.tables[name]
 
     def _samples(self) -> DistributionMap:
         if self.samples is None:

@@ -1,6 +1,7 @@
 """Running a job, in the four steps that every door uses: plan, run_shard, merge, finish."""
 
 from wsrender.run.analyze import analyze, kinetostatic_field
+from wsrender.run.design_from_python import design_optimization
 from wsrender.run.mechanisms_from_python import five_bar, parallel_workspace
 from wsrender.run.several_from_python import (
     collaborative_volume,
@@ -14,6 +15,7 @@ __all__ = [
     "Plan",
     "analyze",
     "collaborative_volume",
+    "design_optimization",
     "execute",
     "finish",
     "five_bar",

@@ -10,6 +10,7 @@ from wsrender.robot import Robot, as_robot, robot_of_spec
 from wsrender.run.capability import plan_capability
 from wsrender.run.collaborative import plan_collaborative
 from wsrender.run.comparison import plan_robot_comparison
+from wsrender.run.design import plan_design
 from wsrender.run.five_bar import plan_five_bar
 from wsrender.run.indices_at import plan_indices_at
 from wsrender.run.kinetostatics import plan_kinetostatic_field
@@ -21,6 +22,7 @@ from wsrender.run.workspace import plan_workspace
 from wsrender.spec import (
     CapabilityJob,
     CollaborativeVolumeJob,
+    DesignOptimizationJob,
     FiveBarJob,
     IndicesAtJob,
     KinetostaticFieldJob,
@@ -48,6 +50,7 @@ PLANNERS: dict[type, Callable[..., "Plan"]] = {
     KinetostaticFieldJob: plan_kinetostatic_field,
     ParallelWorkspaceJob: plan_parallel,
     FiveBarJob: plan_five_bar,
+    DesignOptimizationJob: plan_design,
 }
 
 

@@ -2,6 +2,7 @@
 
 from wsrender.spec.capability import CapabilityJob
 from wsrender.spec.collaborative import CollaborativeVolumeJob
+from wsrender.spec.design import DesignOptimizationJob
 from wsrender.spec.five_bar import FiveBarJob
 from wsrender.spec.jobs import ANALYSES, IndicesAtJob, Job, WorkspaceJob
 from wsrender.spec.kinetostatics import KinetostaticFieldJob
@@ -15,6 +16,7 @@ __all__ = [
     "ANALYSES",
     "CapabilityJob",
     "CollaborativeVolumeJob",
+    "DesignOptimizationJob",
     "FiveBarJob",
     "IndicesAtJob",
     "Job",

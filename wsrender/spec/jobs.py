@@ -8,6 +8,7 @@ from pydantic import BeforeValidator, Discriminator, StrictBool
 from wsrender.spec.arm import Arm
 from wsrender.spec.capability import CapabilityJob
 from wsrender.spec.collaborative import CollaborativeVolumeJob
+from wsrender.spec.design import DesignOptimizationJob
 from wsrender.spec.document import Document
 from wsrender.spec.five_bar import FiveBarJob
 from wsrender.spec.index_choices import IndexChoices
@@ -78,6 +79,7 @@ _AnyJob = (
     | KinetostaticFieldJob
     | ParallelWorkspaceJob
     | FiveBarJob
+    | DesignOptimizationJob
 )
 ANALYSES: dict[str, type[Document]] = {job.model_fields["analysis"].default: job for job in get_args(_AnyJob)}
 

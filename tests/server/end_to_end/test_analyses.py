@@ -66,6 +66,19 @@ DOCUMENTS = {
         "joint_steps": 30,
         "points_m": [[0.5, 0.9]],
     },
+    "design_optimization": {
+        "analysis": "design_optimization",
+        "design": {
+            "analysis": "workspace",
+            "robot": {"library": "scara", "tool": {"position_m": [0, 0, 0]}},
+            "sampling": SAMPLING,
+            "voxel_size_m": 0.05,
+            "device": "cpu",
+        },
+        "parameters": [{"name": "height", "pointers": ["/robot/tool/position_m/2"], "bounds": [0, 0.1]}],
+        "objectives": [{"value": "/volume_m3/occupied"}],
+        "search": {"method": "sweep", "steps": 2},
+    },
     "reachability": {
         "analysis": "reachability",
         "robot": "scara",

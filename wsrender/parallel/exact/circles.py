@@ -95,23 +95,24 @@ def candidates(surfaces: Surfaces, circles: Circles) -> tuple[np.ndarray, np.nda
     """Points (M, N, 3) in which three surfaces meet, and which of them are real (M, N); others are 0.
 
     With the first of the three a sphere, x = c + y, the circles with the second and the third lie in the planes
-    a·y = h and b·y = k: y = p a + q b ± t a × b.
+    a·y = h and b·y = k: y = h a + m e ± t n with n along a × b and e = n × a, which loses no digit more than the
+    angle between a and b costs.
     """
     tables = surfaces.combinatorics
     ij, ik = tables.sphere_circles[:, 0], tables.sphere_circles[:, 1]
-    i = tables.sphere_triples[:, 0]
     a, b = circles.axis[:, ij], circles.axis[:, ik]
     h, k = circles.height[:, ij], circles.height[:, ik]
     w = cross(a, b)
-    sine2, cosine = dot(w, w), dot(a, b)
+    sine2 = dot(w, w)
     crossing = circles.exists[:, ij] & circles.exists[:, ik] & (sine2 > PARALLEL)
-    divisor = np.where(crossing, sine2, 1.0)
-    p, q = (h - cosine * k) / divisor, (k - cosine * h) / divisor
-    square = surfaces.radii[:, i] ** 2 - (p * h + q * k)
+    sine = np.sqrt(np.where(crossing, sine2, 1.0))
+    n = w / sine[..., None]
+    m = (k - dot(a, b) * h) / sine
+    square = circles.radius[:, ij] ** 2 - m**2
     real = crossing & (square > 0)
-    t = np.sqrt(np.where(real, square, 0.0) / divisor)
-    foot = surfaces.centres[:, i] + p[..., None] * a + q[..., None] * b
-    points = np.concatenate([foot + t[..., None] * w, foot - t[..., None] * w], axis=1)
+    t = np.sqrt(np.where(real, square, 0.0))[..., None] * n
+    foot = circles.middle[:, ij] + m[..., None] * cross(n, a)
+    points = np.concatenate([foot + t, foot - t], axis=1)
     real = np.concatenate([real, real], axis=1)
     at = tables.corners - surfaces.spheres
     corners = (surfaces.offsets[:, at, None] * surfaces.normals[at]).sum(axis=2)

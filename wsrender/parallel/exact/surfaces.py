@@ -14,7 +14,6 @@ from wsrender.parallel.exact.combinatorics import Combinatorics, combinatorics
 # to the largest radius: the region becomes generic, its volume changes by as much times its area. Rounding of a point
 # on three surfaces is 1e-15, or 1e-15 / √(this) where they nearly touch, far less than what the move then opens.
 APART = 1e-11
-GOLDEN = 0.6180339887498949
 POINTLIKE = 1e-8  # radius of a ball, relative to the largest, that has no surface worth looking at
 
 
@@ -82,7 +81,8 @@ class Surfaces:
 
     def moved_apart(self, attempt: int = 0) -> "Surfaces":
         """The same surfaces, each moved into the region by its own small length; other lengths at each attempt."""
-        shares = 0.5 + 0.5 * ((np.arange(1, self.count + 1) * GOLDEN + attempt * 0.37) % 1)
+        # Random ones: a regular sequence has equal differences, and keeps symmetric surfaces concurrent.
+        shares = np.random.default_rng(attempt).uniform(0.5, 1.0, self.count)
         moves = APART * 10**attempt * shares
         radii = self.radii - self.side * moves[: self.spheres]
         offsets = self.offsets - moves[self.spheres :]

@@ -103,14 +103,16 @@ class ExactWorkspace:
 
 @dataclass(frozen=True, eq=False)
 class ExactVolumes:
-    """Volumes (M,) [m³] of regions, and their derivatives by each region's centres and radii.
+    """Volumes (M,) [m³] of regions, and their derivatives by each region's centres, radii and finite bounds [m²].
 
-    ``by_centre`` (M, S, 3) [m²] and ``by_radius`` (M, S) [m²]: inside balls first, then outside balls.
+    ``by_centre`` (M, S, 3) and ``by_radius`` (M, S): inside balls first, then outside balls. ``by_bound`` (M, P): the
+    finite lower bounds, then the upper.
     """
 
     volume: np.ndarray
     by_centre: np.ndarray
     by_radius: np.ndarray
+    by_bound: np.ndarray
 
 
 def exact_volumes(regions: Sequence[BallRegion]) -> ExactVolumes:
@@ -125,8 +127,9 @@ def exact_volumes(regions: Sequence[BallRegion]) -> ExactVolumes:
     return ExactVolumes(*(np.concatenate(parts) for parts in zip(*found, strict=True)))
 
 
-def _volumes(regions: Sequence[BallRegion]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _volumes(regions: Sequence[BallRegion]) -> tuple[np.ndarray, ...]:
     found = arcs(surfaces_of(regions))
     measured, spheres = measures(found, half_edges(found)), found.surfaces.spheres
     side = found.surfaces.side
-    return measured.volume, measured.facing[:, :spheres] * side[:, None], measured.area[:, :spheres] * side
+    by_bound = measured.area[:, spheres:] * found.surfaces.normals.sum(axis=1)
+    return measured.volume, measured.facing[:, :spheres] * side[:, None], measured.area[:, :spheres] * side, by_bound

@@ -1,0 +1,62 @@
+"""The designs of an optimisation and their values: evaluated once each, in order, and kept."""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+Evaluate = Callable[[np.ndarray], np.ndarray]
+
+
+class Evaluations:
+    """Rows of parameters and values; a design that is known is not evaluated again.
+
+    ``evaluate`` takes designs (N, n) and gives values (N, k), NaN where a design has none; it is asked for at most
+    ``batch`` designs at a time. ``report`` is told how many designs there are, ``keep`` every new one with its values.
+    ``weights`` (k,), negative where small values are good, make the score of a design:
+    -inf where a value is missing.
+    """
+
+    def __init__(
+        self,
+        evaluate: Evaluate,
+        weights: np.ndarray,
+        known: Sequence[tuple[tuple[float, ...], tuple[float, ...]]] = (),
+        report: Callable[[int], None] | None = None,
+        keep: Callable[[np.ndarray, np.ndarray], None] | None = None,
+        batch: int = 64,
+    ):
+        self.weights = weights
+        self._evaluate, self._report, self._keep, self._batch = evaluate, report, keep, batch
+        self._known = dict(known)
+        self._asked: dict[tuple[float, ...], tuple[float, ...]] = {}  # in the order of the search
+
+    def __len__(self) -> int:
+        return len(self._asked)
+
+    def values(self, designs: np.ndarray) -> np.ndarray:
+        """Values (N, k) of designs (N, n)."""
+        keys = [tuple(map(float, design)) for design in designs]
+        new = [key for key in dict.fromkeys(keys) if key not in self._known]
+        for first in range(0, len(new), self._batch):
+            part = new[first : first + self._batch]
+            found = self._evaluate(np.array(part))
+            self._known |= {key: tuple(map(float, row)) for key, row in zip(part, found, strict=True)}
+            if self._keep:
+                self._keep(np.array(part), found)
+            if self._report:
+                self._report(len(self._asked) + first + len(part))
+        self._asked |= {key: self._known[key] for key in keys}
+        return np.array([self._known[key] for key in keys]).reshape(len(keys), len(self.weights))
+
+    def scores(self, designs: np.ndarray) -> np.ndarray:
+        """Scores (N,) of designs (N, n)."""
+        return scores(self.values(designs), self.weights)
+
+    def rows(self) -> tuple[np.ndarray, np.ndarray]:
+        """All designs (E, n) that were asked for, in that order, and their values (E, k)."""
+        return np.array(list(self._asked)), np.array(list(self._asked.values()))
+
+
+def scores(values: np.ndarray, weights: np.ndarray) -> np.ndarray:
+    """Weighted sums (N,) of values (N, k); -inf where one is missing."""
+    return np.where(np.isfinite(values).all(axis=1), np.nan_to_num(values) @ weights, -np.inf)
