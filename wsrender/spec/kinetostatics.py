@@ -68,7 +68,7 @@ class HapticDevice(Document):
     """Time constant with which its motors warm up [s]."""
     damping_n_s_per_m: PositiveNumber = 0.5
     """Viscous damping of its own mechanics [N s/m], which bounds the stiffness that it can render."""
-    period_s: Annotated[float, Field(ge=1e-4, le=0.1), BeforeValidator(real)] = 0.001
+    period_s: Annotated[float, Field(ge=5e-4, le=0.1), BeforeValidator(real)] = 0.001
     """Period of its loop [s]."""
 
     def conflicts(self) -> Iterator[tuple[str, str]]:

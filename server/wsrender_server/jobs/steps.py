@@ -18,6 +18,7 @@ from wsrender_server.settings import Settings
 
 MOST_SHARDS = 256
 KEPT_PLANS = 4
+BEHIND = 10  # niceness: a server answers, and live streams run, while jobs take all cores
 GPU_FACTOR = 256  # samples of a GPU in the time of one of the CPU, roughly
 
 _state: dict[str, Any] = {}
@@ -31,6 +32,8 @@ def start(settings: Settings, threads: int, gauges: "ctypes.Array[ctypes.c_int64
     of these there will be.
     """
     settle_in()
+    if hasattr(os, "nice"):  # not on Windows
+        os.nice(BEHIND)
     files = DataFolder(settings.data_dir)
     os.environ.update({"WSRENDER_THREADS": str(threads), MODELS_VARIABLE: str(files.models)})
     _state.update(files=files, shard_samples=settings.shard_samples, max_samples=settings.max_samples, gauges=gauges)

@@ -3,6 +3,7 @@
 import asyncio
 import contextlib
 import json
+import time
 from functools import cache
 from typing import Any
 from urllib.parse import urlsplit
@@ -22,11 +23,13 @@ from wsrender_server.admission import Admission
 from wsrender_server.auth import Principal, entitled
 from wsrender_server.parts import Parts
 from wsrender_server.problems import HttpProblem, problem_of_error, problem_responses, response_of_problem
+from wsrender_server.streams.message_rate import MessageRate
 from wsrender_server.streams.sessions import Session
 
 PATH = "/v1/kinetostatic-stream"
 PROTOCOL = "wsrender.v1"  # the WebSocket subprotocol, where a client offers any
 KEY_PREFIX = "wsrender.key."  # of a subprotocol that carries an API key: browsers cannot set headers
+MOST_PER_S = 4000  # messages of a client
 OPEN_S = 30.0  # for the client's first message
 POLICY, TOO_BIG, INTERNAL, NORMAL = 1008, 1009, 1011, 1000  # close codes (RFC 6455)
 
@@ -122,8 +125,11 @@ async def _pump(websocket: WebSocket, session: Session) -> None:
 
 
 async def _to_loop(websocket: WebSocket, session: Session) -> None:
+    rate = MessageRate(MOST_PER_S)
     while True:
         message = await websocket.receive()
+        if rate.exceeded(time.monotonic()):
+            raise HttpProblem(429, f"more than {MOST_PER_S} messages came in a second", "too_fast")
         if message["type"] == "websocket.disconnect":
             session.close()
             return

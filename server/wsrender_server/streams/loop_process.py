@@ -26,6 +26,7 @@ from wsrender.robots.uploaded import MODELS_VARIABLE
 from wsrender.spec.kinetostatic_stream import Ask, Fault, Opened, Sample, Statistics, StreamOpen
 from wsrender_server.jobs.child_process import settle_in
 from wsrender_server.problems import problem_of_error
+from wsrender_server.streams.scheduling import hurry
 
 MOST_WAITING = 1 << 16  # bytes that are not taken: then forces are dropped, not sent late
 HISTORY = 60_000  # ticks whose times are kept
@@ -81,19 +82,8 @@ def _opened(document: str) -> tuple[Rendering, Opened]:
         enforced_stiffness_n_per_m=rendering.energy.stiffness,
         largest_loop_work_j=work.work_j,
         loop_damping_n_s_per_m=work.damping_n_s_per_m,
-        scheduling=_hurry(),
+        scheduling="fifo" if hurry() else "normal",
     )
-
-
-def _hurry() -> Literal["fifo", "normal"]:
-    """Run before everything else, where the system lets us."""
-    try:
-        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(1))
-    except (AttributeError, OSError):
-        with contextlib.suppress(AttributeError, OSError):
-            os.nice(-10)
-        return "normal"
-    return "fifo"
 
 
 class _Lines:

@@ -16,6 +16,7 @@ from starlette.concurrency import run_in_threadpool
 from wsrender_server.problems import HttpProblem
 from wsrender_server.settings import Settings
 from wsrender_server.streams.loop_process import run_loop
+from wsrender_server.streams.scheduling import calm_down, hurry
 
 MOST_UNREAD = 1 << 16  # bytes that the loop does not take before it counts as hung
 END_S = 2.0  # for a loop to end by itself
@@ -91,6 +92,7 @@ class Streams:
         """A session of a `StreamOpen` document with a loop of its own. Raises HttpProblem 429 where there are many."""
         self._check_room(owner)
         self._owners.append(owner)
+        hurry()  # for as long as there are messages to be passed on
         try:
             process, link = await run_in_threadpool(self._started, document)
             loop = asyncio.get_running_loop()
@@ -102,6 +104,8 @@ class Streams:
                 await run_in_threadpool(self._ended, process)
         finally:
             self._owners.remove(owner)
+            if not self._owners:
+                calm_down()
 
     def close(self) -> None:
         """End all loops."""

@@ -13,6 +13,7 @@ import pytest
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import connect
 from wsrender_server.local_server import LocalServer
+from wsrender_server.streams.message_rate import MessageRate
 
 import wsrender as ws
 from wsrender.spec.kinetostatic_stream import Force, Opened, Statistics
@@ -193,6 +194,12 @@ def test_too_long_a_message_ends_the_stream(server):
         with pytest.raises(ConnectionClosed) as closed:
             socket.recv(10)
         assert closed.value.rcvd.code == 1009
+
+
+def test_messages_are_counted_by_the_second():
+    rate = MessageRate(3)
+    assert [rate.exceeded(7.0 + 0.1 * k) for k in range(5)] == [False, False, False, True, True]
+    assert not rate.exceeded(8.0)
 
 
 @pytest.mark.parametrize(
