@@ -3,7 +3,7 @@
 An addition, subtraction, multiplication, division or square root counts as one operation, a fused multiply-add as
 two; comparisons, selections, sign changes and integer work (the random bits) count as none, and neither does what
 the compiler removes (angular rows and orientation of a linear task). The counts are for a chain of n uncoupled
-joints, random sampling, the task "linear" and the standard convention. n = 6, float32: 951 kinematic, 2,846 twelve.
+joints, random sampling, the task "linear" and the standard convention. n = 6, float32: 811 kinematic, 2,614 twelve.
 """
 
 FLOAT_BYTES = {"float32": 4, "float64": 8}
@@ -11,7 +11,7 @@ FLOAT_BYTES = {"float32": 4, "float64": 8}
 
 def operations(n: int, precision: str, dynamic: bool, voxels: bool) -> int:
     """Operations of one sample with the six kinematic indices, or all twelve."""
-    count = draw(n, precision) + forward(n, precision) + 9 * n + three_singular_values(n, precision)
+    count = draw(n, precision) + forward(n, precision, dynamic) + jacobian(n) + three_singular_values(n, precision)
     count += six_indices(precision) + totals(12 if dynamic else 6)
     if dynamic:
         count += inertia(n) + solve(3, n) + largest_columns(n)
@@ -20,46 +20,52 @@ def operations(n: int, precision: str, dynamic: bool, voxels: bool) -> int:
 
 
 def draw(n: int, precision: str) -> int:
-    """Uniform numbers from random bits (1 or 4 each), then lower + u * step."""
-    return n * ((1 if precision == "float32" else 4) + 2)
+    """Uniform numbers from random bits (4 each in float64), then lower + u * step."""
+    return n * ((0 if precision == "float32" else 4) + 2)
 
 
 def sincos(precision: str) -> int:
-    """Range reduction 9, quarter turns 1, square 1, two polynomials, their ends 3 + 5."""
+    """Rounding to quarter turns 4, reduction 7, square 1, two polynomials, their ends 3 + 5."""
     terms = 2 if precision == "float32" else 5
-    return 11 + 4 * terms + 8
+    return 12 + 4 * terms + 8
 
 
-def forward(n: int, precision: str) -> int:
-    """Per joint: axes 36, lever 15; once: the tip in the world 18."""
-    return n * (sincos(precision) + 36 + 15) + 18
+def forward(n: int, precision: str, dynamic: bool) -> int:
+    """Per joint: lever 15, axes 36, of the second joint 4, of the last 9 without dynamics; once: tip in the world 18."""
+    axes = 4 + 36 * (n - 2) - (0 if dynamic else 27)
+    return n * (sincos(precision) + 15) + axes + 18
+
+
+def jacobian(n: int) -> int:
+    """Linear columns: the first is free, the second 2, all others 9."""
+    return 2 + 9 * (n - 2)
 
 
 def three_singular_values(n: int, precision: str) -> int:
-    """Dot products and orthogonalised rows, 6 (2n - 1) + 3 (2n - 1) + 6n, and the closed form."""
+    """Dot products and orthogonalised rows, 8 (2n - 1) + 2 + 6n, and the closed form."""
     newton_step = 22
     pivots = 2 + 3 + 2 + 4 + 2 + 3 + 16  # trace, row factors, scaled pivots, determinant and minors
     deviators = 9 + 27 + 3 + 3 + 13 + 1 + 12 + 14
     angle = 1 + 2 + 5 + 2 + 11 + 1 + 6 + 5 + newton_step * (1 if precision == "float32" else 2)
     eigenvalues = 2 + 3 + 1 + 1 + 2 + 4 + 2 + 2 + 1 + 6
-    return 9 * (2 * n - 1) + 6 * n + pivots + deviators + angle + eigenvalues
+    return 8 * (2 * n - 1) + 2 + 6 * n + pivots + deviators + angle + eigenvalues
 
 
 def six_indices(precision: str) -> int:
-    """Product 2, quotient 1, power (log2 and exp2 polynomials), harmonic mean 10, isotropy 7."""
-    log_terms, exp_terms = (5, 8) if precision == "float32" else (11, 14)
-    return 2 + 1 + (6 + 2 * (log_terms - 1) + 3 + 2 * (exp_terms - 1) + 1 + 1) + 10 + 7
+    """Product 2, quotient 1, power 2/3 (9 per step), harmonic mean 10, isotropy 7."""
+    steps = 2 if precision == "float32" else 3
+    return 2 + 1 + (9 * steps + 1) + 10 + 7
 
 
 def totals(indices: int) -> int:
-    """Fixed-point sums over all samples: scaling and rounding."""
-    return 2 * indices
+    """Fixed-point sums over all samples: scaling."""
+    return indices
 
 
 def inertia(n: int) -> int:
-    """Per joint: link 9, momentum and its moment 25; per step towards the base: two turns 60, shift 24, link vector 15;
-    per entry before the diagonal: 17."""
-    return 34 * n + 99 * (n - 1) + 17 * n * (n - 1) // 2
+    """Per joint but the first: momentum and its moment 25; per joint but the last: link 9; per step towards the base:
+    two turns 60, shift 24, link vector 15; per entry before the diagonal: 17, in the first column 4."""
+    return 25 * (n - 1) + 9 * n + 99 * (n - 1) + 17 * (n - 1) * (n - 2) // 2 + 4 * (n - 1)
 
 
 def solve(m: int, n: int) -> int:
@@ -91,4 +97,5 @@ def inverse_step(n: int, precision: str, pose: bool) -> int:
     normal = n * m * (m + 1) + 3 * m
     solution = m * (m + 1) * (m - 1) // 3 + 2 * m * m + 3 * m
     orientation = 45 + 9 * n if pose else 0
-    return forward(n, precision) + 9 * n + orientation + residual + slopes + normal + solution + n * (2 * m + 6) + 20
+    in_world = n * (sincos(precision) + 51) + 18 + 9 * n
+    return in_world + orientation + residual + slopes + normal + solution + n * (2 * m + 6) + 20

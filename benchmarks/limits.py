@@ -21,7 +21,7 @@ from wsrender.engine import SweepPlan, devices_of, sweep
 from wsrender.engine.sweep import Accumulator
 
 PRECISIONS = ("float32", "float64")
-ROWS = 1 << 24  # samples whose rows a GPU holds at once
+ROWS = 1 << 26  # samples whose rows a GPU holds at once
 
 
 @dataclass

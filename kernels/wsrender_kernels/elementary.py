@@ -33,6 +33,10 @@ _HALF_PI = {
 # Terms of log2's atanh series on [1/sqrt 2, sqrt 2], and of exp2's Taylor series on [-1/2, 1/2].
 _LOG_TERMS = {wp.float32: 5, wp.float64: 11}
 _EXP_TERMS = {wp.float32: 8, wp.float64: 14}
+# x^(-1/3): of these leading 32 bits a third of those of x is taken away, which leaves |1 - x y³| < 0.103 (fitted); then
+# steps to working precision.
+_ROOT_GUESS = {wp.float32: 0x54A1F000, wp.float64: 0x553EE800}
+_ROOT_STEPS = {wp.float32: 2, wp.float64: 3}
 
 
 def _coefficients(values, real):
@@ -48,12 +52,13 @@ def bits_type(real):
 def elementary(real) -> SimpleNamespace:
     """Device functions of one precision.
 
-    ``sincos(a) -> (sin a, cos a)``; ``sincos_from(a, rest, 1/2 + rest 2/pi, quarters)`` gives those of a + rest +
-    quarters pi/2, where abs(rest) <= pi/4; ``log2`` for positive normal numbers; ``power(x, e) = 2^(e log2 x)``, 0 for
-    x <= 0; ``ordered(x)`` maps a float to an integer that sorts alike (NaN sorts outside the infinities).
+    ``sincos(a) -> (sin a, cos a)``; ``sincos_from(a, rest, rest 2/pi, quarters)`` gives those of a + rest + quarters
+    pi/2, where abs(rest) <= pi/4; ``log2`` for positive normal numbers; ``power(x, e) = 2^(e log2 x)``, 0 for x <= 0;
+    ``two_thirds_power(x)``, the same for e = 2/3; ``ordered(x)`` maps a float to an integer that sorts alike (NaN sorts
+    outside the infinities).
     """
     bits = bits_type(real)
-    mantissa = 23 if real is wp.float32 else 52
+    mantissa, bits_size = (23, 32) if real is wp.float32 else (52, 64)
     SIN, COS = _coefficients(_SIN[real], real), _coefficients(_COS[real], real)
     DEGREE = len(_SIN[real])
     PART_1, PART_2, PART_3 = (real(part) for part in _HALF_PI[real])
@@ -70,11 +75,17 @@ def elementary(real) -> SimpleNamespace:
     LOWEST, HIGHEST = real(-126.0 if real is wp.float32 else -1022.0), real(127.0 if real is wp.float32 else 1023.0)
 
     INFINITE, UNDEFINED = real(math.inf), real(math.nan)
+    ROUND, ODD, NONE = real(1.5 * 2.0**mantissa), bits(1), bits(0)
+    ROOT_GUESS, ROOT_SHIFT, ROOT_STEPS = wp.int32(_ROOT_GUESS[real]), bits(bits_size - 32), _ROOT_STEPS[real]
+    ROOT_1, ROOT_2, THREE = real(1.0 / 3.0), real(2.0 / 9.0), wp.int32(3)
 
     @wp.func
-    def sincos_from(a: real, rest: real, rounding: real, quarters: real):
+    def sincos_from(a: real, rest: real, rest_quarters: real, quarters: real):
+        # Adding 1.5 * 2^(mantissa bits) rounds to an integer and leaves it in the low bits: cheaper than conversions.
+        shifter = ROUND + quarters
+        shifted = (a * TWO_OVER_PI + rest_quarters) + shifter
+        k = shifted - shifter
         # Reduced before the rest is added, the angle loses nothing to the sum.
-        k = wp.floor(a * TWO_OVER_PI + rounding)
         r = (((a - k * PART_1) + rest) - k * PART_2) - k * PART_3
         z = r * r
         s = SIN[DEGREE - 1]
@@ -84,17 +95,15 @@ def elementary(real) -> SimpleNamespace:
             c = c * z + COS[DEGREE - 1 - i]
         s = r + r * z * s
         c = ONE - HALF * z + z * z * c
-        quadrant = wp.int32(k + quarters)
-        swap = (quadrant & 1) != 0
-        sine = wp.where(swap, c, s)
-        cosine = wp.where(swap, s, c)
-        sine = wp.where((quadrant & 2) != 0, -sine, sine)
-        cosine = wp.where(((quadrant + 1) & 2) != 0, -cosine, cosine)
-        return sine, cosine
+        quadrant = wp.cast(shifted, bits)
+        swap = (quadrant & ODD) != NONE
+        sine = wp.cast(wp.where(swap, c, s), bits) ^ ((quadrant >> ODD) << SIGN)
+        cosine = wp.cast(wp.where(swap, s, c), bits) ^ (((quadrant + ODD) >> ODD) << SIGN)
+        return wp.cast(sine, real), wp.cast(cosine, real)
 
     @wp.func
     def sincos(a: real):
-        return sincos_from(a, ZERO, HALF, ZERO)
+        return sincos_from(a, ZERO, ZERO, ZERO)
 
     @wp.func
     def sine(a: real):
@@ -136,6 +145,16 @@ def elementary(real) -> SimpleNamespace:
         return wp.where(positive, exp2(e * log2(wp.where(positive, x, ONE))), ZERO)
 
     @wp.func
+    def two_thirds_power(x: real):
+        # x x^(-1/3): a third of the exponent, then y <- y (1 + e/3 + 2 e²/9), e = 1 - x y³ (Householder).
+        leading = wp.int32(wp.cast(x, bits) >> ROOT_SHIFT)
+        y = wp.cast(bits(ROOT_GUESS - leading / THREE) << ROOT_SHIFT, real)
+        for _step in range(ROOT_STEPS):
+            e = ONE - (x * y) * (y * y)
+            y = y + (y * e) * (ROOT_1 + ROOT_2 * e)
+        return wp.where(x >= SMALLEST, x * y, ZERO)
+
+    @wp.func
     def ordered(x: real):
         i = wp.cast(x, bits)
         return i ^ ((i >> SIGN) & MAGNITUDE)
@@ -148,5 +167,6 @@ def elementary(real) -> SimpleNamespace:
         log2=log2,
         exp2=exp2,
         power=power,
+        two_thirds_power=two_thirds_power,
         ordered=ordered,
     )

@@ -44,24 +44,24 @@ def _of_point(mass: float, at: np.ndarray) -> np.ndarray:
 
 
 @cache
-def inertia(real, n: int, sources: tuple[int, ...], plain: bool) -> SimpleNamespace:
+def inertia(real, n: int, sources: tuple[int, ...], plain: bool, world: bool) -> SimpleNamespace:
     """Device functions ``inertia_matrix(chain, bodies, frames) -> (n, n)`` and ``solve(m)``: (M, A (m, n)) -> A M^-1.
 
-    ``frames`` and ``plain`` as in `kinematics`.
+    ``frames``, ``plain`` and ``world`` as in `kinematics`.
     """
     L = len(sources)
     LAST = L - 1
     SOURCE = wp.types.vector(L, wp.int32)(*sources)
     CHAIN = JOINT_STRIDE
     BODY = BODY_STRIDE
-    kin = kinematics(real, n, sources, plain)
+    kin = kinematics(real, n, sources, plain, world)
     vec3, Frames = kin.vec3, kin.Frames
     axes_type = wp.types.matrix((L, 3), real)
     sym3 = wp.types.vector(6, real)  # xx yy zz xy xz yz
     joint_inertia_type = wp.types.matrix((n, n), real)
     ONE, TWO = real(1.0), real(2.0)
     Chain, Bodies = chain_type(real, L), wp.types.vector(L * BODY_STRIDE, real)
-    PLAIN = plain
+    PLAIN, WORLD = plain, world
 
     @wp.func
     def turned_z(S: sym3, c: real, s: real):
@@ -111,10 +111,13 @@ def inertia(real, n: int, sources: tuple[int, ...], plain: bool) -> SimpleNamesp
     @wp.func
     def inertia_matrix(chain: Chain, bodies: Bodies, frames: Frames):
         M = joint_inertia_type()
-        links = axes_type()  # from each joint's origin to the next, in the world
+        links = axes_type()  # from each joint's origin to the next
         for i in range(LAST):
             a = (i + 1) * CHAIN
             links[i] = frames.X[i] * chain[a + 2] + frames.Y[i] * chain[a + 3] + frames.Z[i] * chain[a + 4]
+            if wp.static(not WORLD):  # noqa: SIM102 - Warp takes static conditions by themselves
+                if i == 0:  # its axes are those of the frame
+                    links[i] = vec3(chain[a + 2], chain[a + 3], chain[a + 4])
             if wp.static(not PLAIN):
                 links[i] = links[i] + frames.Z[i + 1] * frames.slides[i + 1]
         h = vec3()
@@ -163,6 +166,9 @@ def inertia(real, n: int, sources: tuple[int, ...], plain: bool) -> SimpleNamesp
                 j = i - 1 - before
                 moment = moment + wp.cross(links[j], momentum)
                 value = wp.dot(frames.Z[j], moment)
+                if wp.static(not WORLD):  # noqa: SIM102
+                    if j == 0:
+                        value = moment[2]
                 if wp.static(not PLAIN):
                     value = value * chain[j * CHAIN + 8] + wp.dot(frames.Z[j], momentum) * chain[j * CHAIN + 9]
                 M[SOURCE[i], SOURCE[j]] += value

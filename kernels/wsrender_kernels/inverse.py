@@ -63,7 +63,7 @@ def advance(real, n: int, sources: tuple[int, ...], plain: bool, kind: str) -> S
     8 sin²(angle / 2), are those at q; ``expected`` is the decrease of half their weighted sum that the linearised
     chain promises [m²]. ``target``: see TARGET_SIZES [m, 1].
     """
-    kin = kinematics(real, n, sources, plain)
+    kin = kinematics(real, n, sources, plain, True)
     forward, jacobian = kin.forward, kin.jacobian
     M = 3 if kind == "position" else 6
     target_type = wp.types.vector(TARGET_SIZES[kind], real)

@@ -13,7 +13,9 @@ import warp as wp
 
 from wsrender_kernels.elementary import elementary
 
-JOINT_STRIDE = 11  # cos α, sin α, translation xyz, offset (3), angle per q, slide per q, slide at q = 0
+# cos α, sin α, translation xyz, offset (its rest, that in quarter turns, whole quarters), angle per q, slide per q,
+# slide at q = 0
+JOINT_STRIDE = 11
 FRAME_STRIDE = 24  # base axes x, y, z and origin; tip origin and axes x, y, z
 
 
@@ -32,7 +34,7 @@ def pack_kinematics(T_base, T_joint, T_tip, revolute, scale, offset) -> np.ndarr
         angle = psi + before[i + 1] + (offset[i] if revolute[i] else 0.0)
         quarters = np.round(angle * 2 / np.pi)
         rest = angle - quarters * np.pi / 2
-        rows += [np.cos(alpha), np.sin(alpha), *positions[i], rest, 0.5 + rest * 2 / np.pi, quarters % 4]
+        rows += [np.cos(alpha), np.sin(alpha), *positions[i], rest, rest * 2 / np.pi, quarters % 4]
         rows += [scale[i], 0.0, 0.0] if revolute[i] else [0.0, scale[i], offset[i]]
     frames = [*base[:3, :3].T.ravel(), *base[:3, 3], *T_tip[:3, 3], *T_tip[:3, :3].T.ravel()]
     return np.array(rows + frames)
@@ -107,15 +109,19 @@ def orientation(real):
 
 
 @cache
-def kinematics(real, n: int, sources: tuple[int, ...], plain: bool) -> SimpleNamespace:
+def kinematics(real, n: int, sources: tuple[int, ...], plain: bool, world: bool) -> SimpleNamespace:
     """Device functions for a chain whose joint i is driven by coordinate ``sources[i]`` of ``n``.
 
     ``plain``: every joint is revolute and turns by its own coordinate, so that scales and slides need no arithmetic.
     ``forward(chain, q) -> tip, x, y, z, frames`` gives the tip's position and axes in the world; ``frames`` holds for
-    every joint frame after its motion, (L, 3) each, its axes X, Y, Z in the world and the tip's position in it
-    (``levers``) [m], and of the motion (L,) each the ``sines``, ``cosines`` and ``slides`` [m]. ``jacobian(chain,
-    frames)`` is (6, n), rows linear then angular at the tip in world axes, as MuJoCo's mj_jacSite.
-    ``moved_base(chain, value, levers[0])`` is the tip for another value of the first joint, bit for bit.
+    every joint frame, (L, 3) each, after its motion its axes X, Y, Z in the world and the tip's position in it
+    (``levers``) [m], before its motion its axes x and y in the world (``x_before``, ``y_before``), and of the motion
+    (L,) each the ``sines``, ``cosines`` and ``slides`` [m]. ``jacobian(chain, frames)`` is (6, n), rows linear then
+    angular at the tip in world axes, as MuJoCo's mj_jacSite. ``moved_base(chain, value, levers[0])`` is the tip for
+    another value of the first joint, bit for bit.
+
+    ``world`` false: all axes and J are in the frame that the first joint leaves behind it, for half the rotations of
+    the first two joints; singular values and M do not depend on it. The tip's position is in the world all the same.
 
     The tip's position is accumulated from the tip to the base: the levers of the last joints, which move the least
     inertia, then err by their own small length times epsilon and not by the arm's.
@@ -129,13 +135,17 @@ def kinematics(real, n: int, sources: tuple[int, ...], plain: bool) -> SimpleNam
     jacobian_type = wp.types.matrix((6, n), real)
     sincos = elementary(real).sincos_from
     Chain = chain_type(real, L)
-    PLAIN = plain
+    PLAIN, WORLD, COUPLED = plain, world, len(set(sources)) < L
+    GENERAL = 0 if world else min(2, L)  # joints before are written out: most of their entries are 0 or 1
+    ZERO, ONE = real(0.0), real(1.0)
 
     @wp.struct
     class Frames:
         X: axes_type
         Y: axes_type
         Z: axes_type
+        x_before: axes_type
+        y_before: axes_type
         levers: axes_type
         sines: vec_l
         cosines: vec_l
@@ -162,15 +172,15 @@ def kinematics(real, n: int, sources: tuple[int, ...], plain: bool) -> SimpleNam
             rz = rz + slide
         return vec3(
             chain[a + 2] + rx,
-            chain[a + 3] + (chain[a] * ry - chain[a + 1] * rz),
-            chain[a + 4] + (chain[a + 1] * ry + chain[a] * rz),
+            chain[a + 3] + chain[a] * ry - chain[a + 1] * rz,
+            chain[a + 4] + chain[a + 1] * ry + chain[a] * rz,
         )
 
     @wp.func
     def in_world(chain: Chain, r: vec3):
         tip = vec3()
         for k in range(3):
-            tip[k] = chain[B + 9 + k] + (chain[B + k] * r[0] + chain[B + 3 + k] * r[1] + chain[B + 6 + k] * r[2])
+            tip[k] = chain[B + 9 + k] + chain[B + k] * r[0] + chain[B + 3 + k] * r[1] + chain[B + 6 + k] * r[2]
         return tip
 
     @wp.func
@@ -185,15 +195,40 @@ def kinematics(real, n: int, sources: tuple[int, ...], plain: bool) -> SimpleNam
         z = vec3(chain[B + 6], chain[B + 7], chain[B + 8])
         frames = Frames()
         for i in range(L):
-            a = i * STRIDE
-            tilted = y * chain[a] + z * chain[a + 1]
-            z = z * chain[a] - y * chain[a + 1]
             sine, cosine, slide = motion(chain, i, q[SOURCE[i]])
-            y = tilted * cosine - x * sine
-            x = x * cosine + tilted * sine
             frames.sines[i] = sine
             frames.cosines[i] = cosine
             frames.slides[i] = slide
+        if wp.static(not WORLD):
+            x = vec3(ONE, ZERO, ZERO)
+            y = vec3(ZERO, ONE, ZERO)
+            z = vec3(ZERO, ZERO, ONE)
+            frames.X[0] = x
+            frames.Y[0] = y
+            frames.Z[0] = z
+            if wp.static(L > 1):
+                ca = chain[STRIDE]
+                sa = chain[STRIDE + 1]
+                sine = frames.sines[1]
+                cosine = frames.cosines[1]
+                frames.x_before[1] = x
+                frames.y_before[1] = vec3(ZERO, ca, sa)
+                x = vec3(cosine, ca * sine, sa * sine)
+                y = vec3(-sine, ca * cosine, sa * cosine)
+                z = vec3(ZERO, -sa, ca)
+                frames.X[1] = x
+                frames.Y[1] = y
+                frames.Z[1] = z
+        for i in range(GENERAL, L):
+            a = i * STRIDE
+            tilted = y * chain[a] + z * chain[a + 1]
+            z = z * chain[a] - y * chain[a + 1]
+            sine = frames.sines[i]
+            cosine = frames.cosines[i]
+            frames.x_before[i] = x
+            frames.y_before[i] = tilted
+            y = tilted * cosine - x * sine
+            x = x * cosine + tilted * sine
             frames.X[i] = x
             frames.Y[i] = y
             frames.Z[i] = z
@@ -210,18 +245,38 @@ def kinematics(real, n: int, sources: tuple[int, ...], plain: bool) -> SimpleNam
         return tip, tip_x, tip_y, tip_z, frames
 
     @wp.func
+    def turned_lever(frames: Frames, i: int):
+        """Where the tip is, x and y, before the joint's motion, about its axis."""
+        x = frames.levers[i, 0]
+        y = frames.levers[i, 1]
+        return frames.cosines[i] * x - frames.sines[i] * y, frames.sines[i] * x + frames.cosines[i] * y
+
+    @wp.func
     def jacobian(chain: Chain, frames: Frames):
+        # Columns are z x lever, exactly 0 for a tip on the axis; in axes before the motion, which the last joint's
+        # need not be turned for.
         J = jacobian_type()
         for i in range(L):
             z = frames.Z[i]
-            # z x lever, exactly 0 for a tip on the axis.
-            linear = frames.Y[i] * frames.levers[i, 0] - frames.X[i] * frames.levers[i, 1]
+            linear = vec3()
+            if i >= GENERAL:
+                rx, ry = turned_lever(frames, i)
+                linear = frames.y_before[i] * rx - frames.x_before[i] * ry
+            elif i == 0:
+                linear = vec3(-frames.levers[0, 1], frames.levers[0, 0], ZERO)
+            else:
+                rx, ry = turned_lever(frames, i)
+                linear = vec3(-ry, chain[STRIDE] * rx, chain[STRIDE + 1] * rx)
             if wp.static(not PLAIN):
                 linear = linear * chain[i * STRIDE + 8] + z * chain[i * STRIDE + 9]
                 z = z * chain[i * STRIDE + 8]
             for r in range(3):
-                J[r, SOURCE[i]] += linear[r]
-                J[3 + r, SOURCE[i]] += z[r]
+                if wp.static(COUPLED):
+                    J[r, SOURCE[i]] += linear[r]
+                    J[3 + r, SOURCE[i]] += z[r]
+                else:
+                    J[r, SOURCE[i]] = linear[r]
+                    J[3 + r, SOURCE[i]] = z[r]
         return J
 
     return SimpleNamespace(

@@ -28,7 +28,7 @@ def model_type(real, n: int, joints: int):
         limited: vec_n  # 1 where the limits count, else 0
         penalty: real  # K of the penalisation
         torque: vec_n  # largest joint efforts
-        linear_scale: real  # 1 / characteristic length where a task mixes linear and angular rows, else 1
+        linear_scale: real  # 1 / characteristic length, for tasks that mix linear and angular rows
         position_given: wp.array(dtype=real)  # (3 * stride,) value r of given sample s at [r * stride + s]
         jacobian_given: wp.array(dtype=real)  # (6 n * stride,)
         inertia_given: wp.array(dtype=real)  # (n n * stride,)

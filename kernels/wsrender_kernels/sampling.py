@@ -18,12 +18,10 @@ LANES = 256
 METHODS = ("grid", "random", "sobol", "boundary", "given")
 SOBOL_BITS = 52
 
-# Threefry-4x32 with 13 rounds (Salmon, Moraes, Dror, Shaw, *Parallel random numbers: as easy as 1, 2, 3*, 2011).
-# Only additions, rotations and exclusive ors: they vectorise, which the wide products of Philox do not.
-_ROTATIONS_0 = (10, 11, 13, 23, 6, 17, 25, 18)
-_ROTATIONS_1 = (26, 21, 27, 5, 20, 11, 10, 20)
-_ROUNDS = 13
-_PARITY = 0x1BD11BDA
+# Philox-4x32 with 7 rounds (Salmon, Moraes, Dror, Shaw, *Parallel random numbers: as easy as 1, 2, 3*, 2011, table 2).
+_ROUNDS = 7
+_MULTIPLIERS = (0xD2511F53, 0xCD9E8D57)
+_KEY_STEPS = (0x9E3779B9, 0xBB67AE85)
 
 
 @cache
@@ -50,59 +48,45 @@ def sample_space(real, n: int):
     return SampleSpace
 
 
-@cache
-def threefry():
-    """Device function (counter 4 x uint32, key 2 x uint32) -> 4 x uint32."""
-    u32 = wp.uint32
-    vec5 = wp.types.vector(5, u32)
-    R0, R1 = wp.types.vector(8, u32)(*_ROTATIONS_0), wp.types.vector(8, u32)(*_ROTATIONS_1)
-    ROUNDS = _ROUNDS
-    PARITY, ZERO, WORD = u32(_PARITY), u32(0), u32(32)
+_PHILOX = f"""
+#if defined(__CUDA_ARCH__)
+    typedef wp::uint32 word;
+#else
+    typedef wp::uint64 word;  // upper halves hold anything: wide products on the CPU then need no rearranging
+#endif
+    word x0 = c0, x1 = c1, x2 = c2, x3 = c3, key_0 = k0, key_1 = k1;
+    #pragma unroll
+    for (int round = 0; round < {_ROUNDS}; ++round) {{
+        wp::uint64 a = wp::uint64(wp::uint32(x0)) * {_MULTIPLIERS[0]}u;
+        wp::uint64 b = wp::uint64(wp::uint32(x2)) * {_MULTIPLIERS[1]}u;
+        x0 = word(b >> 32) ^ x1 ^ key_0;
+        x1 = word(b);
+        x2 = word(a >> 32) ^ x3 ^ key_1;
+        x3 = word(a);
+        key_0 += {_KEY_STEPS[0]}u;
+        key_1 += {_KEY_STEPS[1]}u;
+    }}
+    return wp::vec_t<4, wp::uint32>(wp::uint32(x0), wp::uint32(x1), wp::uint32(x2), wp::uint32(x3));
+"""
+_words = wp.types.vector(4, wp.uint32)
 
-    @wp.func
-    def rotated(x: u32, r: u32):
-        return (x << r) | (x >> (WORD - r))
 
-    @wp.func
-    def random_words(c0: u32, c1: u32, c2: u32, c3: u32, k0: u32, k1: u32):
-        key = vec5(k0, k1, ZERO, ZERO, PARITY ^ k0 ^ k1)
-        x0 = c0 + key[0]
-        x1 = c1 + key[1]
-        x2 = c2 + key[2]
-        x3 = c3 + key[3]
-        for r in range(ROUNDS):
-            if r % 2 == 0:
-                x0 = x0 + x1
-                x1 = rotated(x1, R0[r % 8]) ^ x0
-                x2 = x2 + x3
-                x3 = rotated(x3, R1[r % 8]) ^ x2
-            else:
-                x0 = x0 + x3
-                x3 = rotated(x3, R0[r % 8]) ^ x0
-                x2 = x2 + x1
-                x1 = rotated(x1, R1[r % 8]) ^ x2
-            if r % 4 == 3:
-                s = (r + 1) // 4
-                x0 = x0 + key[s % 5]
-                x1 = x1 + key[(s + 1) % 5]
-                x2 = x2 + key[(s + 2) % 5]
-                x3 = x3 + key[(s + 3) % 5] + u32(s)
-        return x0, x1, x2, x3
-
-    return random_words
+@wp.func_native(_PHILOX)
+def random_words(c0: wp.uint32, c1: wp.uint32, c2: wp.uint32, c3: wp.uint32, k0: wp.uint32, k1: wp.uint32) -> _words:
+    """Four random words of a counter and a key. In C, for the word of the registers differs."""
 
 
 @cache
 def uniform(real):
-    """Device function (high, low 32 random bits) -> [0, 1): the leading 24 (float32) or 53 (float64) bits."""
+    """Device function (high, low 32 random bits) -> [0, 1) in units of `unit_of`: the leading 24 or 53 bits."""
     u32 = wp.uint32
-    HIGH_24, EIGHT = real(2.0**-24), u32(8)
+    EIGHT = u32(8)
     HIGH_32, LOW_21, ELEVEN, HALF_RANGE = real(2.0**-32), real(2.0**-53), u32(11), real(2147483648.0)
     SIGN = u32(0x80000000)
 
     @wp.func
     def uniform32(high: u32, low: u32):
-        return real(wp.int32(high >> EIGHT)) * HIGH_24
+        return real(wp.int32(high >> EIGHT))
 
     @wp.func
     def uniform64(high: u32, low: u32):
@@ -110,6 +94,11 @@ def uniform(real):
         return (real(wp.int32(high ^ SIGN)) + HALF_RANGE) * HIGH_32 + real(wp.int32(low >> ELEVEN)) * LOW_21
 
     return uniform32 if real is wp.float32 else uniform64
+
+
+def unit_of(real):
+    """What `uniform` counts in: a power of two, so that it may be multiplied with the interval beforehand."""
+    return real(2.0**-24 if real is wp.float32 else 1.0)
 
 
 @cache
@@ -207,7 +196,7 @@ def _uniforms(real, n: int):
     vec_n = wp.types.vector(n, real)
     u32 = wp.uint32
     words_n = wp.types.vector(4 * ((n + 3) // 4), u32)
-    random_words, unit = threefry(), uniform(real)
+    unit = uniform(real)
     GROUPS = (n + 3) // 4
     HIGH, LOW = u32(0), u32(1)
     MASK, WORD = wp.int64(0xFFFFFFFF), wp.int64(32)
@@ -219,11 +208,9 @@ def _uniforms(real, n: int):
         c0 = u32(first & MASK) + u32(lane)
         c1 = u32(first >> WORD)
         for g in range(GROUPS):
-            x0, x1, x2, x3 = random_words(c0, c1, u32(g), part, space.key_0, space.key_1)
-            out[4 * g] = x0
-            out[4 * g + 1] = x1
-            out[4 * g + 2] = x2
-            out[4 * g + 3] = x3
+            four = random_words(c0, c1, u32(g), part, space.key_0, space.key_1)
+            for w in range(4):
+                out[4 * g + w] = four[w]
         return out
 
     @wp.func
@@ -248,13 +235,13 @@ def _uniforms(real, n: int):
 
 def _random(real, n: int):
     Space = sample_space(real, n)
-    uniforms = _uniforms(real, n)
+    uniforms, UNIT = _uniforms(real, n), unit_of(real)
 
     @wp.func
     def draw(space: Space, block: wp.int32, first: wp.int64, lane: wp.int32):
         q = uniforms(space, first, lane)
         for i in range(n):
-            q[i] = space.lower[i] + q[i] * space.step[i]
+            q[i] = space.lower[i] + q[i] * (UNIT * space.step[i])
         return q
 
     return _stateless(Space), draw
@@ -264,7 +251,7 @@ def _boundary(real, n: int):
     """Beta(1/2, 1/2) between the limits, by its inverse distribution function (1 - cos(pi u)) / 2."""
     Space = sample_space(real, n)
     uniforms, sincos = _uniforms(real, n), elementary(real).sincos
-    PI, HALF, ONE = real(math.pi), real(0.5), real(1.0)
+    PI, HALF, ONE = real(math.pi) * unit_of(real), real(0.5), real(1.0)
 
     @wp.func
     def draw(space: Space, block: wp.int32, first: wp.int64, lane: wp.int32):
@@ -282,7 +269,7 @@ def _sobol(real, n: int):
     Space = sample_space(real, n)
     vec_n = wp.types.vector(n, real)
     words_type = wp.types.vector(2 * n, wp.uint32)
-    unit = uniform(real)
+    unit, UNIT = uniform(real), unit_of(real)
     ONE, ZERO = wp.int64(1), wp.int64(0)
     BITS, SHIFT, BLOCK = SOBOL_BITS, n * SOBOL_BITS, LANES
 
@@ -309,7 +296,7 @@ def _sobol(real, n: int):
         for i in range(n):
             high = block[i] ^ space.lane_high[i * BLOCK + lane]
             low = block[n + i] ^ space.lane_low[i * BLOCK + lane]
-            q[i] = space.lower[i] + unit(high, low) * space.step[i]
+            q[i] = space.lower[i] + unit(high, low) * (UNIT * space.step[i])
         return q
 
     return prepare, draw

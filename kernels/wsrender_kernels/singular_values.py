@@ -151,11 +151,11 @@ def _two_rows(real, m: int, n: int):
         aa = wp.dot(a, a)
         ab = wp.dot(a, b)
         bb = wp.dot(b, b)
-        rest = b - a * (ab * wp.where(aa > TINY, ONE / wp.max(aa, TINY), ZERO))
+        rest = b - a * (ab * wp.where(aa > TINY, ONE / aa, ZERO))
         area = wp.sqrt(aa) * wp.sqrt(wp.dot(rest, rest))
         d = HALF * (aa - bb)
         largest = wp.sqrt(HALF * (aa + bb) + wp.sqrt(d * d + ab * ab))
-        return vec_m(largest, wp.where(largest > ZERO, area / wp.max(largest, TINY), ZERO))
+        return vec_m(largest, wp.where(largest > TINY, area / largest, ZERO))
 
     return two_rows
 
@@ -180,19 +180,20 @@ def _three_rows(real, m: int, n: int):
         ab = wp.dot(a, b)
         ac = wp.dot(a, c)
         bb = wp.dot(b, b)
-        bc = wp.dot(b, c)
         cc = wp.dot(c, c)
         trace = aa + bb + cc
-        unit = wp.where(trace > TINY, ONE / wp.max(trace, TINY), ZERO)
+        unit = wp.where(trace > TINY, ONE / trace, ZERO)
 
         # H / trace = L D Lᵀ with orthogonalised rows: the pivots keep the digits that H itself has lost.
-        ia = wp.where(aa * unit > NOISE, ONE / wp.max(aa, TINY), ZERO)
+        ia = wp.where(aa * unit > NOISE, ONE / aa, ZERO)
         lb = ab * ia
         lc = ac * ia
         b1 = b - a * lb
         c1 = c - a * lc
         bb1 = wp.dot(b1, b1)
-        lcb = wp.dot(b1, c1) * wp.where(bb1 * unit > NOISE, ONE / wp.max(bb1, TINY), ZERO)
+        bc1 = wp.dot(b1, c1)
+        bc = bc1 + lb * ac
+        lcb = bc1 * wp.where(bb1 * unit > NOISE, ONE / bb1, ZERO)
         c2 = c1 - b1 * lcb
         d1 = aa * unit
         d2 = bb1 * unit
@@ -221,7 +222,7 @@ def _three_rows(real, m: int, n: int):
         gy = gy - mean
         gz = gz - mean
         gh = hx * gx + hy * gy + hz * gz + TWO * (xy * gxy + xz * gxz + yz * gyz)
-        along = wp.where(hh > TINY, gh / wp.max(hh, TINY), ZERO)
+        along = wp.where(hh > TINY, gh / hh, ZERO)
         gx = gx - along * hx
         gy = gy - along * hy
         gz = gz - along * hz
@@ -243,7 +244,7 @@ def _three_rows(real, m: int, n: int):
             TWO_SQRT_3 * p * sine,
         )
         l2 = HALF * (total + wp.min(gap, total))
-        l3 = wp.where(l2 > TINY, product / wp.max(l2, TINY), ZERO)
+        l3 = wp.where(l2 > TINY, product / l2, ZERO)
         return vec_m(wp.sqrt(l1 * trace), wp.sqrt(l2 * trace), wp.sqrt(wp.min(l3, l2) * trace))
 
     return three_rows
@@ -263,7 +264,7 @@ def _third_of_angle(real):
         # Scaled by the larger component: their squares would underflow for nearly isotropic matrices.
         size = wp.max(wp.abs(x), y)
         known = size > TINY
-        scale = wp.where(known, ONE / wp.max(size, TINY), ZERO)
+        scale = wp.where(known, ONE / size, ZERO)
         xs = wp.where(known, x * scale, ONE)
         ys = y * scale
         inverse = ONE / wp.sqrt(xs * xs + ys * ys)

@@ -114,12 +114,12 @@ def _torque_scaled(real, n: int):
 
 
 def _task_matrix(real, n: int, rows: tuple[int, ...]):
-    """The chosen rows of J, linear ones divided by the characteristic length.
+    """The chosen rows of J, linear ones divided by the characteristic length where there are angular ones too.
 
     Whole triads are taken in world axes, which changes no singular value; single rows mean base axes.
     """
     m = len(rows)
-    IN_BASE_AXES = in_base_axes(rows)
+    IN_BASE_AXES, MIXED = in_base_axes(rows), len({r // 3 for r in rows}) == 2
     vec3 = wp.types.vector(3, real)
     ROW = wp.types.vector(m, wp.int32)(*rows)
     mat_6n, mat_mn = wp.types.matrix((6, n), real), wp.types.matrix((m, n), real)
@@ -138,7 +138,7 @@ def _task_matrix(real, n: int, rows: tuple[int, ...]):
         for r in range(m):
             for i in range(n):
                 A[r, i] = B[ROW[r], i]
-                if ROW[r] < 3:
+                if ROW[r] < wp.static(3 if MIXED else 0):
                     A[r, i] *= model.linear_scale
         return A
 
@@ -180,7 +180,7 @@ def _standard(real, n: int, rows: tuple[int, ...], penalty: bool, torque):
     mat_mn, vec_m = wp.types.matrix((m, n), real), wp.types.vector(m, real)
     task_matrix, values = _task_matrix(real, n, rows), singular_values(real, m, n, graded=True)
     where_positive = _where_positive(real, m)
-    solve = inertia(real, n, tuple(range(n)), True).solve(m)
+    solve = inertia(real, n, tuple(range(n)), True, True).solve(m)
 
     @wp.func
     def unscaled(model: Any, A: mat_mn):

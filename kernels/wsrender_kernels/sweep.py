@@ -17,10 +17,11 @@ import warp as wp
 from wsrender_kernels.elementary import bits_type, elementary
 from wsrender_kernels.inertia import inertia
 from wsrender_kernels.kinematics import kinematics, orientation
+from wsrender_kernels.memory import cuda_atomics, memory
 from wsrender_kernels.model import model_type
 from wsrender_kernels.options import CUDA_OPTIONS, MODULE_OPTIONS
 from wsrender_kernels.sampling import LANES, base_levels, grid_level, sample_space, sampling
-from wsrender_kernels.spectrum import spectrum
+from wsrender_kernels.spectrum import in_base_axes, spectrum
 from wsrender_kernels.voxels import lattice, lowest, voxels
 
 TOTAL_SLOTS = 64  # parts in which CUDA threads add totals: on one address they would wait for each other
@@ -60,9 +61,27 @@ class Shape:
     keep_orientation: bool = False
 
     @property
+    def world_axes(self) -> bool:
+        """Whether more depends on the axes of J than its singular values, which are the same in any frame.
+
+        ``wsrender_code`` reproduces the rounding of the program's determinant, in its axes.
+        """
+        return self.keep_orientation or in_base_axes(self.rows) or self.convention == "wsrender_code"
+
+    @property
     def n_outputs(self) -> int:
-        """Values per sample in the scratch rows and in ``rows_out``."""
-        return 5 + self.n_indices + self.n * self.keep_configuration + 4 * self.keep_orientation
+        """Values that a sample is evaluated to."""
+        return self.reduced + self.n * self.keep_configuration + 4 * self.keep_orientation
+
+    @property
+    def reduced(self) -> int:
+        """Outputs whose extremes are kept: tip position, indices, largest and smallest singular value."""
+        return 5 + self.n_indices
+
+    @property
+    def n_rows(self) -> int:
+        """Rows of a kept map: all outputs but the singular values."""
+        return self.n_outputs - 2
 
     @property
     def record_size(self) -> int:
@@ -101,9 +120,9 @@ def _state(shape: Shape) -> SimpleNamespace:
     With ``base_levels`` the tip's place in the first joint's frame stands for the tip: see `kinematics.moved_base`.
     """
     real, n = shape.real, shape.n
-    kin = kinematics(real, n, shape.sources, shape.plain)
+    kin = kinematics(real, n, shape.sources, shape.plain, shape.world_axes)
     forward, jacobian, jacobian_type = kin.forward, kin.jacobian, kin.jacobian_type
-    dyn = inertia(real, n, shape.sources, shape.plain)
+    dyn = inertia(real, n, shape.sources, shape.plain, shape.world_axes)
     inertia_matrix, inertia_type = dyn.inertia_matrix, dyn.joint_inertia_type
     Model = model_type(real, n, len(shape.sources))
     vec3, vec_n, mat33 = kin.vec3, kin.vec_n, wp.types.matrix((3, 3), real)
@@ -171,7 +190,7 @@ def _outputs(shape: Shape):
     to_quaternion = orientation(real)
     K = shape.n_indices
     LARGEST = 1 if shape.convention == "wsrender_code" else 0
-    CONFIGURATION = 5 + K
+    CONFIGURATION = shape.reduced
     ORIENTATION = CONFIGURATION + n * shape.keep_configuration
     KEEP_CONFIGURATION, KEEP_ORIENTATION = shape.keep_configuration, shape.keep_orientation
 
@@ -217,7 +236,7 @@ def outputs_type(shape: Shape):
 
     ``extremes`` (2 R,), R = 5 + K reduced outputs: largest value and largest complement; ``totals`` (TOTAL_SLOTS * K,):
     fixed-point sums of the indices, scaled by ``scales`` (K,), in parts; ``records``, ``sums``: one vector per voxel;
-    ``rows_out`` (n_outputs * rows_stride,): value r of the chunk's sample s at [r * rows_stride + s].
+    ``rows_out`` (n_rows * rows_stride,): row r of the chunk's sample s at [r * rows_stride + s].
     """
     real, bits = shape.real, bits_type(shape.real)
     record_type, sums_type = record_type_of(shape), sums_type_of(shape)
@@ -249,15 +268,18 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
     Model, Space = model_type(real, shape.n, len(shape.sources)), sample_space(real, shape.n)
     Lattice, Outputs, bits = lattice(real), outputs_type(shape), bits_type(real)
     vec3, Base, at_level = wp.types.vector(3, real), base_levels(real), grid_level(real)
-    moved_base = kinematics(real, shape.n, shape.sources, shape.plain).moved_base
+    moved_base = kinematics(real, shape.n, shape.sources, shape.plain, shape.world_axes).moved_base
     record_type, sums_type = record_type_of(shape), sums_type_of(shape)
-    N_OUTPUTS, REDUCED, RECORD = shape.n_outputs, 5 + K, shape.record_size
+    N_OUTPUTS, N_ROWS, REDUCED, RECORD = shape.n_outputs, shape.n_rows, shape.reduced, shape.record_size
+    OUTPUT = _output_of_row(shape)
     VOXELS, SUMS, ROWS, BASE_LEVELS = shape.voxels, shape.sums, shape.keep_rows, shape.base_levels
     LOWEST = bits(lowest(real))
     LOWEST_ROW = REDUCED * LANES
     LEAST_SUM = wp.int64(-(2**62) - 2**61)
     KEY_ROW, KEY_MASK = _record_keys(shape)
     BLOCK, BLOCK_64 = LANES, wp.int64(LANES)
+    load_record, store_record = memory(record_type).load, memory(record_type).store
+    load_sums, store_sums = memory(sums_type).load, memory(sums_type).store
     # Scratch in rows of LANES. Vectors on the stack: of an array, neither the stride nor what else points to it is
     # known when the kernel is compiled, and the lane loop would be compiled twice, without SIMD the second time.
     values_type = wp.types.vector(N_OUTPUTS * LANES, real)
@@ -340,9 +362,9 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
                 largest_count = LOWEST
                 smallest_sum = wp.int64(0)
                 for lane in range(BLOCK):
-                    largest_count = wp.max(largest_count, to.records[cells[lane]][0])
+                    largest_count = wp.max(largest_count, load_record(to.records, cells[lane])[0])
                     if wp.static(SUMS):
-                        smallest_sum = wp.min(smallest_sum, to.sums[cells[lane]][0])
+                        smallest_sum = wp.min(smallest_sum, load_sums(to.sums, cells[lane])[0])
                 # Neither is ever true (a count has no such value, a sum fewer bits), but the compiler does not know:
                 # it would drop the loop above.
                 lowest_key = wp.where(largest_count == ~LOWEST or smallest_sum < LEAST_SUM, ~LOWEST, LOWEST)
@@ -354,24 +376,31 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
                     sample = record_type()
                     for k in range(RECORD):
                         sample[k] = keys[KEY_ROW[k] * BLOCK + lane] ^ KEY_MASK[k]
-                    record = to.records[voxel]
+                    record = load_record(to.records, voxel)
                     for k in range(RECORD):
                         record[k] = wp.max(record[k], sample[k])
                     record[0] += bits(1)  # no carry: see FOLD_AFTER of the engine
-                    to.records[voxel] = record
+                    store_record(to.records, voxel, record)
                     if wp.static(SUMS):
                         addend = sums_type()
                         for k in range(K):
                             addend[k] = wp.int64(quanta[k * BLOCK + lane])
-                        to.sums[voxel] = to.sums[voxel] + addend
+                        store_sums(to.sums, voxel, load_sums(to.sums, voxel) + addend)
 
         if wp.static(ROWS):
-            for r in range(N_OUTPUTS):
-                at = wide(r) * to.rows_stride + wide(task * BLOCK)
+            for row in range(N_ROWS):
+                r = OUTPUT[row]
+                at = wide(row) * to.rows_stride + wide(task * BLOCK)
                 for lane in range(valid):
                     to.rows_out[at + wide(lane)] = values[r * BLOCK + lane]
 
     return sweep_cpu
+
+
+def _output_of_row(shape: Shape):
+    """Of every kept row its output: the singular values come after the indices."""
+    outputs = [r for r in range(shape.n_outputs) if not shape.reduced - 2 <= r < shape.reduced]
+    return wp.types.vector(shape.n_rows, wp.int32)(*outputs)
 
 
 def _record_keys(shape: Shape):
@@ -396,16 +425,18 @@ def _cuda_kernel(shape: Shape) -> wp.Kernel:
     Model, Space = model_type(real, shape.n, len(shape.sources)), sample_space(real, shape.n)
     Lattice, Outputs, bits = lattice(real), outputs_type(shape), bits_type(real)
     vec3, Base, at_level = wp.types.vector(3, real), base_levels(real), grid_level(real)
-    moved_base = kinematics(real, shape.n, shape.sources, shape.plain).moved_base
-    REDUCED = 5 + K
-    extremes_type, totals_type = wp.types.vector(2 * REDUCED, bits), wp.types.vector(K, wp.int64)
-    N_OUTPUTS, RECORD_64, SUMS_64 = shape.n_outputs, wp.int64(shape.record_size), wp.int64(shape.sums_size)
+    moved_base = kinematics(real, shape.n, shape.sources, shape.plain, shape.world_axes).moved_base
+    REDUCED, OUTPUT = shape.reduced, _output_of_row(shape)
+    extremes_type, totals_type = wp.types.vector(REDUCED, bits), wp.types.vector(K, wp.int64)
+    N_ROWS, RECORD, SUMS_SIZE = shape.n_rows, shape.record_size, shape.sums_size
     VOXELS, MAXIMUM, MINIMUM, SUMS, ROWS = shape.voxels, shape.maximum, shape.minimum, shape.sums, shape.keep_rows
     BASE_LEVELS = shape.base_levels
     FIRST_MAXIMUM, FIRST_MINIMUM = shape.count_size, shape.count_size + K * shape.maximum
     LOWEST = bits(lowest(real))
     LANE_MASK = wp.int64(LANES - 1)
-    COUNT_64 = wp.int64(shape.record_size // shape.count_size)
+    COUNT = shape.record_size // shape.count_size
+    add, raise_to = cuda_atomics(wp.int64).add, cuda_atomics(bits).raise_to
+    store_row, load_record = memory(real).store, memory(record_type_of(shape)).load
 
     @wp.kernel(module="unique", module_options=CUDA_OPTIONS, enable_backward=False, grid_stride=False)
     def sweep_cuda(
@@ -426,9 +457,11 @@ def _cuda_kernel(shape: Shape) -> wp.Kernel:
     ):
         thread = wp.tid()
         largest = extremes_type()
+        smallest = extremes_type()
         total = totals_type()
-        for r in range(wp.static(2 * REDUCED)):
+        for r in range(REDUCED):
             largest[r] = LOWEST
+            smallest[r] = ~LOWEST
         offset = wp.int64(thread)
         while offset < count:
             index = first + offset
@@ -445,38 +478,41 @@ def _cuda_kernel(shape: Shape) -> wp.Kernel:
                     tip = moved_base(model.chain, angle, lever)
                     for r in range(3):
                         out[r] = tip[r]
-                for r in range(wp.static(REDUCED)):
+                for r in range(REDUCED):
                     key = ordered(out[r])
-                    largest[2 * r] = wp.max(largest[2 * r], key)
-                    largest[2 * r + 1] = wp.max(largest[2 * r + 1], ~key)
+                    largest[r] = wp.max(largest[r], key)
+                    smallest[r] = wp.min(smallest[r], key)
                 for k in range(K):
                     total[k] += wp.int64(quantized(out[3 + k], to.scales[k]))
                 if wp.static(VOXELS):
                     voxel = cell(grid, vec3(out[0], out[1], out[2]))
                     if voxel != grid.spare:
-                        at = wp.int64(voxel) * RECORD_64
-                        wp.atomic_add(counts, wp.int64(voxel) * COUNT_64, wp.int64(1))
+                        at = voxel * RECORD
+                        add(counts, voxel * COUNT, wp.int64(1))
                         # Extremes only grow: a value that an old reading already covers needs no atomic operation.
-                        seen = to.records[voxel]
+                        seen = load_record(to.records, voxel)
                         for k in range(K):
                             key = ordered(out[3 + k])
                             if wp.static(MAXIMUM):  # noqa: SIM102 - compiled out before seen is indexed
                                 if key > seen[FIRST_MAXIMUM + k]:
-                                    wp.atomic_max(records, at + wide(FIRST_MAXIMUM + k), key)
+                                    raise_to(records, at + FIRST_MAXIMUM + k, key)
                             if wp.static(MINIMUM):  # noqa: SIM102
                                 if ~key > seen[FIRST_MINIMUM + k]:
-                                    wp.atomic_max(records, at + wide(FIRST_MINIMUM + k), ~key)
+                                    raise_to(records, at + FIRST_MINIMUM + k, ~key)
                             if wp.static(SUMS):
                                 quantum = wp.int64(quantized(out[3 + k], to.scales[k]))
-                                wp.atomic_add(sums, wp.int64(voxel) * SUMS_64 + wide(k), quantum)
+                                add(sums, voxel * SUMS_SIZE + k, quantum)
             if wp.static(ROWS):
-                for r in range(wp.static(N_OUTPUTS)):
-                    to.rows_out[wide(r) * to.rows_stride + offset] = out[r]
+                for row in range(N_ROWS):
+                    at_row = row * wp.int32(to.rows_stride) + wp.int32(offset)
+                    store_row(to.rows_out, at_row, out[OUTPUT[row]])
             offset += threads
         if wp.int64(thread) < count:
-            for r in range(wp.static(2 * REDUCED)):
-                if largest[r] > to.extremes[r]:
-                    wp.atomic_max(to.extremes, r, largest[r])
+            for r in range(REDUCED):
+                if largest[r] > to.extremes[2 * r]:
+                    wp.atomic_max(to.extremes, 2 * r, largest[r])
+                if ~smallest[r] > to.extremes[2 * r + 1]:
+                    wp.atomic_max(to.extremes, 2 * r + 1, ~smallest[r])
             slot = (thread % TOTAL_SLOTS) * K
             for k in range(K):
                 wp.atomic_add(to.totals, slot + k, total[k])

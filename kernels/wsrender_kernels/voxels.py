@@ -38,7 +38,6 @@ def voxels(real) -> SimpleNamespace:
     """Device functions ``cell(lattice, position) -> index of the voxel, or spare`` and ``quantized(value, scale)``."""
     Lattice = lattice(real)
     vec3 = wp.types.vector(3, real)
-    HALF = real(0.5)
     # Adding 1.5 * 2^52 leaves the rounded integer in the low bits: AVX2 cannot convert doubles to 64-bit integers.
     MAGIC = wp.float64(1.5 * 2.0**52)
     MAGIC_BITS = wp.int64(0x4338000000000000)
@@ -64,10 +63,7 @@ def voxels(real) -> SimpleNamespace:
 
     @wp.func
     def quantized32(value: real, scale: real):
-        # Adding a half would round again above 2^23.
-        x = value * scale
-        whole = wp.floor(x)
-        return wp.int32(whole) + wp.where(x - whole >= HALF, 1, 0)
+        return wp.int32(wp.rint(value * scale))
 
     @wp.func
     def quantized64(value: real, scale: real):

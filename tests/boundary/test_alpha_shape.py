@@ -80,6 +80,7 @@ def test_points_of_a_grid_lie_on_common_spheres():
     [
         (np.c_[np.random.default_rng(0).random((50, 2)), np.ones(50)], 0.5, "points: are 50 points in a plane"),
         (np.zeros((9, 3)), 0.5, "points: are 9 points in a plane"),
+        (0.3 + 1e-16 * np.random.default_rng(0).random((64, 3)), None, "points: are 64 points in a plane"),
         (np.eye(3), 0.5, "points: are 3 points in a plane"),
         (np.zeros((9, 2)), 0.5, r"points: have shape \(9, 2\)"),
         (np.full((9, 3), np.nan), 0.5, "points: have shape"),

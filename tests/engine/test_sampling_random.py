@@ -5,7 +5,7 @@ import pytest
 from scipy import stats
 
 import wsrender as ws
-from tests.reference.threefry import threefry_4x32
+from tests.reference.philox import philox_4x32
 from wsrender.engine import configurations
 from wsrender.sampling import plan_sampling
 from wsrender.tolerances import SMALLEST_P_VALUE, epsilon
@@ -22,13 +22,13 @@ def fractions(method, seed, count=COUNT, precision="float64", first=0):
 
 
 def twin(seed, index, n=6):
-    """The uniforms of samples with these indices: words of Threefry as 53-bit fractions, (N, n)."""
-    key = np.tile(np.array([seed & 0xFFFFFFFF, seed >> 32, 0, 0], np.uint32), (len(index), 1))
+    """The uniforms of samples with these indices: words of Philox as 53-bit fractions, (N, n)."""
+    key = np.tile(np.array([seed & 0xFFFFFFFF, seed >> 32], np.uint32), (len(index), 1))
     zero = np.zeros_like(index)
     words = []
     for part in (0, 1):
         counters = [np.stack([index & 0xFFFFFFFF, index >> 32, zero + g, zero + part], 1) for g in range(-(-n // 4))]
-        drawn = np.concatenate([threefry_4x32(counter, key, 13) for counter in counters], axis=1)
+        drawn = np.concatenate([philox_4x32(counter, key, 7) for counter in counters], axis=1)
         words.append(drawn[:, :n].astype(np.uint64))
     return ((words[0] << np.uint64(32) | words[1]) >> np.uint64(11)) * 2.0**-53
 

@@ -23,6 +23,7 @@ def evaluated(name, precision, *columns, device="cpu"):
 def kernels_of(precision):
     real, functions = REAL[precision], elementary(REAL[precision])
     sincos, log2, exp2, power = functions.sincos, functions.log2, functions.exp2, functions.power
+    two_thirds_power = functions.two_thirds_power
 
     @wp.kernel(module=f"test_elementary_{precision}", enable_backward=False)
     def both(x: wp.array2d(dtype=real), out: wp.array2d(dtype=real)):
@@ -35,7 +36,7 @@ def kernels_of(precision):
     def logarithms(x: wp.array2d(dtype=real), out: wp.array2d(dtype=real)):
         i = wp.tid()
         out[i, 0] = log2(x[i, 0])
-        out[i, 1] = real(0.0)
+        out[i, 1] = two_thirds_power(x[i, 0])
 
     @wp.kernel(module=f"test_elementary_{precision}", enable_backward=False)
     def powers(x: wp.array2d(dtype=real), out: wp.array2d(dtype=real)):
@@ -103,6 +104,15 @@ def test_real_powers(x, exponent):
         exact = argument.astype(np.float64) ** e.astype(np.float64)
         # The error of the exponent e log2 x, at most 60, becomes a relative one.
         assert abs(found[0] / exact[0] - 1) <= 64 * epsilon(precision)
+
+
+def test_two_thirds_power(precision, device):
+    span = 120 if precision == "float32" else 1000
+    x = (2.0 ** np.random.default_rng(5).uniform(-span, span, 20000)).astype(precision).astype(np.float64)
+    found = evaluated("log2", precision, x, device=device)[1]
+    assert np.abs(found / np.cbrt(x) ** 2 - 1).max() <= TOLERANCES[precision].elementary
+    nothing = evaluated("log2", precision, np.array([0.0, -0.0, -1.0, 1e-320]), device=device)[1]
+    assert (nothing == 0).all()
 
 
 def test_power_of_nothing_is_nothing(precision, device):

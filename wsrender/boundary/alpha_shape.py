@@ -11,6 +11,7 @@ from wsrender.errors import InputError
 
 _SHAKE = 1e-9
 _FLATTEST = 1e-6  # least to largest extent of points that enclose a volume
+_ROUNDING = 1e-14  # extent of one point's copies, to its coordinates
 # Corners of the face opposite to each corner of a tetrahedron.
 _FACES = np.array([[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]])
 
@@ -168,7 +169,8 @@ def spatial(points: np.ndarray) -> np.ndarray:
     if points.ndim != 2 or points.shape[1] != 3 or not np.isfinite(points).all():
         raise InputError("points", f"have shape {points.shape}; finite coordinates of shape (N, 3) are needed")
     extents = np.linalg.svd(points - points.mean(axis=0), compute_uv=False) if len(points) > 3 else np.zeros(3)
-    if not extents[2] > _FLATTEST * extents[0]:
+    rounding = _ROUNDING * np.linalg.norm(points)
+    if not extents[2] > max(_FLATTEST * extents[0], rounding):
         raise InputError("points", f"are {len(points)} points in a plane, which enclose no volume")
     return points
 

@@ -12,12 +12,10 @@ from wsrender.sampling import given_sampling
 
 @dataclass(frozen=True, eq=False)
 class Evaluated:
-    """Tip positions (N, 3) [m], index values (K, N), extreme singular values (N,), tip orientations (N, 4)."""
+    """Tip positions (N, 3) [m], index values (K, N), tip orientations (N, 4)."""
 
     position: np.ndarray
     values: np.ndarray
-    largest_sigma: np.ndarray
-    smallest_sigma: np.ndarray
     quat_wxyz: np.ndarray | None
 
 
@@ -44,10 +42,10 @@ def evaluate_at(
         keep_orientation=with_orientation,
     )
     partial = sweep(plan, 0, len(q), devices_of(device), threads=threads)
-    outputs = np.concatenate([partial.rows[first] for first in sorted(partial.rows)] or [_none(plan)], axis=1)
-    quat = np.ascontiguousarray(outputs[5 + K : 9 + K].T) if with_orientation else None
-    return Evaluated(np.ascontiguousarray(outputs[:3].T), outputs[3 : 3 + K], outputs[3 + K], outputs[4 + K], quat)
+    rows = np.concatenate([partial.rows[first] for first in sorted(partial.rows)] or [_none(plan)], axis=1)
+    quat = np.ascontiguousarray(rows[3 + K : 7 + K].T) if with_orientation else None
+    return Evaluated(np.ascontiguousarray(rows[:3].T), rows[3 : 3 + K], quat)
 
 
 def _none(plan: SweepPlan) -> np.ndarray:
-    return np.zeros((plan.shape.n_outputs, 0), plan.precision)
+    return np.zeros((plan.shape.n_rows, 0), plan.precision)

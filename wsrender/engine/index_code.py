@@ -44,7 +44,7 @@ class _Writer:
             return f"{spectrum}[{int(value.operands[0])}]"  # type: ignore[arg-type]
         if (value, spectrum) not in self._written:
             operands = [self.operand(o, spectrum) for o in value.operands]
-            self._written[value, spectrum] = self._assign(_code(value.operation, operands))
+            self._written[value, spectrum] = self._assign(_code(value, operands))
         return self._written[value, spectrum]
 
     def _assign(self, code: str) -> str:
@@ -54,11 +54,14 @@ class _Writer:
         return self._names[code]
 
 
-def _code(operation: str, operands: list[str]) -> str:
+def _code(value: Expression, operands: list[str]) -> str:
+    operation = value.operation
     if operation in _INFIX:
         return f"{operands[0]} {_INFIX[operation]} {operands[1]}"
     if operation == "negative":
         return f"-{operands[0]}"
+    if operation == "power" and value.operands[1] == 2.0 / 3.0:  # det(H)^(1/m) for three task rows
+        return f"two_thirds_power({operands[0]})"
     return f"{_CALLS[operation]}({', '.join(operands)})"
 
 
@@ -90,6 +93,7 @@ def index_function(body: str, n_indices: int, length: int, real) -> wp.Function:
         "exp2": functions.exp2,
         "log2": functions.log2,
         "power": functions.power,
+        "two_thirds_power": functions.two_thirds_power,
         "sine": functions.sine,
         "cosine": functions.cosine,
         "__name__": __name__,

@@ -13,7 +13,7 @@ class Partial:
     ``extremes`` (2 R,): largest value and largest complement of each of the R = 5 + K outputs in ordered-integer
     form; ``totals`` (K,) int64: fixed-point sums. Of the occupied voxels, sorted by ``cells`` (V,) int64 (flat index
     in the lattice block): ``count`` (V,) int64, ``records`` (V, E) ordered integers, ``sums`` (V, K) int64.
-    ``rows`` maps the first sample index of a chunk to its outputs (n_outputs, samples).
+    ``rows`` maps the first sample index of a chunk to its outputs (n_rows, samples).
     """
 
     samples: int

@@ -27,7 +27,7 @@ from wsrender.volume.lattice import LatticeBlock
 
 CHUNK_CPU, CHUNK_CUDA, CHUNK_ROWS, CHUNK_GIVEN = 1 << 20, 1 << 28, 1 << 18, 1 << 14
 CHUNK_LEAST, CHUNKS_PER_THREAD = 1 << 15, 8
-THREADS_PER_GPU = 1 << 18
+THREADS_PER_SM = 2048  # of a GPU: a whole multiple of those that run at a time
 FOLD_AFTER = 2**31 - 2**29  # samples until the CPU, which counts in 32 bits, moves its counts to 64-bit ones
 
 
@@ -205,12 +205,12 @@ class Accumulator:
         self._space = None if given else device_space(plan.structure.evaluated, plan.precision, device)
         self._base = device_base(plan.structure, plan.sampling, real)
         self._lattice = _device_lattice(slab, real)
-        reduced = 5 + shape.n_indices
+        reduced = shape.reduced
         self._extremes = device_memory(2 * reduced, bits, device)
         self._totals = device_memory(TOTAL_SLOTS * shape.n_indices, wp.int64, device)
         self._records = device_memory(voxels * shape.record_size, bits, device)
         self._sums = device_memory(voxels * shape.sums_size, wp.int64, device)
-        self._rows_out = wp.empty(shape.n_outputs * chunk * shape.keep_rows, dtype=real, device=device)
+        self._rows_out = wp.empty(shape.n_rows * chunk * shape.keep_rows, dtype=real, device=device)
         outputs = self._outputs = outputs_type(shape)()
         outputs.scales = device_array(plan.scales, real, device)
         outputs.extremes, outputs.totals = self._extremes, self._totals
@@ -230,7 +230,7 @@ class Accumulator:
         self.launch(first, count)
         self._counted += counted
         if self.shape.keep_rows:
-            rows = self._rows_out.numpy().reshape(self.shape.n_outputs, self.chunk)
+            rows = self._rows_out.numpy().reshape(self.shape.n_rows, self.chunk)
             self._rows[first] = rows[:, :count].copy()
 
     def partial(self) -> Partial:
@@ -244,7 +244,7 @@ class Accumulator:
         space = self._space or self._given(first, count)
         inputs = [self._model, space, self._base, self._lattice, first, count]
         if self.device.is_cuda:
-            threads = min(count, THREADS_PER_GPU)
+            threads = min(count, THREADS_PER_SM * self.device.sm_count)
             outputs = [self._outputs, self._counts, self._records, self._sums]
             wp.launch(self._kernel, dim=threads, inputs=[*inputs, threads], outputs=outputs, device=self.device)
             wp.synchronize_device(self.device)

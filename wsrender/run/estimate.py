@@ -28,6 +28,6 @@ def estimate(plan: SweepPlan, devices: list[Any]) -> dict[str, float]:
     shape = plan.shape
     voxels = plan.block.size if plan.block else 0
     records = voxels * shape.bytes_per_voxel
-    rows = samples * shape.n_outputs * width if plan.keep_rows else 0
+    rows = samples * shape.n_rows * width if plan.keep_rows else 0
     seconds = samples / plan.structure.weight / rate
     return {"samples": float(samples), "bytes": float(records * workers + rows), "seconds": seconds}

@@ -15,7 +15,7 @@ Partials = WorkspacePartial | Evaluated | Arrays
 """Partial results: of the analyses without a type of their own, arrays by name."""
 
 SWEEP = ("extremes", "totals", "cells", "count", "records", "sums")
-EVALUATED = ("position", "values", "largest_sigma", "smallest_sigma", "quat_wxyz")
+EVALUATED = ("position", "values", "quat_wxyz")
 ROWS = "rows_"
 
 

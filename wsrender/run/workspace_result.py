@@ -116,7 +116,7 @@ def _index_entries(plan: SweepPlan, partial: Partial, volume: VolumeData, units:
 def _kept_map(plan: SweepPlan, partial: Partial, robot: Robot, units: dict[str, str]) -> DistributionMap:
     K, n = len(plan.evaluation.indices), robot.chain.n
     rows = np.concatenate([partial.rows[first] for first in sorted(partial.rows)], axis=1)
-    after = 5 + K
+    after = 3 + K
     q = rows[after : after + n].T if plan.keep_configuration else None
     after += n * plan.keep_configuration
     quat = rows[after : after + 4].T if plan.keep_orientation else None

@@ -1,0 +1,41 @@
+"""Elements of arrays by pointer.
+
+An array of Warp has a stride known at run time only and counts negative indices from its end: ten operations for
+an address, which the compiler cannot leave out. The sweep's arrays are contiguous, and no index is negative.
+"""
+
+from functools import cache
+from types import SimpleNamespace
+from typing import Any
+
+import warp as wp
+
+_ATOMIC_POINTER = {wp.int32: "reinterpret_cast<int*>", wp.int64: "reinterpret_cast<long long*>"}
+
+
+@cache
+def memory(dtype: Any) -> SimpleNamespace:
+    """Device functions ``load(array, i) -> value`` and ``store(array, i, value)`` of contiguous arrays of a type."""
+    array_type = wp.array(dtype=dtype)
+
+    @wp.func_native("return array.data[i];")
+    def load(array: array_type, i: wp.int32) -> dtype: ...
+
+    @wp.func_native("array.data[i] = value;")
+    def store(array: array_type, i: wp.int32, value: dtype): ...
+
+    return SimpleNamespace(load=load, store=store)
+
+
+@cache
+def cuda_atomics(dtype: Any) -> SimpleNamespace:
+    """CUDA functions ``add(array, i, value)`` (64-bit integers) and ``raise_to(array, i, value)`` (signed integers)."""
+    array_type = wp.array(dtype=dtype)
+
+    @wp.func_native("atomicAdd(reinterpret_cast<unsigned long long*>(array.data) + i, (unsigned long long)value);")
+    def add(array: array_type, i: wp.int32, value: dtype): ...
+
+    @wp.func_native(f"atomicMax({_ATOMIC_POINTER[dtype]}(array.data) + i, value);")
+    def raise_to(array: array_type, i: wp.int32, value: dtype): ...
+
+    return SimpleNamespace(add=add, raise_to=raise_to)
