@@ -4,11 +4,16 @@ import math
 import re
 from typing import Any
 
+import numpy as np
+
+from wsrender.boundary.alpha_shape import AlphaShape
 from wsrender.indices.catalogue import DYNAMIC, KINEMATIC
+from wsrender.multi.shared_volume import reached_by
 from wsrender.reproduce.row import Row
 from wsrender.robots import library
 from wsrender.run import execute
 from wsrender.run.steps import Progress
+from wsrender.volume.volume_data import VolumeData
 
 PER_JOINT = 60  # samples of each of the first three joints; the wrist is held at mid-range
 TOLERANCE = 0.005  # of refined volumes, relative
@@ -22,12 +27,12 @@ ROUNDING = "±3e-4: the program's determinant is not exactly 0 where the elbow i
 NOISE = "rounding noise in the paper: the wrist is singular in every sample"
 STANFORD_NOTE = "cannot be run: the published inertias are not physical (link 5, three centres of mass)"
 
-# Table VI as printed: volumes of alpha shapes [m³], ratio; and what is exact.
+# Table VI as printed: volumes of alpha shapes [m³], ratio; and what is exact, by closed-form inverse kinematics.
 PAIRS: dict[str, dict[str, Any]] = {
-    "articulated": {"published": (0.0606, 0.0139, 0.229), "exact": (0.0542, 0.0128), "alone": 0.03348},
+    "articulated": {"published": (0.0606, 0.0139, 0.229), "exact": (0.05419, 0.01276), "alone": 0.0334749},
     "spherical": {
         "published": (0.0646, 0.0204, 0.316),
-        "exact": (None, None),
+        "exact": (0.063155, 0.019779),
         "alone": math.pi / 2 * math.sqrt(2) * (0.4**3 - 0.2**3) / 3,
     },
 }
@@ -96,20 +101,33 @@ def _pair(robot: str, progress: Progress | None) -> list[Row]:
         "voxel_size_m": 0.01,
         "refined_volume": TOLERANCE,
     }
-    volumes = execute(document, progress).document["volume_m3"]
-    refined, known = volumes["refined"], PAIRS[robot]
-    rows = []
+    result = execute(document, progress)
+    volumes, known, rows = result.document["volume_m3"], PAIRS[robot], []
+    refined, shapes = volumes["refined"], _alpha_shapes(result.volume)
     for k, (name, symbol) in enumerate((("any", "V_a"), ("shared", "V_s"))):
-        published, exact = known["published"][k], known["exact"][k]
-        voxels = "voxels of 0.01 m; the paper: alpha shapes of its samples"
-        rows.append(Row(robot, f"{symbol}, voxels", "m³", volumes[name], published, exact, note=voxels))
-        rows.append(_refined(robot, f"{symbol}, refined", refined[name], exact, published))
-    exact_ratio = known["exact"][1] / known["exact"][0] if known["exact"][0] else None
-    found = {"voxels": volumes, "refined": {name: entry["value"] for name, entry in refined.items()}}
+        published, exact, shape = known["published"][k], known["exact"][k], shapes[name]
+        note = f"of the centres of the voxels, α = {shape.alpha_m:.3g} m; the paper states neither points nor α"
+        rows.append(Row(robot, f"{symbol}, alpha shape", "m³", shape.volume_m3, published, exact, note=note))
+        rows.append(Row(robot, f"{symbol}, voxels", "m³", volumes[name], None, exact, note="of 0.01 m"))
+        rows.append(_refined(robot, f"{symbol}, refined", refined[name], exact))
+    exact_ratio = known["exact"][1] / known["exact"][0]
+    found = {
+        "alpha shape": {name: shape.volume_m3 for name, shape in shapes.items()},
+        "voxels": volumes,
+        "refined": {name: entry["value"] for name, entry in refined.items()},
+    }
     for name, values in found.items():
-        ratio = values["shared"] / values["any"]
-        rows.append(Row(robot, f"R = V_s/V_a, {name}", "1", ratio, known["published"][2], exact_ratio))
+        published = known["published"][2] if name == "alpha shape" else None
+        rows.append(Row(robot, f"R = V_s/V_a, {name}", "1", values["shared"] / values["any"], published, exact_ratio))
     return [*rows, _alone(robot, progress)]
+
+
+def _alpha_shapes(shared: VolumeData | None) -> dict[str, AlphaShape]:
+    """Of the centres of the voxels that any arm and that both reach."""
+    assert shared is not None
+    reached = {"any": shared, "shared": reached_by(shared, 2)}
+    cells = {name: np.argwhere(volume.occupied) + shared.first_voxel for name, volume in reached.items()}
+    return {name: AlphaShape.of((each + 0.5) * shared.voxel_size_m) for name, each in cells.items()}
 
 
 def _alone(robot: str, progress: Progress | None) -> Row:
@@ -123,12 +141,12 @@ def _alone(robot: str, progress: Progress | None) -> Row:
         "refined_volume": TOLERANCE,
     }
     refined = execute(document, progress).document["volume_m3"]["refined"]
-    return _refined(robot, "one arm, refined", refined, PAIRS[robot]["alone"], None)
+    return _refined(robot, "one arm, refined", refined, PAIRS[robot]["alone"])
 
 
-def _refined(robot: str, quantity: str, found: dict[str, Any], exact: float | None, published: float | None) -> Row:
+def _refined(robot: str, quantity: str, found: dict[str, Any], exact: float) -> Row:
     low, high = found["ci95"]
-    return Row(robot, quantity, "m³", found["value"], published, exact, low, high, "by inverse kinematics")
+    return Row(robot, quantity, "m³", found["value"], None, exact, low, high, "by inverse kinematics")
 
 
 def _placed(robot: str, sign: int) -> dict[str, Any]:
