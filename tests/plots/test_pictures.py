@@ -51,6 +51,14 @@ def test_slice_without_coordinate_shows_zero_or_the_fullest_plane():
         assert f"z = {(first + layer + 0.5) * 0.1:.3g} m" in plots.slice_plane(volume).axes[0].get_title()
 
 
+def test_slice_without_coordinate_shows_a_plane_with_values():
+    """A product of two robots is known where both reach: not at 0 here."""
+    product = np.full((3, 3, 3), np.nan)
+    product[:, :, 2] = 0.5
+    volume = VolumeData(0.1, (0, 0, 0), np.ones((3, 3, 3), int), {"product": {"x": product}})
+    assert plots.slice_plane(volume, statistic="product").axes[0].get_title().startswith("z = 0.25 m")
+
+
 def test_colours_span_the_whole_volume_not_the_slice():
     volume = random_volume((5, 4, 3))
     values = volume.statistics["maximum"]["manipulability"]

@@ -66,7 +66,7 @@ def slice_plane(
     if len(given) > 1:
         raise InputError("slice", "takes one of x, y, z; use slices for all three")
     axis, at = given[0] if given else (2, None)
-    layer = layer_at(volume, axis, at)
+    layer = layer_at(volume, axis, at, field)
     width, height = plane_extents(volume, axis)
     scale = min(4.6 / width, 4.4 / height)
     figure = new_figure(width * scale + 1.8, max(height * scale + 1.0, 2.6))
@@ -96,7 +96,7 @@ def slices(
     figure = new_figure(max(sum(widths) * scale + 2.6, 6.0), max(tallest + 1.0, 2.4))
     panels = figure.subplots(1, 3, width_ratios=widths)
     for axis, (axes, coordinate) in enumerate(zip(panels, at, strict=True)):
-        draw_plane(axes, volume, field, axis, layer_at(volume, axis, coordinate), frame)
+        draw_plane(axes, volume, field, axis, layer_at(volume, axis, coordinate, field), frame)
     place = {"ax": list(panels), "shrink": 0.8, "aspect": 28, "pad": 0.02}
     add_color_bar(figure, field.norm, field.label, ticks=field.ticks, **place)
     add_title(figure, title)
@@ -134,16 +134,17 @@ def _listed(names) -> str:
     return ", ".join([*names, "count"])
 
 
-def layer_at(volume: VolumeData, axis: int, at: float | None) -> int:
+def layer_at(volume: VolumeData, axis: int, at: float | None, field: Field | None = None) -> int:
     """Number of the voxel layer cut at a coordinate [m] along an axis.
 
-    Without a coordinate: the one at 0, or the one with most voxels where nothing is occupied there. Raises
-    InputError for a coordinate outside the volume.
+    Without a coordinate: the one at 0, or the one with most voxels where nothing is occupied there, or has a value of
+    the ``field``. Raises InputError for a coordinate outside the volume.
     """
     size, layers = volume.voxel_size_m, volume.count.shape[axis]
     first = volume.first_voxel[axis]
     if at is None:
-        occupied = np.count_nonzero(volume.count, axis=ACROSS[axis])
+        shown = volume.count > 0 if field is None else ~np.isnan(field.values)
+        occupied = np.count_nonzero(shown, axis=ACROSS[axis])
         zero = -first
         return zero if 0 <= zero < layers and occupied[zero] else int(occupied.argmax())
     cells = at / size - first
