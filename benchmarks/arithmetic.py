@@ -31,7 +31,7 @@ def sincos(precision: str) -> int:
 
 
 def forward(n: int, precision: str, dynamic: bool) -> int:
-    """Per joint: lever 15, axes 36, of the second joint 4, of the last 9 without dynamics; once: tip in the world 18."""
+    """Per joint: lever 15, axes 36, but 4 of the second and 9 of the last without dynamics; the tip in the world 18."""
     axes = 4 + 36 * (n - 2) - (0 if dynamic else 27)
     return n * (sincos(precision) + 15) + axes + 18
 
