@@ -42,6 +42,8 @@ REPORT_VIEWS = ("boundary", "isosurface")
 EXTRA_FORMATS = ("npz", "csv", "mat", "stl", "svg")
 
 CURVES = ("scan", "refinements", "scales", "convergence")  # tables that are drawn
+PLANAR_BOUNDARY = "boundary"  # table of the lines and arcs around what a planar arm reaches
+CURVES = ("scan", "refinements", "scales")  # tables that are drawn
 
 
 @dataclass(eq=False)
@@ -229,6 +231,11 @@ def _artifacts(result: Result, formats: tuple[str, ...]) -> Iterator[Artifact]:
     for name, data in {"map": result.map, "sample": result.sample, **result.tables}.items():
         if data is not None:
             yield from _table_files(name, data, formats)
+    if PLANAR_BOUNDARY in result.tables:
+        drawing = result.tables[PLANAR_BOUNDARY]
+        for ending in ("dxf", "svg"):
+            write = partial(getattr(export, f"write_{ending}"), drawing)
+            yield Artifact(f"{PLANAR_BOUNDARY}.{ending}", write, (len(drawing),), {"coordinates": "m"}, "plane")
     for name, volume in {"volume": result.volume, **result.volumes}.items():
         if volume is not None:
             yield from _volume_files(name, volume, formats)
@@ -292,6 +299,8 @@ def _pictures(result: Result) -> "dict[str, Callable[[], Figure]]":
     pictures |= {name: partial(plot.curves, name) for name in CURVES if len(result.tables.get(name, ()))}
     if result.volume is not None and result.volume.vectors:
         pictures["field"] = plot.vectors
+    if result.document.get("analysis") == "planar_boundary":
+        pictures["boundary"] = plot.boundary
     if "mapping" in result.tables:
         pictures["mapping"] = plot.mapping
     if "orientations" in result.tables:

@@ -56,6 +56,10 @@ def five_bar(**fields):
     return {"analysis": "five_bar", "base_m": 6, "proximal_m": 8, "distal_m": 5, **fields}
 
 
+def planar(**fields):
+    return {"analysis": "planar_boundary", "robot": {"library": "scara"}, **fields}
+
+
 def sampled(**fields):
     return job(sampling={"method": "grid", **fields})
 
@@ -245,6 +249,15 @@ MALFORMED = [
     (design(search={"method": "sweep", "steps": 1_000_000_0}), "search.steps", "must be a whole number"),
     (design(evaluations=[[1.0]]), "evaluations", "must be rows of 2"),
     (design(evaluations=[[None, 1.0]]), "evaluations", "must be rows of 2"),
+    # planar boundaries
+    (planar(cells=0), "cells", "must be at least 1, not 0"),
+    (planar(cells=2.5), "cells", "must be a whole number, not 2.5"),
+    (planar(line_tolerance_m2=0), "line_tolerance_m2", "must be greater than 0, not 0"),
+    (planar(arc_tolerance_m4="1"), "arc_tolerance_m4", 'must be a number, not "1"'),
+    (planar(points_m=[[0, 0, 0]]), "points_m.0", "must have at most 2 items"),
+    (planar(points_m=[[0, NAN]]), "points_m", "must be a finite number"),
+    (planar(sampling={"method": "converge"}), "sampling", 'must not be "converge"'),
+    (planar(locked={"joint4": 0}), "locked", "is not a known field"),
     # voxels, map, execution
     (job(voxel_size_m=0), "voxel_size_m", "must be greater than 0"),
     (job(voxel_size_m=-0.01), "voxel_size_m", "must be greater than 0, not -0.01"),

@@ -11,6 +11,7 @@ from wsrender.errors import MissingExtraError
 
 if TYPE_CHECKING:
     from wsrender.export.csv import write_table_csv, write_volume_csv
+    from wsrender.export.drawings import write_dxf, write_svg
     from wsrender.export.mat import write_table_mat, write_volume_mat
     from wsrender.export.meshes import read_mesh, write_mesh
     from wsrender.export.npz import read_table_npz, read_volume_npz, write_table_npz, write_volume_npz
@@ -29,8 +30,10 @@ _MODULES = {
     "write_table_mat": "mat",
     "write_table_npz": "npz",
     "write_table_parquet": "parquet",
+    "write_dxf": "drawings",
     "write_mesh": "meshes",
     "write_skeleton": "skeleton",
+    "write_svg": "drawings",
     "write_volume_csv": "csv",
     "write_volume_mat": "mat",
     "write_volume_npz": "npz",
@@ -44,8 +47,10 @@ __all__ = [
     "read_table_parquet",
     "read_volume_npz",
     "read_volume_vtkhdf",
+    "write_dxf",
     "write_mesh",
     "write_skeleton",
+    "write_svg",
     "write_table_csv",
     "write_table_mat",
     "write_table_npz",

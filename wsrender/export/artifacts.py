@@ -17,6 +17,7 @@ UNNAMED = ("map.parquet", "sample.parquet", "volume.vtkhdf")
 MEDIA_TYPES = {
     ".csv": "text/csv",
     ".glb": "model/gltf-binary",
+    ".dxf": "image/vnd.dxf",
     ".json": "application/json",
     ".mat": "application/x-matlab-data",
     ".npy": "application/x-npy",

@@ -34,6 +34,7 @@ def _facts(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
         scale, offset = (", ".join(f"{number:.4g}" for number in mapping[name]) for name in ("scale", "offset_m"))
         outside = "all points inside" if mapping["succeeded"] else f"{mapping['failing_points']:,} points outside"
         yield "mapping", f"{outside}; scale {scale}; offset {offset} m; efficiency {mapping['efficiency']:.4g}"
+    yield from _planar(document)
     targets = document.get("targets") or {}
     for name in ("reachable", "unreachable", "undecided"):
         if name in targets:
@@ -78,6 +79,17 @@ def _design(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
         yield "at a bound", ", ".join(best["at_bounds"])
     if "pareto" in document:
         yield "beaten by none", f"{len(document['pareto'])} designs"
+
+
+def _planar(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
+    """Area, perimeter and number of segments of a planar boundary, and the area by Monte Carlo."""
+    exact, estimated = document.get("exact") or {}, document.get("monte_carlo") or {}
+    if "perimeter_m" in exact:
+        yield "area", f"{exact['area_m2']:.9g} m² (Monte Carlo: {estimated['area_m2']:.4g} m²)"
+        yield "perimeter", f"{exact['perimeter_m']:.9g} m"
+        kinds = [segment["kind"] for loop in exact["loops"] for segment in loop["segments"]]
+        holes = sum(loop["hole"] for loop in exact["loops"])
+        yield "boundary", f"{kinds.count('arc')} arcs, {kinds.count('line')} lines; {holes} holes"
 
 
 def _volumes(volumes: dict[str, Any], prefix: str = "") -> Iterator[tuple[str, str]]:

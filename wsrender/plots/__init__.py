@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from wsrender.errors import MissingExtraError
 
 if TYPE_CHECKING:
+    from wsrender.plots.arm_plane import planar_boundary
     from wsrender.plots.comparison import side_by_side
     from wsrender.plots.designs import sweep_surface, trade_off
     from wsrender.plots.distribution import histogram, write_histogram_csv
@@ -34,6 +35,7 @@ _MODULES = {
     "png": "style",
     "mapped_points": "master_slave",
     "orientations": "orientation_map",
+    "planar_boundary": "arm_plane",
     "robot": "stick_figure",
     "save_figure": "style",
     "scatter": "point_cloud",
@@ -54,6 +56,7 @@ __all__ = [
     "histogram",
     "mapped_points",
     "orientations",
+    "planar_boundary",
     "png",
     "robot",
     "save_figure",

@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from wsrender.errors import InputError
+from wsrender.plots.arm_plane import planar_boundary
 from wsrender.plots.comparison import side_by_side
 from wsrender.plots.designs import sweep_surface, trade_off
 from wsrender.plots.distribution import histogram
@@ -68,6 +69,10 @@ class ResultPlots:
     def trade_off(self, x: str, y: str) -> Figure:
         """Two objectives of a Pareto search against each other."""
         return trade_off(self._table("evaluations"), self._table("pareto"), x, y, title=self.title)
+
+    def boundary(self) -> Figure:
+        """The boundary of a planar arm: samples, Monte Carlo segments and the exact lines and arcs."""
+        return planar_boundary(self.tables, title=self.title)
 
     def side_by_side(self, index: str | None = None, *, statistic: str | None = None) -> Figure:
         """The robots of a comparison in the same planes, with the same axes and one colour scale."""

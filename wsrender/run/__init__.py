@@ -3,6 +3,7 @@
 from wsrender.run.analyze import analyze, kinetostatic_field
 from wsrender.run.design_from_python import design_optimization
 from wsrender.run.mechanisms_from_python import five_bar, parallel_workspace
+from wsrender.run.planar_from_python import exact_boundary, planar_boundary
 from wsrender.run.several_from_python import (
     collaborative_volume,
     master_slave_mapping,
@@ -16,6 +17,7 @@ __all__ = [
     "analyze",
     "collaborative_volume",
     "design_optimization",
+    "exact_boundary",
     "execute",
     "finish",
     "five_bar",
@@ -24,6 +26,7 @@ __all__ = [
     "merge",
     "parallel_workspace",
     "plan",
+    "planar_boundary",
     "robot_comparison",
     "run_shard",
     "shared_workspace",

@@ -16,6 +16,7 @@ from wsrender.run.indices_at import plan_indices_at
 from wsrender.run.kinetostatics import plan_kinetostatic_field
 from wsrender.run.mapping import plan_mapping
 from wsrender.run.parallel import plan_parallel
+from wsrender.run.planar_boundary import plan_planar_boundary
 from wsrender.run.reachability import plan_reachability
 from wsrender.run.shared import plan_shared_workspace
 from wsrender.run.workspace import plan_workspace
@@ -28,6 +29,7 @@ from wsrender.spec import (
     KinetostaticFieldJob,
     MasterSlaveMappingJob,
     ParallelWorkspaceJob,
+    PlanarBoundaryJob,
     ReachabilityJob,
     RobotComparisonJob,
     SharedWorkspaceJob,
@@ -51,6 +53,7 @@ PLANNERS: dict[type, Callable[..., "Plan"]] = {
     ParallelWorkspaceJob: plan_parallel,
     FiveBarJob: plan_five_bar,
     DesignOptimizationJob: plan_design,
+    PlanarBoundaryJob: plan_planar_boundary,
 }
 
 

@@ -9,6 +9,7 @@ from wsrender.spec.kinetostatics import KinetostaticFieldJob
 from wsrender.spec.mapping import MasterSlaveMappingJob
 from wsrender.spec.parallel_workspace import ParallelWorkspaceJob
 from wsrender.spec.parsing import canonical_json, job_schema, parse_job
+from wsrender.spec.planar_boundary import PlanarBoundaryJob
 from wsrender.spec.reachability import ReachabilityJob
 from wsrender.spec.several_robots import RobotComparisonJob, SharedWorkspaceJob
 
@@ -23,6 +24,7 @@ __all__ = [
     "KinetostaticFieldJob",
     "MasterSlaveMappingJob",
     "ParallelWorkspaceJob",
+    "PlanarBoundaryJob",
     "ReachabilityJob",
     "RobotComparisonJob",
     "SharedWorkspaceJob",

@@ -16,6 +16,7 @@ from wsrender.spec.kinetostatics import KinetostaticFieldJob
 from wsrender.spec.mapping import MasterSlaveMappingJob
 from wsrender.spec.options import Configurations, MapColumns, Statistics
 from wsrender.spec.parallel_workspace import ParallelWorkspaceJob
+from wsrender.spec.planar_boundary import PlanarBoundaryJob
 from wsrender.spec.problems import tagged
 from wsrender.spec.quantities import Count, PositiveNumber, RelativeTolerance
 from wsrender.spec.reachability import ReachabilityJob
@@ -80,6 +81,7 @@ _AnyJob = (
     | ParallelWorkspaceJob
     | FiveBarJob
     | DesignOptimizationJob
+    | PlanarBoundaryJob
 )
 ANALYSES: dict[str, type[Document]] = {job.model_fields["analysis"].default: job for job in get_args(_AnyJob)}
 

@@ -1,0 +1,110 @@
+"""The analysis ``planar_boundary``: a job document in, tables, drawings and a picture out."""
+
+import json
+
+import numpy as np
+import pytest
+
+import wsrender as ws
+from wsrender.__main__ import main
+from wsrender.run import execute, finish, plan, run_shard
+from wsrender.run.partial_files import load_partial, save_partial
+
+ROWS = [{"a": a, "limits_deg": [-60, 60]} for a in (4, 2, 1)]
+JOB = {
+    "analysis": "planar_boundary",
+    "robot": {"dh": {"convention": "standard", "name": "three", "rows": ROWS}},
+    "sampling": {"method": "random", "count": 20_000},
+    "points_m": [[0, 0], [6, 0]],
+    "device": "cpu",
+}
+
+
+@pytest.fixture(scope="module")
+def result():
+    return execute(JOB)
+
+
+def test_exact_values(result):
+    exact = result.document["exact"]
+    assert exact["area_m2"] == pytest.approx(31.497510350119, rel=1e-9)
+    assert [loop["hole"] for loop in exact["loops"]] == [False]
+    assert [segment["kind"] for segment in exact["loops"][0]["segments"]] == ["arc"] * 6
+    assert len(exact["vertices_m"]) == 6
+    assert result.document["plane"]["normal"] == [0, 0, 1]
+
+
+def test_table_is_the_document(result):
+    table, segments = result.tables["boundary"], result.document["exact"]["loops"][0]["segments"]
+    assert table["R"].tolist() == [segment["radius_m"] for segment in segments]
+    assert np.column_stack([table["x_s"], table["y_s"]]).tolist() == [segment["start_m"] for segment in segments]
+    assert table["limits"].tolist()[1] == "joint1 lower, joint2 lower"
+    assert (table.units["x_o"], table.units["sweep"]) == ("m", "rad")
+
+
+def test_monte_carlo_lies_inside(result):
+    estimated = result.document["monte_carlo"]
+    assert 0.2 < estimated["mean_distance_to_exact_cells"] < 2  # three joints seldom reach the boundary
+    assert 20 < estimated["area_m2"] < 31.5
+    assert len(result.tables["monte_carlo"]) > 2
+
+
+def test_points_are_answered(result):
+    table = result.tables["points"]
+    assert table["inside"].tolist() == [False, True]
+    assert table["distance"] == pytest.approx([27**0.5, 6 - 27**0.5])
+    assert table["nearest"][1] == pytest.approx([27**0.5, 0])
+
+
+def test_python_and_document_agree(result):
+    rows = [ws.DHRow(**row) for row in ROWS]
+    robot = ws.DHTable(convention="standard", rows=rows, name="three")
+    again = ws.planar_boundary(robot, ws.Random(20_000), points_m=[[0, 0], [6, 0]], device="cpu")
+    for name in ("exact", "monte_carlo"):
+        assert again.document[name] == result.document[name]
+
+
+def test_from_the_command_line_and_back(tmp_path, capsys):
+    job = tmp_path / "job.json"
+    job.write_text(json.dumps(JOB))
+    with pytest.raises(SystemExit) as ended:
+        main(["run", str(job), "-o", str(tmp_path / "out")])
+    assert not ended.value.code
+    assert "31.4975104 m²" in capsys.readouterr().out
+    loaded = ws.Result.load(tmp_path / "out")
+    assert len(loaded.tables["boundary"]) == 6
+    assert (tmp_path / "out/plots/boundary.png").stat().st_size > 10_000
+    assert (tmp_path / "out/boundary.dxf").is_file() and (tmp_path / "out/boundary.svg").is_file()
+
+
+def test_equal_jobs_have_equal_files(result, tmp_path):
+    hashes = []
+    for name in ("a", "b"):
+        result.save(tmp_path / name)
+        hashes.append({each["name"]: each["sha256"] for each in result.document["artifacts"]})
+    assert hashes[0] == hashes[1] and "boundary.dxf" in hashes[0]
+
+
+def test_a_partial_result_travels(result, tmp_path):
+    here = plan(JOB)
+    save_partial(run_shard(here, 0), tmp_path / "partial.npz")
+    there = plan(JOB, resolved=json.loads(json.dumps(here.resolved())))
+    found = finish(there, load_partial(tmp_path / "partial.npz", there))
+    assert found.document["exact"] == result.document["exact"]
+    assert (found.tables["samples"]["position"] == result.tables["samples"]["position"]).all()
+
+
+@pytest.mark.parametrize("rows", [ROWS[:1], [{"a": 0.0, "limits_deg": [-60, 60]}]], ids=["curve", "point"])
+def test_sets_without_area_are_results(rows, tmp_path):
+    robot = {"dh": {"convention": "standard", "rows": rows}}
+    found = execute(JOB | {"robot": robot, "sampling": {"method": "random", "count": 500}})
+    assert found.document["exact"]["area_m2"] == 0
+    found.save(tmp_path / "out")
+    assert (tmp_path / "out/plots/boundary.png").is_file()
+
+
+def test_arms_in_space_are_refused_before_anything_runs():
+    with pytest.raises(ws.ModelError, match="joint 'joint2' turns about"):
+        plan(JOB | {"robot": "puma560"})
+    with pytest.raises(ws.DocumentError, match="sampling"):
+        plan(JOB | {"sampling": {"method": "converge"}})

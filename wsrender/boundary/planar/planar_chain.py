@@ -1,0 +1,163 @@
+"""Arms whose end effector stays in a plane, found from their chain."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from wsrender.boundary.planar.motion import PlanarJoint
+from wsrender.errors import ModelError
+from wsrender.robots.chain import Chain
+
+# Sine of the angle by which an axis may be off: models are written with some ten digits.
+_ALIGNED = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class Plane:
+    """A plane of the world: ``origin`` (3,) [m], the point nearest to the world's, and axes (2, 3) of unit length."""
+
+    origin: np.ndarray
+    axes: np.ndarray
+
+    @property
+    def normal(self) -> np.ndarray:
+        """Unit normal (3,): the third axis of a right-handed frame."""
+        return np.cross(*self.axes)
+
+    def in_world(self, points: np.ndarray) -> np.ndarray:
+        """Points (…, 2) of the plane as world positions (…, 3) [m]."""
+        return self.origin + points @ self.axes
+
+    def coordinates(self, positions: np.ndarray) -> np.ndarray:
+        """Coordinates (…, 2) in the plane of world positions (…, 3) [m]."""
+        return positions @ self.axes.T
+
+
+@dataclass(frozen=True, eq=False)
+class PlanarChain:
+    """The joints that move, base to tip, and the ``tip`` (2,) [m], at the configuration where they are displaced by 0.
+
+    Coordinates are those of ``plane`` less ``shift`` (2,): the base frame's origin, so that an arm far from the world's
+    loses no digits.
+    """
+
+    joints: tuple[PlanarJoint, ...]
+    tip: np.ndarray
+    plane: Plane
+    shift: np.ndarray
+
+    @property
+    def size(self) -> float:
+        """Upper bound of the distances in the chain: links and slides, one after the other [m]."""
+        centers = [joint.center for joint in self.joints if joint.revolute]
+        links = np.diff([*centers, self.tip], axis=0) if centers else np.zeros((1, 2))
+        slides = [max(abs(joint.low), abs(joint.high)) for joint in self.joints if not joint.revolute]
+        return float(np.hypot(links[:, 0], links[:, 1]).sum() + sum(slides))
+
+
+def planar_chain(chain: Chain) -> PlanarChain:
+    """The planar chain of an arm; joints whose limits are equal are held there.
+
+    Raises ModelError, naming the joint, where a joint turns about another axis than the first or slides out of the
+    plane, and for coupled joints.
+    """
+    if len(chain.joint_source) != chain.n:
+        shared = np.flatnonzero(np.bincount(chain.joint_source) > 1)[0]
+        raise ModelError(
+            "robot", f"several joints follow {chain.joint_names[shared]!r}; a planar boundary needs each free"
+        )
+    frames, tip = _reference_frames(chain)
+    moving = np.flatnonzero((chain.upper_limits > chain.lower_limits)[chain.joint_source])
+    plane_axes = _plane_axes(chain, frames, moving)
+    _check(chain, frames, moving, np.cross(*plane_axes))
+    base = chain.T_world_base[:3, 3]
+    joints = tuple(_joint(chain, i, frames[i], base, plane_axes) for i in moving.tolist())
+    normal = np.cross(*plane_axes)
+    plane = Plane((tip @ normal) * normal, plane_axes)
+    return PlanarChain(joints, plane_axes @ (tip - base), plane, plane_axes @ base)
+
+
+def _reference_frames(chain: Chain) -> tuple[np.ndarray, np.ndarray]:
+    """World frames (L, 4, 4) of the joints, those that move displaced by 0, and the tip's position (3,)."""
+    T, frames = chain.T_world_base, []
+    held = chain.lower_limits == chain.upper_limits
+    for i, k in enumerate(chain.joint_source):
+        T = T @ chain.T_joint[i]
+        frames.append(T)
+        if held[k]:
+            T = T @ _motion(
+                chain.joint_is_revolute[i], chain.joint_scale[i] * chain.lower_limits[k] + chain.joint_offset[i]
+            )
+    return np.array(frames), (T @ chain.T_tip @ chain.T_tip_tool)[:3, 3]
+
+
+def _motion(revolute: bool, displacement: float) -> np.ndarray:
+    T = np.eye(4)
+    if revolute:
+        c, s = np.cos(displacement), np.sin(displacement)
+        T[:2, :2] = [[c, -s], [s, c]]
+    else:
+        T[2, 3] = displacement
+    return T
+
+
+def _plane_axes(chain: Chain, frames: np.ndarray, moving: np.ndarray) -> np.ndarray:
+    """Axes (2, 3) of the plane, as near as can be to two of the world's in the order x, y, z."""
+    normal = _normal(chain, frames, moving)
+    first = next(axis for axis in np.eye(3) if abs(axis @ normal) < 0.9)
+    first = first - (first @ normal) * normal
+    first /= np.linalg.norm(first)
+    second = np.cross(normal, first)
+    return np.array([first, second * np.sign(second[np.abs(second).argmax()])])
+
+
+def _normal(chain: Chain, frames: np.ndarray, moving: np.ndarray) -> np.ndarray:
+    """The axis of the first joint that turns; of slides alone, the normal of the first two directions."""
+    turning = [i for i in moving if chain.joint_is_revolute[i]]
+    if turning:
+        return frames[turning[0], :3, 2]
+    slides = frames[moving, :3, 2]
+    for slide in slides[1:]:
+        normal = np.cross(slides[0], slide)
+        if np.linalg.norm(normal) > _ALIGNED:
+            return normal / np.linalg.norm(normal)
+    along = slides[0] if len(slides) else np.array([0.0, 0.0, 1.0])
+    # A single direction lies in many planes: that of z or y which holds it best.
+    across = np.eye(3)[2 if abs(along[2]) < 0.9 else 1]
+    normal = across - (across @ along) * along if len(slides) else along
+    return normal / np.linalg.norm(normal)
+
+
+def _check(chain: Chain, frames: np.ndarray, moving: np.ndarray, normal: np.ndarray) -> None:
+    for i in moving:
+        axis, name = frames[i, :3, 2], chain.joint_names[chain.joint_source[i]]
+        if chain.joint_is_revolute[i] and np.linalg.norm(np.cross(axis, normal)) > _ALIGNED:
+            how = "turns about"
+        elif not chain.joint_is_revolute[i] and abs(axis @ normal) > _ALIGNED:
+            how = "slides along"
+        else:
+            continue
+        what = f"joint {name!r} {how} {_shown(axis)}, out of the plane with normal {_shown(normal)}"
+        raise ModelError("robot", f"the arm is not planar: {what}; hold joints with sampling.locked")
+
+
+def _shown(vector: np.ndarray) -> str:
+    return "(" + ", ".join(f"{x + 0.0:.4g}" for x in np.round(vector, 4)) + ")"
+
+
+def _joint(chain: Chain, i: int, frame: np.ndarray, base: np.ndarray, plane_axes: np.ndarray) -> PlanarJoint:
+    k, revolute = chain.joint_source[i], bool(chain.joint_is_revolute[i])
+    sign = np.sign(frame[:3, 2] @ np.cross(*plane_axes)) if revolute else 1.0
+    scale, offset = sign * chain.joint_scale[i], sign * chain.joint_offset[i]
+    low, high = sorted(scale * limit + offset for limit in (chain.lower_limits[k], chain.upper_limits[k]))
+    direction = plane_axes @ frame[:3, 2]
+    return PlanarJoint(
+        name=chain.joint_names[k],
+        revolute=revolute,
+        center=plane_axes @ (frame[:3, 3] - base),
+        direction=np.zeros(2) if revolute else direction / np.linalg.norm(direction),
+        low=float(low),
+        high=float(high),
+        scale=float(scale),
+        offset=float(offset),
+    )

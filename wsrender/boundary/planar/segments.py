@@ -1,0 +1,85 @@
+"""Segments of a boundary, the inside on the left, and tables of them."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from wsrender.volume.table import Table
+
+GEOMETRY = ("x_s", "y_s", "x_e", "y_e", "x_o", "y_o", "R", "sweep")
+
+
+@dataclass(frozen=True, eq=False)
+class Segment:
+    """A line or arc from ``start`` to ``end`` (2,) [m].
+
+    An arc has a ``center`` (2,) [m], a ``radius`` [m] and a signed ``sweep`` [rad], counter-clockwise positive; of a
+    line they are None.
+    """
+
+    start: np.ndarray
+    end: np.ndarray
+    center: np.ndarray | None
+    radius: float | None
+    sweep: float | None
+
+    @property
+    def kind(self) -> str:
+        """``line`` or ``arc``."""
+        return "line" if self.center is None else "arc"
+
+
+@dataclass(frozen=True, eq=False)
+class ExactSegment(Segment):
+    """A segment and how the chain draws it, each way that there is.
+
+    ``generated_by`` names the joints at their limits: joint name → "lower" or "upper". ``postures`` are configurations
+    (n,) [rad or m] that reach its middle.
+    """
+
+    generated_by: tuple[dict[str, str], ...]
+    postures: tuple[np.ndarray, ...]
+
+    @property
+    def limits_text(self) -> str:
+        """``generated_by`` in words: ``joint1 lower, joint2 upper``; other ways after a bar."""
+        ways = (", ".join(f"{joint} {limit}" for joint, limit in way.items()) for way in self.generated_by)
+        return " | ".join(way or "no joint" for way in ways)
+
+
+def segment_table(loops: Sequence[Sequence[Segment]]) -> Table:
+    """One row per segment: loop, kind, start, end [m]; centre, R [m] and sweep [rad] of arcs, NaN of lines."""
+    rows = [(k, segment) for k, loop in enumerate(loops) for segment in loop]
+    numbers = np.array([_numbers(segment) for _, segment in rows], np.float64).reshape(-1, len(GEOMETRY))
+    columns = {"loop": np.array([k for k, _ in rows], np.int64), "kind": np.array([s.kind for _, s in rows], "<U4")}
+    columns |= dict(zip(GEOMETRY, numbers.T, strict=True))
+    if rows and all(isinstance(segment, ExactSegment) for _, segment in rows):
+        columns["limits"] = np.array([segment.limits_text for _, segment in rows])  # type: ignore[attr-defined]
+    return Table(columns, dict.fromkeys(GEOMETRY[:-1], "m") | {"sweep": "rad"})
+
+
+def _numbers(segment: Segment) -> list[float]:
+    center = (np.nan, np.nan) if segment.center is None else segment.center
+    arc = (np.nan if value is None else value for value in (segment.radius, segment.sweep))
+    return [*segment.start, *segment.end, *center, *arc]
+
+
+def segment_entry(segment: Segment) -> dict[str, object]:
+    """A segment for the result document: plain JSON values."""
+    entry: dict[str, object] = {"kind": segment.kind, "start_m": segment.start.tolist(), "end_m": segment.end.tolist()}
+    if segment.center is not None:
+        entry |= {"center_m": segment.center.tolist(), "radius_m": segment.radius, "sweep_rad": segment.sweep}
+    if isinstance(segment, ExactSegment):
+        postures = [posture.tolist() for posture in segment.postures]
+        entry |= {"generated_by": list(segment.generated_by), "configurations": postures}
+    return entry
+
+
+def drawn(table: Table, row: int, step_rad: float = 0.02) -> np.ndarray:
+    """Points (K, 2) [m] along a segment of a table, close enough to draw it."""
+    x_s, y_s, x_e, y_e, x_o, y_o, radius, sweep = (float(table[name][row]) for name in GEOMETRY)
+    if table["kind"][row] == "line":
+        return np.array([[x_s, y_s], [x_e, y_e]])
+    angle = np.arctan2(y_s - y_o, x_s - x_o) + np.linspace(0, sweep, 2 + int(abs(sweep) / step_rad))
+    return np.array([x_o, y_o]) + radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)

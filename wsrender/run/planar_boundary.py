@@ -1,0 +1,171 @@
+"""The analysis ``planar_boundary``: the exact boundary of a planar arm, and the Monte Carlo one beside it."""
+
+import json
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from wsrender.boundary.planar.exact_boundary import ExactBoundary, Nearest
+from wsrender.boundary.planar.monte_carlo import MonteCarloBoundary, monte_carlo_boundary
+from wsrender.boundary.planar.planar_chain import PlanarChain, planar_chain
+from wsrender.boundary.planar.segments import segment_entry, segment_table
+from wsrender.reachability.targets import model_robot
+from wsrender.result import Result
+from wsrender.robot import Robot
+from wsrender.run.provenance import job_entry, provenance, robot_entry
+from wsrender.run.sampled_positions import sampled_positions
+from wsrender.run.settled_device import settled_device
+from wsrender.sampling import plan_sampling
+from wsrender.spec import PlanarBoundaryJob
+from wsrender.volume.table import Table
+
+POSITIONS_PER_S = 2e6  # of one CPU core
+SWEEP_S = 0.1  # of a six-joint arm
+DRAWN = 20_000  # samples kept for the picture
+
+
+@dataclass(eq=False)
+class PlanarBoundaryPlan:
+    """A resolved ``planar_boundary`` job: one shard."""
+
+    job: PlanarBoundaryJob
+    robot: Robot
+    chain: PlanarChain
+    device: str
+    target: str
+    samples: int
+
+    @property
+    def shards(self) -> list[tuple[int, int]]:
+        """One shard of all samples."""
+        return [(0, self.samples)]
+
+    @property
+    def estimate(self) -> dict[str, float]:
+        """Samples, bytes of their positions, seconds."""
+        count = float(self.samples)
+        return {"samples": count, "bytes": 64.0 * count, "seconds": SWEEP_S + count / POSITIONS_PER_S}
+
+    def resolved(self) -> dict[str, Any]:
+        """What is settled once: the device that "auto" means, target, shards."""
+        return {"device": self.device, "target": self.target, "shards": [list(shard) for shard in self.shards]}
+
+    def run_shard(self, shard: int, progress: Callable[[int], None] | None, **execution: Any) -> dict[str, np.ndarray]:
+        """Both boundaries, the samples of the picture, and the answers about points."""
+        job = self.job
+        exact = ExactBoundary(self.chain)
+        positions = sampled_positions(self.robot, job.sampling, self.device, progress=progress)
+        points = self.chain.plane.coordinates(positions)
+        estimated = monte_carlo_boundary(self.chain, points, job.cells, job.line_tolerance_m2, job.arc_tolerance_m4)
+        about = {"exact": _exact_entry(exact), "monte_carlo": _estimated_entry(estimated, exact)}
+        rows = np.unique(np.linspace(0, len(points) - 1, min(len(points), DRAWN)).astype(np.int64))
+        nearest = exact.nearest(np.array(job.points_m, np.float64).reshape(-1, 2))
+        return {
+            "about": np.array(json.dumps(about)),
+            "samples": points[rows],
+            **_columns("boundary", segment_table(exact.segments)),
+            **_columns("monte_carlo", segment_table(estimated.segments)),
+            **_columns("points", _point_table(np.array(job.points_m), nearest) if job.points_m else Table({})),
+        }
+
+    def merge(self, a: Any, b: Any) -> Any:
+        """There is one shard: nothing to merge."""
+        raise ValueError("planar_boundary has one shard")
+
+    def finish(self, partial: dict[str, np.ndarray], seconds: dict[str, float]) -> Result:
+        """Tables ``boundary`` and ``monte_carlo``, one row per segment, ``points`` and ``samples``; areas and loops."""
+        job, plane = self.job, self.chain.plane
+        document = {
+            "analysis": "planar_boundary",
+            "job": job_entry(job, self.robot),
+            "robot": robot_entry(self.robot),
+            "plane": {
+                "origin_m": plane.origin.tolist(),
+                "x_axis": plane.axes[0].tolist(),
+                "y_axis": plane.axes[1].tolist(),
+                "normal": plane.normal.tolist(),
+            },
+            "sampling": {"method": job.sampling.method, "samples": self.samples},
+            **json.loads(str(partial["about"])),
+            "provenance": provenance("float64", self.target, seed=getattr(job.sampling, "seed", None)),
+            "timing_s": seconds,
+        }
+        tables = {name: _table(partial, name) for name in ("boundary", "monte_carlo", "points")}
+        tables["samples"] = Table({"position": partial["samples"]}, {"position": "m"})
+        return Result(document, tables={name: table for name, table in tables.items() if len(table)})
+
+
+def plan_planar_boundary(
+    job: PlanarBoundaryJob, robot: Robot, resolved: dict[str, Any] | None = None
+) -> PlanarBoundaryPlan:
+    """Resolve the job, or take what `PlanarBoundaryPlan.resolved` of an earlier plan of it says.
+
+    Raises ModelError, naming the joint, for an arm that is not planar; InputError for a robot without a model.
+    """
+    chain = model_robot(robot).chain
+    samples = plan_sampling(chain, job.sampling).count
+    planar = planar_chain(chain.held(job.sampling.locked))
+    return PlanarBoundaryPlan(job, robot, planar, *settled_device(job.device, resolved), samples)
+
+
+def _exact_entry(exact: ExactBoundary) -> dict[str, Any]:
+    """Area, perimeter, loops with their segments, vertices."""
+    holes = [loop.hole for loop in exact.loops] or [False] * len(exact.segments)
+    return {
+        "dimension": exact.dimension,
+        "area_m2": float(exact.area),
+        "perimeter_m": exact.perimeter,
+        "vertices_m": exact.vertices.tolist(),
+        "loops": [
+            {"hole": hole, "segments": [segment_entry(segment) for segment in loop]}
+            for hole, loop in zip(holes, exact.segments, strict=True)
+        ],
+    }
+
+
+def _estimated_entry(estimated: MonteCarloBoundary, exact: ExactBoundary) -> dict[str, Any]:
+    """Cells and tolerances, how far inside the exact boundary the cells' centroids lie, loops with their segments."""
+    width, loops = estimated.cell_width_m, estimated.loops
+    centroids = np.concatenate([*loops, np.empty((0, 2))])
+    inward = float(exact.nearest(centroids).distance.mean()) if len(centroids) else None
+    return {
+        "cell_width_m": width,
+        "boundary_cells": len(centroids),
+        "line_tolerance_m2": estimated.line_tolerance_m2,
+        "arc_tolerance_m4": estimated.arc_tolerance_m4,
+        "area_m2": float(sum(map(_polygon_area, loops))),
+        "mean_distance_to_exact_m": inward,
+        "mean_distance_to_exact_cells": inward / width if inward is not None else None,
+        "critical_points_m": estimated.critical.tolist(),
+        "loops": [{"segments": [segment_entry(segment) for segment in loop]} for loop in estimated.segments],
+    }
+
+
+def _polygon_area(loop: np.ndarray) -> float:
+    x, y = loop.T
+    return float((x * np.roll(y, -1) - np.roll(x, -1) * y).sum() / 2)
+
+
+def _point_table(points: np.ndarray, nearest: Nearest) -> Table:
+    columns = {
+        "point": points,
+        "inside": nearest.inside,
+        "distance": nearest.distance,
+        "nearest": nearest.point,
+        "segment": nearest.segment,
+    }
+    return Table(columns, dict.fromkeys(("point", "distance", "nearest"), "m"))
+
+
+def _columns(name: str, table: Table) -> dict[str, np.ndarray]:
+    """The columns of a table as arrays of a partial result."""
+    units = {f"{name}.units": np.array(json.dumps(table.units))}
+    return {f"{name}:{column}": values for column, values in table.columns.items()} | units
+
+
+def _table(partial: dict[str, np.ndarray], name: str) -> Table:
+    prefix = f"{name}:"
+    columns = {key.removeprefix(prefix): values for key, values in partial.items() if key.startswith(prefix)}
+    return Table(columns, json.loads(str(partial[f"{name}.units"])))

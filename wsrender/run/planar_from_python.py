@@ -1,0 +1,40 @@
+"""Boundaries of planar arms from Python."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from wsrender.boundary.planar.exact_boundary import ExactBoundary
+from wsrender.reachability.targets import model_robot
+from wsrender.result import Result
+from wsrender.run.from_python import arm_entry, as_subject, execute_here, plain, sampling_entry
+from wsrender.run.steps import Progress
+from wsrender.sampling import plan_sampling
+from wsrender.spec.sampling import Random
+
+
+def planar_boundary(
+    robot: Any, sampling: Any = None, *, progress: Progress | bool | None = None, **fields: Any
+) -> Result:
+    """The boundary of the positions that a planar arm reaches: exact, and by Monte Carlo (Alciatore & Ng 1994).
+
+    ``robot`` is a Robot or what `load_robot` takes; ``sampling`` (default Random(100000)) may lock joints that would
+    leave the plane. ``fields`` are the other fields of the job document ``planar_boundary``: cells, points_m …
+
+    Raises ModelError, naming the joint, for an arm that is not planar; DocumentError, InputError.
+    """
+    subject = as_subject(robot)
+    sampled = {} if sampling is None else {"sampling": sampling_entry(sampling)}
+    document = {"analysis": "planar_boundary", **arm_entry(subject), **sampled, **plain(fields)}
+    return execute_here(document, subject, progress)
+
+
+def exact_boundary(robot: Any, *, locked: Mapping[str, float] | None = None) -> ExactBoundary:
+    """The exact boundary alone, with ``area``, ``segments``, ``contains(points)`` and ``nearest(points)``.
+
+    ``locked`` holds joints, by name, at a value [rad or m]. Raises ModelError, naming the joint, for an arm that is not
+    planar; InputError for an unknown joint or a value beyond its limits.
+    """
+    chain = model_robot(as_subject(robot)).chain
+    held = dict(locked or {})
+    plan_sampling(chain, Random(1, locked=held))  # checks names and values
+    return ExactBoundary.of(chain.held(held))
