@@ -142,6 +142,25 @@ def test_shah_holds_what_is_published_and_exact():
     assert len(by_grid) == 1
 
 
+def test_alciatore_is_the_paper_and_the_closed_forms():
+    """Run for real: it takes a second."""
+    rows = {(row.case, row.quantity): row for row in reproduce("alciatore")}
+    assert [rows["1: RP", f"arc R{r}, R"].published for r in (5, 8)] == [5.04, 7.92]
+    assert [rows["2: RR", f"circle R{r}, R"].published for r in (13, 3)] == [12.91, 3.05]
+    printed = [rows["3: PR", f"segment 6, {end} {k}"].published for end in ("start", "end") for k in "xy"]
+    assert printed == [-1.64, 7.10, 1.96, 5.57]
+    misprinted = [n for n in range(1, 9) if "arc of R2" in rows["3: PR", f"segment {n}, start x"].note]
+    assert misprinted == [2, 4, 8]
+    assert [rows["3: PR", f"{kind}s"].exact for kind in ("line", "arc")] == [4, 4]
+    sweeps = [row for row in rows.values() if row.quantity == "area, exact sweep"]
+    assert len(sweeps) == 4
+    for row in sweeps:
+        assert row.reproduced == pytest.approx(row.exact, rel=1e-9)
+    for row in rows.values():
+        if row.quantity.endswith(", R"):
+            assert row.reproduced == pytest.approx(row.published, rel=0.03)
+
+
 def test_differences():
     row = Row("arm", "V", "m³", 0.6, published=0.5, exact=0.8)
     assert (row.from_published, row.from_exact) == (pytest.approx(0.1), pytest.approx(-0.2))
@@ -209,7 +228,7 @@ def test_command_prints_json(case, capsys):
 
 
 def test_unknown_names_list_what_there_is(capsys):
-    with pytest.raises(InputError, match="allowed: wsrender-table-3, wsrender-table-6, gao"):
+    with pytest.raises(InputError, match="allowed: wsrender-table-3, wsrender-table-6, "):
         cases.reproduce("table-9")
     code, _, err = run(capsys, "table-9")
     assert (code, err.startswith("error: NAME: 'table-9' is not a reproduction")) == (2, True)

@@ -18,7 +18,8 @@ PIPED_WIDTH = 260  # columns off a terminal: one value a line
 
 def reproduce(
     name: Annotated[
-        str, typer.Argument(metavar="NAME", help="wsrender-table-3, wsrender-table-6, gao, five-bar or shah.")
+        str,
+        typer.Argument(metavar="NAME", help="wsrender-table-3, wsrender-table-6, gao, five-bar, shah, alciatore."),
     ],
     as_json: Annotated[bool, typer.Option("--json", help="Print the rows as JSON.")] = False,
     traceback: Annotated[bool, typer.Option("--traceback", help="Show where an error came from.")] = False,

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 
 from wsrender.errors import InputError
+from wsrender.reproduce.alciatore import alciatore
 from wsrender.reproduce.five_bar import five_bar
 from wsrender.reproduce.gao import gao
 from wsrender.reproduce.row import Row
@@ -18,6 +19,7 @@ CASES: dict[str, Callable[[Progress | None], list[Row]]] = {
     "gao": gao,
     "five-bar": five_bar,
     "shah": shah,
+    "alciatore": alciatore,
 }
 
 
