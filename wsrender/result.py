@@ -307,6 +307,8 @@ def _pictures(result: Result) -> "dict[str, Callable[[], Figure]]":
         pictures["orientations"] = plot.orientations
     if result.document.get("analysis") == "robot_comparison":
         pictures["comparison"] = plot.side_by_side
+    if "methods" in result.tables:
+        pictures["methods"] = plot.methods
     if result.document.get("analysis") == "design_optimization":
         pictures |= _design_pictures(result)
     if result.volume is not None and result.volume.statistics.get("product"):

@@ -30,6 +30,10 @@ def approach(**fields):
     return {"analysis": "capability", "robot": {"library": "ur5e"}, **fields}
 
 
+def methods(**fields):
+    return {"analysis": "method_comparison", "mechanism": "six_pus", **fields}
+
+
 def design(**fields):
     return {
         "analysis": "design_optimization",
@@ -202,6 +206,12 @@ MALFORMED = [
         "sampling",
         'must not be "converge"',
     ),
+    # methods
+    (methods(voxel_sizes_m=[]), "voxel_sizes_m", "must not be empty"),
+    (methods(voxel_sizes_m=[0.1, 0]), "voxel_sizes_m", "numbers above 0, or null"),
+    (methods(ball_subdivisions=[9]), "ball_subdivisions", "must be a list of whole numbers 1 … 7"),
+    (methods(ball_subdivisions=[3, 3]), "ball_subdivisions", 'must not repeat "3"'),
+    (methods(orientation={"position_m": [0, 0, 1]}), "orientation", "must not shift"),
     # designs
     (design(design={"analysis": "workspace"}), "design.robot", "is required"),
     (design(design=design()), "design", "must be another analysis than design_optimization"),

@@ -2,7 +2,7 @@
 
 from wsrender.run.analyze import analyze, kinetostatic_field
 from wsrender.run.design_from_python import design_optimization
-from wsrender.run.mechanisms_from_python import five_bar, parallel_workspace
+from wsrender.run.mechanisms_from_python import five_bar, method_comparison, parallel_workspace
 from wsrender.run.planar_from_python import exact_boundary, planar_boundary
 from wsrender.run.several_from_python import (
     collaborative_volume,
@@ -24,6 +24,7 @@ __all__ = [
     "kinetostatic_field",
     "master_slave_mapping",
     "merge",
+    "method_comparison",
     "parallel_workspace",
     "plan",
     "planar_boundary",

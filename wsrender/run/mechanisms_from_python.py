@@ -30,3 +30,14 @@ def five_bar(mechanism: FiveBar, *, progress: Progress | bool | None = None, **f
     """
     lengths = {name: getattr(mechanism, name) for name in ("base_m", "proximal_m", "distal_m", "limits_rad")}
     return execute_here({"analysis": "five_bar", **lengths, **plain(fields)}, [], progress)
+
+
+def method_comparison(mechanism: Any, *, progress: Progress | bool | None = None, **fields: Any) -> Result:
+    """Volume, error and time of a constant-orientation workspace by four methods.
+
+    ``mechanism`` as in `parallel_workspace`, bounded by spheres only. ``fields`` are the other fields of the job
+    document ``method_comparison``: orientation, voxel_sizes_m, ball_subdivisions, device.
+
+    Raises DocumentError, InputError.
+    """
+    return execute_here({"analysis": "method_comparison", "mechanism": mechanism, **plain(fields)}, [], progress)

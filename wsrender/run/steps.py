@@ -15,6 +15,7 @@ from wsrender.run.five_bar import plan_five_bar
 from wsrender.run.indices_at import plan_indices_at
 from wsrender.run.kinetostatics import plan_kinetostatic_field
 from wsrender.run.mapping import plan_mapping
+from wsrender.run.method_comparison import plan_method_comparison
 from wsrender.run.parallel import plan_parallel
 from wsrender.run.planar_boundary import plan_planar_boundary
 from wsrender.run.reachability import plan_reachability
@@ -28,6 +29,7 @@ from wsrender.spec import (
     IndicesAtJob,
     KinetostaticFieldJob,
     MasterSlaveMappingJob,
+    MethodComparisonJob,
     ParallelWorkspaceJob,
     PlanarBoundaryJob,
     ReachabilityJob,
@@ -54,6 +56,7 @@ PLANNERS: dict[type, Callable[..., "Plan"]] = {
     FiveBarJob: plan_five_bar,
     DesignOptimizationJob: plan_design,
     PlanarBoundaryJob: plan_planar_boundary,
+    MethodComparisonJob: plan_method_comparison,
 }
 
 

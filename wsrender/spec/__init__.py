@@ -7,6 +7,7 @@ from wsrender.spec.five_bar import FiveBarJob
 from wsrender.spec.jobs import ANALYSES, IndicesAtJob, Job, WorkspaceJob
 from wsrender.spec.kinetostatics import KinetostaticFieldJob
 from wsrender.spec.mapping import MasterSlaveMappingJob
+from wsrender.spec.method_comparison import MethodComparisonJob
 from wsrender.spec.parallel_workspace import ParallelWorkspaceJob
 from wsrender.spec.parsing import canonical_json, job_schema, parse_job
 from wsrender.spec.planar_boundary import PlanarBoundaryJob
@@ -23,6 +24,7 @@ __all__ = [
     "Job",
     "KinetostaticFieldJob",
     "MasterSlaveMappingJob",
+    "MethodComparisonJob",
     "ParallelWorkspaceJob",
     "PlanarBoundaryJob",
     "ReachabilityJob",

@@ -14,6 +14,7 @@ from wsrender.spec.five_bar import FiveBarJob
 from wsrender.spec.index_choices import IndexChoices
 from wsrender.spec.kinetostatics import KinetostaticFieldJob
 from wsrender.spec.mapping import MasterSlaveMappingJob
+from wsrender.spec.method_comparison import MethodComparisonJob
 from wsrender.spec.options import Configurations, MapColumns, Statistics
 from wsrender.spec.parallel_workspace import ParallelWorkspaceJob
 from wsrender.spec.planar_boundary import PlanarBoundaryJob
@@ -82,6 +83,7 @@ _AnyJob = (
     | FiveBarJob
     | DesignOptimizationJob
     | PlanarBoundaryJob
+    | MethodComparisonJob
 )
 ANALYSES: dict[str, type[Document]] = {job.model_fields["analysis"].default: job for job in get_args(_AnyJob)}
 

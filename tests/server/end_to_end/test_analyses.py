@@ -66,6 +66,13 @@ DOCUMENTS = {
         "joint_steps": 30,
         "points_m": [[0.5, 0.9]],
     },
+    "method_comparison": {
+        "analysis": "method_comparison",
+        "mechanism": "six_pus",
+        "voxel_sizes_m": [0.2],
+        "ball_subdivisions": [2],
+        "device": "cpu",
+    },
     "design_optimization": {
         "analysis": "design_optimization",
         "design": {

@@ -1,0 +1,156 @@
+"""The analysis ``method_comparison``: the four methods of [SNK], their Table 4 and Fig. 10."""
+
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from wsrender.parallel.ball_region import BallRegion
+from wsrender.parallel.exact import ExactWorkspace
+from wsrender.parallel.mechanism import mechanism_of
+from wsrender.parallel.solids import solid_workspace
+from wsrender.result import Result
+from wsrender.run.parallel import plan_parallel
+from wsrender.run.parallel_exact import region_of
+from wsrender.run.provenance import job_entry, provenance
+from wsrender.run.settled_device import settled_device
+from wsrender.spec.method_comparison import MethodComparisonJob
+from wsrender.spec.parallel_workspace import ParallelWorkspaceJob
+from wsrender.spec.robot import Transform
+from wsrender.volume.lattice import round_to_digits
+from wsrender.volume.table import Table
+
+Arrays = dict[str, np.ndarray]
+
+GRIDS, EXACT, SOLIDS = ("grid", "grid_by_subsystem"), "exact", "solids"
+PARTS = (5, 10, 20, 40)  # of the volume's cube root
+ICOSAHEDRON_EDGE = 1.0515  # of the radius of the sphere around it
+UNITS = {"size": "m", "volume": "m^3", "time": "s"}
+
+
+@dataclass(eq=False)
+class MethodComparisonPlan:
+    """A resolved ``method_comparison`` job: one shard, its samples the runs of the methods."""
+
+    job: MethodComparisonJob
+    region: BallRegion
+    sizes: tuple[float, ...]
+    device: str
+    target: str
+
+    @property
+    def shards(self) -> list[tuple[int, int]]:
+        """One shard of all runs."""
+        return [(0, 1 + len(GRIDS) * len(self.sizes) + len(self.job.ball_subdivisions))]
+
+    @property
+    def estimate(self) -> dict[str, float]:
+        """Runs, bytes of the largest ball's meshes, and seconds of them."""
+        triangles = (
+            20.0
+            * 4 ** max(self.job.ball_subdivisions)
+            * (len(self.region.inside_radii) + len(self.region.outside_radii))
+        )
+        return {"samples": float(self.shards[0][1]), "bytes": 500 * triangles, "seconds": triangles / 2e5}
+
+    def resolved(self) -> dict[str, Any]:
+        """What is settled once: device, target, sizes of voxels, shards."""
+        shards = [list(shard) for shard in self.shards]
+        return {"device": self.device, "target": self.target, "sizes": list(self.sizes), "shards": shards}
+
+    def run_shard(self, shard: int, progress: Callable[[int], None] | None, **execution: Any) -> Arrays:
+        """Method, edge of its voxels or triangles, volume and seconds of every run, and the exact topology."""
+        rows = []
+        for row in self._runs(execution.get("threads")):
+            rows.append(row)
+            if progress:
+                progress(len(rows))
+        return {
+            "method": np.array([row[0] for row in rows]),
+            "numbers": np.array([row[1:] for row in rows], np.float64),
+        }
+
+    def merge(self, a: Any, b: Any) -> Any:
+        """There is one shard: nothing to merge."""
+        raise ValueError("method_comparison has one shard")
+
+    def finish(self, partial: Arrays, seconds: dict[str, float]) -> Result:
+        """The table of all runs, with errors from the exact volume."""
+        method, (size, volume, took) = partial["method"], partial["numbers"].T
+        exact = ExactWorkspace.of(self.region)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            error = np.where(exact.volume_m3 > 0, volume / exact.volume_m3 - 1, np.nan)
+        columns = {"method": method, "size": size, "volume": volume, "relative_error": error, "time": took}
+        document = {
+            "analysis": "method_comparison",
+            "job": job_entry(self.job),
+            "mechanism": {"name": mechanism_of(self.job.mechanism).name},
+            "volume_m3": {"exact": exact.volume_m3},
+            "methods": [
+                {
+                    "method": str(name),
+                    "size_m": None if np.isnan(edge) else edge,
+                    "volume_m3": found,
+                    "relative_error": None if np.isnan(wrong) else wrong,
+                    "time_s": spent,
+                }
+                for name, edge, found, wrong, spent in zip(
+                    method, size.tolist(), volume.tolist(), error.tolist(), took.tolist(), strict=True
+                )
+            ],
+            "provenance": provenance("float64", self.target),
+            "timing_s": seconds,
+        }
+        return Result(document, tables={"methods": Table(columns, UNITS)})
+
+    def _runs(self, threads: int | None) -> Iterator[tuple[str, float, float, float]]:
+        """(method, edge, volume, seconds); every first run of a kernel is repeated, so that no compilation is timed."""
+        for repeated in (False, True):
+            started = time.perf_counter()
+            exact = ExactWorkspace.of(self.region)
+            volume = exact.volume_m3 if len(exact.mesh.faces) else 0.0
+            if repeated:
+                yield EXACT, np.nan, volume, time.perf_counter() - started
+        for method in GRIDS:
+            for number, size in enumerate(self.sizes):
+                if number == 0:
+                    self._counted(method, size, threads)
+                started = time.perf_counter()
+                volume = self._counted(method, size, threads)
+                yield method, size, volume, time.perf_counter() - started
+        largest = float(np.max(self.region.inside_radii, initial=0.0))
+        for subdivisions in self.job.ball_subdivisions:
+            started = time.perf_counter()
+            mesh = solid_workspace(self.region, subdivisions)
+            volume = float(mesh.volume) if len(mesh.faces) else 0.0
+            edge = ICOSAHEDRON_EDGE * largest / 2**subdivisions
+            yield SOLIDS, edge, volume, time.perf_counter() - started
+
+    def _counted(self, method: Any, size: float, threads: int | None) -> float:
+        """Volume of the voxels that a grid method finds [m³]."""
+        job = ParallelWorkspaceJob(
+            mechanism=self.job.mechanism,
+            orientation=self.job.orientation,
+            method=method,
+            voxel_size_m=size,
+            device=self.device,
+        )
+        partial = plan_parallel(job).run_shard(0, None, **({"threads": threads} if threads else {}))
+        return len(partial["cells"]) * size**3
+
+
+def plan_method_comparison(job: MethodComparisonJob, resolved: dict[str, Any] | None = None) -> MethodComparisonPlan:
+    """Resolve the job, or take what `MethodComparisonPlan.resolved` of an earlier plan of it says.
+
+    Raises InputError for a mechanism whose workspace other surfaces bound.
+    """
+    region = region_of(mechanism_of(job.mechanism), (job.orientation or Transform()).matrix()[:3, :3])
+    device, target = settled_device(job.device, resolved)
+    sizes = tuple(resolved["sizes"]) if resolved else job.voxel_sizes_m
+    if sizes is None:
+        volume = ExactWorkspace.of(region).volume_m3
+        edge = np.cbrt(volume if volume > 0 else float(np.max(region.inside_radii, initial=1.0)) ** 3)
+        sizes = tuple(round_to_digits(float(edge) / parts, 2) for parts in PARTS)
+    return MethodComparisonPlan(job, region, sizes, device, target)
