@@ -93,7 +93,7 @@ class FiveBarPlan:
             if progress:
                 progress(done * self._cells // len(modes))
         tables = {
-            "boundary": boundary_table(regions),
+            "boundary_arcs": boundary_table(regions),
             "loci": loci_table(five_bar, regions, type_2),
             "iso_curves": iso_table(five_bar, self.lattice, maps, self.job.levels),
             "aspect_outlines": outlines_table(found),
