@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import wsrender as ws
+from tests.reference import closed_form_inverse as closed_form
 from tests.reference.published_robots import dh_table
 from wsrender.reachability.capability import capability, fibonacci_directions
 from wsrender.run import execute, finish, plan, run_shard
@@ -36,6 +37,34 @@ def test_a_wrist_without_limits_approaches_from_everywhere():
     assert len(found.cells) > 200
     assert (found.index == 1).all()
     assert (found.undecided == 0).all()
+
+
+def test_a_wrist_in_closed_form():
+    """The sixth joint of the puma560 turns all round: the turn about a direction is free."""
+    robot, directions = ws.load_robot("puma560"), fibonacci_directions(20)
+    found = capability(robot.chain, 0.25, directions)
+    centers = np.repeat((found.cells + 0.5) * 0.25, len(directions), axis=0)
+    z = np.tile(directions, (len(found.cells), 1))
+    x = np.cross(z, np.roll(z, 1, axis=1) + np.array([0.3, 0.1, 0.2]))
+    x /= np.linalg.norm(x, axis=1)[:, None]
+    R = np.stack([x, np.cross(z, x), z], axis=2)
+    with np.errstate(invalid="ignore"):
+        arm = closed_form.puma560_arm(centers)
+        solutions = closed_form.with_spherical_wrist("puma560", arm, R)[:, :, :5]
+    limits = robot.lower_limits[:5], robot.upper_limits[:5], robot.chain.revolute[:5]
+    truth = closed_form.within_limits(solutions, *limits).any(axis=1).reshape(-1, len(directions))
+    assert 0.1 < truth.mean() < 0.9
+    assert not (found.reached & ~truth).sum() > 0.002 * truth.size  # directions within the tolerance of an angle
+    assert not (~found.reached & truth).sum() > 0.002 * truth.size + found.undecided.sum()
+
+
+@pytest.mark.parametrize("count", [100, 400, 1600])
+def test_the_index_converges_with_the_directions(count):
+    """Of a band 20 … 160° around any axis it is cos 20°; the error falls at least as count^(-3/4)."""
+    axes = fibonacci_directions(30)
+    cosines = axes @ fibonacci_directions(count).T
+    share = (np.abs(cosines) <= np.cos(np.radians(20))).mean(axis=1)
+    assert np.abs(share - np.cos(np.radians(20))).max() < 1.2 * count**-0.75
 
 
 @pytest.fixture(scope="module")

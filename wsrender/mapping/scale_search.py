@@ -12,6 +12,8 @@ from wsrender.mapping.linear_mapping import LinearMapping, Space
 BISECTIONS = 30
 TOUCH = 1e-7  # of a length; points nearer to a boundary lie on either side by rounding
 SEARCH_POINTS = 600  # of the slave, in the search over several numbers; the result is checked on all
+GROWTH, SMALLEST_STEP = 3e-4, 2e-4  # of the scales that makes a move of the offset worth it; steps over the extent
+WAYS = np.array([way for way in np.ndindex(3, 3, 3) if way != (1, 1, 1)]) - 1.0  # of a move: along edges and diagonals
 FIELD_CELLS = 48  # along the mean edge of the field of distances
 INWARD, OUTWARD, LAST_STEPS = 0.5, 1.2, 71  # factors on the search's result among which the exact test looks
 
@@ -64,8 +66,9 @@ def best_mapping(
 
     Scales are ``start``'s times one number (``uniform``) or three, within ``scale_bounds``; the offset is ``start``'s,
     or lies within ``offset_bounds``. Differential evolution (Storn and Price 1997) over the distance of a subset of
-    the points to the boundary of the master, which lies in ``box``; then all points are put to the exact test, and the
-    scales grown or shrunk until it is just met. Near the optimum, not at it: about 1 % of the scale with an offset.
+    the points to the boundary of the master, which lies in ``box``; then all points are put to the exact test, the
+    scales grown or shrunk until it is just met, and an offset moved as long as that lets them grow. A local optimum of
+    the exact test, to about 0.5 % of the scale with an offset.
     """
     middle = (points.min(axis=0) + points.max(axis=0)) / 2
     about = None if offset_bounds is None else middle
@@ -77,6 +80,8 @@ def best_mapping(
     if factor is None:
         return None
     found = rough.scaled(factor, about)
+    if offset_bounds is not None:
+        found = _moved(master, points, found, start.scale * scale_bounds[1], offset_bounds, middle, np.ptp(box))
     if not uniform:
         found = _grown(master, points, found, start.scale * scale_bounds[1], about)
     return found if _violation(found.offset, offset_bounds) < TOUCH * np.ptp(box) else None
@@ -107,6 +112,37 @@ def _rough_optimum(master, box, points, start, scale_bounds, uniform, offset_bou
     return mapping(differential_evolution(cost, bounds, rng=seed, tol=1e-6, maxiter=150, popsize=12, polish=False).x)
 
 
+def _moved(
+    master: Space,
+    points: np.ndarray,
+    mapping: LinearMapping,
+    most: np.ndarray,
+    offset_bounds: Sequence[tuple[float, float]],
+    about: np.ndarray,
+    extent: float,
+) -> LinearMapping:
+    """The mapping with its offset moved, by ever smaller steps, wherever its scales can grow then."""
+    step, grows = extent / FIELD_CELLS, 1 + GROWTH
+    while step > extent * SMALLEST_STEP:
+        places = (replace(mapping, offset=mapping.offset + step * way) for way in WAYS)
+        larger = (place.scaled(grows, about) for place in places)
+        allowed = (m for m in larger if (m.scale <= most).all() and _violation(m.offset, offset_bounds) == 0)
+        better = next((m for m in allowed if m.succeeds(master, points)), None)
+        if better is None:
+            step /= 2
+        else:
+            mapping = better.scaled(_largest_growth(master, points, better, most, about), about)
+    return mapping
+
+
+def _largest_growth(
+    master: Space, points: np.ndarray, mapping: LinearMapping, most: np.ndarray, about: np.ndarray
+) -> float:
+    """The largest factor on the scales of a mapping that succeeds, near 1."""
+    high = min(OUTWARD, float((most / mapping.scale).min()))
+    return _bisected(lambda factor: mapping.scaled(factor, about).succeeds(master, points), 1.0, high, 12)
+
+
 def _violation(offset: np.ndarray, bounds: Sequence[tuple[float, float]] | None) -> float:
     """How far an offset lies outside its bounds [m]."""
     if bounds is None:
@@ -131,9 +167,9 @@ def _grown(
     return mapping
 
 
-def _bisected(succeeds: Callable[[float], bool], low: float, high: float) -> float:
+def _bisected(succeeds: Callable[[float], bool], low: float, high: float, bisections: int = BISECTIONS) -> float:
     """Where success ends between a factor that succeeds and a larger one, less what rounding may take."""
-    for _ in range(BISECTIONS):
+    for _ in range(bisections):
         middle = (low + high) / 2
         low, high = (middle, high) if succeeds(middle) else (low, middle)
     return low * (1 - TOUCH) if succeeds(low * (1 - TOUCH)) else low

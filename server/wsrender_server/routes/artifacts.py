@@ -193,7 +193,10 @@ async def get_plot(
     axis: Annotated[Literal["x", "y", "z"] | None, Query(description="Normal of the plane of `slice`.")] = None,
     at: Annotated[float | None, _AT] = None,
 ) -> Response:
-    """The arm in its workspace, the sampled positions, planes of voxels, or how values are spread."""
+    """The arm in its workspace, the sampled positions, planes of voxels, or how values are spread.
+
+    404 where the result has no data for it. All pictures of a result are among its files too, as `plots/<name>.png`.
+    """
     options = {"axis": axis, "at": at, "index": index, "statistic": statistic}
     return await _drawn(server, job, plot, format, options)
 
