@@ -301,6 +301,8 @@ def _pictures(result: Result) -> "dict[str, Callable[[], Figure]]":
         pictures["field"] = plot.vectors
     if result.document.get("analysis") == "planar_boundary":
         pictures["boundary"] = plot.boundary
+    if {"posture", "ellipsoids"} <= set(result.tables):
+        pictures["posture"] = plot.posture
     if "mapping" in result.tables:
         pictures["mapping"] = plot.mapping
     if "orientations" in result.tables:

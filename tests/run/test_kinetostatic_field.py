@@ -73,7 +73,8 @@ def test_vectors_in_files(result, tmp_path):
         assert stored.attrs["unit"] == "N"
     header = (tmp_path / "volume.csv").read_text().splitlines()[0]
     assert '"force_x","force_y","force_z"' in header
-    assert (tmp_path / "plots" / "field.png").stat().st_size > 10_000
+    for name in ("field", "posture"):
+        assert (tmp_path / "plots" / f"{name}.png").stat().st_size > 10_000
     from wsrender.export import read_volume_npz
 
     np.testing.assert_array_equal(
@@ -123,6 +124,7 @@ def test_default_voxels():
 def test_pictures_of_vectors():
     result = execute(JOB)
     result.plot.vectors(at=(None, None, 0.0))
+    result.plot.posture()
     with pytest.raises(ws.InputError, match="no 'torque'; it holds force"):
         result.plot.vectors("torque")
     with pytest.raises(ws.InputError, match="holds no vectors"):

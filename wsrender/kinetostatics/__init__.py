@@ -9,6 +9,7 @@ from wsrender.kinetostatics.characteristic_length import (
     rms_length,
 )
 from wsrender.kinetostatics.force_field import FieldState, ForceField, force_field
+from wsrender.kinetostatics.posture_data import posture_tables
 
 __all__ = [
     "CharacteristicLength",
@@ -19,5 +20,6 @@ __all__ = [
     "force_field",
     "homogeneous",
     "least_condition_length",
+    "posture_tables",
     "rms_length",
 ]

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from wsrender.plots.orientation_map import orientations
     from wsrender.plots.planes import slice_plane, slices
     from wsrender.plots.point_cloud import scatter
+    from wsrender.plots.posture import limits_and_ellipsoids
     from wsrender.plots.result_plots import ResultPlots
     from wsrender.plots.stick_figure import robot
     from wsrender.plots.style import png, save_figure
@@ -35,6 +36,7 @@ _MODULES = {
     "errors_and_times": "method_comparison",
     "histogram": "distribution",
     "png": "style",
+    "limits_and_ellipsoids": "posture",
     "mapped_points": "master_slave",
     "orientations": "orientation_map",
     "planar_boundary": "arm_plane",
@@ -57,6 +59,7 @@ __all__ = [
     "curves",
     "errors_and_times",
     "histogram",
+    "limits_and_ellipsoids",
     "mapped_points",
     "orientations",
     "planar_boundary",

@@ -18,6 +18,7 @@ from wsrender.plots.method_comparison import errors_and_times
 from wsrender.plots.orientation_map import orientations
 from wsrender.plots.planes import slice_plane, slices
 from wsrender.plots.point_cloud import scatter
+from wsrender.plots.posture import limits_and_ellipsoids
 from wsrender.plots.stick_figure import robot
 from wsrender.plots.table_curves import curves
 from wsrender.plots.vector_field import vector_planes
@@ -122,6 +123,12 @@ class ResultPlots:
     ) -> Figure:
         """Stream lines of a vector (by default the first) in three planes, normal to x, y and z at ``at`` [m]."""
         return vector_planes(self._volume(), name, at=at, title=self.title)
+
+    def posture(self) -> Figure:
+        """The arm in one posture: links coloured by nearness to joint limits, ellipsoids of velocity and force."""
+        if not {"posture", "ellipsoids"} <= set(self.tables):
+            raise InputError("table", "the result holds no posture with its ellipsoids")
+        return limits_and_ellipsoids(self.tables["posture"], self.tables["ellipsoids"], title=self.title)
 
     def robot(self, index: str | None = None) -> Figure:
         """The arm as a stick figure in its workspace, coloured by an index (by default the first)."""

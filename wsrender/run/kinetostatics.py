@@ -7,8 +7,10 @@ from typing import Any
 import numpy as np
 
 from wsrender.engine import configurations, evaluate_kinematics
+from wsrender.kinetostatics.characteristic_length import CharacteristicLength
 from wsrender.kinetostatics.force_field import ForceField
 from wsrender.kinetostatics.passivity import LoopWork, largest_loop_work, stiffness_bound, stiffnesses
+from wsrender.kinetostatics.posture_data import posture_tables
 from wsrender.result import Result
 from wsrender.robot import Robot
 from wsrender.run.provenance import job_entry, provenance, robot_entry
@@ -23,6 +25,7 @@ RATE = 1e4  # configurations per second of one core, rounded down
 COARSER = 4.0  # than the voxels of a workspace: a mean needs several configurations
 FIRST_SAMPLES, DRAWN = 1 << 14, 3
 MOST_SAMPLES = 100_000_000
+SHOWN = (0.3, 0.9)  # nearness to a limit of the posture in the picture, the first such sample
 CHUNK = 1 << 12
 ON_FACE = 1e-9  # of a voxel below its face counts as on it: a planar arm would be torn in two by rounding
 SCALARS = ("force", "inverse_condition_number", "limit_nearness")
@@ -58,12 +61,15 @@ class KinetostaticFieldPlan:
         force_field = ForceField(self.robot, self.job.field, self.device)
         sampling = plan_sampling(self.robot.chain, self.job.sampling, MOST_SAMPLES)
         cells, rows = np.empty((sampling.count, 3), np.int64), np.empty((sampling.count, 6 + len(SCALARS)))
+        shown = None
         for first in range(0, sampling.count, CHUNK):
             numbers = np.arange(first, min(first + CHUNK, sampling.count))
             for k, q in zip(numbers, configurations(sampling, numbers), strict=True):
                 state = force_field.evaluate(q)
                 cells[k] = np.floor(state.posture.position / self.voxel_size_m + ON_FACE)
                 size = np.sqrt(state.force @ state.force)
+                if shown is None and SHOWN[0] < state.nearness < SHOWN[1]:
+                    shown = q
                 rows[k] = *state.force, *state.torque, size, state.inverse_condition, state.nearness
             if progress:
                 progress(int(numbers[-1]) + 1)
@@ -72,7 +78,8 @@ class KinetostaticFieldPlan:
         greatest = np.zeros(len(found))
         np.maximum.at(greatest, voxel.ravel(), rows[:, 6])
         loop = largest_loop_work(force_field)
-        arrays = {"cells": found, "count": count, "sums": sums, "greatest": greatest}
+        shown = configurations(sampling, np.zeros(1, np.int64))[0] if shown is None else shown
+        arrays = {"shown": shown, "cells": found, "count": count, "sums": sums, "greatest": greatest}
         energetics = {"stiffness": stiffnesses(force_field), "loop": np.array([loop.work_j, loop.length_m, loop.paths])}
         return arrays | energetics
 
@@ -84,7 +91,9 @@ class KinetostaticFieldPlan:
         """Volume data with the vector "force" (and "torque") per voxel, and the document."""
         job, count = self.job, partial["count"]
         means = partial["sums"] / count[:, None]
-        length = self._length()
+        # Without what is slow to build: the picture's force is that of limits and conditioning.
+        plain = job.field.model_copy(update={"boundary": None, "obstacles": None})
+        plain_field = ForceField(self.robot, plain, self.device)
         document = {
             "analysis": "kinetostatic_field",
             "job": job_entry(job, self.robot),
@@ -93,7 +102,7 @@ class KinetostaticFieldPlan:
             "voxel_size_m": self.voxel_size_m,
             "kinetostatic_field": {
                 "form": job.field.form,
-                "characteristic_length": length,
+                "characteristic_length": _length_entry(plain_field.length),
                 "voxels": len(count),
                 "share_of_voxels_with_force": float((partial["greatest"] > 0).mean()),
                 "largest_force_n": float(partial["greatest"].max()),
@@ -106,17 +115,9 @@ class KinetostaticFieldPlan:
         chain = self.robot.chain
         spread = np.linspace(0.25, 0.75, DRAWN)[:, None]
         skeleton = self.robot.skeleton(chain.lower_limits + spread * (chain.upper_limits - chain.lower_limits))
-        return Result(document, volume=self._volume(partial["cells"], count, means, partial), skeleton=skeleton)
-
-    def _length(self) -> dict[str, Any]:
-        plain = self.job.field.model_copy(update={"boundary": None, "obstacles": None})  # which are slow to build
-        length = ForceField(self.robot, plain, self.device).length
-        return {
-            "length_m": length.length_m,
-            "method": length.method,
-            "posture": None if length.posture is None else length.posture.tolist(),
-            "condition_number": length.condition_number,
-        }
+        volume = self._volume(partial["cells"], count, means, partial)
+        tables = posture_tables(plain_field, partial["shown"])
+        return Result(document, volume=volume, skeleton=skeleton, tables=tables)
 
     def _passivity(self, stiffness: np.ndarray, loop: LoopWork) -> dict[str, float]:
         """Stiffness beside what the device renders, and the work of closed paths beside what would dissipate it."""
@@ -155,6 +156,15 @@ class KinetostaticFieldPlan:
             vectors["torque"] = dense(means[:, 3:6])
         units = {name: unit for name, unit in UNITS.items() if name in vectors or name in SCALARS}
         return VolumeData(self.voxel_size_m, (x, y, z), counts, statistics, units, vectors)
+
+
+def _length_entry(length: CharacteristicLength) -> dict[str, Any]:
+    return {
+        "length_m": length.length_m,
+        "method": length.method,
+        "posture": None if length.posture is None else length.posture.tolist(),
+        "condition_number": length.condition_number,
+    }
 
 
 def plan_kinetostatic_field(
