@@ -94,6 +94,14 @@ def test_a_partial_result_travels(result, tmp_path):
     assert (found.tables["samples"]["position"] == result.tables["samples"]["position"]).all()
 
 
+def test_two_joints_have_regions_by_number_of_solutions(result):
+    rows = [{"a": a, "limits_deg": [-180, 180]} for a in (8, 5)]
+    few = {"robot": {"dh": {"convention": "standard", "rows": rows}}, "sampling": {"method": "random", "count": 500}}
+    regions = execute(JOB | few).document["exact"]["inverse_solutions"]
+    assert regions == [{"solutions": 2, "area_m2": pytest.approx(160 * np.pi, rel=1e-9), "regions": 1}]
+    assert result.document["exact"]["inverse_solutions"] is None
+
+
 @pytest.mark.parametrize("rows", [ROWS[:1], [{"a": 0.0, "limits_deg": [-60, 60]}]], ids=["curve", "point"])
 def test_sets_without_area_are_results(rows, tmp_path):
     robot = {"dh": {"convention": "standard", "rows": rows}}

@@ -2,12 +2,13 @@
 
 import json
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
 
 from wsrender.boundary.planar.exact_boundary import ExactBoundary, Nearest
+from wsrender.boundary.planar.inverse_solutions import solution_regions
 from wsrender.boundary.planar.monte_carlo import MonteCarloBoundary, monte_carlo_boundary
 from wsrender.boundary.planar.planar_chain import PlanarChain, planar_chain
 from wsrender.boundary.planar.segments import segment_entry, segment_table
@@ -111,13 +112,15 @@ def plan_planar_boundary(
 
 
 def _exact_entry(exact: ExactBoundary) -> dict[str, Any]:
-    """Area, perimeter, loops with their segments, vertices."""
+    """Area, perimeter, loops with their segments, vertices; of two joints, regions by number of inverse solutions."""
+    solutions = solution_regions(exact)
     holes = [loop.hole for loop in exact.loops] or [False] * len(exact.segments)
     return {
         "dimension": exact.dimension,
         "area_m2": float(exact.area),
         "perimeter_m": exact.perimeter,
         "vertices_m": exact.vertices.tolist(),
+        "inverse_solutions": None if solutions is None else [asdict(region) for region in solutions],
         "loops": [
             {"hole": hole, "segments": [segment_entry(segment) for segment in loop]}
             for hole, loop in zip(holes, exact.segments, strict=True)

@@ -55,10 +55,18 @@ def _least(orbits: Curves, curves: Curves) -> np.ndarray:
     least = point_distances(np.concatenate([curves.start, curves.end]), orbits).min(axis=0)
     for ends in (orbits.start, orbits.end):
         least = np.minimum(least, point_distances(ends, curves).min(axis=1))
-    for t in _arc_approaches(orbits, curves) if orbits.arc[0] else _line_approaches(orbits, curves):
-        points = _at(orbits, t)
-        least = np.minimum(least, _distances(points - curves.base, curves).min(axis=1))
+    for distances in approaches(orbits, curves):
+        least = np.minimum(least, distances.min(axis=1))
     return least
+
+
+def approaches(orbits: Curves, curves: Curves) -> list[np.ndarray]:
+    """Distances (K, N) to N curves from the two points where each orbit's whole line or circle meets the curve's.
+
+    Where an orbit does not reach such a point, from its start or end. Two lines meet once: both are the same.
+    """
+    met = (_arc_approaches if orbits.arc[0] else _line_approaches)(orbits, curves)
+    return [_distances(_at(orbits, t) - curves.base, curves) for t in met]
 
 
 def _at(orbits: Curves, t: np.ndarray) -> np.ndarray:
