@@ -3,7 +3,7 @@
     python benchmarks/parallel.py [--device cpu] [--threads 2] [--poses 8e6]
 
 A rate on the CPU is per processor second times the threads, so that a busy machine does not count; on a GPU per second
-of the wall, with the copy of the counts to the host. Nothing is asserted.
+of the wall, with the copy of what is reached to the host. Nothing is asserted.
 """
 
 import argparse

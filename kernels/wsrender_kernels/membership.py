@@ -15,7 +15,10 @@ from wsrender_kernels.options import CUDA_OPTIONS, MODULE_OPTIONS
 from wsrender_kernels.sampling import LANES
 from wsrender_kernels.sweep import wide
 
+# Legs unrolled: a leg that is picked while the kernel runs sends the whole struct through local memory.
+UNROLLED = {**CUDA_OPTIONS, "max_unroll": LEG_STRIDE}
 TURNED_STRIDE = 6  # of a leg at an orientation: its platform joint and the axis of its cone, turned
+ASKED_SLOTS = 1024  # in which CUDA threads count the legs that they evaluate
 POSE_ROWS = 12  # of a pose: position, then the rows of the rotation
 
 
@@ -73,10 +76,38 @@ def lattice_kernel(shape: MembershipShape, cuda: bool) -> wp.Kernel:
 
     ``points`` (3 * count,), where they are given: coordinate r of position i at [r * count + i], base frame; ``turned``
     (orientations * L * TURNED_STRIDE,), ``weights`` (orientations,); ``by_subsystem``: 1 for method B. Out: ``reached``
-    (count,), the sum of their weights ``weighted`` (count,), and ``asked``, per task or thread the number of
-    (pose, leg) pairs that were evaluated.
+    (count,), the sum of their weights ``weighted`` (count,), and ``asked``, in parts the number of (pose, leg)
+    pairs that were evaluated: one part per task on the CPU, ASKED_SLOTS, which start at 0, on CUDA.
     """
     return (_lattice_cuda if cuda else _lattice_cpu)(shape)
+
+
+@cache
+def survivors_kernel() -> wp.Kernel:
+    """On CUDA: the places of a range that are reached, in any order, so that only they go to the host.
+
+    ``found`` (1,) starts at 0 and counts them; ``cells``, ``reached_out`` and ``weighted_out`` hold them.
+    """
+
+    @wp.kernel(module="unique", module_options=CUDA_OPTIONS, enable_backward=False)
+    def survivors(
+        # in
+        reached: wp.array(dtype=wp.int32),
+        weighted: wp.array(dtype=wp.int32),
+        # out
+        found: wp.array(dtype=wp.int32),
+        cells: wp.array(dtype=wp.int32),
+        reached_out: wp.array(dtype=wp.int32),
+        weighted_out: wp.array(dtype=wp.int32),
+    ):
+        i = wp.tid()
+        if reached[i] > 0:
+            slot = wp.atomic_add(found, 0, 1)
+            cells[slot] = i
+            reached_out[slot] = reached[i]
+            weighted_out[slot] = weighted[i]
+
+    return survivors
 
 
 @cache
@@ -238,8 +269,9 @@ def _lattice_cuda(shape: MembershipShape) -> wp.Kernel:
     solve, distance, vec3 = solver.solve, solver.distance, solver.vec3
     real, Model, Block = shape.real, mechanism_type(shape), lattice_type(shape.real)
     L, STRIDE, DISTANCES, GIVEN = shape.legs, TURNED_STRIDE, shape.distances, shape.given
+    SLOTS = ASKED_SLOTS
 
-    @wp.kernel(module="unique", module_options=CUDA_OPTIONS, enable_backward=False)
+    @wp.kernel(module="unique", module_options=UNROLLED, enable_backward=False)
     def lattice_cuda(
         # in
         model: Model,
@@ -270,16 +302,15 @@ def _lattice_cuda(shape: MembershipShape) -> wp.Kernel:
         weight_sum = wp.int32(0)
         pairs = wp.int32(0)
         for o in range(orientations):
-            alive = inside
-            k = wp.int32(0)
-            while k < L and (alive > 0 or by_subsystem == 0):
-                at = (o * L + k) * STRIDE
-                shift = vec3(turned[at], turned[at + 1], turned[at + 2])
-                cone = vec3(turned[at + 3], turned[at + 4], turned[at + 5])
-                fits, _elbow = solve(leg_of(model, k), p + shift, cone)
-                alive = alive & fits
-                pairs += 1
-                k += 1
+            alive = wp.int32(inside)
+            for k in range(L):
+                if alive > 0 or by_subsystem == 0:
+                    at = (o * L + k) * STRIDE
+                    shift = vec3(turned[at], turned[at + 1], turned[at + 2])
+                    cone = vec3(turned[at + 3], turned[at + 4], turned[at + 5])
+                    fits, _elbow = solve(leg_of(model, k), p + shift, cone)
+                    alive = alive & fits
+                    pairs += 1
             if wp.static(DISTANCES):
                 for pair in range(wp.static(L * L)):
                     if model.pairs[pair] > 0 and alive > 0:
@@ -299,7 +330,7 @@ def _lattice_cuda(shape: MembershipShape) -> wp.Kernel:
             weight_sum += alive * weights[o]
         reached[i] = total
         weighted[i] = weight_sum
-        asked[i] = pairs
+        wp.atomic_add(asked, i % SLOTS, pairs)
 
     return lattice_cuda
 
@@ -366,7 +397,7 @@ def _poses_cuda(shape: MembershipShape) -> wp.Kernel:
     reaches, vec3, mat33 = _pose_test(shape)
     real, Model = shape.real, mechanism_type(shape)
 
-    @wp.kernel(module="unique", module_options=CUDA_OPTIONS, enable_backward=False)
+    @wp.kernel(module="unique", module_options=UNROLLED, enable_backward=False)
     def poses_cuda(
         # in
         model: Model,

@@ -9,12 +9,14 @@ import numpy as np
 import warp as wp
 from wsrender_kernels.legs import kind_of, pack_legs
 from wsrender_kernels.membership import (
+    ASKED_SLOTS,
     LANES,
     MembershipShape,
     lattice_kernel,
     lattice_type,
     mechanism_type,
     poses_kernel,
+    survivors_kernel,
 )
 
 from wsrender.engine.devices import devices_of, thread_count
@@ -67,11 +69,12 @@ class LegTest:
 
 @dataclass(frozen=True, eq=False)
 class OrientationCounts:
-    """Of every voxel: orientations ``reached`` (V,) int32 and the sum of their ``weights`` (V,) int32.
+    """Of places, by number ``cells`` (V,) int64: orientations ``reached`` and the sum of their ``weights`` (V,) int32.
 
     ``asked``: the number of (pose, leg) pairs that were evaluated.
     """
 
+    cells: np.ndarray
     reached: np.ndarray
     weights: np.ndarray
     asked: int
@@ -93,9 +96,9 @@ def count_orientations(
 ) -> OrientationCounts:
     """At how many of the platform orientations (N, 3, 3), base frame, each voxel centre is reached.
 
-    Voxels are those first … first + count - 1 of the block, z fastest. ``weights`` (N,) whole numbers, whose sum is
-    below 2^31; by default 1. All (pose, leg) pairs are evaluated (method A), or ``by_subsystem`` only those of
-    survivors (method B), with the same result.
+    Voxels, by their numbers in the block, are those first … first + count - 1, z fastest. ``weights`` (N,) whole
+    numbers, whose sum is below 2^31; by default 1. All (pose, leg) pairs are evaluated (method A), or ``by_subsystem``
+    only those of survivors (method B), with the same result.
     """
     devices = devices_of(device)
     on_gpu = devices[0].is_cuda
@@ -136,7 +139,10 @@ def count_orientations_at(
     device: str = "auto",
     threads: int | None = None,
 ) -> OrientationCounts:
-    """At how many of the orientations given positions (N, 3), base frame [m], are reached; as `count_orientations`."""
+    """At how many of the orientations given positions (N, 3), base frame [m], are reached; as `count_orientations`.
+
+    Positions that are reached at none are among the ``cells`` too.
+    """
     devices = devices_of(device)
     workers = devices if devices[0].is_cuda else devices * thread_count(threads)
     if weights is None:
@@ -145,13 +151,19 @@ def count_orientations_at(
     parts = [positions[first : first + size] for first in range(0, len(positions), size)]
     launches = [_Lattice(test, part, rotations, weights, True, workers[k]) for k, part in enumerate(parts)]
     with ThreadPoolExecutor(len(workers)) as pool:
-        return _joined(list(pool.map(lambda launch: launch(0, launch.given), launches)))
+        found = list(pool.map(lambda launch: launch(0, launch.given), launches))
+    reached, weighted = np.zeros((2, len(positions)), np.int32)
+    for k, part in enumerate(found):
+        reached[k * size + part.cells], weighted[k * size + part.cells] = part.reached, part.weights
+    return OrientationCounts(np.arange(len(positions)), reached, weighted, sum(part.asked for part in found))
 
 
 def _joined(parts: list[OrientationCounts]) -> OrientationCounts:
     none = np.zeros(0, np.int32)
-    reached, weights = (np.concatenate([none, *(getattr(p, name) for p in parts)]) for name in ("reached", "weights"))
-    return OrientationCounts(reached, weights, sum(part.asked for part in parts))
+    cells, reached, weights = (
+        np.concatenate([none, *(getattr(part, name) for part in parts)]) for name in ("cells", "reached", "weights")
+    )
+    return OrientationCounts(cells.astype(np.int64), reached, weights, sum(part.asked for part in parts))
 
 
 class _Lattice:
@@ -180,14 +192,33 @@ class _Lattice:
             _, self.grid.size_y, self.grid.size_z = places.shape
 
     def __call__(self, first: int, count: int) -> OrientationCounts:
-        tasks = count if self.device.is_cuda else -(-count // LANES)
-        sizes = (count, count, tasks)
-        out = [wp.empty(size, dtype=wp.int32, device=self.device) for size in sizes]  # type: ignore[arg-type]
+        on_gpu = self.device.is_cuda
+        tasks, slots = (count, ASKED_SLOTS) if on_gpu else (-(-count // LANES),) * 2
+        reached, weighted = self._memory(count), self._memory(count)
+        asked = wp.zeros(slots, dtype=wp.int32, device=self.device)  # type: ignore[arg-type]
         places = [self.model, self.grid, self.points, self.turned, self.weights, self.orientations]
         inputs = [*places, first, count, self.by_subsystem]
-        wp.launch(self.kernel, dim=tasks, inputs=inputs, outputs=out, device=self.device)
-        reached, weighted, asked = (array.numpy() for array in out)
-        return OrientationCounts(reached, weighted, int(asked.sum(dtype=np.int64)))
+        wp.launch(self.kernel, dim=tasks, inputs=inputs, outputs=[reached, weighted, asked], device=self.device)
+        if on_gpu:
+            cells, counts, sums = self._survivors(reached, weighted, count)
+        else:
+            cells = np.flatnonzero(reached.numpy())
+            counts, sums = reached.numpy()[cells], weighted.numpy()[cells]
+        return OrientationCounts(cells + first, counts, sums, int(asked.numpy().sum(dtype=np.int64)))
+
+    def _survivors(self, reached: wp.array, weighted: wp.array, count: int) -> tuple[np.ndarray, ...]:
+        """Numbers, counts and sums of the places that are reached, in order."""
+        kernel = loaded(survivors_kernel(), self.device)
+        found = wp.zeros(1, dtype=wp.int32, device=self.device)  # type: ignore[arg-type]
+        out = [self._memory(count) for _ in range(3)]
+        wp.launch(kernel, dim=count, inputs=[reached, weighted], outputs=[found, *out], device=self.device)
+        kept = int(found.numpy()[0])
+        cells, counts, sums = (array[:kept].numpy() if kept else np.zeros(0, np.int32) for array in out)
+        order = np.argsort(cells)
+        return cells[order].astype(np.int64), counts[order], sums[order]
+
+    def _memory(self, count: int) -> wp.array:
+        return wp.empty(count, dtype=wp.int32, device=self.device)  # type: ignore[arg-type]
 
 
 def poses_reached(test: LegTest, poses: np.ndarray, *, device: str = "auto", threads: int | None = None) -> np.ndarray:

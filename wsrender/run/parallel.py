@@ -34,7 +34,7 @@ from wsrender.volume.lattice import LatticeBlock, block_around, round_to_digits
 
 Arrays = dict[str, np.ndarray]
 
-RATE_CPU_CORE, RATE_GPU = 3e7, 5e9  # poses per second, rounded down from benchmarks/parallel.py
+RATE_CPU_CORE, RATE_GPU = 3e7, 4e8  # poses per second, rounded down from benchmarks/parallel.py
 FIRST_POINTS, FEWEST_POINTS = 1 << 16, 1 << 10  # of the estimate that the default voxel size is made of
 LEAST_SHARE = 1e-3  # of the box: where hardly anything is reached
 
@@ -112,12 +112,11 @@ class ParallelPlan:
                 **execution,
             )
             found.append(counts)
-        reached, weights = (
-            np.array([getattr(counts, name) for counts in found]).sum(axis=0, dtype=np.int64)
-            for name in ("reached", "weights")
-        )
-        cells = np.flatnonzero(reached)
-        return self._partial(cells + first, reached[cells], weights[cells], sum(counts.asked for counts in found))
+        cells, place = np.unique(np.concatenate([counts.cells for counts in found]), return_inverse=True)
+        reached, weights = np.zeros((2, len(cells)), np.int64)
+        np.add.at(reached, place, np.concatenate([counts.reached for counts in found]))
+        np.add.at(weights, place, np.concatenate([counts.weights for counts in found]))
+        return self._partial(cells, reached, weights, sum(counts.asked for counts in found))
 
     def _partial(self, cells: np.ndarray, orientations: np.ndarray, weights: np.ndarray, asked: int) -> Arrays:
         partial = {"cells": cells, "orientations": orientations, "weights": weights, "asked": np.array([asked])}
