@@ -1,5 +1,6 @@
 """A smooth signed distance to the boundary of a workspace."""
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -40,33 +41,29 @@ class BoundaryDistance:
 
     def at(self, position: np.ndarray) -> tuple[float, np.ndarray]:
         """(distance [m], gradient (3,)) at a position (3,) in the world."""
-        u = (self.axes @ position - self.origin) / self.cell_m
-        first = np.minimum(np.maximum(np.floor(u).astype(np.int64), 1), np.array(self.values.shape) - 3)
-        weights, slopes = _spline(np.minimum(np.maximum(u - first, 0.0), 1.0))
-        block = self.values[tuple(slice(k - 1, k + 3) for k in first.tolist())]
-        return _contracted(block, weights), self._gradient(block, weights, slopes) / self.cell_m
-
-    def _gradient(self, block: np.ndarray, weights: np.ndarray, slopes: np.ndarray) -> np.ndarray:
-        parts = np.empty(len(weights))
-        for axis in range(len(weights)):
-            mixed = weights.copy()
-            mixed[axis] = slopes[axis]
-            parts[axis] = _contracted(block, mixed)
-        return parts @ self.axes
+        u = ((self.axes @ position - self.origin) / self.cell_m).tolist()
+        first = [min(max(math.floor(x), 1), size - 3) for x, size in zip(u, self.values.shape, strict=True)]
+        splines = np.array([_spline(min(max(x - k, 0.0), 1.0)) for x, k in zip(u, first, strict=True)])
+        block = self.values[tuple([slice(k - 1, k + 3) for k in first])]
+        dimensions = len(first)
+        for axis in range(dimensions - 1, -1, -1):  # its weights and slopes become the last axis, of length 2
+            block = block.swapaxes(axis, -1) @ splines[axis]
+        slopes = np.array([block[place] for place in _PLACES[dimensions]])
+        return float(block[(0,) * dimensions]), slopes @ self.axes / self.cell_m
 
 
-def _spline(t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Weights (d, 4) of the uniform cubic B-spline at t (d,) in 0 … 1, and their derivatives."""
+_PLACES = {1: [(1,)], 2: [(0, 1), (1, 0)], 3: [(0, 0, 1), (1, 0, 0), (0, 1, 0)]}  # of the slope along each axis
+
+
+def _spline(t: float) -> list[tuple[float, float]]:
+    """Weights of the uniform cubic B-spline at t in 0 … 1, and their derivatives, (4, 2)."""
     s = 1 - t
-    weights = np.stack([s**3, 4 - 6 * t**2 + 3 * t**3, 4 - 6 * s**2 + 3 * s**3, t**3], axis=1) / 6
-    slopes = np.stack([-(s**2), 3 * t**2 - 4 * t, 4 * s - 3 * s**2, t**2], axis=1) / 2
-    return weights, slopes
-
-
-def _contracted(block: np.ndarray, weights: np.ndarray) -> float:
-    for axis in range(len(weights) - 1, -1, -1):
-        block = block @ weights[axis]
-    return float(block)
+    return [
+        (s * s * s / 6, -s * s / 2),
+        ((4 - 6 * t * t + 3 * t * t * t) / 6, (3 * t * t - 4 * t) / 2),
+        ((4 - 6 * s * s + 3 * s * s * s) / 6, (4 * s - 3 * s * s) / 2),
+        (t * t * t / 6, t * t / 2),
+    ]
 
 
 def boundary_distance(chain: Chain, choice: BoundaryForce, device: str = "cpu") -> BoundaryDistance:

@@ -19,7 +19,7 @@ from wsrender.kinetostatics.conditioning import Condition, Conditioning, Conditi
 from wsrender.kinetostatics.joint_limits import JointLimits
 from wsrender.kinetostatics.kinematics import Kinematics, Posture
 from wsrender.kinetostatics.obstacles import ObstacleDistance
-from wsrender.kinetostatics.singular_values import damped_inverse
+from wsrender.kinetostatics.singular_values import damped_inverse, damped_inverse_of
 from wsrender.kinetostatics.surfaces import SurfaceRamp
 from wsrender.robot import Robot, as_robot
 from wsrender.robot.indices import task_rows
@@ -89,6 +89,7 @@ class ForceField:
         if things := choice.obstacles:
             self._obstacles = SurfaceRamp(ObstacleDistance(things), things.margin_m, things.stiffness_n_per_m, peak)
         self.is_wrench = self.device.kind == "wrench"
+        self._same_rows = rows == ((0, 1, 2, 3, 4, 5) if self.is_wrench else (0, 1, 2))
         self._normalised = choice.form == "normalised"
         self._ones = np.ones(6 if self.is_wrench else 3)
         self._row_scale = np.array([1 / length] * 3 + [1.0] * 3)[:, None]
@@ -125,7 +126,7 @@ class ForceField:
         at_limits = self._has_limits and bool(penetration.any())
         share = self._ramp.share(condition.inverse) if self._ramp else 0.0
         if at_limits or share > 0.0:
-            inverse = self._inverse(posture)
+            inverse = self._inverse(posture, condition)
             if at_limits:
                 self._add_limits(pushes, penetration, inverse)
             if share > 0.0:
@@ -161,8 +162,10 @@ class ForceField:
             return configuration_rows(q, self.chain.n)[0]  # says what is wrong, or takes a single row
         return q
 
-    def _inverse(self, posture: Posture) -> np.ndarray:
-        """Damped pseudo-inverse of the linear, or of the homogeneous Jacobian."""
+    def _inverse(self, posture: Posture, condition: Condition | None = None) -> np.ndarray:
+        """Damped pseudo-inverse of the linear, or of the homogeneous Jacobian, which may be that of the condition."""
+        if condition is not None and self._same_rows:
+            return damped_inverse_of(condition.u, condition.sigma, condition.v)
         return damped_inverse(posture.J * self._row_scale if self.is_wrench else posture.J[:3])
 
     def _dual(self, homogeneous: np.ndarray) -> np.ndarray:

@@ -25,7 +25,11 @@ def damped_inverse(A: np.ndarray) -> np.ndarray:
     Numerical filtering (Maciejewski and Klein 1988) with λ² = ε² − σ² (Nakamura and Hanafusa 1986): a singular value
     above ε = σ_1 / 100 is inverted exactly, one below counts as σ/ε², which is 0 where there is no motion at all.
     """
-    u, sigma, v = decomposed(A)
+    return damped_inverse_of(*decomposed(A))
+
+
+def damped_inverse_of(u: np.ndarray, sigma: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """The damped pseudo-inverse of a matrix that is decomposed already."""
     if sigma[0] == 0.0:
-        return np.zeros(A.shape[::-1])
+        return np.zeros((v.shape[1], len(u)))
     return (v.T * (sigma / np.maximum(sigma, SMALL * sigma[0]) ** 2)) @ u.T
