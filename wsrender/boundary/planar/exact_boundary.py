@@ -14,7 +14,6 @@ from wsrender.boundary.planar.planar_set import PlanarSet
 from wsrender.boundary.planar.postures import postures
 from wsrender.boundary.planar.segments import ExactSegment
 from wsrender.boundary.planar.sweep import swept_sets
-from wsrender.boundary.planar.winding import winding_numbers
 from wsrender.errors import InputError
 from wsrender.robots.chain import Chain
 
@@ -75,7 +74,7 @@ class ExactBoundary:
     @property
     def area(self) -> float:
         """Area reached [m²]."""
-        return sum(loop.signed_area for loop in self.loops)
+        return float(sum(loop.signed_area for loop in self.loops))
 
     @property
     def perimeter(self) -> float:
@@ -157,8 +156,7 @@ class ExactBoundary:
             gap, rows = apart[np.arange(len(points)), place], place
             nearest = _projected(reached, self.order[place], points)
         inside = gap <= 1e-12 * self.chain.size
-        if self.dimension == 2:
-            inside |= winding_numbers(points, reached.curves, reached.sign) > 0.5
+        inside |= reached.contains(points)
         return Nearest(inside, nearest + self.chain.shift, gap, rows)
 
 

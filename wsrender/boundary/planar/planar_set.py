@@ -53,8 +53,8 @@ class PlanarSet:
             out[ends[ends >= 0]] = k
         return out
 
-    def contains(self, points: np.ndarray, margin: np.ndarray) -> np.ndarray:
-        """Whether points (K, 2) that keep ``margin`` (K,) [m] from the boundary lie in the region, (K,)."""
+    def contains(self, points: np.ndarray) -> np.ndarray:
+        """Whether points (K, 2) that lie on no boundary piece lie in the region, (K,)."""
         if self.dimension < 2:
             return np.zeros(len(points), bool)
         return winding_numbers(points, self.curves, self.sign) > 0.5
@@ -66,7 +66,7 @@ class PlanarSet:
         from this set too if they miss it.
         """
         orbits = joint.orbits(points)
-        met = self.contains(orbits.start, margin)
+        met = self.contains(orbits.start)
         rest = np.flatnonzero(~met)
         if len(rest):
             met[rest] = orbit_distances(orbits[rest], self.curves) < margin[rest] / 2
