@@ -53,6 +53,8 @@ def _facts(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
         mode = found["working_mode"]
         own = [each for each in document["aspects"] if each["working_mode"] == mode]
         yield f"working mode {mode}", f"{found['area_m2']:.8g} m², {len(own)} aspects without type 2 singularities"
+    if document.get("analysis") == "method_comparison":
+        yield from _methods(document)
     if document.get("analysis") == "design_optimization":
         yield from _design(document)
     bounds = document.get("bounds_m") or {}
@@ -62,6 +64,14 @@ def _facts(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
     for name, value in (document.get("global") or {}).items():
         if isinstance(value, int | float):
             yield name.replace("_", " "), f"{value:.4g}"
+
+
+def _methods(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
+    """Volume, error and time of every run."""
+    for run in document["methods"]:
+        name = run["method"] if run["size_m"] is None else f"{run['method']} {run['size_m']:.3g} m"
+        wrong = "" if run["relative_error"] is None else f", error {100 * run['relative_error']:+.3g} %"
+        yield name.replace("grid_by_", "by "), f"{run['volume_m3']:.6g} m³{wrong}, {document['timing_s'][name]:.3g} s"
 
 
 def _design(document: dict[str, Any]) -> Iterator[tuple[str, str]]:

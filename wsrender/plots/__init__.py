@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from wsrender.plots.distribution import histogram, write_histogram_csv
     from wsrender.plots.five_bar import aspect_maps, conditioning_maps
     from wsrender.plots.master_slave import mapped_points
-    from wsrender.plots.method_comparison import errors_and_times
+    from wsrender.plots.method_comparison import errors_by_size
     from wsrender.plots.orientation_map import orientations
     from wsrender.plots.planes import slice_plane, slices
     from wsrender.plots.point_cloud import scatter
@@ -33,7 +33,7 @@ _MODULES = {
     "aspect_maps": "five_bar",
     "conditioning_maps": "five_bar",
     "curves": "table_curves",
-    "errors_and_times": "method_comparison",
+    "errors_by_size": "method_comparison",
     "histogram": "distribution",
     "png": "style",
     "limits_and_ellipsoids": "posture",
@@ -57,7 +57,7 @@ __all__ = [
     "aspect_maps",
     "conditioning_maps",
     "curves",
-    "errors_and_times",
+    "errors_by_size",
     "histogram",
     "limits_and_ellipsoids",
     "mapped_points",

@@ -14,7 +14,7 @@ from wsrender.plots.designs import sweep_surface, trade_off
 from wsrender.plots.distribution import histogram
 from wsrender.plots.five_bar import MODE_VOLUMES, aspect_maps, conditioning_maps
 from wsrender.plots.master_slave import mapped_points
-from wsrender.plots.method_comparison import errors_and_times
+from wsrender.plots.method_comparison import errors_by_size
 from wsrender.plots.orientation_map import orientations
 from wsrender.plots.planes import slice_plane, slices
 from wsrender.plots.point_cloud import scatter
@@ -69,8 +69,8 @@ class ResultPlots:
         return sweep_surface(self._table("sweep"), value, title=self.title)
 
     def methods(self) -> Figure:
-        """Errors and times of the methods of a comparison against the edge of their voxels or triangles."""
-        return errors_and_times(self._table("methods"), title=self.title)
+        """Errors of the methods of a comparison against the edge of their voxels or triangles."""
+        return errors_by_size(self._table("methods"), title=self.title)
 
     def trade_off(self, x: str, y: str) -> Figure:
         """Two objectives of a Pareto search against each other."""

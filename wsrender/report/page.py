@@ -24,7 +24,7 @@ _CAPTIONS = {
     "convergence": "The best value so far",
     "sweep": "The value over the designs",
     "pareto": "Objectives against each other",
-    "methods": "Errors and times of four methods",
+    "methods": "Errors of the methods by the size of their voxels and triangles",
     "robot": "The arm in its workspace",
     "scatter": "Samples",
     "slices": "Voxels in three planes",

@@ -27,7 +27,7 @@ Arrays = dict[str, np.ndarray]
 GRIDS, EXACT, SOLIDS = ("grid", "grid_by_subsystem"), "exact", "solids"
 PARTS = (5, 10, 20, 40)  # of the volume's cube root
 ICOSAHEDRON_EDGE = 1.0515  # of the radius of the sphere around it
-UNITS = {"size": "m", "volume": "m^3", "time": "s"}
+UNITS = {"size": "m", "volume": "m^3"}
 
 
 @dataclass(eq=False)
@@ -77,12 +77,12 @@ class MethodComparisonPlan:
         raise ValueError("method_comparison has one shard")
 
     def finish(self, partial: Arrays, seconds: dict[str, float]) -> Result:
-        """The table of all runs, with errors from the exact volume."""
+        """The table of all runs, with errors from the exact volume; their times are in ``timing_s``."""
         method, (size, volume, took) = partial["method"], partial["numbers"].T
         exact = ExactWorkspace.of(self.region)
         with np.errstate(invalid="ignore", divide="ignore"):
             error = np.where(exact.volume_m3 > 0, volume / exact.volume_m3 - 1, np.nan)
-        columns = {"method": method, "size": size, "volume": volume, "relative_error": error, "time": took}
+        columns = {"method": method, "size": size, "volume": volume, "relative_error": error}
         document = {
             "analysis": "method_comparison",
             "job": job_entry(self.job),
@@ -94,14 +94,11 @@ class MethodComparisonPlan:
                     "size_m": None if np.isnan(edge) else edge,
                     "volume_m3": found,
                     "relative_error": None if np.isnan(wrong) else wrong,
-                    "time_s": spent,
                 }
-                for name, edge, found, wrong, spent in zip(
-                    method, size.tolist(), volume.tolist(), error.tolist(), took.tolist(), strict=True
-                )
+                for name, edge, found, wrong in zip(method, size.tolist(), volume.tolist(), error.tolist(), strict=True)
             ],
             "provenance": provenance("float64", self.target),
-            "timing_s": seconds,
+            "timing_s": {**seconds, **dict(zip(map(_label, method, size), took.tolist(), strict=True))},
         }
         return Result(document, tables={"methods": Table(columns, UNITS)})
 
@@ -139,6 +136,11 @@ class MethodComparisonPlan:
         )
         partial = plan_parallel(job).run_shard(0, None, **({"threads": threads} if threads else {}))
         return len(partial["cells"]) * size**3
+
+
+def _label(method: str, size: float) -> str:
+    """Name of a run's time."""
+    return str(method) if np.isnan(size) else f"{method} {size:.3g} m"
 
 
 def plan_method_comparison(job: MethodComparisonJob, resolved: dict[str, Any] | None = None) -> MethodComparisonPlan:
