@@ -210,6 +210,30 @@ def test_aspects_are_the_components_of_a_lattice(five_bar):
             np.testing.assert_allclose(counted, exact, atol=0.02 * region.area_m2)
 
 
+@pytest.mark.parametrize(
+    "five_bar",
+    [
+        FiveBar.symmetric(4.0, 1.0, 2.0),  # flat postures of a parallelogram
+        FiveBar.symmetric(4.0, 4.0, 2.0),  # a rhombus, which folds onto the type 1 singularity
+        FiveBar(6.0, (6.0, 4.0), (5.0, 1.0)),  # a kite that does
+        FiveBar(2.0, (1.0, 2.0), (3.0, 2.0)),
+        FiveBar(3.0, (3.0, 3.0), (6.0, 3.0), (None, (0.0, 7 * math.pi / 4))),
+        FiveBar(4.0, (4.0, 6.0), (1.0, 5.0), (None, (0.0, 5 * math.pi / 4))),
+        FiveBar(2.0, (3.0, 4.0), (3.0, 6.0), ((math.pi, 11 * math.pi / 4), (-math.pi, 0.0))),
+    ],
+)
+def test_aspects_of_mechanisms_that_can_lie_flat(five_bar):
+    """Their loci end where both legs are stretched or folded at once, where boundaries touch, or run along one."""
+    for mode in WORKING_MODES:
+        found = all_aspects(five_bar, mode)
+        region = workspace(five_bar, mode)
+        assert sum(each.area_m2 for each in found) == pytest.approx(region.area_m2, abs=1e-9 * five_bar.size_m**2)
+        det_a, cell = determinants(five_bar, mode, 300)
+        for assembly, side in (("+", det_a > 0), ("-", det_a < 0)):
+            area = sum(each.area_m2 for each in found if each.assembly_mode == assembly)
+            assert area == pytest.approx(np.count_nonzero(side) * cell, abs=0.5 * region.perimeter_m * math.sqrt(cell))
+
+
 def test_areas_of_the_aspects_of_the_paper():
     """By symmetry two halves in ++ and −−; in the others bounded by circles and the coupler curve with c = 2 L2."""
     half = (338 * math.acos(3 / 13) - 24 * math.sqrt(10) - 18 * math.pi) / 2

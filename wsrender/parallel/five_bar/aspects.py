@@ -9,7 +9,7 @@ import numpy as np
 from wsrender.errors import NumericalError
 from wsrender.parallel.five_bar.arcs import Arc
 from wsrender.parallel.five_bar.conditioning import conditioning
-from wsrender.parallel.five_bar.loci import Piece, end_point
+from wsrender.parallel.five_bar.loci import BESIDE, Event, Piece, end_point
 from wsrender.parallel.five_bar.mechanism import FiveBar
 from wsrender.parallel.five_bar.region import Region
 
@@ -52,7 +52,7 @@ def aspects(five_bar: FiveBar, working_mode: str, region: Region, pieces: Iterab
     """
     bounding = {arc.name for loop in region.loops for arc in loop}
     # A piece that ends on no arc of the boundary lies where rounding leaves no workspace.
-    pieces = [each for each in pieces if {event.arc for event in (each.start, each.stop) if event} <= bounding]
+    pieces = [each for each in pieces if all(_meets(event, bounding) for event in (each.start, each.stop) if event)]
     loops = _boundary_loops(five_bar, region, [piece for piece in pieces if not piece.closed])
     for piece in pieces:
         if piece.closed:
@@ -60,8 +60,15 @@ def aspects(five_bar: FiveBar, working_mode: str, region: Region, pieces: Iterab
     return _faces(five_bar, working_mode, loops)
 
 
+def _meets(event: Event, bounding: set[str]) -> bool:
+    return any(name in bounding for name, _ in event.arcs)
+
+
 def _both_ways(five_bar: FiveBar, piece: Piece) -> tuple[_Edge, _Edge]:
     points = end_point(five_bar, piece.angles(SEGMENTS))
+    if not piece.closed:  # it begins and ends a little beside the boundary
+        share = BESIDE * SEGMENTS / (piece.high - piece.low)
+        points[[0, -1]] += share * (points[[0, -1]] - points[[1, -2]])
     area, error = _extrapolated_area(points)
     drawn = points[:: SEGMENTS // DRAWN]
     return _Edge(drawn, area, error), _Edge(drawn[::-1], -area, error)
@@ -159,10 +166,9 @@ def _place(five_bar: FiveBar, region: Region, piece: Piece, from_start: bool) ->
     candidates = []
     for number, loop in enumerate(region.loops):
         for position, arc in enumerate(loop):
-            if arc.name != event.arc:
-                continue
             span = arc.last - arc.first
-            for value in (event.value + turns * 2 * np.pi for turns in (-2, -1, 0, 1, 2)):
+            values = [value for name, value in event.arcs if name == arc.name]
+            for value in (value + turns * 2 * np.pi for value in values for turns in (-2, -1, 0, 1, 2)):
                 share = (value - arc.first) / span
                 beyond = round(max(-share, share - 1, 0.0) * abs(span) / TIED)
                 candidates.append((beyond, number, position, min(max(share, 0.0), 1.0)))
@@ -221,7 +227,8 @@ def _faces(five_bar: FiveBar, working_mode: str, loops: list[list[_Edge]]) -> li
         sign = "+" if conditioning(five_bar, angles).det_a[0] > 0 else "-"
         area = float(sum(areas[part] for part in parts))
         found.append(Aspect(working_mode, sign, area, float(error), tuple(lines[part] for part in parts)))
-    return sorted(found, key=lambda aspect: -aspect.area_m2)
+    # Equal areas, of symmetric mechanisms, by their assembly mode: rounding does not decide the order.
+    return sorted(found, key=lambda aspect: (-round(aspect.area_m2 / size**2, 9), aspect.assembly_mode))
 
 
 def _inside_point(loop: list[_Edge], size: float) -> np.ndarray:

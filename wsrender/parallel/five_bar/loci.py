@@ -6,12 +6,15 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import fminbound, root_scalar
 
-from wsrender.parallel.five_bar.mechanism import WORKING_MODES, FiveBar, wrapped
+from wsrender.parallel.five_bar.mechanism import FiveBar, wrapped
 from wsrender.parallel.five_bar.region import LEGS
 
 _START = 0.1  # not 0: there and at π elbows often stretch, and a scan should have such events inside
 SCAN = np.linspace(_START, _START + 2 * np.pi, 1441)  # parameters between which one event is looked for
 TOUCHING = 1e-9  # sine or angle [rad] below which a curve touches a boundary without crossing it
+ON_ARC = 1e-6  # the same of postures that an event finds on an arc: roots of flat postures are found as squares
+ROUNDING = 1e-13  # the same of postures of a curve that runs along a boundary
+BESIDE = 1e-10  # how far beside a cut a piece begins: at cuts where an elbow meets a base, the curve has a jump
 MERGED = 1e-7  # events nearer than this in the curve's parameter are one
 
 
@@ -33,11 +36,14 @@ class Curve:
 
 @dataclass(frozen=True)
 class Event:
-    """Where a curve meets the boundary of a working mode: parameter t, name of the arc, and joint angle along it."""
+    """Where a curve meets the boundary of a working mode: parameter t, and the arcs that meet there.
+
+    ``arcs`` holds (name, joint angle along it) of each; in flat postures both legs have one, not all of them bound the
+    workspace.
+    """
 
     t: float
-    arc: str
-    value: float
+    arcs: tuple[tuple[str, float], ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -170,80 +176,93 @@ def _turned(v: np.ndarray) -> np.ndarray:
 def pieces(curve: Curve) -> list[Piece]:
     """The curve, cut where it meets a type-1 singularity or a limit of a base joint, less what limits exclude.
 
-    The cuts are known within 1e-12 of the parameter.
+    The cuts are known within 1e-10 of the parameter.
     """
-    events = _events(curve)
-    if not events:
+    cuts = _cuts(curve)
+    if not cuts:
         mode = _mode_at(curve, 1.0)
         return [Piece(curve, mode, 0.0, 2 * np.pi)] if mode else []
     found = []
-    for start, stop in zip(events, [*events[1:], events[0]], strict=True):
-        high = stop.t if stop.t > start.t else stop.t + 2 * np.pi
-        mode = _mode_at(curve, (start.t + high) / 2)
+    for (_, start), (stop, _) in zip(cuts, [*cuts[1:], cuts[0]], strict=True):
+        low, high = start + BESIDE, (stop if stop > start else stop + 2 * np.pi) - BESIDE
+        mode = _mode_at(curve, (low + high) / 2)
         if mode:
-            found.append(Piece(curve, mode, start.t, high, start, stop))
+            found.append(Piece(curve, mode, low, high, _event(curve, low), _event(curve, high)))
     return found
 
 
 def _mode_at(curve: Curve, t: float) -> str | None:
-    """The working mode at a parameter; None beyond the limits, or on a boundary."""
+    """The working mode at a parameter; None beyond the limits, or where an elbow is stretched or folded."""
     angles = curve.angles(np.array([t]))[0]
-    signs = np.sign(np.sin(angles[2:] - angles[:2]))
+    sines = np.sin(angles[2:] - angles[:2])
     within = [not np.isnan(curve.five_bar.within_limits(angles[leg : leg + 1], leg)[0]) for leg in (0, 1)]
-    name = "".join("+" if sign > 0 else "-" for sign in signs)
-    return name if all(signs) and all(within) and name in WORKING_MODES else None
+    return (
+        "".join("+" if sine > 0 else "-" for sine in sines) if all(np.abs(sines) > TOUCHING) and all(within) else None
+    )
 
 
-def _events(curve: Curve) -> list[Event]:
-    """Where an elbow is stretched or folded, or a base joint at a limit, in the order of t; one of those that meet."""
-    events = [event for leg in (0, 1) for event in (*_elbow_events(curve, leg), *_limit_events(curve, leg))]
-    events.sort(key=lambda event: event.t)
-    apart = [event for k, event in enumerate(events) if k == 0 or event.t - events[k - 1].t > MERGED]
-    if len(apart) > 1 and apart[0].t + 2 * np.pi - apart[-1].t <= MERGED:
-        apart.pop()
-    return apart
+def _cuts(curve: Curve) -> list[tuple[float, float]]:
+    """Where an elbow is stretched or folded, or a base joint at a limit: first and last t of those that are one."""
+    found = sorted(
+        t for leg in (0, 1) for function in (_elbow_sine, _beyond_limit) for t in _roots(curve, leg, function)
+    )
+    cuts: list[tuple[float, float]] = []
+    for t in found:
+        if cuts and t - cuts[-1][1] <= MERGED:
+            cuts[-1] = cuts[-1][0], t
+        else:
+            cuts.append((t, t))
+    if len(cuts) > 1 and cuts[0][0] + 2 * np.pi - cuts[-1][1] <= MERGED:
+        first, _ = cuts.pop()
+        cuts[0] = first - 2 * np.pi, cuts[0][1]
+    return cuts
 
 
-def _elbow_events(curve: Curve, leg: int) -> Iterator[Event]:
-    def sine(t: float) -> float:
-        angles = curve.angles(np.array([t]))[0]
-        return float(np.sin(angles[2 + leg] - angles[leg]))
+def _event(curve: Curve, t: float) -> Event:
+    """The arcs on which a posture lies: of flat ones both legs', not only that of the leg that cuts the curve."""
+    angles, arcs = curve.angles(np.array([t])), []
+    for leg, side in enumerate(LEGS):
+        elbow = float(wrapped(angles[:, 2 + leg] - angles[:, leg])[0])
+        if abs(np.sin(elbow)) < ON_ARC:
+            arcs.append((f"{side} {'outer' if np.cos(elbow) > 0 else 'inner'}", float(angles[0, leg])))
+        limits = curve.five_bar.limits_rad[leg]
+        if limits is not None and abs(_beyond_limit(curve.five_bar, angles, leg)[0]) < ON_ARC:
+            high = wrapped(angles[:, leg] - sum(limits) / 2)[0] > 0
+            arcs.append((f"{side} {'high' if high else 'low'}", abs(elbow)))
+    return Event(t, tuple(arcs))
 
-    angles = curve.angles(SCAN)
-    for root in _roots(sine, np.sin(angles[:, 2 + leg] - angles[:, leg])):
-        at = curve.angles(np.array([root]))[0]
-        stretched = np.cos(at[2 + leg] - at[leg]) > 0
-        yield Event(root, f"{LEGS[leg]} {'outer' if stretched else 'inner'}", float(at[leg]))
+
+def _elbow_sine(five_bar: FiveBar, angles: np.ndarray, leg: int) -> np.ndarray:
+    """0 where the leg is stretched or folded; what is nothing but rounding is 0."""
+    sine = np.sin(angles[:, 2 + leg] - angles[:, leg])
+    return np.where(np.abs(sine) < ROUNDING, 0.0, sine)
 
 
-def _limit_events(curve: Curve, leg: int) -> Iterator[Event]:
-    limits = curve.five_bar.limits_rad[leg]
+def _beyond_limit(five_bar: FiveBar, angles: np.ndarray, leg: int) -> np.ndarray:
+    """How far a base joint is beyond its limits [rad], below 0 within them; −1 where it has none."""
+    limits = five_bar.limits_rad[leg]
     if limits is None:
-        return
-    middle, half = (limits[0] + limits[1]) / 2, (limits[1] - limits[0]) / 2
-
-    def beyond(t: float) -> float:
-        return float(abs(wrapped(curve.angles(np.array([t]))[:, leg] - middle)[0]) - half)
-
-    for root in _roots(beyond, np.abs(wrapped(curve.angles(SCAN)[:, leg] - middle)) - half):
-        at = curve.angles(np.array([root]))[0]
-        name = "high" if wrapped(at[leg : leg + 1] - middle)[0] > 0 else "low"
-        elbow = abs(float(wrapped(at[2 + leg : 3 + leg] - at[leg])[0]))
-        yield Event(root, f"{LEGS[leg]} {name}", elbow)
+        return np.full(len(angles), -1.0)
+    beyond = np.abs(wrapped(angles[:, leg] - sum(limits) / 2)) - (limits[1] - limits[0]) / 2
+    return np.where(np.abs(beyond) < ROUNDING, 0.0, beyond)
 
 
-def _roots(function: Callable[[float], float], values: np.ndarray) -> list[float]:
-    """Roots over a turn of a function whose values at SCAN are known: where it changes sign, and where it touches 0."""
-    t = SCAN[:-1]
+def _roots(curve: Curve, leg: int, function: Callable[[FiveBar, np.ndarray, int], np.ndarray]) -> list[float]:
+    """Parameters of a turn at which a function of the posture changes its sign, or touches 0."""
+
+    def value(t: float) -> float:
+        return float(function(curve.five_bar, curve.angles(np.array([t])), leg)[0])
+
+    t, values = SCAN[:-1], function(curve.five_bar, curve.angles(SCAN), leg)
     roots = list(t[values[:-1] == 0])
     for k in np.flatnonzero(values[:-1] * values[1:] < 0):
-        roots.append(float(root_scalar(function, bracket=(SCAN[k], SCAN[k + 1]), xtol=1e-14, rtol=1e-14).root))
+        roots.append(float(root_scalar(value, bracket=(SCAN[k], SCAN[k + 1]), xtol=1e-14, rtol=1e-14).root))
     size, step = np.abs(values[:-1]), t[1] - t[0]
     before, after = np.roll(values[:-1], 1), np.roll(values[:-1], -1)
     keeps_sign = (before * values[:-1] > 0) & (values[:-1] * after > 0)
     for k in np.flatnonzero(keeps_sign & (size < np.abs(before)) & (size <= np.abs(after)) & (size < 10 * step)):
         # In terms of the distance from t[k]: the search is as exact as its variable is small.
-        away = fminbound(lambda x, at=t[k]: abs(function(at + x)), -step, step, xtol=1e-14)
-        if abs(function(t[k] + away)) < TOUCHING:
+        away = fminbound(lambda x, at=t[k]: abs(value(at + x)), -step, step, xtol=1e-14)
+        if abs(value(t[k] + away)) < TOUCHING:
             roots.append(float(t[k] + away))
-    return sorted(roots)
+    return roots
