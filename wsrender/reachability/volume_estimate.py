@@ -127,7 +127,7 @@ class _Estimation:
 
     def _narrow(self, volumes: dict[str, VolumeEstimate]) -> None:
         """Take more points, or cut strata, as the widest of the intervals needs it."""
-        needed = np.max([self._needed(k, v) for k, v in enumerate(volumes.values())], axis=0)
+        needed = np.ceil(np.max([self._needed(k, v) for k, v in enumerate(volumes.values())], axis=0))
         missing = np.maximum(needed - [s.count for s in self.strata], 0).sum()
         self.expected = int(min(self.points + missing, self.max_points))
         left = self.max_points - self.points
