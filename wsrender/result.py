@@ -40,10 +40,7 @@ if TYPE_CHECKING:
 STANDARD_FORMATS = ("parquet", "vtkhdf", "glb", "ply", "png")
 REPORT_VIEWS = ("boundary", "isosurface")
 EXTRA_FORMATS = ("npz", "csv", "mat", "stl", "svg")
-
-CURVES = ("scan", "refinements", "scales", "convergence")  # tables that are drawn
 PLANAR_BOUNDARY = "boundary"  # table of the lines and arcs around what a planar arm reaches
-CURVES = ("scan", "refinements", "scales")  # tables that are drawn
 
 
 @dataclass(eq=False)
@@ -128,13 +125,17 @@ class Result:
     def _drawable(self) -> tuple[DistributionMap | None, VolumeData | None, np.ndarray | None]:
         return self.sample if self.sample is not None else self.map, self.volume, self.skeleton
 
+    def _pictures(self) -> "dict[str, Callable[[], Figure]]":
+        """What draws each picture that the result has data for, by its name."""
+        return plots.pictures_of(self.plot, self.document)
+
     def report(self, path: str | Path, views: Iterable[str] = REPORT_VIEWS) -> None:
         """Write one HTML page with pictures, tables, provenance and the job document; it needs no network.
 
         ``views`` are the 3-D pictures, of those of ``render``; without the extra ``render`` or OpenGL they are left
         out, with a RenderWarning and a note in the page. Raises InputError for an unknown view.
         """
-        pictures = [Picture(name, plots.png(draw())) for name, draw in _pictures(self).items()]
+        pictures = [Picture(name, plots.png(draw())) for name, draw in self._pictures().items()]
         notes = []
         has_volume = any(each.volume is not None and each.volume.occupied.any() for each in self._subjects(""))
         for view in views if has_volume else ():
@@ -231,7 +232,7 @@ def _artifacts(result: Result, formats: tuple[str, ...]) -> Iterator[Artifact]:
     for name, data in {"map": result.map, "sample": result.sample, **result.tables}.items():
         if data is not None:
             yield from _table_files(name, data, formats)
-    if PLANAR_BOUNDARY in result.tables:
+    if result.document.get("analysis") == "planar_boundary" and PLANAR_BOUNDARY in result.tables:
         drawing = result.tables[PLANAR_BOUNDARY]
         for ending in ("dxf", "svg"):
             write = partial(getattr(export, f"write_{ending}"), drawing)
@@ -273,7 +274,7 @@ def _mesh_files(name: str, mesh: "trimesh.Trimesh", formats: tuple[str, ...]) ->
 
 def _picture_files(result: Result, formats: tuple[str, ...]) -> Iterator[Artifact]:
     """PNG, and SVG if asked, of each picture that the result has data for."""
-    pictures = _pictures(result)
+    pictures = result._pictures()
     if "histogram" in pictures and result.plot.samples is not None:
         write = partial(plots.write_histogram_csv, result.plot.samples)
         yield Artifact("plots/histogram.csv", write, frame=None)
@@ -281,65 +282,3 @@ def _picture_files(result: Result, formats: tuple[str, ...]) -> Iterator[Artifac
         figure = draw()
         for ending in ("png", *(["svg"] if "svg" in formats else [])):
             yield Artifact(f"plots/{name}.{ending}", partial(plots.save_figure, figure))
-
-
-def _pictures(result: Result) -> "dict[str, Callable[[], Figure]]":
-    """What draws each picture that the result has data for, by its name."""
-    plot = result.plot
-    rows = 0 if plot.samples is None else len(plot.samples)
-    pictures: dict[str, Callable[[], Figure]] = {}
-    if result.skeleton is not None and len(result.skeleton):
-        pictures["robot"] = plot.robot
-    if rows:
-        pictures["scatter"] = plot.scatter
-    if result.volume is not None and result.volume.occupied.any():
-        pictures["slices"] = plot.slices
-    if plot.samples is not None and plot.samples.indices and rows:
-        pictures["histogram"] = plot.histogram
-    pictures |= {name: partial(plot.curves, name) for name in CURVES if len(result.tables.get(name, ()))}
-    if result.volume is not None and result.volume.vectors:
-        pictures["field"] = plot.vectors
-    if result.document.get("analysis") == "planar_boundary":
-        pictures["boundary"] = plot.boundary
-    if {"posture", "ellipsoids"} <= set(result.tables):
-        pictures["posture"] = plot.posture
-    if "mapping" in result.tables:
-        pictures["mapping"] = plot.mapping
-    if "orientations" in result.tables:
-        pictures["orientations"] = plot.orientations
-    if result.document.get("analysis") == "robot_comparison":
-        pictures["comparison"] = plot.side_by_side
-    if "methods" in result.tables:
-        pictures["methods"] = plot.methods
-    if result.document.get("analysis") == "design_optimization":
-        pictures |= _design_pictures(result)
-    if result.volume is not None and result.volume.statistics.get("product"):
-        pictures["product"] = partial(plot.slices, statistic="product")
-    if "aspect_outlines" in result.tables:
-        pictures |= _five_bar_pictures(plot)
-    return pictures
-
-
-def _five_bar_pictures(plot: "ResultPlots") -> "dict[str, Callable[[], Figure]]":
-    """κ(A), κ(B) and κ(J) in both spaces, and the aspects."""
-    pictures: dict[str, Callable[[], Figure]] = {"aspects": plot.aspects}
-    for space in ("cartesian", "joint"):
-        for matrix in "abj":
-            pictures[f"kappa_{matrix}_{space}"] = partial(plot.conditioning, matrix, space)
-    return pictures
-
-
-def _design_pictures(result: Result) -> "dict[str, Callable[[], Figure]]":
-    """The values of a sweep over one or two parameters, and the first two objectives of a Pareto search."""
-    plot, parameters = result.plot, result.document["parameters"]
-    pictures: dict[str, Callable[[], Figure]] = {}
-    if "sweep" in result.tables and result.document["best"] is not None:
-        values = [array for name, array in list(result.tables["sweep"].columns.items())[:2]]
-        if len(parameters) == 1:
-            pictures["sweep"] = partial(plot.curves, "sweep")
-        elif len(parameters) == 2 and min(len(np.unique(array)) for array in values) > 1:
-            pictures["sweep"] = plot.sweep
-    if len(result.tables.get("pareto", ())):
-        names = [objective["name"] for objective in result.document["objectives"]]
-        pictures["pareto"] = partial(plot.trade_off, *names[:2])
-    return pictures

@@ -8,6 +8,7 @@ import pytest
 
 from tests.reference.exact_volumes import articulated, spherical_pair
 from wsrender import cli
+from wsrender.cli.reproduce import NAMES
 from wsrender.errors import InputError
 from wsrender.indices.catalogue import DYNAMIC, KINEMATIC
 from wsrender.reproduce import CASES, Row, cases, gao, reproduce, wsrender_tables
@@ -165,6 +166,7 @@ def test_differences():
     row = Row("arm", "V", "m³", 0.6, published=0.5, exact=0.8)
     assert (row.from_published, row.from_exact) == (pytest.approx(0.1), pytest.approx(-0.2))
     assert Row("arm", "V", "m³", None, published=0.5).from_published is None
+    assert Row("method A", "time", "s", 0.1, published=29.0).from_published is None  # another computer
 
 
 @pytest.fixture
@@ -225,6 +227,10 @@ def test_command_prints_json(case, capsys):
     first, second = json.loads(out)
     assert first["from_published"] == pytest.approx(0.1) and first["low"] == 0.55
     assert second["reproduced"] is None
+
+
+def test_the_help_names_every_case():
+    assert tuple(CASES) == NAMES
 
 
 def test_unknown_names_list_what_there_is(capsys):

@@ -141,6 +141,8 @@ def test_an_earlier_result_goes_on_without_evaluating_again(tmp_path):
     fields = {"search": {"method": "differential_evolution", "population": 5, "generations": 4}}
     parameters = platform_and_link([2.25, 2.5])
     first = ws.design_optimization(SIX_PUS, parameters, VOLUME, **fields)
+    first.save(tmp_path)
+    assert (tmp_path / "plots" / "convergence.png").exists()
     again = ws.design_optimization(SIX_PUS, parameters, VOLUME, resume=first, **fields)
     assert again.document["search"]["evaluated"] == 0
     assert again.document["best"] == first.document["best"]

@@ -13,13 +13,15 @@ from rich.table import Table
 from wsrender.cli.faults import one_line_faults
 from wsrender.progress import RunProgress
 
+# Of wsrender.reproduce.CASES, which are slow to import.
+NAMES = ("wsrender-table-3", "wsrender-table-6", "wsrender-mapping", "gao", "five-bar", "shah", "alciatore")
 PIPED_WIDTH = 260  # columns off a terminal: one value a line
 
 
 def reproduce(
     name: Annotated[
         str,
-        typer.Argument(metavar="NAME", help="wsrender-table-3, wsrender-table-6, gao, five-bar, shah, alciatore."),
+        typer.Argument(metavar="NAME", help=f"One of {', '.join(NAMES)}."),
     ],
     as_json: Annotated[bool, typer.Option("--json", help="Print the rows as JSON.")] = False,
     traceback: Annotated[bool, typer.Option("--traceback", help="Show where an error came from.")] = False,

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from wsrender.plots.designs import sweep_surface, trade_off
     from wsrender.plots.distribution import histogram, write_histogram_csv
     from wsrender.plots.five_bar import aspect_maps, conditioning_maps
+    from wsrender.plots.listing import pictures_of
     from wsrender.plots.master_slave import mapped_points
     from wsrender.plots.method_comparison import errors_by_size
     from wsrender.plots.orientation_map import orientations
@@ -39,6 +40,7 @@ _MODULES = {
     "limits_and_ellipsoids": "posture",
     "mapped_points": "master_slave",
     "orientations": "orientation_map",
+    "pictures_of": "listing",
     "planar_boundary": "arm_plane",
     "robot": "stick_figure",
     "save_figure": "style",
@@ -62,6 +64,7 @@ __all__ = [
     "limits_and_ellipsoids",
     "mapped_points",
     "orientations",
+    "pictures_of",
     "planar_boundary",
     "png",
     "robot",

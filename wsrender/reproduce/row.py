@@ -7,7 +7,8 @@ from dataclasses import dataclass
 class Row:
     """A quantity with its value as published, as reproduced here and exact, each None where there is none.
 
-    ``low`` and ``high`` are the ends of the 95 % interval of a reproduced value, where it has one.
+    ``low`` and ``high`` are the ends of the 95 % interval of a reproduced value, where it has one. A computing time,
+    in seconds, has no difference from a published one: that of another computer is no reference.
     """
 
     case: str
@@ -23,7 +24,9 @@ class Row:
     @property
     def from_published(self) -> float | None:
         """Reproduced minus published."""
-        return None if self.reproduced is None or self.published is None else self.reproduced - self.published
+        if self.reproduced is None or self.published is None or self.unit == "s":
+            return None
+        return self.reproduced - self.published
 
     @property
     def from_exact(self) -> float | None:

@@ -10,14 +10,12 @@ from wsrender.spec.document import Document
 from wsrender.spec.quantities import PositiveNumber, distinct, integer, quoted, real, sequence
 
 WORKING_MODES = ("++", "+-", "-+", "--")
+"""Signs of sin(θ3 − θ1) and sin(θ4 − θ2): the sides to which the left and the right elbow bend."""
 MOST_CELLS = 1_000_000  # of one working mode's map
 MOST_ROWS = 10_000  # of points and joint angles
-SHORTEST_M, LARGEST_M, LARGEST_RATIO = (
-    1e-6,
-    1e6,
-    1e4,
-)  # of lengths: squares of their sums and differences keep some digits
-LEAST_RANGE = 1e-3
+# Of lengths: squares of their sums and differences keep some digits.
+SHORTEST_M, LARGEST_M, LARGEST_RATIO = 1e-6, 1e6, 1e4
+LEAST_RANGE = 1e-3  # [rad] of a base joint: with less the workspace is a line
 _ONE_TURN = 2 * math.pi * (1 + 1e-12)
 
 

@@ -7,14 +7,11 @@ from typing import Any
 import numpy as np
 
 from wsrender.errors import InputError
+from wsrender.spec.five_bar import LEAST_RANGE, WORKING_MODES
 from wsrender.tolerances import CLOSURE
 
-WORKING_MODES = ("++", "+-", "-+", "--")
-"""Signs of sin(θ3 − θ1) and sin(θ4 − θ2): the sides to which the left and the right elbow bend."""
 ASSEMBLY_MODES = ("+", "-")
 """Sign of sin(θ4 − θ3): the side of the line from C to D on which P lies."""
-
-LEAST_RANGE = 1e-3  # [rad] of a base joint: with less the workspace is a line
 
 Pair = tuple[float, float]
 Interval = tuple[float, float]
