@@ -1,10 +1,12 @@
 import itertools
 import time
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
 
 from tests.parallel.ball_regions import at_origin, moved, random_region, region, six_pus
 from tests.parallel.mechanisms import known_ups, ups
@@ -129,6 +131,19 @@ def test_empty_regions_are_results(area):
 
 def test_an_empty_region_has_no_bounds():
     assert ExactWorkspace.of(region([(0, 0, 0, 1), (3, 0, 0, 1)])).bounds_m is None
+
+
+def test_bounds_along_any_axes():
+    """Of a half ball in closed form; of balls alone those of the same balls turned."""
+    axes = Rotation.random(20, rng=np.random.default_rng(3)).as_matrix().reshape(-1, 3)
+    low, high = ExactWorkspace.of(region([(0, 0, 0, 1)], lower=(-np.inf, -np.inf, 0))).bounds_along(axes)
+    level = np.hypot(axes[:, 0], axes[:, 1])
+    np.testing.assert_allclose(high, np.where(axes[:, 2] > 0, 1, level), atol=1e-12)
+    np.testing.assert_allclose(low, -np.where(axes[:, 2] < 0, 1, level), atol=1e-12)
+    balls = six_pus(region={"lower_m": [None, None, None]})
+    turned = replace(balls, **{n: getattr(balls, n) @ axes[:3].T for n in ("inside_centres", "outside_centres")})
+    found = ExactWorkspace.of(balls).bounds_along(axes[:3])
+    np.testing.assert_allclose(found, ExactWorkspace.of(turned).bounds_m, atol=1e-9)
 
 
 @pytest.mark.parametrize("gap", [0.0, 1e-16, 1e-13, 1e-11, 1e-9, 1e-7, 1e-5])

@@ -12,6 +12,7 @@ from wsrender.parallel.local_indices import pose_indices
 
 STEP = 1e-6
 NAMES = ("manipulability", "inverse_condition_number", "minimum_singular_value", "isotropy")
+KAPPAS = ("inverse_condition_number_A", "inverse_condition_number_J")
 RUS = {
     "legs": [
         {"type": "RUS", "base_m": [np.cos(a), np.sin(a), 0],
@@ -86,6 +87,9 @@ def test_indices_are_those_of_the_singular_values(name):
     sigma = np.array([np.linalg.svd(m, compute_uv=False) for m in matrix])
     np.testing.assert_allclose(values["manipulability"], np.abs(np.linalg.det(matrix)), rtol=1e-9)
     np.testing.assert_allclose(values["inverse_condition_number"], sigma[:, -1] / sigma[:, 0], rtol=1e-9)
+    np.testing.assert_allclose(1 / values["inverse_condition_number_J"], np.linalg.cond(matrix), rtol=1e-9)
+    angular = pose_indices(mech, poses, NAMES, rows[-3:], length)  # κ(J) is that of all rows, whatever the task
+    np.testing.assert_array_equal(angular["inverse_condition_number_J"], values["inverse_condition_number_J"])
     np.testing.assert_allclose(values["minimum_singular_value"], sigma[:, -1], rtol=1e-9)
     H = matrix @ np.swapaxes(matrix, 1, 2)
     m = len(rows)
@@ -102,7 +106,7 @@ def test_a_platform_with_similar_hexagons_is_never_held():
     """Base and platform similar and parallel: an architecture singularity (Ma & Angeles 1991); all indices are 0."""
     mech = mechanism({"library": "stewart_gough", "base_angle_deg": 60, "platform_angle_deg": 60})
     values = pose_indices(mech, poses_of([[0, 0, 0.6]]), NAMES, range(6))
-    assert all(values[name][0] == 0 for name in (*NAMES, "determinant_A", "inverse_condition_number_A"))
+    assert all(values[name][0] == 0 for name in (*NAMES, "determinant_A", *KAPPAS))
 
 
 def test_mechanisms_with_other_numbers_of_legs_have_no_indices():

@@ -5,6 +5,8 @@ import pytest
 
 import wsrender as ws
 from tests.parallel.mechanisms import known_ups, mechanism, poses_of, ups
+from wsrender.parallel.ball_region import ball_region
+from wsrender.parallel.exact import ExactWorkspace
 from wsrender.parallel.inverse_kinematics import inverse_kinematics
 from wsrender.parallel.singularities import sign_changes
 from wsrender.result import Result
@@ -45,6 +47,12 @@ def test_methods_by_the_boundary_agree(method, tolerance, link, exact, tmp_path)
     # The mechanism stands upright no more: its z points along -y, around x = 1.
     lower, upper = result.meshes["workspace"].bounds
     assert upper[1] < -0.9 and lower[0] > 0 and upper[0] < 2
+    if method == "exact":  # x, y, z of the world are x, -z, y of the base
+        upright = mechanism({"library": "six_pus", "link_m": link})
+        low, high = ExactWorkspace.of(ball_region(upright, np.eye(3))).bounds_m
+        bounds = result.document["bounds_m"]
+        np.testing.assert_allclose(bounds["lower"], [1 + low[0], -high[2], low[1]], atol=1e-12)
+        np.testing.assert_allclose(bounds["upper"], [1 + high[0], -low[2], high[1]], atol=1e-12)
     result.save(tmp_path / "out")
     assert (tmp_path / "out/workspace.glb").exists()
 
@@ -95,6 +103,13 @@ def test_indices_and_singularities_of_the_stewart_platform():
     assert np.isfinite(values[occupied]).all() and (values[occupied] >= 0).all() and (values[occupied] <= 1).all()
     assert np.isnan(values[~occupied]).all()
     assert result.document["indices"]["manipulability"]["maximum"] > 0
+    conditioning = result.document["conditioning"]
+    for matrix in "ABJ":  # the best κ, and the mean of 1/κ
+        inverse = result.volume.statistics["center"][f"inverse_condition_number_{matrix}"][occupied]
+        assert 1 <= conditioning[matrix]["least_condition_number"] == pytest.approx(1 / inverse.max())
+        assert conditioning[matrix]["mean_inverse"] == pytest.approx(inverse.mean())
+    np.testing.assert_array_equal(result.volume.statistics["center"]["inverse_condition_number_J"], values)
+    assert result.plot.slice(z=0.4, index="inverse_condition_number_J", statistic="center").axes
     entry = result.document["singularities"]
     assert entry["type_1"]["sign_changes"] == 0  # lengths always act
     assert entry["type_2"]["sign_changes"] > 0 and entry["type_2"]["negative_voxels"] > 0

@@ -13,6 +13,7 @@ from wsrender.parallel.mechanism import Mechanism
 OF_MECHANISMS = (
     "inverse_condition_number_A",
     "inverse_condition_number_B",
+    "inverse_condition_number_J",
     "determinant_A",
     "determinant_B",
 )
@@ -28,9 +29,9 @@ def pose_indices(
 ) -> dict[str, np.ndarray]:
     """Indices (N,) by name at reached poses (N, 4, 4), base frame, for task rows 0…5 (x y z rx ry rz).
 
-    After the six: 1/κ of A and of B, and their determinants. Where A is singular to rounding (type 2) the legs do not
-    hold the platform, and the six are 0. Raises InputError for a mechanism with more or fewer legs than degrees of
-    freedom.
+    After the six: 1/κ of A, of B and of J = A⁻¹ B (all rows, whatever the task), and the determinants of A and B. Where
+    A is singular to rounding (type 2) the legs do not hold the platform, and the six and 1/κ(J) are 0. Raises
+    InputError for a mechanism with more or fewer legs than degrees of freedom.
     """
     check_square(mechanism)
     batches = [poses[first : first + BATCH] for first in range(0, len(poses), BATCH)]
@@ -45,16 +46,22 @@ def _batch(mechanism: Mechanism, poses: np.ndarray, names, rows, length_m: float
     sigma_A = np.linalg.svd(A, compute_uv=False)
     size = np.abs(J.B)
     regular = sigma_A[:, -1] > len(mechanism.kinds) * np.finfo(float).eps * sigma_A[:, 0]
-    values = _six(J, regular, names, rows, length_m)
+    sigma = _singular_values(J, regular, rows, length_m)
+    m, n = len(rows), J.B.shape[-1]
+    columns: list[Any] = list(sigma.T)
+    values = {name: np.asarray(find(name).function(columns, m, n)) for name in names}
+    sigma_J = _singular_values(J, regular, range(J.A.shape[2]), length_m)
     return values | {
         "inverse_condition_number_A": np.where(regular, sigma_A[:, -1] / sigma_A[:, 0], 0.0),
         "inverse_condition_number_B": _ratio(size.min(axis=1), size.max(axis=1)),
+        "inverse_condition_number_J": _ratio(sigma_J[:, -1], sigma_J[:, 0]),
         "determinant_A": np.where(regular, np.linalg.det(A), 0.0),
         "determinant_B": J.B.prod(axis=1),
     }
 
 
-def _six(J: Jacobians, regular: np.ndarray, names, rows, length_m: float) -> dict[str, np.ndarray]:
+def _singular_values(J: Jacobians, regular: np.ndarray, rows: Sequence[int], length_m: float) -> np.ndarray:
+    """Of those rows of A⁻¹ B, largest first, (N, len(rows)); 0 where A is singular, and where only rounding is left."""
     rows = list(rows)
     mixed = min(rows) < 3 <= max(rows)
     scale = np.where(np.array(rows) < 3, 1.0 / length_m if mixed else 1.0, 1.0)
@@ -63,9 +70,7 @@ def _six(J: Jacobians, regular: np.ndarray, names, rows, length_m: float) -> dic
     sigma = np.linalg.svd(np.where(regular[:, None, None], task, 0.0), compute_uv=False)
     if m > n:
         sigma = np.concatenate([sigma, np.zeros((len(sigma), m - n))], axis=1)
-    sigma = np.where(sigma > max(m, n) * np.finfo(float).eps * sigma[:, :1], sigma, 0.0)
-    columns: list[Any] = list(sigma.T)
-    return {name: np.asarray(find(name).function(columns, m, n)) for name in names}
+    return np.where(sigma > max(m, n) * np.finfo(float).eps * sigma[:, :1], sigma, 0.0)
 
 
 def _ratio(smallest: np.ndarray, largest: np.ndarray) -> np.ndarray:

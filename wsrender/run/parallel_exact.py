@@ -46,10 +46,11 @@ def boundary_partial(plan: "ParallelPlan") -> "Arrays":
         found = ExactWorkspace.of(region)
         mesh, corners = found.mesh, found.vertices
         about = {"volume_m3": found.volume_m3, "area_m2": found.area_m2, "topology": asdict(found.topology)}
-        if found.bounds_m is not None and np.array_equal(plan.mechanism.T_world_base[:3, :3], np.eye(3)):
-            shift = plan.mechanism.T_world_base[:3, 3]
+        T = plan.mechanism.T_world_base
+        sides = found.bounds_along(T[:3, :3])  # a row is an axis of the world in the base frame
+        if sides is not None:
             about["bounds_m"] = {
-                name: (side + shift).tolist() for name, side in zip(("lower", "upper"), found.bounds_m, strict=True)
+                name: (side + T[:3, 3]).tolist() for name, side in zip(("lower", "upper"), sides, strict=True)
             }
     return {
         "about": np.array(json.dumps(about)),

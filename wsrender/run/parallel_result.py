@@ -54,6 +54,7 @@ def positions_result(plan: "ParallelPlan", partial: "Arrays", seconds: dict[str,
     tables = {}
     if volume and plan.names:
         changes = sign_changes(volume)
+        document["conditioning"] = _conditioning_entry(volume)
         document["singularities"] = _singularity_entry(volume, changes)
         tables["singularities"] = _singularity_table(changes)
     document["timing_s"] = {**seconds, "finish": time.perf_counter() - started}
@@ -234,6 +235,19 @@ def _index_entries(plan: "ParallelPlan", volume: VolumeData) -> dict[str, Any]:
         }
         for name in plan.names
     }
+
+
+def _conditioning_entry(volume: VolumeData) -> dict[str, Any]:
+    """The least condition number (null: infinite everywhere) and the mean of 1/κ over the voxels, of A, B and J."""
+    entry = {}
+    for matrix in "ABJ":
+        inverse = volume.statistics["center"][f"inverse_condition_number_{matrix}"][volume.occupied]
+        largest = float(inverse.max())
+        entry[matrix] = {
+            "least_condition_number": 1 / largest if largest > 0 else None,
+            "mean_inverse": float(inverse.mean()),
+        }
+    return entry
 
 
 def _bounds(volume: VolumeData | None) -> dict[str, list[float]]:

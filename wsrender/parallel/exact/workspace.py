@@ -62,7 +62,11 @@ class ExactWorkspace:
     @cached_property
     def bounds_m(self) -> tuple[np.ndarray, np.ndarray] | None:
         """Least and largest x, y, z [m]; None of an empty workspace."""
-        return bounds(self.arcs)
+        return self.bounds_along(np.eye(3))
+
+    def bounds_along(self, axes: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
+        """Least and largest coordinates along unit vectors (A, 3), base frame [m]; None of an empty workspace."""
+        return bounds(self.arcs, axes)
 
     @cached_property
     def topology(self) -> Topology:
