@@ -8,10 +8,12 @@ import numpy as np
 import pytest
 
 import wsrender as ws
+from tests.run.simple_robots import PlanarClass
 from wsrender import run
 from wsrender.engine import devices_of, sweep
 from wsrender.engine.voxel_data import volume_data
 from wsrender.errors import InputError
+from wsrender.robot import as_robot
 from wsrender.tolerances import TOLERANCES
 
 PLACEMENT = {"position_m": [0.123, -0.345, 0.567], "rpy_deg": [20, -35, 50]}
@@ -139,7 +141,7 @@ def test_robots(robot, precision, device):
         ({"indices": ("manipulability", "dynamic_manipulability")}, (5, 1)),
         ({"indices": ("dynamic_isotropy",), "penalty": 10.0}, (1, 1)),
         ({"indices": ("dynamic_isotropy",), "host_inertia": lambda q: np.eye(6)}, (1, 1)),
-        ({"host_kinematics": lambda q: None}, (1, 1)),
+        ({"chain": as_robot(PlanarClass()).chain}, (1, 1)),
     ],
     ids=lambda value: "-".join(value) if isinstance(value, dict) else str(value),
 )

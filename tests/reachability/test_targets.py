@@ -6,7 +6,7 @@ from scipy.spatial.transform import Rotation
 
 import wsrender as ws
 from tests.reference import closed_form_inverse as closed_form
-from tests.run.simple_robots import PlanarClass, gantry
+from tests.run.simple_robots import gantry
 from wsrender.reachability.moving_joints import moving_joints
 from wsrender.robots.reachable_box import reachable_box
 
@@ -200,11 +200,6 @@ def test_wrong_arguments(points, options, field):
     with pytest.raises(ws.InputError) as error:
         ws.reachable(ws.load_robot("ur5e"), points, **options)
     assert error.value.field == field
-
-
-def test_a_robot_without_a_model_is_refused():
-    with pytest.raises(ws.InputError, match="model or a DH table"):
-        ws.reachable(PlanarClass(), [0.1, 0.2, 0.0])
 
 
 def test_no_targets():

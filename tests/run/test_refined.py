@@ -5,7 +5,6 @@ import pytest
 
 import wsrender as ws
 from tests.reference import closed_form_inverse as closed_form
-from tests.run.simple_robots import PlanarClass
 from wsrender.reachability.voxel_labels import REASONS
 
 EXACT = np.pi / 2 * np.sqrt(2) * (0.4**3 - 0.2**3) / 3
@@ -82,8 +81,3 @@ def test_a_held_joint_holds_for_the_refined_volume_too():
     held = ws.Sobol(20_000, locked={"joint3": 0.3})
     result = ws.analyze(ws.load_robot("spherical"), held, voxel_size_m=0.02, refined_volume=0.02, device="cpu")
     assert result.document["volume_m3"]["refined"]["value"] == 0.0
-
-
-def test_the_refined_volume_needs_a_model():
-    with pytest.raises(ws.InputError, match="refined_volume"):
-        ws.analyze(PlanarClass(), ws.Grid(5), refined_volume=0.01)

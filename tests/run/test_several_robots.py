@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import wsrender as ws
-from tests.run.simple_robots import PlanarClass, gantry
+from tests.run.simple_robots import PlanarClass, gantry, planar_arm
 from wsrender.result import Result
 from wsrender.run import finish, plan, run_shard
 from wsrender.run.partial_files import load_partial, save_partial
@@ -202,13 +202,19 @@ def test_a_scanned_angle_needs_an_angle():
         ws.execute({**job, "scan": {"axis": "yaw", "values": [1]}})
 
 
-def test_a_user_defined_robot_takes_part_but_is_not_scanned():
+def test_a_user_defined_robot_takes_part_and_is_scanned():
     options = {"indices": ["manipulability"], "task": ["x", "y"], "device": "cpu", "voxel_size_m": 0.05}
     result = ws.shared_workspace([PlanarClass(), PlanarClass()], ws.Grid(20), **options)
     volume = result.document["volume_m3"]
     assert volume["shared"] == volume["any"] > 0
     assert result.document["job"]["robots"][1]["robot"] == {"user_defined": "tests.run.simple_robots.PlanarClass"}
-    with pytest.raises(ws.InputError, match="placement: of PlanarClass cannot be changed"):
-        ws.shared_workspace([PlanarClass()] * 2, ws.Grid(5), scan={"values": [0.1]}, **options)
+    scans = [
+        ws.shared_workspace([one, one], ws.Random(2_000), scan={"values": [0.0, 0.1, 2.0]}, **options)
+        .tables["scan"]
+        .columns
+        for one in (PlanarClass(), planar_arm())
+    ]
+    assert scans[0]["shared"].tolist() == scans[1]["shared"].tolist()
+    assert scans[0]["shared"][1] > scans[0]["shared"][2] == 0
     with pytest.raises(ws.InputError, match="robots: there are 3 samplings and 2 names for 2 robots"):
         ws.shared_workspace([gantry()] * 2, [FULL] * 3, **options)

@@ -14,6 +14,7 @@ from wsrender_kernels.sweep import Shape
 from wsrender.engine.index_code import index_function, index_source
 from wsrender.indices.catalogue import is_dynamic
 from wsrender.robots.chain import Chain
+from wsrender.robots.host_chain import HostChain
 
 REAL = {"float32": wp.float32, "float64": wp.float64}
 
@@ -22,8 +23,8 @@ REAL = {"float32": wp.float32, "float64": wp.float64}
 class Evaluation:
     """The indices to evaluate and how (the fields of the job document, resolved).
 
-    ``rows`` are 0…5 for x y z rx ry rz; ``penalty`` is K or None. ``host_kinematics(q: (N, n)) -> position (N, 3),
-    Jacobian (N, 6, n)`` replaces the chain's kinematics, ``host_inertia(q) -> (N, n, n)`` its inertia matrix.
+    ``rows`` are 0…5 for x y z rx ry rz; ``penalty`` is K or None. ``host_inertia(q: (N, n)) -> (N, n, n)`` replaces the
+    chain's inertia matrix.
     """
 
     chain: Chain
@@ -33,7 +34,6 @@ class Evaluation:
     penalty: float | None = None
     characteristic_length_m: float = 1.0
     torque_scaling: bool = False
-    host_kinematics: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]] | None = None
     host_inertia: Callable[[np.ndarray], np.ndarray] | None = None
 
     @property
@@ -42,9 +42,14 @@ class Evaluation:
         return any(is_dynamic(name) for name in self.indices)
 
     @property
+    def host_chain(self) -> HostChain | None:
+        """The chain of a robot that is defined by a Python class: the host computes its kinematics."""
+        return self.chain if isinstance(self.chain, HostChain) else None
+
+    @property
     def on_host(self) -> bool:
         """Whether the host computes a part of every sample."""
-        return self.host_kinematics is not None or (self.dynamic and self.host_inertia is not None)
+        return self.host_chain is not None or (self.dynamic and self.host_inertia is not None)
 
     @property
     def mixed_rows(self) -> bool:
@@ -69,7 +74,7 @@ def shape_of(evaluation: Evaluation, precision: str, method: str, **outputs: boo
         indices=index_function(body, len(evaluation.indices), length, real),
         n_indices=len(evaluation.indices),
         dynamic=evaluation.dynamic,
-        given_jacobian=evaluation.host_kinematics is not None,
+        given_jacobian=evaluation.host_chain is not None,
         given_inertia=evaluation.dynamic and evaluation.host_inertia is not None,
         penalty=evaluation.penalty is not None,
         torque_scaling=evaluation.torque_scaling and evaluation.dynamic,

@@ -1,7 +1,6 @@
 """Inverse kinematics of many targets: tries from given starts, on CPU threads or a GPU."""
 
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
 
 import numpy as np
 import warp as wp
@@ -9,37 +8,16 @@ from wsrender_kernels.inverse import LANES, REACHED, STATIONARY, TARGET_SIZES, i
 
 from wsrender.engine.devices import devices_of, thread_count
 from wsrender.engine.evaluation import REAL, chain_model, device_array, drive, vector_of
+from wsrender.engine.host_inverse import host_tries
 from wsrender.engine.kernel_cache import loaded
+from wsrender.engine.tries import Accuracy, Tries, angle_of, step_bounds
 from wsrender.robots.chain import Chain
+from wsrender.robots.host_chain import HostChain
 
 KINDS = {size: kind for kind, size in TARGET_SIZES.items()}
 BATCH = 1 << 17  # tries of a launch
 LEAST_SHARE = 8 * LANES  # tries that are worth a thread
 STEPS = 300  # of a try: ten suffice where the target is reached, slow ones come to rest far from their targets
-
-
-@dataclass(frozen=True)
-class Accuracy:
-    """What counts as reached: distance [m] and angle [rad]; ``length`` [m] makes angles comparable to distances."""
-
-    position_m: float
-    angle_rad: float
-    length: float
-
-
-@dataclass(frozen=True, eq=False)
-class Tries:
-    """Where tries ended: configurations (N, n) [rad or m], distances (N,) [m] and angles (N,) [rad] to the target.
-
-    ``reached``: within the accuracy; ``stationary``: at a nearest point within the limits that is not the target;
-    neither: the steps did not suffice.
-    """
-
-    q: np.ndarray
-    distance: np.ndarray
-    angle: np.ndarray
-    reached: np.ndarray
-    stationary: np.ndarray
 
 
 def solve_inverse(
@@ -57,8 +35,11 @@ def solve_inverse(
     """One try from each start (N, n) to its target.
 
     ``targets``: positions (N, 3) [m], with the direction of the tip's z (N, 6), or with its axes x, y, z (N, 12).
-    ``without_limits`` lets hinges turn for ever; slides keep their limits, which are their length.
+    ``without_limits`` lets hinges turn for ever; slides keep their limits, which are their length. The kinematics of a
+    robot that is defined by a Python class run on the host, in float64.
     """
+    if isinstance(chain, HostChain):
+        return host_tries(chain, targets, starts, accuracy, without_limits, steps)
     devices = devices_of(device)
     workers = devices if devices[0].is_cuda else devices * thread_count(threads)
     size = min(BATCH, max(LEAST_SHARE, -(-len(targets) // len(workers))))
@@ -73,9 +54,7 @@ def solve_inverse(
     with ThreadPoolExecutor(len(workers)) as pool:
         parts = list(pool.map(run, enumerate(batches)))
     q, distance_2, rotation_2, verdict = (np.concatenate(part) for part in zip(*parts, strict=True))
-    # The squared differences of the axes add up to 8 sin²(angle / 2).
-    angle = 2 * np.arcsin(np.minimum(np.sqrt(rotation_2.astype(np.float64) / 8), 1.0))
-    distance = np.sqrt(distance_2.astype(np.float64))
+    distance, angle = np.sqrt(distance_2.astype(np.float64)), angle_of(rotation_2.astype(np.float64))
     return Tries(q.astype(np.float64), distance, angle, verdict == REACHED, verdict == STATIONARY)
 
 
@@ -101,11 +80,9 @@ def _model(chain: Chain, accuracy: Accuracy, without_limits: bool, precision: st
     real = REAL[precision]
     model = inverse_model(real, chain.n, len(chain.joint_source))()
     model.chain = chain_model(chain, precision).chain
-    endless = chain.periodic | (chain.revolute & without_limits)
-    model.lower = vector_of(np.where(endless, -np.inf, chain.lower_limits), real)
-    model.upper = vector_of(np.where(endless, np.inf, chain.upper_limits), real)
-    model.scale = vector_of(np.where(chain.revolute, 1.0, accuracy.length), real)
+    lower, upper, scale = step_bounds(chain, accuracy, without_limits)
+    model.lower, model.upper, model.scale = (vector_of(each, real) for each in (lower, upper, scale))
     model.length = accuracy.length
     model.position_2 = accuracy.position_m**2
-    model.rotation_2 = 8 * np.sin(min(accuracy.angle_rad, np.pi) / 2) ** 2
+    model.rotation_2 = accuracy.rotation_2
     return model

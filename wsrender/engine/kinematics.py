@@ -10,6 +10,7 @@ from wsrender.engine.devices import devices_of
 from wsrender.engine.evaluation import REAL, chain_model, device_array, drive
 from wsrender.engine.kernel_cache import loaded
 from wsrender.robots.chain import Chain
+from wsrender.robots.host_chain import HostChain
 
 BATCH = 1 << 20
 
@@ -26,7 +27,12 @@ class Kinematics:
 def evaluate_kinematics(
     chain: Chain, q: np.ndarray, with_inertia: bool = False, precision: str = "float64", device: str = "auto"
 ) -> Kinematics:
-    """Kinematics at configurations ``q`` (N, n) [rad or m], in batches of bounded memory."""
+    """Kinematics at configurations ``q`` (N, n) [rad or m], in batches of bounded memory.
+
+    Those of a robot that is defined by a Python class are its own, in float64, without inertia.
+    """
+    if isinstance(chain, HostChain):
+        return Kinematics(chain.poses(q), chain.jacobians(q), None)
     target = devices_of(device)[0]
     parts = [
         _evaluate(chain, q[i : i + BATCH], with_inertia, precision, target) for i in range(0, max(len(q), 1), BATCH)

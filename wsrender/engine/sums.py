@@ -22,7 +22,7 @@ def bound_from_reach(evaluation: Evaluation, name: str) -> float:
     Each of the six is largest, for a given Frobenius norm of the Jacobian, where all m singular values are equal.
     """
     index = find(name)
-    if index.user_defined or is_dynamic(name) or evaluation.convention != "standard" or evaluation.host_kinematics:
+    if index.user_defined or is_dynamic(name) or evaluation.convention != "standard" or evaluation.host_chain:
         return float("nan")
     m, n = len(evaluation.rows), evaluation.chain.n
     sigma = _largest_norm(evaluation) / np.sqrt(m)

@@ -261,10 +261,10 @@ class Accumulator:
         else:
             q = given[first : first + count]
         real, device, model = self.shape.real, self.device, self._model
-        if evaluation.host_kinematics is not None:
-            position, jacobian = evaluation.host_kinematics(q)
-            model.position_given = device_array(position.T.ravel(), real, device)
-            model.jacobian_given = device_array(jacobian.reshape(count, -1).T.ravel(), real, device)
+        chain = evaluation.host_chain
+        if chain is not None:
+            model.position_given = device_array(chain.poses(q)[:, :3, 3].T.ravel(), real, device)
+            model.jacobian_given = device_array(chain.jacobians(q).reshape(count, -1).T.ravel(), real, device)
         if evaluation.dynamic and evaluation.host_inertia is not None:
             inertia = evaluation.host_inertia(q)
             model.inertia_given = device_array(inertia.reshape(count, -1).T.ravel(), real, device)

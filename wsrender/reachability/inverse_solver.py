@@ -10,6 +10,7 @@ from scipy.spatial import KDTree
 from wsrender.engine import Accuracy, Tries, configurations, evaluate_kinematics, solve_inverse, thread_count
 from wsrender.reachability.moving_joints import moving_joints
 from wsrender.robots.chain import Chain
+from wsrender.robots.host_chain import HostChain
 from wsrender.robots.reachable_box import reachable_box
 from wsrender.sampling import plan_sampling
 from wsrender.spec.sampling import Sobol
@@ -149,10 +150,14 @@ class InverseSolver:
         return self._samples[SAMPLES[self.kind] :][first:last]
 
     def _out_of_reach(self, position: np.ndarray) -> np.ndarray:
-        """Whether positions (N, 3) are farther than the tolerance from a sphere or a box that hold the workspace."""
+        """Whether positions (N, 3) are farther than the tolerance from a sphere or a box that hold the workspace.
+
+        None of a robot that is defined by a Python class: nothing is known to hold that.
+        """
         chain, slack = self.chain, self.accuracy.position_m
-        center = (chain.T_world_base @ chain.T_joint[0])[:3, 3]
-        far = np.linalg.norm(position - center, axis=1) > chain.reach + slack
+        if isinstance(chain, HostChain):
+            return np.zeros(len(position), bool)
+        far = np.linalg.norm(position - chain.center, axis=1) > chain.reach + slack
         low, high = reachable_box(chain, chain.lower_limits, chain.upper_limits)
         return far | (position < low - slack).any(axis=1) | (position > high + slack).any(axis=1)
 

@@ -60,7 +60,7 @@ def reachable(
     depends on its target and ``seed`` alone. ``characteristic_length_m`` makes an angle comparable to a distance
     while both shrink (default: half the reach). ``progress``: called with the targets decided. Raises InputError.
     """
-    subject = model_robot(robot)
+    subject = as_robot(robot)
     position = rows_of(points, 3, "points")
     axes = None if orientations is None else rotations(orientations, len(position))
     check_tolerance(subject.chain, position_tolerance_m, precision)
@@ -91,12 +91,10 @@ def check_tolerance(chain: Chain, position_tolerance_m: float, precision: str) -
 
 
 def model_robot(robot: Any) -> Robot:
-    """The robot, if it has a chain; InputError for one that is defined by a Python class."""
+    """The robot, if it has a model; InputError for one that is defined by a Python class."""
     subject = as_robot(robot)
     if isinstance(subject, HostRobot):
-        raise InputError(
-            "robot", f"{subject.name} is defined by a Python class; inverse kinematics needs a model or a DH table"
-        )
+        raise InputError("robot", f"{subject.name} is defined by a Python class; a model or a DH table is needed")
     return subject
 
 

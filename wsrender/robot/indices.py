@@ -99,7 +99,6 @@ def evaluation_of(
         penalty=_penalty(joint_limit_penalty),
         characteristic_length_m=characteristic_length_m,
         torque_scaling=torque_scaling,
-        host_kinematics=host.position_and_jacobian if host else None,
         host_inertia=host_inertia,
     )
 

@@ -1,16 +1,18 @@
 """A robot defined by a Python class with its own kinematics (local runs only)."""
 
 import hashlib
+from dataclasses import dataclass
 from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 
 from wsrender.errors import InputError, ModelError
 from wsrender.robot.model_robot import Robot, configuration_rows
-from wsrender.robots.chain import Chain
+from wsrender.robots.host_chain import HostChain
 from wsrender.spec.robot import Transform
 
 HASHED_POSES = 16
+TURNING = 1e-6  # rad per unit of a joint: less is rounding of finite differences
 STEP = 6e-6  # rad or m: the cube root of float64's epsilon, where central differences err least (about 1e-11)
 
 
@@ -18,10 +20,10 @@ STEP = 6e-6  # rad or m: the cube root of float64's epsilon, where central diffe
 class UserRobot(Protocol):
     """What a user-defined robot gives; ``jacobian`` and ``inertia_matrix`` may be added, batched alike.
 
-    ``limits``: (n, 2) lower and upper [rad or m]. ``forward_kinematics(q: (N, n)) -> (N, 4, 4)`` poses in
-    the world. ``jacobian(q) -> (N, 6, n)``, linear then angular rows at the tip in world axes; absent: finite
-    differences. ``inertia_matrix(q) -> (N, n, n)``; absent: no dynamic indices. ``joint_names`` and ``name``
-    are optional.
+    ``limits``: (n, 2) lower and upper [rad or m]. ``forward_kinematics(q: (N, n)) -> (N, 4, 4)``: poses in
+    the base frame, which is the world's unless the robot is `placed`. ``jacobian(q) -> (N, 6, n)``, linear then angular
+    rows at the tip in base axes; absent: finite differences, for which poses are taken 6e-6 rad or m beyond the limits
+    too. ``inertia_matrix(q) -> (N, n, n)``; absent: no dynamic indices. ``joint_names`` and ``name`` are optional.
     """
 
     limits: Any
@@ -34,7 +36,7 @@ class UserRobot(Protocol):
 class HostRobot(Robot):
     """A user-defined robot behind the public interface of a robot; its kinematics run on the host."""
 
-    def __init__(self, user: UserRobot):
+    def __init__(self, user: UserRobot, T_world_base: np.ndarray | None = None):
         self.user = user
         self.spec = self.base = self.tip = None
         limits = _limits(user)
@@ -45,34 +47,28 @@ class HostRobot(Robot):
             raise ModelError("joint_names", f"{len(names)} names for {n} rows of limits")
         if len(set(names)) < n:
             raise ModelError("joint_names", f"{', '.join(names)} are not distinct")
-        self._chain = _chain_of_limits(self.name, names, limits, hasattr(user, "inertia_matrix"))
+        chain = _chain(self.name, names, limits, _Kinematics(user, limits), hasattr(user, "inertia_matrix"))
+        self._chain = chain.placed(T_world_base)
 
     @property
-    def chain(self) -> Chain:
-        """Names and limits; its geometry is empty."""
+    def chain(self) -> HostChain:
+        """Names, kinds and limits of the joints, and the user's kinematics."""
         return self._chain
 
     @property
     def model_hash(self) -> str:
         """SHA-256 of the class name, the limits and poses between them: the code itself cannot be hashed."""
         digest = hashlib.sha256(f"{type(self.user).__qualname__}{self._chain.content_hash}".encode())
-        shares = np.linspace(0.0, 1.0, HASHED_POSES)[:, None]
-        q = self.lower_limits + shares * (self.upper_limits - self.lower_limits)
-        digest.update(self.forward_kinematics(q).tobytes())
+        digest.update(self._chain.base_pose(_between(self._chain.lower_limits, self._chain.upper_limits)).tobytes())
         return digest.hexdigest()
 
     def forward_kinematics(self, q: Any, *, precision: str = "float64", device: str = "cpu") -> np.ndarray:
-        """Poses of the end effector, (N, 4, 4)."""
-        rows = configuration_rows(q, self.chain.n)
-        return _checked("forward_kinematics", self.user.forward_kinematics(rows), (len(rows), 4, 4))
+        """Poses of the end effector in the world, (N, 4, 4)."""
+        return _finite("forward_kinematics", self._chain.poses(configuration_rows(q, self.chain.n)))
 
     def jacobian(self, q: Any, *, precision: str = "float64", device: str = "cpu") -> np.ndarray:
         """Jacobians (N, 6, n), the user's or by central differences."""
-        rows = configuration_rows(q, self.chain.n)
-        own = getattr(self.user, "jacobian", None)
-        if own is not None:
-            return _checked("jacobian", own(rows), (len(rows), 6, self.chain.n))
-        return finite_difference_jacobian(self.forward_kinematics, rows)
+        return _finite("jacobian", self._chain.jacobians(configuration_rows(q, self.chain.n)))
 
     def inertia_matrix(
         self, q: Any, *, method: str = "kernel", precision: str = "float64", device: str = "cpu"
@@ -82,20 +78,42 @@ class HostRobot(Robot):
         if not self.has_inertia:
             raise InputError("inertia_matrix", f"{self.name} does not define inertia_matrix")
         n = self.chain.n
-        return _checked("inertia_matrix", self.user.inertia_matrix(rows), (len(rows), n, n))  # type: ignore[attr-defined]
+        values = self.user.inertia_matrix(rows)  # type: ignore[attr-defined]
+        return _finite("inertia_matrix", _shaped("inertia_matrix", values, (len(rows), n, n)))
 
     def placed(self, placement: Transform) -> Robot:
-        """Raises InputError: where the robot stands is part of the user's own forward kinematics."""
-        raise InputError("placement", f"of {self.name} cannot be changed: a user-defined robot stands where it says")
-
-    def position_and_jacobian(self, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Tip positions (N, 3) and Jacobians (N, 6, n)."""
-        return self.forward_kinematics(q)[:, :3, 3], self.jacobian(q)
+        """The same robot with its base frame, in which the class gives its poses, elsewhere in the world."""
+        return HostRobot(self.user, placement.matrix())
 
     def skeleton(self, q: Any) -> np.ndarray:
         """Base and tip alone: what lies between is the user's, (N, 2, 3)."""
         tip = self.forward_kinematics(q)[:, :3, 3]
-        return np.stack([np.zeros_like(tip), tip], axis=1)
+        return np.stack([np.broadcast_to(self._chain.T_world_base[:3, 3], tip.shape), tip], axis=1)
+
+
+@dataclass(frozen=True, eq=False)
+class _Kinematics:
+    """The class's poses and Jacobians, checked: finite numbers of the right shape at least within the limits."""
+
+    user: UserRobot
+    limits: np.ndarray
+
+    def pose(self, q: np.ndarray) -> np.ndarray:
+        """Poses (N, 4, 4)."""
+        poses = _shaped("forward_kinematics", self.user.forward_kinematics(q), (len(q), 4, 4))
+        _finite("forward_kinematics", poses[self._within(q)])
+        return poses
+
+    def jacobian(self, q: np.ndarray) -> np.ndarray:
+        """Jacobians (N, 6, n)."""
+        own = getattr(self.user, "jacobian", None)
+        J = finite_difference_jacobian(self.pose, q) if own is None else own(q)
+        J = _shaped("jacobian", J, (len(q), 6, q.shape[1]))
+        _finite("jacobian", J[self._within(q)])
+        return J
+
+    def _within(self, q: np.ndarray) -> np.ndarray:
+        return np.all((q >= self.limits[:, 0]) & (q <= self.limits[:, 1]), axis=1)
 
 
 def finite_difference_jacobian(forward_kinematics, q: np.ndarray) -> np.ndarray:
@@ -142,27 +160,40 @@ def _limits(user: UserRobot) -> np.ndarray:
     return limits
 
 
-def _checked(name: str, values: Any, shape: tuple[int, ...]) -> np.ndarray:
+def _between(lower: np.ndarray, upper: np.ndarray) -> np.ndarray:
+    """A few configurations (N, n) from all lower to all upper limits."""
+    return lower + np.linspace(0.0, 1.0, HASHED_POSES)[:, None] * (upper - lower)
+
+
+def _shaped(name: str, values: Any, shape: tuple[int, ...]) -> np.ndarray:
     array = np.asarray(values, np.float64)
     if array.shape != shape:
         raise ModelError(name, f"returned shape {array.shape}; {shape} is needed (batched)")
+    return array
+
+
+def _finite(name: str, array: np.ndarray) -> np.ndarray:
     if not np.isfinite(array).all():
         raise ModelError(name, "returned a value that is not finite")
     return array
 
 
-def _chain_of_limits(name: str, joint_names: tuple[str, ...], limits: np.ndarray, has_inertia: bool) -> Chain:
+def _chain(
+    name: str, joint_names: tuple[str, ...], limits: np.ndarray, kinematics: _Kinematics, has_inertia: bool
+) -> HostChain:
     n = len(limits)
-    return Chain(
+    # A joint that turns nothing is a slide.
+    turning = np.abs(kinematics.jacobian(_between(*limits.T))[:, 3:]).max(axis=(0, 1)) > TURNING
+    return HostChain(
         name=name,
-        base_frame="world",
+        base_frame="base",
         tip_frame="tip",
         joint_names=joint_names,
         lower_limits=limits[:, 0],
         upper_limits=limits[:, 1],
         periodic=np.zeros(n, bool),
         effort_limits=None,
-        joint_is_revolute=np.ones(n, bool),
+        joint_is_revolute=turning,
         joint_source=np.arange(n),
         joint_scale=np.ones(n),
         joint_offset=np.zeros(n),
@@ -173,4 +204,6 @@ def _chain_of_limits(name: str, joint_names: tuple[str, ...], limits: np.ndarray
         inertia=np.zeros((n, 3, 3)),
         armature=np.zeros(n),
         has_inertia=has_inertia,
+        base_pose=kinematics.pose,
+        base_jacobian=kinematics.jacobian,
     )

@@ -4,6 +4,7 @@ import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
+from typing import Self
 
 import numpy as np
 
@@ -69,7 +70,7 @@ class Chain:
     def content_hash(self) -> str:
         """SHA-256 of every number and name of the chain, hexadecimal."""
         digest = hashlib.sha256()
-        for f in fields(self):
+        for f in fields(Chain):
             value = getattr(self, f.name)
             digest.update(f.name.encode())
             if isinstance(value, np.ndarray):
@@ -78,12 +79,12 @@ class Chain:
                 digest.update(repr(value).encode())
         return digest.hexdigest()
 
-    def placed(self, T_world_base: np.ndarray | None = None, T_tip_tool: np.ndarray | None = None) -> "Chain":
+    def placed(self, T_world_base: np.ndarray | None = None, T_tip_tool: np.ndarray | None = None) -> Self:
         """The same chain with its base placed in the world and a tool added at its tip ((4, 4) each)."""
         changes = {"T_world_base": T_world_base, "T_tip_tool": T_tip_tool}
         return replace(self, **{name: value for name, value in changes.items() if value is not None})
 
-    def held(self, values: Mapping[str, float]) -> "Chain":
+    def held(self, values: Mapping[str, float]) -> Self:
         """The same chain with joints, by name, held at a value [rad or m]."""
         held = np.array([name in values for name in self.joint_names])
         value = np.array([values.get(name, 0.0) for name in self.joint_names])
@@ -100,6 +101,11 @@ class Chain:
         links = np.linalg.norm(self.T_joint[1:, :3, 3], axis=1).sum()
         tip = np.linalg.norm((self.T_tip @ self.T_tip_tool)[:3, 3])
         return float(links + self.largest_slide.sum() + tip)
+
+    @cached_property
+    def center(self) -> np.ndarray:
+        """Centre of a sphere of radius `reach` that holds every position, (3,) [m]: the first joint's origin."""
+        return (self.T_world_base @ self.T_joint[0])[:3, 3]
 
     @property
     def largest_slide(self) -> np.ndarray:

@@ -5,14 +5,18 @@ from math import atan2, ceil, cos, hypot, pi
 import numpy as np
 
 from wsrender.robots.chain import Chain
+from wsrender.robots.host_chain import HostChain
 
 
 def reachable_box(chain: Chain, lower: np.ndarray, upper: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Lower and upper corner (3,) [m] in the world of a box around all positions with q in lower … upper (n,).
 
     From the tip to the base, the box that holds the tip in one joint's frame gives the box that holds it in the
-    frame before. Never too small, and thin where the workspace is planar or linear.
+    frame before. Never too small, and thin where the workspace is planar or linear. Of a robot that is defined by a
+    Python class it is `HostChain.box`.
     """
+    if isinstance(chain, HostChain):
+        return chain.box(lower, upper)
     low = high = (chain.T_tip @ chain.T_tip_tool)[:3, 3]
     limits = np.sort(chain.joint_scale * np.stack([lower, upper])[:, chain.joint_source], axis=0) + chain.joint_offset
     for i in reversed(range(len(chain.T_joint))):

@@ -8,7 +8,7 @@ import numpy as np
 
 from wsrender.engine import configurations, evaluate_kinematics
 from wsrender.reachability.capability import capability, fibonacci_directions
-from wsrender.reachability.targets import check_tolerance, model_robot
+from wsrender.reachability.targets import check_tolerance
 from wsrender.result import Result
 from wsrender.robot import Robot
 from wsrender.robots.chain import Chain
@@ -131,9 +131,9 @@ class CapabilityPlan:
 def plan_capability(job: CapabilityJob, robot: Robot, resolved: dict[str, Any] | None = None) -> CapabilityPlan:
     """Resolve the job, or take what `CapabilityPlan.resolved` of an earlier plan of it says.
 
-    Raises InputError for a robot without a model or a tolerance below what is computed.
+    Raises InputError for a tolerance below what is computed.
     """
-    chain = model_robot(robot).chain
+    chain = robot.chain
     check_tolerance(chain, job.position_tolerance_m, job.precision)
     device, target = settled_device(job.device, resolved)
     if resolved is None:

@@ -9,7 +9,6 @@ import numpy as np
 
 from wsrender.multi.body_elements import body_elements
 from wsrender.reachability import Event
-from wsrender.reachability.targets import model_robot
 from wsrender.result import Result
 from wsrender.robot import Robot
 from wsrender.run.provenance import job_entry, provenance, robot_entry
@@ -118,11 +117,8 @@ def plan_collaborative(
 ) -> CollaborativePlan:
     """Resolve the job, or take what `CollaborativePlan.resolved` of an earlier plan of it says.
 
-    Raises InputError for points that cannot be read, and for a true volume of user-defined robots.
+    Raises InputError for points that cannot be read.
     """
-    if job.refined_volume is not None:
-        for robot in robots:
-            model_robot(robot)
     left_to_place = list(robots)
     left, right = (
         source.array() if isinstance(source, PointSet) else left_to_place.pop(0) for source in (job.left, job.right)

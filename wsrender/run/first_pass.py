@@ -7,14 +7,12 @@ import numpy as np
 
 from wsrender.engine import Evaluated, Evaluation, configurations, evaluate_at
 from wsrender.engine.sums import bound_from_reach, scales_for
-from wsrender.robots.chain import Chain
 from wsrender.robots.reachable_box import reachable_box
 from wsrender.sampling import plan_sampling
 from wsrender.spec.sampling import Sobol
 from wsrender.volume.lattice import LatticeBlock, block_around, default_voxel_size
 
 SAMPLES = 2**16
-MARGIN = 0.25  # of the first pass's extent, around a user-defined robot, whose reach is unknown
 # An index without a bound from the reach may take this many times its coarse maximum. The pseudo-inverse of
 # the original program jumps up in exactly singular postures, which grids hit and the first pass does not.
 HEADROOM, HEADROOM_CODE = 2.0, 1024.0
@@ -41,16 +39,11 @@ class FirstPass:
 
     def block(self, voxel_size_m: float) -> LatticeBlock:
         """A block that holds every position the robot can reach."""
-        if self.evaluation.host_kinematics is None:
-            chain = self.evaluation.chain
-            center, reach = _sphere(chain)
-            held = [self.locked.get(name, np.nan) for name in chain.joint_names]
-            limits = [np.where(np.isnan(held), limit, held) for limit in (chain.lower_limits, chain.upper_limits)]
-            low, high = reachable_box(chain, *limits)
-            return block_around(np.maximum(low, center - reach), np.minimum(high, center + reach), voxel_size_m)
-        low, high = self.evaluated.position.min(axis=0), self.evaluated.position.max(axis=0)
-        margin = MARGIN * (high - low) + voxel_size_m
-        return block_around(low - margin, high + margin, voxel_size_m)
+        whole = self.evaluation.chain
+        held = whole.held(self.locked)
+        low, high = reachable_box(held, held.lower_limits, held.upper_limits)
+        reach = whole.reach
+        return block_around(np.maximum(low, whole.center - reach), np.minimum(high, whole.center + reach), voxel_size_m)
 
     def sum_scales(self, samples: int, precision: str) -> tuple[np.ndarray, np.ndarray]:
         """Scales and bounds (K,) of the fixed-point sums: from the reach, else from the coarse maximum."""
@@ -67,8 +60,3 @@ class FirstPass:
             largest = headroom * np.abs(self.evaluated.values[unknown]).max(axis=1)
             bounds[unknown] = np.where(largest > 0, largest, 1.0)
         return bounds
-
-
-def _sphere(chain: Chain) -> tuple[np.ndarray, float]:
-    """Centre (the first joint's origin in the world) and radius of a sphere that holds every position [m]."""
-    return (chain.T_world_base @ chain.T_joint[0])[:3, 3], chain.reach

@@ -43,7 +43,7 @@ class IndicesAtPlan:
             self.q,
             self.job.precision,
             self.device,
-            with_orientation=self.evaluation.host_kinematics is None,
+            with_orientation=self.evaluation.host_chain is None,
             threads=execution.get("threads"),
         )
 

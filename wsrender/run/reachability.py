@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from wsrender.reachability.targets import check_tolerance, model_robot, reachable
+from wsrender.reachability.targets import check_tolerance, reachable
 from wsrender.result import Result
 from wsrender.robot import Robot
 from wsrender.run.provenance import job_entry, provenance, robot_entry
@@ -97,8 +97,8 @@ class ReachabilityPlan:
 
 
 def plan_reachability(job: ReachabilityJob, robot: Robot, resolved: dict[str, Any] | None = None) -> ReachabilityPlan:
-    """Resolve the job. Raises InputError for a robot without a model or a tolerance below what is computed."""
-    chain = model_robot(robot).chain
+    """Resolve the job. Raises InputError for a tolerance below what is computed."""
+    chain = robot.chain
     check_tolerance(chain, job.position_tolerance_m, job.precision)
     count = len(job.points_m)
     estimate = {"samples": float(count), "bytes": float(count * (chain.n + 8) * 8), "seconds": count / RATE}

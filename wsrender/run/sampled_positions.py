@@ -5,9 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from wsrender.engine import configurations, evaluate_kinematics
+from wsrender.engine import configurations
 from wsrender.robot import Robot
-from wsrender.robot.user_robot import HostRobot
 from wsrender.sampling import plan_sampling
 
 CHUNK = 1 << 17
@@ -29,12 +28,7 @@ def sampled_positions(
     positions = np.empty((plan.count, 3))
     for first in range(0, plan.count, CHUNK):
         rows = configurations(plan, np.arange(first, min(first + CHUNK, plan.count)))
-        poses = (
-            robot.forward_kinematics(rows)
-            if isinstance(robot, HostRobot)
-            else evaluate_kinematics(robot.chain, rows, False, "float64", device).pose
-        )
-        positions[first : first + len(rows)] = poses[:, :3, 3]
+        positions[first : first + len(rows)] = robot.forward_kinematics(rows, device=device)[:, :3, 3]
         if progress:
             progress(first + len(rows))
     return positions

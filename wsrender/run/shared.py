@@ -9,7 +9,6 @@ import numpy as np
 
 from wsrender.multi.shared_volume import NUMBER, PRODUCT, reached_by, shared_volume, volume_by_number
 from wsrender.reachability import Event
-from wsrender.reachability.targets import model_robot
 from wsrender.result import Result
 from wsrender.robot import Robot
 from wsrender.run.provenance import job_entry, provenance
@@ -131,9 +130,6 @@ def plan_shared_workspace(
 
     Raises InputError, MissingInertiaError, ResourceError.
     """
-    if job.refined_volume is not None:
-        for robot in robots:
-            model_robot(robot)
     several = plan_several(job, robots, resolved)
     scanned = []
     if job.scan is not None:

@@ -171,8 +171,6 @@ def plan_workspace(job: WorkspaceJob, robot: Robot, resolved: dict[str, Any] | N
         inertia=job.inertia,
         precision=job.precision,
     )
-    if job.refined_volume is not None and evaluation.host_kinematics is not None:
-        raise InputError("refined_volume", "needs inverse kinematics, which a robot defined by a Python class has not")
     sampling = _first_sampling(job, robot)
     first_pass = FirstPass(evaluation, dict(job.sampling.locked))
     if resolved is None:
@@ -195,7 +193,7 @@ def plan_workspace(job: WorkspaceJob, robot: Robot, resolved: dict[str, Any] | N
         keep_orientation="orientation" in job.map_columns,
         collapse=resolved is None or resolved["sampling_path"] == "collapsed",
     )
-    if job.keep_map and "orientation" in job.map_columns and evaluation.host_kinematics is not None:
+    if job.keep_map and "orientation" in job.map_columns and evaluation.host_chain is not None:
         raise InputError("map_columns", "orientation is not kept for a user-defined robot")
     if isinstance(job.sampling, Converge):
         _converging_index(plan, job.sampling)

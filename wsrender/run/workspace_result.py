@@ -69,9 +69,7 @@ def workspace_result(
         },
         "global": {
             "global_isotropy": global_isotropy(partial),
-            "structural_length_index": None
-            if evaluation.host_kinematics
-            else structural_length_index(robot.chain, known),
+            "structural_length_index": None if evaluation.host_chain else structural_length_index(robot.chain, known),
             "structural_length_volume": "refined" if refined else "occupied",
         },
         "convergence": convergence,

@@ -1,0 +1,69 @@
+"""A chain whose kinematics are functions of the host: that of a robot defined by a Python class."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from wsrender.robots.chain import Chain
+
+SAMPLES = 1 << 14
+MARGIN, FLAT = 0.25, 1e-3  # beyond the samples, of their extent along an axis; where that is nothing, of the diagonal
+
+
+@dataclass(frozen=True, eq=False)
+class HostChain(Chain):
+    """Names, kinds and limits of joints; its geometry is empty, and ``content_hash`` knows nothing of the functions.
+
+    ``base_pose(q: (N, n)) -> (N, 4, 4)`` and ``base_jacobian(q) -> (N, 6, n)`` give the end effector's poses and
+    geometric Jacobians in the base frame.
+    """
+
+    base_pose: Callable[[np.ndarray], np.ndarray] = field(kw_only=True)
+    base_jacobian: Callable[[np.ndarray], np.ndarray] = field(kw_only=True)
+
+    def poses(self, q: np.ndarray) -> np.ndarray:
+        """Poses (N, 4, 4) of the tool point in the world."""
+        return self.T_world_base @ self.base_pose(q) @ self.T_tip_tool
+
+    def jacobians(self, q: np.ndarray) -> np.ndarray:
+        """Jacobians (N, 6, n), linear then angular rows, at the tool point in world axes."""
+        J, R, offset = self.base_jacobian(q), self.T_world_base[:3, :3], self.T_tip_tool[:3, 3]
+        linear, angular = J[:, :3], J[:, 3:]
+        if offset.any():
+            linear = linear + np.cross(angular, (self.base_pose(q)[:, :3, :3] @ offset)[:, :, None], axis=1)
+        return np.concatenate([R @ linear, R @ angular], axis=1)
+
+    def box(self, lower: np.ndarray, upper: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Corners (3,) [m] of a box around the positions at samples between ``lower`` and ``upper`` (n,), and a margin.
+
+        A function says nothing of where it has not been evaluated: unlike that of a model, no proof.
+        """
+        positions = self.poses(lower + _spread(SAMPLES, self.n) * (upper - lower))[:, :3, 3]
+        low, high = positions.min(axis=0), positions.max(axis=0)
+        margin = MARGIN * (high - low) + FLAT * np.linalg.norm(high - low)
+        return low - margin, high + margin
+
+    @cached_property
+    def reach(self) -> float:
+        """Half the diagonal of the box [m]."""
+        low, high = self.box(self.lower_limits, self.upper_limits)
+        return float(np.linalg.norm(high - low) / 2)
+
+    @cached_property
+    def center(self) -> np.ndarray:
+        """Middle of the box, (3,) [m]."""
+        low, high = self.box(self.lower_limits, self.upper_limits)
+        return (low + high) / 2
+
+
+def _spread(count: int, n: int) -> np.ndarray:
+    """Points (count, n) spread evenly over the unit cube.
+
+    After Roberts, *The unreasonable effectiveness of quasirandom sequences*, 2018.
+    """
+    ratio = 2.0
+    for _ in range(64):
+        ratio = (1 + ratio) ** (1 / (n + 1))
+    return (0.5 + np.arange(1, count + 1)[:, None] * ratio ** -np.arange(1.0, n + 1)) % 1.0
