@@ -28,6 +28,7 @@ from wsrender.volume.lattice import LatticeBlock
 CHUNK_CPU, CHUNK_CUDA, CHUNK_ROWS, CHUNK_GIVEN = 1 << 20, 1 << 28, 1 << 18, 1 << 14
 CHUNK_LEAST, CHUNKS_PER_THREAD = 1 << 15, 8
 THREADS_PER_SM = 2048  # of a GPU: a whole multiple of those that run at a time
+VOXELS_ABSORBED = 1 << 14
 FOLD_AFTER = 2**31 - 2**29  # samples until the CPU, which counts in 32 bits, moves its counts to 64-bit ones
 
 
@@ -136,7 +137,17 @@ def _swept(accumulators: list["Accumulator"], queue: "_Queue", report: Callable[
         except BaseException:
             queue.stop()
             raise
-    return reduce(merge, (future.result() for future in futures))
+        if not accumulators[0].device.is_cuda:
+            accumulators = [_combined(accumulators, pool)]
+        return reduce(merge, pool.map(Accumulator.partial, accumulators))
+
+
+def _combined(accumulators: list["Accumulator"], pool: ThreadPoolExecutor) -> "Accumulator":
+    """The first of several accumulators of the CPU with what the others hold, added where it stands."""
+    first, *others = accumulators
+    for other in others:
+        first.absorb(other, pool)
+    return first
 
 
 def _fair_share(count: int, workers: list[wp.Device]) -> int:
@@ -181,12 +192,11 @@ class _Queue:
         self.stopped = True
 
 
-def _work(accumulator: "Accumulator", queue: _Queue) -> Partial:
+def _work(accumulator: "Accumulator", queue: _Queue) -> None:
     with wp.ScopedDevice(accumulator.device):
         while (chunk := queue.take()) is not None:
             accumulator.add(*chunk)
             queue.finished(chunk[1])
-        return accumulator.partial()
 
 
 class Accumulator:
@@ -233,6 +243,30 @@ class Accumulator:
             rows = self._rows_out.numpy().reshape(self.shape.n_rows, self.chunk)
             self._rows[first] = rows[:, :count].copy()
 
+    def absorb(self, other: "Accumulator", pool: ThreadPoolExecutor) -> None:
+        """Take over what another accumulator of the CPU holds; nothing but ``partial`` and ``absorb`` may follow.
+
+        Where the records stand, slice by slice: they are large, and memory that is used for the first time is slow.
+        """
+        self._counted += other._counted
+        self._rows |= other._rows
+        if other._folded is not None:
+            self._folded = other._folded if self._folded is None else merge(self._folded, other._folded)
+        extremes, totals = self._extremes.numpy(), self._totals.numpy()
+        np.maximum(extremes, other._extremes.numpy(), out=extremes)
+        totals += other._totals.numpy()
+        own, added = self._voxels(), other._voxels()
+
+        def absorb_voxels(start: int) -> None:
+            part = slice(start, start + VOXELS_ABSORBED)
+            (records, sums), (more_records, more_sums) = ((table[part] for table in pair) for pair in (own, added))
+            counts = _counts(records) + (_counts(more_records) - self._empty_count)
+            np.maximum(records, more_records, out=records)
+            _counts(records)[:] = counts
+            sums += more_sums
+
+        list(pool.map(absorb_voxels, range(0, len(own[0]), VOXELS_ABSORBED)))
+
     def partial(self) -> Partial:
         """What all chunks contributed."""
         self._fold()
@@ -270,23 +304,28 @@ class Accumulator:
             model.inertia_given = device_array(inertia.reshape(count, -1).T.ravel(), real, device)
         return given_space(q, first, precision, device)
 
+    def _voxels(self) -> tuple[np.ndarray, np.ndarray]:
+        """Records and sums of the voxels of the slab, (V, record_size) and (V, sums_size)."""
+        size, width = self.shape.record_size, self.shape.sums_size
+        records, sums = self._records.numpy().reshape(-1, size)[:-1], self._sums.numpy()
+        return records, sums.reshape(-1, width)[:-1] if width else np.empty((len(records), 0), np.int64)
+
     def _fold(self) -> None:
         """Add what the device holds to the 64-bit host arrays."""
-        records = self._records.numpy().reshape(-1, self.shape.record_size)[:-1]
-        sums = self._sums.numpy().reshape(-1, max(self.shape.sums_size, 1))
-        counts = records.view(np.int64)[:, 0]
+        records, sums = self._voxels()
+        counts = _counts(records)
         cells = np.flatnonzero(counts != self._empty_count)
-        occupied, width = records[cells], self.shape.count_size
-        sums = sums[cells, : self.shape.n_indices] if self.shape.sums else np.zeros((len(cells), 0), np.int64)
+        count, width = counts[cells], self.shape.count_size
+        count -= self._empty_count
         weight = self.plan.structure.weight
         held = Partial(
             self._counted * weight,
             self._extremes.numpy().copy(),
             self._totals.numpy().reshape(TOTAL_SLOTS, -1).sum(axis=0) * weight,
             cells,
-            (counts[cells] - self._empty_count) * weight,
-            occupied[:, width : width + self.shape.extremes].copy(),
-            sums * weight,
+            count * weight,
+            records[cells, width : width + self.shape.extremes],
+            sums[cells, : self.shape.n_indices * self.shape.sums] * weight,
             self._rows,
         )
         self._folded = held if self._folded is None else merge(self._folded, held)
@@ -298,6 +337,11 @@ class Accumulator:
         self._sums.zero_()
         self._totals.zero_()
         self._extremes.fill_(self._lowest)
+
+
+def _counts(records: np.ndarray) -> np.ndarray:
+    """The 64-bit counts in voxel records (V, record_size), as a view."""
+    return records.view(np.int64)[:, 0]
 
 
 def _device_lattice(block: LatticeBlock | None, real):
