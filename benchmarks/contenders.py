@@ -1,8 +1,16 @@
-"""The other ways to the same numbers: NumPy on batches, loops in Python over MuJoCo and Pinocchio.
+"""The other ways to the same numbers: NumPy on batches, loops over MuJoCo and Pinocchio in Python, and in C++.
 
 Each contender is a function of configurations q (N, n) that returns Jacobians (N, 3, n), inertia matrices (N, n, n)
 or None, and indices (6 or 12, N), all in float64.
 """
+
+import ctypes
+import shutil
+import subprocess
+import sys
+import tempfile
+from functools import cache
+from pathlib import Path
 
 import numpy as np
 
@@ -80,7 +88,7 @@ class NumpyBatches:
         return M
 
 
-class _Loop:
+class Loop:
     """One configuration after the other; the singular values per sample, or of all samples at the end."""
 
     def __call__(self, q: np.ndarray, dynamic: bool, batched_svd: bool = False):
@@ -97,7 +105,7 @@ class _Loop:
         raise NotImplementedError
 
 
-class MujocoLoop(_Loop):
+class MujocoLoop(Loop):
     """mj_kinematics, mj_comPos, mj_jac and mj_fullM in a Python loop."""
 
     name = "MuJoCo, Python loop"
@@ -126,7 +134,7 @@ class MujocoLoop(_Loop):
             M[:] = self._full[self._dofs[:, None], self._dofs]
 
 
-class PinocchioLoop(_Loop):
+class PinocchioLoop(Loop):
     """computeJointJacobians, getFrameJacobian and crba in a Python loop, on a model made from the same chain."""
 
     name = "Pinocchio, Python loop"
@@ -157,4 +165,61 @@ class PinocchioLoop(_Loop):
             M[:] = upper + np.triu(upper, 1).T + self._armature
 
 
-CONTENDERS = (NumpyBatches, MujocoLoop, PinocchioLoop)
+class PinocchioCompiled:
+    """The same calls in C++ and singular values by Eigen, compiled here for this machine, in about a minute."""
+
+    name = "Pinocchio, C++ loop"
+
+    def __init__(self, robot: Robot):
+        self._library, chain = _pinocchio_library(), robot.chain
+        T = np.concatenate([chain.T_joint, [chain.T_tip @ chain.T_tip_tool]])
+        T[0] = chain.T_world_base @ T[0]
+        arrays = [T, chain.mass, chain.center_of_mass, chain.inertia, chain.armature]
+        revolute = np.ascontiguousarray(chain.joint_is_revolute, np.uint8)
+        self._arm = self._library.make_arm(chain.n, *map(_pointer, [revolute, *arrays]))
+
+    def __call__(self, q: np.ndarray, dynamic: bool, batched_svd: bool = False):
+        N, n = q.shape
+        J, M, values = np.empty((N, 3, n)), np.empty((N, n, n)) if dynamic else None, np.empty((N, 6 * (1 + dynamic)))
+        outputs = [_pointer(J), None if M is None else _pointer(M), _pointer(values)]
+        self._library.evaluate(self._arm, _pointer(q), ctypes.c_int64(N), dynamic, *outputs)
+        return J, M, values.T
+
+
+@cache
+def _pinocchio_library() -> ctypes.CDLL:
+    """pinocchio_loop.cpp with the headers of the packages pin and cmeel-eigen, from the headers alone."""
+    compiler = shutil.which("c++")
+    prefix = next(
+        (Path(at, "cmeel.prefix") for at in sys.path if Path(at, "cmeel.prefix/include/eigen3").is_dir()), None
+    )
+    if not compiler or not prefix:
+        raise ImportError("needs a C++ compiler and the packages pin and cmeel-eigen")
+    # As Pinocchio's own CMake configuration asks for.
+    definitions = [
+        "BOOST_MPL_LIMIT_LIST_SIZE=30",
+        "BOOST_MPL_LIMIT_VECTOR_SIZE=30",
+        "BOOST_MPL_CFG_NO_PREPROCESSED_HEADERS",
+    ]
+    folders = [prefix / "include", prefix / "include/eigen3"]
+    with tempfile.TemporaryDirectory() as folder:
+        library = Path(folder, "pinocchio_loop.so")
+        subprocess.run(
+            [compiler, "-w", "-O3", "-march=native", "-DNDEBUG", "-std=c++17", "-shared", "-fPIC"]
+            + [f"-D{name}" for name in definitions]
+            + [f"-I{path}" for path in folders]
+            + [Path(__file__).with_name("pinocchio_loop.cpp"), "-o", library],
+            check=True,
+        )
+        loaded = ctypes.CDLL(str(library))
+    loaded.make_arm.restype = ctypes.c_void_p
+    loaded.evaluate.argtypes = [ctypes.c_void_p] * 2 + [ctypes.c_int64, ctypes.c_int] + [ctypes.c_void_p] * 3
+    return loaded
+
+
+def _pointer(values: np.ndarray) -> ctypes.c_void_p:
+    assert values.flags.c_contiguous
+    return values.ctypes.data_as(ctypes.c_void_p)
+
+
+CONTENDERS = (NumpyBatches, MujocoLoop, PinocchioLoop, PinocchioCompiled)
