@@ -13,6 +13,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+import warp as wp
 from arithmetic import operations
 from throughput import machine, peaks, plan_of
 
@@ -87,6 +88,7 @@ def _rows_stored(plan: SweepPlan, count: int, device: str, _threads: int) -> flo
     started = time.perf_counter()
     for first in range(0, count, ROWS):
         accumulator.launch(first, min(ROWS, count - first))
+    wp.synchronize_device(target)
     return time.perf_counter() - started
 
 

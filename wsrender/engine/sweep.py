@@ -20,12 +20,13 @@ from wsrender.engine.grid_structure import GridStructure, device_base, structure
 from wsrender.engine.kernel_cache import loaded
 from wsrender.engine.memory import as_type, device_memory
 from wsrender.engine.partial import Partial, joined, merge
+from wsrender.engine.row_buffer import RowBuffer
 from wsrender.engine.slabs import slabs_of
 from wsrender.errors import NumericalError
 from wsrender.sampling import SamplingPlan
 from wsrender.volume.lattice import LatticeBlock
 
-CHUNK_CPU, CHUNK_CUDA, CHUNK_ROWS, CHUNK_GIVEN = 1 << 20, 1 << 28, 1 << 18, 1 << 14
+CHUNK_CPU, CHUNK_CUDA, CHUNK_ROWS, CHUNK_GIVEN = 1 << 20, 1 << 28, 1 << 20, 1 << 14
 CHUNK_LEAST, CHUNKS_PER_THREAD = 1 << 15, 8
 THREADS_PER_SM = 2048  # of a GPU: a whole multiple of those that run at a time
 VOXELS_ABSORBED = 1 << 14
@@ -220,14 +221,15 @@ class Accumulator:
         self._totals = device_memory(TOTAL_SLOTS * shape.n_indices, wp.int64, device)
         self._records = device_memory(voxels * shape.record_size, bits, device)
         self._sums = device_memory(voxels * shape.sums_size, wp.int64, device)
-        self._rows_out = wp.empty(shape.n_rows * chunk * shape.keep_rows, dtype=real, device=device)
+        buffers = (2 if device.is_cuda else 1) if shape.keep_rows else 0
+        self._row_buffers = [RowBuffer(shape.n_rows, chunk, real, device) for _ in range(buffers)]
         outputs = self._outputs = outputs_type(shape)()
         outputs.scales = device_array(plan.scales, real, device)
         outputs.extremes, outputs.totals = self._extremes, self._totals
         self._counts = as_type(self._records, wp.int64)
         outputs.records = as_type(self._records, record_type_of(shape))
         outputs.sums = as_type(self._sums, sums_type_of(shape))
-        outputs.rows_out, outputs.rows_stride = self._rows_out, chunk
+        outputs.rows_out, outputs.rows_stride = wp.empty(0, dtype=real, device=device), chunk
         self._folded: Partial | None = None
         self._clear()
 
@@ -240,8 +242,12 @@ class Accumulator:
         self.launch(first, count)
         self._counted += counted
         if self.shape.keep_rows:
-            rows = self._rows_out.numpy().reshape(self.shape.n_rows, self.chunk)
-            self._rows[first] = rows[:, :count].copy()
+            self._row_buffers[0].fetch(first, count)
+            # Of two, the other: its rows are stored while the kernel and the copy of this chunk run.
+            self._row_buffers.reverse()
+            self._rows |= self._row_buffers[0].take()
+        elif self.device.is_cuda:
+            wp.synchronize_device(self.device)
 
     def absorb(self, other: "Accumulator", pool: ThreadPoolExecutor) -> None:
         """Take over what another accumulator of the CPU holds; nothing but ``partial`` and ``absorb`` may follow.
@@ -269,19 +275,22 @@ class Accumulator:
 
     def partial(self) -> Partial:
         """What all chunks contributed."""
+        for buffer in self._row_buffers:
+            self._rows |= buffer.take()
         self._fold()
         assert self._folded is not None
         return self._folded
 
     def launch(self, first: int, count: int) -> None:
-        """Run the kernel over one chunk."""
+        """Run the kernel over one chunk; on a GPU, begin to."""
+        if self._row_buffers:
+            self._outputs.rows_out = self._row_buffers[0].on_device
         space = self._space or self._given(first, count)
         inputs = [self._model, space, self._base, self._lattice, first, count]
         if self.device.is_cuda:
             threads = min(count, THREADS_PER_SM * self.device.sm_count)
             outputs = [self._outputs, self._counts, self._records, self._sums]
             wp.launch(self._kernel, dim=threads, inputs=[*inputs, threads], outputs=outputs, device=self.device)
-            wp.synchronize_device(self.device)
         else:
             tasks = -(-count // LANES)
             wp.launch(self._kernel, dim=tasks, inputs=inputs, outputs=[self._outputs], device=self.device)
