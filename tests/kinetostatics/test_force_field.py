@@ -186,7 +186,7 @@ def test_a_planar_arm_feels_forces_in_its_plane():
     robot = ws.load_robot(ws.DHTable(convention="standard", rows=rows))
     field = ws.force_field(robot, task=["x", "y"], form="potential", haptic_device=STRONG, joint_limits=SOFT)
     q = np.radians([97, 60])
-    torque = field.joint_limits.torques(field.joint_limits.penetration(q))
+    torque = field.joint_limits.torques(field.joint_limits.shares(q))
     assert field.evaluate(q).inverse_condition > 0.2
     assert field.force(q)[:2] == pytest.approx(np.linalg.solve(robot.jacobian(q)[0][:2].T, torque), rel=1e-9)
     assert field.force(q)[2] == pytest.approx(0, abs=1e-9)
@@ -206,6 +206,23 @@ def test_placed_and_coupled_robots():
     assert posture.position == pytest.approx(there.forward_kinematics(q)[0][:3, 3], abs=1e-12)
     assert posture.rotation == pytest.approx(there.forward_kinematics(q)[0][:3, :3], abs=1e-12)
     np.testing.assert_allclose(posture.J, there.jacobian(q)[0], atol=1e-12)
+
+
+def test_overlapping_ramps():
+    """A range narrower than two margins: both ramps push, each with its own energy."""
+    rows = [ws.DHRow(a=0.2, limits_deg=(-6, 6))]  # margins of 10°
+    robot = ws.load_robot(ws.DHTable(convention="standard", rows=rows))
+    normalised = ws.force_field(robot, form="normalised", conditioning=None)
+    soft = {"joint_limits": SOFT, "haptic_device": STRONG}
+    potential = ws.force_field(robot, form="potential", conditioning=None, **soft)
+    for angle in (-7.0, -3.0, 0.0, 2.0, 5.0):
+        q = np.radians([angle])
+        expected = 6.4 * (np.clip((4 - angle) / 10, 0, 1) - np.clip((angle + 4) / 10, 0, 1))
+        assert normalised.joint_forces(q) == pytest.approx([expected], abs=1e-12)
+        deep = np.radians([max(4 - angle, 0), max(angle + 4, 0)])
+        assert potential.energy(q) == pytest.approx(SOFT["stiffness_n_m_per_rad"] * (deep @ deep) / 2)
+        slope = (potential.energy(q + 1e-6) - potential.energy(q - 1e-6)) / 2e-6
+        assert potential.force(q) @ robot.jacobian(q)[0][:3, 0] == pytest.approx(-slope, rel=1e-4, abs=1e-6)
 
 
 def test_joints_without_limits_have_no_ramp():

@@ -11,50 +11,52 @@ class Conditioning:
     """i = σ_m/σ_1 of the rows of a task, linear ones divided by the characteristic length [m]."""
 
     def __init__(self, kinematics: Kinematics, rows: tuple[int, ...], length: float):
-        chain = kinematics.chain
         scale = [1 / length if row < 3 and max(rows) >= 3 else 1.0 for row in rows]
         self._select = np.zeros((len(rows), 6))  # rows of the task, scaled
         self._select[range(len(rows)), rows] = scale
-        self._coupling = np.zeros((len(chain.joint_source), chain.n))
-        self._coupling[range(len(self._coupling)), chain.joint_source] = chain.joint_scale
-        self._until = np.tri(len(self._coupling), k=-1)  # sums over the joints before one
-        self._from = 1.0 - self._until  # and over it and those after it
+        self._coupling = kinematics.coupling
+        before = np.tri(len(kinematics.chain.joint_source), k=-1).T  # sums over the joints before one
+        self._sums = np.stack([before, 1.0 - before])  # and over it and those after it
+        self._second = _SECOND @ self._select.T
 
     def at(self, posture: Posture) -> "Condition":
         """The conditioning of a posture."""
         A = self._select @ posture.J
         u, sigma, v = decomposed(A)
-        if len(sigma) < len(A) or sigma[-1] <= max(A.shape) * np.finfo(float).eps * sigma[0]:
+        largest, least = float(sigma[0]), float(sigma[-1])
+        if len(sigma) < len(A) or least <= max(A.shape) * _EPSILON * largest:
             return Condition(0.0, u, sigma, v)
-        return Condition(float(sigma[-1] / sigma[0]), u, sigma, v)
+        return Condition(least / largest, u, sigma, v)
 
     def gradient(self, posture: Posture, condition: "Condition") -> np.ndarray:
         """∇i by q, (n,); zero where i is 0 by rank, and for a task of one row.
 
-        dσ_k = u_kᵀ dA v_k, and dA from the second-order kinematics of a chain (Hourtash, *The kinematic Hessian and
-        higher derivatives*, 2005): joint j turns the columns (v_i, ω_i) of the joints i after it by ω_j, and moves the
-        tip, v_j, that those before it turn. Both singular values, σ_m and σ_1, are treated at once: six columns.
+        dσ_k = u_kᵀ dA v_k, so di = ⟨Y, dJ⟩ with columns (y_i, z_i) of Y, and dJ from the second-order kinematics of a
+        chain (Hourtash, *The kinematic Hessian and higher derivatives*, 2005): joint j turns the columns (v_i, ω_i) of
+        the joints i after it by ω_j, and moves the tip, v_j, that those before it turn:
+        ∂i/∂q_j = ω_j·Σ_{i≥j} (v_i × y_i + ω_i × z_i) − v_j·Σ_{i<j} ω_i × y_i.
         """
-        m = len(condition.sigma)
-        if condition.inverse == 0.0 or m == 1:
+        u, sigma, v = condition.parts
+        if condition.inverse == 0.0 or len(sigma) == 1:
             return np.zeros(len(posture.q))
-        left = self._select.T @ condition.u[:, :: m - 1]  # (6, 2): of σ_1 and σ_m
-        right = self._coupling @ (condition.v[:: m - 1].T * (np.array([-condition.inverse, 1.0]) / condition.sigma[0]))
-        turn, swing = (_CROSS @ left.ravel()).reshape(2, 6, 6)
-        columns, weights = posture.columns.T, right @ _SPREAD  # (L, 6)
-        v, w = columns @ _LINEAR, columns @ _ANGULAR  # (L, 6): once for each singular value
-        after = self._from @ (weights * (columns @ turn))
-        before = (self._until @ (weights * w)) @ swing
-        return (w * after - v * before) @ _ONES @ self._coupling
+        weights, largest = np.zeros(len(sigma)), float(sigma[0])
+        weights[0], weights[-1] = -condition.inverse / largest, 1.0 / largest
+        by_row = (u * weights) @ v  # ∂i/∂A
+        if self._coupling is not None:
+            by_row = by_row @ self._coupling.T
+        columns = posture.columns
+        crossed = _CROSS @ ((_FIRST @ columns) * (self._second @ by_row))
+        gradient = _ONES @ (columns * (crossed.reshape(2, 3, -1) @ self._sums).reshape(6, -1))
+        return gradient if self._coupling is None else gradient @ self._coupling
 
 
 class Condition:
-    """``inverse`` = 1/κ of a posture, 0 where it is singular, and the decomposition that it came from."""
+    """``inverse`` = 1/κ of a posture, 0 where it is singular, and the decomposition that it came from, ``parts``."""
 
-    __slots__ = ("inverse", "sigma", "u", "v")
+    __slots__ = ("inverse", "parts")
 
     def __init__(self, inverse: float, u: np.ndarray, sigma: np.ndarray, v: np.ndarray):
-        self.inverse, self.u, self.sigma, self.v = inverse, u, sigma, v
+        self.inverse, self.parts = inverse, (u, sigma, v)
 
 
 class ConditioningRamp:
@@ -79,25 +81,17 @@ class ConditioningRamp:
         return 0.5 * self.stiffness * max(self.on - inverse, 0.0) ** 2
 
 
-def _cross_products() -> np.ndarray:
-    """(72, 12): from (u_1, u_2) as (6, 2) to two matrices (6, 6), of columns (3 to a singular value).
-
-    The first takes (v, ω) to v × u_lin + ω × u_ang, the second (a_1, a_2) to a × u_lin.
-    """
-    levi_civita = np.zeros((3, 3, 3))
-    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
-        levi_civita[i, j, k], levi_civita[j, i, k] = 1.0, -1.0
-    turn, swing = np.zeros((6, 6, 6, 2)), np.zeros((6, 6, 6, 2))
-    for sigma in range(2):
-        columns = slice(3 * sigma, 3 * sigma + 3)
-        by_vector = levi_civita.transpose(0, 2, 1)  # (a × u)_c = ε_aub: [a, c, u]
-        turn[:3, columns, :3, sigma] = turn[3:, columns, 3:, sigma] = by_vector
-        swing[columns, columns, :3, sigma] = by_vector
-    return np.stack([turn, swing]).reshape(72, 12)
+def _cross_products() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """F (18, 6), S (18, 6), X (6, 18): X ((F c) ∘ (S y)) are −ω × y and v × y + ω × z of c = (v, ω), (y, z)."""
+    first, second, out = np.zeros((18, 6)), np.zeros((18, 6)), np.zeros((6, 18))
+    pairs = ((3, 0, 0, -1.0), (0, 0, 3, 1.0), (3, 3, 3, 1.0))  # where a, b and their cross product begin, and its sign
+    terms = [(*pair, k, turn) for pair in pairs for k in range(3) for turn in (1, -1)]
+    for row, (a, b, to, sign, k, turn) in enumerate(terms):  # (a × b)_k = a_{k+1} b_{k+2} − a_{k+2} b_{k+1}
+        first[row, a + (k + turn) % 3] = second[row, b + (k - turn) % 3] = 1.0
+        out[to + k, row] = sign * turn
+    return first, second, out
 
 
-_CROSS = _cross_products()
-_SPREAD = np.kron(np.eye(2), np.ones((1, 3)))  # a value of each singular value to its three columns
-_LINEAR = np.vstack([np.hstack([np.eye(3)] * 2), np.zeros((3, 6))])
-_ANGULAR = np.roll(_LINEAR, 3, axis=0)
+_FIRST, _SECOND, _CROSS = _cross_products()
 _ONES = np.ones(6)
+_EPSILON = float(np.finfo(float).eps)

@@ -19,7 +19,7 @@ from wsrender.kinetostatics.conditioning import Condition, Conditioning, Conditi
 from wsrender.kinetostatics.joint_limits import JointLimits
 from wsrender.kinetostatics.kinematics import Kinematics, Posture
 from wsrender.kinetostatics.obstacles import ObstacleDistance
-from wsrender.kinetostatics.singular_values import damped_inverse, damped_inverse_of
+from wsrender.kinetostatics.singular_values import damped_factor, damped_inverse, decomposed
 from wsrender.kinetostatics.surfaces import SurfaceRamp
 from wsrender.robot import Robot, as_robot
 from wsrender.robot.indices import task_rows
@@ -27,6 +27,7 @@ from wsrender.robot.model_robot import configuration_rows
 from wsrender.spec.kinetostatics import ForceFieldChoice, JointLimitForce
 
 FELT = 1e-6  # least norm of a limit's direction that can be felt, relative to the largest
+_ONES = np.ones(6)
 STEP = 1e-6  # of central differences [m]; torque devices turn by as many metres over the characteristic length
 
 
@@ -55,10 +56,9 @@ class FieldState:
 
 @dataclass(eq=False, slots=True)
 class _Pushes:
-    """What the terms of a posture add up: joint torques, and forces (with torques / length, or without)."""
+    """What the terms of a posture add up; ``wrench`` (3,) or (6,) is the force, with the torque / length [N]."""
 
-    torques: np.ndarray  # (n,)
-    wrench: np.ndarray  # (3,) or (6,)
+    wrench: np.ndarray
     energy: float = 0.0
     nearness: float = 0.0
     unfelt: tuple[str, ...] = ()
@@ -91,7 +91,7 @@ class ForceField:
         self.is_wrench = self.device.kind == "wrench"
         self._same_rows = rows == ((0, 1, 2, 3, 4, 5) if self.is_wrench else (0, 1, 2))
         self._normalised = choice.form == "normalised"
-        self._ones = np.ones(6 if self.is_wrench else 3)
+        self._size = 6 if self.is_wrench else 3
         self._row_scale = np.array([1 / length] * 3 + [1.0] * 3)[:, None]
 
     def force(self, q: Any) -> np.ndarray:
@@ -115,24 +115,25 @@ class ForceField:
     def joint_forces(self, q: Any) -> np.ndarray:
         """The joint-limit ramps f_i (n,) [N] at a configuration (n,)."""
         limits = self.joint_limits
-        return limits.ramps(limits.penetration(self._checked(q)))
+        return limits.peak * limits.ramps(limits.shares(self._checked(q)))
 
     def evaluate(self, q: Any) -> FieldState:
         """Everything that a configuration (n,) feels. Raises InputError for a wrong shape or a number not finite."""
         posture = self.kinematics.at(self._checked(q))
         condition = self.conditioning.at(posture)
-        pushes = _Pushes(np.zeros(self.chain.n), np.zeros(6 if self.is_wrench else 3))
-        penetration = self.joint_limits.penetration(posture.q)
-        at_limits = self._has_limits and bool(penetration.any())
+        pushes = _Pushes(np.zeros(self._size))
+        shares = self.joint_limits.shares(posture.q)
+        at_limits = self._has_limits and np.count_nonzero(shares) > 0
         share = self._ramp.share(condition.inverse) if self._ramp else 0.0
         if at_limits or share > 0.0:
-            inverse = self._inverse(posture, condition)
+            u, sigma, v = condition.parts if self._same_rows else decomposed(self._jacobian(posture))
+            # J⁺ = V Σ⁺ Uᵀ: what the terms ask of the joints goes through V Σ⁺, their sum through Uᵀ.
+            factor, along = damped_factor(sigma, v), np.zeros(len(sigma))
             if at_limits:
-                self._add_limits(pushes, penetration, inverse)
+                along += self._limit_force(pushes, shares, factor)
             if share > 0.0:
-                self._add_conditioning(pushes, posture, condition, inverse)
-            if not self._normalised:
-                pushes.wrench += self._dual(inverse.T @ pushes.torques)
+                along += self._conditioning_force(pushes, posture, condition, factor)
+            pushes.wrench = u @ along if self._normalised else self._dual(u @ along)
         boundary = self._add_surface(pushes, self._boundary, posture.position)
         obstacle = self._add_surface(pushes, self._obstacles, posture.position)
         force, torque = self._clipped(pushes.wrench)
@@ -143,7 +144,7 @@ class ForceField:
 
     def inverse_jacobian(self, posture: Posture) -> np.ndarray:
         """Damped pseudo-inverse (n, 3) of the linear Jacobian, or (n, 6) of the whole one for a wrench device."""
-        inverse = self._inverse(posture)
+        inverse = damped_inverse(self._jacobian(posture))
         return inverse * self._row_scale.T if self.is_wrench else inverse
 
     def stiffness(self, q: Any) -> np.ndarray:
@@ -158,48 +159,48 @@ class ForceField:
 
     def _checked(self, q: Any) -> np.ndarray:
         q = np.asarray(q, np.float64)
-        if q.shape != (self.chain.n,) or not np.isfinite(q).all():
+        if q.shape != (self.chain.n,) or np.count_nonzero(np.isfinite(q)) < len(q):
             return configuration_rows(q, self.chain.n)[0]  # says what is wrong, or takes a single row
         return q
 
-    def _inverse(self, posture: Posture, condition: Condition | None = None) -> np.ndarray:
-        """Damped pseudo-inverse of the linear, or of the homogeneous Jacobian, which may be that of the condition."""
-        if condition is not None and self._same_rows:
-            return damped_inverse_of(condition.u, condition.sigma, condition.v)
-        return damped_inverse(posture.J * self._row_scale if self.is_wrench else posture.J[:3])
+    def _jacobian(self, posture: Posture) -> np.ndarray:
+        """The linear, or of a wrench device the homogeneous Jacobian."""
+        return posture.J * self._row_scale if self.is_wrench else posture.J[:3]
 
     def _dual(self, homogeneous: np.ndarray) -> np.ndarray:
         """Dual of a homogeneous velocity (v/L, ω) as force and torque / L, both [N]."""
         return homogeneous / self.length.length_m if self.is_wrench else homogeneous
 
-    def _add_limits(self, pushes: _Pushes, penetration: np.ndarray, inverse: np.ndarray) -> None:
+    def _limit_force(self, pushes: _Pushes, shares: np.ndarray, factor: np.ndarray) -> np.ndarray:
+        """Force of the joint limits along the left singular vectors, (k,)."""
         limits = self.joint_limits
-        ramps = limits.ramps(penetration)
-        pushes.nearness = float(max(ramps.max(), -ramps.min())) / limits.peak
-        norms = np.sqrt((inverse * inverse) @ self._ones)
-        least = FELT * norms.max()
-        if norms.min() <= least:
-            unfelt = norms <= least
-            hidden = zip(self.chain.joint_names, unfelt.tolist(), penetration.tolist(), strict=True)
-            pushes.unfelt = tuple(name for name, is_unfelt, depth in hidden if is_unfelt and depth)
-            ramps[unfelt], norms[unfelt] = 0.0, 1.0
-        if self._normalised:
-            pushes.wrench += _bounded((ramps / norms) @ inverse, limits.peak)
-        else:
-            pushes.torques += limits.torques(penetration)
-            pushes.energy += limits.energy(penetration)
+        ramps = limits.ramps(shares).tolist()
+        pushes.nearness = max(map(abs, ramps))
+        # Squared norms of the rows of J⁺, which are those of V Σ⁺.
+        squares = ((factor * factor) @ _ONES[: factor.shape[1]]).tolist()
+        least = FELT * FELT * max(squares)
+        if min(squares) <= least:
+            facts = zip(self.chain.joint_names, squares, ramps, strict=True)
+            pushes.unfelt = tuple(name for name, square, ramp in facts if square <= least and ramp)
+        if not self._normalised:
+            pushes.energy += limits.energy(shares)
+            return limits.torques(shares) @ factor
+        facts = zip(ramps, squares, strict=True)
+        scaled = [limits.peak * ramp / math.sqrt(square) if square > least else 0.0 for ramp, square in facts]
+        return _bounded(np.array(scaled) @ factor, limits.peak)
 
-    def _add_conditioning(self, pushes: _Pushes, posture: Posture, condition: Condition, inverse: np.ndarray) -> None:
+    def _conditioning_force(
+        self, pushes: _Pushes, posture: Posture, condition: Condition, factor: np.ndarray
+    ) -> np.ndarray:
+        """Force of the conditioning along the left singular vectors, (k,)."""
         assert self._ramp is not None
-        gradient = self.conditioning.gradient(posture, condition)
-        if self._normalised:
-            direction = gradient @ inverse
-            size = math.sqrt(direction @ direction)
-            if size > 1e-9:
-                pushes.wrench += direction * (self._ramp.peak * self._ramp.share(condition.inverse) / size)
-        else:
-            pushes.torques += self._ramp.slope(condition.inverse) * gradient
+        direction = self.conditioning.gradient(posture, condition) @ factor
+        if not self._normalised:
             pushes.energy += self._ramp.energy(condition.inverse)
+            return self._ramp.slope(condition.inverse) * direction
+        size = math.sqrt(direction @ direction)
+        strength = self._ramp.peak * self._ramp.share(condition.inverse)
+        return direction * (strength / size if size > 1e-9 else 0.0)
 
     def _add_surface(self, pushes: _Pushes, ramp: SurfaceRamp | None, position: np.ndarray) -> float:
         """Add the force of a surface; the distance to it [m]."""

@@ -41,30 +41,37 @@ class Kinematics:
         self._turn = np.kron(np.eye(2), self._R_world)  # of linear and angular rows
         self._upright = bool(np.array_equal(self._R_world, np.eye(3)))
         local = np.linalg.inv(_body_pose(self._data, tip.body)) @ tip.pose(self._data) @ chain.T_tip_tool
-        self._tip_body, self._tip_position, self._tip_rotation = tip.body, local[:3, 3].copy(), local[:3, :3].copy()
-        self._addresses = loaded.qpos_addresses
+        self._tip_body, self._tip = tip.body, np.hstack([local[:3, 3:], local[:3, :3]])
+        self._body_position, self._body_rotation = self._data.xpos[tip.body], self._data.xmat[tip.body].reshape(3, 3)
+        self._qpos, self._addresses = self._data.qpos, _run(loaded.qpos_addresses)
         self._zero = loaded.model.qpos0[loaded.qpos_addresses] + chain.joint_offset
-        self._displacements, self._dofs = loaded.coupling, loaded.dof_addresses
-        self._coupling = None if np.array_equal(loaded.coupling, np.eye(chain.n)) else loaded.coupling
-        self._point, self._jacobian = np.zeros(3), np.zeros((6, loaded.model.nv))
-        self._linear, self._angular = self._jacobian[:3], self._jacobian[3:]
+        self._dofs, self._shape = _run(loaded.dof_addresses), (6, loaded.model.nv)
+        self.coupling = None if np.array_equal(loaded.coupling, np.eye(chain.n)) else loaded.coupling
+        """Displacements of the L joints by the n coordinates, (L, n); None: they are the same."""
 
     def at(self, q: np.ndarray) -> Posture:
         """The posture of a configuration (n,) of finite numbers [rad or m]."""
-        model, data, body = self._model, self._data, self._tip_body
-        data.qpos[self._addresses] = self._displacements @ q + self._zero
+        model, data, coupling = self._model, self._data, self.coupling
+        self._qpos[self._addresses] = (q if coupling is None else coupling @ q) + self._zero
         mujoco.mj_kinematics(model, data)
         mujoco.mj_comPos(model, data)  # mj_jac needs it
-        R_body = data.xmat[body].reshape(3, 3)
-        np.add(R_body @ self._tip_position, data.xpos[body], out=self._point)
-        mujoco.mj_jac(model, data, self._linear, self._angular, self._point, body)
-        columns, rotation, position = self._jacobian[:, self._dofs], R_body @ self._tip_rotation, self._point.copy()
+        columns = np.empty(self._shape)
+        tip = self._body_rotation @ self._tip
+        position, rotation = tip[:, 0] + self._body_position, tip[:, 1:]
+        mujoco.mj_jac(model, data, columns[:3], columns[3:], position, self._tip_body)
+        columns = columns[:, self._dofs]
         if not self._upright:
             columns, rotation = self._turn @ columns, self._R_world @ rotation
             position = self._R_world @ position
         position += self._p_world
-        J = columns if self._coupling is None else columns @ self._coupling
+        J = columns if coupling is None else columns @ coupling
         return Posture(q, position, rotation, J, columns)
+
+
+def _run(addresses: np.ndarray) -> np.ndarray | slice:
+    """Addresses as a slice where they follow each other: NumPy is quicker with it."""
+    first = int(addresses[0])
+    return slice(first, first + len(addresses)) if (np.diff(addresses) == 1).all() else addresses
 
 
 def _body_pose(data: mujoco.MjData, body: int) -> np.ndarray:

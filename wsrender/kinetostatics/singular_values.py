@@ -19,17 +19,20 @@ def decomposed(A: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return u, sigma, v
 
 
-def damped_inverse(A: np.ndarray) -> np.ndarray:
-    """Pseudo-inverse (n, m) of A (m, n) that stays bounded at singular postures.
+def damped_factor(sigma: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """V Σ⁺ (n, k) of a decomposition: the pseudo-inverse is this times Uᵀ, and stays bounded at singular postures.
 
     Numerical filtering (Maciejewski and Klein 1988) with λ² = ε² − σ² (Nakamura and Hanafusa 1986): a singular value
     above ε = σ_1 / 100 is inverted exactly, one below counts as σ/ε², which is 0 where there is no motion at all.
     """
-    return damped_inverse_of(*decomposed(A))
+    least = SMALL * float(sigma[0])
+    if least == 0.0:
+        return np.zeros(v.shape[::-1])
+    counted = np.maximum(sigma, least)
+    return v.T * (sigma / (counted * counted))
 
 
-def damped_inverse_of(u: np.ndarray, sigma: np.ndarray, v: np.ndarray) -> np.ndarray:
-    """The damped pseudo-inverse of a matrix that is decomposed already."""
-    if sigma[0] == 0.0:
-        return np.zeros((v.shape[1], len(u)))
-    return (v.T * (sigma / np.maximum(sigma, SMALL * sigma[0]) ** 2)) @ u.T
+def damped_inverse(A: np.ndarray) -> np.ndarray:
+    """Damped pseudo-inverse (n, m) of A (m, n)."""
+    u, sigma, v = decomposed(A)
+    return damped_factor(sigma, v) @ u.T
