@@ -70,18 +70,28 @@ def runs():
     return out
 
 
+# Mean distance of the centroids from the exact boundary, loop by loop [cell widths], over 20 seeds. DEFINITIONS 8 says
+# 0.24–0.33, which holds for outer loops: 0.33 where samples are as dense as anywhere, down to 0.24 where they crowd at
+# the boundary, as they do at both circles of RR, its singular positions. Around its hole, a circle of six cells' radius,
+# the region's side of a cell holds less than half of it too.
+BIAS = {"RP": [0.311], "RR": [0.238, 0.153], "PR": [0.286]}
+
+
 @pytest.mark.parametrize("name", ARMS)
 def test_centroids_lie_inside_by_the_stated_bias(runs, name):
-    """0.24–0.33 cell widths on average (DEFINITIONS 8); the scatter over seeds is a few thousandths."""
     exact, found = runs[name]
-    inward = []
+    means = []
     for run in found:
-        nearest = exact.nearest(np.concatenate(run.loops))
-        # Around a hole, the centroid of a cell's points may lie a little inside the hole.
-        assert nearest.inside.mean() > 0.9
-        inward.append(nearest.distance.mean() / run.cell_width_m)
-    assert 0.2 < np.mean(inward) < 0.34
-    assert np.std(inward) < 0.02
+        inward = []
+        for loop in run.loops:
+            nearest = exact.nearest(loop)
+            signed = np.where(nearest.inside, nearest.distance, -nearest.distance) / run.cell_width_m
+            assert signed.min() > -0.05  # where the boundary is concave, a centroid may lie a little beyond it
+            inward.append(signed.mean())
+        means.append(inward)
+    assert np.std(means, axis=0).max() < 0.012
+    assert np.mean(means, axis=0) == pytest.approx(BIAS[name], abs=0.006)  # twice the error of a mean of 20
+    assert 0.235 < np.mean(means, axis=0)[0] < 0.335
 
 
 def test_first_example_is_two_arcs_and_two_lines(runs):
