@@ -40,6 +40,7 @@ class KernelProcess:
         threads = settings.threads_per_worker or max(1, _cores() // max(1, settings.workers))
         self._start = (settings, threads, self._gauges)
         self._pool: ProcessPool | None = None
+        self.closed = False
         self._lock = threading.Lock()
         self._token: str | None = None
         self._stopped: OrderedDict[str, None] = OrderedDict()
@@ -83,11 +84,14 @@ class KernelProcess:
                 kill(self.pid)
 
     def close(self) -> None:
-        """End the process."""
+        """End the process for good; a task that runs in it is lost."""
+        self.closed = True
         kill(self.pid)
         self._discard()
 
     def _ready(self) -> ProcessPool:
+        if self.closed:
+            raise RuntimeError("the worker ends")
         if self._pool is None or not self._pool.active:
             self._discard()
             self._pool = ProcessPool(
@@ -105,6 +109,8 @@ class KernelProcess:
             try:
                 return Outcome(Verdict.DONE, future.result(timeout=LOOK_S))
             except TimeoutError:
+                if self.closed:  # a pool that was stopped leaves its futures as they were
+                    return Outcome(Verdict.LOST, error=error("worker_lost", "the worker ended", retryable=True))
                 if task.token in self._stopped:
                     kill(self.pid)  # again: the process may have been starting when the stop came
                     if self.pid is None:

@@ -7,10 +7,10 @@ from collections.abc import Callable
 from typing import Any
 
 from dask import config
-from distributed import Nanny, Security, Worker, WorkerPlugin, get_worker
+from distributed import Nanny, Reschedule, Security, Worker, WorkerPlugin, get_worker
 
 from wsrender_server.jobs.kernel_process import KernelProcess
-from wsrender_server.jobs.task import Outcome, Step, Task
+from wsrender_server.jobs.task import Outcome, Step, Task, Verdict
 from wsrender_server.settings import Settings
 
 TOPIC = "wsrender"
@@ -56,7 +56,11 @@ def run_task(task: Task) -> Outcome:
         worker.log_event(TOPIC, {"token": task.token, **news})
 
     worker.log_event(TOPIC, {"token": task.token, "step": str(task.step)})
-    return _process(worker).run(task, report)
+    process = _process(worker)
+    outcome = process.run(task, report)
+    if outcome.verdict == Verdict.LOST and process.closed:
+        raise Reschedule  # on another worker: no fault of the task's
+    return outcome
 
 
 def stop_tokens(tokens: list[str], dask_worker: Worker) -> None:
