@@ -1,5 +1,6 @@
 """``import wsrender`` is cheap, and every public name is there."""
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -37,6 +38,21 @@ def test_import_loads_nothing_heavy_and_takes_less_than_half_a_second():
     ]
     assert [loaded for _, *loaded in runs] == [[]] * 3
     assert min(float(seconds) for seconds, *_ in runs) < 0.5
+
+
+def test_what_an_analysis_needs_is_imported_when_it_is_planned():
+    """Neither the server's process, which computes nothing, nor a run of another analysis waits for it."""
+    script = """
+import sys
+import wsrender_server.app
+print(*sys.modules.keys() & {"warp", "mujoco", "scipy", "matplotlib", "trimesh"})
+import wsrender.run
+print(*sys.modules.keys() & {"mujoco", "matplotlib", "trimesh", "skimage", "scipy.stats"})
+"""
+    path = os.pathsep.join(folder for folder in sys.path if folder)
+    environment = {**os.environ, "PYTHONPATH": path}
+    run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True, env=environment)
+    assert run.stdout.split("\n") == ["", "", ""]
 
 
 @pytest.mark.parametrize("name", ws.__all__)

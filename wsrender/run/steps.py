@@ -2,25 +2,12 @@
 
 import time
 from collections.abc import Callable
+from importlib import import_module
 from typing import Any, Protocol, runtime_checkable
 
 from wsrender.errors import InputError
 from wsrender.result import Result
 from wsrender.robot import Robot, as_robot, robot_of_spec
-from wsrender.run.capability import plan_capability
-from wsrender.run.collaborative import plan_collaborative
-from wsrender.run.comparison import plan_robot_comparison
-from wsrender.run.design import plan_design
-from wsrender.run.five_bar import plan_five_bar
-from wsrender.run.indices_at import plan_indices_at
-from wsrender.run.kinetostatics import plan_kinetostatic_field
-from wsrender.run.mapping import plan_mapping
-from wsrender.run.method_comparison import plan_method_comparison
-from wsrender.run.parallel import plan_parallel
-from wsrender.run.planar_boundary import plan_planar_boundary
-from wsrender.run.reachability import plan_reachability
-from wsrender.run.shared import plan_shared_workspace
-from wsrender.run.workspace import plan_workspace
 from wsrender.spec import (
     CapabilityJob,
     CollaborativeVolumeJob,
@@ -42,21 +29,22 @@ from wsrender.spec.arm import Arm, ArmPath, dotted
 
 Progress = Callable[[int, int, str], None]
 
-PLANNERS: dict[type, Callable[..., "Plan"]] = {
-    WorkspaceJob: plan_workspace,
-    IndicesAtJob: plan_indices_at,
-    ReachabilityJob: plan_reachability,
-    CapabilityJob: plan_capability,
-    SharedWorkspaceJob: plan_shared_workspace,
-    RobotComparisonJob: plan_robot_comparison,
-    CollaborativeVolumeJob: plan_collaborative,
-    MasterSlaveMappingJob: plan_mapping,
-    KinetostaticFieldJob: plan_kinetostatic_field,
-    ParallelWorkspaceJob: plan_parallel,
-    FiveBarJob: plan_five_bar,
-    DesignOptimizationJob: plan_design,
-    PlanarBoundaryJob: plan_planar_boundary,
-    MethodComparisonJob: plan_method_comparison,
+# Module of wsrender.run and its planner: a run imports only what its own analysis needs.
+PLANNERS: dict[type, str] = {
+    WorkspaceJob: "workspace:plan_workspace",
+    IndicesAtJob: "indices_at:plan_indices_at",
+    ReachabilityJob: "reachability:plan_reachability",
+    CapabilityJob: "capability:plan_capability",
+    SharedWorkspaceJob: "shared:plan_shared_workspace",
+    RobotComparisonJob: "comparison:plan_robot_comparison",
+    CollaborativeVolumeJob: "collaborative:plan_collaborative",
+    MasterSlaveMappingJob: "mapping:plan_mapping",
+    KinetostaticFieldJob: "kinetostatics:plan_kinetostatic_field",
+    ParallelWorkspaceJob: "parallel:plan_parallel",
+    FiveBarJob: "five_bar:plan_five_bar",
+    DesignOptimizationJob: "design:plan_design",
+    PlanarBoundaryJob: "planar_boundary:plan_planar_boundary",
+    MethodComparisonJob: "method_comparison:plan_method_comparison",
 }
 
 
@@ -126,7 +114,8 @@ def plan(document: Any, robot: Any = None, *, resolved: dict[str, Any] | None = 
     arms = job.arms()
     given = robot if isinstance(robot, list) else [robot] * len(arms)
     robots = [_robot(path, arm, one) for (path, arm), one in zip(arms.items(), given, strict=True)]
-    return PLANNERS[type(job)](job, *robots, resolved=resolved)
+    module, _, planner = PLANNERS[type(job)].partition(":")
+    return getattr(import_module(f"wsrender.run.{module}"), planner)(job, *robots, resolved=resolved)
 
 
 def _robot(path: ArmPath, arm: Arm, given: Any) -> Robot:

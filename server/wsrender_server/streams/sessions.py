@@ -15,7 +15,6 @@ from starlette.concurrency import run_in_threadpool
 
 from wsrender_server.problems import HttpProblem
 from wsrender_server.settings import Settings
-from wsrender_server.streams.loop_process import run_loop
 from wsrender_server.streams.scheduling import calm_down, hurry
 
 MOST_UNREAD = 1 << 16  # bytes that the loop does not take before it counts as hung
@@ -125,7 +124,7 @@ class Streams:
     def _started(self, document: str) -> tuple[BaseProcess, socket.socket]:
         here, there = socket.socketpair()
         context = multiprocessing.get_context("spawn")
-        process = context.Process(target=run_loop, args=(there, document, self._models), daemon=True)
+        process = context.Process(target=_run_loop, args=(there, document, self._models), daemon=True)
         try:
             process.start()
         finally:
@@ -142,3 +141,10 @@ class Streams:
         self._processes.discard(process)
         with contextlib.suppress(ValueError):  # closed before
             process.close()
+
+
+def _run_loop(link: socket.socket, document: str, models: Path) -> None:
+    """What a process does; what it needs is imported there, not by the server."""
+    from wsrender_server.streams.loop_process import run_loop
+
+    run_loop(link, document, models)
