@@ -1,8 +1,8 @@
 """Which poses a parallel mechanism reaches: positions of a lattice at several orientations, or poses given one by one.
 
-On the CPU a task is a block of LANES poses and each leg a lane loop over them, which LLVM turns into SIMD; on CUDA a
-thread takes a pose. Method A asks every leg at every pose; method B goes on to the next subsystem of legs only where a
-pose of the block has survived ([SNK]). Both are one kernel, so that they give the same bits.
+On the CPU a task is a block of LANES poses and each leg a lane loop over its parts, which LLVM turns into SIMD; on CUDA
+a thread takes a pose. Method A asks every leg at every pose; method B goes on to the next subsystem of legs only where a
+pose of the part has survived ([SNK]). Both are one kernel, so that they give the same bits.
 """
 
 from dataclasses import dataclass
@@ -11,12 +11,14 @@ from functools import cache
 import warp as wp
 
 from wsrender_kernels.legs import LEG_STRIDE, PLATFORM, PLATFORM_CONE, leg_solver
+from wsrender_kernels.memory import memory
 from wsrender_kernels.options import CUDA_OPTIONS, MODULE_OPTIONS
 from wsrender_kernels.sampling import LANES
 from wsrender_kernels.sweep import wide
 
 # Legs unrolled: a leg that is picked while the kernel runs sends the whole struct through local memory.
 UNROLLED = {**CUDA_OPTIONS, "max_unroll": LEG_STRIDE}
+PART_LANES = 32  # poses of a part of the CPU's block, more than Warp unrolls: unrolled they are no vectors
 TURNED_STRIDE = 6  # of a leg at an orientation: its platform joint and the axis of its cone, turned
 ASKED_SLOTS = 1024  # in which CUDA threads count the legs that they evaluate
 POSE_ROWS = 12  # of a pose: position, then the rows of the rotation
@@ -42,7 +44,7 @@ def mechanism_type(shape: MembershipShape):
 
     @wp.struct
     class MechanismModel:
-        legs: wp.types.vector(L * LEG_STRIDE, real)  # legs.pack_legs, row by row
+        legs: wp.types.matrix((L, LEG_STRIDE), real)  # legs.pack_legs
         ends: wp.types.vector(L, wp.int32)  # 1 where a leg is the last of its subsystem
         pairs: wp.types.vector(L * L, wp.int32)  # 1 where the distance of two legs counts
         clearance_2: real  # square of the least distance [m²]
@@ -77,37 +79,50 @@ def lattice_kernel(shape: MembershipShape, cuda: bool) -> wp.Kernel:
     ``points`` (3 * count,), where they are given: coordinate r of position i at [r * count + i], base frame; ``turned``
     (orientations * L * TURNED_STRIDE,), ``weights`` (orientations,); ``by_subsystem``: 1 for method B. Out: ``reached``
     (count,), the sum of their weights ``weighted`` (count,), and ``asked``, in parts the number of (pose, leg)
-    pairs that were evaluated: one part per task on the CPU, ASKED_SLOTS, which start at 0, on CUDA.
+    pairs that were evaluated: one part per task on the CPU, ASKED_SLOTS, which start at 0, on CUDA. On the CPU
+    ``found`` (tasks,) is above 0 where a place of the task's block is reached: only there ``reached`` and ``weighted``,
+    of whole blocks, are written.
     """
     return (_lattice_cuda if cuda else _lattice_cpu)(shape)
 
 
 @cache
-def survivors_kernel() -> wp.Kernel:
-    """On CUDA: the places of a range that are reached, in any order, so that only they go to the host.
+def survivors_kernels() -> tuple[wp.Kernel, wp.Kernel]:
+    """Two kernels with which only places that are reached go from a GPU to the host, in their order.
 
-    ``found`` (1,) starts at 0 and counts them; ``cells``, ``reached_out`` and ``weighted_out`` hold them.
+    The first says of each place whether it is, ``flags`` (count,) of 0 and 1. The second takes their running sum
+    ``places`` and puts number and counts of every such place there into ``cells``, ``reached_out``, ``weighted_out``.
     """
+
+    @wp.kernel(module="unique", module_options=CUDA_OPTIONS, enable_backward=False)
+    def are_reached(
+        # in
+        reached: wp.array(dtype=wp.int32),
+        # out
+        flags: wp.array(dtype=wp.int32),
+    ):
+        i = wp.tid()
+        flags[i] = wp.min(reached[i], 1)
 
     @wp.kernel(module="unique", module_options=CUDA_OPTIONS, enable_backward=False)
     def survivors(
         # in
         reached: wp.array(dtype=wp.int32),
         weighted: wp.array(dtype=wp.int32),
+        places: wp.array(dtype=wp.int32),
         # out
-        found: wp.array(dtype=wp.int32),
         cells: wp.array(dtype=wp.int32),
         reached_out: wp.array(dtype=wp.int32),
         weighted_out: wp.array(dtype=wp.int32),
     ):
         i = wp.tid()
         if reached[i] > 0:
-            slot = wp.atomic_add(found, 0, 1)
-            cells[slot] = i
-            reached_out[slot] = reached[i]
-            weighted_out[slot] = weighted[i]
+            place = places[i] - 1
+            cells[place] = i
+            reached_out[place] = reached[i]
+            weighted_out[place] = weighted[i]
 
-    return survivors
+    return are_reached, survivors
 
 
 @cache
@@ -121,16 +136,12 @@ def _parts(shape: MembershipShape):
     """Device functions ``leg_of(model, k)``, ``in_region(model, p)`` and ``place(model, grid, x, y, z) -> p``."""
     real = shape.real
     solver = leg_solver(real, shape.kinds, shape.cones)
-    vec3, leg_type = solver.vec3, solver.leg_type
-    Model, Block = mechanism_type(shape), lattice_type(real)
-    HALF, STRIDE = real(0.5), LEG_STRIDE
+    vec3, Model, Block = solver.vec3, mechanism_type(shape), lattice_type(real)
+    HALF = real(0.5)
 
     @wp.func
     def leg_of(model: Model, k: wp.int32):
-        leg = leg_type()
-        for i in range(STRIDE):
-            leg[i] = model.legs[k * STRIDE + i]
-        return leg
+        return model.legs[k]
 
     @wp.func
     def in_region(model: Model, p: vec3):
@@ -152,12 +163,15 @@ def _parts(shape: MembershipShape):
 
 
 def _lattice_cpu(shape: MembershipShape) -> wp.Kernel:
-    leg_of, in_region, place, solver = _parts(shape)
+    _leg_of, in_region, place, solver = _parts(shape)
     solve, distance, vec3 = solver.solve, solver.distance, solver.vec3
     real, Model, Block = shape.real, mechanism_type(shape), lattice_type(shape.real)
     L, BLOCK, BLOCK_64, STRIDE, DISTANCES = shape.legs, LANES, wp.int64(LANES), TURNED_STRIDE, shape.distances
     GIVEN = shape.given
     lane_type, flags_type = wp.types.vector(LANES, real), wp.types.vector(LANES, wp.int32)
+    PART, PARTS = PART_LANES, LANES // PART_LANES
+    parts_type = wp.types.vector(PARTS, wp.int32)
+    store = memory(wp.int32).store
     HALF, ONE = real(0.5), real(1.0)
 
     @wp.kernel(module="unique", module_options=MODULE_OPTIONS, enable_backward=False)
@@ -175,6 +189,7 @@ def _lattice_cpu(shape: MembershipShape) -> wp.Kernel:
         # out
         reached: wp.array(dtype=wp.int32),
         weighted: wp.array(dtype=wp.int32),
+        found: wp.array(dtype=wp.int32),
         asked: wp.array(dtype=wp.int32),
     ):
         task = wp.tid()
@@ -202,63 +217,79 @@ def _lattice_cpu(shape: MembershipShape) -> wp.Kernel:
             layers = wp.floor((y + HALF) * per_y)
             p = place(model, grid, x_first + layers, y - layers * real(grid.size_y), z - rows * real(grid.size_z))
             if wp.static(GIVEN):
-                i = wp.min(start + wp.int64(lane), last)
-                p = vec3(points[i], points[count + i], points[wp.int64(2) * count + i])
+                given = wp.min(start + wp.int64(lane), last)
+                p = vec3(points[given], points[count + given], points[wp.int64(2) * count + given])
             px[lane] = p[0]
             py[lane] = p[1]
             pz[lane] = p[2]
-            inside[lane] = in_region(model, p)
+            inside[lane] = in_region(model, p) & wp.where(lane < valid, 1, 0)
         pairs = wp.int32(0)
+        alive = flags_type()
+        parts = parts_type()
         for o in range(orientations):
-            alive = flags_type()
-            running = wp.int32(0)
             for lane in range(BLOCK):
                 alive[lane] = inside[lane]
-                running = wp.max(running, inside[lane])
-            if by_subsystem == 0:
-                running = wp.int32(1)
+            left = PARTS
+            for part in range(PARTS):
+                parts[part] = part
             k = wp.int32(0)
-            while k < L and running > 0:
-                leg = leg_of(model, k)
+            while k < L and left > 0:
+                leg = model.legs[k]
                 at = (o * L + k) * STRIDE
                 shift = vec3(turned[at], turned[at + 1], turned[at + 2])
                 cone = vec3(turned[at + 3], turned[at + 4], turned[at + 5])
-                for lane in range(BLOCK):
-                    fits, _elbow = solve(leg, vec3(px[lane], py[lane], pz[lane]) + shift, cone)
-                    alive[lane] = alive[lane] & fits
-                pairs += valid
+                for j in range(left):
+                    first_lane = parts[j] * PART
+                    for i in range(PART):
+                        lane = first_lane + i
+                        fits, _elbow = solve(leg, vec3(px[lane], py[lane], pz[lane]) + shift, cone)
+                        alive[lane] = alive[lane] & fits
+                    pairs += wp.min(wp.max(valid - first_lane, 0), PART)
                 if by_subsystem > 0 and model.ends[k] > 0:
-                    running = wp.int32(0)
-                    for lane in range(BLOCK):
-                        running = wp.max(running, alive[lane])
+                    kept = wp.int32(0)
+                    for j in range(left):
+                        part = parts[j]
+                        some = wp.int32(0)
+                        for i in range(PART):
+                            some = wp.max(some, alive[part * PART + i])
+                        parts[kept] = part
+                        kept += some
+                    left = kept
                 k += 1
             if wp.static(DISTANCES):
                 for pair in range(wp.static(L * L)):
-                    if model.pairs[pair] > 0 and running > 0:
+                    if model.pairs[pair] > 0 and left > 0:
                         a = pair / L
                         b = pair - a * L
-                        leg_a = leg_of(model, a)
-                        leg_b = leg_of(model, b)
+                        leg_a = model.legs[a]
+                        leg_b = model.legs[b]
                         at = (o * L + a) * STRIDE
                         shift_a = vec3(turned[at], turned[at + 1], turned[at + 2])
                         cone_a = vec3(turned[at + 3], turned[at + 4], turned[at + 5])
                         at = (o * L + b) * STRIDE
                         shift_b = vec3(turned[at], turned[at + 1], turned[at + 2])
                         cone_b = vec3(turned[at + 3], turned[at + 4], turned[at + 5])
-                        for lane in range(BLOCK):
-                            end_a = vec3(px[lane], py[lane], pz[lane]) + shift_a
-                            end_b = vec3(px[lane], py[lane], pz[lane]) + shift_b
-                            _fits_a, elbow_a = solve(leg_a, end_a, cone_a)
-                            _fits_b, elbow_b = solve(leg_b, end_b, cone_b)
-                            far = distance(elbow_a, end_a, elbow_b, end_b) >= model.clearance_2
-                            alive[lane] = alive[lane] & wp.where(far, 1, 0)
+                        for j in range(left):
+                            for i in range(PART):
+                                lane = parts[j] * PART + i
+                                end_a = vec3(px[lane], py[lane], pz[lane]) + shift_a
+                                end_b = vec3(px[lane], py[lane], pz[lane]) + shift_b
+                                _fits_a, elbow_a = solve(leg_a, end_a, cone_a)
+                                _fits_b, elbow_b = solve(leg_b, end_b, cone_b)
+                                far = distance(elbow_a, end_a, elbow_b, end_b) >= model.clearance_2
+                                alive[lane] = alive[lane] & wp.where(far, 1, 0)
             weight = weights[o]
             for lane in range(BLOCK):
                 total[lane] = total[lane] + alive[lane]
                 weight_sum[lane] = weight_sum[lane] + alive[lane] * weight
-        for lane in range(valid):
-            reached[task * BLOCK + lane] = total[lane]
-            weighted[task * BLOCK + lane] = weight_sum[lane]
+        most = wp.int32(0)
+        for lane in range(BLOCK):
+            most = wp.max(most, total[lane])
+        found[task] = most
+        if most > 0:
+            for lane in range(BLOCK):
+                store(reached, task * BLOCK + lane, total[lane])
+                store(weighted, task * BLOCK + lane, weight_sum[lane])
         asked[task] = pairs
 
     return lattice_cpu

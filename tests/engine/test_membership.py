@@ -2,10 +2,12 @@
 
 import numpy as np
 import pytest
+import warp as wp
 from scipy.spatial.transform import Rotation
 
 from tests.parallel.mechanisms import known_ups, mechanism, poses_of
 from wsrender.engine import count_orientations, count_orientations_at, poses_reached
+from wsrender.engine.membership import survivors
 from wsrender.parallel.inverse_kinematics import inverse_kinematics
 from wsrender.parallel.membership import leg_test, placed_box, reachable_box
 from wsrender.volume.lattice import block_around
@@ -119,6 +121,27 @@ def test_the_box_holds_everything_that_is_reached(name):
     points = middle + half * random.uniform(-2, 2, (20_000, 3))
     outside = ((points < box.lower) | (points > box.upper)).any(axis=1)
     assert not inverse_kinematics(mech, poses_of(points[outside])).feasible.any()
+
+
+def test_method_b_evaluates_far_fewer_legs(device):
+    """Of six legs fewer than half: those of the parts of 32 voxels in which the last subsystem leaves a survivor."""
+    mech = mechanism("six_pus")
+    rotations = np.eye(3)[None]
+    block = block_of(mech, rotations, 0.03)
+    found = count_orientations(leg_test(mech), block, rotations, 0, block.size, device=device)
+    assert found.asked < 2.8 * block.size
+
+
+def test_survivors_leave_the_device_in_order(device):
+    """Also where the last block is not full, and where nothing survives."""
+    random = np.random.default_rng(0)
+    for count, share in ((100_001, 0.1), (1000, 0.0), (0, 0.0)):
+        reached = np.where(random.random(count) < share, random.integers(1, 9, count), 0).astype(np.int32)
+        arrays = [wp.array(values, dtype=wp.int32, device=device) for values in (reached, 7 * reached)]
+        cells, counts, sums = survivors(*arrays, count)
+        np.testing.assert_array_equal(cells, np.flatnonzero(reached))
+        np.testing.assert_array_equal(counts, reached[cells])
+        np.testing.assert_array_equal(sums, 7 * counts)
 
 
 def test_nothing_to_test():

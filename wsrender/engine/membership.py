@@ -16,7 +16,7 @@ from wsrender_kernels.membership import (
     lattice_type,
     mechanism_type,
     poses_kernel,
-    survivors_kernel,
+    survivors_kernels,
 )
 
 from wsrender.engine.devices import devices_of, thread_count
@@ -54,7 +54,8 @@ class LegTest:
         """The struct of the kernels of a shape, by default the test's own."""
         legs, real, count = self.legs, REAL[self.precision], len(self.legs.kinds)
         model = mechanism_type(shape or self.shape)()
-        model.legs = vector_of(pack_legs(legs).ravel(), real)
+        packed = pack_legs(legs)
+        model.legs = wp.types.matrix(packed.shape, real)(*packed.ravel().tolist())
         model.ends = vector_of(self.ends.astype(np.int32), wp.int32)
         pairs = np.zeros((count, count), np.int32)
         for a, b in self.pairs:
@@ -192,33 +193,43 @@ class _Lattice:
             _, self.grid.size_y, self.grid.size_z = places.shape
 
     def __call__(self, first: int, count: int) -> OrientationCounts:
-        on_gpu = self.device.is_cuda
-        tasks, slots = (count, ASKED_SLOTS) if on_gpu else (-(-count // LANES),) * 2
-        reached, weighted = self._memory(count), self._memory(count)
-        asked = wp.zeros(slots, dtype=wp.int32, device=self.device)  # type: ignore[arg-type]
+        blocks = -(-count // LANES)
+        reached, weighted = (_memory(blocks * LANES, self.device) for _ in range(2))
         places = [self.model, self.grid, self.points, self.turned, self.weights, self.orientations]
         inputs = [*places, first, count, self.by_subsystem]
-        wp.launch(self.kernel, dim=tasks, inputs=inputs, outputs=[reached, weighted, asked], device=self.device)
-        if on_gpu:
-            cells, counts, sums = self._survivors(reached, weighted, count)
+        if self.device.is_cuda:
+            asked = wp.zeros(ASKED_SLOTS, dtype=wp.int32, device=self.device)  # type: ignore[arg-type]
+            wp.launch(self.kernel, dim=count, inputs=inputs, outputs=[reached, weighted, asked], device=self.device)
+            cells, counts, sums = survivors(reached, weighted, count)
         else:
-            cells = np.flatnonzero(reached.numpy())
+            found, asked = (_memory(blocks, self.device) for _ in range(2))
+            outputs = [reached, weighted, found, asked]
+            wp.launch(self.kernel, dim=blocks, inputs=inputs, outputs=outputs, device=self.device)
+            some = np.flatnonzero(found.numpy())  # only there anything was written
+            at = np.flatnonzero(reached.numpy().reshape(-1, LANES)[some])
+            cells = some[at // LANES] * LANES + at % LANES
             counts, sums = reached.numpy()[cells], weighted.numpy()[cells]
         return OrientationCounts(cells + first, counts, sums, int(asked.numpy().sum(dtype=np.int64)))
 
-    def _survivors(self, reached: wp.array, weighted: wp.array, count: int) -> tuple[np.ndarray, ...]:
-        """Numbers, counts and sums of the places that are reached, in order."""
-        kernel = loaded(survivors_kernel(), self.device)
-        found = wp.zeros(1, dtype=wp.int32, device=self.device)  # type: ignore[arg-type]
-        out = [self._memory(count) for _ in range(3)]
-        wp.launch(kernel, dim=count, inputs=[reached, weighted], outputs=[found, *out], device=self.device)
-        kept = int(found.numpy()[0])
-        cells, counts, sums = (array[:kept].numpy() if kept else np.zeros(0, np.int32) for array in out)
-        order = np.argsort(cells)
-        return cells[order].astype(np.int64), counts[order], sums[order]
 
-    def _memory(self, count: int) -> wp.array:
-        return wp.empty(count, dtype=wp.int32, device=self.device)  # type: ignore[arg-type]
+def survivors(reached: wp.array, weighted: wp.array, count: int) -> tuple[np.ndarray, ...]:
+    """Numbers int64, counts and sums of those of ``count`` places that are reached, in order; only they leave the GPU."""
+    device = reached.device
+    are_reached, survivors_of = (loaded(kernel, device) for kernel in survivors_kernels())
+    places = _memory(count, device)
+    if not count:
+        return (np.zeros(0, np.int64), *np.zeros((2, 0), np.int32))
+    wp.launch(are_reached, dim=count, inputs=[reached], outputs=[places], device=device)
+    wp.utils.array_scan(places, places, inclusive=True)
+    kept = int(places[count - 1 :].numpy()[0])
+    out = [_memory(kept, device) for _ in range(3)]
+    wp.launch(survivors_of, dim=count, inputs=[reached, weighted, places], outputs=out, device=device)
+    cells, counts, sums = (array.numpy() for array in out)
+    return cells.astype(np.int64), counts, sums
+
+
+def _memory(count: int, device: wp.Device) -> wp.array:
+    return wp.empty(count, dtype=wp.int32, device=device)  # type: ignore[arg-type]
 
 
 def poses_reached(test: LegTest, poses: np.ndarray, *, device: str = "auto", threads: int | None = None) -> np.ndarray:

@@ -34,7 +34,7 @@ from wsrender.volume.lattice import LatticeBlock, block_around, round_to_digits
 
 Arrays = dict[str, np.ndarray]
 
-RATE_CPU_CORE, RATE_GPU = 3e7, 4e8  # poses per second, rounded down from benchmarks/parallel.py
+RATE_CPU_CORE, RATE_GPU = 8e7, 4e8  # poses per second, rounded down from benchmarks/parallel.py
 FIRST_POINTS, FEWEST_POINTS = 1 << 16, 1 << 10  # of the estimate that the default voxel size is made of
 LEAST_SHARE = 1e-3  # of the box: where hardly anything is reached
 
