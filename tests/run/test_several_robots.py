@@ -96,7 +96,7 @@ def test_two_arms_of_one_model():
 
 def test_the_smallest_voxel_size_is_that_of_all():
     options = {"indices": ["manipulability"], "device": "cpu"}
-    small = gantry(x=(0.005, 0.095), y=(0.005, 0.095), z=(0.005, 0.095))
+    small = gantry(x=(0.005, 0.225), y=(0.005, 0.295), z=(0.005, 0.145))
     sizes = [ws.analyze(robot, ws.Grid(2), **options).document["voxel_size_m"] for robot in (gantry(), small)]
     document = ws.shared_workspace([gantry(), small], ws.Grid(2), **options).document
     assert document["voxel_size_m"] == min(sizes) < max(sizes)

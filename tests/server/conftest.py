@@ -11,6 +11,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
+from sqlalchemy import create_engine, make_url, text
 
 URL_VARIABLE = "WSRENDER_TEST_POSTGRES_URL"
 NOBODY = 65534
@@ -20,7 +21,7 @@ NOBODY = 65534
 def postgres_url():
     """SQLAlchemy URL of an empty database; its tables may be dropped by any test."""
     if url := os.environ.get(URL_VARIABLE):
-        yield url
+        yield own_database(url)
         return
     binaries = postgres_binaries()
     folder = Path(tempfile.mkdtemp(prefix="wsrender-postgres-"))
@@ -43,6 +44,20 @@ def postgres_url():
         server.send_signal(signal.SIGINT)  # fast: connections that are open are closed
         server.wait(20)
         shutil.rmtree(folder, ignore_errors=True)
+
+
+def own_database(url):
+    """That of a URL, or on its server one for each of several test processes, which would drop each other's tables."""
+    process = os.environ.get("PYTEST_XDIST_WORKER")
+    if process is None:
+        return url
+    name = f"wsrender_{process}"
+    engine = create_engine(url, isolation_level="AUTOCOMMIT")
+    with engine.connect() as connection:
+        connection.execute(text(f"DROP DATABASE IF EXISTS {name} WITH (FORCE)"))
+        connection.execute(text(f"CREATE DATABASE {name}"))
+    engine.dispose()
+    return make_url(url).set(database=name).render_as_string(hide_password=False)
 
 
 def postgres_binaries():
