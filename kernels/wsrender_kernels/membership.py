@@ -1,8 +1,8 @@
 """Which poses a parallel mechanism reaches: positions of a lattice at several orientations, or poses given one by one.
 
 On the CPU a task is a block of LANES poses and each leg a lane loop over its parts, which LLVM turns into SIMD; on CUDA
-a thread takes a pose. Method A asks every leg at every pose; method B goes on to the next subsystem of legs only where a
-pose of the part has survived ([SNK]). Both are one kernel, so that they give the same bits.
+a thread takes a pose. Method A asks every leg at every pose; method B goes on to the next subsystem of legs only where
+a pose of the part has survived ([SNK]). Both are one kernel, so that they give the same bits.
 """
 
 from dataclasses import dataclass

@@ -213,8 +213,8 @@ class _Lattice:
 
 
 def survivors(reached: wp.array, weighted: wp.array, count: int) -> tuple[np.ndarray, ...]:
-    """Numbers int64, counts and sums of those of ``count`` places that are reached, in order; only they leave the GPU."""
-    device = reached.device
+    """Numbers int64, counts and sums of those of ``count`` places that are reached, in order; only they are copied."""
+    device: Any = reached.device
     are_reached, survivors_of = (loaded(kernel, device) for kernel in survivors_kernels())
     places = _memory(count, device)
     if not count:
