@@ -75,9 +75,14 @@ class Result:
     @property
     def plot(self) -> "ResultPlots":
         """Pictures as matplotlib Figures, such as ``plot.slice(z=0.3)`` or ``plot.scatter(index)``."""
-        mechanism = self.document.get("mechanism") or {}
-        arms = len(self.document.get("robots") or mechanism.get("legs") or [None])
-        return plots.ResultPlots(sampling_text(self.document), *self._drawable(), self.tables, self.volumes, arms)
+        arms = len(self.document.get("robots") or []) or self._legs
+        title, data = sampling_text(self.document), self._drawable()
+        return plots.ResultPlots(title, *data, self.tables, self.volumes, self.meshes, arms)
+
+    @property
+    def _legs(self) -> int:
+        """How many skeletons make one figure: the legs of a mechanism, or one arm."""
+        return len((self.document.get("mechanism") or {}).get("legs") or [None])
 
     def render(
         self,
@@ -115,7 +120,9 @@ class Result:
         """What a 3-D picture shows of the result: its robot, or each of several with its own volume."""
         robots = {key.removeprefix("robot_"): data for key, data in self.volumes.items() if key.startswith("robot_")}
         if not robots:
-            return [render.Subject(name, *self._drawable())]
+            mesh = self.meshes.get("workspace") if self.volume is None else None
+            faces = None if mesh is None else plots.faces_of(mesh, self.tables.get("surfaces"))
+            return [render.Subject(name, *self._drawable(), faces=faces, legs=self._legs)]
         arms = [None] * len(robots) if self.skeleton is None else [arm[None] for arm in self.skeleton]
         return [
             render.Subject(key, volume=volume, skeleton=arm)
@@ -201,7 +208,8 @@ class Result:
 def named_results(results: Iterable[Result]) -> dict[str, Result]:
     """Results by the names of their robots, numbered where several have the same."""
     results = list(results)
-    names = [str((result.document.get("robot") or {}).get("name", "robot")) for result in results]
+    about = [result.document.get("robot") or result.document.get("mechanism") or {} for result in results]
+    names = [str(each.get("name", "robot")) for each in about]
     return {
         f"{name} {names[: k + 1].count(name)}" if names.count(name) > 1 else name: result
         for k, (name, result) in enumerate(zip(names, results, strict=True))

@@ -11,6 +11,7 @@ from scipy.spatial.transform import Rotation
 from tests.parallel.ball_regions import at_origin, moved, random_region, region, six_pus
 from tests.parallel.mechanisms import known_ups, ups
 from wsrender.errors import InputError
+from wsrender.parallel.ball_surfaces import surface_table
 from wsrender.parallel.exact import ExactWorkspace, Topology, exact_volumes
 from wsrender.parallel.solids import solid_workspace
 
@@ -272,3 +273,22 @@ def test_solids_reach_a_thousandth(area, volume):
 
 def test_solids_of_empty_regions_are_empty():
     assert len(solid_workspace(region([(0, 0, 0, 1), (3, 0, 0, 1)])).faces) == 0
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_every_triangle_lies_on_the_surface_that_it_names(seed):
+    """Of exact meshes to rounding, of solids to the mesh's error; the areas of both by surface agree."""
+    area = random_region(seed)
+    exact, solid = ExactWorkspace.of(area), solid_workspace(area, 5)
+    table = surface_table(area, exact.measures.area[0], np.eye(4))
+    for mesh, error in ((exact.mesh, 1e-8), (solid, 2e-3)):
+        number = mesh.face_attributes["surface"]
+        assert len(number) == len(mesh.faces)
+        corners = mesh.triangles
+        away = np.linalg.norm(corners - table["center"][number][:, None], axis=2) - table["radius"][number][:, None]
+        height = ((corners - table["center"][number][:, None]) * table["normal"][number][:, None]).sum(axis=2)
+        assert np.abs(np.where(np.isnan(away), height, away)).max(initial=0.0) < error
+    by_surface = np.bincount(solid.face_attributes["surface"], solid.area_faces, len(table))
+    surfaces = np.column_stack([table["center"].round(9), table["radius"].round(9)])
+    twin = np.unique(surfaces, axis=0, return_inverse=True)[1].ravel()
+    np.testing.assert_allclose(*(np.bincount(twin, each) for each in (by_surface, table["area"])), atol=2e-2)

@@ -260,3 +260,16 @@ def test_sparse_voxels_are_merged_until_gaps_close():
     assert dense.count.sum() == count.sum()
     full = random_volume((30, 20, 10))
     assert Subject("coarse", volume=full).dense_voxels() is full
+
+
+@pytest.mark.parametrize("view", ["boundary", "solid"])
+def test_a_workspace_known_by_its_surface_is_drawn_face_by_face_with_all_legs(blank, view):
+    result = ws.parallel_workspace("six_pus", method="exact", device="cpu")
+    figure = result.render(view)
+    (scene,) = blank
+    faces = [layer for layer in scene.layers if isinstance(layer, Surface)]
+    assert len(faces) == 11 and {layer.alpha for layer in faces} == {0.1 if view == "boundary" else 1.0}
+    assert sum(len(layer.faces) for layer in faces) == len(result.meshes["workspace"].faces)
+    assert sum(isinstance(layer, Rods) for layer in scene.layers) == 6
+    labels = [text.get_text() for text in figure.legends[0].texts]
+    assert labels[0] == "six_pus" and "leg 4 at its upper limit" in labels

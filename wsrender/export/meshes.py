@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import numpy as np
 import trimesh
 
 from wsrender.errors import InputError
@@ -21,6 +22,8 @@ def write_mesh(mesh: trimesh.Trimesh, path: str | Path) -> None:
 def read_mesh(path: str | Path, ending: str | None = None) -> trimesh.Trimesh:
     """Read what ``write_mesh`` wrote, vertices in float32; ``ending`` says the format where the name does not.
 
+    Of PLY files the attributes of faces too, such as the number of the surface on which each lies.
+
     Raises InputError where the file is no mesh.
     """
     path = Path(path)
@@ -30,4 +33,7 @@ def read_mesh(path: str | Path, ending: str | None = None) -> trimesh.Trimesh:
         raise InputError(path.name, f"cannot be read as a mesh: {error}") from error
     if not isinstance(mesh, trimesh.Trimesh):
         raise InputError(path.name, "holds no mesh")
+    raw = mesh.metadata.pop("_ply_raw", {}).get("face", {}).get("data")
+    if isinstance(raw, np.ndarray) and raw.dtype.names is not None and len(raw) == len(mesh.faces):
+        mesh.face_attributes |= {name: raw[name] for name in raw.dtype.names if raw[name].dtype.names is None}
     return mesh

@@ -19,7 +19,8 @@ class BallRegion:
     """Points inside all of some balls, outside all of others, and in a box; base frame [m].
 
     ``inside_centres`` (A, 3), ``inside_radii`` (A,), ``outside_centres`` (B, 3), ``outside_radii`` (B,); ``lower`` and
-    ``upper`` (3,) are the box, infinite where it has no side. The boundary belongs to the region.
+    ``upper`` (3,) are the box, infinite where it has no side. The boundary belongs to the region. ``limits`` says which
+    leg is at which limit, "lower" or "upper", on each ball's surface, inside balls first; empty where nobody knows.
     """
 
     inside_centres: np.ndarray
@@ -28,6 +29,7 @@ class BallRegion:
     outside_radii: np.ndarray
     lower: np.ndarray
     upper: np.ndarray
+    limits: tuple[tuple[int, str], ...] = ()
 
     def contains(self, points: np.ndarray) -> np.ndarray:
         """Whether points (N, 3) [m] lie in the region, (N,) bool."""
@@ -37,6 +39,12 @@ class BallRegion:
         for center, radius in zip(self.outside_centres, self.outside_radii, strict=True):
             inside &= ((points - center) ** 2).sum(axis=1) >= radius**2
         return inside
+
+    def sides_of_box(self) -> tuple[np.ndarray, np.ndarray]:
+        """Outward normals (P, 3) and offsets (P,) [m] of the box's finite sides, lower first: x · normal ≤ offset."""
+        below, above = np.isfinite(self.lower), np.isfinite(self.upper)
+        normals = np.concatenate([-np.eye(3)[below], np.eye(3)[above]])
+        return normals, np.concatenate([-np.asarray(self.lower)[below], np.asarray(self.upper)[above]])
 
 
 def ball_region(mechanism: Mechanism, rotation: np.ndarray) -> BallRegion:
@@ -50,15 +58,18 @@ def ball_region(mechanism: Mechanism, rotation: np.ndarray) -> BallRegion:
     shift = mechanism.platform @ rotation.T
     inside: list[tuple[np.ndarray, float]] = []
     outside: list[tuple[np.ndarray, float]] = []
+    at_inside: list[tuple[int, str]] = []
+    at_outside: list[tuple[int, str]] = []
     for k, kind in enumerate(mechanism.kinds):
         if max(mechanism.base_cone_cosine[k], mechanism.platform_cone_cosine[k]) > -1:
             raise InputError(f"legs.{k}", "must have no cone: else not only spheres bound the workspace")
         if kind == "UPS":
             inner, outer = (mechanism.base[k], mechanism.upper[k]), (mechanism.base[k], mechanism.lower[k])
+            sides = "upper", "lower"
         elif kind == "PUS" and _has_partner(mechanism, k):
-            near, far = mechanism.lower[k], mechanism.upper[k]
+            near, far, sides = mechanism.lower[k], mechanism.upper[k], ("lower", "upper")
             if mechanism.branches[k, 0]:  # the slider on the lower side
-                near, far = far, near
+                near, far, sides = far, near, sides[::-1]
             rail, axis, link = mechanism.base[k], mechanism.axis[k], mechanism.link[k]
             inner, outer = (rail + near * axis, link), (rail + far * axis, link)
         else:
@@ -66,9 +77,12 @@ def ball_region(mechanism: Mechanism, rotation: np.ndarray) -> BallRegion:
                 f"legs.{k}", f"is a {kind} leg; spheres alone bound the workspace of UPS legs and pairs of PUS legs"
             )
         inside.append((inner[0] - shift[k], float(inner[1])))
+        at_inside.append((k, sides[0]))
         if outer[1] > 0:
             outside.append((outer[0] - shift[k], float(outer[1])))
-    return BallRegion(*_stacked(inside), *_stacked(outside), mechanism.region_lower, mechanism.region_upper)
+            at_outside.append((k, sides[1]))
+    box = mechanism.region_lower, mechanism.region_upper
+    return BallRegion(*_stacked(inside), *_stacked(outside), *box, (*at_inside, *at_outside))
 
 
 def _stacked(balls: list[tuple[np.ndarray, float]]) -> tuple[np.ndarray, np.ndarray]:

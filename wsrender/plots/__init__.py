@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from wsrender.plots.comparison import side_by_side
     from wsrender.plots.designs import sweep_surface, trade_off
     from wsrender.plots.distribution import histogram, write_histogram_csv
+    from wsrender.plots.faces import Faces, faces_of
     from wsrender.plots.five_bar import aspect_maps, conditioning_maps
     from wsrender.plots.listing import pictures_of
     from wsrender.plots.master_slave import mapped_points
@@ -25,16 +26,19 @@ if TYPE_CHECKING:
     from wsrender.plots.result_plots import ResultPlots
     from wsrender.plots.stick_figure import robot
     from wsrender.plots.style import png, save_figure
+    from wsrender.plots.surface_faces import surface_faces
     from wsrender.plots.table_curves import curves
     from wsrender.plots.vector_field import vector_planes
 
 # Modules are not called like their functions: importing one would hide the function.
 _MODULES = {
+    "Faces": "faces",
     "ResultPlots": "result_plots",
     "aspect_maps": "five_bar",
     "conditioning_maps": "five_bar",
     "curves": "table_curves",
     "errors_by_size": "method_comparison",
+    "faces_of": "faces",
     "histogram": "distribution",
     "png": "style",
     "limits_and_ellipsoids": "posture",
@@ -48,6 +52,7 @@ _MODULES = {
     "side_by_side": "comparison",
     "slice_plane": "planes",
     "slices": "planes",
+    "surface_faces": "surface_faces",
     "sweep_surface": "designs",
     "trade_off": "designs",
     "vector_planes": "vector_field",
@@ -55,11 +60,13 @@ _MODULES = {
 }
 
 __all__ = [
+    "Faces",
     "ResultPlots",
     "aspect_maps",
     "conditioning_maps",
     "curves",
     "errors_by_size",
+    "faces_of",
     "histogram",
     "limits_and_ellipsoids",
     "mapped_points",
@@ -73,6 +80,7 @@ __all__ = [
     "side_by_side",
     "slice_plane",
     "slices",
+    "surface_faces",
     "sweep_surface",
     "trade_off",
     "vector_planes",

@@ -46,7 +46,8 @@ def _of_mapping(plot: ResultPlots, document: Mapping[str, Any]) -> Pictures:
 
 
 def _of_mechanism(plot: ResultPlots, document: Mapping[str, Any]) -> Pictures:
-    return {"orientations": plot.orientations} if "orientations" in plot.tables else {}
+    pictures: Pictures = {"surface": partial(plot.surface, "workspace")} if "workspace" in plot.meshes else {}
+    return pictures | ({"orientations": plot.orientations} if "orientations" in plot.tables else {})
 
 
 def _of_five_bar(plot: ResultPlots, document: Mapping[str, Any]) -> Pictures:
@@ -59,8 +60,8 @@ def _of_five_bar(plot: ResultPlots, document: Mapping[str, Any]) -> Pictures:
 
 
 def _of_design(plot: ResultPlots, document: Mapping[str, Any]) -> Pictures:
-    """The values of a sweep over one or two parameters, and the first two objectives of a Pareto search."""
-    pictures: Pictures = {}
+    """A sweep over one or two parameters, the first two objectives of a Pareto search, the best design's surface."""
+    pictures: Pictures = {"best": partial(plot.surface, "best")} if "best" in plot.meshes else {}
     if "sweep" in plot.tables and document["best"] is not None:
         parameters = document["parameters"]
         values = [array for name, array in list(plot.tables["sweep"].columns.items())[:2]]

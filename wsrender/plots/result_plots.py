@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -12,6 +12,7 @@ from wsrender.plots.arm_plane import planar_boundary
 from wsrender.plots.comparison import side_by_side
 from wsrender.plots.designs import sweep_surface, trade_off
 from wsrender.plots.distribution import histogram
+from wsrender.plots.faces import faces_of
 from wsrender.plots.five_bar import MODE_VOLUMES, aspect_maps, conditioning_maps
 from wsrender.plots.master_slave import mapped_points
 from wsrender.plots.method_comparison import errors_by_size
@@ -20,11 +21,15 @@ from wsrender.plots.planes import slice_plane, slices
 from wsrender.plots.point_cloud import scatter
 from wsrender.plots.posture import limits_and_ellipsoids
 from wsrender.plots.stick_figure import robot
+from wsrender.plots.surface_faces import surface_faces
 from wsrender.plots.table_curves import curves
 from wsrender.plots.vector_field import vector_planes
 from wsrender.volume.distribution_map import DistributionMap
 from wsrender.volume.table import Table
 from wsrender.volume.volume_data import VolumeData
+
+if TYPE_CHECKING:
+    import trimesh
 
 
 @dataclass(frozen=True)
@@ -37,6 +42,7 @@ class ResultPlots:
     skeleton: np.ndarray | None
     tables: Mapping[str, Table] = field(default_factory=dict)
     volumes: Mapping[str, VolumeData] = field(default_factory=dict)
+    meshes: "Mapping[str, trimesh.Trimesh]" = field(default_factory=dict)
     arms: int = 1  # robots whose skeletons stand one after the other
 
     def curves(self, table: str) -> Figure:
@@ -71,6 +77,16 @@ class ResultPlots:
     def methods(self) -> Figure:
         """Errors of the methods of a comparison against the edge of their voxels or triangles."""
         return errors_by_size(self._table("methods"), title=self.title)
+
+    def surface(self, mesh: str | None = None) -> Figure:
+        """A mesh of the result (by default the first) from two sides, its faces in their colours where they are known.
+
+        The table ``surfaces`` names them: of a mechanism's workspace each lies on a ball, where a leg is at a limit.
+        """
+        if not self.meshes or (mesh is not None and mesh not in self.meshes):
+            raise InputError("mesh", f"the result has no {mesh!r}; it holds {', '.join(self.meshes) or 'no mesh'}")
+        shown = self.meshes[mesh or next(iter(self.meshes))]
+        return surface_faces(faces_of(shown, self.tables.get("surfaces")), title=self.title)
 
     def trade_off(self, x: str, y: str) -> Figure:
         """Two objectives of a Pareto search against each other."""
@@ -134,7 +150,10 @@ class ResultPlots:
         """The arm as a stick figure in its workspace, coloured by an index (by default the first)."""
         if self.skeleton is None:
             raise InputError("skeleton", "the result holds no configurations of the arm to draw")
-        return robot(self.skeleton, self.samples, index, arms=self.arms, title=self.title)
+        surface = None
+        if self.samples is None and self.meshes:
+            surface = faces_of(next(iter(self.meshes.values())), None)
+        return robot(self.skeleton, self.samples, index, surface=surface, arms=self.arms, title=self.title)
 
     def _five_bar_tables(self) -> Mapping[str, Table]:
         if "aspect_outlines" not in self.tables:

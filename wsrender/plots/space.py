@@ -21,7 +21,13 @@ _THINNEST = 0.3  # least extent of an axis, relative to the largest: planar sets
 def new_space(points: np.ndarray, frame: str) -> tuple[Figure, Axes3D]:
     """A figure with axes whose limits hold ``points`` (N, 3) [m], with equal scales on x, y and z."""
     figure = new_figure(6.4, 5.2, layout=None)  # constrained layout measures every tick of 3-D axes: slow
-    axes = Axes3D(figure, _SPACE, computed_zorder=False)
+    figure.text(0.03, 0.03, f"{frame} frame", fontsize=8, color=GREY)
+    return figure, add_space(figure, points, _SPACE)
+
+
+def add_space(figure: Figure, points: np.ndarray, place: tuple[float, float, float, float]) -> Axes3D:
+    """Such axes at left, bottom, width and height of a figure."""
+    axes = Axes3D(figure, place, computed_zorder=False)
     figure.add_axes(axes)
     lower, upper = box(points)
     longest = (upper - lower).max()
@@ -36,8 +42,7 @@ def new_space(points: np.ndarray, frame: str) -> tuple[Figure, Axes3D]:
     zoom: Any = np.linalg.norm(aspect) / np.sqrt(3)  # undoes matplotlib's scaling: labels of flat boxes fit
     axes.set_box_aspect(aspect, zoom=zoom)
     axes.view_init(ELEVATION_DEG, AZIMUTH_DEG)
-    figure.text(0.03, 0.03, f"{frame} frame", fontsize=8, color=GREY)
-    return figure, axes
+    return axes
 
 
 def color_points(figure: Figure, samples: DistributionMap, index: str | None, rows: np.ndarray) -> np.ndarray:

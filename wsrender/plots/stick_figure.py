@@ -6,8 +6,10 @@ from matplotlib.lines import Line2D
 from mpl_toolkits.mplot3d.axes3d import Axes3D
 
 from wsrender.errors import InputError
+from wsrender.plots.faces import Faces
 from wsrender.plots.space import color_points, far_half, new_space, thinned
 from wsrender.plots.style import GREY, INK, add_title, paper_style
+from wsrender.plots.surface_faces import shaded
 from wsrender.volume.distribution_map import DistributionMap
 
 _ACCENT = "#c8102e"
@@ -20,6 +22,7 @@ def robot(
     samples: DistributionMap | None = None,
     index: str | None = None,
     *,
+    surface: Faces | None = None,
     arms: int = 1,
     title: str = "",
     frame: str = "world",
@@ -28,13 +31,16 @@ def robot(
 
     ``skeleton`` (K, L+2, 3) holds world positions [m] of base, joint origins and tip; the first ``arms`` of the K are
     drawn in full, the others, configurations of the first, pale. The cloud is coloured by ``index`` (by default the
-    map's first). Raises InputError for another shape or an unknown index.
+    map's first); without samples ``surface`` is drawn. Raises InputError for another shape or an unknown index.
     """
     skeleton = np.asarray(skeleton, np.float64)
     if skeleton.ndim != 3 or skeleton.shape[1] < 2 or skeleton.shape[2] != 3 or len(skeleton) == 0:
         raise InputError("skeleton", f"has shape {skeleton.shape}; it must be (K, L+2, 3) with K at least 1")
     if samples is None or len(samples) == 0:
-        figure, axes = new_space(skeleton.reshape(-1, 3), frame)
+        around = np.empty((0, 3)) if surface is None else surface.vertices
+        figure, axes = new_space(np.concatenate([skeleton.reshape(-1, 3), around]), frame)
+        if surface is not None:
+            axes.add_collection3d(shaded(surface, alpha=0.35))
     else:
         figure, axes = new_space(np.concatenate([skeleton.reshape(-1, 3), samples.position]), frame)
         behind = np.flatnonzero(far_half(samples.position))

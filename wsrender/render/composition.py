@@ -80,7 +80,7 @@ def _check(view: str, threshold: float, alpha: float, elevation_deg: float) -> N
 def _extent(subjects: Sequence[Subject], layers: Sequence[Layer], environment: Sequence[Item]) -> np.ndarray:
     """Points (N, 3) [m] that the picture must hold."""
     points = [_layer_points(layer) for layer in layers]
-    points += [subject.arm for subject in subjects if subject.arm is not None]
+    points += [arm for subject in subjects for arm in subject.arms]
     points += [link.vertices for subject in subjects for link in subject.body]
     points += [surroundings.corners(item) for item in environment]
     ends = np.concatenate([np.stack([p.min(axis=0), p.max(axis=0)]) for p in points if len(p)])
@@ -112,8 +112,8 @@ def _robots(subjects: Sequence[Subject], space: Space) -> list[Layer]:
     layers: list[Layer] = []
     for k, subject in enumerate(subjects):
         layers += subject.body
-        if subject.arm is not None:
-            layers.append(Rods(subject.arm, radius * (0.5 if subject.body else 1.0), _color(k, subjects)))
+        for arm in subject.arms:
+            layers.append(Rods(arm, radius * (0.5 if subject.body else 1.0), _color(k, subjects)))
     return layers
 
 

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from wsrender.errors import InputError
+from wsrender.plots.faces import Faces
 from wsrender.render.scene import Surface
 from wsrender.robot import as_robot, link_shapes, load_robot
 from wsrender.volume.coarser import coarser
@@ -21,13 +22,19 @@ MOST_OCCUPIED = 200_000  # more make a picture slow, not finer
 
 @dataclass(frozen=True, eq=False)
 class Subject:
-    """A robot and its workspace; ``body`` holds the surfaces of its links, where they are known."""
+    """A robot and its workspace; ``body`` holds the surfaces of its links, where they are known.
+
+    ``faces`` is the surface of a workspace that is known without voxels; ``legs`` says how many of the first arms of
+    ``skeleton`` belong together, as the legs of a mechanism do.
+    """
 
     name: str
     samples: DistributionMap | None = None
     volume: VolumeData | None = None
     skeleton: np.ndarray | None = None
     body: list[Surface] = field(default_factory=list)
+    faces: Faces | None = None
+    legs: int = 1
 
     def with_robot(self, robot: Any, configuration: Any, sampling: Mapping[str, Any]) -> "Subject":
         """The subject with the links of its robot at a configuration [rad or m].
@@ -42,12 +49,17 @@ class Subject:
             for name, value in (sampling.get("locked") or {}).items():
                 configuration[list(robot.joint_names).index(name)] = value
         body = [Surface(shape.vertices, shape.faces, shape.color) for shape in link_shapes(robot, configuration)]
-        return replace(self, skeleton=robot.skeleton(configuration), body=body)
+        return replace(self, skeleton=robot.skeleton(configuration), body=body, legs=1)
 
     @property
     def arm(self) -> np.ndarray | None:
         """Base, joints and tip in the configuration that is drawn, (L+2, 3) [m]."""
-        return None if self.skeleton is None or len(self.skeleton) == 0 else np.asarray(self.skeleton[0], float)
+        return self.arms[0] if len(self.arms) else None
+
+    @property
+    def arms(self) -> np.ndarray:
+        """The arm, or all legs of a mechanism, (A, L+2, 3) [m]; none where nothing is known."""
+        return np.empty((0, 2, 3)) if self.skeleton is None else np.asarray(self.skeleton, float)[: self.legs]
 
     def cloud(self) -> DistributionMap:
         """Its samples; InputError where there are none."""

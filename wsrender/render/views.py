@@ -15,7 +15,7 @@ from wsrender.errors import InputError
 from wsrender.plots.planes import Field, layer_at, voxel_field
 from wsrender.plots.space import checked_index
 from wsrender.plots.style import color_map, quantity, value_range
-from wsrender.render.scene import Cloud, Color, Layer, Plates, Points, Surface
+from wsrender.render.scene import Cloud, Color, Layer, Lines, Plates, Points, Surface
 from wsrender.render.subject import Subject
 from wsrender.volume.volume_data import VolumeData
 
@@ -26,6 +26,8 @@ ROBOT_COLORS: list[Color] = [
 ]  # Okabe and Ito 2008: told apart by the colour-blind  # fmt: skip
 DOT = 2.2  # diameter of a sample in pixels
 _SHELL_GREY: Color = (0.55, 0.6, 0.66)
+_EDGE_COLOR: Color = (0.13, 0.13, 0.13)
+_EDGE_WIDTH = 2.0  # of edges between faces, in pixels
 
 
 @dataclass(frozen=True)
@@ -57,6 +59,8 @@ class Drawing:
 
 def boundary(subjects: Sequence[Subject], choice: Choice) -> Drawing:
     """Translucent surfaces of the occupied voxels; of several robots each in its colour, unless an index is asked."""
+    if all(subject.faces for subject in subjects):
+        return _faces(subjects, choice.alpha)
     volumes = [subject.dense_voxels() for subject in subjects]
     if len(subjects) > 1 and choice.index is None and choice.statistic is None:
         return _plain_boundaries(subjects, volumes, choice.alpha)
@@ -71,7 +75,12 @@ def boundary(subjects: Sequence[Subject], choice: Choice) -> Drawing:
 
 
 def solid(subjects: Sequence[Subject], choice: Choice) -> Drawing:
-    """Opaque bodies of occupied voxels, cut open towards the eye and coloured by an index."""
+    """Opaque bodies of occupied voxels, cut open towards the eye and coloured by an index.
+
+    Workspaces that are known by their surfaces are drawn whole, every face in its colour.
+    """
+    if all(subject.faces for subject in subjects):
+        return _faces(subjects, 1.0)
     volumes = [_cut_open(subject, choice.azimuth_deg) for subject in subjects]
     fields, drawing = _fields(volumes, choice)
     for volume, values in zip(volumes, fields, strict=True):
@@ -189,6 +198,23 @@ def _plain_boundaries(subjects: Sequence[Subject], volumes: Sequence[VolumeData]
         mesh = occupied_surface(voxels)
         drawing.layers.append(Surface(mesh.vertices, mesh.faces, color, alpha=alpha, smooth=True))
         drawing.handles.append(Patch(facecolor=color, alpha=max(alpha, 0.3), label=f"boundary of {subject.name}"))
+    return drawing
+
+
+def _faces(subjects: Sequence[Subject], alpha: float) -> Drawing:
+    """Surfaces face by face, and the edges between the faces."""
+    drawing = Drawing()
+    for faces in (subject.faces for subject in subjects if subject.faces):
+        for number, color in faces.colors.items():
+            drawing.layers.append(Surface(faces.vertices, faces.triangles[faces.number == number], color, alpha=alpha))
+        sides, _ = faces.borders()
+        if len(sides):
+            drawing.layers.append(Lines(faces.vertices[sides], _EDGE_COLOR, _EDGE_WIDTH))
+        labels = faces.labels or dict.fromkeys(faces.colors, "workspace boundary")
+        drawing.handles += [
+            Patch(facecolor=faces.colors[number], alpha=max(alpha, 0.3), label=label)
+            for number, label in labels.items()
+        ]
     return drawing
 
 

@@ -14,6 +14,7 @@ from wsrender.design.inscribed import inscribed_cube_edge, inscribed_sphere_radi
 from wsrender.design.search import Space, evolve, front, grid, pareto, refine
 from wsrender.errors import InputError, NotConvergedError
 from wsrender.parallel.ball_region import BallRegion
+from wsrender.parallel.ball_surfaces import surface_table
 from wsrender.parallel.exact import ExactWorkspace
 from wsrender.parallel.mechanism import mechanism_of
 from wsrender.result import Result
@@ -146,7 +147,8 @@ class DesignPlan:
             "provenance": provenance("float64", self.target),
             "timing_s": seconds,
         }
-        return Result(document, tables=self._tables(designs, values, score), meshes=self._meshes(entries["best"]))
+        meshes, tables = self._exact_best(entries["best"])
+        return Result(document, tables={**self._tables(designs, values, score), **tables}, meshes=meshes)
 
     def regions_at(self, designs: np.ndarray) -> list[BallRegion]:
         """The ball regions of designs (N, n) of a mechanism."""
@@ -260,18 +262,19 @@ class DesignPlan:
             shown = {"score": best[rows]}
         return Table({"evaluation": rows + 1, **shown}, {name: units[name] for name in shown if name in units})
 
-    def _meshes(self, best: dict[str, Any] | None) -> "dict[str, trimesh.Trimesh]":
-        """The exact workspace of the best design, in the world."""
+    def _exact_best(self, best: dict[str, Any] | None) -> "tuple[dict[str, trimesh.Trimesh], dict[str, Table]]":
+        """The exact workspace of the best design, in the world, and the table of its surfaces."""
         if best is None or not self.is_exact:
-            return {}
+            return {}, {}
         design = np.array(list(best["parameters"].values()))
         (region,) = self.regions_at(design[None])
-        mesh = ExactWorkspace.of(region).mesh
-        if not len(mesh.faces):
-            return {}
-        mesh.apply_transform(mechanism_of(self.job_of(design).mechanism).T_world_base)
+        exact = ExactWorkspace.of(region)
+        if not len(exact.mesh.faces):
+            return {}, {}
+        T_world_base = mechanism_of(self.job_of(design).mechanism).T_world_base
+        mesh = exact.mesh.apply_transform(T_world_base)
         mesh.metadata["frame"] = "world"
-        return {"best": mesh}
+        return {"best": mesh}, {"surfaces": surface_table(region, exact.measures.area[0], T_world_base)}
 
 
 class _Evaluator:

@@ -11,12 +11,12 @@ import trimesh
 from wsrender.boundary.surfaces import surface_entry
 from wsrender.errors import InputError
 from wsrender.parallel.ball_region import BallRegion, ball_region
+from wsrender.parallel.ball_surfaces import surface_table
 from wsrender.parallel.exact import ExactWorkspace
 from wsrender.parallel.mechanism import Mechanism
 from wsrender.parallel.solids import solid_workspace
 from wsrender.result import Result
 from wsrender.run.parallel_result import mechanism_document, skeleton_at
-from wsrender.volume.distribution_map import DistributionMap
 from wsrender.volume.table import Table
 
 if TYPE_CHECKING:
@@ -42,9 +42,10 @@ def boundary_partial(plan: "ParallelPlan") -> "Arrays":
             "area_m2": float(mesh.area),
         }
         corners = np.zeros((0, 3))
+        counted = np.bincount(mesh.face_attributes["surface"], mesh.area_faces, _surfaces(region))
     else:
         found = ExactWorkspace.of(region)
-        mesh, corners = found.mesh, found.vertices
+        mesh, corners, counted = found.mesh, found.vertices, found.measures.area[0]
         about = {"volume_m3": found.volume_m3, "area_m2": found.area_m2, "topology": asdict(found.topology)}
         T = plan.mechanism.T_world_base
         sides = found.bounds_along(T[:3, :3])  # a row is an axis of the world in the base frame
@@ -56,8 +57,15 @@ def boundary_partial(plan: "ParallelPlan") -> "Arrays":
         "about": np.array(json.dumps(about)),
         "vertices": np.asarray(mesh.vertices, np.float64),
         "faces": np.asarray(mesh.faces, np.int64),
+        "surface": mesh.face_attributes["surface"],
+        "areas": counted,
         "corners": corners,
     }
+
+
+def _surfaces(region: BallRegion) -> int:
+    """How many surfaces may bound a region."""
+    return len(region.inside_radii) + len(region.outside_radii) + len(region.sides_of_box()[1])
 
 
 def boundary_result(plan: "ParallelPlan", partial: "Arrays", seconds: dict[str, float]) -> Result:
@@ -69,16 +77,23 @@ def boundary_result(plan: "ParallelPlan", partial: "Arrays", seconds: dict[str, 
         "volume_m3": {method: about["volume_m3"]},
         "area_m2": about["area_m2"],
     }
-    tables, meshes, sample, skeleton = {}, {}, None, None
+    region = region_of(plan.mechanism, plan.orientations.rotations[0])
+    tables = {"surfaces": surface_table(region, partial["areas"], plan.mechanism.T_world_base)}
+    meshes, skeleton = {}, None
     if len(partial["faces"]):
         metadata = {"frame": "world", "unit": "m", "up": "z"}
-        mesh = trimesh.Trimesh(partial["vertices"], partial["faces"], process=False, metadata=metadata)
+        mesh = trimesh.Trimesh(
+            partial["vertices"],
+            partial["faces"],
+            face_attributes={"surface": partial["surface"]},
+            process=False,
+            metadata=metadata,
+        )
         mesh.apply_transform(plan.mechanism.T_world_base)
         meshes["workspace"] = mesh
         lower, upper = mesh.bounds
         document["bounds_m"] = about.get("bounds_m") or {"lower": lower.tolist(), "upper": upper.tolist()}
         document["surfaces"] = {"workspace": surface_entry("workspace", mesh)}
-        sample = DistributionMap(np.asarray(mesh.vertices), {})
         skeleton = skeleton_at(plan, mesh.center_mass)
     else:
         document["empty"] = "no position is reached: the spheres that bound the workspace enclose none"
@@ -87,4 +102,4 @@ def boundary_result(plan: "ParallelPlan", partial: "Arrays", seconds: dict[str, 
         T = plan.mechanism.T_world_base
         tables["vertices"] = Table({"position": partial["corners"] @ T[:3, :3].T + T[:3, 3]}, {"position": "m"})
     document["timing_s"] = {**seconds, "finish": time.perf_counter() - started}
-    return Result(document, sample=sample, meshes=meshes, tables=tables, skeleton=skeleton)
+    return Result(document, meshes=meshes, tables=tables, skeleton=skeleton)

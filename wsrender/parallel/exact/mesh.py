@@ -1,5 +1,7 @@
 """Watertight triangle meshes of ball regions: every vertex lies on the exact surfaces, borders are shared."""
 
+from typing import Any
+
 import numpy as np
 import trimesh
 
@@ -11,23 +13,31 @@ LONGER = 1.3  # edges inside faces than those along borders, without which halvi
 
 
 def region_mesh(borders: Borders, patches: list[Patch], faces: list[Face], step: float) -> trimesh.Trimesh:
-    """Closed mesh [m], normals out of the region, its edges inside faces at most about ``step`` (scaled) long."""
+    """Closed mesh [m], normals out of the region, its edges inside faces at most about ``step`` (scaled) long.
+
+    The attribute ``surface`` of its triangles numbers the surface on which each lies.
+    """
     surfaces = borders.arcs.surfaces
-    points, triangles = [borders.points], []
+    points, triangles, owners = [borders.points], [], []
     if patches:
         inner, covering = _covered(patches, LONGER * steps_of(surfaces, step), len(borders.points))
         points.append(inner)
         triangles += [_outwards(own, surfaces.sides[patch.surface]) for patch, own in covering]
+        owners += [np.full(len(own), patch.surface) for patch, own in covering]
     for sphere in (face.surface for face in faces if not face.loops):
         radius, total = float(surfaces.radii[0, sphere]), sum(map(len, points))
         ball = trimesh.creation.icosphere(_subdivisions(min(step / radius, LARGEST_ANGLE)), radius)
         triangles.append(_outwards(ball.faces + total, surfaces.side[sphere]))
+        owners.append(np.full(len(ball.faces), sphere))
         points.append(ball.vertices + surfaces.centres[0, sphere])
     triangles = np.concatenate([np.zeros((0, 3), int), *triangles])
     used, renumbered = np.unique(triangles, return_inverse=True)
     vertices = surfaces.origin[0] + surfaces.scale[0] * np.concatenate(points)[used]
     metadata = {"frame": "base", "unit": "m", "up": "z"}
-    return trimesh.Trimesh(vertices, renumbered.reshape(-1, 3), process=False, metadata=metadata)
+    numbers: dict[str, Any] = {"surface": np.concatenate([np.zeros(0, int), *owners]).astype(np.int32)}
+    return trimesh.Trimesh(
+        vertices, renumbered.reshape(-1, 3), face_attributes=numbers, process=False, metadata=metadata
+    )
 
 
 def _outwards(triangles: np.ndarray, side: float) -> np.ndarray:

@@ -105,9 +105,8 @@ def surfaces_of(regions: Sequence[BallRegion]) -> Surfaces:
     centres = np.array([np.concatenate([r.inside_centres, r.outside_centres]).reshape(-1, 3) for r in regions])
     radii = np.array([np.concatenate([r.inside_radii, r.outside_radii]) for r in regions])
     side = np.concatenate([np.ones(len(first.inside_radii)), -np.ones(len(first.outside_radii))])
-    below, above = np.isfinite(first.lower), np.isfinite(first.upper)
-    normals = np.concatenate([-np.eye(3)[below], np.eye(3)[above]])
-    bounds = np.array([np.concatenate([-np.asarray(r.lower)[below], np.asarray(r.upper)[above]]) for r in regions])
+    normals, _ = first.sides_of_box()
+    bounds = np.array([region.sides_of_box()[1] for region in regions])
     inside = side > 0
     if inside.any():
         origin, scale = centres[:, inside].mean(axis=1), radii[:, inside].max(axis=1)

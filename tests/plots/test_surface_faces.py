@@ -1,0 +1,72 @@
+import numpy as np
+import pytest
+import trimesh
+
+import wsrender as ws
+from tests.parallel.ball_regions import region
+from wsrender.errors import InputError
+from wsrender.parallel.ball_surfaces import surface_table
+from wsrender.parallel.exact import ExactWorkspace
+from wsrender.plots.faces import faces_of
+from wsrender.plots.surface_faces import in_sight, surface_faces
+
+LENS = region([(0, 0, 0, 1), (1, 0, 0, 1)])  # two unit balls: two caps that share one circle
+
+
+@pytest.fixture(scope="module")
+def published():
+    """The 6-PUS of DEFINITIONS section 9: 18 vertices, 27 edges, 11 faces."""
+    return ws.parallel_workspace("six_pus", method="exact", device="cpu")
+
+
+def test_faces_and_corners_are_those_of_the_exact_topology(published):
+    faces = faces_of(published.meshes["workspace"], published.tables["surfaces"])
+    sides, corners = faces.borders()
+    assert len(faces.labels) == 11 and len(corners) == 18
+    vertices = published.tables["vertices"]["position"]
+    nearest = np.linalg.norm(faces.vertices[corners][:, None] - vertices, axis=2).min(axis=1)
+    assert nearest.max() < 1e-9
+    assert len(set(faces.colors.values())) == 11
+    # Where the two faces of an edge lie, both legs are at a limit: the ends of sides lie on both balls.
+    table, number = published.tables["surfaces"], faces.number
+    on = {k: set(faces.triangles[number == k].ravel().tolist()) for k in faces.labels}
+    for k, vertices_of in on.items():
+        points = faces.vertices[sorted(vertices_of & set(sides.ravel().tolist()))]
+        distance = np.linalg.norm(points - table["center"][k], axis=1)
+        np.testing.assert_allclose(distance, table["radius"][k], rtol=1e-9)
+
+
+def test_the_edge_of_a_lens_is_its_circle_and_half_of_it_is_in_sight():
+    exact = ExactWorkspace.of(LENS)
+    faces = faces_of(exact.mesh, surface_table(LENS, exact.measures.area[0], np.eye(4)))
+    sides, corners = faces.borders()
+    middles = faces.vertices[sides].mean(axis=1)
+    assert len(corners) == 0 and list(faces.labels.values()) == ["inside ball 0", "inside ball 1"]
+    np.testing.assert_allclose(faces.vertices[sides][..., 0], 0.5, atol=1e-9)
+    np.testing.assert_allclose(np.hypot(*faces.vertices[sides][:, 0, 1:].T), np.sqrt(0.75), atol=1e-9)
+    above = in_sight(middles, faces, np.array([0.0, 0.0, 1.0]))
+    np.testing.assert_array_equal(above[np.abs(middles[:, 2]) > 0.1], middles[np.abs(middles[:, 2]) > 0.1, 2] > 0)
+    assert in_sight(middles, faces, np.array([1.0, 0.0, 0.0])).all()  # along the axis the whole rim
+
+
+def test_a_picture_names_every_face_and_a_mesh_without_faces_has_one_colour(published):
+    figure = published.plot.surface()
+    texts = [text.get_text() for text in figure.legends[0].texts]
+    assert len(texts) == 11 + 2 and {"leg 0 at its upper limit", "leg 5 at its lower limit", "edge", "vertex"} <= {
+        *texts
+    }
+    assert {axes.get_xlabel() for axes in figure.axes} == {"x [m]"}
+    plain = faces_of(trimesh.creation.box(), None)
+    assert len(plain.borders()[0]) == 0 and not surface_faces(plain).legends[0].texts
+    with pytest.raises(InputError, match="has no triangles"):
+        surface_faces(faces_of(trimesh.Trimesh(), None))
+    with pytest.raises(InputError, match="the result has no 'other'; it holds workspace"):
+        published.plot.surface("other")
+
+
+def test_the_faces_of_a_saved_result_are_those_of_the_result(published, tmp_path):
+    published.save(tmp_path)
+    assert {path.name for path in (tmp_path / "plots").iterdir()} == {"surface.png", "robot.png"}
+    again = ws.Result.load(tmp_path)
+    found, expected = (result.meshes["workspace"].face_attributes["surface"] for result in (again, published))
+    np.testing.assert_array_equal(found, expected)

@@ -1,0 +1,93 @@
+"""A closed surface whose faces have colours of their own, with its edges and corners."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wsrender.volume.table import Table
+
+if TYPE_CHECKING:
+    import trimesh
+
+Color = tuple[float, float, float]
+
+NUMBER = "surface"  # attribute of triangles: the row of the table of surfaces on which each lies
+PLAIN: Color = (0.45, 0.62, 0.75)
+# Okabe and Ito 2008, told apart by the colour-blind: of each leg one for its upper limit and a pale one for its lower.
+_LEGS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#b8a800", "#56b4e9")
+_PALE = 0.5
+_GREYS = ("#8c8c8c", "#a6a6a6", "#bfbfbf", "#707070", "#d9d9d9", "#595959")
+
+
+@dataclass(frozen=True, eq=False)
+class Faces:
+    """Triangles (T, 3) of vertices (V, 3) [m]; ``number`` (T,) says which face each belongs to.
+
+    ``labels`` and ``colors`` are of the numbers that occur.
+    """
+
+    vertices: np.ndarray
+    triangles: np.ndarray
+    number: np.ndarray
+    labels: Mapping[int, str]
+    colors: Mapping[int, Color]
+
+    @property
+    def corners(self) -> np.ndarray:
+        """Corners (T, 3, 3) of the triangles [m]."""
+        return self.vertices[self.triangles]
+
+    def borders(self) -> tuple[np.ndarray, np.ndarray]:
+        """Vertices (E, 2) of the sides that two faces share, and where three or more faces meet, (C,)."""
+        sides = np.sort(self.triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+        number = np.repeat(self.number, 3)
+        order = np.lexsort(sides.T)
+        sides, number = sides[order], number[order]
+        between = (sides[1:] == sides[:-1]).all(axis=1) & (number[1:] != number[:-1])
+        at = np.unique(np.stack([self.triangles.ravel(), np.repeat(self.number, 3)], axis=1), axis=0)
+        return sides[1:][between], np.flatnonzero(np.bincount(at[:, 0], minlength=len(self.vertices)) > 2)
+
+
+def faces_of(mesh: "trimesh.Trimesh", table: Table | None) -> Faces:
+    """The faces of a mesh by the attribute ``surface`` of its triangles, named by the table of surfaces.
+
+    A mesh without the attribute, or a result without the table, is one face of one colour.
+    """
+    number = mesh.face_attributes.get(NUMBER)
+    if number is None or table is None:
+        none = np.zeros(len(mesh.faces), np.int64)
+        return Faces(np.asarray(mesh.vertices), np.asarray(mesh.faces), none, {}, {0: PLAIN})
+    present = sorted(np.unique(number).tolist(), key=lambda row: (table["leg"][row] < 0, table["leg"][row], row))
+    labels = {row: _label(table, row) for row in present}
+    colors = {row: _color(table, row) for row in present}
+    return Faces(np.asarray(mesh.vertices), np.asarray(mesh.faces), number, labels, colors)
+
+
+def _label(table: Table, row: int) -> str:
+    """Such as ``leg 2 at its upper limit``, ``inside ball 3`` or ``z = 0.5 m``."""
+    kind, leg = str(table["kind"][row]), int(table["leg"][row])
+    if leg >= 0:
+        return f"leg {leg} at its {table['limit'][row]} limit"
+    if kind != "plane":
+        return f"{kind} ball {row}"
+    axis = int(np.abs(table["normal"][row]).argmax())
+    along = abs(table["normal"][row][axis]) > 1 - 1e-9
+    return f"{'xyz'[axis]} = {table['center'][row][axis]:.4g} m" if along else f"plane {row}"
+
+
+def _color(table: Table, row: int) -> Color:
+    leg = int(table["leg"][row])
+    if table["kind"][row] == "plane":
+        return _rgb(_GREYS[row % len(_GREYS)])
+    color = _rgb(_LEGS[(leg if leg >= 0 else row) % len(_LEGS)])
+    if table["limit"][row] == "lower" or (leg < 0 and table["kind"][row] == "outside"):
+        red, green, blue = (1 - _PALE * (1 - part) for part in color)
+        return red, green, blue
+    return color
+
+
+def _rgb(text: str) -> Color:
+    red, green, blue = (int(text[k : k + 2], 16) / 255 for k in (1, 3, 5))
+    return red, green, blue
