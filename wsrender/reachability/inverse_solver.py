@@ -28,6 +28,9 @@ SAMPLES = {"position": 1 << 12, "axis": 1 << 13, "pose": 1 << 13}  # of the set
 # clearly off the target, and so many of them at the least residual of all, within 1 %.
 LEAST_ENDS = {"position": 12, "axis": 32, "pose": 32}
 LEAST_AGREEING, AGREEING, CLEARLY = 3, 1.01, 2.0
+# Nor is it clear so near, relative to the reach: beside a stretched arm a try comes to rest where the slope is below
+# the solver's FLAT, 3e-4, and the edge of a fold of curvature 1 / reach is up to reach · FLAT² / 2 away there.
+FOLD = 1e-7
 AT_END = 1e-6  # share of a slide's range within which it stands at its end
 
 
@@ -94,7 +97,7 @@ class InverseSolver:
 
     def _solve(self, position: np.ndarray, orientation: np.ndarray | None) -> Solutions:
         targets = _targets(position, orientation)
-        search = _Search(len(targets), self.chain.n, self.kind, self.accuracy, self._out_of_reach(position))
+        search = _Search(len(targets), self.chain, self.kind, self.accuracy, self._out_of_reach(position))
         for starts in self._starts(targets, search):
             pending = search.pending
             each = starts.shape[1]
@@ -197,16 +200,17 @@ def _targets(position: np.ndarray, orientation: np.ndarray | None) -> np.ndarray
 class _Search:
     """The best of all tries of every target, and the evidence that nothing better exists."""
 
-    def __init__(self, count: int, n: int, kind: str, accuracy: Accuracy, proven: np.ndarray):
+    def __init__(self, count: int, chain: Chain, kind: str, accuracy: Accuracy, proven: np.ndarray):
         self.accuracy, self.proven = accuracy, proven
-        self.q = np.zeros((count, n))
+        self.q = np.zeros((count, chain.n))
         self.distance, self.angle = np.full(count, np.inf), np.full(count, np.inf)
         self.label = np.full(count, UNDECIDED, np.int8)
         self.pending = np.arange(count)
         self._residual = np.full(count, np.inf)  # of the best try
         self._nearest_end = np.full(count, np.inf)  # least residual at which a try came to rest
         self._least_ends = LEAST_ENDS[kind]
-        self._tolerance = np.hypot(accuracy.position_m, accuracy.length * accuracy.angle_rad * (kind != "position"))
+        tolerance = np.hypot(accuracy.position_m, accuracy.length * accuracy.angle_rad * (kind != "position"))
+        self._clearly_off = max(CLEARLY * tolerance, FOLD * chain.reach)
         self._ends, self._agreeing = np.zeros(count, np.int32), np.zeros(count, np.int32)
 
     def record(self, pending: np.ndarray, tries: Tries, residual: np.ndarray) -> None:
@@ -238,5 +242,5 @@ class _Search:
         nearest = self._nearest_end[pending]
         consistent = (self._ends[pending] >= self._least_ends) & (self._agreeing[pending] >= LEAST_AGREEING)
         clear = np.isfinite(nearest) & (self._residual[pending] * AGREEING >= nearest)
-        off = self._residual[pending] > CLEARLY * self._tolerance
+        off = self._residual[pending] > self._clearly_off
         return self.proven[pending] | (consistent & clear & off)

@@ -58,8 +58,11 @@ class RefinedVolumes:
 
 
 def refined_volume(chain: Chain, tolerance: float, **options) -> tuple[VolumeEstimate, RefinedVolumes]:
-    """The volume that the end effector of one chain reaches; options of `refined_volumes`."""
-    found = refined_volumes([chain], {"reachable": Event(1, 1)}, tolerance, **options)
+    """The volume that the end effector of one chain reaches; options of `refined_volumes`.
+
+    In the base frame, where the box that holds the reach is smallest: no volume depends on a placement.
+    """
+    found = refined_volumes([chain.placed(np.eye(4))], {"reachable": Event(1, 1)}, tolerance, **options)
     return found.volumes["reachable"], found
 
 
