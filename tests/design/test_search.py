@@ -88,10 +88,14 @@ def test_files_of_evaluations_are_read_back_exactly_and_survive_a_crash(tmp_path
     file = EvaluationFile(path, ["a", "b", "value"])
     designs, values = np.array([[0.1, 1 / 3], [2.0, 1e-17]]), np.array([[np.pi], [np.nan]])
     file.append(designs, values)
-    with path.open("a") as cut:
-        cut.write("0.5,0.25")
-    rows = EvaluationFile(path, ["a", "b", "value"]).rows()
-    np.testing.assert_array_equal(rows, np.hstack([designs, values]))
+    for cut in ("1", "0.5,0.25", "0.5,0.25,3.1"):  # the last of 3.14: it looks whole
+        with path.open("a") as crashed:
+            crashed.write(cut)
+        rows = EvaluationFile(path, ["a", "b", "value"]).rows()
+        np.testing.assert_array_equal(rows, np.hstack([designs, values]))
+    again = EvaluationFile(path, ["a", "b", "value"])
+    again.append(np.array([[2.5, 0.5]]), np.array([[4.0]]))
+    np.testing.assert_array_equal(again.rows()[2:], [[2.5, 0.5, 4.0]])
     with pytest.raises(InputError, match="must have the columns a, c, value, not a, b, value"):
         EvaluationFile(path, ["a", "c", "value"]).rows()
     with pytest.raises(InputError, match="cannot be written"):

@@ -5,6 +5,7 @@ import pytest
 
 import wsrender as ws
 from wsrender.errors import DocumentError, InputError
+from wsrender.run import design, plan, run_shard
 
 SIX_PUS = {"analysis": "parallel_workspace", "mechanism": {"library": "six_pus"}, "device": "cpu"}
 VOLUME = [{"value": "exact_volume"}]
@@ -178,6 +179,34 @@ def test_a_file_keeps_every_design_of_a_search_that_was_stopped(tmp_path):
     result = ws.execute(document)
     assert result.document["search"]["evaluated"] == 400 - kept
     assert len(path.read_text().splitlines()) == 401
+
+
+@pytest.mark.parametrize("batch", [1, 100])
+def test_a_search_that_was_stopped_goes_on_from_its_checkpoint(tmp_path, monkeypatch, batch):
+    """To the same partial result, without evaluating a design again; designs without value are tried again."""
+    monkeypatch.setattr(design, "BATCH", batch)
+    bounds = platform_and_link([0.1, 2.5], platforms=(-1.0, 3.0))  # a platform below 0 is none
+    search = {"method": "differential_evolution", "population": 5, "generations": 6, "refine": False}
+    document = {"analysis": "design_optimization", "design": SIX_PUS, "parameters": bounds, "objectives": VOLUME}
+    planned = plan({**document, "search": search})
+    whole = run_shard(planned, 0)
+
+    class KilledError(Exception):
+        pass
+
+    def killed(done: int) -> None:
+        if done >= 20:
+            raise KilledError
+
+    checkpoint = tmp_path / "0.checkpoint"
+    with pytest.raises(KilledError):
+        run_shard(planned, 0, killed, checkpoint=checkpoint)
+    kept = checkpoint.read_text()
+    assert kept.count("\n") > 20 and "nan" in kept
+    again = run_shard(planned, 0, checkpoint=checkpoint)
+    assert all(np.array_equal(again[name], whole[name], equal_nan=name != "about") for name in whole)
+    lines = [line for line in checkpoint.read_text().splitlines() if "nan" not in line]
+    assert checkpoint.read_text().startswith(kept) and len(set(lines)) == len(lines)
 
 
 def test_designs_that_are_none_have_no_value():

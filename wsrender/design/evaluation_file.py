@@ -13,13 +13,22 @@ class EvaluationFile:
     """Rows of parameters and values under a header line; numbers are written so that they are read back exactly."""
 
     def __init__(self, path: str | Path, columns: Sequence[str]):
-        """Begin the file where there is none; InputError where it cannot be written or has other columns."""
+        """Begin the file where there is none, and cut off a line that a crash has left unfinished.
+
+        InputError where it cannot be written.
+        """
         self.path, self.columns = Path(path), list(columns)
-        if not self.path.exists():
+        try:
+            content = self.path.read_bytes() if self.path.exists() else b""
+            if not content.endswith(b"\n"):
+                self.path.write_bytes(content[: content.rfind(b"\n") + 1])
+        except OSError as error:
+            raise InputError("evaluations.path", f"{self.path} cannot be written: {error}") from error
+        if b"\n" not in content:
             self._write([self.columns])
 
     def rows(self) -> np.ndarray:
-        """The designs and values (N, columns) so far; a last line that a crash cut short is left out."""
+        """The designs and values (N, columns) so far; InputError where the file has other columns or no numbers."""
         try:
             lines = list(csv.reader(self.path.read_text("utf-8").splitlines(keepends=True)))
         except (OSError, UnicodeDecodeError, csv.Error) as error:
@@ -29,9 +38,8 @@ class EvaluationFile:
             raise InputError(
                 "evaluations.path", f"{self.path} must have the columns {', '.join(self.columns)}, not {found}"
             )
-        whole = [line for line in lines[1:] if len(line) == len(self.columns) and all(line)]
         try:
-            return np.array(whole, np.float64).reshape(-1, len(self.columns))
+            return np.array(lines[1:], np.float64).reshape(-1, len(self.columns))
         except ValueError as error:
             raise InputError("evaluations.path", f"{self.path} must hold numbers: {error}") from None
 

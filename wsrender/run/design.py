@@ -93,22 +93,37 @@ class DesignPlan:
         """Weights (k,) of the values in the score; negative where small values are good."""
         return np.array([o.weight if o.goal == "maximize" else -o.weight for o in self.job.objectives])
 
+    @property
+    def resumes(self) -> bool:
+        """A search that was stopped takes the designs that it has evaluated from its checkpoint."""
+        return True
+
     def resolved(self) -> dict[str, Any]:
         """What is settled once: the device that "auto" means, target, shards."""
         return {"device": self.device, "target": self.target, "shards": [list(shard) for shard in self.shards]}
 
     def run_shard(self, shard: int, progress: Callable[[int], None] | None, **execution: Any) -> Arrays:
         """All designs (E, n) in the order of the search, their values (E, k), and what the search says."""
-        given, count = self.job.evaluations, len(self.job.parameters)
-        file = EvaluationFile(given.path, self._columns) if isinstance(given, EvaluationsInFile) else None
-        rows = file.rows() if file else np.array(given, np.float64).reshape(-1, len(self._columns))
+        given, width = self.job.evaluations, len(self._columns)
+        own = EvaluationFile(given.path, self._columns) if isinstance(given, EvaluationsInFile) else None
+        known = own.rows() if own else np.array(given, np.float64).reshape(-1, width)
+        kept = EvaluationFile(execution["checkpoint"], self._columns) if "checkpoint" in execution else None
+        before = _with_values(kept.rows()) if kept else np.empty((0, width))
         evaluator = _Evaluator(self, {name: execution[name] for name in ("threads",) if name in execution})
+        evaluator.count = len(before)
+
+        def keep(designs: np.ndarray, values: np.ndarray) -> None:
+            for file in (own, kept):
+                if file:
+                    file.append(designs, values)
+
+        count = len(self.job.parameters)
         evaluations = Evaluations(
             evaluator,
             self.weights,
-            known=[(tuple(row[:count]), tuple(row[count:])) for row in rows.tolist()],
+            known=[(tuple(row[:count]), tuple(row[count:])) for row in np.concatenate([known, before]).tolist()],
             report=progress,
-            keep=file.append if file else None,
+            keep=keep,
             batch=BATCH if self.is_exact else SLOW_BATCH,
         )
         ended = self._search(evaluations, evaluator)
@@ -275,6 +290,11 @@ class DesignPlan:
         mesh = exact.mesh.apply_transform(T_world_base)
         mesh.metadata["frame"] = "world"
         return {"best": mesh}, {"surfaces": surface_table(region, exact.measures.area[0], T_world_base)}
+
+
+def _with_values(rows: np.ndarray) -> np.ndarray:
+    """A checkpoint's rows but those of designs without value, which are tried again, so that their fault is known."""
+    return np.unique(rows[np.isfinite(rows).all(axis=1)], axis=0)
 
 
 class _Evaluator:

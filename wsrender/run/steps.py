@@ -3,6 +3,7 @@
 import time
 from collections.abc import Callable
 from importlib import import_module
+from pathlib import Path
 from typing import Any, Protocol, runtime_checkable
 
 from wsrender.errors import InputError
@@ -99,6 +100,19 @@ class Refining(Protocol):
         ...
 
 
+@runtime_checkable
+class Resuming(Protocol):
+    """A plan whose ``run_shard`` keeps what it has done in a file ``checkpoint``, and goes on from one that is there.
+
+    What it found before counts as found: the partial result is the same, stopped or not.
+    """
+
+    @property
+    def resumes(self) -> bool:
+        """That it does."""
+        ...
+
+
 def plan(document: Any, robot: Any = None, *, resolved: dict[str, Any] | None = None) -> Plan:
     """Resolve a job: a document (dict or JSON text) or a parsed job.
 
@@ -128,14 +142,23 @@ def _robot(path: ArmPath, arm: Arm, given: Any) -> Robot:
         raise error.within(dotted(path)) from None
 
 
-def run_shard(plan: Plan, shard: int, progress: Callable[[int], None] | None = None, **execution: Any) -> Any:
-    """The partial result of one shard.
+def run_shard(
+    plan: Plan,
+    shard: int,
+    progress: Callable[[int], None] | None = None,
+    *,
+    checkpoint: str | Path | None = None,
+    **execution: Any,
+) -> Any:
+    """The partial result of one shard; a plan that can go on where it was stopped does so from the file ``checkpoint``.
 
     ``execution`` may give ``threads`` and ``chunk_size`` (samples), which change no bit; InputError below 1.
     """
     chunk_size = execution.get("chunk_size")
     if chunk_size is not None and (not isinstance(chunk_size, int) or chunk_size < 1):
         raise InputError("chunk_size", f"{chunk_size!r} is not allowed; a positive whole number is")
+    if checkpoint is not None and isinstance(plan, Resuming):
+        execution["checkpoint"] = checkpoint
     return plan.run_shard(shard, progress, **execution)
 
 

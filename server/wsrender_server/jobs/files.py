@@ -4,6 +4,7 @@
 
     models/<sha256>                       uploaded models
     partials/<computation>/<shard>.npz    partial results of unfinished computations
+    partials/…/<shard>.checkpoint         what a shard needs to go on where it was stopped
     results/<computation>/<sha256>        artifacts, the result document among them
     scratch/                              files being written; emptied at start
 """

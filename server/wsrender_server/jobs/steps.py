@@ -93,8 +93,8 @@ def _shard(task: Task) -> None:
     path = _files().partials(task.computation) / partial_name(task.shard)
     if path.exists():  # kept by a process that was lost before it could say so
         return
-    partial = run_shard(_planned(task), task.shard, report)
     path.parent.mkdir(exist_ok=True)
+    partial = run_shard(_planned(task), task.shard, report, checkpoint=path.with_suffix(".checkpoint"))
     save_partial(partial, path)
 
 

@@ -10,7 +10,7 @@ import pytest
 from wsrender_server.jobs.service import JobService
 from wsrender_server.settings import Settings
 
-from tests.server.jobs.documents import canonical, indices_at
+from tests.server.jobs.documents import canonical, design_optimization, indices_at
 from tests.server.jobs.waiting import (
     PATIENCE_S,
     comparable,
@@ -75,6 +75,35 @@ def test_a_result_equals_the_local_run(store, tmp_path):
         content = store.artifact_path("ann", job.id, artifact.name).read_bytes()
         assert (len(content), hashlib.sha256(content).hexdigest()) == (artifact.bytes, artifact.sha256)
     assert {"result.json", "volume.vtkhdf", "plots/slices.png"} <= {a.name for a in store.artifacts("ann", job.id)}
+
+
+def test_a_killed_design_optimization_goes_on_where_it_was(service, store, tmp_path):
+    """With the same result, and no design evaluated twice: the checkpoint holds each once."""
+    inner = {"analysis": "workspace", "robot": "scara", **QUICK, "sampling": {"method": "sobol", "count": 2**18}}
+    document = design_optimization(
+        design={**inner, "robot": {"library": "scara", "tool": {"position_m": [0.01, 0, 0]}}},
+        parameters=[{"name": "reach", "pointers": ["/robot/tool/position_m/0"], "bounds": [0.01, 0.1]}],
+        objectives=[{"value": "/volume_m3/occupied"}],
+        search={"method": "sweep", "steps": 40},
+    )
+    job = store.submit("ann", document).job.id
+
+    def lines():
+        files = list((service.settings.data_dir / "partials").glob("*/0.checkpoint"))
+        try:
+            return files[0].read_text().splitlines() if files else []
+        except FileNotFoundError:
+            return []
+
+    kept = wait_until(lambda: len(found := lines()) > 4 and found, what="designs")
+    os.kill(kernel_pid(service), signal.SIGKILL)
+    last = kept
+    while store.get("ann", job).state in ("queued", "running"):
+        last = lines() or last
+        time.sleep(0.01)
+    assert ended(store, job).state == "succeeded"
+    assert last[: len(kept)] == kept and len(set(last)) == len(last) > len(kept)
+    assert comparable(store.result_document("ann", job)) == local_document(document, tmp_path / "local")
 
 
 def test_a_kept_map_and_a_converging_job_equal_the_local_run(store, tmp_path):
