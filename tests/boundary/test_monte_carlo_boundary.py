@@ -72,8 +72,8 @@ def runs():
 
 # Mean distance of the centroids from the exact boundary, loop by loop [cell widths], over 20 seeds. DEFINITIONS 8 says
 # 0.24–0.33, which holds for outer loops: 0.33 where samples are as dense as anywhere, down to 0.24 where they crowd at
-# the boundary, as they do at both circles of RR, its singular positions. Around its hole, a circle of six cells' radius,
-# the region's side of a cell holds less than half of it too.
+# the boundary, as they do at both circles of RR, its singular positions. Around its hole, six cells in radius, the
+# boundary curves away from the region, which lowers it further.
 BIAS = {"RP": [0.311], "RR": [0.238, 0.153], "PR": [0.286]}
 
 

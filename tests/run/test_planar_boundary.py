@@ -102,6 +102,13 @@ def test_two_joints_have_regions_by_number_of_solutions(result):
     assert result.document["exact"]["inverse_solutions"] is None
 
 
+def test_three_joints_have_regions_by_number_of_self_motions(result):
+    regions = result.document["exact"]["self_motions"]
+    assert [region["components"] for region in regions] == [1, 2, 3, 4, 5]
+    assert sum(region["area_m2"] for region in regions) == pytest.approx(31.497510350119, rel=1e-9)
+    assert result.tables["points"]["self_motions"].tolist() == [0, 2]
+
+
 @pytest.mark.parametrize("rows", [ROWS[:1], [{"a": 0.0, "limits_deg": [-60, 60]}]], ids=["curve", "point"])
 def test_sets_without_area_are_results(rows, tmp_path):
     robot = {"dh": {"convention": "standard", "rows": rows}}

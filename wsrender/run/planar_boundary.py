@@ -2,13 +2,13 @@
 
 import json
 from collections.abc import Callable
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from wsrender.boundary.planar.exact_boundary import ExactBoundary, Nearest
-from wsrender.boundary.planar.inverse_solutions import solution_regions
+from wsrender.boundary.planar.exact_boundary import ExactBoundary
+from wsrender.boundary.planar.inverse_solutions import NumberRegions
 from wsrender.boundary.planar.monte_carlo import MonteCarloBoundary, monte_carlo_boundary
 from wsrender.boundary.planar.planar_chain import PlanarChain, planar_chain
 from wsrender.boundary.planar.segments import segment_entry, segment_table
@@ -62,13 +62,12 @@ class PlanarBoundaryPlan:
         estimated = monte_carlo_boundary(self.chain, points, job.cells, job.line_tolerance_m2, job.arc_tolerance_m4)
         about = {"exact": _exact_entry(exact), "monte_carlo": _estimated_entry(estimated, exact)}
         rows = np.unique(np.linspace(0, len(points) - 1, min(len(points), DRAWN)).astype(np.int64))
-        nearest = exact.nearest(np.array(job.points_m, np.float64).reshape(-1, 2))
         return {
             "about": np.array(json.dumps(about)),
             "samples": points[rows],
             **_columns("boundary", segment_table(exact.segments)),
             **_columns("monte_carlo", segment_table(estimated.segments)),
-            **_columns("points", _point_table(np.array(job.points_m), nearest) if job.points_m else Table({})),
+            **_columns("points", _point_table(exact, np.array(job.points_m)) if job.points_m else Table({})),
         }
 
     def merge(self, a: Any, b: Any) -> Any:
@@ -112,20 +111,26 @@ def plan_planar_boundary(
 
 
 def _exact_entry(exact: ExactBoundary) -> dict[str, Any]:
-    """Area, perimeter, loops with their segments, vertices; of two joints, regions by number of inverse solutions."""
-    solutions = solution_regions(exact)
+    """Area, perimeter, loops with their segments, vertices; regions by number of inverse solutions or self-motions."""
     holes = [loop.hole for loop in exact.loops] or [False] * len(exact.segments)
     return {
         "dimension": exact.dimension,
         "area_m2": float(exact.area),
         "perimeter_m": exact.perimeter,
         "vertices_m": exact.vertices.tolist(),
-        "inverse_solutions": None if solutions is None else [asdict(region) for region in solutions],
+        "inverse_solutions": _regions_entry("solutions", exact.inverse_solution_regions),
+        "self_motions": _regions_entry("components", exact.self_motion_regions),
         "loops": [
             {"hole": hole, "segments": [segment_entry(segment) for segment in loop]}
             for hole, loop in zip(holes, exact.segments, strict=True)
         ],
     }
+
+
+def _regions_entry(number: str, regions: list[NumberRegions] | None) -> list[dict[str, Any]] | None:
+    if regions is None:
+        return None
+    return [{number: each.number, "area_m2": each.area_m2, "regions": each.regions} for each in regions]
 
 
 def _estimated_entry(estimated: MonteCarloBoundary, exact: ExactBoundary) -> dict[str, Any]:
@@ -151,7 +156,8 @@ def _polygon_area(loop: np.ndarray) -> float:
     return float((x * np.roll(y, -1) - np.roll(x, -1) * y).sum() / 2)
 
 
-def _point_table(points: np.ndarray, nearest: Nearest) -> Table:
+def _point_table(exact: ExactBoundary, points: np.ndarray) -> Table:
+    nearest = exact.nearest(points)
     columns = {
         "point": points,
         "inside": nearest.inside,
@@ -159,6 +165,10 @@ def _point_table(points: np.ndarray, nearest: Nearest) -> Table:
         "nearest": nearest.point,
         "segment": nearest.segment,
     }
+    if exact.inverse_solution_regions is not None:
+        columns["inverse_solutions"] = exact.inverse_solutions(points)
+    if exact.self_motion_regions is not None:
+        columns["self_motions"] = exact.self_motions(points)
     return Table(columns, dict.fromkeys(("point", "distance", "nearest"), "m"))
 
 

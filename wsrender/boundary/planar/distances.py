@@ -65,8 +65,15 @@ def approaches(orbits: Curves, curves: Curves) -> list[np.ndarray]:
 
     Where an orbit does not reach such a point, from its start or end. Two lines meet once: both are the same.
     """
-    met = (_arc_approaches if orbits.arc[0] else _line_approaches)(orbits, curves)
-    return [_distances(_at(orbits, t) - curves.base, curves) for t in met]
+    return [_distances(_at(orbits, t) - curves.base, curves) for t in meetings(orbits, curves)]
+
+
+def meetings(orbits: Curves, curves: Curves) -> tuple[np.ndarray, np.ndarray]:
+    """Parameters (K, N) of the two points where orbits' whole lines or circles meet, or come nearest to, the curves'.
+
+    The orbits are all lines of one direction or all arcs about one centre.
+    """
+    return (_arc_meetings if orbits.arc[0] else _line_meetings)(orbits, curves)
 
 
 def _at(orbits: Curves, t: np.ndarray) -> np.ndarray:
@@ -79,7 +86,7 @@ def _at(orbits: Curves, t: np.ndarray) -> np.ndarray:
     return base + np.clip(t, low, low + span)[..., None] * orbits.direction[:, None]
 
 
-def _arc_approaches(orbits: Curves, curves: Curves) -> tuple[np.ndarray, np.ndarray]:
+def _arc_meetings(orbits: Curves, curves: Curves) -> tuple[np.ndarray, np.ndarray]:
     """Angles (K, N) at which whole circles about one centre cross, or come closest to, whole lines and circles."""
     radius, lines = orbits.radius[:, None], ~curves.arc
     normal = turned_left(curves.direction)
@@ -95,7 +102,7 @@ def _arc_approaches(orbits: Curves, curves: Curves) -> tuple[np.ndarray, np.ndar
     return middle - half, middle + half
 
 
-def _line_approaches(orbits: Curves, curves: Curves) -> tuple[np.ndarray, np.ndarray]:
+def _line_meetings(orbits: Curves, curves: Curves) -> tuple[np.ndarray, np.ndarray]:
     """Parameters (K, N) at which whole lines cross, or come closest to, whole lines and circles."""
     u = orbits.direction[0]
     offset = curves.base - orbits.base[:, None]  # (K, N, 2)

@@ -8,11 +8,13 @@ import numpy as np
 
 from wsrender.boundary.planar.curves import unit
 from wsrender.boundary.planar.distances import point_distances
+from wsrender.boundary.planar.inverse_solutions import NumberRegions, inverse_solutions, solution_regions
 from wsrender.boundary.planar.loops import Loop, loops_of
 from wsrender.boundary.planar.planar_chain import PlanarChain, Plane, planar_chain
 from wsrender.boundary.planar.planar_set import PlanarSet
 from wsrender.boundary.planar.postures import postures
 from wsrender.boundary.planar.segments import ExactSegment
+from wsrender.boundary.planar.self_motions import self_motion_regions, self_motions
 from wsrender.boundary.planar.sweep import swept_sets
 from wsrender.errors import InputError
 from wsrender.robots.chain import Chain
@@ -138,6 +140,42 @@ class ExactBoundary:
 
     def _coordinates(self, displacements: list[float]) -> np.ndarray:
         return np.array([j.coordinate(value) for j, value in zip(self.chain.joints, displacements, strict=True)]) + 0.0
+
+    @cached_property
+    def inverse_solution_regions(self) -> list[NumberRegions] | None:
+        """Regions by number of inverse solutions; None unless two joints move the tip over an area."""
+        return solution_regions(self.reached, self.chain.size) if self._sweeps(2) else None
+
+    @cached_property
+    def self_motion_regions(self) -> list[NumberRegions] | None:
+        """Regions by number of separate self-motions; None unless three joints move the tip, two of them over an area.
+
+        A self-motion is a connected set of postures that all reach a point. The two are the last ones.
+        """
+        return self_motion_regions(self.reached, self.chain.size) if self._sweeps(3) else None
+
+    def inverse_solutions(self, points: Any) -> np.ndarray:
+        """Number of inverse solutions, whole turns left aside, at points (N, 2) [m] of a two-joint arm, (N,) int.
+
+        On a curve where the number changes, that of either side. Raises InputError for other arms.
+        """
+        if not self._sweeps(2):
+            raise InputError("robot", "has no number of inverse solutions: two joints must move the tip over an area")
+        return inverse_solutions(self.reached, plane_points(points) - self.chain.shift)
+
+    def self_motions(self, points: Any) -> np.ndarray:
+        """Number of separate self-motions at points (N, 2) [m] of a three-joint arm, (N,) int.
+
+        On a curve where the number changes, that of either side. Raises InputError for other arms.
+        """
+        if not self._sweeps(3):
+            what = "three joints must move the tip, the last two over an area"
+            raise InputError("robot", f"has no number of self-motions: {what}")
+        return self_motions(self.reached, plane_points(points) - self.chain.shift, self.chain.size)
+
+    def _sweeps(self, joints: int) -> bool:
+        """Whether so many joints move the tip, the last two of them over an area."""
+        return len(self.chain.joints) == joints and self.sets[-3].dimension == 2
 
     def contains(self, points: Any) -> np.ndarray:
         """Whether points (N, 2) [m] can be reached, (N,) bool; those on the boundary to rounding are."""

@@ -4,56 +4,68 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from wsrender.boundary.planar.arrangement import arrange
-from wsrender.boundary.planar.distances import approaches
-from wsrender.boundary.planar.exact_boundary import ExactBoundary
+from wsrender.boundary.planar.arrangement import Arrangement, arrange
+from wsrender.boundary.planar.distances import approaches, point_distances
 from wsrender.boundary.planar.loops import loops_of
 from wsrender.boundary.planar.planar_set import PlanarSet
-from wsrender.boundary.planar.sides import side_classes
+from wsrender.boundary.planar.sides import Classes, side_classes
 
 
 @dataclass(frozen=True)
-class SolutionRegions:
-    """Where ``solutions`` postures, whole turns left aside, reach a point: area, and number of separate regions."""
+class NumberRegions:
+    """Where a number of points (K, 2) is ``number``: area, and how many separate regions."""
 
-    solutions: int
+    number: int
     area_m2: float
     regions: int
 
 
-def solution_regions(boundary: ExactBoundary) -> list[SolutionRegions] | None:
-    """Regions by number of inverse solutions, the fewest first; None unless two joints move the tip over an area.
-
-    The number changes only where a candidate of the sweep lies: at a limit of the first joint, along the path of an
-    end of the second joint's curve, and along singular positions, the paths of its stationary points.
-    """
-    reached = boundary.reached
-    if len(boundary.chain.joints) != 2 or boundary.dimension != 2 or reached.candidates is None:
-        return None
-    size = boundary.chain.size
-    found = arrange(reached.candidates.curves, size)
-    counts = side_classes(found, lambda points, margin: _solutions(reached, points, margin), size)
+def regions_by_number(found: Arrangement, numbers: Classes, size: float) -> list[NumberRegions]:
+    """Regions by a number that changes on pieces of an arrangement only; the least number above 0 first."""
+    counts = side_classes(found, numbers, size)
     out = []
     for number in sorted(set(counts.ravel().tolist()) - {0}):
         rows = np.flatnonzero((counts[:, 0] == number) != (counts[:, 1] == number))
         sign = np.where(counts[rows, 0] == number, 1.0, -1.0)
-        region = PlanarSet(2, found.pieces[rows], sign, found.vertices, found.ends[rows])
-        loops = loops_of(region)
+        loops = loops_of(PlanarSet(2, found.pieces[rows], sign, found.vertices, found.ends[rows]))
         area = sum(loop.signed_area for loop in loops)
-        out.append(SolutionRegions(number, float(area), sum(not loop.hole for loop in loops)))
+        out.append(NumberRegions(number, float(area), sum(not loop.hole for loop in loops)))
     return out
 
 
-def _solutions(reached: PlanarSet, points: np.ndarray, margin: np.ndarray) -> np.ndarray:
-    """How often the orbits of points (K, 2) cross the curve of the second joint, (K,).
+def solution_regions(reached: PlanarSet, size: float) -> list[NumberRegions]:
+    """Regions by number of inverse solutions, whole turns left aside, of a set that two joints sweep.
 
+    The number changes only where a candidate of the sweep lies: at a limit of the first joint, along the path of an
+    end of the second joint's curve, and along singular positions, the paths of its stationary points.
+    """
+    assert reached.candidates is not None
+    found = arrange(reached.candidates.curves, size)
+    return regions_by_number(found, lambda points, margin: ways(reached, points, margin).sum(axis=1), size)
+
+
+def inverse_solutions(reached: PlanarSet, points: np.ndarray) -> np.ndarray:
+    """Number of inverse solutions at points (K, 2), (K,); on a curve where it changes, that of either side."""
+    return ways(reached, points, candidate_distances(reached, points)).sum(axis=1)
+
+
+def candidate_distances(reached: PlanarSet, points: np.ndarray) -> np.ndarray:
+    """Distance of points (K, 2) to the candidates of a set, (K,) [m]."""
+    assert reached.candidates is not None
+    return point_distances(points, reached.candidates.curves).min(axis=1)
+
+
+def ways(reached: PlanarSet, points: np.ndarray, margin: np.ndarray) -> np.ndarray:
+    """Whether the orbits of points (K, 2) cross the curve of the second joint, each of two ways, (K, 2).
+
+    The ways are the two postures of an elbow: each goes on where a point moves, and they meet in singular positions.
     The points keep ``margin`` (K,) [m] from the candidates, so the orbits from the ends of the curve and from touching
     it, and their own ends from the curve.
     """
     joint, inner = reached.joint, reached.inner
     assert joint is not None and inner is not None
     orbits = joint.orbits(points)
-    ways = approaches(orbits, inner.curves)
+    met = np.stack([distance[:, 0] < margin / 4 for distance in approaches(orbits, inner.curves)], axis=1)
     if not orbits.arc[0] and not inner.curves.arc[0]:
-        ways = ways[:1]  # two lines cross once
-    return sum((distance[:, 0] < margin / 4).astype(np.int64) for distance in ways)  # type: ignore[return-value]
+        met[:, 1] = False  # two lines cross once
+    return met

@@ -1,9 +1,9 @@
 """The boundary from samples: boundary cells of a grid, critical points, lines and arcs by least squares.
 
-Alciatore & Ng 1994. The centroid of a boundary cell lies inside the boundary, by 0.24–0.33 cell widths on average over an
-outer loop, however many samples there are: least where they crowd at a singular boundary, and less around small holes
-(0.15 at a radius of six cells). Where a line goes over into an arc smoothly the joint cannot be located; bands thinner
-than a cell are not seen.
+Alciatore & Ng 1994. The centroid of a boundary cell lies inside the boundary, by 0.24–0.33 cell widths on average over
+an outer loop, however many samples there are: least where they crowd at a singular boundary, and less around small
+holes (0.15 at a radius of six cells). Where a line goes over into an arc smoothly the joint cannot be located; bands
+thinner than a cell are not seen.
 """
 
 from dataclasses import dataclass
