@@ -91,6 +91,41 @@ def test_a_shell_and_a_constraint_in_closed_form():
     assert least["values"]["exact_volume"] == pytest.approx(4 / 3 * np.pi * (1 - 0.9**3), rel=1e-5)
 
 
+def test_the_largest_ball_and_cube_of_a_shell_in_closed_form():
+    """Between spheres of radii r < R lies a ball of (R − r)/2: largest at r = .2, R = 1.5. Inside R alone: 2R/√3."""
+    legs = [{"type": "UPS", "base_m": [0, 0, 0], "platform_m": [0, 0, 0], "length_m": [0.2, 1.2]}]
+    job = {"analysis": "parallel_workspace", "mechanism": {"legs": legs}, "device": "cpu"}
+    parameters = [
+        {"name": "shortest", "pointers": ["/mechanism/legs/0/length_m/0"], "bounds": [0.2, 0.9]},
+        {"name": "longest", "pointers": ["/mechanism/legs/0/length_m/1"], "bounds": [1.0, 1.5]},
+    ]
+    search = {"method": "sweep", "steps": 3}
+    found = ws.design_optimization(job, parameters, [{"value": "exact_inscribed_sphere"}], search=search)
+    best = found.document["best"]
+    assert best["parameters"] == {"shortest": 0.2, "longest": 1.5}
+    assert best["values"]["exact_inscribed_sphere"] == pytest.approx(0.65, rel=1e-9)
+    ball = found.document["inscribed"]["sphere"]
+    assert np.linalg.norm(ball["center_m"]) == pytest.approx(0.85, rel=1e-6)
+    assert 0.65 <= ball["at_most_radius_m"] < 0.75
+    legs[0]["length_m"] = [0.0, 1.2]
+    objectives = [{"value": "exact_inscribed_cube"}, {"value": "exact_volume", "weight": 1e-3}]
+    found = ws.design_optimization(job, parameters[1:], objectives, search={"method": "sweep", "steps": [2]})
+    assert found.tables["sweep"]["exact_inscribed_cube"] == pytest.approx([2 / np.sqrt(3), 3 / np.sqrt(3)], rel=1e-9)
+    assert found.tables["sweep"]["exact_volume"] == pytest.approx(4 / 3 * np.pi * np.array([1, 1.5**3]), rel=1e-8)
+
+
+def test_inscribed_sizes_in_voxels_say_how_far_they_may_be_off():
+    parameters = platform_and_link([2.25, 2.5])
+    objectives = [{"value": value} for value in ("inscribed_cube", "exact_inscribed_cube")]
+    job = {**SIX_PUS, "voxel_size_m": 0.05}
+    found = ws.design_optimization(job, parameters, objectives, search={"method": "sweep", "steps": 2})
+    table, entry = found.tables["sweep"], found.document["objectives"][0]
+    assert entry["error_m"] == pytest.approx(0.05) and "error_m" not in found.document["objectives"][1]
+    assert table["inscribed_cube"] == pytest.approx(table["exact_inscribed_cube"], abs=entry["error_m"])
+    with pytest.raises(InputError, match='"inscribed_cube" needs voxels'):
+        ws.design_optimization({**SIX_PUS, "method": "exact"}, parameters, objectives[:1], search={"method": "sweep"})
+
+
 def test_two_links_of_one_length_together_reach_most_when_equal():
     """The ring of a 2R arm has the area π ((a + b)² − (a − b)²) = 4 π a b: π on a + b = 1, at a = b."""
     result = ws.design_optimization(

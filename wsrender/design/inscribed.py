@@ -5,11 +5,15 @@ from scipy.ndimage import distance_transform_edt
 
 from wsrender.volume.volume_data import VolumeData
 
+# How far both may be off, in voxels, where the set has no details smaller than a voxel: the nearest voxel's centre lies
+# within half a diagonal, and so does the nearest centre outside beyond the boundary; a cube may lose a voxel's width.
+SPHERE_ERROR, CUBE_ERROR = (3**0.5 + 1) / 2, 1.0
+
 
 def inscribed_sphere_radius(volume: VolumeData | None) -> float:
     """Radius [m] of the largest ball about a voxel's centre that meets no voxel outside; 0 of an empty volume.
 
-    Distance transform to the centres of voxels outside, less half a voxel: right to about half a voxel's diagonal.
+    Distance transform to the centres of voxels outside, less half a voxel; right to SPHERE_ERROR.
     """
     if volume is None or not volume.occupied.any():
         return 0.0
@@ -18,7 +22,7 @@ def inscribed_sphere_radius(volume: VolumeData | None) -> float:
 
 
 def inscribed_cube_edge(volume: VolumeData | None) -> float:
-    """Edge [m] of the largest cube of occupied voxels, faces along the axes; 0 of an empty volume."""
+    """Edge [m] of the largest cube of occupied voxels, faces along the axes; 0 of an empty volume. CUBE_ERROR."""
     if volume is None or not volume.occupied.any():
         return 0.0
     sums = np.pad(volume.occupied.astype(np.int64), ((1, 0),) * 3).cumsum(0).cumsum(1).cumsum(2)

@@ -23,10 +23,11 @@ def design_optimization(
     """Find parameters at which the result of another analysis is best.
 
     ``design`` is the document of that analysis, ``parameters`` say which of its numbers vary: {"name": …, "pointers":
-    ["/mechanism/platform_m"], "bounds": [low, high]}. ``objectives``: {"value": "exact_volume" | "inscribed_sphere" |
-    "inscribed_cube" | "/volume_m3/occupied" …, "goal": "maximize" | "minimize", "weight": …}. ``fields`` are the other
-    fields of the job document ``design_optimization``: constraints, search, evaluations. ``resume`` is an earlier
-    result, whose designs are not evaluated again.
+    ["/mechanism/platform_m"], "bounds": [low, high]}. ``objectives``: {"value": "exact_volume" |
+    "exact_inscribed_sphere" | "exact_inscribed_cube" | "inscribed_sphere" | "inscribed_cube" | "/volume_m3/occupied" …,
+    "goal": "maximize" | "minimize", "weight": …}. ``fields`` are the other fields of the job document
+    ``design_optimization``: constraints, search, evaluations. ``resume`` is an earlier result, whose designs are not
+    evaluated again.
 
     Raises DocumentError, InputError, NotConvergedError, and MissingExtraError for a Pareto search without pymoo.
     """

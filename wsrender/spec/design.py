@@ -15,8 +15,9 @@ from wsrender.spec.quantities import FileName, Name, Number, PositiveNumber, See
 
 MOST_PARAMETERS, MOST_OBJECTIVES = 50, 6
 MOST_EVALUATIONS = 1_000_000
-EXACT_VOLUME, SPHERE, CUBE = "exact_volume", "inscribed_sphere", "inscribed_cube"
-NAMED_VALUES = {EXACT_VOLUME: "m^3", SPHERE: "m", CUBE: "m"}
+SPHERE, CUBE = "inscribed_sphere", "inscribed_cube"
+EXACT = EXACT_VOLUME, EXACT_SPHERE, EXACT_CUBE = "exact_volume", "exact_inscribed_sphere", "exact_inscribed_cube"
+NAMED_VALUES = {EXACT_VOLUME: "m^3"} | dict.fromkeys((EXACT_SPHERE, EXACT_CUBE, SPHERE, CUBE), "m")
 _UNITS = {"_m3": "m^3", "_m2": "m^2", "_m": "m"}
 
 
@@ -113,8 +114,9 @@ class Objective(Document):
     """A value of the result that shall be large or small."""
 
     value: Annotated[Name, BeforeValidator(_value)]
-    """"exact_volume" of a mechanism bounded by spheres [m³]; "inscribed_sphere", "inscribed_cube": radius and edge of
-    the largest in the occupied voxels [m]; or a JSON pointer to a number of the result document, such as
+    """"exact_volume" [m³], "exact_inscribed_sphere", "exact_inscribed_cube" of a mechanism bounded by spheres: radius
+    and edge of the largest, the cube's faces along the world's axes [m]; "inscribed_sphere", "inscribed_cube": of the
+    largest in the occupied voxels [m]; or a JSON pointer to a number of the result document, such as
     "/volume_m3/occupied", "/volume_m3/shared" or "/indices/manipulability/workspace_mean"."""
     goal: Literal["maximize", "minimize"] = "maximize"
     """What is better."""
@@ -137,7 +139,7 @@ class Objective(Document):
 
 
 class DifferentialEvolution(Document):
-    """Search of the best sum of the objectives (Storn and Price 1997), then along gradients where it is exact."""
+    """Search of the best sum of the objectives (Storn and Price 1997), then along gradients of an exact volume."""
 
     method: Literal["differential_evolution"] = "differential_evolution"
     """Name of the search."""
@@ -148,7 +150,7 @@ class DifferentialEvolution(Document):
     tolerance: PositiveNumber = 1e-4
     """Spread of a generation, relative to its mean, at which the search ends [1]."""
     refine: StrictBool = True
-    """Whether exact objectives are improved further by their gradients."""
+    """Whether an exact volume is improved further by its gradient."""
     seed: Seed = 0
     """Seed of the search; the same seed gives the same designs."""
 
@@ -260,8 +262,8 @@ class DesignOptimizationJob(Document):
             for name in constraint.coefficients.keys() - set(names):
                 yield f"constraints.{k}.coefficients", f'must name parameters, {quoted(names)}, not "{name}"'
         for k, objective in enumerate(self.objectives):
-            if objective.value == EXACT_VOLUME and getattr(self.design, "kind", None) != "constant_orientation":
-                message = '"exact_volume" is of the analysis parallel_workspace, kind "constant_orientation"'
+            if objective.value in EXACT and getattr(self.design, "kind", None) != "constant_orientation":
+                message = f'"{objective.value}" is of the analysis parallel_workspace, kind "constant_orientation"'
                 yield f"objectives.{k}.value", message
         values = [objective.name for objective in self.objectives]
         if len(set(values)) < len(values) or set(values) & set(names):
