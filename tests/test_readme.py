@@ -3,7 +3,8 @@
 import re
 from pathlib import Path
 
-from wsrender.spec import parse_job
+import wsrender as ws
+from wsrender.spec import ANALYSES, parse_job
 
 README = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8")
 
@@ -30,10 +31,14 @@ def test_job_document():
     assert parse_job(example).robot.library == "phantom_omni"
 
 
+def test_every_analysis_is_listed_with_its_function():
+    listed = dict(re.findall(r"^\| `(\w+)` \| `ws\.(\w+)`", README, flags=re.MULTILINE))
+    assert listed.keys() == ANALYSES.keys()
+    assert set(listed.values()) <= set(ws.__all__)
+
+
 def test_the_output_table_lists_the_files_of_a_result(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    import wsrender as ws
-
     ws.analyze("scara", sampling=ws.Grid(3), task=["x", "y"], voxel_size_m=0.05, keep_map=True).save("out")
     listed = set(re.findall(r"`([\w/.]+)`", README.split("## Reading the output")[1].split("\n\n")[1]))
     written = {path.name for path in Path("out").iterdir()}

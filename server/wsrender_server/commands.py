@@ -57,14 +57,18 @@ def serve(
     Every option can be given by an environment variable as well, such as WSRENDER_PORT; server/README.md lists more.
     """
     with one_line_faults():
-        from wsrender_server.app import create_app
+        settings = settings_of(**_given(locals(), Settings))
+
         from wsrender_server.local_server import READY
         from wsrender_server.serving import listen, serve_until_stopped
 
-        settings = settings_of(**_given(locals(), Settings))
         listener = listen(settings)
+
+        from wsrender_server.app import create_app  # takes a second: after what may be wrong
+
         app = create_app(settings)
-        serve_until_stopped(app, listener, lambda url: typer.echo(f"wsrender {READY}{url}"))
+        on_stop = app.state.parts.store.changes.close
+        serve_until_stopped(app, listener, lambda url: typer.echo(f"wsrender {READY}{url}"), on_stop)
 
 
 @app.command()

@@ -13,7 +13,7 @@ from wsrender_server.settings import Settings
 
 Application = Callable[[Any, Any, Any], Awaitable[None]]  # ASGI
 
-STOP_S = 3  # for answers under way; event streams never end by themselves
+STOP_S = 3  # for answers under way
 
 
 def listen(settings: Settings) -> socket.socket:
@@ -35,10 +35,13 @@ def address(listener: socket.socket) -> str:
     return f"http://[{host}]:{port}" if ":" in host else f"http://{host}:{port}"
 
 
-def serve_until_stopped(app: Application, listener: socket.socket, on_ready: Callable[[str], None]) -> None:
+def serve_until_stopped(
+    app: Application, listener: socket.socket, on_ready: Callable[[str], None], on_stop: Callable[[], None]
+) -> None:
     """Answer requests until SIGTERM or SIGINT; ``on_ready`` gets the URL once requests are answered.
 
-    Raises what the application raised where it did not start.
+    ``on_stop`` is called at the signal, before answers under way are waited for. Raises what the application raised
+    where it did not start.
     """
     url = address(listener)
     # Uvicorn repeats the signal that stopped it, for whoever handled it before: nobody, the process ends by returning.
@@ -54,7 +57,7 @@ def serve_until_stopped(app: Application, listener: socket.socket, on_ready: Cal
         ws_per_message_deflate=False,  # messages are small, and must be quick
     )
     try:
-        _Announced(config, lambda: on_ready(url)).run(sockets=[listener])
+        _Announced(config, lambda: on_ready(url), on_stop).run(sockets=[listener])
     except SystemExit:
         if guarded.fault is None:
             raise
@@ -83,11 +86,11 @@ class _FaultsAtStart:
 
 
 class _Announced(uvicorn.Server):
-    """Uvicorn that says when it is ready."""
+    """Uvicorn that says when it is ready, and when it stops."""
 
-    def __init__(self, config: uvicorn.Config, on_ready: Callable[[], None]):
+    def __init__(self, config: uvicorn.Config, on_ready: Callable[[], None], on_stop: Callable[[], None]):
         super().__init__(config)
-        self._on_ready = on_ready
+        self._on_ready, self._on_stop = on_ready, on_stop
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
         await super().startup(sockets)
@@ -96,3 +99,7 @@ class _Announced(uvicorn.Server):
             gc.collect()
             gc.freeze()
             self._on_ready()
+
+    async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+        self._on_stop()
+        await super().shutdown(sockets)

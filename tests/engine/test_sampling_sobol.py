@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from scipy.stats import qmc
+from wsrender_kernels.sampling import SOBOL_BITS
 
 import wsrender as ws
 from wsrender.engine import configurations
@@ -64,3 +65,7 @@ def test_scrambling_depends_on_the_seed_and_skips_locked_joints():
     # Unit triangular scrambling keeps the leading bit of every direction number.
     leading = np.array([int(d).bit_length() for d in directions[0]])
     assert (leading == 64 - np.arange(len(leading))).all()
+
+
+def test_host_and_kernels_agree_on_the_number_of_bits():
+    assert sobol_directions(1).shape[1] == SOBOL_BITS

@@ -13,6 +13,14 @@ class Changes:
     def __init__(self):
         self._lock = threading.Lock()
         self._watches: dict[tuple[str, asyncio.AbstractEventLoop], Watch] = {}
+        self.closed = False
+
+    def close(self) -> None:
+        """Wake everyone: the server stops, and nobody shall wait any more."""
+        self.closed = True
+        with self._lock:
+            jobs = {job for job, _ in self._watches}
+        self.notify(*jobs)
 
     def notify(self, *jobs: str) -> None:
         """Wake everyone who follows one of these jobs."""

@@ -203,6 +203,7 @@ class Engine:
         client, self._client = self._client, None
         if client is not None:
             with contextlib.suppress(*LOST):
+                client.unsubscribe_topic(workers_side.TOPIC)  # else the scheduler tells the log whom it cannot tell
                 client.close(timeout=ANSWER_S)
 
 

@@ -45,12 +45,12 @@ async def follow_job(
 ) -> AsyncIterator[ServerSentEvent]:
     """Server-sent events `state` (state, attempt, error) and `progress`, with ids that count from 1.
 
-    The stream ends with the job. A client that reconnects with `Last-Event-ID` gets what it missed; of the events of
-    progress the newest is kept.
+    The stream ends with the job, or when the server stops. A client that reconnects with `Last-Event-ID` gets what it
+    missed; of the events of progress the newest is kept.
     """
     store, seen, ends = server.store, last_event_id, monotonic() + LONGEST_STREAM_S
     with store.changes.watch(job.id) as watch:
-        while monotonic() < ends:
+        while monotonic() < ends and not store.changes.closed:
             (state, events), news = await watch.read((job.owner, seen), partial(store.news, job.owner, job.id, seen))
             for event in events:
                 seen = event.id

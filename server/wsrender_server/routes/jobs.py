@@ -193,7 +193,7 @@ async def get_job(
             job, news = await watch.read(owner, partial(store.get, owner, job_id))
             waiting = found(job).state not in ENDED and (after is None or job.last_event <= after)
             left = ends - monotonic()
-            if not waiting or left <= 0 or not await watch.wait(news, left):
+            if not waiting or left <= 0 or store.changes.closed or not await watch.wait(news, left):
                 break
     return job_view(job)
 

@@ -7,6 +7,7 @@ import socket
 import subprocess
 import sys
 
+import httpx2
 import psutil
 import pytest
 from wsrender_server.local_server import LocalServer
@@ -77,9 +78,15 @@ def test_signals_stop_the_server_and_all_of_its_processes(tmp_path, number):
     server = LocalServer(tmp_path / "data").start()
     with ws.Client(server.url) as client:
         client.submit(QUICK).wait(timeout=PATIENCE_S)
+        job = client.submit(QUICK | {"sampling": {"method": "sobol", "count": 10**10}})  # minutes
     family = [psutil.Process(server.process.pid), *psutil.Process(server.process.pid).children(recursive=True)]
     assert len(family) > 2
-    server.process.send_signal(number)
+    with httpx2.stream("GET", f"{server.url}/v1/jobs/{job.id}/events", timeout=60) as events:
+        lines = events.iter_lines()
+        while "running" not in next(lines):
+            pass
+        server.process.send_signal(number)
+        assert "succeeded" not in "".join(lines)  # to its end, which is in order
     assert server.process.wait(timeout=30) == 0
     _, alive = psutil.wait_procs(family, timeout=10)
     assert alive == []
