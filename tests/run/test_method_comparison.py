@@ -1,8 +1,11 @@
+import re
+
 import numpy as np
 import pytest
 
 import wsrender as ws
 from wsrender.errors import InputError
+from wsrender.export.text import method_rows
 
 
 def test_the_four_methods_agree_on_the_published_six_pus(tmp_path):
@@ -23,6 +26,15 @@ def test_the_four_methods_agree_on_the_published_six_pus(tmp_path):
     times = {name: seconds for name, seconds in result.document["timing_s"].items() if name not in ("plan", "sweep")}
     assert len(times) == len(table) and min(times.values()) > 0
     assert "grid_by_subsystem 0.05 m" in times and "error" in result.summary()
+    rows = method_rows(result.document)
+    assert [row["method"][0] for row in rows] == ["C", *"AAA", *"BBB", *"DD"]
+    assert [row["time_s"] for row in rows] == list(times.values())
+    assert [row["volume_m3"] for row in rows] == table["volume"].tolist()
+    result.report(tmp_path / "report.html", views=())
+    page = (tmp_path / "report.html").read_text()
+    head, body = page[page.index("<h2>Methods") :].split("<tbody>")[:2]
+    assert re.findall("<th>(.*?)</th>", head) == ["method", "size [m]", "volume [m³]", "relative error", "time [s]"]
+    assert body.count("<tr>", 0, body.index("</tbody>")) == len(table) and "B grid by subsystem" in body
     result.save(tmp_path)
     assert (tmp_path / "plots" / "methods.png").stat().st_size > 10_000
 

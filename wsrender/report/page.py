@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from html import escape
 from typing import Any
 
+from wsrender.export.text import method_rows
 from wsrender.report.entries import facts_html, label, records_html, table_html, value_html
 from wsrender.volume.table import Table
 
@@ -94,6 +95,8 @@ def report_page(
     nested: dict[str, Any] = {
         key: value for key, value in document.items() if isinstance(value, Mapping | list) and value
     }
+    if document.get("analysis") == "method_comparison":
+        nested["methods"] = method_rows(document)
     sections = [_section("Main values", facts_html(single))]
     results = [key for key in nested if key not in _LATER + _LAST]
     sections += [_section(label(key), value_html(nested[key])) for key in results]
