@@ -169,3 +169,15 @@ def test_command(result, tmp_path, capsys):
         cli.main(["report", str(tmp_path / "out"), "--flat"])
     assert (ended.value.code, capsys.readouterr().out) == (0, f"{tmp_path / 'out' / 'report.html'}\n")
     assert "Files" in Page((tmp_path / "out" / "report.html").read_text(encoding="utf-8")).text
+
+
+def test_a_comparison_names_its_robots(tmp_path):
+    arms = [ws.load_robot(name) for name in ("spherical", "articulated")]
+    options = {"indices": ["manipulability"], "voxel_size_m": 0.05, "device": "cpu", "names": ["left", "right"]}
+    found = ws.robot_comparison(arms, ws.Sobol(5_000), **options)
+    found.report(tmp_path / "report.html", views=())
+    page = Page((tmp_path / "report.html").read_text(encoding="utf-8"))
+    assert ["quantity", "unit", "left", "right", "difference right"] in page.rows
+    (row,) = [row for row in page.rows if row[0] == "volume.occupied"]
+    (entry,) = [entry for entry in found.document["comparison"] if entry["quantity"] == "volume.occupied"]
+    assert row == ["volume.occupied", "m³", *(f"{v:.6g}" for v in (*entry["values"], entry["differences"][1]))]

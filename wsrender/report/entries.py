@@ -15,6 +15,8 @@ _UNITS = {"m6": "m⁶", "m3": "m³", "m2": "m²", "m": "m", "s": "s", "rad": "ra
 
 def label(key: str) -> str:
     """A key as people read it: ``voxel size [m]`` for ``voxel_size_m``."""
+    if key == "ci95":
+        return "95 % interval"
     name, _, ending = key.rpartition("_")
     if name and ending in _UNITS:
         return f"{name.replace('_', ' ')} [{_UNITS[ending]}]"
@@ -28,7 +30,7 @@ def number(value: float) -> str:
 
 def value_html(value: Any) -> str:
     """Any value of a document: numbers, text, lists, and what is nested in them."""
-    if value is None:
+    if value is None or value == {}:
         return "–"
     if isinstance(value, bool):
         return "yes" if value else "no"
@@ -84,7 +86,8 @@ def table_html(table: Table) -> str:
 
 def _table_rows(table: Table) -> Iterator[list[Any]]:
     for row in range(min(len(table), MOST_ROWS)):
-        yield [_plain(column[row]) for column in table.columns.values()]
+        record = {name: _plain(column[row]) for name, column in table.columns.items()}
+        yield [_cell(record, name) for name in record]
 
 
 def _plain(value: Any) -> Any:

@@ -16,6 +16,7 @@ from wsrender.volume.table import Table
 _POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'"
 _MOST_JOB_TEXT = 100_000  # characters of the job document; result.json has all
 _LATER = ("robot", "robots", "sampling", "choices")  # after the pictures; results come before them
+_NAMED_IN_TABLE = ("comparison",)  # results whose table says the same, with the names of robots over its columns
 _LAST = ("job", "artifacts", "provenance", "timing_s")  # sections of their own, at the end
 _WIDE = 1.6  # width by height from which a picture takes the whole width
 _CAPTIONS = {
@@ -43,13 +44,13 @@ h2 { font-size: 1.15rem; margin: 2.2rem 0 .6rem; border-bottom: 1px solid #ddd; 
 h3 { font-size: 1rem; margin: 1.4rem 0 .4rem; }
 p.note, figcaption { color: #666; font-size: .85rem; }
 table { border-collapse: collapse; font-size: .85rem; margin: .3rem 0; }
-th, td { text-align: left; vertical-align: top; padding: .18rem .9rem .18rem 0; overflow-wrap: anywhere; }
+th, td { text-align: left; vertical-align: top; padding: .18rem .9rem .18rem 0; }
 th { font-weight: 600; }
-thead th { border-bottom: 1px solid #bbb; overflow-wrap: normal; white-space: nowrap; }
+thead th { border-bottom: 1px solid #bbb; white-space: nowrap; }
 td.number, table.matrix td { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
 table.facts th { font-weight: 400; color: #555; white-space: nowrap; }
 div.wide { overflow-x: auto; }
-figure { display: inline-block; width: 49%; min-width: 20rem; margin: 0 0 1rem; vertical-align: top; }
+figure { display: inline-block; width: 49%; min-width: min(20rem, 100%); margin: 0 0 1rem; vertical-align: top; }
 figure.wide { width: 100%; } figure img { width: 100%; height: auto; }
 pre { background: #f6f6f4; padding: .8rem; font-size: .8rem; white-space: pre-wrap; overflow-wrap: anywhere; }
 code { font-size: .8rem; overflow-wrap: anywhere; }
@@ -58,6 +59,7 @@ code { font-size: .8rem; overflow-wrap: anywhere; }
   body { max-width: none; padding: 0; font-size: 10pt; }
   figure, tr { break-inside: avoid; } h2, h3 { break-after: avoid; }
   div.wide { overflow: visible; orphans: 1; widows: 1; } figure { min-width: 0; }
+  th, td { overflow-wrap: anywhere; }
 }
 """
 
@@ -99,10 +101,14 @@ def report_page(
         nested["methods"] = method_rows(document)
     sections = [_section("Main values", facts_html(single))]
     results = [key for key in nested if key not in _LATER + _LAST]
-    sections += [_section(label(key), value_html(nested[key])) for key in results]
+    named = {key: tables[key] for key in _NAMED_IN_TABLE if key in tables}
+    sections += [
+        _section(label(key), table_html(named[key]) if key in named else value_html(nested[key])) for key in results
+    ]
     sections += [_section("Pictures", _pictures(pictures, notes))]
     sections += [_section(label(key), value_html(nested[key])) for key in _LATER if key in nested]
-    sections += [_section(f"Table: {label(name)}", table_html(table)) for name, table in tables.items() if len(table)]
+    others = {name: table for name, table in tables.items() if name not in named and len(table)}
+    sections += [_section(f"Table: {label(name)}", table_html(table)) for name, table in others.items()]
     sections += [_section(label(key), facts_html(nested[key])) for key in ("provenance", "timing_s") if key in nested]
     sections += [_section("Files", _files(nested["artifacts"]))] if "artifacts" in nested else []
     sections += [_section("Job document", _job(nested["job"]))] if "job" in nested else []
