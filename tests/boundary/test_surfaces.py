@@ -32,6 +32,20 @@ def test_hull_of_a_ball_of_points():
     assert meshes["convex_hull"].is_volume
     assert -0.05 * BALL < entries["convex_hull"]["volume_m3"] - BALL < 0
     assert entries["convex_hull"]["area_m2"] == pytest.approx(4 * np.pi, rel=0.03)
+    assert entries["convex_hull"]["points"] == 10_000
+    for half in ("one", "other"):
+        too_small = BALL - entries["convex_hull"][f"volume_of_{half}_half_m3"]
+        assert too_small == pytest.approx(np.sqrt(2) * (BALL - entries["convex_hull"]["volume_m3"]), rel=0.1)
+
+
+def test_alpha_shapes_of_too_few_points_say_so():
+    """Enough points for the radius: both halves agree with the whole; else they fall short with it."""
+    points = uniform_points(in_ball, 20_000)
+    for alpha, least, most in ((0.3, 0.0, 0.03), (0.05, 0.3, 1.0)):
+        asked = AlphaShapeSurface(alpha_shape=alpha)
+        entry = surfaces([asked], voxels_of(in_ball, 0.1), points)[1]["alpha_shape"]
+        for half in ("one", "other"):
+            assert least <= 1 - entry[f"volume_of_{half}_half_m3"] / entry["volume_m3"] <= most
 
 
 def test_surfaces_of_a_job(tmp_path):

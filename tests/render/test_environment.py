@@ -41,7 +41,10 @@ def test_a_floor_covers_the_picture_and_its_top_is_the_height():
         (lambda: Box((0, 0), (1, 1, 1)), r"box\.center_m: must be 3 finite numbers"),
         (lambda: Box((0, 0, 0), (1, 0, 1)), r"box\.size_m: must be 3 finite positive numbers"),
         (lambda: Floor(float("nan")), r"floor\.height_m"),
-        (lambda: Table((0, 0, 0), (1, 1)), r"its top, z = 0 m, must be above the floor"),
+        (
+            lambda: Table((0, 0, 0), (1, 1)),
+            r"its top, z = 0 m, must be more than its thickness, 0.04 m, above the floor, z = 0 m",
+        ),
     ],
 )
 def test_errors_name_the_field(make, message):

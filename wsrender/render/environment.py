@@ -42,7 +42,11 @@ class Table:
         _check("table.center_m", self.center_m, 3)
         _check("table.size_m", self.size_m, 2, positive=True)
         if not self.center_m[2] - TABLE_TOP > self.floor_m:
-            raise InputError("table.center_m", f"its top, z = {self.center_m[2]:g} m, must be above the floor")
+            raise InputError(
+                "table.center_m",
+                f"its top, z = {self.center_m[2]:g} m, must be more than its thickness, {TABLE_TOP:g} m, above the "
+                f"floor, z = {self.floor_m:g} m",
+            )
 
 
 @dataclass(frozen=True)
