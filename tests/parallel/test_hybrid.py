@@ -2,11 +2,16 @@
 
 import numpy as np
 import pytest
+from scipy.optimize import least_squares
+from scipy.spatial.transform import Rotation
 
 import wsrender as ws
 from tests.parallel.mechanisms import SPEC, mechanism, poses_of
-from wsrender.parallel.hybrid import middle, reached_by_any, variants
+from wsrender.parallel.hybrid import hybrid_at, middle, reached_by_any, serial_transform, variants
 from wsrender.parallel.inverse_kinematics import inverse_kinematics
+from wsrender.parallel.jacobians import jacobians, platform_jacobian
+from wsrender.parallel.local_indices import CONDITION_NUMBERS
+from wsrender.parallel.mechanism import mechanism_of
 from wsrender.parallel.workspace_points import workspace_points
 from wsrender.run import execute, plan
 
@@ -99,18 +104,158 @@ def test_the_volume_of_master_4dof_is_refined_over_its_joint():
     assert low - error < share * size < high + error
 
 
+TABLE = {"limits_deg": [-40, 40], "levels": 3}
+ARM = {"type": "prismatic", "axis": [1, 0, 0], "limits_m": [-0.05, 0.05], "levels": 2}
+HEXAPOD = {"library": "stewart_gough", "before": [TABLE], "after": [ARM]}
+TURNS = {"euler_xyz_deg": [[0, 0], [-15, 15], [-30, 30]], "per_angle": [1, 2, 3]}
+
+
+def reached_at(positions, rotation):
+    """Whether any of HEXAPOD's six variants reaches positions, world, at an orientation against the fixed base."""
+    hexapod, found = mechanism("stewart_gough"), np.zeros(len(positions), bool)
+    for degrees in (-40, 0, 40):
+        for shift in (-0.05, 0.05):
+            back = turned(2, -degrees)
+            platform = positions - rotation @ [shift, 0, 0]
+            found |= inverse_kinematics(hexapod, poses_of(platform @ back.T, back @ rotation)).feasible
+    return found
+
+
+def test_orientations_of_a_hybrid_are_those_of_any_variant():
+    """At a point, and over positions: dexterous shares, total orientation and refined volumes of both."""
+    job = {"analysis": "parallel_workspace", "mechanism": HEXAPOD, "orientations": TURNS, "device": "cpu"}
+    at_point = execute({**job, "kind": "orientation", "position_m": [0.25, 0.1, 0.55]})
+    rotations = [
+        ws.Transform(quat_wxyz=tuple(q)).matrix()[:3, :3] for q in at_point.tables["orientations"]["quat_wxyz"]
+    ]
+    expected = [reached_at(np.array([[0.25, 0.1, 0.55]]), R)[0] for R in rotations]
+    np.testing.assert_array_equal(at_point.tables["orientations"]["reached"], expected)
+    assert 0 < sum(expected) < 6 and at_point.skeleton is not None
+    results = [
+        execute({**job, "kind": kind, "voxel_size_m": 0.05, "method": method, "refined_volume": 0.1})
+        for kind, method in (("dexterous", "grid"), ("dexterous", "grid_by_subsystem"), ("total_orientation", "grid"))
+    ]
+    volume = results[0].volume
+    positions = (np.argwhere(volume.count >= 0) + volume.first_voxel + 0.5) * 0.05
+    count = np.sum([reached_at(positions, R) for R in rotations], axis=0)
+    np.testing.assert_array_equal(volume.count.ravel(), count)
+    np.testing.assert_array_equal(results[1].volume.count, volume.count)
+    voxels = results[2].document["volume_m3"]["occupied"] / 0.05**3
+    assert 0 < round(voxels) == (count == 6).sum() < (count > 0).sum()
+    for result in (results[0], results[2]):
+        refined = result.document["volume_m3"]["refined"]
+        points = np.random.default_rng(1).uniform([-0.6, -0.6, 0], [0.6, 0.6, 1], (20_000, 3))
+        share = np.all([reached_at(points, R) for R in rotations], axis=0).mean()
+        error = 3 * np.sqrt(share * (1 - share) / len(points)) * 1.44
+        assert refined["ci95"][0] - error < share * 1.44 < refined["ci95"][1] + error
+
+
+def tool_motion(variants_at, q_parallel, start):
+    """The tool's pose (4, 4), fixed base, near a start, at given serial and actuated values, by least squares."""
+    variant, T_before = variants_at
+
+    def pose_of(x):
+        pose = start.copy()
+        pose[:3, 3] += x[:3]
+        if not variant.mechanism.translational:
+            pose[:3, :3] = Rotation.from_rotvec(x[3:]).as_matrix() @ pose[:3, :3]
+        return pose
+
+    def residual(x):
+        in_base = np.linalg.inv(T_before) @ pose_of(x)
+        if variant.mechanism.translational:
+            in_base[:3, :3] = np.eye(3)
+        return inverse_kinematics(variant.mechanism, in_base[None]).values[0] - q_parallel
+
+    size = 3 if variant.mechanism.translational else 6
+    return least_squares(residual, np.zeros(size), xtol=1e-15, ftol=1e-15, gtol=1e-15).x
+
+
+@pytest.mark.parametrize(("name", "position"), [("stewart_gough", [0.03, -0.02, 0.55]), ("delta", [0.1, -0.05, -0.7])])
+def test_the_composite_jacobian_is_the_derivative_of_the_tool(name, position):
+    """Columns before, actuated and after, by central differences: each joint is moved, the others held."""
+    before = [{"limits_deg": [20, 50], "levels": 2, "position_m": [0.1, 0.2, 0], "axis": [1, 0.5, 2]},
+              {"type": "prismatic", "axis": [0, 1, 1], "limits_m": [0.1, 0.2], "levels": 2}]  # fmt: skip
+    after = [{"limits_deg": [10, 40], "levels": 2, "position_m": [0.05, 0, 0.02], "axis": [0, 1, 1]},
+             {"type": "prismatic", "axis": [1, 0, 1], "limits_m": [0.03, 0.1], "levels": 2}]  # fmt: skip
+    variant = variants(SPEC.validate_python({"library": name, "before": before, "after": after}))[0]
+    mech, translational = variant.mechanism, variant.mechanism.translational
+    R = np.eye(3) if translational else Rotation.from_rotvec([0.1, -0.05, 0.15]).as_matrix()
+    pose = poses_of([position], R)
+    legs = inverse_kinematics(mech, pose)
+    assert legs.feasible[0] or not np.isnan(legs.values).any()
+    J = variant.composed(platform_jacobian(jacobians(mech, legs, pose)), pose)[0]
+    q, actuated, step = variant.q, legs.values[0], 1e-5
+    start = serial_transform(variant.before, q) @ pose[0]
+    columns = []
+    for joint in range(len(q) + len(actuated)):
+        ends = []
+        for sign in (1, -1):
+            serial, parallel = q.copy(), actuated.copy()
+            if joint < 2:
+                serial[joint] += sign * step
+            elif joint < 2 + len(actuated):
+                parallel[joint - 2] += sign * step
+            else:
+                serial[joint - len(actuated)] += sign * step
+            there = at_values(name, before, after, serial)
+            ends.append(tool_motion((there, serial_transform(variant.before, serial)), parallel, start))
+        columns.append((ends[0] - ends[1]) / (2 * step))
+    found = J[: 3 if translational else 6]
+    np.testing.assert_allclose(found, np.stack(columns, axis=1), atol=2e-6)
+
+
+def at_values(name, before, after, q):
+    """The hybrid at any values of its four serial joints."""
+    spec = SPEC.validate_python({"library": name, "before": before, "after": after})
+    return hybrid_at(mechanism_of(spec), spec, q)
+
+
+def test_indices_of_a_hybrid_are_the_best_of_its_variants():
+    job = {"analysis": "parallel_workspace", "mechanism": HEXAPOD, "voxel_size_m": 0.06, "device": "cpu",
+           "indices": ["manipulability"], "characteristic_length_m": 0.3}  # fmt: skip
+    result = execute(job)
+    values = result.volume.statistics["maximum"]["manipulability"]
+    cell = np.argwhere(result.volume.count == result.volume.count.max())[0]
+    position = (cell + result.volume.first_voxel + 0.5) * 0.06
+    best = 0.0
+    for variant in variants(SPEC.validate_python(HEXAPOD)):
+        mech = variant.mechanism
+        there = np.linalg.inv(mech.T_world_base) @ np.append(position, 1)
+        pose = poses_of([there[:3]], variant.rotations(np.eye(3)[None])[0])
+        legs = inverse_kinematics(mech, pose)
+        if legs.feasible[0]:
+            J = variant.composed(platform_jacobian(jacobians(mech, legs, pose)), pose)[0]
+            J[:3] /= 0.3
+            best = max(best, np.sqrt(np.linalg.det(J @ J.T)))
+    assert values[tuple(cell)] == pytest.approx(best, rel=1e-9) and best > 0
+    assert set(result.volume.statistics["center"]) == set(CONDITION_NUMBERS)
+    assert "conditioning" in result.document and "singularities" not in result.document
+    linear = execute({**DELTA, "mechanism": "master_4dof", "voxel_size_m": 0.1, "indices": ["manipulability"]})
+    alone = execute({**DELTA, "mechanism": "delta", "voxel_size_m": 0.1, "indices": ["manipulability"]})
+    # Another joint adds to J Jᵀ: the best of the hybrid is above that of the delta.
+    best_of = [each.document["indices"]["manipulability"]["maximum"] for each in (linear, alone)]
+    assert best_of[0] > best_of[1]
+
+
 @pytest.mark.parametrize(
-    ("fields", "field"),
+    ("fields", "field", "message"),
     [
-        ({"kind": "orientation", "position_m": [0, 0, -0.7], "orientations": {"tilt_deg": 5}}, "kind"),
-        ({"method": "exact"}, "method"),
-        ({"indices": "kinematic"}, "indices"),
+        (
+            {"mechanism": "master_4dof", "kind": "orientation", "position_m": [0, 0, -0.7],
+             "orientations": {"tilt_deg": 5}},
+            "kind", "single orientations",
+        ),
+        (
+            {"mechanism": "delta", "kind": "dexterous", "orientations": {"tilt_deg": 5}},
+            "kind", "a delta's platform does not turn",
+        ),
+        ({"mechanism": HEXAPOD, "method": "exact"}, "method", "union over the values of the serial joints"),
     ],
-)
-def test_what_hybrids_do_not_have(fields, field):
-    table = {"limits_deg": [0, 90], "levels": 2}
-    with pytest.raises(ws.InputError) as caught:
-        plan({"analysis": "parallel_workspace", "mechanism": {"library": "stewart_gough", "before": [table]}, **fields})
+)  # fmt: skip
+def test_what_makes_no_sense_of_hybrids(fields, field, message):
+    with pytest.raises(ws.InputError, match=message) as caught:
+        plan({"analysis": "parallel_workspace", "device": "cpu", **fields})
     assert caught.value.field == field
 
 

@@ -52,6 +52,9 @@ def felt(**fields):
     return {"analysis": "kinetostatic_field", "robot": {"library": "ur5e"}, "field": fields}
 
 
+SERIAL = {"legs": [{"type": "serial", "robot": "ur5e"}]}
+
+
 def legs(**fields):
     return {"analysis": "parallel_workspace", "mechanism": "six_pus", **fields}
 
@@ -352,6 +355,14 @@ MALFORMED = [
     (legs(method="exact", voxel_size_m=0.1), "voxel_size_m", 'must not be given with the method "exact"'),
     (legs(method="solids", kind="dexterous", orientations={"tilt_deg": 9}), "method", 'with kind "dexterous"'),
     (legs(method="guess"), "method", 'must be "grid"'),
+    (legs(method="exact", mechanism=SERIAL), "method", "has no known boundary"),
+    (legs(method="solids", mechanism=SERIAL), "method", 'must be "grid" or "grid_by_subsystem" with legs of the type'),
+    ({"analysis": "method_comparison", "mechanism": SERIAL}, "mechanism", 'must have no legs of the type "serial"'),
+    (
+        {"analysis": "master_slave_mapping", "master": {"mechanism": SERIAL}, "slave": {"points": [[0, 0, 0]]}},
+        "master.mechanism",
+        'must have no legs of the type "serial"',
+    ),
     (legs(dexterous_threshold=0), "dexterous_threshold", "must be greater than 0"),
 ]
 

@@ -19,6 +19,7 @@ RUS = {
     "crank_m": 1, "link_m": 2, "angle_deg": [0, 90],
 }  # fmt: skip
 DELTA = {**RUS, "type": "delta"}
+SERIAL = {"type": "serial", "robot": {"library": "ur5e"}, "actuated": ["shoulder_pan_joint"]}
 
 
 def legs(*each):
@@ -62,7 +63,37 @@ MALFORMED = [
     (legs(*[UPS] * 13), "mechanism.legs", "must have at most 12 items"),
     (legs(DELTA, DELTA), "mechanism.legs", 'must be 3 where they are "delta", not 2'),
     (legs(DELTA, DELTA, UPS), "mechanism.legs", 'must not mix "delta" with others'),
-    (legs({**UPS, "type": "UPU"}), "mechanism.legs.0.type", 'must be one of "UPS", "PUS", "RUS", "delta", not "UPU"'),
+    (
+        legs({**UPS, "type": "UPU"}),
+        "mechanism.legs.0.type",
+        'must be one of "UPS", "PUS", "RUS", "delta", "serial", not "UPU"',
+    ),
+    (without(SERIAL, "robot"), "mechanism.legs.0.robot", "is required"),
+    (legs({**SERIAL, "robot": {}}), "mechanism.legs.0.robot.library", "is required, or another source"),
+    (
+        legs({**SERIAL, "robot": {"library": "ur5e", "mjcf": "<mujoco/>"}}),
+        "mechanism.legs.0.robot.mjcf",
+        "a robot has one source",
+    ),
+    (legs({**SERIAL, "robot": {"mjcf": ""}}), "mechanism.legs.0.robot.mjcf", "must not be empty"),
+    (legs({**SERIAL, "robot": {"mjcf": 5}}), "mechanism.legs.0.robot.mjcf", "must be a string"),
+    (legs({**SERIAL, "holds": "angle"}), "mechanism.legs.0.holds", 'must be "position" or "pose"'),
+    (
+        legs({**SERIAL, "attachment": {"rpy_deg": [0, 0, 9]}}),
+        "mechanism.legs.0.attachment",
+        "must have no orientation with",
+    ),
+    (legs({**SERIAL, "attachment": [0, 0, 0]}), "mechanism.legs.0.attachment", "must be an object"),
+    (legs({**SERIAL, "actuated": ["a", "a"]}), "mechanism.legs.0.actuated", 'must be different names, not "a", "a"'),
+    (legs({**SERIAL, "actuated": "a"}), "mechanism.legs.0.actuated", "must be a list"),
+    (legs({**SERIAL, "base_m": [0, 0, 0]}), "mechanism.legs.0.base_m", "is not a known field"),
+    (legs({**SERIAL, "tip": 3}), "mechanism.legs.0.tip", "must be a string"),
+    (legs(DELTA, DELTA, SERIAL), "mechanism.legs", 'must not mix "delta" with others'),
+    (
+        {**legs(SERIAL), "minimum_leg_distance_m": 0.1},
+        "mechanism.minimum_leg_distance_m",
+        'must be null with legs of the type "serial"',
+    ),
     (legs({}), "mechanism.legs.0.type", "it is required"),
     (legs(7), "mechanism.legs.0", "must be an object"),
     (without(UPS, "length_m"), "mechanism.legs.0.length_m", "is required"),
@@ -117,6 +148,7 @@ def test_malformed(document, field, message):
         ("delta", Delta),
         ("master_4dof", Master4DOF),
         (legs(UPS), LegsMechanism),
+        (legs(UPS, SERIAL), LegsMechanism),
     ],
 )
 def test_kinds(document, kind):

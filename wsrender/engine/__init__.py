@@ -11,6 +11,7 @@ from wsrender.engine.membership import (
     OrientationCounts,
     count_orientations,
     count_orientations_at,
+    joined,
     poses_reached,
 )
 from wsrender.engine.partial import Partial, merge
@@ -32,6 +33,7 @@ __all__ = [
     "devices_of",
     "evaluate_at",
     "evaluate_kinematics",
+    "joined",
     "merge",
     "poses_reached",
     "solve_inverse",

@@ -72,13 +72,15 @@ class LegTest:
 class OrientationCounts:
     """Of places, by number ``cells`` (V,) int64: orientations ``reached`` and the sum of their ``weights`` (V,) int32.
 
-    ``asked``: the number of (pose, leg) pairs that were evaluated.
+    ``asked``: the number of (pose, leg) pairs that were evaluated. ``undecided``: poses that count as not reached, for
+    legs solved numerically were neither found to reach them nor not to.
     """
 
     cells: np.ndarray
     reached: np.ndarray
     weights: np.ndarray
     asked: int
+    undecided: int = 0
 
 
 def count_orientations(
@@ -128,7 +130,7 @@ def count_orientations(
         except BaseException:
             pool.shutdown(cancel_futures=True)
             raise
-    return _joined([future.result() for future in futures])
+    return joined([future.result() for future in futures])
 
 
 def count_orientations_at(
@@ -159,12 +161,14 @@ def count_orientations_at(
     return OrientationCounts(np.arange(len(positions)), reached, weighted, sum(part.asked for part in found))
 
 
-def _joined(parts: list[OrientationCounts]) -> OrientationCounts:
+def joined(parts: list[OrientationCounts]) -> OrientationCounts:
+    """The counts of several ranges of places, one after the other."""
     none = np.zeros(0, np.int32)
     cells, reached, weights = (
         np.concatenate([none, *(getattr(part, name) for part in parts)]) for name in ("cells", "reached", "weights")
     )
-    return OrientationCounts(cells.astype(np.int64), reached, weights, sum(part.asked for part in parts))
+    asked, undecided = (sum(getattr(part, name) for part in parts) for name in ("asked", "undecided"))
+    return OrientationCounts(cells.astype(np.int64), reached, weights, asked, undecided)
 
 
 class _Lattice:

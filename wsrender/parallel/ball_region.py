@@ -55,6 +55,8 @@ def ball_region(mechanism: Mechanism, rotation: np.ndarray) -> BallRegion:
     """
     if mechanism.clearance_m > 0:
         raise InputError("minimum_leg_distance_m", "must be null: else not only spheres bound the workspace")
+    for leg in mechanism.numeric:
+        raise InputError(f"legs.{leg.number}", "is solved numerically: what bounds the workspace is unknown")
     shift = mechanism.platform @ rotation.T
     inside: list[tuple[np.ndarray, float]] = []
     outside: list[tuple[np.ndarray, float]] = []

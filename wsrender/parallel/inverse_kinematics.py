@@ -53,11 +53,13 @@ class LegSolutions:
 
 
 def inverse_kinematics(mechanism: Mechanism, poses: np.ndarray) -> LegSolutions:
-    """Legs of platform poses (N, 4, 4), base frame [m]."""
+    """Legs in closed form of platform poses (N, 4, 4), base frame [m]."""
     position, rotation = poses[:, :3, 3], poses[:, :3, :3]
     joints = position[:, None] + np.einsum("nij,lj->nli", rotation, mechanism.platform)
-    solved = [_leg(mechanism, k, joints[:, k], rotation) for k in range(len(mechanism.kinds))]
-    values, elbows, faults = (np.stack(part, axis=1) for part in zip(*solved, strict=True))
+    values, faults = np.zeros(joints.shape[:2]), np.zeros(joints.shape[:2], np.int8)
+    elbows = np.zeros(joints.shape)
+    for k in range(len(mechanism.kinds)):
+        values[:, k], elbows[:, k], faults[:, k] = _leg(mechanism, k, joints[:, k], rotation)
     inside = np.all((position >= mechanism.region_lower) & (position <= mechanism.region_upper), axis=1)
     level = np.all(np.abs(rotation - np.eye(3)) <= SAME_ORIENTATION, axis=(1, 2))
     return LegSolutions(
@@ -84,7 +86,7 @@ def fault_text(mechanism: Mechanism, legs: LegSolutions, pose: int) -> str:
         unit = "m" if mechanism.kinds[leg] in ("UPS", "PUS") else "rad"
         limits = f"limits {mechanism.lower[leg]:.6g} … {mechanism.upper[leg]:.6g} {unit}"
         at = "" if np.isnan(value) else f" at {value:.6g} {unit}"
-        return f"leg {leg + 1} ({mechanism.kinds[leg]}){at} is {fault} ({limits})"
+        return f"leg {mechanism.numbers[leg] + 1} ({mechanism.kinds[leg]}){at} is {fault} ({limits})"
     return "" if legs.clear[pose] else "two legs come closer than minimum_leg_distance_m"
 
 

@@ -1,17 +1,22 @@
 """Parallel mechanisms as arrays: one row per leg, in the base frame."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from wsrender.spec.legs import Cone, DeltaLeg, Leg, PUSLeg, RUSLeg, UPSLeg
+from wsrender.parallel.serial_leg import NumericLeg, numeric_leg
+from wsrender.robot import Robot
+from wsrender.spec.legs import ClosedFormLeg, Cone, DeltaLeg, Leg, PUSLeg, RUSLeg, SerialLeg, UPSLeg
 from wsrender.spec.mechanism import Delta, LegsMechanism, MechanismSpec, SixPUS, StewartGough
 from wsrender.spec.robot import Transform
 
 
 @dataclass(frozen=True, eq=False)
 class Mechanism:
-    """Geometry and limits of L legs; points and axes in the base frame, those of the platform in its own [m].
+    """Geometry and limits of legs; points and axes in the base frame, those of the platform in its own [m].
+
+    The arrays are those of L legs in closed form; ``numeric`` are the others.
 
     ``kinds`` (L,): "UPS", "PUS", "RUS" or "delta". ``base``, ``platform`` (L, 3): ends of the legs; ``axis`` (L, 3):
     unit vector of the rail or of the crank's axis, ``zero`` (L, 3) of the crank at angle 0; ``crank``, ``link`` (L,)
@@ -44,11 +49,18 @@ class Mechanism:
     clearance_m: float
     T_world_base: np.ndarray
     home: np.ndarray | None
+    numeric: tuple[NumericLeg, ...] = ()
 
     @property
     def translational(self) -> bool:
         """Whether parallelograms keep the platform from turning."""
-        return self.kinds[0] == "delta"
+        return "delta" in self.kinds
+
+    @property
+    def numbers(self) -> list[int]:
+        """Places of the legs in closed form among all legs of the document."""
+        numeric = {leg.number for leg in self.numeric}
+        return [k for k in range(len(self.kinds) + len(numeric)) if k not in numeric]
 
     @property
     def degrees_of_freedom(self) -> int:
@@ -56,9 +68,15 @@ class Mechanism:
         return 3 if self.translational else 6
 
 
-def mechanism_of(spec: MechanismSpec) -> Mechanism:
-    """The mechanism of a document."""
-    legs = legs_of(spec)
+def mechanism_of(spec: MechanismSpec, robots: Sequence[Robot] | None = None) -> Mechanism:
+    """The mechanism of a document; ``robots``: those of its serial legs, if they are loaded.
+
+    Raises ModelError and InputError for a serial leg that is no robot.
+    """
+    of_document = legs_of(spec)
+    legs = [leg for leg in of_document if not isinstance(leg, SerialLeg)]
+    serial = [(k, leg) for k, leg in enumerate(of_document) if isinstance(leg, SerialLeg)]
+    given = [None] * len(serial) if robots is None else robots
     name = spec.name if isinstance(spec, LegsMechanism) else spec.library
     region = spec.region
     return Mechanism(
@@ -72,7 +90,7 @@ def mechanism_of(spec: MechanismSpec) -> Mechanism:
         link=np.array([leg.link_m if isinstance(leg, PUSLeg | RUSLeg) else 0.0 for leg in legs]),
         lower=np.array([_limits(leg)[0] for leg in legs]),
         upper=np.array([_limits(leg)[1] for leg in legs]),
-        branches=np.array([_branches(leg) for leg in legs]),
+        branches=np.array([_branches(leg) for leg in legs], bool).reshape(-1, 2),
         base_cone_axis=_rows(_cone(leg.base_cone)[0] for leg in legs),
         base_cone_cosine=np.array([_cone(leg.base_cone)[1] for leg in legs]),
         platform_cone_axis=_rows(_cone(leg.platform_cone)[0] for leg in legs),
@@ -82,6 +100,7 @@ def mechanism_of(spec: MechanismSpec) -> Mechanism:
         clearance_m=spec.minimum_leg_distance_m or 0.0,
         T_world_base=(spec.placement or Transform()).matrix(),
         home=spec.home.matrix() if spec.home else None,
+        numeric=tuple(numeric_leg(k, leg, robot) for (k, leg), robot in zip(serial, given, strict=True)),
     )
 
 
@@ -156,7 +175,7 @@ _NONE = np.zeros(3)
 
 
 def _rows(vectors) -> np.ndarray:
-    return np.array(list(vectors), np.float64)
+    return np.array(list(vectors), np.float64).reshape(-1, 3)
 
 
 def _unit(vector) -> np.ndarray:
@@ -169,7 +188,7 @@ def _at_right_angles(leg: RUSLeg) -> np.ndarray:
     return _unit(zero - (zero @ axis) * axis)
 
 
-def _limits(leg: Leg) -> tuple[float, float]:
+def _limits(leg: ClosedFormLeg) -> tuple[float, float]:
     match leg:
         case UPSLeg():
             return leg.length_m
@@ -180,7 +199,7 @@ def _limits(leg: Leg) -> tuple[float, float]:
             return float(lower), float(upper)
 
 
-def _branches(leg: Leg) -> tuple[bool, bool]:
+def _branches(leg: ClosedFormLeg) -> tuple[bool, bool]:
     """Whether "minus", "plus" count; a UPS leg has one length, called plus."""
     branch = "plus" if isinstance(leg, UPSLeg) else leg.branch
     return branch != "plus", branch != "minus"

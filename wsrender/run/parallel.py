@@ -2,28 +2,25 @@
 
 import json
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
-from wsrender.engine import LegTest, count_orientations, thread_count
+from wsrender.engine import OrientationCounts, thread_count
 from wsrender.engine.membership import LANES
 from wsrender.errors import InputError, ResourceError
 from wsrender.indices.catalogue import is_dynamic, resolve
-from wsrender.parallel.hybrid import Variant, middle, reachable_box_of, reached_by_any, variants
-from wsrender.parallel.inverse_kinematics import SAME_ORIENTATION, fault_text, inverse_kinematics
+from wsrender.parallel.hybrid import Variant, added, count_union, middle, reachable_box_of, reached_by_any, variants
+from wsrender.parallel.inverse_kinematics import SAME_ORIENTATION
 from wsrender.parallel.jacobians import check_square
-from wsrender.parallel.local_indices import pose_indices
+from wsrender.parallel.local_indices import CONDITION_NUMBERS, DETERMINANTS, pose_indices
 from wsrender.parallel.mechanism import Mechanism
-from wsrender.parallel.membership import (
-    Box,
-    in_base_frame,
-    leg_test,
-    orientations_reached,
-)
+from wsrender.parallel.membership import Box, count_lattice, fault_at, in_base_frame, orientations_labelled
 from wsrender.parallel.orientations import OrientationSet, orientation_set
+from wsrender.reachability.inverse_solver import REACHABLE, UNDECIDED, UNREACHABLE
 from wsrender.result import Result
+from wsrender.robot import Robot
 from wsrender.robot.indices import task_rows
 from wsrender.run.parallel_exact import boundary_partial, boundary_result, region_of
 from wsrender.run.parallel_result import orientation_result, positions_result, refined_entry
@@ -35,6 +32,7 @@ from wsrender.volume.lattice import LatticeBlock, block_around, round_to_digits
 Arrays = dict[str, np.ndarray]
 
 RATE_CPU_CORE, RATE_GPU = 8e7, 4e8  # poses per second, rounded down from benchmarks/parallel.py
+RATE_NUMERIC_CORE = 5e4  # poses of a numeric leg per second, from benchmarks/inverse.py
 FIRST_POINTS, FEWEST_POINTS = 1 << 16, 1 << 10  # of the estimate that the default voxel size is made of
 LEAST_SHARE = 1e-3  # of the box: where hardly anything is reached
 
@@ -78,9 +76,11 @@ class ParallelPlan:
         """Poses of a voxel."""
         return len(self.orientations.rotations) * len(self.variants)
 
-    def test(self, variant: Variant) -> LegTest:
-        """What the kernels ask."""
-        return leg_test(variant.mechanism, self.job.precision)
+    @property
+    def center_names(self) -> tuple[str, ...]:
+        """What is kept at voxels' centres beside the indices; determinants where a place has one posture."""
+        single = len(self.variants) == 1 and not self.mechanism.numeric
+        return (*CONDITION_NUMBERS, *DETERMINANTS) if single else CONDITION_NUMBERS
 
     def run_shard(self, shard: int, progress: Callable[[int], None] | None, **execution: Any) -> Arrays:
         """Of the shard's voxels that are reached: flat number in the block, orientations, weights, indices."""
@@ -90,68 +90,101 @@ class ParallelPlan:
             return boundary_partial(self)
         if self.block is None:
             none = np.zeros(0, np.int64)
-            return self._partial(none, none, none, 0)
-        first, voxels = (number // self._count for number in self.shards[shard])
-        found = []
-        for number, variant in enumerate(self.variants):
+            return self._partial(OrientationCounts(none, none, none, 0), [])
+        block, (first, voxels) = self.block, (number // self._count for number in self.shards[shard])
+        rotations, weights = self.orientations.rotations, self.orientations.whole_weights
 
-            def report(done: int, before: int = number * voxels) -> None:
-                if progress:
-                    progress((before + done) * len(self.orientations.rotations))
-
-            counts = count_orientations(
-                self.test(variant),
-                self.block,
-                variant.rotations(self.orientations.rotations),
+        def count(variant: Variant, turned: np.ndarray, weights: np.ndarray, report=None) -> OrientationCounts:
+            found = count_lattice(
+                variant.mechanism,
+                block,
+                turned,
                 first,
                 voxels,
-                weights=self.orientations.whole_weights,
+                weights=weights,
                 by_subsystem=self.job.method == "grid_by_subsystem",
+                precision=self.job.precision,
                 device=self.device,
                 progress=report,
                 **execution,
             )
-            found.append(counts)
-        cells, place = np.unique(np.concatenate([counts.cells for counts in found]), return_inverse=True)
-        reached, weights = np.zeros((2, len(cells)), np.int64)
-        np.add.at(reached, place, np.concatenate([counts.reached for counts in found]))
-        np.add.at(weights, place, np.concatenate([counts.weights for counts in found]))
-        return self._partial(cells, reached, weights, sum(counts.asked for counts in found))
+            return replace(found, cells=found.cells - first)
 
-    def _partial(self, cells: np.ndarray, orientations: np.ndarray, weights: np.ndarray, asked: int) -> Arrays:
-        partial = {"cells": cells, "orientations": orientations, "weights": weights, "asked": np.array([asked])}
+        def reporting(poses_before: int, poses: int) -> Callable[[int], None]:
+            return lambda done: progress(poses_before + done * poses) if progress else None
+
+        if self.job.kind == "constant_orientation":
+            each = [
+                count(variant, variant.rotations(rotations), weights, reporting(number * voxels, 1))
+                for number, variant in enumerate(self.variants)
+            ]
+            total = each[0] if len(each) == 1 else added(each)
+        elif len(self.variants) == 1:
+            each, (variant,) = [], self.variants
+            total = count(variant, variant.rotations(rotations), weights, reporting(0, len(rotations)))
+        else:
+            per_orientation = reporting(0, voxels * len(self.variants))
+            each, total = [], count_union(self.variants, count, rotations, weights, voxels, per_orientation)
+        return self._partial(replace(total, cells=total.cells + first), [found.cells + first for found in each])
+
+    def _partial(self, found: OrientationCounts, cells_of_variants: list[np.ndarray]) -> Arrays:
+        partial = {
+            "cells": found.cells,
+            "orientations": found.reached,
+            "weights": found.weights,
+            "asked": np.array([found.asked, found.undecided]),
+        }
         if self.names:
-            values = pose_indices(
-                self.mechanism, self._poses(cells), self.names, self.rows, self.job.characteristic_length_m
-            )
+            values = {name: np.full(len(found.cells), -np.inf) for name in (*self.names, *self.center_names)}
+            for variant, cells in zip(self.variants, cells_of_variants, strict=False):
+                at = np.searchsorted(found.cells, cells)
+                for name, of_variant in self._indices(variant, cells).items():
+                    values[name][at] = np.maximum(values[name][at], of_variant)
             partial |= {f"index_{name}": array for name, array in values.items()}
         return partial
 
-    def _poses(self, cells: np.ndarray) -> np.ndarray:
+    def _indices(self, variant: Variant, cells: np.ndarray) -> Arrays:
+        """Indices at voxels that a variant reaches; those of hybrids are maxima over their serial joints."""
+        hybrid = len(self.variants) > 1
+        return pose_indices(
+            variant.mechanism,
+            self._poses(variant, cells),
+            self.names,
+            self.rows,
+            self.job.characteristic_length_m,
+            variant.composed if hybrid else None,
+        )
+
+    def _poses(self, variant: Variant, cells: np.ndarray) -> np.ndarray:
         """Platform poses (V, 4, 4) at the centres of voxels, base frame, at the first orientation."""
         poses = np.broadcast_to(np.eye(4), (len(cells), 4, 4)).copy()
         if len(cells):
             assert self.block is not None
             at = np.stack(np.unravel_index(cells, self.block.shape), axis=1)
             world = (at + self.block.first_voxel + 0.5) * self.block.voxel_size_m
-            poses[:, :3, 3] = in_base_frame(self.mechanism, world)
-        poses[:, :3, :3] = self.orientations.rotations[0]
+            poses[:, :3, 3] = in_base_frame(variant.mechanism, world)
+        poses[:, :3, :3] = variant.rotations(self.orientations.rotations[:1])[0]
         return poses
 
     def _at_point(self, progress: Callable[[int], None] | None, **execution: Any) -> Arrays:
         execution.pop("chunk_size", None)
-        position = in_base_frame(self.mechanism, np.array(self.job.position_m))
-        test, rotations = self.test(self.variants[0]), self.orientations.rotations
-        found = orientations_reached(test, position, rotations, device=self.device, **execution)
-        if progress:
-            progress(self._count)
-        return {"reached": found}
+        options = {"precision": self.job.precision, "device": self.device, **execution}
+        options["by_subsystem"] = self.job.method == "grid_by_subsystem"
+        rotations = self.orientations.rotations
+        labels = np.full(len(rotations), UNREACHABLE, np.int8)
+        for number, variant in enumerate(self.variants, start=1):
+            position = in_base_frame(variant.mechanism, np.array(self.job.position_m))
+            found = orientations_labelled(variant.mechanism, position, variant.rotations(rotations), **options)
+            labels = np.where(labels == REACHABLE, labels, np.where(found == UNREACHABLE, labels, found))
+            if progress:
+                progress(number * len(rotations))
+        return {"reached": labels == REACHABLE, "undecided": labels == UNDECIDED}
 
     def merge(self, a: Arrays, b: Arrays) -> Arrays:
         """The voxels of both ranges, in the order of their numbers."""
         merged = {name: np.concatenate([a[name], b[name]]) for name in a}
         order = np.argsort(merged["cells"], kind="stable")
-        asked = merged.pop("asked").sum(keepdims=True)
+        asked = merged.pop("asked").reshape(2, -1).sum(axis=0)
         return {"asked": asked, **{name: values[order] for name, values in merged.items()}}
 
     def refine(self, partial: Arrays, progress: Callable[[int, int, str], None] | None) -> Arrays:
@@ -170,24 +203,26 @@ class ParallelPlan:
         if self.job.method in BY_BOUNDARY:
             return boundary_result(self, partial, seconds)
         if self.job.kind == "orientation":
-            return orientation_result(self, partial["reached"], seconds)
+            return orientation_result(self, partial, seconds)
         return positions_result(self, partial, seconds)
 
 
-def plan_parallel(job: ParallelWorkspaceJob, resolved: dict[str, Any] | None = None) -> ParallelPlan:
+def plan_parallel(job: ParallelWorkspaceJob, *robots: Robot, resolved: dict[str, Any] | None = None) -> ParallelPlan:
     """Resolve the job, or take what `ParallelPlan.resolved` of an earlier plan of it says.
+
+    ``robots``: the mechanism's serial legs.
 
     Raises InputError for a home that is not reached, indices of a mechanism that has none, or a turned delta;
     ResourceError for more poses than allowed.
     """
-    found = variants(job.mechanism)
+    found = variants(job.mechanism, robots)
     mechanism = middle(found).mechanism
     _check_home(mechanism)
-    _check_serial_joints(job, found)
+    _check_combination(job, found)
     orientations = _orientations(job)
     names = resolve(job.indices, has_inertia=True) if job.indices else ()
     rows = task_rows(job.task or ("linear" if mechanism.translational else "full"))
-    _check_indices(mechanism, names, rows)
+    _check_indices(mechanism, names, rows, hybrid=len(found) > 1)
     device, target = settled_device(job.device, resolved)
     if job.method in BY_BOUNDARY:
         region_of(mechanism, orientations.rotations[0])
@@ -203,25 +238,25 @@ def plan_parallel(job: ParallelWorkspaceJob, resolved: dict[str, Any] | None = N
         shards = [(first, count) for first, count in resolved["shards"]]
     poses = float(sum(count for _, count in shards))
     rate = RATE_GPU if target.startswith("cuda") else RATE_CPU_CORE * thread_count()
-    estimate = {"samples": poses, "bytes": 8 * poses / len(orientations.rotations), "seconds": poses / rate}
+    seconds = poses / rate + poses * len(mechanism.numeric) / (RATE_NUMERIC_CORE * thread_count())
+    estimate = {"samples": poses, "bytes": 8 * poses / len(orientations.rotations), "seconds": seconds}
     return ParallelPlan(job, found, orientations, block, rows, names, device, target, shards, estimate)
 
 
 def _check_home(mechanism: Mechanism) -> None:
     if mechanism.home is None:
         return
-    legs = inverse_kinematics(mechanism, mechanism.home[None])
-    if not legs.feasible[0]:
-        raise InputError("mechanism.home", f"must be reached, but {fault_text(mechanism, legs, 0)}")
+    if fault := fault_at(mechanism, mechanism.home):
+        raise InputError("mechanism.home", f"must be reached, but {fault}")
 
 
-def _check_indices(mechanism: Mechanism, names: tuple[str, ...], rows: tuple[int, ...]) -> None:
+def _check_indices(mechanism: Mechanism, names: tuple[str, ...], rows: tuple[int, ...], hybrid: bool) -> None:
     if not names:
         return
     check_square(mechanism)
     if dynamic := next((name for name in names if is_dynamic(name)), None):
         raise InputError("indices", f"must be kinematic for a mechanism, whose legs have no inertia, not {dynamic!r}")
-    if mechanism.translational and max(rows) > 2:
+    if mechanism.translational and max(rows) > 2 and not hybrid:
         raise InputError("task", 'must be "linear" or rows from x y z: the platform of a delta does not turn')
 
 
@@ -240,16 +275,14 @@ def _settled(block: list[Any] | None) -> LatticeBlock | None:
     return LatticeBlock(size, tuple(first), tuple(shape))
 
 
-def _check_serial_joints(job: ParallelWorkspaceJob, found: list[Variant]) -> None:
-    """Raise InputError for what is not offered of hybrid mechanisms."""
-    if len(found) == 1:
-        return
-    if job.kind != "constant_orientation":
-        raise InputError("kind", f'must be "constant_orientation" of a mechanism with serial joints, not "{job.kind}"')
-    if job.method in BY_BOUNDARY:
-        raise InputError("method", f'must be "grid" or "grid_by_subsystem" with serial joints, not "{job.method}"')
-    if job.indices:
-        raise InputError("indices", "must be [] of a mechanism with serial joints: it reaches a pose in many ways")
+def _check_combination(job: ParallelWorkspaceJob, found: list[Variant]) -> None:
+    """Raise InputError for what has no sense of this mechanism."""
+    if found[0].mechanism.translational and job.kind != "constant_orientation":
+        message = "a delta's platform does not turn, and serial joints bring it to single orientations only"
+        raise InputError("kind", f'must be "constant_orientation", not "{job.kind}": {message}')
+    if len(found) > 1 and job.method in BY_BOUNDARY:
+        message = "the workspace is a union over the values of the serial joints"
+        raise InputError("method", f'must be "grid" or "grid_by_subsystem", not "{job.method}": {message}')
 
 
 def _block(

@@ -7,18 +7,18 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from wsrender.engine import count_orientations_at
+from wsrender.engine import OrientationCounts
 from wsrender.global_indices import voxel_volumes, workspace_mean
 from wsrender.indices.catalogue import unit
-from wsrender.parallel.hybrid import reached_by_any
-from wsrender.parallel.inverse_kinematics import fault_text, inverse_kinematics
-from wsrender.parallel.local_indices import OF_MECHANISMS
+from wsrender.parallel.hybrid import Variant, count_union, from_middle, middle, reached_by_any
+from wsrender.parallel.inverse_kinematics import inverse_kinematics
+from wsrender.parallel.local_indices import DETERMINANTS
 from wsrender.parallel.mechanism import Mechanism
-from wsrender.parallel.membership import in_base_frame, in_world
+from wsrender.parallel.membership import count_at, fault_at, in_base_frame, in_world
 from wsrender.parallel.singularities import TYPES, sign_changes
 from wsrender.reachability import Event, estimate_volumes
 from wsrender.result import Result
-from wsrender.run.provenance import job_entry, provenance
+from wsrender.run.provenance import job_entry, provenance, robot_entry
 from wsrender.sampling import subsample
 from wsrender.spec.options import TASK_ROWS
 from wsrender.volume.distribution_map import DistributionMap
@@ -42,7 +42,8 @@ def positions_result(plan: "ParallelPlan", partial: "Arrays", seconds: dict[str,
         "sampling": {
             "method": job.method,
             "samples": sum(count for _, count in plan.shards),
-            "legs_evaluated": int(partial["asked"].sum()),
+            "legs_evaluated": int(partial["asked"][0]),
+            **_undecided(plan, int(partial["asked"][1])),
         },
         "voxel_size_m": plan.block.voxel_size_m if plan.block else job.voxel_size_m,
         "volume_m3": _volumes(plan, partial, volume),
@@ -53,8 +54,9 @@ def positions_result(plan: "ParallelPlan", partial: "Arrays", seconds: dict[str,
         document["empty"] = _reason(plan)
     tables = {}
     if volume and plan.names:
-        changes = sign_changes(volume)
         document["conditioning"] = _conditioning_entry(volume)
+    if volume and plan.names and DETERMINANTS[0] in plan.center_names:
+        changes = sign_changes(volume)
         document["singularities"] = _singularity_entry(volume, changes)
         tables["singularities"] = _singularity_table(changes)
     document["timing_s"] = {**seconds, "finish": time.perf_counter() - started}
@@ -62,9 +64,9 @@ def positions_result(plan: "ParallelPlan", partial: "Arrays", seconds: dict[str,
     return Result(document, volume=volume, sample=_sample(plan, volume), skeleton=skeleton, tables=tables)
 
 
-def orientation_result(plan: "ParallelPlan", is_reached: np.ndarray, seconds: dict[str, float]) -> Result:
+def orientation_result(plan: "ParallelPlan", partial: "Arrays", seconds: dict[str, float]) -> Result:
     """Of the orientations at a point."""
-    orientations, job = plan.orientations, plan.job
+    orientations, job, is_reached = plan.orientations, plan.job, partial["reached"]
     share = float(orientations.weights[is_reached].sum())
     columns = {name: orientations.angles[:, k] for k, name in enumerate(orientations.names)}
     table = Table(
@@ -72,7 +74,12 @@ def orientation_result(plan: "ParallelPlan", is_reached: np.ndarray, seconds: di
         dict.fromkeys(orientations.names, "rad"),
     )
     document = mechanism_document(plan) | {
-        "sampling": {"method": "grid", "samples": len(is_reached), "levels": list(orientations.levels)},
+        "sampling": {
+            "method": "grid",
+            "samples": len(is_reached) * len(plan.variants),
+            "levels": list(orientations.levels),
+            **_undecided(plan, int(partial["undecided"].sum())),
+        },
         "orientation_workspace": {
             "position_m": list(job.position_m or ()),
             "orientations": len(is_reached),
@@ -96,7 +103,7 @@ def mechanism_document(plan: "ParallelPlan") -> dict[str, Any]:
     """What the documents of all kinds and methods begin with."""
     return {
         "analysis": "parallel_workspace",
-        "job": job_entry(plan.job),
+        "job": job_entry(plan.job, *(leg.robot for leg in plan.mechanism.numeric)),
         "mechanism": mechanism_entry(plan.mechanism),
         "kind": plan.job.kind,
         "orientations": len(plan.orientations.rotations),
@@ -108,12 +115,24 @@ def mechanism_document(plan: "ParallelPlan") -> dict[str, Any]:
 def mechanism_entry(mechanism: Mechanism) -> dict[str, Any]:
     """Name, placement and legs of a mechanism, for the result document."""
     units = ["m" if kind in ("UPS", "PUS") else "rad" for kind in mechanism.kinds]
-    legs = zip(mechanism.kinds, mechanism.lower.tolist(), mechanism.upper.tolist(), units, strict=True)
+    rows = zip(
+        mechanism.numbers, mechanism.kinds, mechanism.lower.tolist(), mechanism.upper.tolist(), units, strict=True
+    )
+    legs: dict[int, dict[str, Any]] = {
+        number: {"type": kind, "lower": low, "upper": high, "unit": unit} for number, kind, low, high, unit in rows
+    }
+    for leg in mechanism.numeric:
+        legs[leg.number] = {
+            "type": "serial",
+            "robot": robot_entry(leg.robot),
+            "holds": "pose" if leg.holds_pose else "position",
+            "actuated": np.array(leg.chain.joint_names)[leg.actuated].tolist(),
+        }
     return {
         "name": mechanism.name,
         "T_world_base": mechanism.T_world_base.tolist(),
         "degrees_of_freedom": mechanism.degrees_of_freedom,
-        "legs": [{"type": kind, "lower": low, "upper": high, "unit": unit} for kind, low, high, unit in legs],
+        "legs": [legs[number] for number in sorted(legs)],
     }
 
 
@@ -146,11 +165,13 @@ def _volume(plan: "ParallelPlan", partial: "Arrays", found: np.ndarray) -> Volum
     statistics: dict[str, dict[str, np.ndarray]] = {}
     units: dict[str, str] = {}
     if plan.names:
-        values = {name: dense(partial[f"index_{name}"], np.nan, np.float64) for name in (*plan.names, *OF_MECHANISMS)}
+        values = {n: dense(partial[f"index_{n}"], np.nan, np.float64) for n in (*plan.names, *plan.center_names)}
         statistics["maximum"] = {name: values[name] for name in plan.names}
-        statistics["center"] = {name: values[name] for name in OF_MECHANISMS}
-        units = {name: unit(name, plan.rows, "standard") for name in plan.names} | dict.fromkeys(OF_MECHANISMS, "1")
-        units["determinant_A"] = "m^3" if not plan.mechanism.translational else "1"
+        statistics["center"] = {name: values[name] for name in plan.center_names}
+        units = {n: unit(n, plan.rows, "standard") for n in plan.names} | dict.fromkeys(plan.center_names, "1")
+        cranks = sum(kind not in ("UPS", "PUS") for kind in plan.mechanism.kinds)
+        if DETERMINANTS[1] in units and cranks:
+            units[DETERMINANTS[1]] = f"m^{cranks}"  # a row of A has no unit, one of B that of its joint
     if plan.job.kind == "dexterous":
         statistics["fraction"] = {"orientations": dense(_shares(plan, partial), np.nan, np.float64)}
         units["orientations"] = "1"
@@ -203,11 +224,15 @@ def refined_entry(plan: "ParallelPlan", partial: "Arrays", progress: Callable[[i
         if job.kind == "constant_orientation":
             hits = reached_by_any(plan.variants, points, rotations, device=plan.device)
             return hits.astype(np.int8)[:, None], unknown
-        (variant,) = plan.variants
-        positions = in_base_frame(variant.mechanism, points)
-        found = count_orientations_at(plan.test(variant), positions, rotations, weights=weights, device=plan.device)
-        inside = found.weights >= least if least else found.reached == len(rotations)
-        return inside.astype(np.int8)[:, None], unknown
+
+        def count(variant: Variant, turned: np.ndarray, weights: np.ndarray) -> OrientationCounts:
+            there = in_base_frame(variant.mechanism, points)
+            return count_at(variant.mechanism, there, turned, weights=weights, device=plan.device)
+
+        found = count_union(plan.variants, count, rotations, weights, len(points))
+        inside = np.zeros((len(points), 1), np.int8)
+        inside[found.cells, 0] = found.weights >= least if least else found.reached == len(rotations)
+        return inside, unknown
 
     events = {EVENTS[job.kind]: Event(1, 1)}
     found = estimate_volumes(
@@ -287,15 +312,17 @@ def _reason(plan: "ParallelPlan") -> str:
     else:
         assert plan.block is not None
         position = (np.array(plan.block.first_voxel) + np.array(plan.block.shape) / 2) * plan.block.voxel_size_m
-    pose = _pose(plan, position)
-    legs = inverse_kinematics(plan.mechanism, pose[None])
-    return f"no pose tested is reached; at {np.round(position, 6).tolist()} m {fault_text(plan.mechanism, legs, 0)}"
+    variant = middle(plan.variants)
+    fault = fault_at(variant.mechanism, _pose(plan, variant, position))
+    where = f"at {np.round(position, 6).tolist()} m" + (", serial joints half way," if len(plan.variants) > 1 else "")
+    return f"no pose tested is reached; {where} {fault}"
 
 
-def _pose(plan: "ParallelPlan", position_world: np.ndarray, orientation: int = 0) -> np.ndarray:
-    """The platform there at one of the orientations, base frame, (4, 4)."""
+def _pose(plan: "ParallelPlan", variant: Variant, position_world: np.ndarray, orientation: int = 0) -> np.ndarray:
+    """The platform there at one of the orientations, frame of the variant's base, (4, 4)."""
     pose = np.eye(4)
-    pose[:3, :3], pose[:3, 3] = plan.orientations.rotations[orientation], in_base_frame(plan.mechanism, position_world)
+    pose[:3, :3] = variant.rotations(plan.orientations.rotations[[orientation]])[0]
+    pose[:3, 3] = in_base_frame(variant.mechanism, position_world)
     return pose
 
 
@@ -307,17 +334,31 @@ def _middle(volume: VolumeData) -> np.ndarray:
 
 
 def skeleton_at(plan: "ParallelPlan", position_world: np.ndarray, orientation: int = 0) -> np.ndarray | None:
-    """Every leg from its base over its joints to the middle of the platform, (L, 4, 3) [m]; None if not reached.
+    """Every leg from its base over its joints to the middle of the platform, (L, K, 3) [m]; None if not reached.
 
-    At the mechanism's home, if it has one, else at the position, world, in one of the orientations.
+    At the mechanism's home, if it has one, else at the position, world, in one of the orientations; serial joints as
+    near to the middle of their ranges as they can be.
     """
-    mechanism = plan.mechanism
-    pose = _pose(plan, position_world, orientation) if mechanism.home is None else mechanism.home
+    for variant in from_middle(plan.variants):
+        mechanism = variant.mechanism
+        pose = _pose(plan, variant, position_world, orientation) if mechanism.home is None else mechanism.home
+        if not fault_at(mechanism, pose):
+            return in_world(mechanism, _legs_at(mechanism, pose))
+    return None
+
+
+def _legs_at(mechanism: Mechanism, pose: np.ndarray) -> np.ndarray:
+    """The legs at a reached pose (4, 4), base frame, (L, K, 3) [m]; shorter ones stay at the platform's middle."""
     legs = inverse_kinematics(mechanism, pose[None])
-    if not legs.feasible[0]:
-        return None
-    middle = np.broadcast_to(pose[:3, 3], mechanism.base.shape)
-    return in_world(mechanism, np.stack([mechanism.base, legs.elbows[0], legs.joints[0], middle], axis=1))
+    lines = [np.stack(line) for line in zip(mechanism.base, legs.elbows[0], legs.joints[0], strict=True)]
+    lines += [leg.skeleton(pose) for leg in mechanism.numeric]
+    longest = max(len(line) for line in lines) + 1
+    return np.stack([np.vstack([line, np.tile(pose[:3, 3], (longest - len(line), 1))]) for line in lines])
+
+
+def _undecided(plan: "ParallelPlan", poses: int) -> dict[str, int]:
+    """Poses that count as not reached, for the numerical solution neither found nor excluded one."""
+    return {"undecided": poses} if plan.mechanism.numeric else {}
 
 
 def _sample(plan: "ParallelPlan", volume: VolumeData | None) -> DistributionMap | None:

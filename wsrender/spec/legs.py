@@ -1,7 +1,8 @@
 """Legs of a parallel mechanism: what joins base and platform, and how far it moves.
 
-Base points and axes are in the mechanism's base frame, platform points in the platform's. U: universal, S: spherical,
-P: prismatic, R: revolute joint; the actuated joint is the one with limits.
+Legs of the types UPS, PUS, RUS and delta are solved in closed form; "serial" is any chain of hinges and slides, solved
+numerically. Base points and axes are in the mechanism's base frame, platform points in the platform's. U: universal,
+S: spherical, P: prismatic, R: revolute joint; the actuated joint is the one with limits.
 """
 
 import math
@@ -10,10 +11,11 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field
 
+from wsrender.spec.arm import Arm
 from wsrender.spec.document import Document
 from wsrender.spec.problems import tagged
-from wsrender.spec.quantities import real, sequence
-from wsrender.spec.robot import LARGEST, Vector
+from wsrender.spec.quantities import Name, quoted, real, sequence
+from wsrender.spec.robot import LARGEST, Transform, Vector
 
 SMALLEST_AXIS = 1e-9
 
@@ -132,12 +134,42 @@ class DeltaLeg(RUSLeg):
     """Kind of leg."""
 
 
-LEGS: dict[str, type[_Leg]] = {"UPS": UPSLeg, "PUS": PUSLeg, "RUS": RUSLeg, "delta": DeltaLeg}
+class SerialLeg(Arm):
+    """Any chain of hinges and slides, such as an MJCF model; its inverse kinematics is solved numerically.
+
+    The robot's placement is that of its base frame in the mechanism's base frame.
+    """
+
+    type: Literal["serial"] = "serial"
+    """Kind of leg."""
+    attachment: Transform = Transform()
+    """The frame of the platform in which the tip of the leg is held."""
+    holds: Literal["position", "pose"] = "position"
+    """What holds the tip: "position", a spherical joint (3 constraints); "pose", a rigid joint (6)."""
+    actuated: tuple[Name, ...] = ()
+    """Names of the actuated joints, which indices need; the others are passive."""
+
+    def conflicts(self) -> Iterator[tuple[str, str]]:
+        """(field, message) of every pair of fields that do not go together."""
+        turned = (self.attachment.quat_wxyz, self.attachment.rpy_deg, self.attachment.euler_xyz_deg)
+        if self.holds == "position" and turned != (None,) * 3:
+            yield "attachment", 'must have no orientation with "holds": "position", a spherical joint'
+        if len(set(self.actuated)) < len(self.actuated):
+            yield "actuated", f"must be different names, not {quoted(self.actuated)}"
+
+
+LEGS: dict[str, type[Document]] = {
+    "UPS": UPSLeg,
+    "PUS": PUSLeg,
+    "RUS": RUSLeg,
+    "delta": DeltaLeg,
+    "serial": SerialLeg,
+}
 _known = tagged("type", LEGS)
 
 
 def _leg(value: Any) -> Any:
-    if isinstance(value, _Leg):
+    if isinstance(value, _Leg | SerialLeg):
         return value
     value = _known(value)
     if not isinstance(value, dict):
@@ -145,4 +177,5 @@ def _leg(value: Any) -> Any:
     return LEGS[value["type"]].model_validate(value)
 
 
-Leg = Annotated[UPSLeg | PUSLeg | RUSLeg | DeltaLeg, BeforeValidator(_leg)]
+ClosedFormLeg = UPSLeg | PUSLeg | RUSLeg | DeltaLeg
+Leg = Annotated[ClosedFormLeg | SerialLeg, BeforeValidator(_leg)]

@@ -37,6 +37,11 @@ class MappedMechanism(Document):
     count: Annotated[int, Field(ge=4, le=MOST_POINTS), BeforeValidator(integer)] = 20_000
     """Positions, spread evenly over the workspace."""
 
+    def conflicts(self) -> Iterator[tuple[str, str]]:
+        """(field, message) of every pair of fields that do not go together."""
+        if self.mechanism.serial_legs():
+            yield "mechanism", 'must have no legs of the type "serial": map a mechanism with legs in closed form'
+
 
 def _source(value: Any) -> Any:
     if isinstance(value, MappedRobot | MappedMechanism | PointSet):

@@ -5,8 +5,9 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field
 
+from wsrender.spec.arm import Arm, ArmPath
 from wsrender.spec.document import Document
-from wsrender.spec.legs import Interval, Leg, Lengths, Link
+from wsrender.spec.legs import Interval, Leg, Lengths, Link, SerialLeg
 from wsrender.spec.problems import shown
 from wsrender.spec.quantities import Name, PositiveNumber, quoted, real, sequence
 from wsrender.spec.robot import Transform, Vector
@@ -77,6 +78,10 @@ class _Mechanism(Document):
     """A pose of the platform in the base frame, which it must reach; null: none."""
     minimum_leg_distance_m: PositiveNumber | None = None
     """Least distance of the links of legs that do not share a joint [m]; null: they may cross."""
+
+    def serial_legs(self) -> dict[ArmPath, Arm]:
+        """The legs that are robots, by path; none of a mechanism of the library."""
+        return {}
 
 
 _UPPER_HALF = Region(lower_m=(None, None, 0.0))
@@ -158,12 +163,18 @@ class LegsMechanism(_Mechanism):
     """Any parallel mechanism, as its legs."""
 
     legs: Annotated[tuple[Leg, ...], Field(min_length=1, max_length=MOST_LEGS)]
-    """The legs, each {"type": "UPS" | "PUS" | "RUS" | "delta", …}; 6 for indices, 3 where all are "delta"."""
+    """The legs, each {"type": "UPS" | "PUS" | "RUS" | "delta" | "serial", …}; 3 where all are "delta"."""
     name: Name = "mechanism"
     """Name of the mechanism."""
 
+    def serial_legs(self) -> dict[ArmPath, Arm]:
+        """The legs that are robots, by path."""
+        return {("legs", k): leg for k, leg in enumerate(self.legs) if isinstance(leg, SerialLeg)}
+
     def conflicts(self) -> Iterator[tuple[str, str]]:
         """(field, message) of every pair of fields that do not go together."""
+        if self.serial_legs() and self.minimum_leg_distance_m is not None:
+            yield "minimum_leg_distance_m", 'must be null with legs of the type "serial": they are no straight links'
         deltas = sum(leg.type == "delta" for leg in self.legs)
         if deltas not in (0, len(self.legs)):
             yield "legs", 'must not mix "delta" with others: a platform on parallelograms does not turn'

@@ -61,3 +61,5 @@ class MethodComparisonJob(Document):
             yield "orientation", "must not shift: its position_m must be 0"
         if self.mechanism.before or self.mechanism.after:
             yield "mechanism", "must have no serial joints"
+        if self.mechanism.serial_legs():
+            yield "mechanism", 'must have no legs of the type "serial": their workspace has no known boundary'

@@ -43,7 +43,8 @@ class ParallelWorkspaceJob(Document):
     voxel_size_m: PositiveNumber | None = None
     """Edge of a voxel [m]; null: a hundredth of the cube root of the workspace's volume, estimated."""
     indices: IndicesOrNone = ()
-    """Local indices at the voxels' centres: "kinematic" or a list of names; []: none. Of constant_orientation."""
+    """Local indices at the voxels' centres: "kinematic" or a list of names; []: none. Of constant_orientation. With
+    serial joints the largest over their values, from the Jacobian of all joints."""
     task: Task | None = None
     """Rows of the Jacobian, in base axes: "linear", "angular", "full" or a list; null: "full", "linear" of a delta."""
     characteristic_length_m: PositiveNumber = 1.0
@@ -62,8 +63,8 @@ class ParallelWorkspaceJob(Document):
     """Where the kernels run: "auto" (a GPU if there is one), "cpu", "cuda" or "cuda:N"."""
 
     def arms(self) -> dict[ArmPath, Arm]:
-        """No serial robots."""
-        return {}
+        """The legs of the mechanism that are robots, by path."""
+        return {("mechanism", *path): leg for path, leg in self.mechanism.serial_legs().items()}
 
     def sweeps(self) -> list[Any]:
         """No joint spaces are sampled."""
@@ -81,6 +82,9 @@ class ParallelWorkspaceJob(Document):
         if (self.orientations is None) != constant:
             yield "orientations", f'must be {"null" if constant else "given"} with kind "{self.kind}"'
         if self.method in BY_BOUNDARY:
+            if self.arms():
+                message = "the workspace of legs that are solved numerically has no known boundary"
+                yield "method", f'must be "grid" or "grid_by_subsystem" with legs of the type "serial": {message}'
             if not constant:
                 yield "method", f'must be "grid" or "grid_by_subsystem" with kind "{self.kind}"'
             for name in ("indices", "refined_volume", "voxel_size_m"):
