@@ -138,6 +138,7 @@ def _cartesian_panels(
         axes.yaxis.set_major_locator(MaxNLocator(6))
         axes.set_xlabel("x [m]")
         axes.set_ylabel("y [m]")
+        axes.tick_params(labelbottom=True, labelleft=True)
         axes.set_title(f"working mode {_signs(mode)}")
     return figure, list(panels.flat[: len(modes)])
 
@@ -272,7 +273,7 @@ def _draw_mechanism(axes: Axes, drawn: Table, mode: str) -> None:
         axes.annotate(
             name,
             (x, y),
-            xytext=(5, 4),
+            xytext=(-12, 4) if name == "A" else (5, 4),  # B may be near it
             textcoords="offset points",
             fontsize=8,
             color=INK,

@@ -44,7 +44,7 @@ def surface_faces(faces: Faces, *, title: str = "", frame: str = "world") -> Fig
         axes.view_init(elevation, azimuth)
         axes.add_collection3d(shaded(faces, light=_LIGHT * np.sign(elevation)))
         _draw_borders(axes, faces, _direction(azimuth, elevation))
-        figure.text(left + 0.19, 0.9, name, ha="center", fontsize=9, color=GREY)
+        figure.text(left + 0.19, 0.03, name, ha="center", fontsize=9, color=GREY)
     handles = [Patch(facecolor=faces.colors[k], label=label) for k, label in faces.labels.items()]
     handles += _border_handles(faces)
     figure.legend(handles=handles, loc="center left", bbox_to_anchor=(0.83, 0.5), frameon=False, fontsize=8)
