@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -73,6 +74,15 @@ def test_public_modules_stay_modules():
 
     assert ws.run is wsrender.run
     assert ws.execute is wsrender.run.execute
+
+
+def test_planners_hide_no_public_function():
+    """A module becomes an attribute of its package when it is imported."""
+    from wsrender.run.steps import PLANNERS
+
+    for planner in PLANNERS.values():
+        import_module(f"wsrender.run.{planner.partition(':')[0]}")
+    assert all(callable(getattr(ws.run, name)) for name in ws.run.__all__)
 
 
 def test_unknown_name():

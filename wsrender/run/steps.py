@@ -30,7 +30,8 @@ from wsrender.spec.arm import Arm, ArmPath, dotted
 
 Progress = Callable[[int, int, str], None]
 
-# Module of wsrender.run and its planner: a run imports only what its own analysis needs.
+# Module of wsrender.run and its planner: a run imports only what its own analysis needs. No module is called like a
+# public function: importing it would hide the function.
 PLANNERS: dict[type, str] = {
     WorkspaceJob: "workspace:plan_workspace",
     IndicesAtJob: "indices_at:plan_indices_at",
@@ -42,10 +43,10 @@ PLANNERS: dict[type, str] = {
     MasterSlaveMappingJob: "mapping:plan_mapping",
     KinetostaticFieldJob: "kinetostatics:plan_kinetostatic_field",
     ParallelWorkspaceJob: "parallel:plan_parallel",
-    FiveBarJob: "five_bar:plan_five_bar",
+    FiveBarJob: "five_bars:plan_five_bar",
     DesignOptimizationJob: "design:plan_design",
-    PlanarBoundaryJob: "planar_boundary:plan_planar_boundary",
-    MethodComparisonJob: "method_comparison:plan_method_comparison",
+    PlanarBoundaryJob: "planar:plan_planar_boundary",
+    MethodComparisonJob: "methods:plan_method_comparison",
 }
 
 
