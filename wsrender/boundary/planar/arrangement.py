@@ -1,6 +1,8 @@
 """Curves split where they meet: pieces that have one and the same surrounding from end to end."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
 from scipy.sparse import coo_array
@@ -10,6 +12,7 @@ from scipy.spatial import KDTree
 from wsrender.boundary.planar.curves import TURN, Curves
 from wsrender.boundary.planar.distances import point_distances
 from wsrender.boundary.planar.intersections import crossings
+from wsrender.errors import NumericalError
 
 # Relative to the size of the set. Each is far above the rounding that a dozen joints collect (1e-15 each), and far
 # below the accuracy that is promised (1e-9).
@@ -17,6 +20,10 @@ TOUCHING = 2e-14  # gap below which curves touch
 ON_CURVE = 2e-14  # distance below which a point lies on a curve, and curves are the same
 ONE_PIECE = 1e-13  # distance below which pieces between the same two vertices are one
 SAME_POINT = 1e-10  # distance below which points are one: a shallow crossing is known that well only
+
+COARSER = (1.0, 10.0, 100.0)  # tolerances tried in turn, where curves nearly coincide
+
+T = TypeVar("T")
 
 _PLACES = (0.25, 0.5, 0.75)  # along a piece, where it is compared with another
 
@@ -43,10 +50,23 @@ class Arrangement:
         return replace(self, covering=[self.covering[k] for k in rows], **kept)
 
 
+def told_apart(made: Callable[[float], T], size: float) -> T:
+    """``made(size)``; where it raises NumericalError, with a larger size, that is with coarser tolerances.
+
+    Vertices may then be off by 1e-9 or 1e-8 of the size. Raises NumericalError where that does not help either.
+    """
+    for factor in COARSER[:-1]:
+        try:
+            return made(factor * size)
+        except NumericalError:
+            continue
+    return made(COARSER[-1] * size)
+
+
 def arrange(curves: Curves, size: float) -> Arrangement:
     """Split curves at all their crossings, touching points and ends; coincident parts become one piece.
 
-    ``size`` [m] of the set is what tolerances are relative to.
+    ``size`` [m] of the set is what tolerances are relative to. Raises NumericalError where all curves are shorter.
     """
     carrier_of, rows = _carriers(curves, ON_CURVE * size)
     carriers = curves[rows]
@@ -63,6 +83,8 @@ def arrange(curves: Curves, size: float) -> Arrangement:
     covering = _covering(curves, carrier_of, carrier, pieces)
     found = Arrangement(carrier, pieces, np.concatenate(ends), covering, vertices, curves, carrier_of)
     found = found.only(np.flatnonzero([len(members) > 0 for members in covering]))
+    if len(found.pieces) == 0:
+        raise NumericalError(f"no curve is longer than {SAME_POINT * size:.1e} m")
     return _without_twins(found, ONE_PIECE * size)
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from wsrender.boundary.planar.curves import TURN, Curves, turned_left
 
-_TINY = 1e-300  # keeps an orbit of radius 0, or circles about one centre, from dividing by zero
+_TINY = 1e-300  # keeps parallel lines from dividing by zero
 _AT_ONCE = 1 << 20  # distances that are held in memory at once
 
 
@@ -92,13 +92,14 @@ def _arc_meetings(orbits: Curves, curves: Curves) -> tuple[np.ndarray, np.ndarra
     normal = turned_left(curves.direction)
     offset = curves.base - orbits.base[0]
     height = (offset * normal).sum(axis=1)  # of the line over the centre
-    distance = np.maximum(np.hypot(offset[:, 0], offset[:, 1]), _TINY)
+    distance = np.hypot(offset[:, 0], offset[:, 1])
     towards = np.where(lines[:, None], normal, offset)
-    scaled = np.maximum(radius, _TINY)
-    with np.errstate(over="ignore"):
-        on_circle = (distance / scaled + (radius - curves.radius) * ((radius + curves.radius) / scaled) / distance) / 2
-        cosine = np.where(lines, height / scaled, on_circle)
-    middle, half = np.arctan2(towards[:, 1], towards[:, 0]), np.arccos(np.clip(cosine, -1.0, 1.0))
+    # tan²(half/2) = (1 − cos half)/(1 + cos half), whose factors lose no digits where the angle is small.
+    apart = radius - distance
+    versed = np.where(lines, radius - height, (curves.radius - apart) * (curves.radius + apart))
+    rest = np.where(lines, radius + height, (radius + distance - curves.radius) * (radius + distance + curves.radius))
+    half = 2 * np.arctan2(np.sqrt(np.maximum(versed, 0.0)), np.sqrt(np.maximum(rest, 0.0)))
+    middle = np.arctan2(towards[:, 1], towards[:, 0])
     return middle - half, middle + half
 
 

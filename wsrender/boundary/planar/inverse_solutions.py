@@ -1,14 +1,17 @@
 """How many postures of a two-joint arm reach a point: regions of one number, bounded by lines and arcs."""
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
-from wsrender.boundary.planar.arrangement import Arrangement, arrange
+from wsrender.boundary.planar.arrangement import arrange, told_apart
+from wsrender.boundary.planar.curves import Curves
 from wsrender.boundary.planar.distances import approaches, point_distances
-from wsrender.boundary.planar.loops import loops_of
+from wsrender.boundary.planar.loops import closes, loops_of
 from wsrender.boundary.planar.planar_set import PlanarSet
 from wsrender.boundary.planar.sides import Classes, side_classes
+from wsrender.errors import NumericalError
 
 
 @dataclass(frozen=True)
@@ -20,14 +23,24 @@ class NumberRegions:
     regions: int
 
 
-def regions_by_number(found: Arrangement, numbers: Classes, size: float) -> list[NumberRegions]:
-    """Regions by a number that changes on pieces of an arrangement only; the least number above 0 first."""
+def regions_by_number(curves: Curves, numbers: Classes, size: float) -> list[NumberRegions]:
+    """Regions by a number of points that changes on curves only; the least number above 0 first.
+
+    ``numbers`` as for `side_classes`. Raises NumericalError where curves are too close to be told apart.
+    """
+    return told_apart(partial(_regions, curves, numbers), size)
+
+
+def _regions(curves: Curves, numbers: Classes, size: float) -> list[NumberRegions]:
+    found = arrange(curves, size)
     counts = side_classes(found, numbers, size)
     out = []
     for number in sorted(set(counts.ravel().tolist()) - {0}):
         rows = np.flatnonzero((counts[:, 0] == number) != (counts[:, 1] == number))
-        sign = np.where(counts[rows, 0] == number, 1.0, -1.0)
-        loops = loops_of(PlanarSet(2, found.pieces[rows], sign, found.vertices, found.ends[rows]))
+        sign, ends = np.where(counts[rows, 0] == number, 1.0, -1.0), found.ends[rows]
+        if not closes(ends, sign, len(found.vertices)):
+            raise NumericalError(f"the regions of {number} do not close: curves nearly coincide")
+        loops = loops_of(PlanarSet(2, found.pieces[rows], sign, found.vertices, ends))
         area = sum(loop.signed_area for loop in loops)
         out.append(NumberRegions(number, float(area), sum(not loop.hole for loop in loops)))
     return out
@@ -40,8 +53,8 @@ def solution_regions(reached: PlanarSet, size: float) -> list[NumberRegions]:
     end of the second joint's curve, and along singular positions, the paths of its stationary points.
     """
     assert reached.candidates is not None
-    found = arrange(reached.candidates.curves, size)
-    return regions_by_number(found, lambda points, margin: ways(reached, points, margin).sum(axis=1), size)
+    curves = reached.candidates.curves
+    return regions_by_number(curves, lambda points, margin: ways(reached, points, margin).sum(axis=1), size)
 
 
 def inverse_solutions(reached: PlanarSet, points: np.ndarray) -> np.ndarray:

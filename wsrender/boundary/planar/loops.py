@@ -39,6 +39,16 @@ def loops_of(region: PlanarSet) -> list[Loop]:
     return sorted(loops, key=lambda loop: -loop.signed_area)
 
 
+def closes(ends: np.ndarray, sign: np.ndarray, vertices: int) -> bool:
+    """Whether pieces leave every vertex as often as they arrive; by their sign from the first end, or from the second.
+
+    Ends are numbers of vertices, (P, 2), −1 of circles.
+    """
+    leaving, arriving = (np.where(sign > 0, ends[:, k], ends[:, 1 - k]) for k in (0, 1))
+    degrees = [np.bincount(side[side >= 0], minlength=vertices) for side in (leaving, arriving)]
+    return bool((degrees[0] == degrees[1]).all())
+
+
 def _following(region: PlanarSet) -> list[int]:
     """The piece that comes after each, inside on the left."""
     forward = region.sign > 0

@@ -38,8 +38,7 @@ def self_motion_regions(reached: PlanarSet, size: float) -> list[NumberRegions]:
     curves, vertices = inner.candidates.curves, arrange(inner.candidates.curves, size).vertices
     points = np.concatenate([vertices, _idle_points(inner, ON_CURVE * size)])
     found = candidates(joint, curves, points, np.full(len(points), -1), ON_CURVE * size)
-    arrangement = arrange(found.curves, size)
-    return regions_by_number(arrangement, lambda points, margin: self_motions(reached, points, size), size)
+    return regions_by_number(found.curves, lambda points, margin: self_motions(reached, points, size), size)
 
 
 def _idle_points(inner: PlanarSet, tolerance: float) -> np.ndarray:

@@ -6,12 +6,14 @@ p is inside iff its orbit E_i(q)⁻¹ p meets W_{i+1}.
 """
 
 from collections.abc import Sequence
+from functools import partial
 
 import numpy as np
 
-from wsrender.boundary.planar.arrangement import ON_CURVE, Arrangement, arrange
+from wsrender.boundary.planar.arrangement import ON_CURVE, Arrangement, arrange, told_apart
 from wsrender.boundary.planar.assembly import assembled
 from wsrender.boundary.planar.candidates import Candidates, Source, candidates
+from wsrender.boundary.planar.loops import closes
 from wsrender.boundary.planar.motion import PlanarJoint
 from wsrender.boundary.planar.planar_set import PlanarSet
 from wsrender.boundary.planar.sides import side_classes
@@ -25,7 +27,7 @@ def swept_sets(joints: Sequence[PlanarJoint], tip: np.ndarray, size: float) -> l
     """
     sets = [PlanarSet.of_point(tip)]
     for joint in reversed(joints):
-        sets.append(swept(sets[-1], joint, size))
+        sets.append(told_apart(partial(swept, sets[-1], joint), size))
     return sets[::-1]
 
 
@@ -57,10 +59,6 @@ def _region(
     """The region whose boundary are the pieces with one side outside."""
     kept = np.flatnonzero(inside[:, 0] != inside[:, 1])
     sign = np.where(inside[kept, 0], 1.0, -1.0)
-    ends = arrangement.ends[kept]
-    leaving = np.where(sign > 0, ends[:, 0], ends[:, 1])
-    arriving = np.where(sign > 0, ends[:, 1], ends[:, 0])
-    degrees = [np.bincount(side[side >= 0], minlength=len(arrangement.vertices)) for side in (leaving, arriving)]
-    if len(kept) == 0 or (degrees[0] != degrees[1]).any():
+    if len(kept) == 0 or not closes(arrangement.ends[kept], sign, len(arrangement.vertices)):
         raise NumericalError(f"the boundary does not close at joint {joint.name}: curves nearly coincide")
     return assembled(2, arrangement.only(kept), sign, found, joint, inner)
