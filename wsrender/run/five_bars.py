@@ -34,6 +34,7 @@ from wsrender.parallel.five_bar.tables import (
 )
 from wsrender.plots.five_bar import MODE_VOLUMES
 from wsrender.result import Result
+from wsrender.run.partial_tables import arrays_of_tables, tables_of_arrays
 from wsrender.run.provenance import job_entry, provenance
 from wsrender.run.settled_device import settled_device
 from wsrender.spec import FiveBarJob
@@ -109,10 +110,8 @@ class FiveBarPlan:
             "isotropic_points": [entry for mode in modes for entry in self._isotropic_entries(mode)],
             "points": [entry for point in self.job.points_m for entry in self._point_entries(point)],
             "assemblies": [entry for theta in self.job.joint_angles_rad for entry in self._assembly_entries(theta)],
-            "units": {name: table.units for name, table in tables.items()},
         }
-        arrays = {"about": np.array(json.dumps(about, allow_nan=False))}
-        arrays |= {f"table {t} {name}": column for t, table in tables.items() for name, column in table.columns.items()}
+        arrays = {"about": np.array(json.dumps(about, allow_nan=False)), **arrays_of_tables(tables)}
         return arrays | {f"map {m} {name}": array for m, values in maps.items() for name, array in values.items()}
 
     def merge(self, a: Any, b: Any) -> Any:
@@ -122,8 +121,7 @@ class FiveBarPlan:
     def finish(self, partial: dict[str, np.ndarray], seconds: dict[str, float]) -> Result:
         """Areas, aspects, least condition numbers, and the tables and maps behind the pictures."""
         about = json.loads(str(partial["about"]))
-        units = about.pop("units")
-        tables = {name: Table(_parts(partial, f"table {name} "), units[name]) for name in units}
+        tables = tables_of_arrays(partial)
         job = self.job
         document = {
             "analysis": "five_bar",

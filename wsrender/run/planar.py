@@ -15,6 +15,7 @@ from wsrender.boundary.planar.segments import segment_entry, segment_table
 from wsrender.reachability.targets import model_robot
 from wsrender.result import Result
 from wsrender.robot import Robot
+from wsrender.run.partial_tables import arrays_of_tables, tables_of_arrays
 from wsrender.run.provenance import job_entry, provenance, robot_entry
 from wsrender.run.sampled_positions import sampled_positions
 from wsrender.run.settled_device import settled_device
@@ -62,13 +63,14 @@ class PlanarBoundaryPlan:
         estimated = monte_carlo_boundary(self.chain, points, job.cells, job.line_tolerance_m2, job.arc_tolerance_m4)
         about = {"exact": _exact_entry(exact), "monte_carlo": _estimated_entry(estimated, exact)}
         rows = np.unique(np.linspace(0, len(points) - 1, min(len(points), DRAWN)).astype(np.int64))
-        return {
-            "about": np.array(json.dumps(about)),
-            "samples": points[rows],
-            **_columns("boundary", segment_table(exact.segments)),
-            **_columns("monte_carlo", segment_table(estimated.segments)),
-            **_columns("points", _point_table(exact, np.array(job.points_m)) if job.points_m else Table({})),
+        tables = {
+            "boundary": segment_table(exact.segments),
+            "monte_carlo": segment_table(estimated.segments),
+            "samples": Table({"position": points[rows]}, {"position": "m"}),
         }
+        if job.points_m:
+            tables["points"] = _point_table(exact, np.array(job.points_m))
+        return {"about": np.array(json.dumps(about)), **arrays_of_tables(tables)}
 
     def merge(self, a: Any, b: Any) -> Any:
         """There is one shard: nothing to merge."""
@@ -92,9 +94,8 @@ class PlanarBoundaryPlan:
             "provenance": provenance("float64", self.target, seed=getattr(job.sampling, "seed", None)),
             "timing_s": seconds,
         }
-        tables = {name: _table(partial, name) for name in ("boundary", "monte_carlo", "points")}
-        tables["samples"] = Table({"position": partial["samples"]}, {"position": "m"})
-        return Result(document, tables={name: table for name, table in tables.items() if len(table)})
+        tables = {name: table for name, table in tables_of_arrays(partial).items() if len(table)}
+        return Result(document, tables=tables)
 
 
 def plan_planar_boundary(
@@ -170,15 +171,3 @@ def _point_table(exact: ExactBoundary, points: np.ndarray) -> Table:
     if exact.self_motion_regions is not None:
         columns["self_motions"] = exact.self_motions(points)
     return Table(columns, dict.fromkeys(("point", "distance", "nearest"), "m"))
-
-
-def _columns(name: str, table: Table) -> dict[str, np.ndarray]:
-    """The columns of a table as arrays of a partial result."""
-    units = {f"{name}.units": np.array(json.dumps(table.units))}
-    return {f"{name}:{column}": values for column, values in table.columns.items()} | units
-
-
-def _table(partial: dict[str, np.ndarray], name: str) -> Table:
-    prefix = f"{name}:"
-    columns = {key.removeprefix(prefix): values for key, values in partial.items() if key.startswith(prefix)}
-    return Table(columns, json.loads(str(partial[f"{name}.units"])))
