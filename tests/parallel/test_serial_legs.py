@@ -201,6 +201,25 @@ def test_workspaces_of_two_arms(tmp_path):
     assert total["occupied"] <= result.document["volume_m3"]["occupied"]
 
 
+def test_a_leg_in_a_file(tmp_path):
+    """From Python, with the leg's model in a file and in a design."""
+    (tmp_path / "leg.xml").write_text(LEG["robot"]["mjcf"])
+    closed, serial = pairs("stewart_gough")
+    legs = [{**LEG, "robot": {"path": str(tmp_path / "leg.xml")}}, *serial["legs"][1:]]
+    volumes = [
+        ws.parallel_workspace({**closed, "legs": each}, voxel_size_m=0.1, device="cpu").document["volume_m3"]
+        for each in (legs, closed["legs"])
+    ]
+    assert volumes[0] == volumes[1] and volumes[0]["occupied"] > 0
+    best = ws.design_optimization(
+        {**JOB, "mechanism": {**closed, "legs": legs}, "voxel_size_m": 0.1},
+        [{"name": "x", "pointers": ["/mechanism/legs/0/attachment/position_m/0"], "bounds": [0.1, 0.3]}],
+        [{"value": "/volume_m3/occupied"}],
+        search={"method": "sweep", "steps": 2},
+    )
+    assert len(best.tables["evaluations"]) == 2
+
+
 def test_a_hybrid_with_serial_legs():
     """A turntable below and a tool above: the voxels of the same hybrid with legs in closed form."""
     joints = {

@@ -11,13 +11,13 @@ from wsrender.run.steps import Progress
 def parallel_workspace(mechanism: Any, *, progress: Progress | bool | None = None, **fields: Any) -> Result:
     """Workspace of a parallel mechanism.
 
-    ``mechanism`` is a name of the library (stewart_gough, six_pus, delta) or a document: {"library": name, …} with
-    other parameters, or {"legs": […]}. ``fields`` are the other fields of the job document ``parallel_workspace``:
+    ``mechanism`` is a name of the library (stewart_gough, six_pus, delta, master_4dof) or a document: {"library": name,
+    …} with other parameters, or {"legs": […]}, serial ones among them. ``fields`` are the other fields of the job document ``parallel_workspace``:
     kind, orientation, position_m, orientations, method, voxel_size_m, indices, refined_volume …
 
-    Raises DocumentError, InputError, ResourceError.
+    Raises DocumentError, InputError, ModelError, ResourceError.
     """
-    return execute_here({"analysis": "parallel_workspace", "mechanism": mechanism, **plain(fields)}, [], progress)
+    return execute_here({"analysis": "parallel_workspace", "mechanism": mechanism, **plain(fields)}, None, progress)
 
 
 def five_bar(mechanism: FiveBar, *, progress: Progress | bool | None = None, **fields: Any) -> Result:

@@ -27,7 +27,7 @@ class ParallelWorkspaceJob(Document):
     analysis: Literal["parallel_workspace"] = "parallel_workspace"
     """Name of the analysis."""
     mechanism: MechanismSpec
-    """The mechanism; a string is a name of the library: stewart_gough, six_pus, delta."""
+    """The mechanism; a string is a name of the library: stewart_gough, six_pus, delta, master_4dof."""
     kind: Literal["constant_orientation", "orientation", "dexterous", "total_orientation"] = "constant_orientation"
     """Which workspace."""
     orientation: Transform | None = None
