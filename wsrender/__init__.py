@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from wsrender.robot import Robot, evaluate_indices, load_robot
     from wsrender.run import (
         analyze,
+        boundary_patches,
         collaborative_volume,
         design_optimization,
         exact_boundary,
@@ -93,6 +94,7 @@ __all__ = [
     "WsrenderError",
     "__version__",
     "analyze",
+    "boundary_patches",
     "collaborative_volume",
     "design_optimization",
     "evaluate_indices",
@@ -124,6 +126,7 @@ _NAMES_OF_MODULE = {
     "wsrender.robot": ("Robot", "evaluate_indices", "load_robot"),
     "wsrender.run": (
         "analyze",
+        "boundary_patches",
         "collaborative_volume",
         "design_optimization",
         "exact_boundary",

@@ -67,6 +67,10 @@ def planar(**fields):
     return {"analysis": "planar_boundary", "robot": {"library": "scara"}, **fields}
 
 
+def patched(**fields):
+    return {"analysis": "boundary_patches", "robot": {"library": "articulated"}, **fields}
+
+
 def sampled(**fields):
     return job(sampling={"method": "grid", **fields})
 
@@ -271,6 +275,13 @@ MALFORMED = [
     (planar(points_m=[[0, NAN]]), "points_m", "must be a finite number"),
     (planar(sampling={"method": "converge"}), "sampling", 'must not be "converge"'),
     (planar(locked={"joint4": 0}), "locked", "is not a known field"),
+    # boundary patches
+    (patched(cells=4), "cells", "must be at least 8, not 4"),
+    (patched(cells=500), "cells", "must be at most 256, not 500"),
+    (patched(cells="many"), "cells", "must be a whole number"),
+    (patched(locked={"joint4": "0"}), "locked.joint4", "must be a number"),
+    (patched(locked={"joint4": NAN}), "locked.joint4", "must be a finite number"),
+    (patched(sampling={"method": "sobol"}), "sampling", "is not a known field"),
     # voxels, map, execution
     (job(voxel_size_m=0), "voxel_size_m", "must be greater than 0"),
     (job(voxel_size_m=-0.01), "voxel_size_m", "must be greater than 0, not -0.01"),

@@ -1,5 +1,6 @@
 """A result document in a few lines of text."""
 
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from typing import Any
 
@@ -37,6 +38,7 @@ def _facts(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
         outside = "all points inside" if mapping["succeeded"] else f"{mapping['failing_points']:,} points outside"
         yield "mapping", f"{outside}; scale {scale}; offset {offset} m; efficiency {mapping['efficiency']:.4g}"
     yield from _planar(document)
+    yield from _patches(document)
     targets = document.get("targets") or {}
     for name in ("reachable", "unreachable", "undecided"):
         if name in targets:
@@ -118,6 +120,15 @@ def _planar(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
         kinds = [segment["kind"] for loop in exact["loops"] for segment in loop["segments"]]
         holes = sum(loop["hole"] for loop in exact["loops"])
         yield "boundary", f"{kinds.count('arc')} arcs, {kinds.count('line')} lines; {holes} holes"
+
+
+def _patches(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
+    """How many patches of which kind, edges and corners the boundary of a spatial arm has, and its volume."""
+    if document.get("analysis") == "boundary_patches":
+        yield "volume", f"{document['volume_m3']['integrated']:.10g} m³"
+        counts = Counter(patch["kind"].replace("_", " ") for patch in document["patches"])
+        kinds = ", ".join(f"{count} {kind}" for kind, count in counts.items())
+        yield "patches", f"{kinds}; {len(document['edges'])} edges, {len(document['corners'])} corners"
 
 
 def _volumes(volumes: dict[str, Any], prefix: str = "") -> Iterator[tuple[str, str]]:

@@ -17,6 +17,7 @@ from wsrender.plots.five_bar import MODE_VOLUMES, aspect_maps, conditioning_maps
 from wsrender.plots.master_slave import mapped_points
 from wsrender.plots.method_comparison import errors_by_size
 from wsrender.plots.orientation_map import orientations
+from wsrender.plots.patches import faces_of_patches
 from wsrender.plots.planes import slice_plane, slices
 from wsrender.plots.point_cloud import scatter
 from wsrender.plots.posture import limits_and_ellipsoids
@@ -95,6 +96,12 @@ class ResultPlots:
     def boundary(self) -> Figure:
         """The boundary of a planar arm: samples, Monte Carlo segments and the exact lines and arcs."""
         return planar_boundary(self.tables, title=self.title)
+
+    def patches(self) -> Figure:
+        """The boundary of a spatial arm from two sides: patches in their colours, edges and corners."""
+        if "patches" not in self.meshes:
+            raise InputError("mesh", "the result holds no patches of a boundary")
+        return surface_faces(faces_of_patches(self.meshes["patches"], self._table("patches")), title=self.title)
 
     def side_by_side(self, index: str | None = None, *, statistic: str | None = None) -> Figure:
         """The robots of a comparison in the same planes, with the same axes and one colour scale."""

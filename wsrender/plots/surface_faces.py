@@ -47,7 +47,7 @@ def surface_faces(faces: Faces, *, title: str = "", frame: str = "world") -> Fig
         figure.text(left + 0.19, 0.03, name, ha="center", fontsize=9, color=GREY)
     handles = [Patch(facecolor=faces.colors[k], label=label) for k, label in faces.labels.items()]
     handles += _border_handles(faces)
-    figure.legend(handles=handles, loc="center left", bbox_to_anchor=(0.83, 0.5), frameon=False, fontsize=8)
+    figure.legend(handles=handles, loc="center right", bbox_to_anchor=(0.998, 0.5), frameon=False, fontsize=8)
     add_title(figure, title)
     return figure
 

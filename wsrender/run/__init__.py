@@ -3,6 +3,7 @@
 from wsrender.run.analyze import analyze, kinetostatic_field
 from wsrender.run.design_from_python import design_optimization
 from wsrender.run.mechanisms_from_python import five_bar, method_comparison, parallel_workspace
+from wsrender.run.patches_from_python import boundary_patches
 from wsrender.run.planar_from_python import exact_boundary, planar_boundary
 from wsrender.run.several_from_python import (
     collaborative_volume,
@@ -15,6 +16,7 @@ from wsrender.run.steps import Plan, execute, finish, merge, plan, run_shard
 __all__ = [
     "Plan",
     "analyze",
+    "boundary_patches",
     "collaborative_volume",
     "design_optimization",
     "exact_boundary",

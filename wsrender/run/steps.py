@@ -10,6 +10,7 @@ from wsrender.errors import InputError
 from wsrender.result import Result
 from wsrender.robot import Robot, as_robot, robot_of_spec
 from wsrender.spec import (
+    BoundaryPatchesJob,
     CapabilityJob,
     CollaborativeVolumeJob,
     DesignOptimizationJob,
@@ -45,6 +46,7 @@ PLANNERS: dict[type, str] = {
     ParallelWorkspaceJob: "parallel:plan_parallel",
     FiveBarJob: "five_bars:plan_five_bar",
     DesignOptimizationJob: "design:plan_design",
+    BoundaryPatchesJob: "spatial_boundary:plan_boundary_patches",
     PlanarBoundaryJob: "planar:plan_planar_boundary",
     MethodComparisonJob: "methods:plan_method_comparison",
 }

@@ -1,5 +1,6 @@
 """Job documents (pydantic), shared by Python, the command line and the server."""
 
+from wsrender.spec.boundary_patches import BoundaryPatchesJob
 from wsrender.spec.capability import CapabilityJob
 from wsrender.spec.collaborative import CollaborativeVolumeJob
 from wsrender.spec.design import DesignOptimizationJob
@@ -16,6 +17,7 @@ from wsrender.spec.several_robots import RobotComparisonJob, SharedWorkspaceJob
 
 __all__ = [
     "ANALYSES",
+    "BoundaryPatchesJob",
     "CapabilityJob",
     "CollaborativeVolumeJob",
     "DesignOptimizationJob",

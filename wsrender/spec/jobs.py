@@ -6,6 +6,7 @@ from typing import Annotated, Literal, get_args
 from pydantic import BeforeValidator, Discriminator, StrictBool
 
 from wsrender.spec.arm import Arm
+from wsrender.spec.boundary_patches import BoundaryPatchesJob
 from wsrender.spec.capability import CapabilityJob
 from wsrender.spec.collaborative import CollaborativeVolumeJob
 from wsrender.spec.design import DesignOptimizationJob
@@ -83,6 +84,7 @@ _AnyJob = (
     | FiveBarJob
     | DesignOptimizationJob
     | PlanarBoundaryJob
+    | BoundaryPatchesJob
     | MethodComparisonJob
 )
 ANALYSES: dict[str, type[Document]] = {job.model_fields["analysis"].default: job for job in get_args(_AnyJob)}

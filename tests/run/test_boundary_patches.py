@@ -1,0 +1,117 @@
+"""The analysis ``boundary_patches``: a job document in, patches, edges, corners, a coloured mesh and a picture out."""
+
+import json
+
+import numpy as np
+import pytest
+
+import wsrender as ws
+from wsrender.__main__ import main
+from wsrender.run import execute, finish, plan, run_shard
+from wsrender.run.partial_files import load_partial, save_partial
+
+ROWS = [
+    {"limits_deg": [-90, 90]},
+    {"alpha_deg": 90, "limits_deg": [60, 150]},
+    {"alpha_deg": 90, "joint": "prismatic", "limits": [2, 4]},
+]
+JOB = {
+    "analysis": "boundary_patches",
+    "robot": {"dh": {"convention": "modified", "name": "spherical", "rows": ROWS}},
+    "cells": 20,
+}
+
+
+@pytest.fixture(scope="module")
+def result():
+    return execute(JOB)
+
+
+def test_document_and_tables(result):
+    document = result.document
+    assert document["volume_m3"]["integrated"] == pytest.approx(28 * np.pi / 3 * (1 + 3**0.5), rel=1e-9)
+    assert document["volume_m3"]["enclosed_by_patches"] == pytest.approx(80.107913632, rel=1e-6)
+    sphere = document["patches"][0]
+    assert (sphere["kind"], sphere["method"]) == ("sphere", "critical_set")
+    assert sphere["radius_m"] == pytest.approx(4) and sphere["center_m"] == pytest.approx([0, 0, 0], abs=1e-9)
+    assert sphere["generated_by"] == [{"limits": ["joint3 upper"], "free": ["joint1", "joint2"], "singular": False}]
+    assert sorted(result.tables["patches"]["kind"]) == sorted(["cone", "cone", "plane", "plane", "sphere", "sphere"])
+    assert result.tables["patches"]["generated_by"][0] == "joint3 upper"
+    assert (len(result.tables["edges"]), len(result.tables["corners"])) == (12, 8)
+    assert result.tables["edge_points"]["edge"].max() == 11
+    json.dumps(document, allow_nan=False)
+
+
+def test_mesh_has_a_colour_per_patch(result):
+    mesh = result.meshes["patches"]
+    patch, colors = mesh.face_attributes["surface"], mesh.visual.face_colors
+    assert mesh.is_watertight and mesh.volume == pytest.approx(80.1079, rel=5e-3)
+    assert [len(np.unique(colors[patch == k], axis=0)) for k in range(6)] == [1] * 6
+    assert len(np.unique(colors, axis=0)) == 6
+    assert np.linalg.norm(mesh.vertices[np.unique(mesh.faces[patch == 0])], axis=1) == pytest.approx(4, abs=1e-9)
+
+
+def test_python_and_document_agree(result):
+    robot = ws.DHTable(convention="modified", rows=[ws.DHRow(**row) for row in ROWS], name="spherical")
+    again = ws.boundary_patches(robot, cells=20)
+    for name in ("patches", "edges", "corners", "volume_m3"):
+        assert again.document[name] == result.document[name]
+
+
+def test_from_the_command_line_and_back(tmp_path, capsys):
+    job = tmp_path / "job.json"
+    job.write_text(json.dumps(JOB))
+    with pytest.raises(SystemExit) as ended:
+        main(["run", str(job), "-o", str(tmp_path / "out")])
+    assert not ended.value.code
+    shown = capsys.readouterr().out
+    assert "80.10791363 m³" in shown and "12 edges, 8 corners" in shown
+    loaded = ws.Result.load(tmp_path / "out")
+    assert len(np.unique(loaded.meshes["patches"].face_attributes["surface"])) == 6
+    assert len(np.unique(loaded.meshes["patches"].visual.face_colors, axis=0)) == 6
+    assert (tmp_path / "out/plots/patches.png").stat().st_size > 10_000
+    assert len(loaded.plot.patches().axes) == 2
+
+
+def test_equal_jobs_have_equal_files(result, tmp_path):
+    hashes = []
+    for name in ("a", "b"):
+        result.save(tmp_path / name)
+        hashes.append({each["name"]: each["sha256"] for each in result.document["artifacts"]})
+    assert hashes[0] == hashes[1] and "patches.glb" in hashes[0]
+
+
+def test_a_partial_result_travels(result, tmp_path):
+    here = plan(JOB)
+    counted = []
+    save_partial(run_shard(here, 0, counted.append), tmp_path / "partial.npz")
+    assert counted == sorted(counted) and 0 < counted[-1] <= here.shards[0][1]
+    there = plan(JOB, resolved=json.loads(json.dumps(here.resolved())))
+    found = finish(there, load_partial(tmp_path / "partial.npz", there))
+    assert found.document["patches"] == result.document["patches"]
+    assert (found.meshes["patches"].faces == result.meshes["patches"].faces).all()
+
+
+def test_locked_joints_leave_three():
+    """A wrist whose hand is off its axes moves the end point with five joints; two are held."""
+    held = {"joint4": 0.3, "joint5": -0.4}
+    planned = plan({"analysis": "boundary_patches", "robot": "ur5e", "locked": held})
+    assert planned.arm.names == ("joint1", "joint2", "joint3")
+    robot = ws.load_robot("ur5e")
+    d = np.random.default_rng(0).uniform(-1, 1, (20, 3))
+    q = np.column_stack([d, np.tile([0.3, -0.4, 0.0], (20, 1))])
+    assert planned.arm.position(d) == pytest.approx(robot.forward_kinematics(q)[:, :3, 3], abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("fields", "error", "message"),
+    [
+        ({"robot": "ur5e"}, ws.ModelError, "5 joints move the end point"),
+        ({"robot": "articulated", "locked": {"elbow": 0}}, ws.InputError, "locked.elbow: unknown joint"),
+        ({"robot": "articulated", "locked": {"joint1": 9}}, ws.InputError, "locked.joint1: 9.0 is outside"),
+        ({"robot": "articulated", "locked": {"joint1": 1}}, ws.ModelError, "2 joints move the end point"),
+    ],
+)
+def test_what_cannot_be_done_is_refused_before_anything_runs(fields, error, message):
+    with pytest.raises(error, match=message):
+        plan({"analysis": "boundary_patches", **fields})

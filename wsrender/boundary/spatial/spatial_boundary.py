@@ -1,0 +1,106 @@
+"""The boundary of the positions that a spatial arm reaches: patches, edges, corners, a mesh, and the volume."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import trimesh
+
+from wsrender.boundary.spatial.cells import Lattice
+from wsrender.boundary.spatial.critical_sets import critical_sets
+from wsrender.boundary.spatial.crossed_surfaces import crossed_surfaces
+from wsrender.boundary.spatial.edges import Corner, Edge, edges_and_corners
+from wsrender.boundary.spatial.inverse import ThreeJointInverse
+from wsrender.boundary.spatial.joint_volume import joint_volume
+from wsrender.boundary.spatial.measures import Measures, measures
+from wsrender.boundary.spatial.patch_mesh import PatchMesh, patch_mesh
+from wsrender.boundary.spatial.patches import Patch, boundary_patches
+from wsrender.boundary.spatial.spatial_arm import SpatialArm, spatial_arm
+from wsrender.errors import ModelError
+from wsrender.robots.chain import Chain
+
+JOINTS = 3
+# Of patches, in their order and then again: Tableau's ten, told apart by most people with a colour vision deficiency.
+COLORS = ("4e79a7", "f28e2b", "59a14f", "e15759", "76b7b2", "edc948", "b07aa1", "ff9da7", "9c755f", "bab0ac")
+_SAMPLES = 24  # of each joint, for the box that the lattice fills
+_FLAT = 1e-9  # volume that the Jacobian spans, relative to that of its columns: rounding
+
+
+@dataclass(frozen=True, eq=False)
+class SpatialBoundary:
+    """Patches, largest first, with their areas and the volume they enclose; edges; corners; the mesh.
+
+    ``volume`` [m³] and ``volume_error``: by integration over the joints, whatever the cells; ``measures``: of the
+    patches at the resolution of the cells, which are ``width`` [m] wide.
+    """
+
+    arm: SpatialArm
+    patches: list[Patch]
+    measures: Measures
+    edges: list[Edge]
+    corners: list[Corner]
+    mesh: PatchMesh
+    width: float
+    volume: float
+    volume_error: float
+
+
+def three_joint_arm(chain: Chain) -> SpatialArm:
+    """The arm of a chain; three joints must move its end point through a volume. Raises ModelError."""
+    arm = spatial_arm(chain)
+    if arm.n != JOINTS:
+        remedy = 'hold the others with "locked"' if arm.n > JOINTS else "with fewer it fills no volume"
+        names = ", ".join(arm.names) or "none"
+        raise ModelError("robot", f"{arm.n} joints move the end point ({names}); {JOINTS} must: {remedy}")
+    J = arm.motion(_samples(arm, 9))[1]
+    spanned = np.abs(np.linalg.det(J)).max()
+    if spanned <= _FLAT * np.linalg.norm(J, axis=1).prod(axis=1).max():
+        raise ModelError(
+            "robot",
+            f"the joints {', '.join(arm.names)} move the end point on a surface or curve only: it fills no volume "
+            '(arms in a plane: "planar_boundary")',
+        )
+    return arm
+
+
+def spatial_boundary(arm: SpatialArm, cells: int, report: Callable[[int], None]) -> SpatialBoundary:
+    """Find the boundary with so many ``cells`` along its longest edge; ``report(points tested)``."""
+    inverse = ThreeJointInverse(arm)
+    lattice = _lattice(arm, inverse, cells, report)
+    crossings = lattice.crossings(inverse.reaches, report)
+    loops = lattice.loops(crossings)
+    sets = critical_sets(arm)
+    crossed = crossed_surfaces(sets, inverse, crossings, lattice.width)
+    patches, patch_of = boundary_patches(sets, crossed, loops, arm.size)
+    mesh = patch_mesh(loops, crossed, patches, patch_of, lattice.width)
+    measured = measures(mesh.curved, patches)
+    edges, corners = edges_and_corners(mesh)
+    volume, volume_error = joint_volume(inverse, report)
+    return SpatialBoundary(arm, patches, measured, edges, corners, mesh, lattice.width, volume, volume_error)
+
+
+def coloured(vertices: np.ndarray, faces: np.ndarray, patch: np.ndarray) -> trimesh.Trimesh:
+    """The mesh of triangles (T, 3) with the number ``surface`` and the colour of their patches (T,)."""
+    rgba = np.array([[*bytes.fromhex(color), 255] for color in COLORS], np.uint8)[patch % len(COLORS)]
+    mesh = trimesh.Trimesh(vertices, faces, face_colors=rgba, process=False)
+    mesh.face_attributes["surface"] = patch.astype(np.int32)
+    mesh.metadata = {"frame": "world", "unit": "m", "up": "z"}
+    return mesh
+
+
+def _lattice(arm: SpatialArm, inverse: ThreeJointInverse, cells: int, report: Callable[[int], None]) -> Lattice:
+    """Cells around everything that is reached: around samples, and more until none at the border is reached."""
+    points = arm.position(_samples(arm, _SAMPLES))
+    low, high = points.min(axis=0), points.max(axis=0)
+    margin = 0.01 * float((high - low).max())
+    while True:
+        lattice = Lattice.around(low - margin, high + margin, cells, inverse.reaches, report)
+        if lattice.closed:
+            return lattice
+        margin *= 3
+
+
+def _samples(arm: SpatialArm, count: int) -> np.ndarray:
+    """Displacements (count³, 3), both ends of each joint included."""
+    axes = [np.linspace(low, high, count) for low, high in zip(arm.low, arm.high, strict=True)]
+    return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, arm.n)

@@ -1,0 +1,268 @@
+"""The analysis ``boundary_patches``: the boundary of a spatial arm in patches, with edges, corners and a mesh."""
+
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from wsrender.boundary.spatial.critical_sets import CriticalSet
+from wsrender.boundary.spatial.edges import Corner, Edge
+from wsrender.boundary.spatial.patches import Patch
+from wsrender.boundary.spatial.primitives import Primitive
+from wsrender.boundary.spatial.spatial_arm import SpatialArm
+from wsrender.boundary.spatial.spatial_boundary import SpatialBoundary, coloured, spatial_boundary, three_joint_arm
+from wsrender.errors import InputError
+from wsrender.reachability.moving_joints import moving_joints
+from wsrender.reachability.targets import model_robot
+from wsrender.result import Result
+from wsrender.robot import Robot
+from wsrender.robots.chain import Chain
+from wsrender.run.provenance import job_entry, provenance, robot_entry
+from wsrender.run.settled_device import settled_device
+from wsrender.sampling import plan_sampling
+from wsrender.spec import BoundaryPatchesJob
+from wsrender.spec.sampling import Random
+from wsrender.volume.table import Table
+
+POINTS_PER_S = 1e5  # inverse kinematics on one CPU core
+POINTS_PER_CELL = 40.0  # of the surface: bisections of the edges that it crosses
+INTEGRATED = 1e5  # points of the volume's integral, about
+_LARGEST_LENGTH = 1e4  # bytes of a cell of the surface, with its triangles
+
+
+@dataclass(eq=False)
+class BoundaryPatchesPlan:
+    """A resolved ``boundary_patches`` job: one shard."""
+
+    job: BoundaryPatchesJob
+    robot: Robot
+    arm: SpatialArm
+    device: str
+    target: str
+
+    @property
+    def shards(self) -> list[tuple[int, int]]:
+        """One shard of about as many points as will be tested."""
+        return [(0, self._points)]
+
+    @property
+    def _points(self) -> int:
+        cells = self.job.cells
+        return int(cells**3 + POINTS_PER_CELL * 6 * cells**2 + INTEGRATED)
+
+    @property
+    def estimate(self) -> dict[str, float]:
+        """Points to be tested, bytes of lattice and mesh, seconds."""
+        points, cells = float(self._points), self.job.cells
+        size = 40.0 * cells**3 + _LARGEST_LENGTH * 6 * cells**2
+        return {"samples": points, "bytes": size, "seconds": points / POINTS_PER_S}
+
+    def resolved(self) -> dict[str, Any]:
+        """What is settled once: device, target, shards."""
+        return {"device": self.device, "target": self.target, "shards": [list(shard) for shard in self.shards]}
+
+    def run_shard(self, shard: int, progress: Callable[[int], None] | None, **execution: Any) -> dict[str, np.ndarray]:
+        """Patches, edges and corners as JSON, and the mesh."""
+        tested = 0
+
+        def report(points: int) -> None:
+            nonlocal tested
+            tested += points
+            if progress:
+                progress(min(tested, self._points))
+
+        found = spatial_boundary(self.arm, self.job.cells, report)
+        edges = [np.full(len(edge.points), k) for k, edge in enumerate(found.edges)]
+        return {
+            "about": np.array(json.dumps(_about(found))),
+            "vertices": found.mesh.vertices,
+            "faces": found.mesh.faces,
+            "patch": found.mesh.patch,
+            "edge": np.concatenate([*edges, np.empty(0, int)]).astype(np.int64),
+            "edge_points": np.concatenate([*(edge.points for edge in found.edges), np.empty((0, 3))]),
+        }
+
+    def merge(self, a: Any, b: Any) -> Any:
+        """There is one shard: nothing to merge."""
+        raise ValueError("boundary_patches has one shard")
+
+    def finish(self, partial: dict[str, np.ndarray], seconds: dict[str, float]) -> Result:
+        """Tables ``patches``, ``edges``, ``corners`` and ``edge_points``; the mesh ``patches``, a colour each."""
+        about = json.loads(str(partial["about"]))
+        mesh = coloured(partial["vertices"], partial["faces"], partial["patch"])
+        about["mesh"] = {
+            "mesh": "patches",
+            "triangles": len(mesh.faces),
+            "volume_m3": float(mesh.volume),
+            "watertight": bool(mesh.is_watertight),
+        }
+        document = {
+            "analysis": "boundary_patches",
+            "job": job_entry(self.job, self.robot),
+            "robot": robot_entry(self.robot),
+            **about,
+            "provenance": provenance("float64", self.target),
+            "timing_s": seconds,
+        }
+        tables = {
+            "patches": _patch_table(about["patches"]),
+            "edges": _edge_table(about["edges"]),
+            "corners": _corner_table(about["corners"]),
+            "edge_points": Table({"edge": partial["edge"], "position": partial["edge_points"]}, {"position": "m"}),
+        }
+        return Result(
+            document, meshes={"patches": mesh}, tables={name: table for name, table in tables.items() if len(table)}
+        )
+
+
+def plan_boundary_patches(
+    job: BoundaryPatchesJob, robot: Robot, resolved: dict[str, Any] | None = None
+) -> BoundaryPatchesPlan:
+    """Resolve the job, or take what `BoundaryPatchesPlan.resolved` of an earlier plan of it says.
+
+    Raises ModelError where not three joints move the end effector through a volume; InputError for a robot without a
+    model, unknown joints to lock or values beyond their limits.
+    """
+    chain = held_chain(model_robot(robot).chain, job.locked)
+    arm = three_joint_arm(moving_joints(chain)[0])
+    return BoundaryPatchesPlan(job, robot, arm, *settled_device("cpu", resolved))
+
+
+def held_chain(chain: Chain, locked: Mapping[str, float]) -> Chain:
+    """The chain with joints held, by name, at a value; InputError for an unknown joint or a value beyond its limits."""
+    try:
+        plan_sampling(chain, Random(1, locked=dict(locked)))  # checks names and values
+    except InputError as error:
+        raise InputError(error.field.removeprefix("sampling."), error.message) from None
+    return chain.held(locked)
+
+
+def _about(found: SpatialBoundary) -> dict[str, Any]:
+    size = found.arm.size
+    return {
+        "joints": list(found.arm.names),
+        "volume_m3": {
+            "integrated": found.volume,
+            "enclosed_by_patches": found.measures.volume,
+        },
+        "integration_error_m3": found.volume_error,
+        "cell_width_m": found.width,
+        "patches": [
+            _patch_entry(patch, float(area), size)
+            for patch, area in zip(found.patches, found.measures.areas, strict=True)
+        ],
+        "edges": [_edge_entry(edge) for edge in found.edges],
+        "corners": [_corner_entry(corner) for corner in found.corners],
+    }
+
+
+def _patch_entry(patch: Patch, area: float, size: float) -> dict[str, Any]:
+    """Kind and numbers of a patch; of a free form, of the primitive that is nearest to it, and how far it is off."""
+    fit = patch.fit
+    entry: dict[str, Any] = {"kind": patch.kind, "method": patch.method}
+    if fit is not None and patch.exact:
+        entry |= _primitive_entry(fit.primitive)
+    entry |= {
+        "generated_by": [_generator_entry(each) for each in patch.sets],
+        "area_m2": area,
+        "residual_m": None if fit is None else fit.residual,
+        "points_fitted": len(patch.rows),
+    }
+    if fit is not None and not patch.exact:
+        entry["nearest"] = {"kind": fit.primitive.kind, **_primitive_entry(fit.primitive)}
+    return entry
+
+
+def _generator_entry(each: CriticalSet) -> dict[str, Any]:
+    free = [each.arm.names[i] for i in each.free]
+    return {"limits": [stop.text for stop in each.stops], "free": free, "singular": each.singular}
+
+
+def _primitive_entry(primitive: Primitive) -> dict[str, Any]:
+    names = {"plane": ("point_m", "normal"), "cone": ("apex_m", "axis"), "cylinder": ("point_m", "axis")}
+    point, axis = names.get(primitive.kind, ("center_m", "axis"))
+    numbers = {
+        "radius_m": primitive.radius,
+        "tube_radius_m": primitive.tube_radius,
+        "half_angle_rad": primitive.half_angle,
+    }
+    entry: dict[str, Any] = {point: primitive.point.tolist()}
+    if primitive.axis is not None:
+        entry[axis] = primitive.axis.tolist()
+    return entry | {name: value for name, value in numbers.items() if value}
+
+
+def _edge_entry(edge: Edge) -> dict[str, Any]:
+    entry: dict[str, Any] = {
+        "kind": edge.kind,
+        "patches": list(edge.patches),
+        "corners": list(edge.corners),
+        "length_m": edge.length,
+        "angle_between_normals_rad": list(edge.angle),
+        "residual_m": edge.residual,
+    }
+    if edge.center is not None and edge.axis is not None:
+        entry |= {"center_m": edge.center.tolist(), "axis": edge.axis.tolist(), "radius_m": edge.radius}
+    return entry
+
+
+def _corner_entry(corner: Corner) -> dict[str, Any]:
+    return {"position_m": corner.point.tolist(), "patches": list(corner.patches)}
+
+
+def _patch_table(patches: list[dict[str, Any]]) -> Table:
+    """A row per patch, in the order of the document; NaN where a kind has no such number."""
+    points = [patch.get("center_m") or patch.get("point_m") or patch.get("apex_m") or [np.nan] * 3 for patch in patches]
+    axes = [patch.get("axis") or patch.get("normal") or [np.nan] * 3 for patch in patches]
+    numbers = ("radius_m", "tube_radius_m", "half_angle_rad", "area_m2", "residual_m")
+    columns = {
+        "patch": np.arange(len(patches)),
+        "kind": _texts(patch["kind"] for patch in patches),
+        "generated_by": _texts(generator_text(patch) for patch in patches),
+        "method": _texts(patch["method"] for patch in patches),
+        "point": np.array(points, float).reshape(-1, 3),
+        "axis": np.array(axes, float).reshape(-1, 3),
+        **{name: _numbers(patch.get(name) for patch in patches) for name in numbers},
+    }
+    units = {"point": "m", "radius_m": "m", "tube_radius_m": "m", "half_angle_rad": "rad"}
+    return Table(columns, units | {"area_m2": "m^2", "residual_m": "m"})
+
+
+def generator_text(patch: dict[str, Any]) -> str:
+    """What generates a patch, in a few words: ``joint2 upper`` or ``singular``."""
+    return " or ".join(
+        ", ".join([*each["limits"], *(["singular"] if each["singular"] else [])]) for each in patch["generated_by"]
+    )
+
+
+def _edge_table(edges: list[dict[str, Any]]) -> Table:
+    columns = {
+        "edge": np.arange(len(edges)),
+        "kind": _texts(edge["kind"] for edge in edges),
+        "patches": np.array([edge["patches"] for edge in edges], int).reshape(-1, 2),
+        "length_m": _numbers(edge["length_m"] for edge in edges),
+        "radius_m": _numbers(edge.get("radius_m") for edge in edges),
+        "angle_rad": np.array([edge["angle_between_normals_rad"] for edge in edges], float).reshape(-1, 2),
+        "residual_m": _numbers(edge["residual_m"] for edge in edges),
+    }
+    return Table(columns, {"length_m": "m", "radius_m": "m", "angle_rad": "rad", "residual_m": "m"})
+
+
+def _corner_table(corners: list[dict[str, Any]]) -> Table:
+    return Table(
+        {
+            "position": np.array([corner["position_m"] for corner in corners], float).reshape(-1, 3),
+            "patches": _texts(" ".join(map(str, corner["patches"])) for corner in corners),
+        },
+        {"position": "m"},
+    )
+
+
+def _texts(values: Any) -> np.ndarray:
+    return np.array(list(values), dtype=str)
+
+
+def _numbers(values: Any) -> np.ndarray:
+    return np.array([np.nan if value is None else value for value in values], float)
