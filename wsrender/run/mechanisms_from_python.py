@@ -12,8 +12,9 @@ def parallel_workspace(mechanism: Any, *, progress: Progress | bool | None = Non
     """Workspace of a parallel mechanism.
 
     ``mechanism`` is a name of the library (stewart_gough, six_pus, delta, master_4dof) or a document: {"library": name,
-    …} with other parameters, or {"legs": […]}, serial ones among them. ``fields`` are the other fields of the job document ``parallel_workspace``:
-    kind, orientation, position_m, orientations, method, voxel_size_m, indices, refined_volume …
+    …} with other parameters, or {"legs": […]}, serial ones among them. ``fields`` are the other fields of the job
+    document ``parallel_workspace``: kind, orientation, position_m, orientations, method, voxel_size_m, indices,
+    refined_volume …
 
     Raises DocumentError, InputError, ModelError, ResourceError.
     """
