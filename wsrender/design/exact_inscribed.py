@@ -14,6 +14,7 @@ import numpy as np
 from scipy import optimize
 
 from wsrender.parallel.ball_region import BallRegion
+from wsrender.volume.lattice import round_to_digits
 
 FIRST_CELLS = 12  # along the longest side of the box
 GAP = 2e-3  # of the largest size, to which it is proved; where many points are as good, MOST_CELLS ends the proof
@@ -21,6 +22,7 @@ MOST_CELLS = 60_000
 SEARCHED_LEVELS = 3  # of cells
 STARTS = 6  # of the search, from the best cells that are apart
 STEP = 1e-6  # of the box, for central differences
+DIGITS = 10  # of a size: the last ones of SLSQP depend on how many threads the linear algebra has
 LAST_CHANGE = 1e-13  # of the size in units of the box, at which SLSQP ends
 
 Sizes = Callable[[np.ndarray], np.ndarray]
@@ -29,7 +31,10 @@ Sizes = Callable[[np.ndarray], np.ndarray]
 
 @dataclass(frozen=True, eq=False)
 class Inscribed:
-    """Radius of a ball, or half the edge of a cube, about ``center`` (3,) [m]; none is larger than ``at_most`` [m]."""
+    """Radius of a ball, or half the edge of a cube, about ``center`` (3,) [m]; none is larger than ``at_most`` [m].
+
+    ``size`` is rounded to ten digits.
+    """
 
     size: float
     center: np.ndarray
@@ -143,7 +148,7 @@ def _largest(sizes: Sizes, surfaces: _Surfaces, slope: float) -> Inscribed | Non
         open_cells = cells[bounds > best * (1 + GAP)]
         if not len(open_cells) or 8 * len(open_cells) > MOST_CELLS or half < STEP * extent:
             at_most = max(best * (1 + GAP), float(bounds.max())) if len(open_cells) else best * (1 + GAP)
-            return Inscribed(best, center, at_most) if best > 0 else None
+            return Inscribed(round_to_digits(best, DIGITS), center, at_most) if best > 0 else None
         half /= 2
         corners = np.array(np.meshgrid(*[[-half, half]] * 3)).reshape(3, -1).T
         cells = (open_cells[:, None] + corners).reshape(-1, 3)
