@@ -141,6 +141,15 @@ def test_general_arm_is_free_form_and_no_primitive_is_forced():
     assert found.measures.volume == pytest.approx(found.volume, rel=1e-2)
 
 
+def test_crossings_that_no_critical_set_explains_are_kept_as_they_are(monkeypatch):
+    """Without the sets of the singular configurations an elbow's shell is free form, from its points alone."""
+    monkeypatch.setattr("wsrender.boundary.spatial.spatial_boundary.critical_sets", lambda arm: [])
+    found = boundary_of(elbow(), 12)
+    assert {patch.method for patch in found.patches} == {"fitted"}
+    assert {patch.kind for patch in found.patches} == {"free_form"}
+    assert found.measures.volume == pytest.approx(found.volume, rel=0.1)
+
+
 def test_meetings_with_critical_sets_are_on_them():
     """Points found on lines: the Jacobian of the free joints has rank 2, and its normal is the one returned."""
     arm = arm_of(general(((-100, 100), (-60, 80), (20, 130))))

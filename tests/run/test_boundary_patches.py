@@ -30,7 +30,7 @@ def result():
 def test_document_and_tables(result):
     document = result.document
     assert document["volume_m3"]["integrated"] == pytest.approx(28 * np.pi / 3 * (1 + 3**0.5), rel=1e-9)
-    assert document["volume_m3"]["enclosed_by_patches"] == pytest.approx(80.107913632, rel=1e-6)
+    assert document["volume_m3"]["enclosed"] == pytest.approx(80.107913632, rel=1e-6)
     sphere = document["patches"][0]
     assert (sphere["kind"], sphere["method"]) == ("sphere", "critical_set")
     assert sphere["radius_m"] == pytest.approx(4) and sphere["center_m"] == pytest.approx([0, 0, 0], abs=1e-9)

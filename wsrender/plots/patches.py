@@ -10,7 +10,7 @@ from wsrender.volume.table import Table
 if TYPE_CHECKING:
     import trimesh
 
-_NUMBERS = {"radius_m": "R {:.4g} m", "tube_radius_m": "r {:.4g} m"}
+_NUMBERS = {"radius_m": "R {:.3g}", "tube_radius_m": "r {:.3g}"}
 _LISTED = 18  # patches, largest first, that the legend names
 
 
@@ -26,8 +26,10 @@ def faces_of_patches(mesh: "trimesh.Trimesh", patches: Table) -> Faces:
 
 
 def _label(patches: Table, k: int) -> str:
-    """Such as ``0 sphere R 4 m: joint3 upper``."""
+    """Such as ``0 torus R 2 r 0.5 m: joint3 upper``."""
     numbers = [form.format(patches[name][k]) for name, form in _NUMBERS.items() if np.isfinite(patches[name][k])]
+    if numbers:
+        numbers.append("m")
     if np.isfinite(patches["half_angle_rad"][k]):
         numbers.append(f"{np.rad2deg(patches['half_angle_rad'][k]):.4g}°")
     words = " ".join([str(k), str(patches["kind"][k]).replace("_", " "), *numbers])

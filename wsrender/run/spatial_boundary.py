@@ -145,7 +145,7 @@ def _about(found: SpatialBoundary) -> dict[str, Any]:
         "joints": list(found.arm.names),
         "volume_m3": {
             "integrated": found.volume,
-            "enclosed_by_patches": found.measures.volume,
+            "enclosed": found.measures.volume,
         },
         "integration_error_m3": found.volume_error,
         "cell_width_m": found.width,

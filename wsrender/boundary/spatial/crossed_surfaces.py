@@ -19,7 +19,7 @@ NONE = -1
 class CrossedSurfaces:
     """Of every crossing: ``critical_set`` (C,) by index or NONE, ``point`` and outward ``normal`` (C, 3), ``d`` (C, n).
 
-    Where there is no critical set the point is that of the bisection, and the normal NaN.
+    Where no critical set was met the point is that of the bisection, and the normal along the edge.
     """
 
     critical_set: np.ndarray
@@ -39,7 +39,7 @@ def crossed_surfaces(
     found = CrossedSurfaces(
         np.full(count, NONE),
         (crossings.inside + crossings.outside) / 2,
-        np.full((count, 3), np.nan),
+        crossings.outward,
         np.full((count, arm.n), np.nan),
     )
     for index, each in enumerate(sets):
