@@ -26,7 +26,7 @@ from wsrender.errors import NumericalError
 from wsrender.sampling import SamplingPlan
 from wsrender.volume.lattice import LatticeBlock
 
-CHUNK_CPU, CHUNK_CUDA, CHUNK_ROWS, CHUNK_GIVEN = 1 << 20, 1 << 28, 1 << 20, 1 << 14
+CHUNK_CPU, CHUNK_CUDA, CHUNK_ROWS, CHUNK_GIVEN = 1 << 20, 1 << 28, 1 << 18, 1 << 14
 CHUNK_LEAST, CHUNKS_PER_THREAD = 1 << 15, 8
 THREADS_PER_SM = 2048  # of a GPU: a whole multiple of those that run at a time
 VOXELS_ABSORBED = 1 << 14
