@@ -12,6 +12,7 @@ from wsrender.boundary.planar.inverse_solutions import NumberRegions
 from wsrender.boundary.planar.monte_carlo import MonteCarloBoundary, monte_carlo_boundary
 from wsrender.boundary.planar.planar_chain import PlanarChain, planar_chain
 from wsrender.boundary.planar.segments import segment_entry, segment_table
+from wsrender.errors import NumericalError
 from wsrender.reachability.targets import model_robot
 from wsrender.result import Result
 from wsrender.robot import Robot
@@ -119,12 +120,23 @@ def _exact_entry(exact: ExactBoundary) -> dict[str, Any]:
         "area_m2": float(exact.area),
         "perimeter_m": exact.perimeter,
         "vertices_m": exact.vertices.tolist(),
-        "inverse_solutions": _regions_entry("solutions", exact.inverse_solution_regions),
-        "self_motions": _regions_entry("components", exact.self_motion_regions),
+        **_numbers_entry(exact),
         "loops": [
             {"hole": hole, "segments": [segment_entry(segment) for segment in loop]}
             for hole, loop in zip(holes, exact.segments, strict=True)
         ],
+    }
+
+
+def _numbers_entry(exact: ExactBoundary) -> dict[str, Any]:
+    """Regions by number of postures or self-motions; where curves nearly coincide the boundary stands without them."""
+    try:
+        solutions, motions = exact.inverse_solution_regions, exact.self_motion_regions
+    except NumericalError as error:
+        return {"inverse_solutions": None, "self_motions": None, "regions_not_told_apart": str(error)}
+    return {
+        "inverse_solutions": _regions_entry("solutions", solutions),
+        "self_motions": _regions_entry("components", motions),
     }
 
 
@@ -166,8 +178,8 @@ def _point_table(exact: ExactBoundary, points: np.ndarray) -> Table:
         "nearest": nearest.point,
         "segment": nearest.segment,
     }
-    if exact.inverse_solution_regions is not None:
+    if exact.has_inverse_solutions:
         columns["inverse_solutions"] = exact.inverse_solutions(points)
-    if exact.self_motion_regions is not None:
+    if exact.has_self_motions:
         columns["self_motions"] = exact.self_motions(points)
     return Table(columns, dict.fromkeys(("point", "distance", "nearest"), "m"))

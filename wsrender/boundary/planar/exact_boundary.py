@@ -143,23 +143,27 @@ class ExactBoundary:
 
     @cached_property
     def inverse_solution_regions(self) -> list[NumberRegions] | None:
-        """Regions by number of inverse solutions; None unless two joints move the tip over an area."""
-        return solution_regions(self.reached, self.chain.size) if self._sweeps(2) else None
+        """Regions by number of inverse solutions; None unless two joints move the tip over an area.
+
+        Raises NumericalError where curves nearly coincide and cannot be told apart.
+        """
+        return solution_regions(self.reached, self.chain.size) if self.has_inverse_solutions else None
 
     @cached_property
     def self_motion_regions(self) -> list[NumberRegions] | None:
         """Regions by number of separate self-motions; None unless three joints move the tip, two of them over an area.
 
-        A self-motion is a connected set of postures that all reach a point. The two are the last ones.
+        A self-motion is a connected set of postures that all reach a point. The two are the last ones. Raises
+        NumericalError where curves nearly coincide and cannot be told apart.
         """
-        return self_motion_regions(self.reached, self.chain.size) if self._sweeps(3) else None
+        return self_motion_regions(self.reached, self.chain.size) if self.has_self_motions else None
 
     def inverse_solutions(self, points: Any) -> np.ndarray:
         """Number of inverse solutions, whole turns left aside, at points (N, 2) [m] of a two-joint arm, (N,) int.
 
         On a curve where the number changes, that of either side. Raises InputError for other arms.
         """
-        if not self._sweeps(2):
+        if not self.has_inverse_solutions:
             raise InputError("robot", "has no number of inverse solutions: two joints must move the tip over an area")
         return inverse_solutions(self.reached, plane_points(points) - self.chain.shift)
 
@@ -168,10 +172,20 @@ class ExactBoundary:
 
         On a curve where the number changes, that of either side. Raises InputError for other arms.
         """
-        if not self._sweeps(3):
+        if not self.has_self_motions:
             what = "three joints must move the tip, the last two over an area"
             raise InputError("robot", f"has no number of self-motions: {what}")
         return self_motions(self.reached, plane_points(points) - self.chain.shift, self.chain.size)
+
+    @property
+    def has_inverse_solutions(self) -> bool:
+        """Whether two joints move the tip, over an area: then finitely many postures reach a point."""
+        return self._sweeps(2)
+
+    @property
+    def has_self_motions(self) -> bool:
+        """Whether three joints move the tip, the last two over an area: then curves of postures reach a point."""
+        return self._sweeps(3)
 
     def _sweeps(self, joints: int) -> bool:
         """Whether so many joints move the tip, the last two of them over an area."""

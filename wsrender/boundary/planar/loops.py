@@ -6,6 +6,7 @@ import numpy as np
 
 from wsrender.boundary.planar.curves import Curves
 from wsrender.boundary.planar.planar_set import PlanarSet
+from wsrender.errors import NumericalError
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,10 +26,12 @@ def loops_of(region: PlanarSet) -> list[Loop]:
     """The loops of a region, the outer one first, then the holes by falling size.
 
     Where pieces meet at a point that is not passed twice in a row, the path turns to the right: a region stays one
-    where it touches itself.
+    where it touches itself. Raises NumericalError where pieces do not follow each other.
     """
     areas = signed_areas(region.curves, region.sign)
     following = _following(region)
+    if len(set(following)) < len(following):
+        raise NumericalError("boundary pieces do not follow each other: curves nearly coincide")
     left, loops = dict.fromkeys(range(len(following))), []
     while left:
         rows = [next(iter(left))]
