@@ -7,6 +7,7 @@ from wsrender.parallel.five_bar.conditioning import (
     parallel_jacobian,
     serial_jacobian,
 )
+from wsrender.parallel.five_bar.gradients import conditioning_gradients
 from wsrender.parallel.five_bar.mechanism import ASSEMBLY_MODES, WORKING_MODES, FiveBar
 from wsrender.parallel.five_bar.region import workspace
 
@@ -16,6 +17,7 @@ __all__ = [
     "Conditioning",
     "FiveBar",
     "conditioning",
+    "conditioning_gradients",
     "jacobian",
     "parallel_jacobian",
     "serial_jacobian",
