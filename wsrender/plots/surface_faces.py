@@ -36,15 +36,15 @@ def surface_faces(faces: Faces, *, title: str = "", frame: str = "world") -> Fig
     if len(faces.triangles) == 0:
         raise InputError("mesh", "has no triangles: there is nothing to draw")
     figure = new_figure(11.6, 4.6, layout=None)
-    figure.text(0.02, 0.03, f"{frame} frame", fontsize=8, color=GREY)
+    figure.text(0.02, 0.02, f"{frame} frame", fontsize=8, color=GREY)
     for name, azimuth, elevation, left in _VIEWS:
-        axes = add_space(figure, faces.vertices, (left, 0.0, 0.38, 0.92))
+        axes = add_space(figure, faces.vertices, (left, 0.06, 0.38, 0.83))
         axes.patch.set_visible(False)  # it would hide the labels of its neighbour
         axes.set_proj_type("ortho")  # one direction of sight, which decides what hides what
         axes.view_init(elevation, azimuth)
         axes.add_collection3d(shaded(faces, light=_LIGHT * np.sign(elevation)))
         _draw_borders(axes, faces, _direction(azimuth, elevation))
-        figure.text(left + 0.19, 0.03, name, ha="center", fontsize=9, color=GREY)
+        figure.text(left + 0.19, 0.02, name, ha="center", fontsize=9, color=GREY)
     handles = [Patch(facecolor=faces.colors[k], label=label) for k, label in faces.labels.items()]
     handles += _border_handles(faces)
     figure.legend(handles=handles, loc="center right", bbox_to_anchor=(0.998, 0.5), frameon=False, fontsize=8)
