@@ -10,25 +10,15 @@ from wsrender_server.local_server import LocalServer
 
 import wsrender as ws
 from tests.server.end_to_end.acceptance import LONG, PATIENCE_S, assert_same_result
+from tests.server.jobs.waiting import partial_times
 
 pytestmark = pytest.mark.usefixtures("small_shards")
-
-
-def partials(data_dir: Path) -> dict[str, int]:
-    """Partial results kept so far, and when each was written [ns]."""
-    written = {}
-    for path in data_dir.glob("partials/*/*.npz"):
-        try:
-            written[path.name] = path.stat().st_mtime_ns
-        except FileNotFoundError:
-            continue  # finished a moment ago
-    return {name: at for name, at in written.items() if not name.startswith(".")}
 
 
 def wait_for_partials(data_dir: Path, count: int) -> dict[str, int]:
     """Wait until there are so many."""
     end = time.monotonic() + PATIENCE_S
-    while len(found := partials(data_dir)) < count:
+    while len(found := partial_times(data_dir)) < count:
         assert time.monotonic() < end
         time.sleep(0.02)
     return found
@@ -55,7 +45,7 @@ def test_server_killed_in_mid_job(server, long_local, kill):
         server.start()
         again = set()
         while waiting.is_alive():
-            now = partials(server.data_dir)
+            now = partial_times(server.data_dir)
             again |= {name for name in before.keys() & now.keys() if now[name] != before[name]}
             waiting.join(0.05)
         assert job.state == "succeeded"

@@ -16,7 +16,7 @@ from wsrender_server.settings import Settings
 from tests.server.conftest import free_port, wait_for_port
 from tests.server.jobs.documents import canonical
 from tests.server.jobs.server_process import WORK, ServerProcess
-from tests.server.jobs.waiting import comparable, ended, local_document, partial_times, wait_until
+from tests.server.jobs.waiting import PATIENCE_S, comparable, ended, local_document, partial_times, wait_until
 
 SHARD = 1 << 17
 JOB = {"robot": "ur5e", "sampling": {"method": "sobol", "count": 24 * SHARD}, "voxel_size_m": 0.1, "device": "cpu"}
@@ -69,7 +69,7 @@ class Cluster:
             command += [f"--tls-{option.replace('_', '-')}", getattr(self.settings, f"tls_{name}")]
         with (self.folder / "scheduler.log").open("ab") as log:
             self.scheduler = subprocess.Popen(command, stdout=log, stderr=log)
-        wait_for_port(port, self.scheduler, 60)
+        wait_for_port(port, self.scheduler, PATIENCE_S)
 
     def stop(self):
         for worker in self.workers:

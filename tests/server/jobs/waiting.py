@@ -1,11 +1,15 @@
 """Waiting for jobs, and comparing what they give with a local run."""
 
+import fnmatch
 import json
+import os
 import time
+from contextlib import suppress
+from pathlib import Path
 
 import wsrender as ws
 
-PATIENCE_S = 120.0  # machines are shared, and kernels may have to be compiled
+PATIENCE_S = 300.0  # machines are shared, and kernels may have to be compiled
 
 
 def wait_until(condition, timeout=PATIENCE_S, what="the condition"):
@@ -49,9 +53,9 @@ def local_document(document, folder):
 def partial_times(data_dir):
     """Modification times of the partial results on disk, by path [ns]."""
     times = {}
-    for path in data_dir.glob("partials/*/[0-9]*.npz"):
-        try:
-            times[str(path.relative_to(data_dir))] = path.stat().st_mtime_ns
-        except FileNotFoundError:
-            continue  # its computation ended a moment ago
+    # A computation may end at any moment: os.walk passes over a folder that is gone, unlike Path.glob.
+    for folder, _, names in os.walk(data_dir / "partials"):
+        for path in (Path(folder, name) for name in fnmatch.filter(names, "[0-9]*.npz")):
+            with suppress(FileNotFoundError):
+                times[str(path.relative_to(data_dir))] = path.stat().st_mtime_ns
     return times
