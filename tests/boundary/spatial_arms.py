@@ -1,7 +1,7 @@
 """Spatial arms of the tests, of three joints that move the end point."""
 
 import wsrender as ws
-from wsrender.boundary.spatial.spatial_boundary import spatial_boundary, three_joint_arm
+from wsrender.boundary.spatial.spatial_boundary import solid_arm, spatial_boundary
 from wsrender.reachability.moving_joints import moving_joints
 
 
@@ -30,7 +30,7 @@ SCARA = [turning(-60, 60, a=0.3), turning(20, 150, a=0.2, alpha_deg=180), slidin
 
 
 def arm_of(subject):
-    return three_joint_arm(moving_joints(subject.chain)[0])
+    return solid_arm(moving_joints(subject.chain)[0])
 
 
 def boundary_of(subject, cells=24):

@@ -103,10 +103,30 @@ def test_locked_joints_leave_three():
     assert planned.arm.position(d) == pytest.approx(robot.forward_kinematics(q)[:, :3, 3], abs=1e-9)
 
 
+def test_more_joints_than_three_are_fitted(tmp_path):
+    """The slide of the spherical arm in two parts: the volume that is enclosed beside the refined one."""
+    slides = [{"alpha_deg": 90, "joint": "prismatic", "limits": [1, 2]}, {"joint": "prismatic", "limits": [1, 2]}]
+    job = {**JOB, "robot": {"dh": {"convention": "modified", "name": "longer", "rows": [*ROWS[:2], *slides]}}}
+    planned, counted = plan(job), []
+    found = finish(planned, run_shard(planned, 0, counted.append))
+    assert counted == sorted(counted) and 0 < counted[-1] <= planned.shards[0][1]
+    document = found.document
+    volumes = document["volume_m3"]
+    low, high = volumes["refined"]["ci95"]
+    assert low < 80.107913632 < high and volumes["enclosed"] == pytest.approx(80.107913632, rel=1e-5)
+    assert {patch["method"] for patch in document["patches"]} == {"fitted"}
+    assert all(patch["generated_by"] == [] for patch in document["patches"])
+    assert max(patch["residual_m"] for patch in document["patches"]) <= document["fit_tolerance_m"]
+    assert sorted(found.tables["patches"]["kind"]) == sorted(["cone", "cone", "plane", "plane", "sphere", "sphere"])
+    assert found.meshes["patches"].is_watertight
+    json.dumps(document, allow_nan=False)
+    found.save(tmp_path / "out")
+    assert (tmp_path / "out/plots/patches.png").stat().st_size > 10_000
+
+
 @pytest.mark.parametrize(
     ("fields", "error", "message"),
     [
-        ({"robot": "ur5e"}, ws.ModelError, "5 joints move the end point"),
         ({"robot": "articulated", "locked": {"elbow": 0}}, ws.InputError, "locked.elbow: unknown joint"),
         ({"robot": "articulated", "locked": {"joint1": 9}}, ws.InputError, "locked.joint1: 9.0 is outside"),
         ({"robot": "articulated", "locked": {"joint1": 1}}, ws.ModelError, "2 joints move the end point"),

@@ -125,7 +125,8 @@ def _planar(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
 def _patches(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
     """How many patches of which kind, edges and corners the boundary of a spatial arm has, and its volume."""
     if document.get("analysis") == "boundary_patches":
-        yield "volume", f"{document['volume_m3']['integrated']:.10g} m³"
+        if "integrated" in document["volume_m3"]:
+            yield "volume", f"{document['volume_m3']['integrated']:.10g} m³"
         counts = Counter(patch["kind"].replace("_", " ") for patch in document["patches"])
         kinds = ", ".join(f"{count} {kind}" for kind, count in counts.items())
         yield "patches", f"{kinds}; {len(document['edges'])} edges, {len(document['corners'])} corners"

@@ -14,7 +14,13 @@ def boundary_patches(robot: Any, *, progress: Progress | bool | None = None, **f
     ``boundary_patches``: ``locked`` (joints held, by name), ``cells``. The result has tables ``patches``, ``edges``,
     ``corners`` and the mesh ``patches``; its document the volume.
 
-    Raises ModelError where not three joints move the end effector through a volume; DocumentError, InputError.
+    Where three joints move the end effector patches are those of its critical sets (``method`` "critical_set"). Where
+    more do they are fitted to points found by inverse kinematics ("fitted"): primitives where the points are within
+    ``fit_tolerance_m``, 2e-6 of the reach (single ones at edges within eight times that: ``residual_m`` says); free
+    forms, with the nearest primitive, elsewhere. Free forms that touch smoothly are one patch; where primitives do the
+    edge is known to a cell. Points that stay ``undecided`` count as outside. A ur5e takes some 12 s of CPU time.
+
+    Raises ModelError where the joints do not move the end effector through a volume; DocumentError, InputError.
     """
     subject = as_subject(robot)
     return execute_here({"analysis": "boundary_patches", **arm_entry(subject), **plain(fields)}, subject, progress)

@@ -9,17 +9,28 @@ import numpy as np
 
 from wsrender.boundary.spatial.critical_sets import CriticalSet
 from wsrender.boundary.spatial.edges import Corner, Edge
+from wsrender.boundary.spatial.fitted_boundary import TOLERANCE, fitted_boundary
 from wsrender.boundary.spatial.patches import Patch
 from wsrender.boundary.spatial.primitives import Primitive
 from wsrender.boundary.spatial.spatial_arm import SpatialArm
-from wsrender.boundary.spatial.spatial_boundary import SpatialBoundary, coloured, spatial_boundary, three_joint_arm
+from wsrender.boundary.spatial.spatial_boundary import (
+    JOINTS,
+    CriticalBoundary,
+    SpatialBoundary,
+    coloured,
+    solid_arm,
+    spatial_boundary,
+)
 from wsrender.errors import InputError
 from wsrender.reachability.moving_joints import moving_joints
+from wsrender.reachability.reached_points import ReachedPoints
+from wsrender.reachability.refined_volume import refined_volume
 from wsrender.reachability.targets import model_robot
 from wsrender.result import Result
 from wsrender.robot import Robot
 from wsrender.robots.chain import Chain
 from wsrender.run.provenance import job_entry, provenance, robot_entry
+from wsrender.run.refined import volume_entry
 from wsrender.run.settled_device import settled_device
 from wsrender.sampling import plan_sampling
 from wsrender.spec import BoundaryPatchesJob
@@ -28,7 +39,8 @@ from wsrender.volume.table import Table
 
 POINTS_PER_S = 1e5  # inverse kinematics on one CPU core
 POINTS_PER_CELL = 40.0  # of the surface: bisections of the edges that it crosses
-INTEGRATED = 1e5  # points of the volume's integral, about
+INTEGRATED = 1e5  # points of the volume's integral, or of its estimate, about
+VOLUME_TOLERANCE = 0.005  # of the volume that is estimated beside a fitted boundary
 _LARGEST_LENGTH = 1e4  # bytes of a cell of the surface, with its triangles
 
 
@@ -38,6 +50,7 @@ class BoundaryPatchesPlan:
 
     job: BoundaryPatchesJob
     robot: Robot
+    chain: Chain
     arm: SpatialArm
     device: str
     target: str
@@ -73,15 +86,37 @@ class BoundaryPatchesPlan:
             if progress:
                 progress(min(tested, self._points))
 
-        found = spatial_boundary(self.arm, self.job.cells, report)
+        found, about = self._found(report)
         edges = [np.full(len(edge.points), k) for k, edge in enumerate(found.edges)]
         return {
-            "about": np.array(json.dumps(_about(found))),
+            "about": np.array(json.dumps(_about(found) | about)),
             "vertices": found.mesh.vertices,
             "faces": found.mesh.faces,
             "patch": found.mesh.patch,
             "edge": np.concatenate([*edges, np.empty(0, int)]).astype(np.int64),
             "edge_points": np.concatenate([*(edge.points for edge in found.edges), np.empty((0, 3))]),
+        }
+
+    def _found(self, report: Callable[[int], None]) -> tuple[SpatialBoundary, dict[str, Any]]:
+        """The boundary by critical sets, of arms of more joints by fits, and what the document says of either."""
+        if self.arm.n == JOINTS:
+            exact = spatial_boundary(self.arm, self.job.cells, report)
+            return exact, _integrated(exact)
+        reached = ReachedPoints(self.chain, self.device)
+        fitted = fitted_boundary(self.arm, reached, self.job.cells, report)
+        decided = 0
+
+        def volume_progress(done: int, _: int) -> None:
+            nonlocal decided
+            report(max(done - decided, 0))
+            decided = max(done, decided)
+
+        estimate, refined = refined_volume(self.chain, VOLUME_TOLERANCE, device=self.device, progress=volume_progress)
+        volumes = {"enclosed": fitted.measures.volume, "refined": volume_entry(estimate, refined, VOLUME_TOLERANCE)}
+        return fitted, {
+            "volume_m3": volumes,
+            "fit_tolerance_m": TOLERANCE * self.arm.size,
+            "undecided": reached.undecided,
         }
 
     def merge(self, a: Any, b: Any) -> Any:
@@ -122,12 +157,11 @@ def plan_boundary_patches(
 ) -> BoundaryPatchesPlan:
     """Resolve the job, or take what `BoundaryPatchesPlan.resolved` of an earlier plan of it says.
 
-    Raises ModelError where not three joints move the end effector through a volume; InputError for a robot without a
+    Raises ModelError where the joints do not move the end effector through a volume; InputError for a robot without a
     model, unknown joints to lock or values beyond their limits.
     """
-    chain = held_chain(model_robot(robot).chain, job.locked)
-    arm = three_joint_arm(moving_joints(chain)[0])
-    return BoundaryPatchesPlan(job, robot, arm, *settled_device("cpu", resolved))
+    chain = moving_joints(held_chain(model_robot(robot).chain, job.locked))[0]
+    return BoundaryPatchesPlan(job, robot, chain, solid_arm(chain), *settled_device("cpu", resolved))
 
 
 def held_chain(chain: Chain, locked: Mapping[str, float]) -> Chain:
@@ -143,11 +177,6 @@ def _about(found: SpatialBoundary) -> dict[str, Any]:
     size = found.arm.size
     return {
         "joints": list(found.arm.names),
-        "volume_m3": {
-            "integrated": found.volume,
-            "enclosed": found.measures.volume,
-        },
-        "integration_error_m3": found.volume_error,
         "cell_width_m": found.width,
         "patches": [
             _patch_entry(patch, float(area), size)
@@ -155,6 +184,13 @@ def _about(found: SpatialBoundary) -> dict[str, Any]:
         ],
         "edges": [_edge_entry(edge) for edge in found.edges],
         "corners": [_corner_entry(corner) for corner in found.corners],
+    }
+
+
+def _integrated(found: CriticalBoundary) -> dict[str, Any]:
+    return {
+        "volume_m3": {"integrated": found.volume, "enclosed": found.measures.volume},
+        "integration_error_m3": found.volume_error,
     }
 
 

@@ -13,9 +13,10 @@ FEWEST_CELLS, MOST_CELLS = 8, 256
 class BoundaryPatchesJob(Arm):
     """The boundary surface of the positions that a spatial arm reaches, segmented in patches, with edges and corners.
 
-    Three joints must move the end effector's position; others, such as those of a wrist, may follow that do not, or are
-    locked. Each patch comes with the joints at their limits that generate it and the plane, sphere, cylinder, cone or
-    torus that it is, if any.
+    At least three joints must move the end effector's position; others, such as those of a wrist, may follow that do
+    not, or are locked. With three, patches are found from the arm's critical sets, and each comes with the joints at
+    their limits that generate it. With more, they are fitted to points of the boundary that inverse kinematics finds.
+    Each is the plane, sphere, cylinder, cone or torus that it is to within the points' error, or else a free form.
     """
 
     analysis: Literal["boundary_patches"] = "boundary_patches"
@@ -24,4 +25,4 @@ class BoundaryPatchesJob(Arm):
     """Joints held at a value, by name [rad or m]."""
     cells: Annotated[int, Field(ge=FEWEST_CELLS, le=MOST_CELLS), BeforeValidator(integer)] = 64
     """Cells along the longest edge of the workspace's box, in which patches, edges and corners are looked for: what is
-    smaller than a cell is not seen. Surfaces and curves are exact whatever their number."""
+    smaller than a cell is not seen. Surfaces and curves of critical sets are exact whatever their number."""

@@ -23,7 +23,8 @@ class Crossings:
     """Edges of the lattice with one end in the set: the last points ``inside`` and first ones ``outside`` it found.
 
     ``at`` (C, 3): corner of the lattice at which the edge starts, along ``axis`` (C,); ``starts_inside`` (C,) bool:
-    whether that corner is in the set. ``inside`` and ``outside`` (C, 3) [m] are 1e-8 of a cell apart.
+    whether that corner is in the set. ``inside`` and ``outside`` (C, 3) [m] are 1e-8 of a cell apart, after the
+    default number of bisections.
     """
 
     at: np.ndarray
@@ -84,8 +85,8 @@ class Lattice:
         """Whether the set ends within the lattice."""
         return not any(np.take(self.inside, end, axis).any() for axis in range(3) for end in (0, -1))
 
-    def crossings(self, reaches: Membership, report: Report) -> Crossings:
-        """The crossed edges, by bisection; ``report(points tested)``."""
+    def crossings(self, reaches: Membership, report: Report, bisections: int = _BISECTIONS) -> Crossings:
+        """The crossed edges, by so many ``bisections``; ``report(points tested)``."""
         starts, axes = [], []
         for axis in range(3):
             changes = np.argwhere(np.diff(self.inside, axis=axis))
@@ -97,7 +98,7 @@ class Lattice:
         end = begin + np.eye(3)[axis] * self.width
         inside = np.where(starts_inside[:, None], begin, end)
         outside = np.where(starts_inside[:, None], end, begin)
-        for _ in range(_BISECTIONS):
+        for _ in range(bisections):
             middle = (inside + outside) / 2
             held = reaches(middle)[:, None]
             inside, outside = np.where(held, middle, inside), np.where(held, outside, middle)

@@ -12,6 +12,7 @@ _LEAST_SIDES = 3  # of an edge: what is shorter the cells do not resolve
 # Share of the longest edge between the same patches: shorter loops are around what the cells do not resolve.
 _LOOP = 0.2
 _EXACT = 1e-9  # relative to the points' extent
+_BENT = 1e3  # times as far as that circles are from a line: what is straighter may be any curve
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,8 +44,11 @@ class Corner:
     patches: tuple[int, ...]
 
 
-def edges_and_corners(mesh: PatchMesh) -> tuple[list[Edge], list[Corner]]:
-    """The edges, longest first, and the corners at which they end."""
+def edges_and_corners(mesh: PatchMesh, exact: float = _EXACT) -> tuple[list[Edge], list[Corner]]:
+    """The edges, longest first, and the corners at which they end.
+
+    ``exact``: distance from a line or circle, relative to the points' extent, up to which an edge is one.
+    """
     sharp = mesh.sharp
     meeting = np.unique(np.stack([mesh.faces.ravel(), np.repeat(mesh.patch, 3)], axis=1), axis=0)
     is_corner = np.bincount(meeting[:, 0], minlength=len(mesh.vertices)) > 2
@@ -53,7 +57,7 @@ def edges_and_corners(mesh: PatchMesh) -> tuple[list[Edge], list[Corner]]:
     used = np.unique(np.concatenate([*ends, np.empty(0, int)])).astype(int)
     corners = [Corner(mesh.vertices[v], tuple(meeting[meeting[:, 0] == v, 1].tolist())) for v in used]
     edges = [
-        _edge(mesh, rows, tuple(np.searchsorted(used, vertices).tolist()))
+        _edge(mesh, rows, tuple(np.searchsorted(used, vertices).tolist()), exact)
         for rows, vertices in zip(groups, ends, strict=True)
     ]
     edges.sort(key=lambda edge: -edge.length)
@@ -87,11 +91,11 @@ def _chains(sides: np.ndarray, patches: np.ndarray, is_corner: np.ndarray) -> li
     return [np.flatnonzero(part == k) for k in range(part.max(initial=-1) + 1)]
 
 
-def _edge(mesh: PatchMesh, rows: np.ndarray, corners: tuple[int, ...]) -> Edge:
+def _edge(mesh: PatchMesh, rows: np.ndarray, corners: tuple[int, ...], exact: float) -> Edge:
     sharp = mesh.sharp
     start, end = mesh.vertices[sharp.vertices[rows]].transpose(1, 0, 2)
     curve = np.concatenate([start[:, None], sharp.points[rows], end[:, None]], axis=1)
-    kind, residual, circle = _fitted(curve.reshape(-1, 3))
+    kind, residual, circle = _fitted(curve.reshape(-1, 3), exact)
     a, b = sharp.patches[rows[0]].tolist()
     angle = sharp.angle[rows]
     return Edge(
@@ -123,19 +127,21 @@ def _length(kind: str, curve: np.ndarray, circle: tuple, closed: bool) -> float:
     return float(extrapolated(lengths)[0])
 
 
-def _fitted(points: np.ndarray) -> tuple[str, float, tuple[np.ndarray | None, np.ndarray | None, float | None]]:
+def _fitted(
+    points: np.ndarray, exact: float
+) -> tuple[str, float, tuple[np.ndarray | None, np.ndarray | None, float | None]]:
     """line, circle or free_form, the residual [m], and (centre, axis, radius) of a circle."""
     middle = points.mean(axis=0)
     local = points - middle
     size = np.linalg.norm(local, axis=1).max()
     along, across, normal = np.linalg.svd(local, full_matrices=False)[2]
     off_line = float(np.linalg.norm(local - np.outer(local @ along, along), axis=1).max())
-    if off_line <= _EXACT * size:
+    if off_line <= exact * size:
         return "line", off_line, (None, None, None)
     flat = local @ np.stack([along, across]).T
     a, b, c = np.linalg.lstsq(np.column_stack([2 * flat, np.ones(len(flat))]), (flat**2).sum(axis=1), rcond=None)[0]
     radius = float(np.sqrt(c + a * a + b * b))
     off_circle = np.hypot(np.hypot(flat[:, 0] - a, flat[:, 1] - b) - radius, local @ normal).max()
-    if off_circle <= _EXACT * max(size, radius):
+    if off_circle <= exact * max(size, radius) and off_line > _BENT * exact * size:
         return "circle", float(off_circle), (middle + a * along + b * across, normal, radius)
     return "free_form", float(min(off_line, off_circle)), (None, None, None)

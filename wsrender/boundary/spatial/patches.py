@@ -1,6 +1,6 @@
 """Patches of a boundary: parts of one surface that are connected, each with what generates it and what it is."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.sparse import coo_array
@@ -10,10 +10,10 @@ from wsrender.boundary.spatial.cells import CellLoops
 from wsrender.boundary.spatial.critical_sets import CriticalSet
 from wsrender.boundary.spatial.crossed_surfaces import NONE, CrossedSurfaces
 from wsrender.boundary.spatial.primitives import Fit, best_fit
-from wsrender.boundary.spatial.surfaces import Surface, surface_of
+from wsrender.boundary.spatial.surfaces import FoundPoints, Surface, surface_of
 
 _SMOOTH = np.cos(np.radians(30.0))  # between neighbouring crossings of one surface
-_FRAGMENT = 60  # crossings: with fewer a patch is part of a larger one of the same surface, if there is any
+FRAGMENT = 60  # crossings: with fewer a patch is part of a larger one of the same surface, if there is any
 _EXACT = 1e-9  # distance of points from their primitive that is rounding, relative to the arm's size
 
 
@@ -22,13 +22,15 @@ class Patch:
     """A connected part of one surface, of the crossings ``rows`` (K,).
 
     ``sets``: the critical sets that generate it; none where it was found by its points alone. ``fit``: the nearest
-    primitive, which the patch is if ``exact``; None of too few points.
+    primitive, which the patch is if ``exact``; None of too few points. ``found``: the surface of a patch that
+    is neither a primitive nor generated.
     """
 
     rows: np.ndarray
     sets: tuple[CriticalSet, ...]
     fit: Fit | None
     exact: bool
+    found: Surface = field(default_factory=FoundPoints)
 
     @property
     def kind(self) -> str:
@@ -44,7 +46,7 @@ class Patch:
     def surface(self) -> Surface:
         """What lines meet."""
         primitive = self.fit.primitive if self.fit is not None and self.exact else None
-        return surface_of(primitive, self.sets[0] if self.sets else None)
+        return surface_of(primitive, self.sets[0] if self.sets else None, self.found)
 
 
 def boundary_patches(
@@ -55,15 +57,19 @@ def boundary_patches(
     label = crossed.critical_set
     joined = (label[a] == label[b]) & smooth(crossed.normal[a], crossed.normal[b])
     part = components(len(label), a[joined], b[joined])
-    fits = [_fit(rows, sets, crossed, size) for rows in _rows_of(part)]
+    fits = [_fit(rows, sets, crossed, size) for rows in rows_of(part)]
     across = np.unique(np.sort(np.stack([part[a], part[b]], axis=1), axis=1), axis=0)
     same = np.array([_same(fits[i], fits[j], size) for i, j in across], bool).reshape(-1)
     whole = components(len(fits), *across[same].T)
     patches = [_merged([fits[i] for i in np.flatnonzero(whole == k)]) for k in range(whole.max(initial=-1) + 1)]
     patches = _with_fragments(patches, crossed.point)
-    order = sorted(range(len(patches)), key=lambda k: (-len(patches[k].rows), patches[k].rows[0]))
-    patches = [patches[k] for k in order]
-    patch_of = np.empty(len(label), int)
+    return in_order(patches, len(label))
+
+
+def in_order(patches: list[Patch], crossings: int) -> tuple[list[Patch], np.ndarray]:
+    """The patches, those with most crossings first, and the patch (C,) of each crossing."""
+    patches = sorted(patches, key=lambda patch: (-len(patch.rows), patch.rows[0]))
+    patch_of = np.empty(crossings, int)
     for k, patch in enumerate(patches):
         patch_of[patch.rows] = k
     return patches, patch_of
@@ -93,7 +99,8 @@ def components(count: int, a: np.ndarray, b: np.ndarray) -> np.ndarray:
     return connected_components(graph, directed=False)[1] if count else np.empty(0, int)
 
 
-def _rows_of(part: np.ndarray) -> list[np.ndarray]:
+def rows_of(part: np.ndarray) -> list[np.ndarray]:
+    """The rows of each part, by its number (N,)."""
     order = np.argsort(part, kind="stable")
     return np.split(order, np.flatnonzero(np.diff(part[order])) + 1) if len(part) else []
 
@@ -118,10 +125,10 @@ def _with_fragments(patches: list[Patch], points: np.ndarray) -> list[Patch]:
 
     Where parts of the boundary are nearer to each other than a cell is wide, their patches fall into pieces.
     """
-    whole = [patch for patch in patches if len(patch.rows) >= _FRAGMENT]
+    whole = [patch for patch in patches if len(patch.rows) >= FRAGMENT]
     pieces: dict[int, list[Patch]] = {k: [] for k in range(len(whole))}
     alone = []
-    for fragment in (patch for patch in patches if len(patch.rows) < _FRAGMENT):
+    for fragment in (patch for patch in patches if len(patch.rows) < FRAGMENT):
         same = [k for k, patch in enumerate(whole) if _continues(fragment, patch)]
         if not same:
             alone.append(fragment)

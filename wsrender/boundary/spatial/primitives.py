@@ -1,5 +1,6 @@
 """Planes, spheres, cylinders, cones and tori, fitted to points of a surface and its normals there."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -95,27 +96,45 @@ def best_fit(points: np.ndarray, normals: np.ndarray, tolerance: float) -> Fit |
     ``normals`` (N, 3) of unit length, of either sign, must be the primitive's too. They give axes: of revolution is
     what every normal's line meets the axis of (Pottmann & Randrup 1998).
     """
-    if len(points) < _LEAST_POINTS:
-        return None
     fits = []
-    for candidates in (_plane, _sphere, _revolved):
-        for primitive in candidates(points, normals):
-            distance, gradient = primitive.distance(points)
-            off = np.linalg.norm(np.cross(gradient, normals), axis=1)
-            fit = Fit(primitive, float(np.abs(distance).max()), float(off.max()))
-            if fit.exact(tolerance):
-                return fit
-            fits.append(fit)
-    return min(fits, key=lambda fit: (fit.misaligned > 0.5, fit.residual))
+    for primitive in candidates(points, normals, _AXIAL):
+        fit = fit_of(primitive, points, normals)
+        if fit.exact(tolerance):
+            return fit
+        fits.append(fit)
+    return nearest(fits)
 
 
-def _plane(points: np.ndarray, normals: np.ndarray) -> list[Primitive]:
+def candidates(points: np.ndarray, normals: np.ndarray, axial: float) -> Iterator[Primitive]:
+    """Primitives through points (N, 3) with normals (N, 3), the simplest first; none through a few points.
+
+    ``axial``: below this, relative to the points' extent, a direction of motion leaves the surface in place.
+    """
+    if len(points) >= _LEAST_POINTS:
+        yield from _plane(points)
+        yield from _sphere(points)
+        yield from _revolved(points, normals, axial)
+
+
+def fit_of(primitive: Primitive, points: np.ndarray, normals: np.ndarray) -> Fit:
+    """How far points and normals (N, 3) are from a primitive and its own."""
+    distance, gradient = primitive.distance(points)
+    off = np.linalg.norm(np.cross(gradient, normals), axis=1)
+    return Fit(primitive, float(np.abs(distance).max()), float(off.max()))
+
+
+def nearest(fits: list[Fit]) -> Fit | None:
+    """The fit with the least residual, of those whose normals are not across the points' if there are any."""
+    return min(fits, key=lambda fit: (fit.misaligned > 0.5, fit.residual), default=None)
+
+
+def _plane(points: np.ndarray) -> list[Primitive]:
     middle = points.mean(axis=0)
     normal = np.linalg.svd(points - middle, full_matrices=False)[2][2]
     return [Primitive("plane", middle, _positive(normal))]
 
 
-def _sphere(points: np.ndarray, normals: np.ndarray) -> list[Primitive]:
+def _sphere(points: np.ndarray) -> list[Primitive]:
     middle = points.mean(axis=0)
     local = points - middle
     solved = np.linalg.lstsq(np.column_stack([2 * local, np.ones(len(local))]), (local**2).sum(axis=1), rcond=None)[0]
@@ -123,14 +142,14 @@ def _sphere(points: np.ndarray, normals: np.ndarray) -> list[Primitive]:
     return [Primitive("sphere", middle + solved[:3], radius=float(np.sqrt(squared)))] if squared > 0 else []
 
 
-def _revolved(points: np.ndarray, normals: np.ndarray) -> list[Primitive]:
+def _revolved(points: np.ndarray, normals: np.ndarray, axial: float) -> list[Primitive]:
     """Cylinder, cone and torus about the axis that the normals have in common, in that order."""
     middle = points.mean(axis=0)
     local = points - middle
     size = np.linalg.norm(local, axis=1).max()
     # A turn c about a point and a shift leave the surface in place where the velocity has no part along the normal.
     motions = np.linalg.svd(np.column_stack([normals, np.cross(local / size, normals)]), full_matrices=False)
-    least = motions[1] <= max(_AXIAL * motions[1][0], motions[1][-1])
+    least = motions[1] <= max(axial * motions[1][0], motions[1][-1])
     still = motions[2][least]
     turning = np.linalg.svd(still[:, 3:].T, full_matrices=False)[2][0] @ still
     c = turning[3:]

@@ -1,12 +1,11 @@
 """The boundary of the positions that a spatial arm reaches: patches, edges, corners, a mesh, and the volume."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 import trimesh
 
-from wsrender.boundary.spatial.cells import Lattice
+from wsrender.boundary.spatial.cells import Lattice, Membership, Report
 from wsrender.boundary.spatial.critical_sets import critical_sets
 from wsrender.boundary.spatial.crossed_surfaces import crossed_surfaces
 from wsrender.boundary.spatial.edges import Corner, Edge, edges_and_corners
@@ -19,7 +18,7 @@ from wsrender.boundary.spatial.spatial_arm import SpatialArm, spatial_arm
 from wsrender.errors import ModelError
 from wsrender.robots.chain import Chain
 
-JOINTS = 3
+JOINTS = 3  # of the arms whose critical sets are solved
 # Of patches, in their order and then again: Tableau's ten, told apart by most people with a colour vision deficiency.
 COLORS = ("4e79a7", "f28e2b", "59a14f", "e15759", "76b7b2", "edc948", "b07aa1", "ff9da7", "9c755f", "bab0ac")
 _SAMPLES = 24  # of each joint, for the box that the lattice fills
@@ -30,8 +29,7 @@ _FLAT = 1e-9  # volume that the Jacobian spans, relative to that of its columns:
 class SpatialBoundary:
     """Patches, largest first, with their areas and the volume they enclose; edges; corners; the mesh.
 
-    ``volume`` [m³] and ``volume_error``: by integration over the joints, whatever the cells; ``measures``: of the
-    patches at the resolution of the cells, which are ``width`` [m] wide.
+    ``measures``: of the patches at the resolution of the cells, which are ``width`` [m] wide.
     """
 
     arm: SpatialArm
@@ -41,20 +39,27 @@ class SpatialBoundary:
     corners: list[Corner]
     mesh: PatchMesh
     width: float
+
+
+@dataclass(frozen=True, eq=False)
+class CriticalBoundary(SpatialBoundary):
+    """By critical sets; ``volume`` [m³] and ``volume_error`` by integration over the joints, whatever the cells."""
+
     volume: float
     volume_error: float
 
 
-def three_joint_arm(chain: Chain) -> SpatialArm:
-    """The arm of a chain; three joints must move its end point through a volume. Raises ModelError."""
+def solid_arm(chain: Chain) -> SpatialArm:
+    """The arm of a chain, whose joints must move its end point through a volume. Raises ModelError."""
     arm = spatial_arm(chain)
-    if arm.n != JOINTS:
-        remedy = 'hold the others with "locked"' if arm.n > JOINTS else "with fewer it fills no volume"
+    if arm.n < JOINTS:
         names = ", ".join(arm.names) or "none"
-        raise ModelError("robot", f"{arm.n} joints move the end point ({names}); {JOINTS} must: {remedy}")
+        raise ModelError(
+            "robot", f"{arm.n} joints move the end point ({names}): it fills no volume; {JOINTS} or more must"
+        )
     J = arm.motion(_samples(arm, 9))[1]
-    spanned = np.abs(np.linalg.det(J)).max()
-    if spanned <= _FLAT * np.linalg.norm(J, axis=1).prod(axis=1).max():
+    sigma = np.linalg.svd(J, compute_uv=False)
+    if sigma[:, 2].max() <= _FLAT * sigma[:, 0].max():
         raise ModelError(
             "robot",
             f"the joints {', '.join(arm.names)} move the end point on a surface or curve only: it fills no volume "
@@ -63,10 +68,10 @@ def three_joint_arm(chain: Chain) -> SpatialArm:
     return arm
 
 
-def spatial_boundary(arm: SpatialArm, cells: int, report: Callable[[int], None]) -> SpatialBoundary:
-    """Find the boundary with so many ``cells`` along its longest edge; ``report(points tested)``."""
+def spatial_boundary(arm: SpatialArm, cells: int, report: Report) -> CriticalBoundary:
+    """Find the boundary of an arm of three joints, with so many ``cells`` along its longest edge."""
     inverse = ThreeJointInverse(arm)
-    lattice = _lattice(arm, inverse, cells, report)
+    lattice = lattice_around(arm, inverse.reaches, cells, report)
     crossings = lattice.crossings(inverse.reaches, report)
     loops = lattice.loops(crossings)
     sets = critical_sets(arm)
@@ -76,7 +81,7 @@ def spatial_boundary(arm: SpatialArm, cells: int, report: Callable[[int], None])
     measured = measures(mesh.curved, patches)
     edges, corners = edges_and_corners(mesh)
     volume, volume_error = joint_volume(inverse, report)
-    return SpatialBoundary(arm, patches, measured, edges, corners, mesh, lattice.width, volume, volume_error)
+    return CriticalBoundary(arm, patches, measured, edges, corners, mesh, lattice.width, volume, volume_error)
 
 
 def coloured(vertices: np.ndarray, faces: np.ndarray, patch: np.ndarray) -> trimesh.Trimesh:
@@ -88,19 +93,20 @@ def coloured(vertices: np.ndarray, faces: np.ndarray, patch: np.ndarray) -> trim
     return mesh
 
 
-def _lattice(arm: SpatialArm, inverse: ThreeJointInverse, cells: int, report: Callable[[int], None]) -> Lattice:
+def lattice_around(arm: SpatialArm, reaches: Membership, cells: int, report: Report) -> Lattice:
     """Cells around everything that is reached: around samples, and more until none at the border is reached."""
     points = arm.position(_samples(arm, _SAMPLES))
     low, high = points.min(axis=0), points.max(axis=0)
     margin = 0.01 * float((high - low).max())
     while True:
-        lattice = Lattice.around(low - margin, high + margin, cells, inverse.reaches, report)
+        lattice = Lattice.around(low - margin, high + margin, cells, reaches, report)
         if lattice.closed:
             return lattice
         margin *= 3
 
 
 def _samples(arm: SpatialArm, count: int) -> np.ndarray:
-    """Displacements (count³, 3), both ends of each joint included."""
+    """Displacements (about count³, n), both ends of each joint included."""
+    count = max(2, round(count ** (JOINTS / arm.n)))
     axes = [np.linspace(low, high, count) for low, high in zip(arm.low, arm.high, strict=True)]
     return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, arm.n)

@@ -1,0 +1,28 @@
+"""Membership in what a chain reaches, and the reached points nearest to others, by inverse kinematics."""
+
+import numpy as np
+
+from wsrender.engine import evaluate_kinematics
+from wsrender.reachability.inverse_solver import REACHABLE, UNDECIDED, InverseSolver
+from wsrender.reachability.refined_volume import tolerance_m
+from wsrender.robots.chain import Chain
+
+
+class ReachedPoints:
+    """Decides positions in the world; ``undecided`` counts those of `reaches` that it could not decide."""
+
+    def __init__(self, chain: Chain, device: str = "cpu"):
+        self._solver = InverseSolver(chain, position_m=tolerance_m(chain), device=device)
+        self._chain = chain
+        self.undecided = 0
+
+    def reaches(self, points: np.ndarray) -> np.ndarray:
+        """Whether points (N, 3) [m] are reached, (N,) bool; those that are undecided count as not."""
+        label = self._solver.solve(points).label
+        self.undecided += int((label == UNDECIDED).sum())
+        return label == REACHABLE
+
+    def nearest(self, points: np.ndarray) -> np.ndarray:
+        """The reached points (N, 3) nearest to points (N, 3) [m], as far as the solver found them."""
+        q = self._solver.solve(points).q
+        return evaluate_kinematics(self._chain, q, device="cpu").pose[:, :3, 3]
