@@ -124,6 +124,19 @@ def test_more_joints_than_three_are_fitted(tmp_path):
     assert (tmp_path / "out/plots/patches.png").stat().st_size > 10_000
 
 
+@pytest.mark.parametrize("heights", [[[0.2, 0.201]], [[0.1, 0.1005], [0.1, 0.1005]]], ids=["three", "four joints"])
+def test_what_is_thinner_than_a_cell_has_a_volume_and_no_patches(heights, tmp_path):
+    rows = [{"limits_deg": [-60, 60], "a": 0.3}, {"limits_deg": [20, 150], "a": 0.2, "alpha_deg": 180}]
+    rows += [{"joint": "prismatic", "limits": limits} for limits in heights]
+    robot = {"dh": {"convention": "standard", "name": "thin", "rows": rows}}
+    found = execute({"analysis": "boundary_patches", "robot": robot, "cells": 8})
+    found.save(tmp_path / "out")
+    volume = found.document["volume_m3"].get("integrated") or found.document["volume_m3"]["refined"]["value"]
+    base = 0.06 * np.radians(120) * (np.cos(np.radians(20)) - np.cos(np.radians(150)))
+    assert volume == pytest.approx(0.001 * base, rel=0.01)
+    assert found.document["patches"] == [] and found.meshes == {}
+
+
 @pytest.mark.parametrize(
     ("fields", "error", "message"),
     [

@@ -77,7 +77,7 @@ def _of_design(plot: ResultPlots, document: Mapping[str, Any]) -> Pictures:
 
 _OF_ANALYSES: dict[str, Callable[[ResultPlots, Mapping[str, Any]], Pictures]] = {
     "planar_boundary": lambda plot, _: {"boundary": plot.boundary},
-    "boundary_patches": lambda plot, _: {"patches": plot.patches},
+    "boundary_patches": lambda plot, _: {"patches": plot.patches} if "patches" in plot.meshes else {},
     "master_slave_mapping": _of_mapping,
     "parallel_workspace": _of_mechanism,
     "five_bar": _of_five_bar,

@@ -126,13 +126,15 @@ class BoundaryPatchesPlan:
     def finish(self, partial: dict[str, np.ndarray], seconds: dict[str, float]) -> Result:
         """Tables ``patches``, ``edges``, ``corners`` and ``edge_points``; the mesh ``patches``, a colour each."""
         about = json.loads(str(partial["about"]))
-        mesh = coloured(partial["vertices"], partial["faces"], partial["patch"])
-        about["mesh"] = {
-            "mesh": "patches",
-            "triangles": len(mesh.faces),
-            "volume_m3": float(mesh.volume),
-            "watertight": bool(mesh.is_watertight),
-        }
+        meshes = {}
+        if len(partial["faces"]):  # none where all that is reached is thinner than a cell
+            mesh = meshes["patches"] = coloured(partial["vertices"], partial["faces"], partial["patch"])
+            about["mesh"] = {
+                "mesh": "patches",
+                "triangles": len(mesh.faces),
+                "volume_m3": float(mesh.volume),
+                "watertight": bool(mesh.is_watertight),
+            }
         document = {
             "analysis": "boundary_patches",
             "job": job_entry(self.job, self.robot),
@@ -147,9 +149,7 @@ class BoundaryPatchesPlan:
             "corners": _corner_table(about["corners"]),
             "edge_points": Table({"edge": partial["edge"], "position": partial["edge_points"]}, {"position": "m"}),
         }
-        return Result(
-            document, meshes={"patches": mesh}, tables={name: table for name, table in tables.items() if len(table)}
-        )
+        return Result(document, meshes=meshes, tables={name: table for name, table in tables.items() if len(table)})
 
 
 def plan_boundary_patches(

@@ -147,7 +147,7 @@ def _quads(table: np.ndarray, crossings: Crossings) -> np.ndarray:
     quads = np.full((len(crossings), 4), -1)
     quads[table[:, 1], table[:, 2] % 4] = np.arange(len(table))
     # The cells that see the edge as their edge 0, 1, 3, 2 go round it; about y the order of the others is (x, z).
-    order = np.array([[0, 1, 3, 2]] * len(crossings))
+    order = np.tile([0, 1, 3, 2], (len(crossings), 1))
     anticlockwise = (crossings.axis == 1) ^ crossings.starts_inside
     order[~anticlockwise] = order[~anticlockwise][:, ::-1]
     return np.take_along_axis(quads, order, axis=1)
