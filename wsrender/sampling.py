@@ -3,6 +3,7 @@
 The kernels evaluate the plan; it knows the chain's limits and the sampling of a job document, and no device.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -67,7 +68,7 @@ def plan_sampling(chain: Chain, sampling, max_samples: int | None = None) -> Sam
     Raises InputError for unknown or out-of-range locked joints and wrong numbers of levels, ResourceError where a
     plan has more than ``max_samples`` samples.
     """
-    locked = _locked_values(chain, sampling.locked)
+    locked = _locked_values(chain, sampling.locked, "sampling.locked")
     lower = np.where(np.isnan(locked), chain.lower_limits, locked)
     upper = np.where(np.isnan(locked), chain.upper_limits, locked)
     free = np.isnan(locked)
@@ -93,17 +94,26 @@ def given_sampling(chain: Chain, q: np.ndarray) -> SamplingPlan:
     return SamplingPlan("given", len(q), 0, chain.lower_limits, chain.upper_limits, levels, given=q)
 
 
-def _locked_values(chain: Chain, locked) -> np.ndarray:
+def held_chain(chain: Chain, locked: Mapping[str, float]) -> Chain:
+    """The chain with joints held, by name, at a value [rad or m].
+
+    Raises InputError, naming ``locked``, for an unknown joint or a value beyond its limits.
+    """
+    _locked_values(chain, locked, "locked")
+    return chain.held(locked)
+
+
+def _locked_values(chain: Chain, locked: Mapping[str, float], field: str) -> np.ndarray:
+    """The value of each coordinate (n,) that is locked, NaN of the others; InputError names the ``field``."""
     values = np.full(chain.n, np.nan)
     for name, value in locked.items():
-        field = f"sampling.locked.{name}"
         if name not in chain.joint_names:
-            raise InputError(field, f"unknown joint; allowed: {', '.join(chain.joint_names)}")
+            raise InputError(f"{field}.{name}", f"unknown joint; allowed: {', '.join(chain.joint_names)}")
         i = chain.joint_names.index(name)
         low, high = chain.lower_limits[i], chain.upper_limits[i]
         # A value typed with few digits may lie just outside the limit it means.
         if not chain.periodic[i] and not low - 1e-4 <= value <= high + 1e-4:
-            raise InputError(field, f"{value} is outside the joint's limits [{low:.6g}, {high:.6g}]")
+            raise InputError(f"{field}.{name}", f"{value} is outside the joint's limits [{low:.6g}, {high:.6g}]")
         values[i] = value
     return values
 

@@ -93,6 +93,8 @@ def test_slides_out_of_the_plane_are_named():
     with pytest.raises(ws.ModelError, match=r"joint 'lift' slides along \(0, 0, 1\), out of the plane"):
         ws.exact_boundary(lift)
     assert ws.exact_boundary(lift, locked={"lift": 0.5}).dimension == 1
+    with pytest.raises(ws.InputError, match=r"^locked.elbow: unknown joint; allowed: joint1, lift"):
+        ws.exact_boundary(lift, locked={"elbow": 0.5})
 
 
 def test_the_scara_of_the_library():

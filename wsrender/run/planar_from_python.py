@@ -8,8 +8,7 @@ from wsrender.reachability.targets import model_robot
 from wsrender.result import Result
 from wsrender.run.from_python import arm_entry, as_subject, execute_here, plain, sampling_entry
 from wsrender.run.steps import Progress
-from wsrender.sampling import plan_sampling
-from wsrender.spec.sampling import Random
+from wsrender.sampling import held_chain
 
 
 def planar_boundary(
@@ -34,7 +33,4 @@ def exact_boundary(robot: Any, *, locked: Mapping[str, float] | None = None) -> 
     ``locked`` holds joints, by name, at a value [rad or m]. Raises ModelError, naming the joint, for an arm that is not
     planar; InputError for an unknown joint or a value beyond its limits.
     """
-    chain = model_robot(as_subject(robot)).chain
-    held = dict(locked or {})
-    plan_sampling(chain, Random(1, locked=held))  # checks names and values
-    return ExactBoundary.of(chain.held(held))
+    return ExactBoundary.of(held_chain(model_robot(as_subject(robot)).chain, locked or {}))

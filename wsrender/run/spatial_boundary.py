@@ -1,7 +1,7 @@
 """The analysis ``boundary_patches``: the boundary of a spatial arm in patches, with edges, corners and a mesh."""
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -21,7 +21,6 @@ from wsrender.boundary.spatial.spatial_boundary import (
     solid_arm,
     spatial_boundary,
 )
-from wsrender.errors import InputError
 from wsrender.reachability.moving_joints import moving_joints
 from wsrender.reachability.reached_points import ReachedPoints
 from wsrender.reachability.refined_volume import refined_volume
@@ -32,9 +31,8 @@ from wsrender.robots.chain import Chain
 from wsrender.run.provenance import job_entry, provenance, robot_entry
 from wsrender.run.refined import volume_entry
 from wsrender.run.settled_device import settled_device
-from wsrender.sampling import plan_sampling
+from wsrender.sampling import held_chain
 from wsrender.spec import BoundaryPatchesJob
-from wsrender.spec.sampling import Random
 from wsrender.volume.table import Table
 
 POINTS_PER_S = 1e5  # inverse kinematics on one CPU core
@@ -162,15 +160,6 @@ def plan_boundary_patches(
     """
     chain = moving_joints(held_chain(model_robot(robot).chain, job.locked))[0]
     return BoundaryPatchesPlan(job, robot, chain, solid_arm(chain), *settled_device("cpu", resolved))
-
-
-def held_chain(chain: Chain, locked: Mapping[str, float]) -> Chain:
-    """The chain with joints held, by name, at a value; InputError for an unknown joint or a value beyond its limits."""
-    try:
-        plan_sampling(chain, Random(1, locked=dict(locked)))  # checks names and values
-    except InputError as error:
-        raise InputError(error.field.removeprefix("sampling."), error.message) from None
-    return chain.held(locked)
 
 
 def _about(found: SpatialBoundary) -> dict[str, Any]:

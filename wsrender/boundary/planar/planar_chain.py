@@ -138,7 +138,7 @@ def _check(chain: Chain, frames: np.ndarray, moving: np.ndarray, normal: np.ndar
         else:
             continue
         what = f"joint {name!r} {how} {_shown(axis)}, out of the plane with normal {_shown(normal)}"
-        raise ModelError("robot", f"the arm is not planar: {what}; hold joints with sampling.locked")
+        raise ModelError("robot", f"the arm is not planar: {what}; hold such joints with 'locked'")
 
 
 def _shown(vector: np.ndarray) -> str:
