@@ -61,7 +61,7 @@ def positions_result(plan: "ParallelPlan", partial: "Arrays", seconds: dict[str,
         tables["singularities"] = _singularity_table(changes)
     document["timing_s"] = {**seconds, "finish": time.perf_counter() - started}
     skeleton = None if volume is None else skeleton_at(plan, _middle(volume))
-    return Result(document, volume=volume, sample=_sample(plan, volume), skeleton=skeleton, tables=tables)
+    return Result(document, volume=volume, sample=_sample(volume), skeleton=skeleton, tables=tables)
 
 
 def orientation_result(plan: "ParallelPlan", partial: "Arrays", seconds: dict[str, float]) -> Result:
@@ -361,7 +361,7 @@ def _undecided(plan: "ParallelPlan", poses: int) -> dict[str, int]:
     return {"undecided": poses} if plan.mechanism.numeric else {}
 
 
-def _sample(plan: "ParallelPlan", volume: VolumeData | None) -> DistributionMap | None:
+def _sample(volume: VolumeData | None) -> DistributionMap | None:
     """A fixed subsample of the voxels' centres with their values."""
     if volume is None:
         return None

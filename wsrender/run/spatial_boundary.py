@@ -39,7 +39,7 @@ POINTS_PER_S = 1e5  # inverse kinematics on one CPU core
 POINTS_PER_CELL = 40.0  # of the surface: bisections of the edges that it crosses
 INTEGRATED = 1e5  # points of the volume's integral, or of its estimate, about
 VOLUME_TOLERANCE = 0.005  # of the volume that is estimated beside a fitted boundary
-_LARGEST_LENGTH = 1e4  # bytes of a cell of the surface, with its triangles
+BYTES_PER_CORNER, BYTES_PER_CELL = 40.0, 1e4  # of the lattice; of the surface, with its triangles
 
 
 @dataclass(eq=False)
@@ -67,8 +67,8 @@ class BoundaryPatchesPlan:
     def estimate(self) -> dict[str, float]:
         """Points to be tested, bytes of lattice and mesh, seconds."""
         points, cells = float(self._points), self.job.cells
-        size = 40.0 * cells**3 + _LARGEST_LENGTH * 6 * cells**2
-        return {"samples": points, "bytes": size, "seconds": points / POINTS_PER_S}
+        held = BYTES_PER_CORNER * cells**3 + BYTES_PER_CELL * 6 * cells**2
+        return {"samples": points, "bytes": held, "seconds": points / POINTS_PER_S}
 
     def resolved(self) -> dict[str, Any]:
         """What is settled once: device, target, shards."""
@@ -163,13 +163,11 @@ def plan_boundary_patches(
 
 
 def _about(found: SpatialBoundary) -> dict[str, Any]:
-    size = found.arm.size
     return {
         "joints": list(found.arm.names),
         "cell_width_m": found.width,
         "patches": [
-            _patch_entry(patch, float(area), size)
-            for patch, area in zip(found.patches, found.measures.areas, strict=True)
+            _patch_entry(patch, float(area)) for patch, area in zip(found.patches, found.measures.areas, strict=True)
         ],
         "edges": [_edge_entry(edge) for edge in found.edges],
         "corners": [_corner_entry(corner) for corner in found.corners],
@@ -183,7 +181,7 @@ def _integrated(found: CriticalBoundary) -> dict[str, Any]:
     }
 
 
-def _patch_entry(patch: Patch, area: float, size: float) -> dict[str, Any]:
+def _patch_entry(patch: Patch, area: float) -> dict[str, Any]:
     """Kind and numbers of a patch; of a free form, of the primitive that is nearest to it, and how far it is off."""
     fit = patch.fit
     entry: dict[str, Any] = {"kind": patch.kind, "method": patch.method}

@@ -35,12 +35,11 @@ class Triangles:
 
 @dataclass(frozen=True, eq=False)
 class Measures:
-    """Volume [m³], area of each patch (P,) [m²], and the last change of either by the extrapolation."""
+    """Volume [m³] and its last change by the extrapolation, area of each patch (P,) [m²]."""
 
     volume: float
-    areas: np.ndarray
     volume_error: float
-    area_errors: np.ndarray
+    areas: np.ndarray
 
 
 def measures(triangles: Triangles, patches: list[Patch]) -> Measures:
@@ -56,8 +55,7 @@ def measures(triangles: Triangles, patches: list[Patch]) -> Measures:
         area = (np.linalg.norm(cross, axis=2) * outward).sum(axis=1) / 2
         areas.append(np.bincount(triangles.patch, area, len(patches)))
     volume, volume_error = extrapolated(volumes)
-    area, area_errors = extrapolated(areas)
-    return Measures(float(volume), area, float(volume_error), area_errors)
+    return Measures(float(volume), float(volume_error), extrapolated(areas)[0])
 
 
 def extrapolated(values: list) -> tuple:
