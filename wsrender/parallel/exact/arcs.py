@@ -15,17 +15,14 @@ ATTEMPTS = 3
 class Arcs:
     """Edges of a batch of regions, in the scaled frames of its ``surfaces``, and their vertices.
 
-    Vertices: ``vertices`` (V, 3) of regions ``vertex_region`` (V,), each on three surfaces ``vertex_surfaces`` (V, 3).
-    Edges: ``region`` (E,), ``pair`` (E,) of surfaces, from vertex ``start`` to vertex ``end`` (−1: a whole circle)
-    along ``sweep`` (E,), the angle about the circle's axis from ``angle`` (E,), or the length of a straight edge;
-    ``first_point``, ``last_point`` (E, 3).
+    ``vertices`` (V, 3) are those of all regions. Edges: ``region`` (E,), ``pair`` (E,) of surfaces, from vertex
+    ``start`` to vertex ``end`` (−1: a whole circle) along ``sweep`` (E,), the angle about the circle's axis from
+    ``angle`` (E,), or the length of a straight edge; ``first_point``, ``last_point`` (E, 3).
     """
 
     surfaces: Surfaces
     circles: Circles
     vertices: np.ndarray
-    vertex_region: np.ndarray
-    vertex_surfaces: np.ndarray
     region: np.ndarray
     pair: np.ndarray
     start: np.ndarray
@@ -91,8 +88,6 @@ def _closed_arcs(surfaces: Surfaces) -> Arcs | None:
         surfaces,
         rings,
         vertices,
-        region,
-        _surfaces_of_columns(surfaces)[column],
         np.concatenate([ring[begins] // total, whole[0]]),
         np.concatenate([ring[begins] % total, whole[1]]),
         np.concatenate([first, none]),
@@ -102,11 +97,6 @@ def _closed_arcs(surfaces: Surfaces) -> Arcs | None:
         np.concatenate([vertices[first], start_points]),
         np.concatenate([vertices[last], start_points]),
     )
-
-
-def _surfaces_of_columns(surfaces: Surfaces) -> np.ndarray:
-    tables = surfaces.combinatorics
-    return np.concatenate([tables.sphere_triples, tables.sphere_triples, tables.corners])
 
 
 def _positions(rings: Circles, region: np.ndarray, pair: np.ndarray, points: np.ndarray, is_line: np.ndarray):

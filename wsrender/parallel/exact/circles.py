@@ -85,7 +85,7 @@ def _lines(surfaces: Surfaces, axis: np.ndarray, middle: np.ndarray) -> None:
 
 def _perpendicular(axis: np.ndarray) -> np.ndarray:
     """A unit vector at right angles to each."""
-    (least,) = (np.abs(axis).argmin(axis=-1),)
+    least = np.abs(axis).argmin(axis=-1)
     found = cross(axis, np.eye(3)[least])
     length = np.sqrt(dot(found, found))
     return found / np.where(length > 0, length, 1.0)[..., None]

@@ -22,7 +22,6 @@ class Combinatorics:
 
     pairs: np.ndarray
     is_line: np.ndarray
-    sphere_triples: np.ndarray
     sphere_circles: np.ndarray
     corners: np.ndarray
     circles: np.ndarray
@@ -55,7 +54,6 @@ def combinatorics(side: tuple[int, ...], planes: tuple[tuple[int, int], ...]) ->
     return Combinatorics(
         pairs,
         pairs[:, 0] >= spheres,
-        of_sphere,
         _circles(number, of_sphere),
         corners,
         _circles(number, columns),
