@@ -11,6 +11,7 @@ from wsrender.multi.body_elements import body_elements
 from wsrender.reachability import Event
 from wsrender.result import Result
 from wsrender.robot import Robot
+from wsrender.run.one_shard import OneShard
 from wsrender.run.provenance import job_entry, provenance, robot_entry
 from wsrender.run.refined import Progress, refined_together
 from wsrender.run.sampled_positions import sampled_positions
@@ -24,7 +25,7 @@ POSITIONS_PER_S = 2e6  # of one CPU core
 
 
 @dataclass(eq=False)
-class CollaborativePlan:
+class CollaborativePlan(OneShard):
     """A resolved ``collaborative_volume`` job: one shard."""
 
     job: CollaborativeVolumeJob
@@ -43,10 +44,6 @@ class CollaborativePlan:
         """Samples, bytes of the points of one run, and seconds without the true volume."""
         samples = float(self.job.samples * self.job.seeds * len(self.robots))
         return {"samples": samples, "bytes": 48.0 * self.job.samples, "seconds": samples / POSITIONS_PER_S}
-
-    def resolved(self) -> dict[str, Any]:
-        """What is settled once: the device that "auto" means, target, shards."""
-        return {"device": self.device, "target": self.target, "shards": [list(shard) for shard in self.shards]}
 
     def run_shard(self, shard: int, progress: Callable[[int], None] | None, **execution: Any) -> dict[str, np.ndarray]:
         """V₀ … V_d of every seed."""
@@ -68,10 +65,6 @@ class CollaborativePlan:
             cells.append([np.count_nonzero(found.collaborative), np.count_nonzero(found.boundary)])
         arrays = {"volumes": np.array(rows), "cells": np.array(cells)}
         return arrays
-
-    def merge(self, a: Any, b: Any) -> Any:
-        """There is one shard: nothing to merge."""
-        raise ValueError("collaborative_volume has one shard")
 
     def refine(self, partial: dict[str, np.ndarray], progress: Progress | None) -> dict[str, np.ndarray]:
         """With the true volume, if asked."""

@@ -8,6 +8,7 @@ import numpy as np
 
 from wsrender.result import Result
 from wsrender.robot import Robot
+from wsrender.run.one_shard import OneShard
 from wsrender.run.provenance import job_entry, provenance
 from wsrender.run.several_result import common_entries, skeletons
 from wsrender.run.several_robots import SeveralPlans, plan_several
@@ -16,7 +17,7 @@ from wsrender.volume.table import Table
 
 
 @dataclass(eq=False)
-class RobotComparisonPlan:
+class RobotComparisonPlan(OneShard):
     """A resolved ``robot_comparison`` job: one shard, in which the robots are swept one after the other."""
 
     job: RobotComparisonJob
@@ -45,10 +46,6 @@ class RobotComparisonPlan:
     def run_shard(self, shard: int, progress: Callable[[int], None] | None, **execution: Any) -> dict[str, np.ndarray]:
         """Partial results of the robots."""
         return self.several.run(progress, **execution)
-
-    def merge(self, a: Any, b: Any) -> Any:
-        """There is one shard: nothing to merge."""
-        raise ValueError("robot_comparison has one shard")
 
     def finish(self, partial: dict[str, np.ndarray], seconds: dict[str, float]) -> Result:
         """Every robot's volume, and the table of values and differences from the first robot."""

@@ -17,6 +17,7 @@ from wsrender.result import Result
 from wsrender.robot import Robot
 from wsrender.run.design_result import best_entries, exact_best, objective_entries, tables_of
 from wsrender.run.design_values import Evaluator
+from wsrender.run.one_shard import OneShard
 from wsrender.run.parallel_exact import region_of
 from wsrender.run.provenance import job_entry, provenance, robot_entry
 from wsrender.run.settled_device import settled_device
@@ -40,7 +41,7 @@ EXACT_PER_S, OTHERS_PER_S = 1e3, 1.0  # designs, rounded down
 
 
 @dataclass(eq=False)
-class DesignPlan:
+class DesignPlan(OneShard):
     """A resolved ``design_optimization`` job: one shard of all its evaluations."""
 
     job: DesignOptimizationJob
@@ -89,10 +90,6 @@ class DesignPlan:
         """A search that was stopped takes the designs that it has evaluated from its checkpoint."""
         return True
 
-    def resolved(self) -> dict[str, Any]:
-        """What is settled once: the device that "auto" means, target, shards."""
-        return {"device": self.device, "target": self.target, "shards": [list(shard) for shard in self.shards]}
-
     def run_shard(self, shard: int, progress: Callable[[int], None] | None, **execution: Any) -> Arrays:
         """All designs (E, n) in the order of the search, their values (E, k), and what the search says."""
         given, width = self.job.evaluations, len(self._columns)
@@ -123,10 +120,6 @@ class DesignPlan:
             raise evaluator.fault
         about = {"ended": ended, "evaluated": evaluator.count, "fault": str(evaluator.fault or "")}
         return {"designs": designs, "values": values, "about": np.array(json.dumps(about))}
-
-    def merge(self, a: Any, b: Any) -> Any:
-        """There is one shard: nothing to merge."""
-        raise ValueError("design_optimization has one shard")
 
     def finish(self, partial: Arrays, seconds: dict[str, float]) -> Result:
         """The best design, all designs, how the search went, and the best design's mesh where it is exact."""

@@ -34,6 +34,7 @@ from wsrender.parallel.five_bar.tables import (
 )
 from wsrender.plots.five_bar import MODE_VOLUMES
 from wsrender.result import Result
+from wsrender.run.one_shard import OneShard
 from wsrender.run.partial_tables import arrays_of_tables, tables_of_arrays
 from wsrender.run.provenance import job_entry, provenance
 from wsrender.run.settled_device import settled_device
@@ -48,7 +49,7 @@ UNITS = {"det_a": "m^2", "det_b": "m^4"}
 
 
 @dataclass(eq=False)
-class FiveBarPlan:
+class FiveBarPlan(OneShard):
     """A resolved ``five_bar`` job: one shard."""
 
     job: FiveBarJob
@@ -76,10 +77,6 @@ class FiveBarPlan:
         """Cells of the maps, their bytes, and seconds."""
         cells = float(self._cells + self._joint_cells)
         return {"samples": cells, "bytes": 200.0 * cells, "seconds": cells / CELLS_PER_S}
-
-    def resolved(self) -> dict[str, Any]:
-        """What is settled once: device, target, shards."""
-        return {"device": self.device, "target": self.target, "shards": [list(shard) for shard in self.shards]}
 
     def run_shard(self, shard: int, progress: Callable[[int], None] | None, **execution: Any) -> dict[str, np.ndarray]:
         """Boundary, loci, aspects, maps and iso-curves of every working mode."""
@@ -113,10 +110,6 @@ class FiveBarPlan:
         }
         arrays = {"about": np.array(json.dumps(about, allow_nan=False)), **arrays_of_tables(tables)}
         return arrays | {f"map {m} {name}": array for m, values in maps.items() for name, array in values.items()}
-
-    def merge(self, a: Any, b: Any) -> Any:
-        """There is one shard: nothing to merge."""
-        raise ValueError("five_bar has one shard")
 
     def finish(self, partial: dict[str, np.ndarray], seconds: dict[str, float]) -> Result:
         """Areas, aspects, least condition numbers, and the tables and maps behind the pictures."""

@@ -13,6 +13,7 @@ from wsrender.result import Result
 from wsrender.robot import Robot
 from wsrender.robot.indices import evaluation_of
 from wsrender.robot.model_robot import configuration_rows
+from wsrender.run.one_shard import OneShard
 from wsrender.run.provenance import index_choices, job_entry, provenance, robot_entry
 from wsrender.run.settled_device import settled_device
 from wsrender.spec import IndicesAtJob
@@ -20,7 +21,7 @@ from wsrender.volume.distribution_map import DistributionMap
 
 
 @dataclass(eq=False)
-class IndicesAtPlan:
+class IndicesAtPlan(OneShard):
     """A resolved ``indices_at`` job: one shard."""
 
     job: IndicesAtJob
@@ -32,10 +33,6 @@ class IndicesAtPlan:
     shards: list[tuple[int, int]] = field(default_factory=list)
     estimate: dict[str, float] = field(default_factory=dict)
 
-    def resolved(self) -> dict[str, Any]:
-        """What is settled once: the device that "auto" means, target, shards."""
-        return {"device": self.device, "target": self.target, "shards": [list(shard) for shard in self.shards]}
-
     def run_shard(self, shard: int, progress: Callable[[int], None] | None, **execution: Any) -> Evaluated:
         """Positions and values of all rows."""
         return evaluate_at(
@@ -46,10 +43,6 @@ class IndicesAtPlan:
             with_orientation=self.evaluation.host_chain is None,
             threads=execution.get("threads"),
         )
-
-    def merge(self, a: Evaluated, b: Evaluated) -> Evaluated:
-        """There is one shard: nothing to merge."""
-        raise ValueError("indices_at has one shard")
 
     def finish(self, partial: Evaluated, seconds: dict[str, float]) -> Result:
         """The map, one row per configuration in the order asked, and the extremes of each index."""

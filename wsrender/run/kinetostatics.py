@@ -13,6 +13,7 @@ from wsrender.kinetostatics.passivity import LoopWork, largest_loop_work, stiffn
 from wsrender.kinetostatics.posture_data import posture_tables
 from wsrender.result import Result
 from wsrender.robot import Robot
+from wsrender.run.one_shard import OneShard
 from wsrender.run.provenance import job_entry, provenance, robot_entry
 from wsrender.run.settled_device import settled_device
 from wsrender.sampling import plan_sampling
@@ -33,7 +34,7 @@ UNITS = {"force": "N", "torque": "N m", "inverse_condition_number": "1", "limit_
 
 
 @dataclass(eq=False)
-class KinetostaticFieldPlan:
+class KinetostaticFieldPlan(OneShard):
     """A resolved ``kinetostatic_field`` job: one shard."""
 
     job: KinetostaticFieldJob
@@ -46,12 +47,7 @@ class KinetostaticFieldPlan:
 
     def resolved(self) -> dict[str, Any]:
         """What is settled once: the device that "auto" means, target, voxel size, shards."""
-        return {
-            "device": self.device,
-            "target": self.target,
-            "voxel_size_m": self.voxel_size_m,
-            "shards": [list(shard) for shard in self.shards],
-        }
+        return super().resolved() | {"voxel_size_m": self.voxel_size_m}
 
     def run_shard(self, shard: int, progress: Callable[[int], None] | None, **execution: Any) -> dict[str, np.ndarray]:
         """Of every voxel: cell (V, 3), number of configurations (V,), sums (V, 6 + scalars), greatest force (V,).
@@ -82,10 +78,6 @@ class KinetostaticFieldPlan:
         arrays = {"shown": shown, "cells": found, "count": count, "sums": sums, "greatest": greatest}
         energetics = {"stiffness": stiffnesses(force_field), "loop": np.array([loop.work_j, loop.length_m, loop.paths])}
         return arrays | energetics
-
-    def merge(self, a: dict[str, np.ndarray], b: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-        """There is one shard: nothing to merge."""
-        raise ValueError("kinetostatic_field has one shard")
 
     def finish(self, partial: dict[str, np.ndarray], seconds: dict[str, float]) -> Result:
         """Volume data with the vector "force" (and "torque") per voxel, and the document."""

@@ -16,6 +16,7 @@ from wsrender.mapping.voxel_set import VoxelSet
 from wsrender.parallel.workspace_points import workspace_points
 from wsrender.result import Result
 from wsrender.robot import Robot
+from wsrender.run.one_shard import OneShard
 from wsrender.run.provenance import job_entry, provenance, robot_entry
 from wsrender.run.sampled_positions import sampled_positions
 from wsrender.run.settled_device import settled_device
@@ -32,7 +33,7 @@ Source = Robot | MappedMechanism | np.ndarray
 
 
 @dataclass(eq=False)
-class MappingPlan:
+class MappingPlan(OneShard):
     """A resolved ``master_slave_mapping`` job: one shard."""
 
     job: MasterSlaveMappingJob
@@ -53,10 +54,6 @@ class MappingPlan:
         points = float(self.samples)
         return {"samples": points, "bytes": 1000.0 * points, "seconds": points / POINTS_PER_S}
 
-    def resolved(self) -> dict[str, Any]:
-        """What is settled once: the device that "auto" means, target, shards."""
-        return {"device": self.device, "target": self.target, "shards": [list(shard) for shard in self.shards]}
-
     def run_shard(self, shard: int, progress: Callable[[int], None] | None, **execution: Any) -> dict[str, np.ndarray]:
         """Points of both robots, the mapping of each offset, and the curve of the best."""
         master, slave = (self._points(source, side) for side, source in enumerate(self.sources))
@@ -73,10 +70,6 @@ class MappingPlan:
         if progress:
             progress(self.samples)
         return arrays
-
-    def merge(self, a: Any, b: Any) -> Any:
-        """There is one shard: nothing to merge."""
-        raise ValueError("master_slave_mapping has one shard")
 
     def finish(self, partial: dict[str, np.ndarray], seconds: dict[str, float]) -> Result:
         """The best mapping, the others beside it, the points that fail, and the shapes."""

@@ -12,6 +12,7 @@ from wsrender.parallel.exact import ExactWorkspace
 from wsrender.parallel.mechanism import mechanism_of
 from wsrender.parallel.solids import solid_workspace
 from wsrender.result import Result
+from wsrender.run.one_shard import OneShard
 from wsrender.run.parallel import plan_parallel
 from wsrender.run.parallel_exact import region_of
 from wsrender.run.provenance import job_entry, provenance
@@ -31,7 +32,7 @@ UNITS = {"size": "m", "volume": "m^3"}
 
 
 @dataclass(eq=False)
-class MethodComparisonPlan:
+class MethodComparisonPlan(OneShard):
     """A resolved ``method_comparison`` job: one shard, its samples the runs of the methods."""
 
     job: MethodComparisonJob
@@ -57,11 +58,10 @@ class MethodComparisonPlan:
 
     def resolved(self) -> dict[str, Any]:
         """What is settled once: device, target, sizes of voxels, shards."""
-        shards = [list(shard) for shard in self.shards]
-        return {"device": self.device, "target": self.target, "sizes": list(self.sizes), "shards": shards}
+        return super().resolved() | {"sizes": list(self.sizes)}
 
     def run_shard(self, shard: int, progress: Callable[[int], None] | None, **execution: Any) -> Arrays:
-        """Method, edge of its voxels or triangles, volume and seconds of every run, and the exact topology."""
+        """Method, edge of its voxels or triangles, volume and seconds of every run."""
         rows = []
         for row in self._runs(execution.get("threads")):
             rows.append(row)
@@ -71,10 +71,6 @@ class MethodComparisonPlan:
             "method": np.array([row[0] for row in rows]),
             "numbers": np.array([row[1:] for row in rows], np.float64),
         }
-
-    def merge(self, a: Any, b: Any) -> Any:
-        """There is one shard: nothing to merge."""
-        raise ValueError("method_comparison has one shard")
 
     def finish(self, partial: Arrays, seconds: dict[str, float]) -> Result:
         """The table of all runs, with errors from the exact volume; their times are in ``timing_s``."""

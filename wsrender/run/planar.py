@@ -16,6 +16,7 @@ from wsrender.errors import NumericalError
 from wsrender.reachability.targets import model_robot
 from wsrender.result import Result
 from wsrender.robot import Robot
+from wsrender.run.one_shard import OneShard
 from wsrender.run.partial_tables import arrays_of_tables, tables_of_arrays
 from wsrender.run.provenance import job_entry, provenance, robot_entry
 from wsrender.run.sampled_positions import sampled_positions
@@ -30,7 +31,7 @@ DRAWN = 20_000  # samples kept for the picture
 
 
 @dataclass(eq=False)
-class PlanarBoundaryPlan:
+class PlanarBoundaryPlan(OneShard):
     """A resolved ``planar_boundary`` job: one shard."""
 
     job: PlanarBoundaryJob
@@ -51,10 +52,6 @@ class PlanarBoundaryPlan:
         count = float(self.samples)
         return {"samples": count, "bytes": 64.0 * count, "seconds": SWEEP_S + count / POSITIONS_PER_S}
 
-    def resolved(self) -> dict[str, Any]:
-        """What is settled once: the device that "auto" means, target, shards."""
-        return {"device": self.device, "target": self.target, "shards": [list(shard) for shard in self.shards]}
-
     def run_shard(self, shard: int, progress: Callable[[int], None] | None, **execution: Any) -> dict[str, np.ndarray]:
         """Both boundaries, the samples of the picture, and the answers about points."""
         job = self.job
@@ -72,10 +69,6 @@ class PlanarBoundaryPlan:
         if job.points_m:
             tables["points"] = _point_table(exact, np.array(job.points_m))
         return {"about": np.array(json.dumps(about)), **arrays_of_tables(tables)}
-
-    def merge(self, a: Any, b: Any) -> Any:
-        """There is one shard: nothing to merge."""
-        raise ValueError("planar_boundary has one shard")
 
     def finish(self, partial: dict[str, np.ndarray], seconds: dict[str, float]) -> Result:
         """Tables ``boundary`` and ``monte_carlo``, one row per segment, ``points`` and ``samples``; areas and loops."""

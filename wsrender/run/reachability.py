@@ -9,6 +9,7 @@ import numpy as np
 from wsrender.reachability.targets import check_tolerance, reachable
 from wsrender.result import Result
 from wsrender.robot import Robot
+from wsrender.run.one_shard import OneShard
 from wsrender.run.provenance import job_entry, provenance, robot_entry
 from wsrender.run.settled_device import settled_device
 from wsrender.spec.reachability import ReachabilityJob
@@ -19,7 +20,7 @@ DRAWN = 3  # configurations in the picture of the robot
 
 
 @dataclass(eq=False)
-class ReachabilityPlan:
+class ReachabilityPlan(OneShard):
     """A resolved ``reachability`` job: one shard."""
 
     job: ReachabilityJob
@@ -28,10 +29,6 @@ class ReachabilityPlan:
     target: str
     shards: list[tuple[int, int]]
     estimate: dict[str, float] = field(default_factory=dict)
-
-    def resolved(self) -> dict[str, Any]:
-        """What is settled once: the device that "auto" means, target, shards."""
-        return {"device": self.device, "target": self.target, "shards": [list(shard) for shard in self.shards]}
 
     def run_shard(self, shard: int, progress: Callable[[int], None] | None, **execution: Any) -> dict[str, np.ndarray]:
         """All targets decided: arrays of `Reachability` by name."""
@@ -50,10 +47,6 @@ class ReachabilityPlan:
             progress=progress,
         )
         return vars(found)
-
-    def merge(self, a: dict[str, np.ndarray], b: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-        """There is one shard: nothing to merge."""
-        raise ValueError("reachability has one shard")
 
     def finish(self, partial: dict[str, np.ndarray], seconds: dict[str, float]) -> Result:
         """The table ``targets``, one row per target in the order asked, and how many have which label."""

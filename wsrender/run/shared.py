@@ -11,6 +11,7 @@ from wsrender.multi.shared_volume import NUMBER, PRODUCT, reached_by, shared_vol
 from wsrender.reachability import Event
 from wsrender.result import Result
 from wsrender.robot import Robot
+from wsrender.run.one_shard import OneShard
 from wsrender.run.provenance import job_entry, provenance
 from wsrender.run.refined import Progress, refined_together
 from wsrender.run.several_result import common_entries, skeletons
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(eq=False)
-class SharedWorkspacePlan:
+class SharedWorkspacePlan(OneShard):
     """A resolved ``shared_workspace`` job: one shard, in which the robots are swept one after the other."""
 
     job: SharedWorkspaceJob
@@ -59,10 +60,6 @@ class SharedWorkspacePlan:
         if self.job.scan is not None:
             arrays["scan"] = self._scan(self.job.scan, arrays, progress, **execution)
         return arrays
-
-    def merge(self, a: Any, b: Any) -> Any:
-        """There is one shard: nothing to merge."""
-        raise ValueError("shared_workspace has one shard")
 
     def refine(self, partial: dict[str, np.ndarray], progress: Progress | None) -> dict[str, np.ndarray]:
         """With the refined volumes, if asked."""

@@ -28,6 +28,7 @@ from wsrender.reachability.targets import model_robot
 from wsrender.result import Result
 from wsrender.robot import Robot
 from wsrender.robots.chain import Chain
+from wsrender.run.one_shard import OneShard
 from wsrender.run.provenance import job_entry, provenance, robot_entry
 from wsrender.run.refined import volume_entry
 from wsrender.run.settled_device import settled_device
@@ -43,7 +44,7 @@ BYTES_PER_CORNER, BYTES_PER_CELL = 40.0, 1e4  # of the lattice; of the surface, 
 
 
 @dataclass(eq=False)
-class BoundaryPatchesPlan:
+class BoundaryPatchesPlan(OneShard):
     """A resolved ``boundary_patches`` job: one shard."""
 
     job: BoundaryPatchesJob
@@ -69,10 +70,6 @@ class BoundaryPatchesPlan:
         points, cells = float(self._points), self.job.cells
         held = BYTES_PER_CORNER * cells**3 + BYTES_PER_CELL * 6 * cells**2
         return {"samples": points, "bytes": held, "seconds": points / POINTS_PER_S}
-
-    def resolved(self) -> dict[str, Any]:
-        """What is settled once: device, target, shards."""
-        return {"device": self.device, "target": self.target, "shards": [list(shard) for shard in self.shards]}
 
     def run_shard(self, shard: int, progress: Callable[[int], None] | None, **execution: Any) -> dict[str, np.ndarray]:
         """Patches, edges and corners as JSON, and the mesh."""
@@ -116,10 +113,6 @@ class BoundaryPatchesPlan:
             "fit_tolerance_m": TOLERANCE * self.arm.size,
             "undecided": reached.undecided,
         }
-
-    def merge(self, a: Any, b: Any) -> Any:
-        """There is one shard: nothing to merge."""
-        raise ValueError("boundary_patches has one shard")
 
     def finish(self, partial: dict[str, np.ndarray], seconds: dict[str, float]) -> Result:
         """Tables ``patches``, ``edges``, ``corners`` and ``edge_points``; the mesh ``patches``, a colour each."""
