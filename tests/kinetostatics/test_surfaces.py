@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
+from scipy.ndimage import map_coordinates
 
 import wsrender as ws
-from wsrender.kinetostatics.boundary import boundary_distance
+from wsrender.kinetostatics.boundary import BoundaryDistance, boundary_distance
 from wsrender.kinetostatics.obstacles import ObstacleDistance
 from wsrender.spec.kinetostatics import BoundaryForce, ObstacleForce
 from wsrender.spec.robot import Transform
@@ -102,6 +103,25 @@ def test_the_gradient_is_that_of_the_distance():
         steps = 1e-6 * np.eye(3)
         differences = [(boundary.at(point + step)[0] - boundary.at(point - step)[0]) / 2e-6 for step in steps]
         assert gradient == pytest.approx(differences, abs=1e-6)
+
+
+@pytest.mark.parametrize("dimensions", [1, 2, 3])
+def test_the_distance_is_a_cubic_spline(dimensions):
+    """Between cells, along axes that lie askew, as SciPy has it."""
+    rng = np.random.default_rng(dimensions)
+    axes = np.linalg.qr(rng.normal(size=(3, 3)))[0][:dimensions]
+    values, origin = rng.normal(size=(9, 8, 7)[:dimensions]), rng.normal(size=dimensions)
+    boundary = BoundaryDistance(values, axes, origin, cell_m=0.3)
+
+    def expected(u):
+        return map_coordinates(values, u.T, order=3, prefilter=False)
+
+    steps = 1e-5 * np.eye(dimensions)
+    for u in rng.uniform(1, np.array(values.shape) - 2, (50, dimensions)):
+        distance, gradient = boundary.at((origin + 0.3 * u) @ axes)
+        slopes = (expected(u + steps) - expected(u - steps)) / 2e-5
+        assert distance == pytest.approx(expected(u[None])[0], abs=1e-12)
+        assert gradient == pytest.approx(slopes @ axes / 0.3, abs=1e-7)
 
 
 def test_a_planar_workspace_is_measured_in_its_plane():

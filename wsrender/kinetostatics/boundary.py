@@ -1,8 +1,8 @@
 """A smooth signed distance to the boundary of a workspace."""
 
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy.ndimage import binary_closing, gaussian_filter
@@ -41,29 +41,35 @@ class BoundaryDistance:
 
     def at(self, position: np.ndarray) -> tuple[float, np.ndarray]:
         """(distance [m], gradient (3,)) at a position (3,) in the world."""
-        u = ((self.axes @ position - self.origin) / self.cell_m).tolist()
-        first = [min(max(math.floor(x), 1), size - 3) for x, size in zip(u, self.values.shape, strict=True)]
-        splines = np.array([_spline(min(max(x - k, 0.0), 1.0)) for x, k in zip(u, first, strict=True)])
-        block = self.values[tuple([slice(k - 1, k + 3) for k in first])]
-        dimensions = len(first)
-        for axis in range(dimensions - 1, -1, -1):  # its weights and slopes become the last axis, of length 2
-            block = block.swapaxes(axis, -1) @ splines[axis]
-        slopes = np.array([block[place] for place in _PLACES[dimensions]])
-        return float(block[(0,) * dimensions]), slopes @ self.axes / self.cell_m
+        near, powers = [], []  # the four cells around the position along each axis, and 1, t, t², t³ between them
+        for u, size in zip((self._to_cells.dot(position) - self._corner).tolist(), self.values.shape, strict=True):
+            k = min(max(int(u), 1), size - 3)
+            t = min(max(u - k, 0.0), 1.0)
+            near.append(slice(k - 1, k + 3))
+            powers.append((1.0, t, t * t, t * t * t))
+        found = self.values[tuple(near)]
+        for spline in np.array(powers).dot(_SPLINE).reshape(-1, 4, 2):
+            found = found.reshape(4, -1).T.dot(spline)  # for the first axis, a last one: value and slope along it
+        found = found.ravel()
+        return float(found[0]), found.take(_SLOPES[len(near)]).dot(self._to_cells)
+
+    @cached_property
+    def _to_cells(self) -> np.ndarray:
+        return self.axes / self.cell_m
+
+    @cached_property
+    def _corner(self) -> np.ndarray:
+        return self.origin / self.cell_m
 
 
-_PLACES = {1: [(1,)], 2: [(0, 1), (1, 0)], 3: [(0, 0, 1), (1, 0, 0), (0, 1, 0)]}  # of the slope along each axis
-
-
-def _spline(t: float) -> list[tuple[float, float]]:
-    """Weights of the uniform cubic B-spline at t in 0 … 1, and their derivatives, (4, 2)."""
-    s = 1 - t
-    return [
-        (s * s * s / 6, -s * s / 2),
-        ((4 - 6 * t * t + 3 * t * t * t) / 6, (3 * t * t - 4 * t) / 2),
-        ((4 - 6 * s * s + 3 * s * s * s) / 6, (4 * s - 3 * s * s) / 2),
-        (t * t * t / 6, t * t / 2),
-    ]
+_SLOPES = {1: [1], 2: [2, 1], 3: [4, 2, 1]}  # where the slope along each axis is found
+# The four weights of the uniform cubic B-spline by the powers of t in 0 … 1, and their derivatives, in turn.
+_SPLINE = np.array([
+    [1, -3, 4, 0, 1, 3, 0, 0],
+    [-3, 6, 0, -12, 3, 6, 0, 0],
+    [3, -3, -6, 9, 3, -9, 0, 3],
+    [-1, 0, 3, 0, -3, 0, 1, 0],
+]) / 6  # fmt: skip
 
 
 def boundary_distance(chain: Chain, choice: BoundaryForce, device: str = "cpu") -> BoundaryDistance:
