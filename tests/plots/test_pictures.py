@@ -1,6 +1,7 @@
 import hashlib
 import subprocess
 import sys
+from dataclasses import replace
 
 import matplotlib as mpl
 import numpy as np
@@ -124,6 +125,15 @@ def test_histogram_has_a_panel_per_index_whose_bars_sum_to_all_samples():
     for axes, name in zip(panels, ODD_NAMES, strict=True):
         assert axes.patches[0].get_data().values.sum() == pytest.approx(100)
         assert axes.lines[0].get_xdata()[0] == pytest.approx(samples.indices[name].mean(), rel=1e-6)
+
+
+def test_long_names_below_histograms_do_not_overlap():
+    samples = random_map(names=("dynamic_order_independent_manipulability", "dynamic_harmonic_mean_manipulability"))
+    units = dict.fromkeys(samples.indices, "(1/(kg m))^2")
+    figure = plots.histogram(replace(samples, units=units))
+    figure.draw_without_rendering()
+    first, second = (axes.xaxis.label.get_window_extent() for axes in figure.axes)
+    assert first.x1 < second.x0
 
 
 def test_histogram_csv_holds_what_is_drawn(tmp_path):

@@ -13,6 +13,7 @@ from wsrender.plots.style import INK, add_title, color_map, new_figure, paper_st
 from wsrender.volume.distribution_map import DistributionMap
 
 BINS = 50
+WIDTH = 42  # characters of a label below a panel
 ROUNDING = 1e-9  # of the values: a spread below it is that of their computation, and too small for 50 intervals
 
 
@@ -37,7 +38,7 @@ def histogram(samples: DistributionMap, index: str | None = None, *, title: str 
         axes.stairs(100 * share, edges, fill=True, color=color_map()(0.35), zorder=2)
         axes.set_ylim(bottom=0)
         axes.axvline(values.mean(dtype=np.float64), color=INK, lw=0.9, ls=(0, (4, 2)), zorder=3, label="mean")
-        axes.set_xlabel(quantity(name, samples.units.get(name)))
+        axes.set_xlabel(_in_width(quantity(name, samples.units.get(name))))
         axes.xaxis.set_major_locator(MaxNLocator(4))
         axes.yaxis.set_major_locator(MaxNLocator(4))
         axes.grid(axis="y", zorder=0)
@@ -46,6 +47,11 @@ def histogram(samples: DistributionMap, index: str | None = None, *, title: str 
     panels.flat[0].legend(frameon=False, loc="upper right")
     add_title(figure, title)
     return figure
+
+
+def _in_width(label: str) -> str:
+    """The unit on a line of its own where the panel is too narrow for both."""
+    return label.replace(" [", "\n[") if len(label) > WIDTH else label
 
 
 def write_histogram_csv(samples: DistributionMap, path: str | Path) -> None:
