@@ -158,6 +158,7 @@ def test_orientations_at_a_point_are_those_of_inverse_kinematics():
     np.testing.assert_array_equal(table["reached"], expected)
     entry = result.document["orientation_workspace"]
     assert entry["reached"] == sum(expected) and 0 < entry["share"] < 1
+    assert f"{sum(expected)} of 729, {100 * entry['share']:.3g} %" in result.summary()
     assert result.volume is None and result.skeleton.shape == (6, 4, 3)
 
 

@@ -37,6 +37,8 @@ def _facts(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
         scale, offset = (", ".join(f"{number:.4g}" for number in mapping[name]) for name in ("scale", "offset_m"))
         outside = "all points inside" if mapping["succeeded"] else f"{mapping['failing_points']:,} points outside"
         yield "mapping", f"{outside}; scale {scale}; offset {offset} m; efficiency {mapping['efficiency']:.4g}"
+    if found := document.get("orientation_workspace"):
+        yield "orientations reached", f"{found['reached']:,} of {found['orientations']:,}, {100 * found['share']:.3g} %"
     yield from _planar(document)
     yield from _patches(document)
     targets = document.get("targets") or {}
