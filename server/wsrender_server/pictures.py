@@ -10,7 +10,6 @@ from wsrender.errors import InputError
 from wsrender.result import Result
 
 AXES = "xyz"
-PLOTS = ("robot", "scatter", "slices", "slice", "histogram")
 # Artifacts that a result's pictures are drawn from, and what reads them.
 SOURCES = {
     "map.parquet": "read_table_parquet",

@@ -7,6 +7,7 @@ from scipy.spatial.transform import Rotation
 import wsrender as ws
 from tests.reference.class_robots import DHClass, FourBar, SphericalClass
 from tests.reference.exact_volumes import CASES, spherical_pair
+from wsrender.engine import evaluate_kinematics
 from wsrender.reachability.capability import capability, fibonacci_directions
 from wsrender.robot import as_robot
 from wsrender.robots.reachable_box import reachable_box
@@ -110,8 +111,6 @@ def test_a_placed_class_and_its_tool():
     tool[:3, 3], tool[:3, :3] = (0.1, -0.05, 0.2), Rotation.from_rotvec([0.3, 0.2, 0.1]).as_matrix()
     q = np.random.default_rng(0).uniform(model.lower_limits, model.upper_limits, (20, 6))
     chains = [robot.placed(placement).chain.placed(T_tip_tool=tool) for robot in (user, model)]
-    from wsrender.engine import evaluate_kinematics
-
     ours, theirs = (evaluate_kinematics(chain, q, device="cpu") for chain in chains)
     assert ours.pose == pytest.approx(theirs.pose, abs=1e-12)
     assert ours.jacobian == pytest.approx(theirs.jacobian, abs=1e-9)

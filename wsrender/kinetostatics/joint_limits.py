@@ -5,8 +5,6 @@ import numpy as np
 from wsrender.robots.chain import Chain
 from wsrender.spec.kinetostatics import JointLimitForce
 
-_SIDES = np.array([[1.0], [-1.0]])  # of the ramps before the lower and the upper limit: where they push
-
 
 class JointLimits:
     """The joint-limit force of [CB]: a linear ramp over a margin Δ before each limit; joints without limits have none.

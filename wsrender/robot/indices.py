@@ -84,11 +84,10 @@ def evaluation_of(
         raise MissingInertiaError("torque_scaling", f"the model of {robot.name} lacks effort limits for some joint")
     if not (np.isfinite(characteristic_length_m) and characteristic_length_m > 0):
         raise InputError("characteristic_length_m", f"{characteristic_length_m!r} is not allowed; a positive length is")
-    host = robot if isinstance(robot, HostRobot) else None
-    if host and inertia == "mujoco":
-        raise InputError("inertia", f'"mujoco" is not allowed: {robot.name} has no model but its own class')
-    if host:
-        host_inertia = host.inertia_matrix if dynamic else None
+    if isinstance(robot, HostRobot):
+        if inertia == "mujoco":
+            raise InputError("inertia", f'"mujoco" is not allowed: {robot.name} has no model but its own class')
+        host_inertia = robot.inertia_matrix if dynamic else None
     else:
         host_inertia = robot.mujoco_inertia if dynamic and inertia == "mujoco" else None
     return Evaluation(

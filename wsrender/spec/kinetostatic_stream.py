@@ -15,7 +15,6 @@ from wsrender.spec.document import Document
 from wsrender.spec.kinetostatics import ForceFieldChoice
 from wsrender.spec.quantities import Number, PositiveNumber, real, sequence
 
-VERSION = 1
 LARGEST_SAMPLE = 4096  # bytes
 Scale = Literal["rough", "medium", "fine", "view"]
 State = Literal["waiting", "rendering", "clutched", "stale", "invalid_input"]
