@@ -5,8 +5,7 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
-from wsrender.reachability.targets import model_robot
-from wsrender.robot import Robot
+from wsrender.robot import Robot, robot_with_model
 from wsrender.robots import frames
 
 
@@ -29,7 +28,7 @@ class Kinematics:
     """Float64 kinematics of a robot's model, one posture at a time. Raises InputError for a user-defined robot."""
 
     def __init__(self, robot: Robot):
-        loaded = model_robot(robot)._loaded
+        loaded = robot_with_model(robot)._loaded
         self.chain = chain = loaded.chain
         self._model, self._data = loaded.model, mujoco.MjData(loaded.model)
         base, tip = frames.choose(loaded.model, robot.base, robot.tip)

@@ -9,8 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from wsrender.errors import InputError
 from wsrender.reachability.inverse_solver import CLEARLY, LABELS, UNDECIDED, UNREACHABLE, InverseSolver, Solutions
-from wsrender.robot import Robot, as_robot
-from wsrender.robot.user_robot import HostRobot
+from wsrender.robot import as_robot
 from wsrender.robots.chain import Chain
 from wsrender.tolerances import TOLERANCES
 
@@ -88,14 +87,6 @@ def check_tolerance(chain: Chain, position_tolerance_m: float, precision: str) -
         raise InputError(
             "position_tolerance_m", f"{position_tolerance_m:g} is not allowed; {precision} tells {least:.1g} m or more"
         )
-
-
-def model_robot(robot: Any) -> Robot:
-    """The robot, if it has a model; InputError for one that is defined by a Python class."""
-    subject = as_robot(robot)
-    if isinstance(subject, HostRobot):
-        raise InputError("robot", f"{subject.name} is defined by a Python class; a model or a DH table is needed")
-    return subject
 
 
 def rows_of(values: Any, width: int, field: str) -> np.ndarray:

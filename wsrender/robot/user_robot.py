@@ -145,6 +145,14 @@ def as_robot(robot: Any) -> Robot:
     )
 
 
+def robot_with_model(robot: Any) -> Robot:
+    """The robot, if it has a model; InputError for one that is defined by a Python class."""
+    subject = as_robot(robot)
+    if isinstance(subject, HostRobot):
+        raise InputError("robot", f"{subject.name} is defined by a Python class; a model or a DH table is needed")
+    return subject
+
+
 def _limits(user: UserRobot) -> np.ndarray:
     try:
         limits = np.asarray(user.limits, np.float64)

@@ -13,9 +13,8 @@ from wsrender.boundary.planar.monte_carlo import MonteCarloBoundary, monte_carlo
 from wsrender.boundary.planar.planar_chain import PlanarChain, planar_chain
 from wsrender.boundary.planar.segments import segment_entry, segment_table
 from wsrender.errors import NumericalError
-from wsrender.reachability.targets import model_robot
 from wsrender.result import Result
-from wsrender.robot import Robot
+from wsrender.robot import Robot, robot_with_model
 from wsrender.run.one_shard import OneShard
 from wsrender.run.partial_tables import arrays_of_tables, tables_of_arrays
 from wsrender.run.provenance import job_entry, provenance, robot_entry
@@ -99,7 +98,7 @@ def plan_planar_boundary(
 
     Raises ModelError, naming the joint, for an arm that is not planar; InputError for a robot without a model.
     """
-    chain = model_robot(robot).chain
+    chain = robot_with_model(robot).chain
     samples = plan_sampling(chain, job.sampling).count
     planar = planar_chain(chain.held(job.sampling.locked))
     return PlanarBoundaryPlan(job, robot, planar, *settled_device(job.device, resolved), samples)

@@ -4,8 +4,8 @@ from collections.abc import Mapping
 from typing import Any
 
 from wsrender.boundary.planar.exact_boundary import ExactBoundary
-from wsrender.reachability.targets import model_robot
 from wsrender.result import Result
+from wsrender.robot import robot_with_model
 from wsrender.run.from_python import arm_entry, as_subject, execute_here, plain, sampling_entry
 from wsrender.run.steps import Progress
 from wsrender.sampling import held_chain
@@ -33,4 +33,4 @@ def exact_boundary(robot: Any, *, locked: Mapping[str, float] | None = None) -> 
     ``locked`` holds joints, by name, at a value [rad or m]. Raises ModelError, naming the joint, for an arm that is not
     planar; InputError for an unknown joint or a value beyond its limits.
     """
-    return ExactBoundary.of(held_chain(model_robot(as_subject(robot)).chain, locked or {}))
+    return ExactBoundary.of(held_chain(robot_with_model(as_subject(robot)).chain, locked or {}))

@@ -24,9 +24,8 @@ from wsrender.boundary.spatial.spatial_boundary import (
 from wsrender.reachability.moving_joints import moving_joints
 from wsrender.reachability.reached_points import ReachedPoints
 from wsrender.reachability.refined_volume import refined_volume
-from wsrender.reachability.targets import model_robot
 from wsrender.result import Result
-from wsrender.robot import Robot
+from wsrender.robot import Robot, robot_with_model
 from wsrender.robots.chain import Chain
 from wsrender.run.one_shard import OneShard
 from wsrender.run.provenance import job_entry, provenance, robot_entry
@@ -151,7 +150,7 @@ def plan_boundary_patches(
     Raises ModelError where the joints do not move the end effector through a volume; InputError for a robot without a
     model, unknown joints to lock or values beyond their limits.
     """
-    chain = moving_joints(held_chain(model_robot(robot).chain, job.locked))[0]
+    chain = moving_joints(held_chain(robot_with_model(robot).chain, job.locked))[0]
     return BoundaryPatchesPlan(job, robot, chain, solid_arm(chain), *settled_device("cpu", resolved))
 
 
