@@ -6,7 +6,9 @@ import pytest
 import wsrender as ws
 from tests.run.simple_robots import PLANAR, PlanarClass, PlanarClassWithMasses, planar_arm, planar_arm_with_masses
 from wsrender.robot.user_robot import HostRobot, as_robot
+from wsrender.robots import library
 
+TABLE = ws.DHTable(convention="standard", rows=[ws.DHRow(a=0.3)])
 Q = np.random.default_rng(4).uniform(0.1, 2.5, (50, 2))
 
 
@@ -86,11 +88,22 @@ def test_faults_of_the_class_are_named(members, message):
         ws.analyze(variant(**members), ws.Grid(5), voxel_size_m=0.05, **PLANAR)
 
 
+@pytest.mark.parametrize("source", ["scara", library.find("scara"), TABLE], ids=type)
+def test_what_load_robot_takes_is_a_robot(source):
+    robot = ws.load_robot(source)
+    q = robot.lower_limits + 0.3 * (robot.upper_limits - robot.lower_limits)
+    position = robot.forward_kinematics(q)[:, :3, 3]
+    assert ws.reachable(source, position).labels == ["reachable"]
+    options = {"indices": ["manipulability"], "task": ["y"]}
+    assert ws.evaluate_indices(source, q, **options) == ws.evaluate_indices(robot, q, **options)
+
+
 @pytest.mark.parametrize(
     ("robot", "options", "message"),
     [
         (PlanarClass, {}, r"PlanarClass is a class; give an object of it: PlanarClass\(\)"),
         (None, {}, "NoneType is neither a Robot"),
+        ("no_such_arm", {}, 'has no robot "no_such_arm"'),
         (PlanarClass(), {"indices": "dynamic"}, "needs link inertias"),
         (PlanarClassWithMasses(), {"indices": "all", "inertia": "mujoco"}, '"mujoco" is not allowed'),
         (PlanarClassWithMasses(), {"indices": "all", "torque_scaling": True}, "lacks effort limits"),

@@ -233,7 +233,4 @@ def force_field(robot: Any, *, device: str = "auto", **choices: Any) -> ForceFie
     characteristic_length, joint_limits, conditioning, boundary, obstacles, as dicts or documents. ``device`` is where
     the workspace's boundary is sampled. Raises DocumentError, InputError, ModelError.
     """
-    from wsrender.robot import load_robot
-
-    subject = robot if isinstance(robot, Robot) or hasattr(robot, "forward_kinematics") else load_robot(robot)
-    return ForceField(as_robot(subject), ForceFieldChoice(**choices), device)
+    return ForceField(as_robot(robot), ForceFieldChoice(**choices), device)

@@ -54,10 +54,13 @@ def reachable(
 ) -> Reachability:
     """Decide which ``points`` (N, 3) [m], or poses with ``orientations`` (N, 4) quat_wxyz, the end effector reaches.
 
+    ``robot`` is a Robot, a user-defined robot or what `load_robot` takes.
     Positions and orientations are in the world frame. Every target is tried from many starts within the joint limits
     (`InverseSolver`); "unreachable" needs a proof or consistent evidence, else the label is "undecided". A label
     depends on its target and ``seed`` alone. ``characteristic_length_m`` makes an angle comparable to a distance
-    while both shrink (default: half the reach). ``progress``: called with the targets decided. Raises InputError.
+    while both shrink (default: half the reach). ``progress``: called with the targets decided.
+
+    Raises InputError, ModelError.
     """
     subject = as_robot(robot)
     position = rows_of(points, 3, "points")

@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -10,7 +9,7 @@ import numpy as np
 from wsrender.errors import InputError
 from wsrender.plots.faces import Faces
 from wsrender.render.scene import Surface
-from wsrender.robot import as_robot, link_shapes, load_robot
+from wsrender.robot import as_robot, link_shapes
 from wsrender.volume.coarser import coarser
 from wsrender.volume.distribution_map import DistributionMap
 from wsrender.volume.volume_data import VolumeData
@@ -42,7 +41,7 @@ class Subject:
         Without a configuration: a quarter into the range of every joint but those that ``sampling``, of the result
         document, locks.
         """
-        robot = load_robot(robot) if isinstance(robot, str | Path) else as_robot(robot)
+        robot = as_robot(robot)
         if configuration is None:
             low, high = robot.lower_limits, robot.upper_limits
             configuration = low + 0.25 * (high - low)

@@ -31,7 +31,8 @@ def evaluate_indices(
 ) -> dict[str, np.ndarray]:
     """Local indices at configurations ``q`` (n,) or (N, n) [rad or m]: a dict of arrays (N,).
 
-    The arguments are those of the job document ``indices_at``. Raises InputError, MissingInertiaError.
+    ``robot`` is a Robot, a user-defined robot or what `load_robot` takes. The other arguments are those of the job
+    document ``indices_at``. Raises InputError, ModelError, MissingInertiaError.
     """
     from wsrender.engine import evaluate_at
 

@@ -2,14 +2,15 @@
 
 import hashlib
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 
 from wsrender.errors import InputError, ModelError
-from wsrender.robot.model_robot import Robot, configuration_rows
+from wsrender.robot.model_robot import Robot, configuration_rows, load_robot
 from wsrender.robots.host_chain import HostChain
-from wsrender.spec.robot import Transform
+from wsrender.spec.robot import DHTable, Transform
 
 HASHED_POSES = 16
 TURNING = 1e-6  # rad per unit of a joint: less is rounding of finite differences
@@ -132,9 +133,14 @@ def finite_difference_jacobian(forward_kinematics, q: np.ndarray) -> np.ndarray:
 
 
 def as_robot(robot: Any) -> Robot:
-    """A Robot as it is; a user-defined robot (see `UserRobot`) wrapped; InputError for anything else."""
+    """A Robot as it is; a user-defined robot (see `UserRobot`) wrapped; what `load_robot` takes, loaded.
+
+    Raises InputError for anything else, ModelError as `load_robot` does.
+    """
     if isinstance(robot, Robot):
         return robot
+    if isinstance(robot, str | Path | DHTable):
+        return load_robot(robot)
     if isinstance(robot, type):
         raise InputError("robot", f"{robot.__name__} is a class; give an object of it: {robot.__name__}()")
     if isinstance(robot, UserRobot):

@@ -4,7 +4,8 @@ from collections.abc import Sequence
 from typing import Any
 
 from wsrender.result import Result
-from wsrender.run.from_python import arm_entry, as_subject, execute_here, plain, sampling_entry
+from wsrender.robot import as_robot
+from wsrender.run.from_python import arm_entry, execute_here, plain, sampling_entry
 from wsrender.run.steps import Progress
 
 
@@ -28,7 +29,7 @@ def analyze(
     bar on work of more than a second; or a function (done, total, message). ``threads`` and ``chunk_size`` change no
     bit of the result. Raises DocumentError, InputError, ModelError, ResourceError, NumericalError, NotConvergedError.
     """
-    subject = as_subject(robot)
+    subject = as_robot(robot)
     document = {
         "analysis": "workspace",
         **arm_entry(subject),
@@ -51,7 +52,7 @@ def kinetostatic_field(
 
     Raises DocumentError, InputError, ModelError, ResourceError.
     """
-    subject = as_subject(robot)
+    subject = as_robot(robot)
     sampled = {} if sampling is None else {"sampling": sampling_entry(sampling)}
     document = {"analysis": "kinetostatic_field", **arm_entry(subject), **sampled, **plain(fields)}
     return execute_here(document, subject, progress)

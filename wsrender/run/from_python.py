@@ -1,28 +1,22 @@
 """From Python objects to job documents, and their execution here."""
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from wsrender.progress import RunProgress
 from wsrender.result import Result
-from wsrender.robot import Robot, as_robot, load_robot
+from wsrender.robot import Robot, as_robot
 from wsrender.run.steps import Progress, execute
 from wsrender.spec import parse_job
 from wsrender.spec.document import Document
-from wsrender.spec.robot import DHTable, RobotSpec
+from wsrender.spec.robot import RobotSpec
 from wsrender.spec.sampling import Grid
-
-
-def as_subject(robot: Any) -> Robot:
-    """The robot of a Robot, a user-defined robot, or what `load_robot` takes."""
-    return load_robot(robot) if isinstance(robot, str | Path | DHTable) else as_robot(robot)
 
 
 def as_source(source: Any) -> Robot | np.ndarray | dict[str, Any]:
     """Points and documents as they are, anything else as a robot."""
-    return source if isinstance(source, np.ndarray | dict) else as_subject(source)
+    return source if isinstance(source, np.ndarray | dict) else as_robot(source)
 
 
 def source_entry(source: Robot | np.ndarray | dict[str, Any]) -> dict[str, Any]:

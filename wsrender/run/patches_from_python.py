@@ -3,7 +3,8 @@
 from typing import Any
 
 from wsrender.result import Result
-from wsrender.run.from_python import arm_entry, as_subject, execute_here, plain
+from wsrender.robot import as_robot
+from wsrender.run.from_python import arm_entry, execute_here, plain
 from wsrender.run.steps import Progress
 
 
@@ -22,5 +23,5 @@ def boundary_patches(robot: Any, *, progress: Progress | bool | None = None, **f
 
     Raises ModelError where the joints do not move the end effector through a volume; DocumentError, InputError.
     """
-    subject = as_subject(robot)
+    subject = as_robot(robot)
     return execute_here({"analysis": "boundary_patches", **arm_entry(subject), **plain(fields)}, subject, progress)

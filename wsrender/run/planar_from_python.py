@@ -5,8 +5,8 @@ from typing import Any
 
 from wsrender.boundary.planar.exact_boundary import ExactBoundary
 from wsrender.result import Result
-from wsrender.robot import robot_with_model
-from wsrender.run.from_python import arm_entry, as_subject, execute_here, plain, sampling_entry
+from wsrender.robot import as_robot, robot_with_model
+from wsrender.run.from_python import arm_entry, execute_here, plain, sampling_entry
 from wsrender.run.steps import Progress
 from wsrender.sampling import held_chain
 
@@ -21,7 +21,7 @@ def planar_boundary(
 
     Raises ModelError, naming the joint, for an arm that is not planar; DocumentError, InputError.
     """
-    subject = as_subject(robot)
+    subject = as_robot(robot)
     sampled = {} if sampling is None else {"sampling": sampling_entry(sampling)}
     document = {"analysis": "planar_boundary", **arm_entry(subject), **sampled, **plain(fields)}
     return execute_here(document, subject, progress)
@@ -33,4 +33,4 @@ def exact_boundary(robot: Any, *, locked: Mapping[str, float] | None = None) -> 
     ``locked`` holds joints, by name, at a value [rad or m]. Raises ModelError, naming the joint, for an arm that is not
     planar; InputError for an unknown joint or a value beyond its limits.
     """
-    return ExactBoundary.of(held_chain(robot_with_model(as_subject(robot)).chain, locked or {}))
+    return ExactBoundary.of(held_chain(robot_with_model(robot).chain, locked or {}))

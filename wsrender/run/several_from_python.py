@@ -5,11 +5,10 @@ from typing import Any
 
 from wsrender.errors import InputError
 from wsrender.result import Result
-from wsrender.robot import Robot
+from wsrender.robot import Robot, as_robot
 from wsrender.run.from_python import (
     arm_entry,
     as_source,
-    as_subject,
     execute_here,
     plain,
     sampling_entry,
@@ -85,7 +84,7 @@ def _two(
 def _several(
     analysis: str, robots: Sequence[Any], sampling: Any, progress: Progress | bool | None, fields: dict[str, Any]
 ) -> Result:
-    subjects = [as_subject(robot) for robot in robots]
+    subjects = [as_robot(robot) for robot in robots]
     samplings = sampling if isinstance(sampling, list | tuple) else [sampling] * len(subjects)
     names = fields.pop("names", None) or [None] * len(subjects)
     if not len(subjects) == len(samplings) == len(names):
