@@ -2,6 +2,7 @@
 
 import uuid
 from collections.abc import Iterator, Mapping
+from copy import deepcopy
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
@@ -13,6 +14,7 @@ from wsrender.client.connection import Connection
 from wsrender.client.job import Job
 from wsrender.client.kinetostatic_stream import KinetostaticStream
 from wsrender.errors import InputError
+from wsrender.spec.arm import dotted, robots_in
 
 PAGE = 100  # jobs in one answer
 
@@ -63,13 +65,13 @@ class Client:
         """The workers that compute for the server: address, host, target, devices, busy."""
         return _items(self._get("/v1/workers"))
 
-    def upload_model(self, model: str | Path | bytes) -> str:
+    def upload_model(self, model: str | Path | bytes, field: str = "robot.path") -> str:
         """Upload an MJCF or URDF file, or its bytes; the SHA-256 for ``robot: {"model": sha256}``.
 
-        Meshes do not travel: geometry that needs them is dropped by the server. Raises InputError where the file
-        cannot be read, ModelError where it is no model.
+        Meshes do not travel: geometry that needs them is dropped by the server. Raises InputError, naming ``field``,
+        where the file cannot be read, ModelError where it is no model.
         """
-        text = model if isinstance(model, bytes) else _read(Path(model))
+        text = model if isinstance(model, bytes) else _read(Path(model), field)
         answer = self._connection.request(
             "POST", "/v1/models", content=text, headers={"Content-Type": "application/xml"}
         )
@@ -84,7 +86,7 @@ class Client:
         timeout_s: float | None = None,
         idempotency_key: str | None = None,
     ) -> Job:
-        """Submit a job document (dict) or typed job; a robot given by path is uploaded first.
+        """Submit a job document (dict) or typed job; robots given by path are uploaded first.
 
         ``labels`` are free text to find the job by, larger ``priority`` goes first, ``timeout_s`` bounds the run. The
         idempotency key (default: a new one) makes sure that a request sent again after a lost connection is one job.
@@ -145,15 +147,14 @@ class Client:
 
     def _document(self, job: Any) -> dict[str, Any]:
         if isinstance(job, Mapping):
-            document = dict(job)
+            document = deepcopy(dict(job))
         elif hasattr(job, "model_dump"):
             document = job.model_dump(mode="json")
         else:
             raise InputError("job", f"must be a job document (dict) or a typed job, not {type(job).__name__}")
-        robot = document.get("robot")
-        if isinstance(robot, Mapping) and isinstance(robot.get("path"), str):
-            others = {key: value for key, value in robot.items() if key != "path"}
-            document["robot"] = {**others, "model": self.upload_model(robot["path"])}
+        for path, robot in robots_in(document):
+            if isinstance(robot.get("path"), str):
+                robot["model"] = self.upload_model(robot.pop("path"), dotted(path, "path"))
         return document
 
 
@@ -161,8 +162,8 @@ def _items(answer: Any) -> list[dict[str, Any]]:
     return answer["items"]
 
 
-def _read(path: Path) -> bytes:
+def _read(path: Path, field: str) -> bytes:
     try:
         return path.read_bytes()
     except OSError as error:
-        raise InputError("robot.path", f"{path} cannot be read: {error.strerror}") from None
+        raise InputError(field, f"{path} cannot be read: {error.strerror}") from None

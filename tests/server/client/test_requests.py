@@ -174,6 +174,26 @@ def test_robot_files_are_uploaded(server, client, tmp_path):
         client.submit({**DOCUMENT, "robot": {"path": str(tmp_path / "missing.urdf")}})
 
 
+def test_files_of_several_robots_are_uploaded(server, client, tmp_path):
+    """Wherever in the document they are; the document that was given stays as it is."""
+    arms = [tmp_path / f"{name}.urdf" for name in ("left", "right")]
+    for arm in arms:
+        arm.write_text(f"<robot name='{arm.stem}'/>")
+    server.answer("POST", "/v1/models", says({"sha256": "ab" * 32}, 201), says({"sha256": "cd" * 32}, 201))
+    server.answer("POST", "/v1/jobs", says(JOB, 202))
+    robots = [{"robot": {"path": str(arm)}} for arm in arms]
+    document = {"analysis": "shared_workspace", "robots": [*robots, {"robot": "ur5e"}]}
+    client.submit(document)
+    *uploads, submission = server.requests
+    assert [upload.content for upload in uploads] == [arm.read_bytes() for arm in arms]
+    sent = json.loads(submission.content)["robots"]
+    assert sent == [{"robot": {"model": "ab" * 32}}, {"robot": {"model": "cd" * 32}}, {"robot": "ur5e"}]
+    assert robots == [{"robot": {"path": str(arm)}} for arm in arms]
+    legs = [{"type": "serial", "robot": "ur5e"}, {"type": "serial", "robot": {"path": str(tmp_path / "missing.xml")}}]
+    with pytest.raises(ws.InputError, match=r"^mechanism\.legs\.1\.robot\.path: .*missing\.xml cannot be read"):
+        client.submit({"analysis": "parallel_workspace", "mechanism": {"legs": legs}})
+
+
 def test_wrong_address():
     with pytest.raises(ws.InputError, match='url: must start with http:// or https://, not "lab:8000"'):
         ws.Client("lab:8000")
