@@ -152,9 +152,7 @@ class ThreeJointInverse:
             return [k @ np.linalg.inv(self._G).T]
         u, sigma, along = np.linalg.svd(self._G)
         x = k @ u[:, 0] / sigma[0]
-        squared = (w[:, :2] ** 2).sum(-1) - x * x
-        with np.errstate(invalid="ignore"):
-            y = np.sqrt(np.where(squared > -(_ON_CIRCLE**2) * self._size**2, np.maximum(squared, 0.0), np.nan))
+        y = _root((w[:, :2] ** 2).sum(-1) - x * x, self._size**2)
         return [x[:, None] * along[0] + (sign * y)[:, None] * along[1] for sign in (1.0, -1.0)]
 
     def _slid_by_second(self, p: np.ndarray, y: np.ndarray, slide: np.ndarray) -> list[np.ndarray]:
@@ -163,9 +161,7 @@ class ThreeJointInverse:
         if abs(slide[2]) > _PARALLEL:
             return [(p - y)[:, 2] / slide[2]]
         half = y @ slide
-        squared = half**2 - (y * y).sum(-1) + (p * p).sum(-1)
-        with np.errstate(invalid="ignore"):
-            root = np.sqrt(np.where(squared > -(_ON_CIRCLE**2) * self._size**2, np.maximum(squared, 0.0), np.nan))
+        root = _root(half**2 - (y * y).sum(-1) + (p * p).sum(-1), self._size**2)
         return [-half + root, -half - root]
 
 
@@ -179,11 +175,8 @@ def _angles(c: np.ndarray) -> np.ndarray:
             ratio = np.where(np.abs(ratio) <= 1 + _ON_CIRCLE**2, np.clip(ratio, -1, 1), np.nan)
             half = np.arccos(ratio)
         return np.stack([half - angle, -half - angle], axis=1)
-    lead = np.where(np.abs(c[:, 2]) < 1e-14 * largest, 1e-14 * largest, c[:, 2])
-    companion = np.zeros((len(c), 4, 4), complex)
-    companion[:, [1, 2, 3], [0, 1, 2]] = 1
-    companion[:, :, 3] = -np.stack([lead.conj(), c[:, 1].conj(), c[:, 0], c[:, 1]], axis=1) / lead[:, None]
-    z = np.linalg.eigvals(companion)
+    lead = _not_zero(c[:, 2], largest)
+    z = _zeros(np.stack([lead, c[:, 1], c[:, 0], c[:, 1].conj(), lead.conj()], axis=1))
     with np.errstate(invalid="ignore", divide="ignore"):
         x = np.where(np.abs(np.log(np.abs(z))) < _ON_CIRCLE, np.angle(z), np.nan)
         for _ in range(2):
@@ -202,22 +195,34 @@ def _real_roots(c: np.ndarray) -> np.ndarray:
         c = c[:, 1:]
     if c.shape[1] == 3:
         return _quadratic_roots(c)
-    degree = c.shape[1] - 1
-    scale = np.abs(c).max(axis=1)
-    lead = np.where(np.abs(c[:, 0]) < 1e-14 * scale, 1e-14 * scale, c[:, 0])
-    companion = np.zeros((len(c), degree, degree))
-    companion[:, np.arange(1, degree), np.arange(degree - 1)] = 1
-    companion[:, :, -1] = -c[:, :0:-1] / lead[:, None]
-    z = np.asarray(np.linalg.eigvals(companion), complex)
+    z = _zeros(np.column_stack([_not_zero(c[:, 0], np.abs(c).max(axis=1)), c[:, 1:]]))
     return np.where(np.abs(np.imag(z)) < _ON_CIRCLE * np.maximum(np.abs(z), 1), np.real(z), np.nan)
+
+
+def _not_zero(lead: np.ndarray, scale: np.ndarray) -> np.ndarray:
+    """Leading coefficients (N,) of polynomials whose largest are ``scale``: one that vanishes sends a zero far away."""
+    return np.where(np.abs(lead) < 1e-14 * scale, 1e-14 * scale, lead)
+
+
+def _zeros(c: np.ndarray) -> np.ndarray:
+    """Zeros (N, degree) of polynomials c (N, degree + 1), highest power first: the companion matrices' eigenvalues."""
+    degree = c.shape[1] - 1
+    companion = np.zeros((len(c), degree, degree), c.dtype)
+    companion[:, np.arange(1, degree), np.arange(degree - 1)] = 1
+    companion[:, :, -1] = -c[:, :0:-1] / c[:, :1]
+    return np.linalg.eigvals(companion)
 
 
 def _quadratic_roots(c: np.ndarray) -> np.ndarray:
     """Real zeros (N, 2) of a x² + b x + c; a may vanish."""
     a, half, end = c[:, 0], c[:, 1] / 2, c[:, 2]
-    squared = half**2 - a * end
-    slack = _ON_CIRCLE**2 * np.maximum(half**2, np.abs(a * end))
+    root = _root(half**2 - a * end, np.maximum(half**2, np.abs(a * end)))
     with np.errstate(invalid="ignore", divide="ignore"):
-        root = np.sqrt(np.where(squared >= -slack, np.maximum(squared, 0.0), np.nan))
         larger = -(half + np.where(half >= 0, root, -root))
         return np.stack([larger / np.where(a == 0, np.nan, a), end / np.where(larger == 0, np.nan, larger)], axis=1)
+
+
+def _root(squared: np.ndarray, scale: np.ndarray | float) -> np.ndarray:
+    """Square roots; 0 of what is below 0 by rounding only, relative to ``scale``, and NaN of what is farther below."""
+    with np.errstate(invalid="ignore"):
+        return np.sqrt(np.where(squared >= -(_ON_CIRCLE**2) * scale, np.maximum(squared, 0.0), np.nan))
