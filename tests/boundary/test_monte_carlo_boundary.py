@@ -5,8 +5,8 @@ import pytest
 
 from tests.boundary.planar_arms import boundary, revolute_joints, slide_and_turn, turn_and_slide
 from tests.reference.planar_membership import PlanarArm
+from wsrender.boundary.fits import fit_circle, fit_line
 from wsrender.boundary.planar.cell_loops import cell_loops
-from wsrender.boundary.planar.fits import fit_circle, fit_line
 from wsrender.boundary.planar.monte_carlo import monte_carlo_boundary
 
 SAMPLES, CELLS = 100_000, 2500  # as published

@@ -11,8 +11,8 @@ from itertools import pairwise, product
 
 import numpy as np
 
+from wsrender.boundary.fits import fit_circle, fit_line
 from wsrender.boundary.planar.cell_loops import cell_loops
-from wsrender.boundary.planar.fits import fit_circle, fit_line
 from wsrender.boundary.planar.planar_chain import PlanarChain
 from wsrender.boundary.planar.segments import Segment
 

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from wsrender.boundary.fits import fit_circle
 from wsrender.boundary.spatial.measures import extrapolated
 from wsrender.boundary.spatial.patch_mesh import PatchMesh
 from wsrender.boundary.spatial.patches import components
@@ -138,10 +139,11 @@ def _fitted(
     off_line = float(np.linalg.norm(local - np.outer(local @ along, along), axis=1).max())
     if off_line <= exact * size:
         return "line", off_line, (None, None, None)
-    flat = local @ np.stack([along, across]).T
-    a, b, c = np.linalg.lstsq(np.column_stack([2 * flat, np.ones(len(flat))]), (flat**2).sum(axis=1), rcond=None)[0]
-    radius = float(np.sqrt(c + a * a + b * b))
-    off_circle = np.hypot(np.hypot(flat[:, 0] - a, flat[:, 1] - b) - radius, local @ normal).max()
-    if off_circle <= exact * max(size, radius) and off_line > _BENT * exact * size:
-        return "circle", float(off_circle), (middle + a * along + b * across, normal, radius)
+    plane = np.stack([along, across])
+    circle = fit_circle(local @ plane.T)
+    center = circle.center @ plane
+    off_ring = np.linalg.norm((local - center) @ plane.T, axis=1) - circle.radius
+    off_circle = np.hypot(off_ring, local @ normal).max()
+    if off_circle <= exact * max(size, circle.radius) and off_line > _BENT * exact * size:
+        return "circle", float(off_circle), (middle + center, normal, circle.radius)
     return "free_form", float(min(off_line, off_circle)), (None, None, None)

@@ -5,6 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from wsrender.boundary.fits import fit_circle
+
 # Below this, relative to the points' extent, a direction of motion leaves a surface of revolution in place.
 _AXIAL = 1e-6
 _LEAST_POINTS = 12
@@ -135,11 +137,8 @@ def _plane(points: np.ndarray) -> list[Primitive]:
 
 
 def _sphere(points: np.ndarray) -> list[Primitive]:
-    middle = points.mean(axis=0)
-    local = points - middle
-    solved = np.linalg.lstsq(np.column_stack([2 * local, np.ones(len(local))]), (local**2).sum(axis=1), rcond=None)[0]
-    squared = solved[3] + solved[:3] @ solved[:3]
-    return [Primitive("sphere", middle + solved[:3], radius=float(np.sqrt(squared)))] if squared > 0 else []
+    fit = fit_circle(points)
+    return [Primitive("sphere", fit.center, radius=fit.radius)]
 
 
 def _revolved(points: np.ndarray, normals: np.ndarray, axial: float) -> list[Primitive]:
@@ -178,11 +177,10 @@ def _of_line(foot: np.ndarray, axis: np.ndarray, rho: np.ndarray, z: np.ndarray)
 
 def _of_circle(foot: np.ndarray, axis: np.ndarray, rho: np.ndarray, z: np.ndarray) -> list[Primitive]:
     """Tori whose profile in (ρ, z) is the circle that fits best, on one side of the axis or on both."""
-    x, one = rho**2 + z**2, np.ones(len(z))
-    found = []
-    radius, height, constant = np.linalg.lstsq(np.column_stack([2 * rho, 2 * z, one]), x, rcond=None)[0]
-    found.append((abs(radius), height, constant + radius**2 + height**2))
+    profile = fit_circle(np.column_stack([rho, z]))
+    found = [(abs(profile.center[0]), profile.center[1], profile.radius**2)]
     # (x − 2 z h + k)² = 4 R² ρ², where k = R² + h² − r² and ρ² = x − z².
+    x, one = rho**2 + z**2, np.ones(len(z))
     a, b, g, _, _ = np.linalg.lstsq(np.column_stack([x * z, x, z**2, z, one]), x**2, rcond=None)[0]
     squared = -(a**2) / 4 - g
     k = (squared - b) / 2

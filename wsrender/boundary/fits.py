@@ -1,4 +1,4 @@
-"""Least-squares lines and circles through points of a plane."""
+"""Least-squares lines, circles and spheres through points."""
 
 from dataclasses import dataclass
 
@@ -7,9 +7,9 @@ import numpy as np
 
 @dataclass(frozen=True, eq=False)
 class CircleFit:
-    """The circle with the least squares of r² − R²; ``error`` is their mean [m⁴]."""
+    """The circle, or sphere, with the least squares of r² − R²; ``error`` is their mean [m⁴]."""
 
-    center: np.ndarray  # (2,) [m]
+    center: np.ndarray  # (2,) or (3,) [m]
     radius: float  # [m]
     error: float
 
@@ -24,11 +24,14 @@ def fit_line(points: np.ndarray) -> float:
 
 
 def fit_circle(points: np.ndarray) -> CircleFit:
-    """Circle through points (K, 2) [m] that are not on a line (Kåsa 1976): linear in the centre and R² − |centre|²."""
+    """Circle through points (K, 2) that are not on a line, or sphere through points (K, 3) not in a plane [m].
+
+    Linear in the centre and R² − |centre|² (Kåsa 1976).
+    """
     middle = points.mean(axis=0)
     offset = points - middle
     squares = (offset**2).sum(axis=1)
     rows = np.column_stack([2 * offset, np.ones(len(points))])
-    (x, y, constant), *_ = np.linalg.lstsq(rows, squares, rcond=None)
-    residual = squares - rows @ (x, y, constant)
-    return CircleFit(middle + np.array([x, y]), float(np.sqrt(constant + x * x + y * y)), float((residual**2).mean()))
+    solved = np.linalg.lstsq(rows, squares, rcond=None)[0]
+    residual, center = squares - rows @ solved, solved[:-1]
+    return CircleFit(middle + center, float(np.sqrt(solved[-1] + center @ center)), float((residual**2).mean()))
