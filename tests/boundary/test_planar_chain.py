@@ -97,6 +97,16 @@ def test_slides_out_of_the_plane_are_named():
         ws.exact_boundary(lift, locked={"elbow": 0.5})
 
 
+@pytest.mark.parametrize("boundary", [ws.exact_boundary, ws.boundary_patches])
+def test_a_joint_that_others_follow_is_named(boundary, tmp_path):
+    end = '<joint name="end" type="fixed">'
+    follower = '<joint name="follower" type="prismatic"><mimic joint="slide"/><axis xyz="0 1 0"/>'
+    limit = '<limit lower="0" upper="3" effort="1" velocity="1"/>'
+    coupled = URDF.replace(end, follower + limit)
+    with pytest.raises(ws.ModelError, match="several joints follow 'slide'; a boundary needs each joint free"):
+        boundary(write(tmp_path, "coupled.urdf", coupled))
+
+
 def test_the_scara_of_the_library():
     with pytest.raises(ws.ModelError, match="joint 'joint4' turns about"):
         ws.exact_boundary("scara")

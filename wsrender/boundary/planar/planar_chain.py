@@ -1,10 +1,12 @@
 """Arms whose end effector stays in a plane, found from their chain."""
 
 from dataclasses import dataclass
+from itertools import accumulate
 
 import numpy as np
 
 from wsrender.boundary.planar.motion import PlanarJoint
+from wsrender.boundary.reference_frames import reference_frames
 from wsrender.errors import ModelError
 from wsrender.robots.chain import Chain
 
@@ -61,49 +63,21 @@ def planar_chain(chain: Chain) -> PlanarChain:
     Raises ModelError, naming the joint, where a joint turns about another axis than the first or slides out of the
     plane, and for coupled joints.
     """
-    if len(chain.joint_source) != chain.n:
-        shared = np.flatnonzero(np.bincount(chain.joint_source) > 1)[0]
-        raise ModelError(
-            "robot", f"several joints follow {chain.joint_names[shared]!r}; a planar boundary needs each free"
-        )
-    frames, tip = _reference_frames(chain)
-    moving = np.flatnonzero((chain.upper_limits > chain.lower_limits)[chain.joint_source])
-    plane_axes = _plane_axes(chain, frames, moving)
-    _check(chain, frames, moving, np.cross(*plane_axes))
-    base = chain.T_world_base[:3, 3]
-    joints = tuple(_joint(chain, i, frames[i], base, plane_axes) for i in moving.tolist())
+    moving, T, from_last = reference_frames(chain)
+    frames = np.array(list(accumulate(T, np.matmul))).reshape(-1, 4, 4)  # in the world
+    tip = frames[-1, :3, :3] @ from_last + frames[-1, :3, 3] if len(moving) else from_last
+    plane_axes = _plane_axes(frames, chain.joint_is_revolute[moving])
     normal = np.cross(*plane_axes)
+    _check(chain, frames, moving, normal)
+    base = chain.T_world_base[:3, 3]
+    joints = tuple(_joint(chain, *joint, base, plane_axes) for joint in zip(moving.tolist(), frames, strict=True))
     plane = Plane((tip @ normal) * normal, plane_axes)
     return PlanarChain(joints, plane_axes @ (tip - base), plane, plane_axes @ base)
 
 
-def _reference_frames(chain: Chain) -> tuple[np.ndarray, np.ndarray]:
-    """World frames (L, 4, 4) of the joints, those that move displaced by 0, and the tip's position (3,)."""
-    T, frames = chain.T_world_base, []
-    held = chain.lower_limits == chain.upper_limits
-    for i, k in enumerate(chain.joint_source):
-        T = T @ chain.T_joint[i]
-        frames.append(T)
-        if held[k]:
-            T = T @ _motion(
-                chain.joint_is_revolute[i], chain.joint_scale[i] * chain.lower_limits[k] + chain.joint_offset[i]
-            )
-    return np.array(frames), (T @ chain.T_tip @ chain.T_tip_tool)[:3, 3]
-
-
-def _motion(revolute: bool, displacement: float) -> np.ndarray:
-    T = np.eye(4)
-    if revolute:
-        c, s = np.cos(displacement), np.sin(displacement)
-        T[:2, :2] = [[c, -s], [s, c]]
-    else:
-        T[2, 3] = displacement
-    return T
-
-
-def _plane_axes(chain: Chain, frames: np.ndarray, moving: np.ndarray) -> np.ndarray:
+def _plane_axes(frames: np.ndarray, revolute: np.ndarray) -> np.ndarray:
     """Axes (2, 3) of the plane, as near as can be to two of the world's in the order x, y, z."""
-    normal = _normal(chain, frames, moving)
+    normal = _normal(frames, revolute)
     first = next(axis for axis in np.eye(3) if abs(axis @ normal) < 0.9)
     first = first - (first @ normal) * normal
     first /= np.linalg.norm(first)
@@ -111,12 +85,11 @@ def _plane_axes(chain: Chain, frames: np.ndarray, moving: np.ndarray) -> np.ndar
     return np.array([first, second * np.sign(second[np.abs(second).argmax()])])
 
 
-def _normal(chain: Chain, frames: np.ndarray, moving: np.ndarray) -> np.ndarray:
+def _normal(frames: np.ndarray, revolute: np.ndarray) -> np.ndarray:
     """The axis of the first joint that turns; of slides alone, the normal of the first two directions."""
-    turning = [i for i in moving if chain.joint_is_revolute[i]]
-    if turning:
-        return frames[turning[0], :3, 2]
-    slides = frames[moving, :3, 2]
+    if revolute.any():
+        return frames[revolute.argmax(), :3, 2]
+    slides = frames[:, :3, 2]
     for slide in slides[1:]:
         normal = np.cross(slides[0], slide)
         if np.linalg.norm(normal) > _ALIGNED:
@@ -129,8 +102,8 @@ def _normal(chain: Chain, frames: np.ndarray, moving: np.ndarray) -> np.ndarray:
 
 
 def _check(chain: Chain, frames: np.ndarray, moving: np.ndarray, normal: np.ndarray) -> None:
-    for i in moving:
-        axis, name = frames[i, :3, 2], chain.joint_names[chain.joint_source[i]]
+    for i, axis in zip(moving, frames[:, :3, 2], strict=True):
+        name = chain.joint_names[chain.joint_source[i]]
         if chain.joint_is_revolute[i] and np.linalg.norm(np.cross(axis, normal)) > _ALIGNED:
             how = "turns about"
         elif not chain.joint_is_revolute[i] and abs(axis @ normal) > _ALIGNED:

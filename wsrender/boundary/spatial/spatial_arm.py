@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from wsrender.errors import ModelError
+from wsrender.boundary.reference_frames import reference_frames
 from wsrender.robots.chain import Chain
 
 TURN = 2 * np.pi
@@ -88,23 +88,7 @@ def spatial_arm(chain: Chain) -> SpatialArm:
 
     Raises ModelError, naming the joint, where several joints follow one.
     """
-    if len(chain.joint_source) != chain.n:
-        shared = np.flatnonzero(np.bincount(chain.joint_source) > 1)[0]
-        raise ModelError(
-            "robot", f"several joints follow {chain.joint_names[shared]!r}; boundary patches need each joint free"
-        )
-    moving = (chain.upper_limits > chain.lower_limits)[chain.joint_source]
-    T, frames, kept = chain.T_world_base, [], np.flatnonzero(moving)
-    for i, k in enumerate(chain.joint_source):
-        T = T @ chain.T_joint[i]
-        if moving[i]:
-            frames.append(T)
-            T = np.eye(4)
-        else:
-            T = T @ _moved(
-                bool(chain.joint_is_revolute[i]), chain.joint_scale[i] * chain.lower_limits[k] + chain.joint_offset[i]
-            )
-    tip = (T @ chain.T_tip @ chain.T_tip_tool)[:3, 3]
+    kept, T, tip = reference_frames(chain)
     source, scale, offset = chain.joint_source[kept], chain.joint_scale[kept], chain.joint_offset[kept]
     ends = np.sort([scale * chain.lower_limits[source] + offset, scale * chain.upper_limits[source] + offset], axis=0)
     return SpatialArm(
@@ -113,7 +97,7 @@ def spatial_arm(chain: Chain) -> SpatialArm:
         low=ends[0],
         high=ends[1],
         inverted=scale < 0,
-        T=np.array(frames).reshape(-1, 4, 4),
+        T=T,
         tip=tip,
     )
 
@@ -123,12 +107,3 @@ def _turned(angle: np.ndarray) -> np.ndarray:
     c, s = np.cos(angle), np.sin(angle)
     R[:, 0, 0], R[:, 0, 1], R[:, 1, 0], R[:, 1, 1], R[:, 2, 2] = c, -s, s, c, 1.0
     return R
-
-
-def _moved(revolute: bool, displacement: float) -> np.ndarray:
-    T = np.eye(4)
-    if revolute:
-        T[:3, :3] = _turned(np.array([displacement]))[0]
-    else:
-        T[2, 3] = displacement
-    return T
