@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from wsrender.boundary.spatial.primitives import best_fit
+from wsrender.boundary.spatial.primitives import Primitive, best_fit
+from wsrender.boundary.spatial.surfaces import PrimitiveSurface
 
 R, SHIFT = Rotation.from_euler("xyz", [0.3, -1.1, 2.0]).as_matrix(), np.array([0.3, -2.0, 1.0])
 U, V = np.random.default_rng(1).uniform(0, 2, (2, 200))
@@ -50,6 +51,14 @@ def test_each_kind_is_found_with_its_numbers(kind, points, normals, numbers):
     distance, gradient = fit.primitive.distance(points @ R.T + SHIFT + 1e-3 * normals @ R.T)
     assert np.abs(distance) == pytest.approx(1e-3, abs=1e-12)
     assert np.abs((gradient * (normals @ R.T)).sum(axis=1)) == pytest.approx(1, abs=1e-9)
+
+
+def test_lines_meet_a_surface_where_it_is_and_not_where_they_run_along_it():
+    plane = PrimitiveSurface(Primitive("plane", np.zeros(3), Z))
+    origin, slanted = np.array([[5.0, 0, 0.1], [0, 0, 0.1]]), np.array([0, 0.6, 0.8])
+    met = plane.meet(origin, np.array([slanted, [1.0, 0, 0]]), np.zeros((2, 3)))
+    assert met.s[0] == pytest.approx(-0.125) and met.normal[0] == pytest.approx(Z)
+    assert np.isnan(met.s[1]) and np.isnan(met.normal[1]).all()
 
 
 def test_a_hyperboloid_is_none_of_them():

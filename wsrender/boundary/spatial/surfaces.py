@@ -31,18 +31,16 @@ class PrimitiveSurface:
     primitive: Primitive
 
     def meet(self, origin: np.ndarray, direction: np.ndarray, start: np.ndarray) -> Meeting:
-        """By Newton's method on the distance along each line."""
-        s = np.zeros(len(origin))
-        x = origin
-        for _ in range(_ITERATIONS):
+        """By Newton's method on the distance along each line; NaN for one that runs along the surface."""
+        s, x, near = np.zeros(len(origin)), origin, _CONVERGED * np.abs(origin).max(initial=1e-300)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            for _ in range(_ITERATIONS):
+                distance, gradient = self.primitive.distance(x)
+                s = s - distance / (gradient * direction).sum(axis=1)
+                x = origin + s[:, None] * direction
+                if not (np.abs(distance) > near).any():
+                    break
             distance, gradient = self.primitive.distance(x)
-            slope = (gradient * direction).sum(axis=1)
-            with np.errstate(divide="ignore", invalid="ignore"):
-                s = s - distance / slope
-            x = origin + s[:, None] * direction
-            if not len(x) or np.nanmax(np.abs(distance)) <= _CONVERGED * max(np.abs(x).max(), 1e-300):
-                break
-        distance, gradient = self.primitive.distance(x)
         good = np.abs(distance) <= 10 * _CONVERGED * np.maximum(np.abs(x).max(axis=1), 1e-300)
         gradient = gradient * np.sign((gradient * direction).sum(axis=1))[:, None]
         return Meeting(np.where(good, s, np.nan), np.where(good[:, None], gradient, np.nan), start)
