@@ -8,8 +8,10 @@ from scipy.optimize import minimize
 
 import wsrender as ws
 from tests.boundary.spatial_arms import BOX, SCARA, SPHERICAL, arm_of, boundary_of, robot, scara, sliding, turning
+from wsrender.boundary.spatial.cells import Lattice
+from wsrender.boundary.spatial.crossed_surfaces import NONE, CrossedSurfaces
 from wsrender.boundary.spatial.fitted_boundary import TOLERANCE, fitted_boundary
-from wsrender.boundary.spatial.grown_patches import best_refined_fit
+from wsrender.boundary.spatial.grown_patches import best_refined_fit, grown_patches
 from wsrender.reachability.moving_joints import moving_joints
 from wsrender.reachability.reached_points import ReachedPoints
 from wsrender.reachability.refined_volume import refined_volume
@@ -110,8 +112,28 @@ def test_points_with_errors_are_fitted_by_least_squares():
     assert (fit.primitive.radius, fit.primitive.tube_radius) == pytest.approx((2, 0.5), abs=1e-5)
 
 
+def crossed(reaches, gradient, box):
+    """The crossings of a surface with a lattice of 16 cells, its normals, the loops of its cells and their width."""
+    lattice = Lattice.around(-box, box, 16, reaches, lambda points: None)
+    found = lattice.crossings(reaches, lambda points: None)
+    points = (found.inside + found.outside) / 2
+    normals = gradient(points)
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    surfaces = CrossedSurfaces(np.full(len(points), NONE), points, normals, np.zeros((len(points), 3)))
+    return surfaces, lattice.loops(found), lattice.width
+
+
+@pytest.mark.parametrize(("height", "tolerance"), [(0.95, 1e-4), (0.99, 2e-5)])
+def test_a_surface_that_leaves_primitives_slowly_is_a_free_form(height, tolerance):
+    """An ellipsoid of revolution: without the rule of eight tolerances it falls into bands of tori and spheres."""
+    axes = np.array([1, 1, height])
+    surfaces, loops, width = crossed(lambda x: ((x / axes) ** 2).sum(axis=1) <= 1, lambda x: x / axes**2, axes)
+    (patch,), _, _ = grown_patches(surfaces, loops, tolerance, width)
+    assert patch.kind == "free_form" and patch.fit.residual > 8 * tolerance
+
+
 def test_a_surface_that_is_nearly_a_torus_is_not_forced():
-    """An ellipsoid of revolution, of which narrow bands are within the tolerance of tori."""
+    """An ellipsoid of revolution is farther from every primitive than the tolerance."""
     rng = np.random.default_rng(5)
     u, v = rng.uniform(0, 1, (2, 400))
     points = np.column_stack([np.cos(u) * np.cos(v), np.sin(u) * np.cos(v), 0.8 * np.sin(v)])

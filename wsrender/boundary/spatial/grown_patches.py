@@ -174,7 +174,7 @@ class _Growth:
         """The region of a seed and its fit; None where it is too small or its primitive is left slowly."""
         rows = np.empty(0, int)
         for _ in range(_ROUNDS):
-            more = self._connected(fit.primitive, seed, self.tolerance)
+            more = self._connected(fit.primitive, seed)
             if len(more) <= len(rows):
                 break
             rows = more
@@ -184,8 +184,8 @@ class _Growth:
             fit = again
         if len(rows) < FRAGMENT:
             return None
-        rows = self._connected(fit.primitive, seed, self.tolerance)
-        loose = self._connected(fit.primitive, seed, _LOOSE * self.tolerance)
+        rows = self._connected(fit.primitive, seed)
+        loose = self._connected(fit.primitive, seed, _LOOSE)
         return (rows, fit) if len(rows) >= FRAGMENT and len(loose) <= (1 + _MORE) * len(rows) else None
 
     def _on(self, primitive: Primitive, rows: np.ndarray, tolerances: float = 1.0) -> np.ndarray:
@@ -193,9 +193,9 @@ class _Growth:
         sine = np.linalg.norm(np.cross(gradient, self.normal[rows]), axis=1)
         return (np.abs(distance) <= tolerances * self.tolerance) & (sine <= _ALIGNED)
 
-    def _connected(self, primitive: Primitive, seed: int, tolerance: float) -> np.ndarray:
+    def _connected(self, primitive: Primitive, seed: int, tolerances: float = 1.0) -> np.ndarray:
         """Rows in no region that are on a primitive and connected to the seed by others; none if the seed is not."""
-        on = self._on(primitive, np.arange(len(self.point)), tolerance / self.tolerance) & (self.part < 0)
+        on = self._on(primitive, np.arange(len(self.point)), tolerances) & (self.part < 0)
         kept = on[self._a] & on[self._b]
         label = components(len(on), self._a[kept], self._b[kept])
         return np.flatnonzero(on & (label == label[seed]) & on[seed])
