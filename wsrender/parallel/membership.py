@@ -117,8 +117,7 @@ def count_lattice(
     parts = []
     for start in range(first, first + count, places):
         cells = np.arange(start, min(start + places, first + count))
-        at = np.stack(np.unravel_index(cells, block.shape), axis=1)
-        positions = in_base_frame(mechanism, (at + block.first_voxel + 0.5) * block.voxel_size_m)
+        positions = in_base_frame(mechanism, block.centers(cells))
         parts.append(_counted(mechanism, cells, positions, rotations, precision=precision, **options))
         if progress:
             progress(int(cells[-1]) + 1 - first)

@@ -160,9 +160,7 @@ class ParallelPlan:
         poses = np.broadcast_to(np.eye(4), (len(cells), 4, 4)).copy()
         if len(cells):
             assert self.block is not None
-            at = np.stack(np.unravel_index(cells, self.block.shape), axis=1)
-            world = (at + self.block.first_voxel + 0.5) * self.block.voxel_size_m
-            poses[:, :3, 3] = in_base_frame(variant.mechanism, world)
+            poses[:, :3, 3] = in_base_frame(variant.mechanism, self.block.centers(cells))
         poses[:, :3, :3] = variant.rotations(self.orientations.rotations[:1])[0]
         return poses
 

@@ -24,6 +24,11 @@ class LatticeBlock:
         nx, ny, nz = self.shape
         return nx * ny * nz
 
+    def centers(self, cells: np.ndarray) -> np.ndarray:
+        """Centres (N, 3) [m] of voxels by their numbers (N,) in the block, z fastest."""
+        at = np.stack(np.unravel_index(cells, self.shape), axis=1)
+        return (at + self.first_voxel + 0.5) * self.voxel_size_m
+
 
 def block_around(lower: np.ndarray, upper: np.ndarray, voxel_size_m: float) -> LatticeBlock:
     """The block that contains the box lower … upper [m], with one voxel to spare for rounding."""
