@@ -386,6 +386,12 @@ def test_malformed_document_names_field_value_and_what_is_allowed(document, fiel
     assert message in caught.value.problems[0][1]
 
 
+def test_a_list_is_not_called_too_short_where_its_items_are_wrong():
+    with pytest.raises(DocumentError) as caught:
+        parse_job(side(bounds=[1]))
+    assert [field for field, _ in caught.value.problems] == ["parameters.0.bounds"]
+
+
 @pytest.mark.parametrize("document", [row[0] for row in MALFORMED if isinstance(row[0], dict) and row[1] != "document"])
 def test_text_and_dict_give_the_same_problems(document):
     text = json.dumps(document)

@@ -1,7 +1,7 @@
 """Problems of a document in plain words: where, what is allowed, what was found."""
 
 import json
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Mapping, Sized
 from difflib import get_close_matches
 from typing import Any
 
@@ -45,6 +45,7 @@ def worded(error: ValidationError, model: type[BaseModel] | None = None) -> Vali
     details = [
         located(loc, message, problem["input"])
         for problem in error.errors(include_url=False)
+        if not _miscounted(problem)
         for loc, message in [_in_words(problem, model)]
     ]
     return ValidationError.from_exception_data(error.title, details)
@@ -77,6 +78,12 @@ def tagged(field: str, tags: Collection[str]) -> Callable[[Any], Any]:
         return value
 
     return validate
+
+
+def _miscounted(problem: ErrorDetails) -> bool:
+    """Whether a list is called too short because pydantic does not count its items that have problems."""
+    value, least = problem["input"], problem.get("ctx", {}).get("min_length", 0)
+    return problem["type"] == "too_short" and isinstance(value, Sized) and len(value) >= least
 
 
 def _in_words(problem: ErrorDetails, model: type[BaseModel] | None) -> tuple[tuple[int | str, ...], str]:
