@@ -281,7 +281,7 @@ def test_results_are_saved_with_their_pictures(tmp_path):
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"job": "delta"}, "is a delta leg"),
+        ({"job": "delta"}, r'^design.mechanism.legs.0: is a delta leg;.* pairs of PUS legs \("exact_volume" is of'),
         ({"job": "hybrid"}, "must have no serial joints"),
         ({"objectives": [{"value": "/volume_m3/none"}]}, 'has no "none"; it has occupied'),
         ({"objectives": [{"value": "/bounds_m"}]}, "is no number in the result document"),

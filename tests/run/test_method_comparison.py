@@ -51,5 +51,5 @@ def test_sizes_follow_the_volume_and_empty_workspaces_have_no_error():
 
 
 def test_other_mechanisms_are_refused():
-    with pytest.raises(InputError, match="is a delta leg"):
+    with pytest.raises(InputError, match=r"^mechanism.legs.0: is a delta leg; .* pairs of PUS legs$"):
         ws.method_comparison("delta")

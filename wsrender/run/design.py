@@ -221,5 +221,9 @@ def plan_design(job: DesignOptimizationJob, *robots: Robot, resolved: dict[str, 
         inner: Any = job.design
         if inner.mechanism.before or inner.mechanism.after:
             raise InputError("design.mechanism", f'must have no serial joints where "{exact[0]}" is improved')
-        region_of(mechanism_of(inner.mechanism), np.eye(3))
+        try:
+            region_of(mechanism_of(inner.mechanism), np.eye(3))
+        except InputError as error:
+            message = f'{error.message} ("{exact[0]}" is of workspaces that only spheres bound)'
+            raise InputError(f"design.{error.field}", message) from None
     return plan

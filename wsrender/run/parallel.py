@@ -223,7 +223,7 @@ def plan_parallel(job: ParallelWorkspaceJob, *robots: Robot, resolved: dict[str,
     _check_indices(mechanism, names, rows, hybrid=len(found) > 1)
     device, target = settled_device(job.device, resolved)
     if job.method in BY_BOUNDARY:
-        region_of(mechanism, orientations.rotations[0])
+        _check_boundary(mechanism, orientations)
     if resolved is None:
         on_lattice = job.kind != "orientation" and job.method not in BY_BOUNDARY
         block = _block(job, found, orientations, device) if on_lattice else None
@@ -246,6 +246,14 @@ def _check_home(mechanism: Mechanism) -> None:
         return
     if fault := fault_at(mechanism, mechanism.home):
         raise InputError("mechanism.home", f"must be reached, but {fault}")
+
+
+def _check_boundary(mechanism: Mechanism, orientations: OrientationSet) -> None:
+    try:
+        region_of(mechanism, orientations.rotations[0])
+    except InputError as error:
+        message = f'{error.message}; use the method "grid" or "grid_by_subsystem"'
+        raise InputError(error.field, message) from None
 
 
 def _check_indices(mechanism: Mechanism, names: tuple[str, ...], rows: tuple[int, ...], hybrid: bool) -> None:

@@ -24,12 +24,11 @@ if TYPE_CHECKING:
 
 
 def region_of(mechanism: Mechanism, rotation: np.ndarray) -> BallRegion:
-    """The ball region of a job; InputError where other surfaces bound the workspace, naming the remedy."""
+    """The ball region of a job's mechanism; InputError where other surfaces bound the workspace."""
     try:
         return ball_region(mechanism, rotation)
     except InputError as error:
-        message = f'{error.message}; use the method "grid" or "grid_by_subsystem"'
-        raise InputError(f"mechanism.{error.field}", message) from None
+        raise error.within("mechanism") from None
 
 
 def boundary_partial(plan: "ParallelPlan") -> "Arrays":
