@@ -62,6 +62,7 @@ def test_random_arms(seed):
     at = arm.positions(arm.low + (arm.high - arm.low) * rng.random((5, 3)))
     at = at[found.self_motions(np.column_stack([at.real, at.imag]) + 1e-3) == found.self_motions(
         np.column_stack([at.real, at.imag]) - 1e-3)]  # fmt: skip
+    assert len(at) >= 4  # of 5: one may lie beside a curve where the number changes
     counted = found.self_motions(np.column_stack([at.real, at.imag]))
     assert counted.tolist() == SelfMotionTracing(arm, [joint.full for joint in joints]).count(at).tolist()
 

@@ -183,7 +183,7 @@ def test_the_composite_jacobian_is_the_derivative_of_the_tool(name, position):
     R = np.eye(3) if translational else Rotation.from_rotvec([0.1, -0.05, 0.15]).as_matrix()
     pose = poses_of([position], R)
     legs = inverse_kinematics(mech, pose)
-    assert legs.feasible[0] or not np.isnan(legs.values).any()
+    assert not np.isnan(legs.values).any()
     J = variant.composed(platform_jacobian(jacobians(mech, legs, pose)), pose)[0]
     q, actuated, step = variant.q, legs.values[0], 1e-5
     start = serial_transform(variant.before, q) @ pose[0]
