@@ -35,6 +35,7 @@ def surface_faces(faces: Faces, *, title: str = "", frame: str = "world") -> Fig
     """
     if len(faces.triangles) == 0:
         raise InputError("mesh", "has no triangles: there is nothing to draw")
+    sides, corners = faces.borders()
     figure = new_figure(11.6, 4.6, layout=None)
     figure.text(0.02, 0.02, f"{frame} frame", fontsize=8, color=GREY)
     for name, azimuth, elevation, left in _VIEWS:
@@ -43,10 +44,11 @@ def surface_faces(faces: Faces, *, title: str = "", frame: str = "world") -> Fig
         axes.set_proj_type("ortho")  # one direction of sight, which decides what hides what
         axes.view_init(elevation, azimuth)
         axes.add_collection3d(shaded(faces, light=_LIGHT * np.sign(elevation)))
-        _draw_borders(axes, faces, _direction(azimuth, elevation))
+        _draw_borders(axes, faces, sides, corners, _direction(azimuth, elevation))
         figure.text(left + 0.19, 0.02, name, ha="center", fontsize=9, color=GREY)
     handles = [Patch(facecolor=faces.colors[k], label=label) for k, label in faces.labels.items()]
-    handles += _border_handles(faces)
+    edge, corner = Line2D([], [], **_EDGE, label="edge"), Line2D([], [], **_CORNER, label="vertex")
+    handles += [handle for handle, found in ((edge, sides), (corner, corners)) if len(found)]
     figure.legend(handles=handles, loc="center right", bbox_to_anchor=(0.998, 0.5), frameon=False, fontsize=8)
     add_title(figure, title)
     return figure
@@ -65,21 +67,14 @@ def shaded(faces: Faces, alpha: float = 1.0, light: np.ndarray = _LIGHT) -> Poly
     )
 
 
-def _draw_borders(axes: Axes3D, faces: Faces, eye: np.ndarray) -> None:
-    """Edges and corners in sight."""
-    sides, corners = faces.borders()
+def _draw_borders(axes: Axes3D, faces: Faces, sides: np.ndarray, corners: np.ndarray, eye: np.ndarray) -> None:
+    """Edges and corners in sight, by their vertices."""
     ends, points = faces.vertices[sides], faces.vertices[corners]
     shown = ends[in_sight(ends.mean(axis=1), faces, eye)]
     if len(shown):
         axes.add_collection3d(Line3DCollection(shown, **_EDGE, capstyle="round", zorder=3))
     seen = points[in_sight(points, faces, eye)]
     axes.plot(*seen.T, **_CORNER, zorder=4)
-
-
-def _border_handles(faces: Faces) -> list[Line2D]:
-    sides, corners = faces.borders()
-    edge, corner = Line2D([], [], **_EDGE, label="edge"), Line2D([], [], **_CORNER, label="vertex")
-    return [handle for handle, found in ((edge, sides), (corner, corners)) if len(found)]
 
 
 def _direction(azimuth_deg: float, elevation_deg: float) -> np.ndarray:
