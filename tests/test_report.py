@@ -181,3 +181,13 @@ def test_a_comparison_names_its_robots(tmp_path):
     (row,) = [row for row in page.rows if row[0] == "volume.occupied"]
     (entry,) = [entry for entry in found.document["comparison"] if entry["quantity"] == "volume.occupied"]
     assert row == ["volume.occupied", "m³", *(f"{v:.6g}" for v in (*entry["values"], entry["differences"][1]))]
+
+
+def test_a_mechanism_comes_after_its_results(tmp_path):
+    options = {"indices": ["manipulability", "isotropy"], "voxel_size_m": 0.1, "device": "cpu"}
+    found = ws.parallel_workspace({"library": "stewart_gough", "length_m": [0.5, 0.8]}, **options)
+    found.report(tmp_path / "report.html", views=())
+    text = (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert text.index("<h2>Indices") < text.index("<h2>Pictures") < text.index("<h2>Mechanism")
+    (row,) = [row for row in Page(text).rows if row and row[0] == "isotropy"]
+    assert row[-1] == "x, y, z, rx, ry, rz"

@@ -112,15 +112,15 @@ def _cells(values: Sequence[Any]) -> str:
 
 
 def _alike(values: Any) -> bool:
-    """Whether values are mappings of plain values that share their first key."""
+    """Whether values are mappings of plain values, and lists of them, that share their first key."""
     records = list(values)
-    flat = all(
-        isinstance(record, Mapping)
-        and record
-        and not any(isinstance(value, Mapping | list | tuple) for value in record.values())
-        for record in records
-    )
+    flat = all(isinstance(record, Mapping) and record and all(map(_is_plain, record.values())) for record in records)
     return len(records) > 0 and flat and len({next(iter(record)) for record in records}) == 1
+
+
+def _is_plain(value: Any) -> bool:
+    parts = value if isinstance(value, list | tuple) else [value]
+    return not any(isinstance(part, Mapping | list | tuple) for part in parts)
 
 
 def _rest(rows: int) -> str:

@@ -15,7 +15,7 @@ from wsrender.volume.table import Table
 # Nothing but what is in the page itself: whatever a name may hold, no script runs and nothing is fetched.
 _POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'"
 _MOST_JOB_TEXT = 100_000  # characters of the job document; result.json has all
-_LATER = ("robot", "robots", "sampling", "choices")  # after the pictures; results come before them
+_LATER = ("robot", "robots", "mechanism", "sampling", "choices")  # after the pictures; results come before them
 _NAMED_IN_TABLE = ("comparison",)  # results whose table says the same, with the names of robots over its columns
 _LAST = ("job", "artifacts", "provenance", "timing_s")  # sections of their own, at the end
 _WIDE = 1.6  # width by height from which a picture takes the whole width
