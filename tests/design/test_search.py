@@ -22,9 +22,11 @@ def product(designs):
 
 def test_evolution_and_refinement_meet_a_constraint_in_its_closed_form():
     space, evaluations = square(constrained=True), Evaluations(product, ONE)
-    evolve(space, evaluations, population=10, generations=40, tolerance=1e-3, seed=1)
+    ended = evolve(space, evaluations, population=10, generations=40, tolerance=1e-3, seed=1)
+    assert ended.startswith("differential evolution: ") and not ended.endswith(".")
     designs, values = evaluations.rows()
-    refine(space, evaluations, designs[values[:, 0].argmax()], lambda design: design[::-1])
+    ended = refine(space, evaluations, designs[values[:, 0].argmax()], lambda design: design[::-1])
+    assert ended.startswith("SLSQP: ") and not ended.endswith(".")
     designs, values = evaluations.rows()
     allowed = space.allows(designs)
     assert values[allowed].max() == pytest.approx(2.25, rel=1e-7)

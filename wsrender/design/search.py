@@ -73,7 +73,7 @@ def evolve(
         vectorized=True,
         updating="deferred",
     )
-    return str(found.message)
+    return f"differential evolution: {found.message}".rstrip(".")
 
 
 def refine(
@@ -90,7 +90,7 @@ def refine(
         method="SLSQP",
         options={"ftol": LAST_CHANGE, "maxiter": 100},
     )
-    return str(found.message)
+    return f"SLSQP: {found.message}".rstrip(".")
 
 
 def pareto(space: Space, evaluations: Evaluations, *, population: int, generations: int, seed: int) -> str:
