@@ -7,7 +7,7 @@ from scipy.spatial.transform import Rotation
 import wsrender as ws
 from tests.reference.class_robots import DHClass, FourBar, SphericalClass
 from tests.reference.exact_volumes import CASES, spherical_pair
-from wsrender.engine import evaluate_kinematics
+from wsrender.engine import evaluate_kinematics, evaluate_poses
 from wsrender.reachability.capability import capability, fibonacci_directions
 from wsrender.robot import as_robot
 from wsrender.robots.reachable_box import reachable_box
@@ -102,6 +102,25 @@ def test_the_class_is_the_model():
     q = np.random.default_rng(0).uniform(user.lower_limits, user.upper_limits, (20, 3))
     assert user.jacobian(q) == pytest.approx(model.jacobian(q), abs=1e-9)
     assert user.chain.revolute.tolist() == model.chain.revolute.tolist() == [True, True, False]
+
+
+def test_poses_cost_no_jacobians():
+    """Those of a class may take many times as long."""
+
+    class WithDearJacobian(SphericalClass):
+        asked = 0
+
+        def jacobian(self, q):
+            self.asked += len(q)
+            return super().jacobian(q)
+
+    robot = WithDearJacobian()
+    chain = as_robot(robot).chain
+    asked, q = robot.asked, np.random.default_rng(0).uniform(chain.lower_limits, chain.upper_limits, (50, 3))
+    poses = evaluate_poses(chain, q)
+    assert robot.asked == asked > 0
+    assert (poses == evaluate_kinematics(chain, q).pose).all()
+    assert robot.asked == asked + len(q)
 
 
 def test_a_placed_class_and_its_tool():

@@ -5,7 +5,7 @@ from wsrender.engine.configurations import configurations
 from wsrender.engine.devices import devices_of, target_of, thread_count
 from wsrender.engine.evaluation import Evaluation
 from wsrender.engine.inverse import Accuracy, Tries, solve_inverse
-from wsrender.engine.kinematics import Kinematics, evaluate_kinematics
+from wsrender.engine.kinematics import Kinematics, evaluate_kinematics, evaluate_poses
 from wsrender.engine.membership import (
     LegTest,
     OrientationCounts,
@@ -33,6 +33,7 @@ __all__ = [
     "devices_of",
     "evaluate_at",
     "evaluate_kinematics",
+    "evaluate_poses",
     "joined",
     "merge",
     "poses_reached",

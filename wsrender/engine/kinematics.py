@@ -44,6 +44,13 @@ def evaluate_kinematics(
     )
 
 
+def evaluate_poses(chain: Chain, q: np.ndarray, precision: str = "float64", device: str = "auto") -> np.ndarray:
+    """Poses (N, 4, 4) alone: the Jacobians of a robot that is defined by a Python class may cost many times as much."""
+    if isinstance(chain, HostChain):
+        return chain.poses(q)
+    return evaluate_kinematics(chain, q, False, precision, device).pose
+
+
 def _evaluate(chain: Chain, q: np.ndarray, with_inertia: bool, precision: str, device: wp.Device) -> Kinematics:
     real, n = REAL[precision], chain.n
     pose = wp.empty((len(q), 12), dtype=real, device=device)

@@ -9,7 +9,7 @@ from scipy.ndimage import binary_closing, gaussian_filter
 from scipy.spatial import KDTree
 from scipy.special import ndtri
 
-from wsrender.engine import configurations, evaluate_kinematics
+from wsrender.engine import configurations, evaluate_poses
 from wsrender.errors import InputError
 from wsrender.reachability.inverse_solver import REACHABLE, InverseSolver
 from wsrender.robots.chain import Chain
@@ -167,4 +167,4 @@ def _positions(chain: Chain, count: int, seed: int, device: str) -> Iterator[np.
     plan = plan_sampling(chain, Sobol(count, seed=seed))
     for first in range(0, count, CHUNK):
         rows = configurations(plan, np.arange(first, min(first + CHUNK, count)))
-        yield evaluate_kinematics(chain, rows, False, "float64", device).pose[:, :3, 3]
+        yield evaluate_poses(chain, rows, device=device)[:, :3, 3]

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from wsrender.engine import evaluate_kinematics
+from wsrender.engine import evaluate_poses
 from wsrender.reachability.dimension import fills_volume, in_own_voxel
 from wsrender.reachability.inverse_solver import REACHABLE, UNDECIDED, InverseSolver
 from wsrender.reachability.occupied_cells import occupied_cells
@@ -105,7 +105,7 @@ def _points(solver: InverseSolver, cells: np.ndarray, voxel_size_m: float) -> tu
     found = solver.solve(centers)
     if fills_volume(solver.whole):
         return centers, found.label == REACHABLE
-    nearest = evaluate_kinematics(solver.whole, found.q, device="cpu").pose[:, :3, 3]
+    nearest = evaluate_poses(solver.whole, found.q, device="cpu")[:, :3, 3]
     return nearest, in_own_voxel(nearest, cells, voxel_size_m)
 
 

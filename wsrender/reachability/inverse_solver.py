@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 from scipy.spatial import KDTree
 
-from wsrender.engine import Accuracy, Tries, configurations, evaluate_kinematics, solve_inverse, thread_count
+from wsrender.engine import Accuracy, Tries, configurations, evaluate_poses, solve_inverse, thread_count
 from wsrender.reachability.moving_joints import moving_joints
 from wsrender.robots.chain import Chain
 from wsrender.robots.host_chain import HostChain
@@ -172,7 +172,7 @@ class InverseSolver:
 
     @cached_property
     def _tree(self) -> KDTree:
-        pose = evaluate_kinematics(self.chain, self._samples[: SAMPLES[self.kind]], device="cpu").pose
+        pose = evaluate_poses(self.chain, self._samples[: SAMPLES[self.kind]], device="cpu")
         orientation = {"position": None, "axis": pose[:, :3, 2], "pose": pose[:, :3, :3]}[self.kind]
         return KDTree(self._features(_targets(pose[:, :3, 3], orientation)))
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from wsrender.engine import evaluate_kinematics
+from wsrender.engine import evaluate_poses
 from wsrender.reachability.inverse_solver import REACHABLE, UNDECIDED, InverseSolver
 from wsrender.reachability.refined_volume import tolerance_m
 from wsrender.robots.chain import Chain
@@ -25,4 +25,4 @@ class ReachedPoints:
     def nearest(self, points: np.ndarray) -> np.ndarray:
         """The reached points (N, 3) nearest to points (N, 3) [m], as far as the solver found them."""
         q = self._solver.solve(points).q
-        return evaluate_kinematics(self._chain, q, device="cpu").pose[:, :3, 3]
+        return evaluate_poses(self._chain, q, device="cpu")[:, :3, 3]

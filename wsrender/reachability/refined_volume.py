@@ -11,7 +11,7 @@ from functools import cached_property
 
 import numpy as np
 
-from wsrender.engine import configurations, evaluate_kinematics
+from wsrender.engine import configurations, evaluate_poses
 from wsrender.reachability.dimension import fills_volume
 from wsrender.reachability.inverse_solver import UNREACHABLE, InverseSolver
 from wsrender.reachability.occupied_cells import occupied_cells
@@ -163,4 +163,4 @@ class _Arm:
     def _positions(self, count: int) -> np.ndarray:
         """Positions (N, 3) of a Sobol set of another seed than the solver's."""
         plan = plan_sampling(self.chain, Sobol(count, seed=(self.seed + 1) % 2**63))
-        return evaluate_kinematics(self.chain, configurations(plan, np.arange(count)), device="cpu").pose[:, :3, 3]
+        return evaluate_poses(self.chain, configurations(plan, np.arange(count)), device="cpu")[:, :3, 3]

@@ -48,14 +48,18 @@ class HostChain(Chain):
     @cached_property
     def reach(self) -> float:
         """Half the diagonal of the box [m]."""
-        low, high = self.box(self.lower_limits, self.upper_limits)
+        low, high = self._whole_box
         return float(np.linalg.norm(high - low) / 2)
 
     @cached_property
     def center(self) -> np.ndarray:
         """Middle of the box, (3,) [m]."""
-        low, high = self.box(self.lower_limits, self.upper_limits)
+        low, high = self._whole_box
         return (low + high) / 2
+
+    @cached_property
+    def _whole_box(self) -> tuple[np.ndarray, np.ndarray]:
+        return self.box(self.lower_limits, self.upper_limits)
 
 
 def _spread(count: int, n: int) -> np.ndarray:

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from wsrender.engine import configurations, evaluate_kinematics
+from wsrender.engine import configurations, evaluate_poses
 from wsrender.kinetostatics.characteristic_length import CharacteristicLength
 from wsrender.kinetostatics.force_field import ForceField
 from wsrender.kinetostatics.passivity import LoopWork, largest_loop_work, stiffness_bound, stiffnesses
@@ -178,5 +178,5 @@ def plan_kinetostatic_field(
 def _voxel_size(force_field: ForceField) -> float:
     chain = force_field.chain
     q = configurations(plan_sampling(chain, Sobol(FIRST_SAMPLES)), np.arange(FIRST_SAMPLES))
-    positions = evaluate_kinematics(chain, q, device="cpu").pose[:, :3, 3]
+    positions = evaluate_poses(chain, q, device="cpu")[:, :3, 3]
     return round_to_digits(COARSER * default_voxel_size(positions), 2)
