@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 import wsrender as ws
-from wsrender.__main__ import main
+from tests.run.journeys import from_a_partial_file, from_the_command_line, hashes_of_two_saves
 from wsrender.run import execute, finish, plan, run_shard
-from wsrender.run.partial_files import load_partial, save_partial
 
 ROWS = [
     {"limits_deg": [-90, 90]},
@@ -59,14 +58,9 @@ def test_python_and_document_agree(result):
 
 
 def test_from_the_command_line_and_back(tmp_path, capsys):
-    job = tmp_path / "job.json"
-    job.write_text(json.dumps(JOB))
-    with pytest.raises(SystemExit) as ended:
-        main(["run", str(job), "-o", str(tmp_path / "out")])
-    assert not ended.value.code
+    loaded = from_the_command_line(JOB, tmp_path)
     shown = capsys.readouterr().out
     assert "80.10791363 m³" in shown and "12 edges, 8 corners" in shown
-    loaded = ws.Result.load(tmp_path / "out")
     assert len(np.unique(loaded.meshes["patches"].face_attributes["surface"])) == 6
     assert len(np.unique(loaded.meshes["patches"].visual.face_colors, axis=0)) == 6
     assert (tmp_path / "out/plots/patches.png").stat().st_size > 10_000
@@ -74,20 +68,14 @@ def test_from_the_command_line_and_back(tmp_path, capsys):
 
 
 def test_equal_jobs_have_equal_files(result, tmp_path):
-    hashes = []
-    for name in ("a", "b"):
-        result.save(tmp_path / name)
-        hashes.append({each["name"]: each["sha256"] for each in result.document["artifacts"]})
-    assert hashes[0] == hashes[1] and "patches.glb" in hashes[0]
+    first, second = hashes_of_two_saves(result, tmp_path)
+    assert first == second and "patches.glb" in first
 
 
 def test_a_partial_result_travels(result, tmp_path):
-    here = plan(JOB)
     counted = []
-    save_partial(run_shard(here, 0, counted.append), tmp_path / "partial.npz")
-    assert counted == sorted(counted) and 0 < counted[-1] <= here.shards[0][1]
-    there = plan(JOB, resolved=json.loads(json.dumps(here.resolved())))
-    found = finish(there, load_partial(tmp_path / "partial.npz", there))
+    found = from_a_partial_file(JOB, tmp_path, counted.append)
+    assert counted == sorted(counted) and 0 < counted[-1] <= plan(JOB).shards[0][1]
     assert found.document["patches"] == result.document["patches"]
     assert (found.meshes["patches"].faces == result.meshes["patches"].faces).all()
 

@@ -1,14 +1,11 @@
 """The analysis ``planar_boundary``: a job document in, tables, drawings and a picture out."""
 
-import json
-
 import numpy as np
 import pytest
 
 import wsrender as ws
-from wsrender.__main__ import main
-from wsrender.run import execute, finish, plan, run_shard
-from wsrender.run.partial_files import load_partial, save_partial
+from tests.run.journeys import from_a_partial_file, from_the_command_line, hashes_of_two_saves
+from wsrender.run import execute, plan
 
 ROWS = [{"a": a, "limits_deg": [-60, 60]} for a in (4, 2, 1)]
 JOB = {
@@ -65,31 +62,20 @@ def test_python_and_document_agree(result):
 
 
 def test_from_the_command_line_and_back(tmp_path, capsys):
-    job = tmp_path / "job.json"
-    job.write_text(json.dumps(JOB))
-    with pytest.raises(SystemExit) as ended:
-        main(["run", str(job), "-o", str(tmp_path / "out")])
-    assert not ended.value.code
+    loaded = from_the_command_line(JOB, tmp_path)
     assert "31.4975104 m²" in capsys.readouterr().out
-    loaded = ws.Result.load(tmp_path / "out")
     assert len(loaded.tables["boundary"]) == 6
     assert (tmp_path / "out/plots/boundary.png").stat().st_size > 10_000
     assert (tmp_path / "out/boundary.dxf").is_file() and (tmp_path / "out/boundary.svg").is_file()
 
 
 def test_equal_jobs_have_equal_files(result, tmp_path):
-    hashes = []
-    for name in ("a", "b"):
-        result.save(tmp_path / name)
-        hashes.append({each["name"]: each["sha256"] for each in result.document["artifacts"]})
-    assert hashes[0] == hashes[1] and "boundary.dxf" in hashes[0]
+    first, second = hashes_of_two_saves(result, tmp_path)
+    assert first == second and "boundary.dxf" in first
 
 
 def test_a_partial_result_travels(result, tmp_path):
-    here = plan(JOB)
-    save_partial(run_shard(here, 0), tmp_path / "partial.npz")
-    there = plan(JOB, resolved=json.loads(json.dumps(here.resolved())))
-    found = finish(there, load_partial(tmp_path / "partial.npz", there))
+    found = from_a_partial_file(JOB, tmp_path)
     assert found.document["exact"] == result.document["exact"]
     assert (found.tables["samples"]["position"] == result.tables["samples"]["position"]).all()
 

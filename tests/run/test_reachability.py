@@ -1,14 +1,11 @@
 """The analysis ``reachability``: a job document in, a table of labelled targets out."""
 
-import json
-
 import numpy as np
 import pytest
 
 import wsrender as ws
-from wsrender.__main__ import main
-from wsrender.run import execute, finish, plan, run_shard
-from wsrender.run.partial_files import load_partial, save_partial
+from tests.run.journeys import from_a_partial_file, from_the_command_line
+from wsrender.run import execute, plan
 
 POINTS = [[-0.3, 0.0, 0.0], [-0.1, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 0.3, 0.0]]
 JOB = {"analysis": "reachability", "robot": "spherical", "points_m": POINTS, "device": "cpu"}
@@ -38,21 +35,13 @@ def test_document_counts_the_labels():
 
 
 def test_from_the_command_line_and_back(tmp_path, capsys):
-    job = tmp_path / "job.json"
-    job.write_text(json.dumps(JOB))
-    with pytest.raises(SystemExit) as ended:
-        main(["run", str(job), "-o", str(tmp_path / "out")])
-    assert not ended.value.code
-    table = ws.Result.load(tmp_path / "out").tables["targets"]
+    table = from_the_command_line(JOB, tmp_path).tables["targets"]
     assert table["label"].tolist() == ["reachable", "unreachable", "unreachable", "unreachable"]
     assert "reachable targets" in capsys.readouterr().out
 
 
 def test_a_partial_result_travels(tmp_path):
-    here = plan(JOB)
-    save_partial(run_shard(here, 0), tmp_path / "partial.npz")
-    there = plan(JOB, resolved=json.loads(json.dumps(here.resolved())))
-    result = finish(there, load_partial(tmp_path / "partial.npz", there))
+    result = from_a_partial_file(JOB, tmp_path)
     assert np.array_equal(result.tables["targets"]["q_joint1"], execute(JOB).tables["targets"]["q_joint1"])
 
 
