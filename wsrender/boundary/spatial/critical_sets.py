@@ -97,10 +97,6 @@ class CriticalSet:
             np.where(good, s, np.nan), np.where(good[:, None], normal, np.nan), np.where(good[:, None], d, np.nan)
         )
 
-    @property
-    def _longest_step(self) -> float:
-        return max(1.0, self.arm.size)
-
     def normal(self, J: np.ndarray) -> np.ndarray:
         """The unit direction (N, 3) that the free joints of Jacobians (N, 3, n) move the end point least along."""
         J = J[:, :, self.free]
@@ -137,7 +133,8 @@ class CriticalSet:
         return self._bounded(_solved(A, -values)), np.abs(left).max(axis=1)
 
     def _bounded(self, step: np.ndarray) -> np.ndarray:
-        return np.clip(np.nan_to_num(step), -self._longest_step, self._longest_step)
+        longest = max(1.0, self.arm.size)
+        return np.clip(np.nan_to_num(step), -longest, longest)
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from wsrender.boundary.spatial.cells import Crossings
-from wsrender.boundary.spatial.critical_sets import CriticalSet, Meeting
+from wsrender.boundary.spatial.critical_sets import CriticalSet
 from wsrender.boundary.spatial.inverse import ThreeJointInverse
 
 _AT_STOP = 1e-4  # of a radian or of the arm's size: how near a limit a solution is, 1e-8 of a cell from the boundary
@@ -50,7 +50,9 @@ def crossed_surfaces(
         with np.errstate(invalid="ignore"):
             d = arm.nearest_turn(meeting.d)
             good &= (((d >= arm.low - _WITHIN * unit) & (d <= arm.high + _WITHIN * unit)) | arm.full).all(axis=1)
-        _accept(found, rows, good, index, meeting, d, crossings)
+        kept = rows[good]
+        found.critical_set[kept], found.normal[kept], found.d[kept] = index, meeting.normal[good], d[good]
+        found.point[kept] = crossings.inside[kept] + meeting.s[good, None] * crossings.outward[kept]
     return found
 
 
@@ -68,19 +70,3 @@ def _starts(each: CriticalSet, solutions: np.ndarray, unit: np.ndarray) -> tuple
     rows = np.arange(len(solutions))
     least = distance[rows, nearest]
     return solutions[rows, nearest], least <= (_AT_STOP if each.stops else np.finfo(float).max)
-
-
-def _accept(
-    found: CrossedSurfaces,
-    rows: np.ndarray,
-    good: np.ndarray,
-    index: int,
-    meeting: Meeting,
-    d: np.ndarray,
-    crossings: Crossings,
-) -> None:
-    kept = rows[good]
-    found.critical_set[kept] = index
-    found.point[kept] = crossings.inside[kept] + meeting.s[good, None] * crossings.outward[kept]
-    found.normal[kept] = meeting.normal[good]
-    found.d[kept] = d[good]
