@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from wsrender.boundary.fits import fit_circle
-from wsrender.boundary.spatial.measures import extrapolated
+from wsrender.boundary.romberg import extrapolated
 from wsrender.boundary.spatial.patch_mesh import PatchMesh
 from wsrender.boundary.spatial.patches import components
 

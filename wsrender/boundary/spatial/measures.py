@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from wsrender.boundary.romberg import extrapolated
 from wsrender.boundary.spatial.patches import Patch
 
 _LEVEL = 4  # facets along each side of a triangle
@@ -56,13 +57,6 @@ def measures(triangles: Triangles, patches: list[Patch]) -> Measures:
         areas.append(np.bincount(triangles.patch, area, len(patches)))
     volume, volume_error = extrapolated(volumes)
     return Measures(float(volume), float(volume_error), extrapolated(areas)[0])
-
-
-def extrapolated(values: list) -> tuple:
-    """The limit of three values for facets or chords of one, a half and a quarter the size, and its last change."""
-    once, twice = (4 * values[1] - values[0]) / 3, (4 * values[2] - values[1]) / 3
-    best = (16 * twice - once) / 15
-    return best, np.abs(best - twice)
 
 
 def _nodes(triangles: Triangles, patches: list[Patch]) -> tuple[np.ndarray, np.ndarray]:

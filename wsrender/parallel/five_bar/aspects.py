@@ -6,6 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from wsrender.boundary.romberg import extrapolated
 from wsrender.errors import NumericalError
 from wsrender.parallel.five_bar.arcs import Arc
 from wsrender.parallel.five_bar.conditioning import conditioning
@@ -69,17 +70,9 @@ def _both_ways(five_bar: FiveBar, piece: Piece) -> tuple[_Edge, _Edge]:
     if not piece.closed:  # it begins and ends a little beside the boundary
         share = BESIDE * SEGMENTS / (piece.high - piece.low)
         points[[0, -1]] += share * (points[[0, -1]] - points[[1, -2]])
-    area, error = _extrapolated_area(points)
+    area, error = extrapolated([_polygon_area(points[::step]) for step in (4, 2, 1)])
     drawn = points[:: SEGMENTS // DRAWN]
     return _Edge(drawn, area, error), _Edge(drawn[::-1], -area, error)
-
-
-def _extrapolated_area(points: np.ndarray) -> tuple[float, float]:
-    """½ ∫ x dy − y dx along the curve through the points, by Richardson, and the change of the last step."""
-    fine, middle, coarse = (_polygon_area(points[::step]) for step in (1, 2, 4))
-    first, before = fine + (fine - middle) / 3, middle + (middle - coarse) / 3
-    last = first + (first - before) / 15
-    return last, abs(last - first)
 
 
 def _polygon_area(points: np.ndarray) -> float:
