@@ -5,10 +5,9 @@ from dataclasses import dataclass, replace
 from typing import TypeVar
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial import KDTree
 
+from wsrender.boundary.components import components
 from wsrender.boundary.planar.curves import TURN, Curves
 from wsrender.boundary.planar.distances import point_distances
 from wsrender.boundary.planar.intersections import crossings
@@ -157,9 +156,7 @@ def _clusters(points: np.ndarray, tolerance: float) -> np.ndarray:
     """Number of the vertex of each point: one for all within the tolerance of each other."""
     if len(points) == 0:
         return np.empty(0, np.int64)
-    pairs = KDTree(points).query_pairs(tolerance, output_type="ndarray")
-    links = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(points),) * 2)
-    return connected_components(links, directed=False)[1]
+    return components(len(points), *KDTree(points).query_pairs(tolerance, output_type="ndarray").T)
 
 
 def _split(carrier: Curves, vertices: np.ndarray, own: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

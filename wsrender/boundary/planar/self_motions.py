@@ -10,9 +10,8 @@ of orbit between the crossings are nodes of a graph, one for each way that holds
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
+from wsrender.boundary.components import components
 from wsrender.boundary.planar.arrangement import ON_CURVE, arrange
 from wsrender.boundary.planar.candidates import Source, candidates
 from wsrender.boundary.planar.curves import TURN, Curves
@@ -68,7 +67,7 @@ def _counted(joint: PlanarJoint, inner: PlanarSet, points: np.ndarray, size: flo
     order = np.argsort(~known, axis=1, kind="stable")  # pieces of which nothing can be told are left out
     held = np.take_along_axis(held & known[:, :, None], order[:, :, None], axis=1)
     before = np.take_along_axis(cuts.singular_before, order, axis=1)
-    return _components(held, before, known.sum(axis=1), cuts.singular if joint.full else None)
+    return _motions(held, before, known.sum(axis=1), cuts.singular if joint.full else None)
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,7 +110,7 @@ def _singular(inner: PlanarSet) -> np.ndarray:
     return (found.source == Source.PATH) & ~of_end
 
 
-def _components(held: np.ndarray, before: np.ndarray, pieces: np.ndarray, singular: np.ndarray | None) -> np.ndarray:
+def _motions(held: np.ndarray, before: np.ndarray, pieces: np.ndarray, singular: np.ndarray | None) -> np.ndarray:
     """Number of components (K,) of the ways that hold on pieces, (K, M, 2), of which the first ``pieces`` (K,) count.
 
     ``before`` (K, M) counts the singular positions before each piece; ``singular`` (K,) all of an orbit that closes.
@@ -134,6 +133,6 @@ def _components(held: np.ndarray, before: np.ndarray, pieces: np.ndarray, singul
     begins = folds & following.all(axis=2) & ~held.any(axis=2)
     links = [(node[goes_on], next_node[goes_on]), tuple(node[ends].T), tuple(next_node[begins].T)]
     a, b = (np.concatenate([link[k] for link in links]) for k in (0, 1))
-    labels = connected_components(coo_array((np.ones(len(a)), (a, b)), shape=(held.size,) * 2), directed=False)[1]
+    labels = components(held.size, a, b)
     _, first = np.unique(labels[held.ravel()], return_index=True)
     return np.bincount(node[held][first] // (2 * most), minlength=count)

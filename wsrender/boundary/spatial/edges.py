@@ -4,10 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from wsrender.boundary.components import components
 from wsrender.boundary.fits import fit_circle
 from wsrender.boundary.romberg import extrapolated
 from wsrender.boundary.spatial.patch_mesh import PatchMesh
-from wsrender.boundary.spatial.patches import components
 
 _LEAST_SIDES = 3  # of an edge: what is shorter the cells do not resolve
 # Share of the longest edge between the same patches: shorter loops are around what the cells do not resolve.

@@ -11,9 +11,10 @@ import numpy as np
 from scipy.optimize import least_squares
 from scipy.sparse import csr_array
 
+from wsrender.boundary.components import components
 from wsrender.boundary.spatial.cells import CellLoops
 from wsrender.boundary.spatial.crossed_surfaces import CrossedSurfaces
-from wsrender.boundary.spatial.patches import FRAGMENT, Patch, components, in_order, neighbours, rows_of, smooth
+from wsrender.boundary.spatial.patches import FRAGMENT, Patch, in_order, neighbours, rows_of, smooth
 from wsrender.boundary.spatial.primitives import Fit, Primitive, candidates, fit_of, nearest
 from wsrender.boundary.spatial.surfaces import FoundPoints, SmoothPoints
 

@@ -3,9 +3,8 @@
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
+from wsrender.boundary.components import components
 from wsrender.boundary.spatial.cells import CellLoops
 from wsrender.boundary.spatial.critical_sets import CriticalSet
 from wsrender.boundary.spatial.crossed_surfaces import NONE, CrossedSurfaces
@@ -91,12 +90,6 @@ def neighbours(loops: CellLoops) -> tuple[np.ndarray, np.ndarray]:
 def smooth(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """Whether normals (N, 3) can be of neighbouring crossings of one surface, (N,) bool."""
     return (a * b).sum(axis=1) >= _SMOOTH
-
-
-def components(count: int, a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Number (count,) of the connected part that each of so many things is in, where a and b (N,) are joined."""
-    graph = coo_array((np.ones(len(a), np.int8), (a, b)), shape=(count, count))
-    return connected_components(graph, directed=False)[1] if count else np.empty(0, int)
 
 
 def rows_of(part: np.ndarray) -> list[np.ndarray]:

@@ -4,9 +4,10 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
+from wsrender.boundary.components import components
 from wsrender.boundary.spatial.cells import CellLoops
 from wsrender.boundary.spatial.crossed_surfaces import CrossedSurfaces
-from wsrender.boundary.spatial.patches import Patch, components, neighbours, smooth
+from wsrender.boundary.spatial.patches import Patch, neighbours, smooth
 
 _ITERATIONS = 12
 _SETTLED = 1e-13  # relative to the size of the coordinates

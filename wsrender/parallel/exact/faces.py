@@ -4,9 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from manifold3d import triangulate
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
+from wsrender.boundary.components import components
 from wsrender.parallel.exact.borders import Borders
 from wsrender.parallel.exact.circles import cross
 from wsrender.parallel.exact.measure import solid_angles
@@ -75,16 +74,10 @@ def _patch(borders: Borders, surface: int) -> Patch:
     polygons = [borders.polygon(loop) for loop in borders.loops[surface]]
     flat = [chart.flat(borders.points[polygon]) for polygon in polygons]
     triangles = triangulate(flat)
-    number = joined(sum(map(len, polygons)), triangles[:, [0, 1, 0, 2]].reshape(-1, 2))
+    number = components(sum(map(len, polygons)), *triangles[:, [0, 1, 0, 2]].reshape(-1, 2).T)
     first_points = np.cumsum([0, *(len(polygon) for polygon in polygons[:-1])])
     face_of_loop = np.unique(number[first_points], return_inverse=True)[1]
     return Patch(surface, chart, np.concatenate(polygons), np.concatenate(flat), triangles, face_of_loop)
-
-
-def joined(count: int, pairs: np.ndarray) -> np.ndarray:
-    """Number of the connected part to which each of ``count`` things belongs."""
-    graph = coo_array((np.ones(len(pairs)), tuple(pairs.T)), shape=(count, count))
-    return connected_components(graph, directed=False)[1] if count else np.zeros(0, int)
 
 
 def _chart(borders: Borders, surface: int) -> Chart:

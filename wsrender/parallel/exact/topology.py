@@ -4,9 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from wsrender.boundary.components import components
 from wsrender.parallel.exact.arcs import Arcs
 from wsrender.parallel.exact.borders import Borders
-from wsrender.parallel.exact.faces import Face, joined
+from wsrender.parallel.exact.faces import Face
 
 # Edges shorter than this, relative to the largest radius, come of moving concurrent and tangent surfaces apart by
 # 1e-11 (they open by 1e-5 where they touch): they are counted as points.
@@ -52,7 +53,7 @@ def _vertices(arcs: Arcs, long: np.ndarray) -> int:
     """Ends of long edges, those joined by short edges once."""
     has_ends = arcs.start >= 0
     ends = np.stack([arcs.start, arcs.end], axis=1)
-    place = joined(len(arcs.vertices), ends[has_ends & ~long])
+    place = components(len(arcs.vertices), *ends[has_ends & ~long].T)
     return len(np.unique(place[ends[has_ends & long]]))
 
 
@@ -73,7 +74,7 @@ def _shells(faces: list[Face], edges: int) -> tuple[np.ndarray, int]:
     for number, face in enumerate(faces):
         for half in (half for loop in face.loops for half in loop):
             pairs.append((number, seen.setdefault(half % edges, number)))
-    shell = joined(len(faces), np.array(pairs, int).reshape(-1, 2))
+    shell = components(len(faces), *np.array(pairs, int).reshape(-1, 2).T)
     return shell, int(shell.max(initial=-1)) + 1
 
 
