@@ -21,7 +21,7 @@ class Conditioning:
 
     def at(self, posture: Posture) -> "Condition":
         """The conditioning of a posture."""
-        A = self._select @ posture.J
+        A = self._select.dot(posture.J)
         u, sigma, v = decomposed(A)
         largest, least = float(sigma[0]), float(sigma[-1])
         if len(sigma) < len(A) or least <= max(A.shape) * _EPSILON * largest:
@@ -41,12 +41,12 @@ class Conditioning:
             return np.zeros(len(posture.q))
         weights, largest = np.zeros(len(sigma)), float(sigma[0])
         weights[0], weights[-1] = -condition.inverse / largest, 1.0 / largest
-        by_row = (u * weights) @ v  # ∂i/∂A
+        by_row = (u * weights).dot(v)  # ∂i/∂A
         if self._coupling is not None:
             by_row = by_row @ self._coupling.T
         columns = posture.columns
-        crossed = _CROSS @ ((_FIRST @ columns) * (self._second @ by_row))
-        gradient = _ONES @ (columns * (crossed.reshape(2, 3, -1) @ self._sums).reshape(6, -1))
+        crossed = _CROSS.dot(_FIRST.dot(columns) * self._second.dot(by_row))
+        gradient = _ONES.dot(columns * (crossed.reshape(2, 3, -1) @ self._sums).reshape(6, -1))
         return gradient if self._coupling is None else gradient @ self._coupling
 
 

@@ -133,7 +133,7 @@ class ForceField:
                 along += self._limit_force(pushes, shares, factor)
             if share > 0.0:
                 along += self._conditioning_force(pushes, posture, condition, factor)
-            pushes.wrench = u @ along if self._normalised else self._dual(u @ along)
+            pushes.wrench = u.dot(along) if self._normalised else self._dual(u.dot(along))
         boundary = self._add_surface(pushes, self._boundary, posture.position)
         obstacle = self._add_surface(pushes, self._obstacles, posture.position)
         force, torque = self._clipped(pushes.wrench)
@@ -177,28 +177,28 @@ class ForceField:
         ramps = limits.ramps(shares).tolist()
         pushes.nearness = max(map(abs, ramps))
         # Squared norms of the rows of J⁺, which are those of V Σ⁺.
-        squares = ((factor * factor) @ _ONES[: factor.shape[1]]).tolist()
+        squares = (factor * factor).dot(_ONES[: factor.shape[1]]).tolist()
         least = FELT * FELT * max(squares)
         if min(squares) <= least:
             facts = zip(self.chain.joint_names, squares, ramps, strict=True)
             pushes.unfelt = tuple(name for name, square, ramp in facts if square <= least and ramp)
         if not self._normalised:
             pushes.energy += limits.energy(shares)
-            return limits.torques(shares) @ factor
+            return limits.torques(shares).dot(factor)
         facts = zip(ramps, squares, strict=True)
         scaled = [limits.peak * ramp / math.sqrt(square) if square > least else 0.0 for ramp, square in facts]
-        return _bounded(np.array(scaled) @ factor, limits.peak)
+        return _bounded(np.array(scaled).dot(factor), limits.peak)
 
     def _conditioning_force(
         self, pushes: _Pushes, posture: Posture, condition: Condition, factor: np.ndarray
     ) -> np.ndarray:
         """Force of the conditioning along the left singular vectors, (k,)."""
         assert self._ramp is not None
-        direction = self.conditioning.gradient(posture, condition) @ factor
+        direction = self.conditioning.gradient(posture, condition).dot(factor)
         if not self._normalised:
             pushes.energy += self._ramp.energy(condition.inverse)
             return self._ramp.slope(condition.inverse) * direction
-        size = math.sqrt(direction @ direction)
+        size = math.sqrt(direction.dot(direction))
         strength = self._ramp.peak * self._ramp.share(condition.inverse)
         return direction * (strength / size if size > 1e-9 else 0.0)
 
@@ -222,7 +222,7 @@ class ForceField:
 
 def _bounded(vector: np.ndarray, most: float) -> np.ndarray:
     """The vector, shortened to a length of ``most`` where it is longer."""
-    size = math.sqrt(vector @ vector)
+    size = math.sqrt(vector.dot(vector))
     return vector * (most / size) if size > most else vector
 
 

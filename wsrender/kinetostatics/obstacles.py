@@ -1,5 +1,7 @@
 """Distance of a ball around the end effector to obstacles, by MuJoCo's geometry."""
 
+import math
+
 import mujoco
 import numpy as np
 from scipy.spatial import ConvexHull, QhullError
@@ -48,7 +50,7 @@ class ObstacleDistance:
         if nearest >= FAR:
             return FAR, np.zeros(3)
         away = position - foot
-        size = float(np.sqrt(away @ away))
+        size = math.sqrt(away.dot(away))
         distance = nearest + POINT
         gradient = away * ((1 if distance > 0 else -1) / size) if size > CLOSE else np.zeros(3)
         return distance - self._radius, gradient

@@ -1,5 +1,6 @@
 """Surfaces that push: workspace boundary and obstacles, by their signed distance."""
 
+import math
 from typing import Protocol
 
 import numpy as np
@@ -29,7 +30,7 @@ class SurfaceRamp:
 
     def normalised(self, distance: float, gradient: np.ndarray) -> np.ndarray:
         """The force (3,) [N] of the form "normalised"; none where the gradient vanishes."""
-        size = float(np.sqrt(gradient @ gradient))
+        size = math.sqrt(gradient.dot(gradient))
         return gradient * (self.peak * self.share(distance) / size) if size > 1e-9 else np.zeros(3)
 
     def potential(self, distance: float, gradient: np.ndarray) -> np.ndarray:
