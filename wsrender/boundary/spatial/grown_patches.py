@@ -75,15 +75,14 @@ def best_refined_fit(points: np.ndarray, normals: np.ndarray, tolerance: float) 
     extent = np.ptp(points, axis=0).max()
     few = _spread(np.arange(len(points)))
     fits = []
-    for axial in _AXIAL:
-        for primitive in candidates(points[few], normals[few], axial):
-            found = primitive
-            if np.abs(primitive.distance(points[few])[0]).max() <= _START * extent:
-                found = refined(primitive, points[few])
-            fit = fit_of(found, points, normals)
-            if _is(fit, tolerance):
-                return fit
-            fits.append(fit)
+    for primitive in candidates(points[few], normals[few], _AXIAL):
+        found = primitive
+        if np.abs(primitive.distance(points[few])[0]).max() <= _START * extent:
+            found = refined(primitive, points[few])
+        fit = fit_of(found, points, normals)
+        if _is(fit, tolerance):
+            return fit
+        fits.append(fit)
     return nearest(fits)
 
 

@@ -99,7 +99,7 @@ def best_fit(points: np.ndarray, normals: np.ndarray, tolerance: float) -> Fit |
     what every normal's line meets the axis of (Pottmann & Randrup 1998).
     """
     fits = []
-    for primitive in candidates(points, normals, _AXIAL):
+    for primitive in candidates(points, normals, (_AXIAL,)):
         fit = fit_of(primitive, points, normals)
         if fit.exact(tolerance):
             return fit
@@ -107,15 +107,16 @@ def best_fit(points: np.ndarray, normals: np.ndarray, tolerance: float) -> Fit |
     return nearest(fits)
 
 
-def candidates(points: np.ndarray, normals: np.ndarray, axial: float) -> Iterator[Primitive]:
+def candidates(points: np.ndarray, normals: np.ndarray, axial: tuple[float, ...]) -> Iterator[Primitive]:
     """Primitives through points (N, 3) with normals (N, 3), the simplest first; none through a few points.
 
-    ``axial``: below this, relative to the points' extent, a direction of motion leaves the surface in place.
+    Below each of ``axial`` in turn, relative to the points' extent, a direction of motion leaves the surface in place.
     """
     if len(points) >= _LEAST_POINTS:
         yield from _plane(points)
         yield from _sphere(points)
-        yield from _revolved(points, normals, axial)
+        for direction in _left_in_place(points, normals, axial):
+            yield from _revolved(points, *direction)
 
 
 def fit_of(primitive: Primitive, points: np.ndarray, normals: np.ndarray) -> Fit:
@@ -141,21 +142,29 @@ def _sphere(points: np.ndarray) -> list[Primitive]:
     return [Primitive("sphere", fit.center, radius=fit.radius)]
 
 
-def _revolved(points: np.ndarray, normals: np.ndarray, axial: float) -> list[Primitive]:
-    """Cylinder, cone and torus about the axis that the normals have in common, in that order."""
+def _left_in_place(
+    points: np.ndarray, normals: np.ndarray, axial: tuple[float, ...]
+) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    """A point of the axis and its direction, (3,) each, about which a turn leaves the surface in place.
+
+    One for each of ``axial`` that lets more motions through than those before it.
+    """
     middle = points.mean(axis=0)
     local = points - middle
     size = np.linalg.norm(local, axis=1).max()
     # A turn c about a point and a shift leave the surface in place where the velocity has no part along the normal.
     motions = np.linalg.svd(np.column_stack([normals, np.cross(local / size, normals)]), full_matrices=False)
-    least = motions[1] <= max(axial * motions[1][0], motions[1][-1])
-    still = motions[2][least]
-    turning = np.linalg.svd(still[:, 3:].T, full_matrices=False)[2][0] @ still
-    c = turning[3:]
-    if np.linalg.norm(c) < 1e-9:
-        return []
-    axis = _positive(c / np.linalg.norm(c))
-    foot = middle + size * np.cross(c, turning[:3]) / (c @ c)
+    counts = [int((motions[1] <= max(each * motions[1][0], motions[1][-1])).sum()) for each in axial]
+    for count in dict.fromkeys(counts):
+        still = motions[2][-count:]
+        turning = np.linalg.svd(still[:, 3:].T, full_matrices=False)[2][0] @ still
+        c = turning[3:]
+        if np.linalg.norm(c) >= 1e-9:
+            yield middle + size * np.cross(c, turning[:3]) / (c @ c), _positive(c / np.linalg.norm(c))
+
+
+def _revolved(points: np.ndarray, foot: np.ndarray, axis: np.ndarray) -> list[Primitive]:
+    """Cylinder, cone and torus about an axis, in that order."""
     offset = points - foot
     z = offset @ axis
     rho = np.linalg.norm(offset - z[:, None] * axis, axis=1)
