@@ -1,15 +1,19 @@
 """Primitives fitted to points and normals in a turned and shifted frame."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from wsrender.boundary.spatial.grown_patches import refined
 from wsrender.boundary.spatial.primitives import Primitive, best_fit
 from wsrender.boundary.spatial.surfaces import PrimitiveSurface
 
 R, SHIFT = Rotation.from_euler("xyz", [0.3, -1.1, 2.0]).as_matrix(), np.array([0.3, -2.0, 1.0])
 U, V = np.random.default_rng(1).uniform(0, 2, (2, 200))
 Z = np.array([0.0, 0.0, 1.0])
+OFF = np.array([0.01, -0.02, 0.01])
 RADIAL = np.stack([np.cos(U), np.sin(U), 0 * U], axis=1)
 
 
@@ -22,7 +26,7 @@ def around(v):
     return RADIAL * np.cos(v)[:, None] + Z * np.sin(v)[:, None]
 
 
-@pytest.mark.parametrize(
+KINDS = pytest.mark.parametrize(
     ("kind", "points", "normals", "numbers"),
     [
         ("plane", np.stack([U, V, 0 * U], axis=1), np.tile(Z, (200, 1)), {}),
@@ -39,6 +43,9 @@ def around(v):
         ("torus", 0.2 * RADIAL + 0.5 * around(3 * V), around(3 * V), {"radius": 0.2, "tube_radius": 0.5}),
     ],
 )
+
+
+@KINDS
 def test_each_kind_is_found_with_its_numbers(kind, points, normals, numbers):
     fit = fitted(points, normals)
     assert fit.primitive.kind == kind and fit.exact(1e-12)
@@ -51,6 +58,19 @@ def test_each_kind_is_found_with_its_numbers(kind, points, normals, numbers):
     distance, gradient = fit.primitive.distance(points @ R.T + SHIFT + 1e-3 * normals @ R.T)
     assert np.abs(distance) == pytest.approx(1e-3, abs=1e-12)
     assert np.abs((gradient * (normals @ R.T)).sum(axis=1)) == pytest.approx(1, abs=1e-9)
+
+
+@KINDS
+def test_least_squares_find_each_kind_from_beside_it(kind, points, normals, numbers):
+    found = fitted(points, normals).primitive
+    beside = replace(found, point=found.point + OFF, **{name: 1.02 * numbers[name] for name in numbers})
+    if found.axis is not None:
+        axis = found.axis + OFF
+        beside = replace(beside, axis=axis / np.linalg.norm(axis))
+    again = refined(beside, points @ R.T + SHIFT)
+    assert np.abs(again.distance(points @ R.T + SHIFT)[0]).max() < 1e-12
+    for name, value in numbers.items():
+        assert getattr(again, name) == pytest.approx(value, abs=1e-11)
 
 
 def test_lines_meet_a_surface_where_it_is_and_not_where_they_run_along_it():

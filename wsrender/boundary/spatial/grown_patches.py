@@ -6,6 +6,7 @@ not count in the fits: they are robust by that. Nothing is drawn at random.
 """
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from scipy.optimize import least_squares
@@ -28,6 +29,7 @@ _ALL = 2.0  # tolerances within which all of a region or part are on a primitive
 _WHOLE = 24  # crossings, at least, of a part with sharp edges all around that may be a primitive
 # What a least-squares fit may move: candidates farther from the points than this share of their extent are no start.
 _START = 0.05
+_STEP = 1e-7  # of a number, relative to the points' extent, for its slope
 _NUMBERS = {
     "plane": (),
     "sphere": ("radius",),
@@ -112,10 +114,25 @@ def refined(primitive: Primitive, points: np.ndarray) -> Primitive:
             **dict(zip(_NUMBERS[primitive.kind], values.tolist(), strict=True)),
         )
 
+    def slopes(x: np.ndarray) -> np.ndarray:
+        """A shift changes distances by −gradient · shift, a small turn ω by −ω · (offset × gradient)."""
+        here = changed(x)
+        distance, gradient = here.distance(points)
+        columns = [-gradient]
+        if here.axis is not None and primitive.axis is not None:
+            turns = np.cross(here.axis, across) / np.linalg.norm(primitive.axis + x[3:5] @ across)
+            columns.append(-np.cross(points - here.point, gradient) @ turns.T / size)
+        for name, length in zip(_NUMBERS[primitive.kind], lengths, strict=True):
+            beside = replace(here, **{name: getattr(here, name) + _STEP * length})
+            columns.append((beside.distance(points)[0] - distance)[:, None] / (_STEP * size))
+        return np.concatenate(columns, axis=1)
+
     count = 3 + len(across) + len(numbers)
+    jac: Any = slopes  # annotated as text in SciPy
     solved = least_squares(
         lambda x: changed(x).distance(points)[0] / size,
         np.zeros(count),
+        jac,
         method="lm",
         xtol=1e-14,
         ftol=1e-14,
