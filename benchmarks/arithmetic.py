@@ -3,7 +3,7 @@
 An addition, subtraction, multiplication, division or square root counts as one operation, a fused multiply-add as
 two; comparisons, selections, sign changes and integer work (the random bits) count as none, and neither does what
 the compiler removes (angular rows and orientation of a linear task). The counts are for a chain of n uncoupled
-joints, random sampling, the task "linear" and the standard convention. n = 6, float32: 811 kinematic, 2,614 twelve.
+joints, random sampling, the task "linear" and the standard convention. n = 6, float32: 801 kinematic, 2,600 twelve.
 """
 
 FLOAT_BYTES = {"float32": 4, "float64": 8}
@@ -25,9 +25,9 @@ def draw(n: int, precision: str) -> int:
 
 
 def sincos(precision: str) -> int:
-    """Rounding to quarter turns 4, reduction 7, square 1, two polynomials, their ends 3 + 5."""
+    """Rounding to quarter turns 4, reduction 7, square 1, two polynomials, their ends 3 + 4."""
     terms = 2 if precision == "float32" else 5
-    return 12 + 4 * terms + 8
+    return 12 + 4 * terms + 7
 
 
 def forward(n: int, precision: str, dynamic: bool) -> int:
@@ -43,18 +43,19 @@ def jacobian(n: int) -> int:
 
 def three_singular_values(n: int, precision: str) -> int:
     """Dot products and orthogonalised rows, 8 (2n - 1) + 2 + 6n, and the closed form."""
-    newton_step = 22
-    pivots = 2 + 3 + 2 + 4 + 2 + 3 + 16  # trace, row factors, scaled pivots, determinant and minors
-    deviators = 9 + 27 + 3 + 3 + 13 + 1 + 12 + 14
-    angle = 1 + 2 + 5 + 2 + 11 + 1 + 6 + 5 + newton_step * (1 if precision == "float32" else 2)
-    eigenvalues = 2 + 3 + 1 + 1 + 2 + 4 + 2 + 2 + 1 + 6
-    return 8 * (2 * n - 1) + 2 + 6 * n + pivots + deviators + angle + eigenvalues
+    scaled = 8
+    pivots = 1 + 2 + 2 + 1 + 1 + 2 + 2 + 12  # reciprocals, row factors, last product, minor, determinant, minors
+    deviators = 3 + 3 + 12 + 2 + 6 + 18 + 12  # mean, entries, norm, in its units; square
+    angle = 12 + 12 + 13 + 2  # along, what is across, its norm
+    third = 4 * 9 + 7 if precision == "float32" else 4 * 10 + 22 + 7  # polynomials, Newton's step, reflection
+    eigenvalues = 1 + 3 + 1 + 1 + 2 + 3 + 1 + 2 + 2 + 1 + 6
+    return 8 * (2 * n - 1) + 2 + 6 * n + scaled + pivots + deviators + angle + third + eigenvalues
 
 
 def six_indices(precision: str) -> int:
-    """Product 2, quotient 1, power 2/3 (9 per step), harmonic mean 10, isotropy 7."""
+    """Product 2, quotient 1, power 2/3 (9 per step), harmonic mean 7, isotropy 7."""
     steps = 2 if precision == "float32" else 3
-    return 2 + 1 + (9 * steps + 1) + 10 + 7
+    return 2 + 1 + (9 * steps + 1) + 7 + 7
 
 
 def totals(indices: int) -> int:

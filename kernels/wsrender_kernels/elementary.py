@@ -55,7 +55,8 @@ def elementary(real) -> SimpleNamespace:
     ``sincos(a) -> (sin a, cos a)``; ``sincos_from(a, rest, rest 2/pi, quarters)`` gives those of a + rest + quarters
     pi/2, where abs(rest) <= pi/4; ``log2`` for positive normal numbers; ``power(x, e) = 2^(e log2 x)``, 0 for x <= 0;
     ``two_thirds_power(x)``, the same for e = 2/3; ``ordered(x)`` maps a float to an integer that sorts alike (NaN sorts
-    outside the infinities).
+    outside the infinities); ``scales(x) -> (2^-e, 2^e)`` with e = floor(log2 x) for positive normal numbers and
+    (2^127 or 2^1023, 0) for smaller ones.
     """
     bits = bits_type(real)
     mantissa, bits_size = (23, 32) if real is wp.float32 else (52, 64)
@@ -68,7 +69,8 @@ def elementary(real) -> SimpleNamespace:
     EXP = _coefficients([math.log(2.0) ** i / math.factorial(i) for i in range(EXP_TERMS)], real)
     SQRT_HALF = bits(0x3F3504F3) if real is wp.float32 else bits(0x3FE6A09E667F3BCD)
     MANTISSA = bits(mantissa)
-    BIAS = bits(127 if real is wp.float32 else 1023)
+    bias = 127 if real is wp.float32 else 1023
+    BIAS, EXPONENT, OPPOSITE = bits(bias), bits((2 * bias + 1) << mantissa), bits(2 * bias << mantissa)
     SMALLEST = real(2.0**-126 if real is wp.float32 else 2.0**-1022)
     SIGN = bits(31 if real is wp.float32 else 63)
     MAGNITUDE = bits(2**31 - 1 if real is wp.float32 else 2**63 - 1)
@@ -94,7 +96,7 @@ def elementary(real) -> SimpleNamespace:
             s = s * z + SIN[DEGREE - 1 - i]
             c = c * z + COS[DEGREE - 1 - i]
         s = r + r * z * s
-        c = ONE - HALF * z + z * z * c
+        c = ONE + z * (z * c - HALF)
         quadrant = wp.cast(shifted, bits)
         swap = (quadrant & ODD) != NONE
         sine = wp.cast(wp.where(swap, c, s), bits) ^ ((quadrant >> ODD) << SIGN)
@@ -159,6 +161,11 @@ def elementary(real) -> SimpleNamespace:
         i = wp.cast(x, bits)
         return i ^ ((i >> SIGN) & MAGNITUDE)
 
+    @wp.func
+    def scales(x: real):
+        exponent = wp.cast(x, bits) & EXPONENT
+        return wp.cast(OPPOSITE - exponent, real), wp.cast(exponent, real)
+
     return SimpleNamespace(
         sincos=sincos,
         sincos_from=sincos_from,
@@ -169,4 +176,5 @@ def elementary(real) -> SimpleNamespace:
         power=power,
         two_thirds_power=two_thirds_power,
         ordered=ordered,
+        scales=scales,
     )

@@ -13,9 +13,13 @@ from functools import cache, partial
 
 import numpy as np
 import warp as wp
+from numpy.polynomial import Chebyshev, Polynomial
+
+from wsrender_kernels.elementary import elementary
 
 SWEEPS = {wp.float32: 6, wp.float64: 7}
-NEWTON_STEPS = {wp.float32: 1, wp.float64: 2}
+NEWTON_STEPS = {wp.float32: 0, wp.float64: 1}  # for a third of an angle
+_THIRD_DEGREE = {wp.float32: 9, wp.float64: 10}
 UNROLLED_ROTATIONS = 150
 
 
@@ -163,9 +167,9 @@ def _two_rows(real, m: int, n: int):
 def _three_rows(real, m: int, n: int):
     vec_m = wp.types.vector(3, real)
     mat_mn = wp.types.matrix((3, n), real)
-    third_of_angle = _third_of_angle(real)
+    third_of_angle, scales = _third_of_angle(real), elementary(real).scales
     ZERO, HALF, ONE, TWO, FOUR = (real(v) for v in (0.0, 0.5, 1.0, 2.0, 4.0))
-    THIRD, SIXTH, TWO_SQRT_3 = real(1.0 / 3.0), real(1.0 / 6.0), real(2.0 * 3.0**0.5)
+    THIRD, ROOT_6, ROOT_SIXTH, TWO_ROOT_3 = (real(v) for v in (1 / 3, 6**0.5, 6**-0.5, 2 * 3**0.5))
     TINY = _tiny(real)
     NEARLY_RANK_ONE = real(0.01)
     # A row below the rounding noise of the others spans nothing: its reciprocal would overflow.
@@ -177,114 +181,123 @@ def _three_rows(real, m: int, n: int):
         b = A[1]
         c = A[2]
         aa = wp.dot(a, a)
-        ab = wp.dot(a, b)
-        ac = wp.dot(a, c)
         bb = wp.dot(b, b)
         cc = wp.dot(c, c)
-        trace = aa + bb + cc
-        unit = wp.where(trace > TINY, ONE / trace, ZERO)
+        # H = A Aᵀ in units of a power of two that leave it a trace between 1 and 2: their square roots do not round.
+        unit, scale = scales(aa + bb + cc)
+        hx = aa * unit
+        hy = bb * unit
+        hz = cc * unit
+        xy = wp.dot(a, b) * unit
+        xz = wp.dot(a, c) * unit
 
-        # H / trace = L D Lᵀ with orthogonalised rows: the pivots keep the digits that H itself has lost.
-        ia = wp.where(aa * unit > NOISE, ONE / aa, ZERO)
-        lb = ab * ia
-        lc = ac * ia
+        # H = L D Lᵀ with orthogonalised rows: the pivots keep the digits that H itself has lost.
+        reciprocal = wp.where(hx > NOISE, ONE / hx, ZERO)
+        lb = xy * reciprocal
+        lc = xz * reciprocal
         b1 = b - a * lb
         c1 = c - a * lc
-        bb1 = wp.dot(b1, b1)
-        bc1 = wp.dot(b1, c1)
-        bc = bc1 + lb * ac
-        lcb = bc1 * wp.where(bb1 * unit > NOISE, ONE / bb1, ZERO)
+        d1 = hx
+        d2 = wp.dot(b1, b1) * unit
+        bc1 = wp.dot(b1, c1) * unit
+        yz = bc1 + lb * xz
+        lcb = bc1 * wp.where(d2 > NOISE, ONE / d2, ZERO)
         c2 = c1 - b1 * lcb
-        d1 = aa * unit
-        d2 = bb1 * unit
         d3 = wp.dot(c2, c2) * unit
         minor = lb * lcb - lc
         det = d1 * d2 * d3
         minors = d1 * (d2 * (ONE + lcb * lcb + minor * minor) + d3 * (ONE + lb * lb)) + d2 * d3
 
-        # Deviators of H and of H², both with trace 1 scaling: the angle between them is 3 phi, where the
-        # eigenvalues of H are 1/3 + 2 p cos(phi + 2 pi k / 3). No cancellation where eigenvalues coincide.
-        hx = aa * unit - THIRD
-        hy = bb * unit - THIRD
-        hz = cc * unit - THIRD
-        xy = ab * unit
-        xz = ac * unit
-        yz = bc * unit
-        gx = hx * hx + xy * xy + xz * xz
-        gy = xy * xy + hy * hy + yz * yz
-        gz = xz * xz + yz * yz + hz * hz
+        # The eigenvalues of H are mean + 2 p cos(phi + 2 pi k / 3), where 3 phi is the angle between the deviators of H
+        # and of H². That of H in units of its norm, its square has a deviator of norm 1 / sqrt 6. No cancellation where
+        # eigenvalues coincide.
+        mean = (hx + hy + hz) * THIRD
+        hx = hx - mean
+        hy = hy - mean
+        hz = hz - mean
+        norm = wp.sqrt(hx * hx + hy * hy + hz * hz + TWO * (xy * xy + xz * xz + yz * yz))
+        per_norm = wp.where(norm > TINY, ONE / norm, ZERO)
+        hx = hx * per_norm
+        hy = hy * per_norm
+        hz = hz * per_norm
+        xy = xy * per_norm
+        xz = xz * per_norm
+        yz = yz * per_norm
+        gx = hx * hx + xy * xy + xz * xz - THIRD
+        gy = xy * xy + hy * hy + yz * yz - THIRD
+        gz = xz * xz + yz * yz + hz * hz - THIRD
         gxy = xy * (hx + hy) + xz * yz
         gxz = xz * (hx + hz) + xy * yz
         gyz = yz * (hy + hz) + xy * xz
-        hh = gx + gy + gz
-        mean = hh * THIRD
-        gx = gx - mean
-        gy = gy - mean
-        gz = gz - mean
-        gh = hx * gx + hy * gy + hz * gz + TWO * (xy * gxy + xz * gxz + yz * gyz)
-        along = wp.where(hh > TINY, gh / hh, ZERO)
+        along = hx * gx + hy * gy + hz * gz + TWO * (xy * gxy + xz * gxz + yz * gyz)
         gx = gx - along * hx
         gy = gy - along * hy
         gz = gz - along * hz
         gxy = gxy - along * xy
         gxz = gxz - along * xz
         gyz = gyz - along * yz
-        across = gx * gx + gy * gy + gz * gz + TWO * (gxy * gxy + gxz * gxz + gyz * gyz)
-        cosine, sine = third_of_angle(gh, wp.sqrt(across * hh))
+        across = wp.sqrt(gx * gx + gy * gy + gz * gz + TWO * (gxy * gxy + gxz * gxz + gyz * gyz))
+        cosine, sine = third_of_angle(along * ROOT_6, across * ROOT_6)
 
-        p = wp.sqrt(hh * SIXTH)
-        l1 = THIRD + TWO * p * cosine
-        i1 = ONE / wp.max(l1, THIRD)
+        p = norm * ROOT_SIXTH
+        l1 = mean + TWO * p * cosine
+        i1 = ONE / wp.where(l1 > THIRD, l1, THIRD)
         product = det * i1
         total = (minors - product) * i1
         # The gap from the angle errs by eps * l1, that from the discriminant by sqrt(eps) * total.
+        discriminant = total * total - FOUR * product
         gap = wp.where(
             total < NEARLY_RANK_ONE,
-            wp.sqrt(wp.max(total * total - FOUR * product, ZERO)),
-            TWO_SQRT_3 * p * sine,
+            wp.sqrt(wp.where(discriminant > ZERO, discriminant, ZERO)),
+            TWO_ROOT_3 * p * sine,
         )
-        l2 = HALF * (total + wp.min(gap, total))
+        l2 = HALF * (total + wp.where(gap < total, gap, total))
         l3 = wp.where(l2 > TINY, product / l2, ZERO)
-        return vec_m(wp.sqrt(l1 * trace), wp.sqrt(l2 * trace), wp.sqrt(wp.min(l3, l2) * trace))
+        l3 = wp.where(l3 < l2, l3, l2)
+        return vec_m(wp.sqrt(l1 * scale), wp.sqrt(l2 * scale), wp.sqrt(l3 * scale))
 
     return three_rows
 
 
 def _third_of_angle(real):
-    """Device function (x, y >= 0) -> (cos, sin) of a third of the angle of (x, y), by Newton on z³ = e^{i angle}."""
-    ZERO, ONE, TWO, THREE, THIRD, PI = (real(v) for v in (0.0, 1.0, 2.0, 3.0, 1.0 / 3.0, np.pi))
-    TINY = _tiny(real)
-    STEPS = NEWTON_STEPS[real]
-    # Abramowitz & Stegun 1964, 4.4.45: arccos x = sqrt(1 - x) * cubic, error 7e-5: a start for Newton's method.
-    ARC = wp.types.vector(4, real)(1.5707288, -0.2121144, 0.0742610, -0.0187293)
-    FACTORIALS = wp.types.vector(5, real)(1 / 2, 1 / 6, 1 / 24, 1 / 120, 1 / 720)
+    """Device function (cos a, sin a) -> (cos a/3, sin a/3), 0 <= a <= pi.
+
+    cos(a/3) and sin(a/3) / sin a are smooth functions of cos a where that is not negative: polynomials through
+    Chebyshev points; larger angles are reflected. Then, in float64, a step of Newton's method for z³ = e^{i a}.
+    """
+    DEGREE, STEPS = _THIRD_DEGREE[real], NEWTON_STEPS[real]
+    ZERO, HALF, TWO, THREE, THIRD, HALF_ROOT_3 = (real(v) for v in (0.0, 0.5, 2.0, 3.0, 1.0 / 3.0, 0.75**0.5))
+    COS = _polynomial(real, lambda c: np.cos(np.arccos(c) / 3), DEGREE)
+    SIN = _polynomial(real, lambda c: np.sin(np.arccos(c) / 3) / np.sqrt(1 - c * c), DEGREE)
 
     @wp.func
-    def third_of_angle(x: real, y: real):
-        # Scaled by the larger component: their squares would underflow for nearly isotropic matrices.
-        size = wp.max(wp.abs(x), y)
-        known = size > TINY
-        scale = wp.where(known, ONE / size, ZERO)
-        xs = wp.where(known, x * scale, ONE)
-        ys = y * scale
-        inverse = ONE / wp.sqrt(xs * xs + ys * ys)
-        c = xs * inverse
-        s = ys * inverse
-        k = wp.abs(c)
-        arc = wp.sqrt(wp.max(ONE - k, ZERO)) * (ARC[0] + k * (ARC[1] + k * (ARC[2] + k * ARC[3])))
-        t = wp.where(c < ZERO, PI - arc, arc) * THIRD
-        t2 = t * t
-        u = ONE - t2 * (FACTORIALS[0] - t2 * (FACTORIALS[2] - t2 * FACTORIALS[4]))
-        v = t * (ONE - t2 * (FACTORIALS[1] - t2 * FACTORIALS[3]))
+    def third_of_angle(cosine: real, sine: real):
+        c = wp.abs(cosine)
+        u = COS[DEGREE]
+        v = SIN[DEGREE]
+        for i in range(DEGREE):
+            u = u * c + COS[DEGREE - 1 - i]
+            v = v * c + SIN[DEGREE - 1 - i]
+        v = v * sine
         for _step in range(STEPS):
             # z <- (2 z + w / z²) / 3 with 1 / z² = conj(z)² / |z|⁴, and 1 / |z|⁴ = 3 - 2 |z|² near the unit circle.
             scale = THREE - TWO * (u * u + v * v)
             re = (u * u - v * v) * scale
             im = -TWO * u * v * scale
-            u, v = (TWO * u + c * re - s * im) * THIRD, (TWO * v + c * im + s * re) * THIRD
-        return u, v
+            u, v = (TWO * u + c * re - sine * im) * THIRD, (TWO * v + c * im + sine * re) * THIRD
+        reflected = cosine < ZERO
+        return (
+            wp.where(reflected, HALF * u + HALF_ROOT_3 * v, u),
+            wp.where(reflected, HALF_ROOT_3 * u - HALF * v, v),
+        )
 
     return third_of_angle
+
+
+def _polynomial(real, function, degree: int):
+    """Coefficients, lowest first, of a function on [0, 1], through Chebyshev points."""
+    fitted = Chebyshev.interpolate(function, degree, [0, 1]).convert(kind=Polynomial)
+    return wp.types.vector(degree + 1, real)(*fitted.coef)
 
 
 def _jacobi(real, m: int, n: int, by_columns: bool):

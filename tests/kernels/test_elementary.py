@@ -23,7 +23,7 @@ def evaluated(name, precision, *columns, device="cpu"):
 def kernels_of(precision):
     real, functions = REAL[precision], elementary(REAL[precision])
     sincos, log2, exp2, power = functions.sincos, functions.log2, functions.exp2, functions.power
-    two_thirds_power = functions.two_thirds_power
+    two_thirds_power, scales = functions.two_thirds_power, functions.scales
 
     @wp.kernel(module=f"test_elementary_{precision}", enable_backward=False)
     def both(x: wp.array2d(dtype=real), out: wp.array2d(dtype=real)):
@@ -44,7 +44,15 @@ def kernels_of(precision):
         out[i, 0] = exp2(x[i, 0])
         out[i, 1] = power(x[i, 0], x[i, 1])
 
-    return {(precision, "sincos"): both, (precision, "log2"): logarithms, (precision, "powers"): powers}
+    @wp.kernel(module=f"test_elementary_{precision}", enable_backward=False)
+    def binades(x: wp.array2d(dtype=real), out: wp.array2d(dtype=real)):
+        i = wp.tid()
+        unit, scale = scales(x[i, 0])
+        out[i, 0] = unit
+        out[i, 1] = scale
+
+    kernels = {"sincos": both, "log2": logarithms, "powers": powers, "scales": binades}
+    return {(precision, name): kernel for name, kernel in kernels.items()}
 
 
 KERNELS = kernels_of("float32") | kernels_of("float64")
@@ -119,3 +127,12 @@ def test_power_of_nothing_is_nothing(precision, device):
     x = np.array([0.0, -0.0, -1.0, 1e-320])
     found = evaluated("powers", precision, x, np.full(4, 1 / 3), device=device)[1]
     assert (found == 0).all()
+
+
+def test_scales_are_powers_of_two_and_their_reciprocals(precision, device):
+    span = 125 if precision == "float32" else 1020
+    x = (2.0 ** np.random.default_rng(6).uniform(-span, span, 20000)).astype(precision).astype(np.float64)
+    unit, scale = evaluated("scales", precision, x, device=device).astype(np.float64)
+    assert (scale == 2.0 ** np.floor(np.log2(x))).all() and (unit * scale == 1).all()
+    unit, scale = evaluated("scales", precision, np.zeros(1), device=device)
+    assert scale == 0 and np.isfinite(unit)

@@ -83,7 +83,8 @@ class Expression:
         return apply("add", self, other)
 
     def __radd__(self, other):
-        return apply("add", other, self)
+        # Python's sum starts from 0, which no compiler may leave out: 0 + -0 is 0.
+        return self if isinstance(other, int) and other == 0 else apply("add", other, self)
 
     def __sub__(self, other):
         return apply("subtract", self, other)

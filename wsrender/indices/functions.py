@@ -29,9 +29,9 @@ def order_independent_manipulability(sigma, m, n):
 
 def harmonic_mean_manipulability(sigma, m, n):
     """1 / √tr H⁻¹ = 1 / √Σ σ⁻² (Kim & Khosla 1991)."""
-    # In units of the smallest value, whose square would underflow in float32.
-    ratios = [math.divide(sigma[-1], s) for s in sigma]
-    return math.divide(sigma[-1], math.sqrt(sum(r * r for r in ratios)))
+    # In units of the smallest value, whose square would underflow in float32; its own ratio is 1.
+    ratios = [math.divide(sigma[-1], s) for s in sigma[:-1]]
+    return sigma[-1] / math.sqrt(sum((r * r for r in ratios), 1.0))
 
 
 def isotropy(sigma, m, n):
