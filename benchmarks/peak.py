@@ -1,28 +1,46 @@
-"""The machine's floating-point peak: matrix products on the CPU, a fused multiply-add kernel on a GPU."""
+"""The machine's floating-point peak: chains of fused multiply-adds."""
 
-import os
-import subprocess
-import sys
 import time
+from concurrent.futures import ThreadPoolExecutor
 
-import numpy as np
 import warp as wp
+from wsrender_kernels.options import MODULE_OPTIONS
+from wsrender_kernels.sampling import LANES
 
-SIZE, CHAINS, STEPS, GPU_THREADS = 2048, 16, 4096, 1 << 20
+CHAINS, STEPS, GPU_THREADS, CPU_TASKS = 16, 4096, 1 << 20, 16
 
 
 def cpu_peak(precision: str, threads: int) -> float:
-    """Operations per second of NumPy's matrix product on so many threads, in a process of its own."""
-    limits = {f"{library}_NUM_THREADS": str(threads) for library in ("OPENBLAS", "OMP", "MKL")}
-    limits["VECLIB_MAXIMUM_THREADS"] = str(threads)
-    command = [sys.executable, __file__, precision]
-    run = subprocess.run(command, env={**os.environ, **limits}, check=True, capture_output=True, text=True)
-    return float(run.stdout)
+    """Operations per second of multiply-adds on SIMD registers, on so many threads."""
+    real = wp.float32 if precision == "float32" else wp.float64
+    kernel = _lane_kernel(real)
+    outs = [wp.zeros(CPU_TASKS, dtype=real, device="cpu") for _ in range(threads)]
+
+    def launch(out: wp.array) -> None:
+        wp.launch(kernel, CPU_TASKS, inputs=[out, STEPS], device="cpu")
+
+    launch(outs[0])
+    with ThreadPoolExecutor(threads) as pool:
+        seconds = min(_seconds(lambda: list(pool.map(launch, outs))) for _ in range(6))
+    return threads * CPU_TASKS * LANES * CHAINS * STEPS * 2 / seconds
 
 
-def _matrix_product_rate(precision: str) -> float:
-    matrix = np.random.default_rng(0).random((SIZE, SIZE)).astype(precision)
-    return 2 * SIZE**3 / min(_seconds(lambda: matrix @ matrix) for _ in range(6))
+def _lane_kernel(real) -> wp.Kernel:
+    lanes = wp.types.vector(LANES, real)
+    SCALE, SHIFT = real(0.999), real(0.001)
+
+    @wp.kernel(module="unique", module_options=MODULE_OPTIONS, enable_backward=False)
+    def multiply_add_lanes(out: wp.array(dtype=real), steps: wp.int32):
+        x = lanes(real(wp.tid()))
+        for _step in range(steps):
+            for lane in range(LANES):
+                value = x[lane]
+                for _i in range(CHAINS):
+                    value = value * SCALE + SHIFT
+                x[lane] = value
+        out[wp.tid()] = wp.dot(x, x)
+
+    return multiply_add_lanes
 
 
 def gpu_peak(precision: str, device: wp.Device) -> float:
@@ -58,6 +76,3 @@ def _seconds(work) -> float:
     work()
     return time.perf_counter() - started
 
-
-if __name__ == "__main__":
-    print(_matrix_product_rate(sys.argv[1]))
