@@ -35,6 +35,7 @@ def sample_space(real, n: int):
         upper: vec_n
         step: vec_n  # grid: interval between levels; else: upper - lower
         levels: int_n  # grid
+        run: wp.int64  # grid with shared coordinates: samples in a row that have them in common
         key_0: wp.uint32  # random, boundary: the seed
         key_1: wp.uint32
         sobol_high: wp.array(dtype=wp.uint32)  # (n * SOBOL_BITS + n,) direction numbers, then the shift
@@ -102,19 +103,48 @@ def unit_of(real):
 
 
 @cache
-def sampling(real, n: int, method: str) -> SimpleNamespace:
-    """Device functions ``prepare(space, first) -> block`` and ``draw(space, block, first, lane) -> q (n,)``."""
-    prepare, draw = {
-        "grid": _grid,
-        "random": _random,
-        "boundary": _boundary,
-        "sobol": _sobol,
-        "given": _given,
-    }[method](real, n)
+def sampling(real, n: int, method: str, shared: int = 0) -> SimpleNamespace:
+    """Device functions ``prepare(space, first) -> block`` and ``draw(space, block, first, lane) -> q (n,)``.
+
+    ``shared``: leading coordinates of a grid that have the same values in all of a block, as `blocks` makes them: the
+    compiler then takes what depends on them alone out of the lane loop.
+    """
+    if method == "grid":
+        prepare, draw = _grid(real, n, shared)
+    else:
+        prepare, draw = {"random": _random, "boundary": _boundary, "sobol": _sobol, "given": _given}[method](real, n)
     return SimpleNamespace(prepare=prepare, draw=draw)
 
 
-def _grid(real, n: int):
+@cache
+def blocks(real, n: int, shared: int):
+    """Device function ``(space, first, count, task) -> first sample of the task's block, number of samples``.
+
+    Blocks of LANES samples; with shared coordinates they also end where one of those changes.
+    """
+    Space = sample_space(real, n)
+    SIZE = wp.int64(LANES)
+
+    @wp.func
+    def plain(space: Space, first: wp.int64, count: wp.int64, task: wp.int32):
+        start = first + wp.int64(task) * SIZE
+        return start, wp.int32(wp.min(SIZE, first + count - start))
+
+    @wp.func
+    def within_runs(space: Space, first: wp.int64, count: wp.int64, task: wp.int32):
+        into_run = first % space.run
+        per_run = (space.run + SIZE - wp.int64(1)) / SIZE
+        number = into_run / SIZE + wp.int64(task)
+        run = first - into_run + number / per_run * space.run
+        start = run + number % per_run * SIZE
+        end = wp.min(wp.min(start + SIZE, run + space.run), first + count)
+        start = wp.max(start, first)
+        return start, wp.int32(end - start)
+
+    return within_runs if shared else plain
+
+
+def _grid(real, n: int, shared: int):
     """Mixed-radix digits of the index, the last joint fastest; both limits included."""
     Space = sample_space(real, n)
     vec_n = wp.types.vector(n, real)
@@ -122,6 +152,7 @@ def _grid(real, n: int):
     f32 = wp.float32
     ONE = wp.float32(1.0)
     at_level = grid_level(real)
+    SHARED, OWN = shared, n - shared
 
     @wp.func
     def prepare(space: Space, first: wp.int64):
@@ -138,7 +169,9 @@ def _grid(real, n: int):
     def draw(space: Space, block: int_n, first: wp.int64, lane: wp.int32):
         carry = lane
         q = vec_n()
-        for back in range(n):
+        for i in range(SHARED):
+            q[i] = at_level(space.lower[i], space.upper[i], space.step[i], block[i], space.levels[i])
+        for back in range(OWN):
             i = n - 1 - back
             levels = space.levels[i]
             value = block[i] + carry

@@ -20,7 +20,7 @@ from wsrender_kernels.kinematics import kinematics, orientation
 from wsrender_kernels.memory import cuda_atomics, memory
 from wsrender_kernels.model import model_type
 from wsrender_kernels.options import CUDA_OPTIONS, MODULE_OPTIONS
-from wsrender_kernels.sampling import LANES, base_levels, grid_level, sample_space, sampling
+from wsrender_kernels.sampling import LANES, base_levels, blocks, grid_level, sample_space, sampling
 from wsrender_kernels.spectrum import in_base_axes, spectrum
 from wsrender_kernels.voxels import lattice, lowest, voxels
 
@@ -52,6 +52,7 @@ class Shape:
     penalty: bool = False  # joint-limit penalisation
     torque_scaling: bool = False
     base_levels: bool = False  # whether a sample stands for every level of the base joint
+    shared: int = 0  # on the CPU, leading coordinates of a grid that a block's samples share
     voxels: bool = True
     maximum: bool = True  # per voxel
     minimum: bool = False
@@ -179,7 +180,7 @@ def _state(shape: Shape) -> SimpleNamespace:
 def _outputs(shape: Shape):
     """Device function ``evaluate(model, space, block, first, lane) -> outputs`` of one sample."""
     real, n = shape.real, shape.n
-    draw = sampling(real, n, shape.method).draw
+    draw = sampling(real, n, shape.method, shape.shared).draw
     state = _state(shape)
     spectra = spectrum(real, n, shape.rows, shape.convention, shape.penalty, shape.torque_scaling)
     penalized, kinematic = spectra.penalized, spectra.kinematic
@@ -263,6 +264,7 @@ def sweep_kernel(shape: Shape, cuda: bool) -> wp.Kernel:
 def _cpu_kernel(shape: Shape) -> wp.Kernel:
     real, K = shape.real, shape.n_indices
     prepare, evaluate = sampling(real, shape.n, shape.method).prepare, _outputs(shape)
+    block_of = blocks(real, shape.n, shape.shared)
     ordered = elementary(real).ordered
     cell, quantized = voxels(real).cell, voxels(real).quantized
     Model, Space = model_type(real, shape.n, len(shape.sources)), sample_space(real, shape.n)
@@ -276,8 +278,9 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
     LOWEST = bits(lowest(real))
     LOWEST_ROW = REDUCED * LANES
     LEAST_SUM = wp.int64(-(2**62) - 2**61)
+    NARROW, HALF, LOWER_HALF, FROM_UPPER = real is wp.float32, bits(15), bits(2**15 - 1), wp.int64(2**15)
     KEY_ROW, KEY_MASK = _record_keys(shape)
-    BLOCK, BLOCK_64 = LANES, wp.int64(LANES)
+    BLOCK = LANES
     load_record, store_record = memory(record_type).load, memory(record_type).store
     load_sums, store_sums = memory(sums_type).load, memory(sums_type).store
     # Scratch in rows of LANES. Vectors on the stack: of an array, neither the stride nor what else points to it is
@@ -300,9 +303,7 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
         # out
         to: Outputs,
     ):
-        task = wp.tid()
-        start = first + wide(task * BLOCK)
-        valid = wp.int32(wp.min(BLOCK_64, first + count - start))
+        start, valid = block_of(space, first, count, wp.tid())
         block = prepare(space, start)
         values = values_type()
         keys = keys_type()
@@ -347,15 +348,22 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
                 to.extremes[2 * r + 1] = wp.max(to.extremes[2 * r + 1], smallest)
 
             for k in range(K):
-                total = wp.int64(0)
+                # Sums of 256 quanta of 30 bits need 38: two halves stay in the SIMD lanes of 32, one of 64 would not.
+                upper = bits(0)
+                lower = bits(0)
                 scale = to.scales[k]
                 row = (3 + k) * BLOCK
                 target = k * BLOCK
                 for lane in range(BLOCK):
                     quantum = quantized(values[row + lane], scale)
                     quanta[target + lane] = quantum
-                    total += wp.where(lane < valid, wp.int64(quantum), wp.int64(0))
-                to.totals[k] = to.totals[k] + total
+                    if wp.static(NARROW):
+                        upper += quantum >> HALF
+                        lower += quantum & LOWER_HALF
+                    else:
+                        lower += quantum
+                repeated = wide(BLOCK - valid) * wp.int64(quantized(values[row + valid - 1], scale))
+                to.totals[k] = to.totals[k] + wp.int64(upper) * FROM_UPPER + wp.int64(lower) - repeated
 
             if wp.static(VOXELS):
                 # Touch all target records first: their cache misses then overlap, which halves the time.
@@ -390,7 +398,7 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
         if wp.static(ROWS):
             for row in range(N_ROWS):
                 r = OUTPUT[row]
-                at = wide(row) * to.rows_stride + wide(task * BLOCK)
+                at = wide(row) * to.rows_stride + (start - first)
                 for lane in range(valid):
                     to.rows_out[at + wide(lane)] = values[r * BLOCK + lane]
 

@@ -3,14 +3,20 @@
 from dataclasses import replace
 from functools import cache
 from itertools import product
+from math import prod
 
 import numpy as np
 import pytest
+import warp as wp
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from wsrender_kernels.sampling import blocks, sample_space
 
 import wsrender as ws
 from tests.run.simple_robots import PlanarClass
 from wsrender import run
-from wsrender.engine import devices_of, sweep
+from wsrender.engine import devices_of, grid_structure, sweep
+from wsrender.engine.grid_structure import block_count, shared_coordinates
 from wsrender.engine.voxel_data import volume_data
 from wsrender.errors import InputError
 from wsrender.robot import as_robot
@@ -209,6 +215,69 @@ def test_shards_at_multiples_of_the_division():
     for document in (merged.document, expected.document):
         del document["timing_s"]
     assert merged.document == expected.document
+
+
+@pytest.mark.parametrize(
+    ("levels", "shared"),
+    [
+        ([16] * 6, 4),  # 16 x 16 samples are a block
+        ([10] * 6, 3),  # 1000 samples fill four blocks to 98 %
+        ([5, 4, 6, 3, 3, 4], 0),  # 216 fill one to 84, 864 four to 84 %
+        ([2] * 8, 0),
+        ([3, 1, 255], 2),
+        ([7], 0),
+    ],
+)
+def test_leading_coordinates_that_blocks_share(levels, shared):
+    plan = replace(planned("puma560").sweep.sampling, levels=np.array(levels), count=prod(levels))
+    assert shared_coordinates(plan) == shared
+    assert shared_coordinates(replace(plan, method="random")) == 0
+
+
+@given(st.integers(1, 2000), st.integers(0, 10**6), st.integers(1, 5000))
+@settings(derandomize=True, max_examples=200, deadline=None, database=None)
+def test_blocks_cover_a_range_once(run_, first, count):
+    """The samples of the tasks' blocks, as the kernel takes them, are those of the range, each run apart."""
+    number, expected = block_count(run_, first, count), first
+    for start, size in block_ranges(run_, first, count, number):
+        assert start == expected and 0 < size <= 256 and start // run_ == (start + size - 1) // run_
+        expected += size
+    assert expected == first + count
+
+
+@cache
+def block_kernel():
+    block_of, Space = blocks(wp.float64, 1, 1), sample_space(wp.float64, 1)
+
+    @wp.kernel(module="unique", enable_backward=False)
+    def block_ranges_kernel(space: Space, first: wp.int64, count: wp.int64, out: wp.array2d(dtype=wp.int64)):
+        start, size = block_of(space, first, count, wp.tid())
+        out[wp.tid(), 0] = start
+        out[wp.tid(), 1] = wp.int64(size)
+
+    return block_ranges_kernel
+
+
+def block_ranges(run_, first, count, number):
+    space = sample_space(wp.float64, 1)()
+    space.run = run_
+    out = wp.empty((number, 2), dtype=wp.int64, device="cpu")
+    wp.launch(block_kernel(), number, [space, first, count], [out], device="cpu")
+    return out.numpy()
+
+
+@pytest.mark.parametrize("fields", [{"joint_limit_penalty": 10.0}, {"indices": "all"}], ids=str)
+def test_shared_coordinates_change_no_position(fields, precision, monkeypatch):
+    """Runs of 15 x 17 samples, one short of a block; voxels and positions equal to the bit, indices to rounding."""
+    sampling = {"method": "grid", "per_joint": [3, 2, 2, 3, 15, 17]}
+    plan = replace(planned("ur5e", precision, sampling=sampling, **fields).sweep, collapse=False)
+    assert shared_coordinates(plan.structure.evaluated) == 4
+    found = swept(plan)
+    in_chunks = swept(plan, threads=2, chunk_size=1)
+    assert in_chunks.records.tobytes() == found.records.tobytes() and (in_chunks.sums == found.sums).all()
+    monkeypatch.setattr(grid_structure, "MOSTLY_FULL", 2.0)
+    assert shared_coordinates(plan.structure.evaluated) == 0
+    assert_agree(plan, "cpu", (found, volume_data(plan, found, {})), precision)
 
 
 def test_counts_beyond_32_bits():

@@ -1,6 +1,6 @@
-"""What the structure of a grid spares: samples that differ only in joints whose effect is known are not evaluated.
+"""What the structure of a grid spares.
 
-Two cases, detected from the chain and the request:
+Samples that differ only in joints whose effect is known are not evaluated; detected from the chain and the request:
 
 - Base joint: turning or sliding the whole arm changes neither the singular values of whole triads of Jacobian rows nor
   the inertia matrix. One evaluation serves all levels of the first joint; only the end effector's position is moved.
@@ -8,19 +8,24 @@ Two cases, detected from the chain and the request:
   the rounding noise of singular postures.
 - Trailing joints whose axes pass through the end effector: they change neither its position nor the linear rows. One
   evaluation stands for all their levels. Not so for angular rows or dynamic indices.
+
+Of the others, what depends on the leading joints alone (their sines, the first frames) is computed once for all samples
+of a block, on the CPU: they change least often, and blocks end where they do. Positions keep every bit; of an index
+the last may change, since the compiler fuses other products with sums.
 """
 
 from dataclasses import dataclass, replace
 from math import prod
 
 import numpy as np
-from wsrender_kernels.sampling import base_levels
+from wsrender_kernels.sampling import LANES, base_levels
 from wsrender_kernels.spectrum import LINEAR, in_base_axes
 
 from wsrender.engine.evaluation import Evaluation
 from wsrender.robots.chain import Chain
 from wsrender.sampling import SamplingPlan
 
+MOSTLY_FULL = 0.9  # samples per lane of the blocks of a grid whose leading coordinates are shared
 ON_AXIS = 1e-12  # of the reach: rounding of a model file's numbers
 MOST_BASE_LEVELS = 2**20  # counts of one block of samples stay far below 32 bits
 
@@ -55,6 +60,29 @@ def structure_of(evaluation: Evaluation, sampling: SamplingPlan) -> GridStructur
     upper = np.where(levels < sampling.levels, sampling.lower, sampling.upper)
     evaluated = replace(sampling, levels=levels, upper=upper, count=sampling.count // (base * weight))
     return GridStructure(evaluated, base, weight)
+
+
+def shared_coordinates(sampling: SamplingPlan) -> int:
+    """Leading coordinates that all samples of a block may share without leaving many of its lanes empty."""
+    if sampling.method != "grid":
+        return 0
+    full = [shared for shared in range(1, len(sampling.levels)) if _fill(run_length(sampling, shared)) >= MOSTLY_FULL]
+    return max(full, default=0)
+
+
+def run_length(sampling: SamplingPlan, shared: int) -> int:
+    """Samples in a row that have the leading coordinates in common."""
+    return sampling.count // prod(int(level) for level in sampling.levels[:shared])
+
+
+def block_count(run: int, first: int, count: int) -> int:
+    """Blocks that hold samples first … first + count - 1 when blocks end with every run of so many samples."""
+    per_run, last = -(-run // LANES), first + count - 1
+    return (last // run - first // run) * per_run + last % run // LANES - first % run // LANES + 1
+
+
+def _fill(run: int) -> float:
+    return run / (-(-run // LANES) * LANES)
 
 
 def _invariant(evaluation: Evaluation) -> bool:

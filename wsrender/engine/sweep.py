@@ -3,7 +3,7 @@
 import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property, reduce
 
 import numpy as np
@@ -16,7 +16,14 @@ from wsrender_kernels.voxels import lattice, lowest
 from wsrender.engine.configurations import configurations, device_space, given_space
 from wsrender.engine.devices import thread_count
 from wsrender.engine.evaluation import Evaluation, device_array, evaluation_model, shape_of
-from wsrender.engine.grid_structure import GridStructure, device_base, structure_of
+from wsrender.engine.grid_structure import (
+    GridStructure,
+    block_count,
+    device_base,
+    run_length,
+    shared_coordinates,
+    structure_of,
+)
 from wsrender.engine.kernel_cache import loaded
 from wsrender.engine.memory import as_type, device_memory
 from wsrender.engine.partial import Partial, joined, merge
@@ -106,7 +113,11 @@ def sweep(
     """
     shape, each = plan.shape, plan.structure.multiplicity
     first, count, chunk_size = first // each, count // each, chunk_size and -(-chunk_size // each)
-    workers = devices if devices[0].is_cuda else devices * thread_count(threads)
+    workers = devices
+    if not devices[0].is_cuda:
+        workers = devices * thread_count(threads)
+        if shape.method == "grid":
+            shape = replace(shape, shared=shared_coordinates(plan.structure.evaluated))
     chunk = _chunk_size(plan, chunk_size or _fair_share(count, workers))
     workers = workers[: max(-(-count // chunk), 1)]
     slabs = [None] if plan.block is None else slabs_of(plan.block, shape, workers)
@@ -213,7 +224,9 @@ class Accumulator:
         self._kernel = loaded(sweep_kernel(shape, device.is_cuda), device)
         self._model = evaluation_model(plan.evaluation, plan.precision)
         given = shape.method == "given"
-        self._space = None if given else device_space(plan.structure.evaluated, plan.precision, device)
+        evaluated = plan.structure.evaluated
+        self._space = None if given else device_space(evaluated, plan.precision, device, shape.shared)
+        self._run = run_length(evaluated, shape.shared)
         self._base = device_base(plan.structure, plan.sampling, real)
         self._lattice = _device_lattice(slab, real)
         reduced = shape.reduced
@@ -292,7 +305,7 @@ class Accumulator:
             outputs = [self._outputs, self._counts, self._records, self._sums]
             wp.launch(self._kernel, dim=threads, inputs=[*inputs, threads], outputs=outputs, device=self.device)
         else:
-            tasks = -(-count // LANES)
+            tasks = block_count(self._run, first, count)
             wp.launch(self._kernel, dim=tasks, inputs=inputs, outputs=[self._outputs], device=self.device)
 
     def _given(self, first: int, count: int):
