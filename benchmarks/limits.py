@@ -46,7 +46,7 @@ class Case:
 def cases_of(robot: ws.Robot, device: str, threads: int, peak: dict) -> list[Case]:
     """The kernel's cases on one device."""
     on_gpu = devices_of(device)[0].is_cuda
-    size = 1 << 32 if on_gpu else 1 << 22
+    size = 1 << 32 if on_gpu else 1 << 24
     cases = []
     for precision in PRECISIONS:
 
