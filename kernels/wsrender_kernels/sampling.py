@@ -1,8 +1,8 @@
 """Configurations as pure functions of a 64-bit sample index.
 
-Samples come in blocks of LANES consecutive indices that start at a multiple of LANES. ``prepare(space, first)``
-does what depends on the block alone, ``draw(space, block, first, lane)`` gives sample ``first + lane``: so the lane
-loop keeps only SIMD work.
+Samples come in blocks of LANES consecutive indices that start at a multiple of LANES, or on a grid also where a leading
+coordinate changes. ``prepare(space, first)`` does what depends on the block alone, ``draw(space, block, first, lane)``
+gives sample ``first + lane``: so the lane loop keeps only SIMD work.
 """
 
 import math

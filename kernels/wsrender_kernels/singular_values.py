@@ -18,8 +18,8 @@ from numpy.polynomial import Chebyshev, Polynomial
 from wsrender_kernels.elementary import elementary
 
 SWEEPS = {wp.float32: 6, wp.float64: 7}
-NEWTON_STEPS = {wp.float32: 0, wp.float64: 1}  # for a third of an angle
-_THIRD_DEGREE = {wp.float32: 9, wp.float64: 10}
+# Of a third of an angle: degree of the polynomials, and steps that square their error.
+DEGREE, NEWTON_STEPS = {wp.float32: 9, wp.float64: 10}, {wp.float32: 0, wp.float64: 1}
 UNROLLED_ROTATIONS = 150
 
 
@@ -265,19 +265,19 @@ def _third_of_angle(real):
     cos(a/3) and sin(a/3) / sin a are smooth functions of cos a where that is not negative: polynomials through
     Chebyshev points; larger angles are reflected. Then, in float64, a step of Newton's method for z³ = e^{i a}.
     """
-    DEGREE, STEPS = _THIRD_DEGREE[real], NEWTON_STEPS[real]
+    HIGHEST, STEPS = DEGREE[real], NEWTON_STEPS[real]
     ZERO, HALF, TWO, THREE, THIRD, HALF_ROOT_3 = (real(v) for v in (0.0, 0.5, 2.0, 3.0, 1.0 / 3.0, 0.75**0.5))
-    COS = _polynomial(real, lambda c: np.cos(np.arccos(c) / 3), DEGREE)
-    SIN = _polynomial(real, lambda c: np.sin(np.arccos(c) / 3) / np.sqrt(1 - c * c), DEGREE)
+    COS = _polynomial(real, lambda c: np.cos(np.arccos(c) / 3), HIGHEST)
+    SIN = _polynomial(real, lambda c: np.sin(np.arccos(c) / 3) / np.sqrt(1 - c * c), HIGHEST)
 
     @wp.func
     def third_of_angle(cosine: real, sine: real):
         c = wp.abs(cosine)
-        u = COS[DEGREE]
-        v = SIN[DEGREE]
-        for i in range(DEGREE):
-            u = u * c + COS[DEGREE - 1 - i]
-            v = v * c + SIN[DEGREE - 1 - i]
+        u = COS[HIGHEST]
+        v = SIN[HIGHEST]
+        for i in range(HIGHEST):
+            u = u * c + COS[HIGHEST - 1 - i]
+            v = v * c + SIN[HIGHEST - 1 - i]
         v = v * sine
         for _step in range(STEPS):
             # z <- (2 z + w / z²) / 3 with 1 / z² = conj(z)² / |z|⁴, and 1 / |z|⁴ = 3 - 2 |z|² near the unit circle.

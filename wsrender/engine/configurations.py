@@ -7,18 +7,17 @@ from wsrender_kernels.sampling import lane_table, sample_space
 
 from wsrender.engine.devices import devices_of
 from wsrender.engine.evaluation import REAL, device_array, vector_of
-from wsrender.engine.grid_structure import run_length
 from wsrender.engine.kernel_cache import loaded
 from wsrender.sampling import SamplingPlan
 
 
-def device_space(plan: SamplingPlan, precision: str, device: wp.Device, shared: int = 0):
-    """The SampleSpace struct of a plan on a device; ``shared`` as in `shared_coordinates`."""
+def device_space(plan: SamplingPlan, precision: str, device: wp.Device, run: int = 0):
+    """The SampleSpace struct of a plan on a device; ``run``: samples in a row that share leading coordinates."""
     real = REAL[precision]
     space = sample_space(real, len(plan.lower))()
     space.lower, space.upper = vector_of(plan.lower, real), vector_of(plan.upper, real)
     space.step, space.levels = vector_of(plan.step, real), vector_of(plan.levels, wp.int32)
-    space.run = run_length(plan, shared)
+    space.run = run
     space.key_0 = plan.seed & 0xFFFFFFFF
     space.key_1 = plan.seed >> 32
     if plan.directions is not None and plan.shift is not None:

@@ -116,7 +116,7 @@ def sweep(
     workers = devices
     if not devices[0].is_cuda:
         workers = devices * thread_count(threads)
-        if shape.method == "grid":
+        if not plan.evaluation.on_host:
             shape = replace(shape, shared=shared_coordinates(plan.structure.evaluated))
     chunk = _chunk_size(plan, chunk_size or _fair_share(count, workers))
     workers = workers[: max(-(-count // chunk), 1)]
@@ -225,8 +225,8 @@ class Accumulator:
         self._model = evaluation_model(plan.evaluation, plan.precision)
         given = shape.method == "given"
         evaluated = plan.structure.evaluated
-        self._space = None if given else device_space(evaluated, plan.precision, device, shape.shared)
         self._run = run_length(evaluated, shape.shared)
+        self._space = None if given else device_space(evaluated, plan.precision, device, self._run)
         self._base = device_base(plan.structure, plan.sampling, real)
         self._lattice = _device_lattice(slab, real)
         reduced = shape.reduced
