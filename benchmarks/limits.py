@@ -2,14 +2,15 @@
 
     python benchmarks/limits.py [--robots ur5e franka_panda] [--device cpu] [--repeats 5]
 
-A kernel's rate is the slope between two numbers of samples: what a launch costs at any size is left out. Voxels are
-100 per axis of the robot's reach. "rows" are written to device memory and stay there.
+A kernel's rate is that of its launches, the slope between two numbers of samples: what a launch costs at any size is
+left out. Voxels are 100 per axis of the robot's reach. "rows" are written to device memory and stay there.
 """
 
 import argparse
 import statistics
 import time
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -18,11 +19,11 @@ from arithmetic import operations
 from throughput import machine, peaks, plan_of
 
 import wsrender as ws
-from wsrender.engine import SweepPlan, devices_of, sweep
+from wsrender.engine import SweepPlan, devices_of
 from wsrender.engine.sweep import Accumulator
 
 PRECISIONS = ("float32", "float64")
-ROWS = 1 << 26  # samples whose rows a GPU holds at once
+CHUNK_CPU, CHUNK_CUDA = 1 << 20, 1 << 26  # samples of a launch; on a GPU, whose rows it holds
 
 
 @dataclass
@@ -52,9 +53,10 @@ def cases_of(robot: ws.Robot, device: str, threads: int, peak: dict) -> list[Cas
 
         def add(name: str, plan: SweepPlan, slower: int, flop: int | None = None, precision: str = precision) -> None:
             counts = (size // slower, 5 * size // slower)
-            run = _rows_stored if plan.keep_rows else _swept
             share_of_peak = flop / peak[precision, threads] if flop else None
-            cases.append(Case(name, precision, lambda count: run(plan, count, device, threads), counts, share_of_peak))
+            cases.append(
+                Case(name, precision, lambda count: _launched(plan, count, device, threads), counts, share_of_peak)
+            )
 
         n = robot.chain.n
         six, twelve = (operations(n, precision, dynamic, voxels=False) for dynamic in (False, True))
@@ -76,18 +78,19 @@ def cases_of(robot: ws.Robot, device: str, threads: int, peak: dict) -> list[Cas
     return cases
 
 
-def _swept(plan: SweepPlan, count: int, device: str, threads: int) -> float:
-    started = time.perf_counter()
-    sweep(plan, 0, count, devices_of(device)[:1], threads=threads)
-    return time.perf_counter() - started
-
-
-def _rows_stored(plan: SweepPlan, count: int, device: str, _threads: int) -> float:
+def _launched(plan: SweepPlan, count: int, device: str, threads: int) -> float:
+    """Seconds of launches alone, each thread with an accumulator of its own."""
     target = devices_of(device)[0]
-    accumulator = Accumulator(plan, plan.shape, None, target, ROWS)
+    workers, chunk = (1, CHUNK_CUDA) if target.is_cuda else (threads, CHUNK_CPU)
+    accumulators = [Accumulator(plan, plan.shape, plan.block, target, chunk) for _ in range(workers)]
+
+    def work(worker: int) -> None:
+        for first in range(worker * chunk, count, workers * chunk):
+            accumulators[worker].launch(first, min(chunk, count - first))
+
     started = time.perf_counter()
-    for first in range(0, count, ROWS):
-        accumulator.launch(first, min(ROWS, count - first))
+    with ThreadPoolExecutor(workers) as pool:
+        list(pool.map(work, range(workers)))
     wp.synchronize_device(target)
     return time.perf_counter() - started
 
