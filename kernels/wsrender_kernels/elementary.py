@@ -5,10 +5,11 @@ are slower too; these are branch-free and accurate to a few units in the last pl
 """
 
 import math
-from functools import cache
 from types import SimpleNamespace
 
 import warp as wp
+
+from wsrender_kernels.factories import factory
 
 # Minimax polynomials of sin and cos on [-pi/4, pi/4] (Moshier, Cephes, 1989: sinf/cosf; fdlibm, 1993: __kernel_sin).
 _SIN = {
@@ -48,7 +49,7 @@ def bits_type(real):
     return wp.int32 if real is wp.float32 else wp.int64
 
 
-@cache
+@factory
 def elementary(real) -> SimpleNamespace:
     """Device functions of one precision.
 

@@ -7,12 +7,12 @@ small inertias of the last links. Passing to the frame before costs a rotation a
 about x and a shift whose constant part is packed with the links.
 """
 
-from functools import cache
 from types import SimpleNamespace
 
 import numpy as np
 import warp as wp
 
+from wsrender_kernels.factories import factory
 from wsrender_kernels.kinematics import JOINT_STRIDE, chain_type, device_joint_frames, device_positions, kinematics
 
 # Mass of the joint's link and all after it; of these, as if at the next joint's origin, with the link: first moment
@@ -43,7 +43,7 @@ def _of_point(mass: float, at: np.ndarray) -> np.ndarray:
     return mass * (at @ at * np.eye(3) - np.outer(at, at))
 
 
-@cache
+@factory
 def inertia(real, n: int, sources: tuple[int, ...], plain: bool, world: bool) -> SimpleNamespace:
     """Device functions ``inertia_matrix(chain, bodies, frames) -> (n, n)`` and ``solve(m)``: (M, A (m, n)) -> A M^-1.
 
@@ -175,7 +175,7 @@ def inertia(real, n: int, sources: tuple[int, ...], plain: bool, world: bool) ->
                 M[SOURCE[j], SOURCE[i]] += value
         return M
 
-    @cache
+    @factory
     def solve(m_rows: int):
         rows_type = wp.types.matrix((m_rows, n), real)
         vec_n = wp.types.vector(n, real)

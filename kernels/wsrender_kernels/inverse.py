@@ -10,11 +10,11 @@ wait for each other. On CUDA a thread takes one try. What becomes of a try depen
 alone.
 """
 
-from functools import cache
 from types import SimpleNamespace
 
 import warp as wp
 
+from wsrender_kernels.factories import factory
 from wsrender_kernels.kinematics import chain_type, kinematics
 from wsrender_kernels.options import CUDA_OPTIONS, MODULE_OPTIONS
 
@@ -36,7 +36,7 @@ FAR_AWAY = 1e30  # squared errors before the first step, which any trial improve
 SHORTEST_STEP = {wp.float32: 1e-7, wp.float64: 1e-13}
 
 
-@cache
+@factory
 def inverse_model(real, n: int, joints: int):
     """Struct with the numbers of a robot and of what counts as reached."""
     vec_n = wp.types.vector(n, real)
@@ -54,7 +54,7 @@ def inverse_model(real, n: int, joints: int):
     return InverseModel
 
 
-@cache
+@factory
 def advance(real, n: int, sources: tuple[int, ...], plain: bool, kind: str) -> SimpleNamespace:
     """Device function that takes one step of a try.
 
@@ -210,7 +210,7 @@ def advance(real, n: int, sources: tuple[int, ...], plain: bool, kind: str) -> S
     return SimpleNamespace(step=step, target_type=target_type, vec_n=vec_n, Model=Model)
 
 
-@cache
+@factory
 def inverse_kernel(real, n: int, sources: tuple[int, ...], plain: bool, kind: str, cuda: bool) -> wp.Kernel:
     """Kernel that takes every try to its end, or through ``steps`` steps.
 

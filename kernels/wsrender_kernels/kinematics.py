@@ -5,13 +5,13 @@ constant rotation between two joint axes is Rz(phi) Rx(alpha) Rz(psi), whose z r
 before and after it. Unlike Denavit–Hartenberg parameters this is well conditioned for parallel axes too.
 """
 
-from functools import cache
 from types import SimpleNamespace
 
 import numpy as np
 import warp as wp
 
 from wsrender_kernels.elementary import elementary
+from wsrender_kernels.factories import factory
 
 # cos α, sin α, translation xyz, offset (its rest, that in quarter turns, whole quarters), angle per q, slide per q,
 # slide at q = 0
@@ -68,13 +68,13 @@ def _rotation_z(angle: float) -> np.ndarray:
     return T
 
 
-@cache
+@factory
 def chain_type(real, joints: int):
     """Vector type of `pack_kinematics`."""
     return wp.types.vector(joints * JOINT_STRIDE + FRAME_STRIDE, real)
 
 
-@cache
+@factory
 def orientation(real):
     """Device function R (3, 3) -> unit quaternion w x y z with w >= 0, by the largest component (Shepperd 1978)."""
     mat33, vec4 = wp.types.matrix((3, 3), real), wp.types.vector(4, real)
@@ -108,7 +108,7 @@ def orientation(real):
     return to_quaternion
 
 
-@cache
+@factory
 def kinematics(real, n: int, sources: tuple[int, ...], plain: bool, world: bool) -> SimpleNamespace:
     """Device functions for a chain whose joint i is driven by coordinate ``sources[i]`` of ``n``.
 

@@ -4,11 +4,12 @@ The closed forms are those of `wsrender.parallel.inverse_kinematics`, without th
 its range where the cosine of its distance from the middle is large enough.
 """
 
-from functools import cache
 from types import SimpleNamespace
 
 import numpy as np
 import warp as wp
+
+from wsrender_kernels.factories import factory
 
 KINDS = ("UPS", "PUS", "crank")
 # Numbers of a leg, in this order: base, axis, zero and across (axis x zero), platform joint and axis of its cone in the
@@ -50,7 +51,7 @@ def kind_of(kind: str) -> str:
     return kind if kind in KINDS else "crank"
 
 
-@cache
+@factory
 def leg_solver(real, kinds: tuple[str, ...], cones: bool) -> SimpleNamespace:
     """Device functions for legs of these ``kinds`` (of KINDS); ``cones``: whether any joint has one.
 

@@ -6,10 +6,10 @@ a pose of the part has survived ([SNK]). Both are one kernel, so that they give 
 """
 
 from dataclasses import dataclass
-from functools import cache
 
 import warp as wp
 
+from wsrender_kernels.factories import factory
 from wsrender_kernels.legs import LEG_STRIDE, PLATFORM, PLATFORM_CONE, leg_solver
 from wsrender_kernels.memory import memory
 from wsrender_kernels.options import CUDA_OPTIONS, MODULE_OPTIONS
@@ -36,7 +36,7 @@ class MembershipShape:
     given: bool = False  # positions come from an array, not from the lattice
 
 
-@cache
+@factory
 def mechanism_type(shape: MembershipShape):
     """Struct with the numbers of a mechanism."""
     real, L = shape.real, shape.legs
@@ -56,7 +56,7 @@ def mechanism_type(shape: MembershipShape):
     return MechanismModel
 
 
-@cache
+@factory
 def lattice_type(real):
     """Struct with a block of the lattice, z fastest: voxel edge [m], first voxel, shape."""
 
@@ -72,7 +72,7 @@ def lattice_type(real):
     return LatticeBlock
 
 
-@cache
+@factory
 def lattice_kernel(shape: MembershipShape, cuda: bool) -> wp.Kernel:
     """At how many orientations the voxel centres of a range of a lattice block are reached, or given positions.
 
@@ -86,7 +86,7 @@ def lattice_kernel(shape: MembershipShape, cuda: bool) -> wp.Kernel:
     return (_lattice_cuda if cuda else _lattice_cpu)(shape)
 
 
-@cache
+@factory
 def survivors_kernels() -> tuple[wp.Kernel, wp.Kernel]:
     """Two kernels with which only places that are reached go from a GPU to the host, in their order.
 
@@ -125,13 +125,13 @@ def survivors_kernels() -> tuple[wp.Kernel, wp.Kernel]:
     return are_reached, survivors
 
 
-@cache
+@factory
 def poses_kernel(shape: MembershipShape, cuda: bool) -> wp.Kernel:
     """Which given poses are reached: ``poses`` (POSE_ROWS * count,), row r of pose i at [r * count + i], base frame."""
     return (_poses_cuda if cuda else _poses_cpu)(shape)
 
 
-@cache
+@factory
 def _parts(shape: MembershipShape):
     """Device functions ``leg_of(model, k)``, ``in_region(model, p)`` and ``place(model, grid, x, y, z) -> p``."""
     real = shape.real
@@ -366,7 +366,7 @@ def _lattice_cuda(shape: MembershipShape) -> wp.Kernel:
     return lattice_cuda
 
 
-@cache
+@factory
 def _pose_test(shape: MembershipShape):
     """Device function ``reaches(model, p, R) -> 1 or 0`` of a pose in the base frame."""
     leg_of, in_region, _place, solver = _parts(shape)

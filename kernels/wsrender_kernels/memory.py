@@ -4,16 +4,17 @@ An array of Warp has a stride known at run time only and counts negative indices
 an address, which the compiler cannot leave out. The sweep's arrays are contiguous, and no index is negative.
 """
 
-from functools import cache
 from types import SimpleNamespace
 from typing import Any
 
 import warp as wp
 
+from wsrender_kernels.factories import factory
+
 _ATOMIC_POINTER = {wp.int32: "reinterpret_cast<int*>", wp.int64: "reinterpret_cast<long long*>"}
 
 
-@cache
+@factory
 def memory(dtype: Any) -> SimpleNamespace:
     """Device functions ``load(array, i) -> value`` and ``store(array, i, value)`` of contiguous arrays of a type."""
     array_type = wp.array(dtype=dtype)
@@ -27,7 +28,7 @@ def memory(dtype: Any) -> SimpleNamespace:
     return SimpleNamespace(load=load, store=store)
 
 
-@cache
+@factory
 def cuda_atomics(dtype: Any) -> SimpleNamespace:
     """CUDA functions ``add(array, i, value)`` (64-bit integers) and ``raise_to(array, i, value)`` (signed integers)."""
     array_type = wp.array(dtype=dtype)

@@ -1,14 +1,13 @@
 """The numbers of a robot as the kernels read them."""
 
-from functools import cache
-
 import warp as wp
 
+from wsrender_kernels.factories import factory
 from wsrender_kernels.inertia import BODY_STRIDE
 from wsrender_kernels.kinematics import chain_type
 
 
-@cache
+@factory
 def model_type(real, n: int, joints: int):
     """Struct with the numbers of a robot of n coordinates; what a kernel's shape does not use is empty or 0.
 

@@ -1,9 +1,8 @@
 """Kernels that return configurations and kinematics sample by sample, one thread each, instead of accumulating."""
 
-from functools import cache
-
 import warp as wp
 
+from wsrender_kernels.factories import factory
 from wsrender_kernels.inertia import inertia
 from wsrender_kernels.kinematics import kinematics
 from wsrender_kernels.model import model_type
@@ -11,7 +10,7 @@ from wsrender_kernels.options import MODULE_OPTIONS
 from wsrender_kernels.sampling import LANES, sample_space, sampling
 
 
-@cache
+@factory
 def configuration_kernel(real, n: int, method: str) -> wp.Kernel:
     """Kernel: configurations ``q_out`` (N, n) of the samples with these 64-bit indices (N,)."""
     sampler = sampling(real, n, method)
@@ -37,7 +36,7 @@ def configuration_kernel(real, n: int, method: str) -> wp.Kernel:
     return configurations
 
 
-@cache
+@factory
 def kinematics_kernel(real, n: int, sources: tuple[int, ...], plain: bool, with_inertia: bool) -> wp.Kernel:
     """Kernel: tip pose (N, 12: axes x, y, z, origin), Jacobian (N, 6, n) and, if asked, M (N, n, n) at ``q`` (N, n)."""
     kin, dyn = kinematics(real, n, sources, plain, True), inertia(real, n, sources, plain, True)

@@ -6,13 +6,13 @@ gives sample ``first + lane``: so the lane loop keeps only SIMD work.
 """
 
 import math
-from functools import cache
 from types import SimpleNamespace
 
 import numpy as np
 import warp as wp
 
 from wsrender_kernels.elementary import elementary
+from wsrender_kernels.factories import factory
 
 LANES = 256
 METHODS = ("grid", "random", "sobol", "boundary", "given")
@@ -24,7 +24,7 @@ _MULTIPLIERS = (0xD2511F53, 0xCD9E8D57)
 _KEY_STEPS = (0x9E3779B9, 0xBB67AE85)
 
 
-@cache
+@factory
 def sample_space(real, n: int):
     """Struct with the numbers of a sampling, n = joints: each method fills what it needs."""
     vec_n, int_n = wp.types.vector(n, real), wp.types.vector(n, wp.int32)
@@ -77,7 +77,7 @@ def random_words(c0: wp.uint32, c1: wp.uint32, c2: wp.uint32, c3: wp.uint32, k0:
     """Four random words of a counter and a key. In C, for the word of the registers differs."""
 
 
-@cache
+@factory
 def uniform(real):
     """Device function (high, low 32 random bits) -> [0, 1) in units of `unit_of`: the leading 24 or 53 bits."""
     u32 = wp.uint32
@@ -102,7 +102,7 @@ def unit_of(real):
     return real(2.0**-24 if real is wp.float32 else 1.0)
 
 
-@cache
+@factory
 def sampling(real, n: int, method: str, shared: int = 0) -> SimpleNamespace:
     """Device functions ``prepare(space, first) -> block`` and ``draw(space, block, first, lane) -> q (n,)``.
 
@@ -116,7 +116,7 @@ def sampling(real, n: int, method: str, shared: int = 0) -> SimpleNamespace:
     return SimpleNamespace(prepare=prepare, draw=draw)
 
 
-@cache
+@factory
 def blocks(real, n: int, shared: int):
     """Device function ``(space, first, count, task) -> first sample of the task's block, number of samples``.
 
@@ -190,7 +190,7 @@ def _grid(real, n: int, shared: int):
     return prepare, draw
 
 
-@cache
+@factory
 def grid_level(real):
     """Device function (lower, upper, step, level, levels) -> value of a coordinate; both limits are met exactly."""
 
@@ -201,7 +201,7 @@ def grid_level(real):
     return at_level
 
 
-@cache
+@factory
 def base_levels(real):
     """Struct with the levels of a first joint that the sampling itself leaves at one value."""
 

@@ -9,13 +9,14 @@ column, or float32 loses the small singular values: ``graded`` matrices are rota
 orthogonalised by columns (Demmel & Veselić: Jacobi is accurate for a well-conditioned matrix times any scaling).
 """
 
-from functools import cache, partial
+from functools import partial
 
 import numpy as np
 import warp as wp
 from numpy.polynomial import Chebyshev, Polynomial
 
 from wsrender_kernels.elementary import elementary
+from wsrender_kernels.factories import factory
 
 SWEEPS = {wp.float32: 6, wp.float64: 7}
 # Of a third of an angle: degree of the polynomials, and steps that square their error.
@@ -28,7 +29,7 @@ def epsilon(real) -> float:
     return float(np.finfo(wp.dtype_to_numpy(real)).eps)
 
 
-@cache
+@factory
 def singular_values(real, m: int, n: int, graded: bool = False):
     """Device function ``(A: (m, n)) -> (m,)``, descending, as computed; the last m - n are exactly 0."""
     by_columns = m > n or graded
@@ -50,7 +51,7 @@ def singular_values(real, m: int, n: int, graded: bool = False):
     return values
 
 
-@cache
+@factory
 def without_noise(real, m: int, n: int, length: int):
     """Device function on ``length`` singular values: those <= max(m, n) eps sigma_1 become exactly 0."""
     vec = wp.types.vector(length, real)

@@ -10,13 +10,13 @@ of their values count as 0 is decided on J, whose scale is uniform. The threshol
 up to 1e-2 of their maximum zero in float32.
 """
 
-from functools import cache
 from types import SimpleNamespace
 from typing import Any
 
 import warp as wp
 
 from wsrender_kernels.elementary import elementary
+from wsrender_kernels.factories import factory
 from wsrender_kernels.inertia import inertia
 from wsrender_kernels.singular_values import singular_values, without_noise
 
@@ -33,7 +33,7 @@ def spectrum_length(n: int, rows: tuple[int, ...], convention: str) -> int:
     return 1 + min(6, n) if convention == "wsrender_code" else len(rows)
 
 
-@cache
+@factory
 def spectrum(real, n: int, rows: tuple[int, ...], convention: str, penalty: bool, torque: bool) -> SimpleNamespace:
     """Device functions ``kinematic(model, J)``, ``dynamic(model, J, M, kinematic)`` and ``penalized(model, q, J)``.
 
@@ -96,7 +96,7 @@ def _penalized(real, n: int):
 def _torque_scaled(real, n: int):
     """Device function factory: columns of an (m, n) matrix times the largest joint efforts."""
 
-    @cache
+    @factory
     def make(m: int):
         mat_mn = wp.types.matrix((m, n), real)
 

@@ -8,13 +8,13 @@ and smallest singular value of the task (2), then, where asked, configuration (n
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
 from types import SimpleNamespace
 from typing import Any
 
 import warp as wp
 
 from wsrender_kernels.elementary import bits_type, elementary
+from wsrender_kernels.factories import factory
 from wsrender_kernels.inertia import inertia
 from wsrender_kernels.kinematics import kinematics, orientation
 from wsrender_kernels.memory import cuda_atomics, memory
@@ -114,7 +114,7 @@ def _power_of_two(size: int) -> int:
     return 1 << (size - 1).bit_length()
 
 
-@cache
+@factory
 def _state(shape: Shape) -> SimpleNamespace:
     """Device function ``(model, q, at, stride) -> tip, tip axes (3 x 3), J, M`` from the chain or from given arrays.
 
@@ -176,7 +176,7 @@ def _state(shape: Shape) -> SimpleNamespace:
     return with_inertia if shape.dynamic and not shape.given_inertia else from_chain
 
 
-@cache
+@factory
 def _outputs(shape: Shape):
     """Device function ``evaluate(model, space, block, first, lane) -> outputs`` of one sample."""
     real, n = shape.real, shape.n
@@ -231,7 +231,7 @@ def sums_type_of(shape: Shape):
     return wp.types.vector(max(shape.sums_size, 1), wp.int64)
 
 
-@cache
+@factory
 def outputs_type(shape: Shape):
     """Struct with what a sweep adds to: extremes and totals of all samples, voxel records and sums, rows.
 
@@ -255,7 +255,7 @@ def outputs_type(shape: Shape):
     return Outputs
 
 
-@cache
+@factory
 def sweep_kernel(shape: Shape, cuda: bool) -> wp.Kernel:
     """The kernel of a shape for the CPU (one task per block) or CUDA (threads that stride through the chunk)."""
     return _cuda_kernel(shape) if cuda else _cpu_kernel(shape)

@@ -5,16 +5,16 @@ maximum, or a minimum as the maximum of the complement) in `elementary.ordered` 
 too, so that filling needs no pattern. Sums are 64-bit fixed point.
 """
 
-from functools import cache
 from types import SimpleNamespace
 
 import numpy as np
 import warp as wp
 
 from wsrender_kernels.elementary import bits_type
+from wsrender_kernels.factories import factory
 
 
-@cache
+@factory
 def lattice(real):
     """Struct with the lattice: voxel edge [m], first voxel and shape of a dense block or of a slab of it along x."""
 
@@ -33,7 +33,7 @@ def lattice(real):
     return Lattice
 
 
-@cache
+@factory
 def voxels(real) -> SimpleNamespace:
     """Device functions ``cell(lattice, position) -> index of the voxel, or spare`` and ``quantized(value, scale)``."""
     Lattice = lattice(real)

@@ -2,11 +2,11 @@
 
 import hashlib
 import linecache
-from functools import cache
 from typing import Any
 
 import warp as wp
 from wsrender_kernels.elementary import elementary
+from wsrender_kernels.factories import factory
 from wsrender_kernels.spectrum import spectrum_length
 
 from wsrender.indices.catalogue import find, is_dynamic
@@ -77,7 +77,7 @@ def index_source(names: tuple[str, ...], rows: tuple[int, ...], n: int, conventi
     return "\n".join("    " + line for line in body)
 
 
-@cache
+@factory
 def index_function(body: str, n_indices: int, length: int, real) -> wp.Function:
     """Warp function (kinematic spectrum, dynamic spectrum), (length,) each -> values (n_indices,)."""
     source = f"def indices(kinematic: spectrum_type, dynamic: spectrum_type):\n{body}\n"
