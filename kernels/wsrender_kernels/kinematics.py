@@ -120,8 +120,9 @@ def kinematics(real, n: int, sources: tuple[int, ...], plain: bool, world: bool)
     angular at the tip in world axes, as MuJoCo's mj_jacSite. ``moved_base(chain, value, levers[0])`` is the tip for
     another value of the first joint, bit for bit.
 
-    ``world`` false: all axes and J are in the frame that the first joint leaves behind it, for half the rotations of
-    the first two joints; singular values and M do not depend on it. The tip's position is in the world all the same.
+    ``world`` false: for singular values and M, which no choice of axes changes. The axes in ``frames`` are then those
+    of the frame that the first joint leaves behind it, for half the rotations of the first two joints, and J is in the
+    axes of the middle joint, the nearest to all others. The tip's position is in the world all the same.
 
     The tip's position is accumulated from the tip to the base: the levers of the last joints, which move the least
     inertia, then err by their own small length times epsilon and not by the arm's.
@@ -133,9 +134,11 @@ def kinematics(real, n: int, sources: tuple[int, ...], plain: bool, world: bool)
     vec_n, vec_l = wp.types.vector(n, real), wp.types.vector(L, real)
     axes_type = wp.types.matrix((L, 3), real)
     jacobian_type = wp.types.matrix((6, n), real)
+    vec6, columns_type = wp.types.vector(6, real), wp.types.matrix((L, 6), real)
     sincos = elementary(real).sincos_from
     Chain = chain_type(real, L)
     PLAIN, WORLD, COUPLED = plain, world, len(set(sources)) < L
+    MIDDLE = (L - 1) // 2
     GENERAL = 0 if world else min(2, L)  # joints before are written out: most of their entries are 0 or 1
     ZERO, ONE = real(0.0), real(1.0)
 
@@ -252,31 +255,75 @@ def kinematics(real, n: int, sources: tuple[int, ...], plain: bool, world: bool)
         return frames.cosines[i] * x - frames.sines[i] * y, frames.sines[i] * x + frames.cosines[i] * y
 
     @wp.func
-    def jacobian(chain: Chain, frames: Frames):
-        # Columns are z x lever, exactly 0 for a tip on the axis; in axes before the motion, which the last joint's
-        # need not be turned for.
-        J = jacobian_type()
+    def turned_x(v: vec6, c: real, s: real):
+        return vec6(v[0], c * v[1] - s * v[2], s * v[1] + c * v[2], v[3], c * v[4] - s * v[5], s * v[4] + c * v[5])
+
+    @wp.func
+    def turned_z(v: vec6, c: real, s: real):
+        return vec6(c * v[0] - s * v[1], s * v[0] + c * v[1], v[2], c * v[3] - s * v[4], s * v[3] + c * v[4], v[5])
+
+    @wp.func
+    def column(chain: Chain, i: int, x: real, y: real, c: real, s: real):
+        """Column of a joint with the tip at x, y from its axis z, turned about x: z x lever, and z."""
+        linear = vec3(-y, c * x, s * x)
+        angular = vec3(ZERO, -s, c)
+        if wp.static(not PLAIN):
+            linear = linear * chain[i * STRIDE + 8] + angular * chain[i * STRIDE + 9]
+            angular = angular * chain[i * STRIDE + 8]
+        return vec6(linear[0], linear[1], linear[2], angular[0], angular[1], angular[2])
+
+    @wp.func
+    def columns_in_the_middle(chain: Chain, frames: Frames):
+        # Columns have zeros in the frames of their own joints; from there they are taken to the middle joint's, those
+        # of the joints after it and before it independently of each other.
+        columns = columns_type()
+        for i in range(wp.static(L - 1), MIDDLE, -1):
+            ca = chain[i * STRIDE]
+            sa = chain[i * STRIDE + 1]
+            for k in range(i, L):
+                columns[k] = turned_x(turned_z(columns[k], frames.cosines[i], frames.sines[i]), ca, sa)
+            x, y = turned_lever(frames, i)
+            columns[i] = column(chain, i, x, y, ca, sa)
+        for i in range(MIDDLE):
+            ca = chain[(i + 1) * STRIDE]
+            sa = -chain[(i + 1) * STRIDE + 1]
+            cosine = frames.cosines[i + 1]
+            sine = -frames.sines[i + 1]
+            for k in range(i):
+                columns[k] = turned_z(turned_x(columns[k], ca, sa), cosine, sine)
+            columns[i] = turned_z(column(chain, i, frames.levers[i, 0], frames.levers[i, 1], ca, sa), cosine, sine)
+        columns[MIDDLE] = column(chain, MIDDLE, frames.levers[MIDDLE, 0], frames.levers[MIDDLE, 1], ONE, ZERO)
+        return columns
+
+    @wp.func
+    def columns_in_the_world(chain: Chain, frames: Frames):
+        # z x lever is exactly 0 for a tip on the axis; in axes before the motion, which the last joint's need not be
+        # turned for.
+        columns = columns_type()
         for i in range(L):
+            x, y = turned_lever(frames, i)
             z = frames.Z[i]
-            linear = vec3()
-            if i >= GENERAL:
-                rx, ry = turned_lever(frames, i)
-                linear = frames.y_before[i] * rx - frames.x_before[i] * ry
-            elif i == 0:
-                linear = vec3(-frames.levers[0, 1], frames.levers[0, 0], ZERO)
-            else:
-                rx, ry = turned_lever(frames, i)
-                linear = vec3(-ry, chain[STRIDE] * rx, chain[STRIDE + 1] * rx)
+            linear = frames.y_before[i] * x - frames.x_before[i] * y
             if wp.static(not PLAIN):
                 linear = linear * chain[i * STRIDE + 8] + z * chain[i * STRIDE + 9]
                 z = z * chain[i * STRIDE + 8]
             for r in range(3):
+                columns[i, r] = linear[r]
+                columns[i, 3 + r] = z[r]
+        return columns
+
+    columns_of = columns_in_the_world if world else columns_in_the_middle
+
+    @wp.func
+    def jacobian(chain: Chain, frames: Frames):
+        columns = columns_of(chain, frames)
+        J = jacobian_type()
+        for i in range(L):
+            for r in range(6):
                 if wp.static(COUPLED):
-                    J[r, SOURCE[i]] += linear[r]
-                    J[3 + r, SOURCE[i]] += z[r]
+                    J[r, SOURCE[i]] += columns[i, r]
                 else:
-                    J[r, SOURCE[i]] = linear[r]
-                    J[3 + r, SOURCE[i]] = z[r]
+                    J[r, SOURCE[i]] = columns[i, r]
         return J
 
     return SimpleNamespace(
