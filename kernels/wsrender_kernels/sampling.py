@@ -79,7 +79,7 @@ def random_words(c0: wp.uint32, c1: wp.uint32, c2: wp.uint32, c3: wp.uint32, k0:
 
 @factory
 def uniform(real):
-    """Device function (high, low 32 random bits) -> [0, 1) in units of `unit_of`: the leading 24 or 53 bits."""
+    """Device function (high, low 32 bits) -> [0, 1) in units of `unit_of`: the leading 24 or 53 bits."""
     u32 = wp.uint32
     EIGHT = u32(8)
     HIGH_32, LOW_21, ELEVEN, HALF_RANGE = real(2.0**-32), real(2.0**-53), u32(11), real(2147483648.0)
@@ -224,51 +224,70 @@ def _stateless(Space):
 
 
 def _uniforms(real, n: int):
-    """Device function giving n independent uniforms of a sample; float32 takes the leading bits of float64's."""
+    """Device function giving n independent uniforms of a sample, and what they count in: see `unit_of`.
+
+    The four words of one counter are the leading 21 bits of six coordinates: all that float32 takes, three more bits
+    would cost it a second counter. float64 adds a word of its own to each.
+    """
     Space = sample_space(real, n)
     vec_n = wp.types.vector(n, real)
     u32 = wp.uint32
-    words_n = wp.types.vector(4 * ((n + 3) // 4), u32)
-    unit = uniform(real)
-    GROUPS = (n + 3) // 4
-    HIGH, LOW = u32(0), u32(1)
+    SIXES, FOURS = (n + 5) // 6, (n + 3) // 4
+    leading_type, following_type = wp.types.vector(6 * SIXES, wp.int32), wp.types.vector(4 * FOURS, u32)
+    LEADING, FOLLOWING = u32(0), u32(1)
     MASK, WORD = wp.int64(0xFFFFFFFF), wp.int64(32)
-    DOUBLE = real is wp.float64
+    TEN, ELEVEN, TEN_BITS, ELEVEN_BITS = u32(10), u32(11), u32(0x3FF), u32(0x7FF)
+    SIGN, HALF_RANGE = u32(0x80000000), real(2147483648.0)
+    UNIT_21, UNIT_53 = real(2.0**-21), real(2.0**-53)
 
     @wp.func
-    def words(space: Space, first: wp.int64, lane: wp.int32, part: u32):
-        out = words_n()
-        c0 = u32(first & MASK) + u32(lane)
-        c1 = u32(first >> WORD)
-        for g in range(GROUPS):
-            four = random_words(c0, c1, u32(g), part, space.key_0, space.key_1)
-            for w in range(4):
-                out[4 * g + w] = four[w]
+    def leading_bits(space: Space, first: wp.int64, lane: wp.int32):
+        out = leading_type()
+        for g in range(SIXES):
+            w = random_words(
+                u32(first & MASK) + u32(lane), u32(first >> WORD), u32(g), LEADING, space.key_0, space.key_1
+            )
+            for k in range(4):
+                out[6 * g + k] = wp.int32(w[k] >> ELEVEN)
+            out[6 * g + 4] = wp.int32((w[0] & ELEVEN_BITS) << TEN | (w[1] & TEN_BITS))
+            out[6 * g + 5] = wp.int32((w[2] & ELEVEN_BITS) << TEN | (w[3] & TEN_BITS))
+        return out
+
+    @wp.func
+    def following_bits(space: Space, first: wp.int64, lane: wp.int32):
+        out = following_type()
+        for g in range(FOURS):
+            w = random_words(
+                u32(first & MASK) + u32(lane), u32(first >> WORD), u32(g), FOLLOWING, space.key_0, space.key_1
+            )
+            for k in range(4):
+                out[4 * g + k] = w[k]
         return out
 
     @wp.func
     def uniforms32(space: Space, first: wp.int64, lane: wp.int32):
-        high = words(space, first, lane, HIGH)
+        leading = leading_bits(space, first, lane)
         u = vec_n()
         for i in range(n):
-            u[i] = unit(high[i], HIGH)
+            u[i] = real(leading[i])
         return u
 
     @wp.func
     def uniforms64(space: Space, first: wp.int64, lane: wp.int32):
-        high = words(space, first, lane, HIGH)
-        low = words(space, first, lane, LOW)
+        leading = leading_bits(space, first, lane)
+        following = following_bits(space, first, lane)
         u = vec_n()
         for i in range(n):
-            u[i] = unit(high[i], low[i])
+            # Through signed integers, whose conversion is one vector instruction.
+            u[i] = real(leading[i]) * UNIT_21 + (real(wp.int32(following[i] ^ SIGN)) + HALF_RANGE) * UNIT_53
         return u
 
-    return uniforms64 if DOUBLE else uniforms32
+    return (uniforms32, UNIT_21) if real is wp.float32 else (uniforms64, real(1.0))
 
 
 def _random(real, n: int):
     Space = sample_space(real, n)
-    uniforms, UNIT = _uniforms(real, n), unit_of(real)
+    uniforms, UNIT = _uniforms(real, n)
 
     @wp.func
     def draw(space: Space, block: wp.int32, first: wp.int64, lane: wp.int32):
@@ -283,8 +302,9 @@ def _random(real, n: int):
 def _boundary(real, n: int):
     """Beta(1/2, 1/2) between the limits, by its inverse distribution function (1 - cos(pi u)) / 2."""
     Space = sample_space(real, n)
-    uniforms, sincos = _uniforms(real, n), elementary(real).sincos
-    PI, HALF, ONE = real(math.pi) * unit_of(real), real(0.5), real(1.0)
+    uniforms, unit = _uniforms(real, n)
+    sincos = elementary(real).sincos
+    PI, HALF, ONE = real(math.pi) * unit, real(0.5), real(1.0)
 
     @wp.func
     def draw(space: Space, block: wp.int32, first: wp.int64, lane: wp.int32):
