@@ -301,6 +301,17 @@ def _polynomial(real, function, degree: int):
     return wp.types.vector(degree + 1, real)(*fitted.coef)
 
 
+def _disjoint_pairs(count: int) -> list[tuple[int, int]]:
+    """All pairs (i, j), i < j, of ``count`` things, in the rounds of a tournament: nobody plays twice in a round."""
+    seats = list(range(count + count % 2))
+    half = len(seats) // 2
+    pairs = []
+    for _round in range(len(seats) - 1):
+        pairs += [(min(pair), max(pair)) for pair in zip(seats[:half], reversed(seats[half:]), strict=True)]
+        seats[1:] = [seats[-1], *seats[1:-1]]
+    return [(i, j) for i, j in pairs if j < count]
+
+
 def _jacobi(real, m: int, n: int, by_columns: bool):
     """One-sided Jacobi: orthogonalises the n columns, or the m rows."""
     COUNT, LENGTH = (n, m) if by_columns else (m, n)
@@ -310,13 +321,22 @@ def _jacobi(real, m: int, n: int, by_columns: bool):
     mat_mn = wp.types.matrix((m, n), real)
     mat_work = wp.types.matrix((COUNT, LENGTH), real)
     NUMBER_OF_SWEEPS = SWEEPS[real]
+    # Disjoint pairs do not wait for each other. Columns beyond the rank, which end as zeros, converge in the order of
+    # their numbers alone.
+    pairs = [(i, j) for j in range(COUNT) for i in range(j)] if by_columns else _disjoint_pairs(COUNT)
+    AT_ONCE = COUNT // 2
+    ROUNDS = len(pairs) // AT_ONCE
+    pairs_type = wp.types.vector(len(pairs), wp.int32)
+    FIRST, SECOND = pairs_type(*[i for i, _ in pairs]), pairs_type(*[j for _, j in pairs])
     ZERO, ONE, TWO, TINY = real(0.0), real(1.0), real(2.0), _tiny(real)
 
     @wp.func
     def sweep(W: mat_work):
         out = W
-        for j in range(1, COUNT):
-            for i in range(j):
+        for number in range(ROUNDS):
+            for k in range(AT_ONCE):
+                i = FIRST[number * AT_ONCE + k]
+                j = SECOND[number * AT_ONCE + k]
                 a = out[i]
                 b = out[j]
                 difference = wp.dot(b, b) - wp.dot(a, a)
