@@ -31,14 +31,16 @@ def sincos(precision: str) -> int:
 
 
 def forward(n: int, precision: str, dynamic: bool) -> int:
-    """Per joint: lever 15, axes 36, but 4 of the second and 9 of the last without dynamics; the tip in the world 18."""
-    axes = 4 + 36 * (n - 2) - (0 if dynamic else 27)
+    """Per joint: lever 15; for dynamics axes 36, but 4 of the second and none of the first; the tip in the world 18."""
+    axes = 4 + 36 * (n - 2) if dynamic else 0
     return n * (sincos(precision) + 15) + axes + 18
 
 
 def jacobian(n: int) -> int:
-    """Linear columns: the first is free, the second 2, all others 9."""
-    return 2 + 9 * (n - 2)
+    """Linear columns: 2 each, then 12 per joint on the way to the middle one, 6 for the first of those before it."""
+    before, after = (n - 1) // 2, n // 2
+    steps = before * (before - 1) // 2 + after * (after - 1) // 2
+    return 12 * steps + 8 * before + 2 * after + 1
 
 
 def three_singular_values(n: int, precision: str) -> int:

@@ -241,12 +241,14 @@ def _uniforms(real, n: int):
     UNIT_21, UNIT_53 = real(2.0**-21), real(2.0**-53)
 
     @wp.func
+    def words(space: Space, first: wp.int64, lane: wp.int32, group: u32, part: u32):
+        return random_words(u32(first & MASK) + u32(lane), u32(first >> WORD), group, part, space.key_0, space.key_1)
+
+    @wp.func
     def leading_bits(space: Space, first: wp.int64, lane: wp.int32):
         out = leading_type()
         for g in range(SIXES):
-            w = random_words(
-                u32(first & MASK) + u32(lane), u32(first >> WORD), u32(g), LEADING, space.key_0, space.key_1
-            )
+            w = words(space, first, lane, u32(g), LEADING)
             for k in range(4):
                 out[6 * g + k] = wp.int32(w[k] >> ELEVEN)
             out[6 * g + 4] = wp.int32((w[0] & ELEVEN_BITS) << TEN | (w[1] & TEN_BITS))
@@ -257,9 +259,7 @@ def _uniforms(real, n: int):
     def following_bits(space: Space, first: wp.int64, lane: wp.int32):
         out = following_type()
         for g in range(FOURS):
-            w = random_words(
-                u32(first & MASK) + u32(lane), u32(first >> WORD), u32(g), FOLLOWING, space.key_0, space.key_1
-            )
+            w = words(space, first, lane, u32(g), FOLLOWING)
             for k in range(4):
                 out[4 * g + k] = w[k]
         return out
