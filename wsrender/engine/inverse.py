@@ -44,12 +44,16 @@ def solve_inverse(
     workers = devices if devices[0].is_cuda else devices * thread_count(threads)
     size = min(BATCH, max(LEAST_SHARE, -(-len(targets) // len(workers))))
     model = _model(chain, accuracy, without_limits, precision)
+    kind = KINDS[targets.shape[1]]
+    kernel = inverse_kernel(REAL[precision], chain.n, *drive(chain), kind, devices[0].is_cuda)
+    for each in devices:
+        loaded(kernel, each)
     batches = [slice(first, first + size) for first in range(0, max(len(targets), 1), size)]
 
     def run(numbered: tuple[int, slice]) -> list[np.ndarray]:
         number, batch = numbered
         worker = workers[number % len(workers)]
-        return _launch(chain, model, targets[batch], starts[batch], steps, precision, worker)
+        return _launch(kernel, model, targets[batch], starts[batch], steps, REAL[precision], worker)
 
     with ThreadPoolExecutor(len(workers)) as pool:
         parts = list(pool.map(run, enumerate(batches)))
@@ -58,16 +62,15 @@ def solve_inverse(
     return Tries(q.astype(np.float64), distance, angle, verdict == REACHED, verdict == STATIONARY)
 
 
-def _launch(chain, model, targets, starts, steps, precision, device) -> list[np.ndarray]:
-    real, n, count = REAL[precision], chain.n, len(targets)
-    kernel = inverse_kernel(real, n, *drive(chain), KINDS[targets.shape[1]], device.is_cuda)
+def _launch(kernel, model, targets, starts, steps, real, device) -> list[np.ndarray]:
+    count, n = starts.shape
     q = wp.empty(n * count, dtype=real, device=device)
     distance_2, rotation_2 = (wp.empty(count, dtype=real, device=device) for _ in range(2))
     verdict = wp.empty(count, dtype=wp.int32, device=device)  # type: ignore[arg-type]
     inputs = [model, device_array(targets.T.ravel(), real, device), device_array(starts.T.ravel(), real, device), count]
     if count:
         wp.launch(
-            loaded(kernel, device),
+            kernel,
             dim=count if device.is_cuda else 1,
             inputs=[*inputs, steps],
             outputs=[q, distance_2, rotation_2, verdict],

@@ -10,7 +10,10 @@ BLOCK_CPU, BLOCK_CUDA = 1, 256  # threads per block of wp.launch: kernels are co
 
 
 def loaded(kernel: wp.Kernel, device: wp.Device) -> wp.Kernel:
-    """The kernel, compiled for a device or taken from Warp's cache; another process that compiles it is waited for."""
+    """The kernel, compiled for a device or taken from Warp's cache; another process that compiles it is waited for.
+
+    To be called before work is handed to threads: Warp's header costs each thread that compiles a second and a half.
+    """
     _load(kernel, device.alias)
     return kernel
 

@@ -241,23 +241,25 @@ def poses_reached(test: LegTest, poses: np.ndarray, *, device: str = "auto", thr
     devices = devices_of(device)
     workers = devices if devices[0].is_cuda else devices * thread_count(threads)
     model = test.model()
+    kernel = poses_kernel(test.shape, devices[0].is_cuda)
+    for each in devices:
+        loaded(kernel, each)
     size = min(POSES_BATCH, max(LEAST_CHUNK, -(-len(poses) // len(workers))))
     batches = [poses[first : first + size] for first in range(0, len(poses), size)]
 
     def run(numbered: tuple[int, np.ndarray]) -> np.ndarray:
         number, batch = numbered
-        return _poses_launch(test, model, batch, workers[number % len(workers)])
+        return _poses_launch(kernel, model, batch, REAL[test.precision], workers[number % len(workers)])
 
     with ThreadPoolExecutor(len(workers)) as pool:
         return np.concatenate([np.zeros(0, bool), *pool.map(run, enumerate(batches))])
 
 
-def _poses_launch(test: LegTest, model, poses: np.ndarray, device) -> np.ndarray:
+def _poses_launch(kernel, model, poses: np.ndarray, real, device) -> np.ndarray:
     count = len(poses)
     rows = np.concatenate([poses[:, :3, 3], poses[:, :3, :3].reshape(count, 9)], axis=1)
-    given = device_array(rows.T.ravel(), REAL[test.precision], device)
+    given = device_array(rows.T.ravel(), real, device)
     reached = wp.empty(count, dtype=wp.int32, device=device)  # type: ignore[arg-type]
     tasks = count if device.is_cuda else -(-count // LANES)
-    kernel = loaded(poses_kernel(test.shape, device.is_cuda), device)
     wp.launch(kernel, dim=tasks, inputs=[model, given, count], outputs=[reached], device=device)
     return reached.numpy() > 0
