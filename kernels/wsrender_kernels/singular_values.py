@@ -324,9 +324,9 @@ def _jacobi(real, m: int, n: int, by_columns: bool):
     # Disjoint pairs do not wait for each other. Columns beyond the rank, which end as zeros, converge in the order of
     # their numbers alone.
     pairs = [(i, j) for j in range(COUNT) for i in range(j)] if by_columns else _disjoint_pairs(COUNT)
-    AT_ONCE = COUNT // 2
+    AT_ONCE = max(COUNT // 2, 1)
     ROUNDS = len(pairs) // AT_ONCE
-    pairs_type = wp.types.vector(len(pairs), wp.int32)
+    pairs_type = wp.types.vector(max(len(pairs), 1), wp.int32)
     FIRST, SECOND = pairs_type(*[i for i, _ in pairs]), pairs_type(*[j for _, j in pairs])
     ZERO, ONE, TWO, TINY = real(0.0), real(1.0), real(2.0), _tiny(real)
 
