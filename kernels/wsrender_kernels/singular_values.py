@@ -30,10 +30,16 @@ def epsilon(real) -> float:
 
 
 @factory
-def singular_values(real, m: int, n: int, graded: bool = False):
-    """Device function ``(A: (m, n)) -> (m,)``, descending, as computed; the last m - n are exactly 0."""
+def singular_values(real, m: int, n: int, graded: bool = False, unroll: bool = True):
+    """Device function ``(A: (m, n)) -> (m,)``, descending, as computed; the last m - n are exactly 0.
+
+    ``unroll``: whether sweeps of rotations are written out, as SIMD on the CPU needs them. On a GPU a loop is up to
+    twice as fast and compiles in a fifth of the time.
+    """
     by_columns = m > n or graded
-    solver = {1: _one_row, 2: _two_rows, 3: _three_rows}.get(m) or partial(_jacobi, by_columns=by_columns)
+    solver = {1: _one_row, 2: _two_rows, 3: _three_rows}.get(m) or partial(
+        _jacobi, by_columns=by_columns, unroll=unroll
+    )
     solver = solver(real, m, n)
     rotated = _by_largest_columns(real, n) if graded and m == 3 else _as_it_is(real, m, n)
     vec_m = wp.types.vector(m, real)
@@ -312,7 +318,7 @@ def _disjoint_pairs(count: int) -> list[tuple[int, int]]:
     return [(i, j) for i, j in pairs if j < count]
 
 
-def _jacobi(real, m: int, n: int, by_columns: bool):
+def _jacobi(real, m: int, n: int, by_columns: bool, unroll: bool):
     """One-sided Jacobi: orthogonalises the n columns, or the m rows."""
     COUNT, LENGTH = (n, m) if by_columns else (m, n)
     VALUES = min(m, n)
@@ -364,8 +370,8 @@ def _jacobi(real, m: int, n: int, by_columns: bool):
             out = sweep(out)
         return out
 
-    # SIMD needs straight-line code in the lane loop; beyond this size it would take minutes to compile.
-    sweeps = unrolled if COUNT * (COUNT - 1) // 2 * NUMBER_OF_SWEEPS <= UNROLLED_ROTATIONS else in_a_loop
+    # Beyond this size straight-line code would take minutes to compile.
+    sweeps = unrolled if unroll and COUNT * (COUNT - 1) // 2 * NUMBER_OF_SWEEPS <= UNROLLED_ROTATIONS else in_a_loop
 
     @wp.func
     def jacobi(A: mat_mn):

@@ -177,12 +177,12 @@ def _state(shape: Shape) -> SimpleNamespace:
 
 
 @factory
-def _outputs(shape: Shape):
+def _outputs(shape: Shape, cuda: bool):
     """Device function ``evaluate(model, space, block, first, lane) -> outputs`` of one sample."""
     real, n = shape.real, shape.n
     draw = sampling(real, n, shape.method, shape.shared).draw
     state = _state(shape)
-    spectra = spectrum(real, n, shape.rows, shape.convention, shape.penalty, shape.torque_scaling)
+    spectra = spectrum(real, n, shape.rows, shape.convention, shape.penalty, shape.torque_scaling, unroll=not cuda)
     penalized, kinematic = spectra.penalized, spectra.kinematic
     dynamic_spectrum = spectra.dynamic if shape.dynamic else spectra.absent
     indices = shape.indices
@@ -263,7 +263,7 @@ def sweep_kernel(shape: Shape, cuda: bool) -> wp.Kernel:
 
 def _cpu_kernel(shape: Shape) -> wp.Kernel:
     real, K = shape.real, shape.n_indices
-    prepare, evaluate = sampling(real, shape.n, shape.method).prepare, _outputs(shape)
+    prepare, evaluate = sampling(real, shape.n, shape.method).prepare, _outputs(shape, cuda=False)
     block_of = blocks(real, shape.n, shape.shared)
     ordered = elementary(real).ordered
     cell, quantized = voxels(real).cell, voxels(real).quantized
@@ -427,7 +427,7 @@ def _record_keys(shape: Shape):
 def _cuda_kernel(shape: Shape) -> wp.Kernel:
     """Threads stride through the chunk and keep their totals in registers, so that few atomics meet on one address."""
     real, K = shape.real, shape.n_indices
-    prepare, evaluate = sampling(real, shape.n, shape.method).prepare, _outputs(shape)
+    prepare, evaluate = sampling(real, shape.n, shape.method).prepare, _outputs(shape, cuda=True)
     ordered = elementary(real).ordered
     cell, quantized = voxels(real).cell, voxels(real).quantized
     Model, Space = model_type(real, shape.n, len(shape.sources)), sample_space(real, shape.n)

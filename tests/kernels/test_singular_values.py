@@ -17,9 +17,9 @@ SHAPES = [(1, 4), (2, 2), (2, 6), (3, 2), (3, 3), (3, 6), (4, 6), (6, 4), (6, 6)
 
 
 @cache
-def kernel_of(precision, m, n, graded):
+def kernel_of(precision, m, n, graded, unroll):
     real = REAL[precision]
-    values = singular_values(real, m, n, graded)
+    values = singular_values(real, m, n, graded, unroll)
     mat, vec = wp.types.matrix((m, n), real), wp.types.vector(m, real)
     regular = without_noise(real, m, n, m)
 
@@ -34,12 +34,13 @@ def kernel_of(precision, m, n, graded):
     return values_as_computed if graded else values_without_noise
 
 
-def evaluated(A, precision, graded=False, device="cpu"):
+def evaluated(A, precision, graded=False, device="cpu", unroll=None):
     _, m, n = A.shape
     real = REAL[precision]
     given_ = wp.array(A.astype(precision), dtype=wp.types.matrix((m, n), real), device=device)
     out = wp.empty(len(A), dtype=wp.types.vector(m, real), device=device)
-    wp.launch(kernel_of(precision, m, n, graded), len(A), [given_], [out], device=device)
+    unroll = device == "cpu" if unroll is None else unroll
+    wp.launch(kernel_of(precision, m, n, graded, unroll), len(A), [given_], [out], device=device)
     return out.numpy()
 
 
@@ -111,6 +112,15 @@ def test_singular_matrices_have_exact_zeros(m, n, precision, device):
     assert (found[:50] == 0).all()
     rank = np.linalg.matrix_rank(A)
     assert (np.count_nonzero(found, axis=1) == rank).all()
+
+
+@pytest.mark.parametrize("graded", [False, True])
+def test_sweeps_in_a_loop_as_on_a_gpu(graded, precision):
+    A = matrices(np.random.default_rng(1), 6, 6, 1200)
+    loop, exact = evaluated(A, precision, graded, unroll=False), reference(A, precision)
+    assert (np.abs(loop - exact) <= TOLERANCES[precision].singular_value * exact[:, :1]).all()
+    # The compiler may fuse other products.
+    assert (np.abs(loop - evaluated(A, precision, graded)) <= 16 * epsilon(precision) * exact[:, :1]).all()
 
 
 @pytest.mark.parametrize("m", [3, 6])
