@@ -115,10 +115,10 @@ def kinematics(real, n: int, sources: tuple[int, ...], plain: bool, world: bool)
     ``plain``: every joint is revolute and turns by its own coordinate, so that scales and slides need no arithmetic.
     ``forward(chain, q) -> tip, x, y, z, frames`` gives the tip's position and axes in the world; ``frames`` holds for
     every joint frame, (L, 3) each, after its motion its axes X, Y, Z in the world and the tip's position in it
-    (``levers``) [m], before its motion its axes x and y in the world (``x_before``, ``y_before``), and of the motion
-    (L,) each the ``sines``, ``cosines`` and ``slides`` [m]. ``jacobian(chain, frames)`` is (6, n), rows linear then
-    angular at the tip in world axes, as MuJoCo's mj_jacSite. ``moved_base(chain, value, levers[0])`` is the tip for
-    another value of the first joint, bit for bit.
+    (``levers``) [m], before its motion its axes x and y in the world (``x_before``, ``y_before``, where ``world``), and
+    of the motion (L,) each the ``sines``, ``cosines`` and ``slides`` [m]. ``jacobian(chain, frames)`` is (6, n), rows
+    linear then angular at the tip in world axes, as MuJoCo's mj_jacSite. ``moved_base(chain, value, levers[0])`` is the
+    tip for another value of the first joint, bit for bit.
 
     ``world`` false: for singular values and M, which no choice of axes changes. The axes in ``frames`` are then those
     of the frame that the first joint leaves behind it, for half the rotations of the first two joints, and J is in the
@@ -214,8 +214,6 @@ def kinematics(real, n: int, sources: tuple[int, ...], plain: bool, world: bool)
                 sa = chain[STRIDE + 1]
                 sine = frames.sines[1]
                 cosine = frames.cosines[1]
-                frames.x_before[1] = x
-                frames.y_before[1] = vec3(ZERO, ca, sa)
                 x = vec3(cosine, ca * sine, sa * sine)
                 y = vec3(-sine, ca * cosine, sa * cosine)
                 z = vec3(ZERO, -sa, ca)
@@ -228,8 +226,9 @@ def kinematics(real, n: int, sources: tuple[int, ...], plain: bool, world: bool)
             z = z * chain[a] - y * chain[a + 1]
             sine = frames.sines[i]
             cosine = frames.cosines[i]
-            frames.x_before[i] = x
-            frames.y_before[i] = tilted
+            if wp.static(WORLD):
+                frames.x_before[i] = x
+                frames.y_before[i] = tilted
             y = tilted * cosine - x * sine
             x = x * cosine + tilted * sine
             frames.X[i] = x

@@ -78,12 +78,24 @@ def random_words(c0: wp.uint32, c1: wp.uint32, c2: wp.uint32, c3: wp.uint32, k0:
 
 
 @factory
+def whole_number(real):
+    """Device function 32 bits -> their number, through signed integers, whose conversion is one vector instruction."""
+    SIGN, HALF_RANGE = wp.uint32(0x80000000), real(2147483648.0)
+
+    @wp.func
+    def number(word: wp.uint32):
+        return real(wp.int32(word ^ SIGN)) + HALF_RANGE
+
+    return number
+
+
+@factory
 def uniform(real):
     """Device function (high, low 32 bits) -> [0, 1) in units of `unit_of`: the leading 24 or 53 bits."""
     u32 = wp.uint32
     EIGHT = u32(8)
-    HIGH_32, LOW_21, ELEVEN, HALF_RANGE = real(2.0**-32), real(2.0**-53), u32(11), real(2147483648.0)
-    SIGN = u32(0x80000000)
+    HIGH_32, LOW_21, ELEVEN = real(2.0**-32), real(2.0**-53), u32(11)
+    number = whole_number(real)
 
     @wp.func
     def uniform32(high: u32, low: u32):
@@ -91,8 +103,7 @@ def uniform(real):
 
     @wp.func
     def uniform64(high: u32, low: u32):
-        # Through signed integers, whose conversion is one vector instruction.
-        return (real(wp.int32(high ^ SIGN)) + HALF_RANGE) * HIGH_32 + real(wp.int32(low >> ELEVEN)) * LOW_21
+        return number(high) * HIGH_32 + real(wp.int32(low >> ELEVEN)) * LOW_21
 
     return uniform32 if real is wp.float32 else uniform64
 
@@ -237,7 +248,7 @@ def _uniforms(real, n: int):
     LEADING, FOLLOWING = u32(0), u32(1)
     MASK, WORD = wp.int64(0xFFFFFFFF), wp.int64(32)
     TEN, ELEVEN, TEN_BITS, ELEVEN_BITS = u32(10), u32(11), u32(0x3FF), u32(0x7FF)
-    SIGN, HALF_RANGE = u32(0x80000000), real(2147483648.0)
+    number = whole_number(real)
     UNIT_21, UNIT_53 = real(2.0**-21), real(2.0**-53)
 
     @wp.func
@@ -278,8 +289,7 @@ def _uniforms(real, n: int):
         following = following_bits(space, first, lane)
         u = vec_n()
         for i in range(n):
-            # Through signed integers, whose conversion is one vector instruction.
-            u[i] = real(leading[i]) * UNIT_21 + (real(wp.int32(following[i] ^ SIGN)) + HALF_RANGE) * UNIT_53
+            u[i] = real(leading[i]) * UNIT_21 + number(following[i]) * UNIT_53
         return u
 
     return (uniforms32, UNIT_21) if real is wp.float32 else (uniforms64, real(1.0))

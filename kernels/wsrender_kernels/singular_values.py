@@ -339,7 +339,7 @@ def _jacobi(real, m: int, n: int, by_columns: bool, unroll: bool):
     @wp.func
     def sweep(W: mat_work):
         out = W
-        for number in range(ROUNDS):
+        for number in range(ROUNDS):  # two loops: Warp writes out no more than 16 steps of one
             for k in range(AT_ONCE):
                 i = FIRST[number * AT_ONCE + k]
                 j = SECOND[number * AT_ONCE + k]

@@ -45,9 +45,7 @@ def solve_inverse(
     size = min(BATCH, max(LEAST_SHARE, -(-len(targets) // len(workers))))
     model = _model(chain, accuracy, without_limits, precision)
     kind = KINDS[targets.shape[1]]
-    kernel = inverse_kernel(REAL[precision], chain.n, *drive(chain), kind, devices[0].is_cuda)
-    for each in devices:
-        loaded(kernel, each)
+    kernel = loaded(inverse_kernel(REAL[precision], chain.n, *drive(chain), kind, devices[0].is_cuda), *devices)
     batches = [slice(first, first + size) for first in range(0, max(len(targets), 1), size)]
 
     def run(numbered: tuple[int, slice]) -> list[np.ndarray]:

@@ -9,12 +9,13 @@ from filelock import FileLock
 BLOCK_CPU, BLOCK_CUDA = 1, 256  # threads per block of wp.launch: kernels are compiled for a number
 
 
-def loaded(kernel: wp.Kernel, device: wp.Device) -> wp.Kernel:
-    """The kernel, compiled for a device or taken from Warp's cache; another process that compiles it is waited for.
+def loaded(kernel: wp.Kernel, *devices: wp.Device) -> wp.Kernel:
+    """The kernel, compiled for devices or taken from Warp's cache; another process that compiles it is waited for.
 
     To be called before work is handed to threads: Warp's header costs each thread that compiles a second and a half.
     """
-    _load(kernel, device.alias)
+    for device in devices:
+        _load(kernel, device.alias)
     return kernel
 
 

@@ -241,9 +241,7 @@ def poses_reached(test: LegTest, poses: np.ndarray, *, device: str = "auto", thr
     devices = devices_of(device)
     workers = devices if devices[0].is_cuda else devices * thread_count(threads)
     model = test.model()
-    kernel = poses_kernel(test.shape, devices[0].is_cuda)
-    for each in devices:
-        loaded(kernel, each)
+    kernel = loaded(poses_kernel(test.shape, devices[0].is_cuda), *devices)
     size = min(POSES_BATCH, max(LEAST_CHUNK, -(-len(poses) // len(workers))))
     batches = [poses[first : first + size] for first in range(0, len(poses), size)]
 
