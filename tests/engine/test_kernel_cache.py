@@ -16,10 +16,22 @@ for indices in sys.argv[1:]:
     ws.analyze("phantom_omni", sampling=ws.Random(300, seed=1), indices=[indices], voxel_size_m=0.02, device="cpu")
 """
 
+SMALL_KERNEL = """
+import sys
+import warp as wp
+from wsrender_kernels.pointwise import configuration_kernel
+from wsrender.engine import devices_of
+from wsrender.engine.kernel_cache import loaded
 
-def start(cache, *indices):
+device = devices_of("cpu")[0]
+wp.config.log_level = wp.LOG_INFO
+loaded(configuration_kernel(wp.float32, int(sys.argv[1]), "random"), device)
+"""
+
+
+def start(cache, *arguments, script=SCRIPT):
     environment = {**os.environ, "WARP_CACHE_PATH": str(cache)}
-    command = [sys.executable, "-c", SCRIPT, *indices]
+    command = [sys.executable, "-c", script, *arguments]
     return subprocess.Popen(command, env=environment, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
 
 
@@ -38,3 +50,15 @@ def test_processes_share_what_one_of_them_compiles(tmp_path):
     # A kernel is the same after others as before them.
     after, alone = compiled([start(tmp_path, "manipulability", "isotropy")]), compiled([start(tmp_path, "isotropy")])
     assert after[0] and not alone[0]
+
+
+def test_the_precompiled_header_is_kept(tmp_path):
+    """Made by the first process that compiles, used by the next; one that does not fit is done away with."""
+    assert compiled([start(tmp_path, "2", script=SMALL_KERNEL)])[0]
+    (header,) = tmp_path.rglob("header_*/*.pch")
+    made = header.stat()
+    assert compiled([start(tmp_path, "3", script=SMALL_KERNEL)])[0]
+    assert header.stat().st_mtime_ns == made.st_mtime_ns
+    header.write_bytes(b"cut")
+    assert compiled([start(tmp_path, "4", script=SMALL_KERNEL)])[0]
+    assert not header.exists()

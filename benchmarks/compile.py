@@ -1,0 +1,85 @@
+"""Seconds to compile the fused kernel and to load it from the kernel cache, for arms of several numbers of joints.
+
+    python benchmarks/compile.py [--device cpu] [--joints 6 7 12]
+
+From an empty cache; loaded by a second process. Both begin with a small kernel, which on a CPU brings Warp's C++
+header: precompiled by the first process of a machine that compiles, then kept beside the kernels.
+"""
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from dataclasses import replace
+
+import numpy as np
+
+WORKS = {"6 kinematic": {}, "12": {"indices": "all"}, "6 kinematic, task full": {"task": "full"}}
+SMALL = "a small kernel first"
+
+
+def arm(n: int):
+    """Arm of n revolute joints, each but the first a link of 1 kg."""
+    import wsrender as ws
+
+    generator = np.random.default_rng(n)
+    body = {"mass": 1.0, "center_of_mass": (0.0, 0.0, 0.1), "inertia": (0.02, 0.02, 0.01)}
+    rows = []
+    for _joint in range(n):
+        a, d = generator.uniform(0.1, 0.3, 2)
+        rows.append({"joint": "revolute", "a": a, "alpha": generator.uniform(-3, 3), "d": d, **body})
+    return ws.DHTable(convention="modified", rows=[{**row, "limits": (-3.0, 3.0)} for row in rows], name=f"arm{n}")
+
+
+def times(joints: list[int], device: str) -> dict[str, float]:
+    """Seconds of each kernel in this process, by its name."""
+    import warp as wp
+    from wsrender_kernels.pointwise import configuration_kernel
+
+    import wsrender as ws
+    from wsrender.engine import devices_of
+    from wsrender.engine.kernel_cache import loaded
+    from wsrender.engine.sweep import Accumulator
+
+    target = devices_of(device)[0]
+    started = time.perf_counter()
+    loaded(configuration_kernel(wp.float32, 2, "random"), target)
+    seconds = {SMALL: time.perf_counter() - started}
+    for n in joints:
+        for precision in ("float32", "float64"):
+            for work, fields in WORKS.items():
+                robot = arm(n)
+                job = {"analysis": "workspace", "robot": {"dh": robot.model_dump(mode="json")}, "precision": precision}
+                job |= {"sampling": {"method": "random", "count": 256, "seed": 1}, "device": device}
+                plan = replace(ws.run.plan({**job, **fields}).sweep, block=None, statistics=frozenset())
+                started = time.perf_counter()
+                Accumulator(plan, plan.shape, None, target, 256)
+                seconds[f"{n} joints, {work}, {precision}"] = time.perf_counter() - started
+    return seconds
+
+
+def main() -> None:
+    """Measure and print."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])  # type: ignore[union-attr]
+    parser.add_argument("--device", default="cpu")
+    parser.add_argument("--joints", type=int, nargs="+", default=[6, 7, 12])
+    parser.add_argument("--here", action="store_true", help="measure in this process and print JSON")
+    arguments = parser.parse_args()
+    if arguments.here:
+        print(json.dumps(times(arguments.joints, arguments.device)))
+        return
+    with tempfile.TemporaryDirectory() as cache:
+        command = [sys.executable, *sys.argv, "--here"]
+        environment = {**os.environ, "WARP_CACHE_PATH": cache}
+        runs = [subprocess.run(command, env=environment, check=True, stdout=subprocess.PIPE) for _run in range(2)]
+    compiled, cached = (json.loads(run.stdout.splitlines()[-1]) for run in runs)
+    print("| kernel | compiled [s] | from the cache [ms] |\n|---|--:|--:|")
+    for name, seconds in compiled.items():
+        print(f"| {name} | {seconds:.2f} | {1e3 * cached[name]:.0f} |")
+
+
+if __name__ == "__main__":
+    main()
