@@ -1,9 +1,10 @@
 """Compiler options of every kernel module."""
 
-# Whole registers on AVX-512, which clang would halve; fused multiply-add; the lane loop's body inlined whole, however
-# long, or it is not vectorised; two vectors of lanes side by side, since one is a single chain of dependent operations.
+# Whole registers on AVX-512, which clang would halve; a stack aligned to them, or most of what it holds lies across two
+# cache lines, by the chance of an address; fused multiply-add; the lane loop's body inlined whole, however long, or it
+# is not vectorised; two vectors of lanes side by side, since one is a single chain of dependent operations.
 CPU_FLAGS = (
-    "-march=native -mprefer-vector-width=512 -ffp-contract=fast -mllvm=-inline-threshold=100000"
+    "-march=native -mstackrealign -mprefer-vector-width=512 -ffp-contract=fast -mllvm=-inline-threshold=100000"
     " -mllvm=-inline-cold-callsite-threshold=3000 -mllvm=-slp-recursion-max-depth=4 -mllvm=-force-vector-interleave=2"
 )
 MODULE_OPTIONS = {"enable_backward": False, "cpu_compiler_flags": CPU_FLAGS}
