@@ -13,6 +13,7 @@ from typing import Any
 
 import warp as wp
 
+from wsrender_kernels.denormals import denormals_to_zero, restore_denormals
 from wsrender_kernels.elementary import bits_type, elementary
 from wsrender_kernels.factories import factory
 from wsrender_kernels.inertia import inertia
@@ -303,6 +304,7 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
         # out
         to: Outputs,
     ):
+        mode = denormals_to_zero()
         start, valid = block_of(space, first, count, wp.tid())
         block = prepare(space, start)
         values = values_type()
@@ -401,6 +403,7 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
                 at = wide(row) * to.rows_stride + (start - first)
                 for lane in range(valid):
                     to.rows_out[at + wide(lane)] = values[r * BLOCK + lane]
+        restore_denormals(mode)
 
     return sweep_cpu
 
