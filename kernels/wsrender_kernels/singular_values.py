@@ -2,7 +2,8 @@
 
 Up to three rows: an orthogonal factorisation of the rows gives det(A Aᵀ) without squaring the condition number; the
 largest eigenvalue and the gap of the others come from the angle between the deviators of H = A Aᵀ and of H², the
-smallest by deflation. Four to six rows: one-sided Jacobi (Hestenes 1958; Demmel & Veselić 1992).
+smallest by deflation. Four to six rows: one-sided Jacobi (Hestenes 1958; Demmel & Veselić 1992) on the triangular
+factor, which halves the rotations (Drmač & Veselić 2008).
 
 The columns of J M^-1 differ by the ratio of the links' inertias, often 1e5. Errors then must stay relative to each
 column, or float32 loses the small singular values: ``graded`` matrices are rotated by their largest columns first, or
@@ -18,10 +19,9 @@ from numpy.polynomial import Chebyshev, Polynomial
 from wsrender_kernels.elementary import elementary
 from wsrender_kernels.factories import factory
 
-SWEEPS = {wp.float32: 6, wp.float64: 7}
+SWEEPS = {wp.float32: 4, wp.float64: 5}  # of a triangular factor; of the matrix itself it would take two more
 # Of a third of an angle: degree of the polynomials, and steps that square their error.
 DEGREE, NEWTON_STEPS = {wp.float32: 9, wp.float64: 10}, {wp.float32: 0, wp.float64: 1}
-UNROLLED_ROTATIONS = 150
 
 
 def epsilon(real) -> float:
@@ -319,26 +319,65 @@ def _disjoint_pairs(count: int) -> list[tuple[int, int]]:
 
 
 def _jacobi(real, m: int, n: int, by_columns: bool, unroll: bool):
-    """One-sided Jacobi: orthogonalises the n columns, or the m rows."""
+    """One-sided Jacobi on the rows of R, (the n columns, or the m rows) P = Q R with pivoting."""
     COUNT, LENGTH = (n, m) if by_columns else (m, n)
-    VALUES = min(m, n)
+    RANK = min(m, n)
     TRANSPOSED = by_columns
-    vec_m, vec_count = wp.types.vector(m, real), wp.types.vector(COUNT, real)
-    mat_mn = wp.types.matrix((m, n), real)
-    mat_work = wp.types.matrix((COUNT, LENGTH), real)
+    vec_m, vec_count, vec_rank = (wp.types.vector(size, real) for size in (m, COUNT, RANK))
+    mat_mn, mat_vectors = wp.types.matrix((m, n), real), wp.types.matrix((COUNT, LENGTH), real)
+    mat_factor = wp.types.matrix((RANK, COUNT), real)
+    LAST, LAST_COORDINATE, STEPS = COUNT - 1, LENGTH - 1, min(COUNT, LENGTH - 1)
     NUMBER_OF_SWEEPS = SWEEPS[real]
-    # Disjoint pairs do not wait for each other. Columns beyond the rank, which end as zeros, converge in the order of
-    # their numbers alone.
-    pairs = [(i, j) for j in range(COUNT) for i in range(j)] if by_columns else _disjoint_pairs(COUNT)
-    AT_ONCE = max(COUNT // 2, 1)
+    pairs = _disjoint_pairs(RANK)
+    AT_ONCE = max(RANK // 2, 1)
     ROUNDS = len(pairs) // AT_ONCE
     pairs_type = wp.types.vector(max(len(pairs), 1), wp.int32)
     FIRST, SECOND = pairs_type(*[i for i, _ in pairs]), pairs_type(*[j for _, j in pairs])
     ZERO, ONE, TWO, TINY = real(0.0), real(1.0), real(2.0), _tiny(real)
 
     @wp.func
-    def sweep(W: mat_work):
+    def triangular_factor(W: mat_vectors):
         out = W
+        for k in range(STEPS):
+            # The longest of the vectors that are left comes next. Lengths are those across the coordinates before k.
+            sizes = vec_count()
+            for i in range(COUNT):
+                sizes[i] = out[i, k] * out[i, k]
+                for r in range(LAST_COORDINATE, k, -1):
+                    sizes[i] += out[i, r] * out[i, r]
+            for i in range(LAST, k, -1):
+                swap = sizes[i] > sizes[i - 1]
+                sizes[i - 1] = wp.max(sizes[i], sizes[i - 1])
+                for r in range(LENGTH):
+                    a = out[i - 1, r]
+                    b = out[i, r]
+                    out[i - 1, r] = wp.where(swap, b, a)
+                    out[i, r] = wp.where(swap, a, b)
+            # A reflection turns it onto coordinate k.
+            length = wp.copysign(wp.sqrt(sizes[k]), out[k, k])
+            first = out[k, k] + length
+            size = length * first
+            scale = wp.where(size > TINY, ONE / wp.max(size, TINY), ZERO)
+            for i in range(LAST, k, -1):
+                along = first * out[i, k]
+                for r in range(LAST_COORDINATE, k, -1):
+                    along += out[k, r] * out[i, r]
+                along *= scale
+                out[i, k] -= along * first
+                for r in range(LAST_COORDINATE, k, -1):
+                    out[i, r] -= along * out[k, r]
+            out[k, k] = -length
+            for r in range(LAST_COORDINATE, k, -1):
+                out[k, r] = ZERO
+        F = mat_factor()
+        for k in range(RANK):
+            for i in range(COUNT):
+                F[k, i] = out[i, k]
+        return F
+
+    @wp.func
+    def sweep(F: mat_factor):
+        out = F
         for number in range(ROUNDS):  # two loops: Warp writes out no more than 16 steps of one
             for k in range(AT_ONCE):
                 i = FIRST[number * AT_ONCE + k]
@@ -357,25 +396,24 @@ def _jacobi(real, m: int, n: int, by_columns: bool, unroll: bool):
         return out
 
     @wp.func
-    def unrolled(W: mat_work, count: wp.int32):
-        out = W
+    def unrolled(F: mat_factor, count: wp.int32):
+        out = F
         for _sweep in range(NUMBER_OF_SWEEPS):
             out = sweep(out)
         return out
 
     @wp.func
-    def in_a_loop(W: mat_work, count: wp.int32):
-        out = W
+    def in_a_loop(F: mat_factor, count: wp.int32):
+        out = F
         for _sweep in range(count):
             out = sweep(out)
         return out
 
-    # Beyond this size straight-line code would take minutes to compile.
-    sweeps = unrolled if unroll and COUNT * (COUNT - 1) // 2 * NUMBER_OF_SWEEPS <= UNROLLED_ROTATIONS else in_a_loop
+    sweeps = unrolled if unroll else in_a_loop
 
     @wp.func
     def jacobi(A: mat_mn):
-        W = mat_work()
+        W = mat_vectors()
         for i in range(COUNT):
             for j in range(LENGTH):
                 if wp.static(TRANSPOSED):
@@ -388,17 +426,17 @@ def _jacobi(real, m: int, n: int, by_columns: bool, unroll: bool):
             scale = scale + wp.dot(W[i], W[i])
         scale = wp.sqrt(scale)
         W = W * (ONE / wp.max(scale, TINY))
-        W = sweeps(W, NUMBER_OF_SWEEPS)
-        norms = vec_count()
-        for i in range(COUNT):
-            norms[i] = wp.sqrt(wp.dot(W[i], W[i])) * scale
-        for last in range(wp.static(COUNT - 1), 0, -1):
+        F = sweeps(triangular_factor(W), NUMBER_OF_SWEEPS)
+        norms = vec_rank()
+        for i in range(RANK):
+            norms[i] = wp.sqrt(wp.dot(F[i], F[i])) * scale
+        for last in range(wp.static(RANK - 1), 0, -1):
             for i in range(last):
                 larger = wp.max(norms[i], norms[i + 1])
                 norms[i + 1] = wp.min(norms[i], norms[i + 1])
                 norms[i] = larger
         sigma = vec_m()
-        for i in range(VALUES):
+        for i in range(RANK):
             sigma[i] = norms[i]
         return sigma
 

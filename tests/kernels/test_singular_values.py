@@ -115,6 +115,23 @@ def test_singular_matrices_have_exact_zeros(m, n, precision, device):
 
 
 @pytest.mark.parametrize("graded", [False, True])
+@pytest.mark.parametrize(("m", "n"), [(4, 7), (6, 4), (6, 6), (6, 7), (6, 12)])
+def test_rotations_err_by_some_roundings(m, n, graded, precision, device):
+    """Dependent rows and columns, zeros, lengths of many orders of magnitude; NumPy itself errs by some in float64."""
+    generator = np.random.default_rng(100 * m + n)
+    shape = (4000, m, n)
+    sparse = generator.normal(size=shape) * (generator.uniform(size=shape) < 0.35)
+    whole = generator.integers(-1, 2, shape).astype(float)
+    uneven_rows = generator.normal(size=shape) * 10.0 ** generator.uniform(-4, 0, (4000, m, 1))
+    uneven_columns = generator.normal(size=shape) * 10.0 ** generator.uniform(-4, 0, (4000, 1, n))
+    nearly_alike = generator.normal(size=(4000, 1, n)) + 10.0 ** generator.uniform(-6, 0, (4000, 1, 1)) * sparse
+    A = np.concatenate([matrices(generator, m, n, 4000), sparse, whole, uneven_rows, uneven_columns, nearly_alike])
+    error = np.abs(evaluated(A, precision, graded, device) - (exact := reference(A, precision)))
+    roundings = 16 if precision == "float32" else 64
+    assert (error <= roundings * epsilon(precision) * exact[:, :1]).all()
+
+
+@pytest.mark.parametrize("graded", [False, True])
 def test_sweeps_in_a_loop_as_on_a_gpu(graded, precision):
     A = matrices(np.random.default_rng(1), 6, 6, 1200)
     loop, exact = evaluated(A, precision, graded, unroll=False), reference(A, precision)
