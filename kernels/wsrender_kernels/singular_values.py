@@ -319,11 +319,16 @@ def _disjoint_pairs(count: int) -> list[tuple[int, int]]:
 
 
 def _jacobi(real, m: int, n: int, by_columns: bool, unroll: bool):
-    """One-sided Jacobi on the rows of R, (the n columns, or the m rows) P = Q R with pivoting."""
+    """One-sided Jacobi on the rows of R, (the n columns, or the m rows) P = Q R with pivoting.
+
+    Columns are graded, and may be so along their coordinates too: with the longest of these first, the reflections err
+    relative to each (Powell & Reid 1969; Cox & Higham 1998).
+    """
     COUNT, LENGTH = (n, m) if by_columns else (m, n)
     RANK = min(m, n)
     TRANSPOSED = by_columns
-    vec_m, vec_count, vec_rank = (wp.types.vector(size, real) for size in (m, COUNT, RANK))
+    vec_m, vec_rank = wp.types.vector(m, real), wp.types.vector(RANK, real)
+    vec_count, vec_length = wp.types.vector(COUNT, real), wp.types.vector(LENGTH, real)
     mat_mn, mat_vectors = wp.types.matrix((m, n), real), wp.types.matrix((COUNT, LENGTH), real)
     mat_factor = wp.types.matrix((RANK, COUNT), real)
     LAST, LAST_COORDINATE, STEPS = COUNT - 1, LENGTH - 1, min(COUNT, LENGTH - 1)
@@ -334,6 +339,26 @@ def _jacobi(real, m: int, n: int, by_columns: bool, unroll: bool):
     pairs_type = wp.types.vector(max(len(pairs), 1), wp.int32)
     FIRST, SECOND = pairs_type(*[i for i, _ in pairs]), pairs_type(*[j for _, j in pairs])
     ZERO, ONE, TWO, TINY = real(0.0), real(1.0), real(2.0), _tiny(real)
+
+    @wp.func
+    def longest_coordinates_first(W: mat_vectors):
+        out = W
+        sizes = vec_length()
+        for r in range(LENGTH):
+            for i in range(COUNT):
+                sizes[r] += out[i, r] * out[i, r]
+        for last in range(LAST_COORDINATE, 0, -1):
+            for r in range(last):
+                swap = sizes[r] < sizes[r + 1]
+                larger = wp.max(sizes[r], sizes[r + 1])
+                sizes[r + 1] = wp.min(sizes[r], sizes[r + 1])
+                sizes[r] = larger
+                for i in range(COUNT):
+                    a = out[i, r]
+                    b = out[i, r + 1]
+                    out[i, r] = wp.where(swap, b, a)
+                    out[i, r + 1] = wp.where(swap, a, b)
+        return out
 
     @wp.func
     def triangular_factor(W: mat_vectors):
@@ -426,6 +451,8 @@ def _jacobi(real, m: int, n: int, by_columns: bool, unroll: bool):
             scale = scale + wp.dot(W[i], W[i])
         scale = wp.sqrt(scale)
         W = W * (ONE / wp.max(scale, TINY))
+        if wp.static(TRANSPOSED):
+            W = longest_coordinates_first(W)
         F = sweeps(triangular_factor(W), NUMBER_OF_SWEEPS)
         norms = vec_rank()
         for i in range(RANK):
