@@ -3,7 +3,7 @@
 Up to three rows: an orthogonal factorisation of the rows gives det(A Aᵀ) without squaring the condition number; the
 largest eigenvalue and the gap of the others come from the angle between the deviators of H = A Aᵀ and of H², the
 smallest by deflation. Four to six rows: one-sided Jacobi (Hestenes 1958; Demmel & Veselić 1992) on the triangular
-factor, which halves the rotations (Drmač & Veselić 2008).
+factor, which spares two sweeps (Drmač & Veselić 2008).
 
 The columns of J M^-1 differ by the ratio of the links' inertias, often 1e5. Errors then must stay relative to each
 column, or float32 loses the small singular values: ``graded`` matrices are rotated by their largest columns first, or
@@ -19,7 +19,7 @@ from numpy.polynomial import Chebyshev, Polynomial
 from wsrender_kernels.elementary import elementary
 from wsrender_kernels.factories import factory
 
-SWEEPS = {wp.float32: 4, wp.float64: 5}  # of a triangular factor; of the matrix itself it would take two more
+SWEEPS = {wp.float32: 4, wp.float64: 5}  # of a triangular factor
 # Of a third of an angle: degree of the polynomials, and steps that square their error.
 DEGREE, NEWTON_STEPS = {wp.float32: 9, wp.float64: 10}, {wp.float32: 0, wp.float64: 1}
 
