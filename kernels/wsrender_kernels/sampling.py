@@ -237,29 +237,24 @@ def _stateless(Space):
 def _uniforms(real, n: int):
     """Device function giving n independent uniforms of a sample, and what they count in: see `unit_of`.
 
-    The four words of one counter are the leading 21 bits of six coordinates: all that float32 takes, three more bits
-    would cost it a second counter. float64 adds a word of its own to each.
+    The four words of a counter are 21 bits of each of six coordinates: all that float32 takes. float64 takes as many
+    more from a second counter, 42 in all.
     """
     Space = sample_space(real, n)
     vec_n = wp.types.vector(n, real)
     u32 = wp.uint32
-    SIXES, FOURS = (n + 5) // 6, (n + 3) // 4
-    leading_type, following_type = wp.types.vector(6 * SIXES, wp.int32), wp.types.vector(4 * FOURS, u32)
+    SIXES = (n + 5) // 6
+    bits_type = wp.types.vector(6 * SIXES, wp.int32)
     LEADING, FOLLOWING = u32(0), u32(1)
     MASK, WORD = wp.int64(0xFFFFFFFF), wp.int64(32)
     TEN, ELEVEN, TEN_BITS, ELEVEN_BITS = u32(10), u32(11), u32(0x3FF), u32(0x7FF)
-    number = whole_number(real)
-    UNIT_21, UNIT_53 = real(2.0**-21), real(2.0**-53)
+    UNIT_21, UNIT_42 = real(2.0**-21), real(2.0**-42)
 
     @wp.func
-    def words(space: Space, first: wp.int64, lane: wp.int32, group: u32, part: u32):
-        return random_words(u32(first & MASK) + u32(lane), u32(first >> WORD), group, part, space.key_0, space.key_1)
-
-    @wp.func
-    def leading_bits(space: Space, first: wp.int64, lane: wp.int32):
-        out = leading_type()
+    def bits(space: Space, first: wp.int64, lane: wp.int32, part: u32):
+        out = bits_type()
         for g in range(SIXES):
-            w = words(space, first, lane, u32(g), LEADING)
+            w = random_words(u32(first & MASK) + u32(lane), u32(first >> WORD), u32(g), part, space.key_0, space.key_1)
             for k in range(4):
                 out[6 * g + k] = wp.int32(w[k] >> ELEVEN)
             out[6 * g + 4] = wp.int32((w[0] & ELEVEN_BITS) << TEN | (w[1] & TEN_BITS))
@@ -267,17 +262,8 @@ def _uniforms(real, n: int):
         return out
 
     @wp.func
-    def following_bits(space: Space, first: wp.int64, lane: wp.int32):
-        out = following_type()
-        for g in range(FOURS):
-            w = words(space, first, lane, u32(g), FOLLOWING)
-            for k in range(4):
-                out[4 * g + k] = w[k]
-        return out
-
-    @wp.func
     def uniforms32(space: Space, first: wp.int64, lane: wp.int32):
-        leading = leading_bits(space, first, lane)
+        leading = bits(space, first, lane, LEADING)
         u = vec_n()
         for i in range(n):
             u[i] = real(leading[i])
@@ -285,11 +271,11 @@ def _uniforms(real, n: int):
 
     @wp.func
     def uniforms64(space: Space, first: wp.int64, lane: wp.int32):
-        leading = leading_bits(space, first, lane)
-        following = following_bits(space, first, lane)
+        leading = bits(space, first, lane, LEADING)
+        following = bits(space, first, lane, FOLLOWING)
         u = vec_n()
         for i in range(n):
-            u[i] = real(leading[i]) * UNIT_21 + number(following[i]) * UNIT_53
+            u[i] = real(leading[i]) * UNIT_21 + real(following[i]) * UNIT_42
         return u
 
     return (uniforms32, UNIT_21) if real is wp.float32 else (uniforms64, real(1.0))

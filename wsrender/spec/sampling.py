@@ -79,7 +79,7 @@ class _Counted(_Sampling):
 class Random(_Counted):
     """Independent uniform samples of the joint space (Monte Carlo).
 
-    A coordinate takes one of 2^53 values between its limits, with the precision float32 one of 2^21.
+    A coordinate takes one of 2^42 values between its limits, with the precision float32 one of 2^21.
     """
 
     method: Literal["random"] = "random"
