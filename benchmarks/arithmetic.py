@@ -3,7 +3,7 @@
 An addition, subtraction, multiplication, division or square root counts as one operation, a fused multiply-add as
 two; comparisons, selections, sign changes and integer work (the random bits) count as none, and neither does what
 the compiler removes (angular rows and orientation of a linear task). The counts are for a chain of n uncoupled
-joints, random sampling, the task "linear" and the standard convention. n = 6, float32: 713 kinematic, 2,633 twelve.
+joints, random sampling, the task "linear" and the standard convention. n = 6, float32: 682 kinematic, 2,583 twelve.
 """
 
 FLOAT_BYTES = {"float32": 4, "float64": 8}
@@ -20,14 +20,14 @@ def operations(n: int, precision: str, dynamic: bool, voxels: bool) -> int:
 
 
 def draw(n: int, precision: str) -> int:
-    """Uniform numbers from random bits (4 each in float64), then lower + u * step."""
-    return n * ((0 if precision == "float32" else 4) + 2)
+    """Uniform numbers from random bits (3 each in float64), then lower + u * step."""
+    return n * ((0 if precision == "float32" else 3) + 2)
 
 
 def sincos(precision: str) -> int:
-    """Rounding to quarter turns 4, reduction 7, square 1, two polynomials, their ends 3 + 4."""
+    """Rounding to quarter turns 4, reduction 5, square 1, two polynomials, their ends 3 + 4."""
     terms = 2 if precision == "float32" else 5
-    return 12 + 4 * terms + 7
+    return 10 + 4 * terms + 7
 
 
 def forward(n: int, precision: str, dynamic: bool) -> int:
@@ -47,10 +47,11 @@ def three_singular_values(n: int, precision: str) -> int:
     """Dot products and orthogonalised rows, 8 (2n - 1) + 2 + 6n, and the closed form."""
     scaled = 8
     pivots = 1 + 2 + 2 + 1 + 1 + 2 + 2 + 12  # reciprocals, row factors, last product, minor, determinant, minors
-    deviators = 3 + 3 + 12 + 2 + 6 + 18 + 12  # mean, entries, norm, in its units; square
-    angle = 12 + 12 + 13 + 2  # along, what is across, its norm
+    root = 2 if precision == "float32" else 20  # with the reciprocal: a root and a division, or an inverse root
+    deviators = 3 + 3 + 12 + root + 9 + 3 + 5 + 2 + 5  # mean, entries, square of the norm; of the square
+    angle = 2 + 10 + 12 + 6  # along, across, its norm
     third = 4 * 9 + 7 if precision == "float32" else 4 * 10 + 22 + 7  # polynomials, Newton's step, reflection
-    eigenvalues = 1 + 3 + 1 + 1 + 2 + 3 + 1 + 2 + 2 + 1 + 6
+    eigenvalues = 1 + 3 + root + 1 + 2 + 1 + 2 + 1 + 2 + 1 + 2 + root + 1 + 1 + 3
     return 8 * (2 * n - 1) + 2 + 6 * n + scaled + pivots + deviators + angle + third + eigenvalues
 
 

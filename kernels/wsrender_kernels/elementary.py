@@ -8,6 +8,7 @@ import math
 from types import SimpleNamespace
 
 import warp as wp
+from numpy.polynomial import Chebyshev, Polynomial
 
 from wsrender_kernels.factories import factory
 
@@ -26,10 +27,10 @@ _COS = {
         -2.75573143513906633035e-07, 2.08757232129817482790e-09, -1.13596475577881948265e-11,
     ),
 }  # fmt: skip
-# pi/2 in three parts with trailing zero bits, so that k * part is exact (Cody & Waite 1980).
+# pi/2 in two parts, the first rounded: a fused multiply-add takes its multiples away exactly.
 _HALF_PI = {
-    wp.float32: (1.5703125, 4.837512969970703125e-4, 7.549789954768648e-8),
-    wp.float64: (1.57079625129699707031e00, 7.54978941586159635335e-08, 5.39030285815811905290e-15),
+    wp.float32: (1.57079637050628662109375, -4.37113900018624283e-8),
+    wp.float64: (1.57079632679489655800e00, 6.12323399573676603587e-17),
 }
 # Terms of log2's atanh series on [1/sqrt 2, sqrt 2], and of exp2's Taylor series on [-1/2, 1/2].
 _LOG_TERMS = {wp.float32: 5, wp.float64: 11}
@@ -38,6 +39,21 @@ _EXP_TERMS = {wp.float32: 8, wp.float64: 14}
 # steps to working precision.
 _ROOT_GUESS = {wp.float32: 0x54A1F000, wp.float64: 0x553EE800}
 _ROOT_STEPS = {wp.float32: 2, wp.float64: 3}
+
+# x^(-1/2) in float64: half of the bits of x from these leaves e = 1 - x y² below 0.0682 (fitted), a polynomial in e
+# through Chebyshev points 2e-6, a step of third order nothing.
+_INVERSE_ROOT_GUESS = 0x5FE6E8E800000000
+_INVERSE_ROOT = Chebyshev.interpolate(lambda e: (1.0 - e) ** -0.5, 3, [-0.0682, 0.0682]).convert(kind=Polynomial)
+_OWN_ON_CUDA = {
+    real: f"""
+#if defined(__CUDA_ARCH__)
+    return ::{name}(x);
+#else
+    return y;
+#endif
+"""
+    for real, name in ((wp.float32, "rsqrtf"), (wp.float64, "rsqrt"))
+}
 
 
 def _coefficients(values, real):
@@ -50,20 +66,29 @@ def bits_type(real):
 
 
 @factory
+def _own_on_cuda(real):
+    @wp.func_native(_OWN_ON_CUDA[real])
+    def own_on_cuda(x: real, y: real) -> real: ...
+
+    return own_on_cuda
+
+
+@factory
 def elementary(real) -> SimpleNamespace:
     """Device functions of one precision.
 
     ``sincos(a) -> (sin a, cos a)``; ``sincos_from(a, rest, rest 2/pi, quarters)`` gives those of a + rest + quarters
     pi/2, where abs(rest) <= pi/4; ``log2`` for positive normal numbers; ``power(x, e) = 2^(e log2 x)``, 0 for x <= 0;
     ``two_thirds_power(x)``, the same for e = 2/3; ``ordered(x)`` maps a float to an integer that sorts alike (NaN sorts
-    outside the infinities); ``scales(x) -> (2^-e, 2^e)`` with e = floor(log2 x) for positive normal numbers and
-    (2^127 or 2^1023, 0) for smaller ones.
+    outside the infinities); ``scales(x) -> (4^-k, 2^k)``, x 4^-k between 1/2 and 2, for positive normal numbers and
+    (2^126 or 2^1022, 0) for smaller ones. Of positive normal numbers, to two units in the last place:
+    ``inverse_root(x) = 1 / sqrt x`` and ``root_and_reciprocal(x) -> (sqrt x, 1 / x)``.
     """
     bits = bits_type(real)
     mantissa, bits_size = (23, 32) if real is wp.float32 else (52, 64)
     SIN, COS = _coefficients(_SIN[real], real), _coefficients(_COS[real], real)
     DEGREE = len(_SIN[real])
-    PART_1, PART_2, PART_3 = (real(part) for part in _HALF_PI[real])
+    PART_1, PART_2 = (real(part) for part in _HALF_PI[real])
     TWO_OVER_PI, HALF, ONE, ZERO = real(2.0 / math.pi), real(0.5), real(1.0), real(0.0)
     LOG_TERMS, EXP_TERMS = _LOG_TERMS[real], _EXP_TERMS[real]
     LOG = _coefficients([2.0 / math.log(2.0) / (2 * i + 1) for i in range(LOG_TERMS)], real)
@@ -71,6 +96,7 @@ def elementary(real) -> SimpleNamespace:
     SQRT_HALF = bits(0x3F3504F3) if real is wp.float32 else bits(0x3FE6A09E667F3BCD)
     MANTISSA = bits(mantissa)
     bias = 127 if real is wp.float32 else 1023
+    EVEN_POWER, ONE_BITS = bits(1 << mantissa), bits(bias << mantissa)
     BIAS, EXPONENT, OPPOSITE = bits(bias), bits((2 * bias + 1) << mantissa), bits(2 * bias << mantissa)
     SMALLEST = real(2.0**-126 if real is wp.float32 else 2.0**-1022)
     SIGN = bits(31 if real is wp.float32 else 63)
@@ -78,8 +104,18 @@ def elementary(real) -> SimpleNamespace:
     LOWEST, HIGHEST = real(-126.0 if real is wp.float32 else -1022.0), real(127.0 if real is wp.float32 else 1023.0)
 
     INFINITE, UNDEFINED = real(math.inf), real(math.nan)
-    ROUND, ODD, NONE = real(1.5 * 2.0**mantissa), bits(1), bits(0)
+    unsigned = wp.uint32 if real is wp.float32 else wp.uint64
+    ROUND, ODD, NONE = real(1.5 * 2.0**mantissa), unsigned(1), unsigned(0)
+    NEXT_TO_SIGN, QUARTER, SIGN_BIT = (
+        unsigned(bits_size - 2),
+        unsigned(2 ** (bits_size - 2)),
+        unsigned(2 ** (bits_size - 1)),
+    )
     ROOT_GUESS, ROOT_SHIFT, ROOT_STEPS = wp.int32(_ROOT_GUESS[real]), bits(bits_size - 32), _ROOT_STEPS[real]
+    GUESS, HALF_OF_BITS, THREE_EIGHTHS = wp.int64(_INVERSE_ROOT_GUESS), bits(1), real(0.375)
+    INVERSE_ROOT = _coefficients(_INVERSE_ROOT.coef, real)
+    INVERSE_ROOT_DEGREE = len(_INVERSE_ROOT.coef) - 1
+    own_on_cuda = _own_on_cuda(real)
     ROOT_1, ROOT_2, THREE = real(1.0 / 3.0), real(2.0 / 9.0), wp.int32(3)
 
     @wp.func
@@ -89,7 +125,7 @@ def elementary(real) -> SimpleNamespace:
         shifted = (a * TWO_OVER_PI + rest_quarters) + shifter
         k = shifted - shifter
         # Reduced before the rest is added, the angle loses nothing to the sum.
-        r = (((a - k * PART_1) + rest) - k * PART_2) - k * PART_3
+        r = ((a - k * PART_1) + rest) - k * PART_2
         z = r * r
         s = SIN[DEGREE - 1]
         c = COS[DEGREE - 1]
@@ -98,10 +134,12 @@ def elementary(real) -> SimpleNamespace:
             c = c * z + COS[DEGREE - 1 - i]
         s = r + r * z * s
         c = ONE + z * (z * c - HALF)
-        quadrant = wp.cast(shifted, bits)
+        quadrant = wp.cast(shifted, unsigned)
         swap = (quadrant & ODD) != NONE
-        sine = wp.cast(wp.where(swap, c, s), bits) ^ ((quadrant >> ODD) << SIGN)
-        cosine = wp.cast(wp.where(swap, s, c), bits) ^ (((quadrant + ODD) >> ODD) << SIGN)
+        # Signs: the second bit of the quadrant, and of the next one.
+        turned = quadrant << NEXT_TO_SIGN
+        sine = wp.cast(wp.where(swap, c, s), unsigned) ^ (turned & SIGN_BIT)
+        cosine = wp.cast(wp.where(swap, s, c), unsigned) ^ ((turned + QUARTER) & SIGN_BIT)
         return wp.cast(sine, real), wp.cast(cosine, real)
 
     @wp.func
@@ -148,6 +186,31 @@ def elementary(real) -> SimpleNamespace:
         return wp.where(positive, exp2(e * log2(wp.where(positive, x, ONE))), ZERO)
 
     @wp.func
+    def inverse_root32(x: real):
+        return own_on_cuda(x, ONE / wp.sqrt(x))
+
+    @wp.func
+    def inverse_root64(x: real):
+        # A core of a CPU begins a SIMD division or root every 10 to 24 cycles, but two multiply-adds a cycle.
+        y = wp.cast(GUESS - (wp.cast(x, bits) >> HALF_OF_BITS), real)
+        e = ONE - (x * y) * y
+        series = INVERSE_ROOT[INVERSE_ROOT_DEGREE]
+        for j in range(INVERSE_ROOT_DEGREE):
+            series = series * e + INVERSE_ROOT[INVERSE_ROOT_DEGREE - 1 - j]
+        y = y * series
+        e = ONE - (x * y) * y
+        return own_on_cuda(x, y + (y * e) * (HALF + THREE_EIGHTHS * e))
+
+    @wp.func
+    def root_and_reciprocal32(x: real):
+        return wp.sqrt(x), ONE / x
+
+    @wp.func
+    def root_and_reciprocal64(x: real):
+        y = inverse_root64(x)
+        return x * y, y * y
+
+    @wp.func
     def two_thirds_power(x: real):
         # x x^(-1/3): a third of the exponent, then y <- y (1 + e/3 + 2 e²/9), e = 1 - x y³ (Householder).
         leading = wp.int32(wp.cast(x, bits) >> ROOT_SHIFT)
@@ -164,8 +227,9 @@ def elementary(real) -> SimpleNamespace:
 
     @wp.func
     def scales(x: real):
-        exponent = wp.cast(x, bits) & EXPONENT
-        return wp.cast(OPPOSITE - exponent, real), wp.cast(exponent, real)
+        exponent = wp.cast(x, bits) & EXPONENT | EVEN_POWER
+        root = wp.cast(((exponent + ONE_BITS) >> HALF_OF_BITS) & EXPONENT, real)
+        return wp.cast(OPPOSITE - exponent, real), wp.where(x >= SMALLEST, root, ZERO)
 
     return SimpleNamespace(
         sincos=sincos,
@@ -175,6 +239,8 @@ def elementary(real) -> SimpleNamespace:
         log2=log2,
         exp2=exp2,
         power=power,
+        inverse_root=inverse_root32 if real is wp.float32 else inverse_root64,
+        root_and_reciprocal=root_and_reciprocal32 if real is wp.float32 else root_and_reciprocal64,
         two_thirds_power=two_thirds_power,
         ordered=ordered,
         scales=scales,

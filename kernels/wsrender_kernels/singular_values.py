@@ -87,12 +87,13 @@ def _by_largest_columns(real, n: int):
     """Device function A -> R = E A: rows of E span the largest column, then the largest remainder (pivoted QR)."""
     vec3, mat_3n = wp.types.vector(3, real), wp.types.matrix((3, n), real)
     ZERO, ONE, TINY = real(0.0), real(1.0), _tiny(real)
+    inverse_root = elementary(real).inverse_root
     NONE = wp.int32(-1)
 
     @wp.func
     def direction(v: vec3):
         size = wp.dot(v, v)
-        return v * wp.where(size > TINY, ONE / wp.sqrt(wp.max(size, TINY)), ZERO)
+        return v * wp.where(size > TINY, inverse_root(size), ZERO)
 
     @wp.func
     def by_largest_columns(A: mat_3n):
@@ -174,11 +175,13 @@ def _two_rows(real, m: int, n: int):
 def _three_rows(real, m: int, n: int):
     vec_m = wp.types.vector(3, real)
     mat_mn = wp.types.matrix((3, n), real)
-    third_of_angle, scales = _third_of_angle(real), elementary(real).scales
-    ZERO, HALF, ONE, TWO, FOUR = (real(v) for v in (0.0, 0.5, 1.0, 2.0, 4.0))
-    THIRD, ROOT_6, ROOT_SIXTH, TWO_ROOT_3 = (real(v) for v in (1 / 3, 6**0.5, 6**-0.5, 2 * 3**0.5))
+    third_of_angle, functions = _third_of_angle(real), elementary(real)
+    scales, root_and_reciprocal = functions.scales, functions.root_and_reciprocal
+    ZERO, HALF, ONE, TWO, THREE, FOUR = (real(v) for v in (0.0, 0.5, 1.0, 2.0, 3.0, 4.0))
+    THIRD, SIXTH, ROOT_6, ROOT_12, ROOT_SIXTH, TWO_ROOT_3 = (
+        real(v) for v in (1 / 3, 1 / 6, 6**0.5, 12**0.5, 6**-0.5, 2 * 3**0.5)
+    )
     TINY = _tiny(real)
-    NEARLY_RANK_ONE = real(0.01)
     # A row below the rounding noise of the others spans nothing: its reciprocal would overflow.
     NOISE = real(1e-18 if real is wp.float32 else 1e-36)
 
@@ -190,7 +193,7 @@ def _three_rows(real, m: int, n: int):
         aa = wp.dot(a, a)
         bb = wp.dot(b, b)
         cc = wp.dot(c, c)
-        # H = A Aᵀ in units of a power of two that leave it a trace between 1 and 2: their square roots do not round.
+        # H = A Aᵀ in units of a power of four, whose square root is exact, that leave it a trace between 1/2 and 2.
         unit, scale = scales(aa + bb + cc)
         hx = aa * unit
         hy = bb * unit
@@ -216,52 +219,50 @@ def _three_rows(real, m: int, n: int):
         minors = d1 * (d2 * (ONE + lcb * lcb + minor * minor) + d3 * (ONE + lb * lb)) + d2 * d3
 
         # The eigenvalues of H are mean + 2 p cos(phi + 2 pi k / 3), where 3 phi is the angle between the deviators of H
-        # and of H². That of H in units of its norm, its square has a deviator of norm 1 / sqrt 6. No cancellation where
+        # and of H²: h, and G, that of the adjugate of h too (Cayley–Hamilton); h·G = 3 det h. No cancellation where
         # eigenvalues coincide.
         mean = (hx + hy + hz) * THIRD
         hx = hx - mean
         hy = hy - mean
-        hz = hz - mean
-        norm = wp.sqrt(hx * hx + hy * hy + hz * hz + TWO * (xy * xy + xz * xz + yz * yz))
-        per_norm = wp.where(norm > TINY, ONE / norm, ZERO)
-        hx = hx * per_norm
-        hy = hy * per_norm
-        hz = hz * per_norm
-        xy = xy * per_norm
-        xz = xz * per_norm
-        yz = yz * per_norm
-        gx = hx * hx + xy * xy + xz * xz - THIRD
-        gy = xy * xy + hy * hy + yz * yz - THIRD
-        gz = xz * xz + yz * yz + hz * hz - THIRD
-        gxy = xy * (hx + hy) + xz * yz
-        gxz = xz * (hx + hz) + xy * yz
-        gyz = yz * (hy + hz) + xy * xz
-        along = hx * gx + hy * gy + hz * gz + TWO * (xy * gxy + xz * gxz + yz * gyz)
+        hz = -(hx + hy)
+        square = TWO * ((hx * hx + hy * hy + hx * hy) + (xy * xy + xz * xz + yz * yz))
+        norm, per_square = root_and_reciprocal(wp.where(square > TINY, square, TINY))
+        gxy = xz * yz - xy * hz
+        gxz = xy * yz - xz * hy
+        gyz = xy * xz - yz * hx
+        minor_x = hy * hz - yz * yz
+        along = (hx * minor_x + xy * gxy) + xz * gxz
+        gx = minor_x + square * SIXTH
+        gy = (hx * hz - xz * xz) + square * SIXTH
+        along = along * THREE * per_square
         gx = gx - along * hx
         gy = gy - along * hy
-        gz = gz - along * hz
         gxy = gxy - along * xy
         gxz = gxz - along * xz
         gyz = gyz - along * yz
-        across = wp.sqrt(gx * gx + gy * gy + gz * gz + TWO * (gxy * gxy + gxz * gxz + gyz * gyz))
-        cosine, sine = third_of_angle(along * ROOT_6, across * ROOT_6)
+        across = wp.sqrt((gx * (gx + gy) + gy * gy + gxy * gxy) + (gxz * gxz + gyz * gyz)) * per_square
+        cosine, sine = third_of_angle(along * (norm * per_square) * ROOT_6, across * ROOT_12)
 
         p = norm * ROOT_SIXTH
         l1 = mean + TWO * p * cosine
-        i1 = ONE / wp.where(l1 > THIRD, l1, THIRD)
+        l1 = wp.where(l1 > SIXTH, l1, SIXTH)
+        sigma_1, i1 = root_and_reciprocal(l1)
         product = det * i1
         total = (minors - product) * i1
-        # The gap from the angle errs by eps * l1, that from the discriminant by sqrt(eps) * total.
-        discriminant = total * total - FOUR * product
+        # The gap from the angle errs by eps * l1, that from the discriminant by eps * total² / gap.
+        total_square = total * total
+        discriminant = total_square - FOUR * product
+        from_angle = TWO_ROOT_3 * p * sine
         gap = wp.where(
-            total < NEARLY_RANK_ONE,
+            discriminant > total_square * total_square,
             wp.sqrt(wp.where(discriminant > ZERO, discriminant, ZERO)),
-            TWO_ROOT_3 * p * sine,
+            wp.where(from_angle < total_square, from_angle, total_square),
         )
         l2 = HALF * (total + wp.where(gap < total, gap, total))
-        l3 = wp.where(l2 > TINY, product / l2, ZERO)
+        sigma_2, i2 = root_and_reciprocal(wp.where(l2 > TINY, l2, TINY))
+        l3 = product * i2
         l3 = wp.where(l3 < l2, l3, l2)
-        return vec_m(wp.sqrt(l1 * scale), wp.sqrt(l2 * scale), wp.sqrt(l3 * scale))
+        return vec_m(sigma_1 * scale, sigma_2 * scale, wp.sqrt(l3) * scale)
 
     return three_rows
 
@@ -318,6 +319,36 @@ def _disjoint_pairs(count: int) -> list[tuple[int, int]]:
     return [(i, j) for i, j in pairs if j < count]
 
 
+def _rotation(real):
+    """Device function (b·b - a·a, 2 a·b) -> cosine, sine of the rotation, within 45°, that makes a and b orthogonal.
+
+    By its tangent in float32. In float64, where inverse roots cost less than divisions, by the cosine and sine of twice
+    the angle: c² = (1 + cosine) / 2 and s = sine / (2 c).
+    """
+    ZERO, HALF, ONE, TINY = real(0.0), real(0.5), real(1.0), _tiny(real)
+    inverse_root = elementary(real).inverse_root
+
+    @wp.func
+    def rotation32(difference: real, twice: real):
+        root = wp.sqrt(difference * difference + twice * twice)
+        size = wp.abs(difference) + root
+        t = wp.where(size > TINY, wp.where(difference < ZERO, -twice, twice) / wp.max(size, TINY), ZERO)
+        c = ONE / wp.sqrt(ONE + t * t)
+        return c, c * t
+
+    @wp.func
+    def rotation64(difference: real, twice: real):
+        square = difference * difference + twice * twice
+        regular = square > TINY
+        per_length = wp.where(regular, inverse_root(square), ZERO)
+        cosine = wp.where(regular, wp.abs(difference) * per_length, ONE)
+        c_square = HALF * cosine + HALF
+        per_c = inverse_root(c_square)
+        return c_square * per_c, wp.where(difference < ZERO, -twice, twice) * (HALF * per_length * per_c)
+
+    return rotation32 if real is wp.float32 else rotation64
+
+
 def _jacobi(real, m: int, n: int, by_columns: bool, unroll: bool):
     """One-sided Jacobi on the rows of R, (the n columns, or the m rows) P = Q R with pivoting.
 
@@ -339,6 +370,7 @@ def _jacobi(real, m: int, n: int, by_columns: bool, unroll: bool):
     pairs_type = wp.types.vector(max(len(pairs), 1), wp.int32)
     FIRST, SECOND = pairs_type(*[i for i, _ in pairs]), pairs_type(*[j for _, j in pairs])
     ZERO, ONE, TWO, TINY = real(0.0), real(1.0), real(2.0), _tiny(real)
+    rotation = _rotation(real)
 
     @wp.func
     def longest_coordinates_first(W: mat_vectors):
@@ -409,13 +441,7 @@ def _jacobi(real, m: int, n: int, by_columns: bool, unroll: bool):
                 j = SECOND[number * AT_ONCE + k]
                 a = out[i]
                 b = out[j]
-                difference = wp.dot(b, b) - wp.dot(a, a)
-                twice = TWO * wp.dot(a, b)
-                root = wp.sqrt(difference * difference + twice * twice)
-                size = wp.abs(difference) + root
-                t = wp.where(size > TINY, wp.where(difference < ZERO, -twice, twice) / wp.max(size, TINY), ZERO)
-                c = ONE / wp.sqrt(ONE + t * t)
-                s = c * t
+                c, s = rotation(wp.dot(b, b) - wp.dot(a, a), TWO * wp.dot(a, b))
                 out[i] = a * c - b * s
                 out[j] = a * s + b * c
         return out

@@ -5,6 +5,7 @@ import warp as wp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from wsrender_kernels.elementary import elementary
+from wsrender_kernels.options import MODULE_OPTIONS
 
 from wsrender.tolerances import TOLERANCES, epsilon
 
@@ -24,34 +25,50 @@ def kernels_of(precision):
     real, functions = REAL[precision], elementary(REAL[precision])
     sincos, log2, exp2, power = functions.sincos, functions.log2, functions.exp2, functions.power
     two_thirds_power, scales = functions.two_thirds_power, functions.scales
+    inverse_root, root_and_reciprocal = functions.inverse_root, functions.root_and_reciprocal
+    # With the flags of the product's kernels: reducing an angle relies on fused multiply-add.
+    options = {"module": "unique", "module_options": MODULE_OPTIONS, "enable_backward": False}
 
-    @wp.kernel(module=f"test_elementary_{precision}", enable_backward=False)
+    @wp.kernel(**options)
     def both(x: wp.array2d(dtype=real), out: wp.array2d(dtype=real)):
         i = wp.tid()
         s, c = sincos(x[i, 0])
         out[i, 0] = s
         out[i, 1] = c
 
-    @wp.kernel(module=f"test_elementary_{precision}", enable_backward=False)
+    @wp.kernel(**options)
     def logarithms(x: wp.array2d(dtype=real), out: wp.array2d(dtype=real)):
         i = wp.tid()
         out[i, 0] = log2(x[i, 0])
         out[i, 1] = two_thirds_power(x[i, 0])
 
-    @wp.kernel(module=f"test_elementary_{precision}", enable_backward=False)
+    @wp.kernel(**options)
     def powers(x: wp.array2d(dtype=real), out: wp.array2d(dtype=real)):
         i = wp.tid()
         out[i, 0] = exp2(x[i, 0])
         out[i, 1] = power(x[i, 0], x[i, 1])
 
-    @wp.kernel(module=f"test_elementary_{precision}", enable_backward=False)
+    @wp.kernel(**options)
     def binades(x: wp.array2d(dtype=real), out: wp.array2d(dtype=real)):
         i = wp.tid()
         unit, scale = scales(x[i, 0])
         out[i, 0] = unit
         out[i, 1] = scale
 
-    kernels = {"sincos": both, "log2": logarithms, "powers": powers, "scales": binades}
+    @wp.kernel(**options)
+    def inverse_roots(x: wp.array2d(dtype=real), out: wp.array2d(dtype=real)):
+        i = wp.tid()
+        out[i, 0] = inverse_root(x[i, 0])
+
+    @wp.kernel(**options)
+    def roots(x: wp.array2d(dtype=real), out: wp.array2d(dtype=real)):
+        i = wp.tid()
+        root, reciprocal = root_and_reciprocal(x[i, 0])
+        out[i, 0] = root
+        out[i, 1] = reciprocal
+
+    kernels = {"inverse roots": inverse_roots, "roots": roots}
+    kernels |= {"sincos": both, "log2": logarithms, "powers": powers, "scales": binades}
     return {(precision, name): kernel for name, kernel in kernels.items()}
 
 
@@ -129,10 +146,24 @@ def test_power_of_nothing_is_nothing(precision, device):
     assert (found == 0).all()
 
 
-def test_scales_are_powers_of_two_and_their_reciprocals(precision, device):
+def test_scales_are_powers_of_four_and_the_roots_of_their_reciprocals(precision, device):
     span = 125 if precision == "float32" else 1020
     x = (2.0 ** np.random.default_rng(6).uniform(-span, span, 20000)).astype(precision).astype(np.float64)
     unit, scale = evaluated("scales", precision, x, device=device).astype(np.float64)
-    assert (scale == 2.0 ** np.floor(np.log2(x))).all() and (unit * scale == 1).all()
+    mantissa, _ = np.frexp(scale)
+    assert (mantissa == 0.5).all() and (unit * scale**2 == 1).all()
+    assert (x * unit >= 0.5).all() and (x * unit < 2).all()
     unit, scale = evaluated("scales", precision, np.zeros(1), device=device)
     assert scale == 0 and np.isfinite(unit)
+
+
+def test_roots_and_reciprocals(precision, device):
+    span = 125 if precision == "float32" else 1000
+    x = (2.0 ** np.random.default_rng(7).uniform(-span, span, 20000)).astype(precision).astype(np.float64)
+    x = np.append(x, [1.0, 2.0, 4.0, 0.5, np.nextafter(1, 0), np.nextafter(4, 0)]).astype(precision).astype(np.float64)
+    limit = 4 * epsilon(precision)
+    inverse, _ = evaluated("inverse roots", precision, x, device=device)
+    root, reciprocal = evaluated("roots", precision, x, device=device)
+    assert np.abs(inverse * np.sqrt(x) - 1).max() <= limit
+    assert np.abs(root / np.sqrt(x) - 1).max() <= limit
+    assert np.abs(reciprocal * x - 1).max() <= limit

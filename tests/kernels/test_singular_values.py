@@ -100,6 +100,18 @@ def test_three_rows_err_by_some_roundings(precision, device):
     assert (error <= 16 * epsilon(precision) * exact[:, :1]).all()
 
 
+def test_two_small_singular_values_that_agree(precision, device):
+    """Nearly rank one, where H = A Aᵀ and its characteristic polynomial both lose the gap of the small eigenvalues."""
+    generator = np.random.default_rng(1)
+    small = 10 ** generator.uniform(-8, 0, 20_000)
+    spectrum = np.stack([np.ones_like(small), small, small * (1 - 10 ** generator.uniform(-9, -1, 20_000))], axis=1)
+    U = np.linalg.qr(generator.normal(size=(20_000, 3, 3)))[0]
+    V = np.linalg.qr(generator.normal(size=(20_000, 6, 3)))[0]
+    A = (U * spectrum[:, None]) @ V.transpose(0, 2, 1)
+    error = np.abs(evaluated(A, precision, device=device) - (exact := reference(A, precision)))
+    assert (error <= 1.5 * epsilon(precision) ** 0.75 * exact[:, :1]).all()
+
+
 @pytest.mark.parametrize(("m", "n"), SHAPES)
 def test_singular_matrices_have_exact_zeros(m, n, precision, device):
     generator = np.random.default_rng(m + 10 * n)
