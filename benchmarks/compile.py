@@ -16,45 +16,43 @@ import time
 from dataclasses import replace
 
 import numpy as np
+import warp as wp
+from throughput import plan_of
+from wsrender_kernels.pointwise import configuration_kernel
+
+import wsrender as ws
+from wsrender.engine import devices_of
+from wsrender.engine.kernel_cache import loaded
+from wsrender.engine.sweep import Accumulator
 
 WORKS = {"6 kinematic": {}, "12": {"indices": "all"}, "6 kinematic, task full": {"task": "full"}}
 SMALL = "a small kernel first"
 
 
-def arm(n: int):
-    """Arm of n revolute joints, each but the first a link of 1 kg."""
-    import wsrender as ws
-
+def arm(n: int) -> ws.DHTable:
+    """Arm of n revolute joints, each with a link of 1 kg."""
     generator = np.random.default_rng(n)
-    body = {"mass": 1.0, "center_of_mass": (0.0, 0.0, 0.1), "inertia": (0.02, 0.02, 0.01)}
+    link = {"mass": 1.0, "center_of_mass": (0.0, 0.0, 0.1), "inertia": (0.02, 0.02, 0.01), "limits": (-3.0, 3.0)}
     rows = []
     for _joint in range(n):
         a, d = generator.uniform(0.1, 0.3, 2)
-        rows.append({"joint": "revolute", "a": a, "alpha": generator.uniform(-3, 3), "d": d, **body})
-    return ws.DHTable(convention="modified", rows=[{**row, "limits": (-3.0, 3.0)} for row in rows], name=f"arm{n}")
+        rows.append({"joint": "revolute", "a": a, "alpha": generator.uniform(-3, 3), "d": d, **link})
+    return ws.DHTable(convention="modified", rows=rows, name=f"arm{n}")
 
 
 def times(joints: list[int], device: str) -> dict[str, float]:
     """Seconds of each kernel in this process, by its name."""
-    import warp as wp
-    from wsrender_kernels.pointwise import configuration_kernel
-
-    import wsrender as ws
-    from wsrender.engine import devices_of
-    from wsrender.engine.kernel_cache import loaded
-    from wsrender.engine.sweep import Accumulator
-
     target = devices_of(device)[0]
     started = time.perf_counter()
     loaded(configuration_kernel(wp.float32, 2, "random"), target)
     seconds = {SMALL: time.perf_counter() - started}
     for n in joints:
+        table = arm(n)
+        robot, document = ws.load_robot(table), {"dh": table.model_dump(mode="json")}
         for precision in ("float32", "float64"):
             for work, fields in WORKS.items():
-                robot = arm(n)
-                job = {"analysis": "workspace", "robot": {"dh": robot.model_dump(mode="json")}, "precision": precision}
-                job |= {"sampling": {"method": "random", "count": 256, "seed": 1}, "device": device}
-                plan = replace(ws.run.plan({**job, **fields}).sweep, block=None, statistics=frozenset())
+                plan = plan_of(robot, precision, device, robot=document, **fields)
+                plan = replace(plan, block=None, statistics=frozenset())
                 started = time.perf_counter()
                 Accumulator(plan, plan.shape, None, target, 256)
                 seconds[f"{n} joints, {work}, {precision}"] = time.perf_counter() - started

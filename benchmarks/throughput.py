@@ -86,7 +86,7 @@ def engine_cases(robot: ws.Robot, device: str, peaks: dict, with_analyze: bool =
     return cases
 
 
-def plan_of(robot: ws.Robot, precision: str, device: str, **fields) -> SweepPlan:
+def plan_of(robot: ws.Robot, precision: str, device: str, /, **fields) -> SweepPlan:
     """The sweep plan of a job with 2^40 random samples; by default as ws.analyze: count and maximum per voxel."""
     job = {
         "analysis": "workspace",
