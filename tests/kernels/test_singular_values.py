@@ -129,7 +129,10 @@ def test_singular_matrices_have_exact_zeros(m, n, precision, device):
 @pytest.mark.parametrize("graded", [False, True])
 @pytest.mark.parametrize(("m", "n"), [(4, 7), (6, 4), (6, 6), (6, 7), (6, 12)])
 def test_rotations_err_by_some_roundings(m, n, graded, precision, device):
-    """Dependent rows and columns, zeros, lengths of many orders of magnitude; NumPy itself errs by some in float64."""
+    """Dependent rows and columns, zeros, lengths of many orders of magnitude.
+
+    In float64 the bound is NumPy's: against 160 bits it errs by up to 51 epsilon where values nearly agree, ours by 8.
+    """
     generator = np.random.default_rng(100 * m + n)
     shape = (4000, m, n)
     sparse = generator.normal(size=shape) * (generator.uniform(size=shape) < 0.35)
