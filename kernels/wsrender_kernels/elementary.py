@@ -81,7 +81,7 @@ def elementary(real) -> SimpleNamespace:
     pi/2, where abs(rest) <= pi/4; ``log2`` for positive normal numbers; ``power(x, e) = 2^(e log2 x)``, 0 for x <= 0;
     ``two_thirds_power(x)``, the same for e = 2/3; ``ordered(x)`` maps a float to an integer that sorts alike (NaN sorts
     outside the infinities); ``scales(x) -> (4^-k, 2^k)``, x 4^-k between 1/2 and 2, for positive normal numbers and
-    (2^126 or 2^1022, 0) for smaller ones. Of positive normal numbers, to two units in the last place:
+    (2^126 or 2^1022, 0) for smaller ones. Of positive normal numbers, to 4 epsilon at most:
     ``inverse_root(x) = 1 / sqrt x`` and ``root_and_reciprocal(x) -> (sqrt x, 1 / x)``.
     """
     bits = bits_type(real)
@@ -96,7 +96,7 @@ def elementary(real) -> SimpleNamespace:
     SQRT_HALF = bits(0x3F3504F3) if real is wp.float32 else bits(0x3FE6A09E667F3BCD)
     MANTISSA = bits(mantissa)
     bias = 127 if real is wp.float32 else 1023
-    EVEN_POWER, ONE_BITS = bits(1 << mantissa), bits(bias << mantissa)
+    LOWEST_EXPONENT_BIT, BITS_OF_ONE = bits(1 << mantissa), bits(bias << mantissa)
     BIAS, EXPONENT, OPPOSITE = bits(bias), bits((2 * bias + 1) << mantissa), bits(2 * bias << mantissa)
     SMALLEST = real(2.0**-126 if real is wp.float32 else 2.0**-1022)
     SIGN = bits(31 if real is wp.float32 else 63)
@@ -112,7 +112,7 @@ def elementary(real) -> SimpleNamespace:
         unsigned(2 ** (bits_size - 1)),
     )
     ROOT_GUESS, ROOT_SHIFT, ROOT_STEPS = wp.int32(_ROOT_GUESS[real]), bits(bits_size - 32), _ROOT_STEPS[real]
-    GUESS, HALF_OF_BITS, THREE_EIGHTHS = wp.int64(_INVERSE_ROOT_GUESS), bits(1), real(0.375)
+    GUESS, ONE_BIT, THREE_EIGHTHS = wp.int64(_INVERSE_ROOT_GUESS), bits(1), real(0.375)
     INVERSE_ROOT = _coefficients(_INVERSE_ROOT.coef, real)
     INVERSE_ROOT_DEGREE = len(_INVERSE_ROOT.coef) - 1
     own_on_cuda = _own_on_cuda(real)
@@ -192,7 +192,7 @@ def elementary(real) -> SimpleNamespace:
     @wp.func
     def inverse_root64(x: real):
         # A core of a CPU begins a SIMD division or root every 10 to 24 cycles, but two multiply-adds a cycle.
-        y = wp.cast(GUESS - (wp.cast(x, bits) >> HALF_OF_BITS), real)
+        y = wp.cast(GUESS - (wp.cast(x, bits) >> ONE_BIT), real)
         e = ONE - (x * y) * y
         series = INVERSE_ROOT[INVERSE_ROOT_DEGREE]
         for j in range(INVERSE_ROOT_DEGREE):
@@ -227,8 +227,8 @@ def elementary(real) -> SimpleNamespace:
 
     @wp.func
     def scales(x: real):
-        exponent = wp.cast(x, bits) & EXPONENT | EVEN_POWER
-        root = wp.cast(((exponent + ONE_BITS) >> HALF_OF_BITS) & EXPONENT, real)
+        exponent = wp.cast(x, bits) & EXPONENT | LOWEST_EXPONENT_BIT
+        root = wp.cast(((exponent + BITS_OF_ONE) >> ONE_BIT) & EXPONENT, real)
         return wp.cast(OPPOSITE - exponent, real), wp.where(x >= SMALLEST, root, ZERO)
 
     return SimpleNamespace(

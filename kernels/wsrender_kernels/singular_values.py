@@ -30,17 +30,14 @@ def epsilon(real) -> float:
 
 
 @factory
-def singular_values(real, m: int, n: int, graded: bool = False, unroll: bool = True):
+def singular_values(real, m: int, n: int, graded: bool = False, cuda: bool = False):
     """Device function ``(A: (m, n)) -> (m,)``, descending, as computed; the last m - n are exactly 0.
 
-    ``unroll``: whether sweeps of rotations are written out, as SIMD on the CPU needs them. On an H200 that is as fast
-    as a loop or up to 1.4 times as fast in float32; in float64, where registers then run out, a loop is 1.5 to 1.8
-    times as fast.
+    ``cuda``: for a GPU. In float64 the sweeps of rotations are a loop there, 1.5 to 1.8 times as fast on an H200 as
+    written out, when registers run out; written out float32 is as fast or up to 1.4 times as fast, and SIMD needs it.
     """
     by_columns = m > n or graded
-    solver = {1: _one_row, 2: _two_rows, 3: _three_rows}.get(m) or partial(
-        _jacobi, by_columns=by_columns, unroll=unroll
-    )
+    solver = {1: _one_row, 2: _two_rows, 3: _three_rows}.get(m) or partial(_jacobi, by_columns=by_columns, cuda=cuda)
     solver = solver(real, m, n)
     rotated = _by_largest_columns(real, n) if graded and m == 3 else _as_it_is(real, m, n)
     vec_m = wp.types.vector(m, real)
@@ -350,7 +347,7 @@ def _rotation(real):
     return rotation32 if real is wp.float32 else rotation64
 
 
-def _jacobi(real, m: int, n: int, by_columns: bool, unroll: bool):
+def _jacobi(real, m: int, n: int, by_columns: bool, cuda: bool):
     """One-sided Jacobi on the rows of R, (the n columns, or the m rows) P = Q R with pivoting.
 
     Columns are graded, and may be so along their coordinates too: with the longest of these first, the reflections err
@@ -461,7 +458,7 @@ def _jacobi(real, m: int, n: int, by_columns: bool, unroll: bool):
             out = sweep(out)
         return out
 
-    sweeps = unrolled if unroll else in_a_loop
+    sweeps = in_a_loop if cuda and real is wp.float64 else unrolled
 
     @wp.func
     def jacobi(A: mat_mn):

@@ -35,14 +35,14 @@ def spectrum_length(n: int, rows: tuple[int, ...], convention: str) -> int:
 
 @factory
 def spectrum(
-    real, n: int, rows: tuple[int, ...], convention: str, penalty: bool, torque: bool, unroll: bool
+    real, n: int, rows: tuple[int, ...], convention: str, penalty: bool, torque: bool, cuda: bool
 ) -> SimpleNamespace:
     """Device functions ``kinematic(model, J)``, ``dynamic(model, J, M, kinematic)`` and ``penalized(model, q, J)``.
 
-    ``absent`` stands for ``dynamic`` where no index needs it. ``unroll``: see `singular_values`.
+    ``absent`` stands for ``dynamic`` where no index needs it. ``cuda``: see `singular_values`.
     """
     make = {"standard": _standard, "table_1": _table_1, "wsrender_code": _wsrender_code}[convention]
-    kinematic, dynamic = make(real, n, rows, penalty, _torque_scaled(real, n) if torque else None, unroll)
+    kinematic, dynamic = make(real, n, rows, penalty, _torque_scaled(real, n) if torque else None, cuda)
     return SimpleNamespace(
         kinematic=kinematic,
         dynamic=dynamic,
@@ -147,11 +147,11 @@ def _task_matrix(real, n: int, rows: tuple[int, ...]):
     return task_matrix
 
 
-def _of_task(real, n: int, rows: tuple[int, ...], graded: bool, unroll: bool):
+def _of_task(real, n: int, rows: tuple[int, ...], graded: bool, cuda: bool):
     """Device function (model, J) -> singular values of the task matrix."""
     mat_6n = wp.types.matrix((6, n), real)
     m = len(rows)
-    task_matrix, values = _task_matrix(real, n, rows), singular_values(real, m, n, graded, unroll)
+    task_matrix, values = _task_matrix(real, n, rows), singular_values(real, m, n, graded, cuda)
     regular = without_noise(real, m, n, m)
 
     @wp.func
@@ -176,11 +176,11 @@ def _where_positive(real, m: int):
     return where_positive
 
 
-def _standard(real, n: int, rows: tuple[int, ...], penalty: bool, torque, unroll: bool):
+def _standard(real, n: int, rows: tuple[int, ...], penalty: bool, torque, cuda: bool):
     m = len(rows)
     mat_6n, mat_nn = wp.types.matrix((6, n), real), wp.types.matrix((n, n), real)
     mat_mn, vec_m = wp.types.matrix((m, n), real), wp.types.vector(m, real)
-    task_matrix, values = _task_matrix(real, n, rows), singular_values(real, m, n, True, unroll)
+    task_matrix, values = _task_matrix(real, n, rows), singular_values(real, m, n, True, cuda)
     where_positive = _where_positive(real, m)
     solve = inertia(real, n, tuple(range(n)), True, True).solve(m)
 
@@ -194,17 +194,17 @@ def _standard(real, n: int, rows: tuple[int, ...], penalty: bool, torque, unroll
     def dynamic(model: Any, J: mat_6n, M: mat_nn, kinematic: vec_m):
         return where_positive(kinematic, values(scaled(model, solve(M, task_matrix(model, J)))))
 
-    return _of_task(real, n, rows, penalty, unroll), dynamic
+    return _of_task(real, n, rows, penalty, cuda), dynamic
 
 
-def _table_1(real, n: int, rows: tuple[int, ...], penalty: bool, torque, unroll: bool):
+def _table_1(real, n: int, rows: tuple[int, ...], penalty: bool, torque, cuda: bool):
     """H = X X^T with X = L U^-T, where J = L Q and Q M = U V (L, U lower triangular; Q, V with orthonormal rows)."""
     m = len(rows)
     mat_6n, mat_nn = wp.types.matrix((6, n), real), wp.types.matrix((n, n), real)
     mat_mn, mat_mm = wp.types.matrix((m, n), real), wp.types.matrix((m, m), real)
     vec_m = wp.types.vector(m, real)
     task_matrix = _task_matrix(real, n, rows)
-    values, where_positive = singular_values(real, m, m, True, unroll), _where_positive(real, m)
+    values, where_positive = singular_values(real, m, m, True, cuda), _where_positive(real, m)
     lower_factor = _lower_factor(real, m, n)
     DEFICIENT = n < m
     ZERO, ONE = real(0.0), real(1.0)
@@ -230,7 +230,7 @@ def _table_1(real, n: int, rows: tuple[int, ...], penalty: bool, torque, unroll:
                 X[r, c] = wp.where(U[c, c] > ZERO, value / wp.where(U[c, c] > ZERO, U[c, c], ONE), ZERO)
         return where_positive(kinematic, values(X))
 
-    return _of_task(real, n, rows, penalty, unroll), singular if DEFICIENT else dynamic
+    return _of_task(real, n, rows, penalty, cuda), singular if DEFICIENT else dynamic
 
 
 def _lower_factor(real, m: int, n: int):
@@ -257,12 +257,12 @@ def _lower_factor(real, m: int, n: int):
     return lower_factor
 
 
-def _wsrender_code(real, n: int, rows: tuple[int, ...], penalty: bool, torque, unroll: bool):
+def _wsrender_code(real, n: int, rows: tuple[int, ...], penalty: bool, torque, cuda: bool):
     mat_6n, mat_nn = wp.types.matrix((6, n), real), wp.types.matrix((n, n), real)
     COUNT = min(6, n)
     FULL_RANK = n >= 6
     out_type = wp.types.vector(1 + COUNT, real)
-    of_six, of_product = singular_values(real, 6, n, penalty, unroll), singular_values(real, 6, n, True, unroll)
+    of_six, of_product = singular_values(real, 6, n, penalty, cuda), singular_values(real, 6, n, True, cuda)
     regular = without_noise(real, 6, n, 6)
     ONE, ZERO = real(1.0), real(0.0)
 

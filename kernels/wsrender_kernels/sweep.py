@@ -183,8 +183,7 @@ def _outputs(shape: Shape, cuda: bool):
     real, n = shape.real, shape.n
     draw = sampling(real, n, shape.method, shape.shared).draw
     state = _state(shape)
-    unroll = not cuda or real is wp.float32
-    spectra = spectrum(real, n, shape.rows, shape.convention, shape.penalty, shape.torque_scaling, unroll)
+    spectra = spectrum(real, n, shape.rows, shape.convention, shape.penalty, shape.torque_scaling, cuda)
     penalized, kinematic = spectra.penalized, spectra.kinematic
     dynamic_spectrum = spectra.dynamic if shape.dynamic else spectra.absent
     indices = shape.indices
