@@ -13,7 +13,14 @@ import numpy as np
 import warp as wp
 
 from wsrender_kernels.factories import factory
-from wsrender_kernels.kinematics import JOINT_STRIDE, chain_type, device_joint_frames, device_positions, kinematics
+from wsrender_kernels.kinematics import (
+    JOINT_STRIDE,
+    chain_type,
+    device_joint_frames,
+    device_positions,
+    frames_type,
+    turns,
+)
 
 # Mass of the joint's link and all after it; of these, as if at the next joint's origin, with the link: first moment
 # xyz and inertia xx yy zz xy xz yz about the joint's origin; armature.
@@ -44,135 +51,225 @@ def _of_point(mass: float, at: np.ndarray) -> np.ndarray:
 
 
 @factory
-def inertia(real, n: int, sources: tuple[int, ...], plain: bool, world: bool) -> SimpleNamespace:
+def inertia(real, n: int, sources: tuple[int, ...], plain: bool) -> SimpleNamespace:
     """Device functions ``inertia_matrix(chain, bodies, frames) -> (n, n)`` and ``solve(m)``: (M, A (m, n)) -> A M^-1.
 
-    ``frames``, ``plain`` and ``world`` as in `kinematics`.
+    ``frames`` and ``plain`` as in `kinematics`. M[i, j] is the momentum of all beyond joint i, at its unit velocity,
+    along the velocity of joint j. These meet in the frame of the middle joint, or of j where that is nearer to i.
     """
     L = len(sources)
     LAST = L - 1
+    MIDDLE = LAST // 2
     SOURCE = wp.types.vector(L, wp.int32)(*sources)
     CHAIN = JOINT_STRIDE
     BODY = BODY_STRIDE
-    kin = kinematics(real, n, sources, plain, world)
-    vec3, Frames = kin.vec3, kin.Frames
-    axes_type = wp.types.matrix((L, 3), real)
+    vec3, vec6 = wp.types.vector(3, real), wp.types.vector(6, real)
+    sixes_type, joints_type = wp.types.matrix((L, 6), real), wp.types.matrix((L, L), real)
     sym3 = wp.types.vector(6, real)  # xx yy zz xy xz yz
     joint_inertia_type = wp.types.matrix((n, n), real)
-    ONE, TWO = real(1.0), real(2.0)
-    Chain, Bodies = chain_type(real, L), wp.types.vector(L * BODY_STRIDE, real)
-    PLAIN, WORLD = plain, world
+    ZERO, ONE, TWO = real(0.0), real(1.0), real(2.0)
+    Chain, Bodies, Frames = chain_type(real, L), wp.types.vector(L * BODY_STRIDE, real), frames_type(real, L)
+    turned_x, turned_z = turns(real).turned_x, turns(real).turned_z
+    PLAIN, COUPLED = plain, len(set(sources)) < L
 
     @wp.func
-    def turned_z(S: sym3, c: real, s: real):
-        cc = c * c
-        ss = s * s
-        cs = c * s
-        twice = TWO * cs * S[3]
-        return sym3(
-            cc * S[0] + ss * S[1] - twice,
-            ss * S[0] + cc * S[1] + twice,
-            S[2],
-            cs * (S[0] - S[1]) + (cc - ss) * S[3],
-            c * S[4] - s * S[5],
-            s * S[4] + c * S[5],
-        )
-
-    @wp.func
-    def turned_x(S: sym3, c: real, s: real):
-        cc = c * c
-        ss = s * s
-        cs = c * s
-        twice = TWO * cs * S[5]
-        return sym3(
-            S[0],
-            cc * S[1] + ss * S[2] - twice,
-            ss * S[1] + cc * S[2] + twice,
-            c * S[3] - s * S[4],
-            s * S[3] + c * S[4],
-            cs * (S[1] - S[2]) + (cc - ss) * S[5],
-        )
+    def inertia_turned_z(S: sym3, c: real, s: real):
+        xx = c * S[0] - s * S[3]
+        xy = c * S[3] - s * S[1]
+        yx = s * S[0] + c * S[3]
+        yy = s * S[3] + c * S[1]
+        return sym3(c * xx - s * xy, s * yx + c * yy, S[2], s * xx + c * xy, c * S[4] - s * S[5], s * S[4] + c * S[5])
 
     @wp.func
     def with_first_moment(S: sym3, h: vec3, d: vec3):
         # Parallel axis theorem: the old origin lies at d from the new one, h is the first moment about the old.
-        x = TWO * h[0] * d[0]
-        y = TWO * h[1] * d[1]
-        z = TWO * h[2] * d[2]
         return sym3(
-            S[0] + (y + z),
-            S[1] + (x + z),
-            S[2] + (x + y),
+            S[0] + h[1] * (TWO * d[1]) + h[2] * (TWO * d[2]),
+            S[1] + h[0] * (TWO * d[0]) + h[2] * (TWO * d[2]),
+            S[2] + h[0] * (TWO * d[0]) + h[1] * (TWO * d[1]),
             S[3] - h[0] * d[1] - h[1] * d[0],
             S[4] - h[0] * d[2] - h[2] * d[0],
             S[5] - h[1] * d[2] - h[2] * d[1],
         )
 
     @wp.func
+    def beyond(chain: Chain, bodies: Bodies, frames: Frames, i: int, S: sym3, h: vec3):
+        """Inertia and first moment of all beyond a joint, about its origin, in axes before its motion."""
+        c = frames.cosines[i]
+        s = frames.sines[i]
+        T = inertia_turned_z(S, c, s)
+        g = vec3(c * h[0] - s * h[1], s * h[0] + c * h[1], h[2])
+        if wp.static(not PLAIN):
+            slide = frames.slides[i]
+            m = bodies[i * BODY]
+            along = slide * (m * slide + TWO * g[2])
+            T[0] += along
+            T[1] += along
+            T[4] -= slide * g[0]
+            T[5] -= slide * g[1]
+            g[2] += m * slide
+        return T, g
+
+    @wp.func
+    def with_link(chain: Chain, bodies: Bodies, i: int, S: sym3, h: vec3):
+        """The same in the frame of joint i - 1, with its link."""
+        c = chain[i * CHAIN]
+        s = chain[i * CHAIN + 1]
+        b = (i - 1) * BODY
+        g = vec3(h[0], c * h[1] - s * h[2], s * h[1] + c * h[2])
+        # By squares, exact for right angles: the moment about the axis of a slender link stays apart from the others.
+        # The link comes first: with it, every product is part of a multiply-add.
+        cc = c * c
+        ss = s * s
+        cs = c * s
+        T = sym3(
+            bodies[b + 4] + S[0],
+            bodies[b + 5] + cc * S[1] + ss * S[2] - (cs + cs) * S[5],
+            bodies[b + 6] + ss * S[1] + cc * S[2] + (cs + cs) * S[5],
+            bodies[b + 7] + c * S[3] - s * S[4],
+            bodies[b + 8] + s * S[3] + c * S[4],
+            bodies[b + 9] + cs * (S[1] - S[2]) + (cc - ss) * S[5],
+        )
+        T = with_first_moment(T, g, vec3(chain[i * CHAIN + 2], chain[i * CHAIN + 3], chain[i * CHAIN + 4]))
+        return T, g + vec3(bodies[b + 1], bodies[b + 2], bodies[b + 3])
+
+    @wp.func
+    def with_moment(chain: Chain, i: int, f: vec6, sign: real):
+        """A momentum and its moment about the origin of joint i - 1 instead of that of i; with -1 the other way."""
+        x = sign * chain[i * CHAIN + 2]
+        y = sign * chain[i * CHAIN + 3]
+        z = sign * chain[i * CHAIN + 4]
+        return vec6(
+            f[0], f[1], f[2], f[3] + y * f[2] - z * f[1], f[4] + z * f[0] - x * f[2], f[5] + x * f[1] - y * f[0]
+        )
+
+    @wp.func
+    def momentum(chain: Chain, bodies: Bodies, i: int, S: sym3, h: vec3):
+        """Momentum at unit velocity of the joint, and its moment about the joint's origin."""
+        f = vec6(-h[1], h[0], ZERO, S[4], S[5], S[2])
+        if wp.static(not PLAIN):
+            slide = chain[i * CHAIN + 9]
+            f = f * chain[i * CHAIN + 8]
+            f[2] = bodies[i * BODY] * slide
+            f[3] += h[1] * slide
+            f[4] -= h[0] * slide
+        return f
+
+    @wp.func
+    def momentum_before(chain: Chain, bodies: Bodies, i: int, S: sym3, h: vec3):
+        """That of joint i, from inertia and first moment before its motion, in the frame of joint i - 1."""
+        f = momentum(chain, bodies, i, S, h)
+        c = chain[i * CHAIN]
+        s = chain[i * CHAIN + 1]
+        if wp.static(PLAIN):
+            f = vec6(f[0], c * f[1], s * f[1], f[3], c * f[4] - s * f[5], s * f[4] + c * f[5])
+        else:
+            f = turned_x(f, c, s)
+        return with_moment(chain, i, f, ONE)
+
+    @wp.func
+    def carried(chain: Chain, frames: Frames, i: int, f: vec6):
+        """A momentum from the frame of joint i to that of i - 1."""
+        g = turned_z(f, frames.cosines[i], frames.sines[i])
+        if wp.static(not PLAIN):
+            g[3] -= frames.slides[i] * g[1]
+            g[4] += frames.slides[i] * g[0]
+        return with_moment(chain, i, turned_x(g, chain[i * CHAIN], chain[i * CHAIN + 1]), ONE)
+
+    @wp.func
+    def velocity_after(chain: Chain, frames: Frames, i: int, v: vec6):
+        """An angular velocity and the linear one of the origin, from the frame of joint i - 1 to that of i."""
+        w = turned_x(with_moment(chain, i, v, -ONE), chain[i * CHAIN], -chain[i * CHAIN + 1])
+        if wp.static(not PLAIN):
+            w[3] += frames.slides[i] * w[1]
+            w[4] -= frames.slides[i] * w[0]
+        return turned_z(w, frames.cosines[i], -frames.sines[i])
+
+    @wp.func
+    def velocity(chain: Chain, frames: Frames, i: int):
+        """Of joint i - 1 at unit speed, in the frame of joint i."""
+        a = i * CHAIN
+        c = chain[a]
+        s = chain[a + 1]
+        v = vec6(ZERO, s, c, -chain[a + 3], c * chain[a + 2], -s * chain[a + 2])
+        if wp.static(not PLAIN):
+            angle = chain[a - CHAIN + 8]
+            slide = chain[a - CHAIN + 9]
+            v = v * angle
+            v[3] += frames.slides[i] * v[1]
+            v[4] += s * slide
+            v[5] += c * slide
+        # The first component before the turn is 0.
+        cosine = frames.cosines[i]
+        sine = frames.sines[i]
+        return vec6(sine * v[1], cosine * v[1], v[2], cosine * v[3] + sine * v[4], cosine * v[4] - sine * v[3], v[5])
+
+    @wp.func
+    def along_axis(chain: Chain, i: int, f: vec6):
+        """Of a momentum in the frame of joint i, the part that its unit velocity takes."""
+        value = f[5]
+        if wp.static(not PLAIN):
+            value = value * chain[i * CHAIN + 8] + f[2] * chain[i * CHAIN + 9]
+        return value
+
+    @wp.func
+    def diagonal(chain: Chain, bodies: Bodies, i: int, S: sym3):
+        value = S[2] + bodies[i * BODY + 10]
+        if wp.static(not PLAIN):
+            angle = chain[i * CHAIN + 8]
+            slide = chain[i * CHAIN + 9]
+            value = S[2] * angle * angle + bodies[i * BODY] * slide * slide
+            value += bodies[i * BODY + 10] * (angle + slide) * (angle + slide)
+        return value
+
+    def towards_base(start: int, stop: int, end: int):
+        """Device function from the frame of joint start to that of stop, with the momenta from there to end."""
+
+        @wp.func
+        def there(chain: Chain, bodies: Bodies, frames: Frames, S: sym3, h: vec3, momenta: sixes_type, G: joints_type):
+            for i in range(start, stop, -1):
+                for k in range(i, end):
+                    momenta[k] = carried(chain, frames, i, momenta[k])
+                S, h = beyond(chain, bodies, frames, i, S, h)
+                momenta[i] = momentum_before(chain, bodies, i, S, h)
+                S, h = with_link(chain, bodies, i, S, h)
+                G[i - 1, i - 1] = diagonal(chain, bodies, i - 1, S)
+                for k in range(i, end):
+                    G[k, i - 1] = along_axis(chain, i - 1, momenta[k])
+            return S, h, momenta, G
+
+        return there
+
+    to_middle, from_middle = towards_base(LAST, MIDDLE, L), towards_base(MIDDLE, 0, MIDDLE)
+
+    @wp.func
     def inertia_matrix(chain: Chain, bodies: Bodies, frames: Frames):
+        b = LAST * BODY
+        h = vec3(bodies[b + 1], bodies[b + 2], bodies[b + 3])
+        S = sym3(bodies[b + 4], bodies[b + 5], bodies[b + 6], bodies[b + 7], bodies[b + 8], bodies[b + 9])
+        G = joints_type()  # lower triangle
+        G[LAST, LAST] = diagonal(chain, bodies, LAST, S)
+        S, h, momenta, G = to_middle(chain, bodies, frames, S, h, sixes_type(), G)
+        momenta[MIDDLE] = momentum(chain, bodies, MIDDLE, S, h)
+        velocities = sixes_type()
+        for i in range(1, wp.static(MIDDLE + 1)):
+            for j in range(i):
+                velocities[j] = velocity_after(chain, frames, i, velocities[j])
+            velocities[i - 1] = velocity(chain, frames, i)
+        for j in range(MIDDLE):
+            v = velocities[j]
+            for k in range(MIDDLE, L):
+                f = momenta[k]
+                G[k, j] = f[0] * v[3] + f[1] * v[4] + f[2] * v[5] + f[3] * v[0] + f[4] * v[1] + f[5] * v[2]
+        S, h, momenta, G = from_middle(chain, bodies, frames, S, h, momenta, G)
         M = joint_inertia_type()
-        links = axes_type()  # from each joint's origin to the next
-        for i in range(LAST):
-            a = (i + 1) * CHAIN
-            links[i] = frames.X[i] * chain[a + 2] + frames.Y[i] * chain[a + 3] + frames.Z[i] * chain[a + 4]
-            if wp.static(not WORLD):  # noqa: SIM102 - Warp takes static conditions by themselves
-                if i == 0:  # its axes are those of the frame
-                    links[i] = vec3(chain[a + 2], chain[a + 3], chain[a + 4])
-            if wp.static(not PLAIN):
-                links[i] = links[i] + frames.Z[i + 1] * frames.slides[i + 1]
-        h = vec3()
-        composite = sym3()
-        for i in range(LAST, -1, -1):
-            b = i * BODY
-            if i < LAST:
-                a = (i + 1) * CHAIN
-                c = frames.cosines[i + 1]
-                s = frames.sines[i + 1]
-                p = vec3(chain[a + 2], chain[a + 3], chain[a + 4])
-                composite = turned_z(composite, c, s)
-                h = vec3(c * h[0] - s * h[1], s * h[0] + c * h[1], h[2])
-                if wp.static(not PLAIN):
-                    slide = frames.slides[i + 1]
-                    m = bodies[b + BODY]
-                    along = slide * (m * slide + TWO * h[2])
-                    composite[0] += along
-                    composite[1] += along
-                    composite[4] -= slide * h[0]
-                    composite[5] -= slide * h[1]
-                    h[2] += m * slide
-                composite = turned_x(composite, chain[a], chain[a + 1])
-                h = vec3(h[0], chain[a] * h[1] - chain[a + 1] * h[2], chain[a + 1] * h[1] + chain[a] * h[2])
-                composite = with_first_moment(composite, h, p)
-            h = h + vec3(bodies[b + 1], bodies[b + 2], bodies[b + 3])
-            for k in range(6):
-                composite[k] += bodies[b + 4 + k]
-            # Momentum and its moment about the joint's origin, of everything beyond it, at unit joint velocity.
-            x = frames.X[i]
-            y = frames.Y[i]
-            z = frames.Z[i]
-            momentum = y * h[0] - x * h[1]
-            moment = x * composite[4] + y * composite[5] + z * composite[2]
-            diagonal = composite[2] + bodies[b + 10]
-            if wp.static(not PLAIN):
-                angle = chain[i * CHAIN + 8]
-                slide = chain[i * CHAIN + 9]
-                m = bodies[b]
-                moment = moment * angle + (x * h[1] - y * h[0]) * slide
-                momentum = momentum * angle + z * (m * slide)
-                diagonal = composite[2] * angle * angle + m * slide * slide
-                diagonal += bodies[b + 10] * (angle + slide) * (angle + slide)
-            M[SOURCE[i], SOURCE[i]] += diagonal
-            for before in range(i):
-                j = i - 1 - before
-                moment = moment + wp.cross(links[j], momentum)
-                value = wp.dot(frames.Z[j], moment)
-                if wp.static(not WORLD):  # noqa: SIM102
-                    if j == 0:
-                        value = moment[2]
-                if wp.static(not PLAIN):
-                    value = value * chain[j * CHAIN + 8] + wp.dot(frames.Z[j], momentum) * chain[j * CHAIN + 9]
-                M[SOURCE[i], SOURCE[j]] += value
-                M[SOURCE[j], SOURCE[i]] += value
+        for k in range(L):
+            for j in range(L):
+                value = G[wp.max(k, j), wp.min(k, j)]
+                if wp.static(COUPLED):
+                    M[SOURCE[k], SOURCE[j]] += value
+                else:  # 0 + value, which may be -0, would stay an addition
+                    M[SOURCE[k], SOURCE[j]] = value
         return M
 
     @factory

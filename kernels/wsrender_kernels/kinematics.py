@@ -75,6 +75,44 @@ def chain_type(real, joints: int):
 
 
 @factory
+def frames_type(real, joints: int):
+    """Struct of what a configuration gives for every joint.
+
+    (joints, 3) each: its axis ``Z`` and, before its motion, its axes x and y in the world; the tip's position in its
+    frame after its motion (``levers``) [m]. (joints,) each: ``sines``, ``cosines`` and ``slides`` [m] of the motion.
+    """
+    axes_type, vec_l = wp.types.matrix((joints, 3), real), wp.types.vector(joints, real)
+
+    @wp.struct
+    class Frames:
+        Z: axes_type
+        x_before: axes_type
+        y_before: axes_type
+        levers: axes_type
+        sines: vec_l
+        cosines: vec_l
+        slides: vec_l
+
+    return Frames
+
+
+@factory
+def turns(real) -> SimpleNamespace:
+    """Device functions ``turned_x(v, cosine, sine)`` and ``turned_z``: two vectors, one after the other, turned."""
+    vec6 = wp.types.vector(6, real)
+
+    @wp.func
+    def turned_x(v: vec6, c: real, s: real):
+        return vec6(v[0], c * v[1] - s * v[2], s * v[1] + c * v[2], v[3], c * v[4] - s * v[5], s * v[4] + c * v[5])
+
+    @wp.func
+    def turned_z(v: vec6, c: real, s: real):
+        return vec6(c * v[0] - s * v[1], s * v[0] + c * v[1], v[2], c * v[3] - s * v[4], s * v[3] + c * v[4], v[5])
+
+    return SimpleNamespace(turned_x=turned_x, turned_z=turned_z)
+
+
+@factory
 def orientation(real):
     """Device function R (3, 3) -> unit quaternion w x y z with w >= 0, by the largest component (Shepperd 1978)."""
     mat33, vec4 = wp.types.matrix((3, 3), real), wp.types.vector(4, real)
@@ -113,16 +151,12 @@ def kinematics(real, n: int, sources: tuple[int, ...], plain: bool, world: bool)
     """Device functions for a chain whose joint i is driven by coordinate ``sources[i]`` of ``n``.
 
     ``plain``: every joint is revolute and turns by its own coordinate, so that scales and slides need no arithmetic.
-    ``forward(chain, q) -> tip, x, y, z, frames`` gives the tip's position and axes in the world; ``frames`` holds for
-    every joint frame, (L, 3) each, after its motion its axes X, Y, Z in the world and the tip's position in it
-    (``levers``) [m], before its motion its axes x and y in the world (``x_before``, ``y_before``, where ``world``), and
-    of the motion (L,) each the ``sines``, ``cosines`` and ``slides`` [m]. ``jacobian(chain, frames)`` is (6, n), rows
-    linear then angular at the tip in world axes, as MuJoCo's mj_jacSite. ``moved_base(chain, value, levers[0])`` is the
-    tip for another value of the first joint, bit for bit.
+    ``forward(chain, q) -> tip, x, y, z, frames`` gives the tip's position and axes in the world; ``frames`` as in
+    `frames_type`. ``jacobian(chain, frames)`` is (6, n), rows linear then angular at the tip in world axes, as MuJoCo's
+    mj_jacSite. ``moved_base(chain, value, levers[0])`` is the tip for another value of the first joint, bit for bit.
 
-    ``world`` false: for singular values and M, which no choice of axes changes. The axes in ``frames`` are then those
-    of the frame that the first joint leaves behind it, for half the rotations of the first two joints, and J is in the
-    axes of the middle joint, the nearest to all others. The tip's position is in the world all the same.
+    ``world`` false: for singular values, which no choice of axes changes. J is then in the axes of the middle joint,
+    the nearest to all others. The tip's position is in the world all the same.
 
     The tip's position is accumulated from the tip to the base: the levers of the last joints, which move the least
     inertia, then err by their own small length times epsilon and not by the arm's.
@@ -131,28 +165,15 @@ def kinematics(real, n: int, sources: tuple[int, ...], plain: bool, world: bool)
     SOURCE = wp.types.vector(L, wp.int32)(*sources)
     STRIDE, B = JOINT_STRIDE, L * JOINT_STRIDE
     vec3 = wp.types.vector(3, real)
-    vec_n, vec_l = wp.types.vector(n, real), wp.types.vector(L, real)
-    axes_type = wp.types.matrix((L, 3), real)
+    vec_n = wp.types.vector(n, real)
     jacobian_type = wp.types.matrix((6, n), real)
     vec6, columns_type = wp.types.vector(6, real), wp.types.matrix((L, 6), real)
     sincos = elementary(real).sincos_from
-    Chain = chain_type(real, L)
-    PLAIN, WORLD, COUPLED = plain, world, len(set(sources)) < L
+    Chain, Frames = chain_type(real, L), frames_type(real, L)
+    turned_x, turned_z = turns(real).turned_x, turns(real).turned_z
+    PLAIN, COUPLED = plain, len(set(sources)) < L
     MIDDLE = (L - 1) // 2
-    GENERAL = 0 if world else min(2, L)  # joints before are written out: most of their entries are 0 or 1
     ZERO, ONE = real(0.0), real(1.0)
-
-    @wp.struct
-    class Frames:
-        X: axes_type
-        Y: axes_type
-        Z: axes_type
-        x_before: axes_type
-        y_before: axes_type
-        levers: axes_type
-        sines: vec_l
-        cosines: vec_l
-        slides: vec_l
 
     @wp.func
     def motion(chain: Chain, i: int, value: real):
@@ -202,37 +223,16 @@ def kinematics(real, n: int, sources: tuple[int, ...], plain: bool, world: bool)
             frames.sines[i] = sine
             frames.cosines[i] = cosine
             frames.slides[i] = slide
-        if wp.static(not WORLD):
-            x = vec3(ONE, ZERO, ZERO)
-            y = vec3(ZERO, ONE, ZERO)
-            z = vec3(ZERO, ZERO, ONE)
-            frames.X[0] = x
-            frames.Y[0] = y
-            frames.Z[0] = z
-            if wp.static(L > 1):
-                ca = chain[STRIDE]
-                sa = chain[STRIDE + 1]
-                sine = frames.sines[1]
-                cosine = frames.cosines[1]
-                x = vec3(cosine, ca * sine, sa * sine)
-                y = vec3(-sine, ca * cosine, sa * cosine)
-                z = vec3(ZERO, -sa, ca)
-                frames.X[1] = x
-                frames.Y[1] = y
-                frames.Z[1] = z
-        for i in range(GENERAL, L):
+        for i in range(L):
             a = i * STRIDE
             tilted = y * chain[a] + z * chain[a + 1]
             z = z * chain[a] - y * chain[a + 1]
             sine = frames.sines[i]
             cosine = frames.cosines[i]
-            if wp.static(WORLD):
-                frames.x_before[i] = x
-                frames.y_before[i] = tilted
+            frames.x_before[i] = x
+            frames.y_before[i] = tilted
             y = tilted * cosine - x * sine
             x = x * cosine + tilted * sine
-            frames.X[i] = x
-            frames.Y[i] = y
             frames.Z[i] = z
         t = B + 12
         r = vec3(chain[t], chain[t + 1], chain[t + 2])
@@ -252,14 +252,6 @@ def kinematics(real, n: int, sources: tuple[int, ...], plain: bool, world: bool)
         x = frames.levers[i, 0]
         y = frames.levers[i, 1]
         return frames.cosines[i] * x - frames.sines[i] * y, frames.sines[i] * x + frames.cosines[i] * y
-
-    @wp.func
-    def turned_x(v: vec6, c: real, s: real):
-        return vec6(v[0], c * v[1] - s * v[2], s * v[1] + c * v[2], v[3], c * v[4] - s * v[5], s * v[4] + c * v[5])
-
-    @wp.func
-    def turned_z(v: vec6, c: real, s: real):
-        return vec6(c * v[0] - s * v[1], s * v[0] + c * v[1], v[2], c * v[3] - s * v[4], s * v[3] + c * v[4], v[5])
 
     @wp.func
     def column(chain: Chain, i: int, x: real, y: real, c: real, s: real):
@@ -332,5 +324,4 @@ def kinematics(real, n: int, sources: tuple[int, ...], plain: bool, world: bool)
         vec3=vec3,
         vec_n=vec_n,
         jacobian_type=jacobian_type,
-        Frames=Frames,
     )

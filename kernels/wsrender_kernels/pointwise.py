@@ -39,7 +39,7 @@ def configuration_kernel(real, n: int, method: str) -> wp.Kernel:
 @factory
 def kinematics_kernel(real, n: int, sources: tuple[int, ...], plain: bool, with_inertia: bool) -> wp.Kernel:
     """Kernel: tip pose (N, 12: axes x, y, z, origin), Jacobian (N, 6, n) and, if asked, M (N, n, n) at ``q`` (N, n)."""
-    kin, dyn = kinematics(real, n, sources, plain, True), inertia(real, n, sources, plain, True)
+    kin, dyn = kinematics(real, n, sources, plain, True), inertia(real, n, sources, plain)
     forward, jacobian, inertia_matrix = kin.forward, kin.jacobian, dyn.inertia_matrix
     vec_n = kin.vec_n
     Model = model_type(real, n, len(sources))

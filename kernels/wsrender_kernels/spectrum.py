@@ -182,7 +182,7 @@ def _standard(real, n: int, rows: tuple[int, ...], penalty: bool, torque, cuda: 
     mat_mn, vec_m = wp.types.matrix((m, n), real), wp.types.vector(m, real)
     task_matrix, values = _task_matrix(real, n, rows), singular_values(real, m, n, True, cuda)
     where_positive = _where_positive(real, m)
-    solve = inertia(real, n, tuple(range(n)), True, True).solve(m)
+    solve = inertia(real, n, tuple(range(n)), True).solve(m)
 
     @wp.func
     def unscaled(model: Any, A: mat_mn):

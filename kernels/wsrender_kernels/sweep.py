@@ -124,7 +124,7 @@ def _state(shape: Shape) -> SimpleNamespace:
     real, n = shape.real, shape.n
     kin = kinematics(real, n, shape.sources, shape.plain, shape.world_axes)
     forward, jacobian, jacobian_type = kin.forward, kin.jacobian, kin.jacobian_type
-    dyn = inertia(real, n, shape.sources, shape.plain, shape.world_axes)
+    dyn = inertia(real, n, shape.sources, shape.plain)
     inertia_matrix, inertia_type = dyn.inertia_matrix, dyn.joint_inertia_type
     Model = model_type(real, n, len(shape.sources))
     vec3, vec_n, mat33 = kin.vec3, kin.vec_n, wp.types.matrix((3, 3), real)
