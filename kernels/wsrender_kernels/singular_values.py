@@ -84,7 +84,7 @@ def _as_it_is(real, m: int, n: int):
 def _by_largest_columns(real, n: int):
     """Device function A -> R = E A: rows of E span the largest column, then the largest remainder (pivoted QR)."""
     vec3, mat_3n = wp.types.vector(3, real), wp.types.matrix((3, n), real)
-    ZERO, ONE, TINY = real(0.0), real(1.0), _tiny(real)
+    ZERO, TINY = real(0.0), _tiny(real)
     inverse_root = elementary(real).inverse_root
     NONE = wp.int32(-1)
 
@@ -107,7 +107,7 @@ def _by_largest_columns(real, n: int):
             for r in range(3):
                 a[r] = wp.where(better, c[r], a[r])
         e1 = direction(a)
-        # The pivot's remainder is exactly zero: its rounding error would drown the small columns.
+        # The pivots' remainders are exactly zero: their rounding errors would drown the small columns.
         remainder = mat_3n()
         R = mat_3n()
         second = NONE
@@ -118,9 +118,7 @@ def _by_largest_columns(real, n: int):
             along = wp.dot(e1, c)
             R[0, j] = along
             c = c - e1 * along
-            keep = wp.where(first == j, ZERO, ONE)
-            c = c * keep
-            size = wp.dot(c, c)
+            size = wp.where(first == j, ZERO, wp.dot(c, c))
             better = size > largest
             largest = wp.where(better, size, largest)
             second = wp.where(better, j, second)
@@ -131,8 +129,8 @@ def _by_largest_columns(real, n: int):
         e3 = wp.cross(e1, e2)
         for j in range(n):
             c = vec3(remainder[0, j], remainder[1, j], remainder[2, j])
-            R[1, j] = wp.dot(e2, c)
-            R[2, j] = wp.where(second == j, ZERO, wp.dot(e3, c))
+            R[1, j] = wp.where(first == j, ZERO, wp.dot(e2, c))
+            R[2, j] = wp.where(first == j or second == j, ZERO, wp.dot(e3, c))
         return R
 
     return by_largest_columns
