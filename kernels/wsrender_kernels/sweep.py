@@ -20,7 +20,7 @@ from wsrender_kernels.inertia import inertia
 from wsrender_kernels.kinematics import kinematics, orientation
 from wsrender_kernels.memory import cuda_atomics, memory
 from wsrender_kernels.model import model_type
-from wsrender_kernels.options import CUDA_OPTIONS, MODULE_OPTIONS
+from wsrender_kernels.options import CUDA_OPTIONS, MODULE_OPTIONS, SHORT_OPTIONS
 from wsrender_kernels.sampling import LANES, base_levels, blocks, grid_level, sample_space, sampling
 from wsrender_kernels.spectrum import in_base_axes, spectrum
 from wsrender_kernels.voxels import lattice, lowest, voxels
@@ -69,6 +69,11 @@ class Shape:
         ``wsrender_code`` reproduces the rounding of the program's determinant, in its axes.
         """
         return self.keep_orientation or in_base_axes(self.rows) or self.convention == "wsrender_code"
+
+    @property
+    def short(self) -> bool:
+        """Whether a sample is little work: no inertia matrix, no rotations of six rows."""
+        return not self.dynamic and len(self.rows) <= 3 and self.convention != "wsrender_code"
 
     @property
     def n_outputs(self) -> int:
@@ -292,7 +297,9 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
     cells_type = wp.types.vector(LANES, wp.int32)
     levers_type = wp.types.vector(3 * LANES, real)
 
-    @wp.kernel(module="unique", module_options=MODULE_OPTIONS, enable_backward=False)
+    options = SHORT_OPTIONS if shape.short else MODULE_OPTIONS
+
+    @wp.kernel(module="unique", module_options=options, enable_backward=False)
     def sweep_cpu(
         # in
         model: Model,
@@ -339,15 +346,15 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
 
             for r in range(REDUCED):
                 largest = LOWEST
-                smallest = LOWEST
+                smallest = ~LOWEST
                 row = r * BLOCK
                 for lane in range(BLOCK):
                     key = ordered(values[row + lane])
                     keys[row + lane] = key
                     largest = wp.max(largest, key)
-                    smallest = wp.max(smallest, ~key)
+                    smallest = wp.min(smallest, key)
                 to.extremes[2 * r] = wp.max(to.extremes[2 * r], largest)
-                to.extremes[2 * r + 1] = wp.max(to.extremes[2 * r + 1], smallest)
+                to.extremes[2 * r + 1] = wp.max(to.extremes[2 * r + 1], ~smallest)
 
             for k in range(K):
                 # Sums of 256 quanta of 30 bits need 38: two halves stay in the SIMD lanes of 32, one of 64 would not.
