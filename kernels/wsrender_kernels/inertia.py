@@ -224,12 +224,13 @@ def inertia(real, n: int, sources: tuple[int, ...], plain: bool) -> SimpleNamesp
 
     def towards_base(start: int, stop: int, end: int):
         """Device function from the frame of joint start to that of stop, with the momenta from there to end."""
+        LATEST = end - 1
 
         @wp.func
         def there(chain: Chain, bodies: Bodies, frames: Frames, S: sym3, h: vec3, momenta: sixes_type, G: joints_type):
             for i in range(start, stop, -1):
-                for k in range(i, end):
-                    momenta[k] = carried(chain, frames, i, momenta[k])
+                for k in range(i, LATEST):
+                    momenta[k + 1] = carried(chain, frames, i, momenta[k + 1])
                 S, h = beyond(chain, bodies, frames, i, S, h)
                 momenta[i] = momentum_before(chain, bodies, i, S, h)
                 S, h = with_link(chain, bodies, i, S, h)
@@ -252,24 +253,29 @@ def inertia(real, n: int, sources: tuple[int, ...], plain: bool) -> SimpleNamesp
         S, h, momenta, G = to_middle(chain, bodies, frames, S, h, sixes_type(), G)
         momenta[MIDDLE] = momentum(chain, bodies, MIDDLE, S, h)
         velocities = sixes_type()
-        for i in range(1, wp.static(MIDDLE + 1)):
+        for i in range(MIDDLE):
             for j in range(i):
-                velocities[j] = velocity_after(chain, frames, i, velocities[j])
-            velocities[i - 1] = velocity(chain, frames, i)
+                velocities[j] = velocity_after(chain, frames, i + 1, velocities[j])
+            velocities[i] = velocity(chain, frames, i + 1)
         for j in range(MIDDLE):
             v = velocities[j]
+            v = vec6(v[3], v[4], v[5], v[0], v[1], v[2])
             for k in range(MIDDLE, L):
-                f = momenta[k]
-                G[k, j] = f[0] * v[3] + f[1] * v[4] + f[2] * v[5] + f[3] * v[0] + f[4] * v[1] + f[5] * v[2]
+                G[k, j] = wp.dot(momenta[k], v)
         S, h, momenta, G = from_middle(chain, bodies, frames, S, h, momenta, G)
         M = joint_inertia_type()
         for k in range(L):
-            for j in range(L):
-                value = G[wp.max(k, j), wp.min(k, j)]
+            if wp.static(COUPLED):
+                M[SOURCE[k], SOURCE[k]] += G[k, k]
+            else:  # 0 + value, which may be -0, would stay an addition
+                M[SOURCE[k], SOURCE[k]] = G[k, k]
+            for j in range(k):
                 if wp.static(COUPLED):
-                    M[SOURCE[k], SOURCE[j]] += value
-                else:  # 0 + value, which may be -0, would stay an addition
-                    M[SOURCE[k], SOURCE[j]] = value
+                    M[SOURCE[k], SOURCE[j]] += G[k, j]
+                    M[SOURCE[j], SOURCE[k]] += G[k, j]
+                else:
+                    M[SOURCE[k], SOURCE[j]] = G[k, j]
+                    M[SOURCE[j], SOURCE[k]] = G[k, j]
         return M
 
     @factory
