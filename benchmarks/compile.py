@@ -25,7 +25,12 @@ from wsrender.engine import devices_of
 from wsrender.engine.kernel_cache import loaded
 from wsrender.engine.sweep import Accumulator
 
-WORKS = {"6 kinematic": {}, "12": {"indices": "all"}, "6 kinematic, task full": {"task": "full"}}
+WORKS: dict[str, dict] = {
+    "6 kinematic": {},
+    "12": {"indices": "all"},
+    "6 kinematic, task full": {"task": "full"},
+    "12, task full": {"indices": "all", "task": "full"},
+}
 SMALL = "a small kernel first"
 
 

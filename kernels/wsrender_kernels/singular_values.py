@@ -168,6 +168,7 @@ def _two_rows(real, m: int, n: int):
     return two_rows
 
 
+@factory
 def _three_rows(real, m: int, n: int):
     vec_m = wp.types.vector(3, real)
     mat_mn = wp.types.matrix((3, n), real)
@@ -345,6 +346,7 @@ def _rotation(real):
     return rotation32 if real is wp.float32 else rotation64
 
 
+@factory
 def _jacobi(real, m: int, n: int, by_columns: bool, cuda: bool):
     """One-sided Jacobi on the rows of R, (the n columns, or the m rows) P = Q R with pivoting.
 

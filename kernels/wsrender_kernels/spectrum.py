@@ -115,6 +115,7 @@ def _torque_scaled(real, n: int):
     return make
 
 
+@factory
 def _task_matrix(real, n: int, rows: tuple[int, ...]):
     """The chosen rows of J, linear ones divided by the characteristic length where there are angular ones too.
 

@@ -20,7 +20,7 @@ from wsrender_kernels.inertia import inertia
 from wsrender_kernels.kinematics import kinematics, orientation
 from wsrender_kernels.memory import cuda_atomics, memory
 from wsrender_kernels.model import model_type
-from wsrender_kernels.options import CUDA_OPTIONS, MODULE_OPTIONS, SHORT_OPTIONS
+from wsrender_kernels.options import CUDA_OPTIONS, LONG_CUDA_OPTIONS, MODULE_OPTIONS, SHORT_OPTIONS
 from wsrender_kernels.sampling import LANES, base_levels, blocks, grid_level, sample_space, sampling
 from wsrender_kernels.spectrum import in_base_axes, spectrum
 from wsrender_kernels.voxels import lattice, lowest, voxels
@@ -71,9 +71,22 @@ class Shape:
         return self.keep_orientation or in_base_axes(self.rows) or self.convention == "wsrender_code"
 
     @property
+    def many_rows(self) -> bool:
+        """Whether singular values of more than three rows are taken, by rotations."""
+        return len(self.rows) > 3 or self.convention == "wsrender_code"
+
+    @property
     def short(self) -> bool:
-        """Whether a sample is little work: no inertia matrix, no rotations of six rows."""
-        return not self.dynamic and len(self.rows) <= 3 and self.convention != "wsrender_code"
+        """Whether a sample is little work."""
+        return not (self.dynamic or self.many_rows)
+
+    @property
+    def long(self) -> bool:
+        """Whether the compiler of an H200, optimizing all it can, takes over 10 s."""
+        most_joints = 9
+        if self.many_rows:
+            most_joints = 6 if self.real is wp.float32 else 7
+        return self.dynamic and len(self.sources) > most_joints
 
     @property
     def n_outputs(self) -> int:
@@ -456,7 +469,9 @@ def _cuda_kernel(shape: Shape) -> wp.Kernel:
     add, raise_to = cuda_atomics(wp.int64).add, cuda_atomics(bits).raise_to
     store_row, load_record = memory(real).store, memory(record_type_of(shape)).load
 
-    @wp.kernel(module="unique", module_options=CUDA_OPTIONS, enable_backward=False, grid_stride=False)
+    options = LONG_CUDA_OPTIONS if shape.long else CUDA_OPTIONS
+
+    @wp.kernel(module="unique", module_options=options, enable_backward=False, grid_stride=False)
     def sweep_cuda(
         # in
         model: Model,
