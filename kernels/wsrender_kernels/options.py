@@ -17,5 +17,5 @@ MODULE_OPTIONS = {"enable_backward": False, "cpu_compiler_flags": CPU_FLAGS}
 SHORT_OPTIONS = {**MODULE_OPTIONS, "cpu_compiler_flags": CPU_FLAGS.replace("regpressure=true", "regpressure=false")}
 # Division and square root of float32 to 2 units in the last place: a third faster.
 CUDA_OPTIONS = {**MODULE_OPTIONS, "fast_math": True}
-# Compiled in half the time; kernels are a fifth slower.
+# Compiled in half the time; kernels are about a fifth slower.
 LONG_CUDA_OPTIONS = {**CUDA_OPTIONS, "optimization_level": 2}

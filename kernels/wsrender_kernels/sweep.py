@@ -82,7 +82,7 @@ class Shape:
 
     @property
     def long(self) -> bool:
-        """Whether the compiler of an H200, optimizing all it can, takes over 10 s."""
+        """Whether the compiler for an H200, optimizing all it can, takes some 10 s or more."""
         most_joints = 9
         if self.many_rows:
             most_joints = 6 if self.real is wp.float32 else 7
