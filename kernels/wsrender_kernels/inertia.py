@@ -21,6 +21,7 @@ from wsrender_kernels.kinematics import (
     frames_type,
     turns,
 )
+from wsrender_kernels.matrices import transpose
 
 # Mass of the joint's link and all after it; of these, as if at the next joint's origin, with the link: first moment
 # xyz and inertia xx yy zz xy xz yz about the joint's origin; armature.
@@ -70,7 +71,7 @@ def inertia(real, n: int, sources: tuple[int, ...], plain: bool) -> SimpleNamesp
     ZERO, ONE, TWO = real(0.0), real(1.0), real(2.0)
     Chain, Bodies, Frames = chain_type(real, L), wp.types.vector(L * BODY_STRIDE, real), frames_type(real, L)
     turned_x, turned_z = turns(real).turned_x, turns(real).turned_z
-    PLAIN, COUPLED = plain, len(set(sources)) < L
+    PLAIN = plain
 
     @wp.func
     def inertia_turned_z(S: sym3, c: real, s: real):
@@ -244,6 +245,26 @@ def inertia(real, n: int, sources: tuple[int, ...], plain: bool) -> SimpleNamesp
     to_middle, from_middle = towards_base(LAST, MIDDLE, L), towards_base(MIDDLE, 0, MIDDLE)
 
     @wp.func
+    def of_own_coordinates(G: joints_type):
+        M = G
+        for k in range(L):
+            for j in range(k):
+                M[j, k] = G[k, j]
+        return M
+
+    @wp.func
+    def of_shared_coordinates(G: joints_type):
+        M = joint_inertia_type()
+        for k in range(L):
+            M[SOURCE[k], SOURCE[k]] += G[k, k]
+            for j in range(k):
+                M[SOURCE[k], SOURCE[j]] += G[k, j]
+                M[SOURCE[j], SOURCE[k]] += G[k, j]
+        return M
+
+    in_coordinates = of_own_coordinates if sources == tuple(range(n)) else of_shared_coordinates
+
+    @wp.func
     def inertia_matrix(chain: Chain, bodies: Bodies, frames: Frames):
         b = LAST * BODY
         h = vec3(bodies[b + 1], bodies[b + 2], bodies[b + 3])
@@ -263,25 +284,13 @@ def inertia(real, n: int, sources: tuple[int, ...], plain: bool) -> SimpleNamesp
             for k in range(MIDDLE, L):
                 G[k, j] = wp.dot(momenta[k], v)
         S, h, momenta, G = from_middle(chain, bodies, frames, S, h, momenta, G)
-        M = joint_inertia_type()
-        for k in range(L):
-            if wp.static(COUPLED):
-                M[SOURCE[k], SOURCE[k]] += G[k, k]
-            else:  # 0 + value, which may be -0, would stay an addition
-                M[SOURCE[k], SOURCE[k]] = G[k, k]
-            for j in range(k):
-                if wp.static(COUPLED):
-                    M[SOURCE[k], SOURCE[j]] += G[k, j]
-                    M[SOURCE[j], SOURCE[k]] += G[k, j]
-                else:
-                    M[SOURCE[k], SOURCE[j]] = G[k, j]
-                    M[SOURCE[j], SOURCE[k]] = G[k, j]
-        return M
+        return in_coordinates(G)
 
     @factory
     def solve(m_rows: int):
         rows_type = wp.types.matrix((m_rows, n), real)
         vec_n = wp.types.vector(n, real)
+        by_coordinate, by_row = transpose(real, m_rows, n), transpose(real, n, m_rows)
 
         @wp.func
         def solve_rows(M: joint_inertia_type, A: rows_type):
@@ -299,17 +308,16 @@ def inertia(real, n: int, sources: tuple[int, ...], plain: bool) -> SimpleNamesp
                     F[i, j] = scaled[j] * inverse[j]
                     D[i] -= F[i, j] * scaled[j]
                 inverse[i] = ONE / D[i]
-            out = A
-            for r in range(m_rows):
-                for i in range(n):
-                    for k in range(i):
-                        out[r, i] -= F[i, k] * out[r, k]
-                for i in range(n):
-                    out[r, i] *= inverse[i]
-                for i in range(wp.static(n - 1), 0, -1):
-                    for k in range(i):
-                        out[r, k] -= F[i, k] * out[r, i]
-            return out
+            X = by_coordinate(A)  # M^-1 A^T in the end
+            for i in range(n):
+                for k in range(i):
+                    X[i] -= X[k] * F[i, k]
+            for i in range(n):
+                X[i] *= inverse[i]
+            for i in range(wp.static(n - 1), 0, -1):
+                for k in range(i):
+                    X[k] -= X[i] * F[i, k]
+            return by_row(X)
 
         return solve_rows
 

@@ -12,6 +12,7 @@ import warp as wp
 
 from wsrender_kernels.elementary import elementary
 from wsrender_kernels.factories import factory
+from wsrender_kernels.matrices import transpose
 
 # cos α, sin α, translation xyz, offset (its rest, that in quarter turns, whole quarters), angle per q, slide per q,
 # slide at q = 0
@@ -156,7 +157,7 @@ def kinematics(real, n: int, sources: tuple[int, ...], plain: bool, world: bool)
     mj_jacSite. ``moved_base(chain, value, levers[0])`` is the tip for another value of the first joint, bit for bit.
 
     ``world`` false: for singular values, which no choice of axes changes. J is then in the axes of the middle joint,
-    the nearest to all others. The tip's position is in the world all the same.
+    the nearest to all others. The tip's position is in the world all the same; axes are left at zero.
 
     The tip's position is accumulated from the tip to the base: the levers of the last joints, which move the least
     inertia, then err by their own small length times epsilon and not by the arm's.
@@ -171,7 +172,7 @@ def kinematics(real, n: int, sources: tuple[int, ...], plain: bool, world: bool)
     sincos = elementary(real).sincos_from
     Chain, Frames = chain_type(real, L), frames_type(real, L)
     turned_x, turned_z = turns(real).turned_x, turns(real).turned_z
-    PLAIN, COUPLED = plain, len(set(sources)) < L
+    PLAIN = plain
     MIDDLE = (L - 1) // 2
     ZERO, ONE = real(0.0), real(1.0)
 
@@ -213,16 +214,11 @@ def kinematics(real, n: int, sources: tuple[int, ...], plain: bool, world: bool)
         return in_world(chain, before(chain, 0, sine, cosine, slide, lever))
 
     @wp.func
-    def forward(chain: Chain, q: vec_n):
+    def with_axes(chain: Chain, frames: Frames):
+        """The frames with their axes in the world, and those of the tip."""
         x = vec3(chain[B], chain[B + 1], chain[B + 2])
         y = vec3(chain[B + 3], chain[B + 4], chain[B + 5])
         z = vec3(chain[B + 6], chain[B + 7], chain[B + 8])
-        frames = Frames()
-        for i in range(L):
-            sine, cosine, slide = motion(chain, i, q[SOURCE[i]])
-            frames.sines[i] = sine
-            frames.cosines[i] = cosine
-            frames.slides[i] = slide
         for i in range(L):
             a = i * STRIDE
             tilted = y * chain[a] + z * chain[a + 1]
@@ -234,17 +230,34 @@ def kinematics(real, n: int, sources: tuple[int, ...], plain: bool, world: bool)
             y = tilted * cosine - x * sine
             x = x * cosine + tilted * sine
             frames.Z[i] = z
+        t = B + 15
+        tip_x = x * chain[t] + y * chain[t + 1] + z * chain[t + 2]
+        tip_y = x * chain[t + 3] + y * chain[t + 4] + z * chain[t + 5]
+        tip_z = x * chain[t + 6] + y * chain[t + 7] + z * chain[t + 8]
+        return frames, tip_x, tip_y, tip_z
+
+    @wp.func
+    def without_axes(chain: Chain, frames: Frames):
+        return frames, vec3(), vec3(), vec3()
+
+    axes_of = with_axes if world else without_axes
+
+    @wp.func
+    def forward(chain: Chain, q: vec_n):
+        frames = Frames()
+        for i in range(L):
+            sine, cosine, slide = motion(chain, i, q[SOURCE[i]])
+            frames.sines[i] = sine
+            frames.cosines[i] = cosine
+            frames.slides[i] = slide
         t = B + 12
         r = vec3(chain[t], chain[t + 1], chain[t + 2])
         for back in range(L):
             i = L - 1 - back
             frames.levers[i] = r
             r = before(chain, i, frames.sines[i], frames.cosines[i], frames.slides[i], r)
-        tip = in_world(chain, r)
-        tip_x = x * chain[t + 3] + y * chain[t + 4] + z * chain[t + 5]
-        tip_y = x * chain[t + 6] + y * chain[t + 7] + z * chain[t + 8]
-        tip_z = x * chain[t + 9] + y * chain[t + 10] + z * chain[t + 11]
-        return tip, tip_x, tip_y, tip_z, frames
+        frames, x, y, z = axes_of(chain, frames)
+        return in_world(chain, r), x, y, z, frames
 
     @wp.func
     def turned_lever(frames: Frames, i: int):
@@ -306,16 +319,18 @@ def kinematics(real, n: int, sources: tuple[int, ...], plain: bool, world: bool)
     columns_of = columns_in_the_world if world else columns_in_the_middle
 
     @wp.func
-    def jacobian(chain: Chain, frames: Frames):
-        columns = columns_of(chain, frames)
+    def of_shared_coordinates(columns: columns_type):
         J = jacobian_type()
         for i in range(L):
             for r in range(6):
-                if wp.static(COUPLED):
-                    J[r, SOURCE[i]] += columns[i, r]
-                else:
-                    J[r, SOURCE[i]] = columns[i, r]
+                J[r, SOURCE[i]] += columns[i, r]
         return J
+
+    in_coordinates = transpose(real, L, 6) if sources == tuple(range(n)) else of_shared_coordinates
+
+    @wp.func
+    def jacobian(chain: Chain, frames: Frames):
+        return in_coordinates(columns_of(chain, frames))
 
     return SimpleNamespace(
         forward=forward,

@@ -18,6 +18,7 @@ from numpy.polynomial import Chebyshev, Polynomial
 
 from wsrender_kernels.elementary import elementary
 from wsrender_kernels.factories import factory
+from wsrender_kernels.matrices import transpose
 
 SWEEPS = {wp.float32: 4, wp.float64: 5}  # of a triangular factor
 # Of a third of an angle: degree of the polynomials, and steps that square their error.
@@ -83,9 +84,9 @@ def _as_it_is(real, m: int, n: int):
 
 def _by_largest_columns(real, n: int):
     """Device function A -> R = E A: rows of E span the largest column, then the largest remainder (pivoted QR)."""
-    vec3, mat_3n = wp.types.vector(3, real), wp.types.matrix((3, n), real)
+    vec3, vec_n, mat_3n = wp.types.vector(3, real), wp.types.vector(n, real), wp.types.matrix((3, n), real)
     ZERO, TINY = real(0.0), _tiny(real)
-    inverse_root = elementary(real).inverse_root
+    inverse_root, columns_of = elementary(real).inverse_root, transpose(real, 3, n)
     NONE = wp.int32(-1)
 
     @wp.func
@@ -95,42 +96,39 @@ def _by_largest_columns(real, n: int):
 
     @wp.func
     def by_largest_columns(A: mat_3n):
+        columns = columns_of(A)
         first = NONE
         largest = ZERO
         a = vec3()
         for j in range(n):
-            c = vec3(A[0, j], A[1, j], A[2, j])
-            size = wp.dot(c, c)
+            size = wp.dot(columns[j], columns[j])
             better = size > largest
             largest = wp.where(better, size, largest)
             first = wp.where(better, j, first)
             for r in range(3):
-                a[r] = wp.where(better, c[r], a[r])
+                a[r] = wp.where(better, columns[j, r], a[r])
         e1 = direction(a)
         # The pivots' remainders are exactly zero: their rounding errors would drown the small columns.
-        remainder = mat_3n()
-        R = mat_3n()
+        along = vec_n()
         second = NONE
         largest = ZERO
         b = vec3()
         for j in range(n):
-            c = vec3(A[0, j], A[1, j], A[2, j])
-            along = wp.dot(e1, c)
-            R[0, j] = along
-            c = c - e1 * along
-            size = wp.where(first == j, ZERO, wp.dot(c, c))
+            along[j] = wp.dot(e1, columns[j])
+            columns[j] -= e1 * along[j]
+            size = wp.where(first == j, ZERO, wp.dot(columns[j], columns[j]))
             better = size > largest
             largest = wp.where(better, size, largest)
             second = wp.where(better, j, second)
             for r in range(3):
-                remainder[r, j] = c[r]
-                b[r] = wp.where(better, c[r], b[r])
+                b[r] = wp.where(better, columns[j, r], b[r])
         e2 = direction(b - e1 * wp.dot(e1, b))
         e3 = wp.cross(e1, e2)
+        R = mat_3n()
+        R[0] = along
         for j in range(n):
-            c = vec3(remainder[0, j], remainder[1, j], remainder[2, j])
-            R[1, j] = wp.where(first == j, ZERO, wp.dot(e2, c))
-            R[2, j] = wp.where(first == j or second == j, ZERO, wp.dot(e3, c))
+            R[1, j] = wp.where(first == j, ZERO, wp.dot(e2, columns[j]))
+            R[2, j] = wp.where(first == j or second == j, ZERO, wp.dot(e3, columns[j]))
         return R
 
     return by_largest_columns
@@ -331,7 +329,7 @@ def _rotation(real):
         size = wp.abs(difference) + root
         t = wp.where(size > TINY, wp.where(difference < ZERO, -twice, twice) / wp.max(size, TINY), ZERO)
         c = ONE / wp.sqrt(ONE + t * t)
-        return c, c * t
+        return c, c * t, t
 
     @wp.func
     def rotation64(difference: real, twice: real):
@@ -341,7 +339,8 @@ def _rotation(real):
         cosine = wp.where(regular, wp.abs(difference) * per_length, ONE)
         c_square = HALF * cosine + HALF
         per_c = inverse_root(c_square)
-        return c_square * per_c, wp.where(difference < ZERO, -twice, twice) * (HALF * per_length * per_c)
+        sine = wp.where(difference < ZERO, -twice, twice) * (HALF * per_length * per_c)
+        return c_square * per_c, sine, sine * per_c
 
     return rotation32 if real is wp.float32 else rotation64
 
@@ -368,7 +367,8 @@ def _jacobi(real, m: int, n: int, by_columns: bool, cuda: bool):
     pairs_type = wp.types.vector(max(len(pairs), 1), wp.int32)
     FIRST, SECOND = pairs_type(*[i for i, _ in pairs]), pairs_type(*[j for _, j in pairs])
     ZERO, ONE, TWO, TINY = real(0.0), real(1.0), real(2.0), _tiny(real)
-    rotation = _rotation(real)
+    rotation, by_coordinate = _rotation(real), transpose(real, COUNT, LENGTH)
+    oriented = transpose(real, m, n) if by_columns else _as_it_is(real, m, n)
 
     @wp.func
     def longest_coordinates_first(W: mat_vectors):
@@ -396,18 +396,17 @@ def _jacobi(real, m: int, n: int, by_columns: bool, cuda: bool):
         for k in range(STEPS):
             # The longest of the vectors that are left comes next. Lengths are those across the coordinates before k.
             sizes = vec_count()
-            for i in range(COUNT):
+            for i in range(k, COUNT):
                 sizes[i] = out[i, k] * out[i, k]
                 for r in range(LAST_COORDINATE, k, -1):
                     sizes[i] += out[i, r] * out[i, r]
             for i in range(LAST, k, -1):
                 swap = sizes[i] > sizes[i - 1]
                 sizes[i - 1] = wp.max(sizes[i], sizes[i - 1])
-                for r in range(LENGTH):
-                    a = out[i - 1, r]
-                    b = out[i, r]
-                    out[i - 1, r] = wp.where(swap, b, a)
-                    out[i, r] = wp.where(swap, a, b)
+                a = out[i - 1]
+                b = out[i]
+                out[i - 1] = wp.where(swap, b, a)
+                out[i] = wp.where(swap, a, b)
             # A reflection turns it onto coordinate k.
             length = wp.copysign(wp.sqrt(sizes[k]), out[k, k])
             first = out[k, k] + length
@@ -424,24 +423,30 @@ def _jacobi(real, m: int, n: int, by_columns: bool, cuda: bool):
             out[k, k] = -length
             for r in range(LAST_COORDINATE, k, -1):
                 out[k, r] = ZERO
+        coordinates = by_coordinate(out)
         F = mat_factor()
         for k in range(RANK):
-            for i in range(COUNT):
-                F[k, i] = out[i, k]
+            F[k] = coordinates[k]
         return F
 
     @wp.func
     def sweep(F: mat_factor):
         out = F
+        squares = vec_rank()
+        for i in range(RANK):
+            squares[i] = wp.dot(out[i], out[i])
         for number in range(ROUNDS):  # two loops: Warp writes out no more than 16 steps of one
             for k in range(AT_ONCE):
                 i = FIRST[number * AT_ONCE + k]
                 j = SECOND[number * AT_ONCE + k]
                 a = out[i]
                 b = out[j]
-                c, s = rotation(wp.dot(b, b) - wp.dot(a, a), TWO * wp.dot(a, b))
+                along = wp.dot(a, b)
+                c, s, t = rotation(squares[j] - squares[i], TWO * along)
                 out[i] = a * c - b * s
                 out[j] = a * s + b * c
+                squares[i] -= t * along
+                squares[j] += t * along
         return out
 
     @wp.func
@@ -462,19 +467,15 @@ def _jacobi(real, m: int, n: int, by_columns: bool, cuda: bool):
 
     @wp.func
     def jacobi(A: mat_mn):
-        W = mat_vectors()
-        for i in range(COUNT):
-            for j in range(LENGTH):
-                if wp.static(TRANSPOSED):
-                    W[i, j] = A[j, i]
-                else:
-                    W[i, j] = A[i, j]
+        W = oriented(A)
         # Unit scale, so that squares of small robots' lengths do not underflow.
         scale = ZERO
         for i in range(COUNT):
             scale = scale + wp.dot(W[i], W[i])
         scale = wp.sqrt(scale)
-        W = W * (ONE / wp.max(scale, TINY))
+        per_scale = ONE / wp.max(scale, TINY)
+        for i in range(COUNT):  # W * per_scale stays a loop where n is large, and the lane loop then scalar
+            W[i] *= per_scale
         if wp.static(TRANSPOSED):
             W = longest_coordinates_first(W)
         F = sweeps(triangular_factor(W), NUMBER_OF_SWEEPS)

@@ -139,10 +139,10 @@ def _task_matrix(real, n: int, rows: tuple[int, ...]):
                     B[3 + r, i] = angular[r]
         A = mat_mn()
         for r in range(m):
-            for i in range(n):
-                A[r, i] = B[ROW[r], i]
-                if ROW[r] < wp.static(3 if MIXED else 0):
-                    A[r, i] *= model.linear_scale
+            if ROW[r] < wp.static(3 if MIXED else 0):
+                A[r] = B[ROW[r]] * model.linear_scale
+            else:
+                A[r] = B[ROW[r]]
         return A
 
     return task_matrix
@@ -219,7 +219,8 @@ def _table_1(real, n: int, rows: tuple[int, ...], penalty: bool, torque, cuda: b
         L, Q = lower_factor(task_matrix(model, J))
         W = mat_mn()
         for r in range(m):
-            W[r] = M * Q[r]
+            for i in range(n):  # M * Q[r] stays a loop where n is large, and the lane loop then scalar
+                W[r, i] = wp.dot(M[i], Q[r])
         U, _V = lower_factor(W)
         # Rows of X with X Uᵀ = L, that is the matrix whose singular values are the inverses of those of M J⁺.
         X = mat_mm()
@@ -289,7 +290,11 @@ def _wsrender_code(real, n: int, rows: tuple[int, ...], penalty: bool, torque, c
 
     @wp.func
     def dynamic(model: Any, J: mat_6n, M: mat_nn, kinematic: out_type):
-        six = of_product(J * M)
+        product = mat_6n()  # J * M stays a loop where n is large, and the lane loop then scalar
+        for r in range(6):
+            for i in range(n):
+                product[r, i] = wp.dot(J[r], M[i])
+        six = of_product(product)
         out = out_type()
         determinant = ONE
         for i in range(COUNT):

@@ -20,7 +20,13 @@ from wsrender_kernels.inertia import inertia
 from wsrender_kernels.kinematics import kinematics, orientation
 from wsrender_kernels.memory import cuda_atomics, memory
 from wsrender_kernels.model import model_type
-from wsrender_kernels.options import CUDA_OPTIONS, LONG_CUDA_OPTIONS, MODULE_OPTIONS, SHORT_OPTIONS
+from wsrender_kernels.options import (
+    CUDA_OPTIONS,
+    DYNAMIC_OPTIONS,
+    LONG_CUDA_OPTIONS,
+    MODULE_OPTIONS,
+    SHORT_OPTIONS,
+)
 from wsrender_kernels.sampling import LANES, base_levels, blocks, grid_level, sample_space, sampling
 from wsrender_kernels.spectrum import in_base_axes, spectrum
 from wsrender_kernels.voxels import lattice, lowest, voxels
@@ -74,11 +80,6 @@ class Shape:
     def many_rows(self) -> bool:
         """Whether singular values of more than three rows are taken, by rotations."""
         return len(self.rows) > 3 or self.convention == "wsrender_code"
-
-    @property
-    def short(self) -> bool:
-        """Whether a sample is little work."""
-        return not (self.dynamic or self.many_rows)
 
     @property
     def long(self) -> bool:
@@ -310,7 +311,7 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
     cells_type = wp.types.vector(LANES, wp.int32)
     levers_type = wp.types.vector(3 * LANES, real)
 
-    options = SHORT_OPTIONS if shape.short else MODULE_OPTIONS
+    options = DYNAMIC_OPTIONS if shape.dynamic else MODULE_OPTIONS if shape.many_rows else SHORT_OPTIONS
 
     @wp.kernel(module="unique", module_options=options, enable_backward=False)
     def sweep_cpu(
@@ -357,7 +358,9 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
                 for lane in range(BLOCK):
                     cells[lane] = cell(grid, vec3(values[lane], values[BLOCK + lane], values[2 * BLOCK + lane]))
 
-            for r in range(REDUCED):
+            # While, or Warp would write the loops over outputs out, and their lane loops as often.
+            r = wp.int32(0)
+            while r < REDUCED:
                 largest = LOWEST
                 smallest = ~LOWEST
                 row = r * BLOCK
@@ -368,8 +371,10 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
                     smallest = wp.min(smallest, key)
                 to.extremes[2 * r] = wp.max(to.extremes[2 * r], largest)
                 to.extremes[2 * r + 1] = wp.max(to.extremes[2 * r + 1], ~smallest)
+                r += 1
 
-            for k in range(K):
+            k = wp.int32(0)
+            while k < K:
                 # Sums of 256 quanta of 30 bits need 38: two halves stay in the SIMD lanes of 32, one of 64 would not.
                 upper = bits(0)
                 lower = bits(0)
@@ -386,6 +391,7 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
                         lower += quantum
                 repeated = wide(BLOCK - valid) * wp.int64(quantized(values[row + valid - 1], scale))
                 to.totals[k] = to.totals[k] + wp.int64(upper) * FROM_UPPER + wp.int64(lower) - repeated
+                k += 1
 
             if wp.static(VOXELS):
                 # Touch all target records first: their cache misses then overlap, which halves the time.

@@ -1,0 +1,29 @@
+"""Matrix operations that are written out whole, however large.
+
+Warp's own stay loops from some 60 numbers on, and the lane loop around them is then not vectorised.
+"""
+
+import warp as wp
+
+from wsrender_kernels.factories import factory
+
+
+@factory
+def transpose(real, rows: int, columns: int):
+    """Device function A (rows, columns) -> A^T."""
+    given_type, transposed_type = wp.types.matrix((rows, columns), real), wp.types.matrix((columns, rows), real)
+
+    @wp.func_native(f"""
+    wp::mat_t<{columns}, {rows}, wp::{real.__name__}> B;
+    #pragma unroll
+    for (int i = 0; i < {columns}; ++i) {{
+        #pragma unroll
+        for (int j = 0; j < {rows}; ++j) {{
+            B.data[i][j] = A.data[j][i];
+        }}
+    }}
+    return B;
+    """)
+    def transposed(A: given_type) -> transposed_type: ...
+
+    return transposed
