@@ -1,4 +1,4 @@
-"""Seconds to compile the fused kernel and to load it from the kernel cache, and its rate, for arms of several joints.
+"""Seconds to compile the fused kernel and to load it from the kernel cache, and its rate, by number of joints.
 
     python benchmarks/compile.py [--device cpu] [--joints 6 7 12]
 

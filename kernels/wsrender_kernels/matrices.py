@@ -1,6 +1,6 @@
-"""Matrix operations that are written out whole, however large.
+"""Transposition, written out whole for any number of rows and columns.
 
-Warp's own stay loops from some 60 numbers on, and the lane loop around them is then not vectorised.
+Warp's own matrix operations stay loops from some 60 numbers on, and the lane loop around them is then not vectorised.
 """
 
 import warp as wp

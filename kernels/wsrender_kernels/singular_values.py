@@ -432,7 +432,7 @@ def _jacobi(real, m: int, n: int, by_columns: bool, cuda: bool):
     @wp.func
     def sweep(F: mat_factor):
         out = F
-        squares = vec_rank()
+        squares = vec_rank()  # cancellation in them costs convergence at most: every sweep begins with new ones
         for i in range(RANK):
             squares[i] = wp.dot(out[i], out[i])
         for number in range(ROUNDS):  # two loops: Warp writes out no more than 16 steps of one

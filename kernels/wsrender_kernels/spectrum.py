@@ -290,7 +290,8 @@ def _wsrender_code(real, n: int, rows: tuple[int, ...], penalty: bool, torque, c
 
     @wp.func
     def dynamic(model: Any, J: mat_6n, M: mat_nn, kinematic: out_type):
-        product = mat_6n()  # J * M stays a loop where n is large, and the lane loop then scalar
+        # Row by row, M being symmetric: J * M stays a loop where n is large, and the lane loop then scalar.
+        product = mat_6n()
         for r in range(6):
             for i in range(n):
                 product[r, i] = wp.dot(J[r], M[i])
