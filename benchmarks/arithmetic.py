@@ -2,8 +2,8 @@
 
 An addition, subtraction, multiplication, division or square root counts as one operation, a fused multiply-add as
 two; comparisons, selections, sign changes and integer work (the random bits) count as none, and neither does what
-the compiler removes (angular rows of a linear task). The counts are for a chain of n uncoupled
-joints, random sampling, the task "linear" and the standard convention. n = 6, float32: 682 kinematic, 2,285 twelve.
+the compiler removes (angular rows of a linear task). The counts are for a chain of n uncoupled joints, random
+sampling, the task "linear" and the standard convention. n = 6, float32: 682 kinematic, 2,285 twelve.
 """
 
 FLOAT_BYTES = {"float32": 4, "float64": 8}

@@ -13,9 +13,9 @@ CPU_FLAGS = (
 )
 
 
-def _options(vectors: int, few_at_a_time: bool) -> dict:
-    """``vectors`` of lanes side by side; instructions in an order in which ``few_at_a_time`` values live."""
-    lanes = f" -mllvm=-force-vector-interleave={vectors} -mllvm=-misched-regpressure={str(few_at_a_time).lower()}"
+def _options(vectors: int, spare_registers: bool) -> dict:
+    """``vectors`` of lanes side by side; ``spare_registers``: instructions ordered so that few values live."""
+    lanes = f" -mllvm=-force-vector-interleave={vectors} -mllvm=-misched-regpressure={str(spare_registers).lower()}"
     return {"enable_backward": False, "cpu_compiler_flags": CPU_FLAGS + lanes}
 
 

@@ -202,11 +202,10 @@ def _table_1(real, n: int, rows: tuple[int, ...], penalty: bool, torque, cuda: b
     """H = X X^T with X = L U^-T, where J = L Q and Q M = U V (L, U lower triangular; Q, V with orthonormal rows)."""
     m = len(rows)
     mat_6n, mat_nn = wp.types.matrix((6, n), real), wp.types.matrix((n, n), real)
-    mat_mn, mat_mm = wp.types.matrix((m, n), real), wp.types.matrix((m, m), real)
-    vec_m = wp.types.vector(m, real)
+    mat_mm, vec_m = wp.types.matrix((m, m), real), wp.types.vector(m, real)
     task_matrix = _task_matrix(real, n, rows)
     values, where_positive = singular_values(real, m, m, True, cuda), _where_positive(real, m)
-    lower_factor = _lower_factor(real, m, n)
+    lower_factor, times_inertia = _lower_factor(real, m, n), _times_inertia(real, m, n)
     DEFICIENT = n < m
     ZERO, ONE = real(0.0), real(1.0)
 
@@ -217,11 +216,7 @@ def _table_1(real, n: int, rows: tuple[int, ...], penalty: bool, torque, cuda: b
     @wp.func
     def dynamic(model: Any, J: mat_6n, M: mat_nn, kinematic: vec_m):
         L, Q = lower_factor(task_matrix(model, J))
-        W = mat_mn()
-        for r in range(m):
-            for i in range(n):  # M * Q[r] stays a loop where n is large, and the lane loop then scalar
-                W[r, i] = wp.dot(M[i], Q[r])
-        U, _V = lower_factor(W)
+        U, _V = lower_factor(times_inertia(Q, M))
         # Rows of X with X Uᵀ = L, that is the matrix whose singular values are the inverses of those of M J⁺.
         X = mat_mm()
         for r in range(m):
@@ -233,6 +228,24 @@ def _table_1(real, n: int, rows: tuple[int, ...], penalty: bool, torque, cuda: b
         return where_positive(kinematic, values(X))
 
     return _of_task(real, n, rows, penalty, cuda), singular if DEFICIENT else dynamic
+
+
+def _times_inertia(real, m: int, n: int):
+    """Device function (A (m, n), M) -> A M, number by number, M being symmetric.
+
+    Warp's product stays a loop where n is large, and the lane loop around it is then not vectorised.
+    """
+    mat_mn, mat_nn = wp.types.matrix((m, n), real), wp.types.matrix((n, n), real)
+
+    @wp.func
+    def times_inertia(A: mat_mn, M: mat_nn):
+        product = mat_mn()
+        for r in range(m):
+            for i in range(n):
+                product[r, i] = wp.dot(M[i], A[r])
+        return product
+
+    return times_inertia
 
 
 def _lower_factor(real, m: int, n: int):
@@ -265,7 +278,7 @@ def _wsrender_code(real, n: int, rows: tuple[int, ...], penalty: bool, torque, c
     FULL_RANK = n >= 6
     out_type = wp.types.vector(1 + COUNT, real)
     of_six, of_product = singular_values(real, 6, n, penalty, cuda), singular_values(real, 6, n, True, cuda)
-    regular = without_noise(real, 6, n, 6)
+    regular, times_inertia = without_noise(real, 6, n, 6), _times_inertia(real, 6, n)
     ONE, ZERO = real(1.0), real(0.0)
 
     @wp.func
@@ -290,12 +303,7 @@ def _wsrender_code(real, n: int, rows: tuple[int, ...], penalty: bool, torque, c
 
     @wp.func
     def dynamic(model: Any, J: mat_6n, M: mat_nn, kinematic: out_type):
-        # Row by row, M being symmetric: J * M stays a loop where n is large, and the lane loop then scalar.
-        product = mat_6n()
-        for r in range(6):
-            for i in range(n):
-                product[r, i] = wp.dot(J[r], M[i])
-        six = of_product(product)
+        six = of_product(times_inertia(J, M))
         out = out_type()
         determinant = ONE
         for i in range(COUNT):
