@@ -40,10 +40,13 @@ _EXP_TERMS = {wp.float32: 8, wp.float64: 14}
 _ROOT_GUESS = {wp.float32: 0x54A1F000, wp.float64: 0x553EE800}
 _ROOT_STEPS = {wp.float32: 2, wp.float64: 3}
 
-# x^(-1/2) in float64: half of the bits of x from these leaves e = 1 - x y² below 0.0682 (fitted), a polynomial in e
-# through Chebyshev points 2e-6, a step of third order nothing.
-_INVERSE_ROOT_GUESS = 0x5FE6E8E800000000
-_INVERSE_ROOT = Chebyshev.interpolate(lambda e: (1.0 - e) ** -0.5, 3, [-0.0682, 0.0682]).convert(kind=Polynomial)
+# x^(-1/2): half of the bits of x from these leaves e = 1 - x y² below 0.0682 (fitted), y times a polynomial in e
+# through Chebyshev points 2e-8 or 2e-6; in float64 a step of third order then leaves nothing.
+_INVERSE_ROOT_GUESS = {wp.float32: 0x5F374740, wp.float64: 0x5FE6E8E800000000}
+_INVERSE_ROOT = {
+    real: Chebyshev.interpolate(lambda e: (1.0 - e) ** -0.5, degree, [-0.0682, 0.0682]).convert(kind=Polynomial)
+    for real, degree in ((wp.float32, 5), (wp.float64, 3))
+}
 _OWN_ON_CUDA = {
     real: f"""
 #if defined(__CUDA_ARCH__)
@@ -112,9 +115,10 @@ def elementary(real) -> SimpleNamespace:
         unsigned(2 ** (bits_size - 1)),
     )
     ROOT_GUESS, ROOT_SHIFT, ROOT_STEPS = wp.int32(_ROOT_GUESS[real]), bits(bits_size - 32), _ROOT_STEPS[real]
-    GUESS, ONE_BIT, THREE_EIGHTHS = wp.int64(_INVERSE_ROOT_GUESS), bits(1), real(0.375)
-    INVERSE_ROOT = _coefficients(_INVERSE_ROOT.coef, real)
-    INVERSE_ROOT_DEGREE = len(_INVERSE_ROOT.coef) - 1
+    GUESS, ONE_BIT, THREE_EIGHTHS = bits(_INVERSE_ROOT_GUESS[real]), bits(1), real(0.375)
+    INVERSE_ROOT = _coefficients(_INVERSE_ROOT[real].coef, real)
+    INVERSE_ROOT_DEGREE = len(_INVERSE_ROOT[real].coef) - 1
+    INVERSE_ROOT_STEPS = INVERSE_ROOT_DEGREE - 1
     own_on_cuda = _own_on_cuda(real)
     ROOT_1, ROOT_2, THREE = real(1.0 / 3.0), real(2.0 / 9.0), wp.int32(3)
 
@@ -186,20 +190,18 @@ def elementary(real) -> SimpleNamespace:
         return wp.where(positive, exp2(e * log2(wp.where(positive, x, ONE))), ZERO)
 
     @wp.func
-    def inverse_root32(x: real):
-        return own_on_cuda(x, ONE / wp.sqrt(x))
-
-    @wp.func
-    def inverse_root64(x: real):
+    def inverse_root(x: real):
         # A core of a CPU begins a SIMD division or root every 10 to 24 cycles, but two multiply-adds a cycle.
         y = wp.cast(GUESS - (wp.cast(x, bits) >> ONE_BIT), real)
         e = ONE - (x * y) * y
         series = INVERSE_ROOT[INVERSE_ROOT_DEGREE]
-        for j in range(INVERSE_ROOT_DEGREE):
+        for j in range(INVERSE_ROOT_STEPS):
             series = series * e + INVERSE_ROOT[INVERSE_ROOT_DEGREE - 1 - j]
-        y = y * series
-        e = ONE - (x * y) * y
-        return own_on_cuda(x, y + (y * e) * (HALF + THREE_EIGHTHS * e))
+        y = y + (y * e) * series
+        if wp.static(real is wp.float64):
+            e = ONE - (x * y) * y
+            y = y + (y * e) * (HALF + THREE_EIGHTHS * e)
+        return own_on_cuda(x, y)
 
     @wp.func
     def root_and_reciprocal32(x: real):
@@ -207,7 +209,7 @@ def elementary(real) -> SimpleNamespace:
 
     @wp.func
     def root_and_reciprocal64(x: real):
-        y = inverse_root64(x)
+        y = inverse_root(x)
         return x * y, y * y
 
     @wp.func
@@ -239,7 +241,7 @@ def elementary(real) -> SimpleNamespace:
         log2=log2,
         exp2=exp2,
         power=power,
-        inverse_root=inverse_root32 if real is wp.float32 else inverse_root64,
+        inverse_root=inverse_root,
         root_and_reciprocal=root_and_reciprocal32 if real is wp.float32 else root_and_reciprocal64,
         two_thirds_power=two_thirds_power,
         ordered=ordered,

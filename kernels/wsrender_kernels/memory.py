@@ -14,6 +14,20 @@ from wsrender_kernels.factories import factory
 _ATOMIC_POINTER = {wp.int32: "reinterpret_cast<int*>", wp.int64: "reinterpret_cast<long long*>"}
 
 
+@wp.func_native("""
+    alignas(64) char lowest[4096];
+    asm volatile("" : : "r"(lowest));
+""")
+def align_scratch():
+    """On the CPU, have the scratch of the kernel that calls this start with a cache line.
+
+    A vector of floats asks for the alignment of a float, and half or all of its SIMD accesses lie across two lines. But
+    the compiler lays the objects of a stack side by side, the ones it uses least per byte first: such a one, and all
+    that follow in sizes of whole lines, begin where it asks for. Six indices on AVX2: 2.5 % faster.
+    """
+    ...
+
+
 @factory
 def memory(dtype: Any) -> SimpleNamespace:
     """Device functions ``load(array, i) -> value`` and ``store(array, i, value)`` of contiguous arrays of a type."""

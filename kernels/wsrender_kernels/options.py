@@ -23,8 +23,9 @@ def _options(vectors: int, spare_registers: bool) -> dict:
 MODULE_OPTIONS = _options(2, True)
 # Where few values live anyway, ordered by what they wait for alone: 7 to 13 % faster on AVX2, as fast on AVX-512.
 SHORT_OPTIONS = _options(2, False)
-# The inertia matrix gives one vector enough to do: compiled in two thirds of the time, 2 % slower to 12 % faster.
-DYNAMIC_OPTIONS = _options(1, True)
+# An inertia matrix or rotations give one vector enough to do: compiled in two thirds of the time, 5 % slower to 12 %
+# faster.
+LONG_OPTIONS = _options(1, True)
 # Division and square root of float32 to 2 units in the last place: a third faster.
 CUDA_OPTIONS = {**MODULE_OPTIONS, "fast_math": True}
 # Compiled in half the time; kernels are about a fifth slower.

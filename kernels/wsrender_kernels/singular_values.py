@@ -10,7 +10,7 @@ column, or float32 loses the small singular values: ``graded`` matrices are rota
 orthogonalised by columns (Demmel & Veselić: Jacobi is accurate for a well-conditioned matrix times any scaling).
 """
 
-from functools import partial
+from types import SimpleNamespace
 
 import numpy as np
 import warp as wp
@@ -21,6 +21,7 @@ from wsrender_kernels.factories import factory
 from wsrender_kernels.matrices import transpose
 
 SWEEPS = {wp.float32: 4, wp.float64: 5}  # of a triangular factor
+ROTATED_LANES = 32  # at a time: their factors stay in the first cache
 # Of a third of an angle: degree of the polynomials, and steps that square their error.
 DEGREE, NEWTON_STEPS = {wp.float32: 9, wp.float64: 10}, {wp.float32: 0, wp.float64: 1}
 
@@ -35,11 +36,11 @@ def singular_values(real, m: int, n: int, graded: bool = False, cuda: bool = Fal
     """Device function ``(A: (m, n)) -> (m,)``, descending, as computed; the last m - n are exactly 0.
 
     ``cuda``: for a GPU. In float64 the sweeps of rotations are a loop there, 1.5 to 1.8 times as fast on an H200 as
-    written out, when registers run out; written out float32 is as fast or up to 1.4 times as fast, and SIMD needs it.
+    written out, when registers run out; written out float32 is as fast or up to 1.4 times as fast.
     """
-    by_columns = m > n or graded
-    solver = {1: _one_row, 2: _two_rows, 3: _three_rows}.get(m) or partial(_jacobi, by_columns=by_columns, cuda=cuda)
-    solver = solver(real, m, n)
+    if m > 3:
+        return _by_rotations(real, m, n, graded, cuda)
+    solver = {1: _one_row, 2: _two_rows, 3: _three_rows}[m](real, m, n)
     rotated = _by_largest_columns(real, n) if graded and m == 3 else _as_it_is(real, m, n)
     vec_m = wp.types.vector(m, real)
     mat_mn = wp.types.matrix((m, n), real)
@@ -303,36 +304,17 @@ def _polynomial(real, function, degree: int):
     return wp.types.vector(degree + 1, real)(*fitted.coef)
 
 
-def _disjoint_pairs(count: int) -> list[tuple[int, int]]:
-    """All pairs (i, j), i < j, of ``count`` things, in the rounds of a tournament: nobody plays twice in a round."""
-    seats = list(range(count + count % 2))
-    half = len(seats) // 2
-    pairs = []
-    for _round in range(len(seats) - 1):
-        pairs += [(min(pair), max(pair)) for pair in zip(seats[:half], reversed(seats[half:]), strict=True)]
-        seats[1:] = [seats[-1], *seats[1:-1]]
-    return [(i, j) for i, j in pairs if j < count]
-
-
 def _rotation(real):
-    """Device function (b·b - a·a, 2 a·b) -> cosine, sine of the rotation, within 45°, that makes a and b orthogonal.
+    """Device function (b·b - a·a, 2 a·b) -> cosine, sine, tangent of the rotation, within 45°, that makes a ⟂ b.
 
-    By its tangent in float32. In float64, where inverse roots cost less than divisions, by the cosine and sine of twice
-    the angle: c² = (1 + cosine) / 2 and s = sine / (2 c).
+    By the cosine and sine of twice the angle: c² = (1 + cosine) / 2 and s = sine / (2 c). Inverse roots cost less than
+    divisions.
     """
     ZERO, HALF, ONE, TINY = real(0.0), real(0.5), real(1.0), _tiny(real)
     inverse_root = elementary(real).inverse_root
 
     @wp.func
-    def rotation32(difference: real, twice: real):
-        root = wp.sqrt(difference * difference + twice * twice)
-        size = wp.abs(difference) + root
-        t = wp.where(size > TINY, wp.where(difference < ZERO, -twice, twice) / wp.max(size, TINY), ZERO)
-        c = ONE / wp.sqrt(ONE + t * t)
-        return c, c * t, t
-
-    @wp.func
-    def rotation64(difference: real, twice: real):
+    def rotation(difference: real, twice: real):
         square = difference * difference + twice * twice
         regular = square > TINY
         per_length = wp.where(regular, inverse_root(square), ZERO)
@@ -342,61 +324,300 @@ def _rotation(real):
         sine = wp.where(difference < ZERO, -twice, twice) * (HALF * per_length * per_c)
         return c_square * per_c, sine, sine * per_c
 
-    return rotation32 if real is wp.float32 else rotation64
+    return rotation
 
 
 @factory
-def _jacobi(real, m: int, n: int, by_columns: bool, cuda: bool):
-    """One-sided Jacobi on the rows of R, (the n columns, or the m rows) P = Q R with pivoting.
+def rotations(real, m: int, n: int, graded: bool) -> SimpleNamespace:
+    """One-sided Jacobi on the rows of R, (the n columns, or the m rows) P = Q R with pivoting, in stages.
+
+    Device functions ``start(A) -> R, scale``, ``sweep(R) -> R`` and ``finish(R, scale) -> (m,) values``; for many
+    samples at once ``swept(lanes) -> lanes``: see `_swept`.
 
     Columns are graded, and may be so along their coordinates too: with the longest of these first, the reflections err
     relative to each (Powell & Reid 1969; Cox & Higham 1998).
     """
+    by_columns = m > n or graded
     COUNT, LENGTH = (n, m) if by_columns else (m, n)
     RANK = min(m, n)
-    TRANSPOSED = by_columns
-    vec_m, vec_rank = wp.types.vector(m, real), wp.types.vector(RANK, real)
-    vec_count, vec_length = wp.types.vector(COUNT, real), wp.types.vector(LENGTH, real)
-    mat_mn, mat_vectors = wp.types.matrix((m, n), real), wp.types.matrix((COUNT, LENGTH), real)
-    mat_factor = wp.types.matrix((RANK, COUNT), real)
-    LAST, LAST_COORDINATE, STEPS = COUNT - 1, LENGTH - 1, min(COUNT, LENGTH - 1)
-    NUMBER_OF_SWEEPS = SWEEPS[real]
-    pairs = _disjoint_pairs(RANK)
-    AT_ONCE = max(RANK // 2, 1)
-    ROUNDS = len(pairs) // AT_ONCE
-    pairs_type = wp.types.vector(max(len(pairs), 1), wp.int32)
-    FIRST, SECOND = pairs_type(*[i for i, _ in pairs]), pairs_type(*[j for _, j in pairs])
-    ZERO, ONE, TWO, TINY = real(0.0), real(1.0), real(2.0), _tiny(real)
-    rotation, by_coordinate = _rotation(real), transpose(real, COUNT, LENGTH)
+    mat_mn, vec_m, vec_rank = wp.types.matrix((m, n), real), wp.types.vector(m, real), wp.types.vector(RANK, real)
+    factor_type = wp.types.matrix((RANK, COUNT), real)
+    triangular_factor = _triangular_factor(real, COUNT, LENGTH)
+    ordered = _longest_rows_first(real, m, n) if by_columns else _as_it_is(real, m, n)
     oriented = transpose(real, m, n) if by_columns else _as_it_is(real, m, n)
+    angles, turned, ROUNDS = _angles(real, RANK, COUNT), _turned(real, RANK, COUNT), _rounds(RANK)
+    ZERO, ONE, TINY = real(0.0), real(1.0), _tiny(real)
 
     @wp.func
-    def longest_coordinates_first(W: mat_vectors):
-        out = W
-        sizes = vec_length()
-        for r in range(LENGTH):
-            for i in range(COUNT):
-                sizes[r] += out[i, r] * out[i, r]
-        for last in range(LAST_COORDINATE, 0, -1):
+    def start(A: mat_mn):
+        W = oriented(ordered(A))
+        # Unit scale, so that squares of small robots' lengths do not underflow.
+        scale = ZERO
+        for i in range(COUNT):
+            scale = scale + wp.dot(W[i], W[i])
+        scale = wp.sqrt(scale)
+        per_scale = ONE / wp.max(scale, TINY)
+        for i in range(COUNT):  # W * per_scale stays a loop where n is large, and the lane loop then scalar
+            W[i] *= per_scale
+        return triangular_factor(W), scale
+
+    @wp.func
+    def sweep(R: factor_type):
+        out = R
+        squares = vec_rank()  # cancellation in them costs convergence at most: every sweep begins with new ones
+        for i in range(RANK):
+            squares[i] = wp.dot(out[i], out[i])
+        for _round in range(ROUNDS):
+            cosines, sines, squares = angles(out, squares)
+            out = turned(out, cosines, sines)
+        return out
+
+    @wp.func
+    def finish(R: factor_type, scale: real):
+        norms = vec_rank()
+        for i in range(RANK):
+            norms[i] = wp.sqrt(wp.dot(R[i], R[i])) * scale
+        for last in range(wp.static(RANK - 1), 0, -1):
+            for i in range(last):
+                larger = wp.max(norms[i], norms[i + 1])
+                norms[i + 1] = wp.min(norms[i], norms[i + 1])
+                norms[i] = larger
+        sigma = vec_m()
+        for i in range(RANK):
+            sigma[i] = norms[i]
+        return sigma
+
+    return SimpleNamespace(
+        start=start,
+        sweep=sweep,
+        finish=finish,
+        swept=_swept(real, RANK, COUNT),
+        factor_shape=(RANK, COUNT),
+        factor_type=factor_type,
+        lanes_type=wp.types.vector(RANK * COUNT * ROTATED_LANES, real),
+    )
+
+
+@factory
+def _swept(real, count: int, length: int):
+    """Device function lanes -> lanes: all sweeps of the vectors (count, length) of ROTATED_LANES samples.
+
+    Number by number in rows of lanes. One round is all the code there is, in a lane loop: written out for one sample
+    after the other, the sweeps would be twenty times as much to compile. Angles have a loop of their own: they are long
+    chains of operations, of which a core overlaps those of several samples where little else is between.
+    """
+    BLOCK, ROUNDS, NUMBER_OF_SWEEPS, PAIRS = ROTATED_LANES, _rounds(count), SWEEPS[real], _pairs(count)
+    mat, vec, vec_pairs = (wp.types.matrix((count, length), real), *(wp.types.vector(k, real) for k in (count, PAIRS)))
+    vectors_type, squares_type, pairs_type = (
+        wp.types.vector(rows * BLOCK, real) for rows in (count * length, count, PAIRS)
+    )
+    angles, turned, ZERO = _angles(real, count, length), _turned(real, count, length), real(0.0)
+
+    @wp.func
+    def swept(lanes: vectors_type):
+        out = lanes
+        lane_squares = squares_type()
+        lane_cosines = pairs_type()
+        lane_sines = pairs_type()
+        sweeps = wp.int32(0)
+        while sweeps < NUMBER_OF_SWEEPS:
+            for lane in range(BLOCK):
+                at = lane
+                for i in range(count):
+                    square = ZERO
+                    for _c in range(length):
+                        square += out[at] * out[at]
+                        at += BLOCK
+                    lane_squares[i * BLOCK + lane] = square
+            rounds = wp.int32(0)
+            while rounds < ROUNDS:
+                for lane in range(BLOCK):
+                    vectors = mat()
+                    squares = vec()
+                    at = lane
+                    for i in range(count):
+                        squares[i] = lane_squares[i * BLOCK + lane]
+                        for c in range(length):
+                            vectors[i, c] = out[at]
+                            at += BLOCK
+                    cosines, sines, squares = angles(vectors, squares)
+                    for k in range(PAIRS):
+                        lane_cosines[k * BLOCK + lane] = cosines[k]
+                        lane_sines[k * BLOCK + lane] = sines[k]
+                    for i in range(count):
+                        lane_squares[i * BLOCK + lane] = squares[i]
+                for lane in range(BLOCK):
+                    before = mat()
+                    at = lane
+                    for i in range(count):
+                        for c in range(length):
+                            before[i, c] = out[at]
+                            at += BLOCK
+                    c_of = vec_pairs()
+                    s_of = vec_pairs()
+                    for k in range(PAIRS):
+                        c_of[k] = lane_cosines[k * BLOCK + lane]
+                        s_of[k] = lane_sines[k * BLOCK + lane]
+                    after = turned(before, c_of, s_of)
+                    at = lane
+                    for i in range(count):
+                        for c in range(length):
+                            out[at] = after[i, c]
+                            at += BLOCK
+                rounds += 1
+            sweeps += 1
+        return out
+
+    return swept
+
+
+def _by_rotations(real, m: int, n: int, graded: bool, cuda: bool):
+    """Device function A (m, n) -> singular values (m,), all stages of `rotations` for one matrix."""
+    stages, mat_mn = rotations(real, m, n, graded), wp.types.matrix((m, n), real)
+    start, sweep, finish, factor_type = stages.start, stages.sweep, stages.finish, stages.factor_type
+    NUMBER_OF_SWEEPS = SWEEPS[real]
+
+    @wp.func
+    def unrolled(R: factor_type, count: wp.int32):
+        out = R
+        for _sweep in range(NUMBER_OF_SWEEPS):
+            out = sweep(out)
+        return out
+
+    @wp.func
+    def in_a_loop(R: factor_type, count: wp.int32):
+        out = R
+        for _sweep in range(count):
+            out = sweep(out)
+        return out
+
+    sweeps = in_a_loop if cuda and real is wp.float64 else unrolled
+
+    @wp.func
+    def by_rotations(A: mat_mn):
+        R, scale = start(A)
+        return finish(sweeps(R, NUMBER_OF_SWEEPS), scale)
+
+    return by_rotations
+
+
+def _rounds(count: int) -> int:
+    """Rounds in which each of ``count`` vectors meets each other once, nobody twice in a round."""
+    return count - 1 + count % 2
+
+
+def _pairs(count: int) -> int:
+    """Pairs of a round, or 1: Warp has no empty vectors."""
+    return max(count // 2, 1)
+
+
+def _seats(count: int):
+    """Seat of every vector in the next round of a tournament.
+
+    Those that sit opposite each other meet; then all but the first, if they are even in number, move on by one seat. So
+    every round is the same code, and after the last one all are back where they began.
+    """
+    moving = list(range(1 - count % 2, count))
+    seats = dict(zip(moving, [*moving[1:], *moving[:1]], strict=True))
+    return wp.types.vector(count, wp.int32)(*[seats.get(i, i) for i in range(count)])
+
+
+@factory
+def _angles(real, count: int, length: int):
+    """Device function (vectors (count, length), squared lengths) -> cosines, sines, squared lengths after a round."""
+    mat, vec, vec_pairs = (
+        wp.types.matrix((count, length), real),
+        *(wp.types.vector(k, real) for k in (count, _pairs(count))),
+    )
+    PAIRS, LAST, ODD, NEXT = count // 2, count - 1, count % 2, _seats(count)
+    TWO = real(2.0)
+    rotation = _rotation(real)
+
+    @wp.func
+    def angles(vectors: mat, squares: vec):
+        out = vec()
+        cosines = vec_pairs()
+        sines = vec_pairs()
+        out[NEXT[0]] = squares[0]
+        for k in range(PAIRS):
+            i = wp.static(ODD) + k
+            j = LAST - k
+            along = wp.dot(vectors[i], vectors[j])
+            c, s, t = rotation(squares[j] - squares[i], TWO * along)
+            cosines[k] = c
+            sines[k] = s
+            out[NEXT[i]] = squares[i] - t * along
+            out[NEXT[j]] = squares[j] + t * along
+        return cosines, sines, out
+
+    return angles
+
+
+@factory
+def _turned(real, count: int, length: int):
+    """Device function (vectors (count, length), cosines, sines) -> vectors after a round, in their next seats."""
+    mat, vec_pairs = wp.types.matrix((count, length), real), wp.types.vector(_pairs(count), real)
+    PAIRS, LAST, ODD, NEXT = count // 2, count - 1, count % 2, _seats(count)
+
+    @wp.func
+    def turned(vectors: mat, cosines: vec_pairs, sines: vec_pairs):
+        out = mat()
+        out[NEXT[0]] = vectors[0]
+        for k in range(PAIRS):
+            i = wp.static(ODD) + k
+            j = LAST - k
+            a = vectors[i]
+            b = vectors[j]
+            out[NEXT[i]] = a * cosines[k] - b * sines[k]
+            out[NEXT[j]] = a * sines[k] + b * cosines[k]
+        return out
+
+    return turned
+
+
+def _longest_rows_first(real, rows: int, columns: int):
+    """Device function A (rows, columns) -> A with its rows sorted, the longest first."""
+    mat, vec_rows = wp.types.matrix((rows, columns), real), wp.types.vector(rows, real)
+    LAST = rows - 1
+
+    @wp.func
+    def longest_rows_first(A: mat):
+        out = A
+        sizes = vec_rows()
+        for r in range(rows):
+            sizes[r] = wp.dot(out[r], out[r])
+        for last in range(LAST, 0, -1):
             for r in range(last):
+                a = out[r]
+                b = out[r + 1]
                 swap = sizes[r] < sizes[r + 1]
                 larger = wp.max(sizes[r], sizes[r + 1])
                 sizes[r + 1] = wp.min(sizes[r], sizes[r + 1])
                 sizes[r] = larger
-                for i in range(COUNT):
-                    a = out[i, r]
-                    b = out[i, r + 1]
-                    out[i, r] = wp.where(swap, b, a)
-                    out[i, r + 1] = wp.where(swap, a, b)
+                out[r] = wp.where(swap, b, a)
+                out[r + 1] = wp.where(swap, a, b)
         return out
 
+    return longest_rows_first
+
+
+@factory
+def _triangular_factor(real, count: int, length: int):
+    """Device function vectors (count, length) -> R (min(count, length), count), vectors P = Q R with pivoting."""
+    rank = min(count, length)
+    mat, vec_count = wp.types.matrix((count, length), real), wp.types.vector(count, real)
+    factor_type = wp.types.matrix((rank, count), real)
+    LAST, LAST_COORDINATE, STEPS = count - 1, length - 1, min(count, length - 1)
+    ZERO, ONE, TINY = real(0.0), real(1.0), _tiny(real)
+    by_coordinate = transpose(real, count, length)
+
     @wp.func
-    def triangular_factor(W: mat_vectors):
-        out = W
+    def triangular_factor(vectors: mat):
+        out = vectors
         for k in range(STEPS):
             # The longest of the vectors that are left comes next. Lengths are those across the coordinates before k.
             sizes = vec_count()
-            for i in range(k, COUNT):
+            for i in range(k, count):
                 sizes[i] = out[i, k] * out[i, k]
                 for r in range(LAST_COORDINATE, k, -1):
                     sizes[i] += out[i, r] * out[i, r]
@@ -408,9 +629,9 @@ def _jacobi(real, m: int, n: int, by_columns: bool, cuda: bool):
                 out[i - 1] = wp.where(swap, b, a)
                 out[i] = wp.where(swap, a, b)
             # A reflection turns it onto coordinate k.
-            length = wp.copysign(wp.sqrt(sizes[k]), out[k, k])
-            first = out[k, k] + length
-            size = length * first
+            reflected = wp.copysign(wp.sqrt(sizes[k]), out[k, k])
+            first = out[k, k] + reflected
+            size = reflected * first
             scale = wp.where(size > TINY, ONE / wp.max(size, TINY), ZERO)
             for i in range(LAST, k, -1):
                 along = first * out[i, k]
@@ -420,79 +641,16 @@ def _jacobi(real, m: int, n: int, by_columns: bool, cuda: bool):
                 out[i, k] -= along * first
                 for r in range(LAST_COORDINATE, k, -1):
                     out[i, r] -= along * out[k, r]
-            out[k, k] = -length
+            out[k, k] = -reflected
             for r in range(LAST_COORDINATE, k, -1):
                 out[k, r] = ZERO
         coordinates = by_coordinate(out)
-        F = mat_factor()
-        for k in range(RANK):
-            F[k] = coordinates[k]
-        return F
+        R = factor_type()
+        for k in range(rank):
+            R[k] = coordinates[k]
+        return R
 
-    @wp.func
-    def sweep(F: mat_factor):
-        out = F
-        squares = vec_rank()  # cancellation in them costs convergence at most: every sweep begins with new ones
-        for i in range(RANK):
-            squares[i] = wp.dot(out[i], out[i])
-        for number in range(ROUNDS):  # two loops: Warp writes out no more than 16 steps of one
-            for k in range(AT_ONCE):
-                i = FIRST[number * AT_ONCE + k]
-                j = SECOND[number * AT_ONCE + k]
-                a = out[i]
-                b = out[j]
-                along = wp.dot(a, b)
-                c, s, t = rotation(squares[j] - squares[i], TWO * along)
-                out[i] = a * c - b * s
-                out[j] = a * s + b * c
-                squares[i] -= t * along
-                squares[j] += t * along
-        return out
-
-    @wp.func
-    def unrolled(F: mat_factor, count: wp.int32):
-        out = F
-        for _sweep in range(NUMBER_OF_SWEEPS):
-            out = sweep(out)
-        return out
-
-    @wp.func
-    def in_a_loop(F: mat_factor, count: wp.int32):
-        out = F
-        for _sweep in range(count):
-            out = sweep(out)
-        return out
-
-    sweeps = in_a_loop if cuda and real is wp.float64 else unrolled
-
-    @wp.func
-    def jacobi(A: mat_mn):
-        W = oriented(A)
-        # Unit scale, so that squares of small robots' lengths do not underflow.
-        scale = ZERO
-        for i in range(COUNT):
-            scale = scale + wp.dot(W[i], W[i])
-        scale = wp.sqrt(scale)
-        per_scale = ONE / wp.max(scale, TINY)
-        for i in range(COUNT):  # W * per_scale stays a loop where n is large, and the lane loop then scalar
-            W[i] *= per_scale
-        if wp.static(TRANSPOSED):
-            W = longest_coordinates_first(W)
-        F = sweeps(triangular_factor(W), NUMBER_OF_SWEEPS)
-        norms = vec_rank()
-        for i in range(RANK):
-            norms[i] = wp.sqrt(wp.dot(F[i], F[i])) * scale
-        for last in range(wp.static(RANK - 1), 0, -1):
-            for i in range(last):
-                larger = wp.max(norms[i], norms[i + 1])
-                norms[i + 1] = wp.min(norms[i], norms[i + 1])
-                norms[i] = larger
-        sigma = vec_m()
-        for i in range(RANK):
-            sigma[i] = norms[i]
-        return sigma
-
-    return jacobi
+    return triangular_factor
 
 
 def _tiny(real):

@@ -18,7 +18,7 @@ import warp as wp
 from wsrender_kernels.elementary import elementary
 from wsrender_kernels.factories import factory
 from wsrender_kernels.inertia import inertia
-from wsrender_kernels.singular_values import singular_values, without_noise
+from wsrender_kernels.singular_values import without_noise
 
 LINEAR, ALL_ROWS = (0, 1, 2), (0, 1, 2, 3, 4, 5)
 
@@ -35,31 +35,36 @@ def spectrum_length(n: int, rows: tuple[int, ...], convention: str) -> int:
 
 @factory
 def spectrum(
-    real, n: int, rows: tuple[int, ...], convention: str, penalty: bool, torque: bool, cuda: bool
+    real, n: int, rows: tuple[int, ...], convention: str, dynamic: bool, penalty: bool, torque: bool
 ) -> SimpleNamespace:
-    """Device functions ``kinematic(model, J)``, ``dynamic(model, J, M, kinematic)`` and ``penalized(model, q, J)``.
+    """Device functions around the singular values: of which matrices they are, and what the indices get of them.
 
-    ``absent`` stands for ``dynamic`` where no index needs it. ``cuda``: see `singular_values`.
+    ``penalized(model, q, J) -> J``; ``kinematic_matrix(model, J) -> A`` and ``dynamic_matrix(model, J, M) -> B``;
+    ``volume(J)``, which a convention may take from J itself; with the singular values of A and B,
+    ``kinematic(volume, sigma) -> spectrum`` and ``dynamic(kinematic spectrum, sigma) -> spectrum``.
+    ``kinematic_shape``, ``dynamic_shape``: those of A and B. Without ``dynamic``, B is a number that nobody looks at.
     """
     make = {"standard": _standard, "table_1": _table_1, "wsrender_code": _wsrender_code}[convention]
-    kinematic, dynamic = make(real, n, rows, penalty, _torque_scaled(real, n) if torque else None, cuda)
-    return SimpleNamespace(
-        kinematic=kinematic,
-        dynamic=dynamic,
-        absent=_absent(real, n, spectrum_length(n, rows, convention)),
-        penalized=_penalized(real, n) if penalty else _unchanged(real, n),
-    )
+    spectra = make(real, n, rows, _torque_scaled(real, n) if torque else None)
+    if not dynamic:
+        vars(spectra).update(vars(_absent(real, n, spectrum_length(n, rows, convention))))
+    spectra.penalized = _penalized(real, n) if penalty else _unchanged(real, n)
+    return spectra
 
 
-def _absent(real, n: int, length: int):
+def _absent(real, n: int, length: int) -> SimpleNamespace:
     mat_6n, mat_nn = wp.types.matrix((6, n), real), wp.types.matrix((n, n), real)
-    spectrum_type = wp.types.vector(length, real)
+    spectrum_type, mat_11, vec1 = wp.types.vector(length, real), wp.types.matrix((1, 1), real), wp.types.vector(1, real)
 
     @wp.func
-    def absent(model: Any, J: mat_6n, M: mat_nn, kinematic: spectrum_type):
+    def no_matrix(model: Any, J: mat_6n, M: mat_nn):
+        return mat_11()
+
+    @wp.func
+    def absent(kinematic: spectrum_type, sigma: vec1):
         return kinematic
 
-    return absent
+    return SimpleNamespace(dynamic_matrix=no_matrix, dynamic_shape=(1, 1), dynamic=absent)
 
 
 def _unchanged(real, n: int):
@@ -148,16 +153,24 @@ def _task_matrix(real, n: int, rows: tuple[int, ...]):
     return task_matrix
 
 
-def _of_task(real, n: int, rows: tuple[int, ...], graded: bool, cuda: bool):
-    """Device function (model, J) -> singular values of the task matrix."""
+def _no_volume(real, n: int):
     mat_6n = wp.types.matrix((6, n), real)
-    m = len(rows)
-    task_matrix, values = _task_matrix(real, n, rows), singular_values(real, m, n, graded, cuda)
-    regular = without_noise(real, m, n, m)
+    ZERO = real(0.0)
 
     @wp.func
-    def of_task(model: Any, J: mat_6n):
-        return regular(values(task_matrix(model, J)))
+    def no_volume(J: mat_6n):
+        return ZERO
+
+    return no_volume
+
+
+def _without_noise_of_task(real, m: int, n: int):
+    """Device function (volume, sigma) -> singular values of the task matrix, noise as exact zeros."""
+    vec_m, regular = wp.types.vector(m, real), without_noise(real, m, n, m)
+
+    @wp.func
+    def of_task(volume: real, sigma: vec_m):
+        return regular(sigma)
 
     return of_task
 
@@ -177,12 +190,10 @@ def _where_positive(real, m: int):
     return where_positive
 
 
-def _standard(real, n: int, rows: tuple[int, ...], penalty: bool, torque, cuda: bool):
+def _standard(real, n: int, rows: tuple[int, ...], torque) -> SimpleNamespace:
     m = len(rows)
-    mat_6n, mat_nn = wp.types.matrix((6, n), real), wp.types.matrix((n, n), real)
-    mat_mn, vec_m = wp.types.matrix((m, n), real), wp.types.vector(m, real)
-    task_matrix, values = _task_matrix(real, n, rows), singular_values(real, m, n, True, cuda)
-    where_positive = _where_positive(real, m)
+    mat_6n, mat_nn, mat_mn = (wp.types.matrix(size, real) for size in ((6, n), (n, n), (m, n)))
+    task_matrix = _task_matrix(real, n, rows)
     solve = inertia(real, n, tuple(range(n)), True).solve(m)
 
     @wp.func
@@ -192,29 +203,35 @@ def _standard(real, n: int, rows: tuple[int, ...], penalty: bool, torque, cuda: 
     scaled = torque(m) if torque else unscaled
 
     @wp.func
-    def dynamic(model: Any, J: mat_6n, M: mat_nn, kinematic: vec_m):
-        return where_positive(kinematic, values(scaled(model, solve(M, task_matrix(model, J)))))
+    def dynamic_matrix(model: Any, J: mat_6n, M: mat_nn):
+        return scaled(model, solve(M, task_matrix(model, J)))
 
-    return _of_task(real, n, rows, penalty, cuda), dynamic
+    return SimpleNamespace(
+        kinematic_matrix=task_matrix,
+        kinematic_shape=(m, n),
+        dynamic_matrix=dynamic_matrix,
+        dynamic_shape=(m, n),
+        volume=_no_volume(real, n),
+        kinematic=_without_noise_of_task(real, m, n),
+        dynamic=_where_positive(real, m),
+    )
 
 
-def _table_1(real, n: int, rows: tuple[int, ...], penalty: bool, torque, cuda: bool):
+def _table_1(real, n: int, rows: tuple[int, ...], torque) -> SimpleNamespace:
     """H = X X^T with X = L U^-T, where J = L Q and Q M = U V (L, U lower triangular; Q, V with orthonormal rows)."""
     m = len(rows)
-    mat_6n, mat_nn = wp.types.matrix((6, n), real), wp.types.matrix((n, n), real)
-    mat_mm, vec_m = wp.types.matrix((m, m), real), wp.types.vector(m, real)
+    mat_6n, mat_nn, mat_mm = (wp.types.matrix(size, real) for size in ((6, n), (n, n), (m, m)))
     task_matrix = _task_matrix(real, n, rows)
-    values, where_positive = singular_values(real, m, m, True, cuda), _where_positive(real, m)
     lower_factor, times_inertia = _lower_factor(real, m, n), _times_inertia(real, m, n)
     DEFICIENT = n < m
     ZERO, ONE = real(0.0), real(1.0)
 
     @wp.func
-    def singular(model: Any, J: mat_6n, M: mat_nn, kinematic: vec_m):
-        return vec_m()
+    def zero(model: Any, J: mat_6n, M: mat_nn):
+        return mat_mm()
 
     @wp.func
-    def dynamic(model: Any, J: mat_6n, M: mat_nn, kinematic: vec_m):
+    def dynamic_matrix(model: Any, J: mat_6n, M: mat_nn):
         L, Q = lower_factor(task_matrix(model, J))
         U, _V = lower_factor(times_inertia(Q, M))
         # Rows of X with X Uᵀ = L, that is the matrix whose singular values are the inverses of those of M J⁺.
@@ -225,9 +242,17 @@ def _table_1(real, n: int, rows: tuple[int, ...], penalty: bool, torque, cuda: b
                 for k in range(c):
                     value -= X[r, k] * U[c, k]
                 X[r, c] = wp.where(U[c, c] > ZERO, value / wp.where(U[c, c] > ZERO, U[c, c], ONE), ZERO)
-        return where_positive(kinematic, values(X))
+        return X
 
-    return _of_task(real, n, rows, penalty, cuda), singular if DEFICIENT else dynamic
+    return SimpleNamespace(
+        kinematic_matrix=task_matrix,
+        kinematic_shape=(m, n),
+        dynamic_matrix=zero if DEFICIENT else dynamic_matrix,
+        dynamic_shape=(m, m),
+        volume=_no_volume(real, n),
+        kinematic=_without_noise_of_task(real, m, n),
+        dynamic=_where_positive(real, m),
+    )
 
 
 def _times_inertia(real, m: int, n: int):
@@ -272,18 +297,24 @@ def _lower_factor(real, m: int, n: int):
     return lower_factor
 
 
-def _wsrender_code(real, n: int, rows: tuple[int, ...], penalty: bool, torque, cuda: bool):
-    mat_6n, mat_nn = wp.types.matrix((6, n), real), wp.types.matrix((n, n), real)
+def _wsrender_code(real, n: int, rows: tuple[int, ...], torque) -> SimpleNamespace:
+    mat_6n, mat_nn, vec6 = wp.types.matrix((6, n), real), wp.types.matrix((n, n), real), wp.types.vector(6, real)
     COUNT = min(6, n)
     FULL_RANK = n >= 6
     out_type = wp.types.vector(1 + COUNT, real)
-    of_six, of_product = singular_values(real, 6, n, penalty, cuda), singular_values(real, 6, n, True, cuda)
     regular, times_inertia = without_noise(real, 6, n, 6), _times_inertia(real, 6, n)
     ONE, ZERO = real(1.0), real(0.0)
 
     @wp.func
-    def kinematic(model: Any, J: mat_6n):
-        six = regular(of_six(J))
+    def kinematic_matrix(model: Any, J: mat_6n):
+        return J
+
+    @wp.func
+    def dynamic_matrix(model: Any, J: mat_6n, M: mat_nn):
+        return times_inertia(J, M)
+
+    @wp.func
+    def volume(J: mat_6n):
         a = J[0]
         b = J[1]
         c = J[2]
@@ -295,21 +326,33 @@ def _wsrender_code(real, n: int, rows: tuple[int, ...], penalty: bool, torque, c
         cc = wp.dot(c, c)
         # The program's determinant, rounding noise at singular postures included: its sixth root is in the tables.
         determinant = aa * (bb * cc - bc * bc) - ab * (ab * cc - bc * ac) + ac * (ab * bc - bb * ac)
+        return wp.sqrt(wp.abs(determinant))
+
+    @wp.func
+    def kinematic(volume: real, sigma: vec6):
+        six = regular(sigma)
         out = out_type()
-        out[0] = wp.sqrt(wp.abs(determinant))
+        out[0] = volume
         for i in range(COUNT):
             out[1 + i] = six[i]
         return out
 
     @wp.func
-    def dynamic(model: Any, J: mat_6n, M: mat_nn, kinematic: out_type):
-        six = of_product(times_inertia(J, M))
+    def dynamic(kinematic: out_type, sigma: vec6):
         out = out_type()
         determinant = ONE
         for i in range(COUNT):
-            out[1 + i] = wp.where(kinematic[1 + i] > ZERO, six[i], ZERO)
+            out[1 + i] = wp.where(kinematic[1 + i] > ZERO, sigma[i], ZERO)
             determinant *= out[1 + i]
         out[0] = wp.where(FULL_RANK, determinant, ZERO)
         return out
 
-    return kinematic, dynamic
+    return SimpleNamespace(
+        kinematic_matrix=kinematic_matrix,
+        kinematic_shape=(6, n),
+        dynamic_matrix=dynamic_matrix,
+        dynamic_shape=(6, n),
+        volume=volume,
+        kinematic=kinematic,
+        dynamic=dynamic,
+    )

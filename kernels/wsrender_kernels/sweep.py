@@ -1,7 +1,8 @@
 """The fused kernel: configuration -> kinematics -> [inertia] -> singular values -> indices -> voxels and totals.
 
 On the CPU a task is a block of LANES samples: a lane loop with a compile-time trip count, which LLVM turns into SIMD,
-fills one scratch row per output; short loops then reduce and scatter them. On CUDA a thread takes one sample after
+fills one scratch row per output (where singular values take rotations: several, see `_staged_lanes`); short loops then
+reduce and scatter them. On CUDA a thread takes one sample after
 the other from the same device functions. Outputs of a sample, in this order: tip position (3), indices (K), largest
 and smallest singular value of the task (2), then, where asked, configuration (n) and tip orientation (w x y z).
 """
@@ -18,16 +19,16 @@ from wsrender_kernels.elementary import bits_type, elementary
 from wsrender_kernels.factories import factory
 from wsrender_kernels.inertia import inertia
 from wsrender_kernels.kinematics import kinematics, orientation
-from wsrender_kernels.memory import cuda_atomics, memory
+from wsrender_kernels.memory import align_scratch, cuda_atomics, memory
 from wsrender_kernels.model import model_type
 from wsrender_kernels.options import (
     CUDA_OPTIONS,
-    DYNAMIC_OPTIONS,
     LONG_CUDA_OPTIONS,
-    MODULE_OPTIONS,
+    LONG_OPTIONS,
     SHORT_OPTIONS,
 )
 from wsrender_kernels.sampling import LANES, base_levels, blocks, grid_level, sample_space, sampling
+from wsrender_kernels.singular_values import ROTATED_LANES, rotations, singular_values
 from wsrender_kernels.spectrum import in_base_axes, spectrum
 from wsrender_kernels.voxels import lattice, lowest, voxels
 
@@ -197,38 +198,41 @@ def _state(shape: Shape) -> SimpleNamespace:
 
 
 @factory
-def _outputs(shape: Shape, cuda: bool):
-    """Device function ``evaluate(model, space, block, first, lane) -> outputs`` of one sample."""
+def _evaluation(shape: Shape, cuda: bool) -> SimpleNamespace:
+    """Device functions before the singular values of a sample, after them, and all three in one.
+
+    ``matrices(model, space, block, first, lane) -> out, A, B, volume``: outputs but the indices, and what `spectrum`
+    takes singular values of; ``indices_of(volume, sigma of A, sigma of B)`` -> the other outputs; ``evaluate`` -> all.
+    """
     real, n = shape.real, shape.n
     draw = sampling(real, n, shape.method, shape.shared).draw
     state = _state(shape)
-    spectra = spectrum(real, n, shape.rows, shape.convention, shape.penalty, shape.torque_scaling, cuda)
-    penalized, kinematic = spectra.penalized, spectra.kinematic
-    dynamic_spectrum = spectra.dynamic if shape.dynamic else spectra.absent
+    spectra = _spectra(shape)
+    penalized, volume_of = spectra.penalized, spectra.volume
+    kinematic_matrix, dynamic_matrix = spectra.kinematic_matrix, spectra.dynamic_matrix
+    kinematic, dynamic = spectra.kinematic, spectra.dynamic
+    kinematic_values = singular_values(real, *spectra.kinematic_shape, shape.penalty, cuda)
+    dynamic_values = singular_values(real, *spectra.dynamic_shape, shape.dynamic, cuda)
+    kinematic_type, dynamic_type = (
+        wp.types.vector(rows, real) for rows, _columns in (spectra.kinematic_shape, spectra.dynamic_shape)
+    )
     indices = shape.indices
     Model, Space = model_type(real, n, len(shape.sources)), sample_space(real, n)
-    output_type = wp.types.vector(shape.n_outputs, real)
+    output_type, found_type = wp.types.vector(shape.n_outputs, real), wp.types.vector(shape.n_indices + 2, real)
     to_quaternion = orientation(real)
-    K = shape.n_indices
+    K, FOUND = shape.n_indices, shape.n_indices + 2
     LARGEST = 1 if shape.convention == "wsrender_code" else 0
     CONFIGURATION = shape.reduced
     ORIENTATION = CONFIGURATION + n * shape.keep_configuration
     KEEP_CONFIGURATION, KEEP_ORIENTATION = shape.keep_configuration, shape.keep_orientation
 
     @wp.func
-    def evaluate(model: Model, space: Space, block: Any, first: wp.int64, lane: wp.int32):
+    def matrices(model: Model, space: Space, block: Any, first: wp.int64, lane: wp.int32):
         q = draw(space, block, first, lane)
         tip, axes, J, M = state(model, q, first - space.given_first + wp.int64(lane), space.given_stride)
-        J = penalized(model, q, J)
-        sigma = kinematic(model, J)
-        values = indices(sigma, dynamic_spectrum(model, J, M, sigma))
         out = output_type()
         for r in range(3):
             out[r] = tip[r]
-        for k in range(K):
-            out[3 + k] = values[k]
-        out[3 + K] = sigma[LARGEST]
-        out[4 + K] = sigma[len(sigma) - 1]
         if wp.static(KEEP_CONFIGURATION):
             for i in range(n):
                 out[CONFIGURATION + i] = q[i]
@@ -236,9 +240,114 @@ def _outputs(shape: Shape, cuda: bool):
             quat = to_quaternion(axes)
             for i in range(4):
                 out[ORIENTATION + i] = quat[i]
+        J = penalized(model, q, J)
+        return out, kinematic_matrix(model, J), dynamic_matrix(model, J, M), volume_of(J)
+
+    @wp.func
+    def indices_of(volume: real, sigma_a: kinematic_type, sigma_b: dynamic_type):
+        sigma = kinematic(volume, sigma_a)
+        values = indices(sigma, dynamic(sigma, sigma_b))
+        found = found_type()
+        for k in range(K):
+            found[k] = values[k]
+        found[K] = sigma[LARGEST]
+        found[wp.static(K + 1)] = sigma[len(sigma) - 1]
+        return found
+
+    @wp.func
+    def evaluate(model: Model, space: Space, block: Any, first: wp.int64, lane: wp.int32):
+        out, A, B, volume = matrices(model, space, block, first, lane)
+        found = indices_of(volume, kinematic_values(A), dynamic_values(B))
+        for k in range(FOUND):
+            out[3 + k] = found[k]
         return out
 
-    return evaluate
+    return SimpleNamespace(matrices=matrices, indices_of=indices_of, evaluate=evaluate)
+
+
+def _spectra(shape: Shape) -> SimpleNamespace:
+    return spectrum(
+        shape.real, shape.n, shape.rows, shape.convention, shape.dynamic, shape.penalty, shape.torque_scaling
+    )
+
+
+def _staged_lanes(shape: Shape):
+    """Device function ``(model, space, block, first, valid) -> outputs`` of a block, one row of LANES per output.
+
+    In stages, for singular values of many rotations: in a single lane loop they would take long to compile.
+    """
+    real = shape.real
+    evaluation, spectra = _evaluation(shape, cuda=False), _spectra(shape)
+    matrices, indices_of = evaluation.matrices, evaluation.indices_of
+    of_a = rotations(real, *spectra.kinematic_shape, shape.penalty)
+    of_b = rotations(real, *spectra.dynamic_shape, shape.dynamic)
+    start_a, swept_a, finish_a, lanes_a, R_a = of_a.start, of_a.swept, of_a.finish, of_a.lanes_type, of_a.factor_type
+    start_b, swept_b, finish_b, lanes_b, R_b = of_b.start, of_b.swept, of_b.finish, of_b.lanes_type, of_b.factor_type
+    ROWS_A, COLUMNS_A = of_a.factor_shape
+    ROWS_B, COLUMNS_B = of_b.factor_shape
+    Model, Space = model_type(real, shape.n, len(shape.sources)), sample_space(real, shape.n)
+    values_type, numbers_type = wp.types.vector(shape.n_outputs * LANES, real), wp.types.vector(3 * ROTATED_LANES, real)
+    sigma_b_type = wp.types.vector(spectra.dynamic_shape[0], real)
+    N_OUTPUTS, FOUND, BLOCK, PART, DYNAMIC = shape.n_outputs, shape.n_indices + 2, LANES, ROTATED_LANES, shape.dynamic
+
+    @wp.func
+    def staged_lanes(model: Model, space: Space, block: Any, first: wp.int64, valid: wp.int32):
+        values = values_type()
+        in_a = lanes_a()
+        in_b = lanes_b()
+        numbers = numbers_type()
+        part = wp.int32(0)
+        while part < BLOCK:
+            for lane in range(PART):
+                out, A, B, volume = matrices(model, space, block, first, wp.min(part + lane, valid - 1))
+                at = part + lane
+                for r in range(N_OUTPUTS):
+                    values[at] = out[r]
+                    at += BLOCK
+                numbers[lane] = volume
+                R, scale_a = start_a(A)
+                numbers[PART + lane] = scale_a
+                at = lane
+                for i in range(ROWS_A):
+                    for c in range(COLUMNS_A):
+                        in_a[at] = R[i, c]
+                        at += PART
+                if wp.static(DYNAMIC):
+                    S, scale_b = start_b(B)
+                    numbers[2 * PART + lane] = scale_b
+                    at = lane
+                    for i in range(ROWS_B):
+                        for c in range(COLUMNS_B):
+                            in_b[at] = S[i, c]
+                            at += PART
+            out_a = swept_a(in_a)
+            if wp.static(DYNAMIC):
+                out_b = swept_b(in_b)
+            for lane in range(PART):
+                orthogonal_a = R_a()
+                place = lane
+                for i in range(ROWS_A):
+                    for c in range(COLUMNS_A):
+                        orthogonal_a[i, c] = out_a[place]
+                        place += PART
+                sigma_a = finish_a(orthogonal_a, numbers[PART + lane])
+                sigma_b = sigma_b_type()
+                if wp.static(DYNAMIC):
+                    orthogonal_b = R_b()
+                    place = lane
+                    for i in range(ROWS_B):
+                        for c in range(COLUMNS_B):
+                            orthogonal_b[i, c] = out_b[place]
+                            place += PART
+                    sigma_b = finish_b(orthogonal_b, numbers[2 * PART + lane])
+                found = indices_of(numbers[lane], sigma_a, sigma_b)
+                place = part + lane  # added up in another order, clang does not see that it is no negative index
+                for k in range(FOUND):
+                    values[(3 + k) * BLOCK + place] = found[k]
+            part += PART
+        return values
+
+    return staged_lanes
 
 
 def record_type_of(shape: Shape):
@@ -283,7 +392,9 @@ def sweep_kernel(shape: Shape, cuda: bool) -> wp.Kernel:
 
 def _cpu_kernel(shape: Shape) -> wp.Kernel:
     real, K = shape.real, shape.n_indices
-    prepare, evaluate = sampling(real, shape.n, shape.method).prepare, _outputs(shape, cuda=False)
+    prepare = sampling(real, shape.n, shape.method).prepare
+    evaluate = _evaluation(shape, cuda=False).evaluate
+    staged_lanes = _staged_lanes(shape) if shape.many_rows else None
     block_of = blocks(real, shape.n, shape.shared)
     ordered = elementary(real).ordered
     cell, quantized = voxels(real).cell, voxels(real).quantized
@@ -295,6 +406,7 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
     N_OUTPUTS, N_ROWS, REDUCED, RECORD = shape.n_outputs, shape.n_rows, shape.reduced, shape.record_size
     OUTPUT = _output_of_row(shape)
     VOXELS, SUMS, ROWS, BASE_LEVELS = shape.voxels, shape.sums, shape.keep_rows, shape.base_levels
+    STAGED = shape.many_rows
     LOWEST = bits(lowest(real))
     LOWEST_ROW = REDUCED * LANES
     LEAST_SUM = wp.int64(-(2**62) - 2**61)
@@ -311,7 +423,7 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
     cells_type = wp.types.vector(LANES, wp.int32)
     levers_type = wp.types.vector(3 * LANES, real)
 
-    options = DYNAMIC_OPTIONS if shape.dynamic else MODULE_OPTIONS if shape.many_rows else SHORT_OPTIONS
+    options = LONG_OPTIONS if shape.dynamic or shape.many_rows else SHORT_OPTIONS
 
     @wp.kernel(module="unique", module_options=options, enable_backward=False)
     def sweep_cpu(
@@ -325,6 +437,7 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
         # out
         to: Outputs,
     ):
+        align_scratch()
         mode = denormals_to_zero()
         start, valid = block_of(space, first, count, wp.tid())
         block = prepare(space, start)
@@ -334,14 +447,18 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
         cells = cells_type()
         levers = levers_type()
 
-        for lane in range(BLOCK):
-            # The lanes past the end repeat the last sample: harmless in extremes, masked in counts and sums.
-            out = evaluate(model, space, block, start, wp.min(lane, valid - 1))
-            for r in range(N_OUTPUTS):
-                values[r * BLOCK + lane] = out[r]
-            if wp.static(BASE_LEVELS):
-                for r in range(3):
-                    levers[r * BLOCK + lane] = out[r]
+        if wp.static(STAGED):
+            values = staged_lanes(model, space, block, start, valid)
+        else:
+            for lane in range(BLOCK):
+                # The lanes past the end repeat the last sample: harmless in extremes, masked in counts and sums.
+                out = evaluate(model, space, block, start, wp.min(lane, valid - 1))
+                for r in range(N_OUTPUTS):
+                    values[r * BLOCK + lane] = out[r]
+        if wp.static(BASE_LEVELS):
+            for r in range(3):
+                for lane in range(BLOCK):
+                    levers[r * BLOCK + lane] = values[r * BLOCK + lane]
 
         levels = wp.int32(1)
         if wp.static(BASE_LEVELS):
@@ -456,7 +573,7 @@ def _record_keys(shape: Shape):
 def _cuda_kernel(shape: Shape) -> wp.Kernel:
     """Threads stride through the chunk and keep their totals in registers, so that few atomics meet on one address."""
     real, K = shape.real, shape.n_indices
-    prepare, evaluate = sampling(real, shape.n, shape.method).prepare, _outputs(shape, cuda=True)
+    prepare, evaluate = sampling(real, shape.n, shape.method).prepare, _evaluation(shape, cuda=True).evaluate
     ordered = elementary(real).ordered
     cell, quantized = voxels(real).cell, voxels(real).quantized
     Model, Space = model_type(real, shape.n, len(shape.sources)), sample_space(real, shape.n)

