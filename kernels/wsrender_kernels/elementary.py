@@ -41,7 +41,8 @@ _ROOT_GUESS = {wp.float32: 0x54A1F000, wp.float64: 0x553EE800}
 _ROOT_STEPS = {wp.float32: 2, wp.float64: 3}
 
 # x^(-1/2): half of the bits of x from these leaves e = 1 - x y² below 0.0682 (fitted), y times a polynomial in e
-# through Chebyshev points 2e-8 or 2e-6; in float64 a step of third order then leaves nothing.
+# through Chebyshev points, its constant term taken as 1, 1.4e-9 or 1.5e-6; in float64 a step of third order then leaves
+# nothing.
 _INVERSE_ROOT_GUESS = {wp.float32: 0x5F374740, wp.float64: 0x5FE6E8E800000000}
 _INVERSE_ROOT = {
     real: Chebyshev.interpolate(lambda e: (1.0 - e) ** -0.5, degree, [-0.0682, 0.0682]).convert(kind=Polynomial)

@@ -21,7 +21,7 @@ from wsrender_kernels.factories import factory
 from wsrender_kernels.matrices import transpose
 
 SWEEPS = {wp.float32: 4, wp.float64: 5}  # of a triangular factor
-ROTATED_LANES = 32  # at a time: their factors stay in the first cache
+ROTATED_LANES = 32  # at a time, a part of a block: their factors stay in the first cache; more than Warp unrolls
 # Of a third of an angle: degree of the polynomials, and steps that square their error.
 DEGREE, NEWTON_STEPS = {wp.float32: 9, wp.float64: 10}, {wp.float32: 0, wp.float64: 1}
 
@@ -402,14 +402,15 @@ def rotations(real, m: int, n: int, graded: bool) -> SimpleNamespace:
 def _swept(real, count: int, length: int):
     """Device function lanes -> lanes: all sweeps of the vectors (count, length) of ROTATED_LANES samples.
 
-    Number by number in rows of lanes. One round is all the code there is, in a lane loop: written out for one sample
-    after the other, the sweeps would be twenty times as much to compile. Angles have a loop of their own: they are long
-    chains of operations, of which a core overlaps those of several samples where little else is between.
+    Number c of vector i of a sample is ``lanes[(i * length + c) * ROTATED_LANES + lane]``. One round is all the code
+    there is, in a lane loop: written out for one sample after the other, the sweeps would be twenty times as much to
+    compile. Angles have a loop of their own: they are long chains of operations, of which a core overlaps those of
+    several samples where little else is between.
     """
-    BLOCK, ROUNDS, NUMBER_OF_SWEEPS, PAIRS = ROTATED_LANES, _rounds(count), SWEEPS[real], _pairs(count)
+    PART, ROUNDS, NUMBER_OF_SWEEPS, PAIRS = ROTATED_LANES, _rounds(count), SWEEPS[real], _pairs(count)
     mat, vec, vec_pairs = (wp.types.matrix((count, length), real), *(wp.types.vector(k, real) for k in (count, PAIRS)))
     vectors_type, squares_type, pairs_type = (
-        wp.types.vector(rows * BLOCK, real) for rows in (count * length, count, PAIRS)
+        wp.types.vector(rows * PART, real) for rows in (count * length, count, PAIRS)
     )
     angles, turned, ZERO = _angles(real, count, length), _turned(real, count, length), real(0.0)
 
@@ -421,49 +422,49 @@ def _swept(real, count: int, length: int):
         lane_sines = pairs_type()
         sweeps = wp.int32(0)
         while sweeps < NUMBER_OF_SWEEPS:
-            for lane in range(BLOCK):
+            for lane in range(PART):
                 at = lane
                 for i in range(count):
                     square = ZERO
                     for _c in range(length):
                         square += out[at] * out[at]
-                        at += BLOCK
-                    lane_squares[i * BLOCK + lane] = square
+                        at += PART
+                    lane_squares[i * PART + lane] = square
             rounds = wp.int32(0)
             while rounds < ROUNDS:
-                for lane in range(BLOCK):
+                for lane in range(PART):
                     vectors = mat()
                     squares = vec()
                     at = lane
                     for i in range(count):
-                        squares[i] = lane_squares[i * BLOCK + lane]
+                        squares[i] = lane_squares[i * PART + lane]
                         for c in range(length):
                             vectors[i, c] = out[at]
-                            at += BLOCK
+                            at += PART
                     cosines, sines, squares = angles(vectors, squares)
                     for k in range(PAIRS):
-                        lane_cosines[k * BLOCK + lane] = cosines[k]
-                        lane_sines[k * BLOCK + lane] = sines[k]
+                        lane_cosines[k * PART + lane] = cosines[k]
+                        lane_sines[k * PART + lane] = sines[k]
                     for i in range(count):
-                        lane_squares[i * BLOCK + lane] = squares[i]
-                for lane in range(BLOCK):
+                        lane_squares[i * PART + lane] = squares[i]
+                for lane in range(PART):
                     before = mat()
                     at = lane
                     for i in range(count):
                         for c in range(length):
                             before[i, c] = out[at]
-                            at += BLOCK
+                            at += PART
                     c_of = vec_pairs()
                     s_of = vec_pairs()
                     for k in range(PAIRS):
-                        c_of[k] = lane_cosines[k * BLOCK + lane]
-                        s_of[k] = lane_sines[k * BLOCK + lane]
+                        c_of[k] = lane_cosines[k * PART + lane]
+                        s_of[k] = lane_sines[k * PART + lane]
                     after = turned(before, c_of, s_of)
                     at = lane
                     for i in range(count):
                         for c in range(length):
                             out[at] = after[i, c]
-                            at += BLOCK
+                            at += PART
                 rounds += 1
             sweeps += 1
         return out
@@ -502,7 +503,7 @@ def _by_rotations(real, m: int, n: int, graded: bool, cuda: bool):
 
 
 def _rounds(count: int) -> int:
-    """Rounds in which each of ``count`` vectors meets each other once, nobody twice in a round."""
+    """Rounds in which each of ``count`` vectors meets each other once, nobody twice in a round (of one, nobody)."""
     return count - 1 + count % 2
 
 
@@ -538,7 +539,7 @@ def _angles(real, count: int, length: int):
         out = vec()
         cosines = vec_pairs()
         sines = vec_pairs()
-        out[NEXT[0]] = squares[0]
+        out[NEXT[0]] = squares[0]  # whom nobody meets if they are odd in number
         for k in range(PAIRS):
             i = wp.static(ODD) + k
             j = LAST - k
@@ -562,7 +563,7 @@ def _turned(real, count: int, length: int):
     @wp.func
     def turned(vectors: mat, cosines: vec_pairs, sines: vec_pairs):
         out = mat()
-        out[NEXT[0]] = vectors[0]
+        out[NEXT[0]] = vectors[0]  # see above
         for k in range(PAIRS):
             i = wp.static(ODD) + k
             j = LAST - k
@@ -654,5 +655,5 @@ def _triangular_factor(real, count: int, length: int):
 
 
 def _tiny(real):
-    """A number whose square root and reciprocal are finite: below it a squared length counts as 0."""
+    """A number whose square root and reciprocal are finite: below it a square counts as 0."""
     return real(1e-36 if real is wp.float32 else 1e-300)

@@ -47,24 +47,44 @@ def spectrum(
     make = {"standard": _standard, "table_1": _table_1, "wsrender_code": _wsrender_code}[convention]
     spectra = make(real, n, rows, _torque_scaled(real, n) if torque else None)
     if not dynamic:
-        vars(spectra).update(vars(_absent(real, n, spectrum_length(n, rows, convention))))
+        spectra.dynamic_matrix, spectra.dynamic_shape = _no_matrix(real, n), (1, 1)
+        spectra.dynamic = _unused(real, spectrum_length(n, rows, convention))
     spectra.penalized = _penalized(real, n) if penalty else _unchanged(real, n)
     return spectra
 
 
-def _absent(real, n: int, length: int) -> SimpleNamespace:
+def _no_matrix(real, n: int):
+    """Device function in place of a ``dynamic_matrix``: a single 0."""
     mat_6n, mat_nn = wp.types.matrix((6, n), real), wp.types.matrix((n, n), real)
-    spectrum_type, mat_11, vec1 = wp.types.vector(length, real), wp.types.matrix((1, 1), real), wp.types.vector(1, real)
+    mat_11 = wp.types.matrix((1, 1), real)
 
     @wp.func
     def no_matrix(model: Any, J: mat_6n, M: mat_nn):
         return mat_11()
 
+    return no_matrix
+
+
+def _unused(real, length: int):
+    """Device function in place of a ``dynamic`` where no index is: the kinematic spectrum."""
+    spectrum_type, vec1 = wp.types.vector(length, real), wp.types.vector(1, real)
+
     @wp.func
-    def absent(kinematic: spectrum_type, sigma: vec1):
+    def unused(kinematic: spectrum_type, sigma: vec1):
         return kinematic
 
-    return SimpleNamespace(dynamic_matrix=no_matrix, dynamic_shape=(1, 1), dynamic=absent)
+    return unused
+
+
+def _zeros(real, length: int):
+    """Device function in place of a ``dynamic`` of zeros."""
+    spectrum_type, vec1 = wp.types.vector(length, real), wp.types.vector(1, real)
+
+    @wp.func
+    def zeros(kinematic: spectrum_type, sigma: vec1):
+        return spectrum_type()
+
+    return zeros
 
 
 def _unchanged(real, n: int):
@@ -169,10 +189,10 @@ def _without_noise_of_task(real, m: int, n: int):
     vec_m, regular = wp.types.vector(m, real), without_noise(real, m, n, m)
 
     @wp.func
-    def of_task(volume: real, sigma: vec_m):
+    def without_noise_of_task(volume: real, sigma: vec_m):
         return regular(sigma)
 
-    return of_task
+    return without_noise_of_task
 
 
 def _where_positive(real, m: int):
@@ -223,12 +243,8 @@ def _table_1(real, n: int, rows: tuple[int, ...], torque) -> SimpleNamespace:
     mat_6n, mat_nn, mat_mm = (wp.types.matrix(size, real) for size in ((6, n), (n, n), (m, m)))
     task_matrix = _task_matrix(real, n, rows)
     lower_factor, times_inertia = _lower_factor(real, m, n), _times_inertia(real, m, n)
-    DEFICIENT = n < m
+    deficient = n < m  # no joint motions for most task motions: every index is 0
     ZERO, ONE = real(0.0), real(1.0)
-
-    @wp.func
-    def zero(model: Any, J: mat_6n, M: mat_nn):
-        return mat_mm()
 
     @wp.func
     def dynamic_matrix(model: Any, J: mat_6n, M: mat_nn):
@@ -247,11 +263,11 @@ def _table_1(real, n: int, rows: tuple[int, ...], torque) -> SimpleNamespace:
     return SimpleNamespace(
         kinematic_matrix=task_matrix,
         kinematic_shape=(m, n),
-        dynamic_matrix=zero if DEFICIENT else dynamic_matrix,
-        dynamic_shape=(m, m),
+        dynamic_matrix=_no_matrix(real, n) if deficient else dynamic_matrix,
+        dynamic_shape=(1, 1) if deficient else (m, m),
         volume=_no_volume(real, n),
         kinematic=_without_noise_of_task(real, m, n),
-        dynamic=_where_positive(real, m),
+        dynamic=_zeros(real, m) if deficient else _where_positive(real, m),
     )
 
 

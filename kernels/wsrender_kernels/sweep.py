@@ -1,7 +1,7 @@
 """The fused kernel: configuration -> kinematics -> [inertia] -> singular values -> indices -> voxels and totals.
 
 On the CPU a task is a block of LANES samples: a lane loop with a compile-time trip count, which LLVM turns into SIMD,
-fills one scratch row per output (where singular values take rotations: several, see `_staged_lanes`); short loops then
+or several where singular values take rotations (`_staged_lanes`), fill one scratch row per output; short loops then
 reduce and scatter them. On CUDA a thread takes one sample after
 the other from the same device functions. Outputs of a sample, in this order: tip position (3), indices (K), largest
 and smallest singular value of the task (2), then, where asked, configuration (n) and tip orientation (w x y z).
@@ -212,7 +212,7 @@ def _evaluation(shape: Shape, cuda: bool) -> SimpleNamespace:
     kinematic_matrix, dynamic_matrix = spectra.kinematic_matrix, spectra.dynamic_matrix
     kinematic, dynamic = spectra.kinematic, spectra.dynamic
     kinematic_values = singular_values(real, *spectra.kinematic_shape, shape.penalty, cuda)
-    dynamic_values = singular_values(real, *spectra.dynamic_shape, shape.dynamic, cuda)
+    dynamic_values = singular_values(real, *spectra.dynamic_shape, True, cuda)
     kinematic_type, dynamic_type = (
         wp.types.vector(rows, real) for rows, _columns in (spectra.kinematic_shape, spectra.dynamic_shape)
     )
@@ -280,7 +280,7 @@ def _staged_lanes(shape: Shape):
     evaluation, spectra = _evaluation(shape, cuda=False), _spectra(shape)
     matrices, indices_of = evaluation.matrices, evaluation.indices_of
     of_a = rotations(real, *spectra.kinematic_shape, shape.penalty)
-    of_b = rotations(real, *spectra.dynamic_shape, shape.dynamic)
+    of_b = rotations(real, *spectra.dynamic_shape, True)
     start_a, swept_a, finish_a, lanes_a, R_a = of_a.start, of_a.swept, of_a.finish, of_a.lanes_type, of_a.factor_type
     start_b, swept_b, finish_b, lanes_b, R_b = of_b.start, of_b.swept, of_b.finish, of_b.lanes_type, of_b.factor_type
     ROWS_A, COLUMNS_A = of_a.factor_shape
