@@ -206,6 +206,7 @@ def elementary(real) -> SimpleNamespace:
 
     @wp.func
     def root_and_reciprocal32(x: real):
+        # By `inverse_root` six indices are 2 to 7 % slower: the divider works beside the multipliers.
         return wp.sqrt(x), ONE / x
 
     @wp.func

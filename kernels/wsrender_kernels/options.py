@@ -1,5 +1,7 @@
 """Compiler options of every kernel module."""
 
+BLOCK_CPU, BLOCK_CUDA = 1, 256  # threads per block of wp.launch: kernels are compiled for a number
+
 # Whole registers on AVX-512, which clang would halve; a stack aligned to them, or most of what it holds lies across two
 # cache lines, by the chance of an address; fused multiply-add; the lane loop's body inlined whole, however long, or it
 # is not vectorised; instructions scheduled from both ends of a block and as if it were no loop, so that fewer wait for
@@ -21,11 +23,16 @@ def _options(vectors: int, spare_registers: bool) -> dict:
 
 # Two vectors, since one is a single chain of dependent operations.
 MODULE_OPTIONS = _options(2, True)
+# Of kernels for the CPU alone: with the number of threads that it is loaded for, Warp hashes a kernel once, not twice,
+# which is a third of what loading it takes.
+ON_CPU = {"block_dim": BLOCK_CPU}
 # Where few values live anyway, ordered by what they wait for alone: 7 to 13 % faster on AVX2, as fast on AVX-512.
-SHORT_OPTIONS = _options(2, False)
-# An inertia matrix or rotations give one vector enough to do: compiled in two thirds of the time, 5 % slower to 12 %
-# faster.
-LONG_OPTIONS = _options(1, True)
+SHORT_OPTIONS = {**_options(2, False), **ON_CPU}
+# An inertia matrix or rotations give one vector enough to do: compiled in two thirds to five sixths of the time. Sweeps
+# with an inertia matrix are 2 % slower to 12 % faster, rotations 3 to 6 % slower on AVX2, on AVX-512 11 % slower in
+# float32 and 2 % faster in float64.
+LONG_OPTIONS = {**_options(1, True), **ON_CPU}
+CPU_OPTIONS = (MODULE_OPTIONS, SHORT_OPTIONS, LONG_OPTIONS)
 # Division and square root of float32 to 2 units in the last place: a third faster.
 CUDA_OPTIONS = {**MODULE_OPTIONS, "fast_math": True}
 # Compiled in half the time; kernels are about a fifth slower.

@@ -515,8 +515,9 @@ def _pairs(count: int) -> int:
 def _seats(count: int):
     """Seat of every vector in the next round of a tournament.
 
-    Those that sit opposite each other meet; then all but the first, if they are even in number, move on by one seat. So
-    every round is the same code, and after the last one all are back where they began.
+    Those that sit opposite each other meet: the first and the last, the second and the last but one; if they are odd in
+    number, the first meets nobody, and they begin with the second. Then all but the first (odd: all) move on by one
+    seat. So every round is the same code, and after the last one all are back where they began.
     """
     moving = list(range(1 - count % 2, count))
     seats = dict(zip(moving, [*moving[1:], *moving[:1]], strict=True))
@@ -539,7 +540,7 @@ def _angles(real, count: int, length: int):
         out = vec()
         cosines = vec_pairs()
         sines = vec_pairs()
-        out[NEXT[0]] = squares[0]  # whom nobody meets if they are odd in number
+        out[NEXT[0]] = squares[0]  # meets nobody, or is overwritten
         for k in range(PAIRS):
             i = wp.static(ODD) + k
             j = LAST - k
@@ -563,7 +564,7 @@ def _turned(real, count: int, length: int):
     @wp.func
     def turned(vectors: mat, cosines: vec_pairs, sines: vec_pairs):
         out = mat()
-        out[NEXT[0]] = vectors[0]  # see above
+        out[NEXT[0]] = vectors[0]  # meets nobody, or is overwritten
         for k in range(PAIRS):
             i = wp.static(ODD) + k
             j = LAST - k

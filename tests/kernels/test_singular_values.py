@@ -94,10 +94,11 @@ def test_products_are_accurate_near_singularities(m, n, precision, device):
 
 
 def test_three_rows_err_by_some_roundings(precision, device):
-    """Whatever the spectrum; nearly rank-one matrices come out worst, one in some 50,000 at 20 epsilon."""
+    """Whatever the spectrum; worst where two small ones nearly agree: in float64 one in some 50,000 by 20 epsilon."""
     A = matrices(np.random.default_rng(0), 3, 6, 60_000)
     error = np.abs(evaluated(A, precision, device=device) - (exact := reference(A, precision)))
-    assert (error <= 24 * epsilon(precision) * exact[:, :1]).all()
+    most = {"float32": 16, "float64": 24}[precision]
+    assert (error <= most * epsilon(precision) * exact[:, :1]).all()
 
 
 def test_two_small_singular_values_that_agree(precision, device):
