@@ -3,6 +3,15 @@
 import os
 import subprocess
 import sys
+import time
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from types import SimpleNamespace
+
+import warp as wp
+
+from wsrender.engine import devices_of
+from wsrender.engine.kernel_cache import loaded
 
 SCRIPT = """
 import sys
@@ -67,3 +76,25 @@ def test_a_header_that_does_not_fit_is_done_away_with(tmp_path):
     next(iter(headers)).write_bytes(b"cut")  # by all its names
     assert compiled([start(tmp_path, "3", script=SMALL_KERNEL)])[0]
     assert set(tmp_path.rglob("header_*/*.pch")) < headers
+
+
+def test_threads_compile_one_after_the_other():
+    """Options of the compiler are those of the whole process."""
+    busy, most = [], []
+
+    class Kernel:
+        def __init__(self, number):
+            self.module = SimpleNamespace(name=f"test_{number}", load=self.load, options={"cpu_compiler_flags": ""})
+
+        def load(self, device, block_dim):
+            busy.append(self)
+            most.append(len(busy))
+            time.sleep(0.02)
+            busy.remove(self)
+
+    device = devices_of("cpu")[0]
+    with ThreadPoolExecutor(4) as pool:
+        list(pool.map(lambda number: loaded(Kernel(number), device), range(8)))
+    assert most == [1] * 8
+    for number in range(8):
+        Path(wp.config.kernel_cache_dir, f"test_{number}.lock").unlink(missing_ok=True)

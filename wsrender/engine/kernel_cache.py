@@ -2,6 +2,7 @@
 
 import hashlib
 import os
+import threading
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
@@ -9,6 +10,8 @@ from pathlib import Path
 import warp as wp
 from filelock import FileLock
 from wsrender_kernels.options import BLOCK_CPU, BLOCK_CUDA, CPU_FLAGS, CPU_OPTIONS
+
+_loading = threading.Lock()  # LLVM's options are the process's: two compilations at a time could mix theirs
 
 
 def loaded(kernel: wp.Kernel, *devices: wp.Device) -> wp.Kernel:
@@ -23,7 +26,7 @@ def _load(kernel: wp.Kernel, device: str) -> None:
     assert wp.config.kernel_cache_dir is not None  # set by wp.init
     folder = Path(wp.config.kernel_cache_dir)
     kept = _keep_header(folder)
-    with FileLock(folder / f"{kernel.module.name}.lock"):
+    with _loading, FileLock(folder / f"{kernel.module.name}.lock"):
         kernel.module.load(device, block_dim=BLOCK_CPU if device == "cpu" else BLOCK_CUDA)
     if kept:
         _share_header(kept, kernel.module.options["cpu_compiler_flags"])
