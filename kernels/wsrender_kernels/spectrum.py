@@ -48,7 +48,7 @@ def spectrum(
     spectra = make(real, n, rows, _torque_scaled(real, n) if torque else None)
     if not dynamic:
         spectra.dynamic_matrix, spectra.dynamic_shape = _no_matrix(real, n), (1, 1)
-        spectra.dynamic = _unused(real, spectrum_length(n, rows, convention))
+        spectra.dynamic = _zeros(real, spectrum_length(n, rows, convention))
     spectra.penalized = _penalized(real, n) if penalty else _unchanged(real, n)
     return spectra
 
@@ -63,17 +63,6 @@ def _no_matrix(real, n: int):
         return mat_11()
 
     return no_matrix
-
-
-def _unused(real, length: int):
-    """Device function in place of a ``dynamic`` where no index is: the kinematic spectrum."""
-    spectrum_type, vec1 = wp.types.vector(length, real), wp.types.vector(1, real)
-
-    @wp.func
-    def unused(kinematic: spectrum_type, sigma: vec1):
-        return kinematic
-
-    return unused
 
 
 def _zeros(real, length: int):

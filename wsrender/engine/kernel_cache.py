@@ -67,6 +67,7 @@ def _share_header(kept: Path, flags: str) -> None:
                 os.link(made, made.with_name(name))
 
 
+@cache
 def _in_header_name(flags: str) -> str:
     """Warp's digest of compiler flags: FNV-1a, each flag ended by a zero."""
     digest = 0xCBF29CE484222325
