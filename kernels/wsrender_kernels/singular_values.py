@@ -32,14 +32,10 @@ def epsilon(real) -> float:
 
 
 @factory
-def singular_values(real, m: int, n: int, graded: bool = False, cuda: bool = False):
-    """Device function ``(A: (m, n)) -> (m,)``, descending, as computed; the last m - n are exactly 0.
-
-    ``cuda``: for a GPU. In float64 the sweeps of rotations are a loop there, 1.5 to 1.8 times as fast on an H200 as
-    written out, when registers run out; written out float32 is as fast or up to 1.4 times as fast.
-    """
+def singular_values(real, m: int, n: int, graded: bool = False):
+    """Device function ``(A: (m, n)) -> (m,)``, descending, as computed; the last m - n are exactly 0."""
     if m > 3:
-        return _by_rotations(real, m, n, graded, cuda)
+        return _by_rotations(real, m, n, graded)
     solver = {1: _one_row, 2: _two_rows, 3: _three_rows}[m](real, m, n)
     rotated = _by_largest_columns(real, n) if graded and m == 3 else _as_it_is(real, m, n)
     vec_m = wp.types.vector(m, real)
@@ -181,7 +177,7 @@ def _three_rows(real, m: int, n: int):
     # A row below the rounding noise of the others spans nothing: its reciprocal would overflow.
     NOISE = real(1e-18 if real is wp.float32 else 1e-36)
 
-    @wp.func
+    @wp.func(inline=True)
     def three_rows(A: mat_mn):
         a = A[0]
         b = A[1]
@@ -331,8 +327,8 @@ def _rotation(real):
 def rotations(real, m: int, n: int, graded: bool) -> SimpleNamespace:
     """One-sided Jacobi on the rows of R, (the n columns, or the m rows) P = Q R with pivoting, in stages.
 
-    Device functions ``start(A) -> R, scale``, ``sweep(R) -> R`` and ``finish(R, scale) -> (m,) values``; for many
-    samples at once ``swept(lanes) -> lanes``: see `_swept`.
+    Device functions ``start(A) -> R, scale``, ``rotated(R) -> R`` after all sweeps and ``finish(R, scale) -> (m,)
+    values``; for many samples at once ``swept(lanes) -> lanes``: see `_swept`.
 
     Columns are graded, and may be so along their coordinates too: with the longest of these first, the reflections err
     relative to each (Powell & Reid 1969; Cox & Higham 1998).
@@ -345,7 +341,8 @@ def rotations(real, m: int, n: int, graded: bool) -> SimpleNamespace:
     triangular_factor = _triangular_factor(real, COUNT, LENGTH)
     ordered = _longest_rows_first(real, m, n) if by_columns else _as_it_is(real, m, n)
     oriented = transpose(real, m, n) if by_columns else _as_it_is(real, m, n)
-    angles, turned, ROUNDS = _angles(real, RANK, COUNT), _turned(real, RANK, COUNT), _rounds(RANK)
+    angles, turned = _angles(real, RANK, COUNT), _turned(real, RANK, COUNT)
+    ROUNDS, NUMBER_OF_SWEEPS = _rounds(RANK), SWEEPS[real]
     ZERO, ONE, TINY = real(0.0), real(1.0), _tiny(real)
 
     @wp.func
@@ -362,14 +359,20 @@ def rotations(real, m: int, n: int, graded: bool) -> SimpleNamespace:
         return triangular_factor(W), scale
 
     @wp.func
-    def sweep(R: factor_type):
+    def rotated(R: factor_type):
+        # No ranges, which Warp would write out: too much for a GPU's registers, three times as slow.
         out = R
-        squares = vec_rank()  # cancellation in them costs convergence at most: every sweep begins with new ones
-        for i in range(RANK):
-            squares[i] = wp.dot(out[i], out[i])
-        for _round in range(ROUNDS):
-            cosines, sines, squares = angles(out, squares)
-            out = turned(out, cosines, sines)
+        sweeps = wp.int32(0)
+        while sweeps < NUMBER_OF_SWEEPS:
+            squares = vec_rank()  # cancellation in them costs convergence at most: every sweep begins with new ones
+            for i in range(RANK):
+                squares[i] = wp.dot(out[i], out[i])
+            rounds = wp.int32(0)
+            while rounds < ROUNDS:
+                cosines, sines, squares = angles(out, squares)
+                out = turned(out, cosines, sines)
+                rounds += 1
+            sweeps += 1
         return out
 
     @wp.func
@@ -389,7 +392,7 @@ def rotations(real, m: int, n: int, graded: bool) -> SimpleNamespace:
 
     return SimpleNamespace(
         start=start,
-        sweep=sweep,
+        rotated=rotated,
         finish=finish,
         swept=_swept(real, RANK, COUNT),
         factor_shape=(RANK, COUNT),
@@ -472,32 +475,15 @@ def _swept(real, count: int, length: int):
     return swept
 
 
-def _by_rotations(real, m: int, n: int, graded: bool, cuda: bool):
+def _by_rotations(real, m: int, n: int, graded: bool):
     """Device function A (m, n) -> singular values (m,), all stages of `rotations` for one matrix."""
     stages, mat_mn = rotations(real, m, n, graded), wp.types.matrix((m, n), real)
-    start, sweep, finish, factor_type = stages.start, stages.sweep, stages.finish, stages.factor_type
-    NUMBER_OF_SWEEPS = SWEEPS[real]
+    start, rotated, finish = stages.start, stages.rotated, stages.finish
 
-    @wp.func
-    def unrolled(R: factor_type, count: wp.int32):
-        out = R
-        for _sweep in range(NUMBER_OF_SWEEPS):
-            out = sweep(out)
-        return out
-
-    @wp.func
-    def in_a_loop(R: factor_type, count: wp.int32):
-        out = R
-        for _sweep in range(count):
-            out = sweep(out)
-        return out
-
-    sweeps = in_a_loop if cuda and real is wp.float64 else unrolled
-
-    @wp.func
+    @wp.func(inline=True)
     def by_rotations(A: mat_mn):
         R, scale = start(A)
-        return finish(sweeps(R, NUMBER_OF_SWEEPS), scale)
+        return finish(rotated(R), scale)
 
     return by_rotations
 

@@ -30,6 +30,13 @@ from wsrender_kernels.singular_values import ROTATED_LANES, rotations, singular_
 from wsrender_kernels.spectrum import in_base_axes, spectrum
 from wsrender_kernels.voxels import lattice, lowest, voxels
 
+# Threads per block on CUDA. Small blocks fill a multiprocessor better where a thread needs 128 to 168 registers (twelve
+# indices and voxels in float32: 16 % faster on an H200); float64, which needs all, is up to 9 % slower so.
+BLOCK_CUDA = {wp.float32: 128, wp.float64: 256}
+# Of a CUDA thread at most, so that a multiprocessor runs 16 warps at a time: float64 sweeps without inertia matrix,
+# rotations and penalisation, which would take up to 180, are 7 to 36 % faster. The others, which need more, would be
+# slower.
+REGISTERS_CUDA = 128
 TOTAL_SLOTS = 64  # parts in which CUDA threads add totals: on one address they would wait for each other
 
 
@@ -82,10 +89,10 @@ class Shape:
 
     @property
     def long(self) -> bool:
-        """Whether the compiler for an H200, optimizing all it can, takes some 10 s or more."""
+        """Whether the compiler for an H200, optimizing all it can, takes some 8 s or more."""
         most_joints = 9
-        if self.many_rows:
-            most_joints = 6 if self.real is wp.float32 else 7
+        if self.many_rows:  # in float64, which runs out of registers anyway, slower at most by 7 %
+            most_joints = 7 if self.real is wp.float32 else 5
         return self.dynamic and len(self.sources) > most_joints
 
     @property
@@ -254,12 +261,12 @@ def _around_values(shape: Shape) -> SimpleNamespace:
 
 
 @factory
-def _evaluation(shape: Shape, cuda: bool):
+def _evaluation(shape: Shape):
     """Device function ``(model, space, block, first, lane) -> outputs`` of a sample."""
     real, spectra, around = shape.real, _spectra(shape), _around_values(shape)
     matrices, indices_of = around.matrices, around.indices_of
-    kinematic_values = singular_values(real, *spectra.kinematic_shape, shape.penalty, cuda)
-    dynamic_values = singular_values(real, *spectra.dynamic_shape, True, cuda)
+    kinematic_values = singular_values(real, *spectra.kinematic_shape, shape.penalty)
+    dynamic_values = singular_values(real, *spectra.dynamic_shape, True)
     Model, Space = model_type(real, shape.n, len(shape.sources)), sample_space(real, shape.n)
     FOUND = shape.n_indices + 2
 
@@ -402,7 +409,7 @@ def sweep_kernel(shape: Shape, cuda: bool) -> wp.Kernel:
 def _cpu_kernel(shape: Shape) -> wp.Kernel:
     real, K = shape.real, shape.n_indices
     prepare = sampling(real, shape.n, shape.method).prepare
-    evaluate = None if shape.many_rows else _evaluation(shape, cuda=False)
+    evaluate = None if shape.many_rows else _evaluation(shape)
     staged_lanes = _staged_lanes(shape) if shape.many_rows else None
     block_of = blocks(real, shape.n, shape.shared)
     ordered = elementary(real).ordered
@@ -582,7 +589,7 @@ def _record_keys(shape: Shape):
 def _cuda_kernel(shape: Shape) -> wp.Kernel:
     """Threads stride through the chunk and keep their totals in registers, so that few atomics meet on one address."""
     real, K = shape.real, shape.n_indices
-    prepare, evaluate = sampling(real, shape.n, shape.method).prepare, _evaluation(shape, cuda=True)
+    prepare, evaluate = sampling(real, shape.n, shape.method).prepare, _evaluation(shape)
     ordered = elementary(real).ordered
     cell, quantized = voxels(real).cell, voxels(real).quantized
     Model, Space = model_type(real, shape.n, len(shape.sources)), sample_space(real, shape.n)
@@ -601,9 +608,16 @@ def _cuda_kernel(shape: Shape) -> wp.Kernel:
     add, raise_to = cuda_atomics(wp.int64).add, cuda_atomics(bits).raise_to
     store_row, load_record = memory(real).store, memory(record_type_of(shape)).load
 
-    options = LONG_CUDA_OPTIONS if shape.long else CUDA_OPTIONS
+    options = {**(LONG_CUDA_OPTIONS if shape.long else CUDA_OPTIONS), "block_dim": BLOCK_CUDA[real]}
+    few = real is wp.float64 and not (shape.dynamic or shape.many_rows or shape.penalty)
 
-    @wp.kernel(module="unique", module_options=options, enable_backward=False, grid_stride=False)
+    @wp.kernel(
+        module="unique",
+        module_options=options,
+        enable_backward=False,
+        grid_stride=False,
+        cuda_max_registers=REGISTERS_CUDA if few else None,
+    )
     def sweep_cuda(
         # in
         model: Model,

@@ -10,6 +10,7 @@ from types import SimpleNamespace
 
 import warp as wp
 
+import wsrender as ws
 from wsrender.engine import devices_of
 from wsrender.engine.kernel_cache import loaded
 
@@ -76,6 +77,20 @@ def test_a_header_that_does_not_fit_is_done_away_with(tmp_path):
     next(iter(headers)).write_bytes(b"cut")  # by all its names
     assert compiled([start(tmp_path, "3", script=SMALL_KERNEL)])[0]
     assert set(tmp_path.rglob("header_*/*.pch")) < headers
+
+
+def test_a_launch_runs_what_was_loaded(device, precision, monkeypatch):
+    """And does not have it compiled once more, for another number of threads per block."""
+    before, launch = [], wp.launch
+
+    def watched(kernel, **options):
+        before.append((kernel.module, len(kernel.module.execs)))
+        launch(kernel, **options)
+
+    monkeypatch.setattr(wp, "launch", watched)
+    ws.analyze("phantom_omni", sampling=ws.Random(300), voxel_size_m=0.02, precision=precision, device=device)
+    assert before
+    assert all(len(module.execs) == loaded > 0 for module, loaded in before)
 
 
 def test_threads_compile_one_after_the_other():

@@ -7,7 +7,7 @@ from wsrender_kernels.sampling import lane_table, sample_space
 
 from wsrender.engine.devices import devices_of
 from wsrender.engine.evaluation import REAL, device_array, vector_of
-from wsrender.engine.kernel_cache import loaded
+from wsrender.engine.kernel_cache import launch, loaded
 from wsrender.sampling import SamplingPlan
 
 
@@ -46,7 +46,7 @@ def configurations(plan: SamplingPlan, indices: np.ndarray, precision: str = "fl
     real = REAL[precision]
     q = wp.empty((len(indices), n), dtype=real, device=device)
     if len(indices):
-        wp.launch(
+        launch(
             loaded(configuration_kernel(real, n, plan.method), device),
             dim=len(indices),
             inputs=[device_space(plan, precision, device), device_array(indices, wp.int64, device)],

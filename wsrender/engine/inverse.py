@@ -9,7 +9,7 @@ from wsrender_kernels.inverse import LANES, REACHED, STATIONARY, TARGET_SIZES, i
 from wsrender.engine.devices import devices_of, thread_count
 from wsrender.engine.evaluation import REAL, chain_model, device_array, drive, vector_of
 from wsrender.engine.host_inverse import host_tries
-from wsrender.engine.kernel_cache import loaded
+from wsrender.engine.kernel_cache import launch, loaded
 from wsrender.engine.tries import Accuracy, Tries, angle_of, step_bounds
 from wsrender.robots.chain import Chain
 from wsrender.robots.host_chain import HostChain
@@ -67,7 +67,7 @@ def _launch(kernel, model, targets, starts, steps, real, device) -> list[np.ndar
     verdict = wp.empty(count, dtype=wp.int32, device=device)  # type: ignore[arg-type]
     inputs = [model, device_array(targets.T.ravel(), real, device), device_array(starts.T.ravel(), real, device), count]
     if count:
-        wp.launch(
+        launch(
             kernel,
             dim=count if device.is_cuda else 1,
             inputs=[*inputs, steps],

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import warp as wp
 from filelock import FileLock
-from wsrender_kernels.options import BLOCK_CPU, BLOCK_CUDA, CPU_FLAGS, CPU_OPTIONS
+from wsrender_kernels.options import BLOCK_CPU, CPU_FLAGS, CPU_OPTIONS
 
 _loading = threading.Lock()  # LLVM's options are the process's: two compilations at a time could mix theirs
 
@@ -21,15 +21,25 @@ def loaded(kernel: wp.Kernel, *devices: wp.Device) -> wp.Kernel:
     return kernel
 
 
+def launch(kernel: wp.Kernel, dim: int, inputs: list, outputs: list, device: wp.Device) -> None:
+    """Launch a `loaded` kernel, with as many threads per block as it is compiled for."""
+    block = _threads_per_block(kernel, device.alias)
+    wp.launch(kernel, dim=dim, inputs=inputs, outputs=outputs, device=device, block_dim=block)
+
+
 @cache
 def _load(kernel: wp.Kernel, device: str) -> None:
     assert wp.config.kernel_cache_dir is not None  # set by wp.init
     folder = Path(wp.config.kernel_cache_dir)
     kept = _keep_header(folder)
     with _loading, FileLock(folder / f"{kernel.module.name}.lock"):
-        kernel.module.load(device, block_dim=BLOCK_CPU if device == "cpu" else BLOCK_CUDA)
+        kernel.module.load(device, block_dim=_threads_per_block(kernel, device))
     if kept:
         _share_header(kept, kernel.module.options["cpu_compiler_flags"])
+
+
+def _threads_per_block(kernel: wp.Kernel, device: str) -> int:
+    return BLOCK_CPU if device == "cpu" else kernel.module.options["block_dim"]
 
 
 @cache

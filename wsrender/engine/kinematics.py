@@ -8,7 +8,7 @@ from wsrender_kernels.pointwise import kinematics_kernel
 
 from wsrender.engine.devices import devices_of
 from wsrender.engine.evaluation import REAL, chain_model, device_array, drive
-from wsrender.engine.kernel_cache import loaded
+from wsrender.engine.kernel_cache import launch, loaded
 from wsrender.robots.chain import Chain
 from wsrender.robots.host_chain import HostChain
 
@@ -57,7 +57,7 @@ def _evaluate(chain: Chain, q: np.ndarray, with_inertia: bool, precision: str, d
     jacobian = wp.empty((len(q), 6, n), dtype=real, device=device)
     inertia = wp.empty((len(q) if with_inertia else 0, n, n), dtype=real, device=device)
     if len(q):
-        wp.launch(
+        launch(
             loaded(kinematics_kernel(real, n, *drive(chain), with_inertia), device),
             dim=len(q),
             inputs=[chain_model(chain, precision), device_array(q, real, device)],

@@ -21,7 +21,7 @@ from wsrender_kernels.membership import (
 
 from wsrender.engine.devices import devices_of, thread_count
 from wsrender.engine.evaluation import REAL, device_array, vector_of
-from wsrender.engine.kernel_cache import loaded
+from wsrender.engine.kernel_cache import launch, loaded
 from wsrender.volume.lattice import LatticeBlock
 
 CHUNK_CPU, CHUNK_CUDA, LEAST_CHUNK = 1 << 20, 1 << 26, 1 << 14
@@ -203,12 +203,12 @@ class _Lattice:
         inputs = [*places, first, count, self.by_subsystem]
         if self.device.is_cuda:
             asked = wp.zeros(ASKED_SLOTS, dtype=wp.int32, device=self.device)  # type: ignore[arg-type]
-            wp.launch(self.kernel, dim=count, inputs=inputs, outputs=[reached, weighted, asked], device=self.device)
+            launch(self.kernel, dim=count, inputs=inputs, outputs=[reached, weighted, asked], device=self.device)
             cells, counts, sums = survivors(reached, weighted, count)
         else:
             found, asked = (_memory(blocks, self.device) for _ in range(2))
             outputs = [reached, weighted, found, asked]
-            wp.launch(self.kernel, dim=blocks, inputs=inputs, outputs=outputs, device=self.device)
+            launch(self.kernel, dim=blocks, inputs=inputs, outputs=outputs, device=self.device)
             some = np.flatnonzero(found.numpy())  # only there anything was written
             at = np.flatnonzero(reached.numpy().reshape(-1, LANES)[some])
             cells = some[at // LANES] * LANES + at % LANES
@@ -223,11 +223,11 @@ def survivors(reached: wp.array, weighted: wp.array, count: int) -> tuple[np.nda
     places = _memory(count, device)
     if not count:
         return (np.zeros(0, np.int64), *np.zeros((2, 0), np.int32))
-    wp.launch(are_reached, dim=count, inputs=[reached], outputs=[places], device=device)
+    launch(are_reached, dim=count, inputs=[reached], outputs=[places], device=device)
     wp.utils.array_scan(places, places, inclusive=True)
     kept = int(places[count - 1 :].numpy()[0])
     out = [_memory(kept, device) for _ in range(3)]
-    wp.launch(survivors_of, dim=count, inputs=[reached, weighted, places], outputs=out, device=device)
+    launch(survivors_of, dim=count, inputs=[reached, weighted, places], outputs=out, device=device)
     cells, counts, sums = (array.numpy() for array in out)
     return cells.astype(np.int64), counts, sums
 
@@ -259,5 +259,5 @@ def _poses_launch(kernel, model, poses: np.ndarray, real, device) -> np.ndarray:
     given = device_array(rows.T.ravel(), real, device)
     reached = wp.empty(count, dtype=wp.int32, device=device)  # type: ignore[arg-type]
     tasks = count if device.is_cuda else -(-count // LANES)
-    wp.launch(kernel, dim=tasks, inputs=[model, given, count], outputs=[reached], device=device)
+    launch(kernel, dim=tasks, inputs=[model, given, count], outputs=[reached], device=device)
     return reached.numpy() > 0

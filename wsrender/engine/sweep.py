@@ -24,7 +24,7 @@ from wsrender.engine.grid_structure import (
     shared_coordinates,
     structure_of,
 )
-from wsrender.engine.kernel_cache import loaded
+from wsrender.engine.kernel_cache import launch, loaded
 from wsrender.engine.memory import as_type, device_memory
 from wsrender.engine.partial import Partial, joined, merge
 from wsrender.engine.row_buffer import RowBuffer
@@ -303,10 +303,10 @@ class Accumulator:
         if self.device.is_cuda:
             threads = min(count, THREADS_PER_SM * self.device.sm_count)
             outputs = [self._outputs, self._counts, self._records, self._sums]
-            wp.launch(self._kernel, dim=threads, inputs=[*inputs, threads], outputs=outputs, device=self.device)
+            launch(self._kernel, dim=threads, inputs=[*inputs, threads], outputs=outputs, device=self.device)
         else:
             tasks = block_count(self._run, first, count)
-            wp.launch(self._kernel, dim=tasks, inputs=inputs, outputs=[self._outputs], device=self.device)
+            launch(self._kernel, dim=tasks, inputs=inputs, outputs=[self._outputs], device=self.device)
 
     def _given(self, first: int, count: int):
         """Configurations and what the host computes of them; puts the latter into the model."""
