@@ -360,7 +360,7 @@ def rotations(real, m: int, n: int, graded: bool) -> SimpleNamespace:
 
     @wp.func
     def rotated(R: factor_type):
-        # No ranges, which Warp would write out: too much for a GPU's registers, three times as slow.
+        # No ranges, which Warp would write out: two spectra of a sample do not fit in a GPU's registers then.
         out = R
         sweeps = wp.int32(0)
         while sweeps < NUMBER_OF_SWEEPS:

@@ -6,8 +6,8 @@ reduce and scatter them. On CUDA a thread takes one sample after the other from 
 sample, in this order: tip position (3), indices (K), largest and smallest singular value of the task (2), then, where
 asked, configuration (n) and tip orientation (w x y z).
 
-The functions that hold most of a kernel are inlined by order: 2 to 5 % less to compile on the CPU, the same code on
-both.
+The functions that hold most of a kernel are inlined by order: 2 to 5 % less to compile on the CPU, and of long kernels
+on CUDA the compiler would leave some as calls, their matrices in memory.
 """
 
 from collections.abc import Callable
