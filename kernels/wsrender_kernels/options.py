@@ -1,6 +1,6 @@
 """Compiler options of every kernel module."""
 
-BLOCK_CPU = 1  # threads per block of a launch: kernels are compiled for a number, on CUDA the option block_dim
+BLOCK_CPU = 1  # threads per block of a launch: kernels are compiled for a number, on CUDA for that of their options
 
 # Whole registers on AVX-512, which clang would halve; a stack aligned to them, or most of what it holds lies across two
 # cache lines, by the chance of an address; fused multiply-add; the lane loop's body inlined whole, however long, or it
@@ -23,8 +23,8 @@ def _options(vectors: int, spare_registers: bool) -> dict:
 
 # Two vectors, since one is a single chain of dependent operations.
 MODULE_OPTIONS = _options(2, True)
-# Of kernels for one kind of device: with the number of threads that it is loaded for, Warp hashes a kernel once, not
-# twice, which is a third of what loading it takes.
+# Of kernels for the CPU alone: with the number of threads that it is loaded for, Warp hashes a kernel once, not twice,
+# which is a third of what loading it takes.
 ON_CPU = {"block_dim": BLOCK_CPU}
 # Where few values live anyway, ordered by what they wait for alone: 7 to 13 % faster on AVX2, as fast on AVX-512.
 SHORT_OPTIONS = {**_options(2, False), **ON_CPU}
@@ -34,7 +34,7 @@ SHORT_OPTIONS = {**_options(2, False), **ON_CPU}
 LONG_OPTIONS = {**_options(1, True), **ON_CPU}
 CPU_OPTIONS = (MODULE_OPTIONS, SHORT_OPTIONS, LONG_OPTIONS)
 # Division and square root of float32 to 2 units in the last place: a third faster.
-CUDA_OPTIONS = {**MODULE_OPTIONS, "fast_math": True, "block_dim": 256}
+CUDA_OPTIONS = {**MODULE_OPTIONS, "fast_math": True}
 # Compiled in half to two thirds of the time; as fast where registers run out anyway, else about a fifth slower. Warp
 # writes loops over outputs out: this level does not, and what they go through would lie in memory.
 LONG_CUDA_OPTIONS = {**CUDA_OPTIONS, "optimization_level": 2, "max_unroll": 24}

@@ -177,7 +177,7 @@ def _three_rows(real, m: int, n: int):
     # A row below the rounding noise of the others spans nothing: its reciprocal would overflow.
     NOISE = real(1e-18 if real is wp.float32 else 1e-36)
 
-    @wp.func(inline=True)
+    @wp.func(inline=True)  # CUDA's compiler, optimizing little, would call it and pass the matrix through memory
     def three_rows(A: mat_mn):
         a = A[0]
         b = A[1]
@@ -480,7 +480,7 @@ def _by_rotations(real, m: int, n: int, graded: bool):
     stages, mat_mn = rotations(real, m, n, graded), wp.types.matrix((m, n), real)
     start, rotated, finish = stages.start, stages.rotated, stages.finish
 
-    @wp.func(inline=True)
+    @wp.func(inline=True)  # as _three_rows
     def by_rotations(A: mat_mn):
         R, scale = start(A)
         return finish(rotated(R), scale)

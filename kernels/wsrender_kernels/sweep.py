@@ -6,8 +6,8 @@ reduce and scatter them. On CUDA a thread takes one sample after the other from 
 sample, in this order: tip position (3), indices (K), largest and smallest singular value of the task (2), then, where
 asked, configuration (n) and tip orientation (w x y z).
 
-The functions that hold most of a kernel are inlined by order: 2 to 5 % less to compile on the CPU, and of long kernels
-on CUDA the compiler would leave some as calls, their matrices in memory.
+The functions that hold most of a kernel are inlined by order: 2 to 5 % less to compile on the CPU, the same code on
+both.
 """
 
 from collections.abc import Callable
@@ -34,8 +34,8 @@ from wsrender_kernels.voxels import lattice, lowest, voxels
 # indices and voxels in float32: 16 % faster on an H200); float64, which needs all, is up to 9 % slower so.
 BLOCK_CUDA = {wp.float32: 128, wp.float64: 256}
 # Of a CUDA thread at most, so that a multiprocessor runs 16 warps at a time: float64 sweeps without inertia matrix,
-# rotations and penalisation, which would take up to 180, are 7 to 36 % faster. The others, which need more, would be
-# slower.
+# rotations and penalisation, which would take up to 183, are 7 to 36 % faster. With these float64 needs more and would
+# be slower, float32 with an inertia matrix too; without one it takes no more than that, or little.
 REGISTERS_CUDA = 128
 TOTAL_SLOTS = 64  # parts in which CUDA threads add totals: on one address they would wait for each other
 
