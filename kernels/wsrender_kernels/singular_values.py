@@ -146,19 +146,22 @@ def _two_rows(real, m: int, n: int):
     vec_m = wp.types.vector(2, real)
     mat_mn = wp.types.matrix((2, n), real)
     HALF, ZERO, ONE, TINY = real(0.5), real(0.0), real(1.0), _tiny(real)
+    scales = elementary(real).scales
 
     @wp.func
     def two_rows(A: mat_mn):
         a = A[0]
         b = A[1]
-        aa = wp.dot(a, a)
-        ab = wp.dot(a, b)
-        bb = wp.dot(b, b)
+        # In units that leave A Aᵀ a trace of about 1, as in three_rows: fourth powers follow.
+        unit, scale = scales(wp.dot(a, a) + wp.dot(b, b))
+        aa = wp.dot(a, a) * unit
+        ab = wp.dot(a, b) * unit
+        bb = wp.dot(b, b) * unit
         rest = b - a * (ab * wp.where(aa > TINY, ONE / aa, ZERO))
-        area = wp.sqrt(aa) * wp.sqrt(wp.dot(rest, rest))
+        area = wp.sqrt(aa) * wp.sqrt(wp.dot(rest, rest) * unit)
         d = HALF * (aa - bb)
         largest = wp.sqrt(HALF * (aa + bb) + wp.sqrt(d * d + ab * ab))
-        return vec_m(largest, wp.where(largest > TINY, area / largest, ZERO))
+        return vec_m(largest * scale, wp.where(largest > TINY, area / largest, ZERO) * scale)
 
     return two_rows
 

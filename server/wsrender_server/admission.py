@@ -13,6 +13,7 @@ from wsrender.robots import library
 from wsrender.spec import IndicesAtJob, canonical_json, parse_job
 from wsrender.spec.arm import ArmPath, dotted, local_paths
 from wsrender.spec.document import Document
+from wsrender.spec.problems import MOST_PROBLEMS
 from wsrender.spec.robot import RobotSpec
 from wsrender.spec.sampling import Converge, Grid
 from wsrender_server.jobs.store import JobStore
@@ -39,7 +40,7 @@ class Admission:
         did not upload, 409 for text that is no XML; ResourceError for more samples than allowed.
         """
         job = parse_job(document)
-        if isinstance(job, IndicesAtJob) and job.configurations is None:
+        if isinstance(job, IndicesAtJob) and not job.configurations:
             raise DocumentError([("configurations", "must be given: rows of joint values")])
         for path in local_paths(job.model_dump(mode="json")):
             raise DocumentError([(dotted(path), "is for local runs only; upload the model, or send text or points")])
@@ -133,5 +134,7 @@ def _check_indices(part: Document, path: ArmPath) -> None:
             find(name)
         except InputError as error:
             problems.append((dotted(path, field), error.message))
+        if len(problems) == MOST_PROBLEMS:
+            break
     if problems:
         raise DocumentError(problems)

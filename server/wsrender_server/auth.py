@@ -2,6 +2,7 @@
 
 import hashlib
 import ipaddress
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -26,6 +27,7 @@ GRANTS: dict[str, frozenset[str]] = {
 }
 LOCAL_NAMES = ("localhost", "ip6-localhost")
 SHORTEST_SECRET = 16  # characters
+_HOST = re.compile(r"(\[[0-9A-Fa-f:.]+\]|[A-Za-z0-9._-]+)(?::[0-9]{1,5})?")  # of a header: name or address, port
 
 
 @dataclass(frozen=True)
@@ -161,8 +163,9 @@ def _asking(connection: HTTPConnection, secret: str | None) -> Principal:
 
 def _check_host(connection: HTTPConnection) -> None:
     """Without a key only names of this machine count: a web page must not reach it by a name of its own."""
-    host = connection.url.hostname or ""
-    if not is_loopback(host):
+    host = connection.headers.get("host", "")
+    name = _HOST.fullmatch(host)
+    if name is None or not is_loopback(name[1]):
         raise HttpProblem(403, f"without an API key the server answers to localhost only, not {host}", "wrong_host")
 
 

@@ -5,6 +5,7 @@ import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
+from itertools import islice
 from typing import Annotated, Any
 
 from fastapi import Request
@@ -16,7 +17,7 @@ from wsrender.indices.catalogue import DYNAMIC_PREFIX
 from wsrender.robots import library
 from wsrender.spec import job_schema
 from wsrender.spec.json_text import read_json
-from wsrender.spec.problems import listed, worded
+from wsrender.spec.problems import MOST_PROBLEMS, listed, path_text, worded
 from wsrender.spec.quantities import integer, real
 from wsrender_server.jobs.store import HIGHEST_PRIORITY, LONGEST_TEXT, MOST_LABELS
 from wsrender_server.problems import HttpProblem, pointer, problem_of_error, refusal
@@ -74,7 +75,8 @@ def read_body(text: bytes) -> JobBody:
     wrapped = "job" in body
     document = body.pop("job") if wrapped else body
     if wrapped and body:
-        raise DocumentError([(name, 'is not a known field beside "job"') for name in body])
+        unknown = islice(body, MOST_PROBLEMS)
+        raise DocumentError([(path_text(name), 'is not a known field beside "job"') for name in unknown])
     if not isinstance(document, dict):
         raise DocumentError([("job", f"must be a job document (object), not {_kind(document)}")])
     try:
@@ -227,6 +229,7 @@ def _tighten(part: dict[str, Any]) -> None:
         description = properties["configurations"]["description"].partition(";")[0]
         properties["configurations"] = {
             "type": "array",
+            "minItems": 1,
             "items": {"type": "array", "items": {"type": "number"}},
             "description": description + ".",
         }

@@ -1,5 +1,7 @@
 """Errors as problem documents (RFC 9457): one table from exceptions to status, title and ``retryable``."""
 
+import json
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from http import HTTPStatus
@@ -36,6 +38,8 @@ from wsrender_server.jobs.files import FULL
 
 MEDIA_TYPE = "application/problem+json"
 TRY_AGAIN_S = 5
+BODILESS = ("GET", "HEAD", "DELETE")  # methods
+_STEP = re.compile(r'"(?:[^"\\]|\\.)*"|[^.]+')  # of a dotted path; a key with dots in it is a JSON string
 
 
 class ProblemField(BaseModel):
@@ -165,8 +169,8 @@ def problem(
     return document | {name: value for name, value in extra.items() if value is not None}
 
 
-def problem_of_error(error: BaseException, prefix: str = "") -> dict[str, Any]:
-    """The problem document of an exception; ``prefix`` is where in the body its fields are."""
+def problem_of_error(error: BaseException, prefix: str | None = "") -> dict[str, Any]:
+    """The problem document of an exception; ``prefix`` is where in the body its fields are, None: in no body."""
     if isinstance(error, HttpProblem):
         code = error.code or CODES[error.status]
         title, errors = error.title, error.errors
@@ -221,11 +225,20 @@ def refusal(document: Mapping[str, Any], status: int) -> HttpProblem:
 
 def pointer(dotted: str, prefix: str = "") -> str:
     """JSON pointer, as a URI fragment, of a dotted path within ``prefix``; the whole body for "document"."""
-    steps = [] if dotted == "document" else dotted.split(".")
+    steps = [] if dotted == "document" else map(_key, _STEP.findall(dotted))
     return "#" + prefix + "".join("/" + step.replace("~", "~0").replace("/", "~1") for step in steps)
 
 
-def _bad_fields(error: BaseException, prefix: str) -> list[tuple[str, str]]:
+def _key(step: str) -> str:
+    try:
+        return json.loads(step, strict=False) if step.startswith('"') else step
+    except ValueError:  # the quotation mark is the key's own
+        return step
+
+
+def _bad_fields(error: BaseException, prefix: str | None) -> list[tuple[str, str]]:
+    if prefix is None:
+        return [(error.field, error.message)] if isinstance(error, InputError) else []
     if isinstance(error, DocumentError):
         return [(pointer(name, prefix), message) for name, message in error.problems]
     if isinstance(error, InputError):
@@ -253,7 +266,7 @@ def answer_errors(app: FastAPI) -> None:
 
 
 async def _answer_error(request: Request, error: Exception) -> Response:
-    document = problem_of_error(error, getattr(request.state, "document_prefix", ""))
+    document = problem_of_error(error, None if request.method in BODILESS else "")
     if document["status"] == 500:
         raise error  # the outermost layer logs it and answers
     headers = error.headers if isinstance(error, HttpProblem) else {}
@@ -266,6 +279,9 @@ async def _answer_invalid_parameters(request: Request, error: Exception) -> Resp
     for fault in error.errors():
         place, *path = fault["loc"]
         name = "#" + "".join(f"/{step}" for step in path) if place == "body" else ".".join(map(str, path))
+        if fault["type"] == "json_invalid":
+            document = problem(400, "malformed_json", "the body is not JSON", errors=[("#", fault["msg"])])
+            return response_of_problem(document, _request_id(request))
         fields.append((name, fault["msg"]))
     detail = "; ".join(f"{name}: {message}" for name, message in fields)
     document = problem(422, "invalid_request", detail, title="A parameter is not valid", errors=fields)
@@ -287,13 +303,9 @@ async def _answer_http_exception(request: Request, error: Exception) -> Response
 
 
 def allowed_methods(request: Request) -> set[str]:
-    """Methods of every route of the app that matches the request's path."""
-    return {
-        method
-        for path, methods in request.app.state.methods_by_path
-        if path.match(request.scope["path"])
-        for method in methods
-    }
+    """Methods of every route of the app that matches the request's path; the documentation is there to be read."""
+    methods = [methods for path, methods in request.app.state.methods_by_path if path.match(request.scope["path"])]
+    return set[str]().union(*methods) or {"GET", "HEAD"}
 
 
 def _request_id(request: Request) -> str | None:

@@ -126,3 +126,62 @@ def test_inertia_evaluated_by_mujoco(device):
     assert_indices(found, local_indices.standard(A), "float64", A)
     expected = local_indices.standard(accelerations(A, reference.inertia[:100]))
     assert_indices(found, expected, "float64", A, "dynamic_")
+
+
+def planar_arm(length, mass, joints=3, last_mass=None):
+    """Equal links in a plane; the last may have a mass of its own, or none."""
+    rows = []
+    for i in range(joints):
+        m = mass if i < joints - 1 or last_mass is None else last_mass
+        inertia = m * length**2 / 12
+        link = {"mass": m, "center_of_mass": [length / 2, 0, 0], "inertia": [inertia] * 3} if m else {}
+        rows.append({"a": length if i else 0, "limits": [-2, 2], **link})
+    tool = np.eye(4)
+    tool[0, 3] = length
+    return ws.load_robot(ws.DHTable(convention="modified", rows=rows), tool=tool)
+
+
+@pytest.mark.filterwarnings("ignore::wsrender.robots.model_warning.ModelWarning")
+def test_two_rows_of_a_tiny_robot(device):
+    robot, q = planar_arm(3e-4, 1e-6), np.random.default_rng(0).uniform(-2, 2, (500, 3))
+    A = accelerations(robot.jacobian(q)[:, :2], robot.inertia_matrix(q, method="mujoco"))
+    expected = local_indices.standard(A)
+    for precision in ("float32", "float64"):
+        found = ws.evaluate_indices(robot, q, "dynamic", ["x", "y"], precision=precision, device=device)
+        assert_indices(found, expected, precision, A, "dynamic_")
+
+
+@pytest.mark.filterwarnings("ignore::wsrender.robots.model_warning.ModelWarning")
+def test_six_rows_of_a_huge_robot(device):
+    """The product of its six singular values underflows float32."""
+    a, length, mass = np.pi / 2, 10.0, 5e4
+    moment = mass * length**2 / 12
+    link = {"mass": mass, "center_of_mass": [5, 0, 1], "inertia": [0.3 * moment, moment, moment], "limits": [-2, 2]}
+    rows = [{"a": length if i else 0, "alpha": x, "d": 3, **link} for i, x in enumerate((0, a, 0, a, -a, a))]
+    robot = ws.load_robot(ws.DHTable(convention="modified", rows=rows))
+    q = np.random.default_rng(0).uniform(-2, 2, (500, 6))
+    names = ["dynamic_isotropy", "dynamic_order_independent_manipulability"]
+    A = accelerations(robot.jacobian(q), robot.inertia_matrix(q, method="mujoco"))
+    expected = local_indices.standard(A)
+    for precision in ("float32", "float64"):
+        found = ws.evaluate_indices(robot, q, names, "full", precision=precision, device=device)
+        for name in names:
+            wanted = expected[name.removeprefix("dynamic_")]
+            assert np.abs(found[name] - wanted).max() <= TOLERANCES[precision].index * wanted.max(), (precision, name)
+
+
+def test_inertias_that_float32_cannot_hold_are_refused(device):
+    robot, q = planar_arm(0.4, 1.0, last_mass=0.0), np.array([[0.3, 0.5, -0.7]])
+    fields = {"task": ["x", "y"], "device": device}
+    assert ws.evaluate_indices(robot, q, "all", precision="float64", **fields)["dynamic_minimum_singular_value"] > 0
+    assert ws.evaluate_indices(robot, q, "kinematic", precision="float32", **fields)["manipulability"] > 0
+    with pytest.raises(
+        ws.InputError, match=r'precision: "float32" is not allowed for dynamic indices of .*"float64" is'
+    ):
+        ws.evaluate_indices(robot, q, "all", precision="float32", **fields)
+
+
+@pytest.mark.parametrize("penalty", [1e-17, 1e-4, 1e7, float("nan"), float("inf")])
+def test_penalties_out_of_range_are_refused(penalty):
+    with pytest.raises(ws.InputError, match=r"joint_limit_penalty: .* is not allowed; 0\.001 … 1e"):
+        ws.evaluate_indices("puma560", np.zeros(6), "kinematic", joint_limit_penalty=penalty)

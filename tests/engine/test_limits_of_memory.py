@@ -109,3 +109,22 @@ def test_memory_of_records_starts_with_a_cache_line(size):
     assert values.ptr % CACHE_LINE == 0 and values.size == size
     values.fill_(7)
     assert (values.numpy() == 7).all()
+
+
+def test_a_map_that_does_not_fit_is_refused_with_its_numbers():
+    document = job("float32", sampling={"method": "random", "count": 10**12, "seed": 1}, max_samples=10**13)
+    with pytest.raises(
+        ResourceError, match=r"keep_map: 1e\+12 rows of \d+ values need [\d.]+ GiB; [\d.]+ GiB are free"
+    ):
+        run.plan(document)
+
+
+def test_many_threads_do_not_refuse_what_one_can_do(monkeypatch):
+    plan = run.plan(job("float32", keep_map=False, device="cpu")).sweep
+    slabs = importlib.import_module("wsrender.engine.slabs")
+    block_bytes = plan.block.size * plan.shape.bytes_per_voxel
+    workers = devices_of("cpu") * 64
+    for fitting, chosen in ((1, 1), (5, 5), (64, 64)):
+        monkeypatch.setattr(slabs, "available_bytes", lambda fitting=fitting: fitting * block_bytes / slabs.SHARE + 1)
+        found = slabs.fitting_workers(plan.block, plan.shape, workers)
+        assert len(found) == chosen and slabs.slabs_of(plan.block, plan.shape, found) == [plan.block]

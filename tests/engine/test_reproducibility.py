@@ -8,6 +8,8 @@ import pytest
 
 from tests.engine.test_voxels import executed, job
 from wsrender import run
+from wsrender.engine import thread_count
+from wsrender.errors import InputError
 
 COUNT = 20_000
 SPLITS = [
@@ -83,3 +85,18 @@ def test_other_sampling_methods(method):
     _, two, _ = executed(document, threads=2, chunk_size=1_000_000)
     assert_same_bits(one, two)
     assert one.count.sum() == one.samples == (6510 if method == "grid" else 5000)
+
+
+@pytest.mark.parametrize("threads", [0, -1, 2.5, "2", True])
+def test_threads_that_are_no_count_are_refused(threads):
+    with pytest.raises(InputError, match=r"threads: .* is not allowed; a positive whole number is"):
+        thread_count(threads)
+
+
+def test_the_variable_sets_the_threads(monkeypatch):
+    monkeypatch.setenv("WSRENDER_THREADS", "3")
+    assert (thread_count(), thread_count(np.int64(2))) == (3, 2)
+    for text in ("0", "²", "two", "1.5", "-1", "9" * 30):
+        monkeypatch.setenv("WSRENDER_THREADS", text)
+        with pytest.raises(InputError, match=r"WSRENDER_THREADS: .* is not allowed; a positive whole number is"):
+            thread_count()

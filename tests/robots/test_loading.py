@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import wsrender as ws
 from wsrender import robots
 from wsrender.errors import ModelError
 from wsrender.spec.robot import DHTable
@@ -199,3 +200,17 @@ sys.exit(1)
 """
     root = Path(__file__).parents[2]
     subprocess.run([sys.executable, "-c", code], cwd=root, check=True, timeout=60)
+
+
+@pytest.mark.parametrize("source", [None, 3, [1], {"library": "ur5e"}])
+def test_what_is_no_source_is_refused(source):
+    with pytest.raises(ws.InputError, match="source: must be a library name, the path of a"):
+        ws.load_robot(source)
+
+
+def test_a_placement_may_be_a_dict():
+    fields = {"position_m": [1, 2, 3], "rpy_deg": [0, 0, 90]}
+    placed, expected = (ws.load_robot("ur5e", placement=each) for each in (fields, ws.Transform(**fields)))
+    assert (placed.forward_kinematics(np.zeros(6)) == expected.forward_kinematics(np.zeros(6))).all()
+    with pytest.raises(ws.DocumentError, match="place: is not a known field"):
+        ws.load_robot("ur5e", tool={"place": [1, 2, 3]})

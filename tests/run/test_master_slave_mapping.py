@@ -182,3 +182,11 @@ def test_malformed_jobs(fields, message):
     job = {"analysis": "master_slave_mapping", "master": {"points": MASTER_BOX}, "slave": {"points": SLAVE_BOX}, **CPU}
     with pytest.raises(ws.InputError, match=message):
         ws.execute({**job, **fields})
+
+
+def test_a_search_that_finds_nothing_says_so():
+    result = mapped(SLAVE_BOX, MASTER_BOX, search={"scale": [0.5, 5], "steps": 4})
+    assert result.document["search"]["found"] is False and not result.document["mapping"]["succeeded"]
+    assert result.document["search"]["most_inside"] < 1 and result.document["search"]["at_factor"] == 0.5
+    assert "no scale fits; at most" in result.summary()
+    assert mapped(MASTER_BOX, SLAVE_BOX, search={"scale": [0.5, 5]}).document["search"]["found"] is True

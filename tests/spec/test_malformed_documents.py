@@ -174,7 +174,7 @@ MALFORMED = [
     # targets
     (to(points_m=[]), "points_m", "must have at least 1 item"),
     (to(points_m=None), "points_m", "must be a list, not null"),
-    (to(points_m=[[0, 1]]), "points_m.0.2", "is required"),
+    (to(points_m=[[0, 1]]), "points_m", "must hold rows of 3 numbers; row 0 has 2"),
     (to(points_m=[[0, 1, "2"]]), "points_m", "must be a number"),
     (to(quats_wxyz=[[1, 0, 0, 0], [1, 0, 0, 0]]), "quats_wxyz", "must have as many rows as points_m, 1, not 2"),
     (to(quats_wxyz=[[0, 0, 0, 0]]), "quats_wxyz", "must not have length 0: row 0 says no rotation"),
@@ -271,7 +271,7 @@ MALFORMED = [
     (planar(cells=2.5), "cells", "must be a whole number, not 2.5"),
     (planar(line_tolerance_m2=0), "line_tolerance_m2", "must be greater than 0, not 0"),
     (planar(arc_tolerance_m4="1"), "arc_tolerance_m4", 'must be a number, not "1"'),
-    (planar(points_m=[[0, 0, 0]]), "points_m.0", "must have at most 2 items"),
+    (planar(points_m=[[0, 0, 0]]), "points_m", "must hold rows of 2 numbers; row 0 has 3"),
     (planar(points_m=[[0, NAN]]), "points_m", "must be a finite number"),
     (planar(sampling={"method": "converge"}), "sampling", 'must not be "converge"'),
     (planar(locked={"joint4": 0}), "locked", "is not a known field"),

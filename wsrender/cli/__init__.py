@@ -41,7 +41,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 def command_line(command: str | None) -> typer.Typer:
     """The command line that knows ``command``: extensions are loaded only if they may hold it."""
-    app = typer.Typer(callback=_options, no_args_is_help=True, pretty_exceptions_enable=False, rich_markup_mode="rich")
+    app = typer.Typer(
+        callback=_options, no_args_is_help=True, pretty_exceptions_enable=False, rich_markup_mode="markdown"
+    )
     for name, function in COMMANDS.items():
         app.command(name)(function)
     for name, group in GROUPS.items():

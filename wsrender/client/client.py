@@ -1,8 +1,8 @@
 """A job server, as seen from Python."""
 
+import math
 import uuid
 from collections.abc import Iterator, Mapping
-from copy import deepcopy
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
@@ -13,8 +13,9 @@ import httpx2
 from wsrender.client.connection import Connection
 from wsrender.client.job import Job
 from wsrender.client.kinetostatic_stream import KinetostaticStream
-from wsrender.errors import InputError
+from wsrender.errors import DocumentError, InputError
 from wsrender.spec.arm import dotted, robots_in
+from wsrender.spec.problems import path_text
 
 PAGE = 100  # jobs in one answer
 
@@ -147,15 +148,41 @@ class Client:
 
     def _document(self, job: Any) -> dict[str, Any]:
         if isinstance(job, Mapping):
-            document = deepcopy(dict(job))
+            document = dict(job)
         elif hasattr(job, "model_dump"):
             document = job.model_dump(mode="json")
         else:
             raise InputError("job", f"must be a job document (dict) or a typed job, not {type(job).__name__}")
+        document = _plain(document)
         for path, robot in robots_in(document):
             if isinstance(robot.get("path"), str):
                 robot["model"] = self.upload_model(robot.pop("path"), dotted(path, "path"))
         return document
+
+
+def _plain(document: Any) -> Any:
+    """The document as JSON has it, NumPy's numbers and arrays written out. Raises DocumentError naming the field."""
+
+    def plain(value: Any, *path: str | int) -> Any:
+        if hasattr(value, "tolist"):
+            value = value.tolist()
+        elif hasattr(value, "model_dump"):
+            value = value.model_dump(mode="json")
+        elif isinstance(value, Path):
+            value = str(value)
+        if isinstance(value, Mapping):
+            return {key: plain(each, *path, str(key)) for key, each in value.items()}
+        if isinstance(value, list | tuple):
+            return [plain(each, *path, k) for k, each in enumerate(value)]
+        if isinstance(value, float) and not math.isfinite(value):
+            raise DocumentError([(path_text(*path), f"must be a finite number, not {value}")])
+        if value is None or isinstance(value, str | int | float):
+            return value
+        raise DocumentError(
+            [(path_text(*path), f"must be plain data, not {type(value).__name__}: a server runs no code")]
+        )
+
+    return plain(document)
 
 
 def _items(answer: Any) -> list[dict[str, Any]]:

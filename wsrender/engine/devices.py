@@ -4,6 +4,7 @@ import os
 import platform
 import re
 from functools import cache
+from numbers import Integral
 from pathlib import Path
 from tempfile import TemporaryFile
 
@@ -67,15 +68,17 @@ def _vector_extension() -> str:
 
 
 def thread_count(requested: int | None = None) -> int:
-    """CPU threads: the argument, else WSRENDER_THREADS, else the cores this process may use."""
-    if requested is None:
-        text = os.environ.get(THREADS_VARIABLE, "")
-        if text and not text.isdigit():
-            raise InputError(THREADS_VARIABLE, f"{text!r} is not allowed; a positive whole number is")
-        requested = int(text) if text else _usable_cores()
-    if requested < 1:
-        raise InputError("threads", f"{requested} is not allowed; a positive whole number is")
-    return requested
+    """CPU threads: the argument, else WSRENDER_THREADS, else the cores this process may use. Raises InputError."""
+    if requested is not None:
+        if not isinstance(requested, Integral) or isinstance(requested, bool) or requested < 1:
+            raise InputError("threads", f"{requested!r} is not allowed; a positive whole number is")
+        return int(requested)
+    text = os.environ.get(THREADS_VARIABLE, "")
+    if not text:
+        return _usable_cores()
+    if re.fullmatch("0*[1-9][0-9]{0,8}", text) is None:
+        raise InputError(THREADS_VARIABLE, f"{text!r} is not allowed; a positive whole number is")
+    return int(text)
 
 
 def _usable_cores() -> int:

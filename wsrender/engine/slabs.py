@@ -15,6 +15,20 @@ LARGEST_ARRAY = 2**31 - 1  # elements of a Warp array along one axis
 MOST_SLABS = 32  # each costs another evaluation of all samples
 
 
+def fitting_workers(block: LatticeBlock, shape: Shape, workers: list[wp.Device]) -> list[wp.Device]:
+    """As many of the workers as sweep the block soonest: on a CPU fewer where their records then take fewer slabs."""
+    if workers[0].is_cuda:
+        return workers
+    free, (nx, ny, nz) = available_bytes(), block.shape
+    record_bytes = nx * ny * nz * shape.bytes_per_voxel
+
+    def seconds(count: int) -> float:  # in units of a sweep by one worker
+        slabs = 1 if record_bytes * count <= SHARE * free else ceil(record_bytes * count / (SHARE_SLAB * free))
+        return slabs / count
+
+    return workers[: min(range(len(workers), 0, -1), key=seconds)]
+
+
 def slabs_of(block: LatticeBlock, shape: Shape, workers: list[wp.Device]) -> list[LatticeBlock]:
     """The block, or where the workers' private records of it do not fit in memory, equal slabs along x and a rest.
 

@@ -29,7 +29,10 @@ def summary_text(document: dict[str, Any]) -> str:
 
 
 def _facts(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
-    yield from _volumes(document.get("volume_m3") or {})
+    volumes = document.get("volume_m3") or {}
+    yield from _volumes(volumes)
+    if volumes.get("inner") == 0 and volumes.get("occupied"):
+        yield "note", "no occupied voxel has all its neighbours occupied: a flat workspace, or too few samples"
     if "shared_ratio" in document:
         yield "shared / any", f"{document['shared_ratio']:.4g}"
     mapping = document.get("mapping") or {}
@@ -37,6 +40,10 @@ def _facts(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
         scale, offset = (", ".join(f"{number:.4g}" for number in mapping[name]) for name in ("scale", "offset_m"))
         outside = "all points inside" if mapping["succeeded"] else f"{mapping['failing_points']:,} points outside"
         yield "mapping", f"{outside}; scale {scale}; offset {offset} m; efficiency {mapping['efficiency']:.4g}"
+        search = document.get("search") or {"found": True}
+        if not search["found"]:
+            most = f"{100 * search['most_inside']:.3g} % are inside at {search['at_factor']:.3g}"
+            yield "search", f"no scale fits; at most {most}. The mapping is the job's own"
     if found := document.get("orientation_workspace"):
         yield "orientations reached", f"{found['reached']:,} of {found['orientations']:,}, {100 * found['share']:.3g} %"
     yield from _planar(document)

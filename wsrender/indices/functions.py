@@ -24,7 +24,10 @@ def minimum_singular_value(sigma, m, n):
 
 def order_independent_manipulability(sigma, m, n):
     """det(H)^(1/m) (Kim & Khosla 1991)."""
-    return math.power(math.prod(sigma), 2.0 / m)
+    if m <= 3:
+        return math.power(math.prod(sigma), 2.0 / m)
+    # In units of the largest value: products of six leave the range of float32.
+    return math.power(math.prod(_relative(sigma)), 2.0 / m) * sigma[0] * sigma[0]
 
 
 def harmonic_mean_manipulability(sigma, m, n):
@@ -36,7 +39,14 @@ def harmonic_mean_manipulability(sigma, m, n):
 
 def isotropy(sigma, m, n):
     """det(H)^(1/m) / (tr(H) / m) (Kim & Khosla 1991)."""
+    if m > 3:
+        sigma = _relative(sigma)
     return math.divide(m * order_independent_manipulability(sigma, m, n), sum(s * s for s in sigma))
+
+
+def _relative(sigma):
+    """The values over the largest."""
+    return [math.divide(s, sigma[0]) for s in sigma]
 
 
 def table_1_inverse_condition_number(sigma, m, n):

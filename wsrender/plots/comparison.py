@@ -28,7 +28,8 @@ def side_by_side(
     placed = registered(list(volumes.values()))
     together = replace(placed[0], count=np.sum([volume.occupied for volume in placed], axis=0), statistics={})
     fields = [voxel_field(volume, index, statistic) for volume in placed]
-    norm = value_range(min(field.norm.vmin or 0.0 for field in fields), max(field.norm.vmax or 0.0 for field in fields))
+    values = np.concatenate([field.values[np.isfinite(field.values)].ravel() for field in fields])
+    norm = value_range(float(values.min()), float(values.max()))
     extents = [plane_extents(together, axis) for axis in range(3)]
     widths, tallest = [width for width, _ in extents], max(height for _, height in extents)
     scale = min(9.6 / sum(widths), 3.2 / tallest)

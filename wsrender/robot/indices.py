@@ -9,10 +9,12 @@ from wsrender.errors import InputError, MissingInertiaError
 from wsrender.indices.catalogue import CONVENTIONS, is_dynamic, resolve
 from wsrender.robot.model_robot import Robot, configuration_rows
 from wsrender.robot.user_robot import HostRobot, as_robot
-from wsrender.spec.options import DEFAULT_PENALTY, NAMED_TASKS, TASK_ROWS
+from wsrender.spec.options import DEFAULT_PENALTY, LARGEST_PENALTY, NAMED_TASKS, SMALLEST_PENALTY, TASK_ROWS
 
 if TYPE_CHECKING:
     from wsrender.engine import Evaluation
+
+LARGEST_INERTIA_RATIO = 1e8  # in float32
 
 
 def evaluate_indices(
@@ -90,6 +92,8 @@ def evaluation_of(
             raise InputError("inertia", f'"mujoco" is not allowed: {robot.name} has no model but its own class')
         host_inertia = robot.inertia_matrix if dynamic else None
     else:
+        if dynamic and precision == "float32":
+            _check_inertias(robot)
         host_inertia = robot.mujoco_inertia if dynamic and inertia == "mujoco" else None
     return Evaluation(
         chain=chain,
@@ -103,14 +107,29 @@ def evaluation_of(
     )
 
 
+def _check_inertias(robot: Robot) -> None:
+    """Whether float32 holds the robot's dynamic indices: J M^-1 with columns too different loses its small values."""
+    chain = robot.chain
+    middle = 0.5 * (chain.lower_limits + chain.upper_limits)
+    about_joints = np.diagonal(robot.mujoco_inertia(middle[None])[0])
+    ratio = about_joints.max() / about_joints.min()
+    if ratio > LARGEST_INERTIA_RATIO:
+        raise InputError(
+            "precision",
+            f'"float32" is not allowed for dynamic indices of {robot.name}: the inertias about its joints differ by '
+            f'a factor of {ratio:.1g}, more than {LARGEST_INERTIA_RATIO:g} (a link without mass?); "float64" is',
+        )
+
+
 def _penalty(value: float | bool | None) -> float | None:
     """K of the joint-limit penalisation; None where it is off."""
     if value is None or value is False:
         return None
     if value is True:
         return DEFAULT_PENALTY
-    if not (np.isfinite(value) and value > 0):
-        raise InputError("joint_limit_penalty", f"{value!r} is not allowed; a positive K, true or null is")
+    if not SMALLEST_PENALTY <= value <= LARGEST_PENALTY:
+        allowed = f"{SMALLEST_PENALTY:g} … {LARGEST_PENALTY:g}, true or null"
+        raise InputError("joint_limit_penalty", f"{value!r} is not allowed; {allowed} is")
     return float(value)
 
 

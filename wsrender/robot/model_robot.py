@@ -1,5 +1,6 @@
 """A robot compiled by MuJoCo."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
@@ -197,10 +198,14 @@ def load_robot(
 
     ``base`` and ``tip`` name a site, body or link (default: the world, and the site "tool" or the only end).
     ``placement`` is the base frame in the world and ``tool`` the tool point in the tip frame, each a
-    `Transform` or a (4, 4) array. Raises ModelError for a malformed or unsupported model,
-    FrameNotFoundError listing the frames.
+    `Transform`, its fields as a dict, or a (4, 4) array. Raises InputError, ModelError for a malformed or
+    unsupported model, FrameNotFoundError listing the frames.
     """
+    if not isinstance(source, str | Path | DHTable):
+        kinds = "a library name, the path of a .xml or .urdf file, or a DHTable"
+        raise InputError("source", f"must be {kinds}, not {type(source).__name__}")
     options: dict[str, Any] = {"base": base, "tip": tip, "name": name}
+    placement, tool = _as_transform(placement), _as_transform(tool)
     options |= {"placement": _matrix(placement), "tool": _matrix(tool)}
     loaded = load(source, **options)
     if isinstance(source, DHTable):
@@ -230,6 +235,10 @@ def robot_of_spec(spec: RobotSpec, base: str | None = None, tip: str | None = No
     }
     loaded = loaders[spec.source](getattr(spec, spec.source), **options)
     return Robot(loaded, spec, base=base, tip=tip)
+
+
+def _as_transform(value: Any) -> Any:
+    return Transform(**value) if isinstance(value, Mapping) else value
 
 
 def _matrix(transform: Any) -> np.ndarray | None:

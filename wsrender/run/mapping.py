@@ -94,6 +94,14 @@ class MappingPlan(OneShard):
             "provenance": provenance("float64", self.target),
             "timing_s": seconds,
         }
+        if "factors" in partial:
+            most = int(np.argmax(partial["inside"]))
+            document["search"] = {
+                "found": best["succeeded"],
+                "scale": list(self.job.search.scale) if self.job.search else None,
+                "most_inside": float(partial["inside"][most]),
+                "at_factor": float(partial["factors"][most]),
+            }
         failing = {"position": mapped[~inside], "slave_position": partial["slave"][~inside]}
         tables = {"failing": Table(failing, POSITIONS), "mapping": _points_table(master, mapped, inside)}
         if "factors" in partial:

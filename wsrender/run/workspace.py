@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 
 from wsrender.engine import Partial, SweepPlan, devices_of, merge, sweep
-from wsrender.engine.voxel_data import volume_data
-from wsrender.errors import InputError, NotConvergedError
+from wsrender.engine.memory import available_bytes
+from wsrender.engine.voxel_data import SHARE, volume_data
+from wsrender.errors import InputError, NotConvergedError, ResourceError
 from wsrender.global_indices import joint_means, workspace_mean
 from wsrender.result import Result
 from wsrender.robot import Robot
@@ -143,7 +144,9 @@ class WorkspacePlan:
         """The plan of one grid; the voxel size is that of the job for all of them."""
         grid = plan_sampling(self.robot.chain, Grid(levels, locked=sampling.locked))
         scales, bounds = self.first_pass.sum_scales(grid.count, self.job.precision)
-        return replace(self.sweep, sampling=grid, scales=scales, bounds=bounds)
+        plan = replace(self.sweep, sampling=grid, scales=scales, bounds=bounds)
+        _check_map(plan)
+        return plan
 
     def _global_value(self, plan: SweepPlan, partial: Partial, position: int, by: str) -> float:
         if by == "joint_mean":
@@ -200,8 +203,23 @@ def plan_workspace(job: WorkspaceJob, robot: Robot, resolved: dict[str, Any] | N
         if job.sampling.by == "workspace_mean" and not {"maximum", "mean"} & set(job.voxel_statistics):
             raise InputError("sampling.by", "workspace_mean needs the voxel statistic maximum or mean")
     _check_surfaces(job, evaluation.indices)
+    _check_map(plan)
     shards = [(0, sampling.count)] if resolved is None else [(first, count) for first, count in resolved["shards"]]
     return WorkspacePlan(job, robot, plan, first_pass, device, target, shards, estimate(plan, devices))
+
+
+def _check_map(plan: SweepPlan) -> None:
+    """Whether a map that is kept fits in memory, its rows and what they are joined to; raises ResourceError."""
+    if not plan.keep_rows:
+        return
+    width = 4 if plan.precision == "float32" else 8
+    needed, free = 2 * plan.sampling.count * plan.shape.n_rows * width, available_bytes()
+    if needed > SHARE * free:
+        raise ResourceError(
+            "keep_map",
+            f"{plan.sampling.count:.4g} rows of {plan.shape.n_rows} values need {needed / 2**30:.1f} GiB; "
+            f"{free / 2**30:.1f} GiB are free: take fewer samples or columns, or keep no map",
+        )
 
 
 def _check_surfaces(job: WorkspaceJob, indices: tuple[str, ...]) -> None:

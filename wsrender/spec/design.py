@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Iterator, Mapping
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import BeforeValidator, Discriminator, Field, SerializeAsAny, StrictBool, ValidationError, WithJsonSchema
 
@@ -215,6 +215,8 @@ AnalysedJob = Annotated[
 
 class DesignOptimizationJob(Document):
     """Find parameters of a robot or mechanism at which the result of another analysis is best."""
+
+    long_fields: ClassVar[tuple[str, ...]] = ("evaluations",)
 
     analysis: Literal["design_optimization"] = "design_optimization"
     """Name of the analysis."""

@@ -1,13 +1,16 @@
 """What all parts of a job document share: strict, frozen, and with problems told in plain words."""
 
-from collections.abc import Iterator
-from typing import Any, Self
+from collections.abc import Iterator, Mapping
+from typing import Any, ClassVar, Self
 
 from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
 from pydantic.functional_validators import ModelWrapValidatorHandler
+from pydantic_core import InitErrorDetails
 
 from wsrender.errors import DocumentError
 from wsrender.spec.problems import listed, located, worded
+
+MOST_ITEMS = 20_000  # of a list or an object: to tell what is wrong with each takes time and memory
 
 
 class Document(BaseModel):
@@ -20,6 +23,9 @@ class Document(BaseModel):
         use_attribute_docstrings=True,
         protected_namespaces=(),
     )
+
+    long_fields: ClassVar[tuple[str, ...]] = ()
+    """Fields whose lists may be longer than MOST_ITEMS."""
 
     def __init__(self, /, **values: Any):
         """Build from keyword arguments; raises DocumentError listing every problem."""
@@ -35,9 +41,24 @@ class Document(BaseModel):
         """(field, message) of every pair of fields that do not go together."""
         yield from ()
 
+    @classmethod
+    def _excess(cls, data: Any) -> Iterator[InitErrorDetails]:
+        """What has too many items even to look at."""
+        if not isinstance(data, Mapping):
+            return
+        if len(data) > MOST_ITEMS:
+            yield located((), f"must have at most {MOST_ITEMS} fields, not {len(data)}")
+            return
+        for field, value in data.items():
+            many = isinstance(value, list | tuple | Mapping) and len(value) > MOST_ITEMS
+            if many and field not in cls.long_fields:
+                yield located((str(field),), f"must have at most {MOST_ITEMS} items, not {len(value)}")
+
     @model_validator(mode="wrap")
     @classmethod
     def _in_plain_words(cls, data: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
+        if excess := [*cls._excess(data)]:
+            raise ValidationError.from_exception_data(cls.__name__, excess)
         try:
             document = handler(data)
         except ValidationError as error:

@@ -1,7 +1,7 @@
 """Job documents: what to analyse, one discriminated union on ``analysis``."""
 
 from collections.abc import Iterator
-from typing import Annotated, Literal, get_args
+from typing import Annotated, ClassVar, Literal, get_args
 
 from pydantic import BeforeValidator, Discriminator, StrictBool
 
@@ -61,6 +61,8 @@ class WorkspaceJob(IndexChoices, Arm):
 
 class IndicesAtJob(IndexChoices, Arm):
     """Local indices at given configurations."""
+
+    long_fields: ClassVar[tuple[str, ...]] = ("configurations",)
 
     analysis: Literal["indices_at"] = "indices_at"
     """Name of the analysis."""

@@ -4,6 +4,7 @@ import json
 from typing import Any
 
 from wsrender.errors import DocumentError
+from wsrender.spec.problems import path_text
 
 LARGEST_DOCUMENT = 16 * 1024**2  # bytes; robot models travel inside, meshes do not
 DEEPEST_NESTING = 32  # a job needs 8
@@ -48,7 +49,7 @@ def _unique_keys(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     document: dict[str, Any] = {}
     for key, value in pairs:
         if key in document:
-            raise DocumentError([(key, "must be given only once in its object")])
+            raise DocumentError([(path_text(key), "must be given only once in its object")])
         document[key] = value
     return document
 

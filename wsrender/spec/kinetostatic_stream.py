@@ -8,7 +8,7 @@ answers ``opened``, a ``force`` at the next tick for the newest sample, and at e
 from collections.abc import Iterator
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, FiniteFloat, model_validator
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
 
 from wsrender.spec.arm import Arm
 from wsrender.spec.document import Document
@@ -16,8 +16,12 @@ from wsrender.spec.kinetostatics import ForceFieldChoice
 from wsrender.spec.quantities import Number, PositiveNumber, real, sequence
 
 LARGEST_SAMPLE = 4096  # bytes
+LARGEST_COORDINATE = 1e6  # of a sample: squares and rotations of it are finite
 Scale = Literal["rough", "medium", "fine", "view"]
 State = Literal["waiting", "rendering", "clutched", "stale", "invalid_input"]
+
+
+Coordinate = Annotated[float, Field(ge=-LARGEST_COORDINATE, le=LARGEST_COORDINATE)]
 
 
 def _frequencies(value: Any) -> tuple[float, ...]:
@@ -99,13 +103,13 @@ class Sample(Message):
 
     type: Literal["sample"] = "sample"
     """sample."""
-    sequence: int = Field(ge=0)
+    sequence: int = Field(ge=0, lt=2**53)
     """Number by which the answer names the sample."""
-    configuration: tuple[FiniteFloat, ...] | None = None
+    configuration: tuple[Coordinate, ...] | None = None
     """Joint values [rad or m], for the input "configuration"."""
-    position_m: tuple[FiniteFloat, FiniteFloat, FiniteFloat] | None = None
+    position_m: tuple[Coordinate, Coordinate, Coordinate] | None = None
     """Position of the device in the world [m], for the input "pose"."""
-    quat_wxyz: tuple[FiniteFloat, FiniteFloat, FiniteFloat, FiniteFloat] | None = None
+    quat_wxyz: tuple[Coordinate, Coordinate, Coordinate, Coordinate] | None = None
     """Its orientation, for a wrench device."""
     scale: Scale = "medium"
     """Scale from the device's motion to the tip's."""

@@ -1,20 +1,16 @@
 """The job ``planar_boundary``: the boundary of an arm that moves in a plane."""
 
 from collections.abc import Iterator
-from typing import Annotated, Any, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import BeforeValidator, Field
 
 from wsrender.spec.arm import Arm
 from wsrender.spec.options import Device
-from wsrender.spec.quantities import Number, PositiveNumber, integer, real, sequence
+from wsrender.spec.quantities import Number, PositiveNumber, integer, rows_of
 from wsrender.spec.sampling import Converge, Random, Sampling
 
 MOST_CELLS = 1_000_000
-
-
-def _rows(value: Any) -> tuple[tuple[float, ...], ...]:
-    return tuple(tuple(real(item) for item in sequence(row)) for row in sequence(value))
 
 
 class PlanarBoundaryJob(Arm):
@@ -22,6 +18,8 @@ class PlanarBoundaryJob(Arm):
 
     The arm's end effector must stay in a plane: joints turn about its normal or slide within it, or are locked.
     """
+
+    long_fields: ClassVar[tuple[str, ...]] = ("points_m",)
 
     analysis: Literal["planar_boundary"] = "planar_boundary"
     """Name of the analysis."""
@@ -33,7 +31,7 @@ class PlanarBoundaryJob(Arm):
     """TOLL: largest mean squared distance of boundary cells from a line [m²]; null: by the cells' width."""
     arc_tolerance_m4: PositiveNumber | None = None
     """TOLA: largest mean of (r² − R²)² of boundary cells about an arc [m⁴]; null: by the cells' width."""
-    points_m: Annotated[tuple[tuple[Number, Number], ...], BeforeValidator(_rows)] = ()
+    points_m: Annotated[tuple[tuple[Number, Number], ...], rows_of(2)] = ()
     """Points to be found inside or outside, with the nearest point of the boundary: rows of two coordinates in the
     plane [m], x and y of the world for an arm that moves in that plane."""
     device: Device = "auto"

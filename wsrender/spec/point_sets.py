@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 from pydantic import BeforeValidator
@@ -28,6 +28,8 @@ def _points(value: Any) -> tuple[Any, ...] | None:
 
 class PointSet(Document):
     """Points that an end effector reaches [m, world frame]."""
+
+    long_fields: ClassVar[tuple[str, ...]] = ("points",)
 
     points: Annotated[tuple[tuple[float, float, float], ...] | None, BeforeValidator(_points)] = None
     """The points [x, y, z]."""

@@ -1,6 +1,7 @@
 """Problems of a document in plain words: where, what is allowed, what was found."""
 
 import json
+import re
 from collections.abc import Callable, Collection, Mapping, Sized
 from difflib import get_close_matches
 from typing import Any
@@ -28,6 +29,7 @@ _ALLOWED = {
     "model_type": "must be an object",
     "none_required": "must be null",
     "string_pattern_mismatch": "must match {pattern}",
+    "string_too_long": "must have at most {max_length} characters",
     "string_too_short": "must not be empty",
     "string_type": "must be a string",
     "string_unicode": "must be valid Unicode text",
@@ -37,25 +39,25 @@ _ALLOWED = {
 }
 _WORDED = "problem"  # type of the errors whose message is already in plain words
 _LONGEST_VALUE = 60
+MOST_PROBLEMS = 50  # that are told of a part of a document
+_PLAIN_STEP = re.compile(r'[^."]+')
 _TAGS = ("analysis", "method", "shape")  # fields that tell the members of a union apart
 
 
 def worded(error: ValidationError, model: type[BaseModel] | None = None) -> ValidationError:
     """The same error with every message in plain words; ``model`` is the document that was validated."""
-    details = [
-        located(loc, message, problem["input"])
-        for problem in error.errors(include_url=False)
-        if not _miscounted(problem)
-        for loc, message in [_in_words(problem, model)]
-    ]
+    problems = [problem for problem in error.errors(include_url=False) if not _miscounted(problem)]
+    details = [located(*_in_words(problem, model), problem["input"]) for problem in problems[:MOST_PROBLEMS]]
+    if len(problems) > MOST_PROBLEMS:
+        details.append(located((), f"has {len(problems) - MOST_PROBLEMS} more problems"))
     return ValidationError.from_exception_data(error.title, details)
 
 
 def located(loc: str | tuple[int | str, ...], message: str, value: Any = None) -> InitErrorDetails:
-    """One problem, already in plain words, at a field or path."""
+    """One problem, already in plain words, at a dotted path or the steps of one."""
     return InitErrorDetails(
         type=PydanticCustomError(_WORDED, "{message}", {"message": message}),
-        loc=(loc,) if isinstance(loc, str) else loc,
+        loc=tuple(loc.split(".")) if isinstance(loc, str) else loc,
         input=value,
     )
 
@@ -64,6 +66,12 @@ def listed(error: ValidationError, document: Any) -> list[tuple[str, str]]:
     """(dotted path, message) of every problem in a document, in the order of its fields."""
     problems = worded(error).errors(include_url=False)
     return [(_path(problem["loc"], document), problem["msg"]) for problem in problems]
+
+
+def path_text(*steps: str | int) -> str:
+    """A path of keys and positions as errors write it: ``robots.0.tip``; a key with dots in it as a JSON string."""
+    texts = map(str, steps)
+    return ".".join(text if _PLAIN_STEP.fullmatch(text) else json.dumps(text, ensure_ascii=False) for text in texts)
 
 
 def tagged(field: str, tags: Collection[str]) -> Callable[[Any], Any]:
@@ -137,10 +145,12 @@ def _path(loc: tuple[int | str, ...], document: Any) -> str:
     """The dotted path of a location, without the union tags that pydantic puts in between."""
     steps, node, entered = [], document, False
     for step in loc:
+        if step == "[key]" and step not in (node if isinstance(node, Mapping) else ()):
+            continue  # pydantic's word for a key that is not allowed, which is the step before
         if not entered and isinstance(node, Mapping) and step in map(node.get, _TAGS):
             entered = True
             continue
-        steps.append(str(step))
+        steps.append(step)
         entered = False
         if isinstance(node, Mapping):
             node = node.get(step)
@@ -148,4 +158,4 @@ def _path(loc: tuple[int | str, ...], document: Any) -> str:
             node = node[step]
         else:
             node = None
-    return ".".join(steps) or "document"
+    return path_text(*steps) or "document"

@@ -10,6 +10,7 @@ from pydantic import BeforeValidator, Field, StrictStr
 
 LARGEST_COUNT = 10**15
 LARGEST_SEED = 2**63 - 1
+LONGEST_NAME = 4096  # characters
 _FILE_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
 
 
@@ -46,14 +47,30 @@ def sequence(value: Any) -> list:
     return list(value)
 
 
+def rows_of(width: int) -> BeforeValidator:
+    """Rows of so many numbers; only the first wrong one is told, since there may be millions."""
+
+    def rows(value: Any) -> tuple[tuple[float, ...], ...]:
+        found = tuple(tuple(real(item) for item in sequence(row)) for row in sequence(value))
+        wrong = next((k for k, row in enumerate(found) if len(row) != width), None)
+        if wrong is not None:
+            raise ValueError(f"must hold rows of {width} numbers; row {wrong} has {len(found[wrong])}")
+        return found
+
+    return BeforeValidator(rows)
+
+
 def distinct(values: Iterable) -> tuple:
     """The values as a tuple; ValueError if there is none or one is repeated."""
     values = tuple(values)
     if not values:
         raise ValueError("must not be empty")
-    repeated = [value for k, value in enumerate(values) if value in values[:k]]
-    if repeated:
-        raise ValueError(f'must not repeat "{repeated[0]}"')
+    seen = set()
+    for value in values:
+        key = value if isinstance(value, str | Real) else repr(value)  # lists and objects cannot be kept in a set
+        if key in seen:
+            raise ValueError(f'must not repeat "{value}"')
+        seen.add(key)
     return values
 
 
@@ -75,5 +92,5 @@ def _file_name(value: Any) -> Any:
     return value
 
 
-Name = Annotated[StrictStr, Field(min_length=1)]
+Name = Annotated[StrictStr, Field(min_length=1, max_length=LONGEST_NAME)]
 FileName = Annotated[StrictStr, Field(pattern=f"^{_FILE_NAME.pattern}$"), BeforeValidator(_file_name)]

@@ -1,27 +1,25 @@
 """The job ``reachability``: which of given targets a robot reaches."""
 
 from collections.abc import Iterator
-from typing import Annotated, Any, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import BeforeValidator, Field
 
 from wsrender.spec.arm import Arm
 from wsrender.spec.options import Device
-from wsrender.spec.quantities import Number, PositiveNumber, Seed, real, sequence
+from wsrender.spec.quantities import Number, PositiveNumber, Seed, real, rows_of
 
 SMALLEST_LENGTH = 1e-6  # of a quaternion that says a rotation
 
 
-def _rows(value: Any) -> tuple[tuple[float, ...], ...]:
-    return tuple(tuple(real(item) for item in sequence(row)) for row in sequence(value))
-
-
-Points = Annotated[tuple[tuple[Number, Number, Number], ...], Field(min_length=1), BeforeValidator(_rows)]
-Quaternions = Annotated[tuple[tuple[Number, Number, Number, Number], ...], Field(min_length=1), BeforeValidator(_rows)]
+Points = Annotated[tuple[tuple[Number, Number, Number], ...], Field(min_length=1), rows_of(3)]
+Quaternions = Annotated[tuple[tuple[Number, Number, Number, Number], ...], Field(min_length=1), rows_of(4)]
 
 
 class ReachabilityJob(Arm):
     """Which of given targets a robot reaches within its joint limits, by inverse kinematics from many starts."""
+
+    long_fields: ClassVar[tuple[str, ...]] = ("points_m", "quats_wxyz")
 
     analysis: Literal["reachability"] = "reachability"
     """Name of the analysis."""

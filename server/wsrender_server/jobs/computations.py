@@ -124,6 +124,11 @@ class ComputationStore:
             row.state = ComputationState.WAITING if wanted else ComputationState.STOPPED
             row.attempt += wanted
             ids = [job.id for job in canceling]
+            forgotten = session.scalar(select(func.count()).where(Job.computation_id == computation_id)) == 0
+            if forgotten:  # its jobs were deleted while it stopped
+                session.delete(row)
+        if forgotten:
+            self.files.forget(computation_id)
         self.changes.notify(*ids)
 
     def time_out(self, now: datetime | None = None) -> list[str]:

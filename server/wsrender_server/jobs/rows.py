@@ -59,12 +59,16 @@ def enter(session: Session, job: Job, state: JobState, error: dict[str, Any] | N
 
 
 def subscribe(session: Session, job: Job, computation: Computation) -> None:
-    """Let a new or retried job wait for a computation, which starts again if it had failed or been stopped."""
+    """Let a new or retried job wait for a computation, which starts again if it had failed or been stopped.
+
+    Where it is more urgent than those that wait already, the computation goes out anew, by another attempt.
+    """
     restarts = computation.state in (ComputationState.FAILED, ComputationState.STOPPED)
     if restarts:
         computation.state = ComputationState.WAITING
-        computation.attempt += 1
         computation.priority = job.priority
+    if restarts or (computation.state == ComputationState.WAITING and job.priority > computation.priority):
+        computation.attempt += 1
     computation.priority = max(computation.priority, job.priority)
     if computation.state == ComputationState.SUCCEEDED:
         finish(session, job)

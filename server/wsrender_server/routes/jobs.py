@@ -88,7 +88,7 @@ def submit_job(server: Server, principal: Submitter, request: Request, text: _Bo
     gives the same job (200), with another body 422, while the first request is still at work 409.
     """
     key = _idempotency_key(request)
-    body = _read(text)
+    body = read_body(text)
     document = _admitted(server, principal, body, text, "JobSubmission")
     options = body.options
     with _one_at_a_time(request.app.state.keys_at_work, principal.owner, key):
@@ -121,7 +121,7 @@ def submit_job(server: Server, principal: Submitter, request: Request, text: _Bo
 )
 async def validate_job(server: Server, principal: Submitter, text: _Body) -> Estimate:
     """Everything that can be wrong with a job is found here, the robot's model included; nothing is queued."""
-    document = await run_in_threadpool(lambda: _admitted(server, principal, _read(text), text, "JobSubmission"))
+    document = await run_in_threadpool(lambda: _admitted(server, principal, read_body(text), text, "JobSubmission"))
     return Estimate.model_validate({"valid": True} | await server.estimates.of(document))
 
 
@@ -231,13 +231,6 @@ def delete_job(server: Server, principal: Submitter, job_id: JobId) -> Response:
     """Forget an ended job and, with the last job that shares it, its result; 409 for a job that has not ended."""
     found(server.store.delete(principal.owner, job_id))
     return Response(status_code=204)
-
-
-def _read(text: bytes) -> JobBody:
-    try:
-        return read_body(text)
-    except DocumentError as error:
-        raise refused(error, text, "JobSubmission", "") from None
 
 
 def _admitted(server: Parts, principal: Principal, body: JobBody, text: bytes, schema: str) -> dict[str, Any]:

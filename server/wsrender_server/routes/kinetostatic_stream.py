@@ -69,12 +69,19 @@ async def kinetostatic_stream(websocket: WebSocket) -> None:
 def _entitled(websocket: WebSocket, offered: list[str]) -> Principal:
     """Who connects: by the header Authorization, or by a subprotocol; raises HttpProblem."""
     origin = websocket.headers.get("origin")
-    if origin is not None and urlsplit(origin).hostname != websocket.url.hostname:
+    if origin is not None and _host_of(origin) != websocket.url.hostname:
         raise HttpProblem(403, f"pages of {origin} may not connect", "wrong_origin")
     scheme, _, secret = websocket.headers.get("authorization", "").partition(" ")
     keys = [secret] if scheme.lower() == "bearer" else []
     keys += [name.removeprefix(KEY_PREFIX) for name in offered if name.startswith(KEY_PREFIX)]
     return entitled(websocket, keys[0] if keys else None, "submit")
+
+
+def _host_of(origin: str) -> str | None:
+    try:
+        return urlsplit(origin).hostname
+    except ValueError:
+        return None
 
 
 async def _serve(websocket: WebSocket, principal: Principal) -> None:

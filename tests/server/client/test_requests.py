@@ -3,6 +3,7 @@
 import json
 
 import httpx2
+import numpy as np
 import pytest
 
 import wsrender as ws
@@ -31,6 +32,27 @@ def test_submit_takes_typed_jobs(server, client):
     job = parse_job({**DOCUMENT, "sampling": {"method": "grid", "per_joint": 3}})
     client.submit(job)
     assert parse_job(json.loads(server.requests[0].content)) == job
+
+
+def test_submit_takes_numpy_values(server, client):
+    server.answer("POST", "/v1/jobs", says(JOB, 202))
+    job = {**DOCUMENT, "voxel_size_m": np.float32(0.5), "points_m": np.zeros((2, 3)), "locked": {"a": np.int64(1)}}
+    client.submit(job)
+    sent = json.loads(server.requests[0].content)
+    assert sent == {**DOCUMENT, "voxel_size_m": 0.5, "points_m": [[0, 0, 0], [0, 0, 0]], "locked": {"a": 1}}
+
+
+@pytest.mark.parametrize(
+    ("fields", "message"),
+    [
+        ({"sampling": {"count": float("nan")}}, "sampling.count: must be a finite number, not nan"),
+        ({"points_m": np.array([[0.0, np.inf]])}, "points_m.0.1: must be a finite number, not inf"),
+        ({"robot": object()}, "robot: must be plain data, not object"),
+    ],
+)
+def test_what_json_cannot_say_is_refused(client, fields, message):
+    with pytest.raises(ws.DocumentError, match=message):
+        client.submit({**DOCUMENT, **fields})
 
 
 @pytest.mark.parametrize("value", [None, "ur5e", 3])

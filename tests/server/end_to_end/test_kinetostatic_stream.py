@@ -131,6 +131,21 @@ def test_wrong_messages_end_the_force_and_not_the_stream(client, arm):
         assert stream.ask_statistics()["refused"] == 5  # the other samples are well formed
 
 
+@pytest.mark.parametrize("value", [1e307, -1e160, 1e7])
+@pytest.mark.parametrize("kind", ["configuration", "pose"])
+def test_values_of_no_use_end_the_force_and_not_the_stream(server, kind, value):
+    with raw(server) as socket:
+        socket.send(json.dumps({"type": "open", "robot": {"library": "phantom_omni"}, "input": kind}))
+        received(socket, "opened")
+        fields = {"configuration": [value] * 6} if kind == "configuration" else {"position_m": [value, 0, 0]}
+        socket.send(json.dumps({"type": "sample", "sequence": 1, **fields}))
+        while (force := received(socket, "force"))["state"] != "invalid_input":
+            pass
+        assert force["force_n"] == [0, 0, 0] and "1000000" in force["detail"]
+        socket.send('{"type": "close"}')
+        assert received(socket, "closed")["refused"] == 1
+
+
 def test_several_clients_each_with_their_own_robot(client, arm):
     with (
         client.kinetostatic_stream(ROBOT, **PATIENT) as one,
@@ -226,9 +241,10 @@ def test_a_path_is_not_opened_by_the_server(server):
 
 
 def test_pages_of_other_sites_may_not_connect(server):
-    with pytest.raises(InvalidStatus) as refused, raw(server, origin="http://evil.example"):
-        pass
-    assert refused.value.response.status_code == 403
+    for origin in ("http://evil.example", "http://[abc", "null"):
+        with pytest.raises(InvalidStatus) as refused, raw(server, origin=origin):
+            pass
+        assert refused.value.response.status_code == 403
     with raw(server, origin="http://127.0.0.1:3000"):
         pass
 

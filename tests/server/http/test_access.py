@@ -152,8 +152,11 @@ def test_openapi_without_keys(client):
     assert "security" not in document["paths"]["/v1/jobs"]["post"]
 
 
+WRONG_HOSTS = ("evil.example", "127.0.0.1.evil.example", "192.168.1.2", "localhost.evil.example")
+
+
 def test_without_keys_only_this_machine_by_name(client):
-    for host in ("evil.example", "127.0.0.1.evil.example", "192.168.1.2", "localhost.evil.example"):
+    for host in (*WRONG_HOSTS, "evil.example:", "evil.example:80:80", "evil.example@localhost", "[abc", "localhost/x"):
         problem_of(client.get("/v1/jobs", headers={"Host": host}), 403, "wrong_host")
     for host in ("localhost:8000", "127.0.0.1:1", "[::1]:8000", "127.9.9.9"):
         assert client.get("/v1/jobs", headers={"Host": host}).status_code == 200

@@ -172,3 +172,37 @@ def test_points_in_files_are_not_opened(client, jobs, path):
     assert "is for local runs" in problem["errors"][0]["detail"]
     with pytest.raises(InputError, match=r"left\.path: is for local runs"):
         jobs.store.identity.key("local", json.loads(canonical_json(parse_job(document))), None)
+
+
+def test_the_answer_to_a_body_full_of_faults_is_short(client):
+    robot = {"dh": {"rows": [1] * 3000}}
+    for fields in ({f"k{i}": 1 for i in range(5000)}, {"indices": [f"f{i}" for i in range(5000)]}, {"robot": robot}):
+        response = client.post("/v1/jobs", json={**DOCUMENT, **fields})
+        problem_of(response, 422)
+        assert len(response.content) < 100_000
+    labels = {f"{i}!": "x" for i in range(5000)}
+    assert len(client.post("/v1/jobs", json={**DOCUMENT, "labels": labels}).content) < 100_000
+    many = client.post("/v1/jobs", json={**DOCUMENT, "indices": [f"f{i}" for i in range(20_001)]})
+    assert "must have at most 20000 items, not 20001" in problem_of(many, 422)["detail"]
+
+
+@pytest.mark.parametrize(
+    ("fields", "pointer"),
+    [
+        ({"labels": {"a.b/c": 1}}, "#/labels/a.b~1c"),
+        ({"labels": {"a\n": "x"}}, "#/labels/a\n"),
+        ({"labels": {"a": "x\n"}}, "#/labels/a"),
+        ({"a.b": 1}, "#/a.b"),
+        ({'"a': 1}, '#/"a'),
+        ({"analysis": "indices_at", "sampling": None, "configurations": []}, "#/sampling"),
+    ],
+)
+def test_pointers_point_at_keys_as_they_are(client, fields, pointer):
+    problem = problem_of(client.post("/v1/jobs", json={**DOCUMENT, **fields}), 422)
+    assert pointer in [each["pointer"] for each in problem["errors"]]
+
+
+def test_configurations_must_be_there(client):
+    body = {"analysis": "indices_at", "robot": "scara", "configurations": []}
+    problem = problem_of(client.post("/v1/jobs", json=body), 422, "invalid_document")
+    assert problem["errors"][0]["pointer"] == "#/configurations"

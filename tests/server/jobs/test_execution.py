@@ -311,6 +311,19 @@ def test_an_urgent_job_goes_first(service):
     assert ended(service.store, urgent).finished_at < ended(service.store, later).finished_at
 
 
+def test_a_waiting_job_goes_first_with_an_urgent_twin(service):
+    running = long_job(service)
+    first = service.store.submit("ann", canonical(**{**QUICK, "voxel_size_m": 0.06})).job.id
+    twin = canonical(**{**QUICK, "voxel_size_m": 0.07})
+    waiting = service.store.submit("ann", twin).job.id
+    time.sleep(0.5)
+    urgent = service.store.submit("ann", twin, priority=5).job.id
+    time.sleep(0.5)
+    service.store.cancel("ann", running)
+    ends = [ended(service.store, job).finished_at for job in (waiting, urgent, first)]
+    assert ends[0] < ends[2] and ends[1] < ends[2]
+
+
 def test_partial_results_and_scratch_do_not_stay(service):
     assert quick_job(service).state == "succeeded"
     computations = set(service.store.unfinished())

@@ -257,6 +257,28 @@ def test_deleting_the_last_job_removes_the_result(store, document):
     assert not store.submit("ann", document).cached
 
 
+def test_a_computation_whose_jobs_are_deleted_while_it_stops_is_forgotten(store, document):
+    job, computation = running(store, document, timeout_s=0.001)
+    assert store.time_out() == [job]
+    store.delete("ann", job)
+    assert store.unfinished()[computation][0] == ComputationState.STOPPING
+    store.stopped(computation, store.computation(computation).attempt)
+    assert store.computation(computation) is None and not store.submit("ann", document).cached
+
+
+def test_a_more_urgent_twin_makes_a_waiting_computation_go_out_anew(store, document):
+    store.submit("ann", document)
+    ((computation, (_state, attempt)),) = store.unfinished().items()
+    store.submit("ann", document, priority=-1)
+    assert store.computation(computation).attempt == attempt
+    store.submit("ann", document, priority=7)
+    urgent = store.computation(computation)
+    assert (urgent.attempt, urgent.priority) == (attempt + 1, 7)
+    assert not store.begin(computation, attempt) and store.begin(computation, attempt + 1)
+    store.submit("ann", document, priority=9)
+    assert store.computation(computation).attempt == attempt + 1  # it runs
+
+
 def test_artifacts_are_of_succeeded_jobs_only(store, document):
     job, computation = running(store, document)
     assert store.artifacts("ann", job) == [] and store.result_document("ann", job) is None
