@@ -180,7 +180,7 @@ class JobStore(ComputationStore, ResultStore, KeyStore):
                 return None
             if job.state not in ENDED:
                 raise InvalidTransition(job.state, "deleted")
-            record = job_record(job, json.loads(computation.document))
+            record, computation_id = job_record(job, json.loads(computation.document)), computation.id
             for table in (Event, Label):
                 session.execute(delete(table).where(table.job_id == job_id))
             session.delete(job)
@@ -190,7 +190,7 @@ class JobStore(ComputationStore, ResultStore, KeyStore):
                 session.execute(delete(ArtifactFile).where(ArtifactFile.computation_id == computation.id))
                 session.delete(computation)
         if unused:
-            self.files.forget(computation.id)
+            self.files.forget(computation_id)
         self.changes.notify(job_id)
         return record
 

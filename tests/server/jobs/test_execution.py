@@ -313,8 +313,8 @@ def test_an_urgent_job_goes_first(service):
 
 def test_a_waiting_job_goes_first_with_an_urgent_twin(service):
     running = long_job(service)
-    first = service.store.submit("ann", canonical(**{**QUICK, "voxel_size_m": 0.06})).job.id
-    twin = canonical(**{**QUICK, "voxel_size_m": 0.07})
+    first = service.store.submit("ann", canonical(**{**QUICK, "voxel_size_m": 0.061})).job.id
+    twin = canonical(**{**QUICK, "voxel_size_m": 0.071})
     waiting = service.store.submit("ann", twin).job.id
     time.sleep(0.5)
     urgent = service.store.submit("ann", twin, priority=5).job.id
