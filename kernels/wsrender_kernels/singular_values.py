@@ -36,7 +36,7 @@ def singular_values(real, m: int, n: int, graded: bool = False):
     """Device function ``(A: (m, n)) -> (m,)``, descending, as computed; the last m - n are exactly 0."""
     if m > 3:
         return _by_rotations(real, m, n, graded)
-    solver = {1: _one_row, 2: _two_rows, 3: _three_rows}[m](real, m, n)
+    solver = _two_rows(real, n, graded) if m == 2 else {1: _one_row, 3: _three_rows}[m](real, n)
     rotated = _by_largest_columns(real, n) if graded and m == 3 else _as_it_is(real, m, n)
     vec_m = wp.types.vector(m, real)
     mat_mn = wp.types.matrix((m, n), real)
@@ -131,25 +131,27 @@ def _by_largest_columns(real, n: int):
     return by_largest_columns
 
 
-def _one_row(real, m: int, n: int):
-    vec_m = wp.types.vector(1, real)
-    mat_mn = wp.types.matrix((1, n), real)
+def _one_row(real, n: int):
+    vec_1 = wp.types.vector(1, real)
+    mat_1n = wp.types.matrix((1, n), real)
 
     @wp.func
-    def one_row(A: mat_mn):
-        return vec_m(wp.sqrt(wp.dot(A[0], A[0])))
+    def one_row(A: mat_1n):
+        return vec_1(wp.sqrt(wp.dot(A[0], A[0])))
 
     return one_row
 
 
-def _two_rows(real, m: int, n: int):
-    vec_m = wp.types.vector(2, real)
-    mat_mn = wp.types.matrix((2, n), real)
+def _two_rows(real, n: int, graded: bool):
+    vec_2 = wp.types.vector(2, real)
+    mat_2n = wp.types.matrix((2, n), real)
+    # The remainder of a large column errs by its rounding; orthogonalised once more, by the square of it.
+    PASSES = 2 if graded else 1
     HALF, ZERO, ONE, TINY = real(0.5), real(0.0), real(1.0), _tiny(real)
     scales = elementary(real).scales
 
     @wp.func
-    def two_rows(A: mat_mn):
+    def two_rows(A: mat_2n):
         a = A[0]
         b = A[1]
         # In units that leave A Aᵀ a trace of about 1, as in three_rows: fourth powers follow.
@@ -157,19 +159,22 @@ def _two_rows(real, m: int, n: int):
         aa = wp.dot(a, a) * unit
         ab = wp.dot(a, b) * unit
         bb = wp.dot(b, b) * unit
-        rest = b - a * (ab * wp.where(aa > TINY, ONE / aa, ZERO))
+        per_aa = wp.where(aa > TINY, ONE / aa, ZERO) * unit
+        rest = b
+        for _pass in range(PASSES):
+            rest = rest - a * (wp.dot(a, rest) * per_aa)
         area = wp.sqrt(aa) * wp.sqrt(wp.dot(rest, rest) * unit)
         d = HALF * (aa - bb)
         largest = wp.sqrt(HALF * (aa + bb) + wp.sqrt(d * d + ab * ab))
-        return vec_m(largest * scale, wp.where(largest > TINY, area / largest, ZERO) * scale)
+        return vec_2(largest * scale, wp.where(largest > TINY, area / largest, ZERO) * scale)
 
     return two_rows
 
 
 @factory
-def _three_rows(real, m: int, n: int):
-    vec_m = wp.types.vector(3, real)
-    mat_mn = wp.types.matrix((3, n), real)
+def _three_rows(real, n: int):
+    vec_3 = wp.types.vector(3, real)
+    mat_3n = wp.types.matrix((3, n), real)
     third_of_angle, functions = _third_of_angle(real), elementary(real)
     scales, root_and_reciprocal = functions.scales, functions.root_and_reciprocal
     ZERO, HALF, ONE, TWO, THREE, FOUR = (real(v) for v in (0.0, 0.5, 1.0, 2.0, 3.0, 4.0))
@@ -181,7 +186,7 @@ def _three_rows(real, m: int, n: int):
     NOISE = real(1e-18 if real is wp.float32 else 1e-36)
 
     @wp.func(inline=True)  # CUDA's compiler, optimizing little, would call it and pass the matrix through memory
-    def three_rows(A: mat_mn):
+    def three_rows(A: mat_3n):
         a = A[0]
         b = A[1]
         c = A[2]
@@ -257,7 +262,7 @@ def _three_rows(real, m: int, n: int):
         sigma_2, i2 = root_and_reciprocal(wp.where(l2 > TINY, l2, TINY))
         l3 = product * i2
         l3 = wp.where(l3 < l2, l3, l2)
-        return vec_m(sigma_1 * scale, sigma_2 * scale, wp.sqrt(l3) * scale)
+        return vec_3(sigma_1 * scale, sigma_2 * scale, wp.sqrt(l3) * scale)
 
     return three_rows
 

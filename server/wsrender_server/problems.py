@@ -275,13 +275,14 @@ async def _answer_error(request: Request, error: Exception) -> Response:
 
 async def _answer_invalid_parameters(request: Request, error: Exception) -> Response:
     assert isinstance(error, RequestValidationError)
+    faults = error.errors()
+    if faults[0]["type"] == "json_invalid":
+        document = problem(400, "malformed_json", "the body is not JSON", errors=[("#", faults[0]["msg"])])
+        return response_of_problem(document, _request_id(request))
     fields = []
-    for fault in error.errors():
+    for fault in faults:
         place, *path = fault["loc"]
         name = "#" + "".join(f"/{step}" for step in path) if place == "body" else ".".join(map(str, path))
-        if fault["type"] == "json_invalid":
-            document = problem(400, "malformed_json", "the body is not JSON", errors=[("#", fault["msg"])])
-            return response_of_problem(document, _request_id(request))
         fields.append((name, fault["msg"]))
     detail = "; ".join(f"{name}: {message}" for name, message in fields)
     document = problem(422, "invalid_request", detail, title="A parameter is not valid", errors=fields)

@@ -170,6 +170,20 @@ def test_six_rows_of_a_huge_robot(device):
             assert np.abs(found[name] - wanted).max() <= TOLERANCES[precision].index * wanted.max(), (precision, name)
 
 
+@pytest.mark.filterwarnings("ignore::wsrender.robots.model_warning.ModelWarning")
+@pytest.mark.parametrize("last_mass", [1e-2, 1e-4, 1e-6])
+def test_two_rows_of_a_robot_with_a_light_last_link(last_mass, device):
+    """Its last column of J M^-1 is so much larger that rounding of it drowns the others."""
+    robot, q = planar_arm(0.4, 1.0, last_mass=last_mass), np.random.default_rng(0).uniform(-2, 2, (500, 3))
+    A = accelerations(robot.jacobian(q)[:, :2], robot.inertia_matrix(q, method="mujoco"))
+    expected = local_indices.standard(A)
+    for precision in ("float32", "float64"):
+        found = ws.evaluate_indices(robot, q, "dynamic", ["x", "y"], precision=precision, device=device)
+        for name, value in found.items():
+            wanted = expected[name.removeprefix("dynamic_")]
+            assert np.abs(value - wanted).max() <= TOLERANCES[precision].index * wanted.max(), (precision, name)
+
+
 def test_inertias_that_float32_cannot_hold_are_refused(device):
     robot, q = planar_arm(0.4, 1.0, last_mass=0.0), np.array([[0.3, 0.5, -0.7]])
     fields = {"task": ["x", "y"], "device": device}

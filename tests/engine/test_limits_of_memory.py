@@ -72,7 +72,7 @@ def test_slabs_of_the_lattice_change_no_bit(method, precision, device, monkeypat
     if device == "cuda":
         monkeypatch.setattr(slabs, "SHARE_SLAB", free * slabs.SHARE_SLAB / devices_of(device)[0].free_memory)
     monkeypatch.setattr(slabs, "available_bytes", lambda: free)
-    assert len(slabs.slabs_of(plan.sweep.block, shape, devices_of(device)[:1])) in (4, 5)
+    assert len(slabs.fitted(plan.sweep.block, shape, devices_of(device)[:1])[1]) in (4, 5)
     found = run.run_shard(plan, 0, done.append, threads=1).sweep
     for name in ("extremes", "totals", "cells", "count", "records", "sums"):
         assert getattr(found, name).tobytes() == getattr(expected, name).tobytes(), name
@@ -126,5 +126,9 @@ def test_many_threads_do_not_refuse_what_one_can_do(monkeypatch):
     workers = devices_of("cpu") * 64
     for fitting, chosen in ((1, 1), (5, 5), (64, 64)):
         monkeypatch.setattr(slabs, "available_bytes", lambda fitting=fitting: fitting * block_bytes / slabs.SHARE + 1)
-        found = slabs.fitting_workers(plan.block, plan.shape, workers)
-        assert len(found) == chosen and slabs.slabs_of(plan.block, plan.shape, found) == [plan.block]
+        found, parts = slabs.fitted(plan.block, plan.shape, workers)
+        assert len(found) == chosen and parts == [plan.block]
+    monkeypatch.setattr(slabs, "available_bytes", lambda: block_bytes / slabs.SHARE_SLAB / 20)
+    found, parts = slabs.fitted(plan.block, plan.shape, workers)
+    assert len(found) == 1 and 20 <= len(parts) <= slabs.MOST_SLABS
+    assert sum(slab.shape[0] for slab in parts) == plan.block.shape[0]

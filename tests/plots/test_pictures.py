@@ -44,6 +44,18 @@ def test_slice_at_a_voxel_border_shows_the_voxel_above_it_and_the_upper_end_the_
         assert values == count
 
 
+def test_colours_of_robots_side_by_side_span_their_values_alone():
+    """Also where each robot's values are all the same: a single slice would widen its range."""
+    count = np.ones((3, 3, 3), int)
+    volumes = {
+        name: VolumeData(0.1, (0, 0, 0), count, {"maximum": {"x": np.full(count.shape, value)}})
+        for name, value in (("a", 5.0), ("b", 7.0))
+    }
+    figure = plots.side_by_side(volumes, index="x")
+    images = [image for axes in figure.axes for image in axes.images]
+    assert len(images) >= 6 and {(image.norm.vmin, image.norm.vmax) for image in images[:6]} == {(5.0, 7.0)}
+
+
 def test_slice_without_coordinate_shows_zero_or_the_fullest_plane():
     count = np.ones((2, 2, 3), int)
     count[0, 0, 0] = 0

@@ -190,3 +190,10 @@ def test_a_search_that_finds_nothing_says_so():
     assert result.document["search"]["most_inside"] < 1 and result.document["search"]["at_factor"] == 0.5
     assert "no scale fits; at most" in result.summary()
     assert mapped(MASTER_BOX, SLAVE_BOX, search={"scale": [0.5, 5]}).document["search"]["found"] is True
+
+
+@pytest.mark.parametrize("uniform", [True, False])
+def test_a_search_beyond_what_fits_finds_nothing_though_the_jobs_own_scale_does(uniform):
+    result = mapped(MASTER_BOX, SLAVE_BOX, search={"scale": [8, 9], "steps": 4, "uniform": uniform})
+    assert result.document["mapping"]["succeeded"] and result.document["mapping"]["scale"] == [1, 1, 1]
+    assert result.document["search"]["found"] is False and "no scale fits" in result.summary()

@@ -23,6 +23,13 @@ def planar_result():
     )
 
 
+def test_summaries_tell_of_workspaces_without_an_inner_voxel():
+    note = "no occupied voxel has all its neighbours occupied"
+    sparse, dense = (ws.analyze(gantry(), ws.Grid(k), voxel_size_m=0.02, **LINEAR) for k in (4, 20))
+    assert sparse.document["volume_m3"]["inner"] == 0 and note in sparse.summary()
+    assert dense.document["volume_m3"]["inner"] > 0 and note not in dense.summary()
+
+
 def test_a_gantry_fills_its_box():
     """One sample at the centre of each voxel of .3 × .4 × .2 m."""
     document = ws.analyze(gantry(), ws.Grid([20, 40, 30]), voxel_size_m=0.01, **LINEAR).document

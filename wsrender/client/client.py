@@ -147,13 +147,9 @@ class Client:
         return self._connection.request("GET", path, params=params or {}).json()
 
     def _document(self, job: Any) -> dict[str, Any]:
-        if isinstance(job, Mapping):
-            document = dict(job)
-        elif hasattr(job, "model_dump"):
-            document = job.model_dump(mode="json")
-        else:
+        if not isinstance(job, Mapping) and not hasattr(job, "model_dump"):
             raise InputError("job", f"must be a job document (dict) or a typed job, not {type(job).__name__}")
-        document = _plain(document)
+        document = _plain(job)
         for path, robot in robots_in(document):
             if isinstance(robot.get("path"), str):
                 robot["model"] = self.upload_model(robot.pop("path"), dotted(path, "path"))

@@ -7,6 +7,7 @@ import numpy as np
 import warp as wp
 
 CACHE_LINE = 64  # bytes
+SHARE = 0.8  # of the free memory, that is taken
 
 
 def available_bytes() -> int:

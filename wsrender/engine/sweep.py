@@ -28,7 +28,7 @@ from wsrender.engine.kernel_cache import launch, loaded
 from wsrender.engine.memory import as_type, device_memory
 from wsrender.engine.partial import Partial, joined, merge
 from wsrender.engine.row_buffer import RowBuffer
-from wsrender.engine.slabs import fitting_workers, slabs_of
+from wsrender.engine.slabs import fitted
 from wsrender.errors import NumericalError
 from wsrender.sampling import SamplingPlan
 from wsrender.volume.lattice import LatticeBlock
@@ -122,8 +122,7 @@ def sweep(
     workers = workers[: max(-(-count // chunk), 1)]
     slabs = [None]
     if plan.block is not None:
-        workers = fitting_workers(plan.block, shape, workers)
-        slabs = slabs_of(plan.block, shape, workers)
+        workers, slabs = fitted(plan.block, shape, workers)
     partials = []
     for number, slab in enumerate(slabs):
 

@@ -5,13 +5,11 @@ from math import prod
 import numpy as np
 from wsrender_kernels.voxels import decode_extreme
 
-from wsrender.engine.memory import available_bytes
+from wsrender.engine.memory import SHARE, available_bytes
 from wsrender.engine.partial import Partial
 from wsrender.engine.sweep import SweepPlan
 from wsrender.errors import ResourceError
 from wsrender.volume.volume_data import VolumeData
-
-SHARE = 0.8  # of the free memory
 
 
 def volume_data(plan: SweepPlan, partial: Partial, units: dict[str, str]) -> VolumeData:

@@ -24,10 +24,13 @@ def estimate(plan: SweepPlan, devices: list[Any]) -> dict[str, float]:
     if plan.evaluation.on_host:
         rate = RATE_HOST
     samples = plan.sampling.count
-    width = 4 if plan.precision == "float32" else 8
-    shape = plan.shape
     voxels = plan.block.size if plan.block else 0
-    records = voxels * shape.bytes_per_voxel
-    rows = samples * shape.n_rows * width if plan.keep_rows else 0
+    records = voxels * plan.shape.bytes_per_voxel
     seconds = samples / plan.structure.weight / rate
-    return {"samples": float(samples), "bytes": float(records * workers + rows), "seconds": seconds}
+    return {"samples": float(samples), "bytes": float(records * workers + map_bytes(plan)), "seconds": seconds}
+
+
+def map_bytes(plan: SweepPlan) -> int:
+    """Bytes of the rows of a map; 0 where none is kept."""
+    width = 4 if plan.precision == "float32" else 8
+    return plan.sampling.count * plan.shape.n_rows * width if plan.keep_rows else 0

@@ -58,18 +58,21 @@ class MappingPlan(OneShard):
         """Points of both robots, the mapping of each offset, and the curve of the best."""
         master, slave = (self._points(source, side) for side, source in enumerate(self.sources))
         space, own = (_space(points, self.job.containment) for points in (master, slave))
-        found = [self._mapping(space, master, slave, np.array(offset)) for offset in self.job.offsets_m]
-        entries = [_entry(mapping, space, own, slave) for mapping in found]
-        # The largest of those that succeed, else the one with most points inside.
-        best = max(range(len(entries)), key=lambda k: (entries[k]["succeeded"], _merit(entries[k])))
+        given = [self._given(np.array(offset)) for offset in self.job.offsets_m]
+        found = [self._found(space, master, slave, each) for each in given]
+        mappings = [sought or own_scale for sought, own_scale in zip(found, given, strict=True)]
+        entries = [_entry(mapping, space, own, slave) for mapping in mappings]
+        # What the search found first; of it the largest that succeeds, else the one with most points inside.
+        best = max(range(len(entries)), key=lambda k: (found[k] is not None, *_merit(entries[k])))
         about = {"best": best, "offsets": entries, "master_m3": space.volume_m3, "slave_m3": own.volume_m3}
-        arrays = {"master": master, "slave": slave, "about": np.array(json.dumps(about))}
+        arrays = {"master": master, "slave": slave}
         if self.job.search is not None:
-            curve = scale_curve(space, slave, self._of_factor_one(found[best]), _factors(self.job.search))
+            curve = scale_curve(space, slave, self._of_factor_one(mappings[best]), _factors(self.job.search))
             arrays |= {"factors": curve.factors, "inside": curve.inside}
+            about["found"] = found[best] is not None
         if progress:
             progress(self.samples)
-        return arrays
+        return {**arrays, "about": np.array(json.dumps(about))}
 
     def finish(self, partial: dict[str, np.ndarray], seconds: dict[str, float]) -> Result:
         """The best mapping, the others beside it, the points that fail, and the shapes."""
@@ -97,8 +100,8 @@ class MappingPlan(OneShard):
         if "factors" in partial:
             most = int(np.argmax(partial["inside"]))
             document["search"] = {
-                "found": best["succeeded"],
-                "scale": list(self.job.search.scale) if self.job.search else None,
+                "found": about["found"],
+                "scale": [float(partial["factors"][0]), float(partial["factors"][-1])],
                 "most_inside": float(partial["inside"][most]),
                 "at_factor": float(partial["factors"][most]),
             }
@@ -122,16 +125,18 @@ class MappingPlan(OneShard):
         """The found mapping shrunk or grown to the volume of the job's own scales."""
         return found.scaled(float(np.cbrt(np.prod(self.job.scale) / found.volume_factor)))
 
-    def _mapping(self, space: Space, master: np.ndarray, slave: np.ndarray, offset: np.ndarray) -> LinearMapping:
-        """The mapping at one offset: the job's, or the largest that the search finds; the job's where it finds none."""
-        given = LinearMapping(np.array(self.job.scale), self._rotation(), offset)
+    def _given(self, offset: np.ndarray) -> LinearMapping:
+        return LinearMapping(np.array(self.job.scale), self._rotation(), offset)
+
+    def _found(self, space: Space, master: np.ndarray, slave: np.ndarray, given: LinearMapping) -> LinearMapping | None:
+        """The largest mapping of the search; None where it finds none, or the job has none."""
         search = self.job.search
         if search is None:
-            return given
+            return None
         if search.uniform and search.offset_m is None:
             factor = largest_factor(space, slave, given, scale_curve(space, slave, given, _factors(search)))
-            return given if factor is None else given.scaled(factor)
-        found = best_mapping(
+            return None if factor is None else given.scaled(factor)
+        return best_mapping(
             space,
             (master.min(axis=0), master.max(axis=0)),
             slave,
@@ -141,7 +146,6 @@ class MappingPlan(OneShard):
             offset_bounds=search.offset_m,
             seed=search.seed,
         )
-        return found or given
 
 
 def plan_mapping(job: MasterSlaveMappingJob, *robots: Robot, resolved: dict[str, Any] | None = None) -> MappingPlan:
@@ -203,8 +207,8 @@ def _entry(mapping: LinearMapping, space: Space, own: Space, slave: np.ndarray) 
     }
 
 
-def _merit(entry: dict[str, Any]) -> float:
-    return entry["volume_m3"] if entry["succeeded"] else entry["inside"]
+def _merit(entry: dict[str, Any]) -> tuple[bool, float]:
+    return entry["succeeded"], entry["volume_m3"] if entry["succeeded"] else entry["inside"]
 
 
 def _factors(search: MappingSearch) -> np.ndarray:

@@ -7,14 +7,14 @@ from typing import Any
 import numpy as np
 
 from wsrender.engine import Partial, SweepPlan, devices_of, merge, sweep
-from wsrender.engine.memory import available_bytes
-from wsrender.engine.voxel_data import SHARE, volume_data
+from wsrender.engine.memory import SHARE, available_bytes
+from wsrender.engine.voxel_data import volume_data
 from wsrender.errors import InputError, NotConvergedError, ResourceError
 from wsrender.global_indices import joint_means, workspace_mean
 from wsrender.result import Result
 from wsrender.robot import Robot
 from wsrender.robot.indices import evaluation_of
-from wsrender.run.estimate import estimate
+from wsrender.run.estimate import estimate, map_bytes
 from wsrender.run.first_pass import FirstPass
 from wsrender.run.refined import Progress, Refined, refined
 from wsrender.run.settled_device import settled_device
@@ -210,10 +210,7 @@ def plan_workspace(job: WorkspaceJob, robot: Robot, resolved: dict[str, Any] | N
 
 def _check_map(plan: SweepPlan) -> None:
     """Whether a map that is kept fits in memory, its rows and what they are joined to; raises ResourceError."""
-    if not plan.keep_rows:
-        return
-    width = 4 if plan.precision == "float32" else 8
-    needed, free = 2 * plan.sampling.count * plan.shape.n_rows * width, available_bytes()
+    needed, free = 2 * map_bytes(plan), available_bytes()
     if needed > SHARE * free:
         raise ResourceError(
             "keep_map",

@@ -19,8 +19,6 @@ LARGEST_SAMPLE = 4096  # bytes
 LARGEST_COORDINATE = 1e6  # of a sample: squares and rotations of it are finite
 Scale = Literal["rough", "medium", "fine", "view"]
 State = Literal["waiting", "rendering", "clutched", "stale", "invalid_input"]
-
-
 Coordinate = Annotated[float, Field(ge=-LARGEST_COORDINATE, le=LARGEST_COORDINATE)]
 
 

@@ -11,6 +11,8 @@ from pydantic_core import ErrorDetails, InitErrorDetails, PydanticCustomError
 
 from wsrender.spec.quantities import quoted
 
+MOST_PROBLEMS = 50  # that are told of a part of a document
+
 # Error types of pydantic → what is allowed. {placeholders} come from the error's context.
 _ALLOWED = {
     "bool_type": "must be true or false",
@@ -39,7 +41,6 @@ _ALLOWED = {
 }
 _WORDED = "problem"  # type of the errors whose message is already in plain words
 _LONGEST_VALUE = 60
-MOST_PROBLEMS = 50  # that are told of a part of a document
 _PLAIN_STEP = re.compile(r'[^."]+')
 _TAGS = ("analysis", "method", "shape")  # fields that tell the members of a union apart
 

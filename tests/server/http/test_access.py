@@ -96,6 +96,8 @@ def test_an_administrator_manages_keys(keyed, keys):
     problem_of(keyed.post(f"/v1/keys/{'0' * 16}:revoke", headers=root), 404, "key_not_found")
     for body in ({"name": ""}, {"name": "a\x00"}, {"name": "a", "scopes": []}, {"name": "a", "scopes": ["all"]}, {}):
         problem_of(keyed.post("/v1/keys", json=body, headers=root), 422, "invalid_request")
+    text = {**root, "Content-Type": "application/json"}
+    assert problem_of(keyed.post("/v1/keys", content="{", headers=text), 400, "malformed_json")["errors"]
 
 
 def test_nobody_else_manages_keys(keyed, keys):

@@ -136,7 +136,8 @@ def test_lists_are_filtered_and_paged(client, submit):
     ):
         assert [job["id"] for job in client.get("/v1/jobs", params=query).json()["items"]] == expected
     for query in ({"state": "x"}, {"limit": 0}, {"limit": 201}, {"label": "x"}, {"analysis": "x"}, {"cursor": "a%b"}):
-        problem_of(client.get("/v1/jobs", params=query), 422)
+        (fault,) = problem_of(client.get("/v1/jobs", params=query), 422)["errors"]
+        assert fault["pointer"] in query
     problem_of(client.get("/v1/jobs", params={"cursor": "YWJj"}), 404, "unknown_cursor")
 
 

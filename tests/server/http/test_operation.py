@@ -127,7 +127,8 @@ def test_methods_that_are_not_there(client, submit):
     for method, where, allowed in (
         ("PUT", "/v1/jobs", "GET, POST"), ("OPTIONS", "/v1/jobs", "GET, POST"), ("PATCH", path, "DELETE, GET"),
         ("GET", f"{path}:cancel", "POST"), ("POST", f"{path}/result", "GET"), ("POST", "/readyz", "GET"),
-        ("GET", "/v1/jobs:validate", "POST"), ("DELETE", f"{path}/artifacts/result.json", "GET, HEAD"),
+        ("POST", "/docs", "GET, HEAD"), ("GET", "/v1/jobs:validate", "POST"),
+        ("DELETE", f"{path}/artifacts/result.json", "GET, HEAD"),
     ):  # fmt: skip
         response = client.request(method, where)
         problem_of(response, 405, "method_not_allowed")
