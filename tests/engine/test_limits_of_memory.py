@@ -128,7 +128,7 @@ def test_many_threads_do_not_refuse_what_one_can_do(monkeypatch):
         monkeypatch.setattr(slabs, "available_bytes", lambda fitting=fitting: fitting * block_bytes / slabs.SHARE + 1)
         found, parts = slabs.fitted(plan.block, plan.shape, workers)
         assert len(found) == chosen and parts == [plan.block]
-    monkeypatch.setattr(slabs, "available_bytes", lambda: block_bytes / slabs.SHARE_SLAB / 20)
+    monkeypatch.setattr(slabs, "available_bytes", lambda: block_bytes / slabs.SHARE_SLAB / 12)
     found, parts = slabs.fitted(plan.block, plan.shape, workers)
-    assert len(found) == 1 and 20 <= len(parts) <= slabs.MOST_SLABS
+    assert len(found) == 1 and 12 <= len(parts) <= slabs.MOST_SLABS
     assert sum(slab.shape[0] for slab in parts) == plan.block.shape[0]
