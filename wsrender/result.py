@@ -63,6 +63,9 @@ class Result:
     tables: dict[str, Table] = field(default_factory=dict)
     volumes: dict[str, VolumeData] = field(default_factory=dict)
 
+    def __repr__(self) -> str:
+        return f"<Result {self.document.get('analysis')}: {sampling_text(self.document)}>"
+
     @property
     def global_indices(self) -> dict[str, Any]:
         """Global indices: those of the robot, and ``joint_mean`` and ``workspace_mean`` by index."""

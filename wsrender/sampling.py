@@ -10,6 +10,7 @@ import numpy as np
 
 from wsrender.errors import InputError, ResourceError
 from wsrender.robots.chain import Chain
+from wsrender.spec.quantities import argument, real
 from wsrender.spec.sampling import BoundaryBiased, Converge, Grid, Random, Sobol
 
 SOBOL_BITS = 52
@@ -106,12 +107,15 @@ def held_chain(chain: Chain, locked: Mapping[str, float]) -> Chain:
 def _locked_values(chain: Chain, locked: Mapping[str, float], field: str) -> np.ndarray:
     """The value of each coordinate (n,) that is locked, NaN of the others; InputError names the ``field``."""
     values = np.full(chain.n, np.nan)
+    if not isinstance(locked, Mapping):
+        raise InputError(field, f"must be values by joint, not {locked!r}")
     for name, value in locked.items():
         if name not in chain.joint_names:
             raise InputError(f"{field}.{name}", f"unknown joint; allowed: {', '.join(chain.joint_names)}")
         i = chain.joint_names.index(name)
         low, high = chain.lower_limits[i], chain.upper_limits[i]
         # A value typed with few digits may lie just outside the limit it means.
+        argument(f"{field}.{name}", real, value)
         if not chain.periodic[i] and not low - 1e-4 <= value <= high + 1e-4:
             raise InputError(f"{field}.{name}", f"{value} is outside the joint's limits [{low:.6g}, {high:.6g}]")
         values[i] = value

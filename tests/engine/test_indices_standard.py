@@ -11,6 +11,7 @@ from tests.reference import local_indices
 from tests.reference.mujoco_library import MujocoRobot
 from tests.reference.postures import random_postures
 from wsrender.robots import library
+from wsrender.robots.model_warning import ModelWarning
 from wsrender.tolerances import TOLERANCES, epsilon
 
 LENGTH = 0.35
@@ -187,7 +188,9 @@ def test_two_rows_of_a_robot_with_a_light_last_link(last_mass, device):
 def test_inertias_that_float32_cannot_hold_are_refused(device):
     robot, q = planar_arm(0.4, 1.0, last_mass=0.0), np.array([[0.3, 0.5, -0.7]])
     fields = {"task": ["x", "y"], "device": device}
-    assert ws.evaluate_indices(robot, q, "all", precision="float64", **fields)["dynamic_minimum_singular_value"] > 0
+    with pytest.warns(ModelWarning, match=r"differ by a factor of .* \(a link without mass\?\)"):
+        found = ws.evaluate_indices(robot, q, "all", precision="float64", **fields)
+    assert found["dynamic_minimum_singular_value"] > 0
     assert ws.evaluate_indices(robot, q, "kinematic", precision="float32", **fields)["manipulability"] > 0
     with pytest.raises(
         ws.InputError, match=r'precision: "float32" is not allowed for dynamic indices of .*"float64" is'
@@ -195,7 +198,18 @@ def test_inertias_that_float32_cannot_hold_are_refused(device):
         ws.evaluate_indices(robot, q, "all", precision="float32", **fields)
 
 
-@pytest.mark.parametrize("penalty", [1e-17, 1e-4, 1e7, float("nan"), float("inf")])
+@pytest.mark.parametrize("penalty", [1e-17, 1e-4, 1e7, float("nan"), float("inf"), "a"])
 def test_penalties_out_of_range_are_refused(penalty):
-    with pytest.raises(ws.InputError, match=r"joint_limit_penalty: .* is not allowed; 0\.001 … 1e"):
+    with pytest.raises(
+        ws.InputError, match=r"joint_limit_penalty: (.* is not allowed; 0\.001 … 1e|must be a .*number)"
+    ):
         ws.evaluate_indices("puma560", np.zeros(6), "kinematic", joint_limit_penalty=penalty)
+
+
+@pytest.mark.parametrize(
+    "arguments", [{"characteristic_length_m": "a"}, {"characteristic_length_m": 0}, {"indices": 3}, {"task": 3}]
+)
+def test_arguments_of_the_wrong_kind_are_named(arguments):
+    (name,) = arguments
+    with pytest.raises(ws.InputError, match=f"^{name}: must be"):
+        ws.evaluate_indices("puma560", np.zeros(6), **arguments)

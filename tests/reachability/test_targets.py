@@ -194,6 +194,8 @@ def test_joints_that_do_not_move_the_point_are_left_out(name):
         ([[0.0, 0.1, 0.2]], {"orientations": [[1, 0, 0, 0], [1, 0, 0, 0]]}, "orientations"),
         ([[0.0, 0.1, 0.2]], {"orientations": [0, 0, 0, 0]}, "orientations"),
         ([[0.0, 0.1, 0.2]], {"precision": "float32", "position_tolerance_m": 1e-7}, "position_tolerance_m"),
+        ([[0.0, 0.1, 0.2]], {"position_tolerance_m": "a"}, "position_tolerance_m"),
+        ([[0.0, 0.1, 0.2]], {"angle_tolerance_rad": 0.0}, "angle_tolerance_rad"),
     ],
 )
 def test_wrong_arguments(points, options, field):

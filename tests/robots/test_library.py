@@ -258,3 +258,8 @@ def test_stanford_arm_carries_the_moments_about_the_frames_origins():
         shift = mass * (center @ center * np.eye(3) - np.outer(center, center))
         np.testing.assert_allclose(about_center + shift, np.diag(moments), atol=1e-10)
     assert model.dof_armature.tolist() == [0.953, 2.193, 0.782, 0.106, 0.097, 0.02]
+
+
+def test_a_mechanism_is_not_a_robot():
+    with pytest.raises(ModelError, match=r'"delta" is a mechanism .* see parallel_workspace'):
+        library.find("delta")

@@ -30,6 +30,15 @@ def test_summaries_tell_of_workspaces_without_an_inner_voxel():
     assert dense.document["volume_m3"]["inner"] > 0 and note not in dense.summary()
 
 
+def test_summaries_tell_of_a_task_that_the_arm_cannot_do():
+    """A planar arm does not move along z: all indices of x, y, z are 0."""
+    options = {"indices": "kinematic", "voxel_size_m": 0.05}
+    flat, whole = (ws.analyze(planar_arm(), ws.Grid(20), task=task, **options) for task in ("linear", ["x", "y"]))
+    assert "all are 0: the task has a direction" in flat.summary()
+    assert "all are 0" not in whole.summary()
+    assert repr(whole).startswith("<Result workspace: ") and "400 samples (grid)" in repr(whole)
+
+
 def test_a_gantry_fills_its_box():
     """One sample at the centre of each voxel of .3 × .4 × .2 m."""
     document = ws.analyze(gantry(), ws.Grid([20, 40, 30]), voxel_size_m=0.01, **LINEAR).document

@@ -36,6 +36,8 @@ def sampling_document(
     """
     if not lock and all(option is None for option in (method, grid, samples, seed)):
         return None
+    if grid is not None and (samples is not None or method in COUNTED_METHODS):
+        raise InputError("--grid", "does not go with --samples, nor with a method that takes a number of samples")
     fields: dict[str, Any] = dict(current) if isinstance(current, dict) else {"method": "grid"}
     if method is None and grid is not None:
         method = "grid"

@@ -32,7 +32,8 @@ def _facts(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
     volumes = document.get("volume_m3") or {}
     yield from _volumes(volumes)
     if volumes.get("inner") == 0 and volumes.get("occupied"):
-        yield "note", "no occupied voxel has all its neighbours occupied: a flat workspace, or too few samples"
+        yield "note", "no occupied voxel has all its neighbours occupied: a flat workspace, or too few samples for"
+        yield "", "voxels of this size, and a volume far too small: take more samples or larger voxels"
     if "shared_ratio" in document:
         yield "shared / any", f"{document['shared_ratio']:.4g}"
     mapping = document.get("mapping") or {}
@@ -168,6 +169,8 @@ def _index_table(indices: dict[str, dict[str, Any]]) -> Iterator[str]:
         low_high = "".join(f"{_number(values.get(column)):>14}" for column in extremes)
         relative = "".join(f"{_number(values.get(column)):>17}" for column in means)
         yield f"  {name:<{width}}{low_high}  {units[name]:<{unit_width}}{relative}".rstrip()
+    if all(values.get("maximum") == 0 for values in indices.values()):
+        yield "  all are 0: the task has a direction in which the arm cannot move; choose others, as in x, y"
     if any(values.get("joint_mean") is not None for values in indices.values()):
         yield "  means are of value / maximum: over the samples, and over the occupied voxels"
 

@@ -11,6 +11,7 @@ from wsrender.errors import InputError
 from wsrender.reachability.inverse_solver import CLEARLY, LABELS, UNDECIDED, UNREACHABLE, InverseSolver, Solutions
 from wsrender.robot import as_robot
 from wsrender.robots.chain import Chain
+from wsrender.spec.quantities import argument, positive
 from wsrender.tolerances import TOLERANCES
 
 POSITION_TOLERANCE_M, ANGLE_TOLERANCE_RAD = 1e-5, 1e-5
@@ -65,13 +66,14 @@ def reachable(
     subject = as_robot(robot)
     position = rows_of(points, 3, "points")
     axes = None if orientations is None else rotations(orientations, len(position))
+    position_tolerance_m = argument("position_tolerance_m", positive, position_tolerance_m)
     check_tolerance(subject.chain, position_tolerance_m, precision)
     solver = InverseSolver(
         subject.chain,
         kind="position" if axes is None else "pose",
         position_m=position_tolerance_m,
-        angle_rad=angle_tolerance_rad,
-        length_m=characteristic_length_m,
+        angle_rad=argument("angle_tolerance_rad", positive, angle_tolerance_rad),
+        length_m=characteristic_length_m and argument("characteristic_length_m", positive, characteristic_length_m),
         seed=seed,
         precision=precision,
         device=device,

@@ -1,5 +1,6 @@
 """Local indices of a robot: from the words of a job document to an evaluation of the engine."""
 
+import warnings
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -9,7 +10,9 @@ from wsrender.errors import InputError, MissingInertiaError
 from wsrender.indices.catalogue import CONVENTIONS, is_dynamic, resolve
 from wsrender.robot.model_robot import Robot, configuration_rows
 from wsrender.robot.user_robot import HostRobot, as_robot
+from wsrender.robots.model_warning import ModelWarning
 from wsrender.spec.options import DEFAULT_PENALTY, LARGEST_PENALTY, NAMED_TASKS, SMALLEST_PENALTY, TASK_ROWS
+from wsrender.spec.quantities import argument, positive, real, sequence
 
 if TYPE_CHECKING:
     from wsrender.engine import Evaluation
@@ -17,6 +20,7 @@ if TYPE_CHECKING:
 # In float32: up to 7e7 the indices of arms of 3 to 7 joints err by at most 2e-5 of their largest values, from 1.3e8 on
 # their smallest singular values of three and six rows count as 0 here and there; a tenth of that.
 LARGEST_INERTIA_RATIO = 1e7
+SUSPECT_INERTIA_RATIO = 1e10  # no real arm's: a link without mass gets 1e-14 kg and kg m²
 
 
 def evaluate_indices(
@@ -81,21 +85,20 @@ def evaluation_of(
     if inertia not in ("kernel", "mujoco"):
         raise InputError("inertia", f'{inertia!r} is not allowed; "kernel" or "mujoco" is')
     chain = robot.chain
-    names = resolve(indices, robot.has_inertia)
+    names = resolve(indices if isinstance(indices, str) else argument("indices", sequence, indices), robot.has_inertia)
     dynamic = any(is_dynamic(name) for name in names)
     if torque_scaling and not dynamic:
         raise InputError("torque_scaling", "must be false with kinematic indices: it scales dynamic ones")
     if torque_scaling and chain.effort_limits is None:
         raise MissingInertiaError("torque_scaling", f"the model of {robot.name} lacks effort limits for some joint")
-    if not (np.isfinite(characteristic_length_m) and characteristic_length_m > 0):
-        raise InputError("characteristic_length_m", f"{characteristic_length_m!r} is not allowed; a positive length is")
+    characteristic_length_m = argument("characteristic_length_m", positive, characteristic_length_m)
     if isinstance(robot, HostRobot):
         if inertia == "mujoco":
             raise InputError("inertia", f'"mujoco" is not allowed: {robot.name} has no model but its own class')
         host_inertia = robot.inertia_matrix if dynamic else None
     else:
-        if dynamic and precision == "float32":
-            _check_inertias(robot)
+        if dynamic:
+            _check_inertias(robot, precision)
         host_inertia = robot.mujoco_inertia if dynamic and inertia == "mujoco" else None
     return Evaluation(
         chain=chain,
@@ -109,13 +112,23 @@ def evaluation_of(
     )
 
 
-def _check_inertias(robot: Robot) -> None:
-    """Whether float32 holds the robot's dynamic indices: J M^-1 with columns too different loses its small values."""
+def _check_inertias(robot: Robot, precision: str) -> None:
+    """Whether float32 holds the robot's dynamic indices: J M^-1 with columns too different loses its small values.
+
+    Float64 does, but a link without mass, whose acceleration has no bound, is worth a warning.
+    """
     chain = robot.chain
     middle = 0.5 * (chain.lower_limits + chain.upper_limits)
     about_joints = np.diagonal(robot.mujoco_inertia(middle[None])[0])
     ratio = about_joints.max() / about_joints.min()
-    if ratio > LARGEST_INERTIA_RATIO:
+    if ratio > SUSPECT_INERTIA_RATIO and precision == "float64":
+        warnings.warn(
+            f"the inertias about the joints of {robot.name} differ by a factor of {ratio:.1g} (a link without mass?): "
+            "dynamic indices tell of the lightest link",
+            ModelWarning,
+            stacklevel=4,
+        )
+    elif ratio > LARGEST_INERTIA_RATIO and precision == "float32":
         raise InputError(
             "precision",
             f'"float32" is not allowed for dynamic indices of {robot.name}: the inertias about its joints differ by '
@@ -129,7 +142,7 @@ def _penalty(value: float | bool | None) -> float | None:
         return None
     if value is True:
         return DEFAULT_PENALTY
-    if not SMALLEST_PENALTY <= value <= LARGEST_PENALTY:
+    if not SMALLEST_PENALTY <= argument("joint_limit_penalty", real, value) <= LARGEST_PENALTY:
         allowed = f"{SMALLEST_PENALTY:g} … {LARGEST_PENALTY:g}, true or null"
         raise InputError("joint_limit_penalty", f"{value!r} is not allowed; {allowed} is")
     return float(value)
@@ -137,7 +150,7 @@ def _penalty(value: float | bool | None) -> float | None:
 
 def task_rows(task: str | Sequence[str]) -> tuple[int, ...]:
     """Row numbers 0…5 of a task: "linear", "angular", "full" or names from x y z rx ry rz."""
-    names = NAMED_TASKS.get(task, (task,)) if isinstance(task, str) else tuple(task)
+    names = NAMED_TASKS.get(task, (task,)) if isinstance(task, str) else argument("task", sequence, task)
     rows = tuple(TASK_ROWS.index(name) for name in names if name in TASK_ROWS)
     if not rows or len(rows) != len(names) or len(set(rows)) != len(rows):
         raise InputError(

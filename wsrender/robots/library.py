@@ -36,6 +36,8 @@ def find(name: str) -> Path:
         return _folder() / name / f"{name}.xml"
     close = get_close_matches(str(name).lower().replace("-", "_"), known, n=1, cutoff=0.5)
     hint = f'; did you mean "{close[0]}"?' if close else "."
+    if name in {mechanism.name for mechanism in mechanisms()}:
+        raise ModelError("library", f'"{name}" is a mechanism with closed loops, not a robot: see parallel_workspace')
     raise ModelError("library", f'has no robot "{name}"{hint} It has: {", ".join(known)}')
 
 

@@ -20,7 +20,7 @@ _DEVICE = re.compile(r"auto|cpu|cuda(:\d{1,3})?")
 def _task(value: Any) -> str | tuple[str, ...]:
     if isinstance(value, str) and value in NAMED_TASKS:
         return value
-    if isinstance(value, str) or value is None:
+    if isinstance(value, str) or value is None or any(row not in TASK_ROWS for row in sequence(value)):
         raise ValueError(f"must be {quoted(NAMED_TASKS)} or a list of rows from {' '.join(TASK_ROWS)}")
     rows = _ordered(value, TASK_ROWS)
     return next((name for name, named in NAMED_TASKS.items() if rows == named), rows)

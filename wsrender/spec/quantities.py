@@ -2,11 +2,13 @@
 
 import math
 import re
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from numbers import Integral, Real
 from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Field, StrictStr
+
+from wsrender.errors import InputError
 
 LARGEST_COUNT = 10**15
 LARGEST_SEED = 2**63 - 1
@@ -24,6 +26,14 @@ def real(value: Any) -> float:
         number = math.inf
     if not math.isfinite(number):
         raise ValueError("must be a finite number")
+    return number
+
+
+def positive(value: Any) -> float:
+    """A finite float above 0 from any real number; ValueError otherwise."""
+    number = real(value)
+    if number <= 0:
+        raise ValueError("must be greater than 0")
     return number
 
 
@@ -45,6 +55,14 @@ def sequence(value: Any) -> list:
     if not isinstance(value, list | tuple):
         raise ValueError("must be a list")
     return list(value)
+
+
+def argument(field: str, convert: Callable[[Any], Any], value: Any) -> Any:
+    """What ``convert`` makes of an argument of a Python function; InputError, naming the field, where it refuses."""
+    try:
+        return convert(value)
+    except ValueError as error:
+        raise InputError(field, f"{error}, not {value!r}") from None
 
 
 def rows_of(width: int) -> BeforeValidator:

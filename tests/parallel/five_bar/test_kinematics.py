@@ -142,10 +142,10 @@ def test_singular_postures_have_exact_zeros_and_no_nan():
 @pytest.mark.parametrize(
     ("call", "message"),
     [
-        (lambda: FiveBar.symmetric(0.0, 1.0, 1.0), "base_m: 0 is not allowed"),
-        (lambda: FiveBar(1.0, (1.0, -2.0), (1.0, 1.0)), "proximal_m: -2 is not allowed"),
+        (lambda: FiveBar.symmetric(0.0, 1.0, 1.0), "base_m: must be greater than 0, not 0.0"),
+        (lambda: FiveBar(1.0, (1.0, -2.0), (1.0, 1.0)), "proximal_m: must be greater than 0, not -2.0"),
         (lambda: FiveBar(1.0, (1.0,), (1.0, 1.0)), "proximal_m: has 1 values"),
-        (lambda: FiveBar(1.0, (1.0, 1.0), (1.0, math.nan)), "distal_m: nan is not allowed"),
+        (lambda: FiveBar(1.0, (1.0, 1.0), (1.0, math.nan)), "distal_m: must be a finite number, not nan"),
         (lambda: FiveBar(1.0, (1.0, 1.0), (1.0, 1.0), ((1.0, 0.0), None)), r"limits_rad: \[1.0, 0.0\] is not"),
         (lambda: FiveBar(1.0, (1.0, 1.0), (1.0, 1.0), ((0.0, 7.0), None)), "limits_rad"),
         (lambda: CB.inverse_kinematics([5.0, 7.0], "+"), r"working_mode: '\+' is not a mode; allowed: \+\+, "),

@@ -8,6 +8,7 @@ import numpy as np
 
 from wsrender.errors import InputError
 from wsrender.spec.five_bar import LEAST_RANGE, WORKING_MODES
+from wsrender.spec.quantities import argument, positive
 from wsrender.tolerances import CLOSURE
 
 ASSEMBLY_MODES = ("+", "-")
@@ -37,8 +38,7 @@ class FiveBar:
             if name != "base_m" and len(values) != 2:
                 raise InputError(name, f"has {len(values)} values; one for each leg is needed")
             for value in values:
-                if not (np.isfinite(value) and value > 0):
-                    raise InputError(name, f"{value:g} is not allowed; lengths are finite and greater than 0")
+                argument(name, positive, value)
         if len(self.limits_rad) != 2:
             raise InputError("limits_rad", f"has {len(self.limits_rad)} entries; one for each leg, or null, is needed")
         for limits in self.limits_rad:
