@@ -6,6 +6,8 @@ from typing import Any
 
 from wsrender.indices.units import pretty_unit
 
+# Of the occupied volume, what is left of it inside in well sampled workspaces is 0.8, with too few samples below 0.1.
+SPARSE = 0.25
 METHOD_LETTERS = {"grid": "A", "grid_by_subsystem": "B", "exact": "C", "solids": "D"}
 
 
@@ -31,9 +33,14 @@ def summary_text(document: dict[str, Any]) -> str:
 def _facts(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
     volumes = document.get("volume_m3") or {}
     yield from _volumes(volumes)
-    if volumes.get("inner") == 0 and volumes.get("occupied"):
-        yield "note", "no occupied voxel has all its neighbours occupied: a flat workspace, or too few samples for"
-        yield "", "voxels of this size, and a volume far too small: take more samples or larger voxels"
+    occupied, inner = volumes.get("occupied"), volumes.get("inner")
+    if occupied and inner is not None and inner < SPARSE * occupied:
+        share = f"{100 * inner / occupied:.2g} %" if inner else "none"
+        yield (
+            "note",
+            f"{share} of the occupied voxels have all neighbours occupied: a thin workspace, or too few samples",
+        )
+        yield "", "for voxels of this size, and a volume far too small: take more samples or larger voxels"
     if "shared_ratio" in document:
         yield "shared / any", f"{document['shared_ratio']:.4g}"
     mapping = document.get("mapping") or {}
