@@ -129,7 +129,12 @@ MALFORMED = [
     (job(tip=3), "tip", "must be a string, not 3"),
     (job(tip="\ud800"), "tip", "must be valid Unicode text"),
     # sampling
-    (job(sampling=15), "sampling", "must be an object, not 15"),
+    (
+        job(sampling=15),
+        "sampling",
+        'must be an object, such as {"method": "sobol", "count": 1000000}, in Python ws.Sobol',
+    ),
+    (job(sampling="grid"), "sampling", 'must be an object, not "grid"'),
     (job(sampling={}), "sampling.method", f"{METHODS}; it is required"),
     (job(sampling={"method": "gird"}), "sampling.method", f'{METHODS}, not "gird"'),
     (sampled(per_joint=0), "sampling.per_joint", "must lie between 1 and 1000000000000000, not 0"),
@@ -286,6 +291,7 @@ MALFORMED = [
     # voxels, map, execution
     (job(voxel_size_m=0), "voxel_size_m", "must be greater than 0"),
     (job(voxel_size_m=-0.01), "voxel_size_m", "must be greater than 0, not -0.01"),
+    (job(voxel_size_m=1e300), "voxel_size_m", "must be at most 1000000.0, not 1e+300"),
     (job(voxel_size_m="1 mm"), "voxel_size_m", 'must be a number, not "1 mm"'),
     (
         '{"analysis": "workspace", "robot": "a", "voxel_size_m": 1e999}',

@@ -20,7 +20,7 @@ from wsrender.spec.options import Configurations, MapColumns, Statistics
 from wsrender.spec.parallel_workspace import ParallelWorkspaceJob
 from wsrender.spec.planar_boundary import PlanarBoundaryJob
 from wsrender.spec.problems import tagged
-from wsrender.spec.quantities import Count, PositiveNumber, RelativeTolerance
+from wsrender.spec.quantities import Count, RelativeTolerance, VoxelSize
 from wsrender.spec.reachability import ReachabilityJob
 from wsrender.spec.sampling import Grid, Sampling
 from wsrender.spec.several_robots import RobotComparisonJob, SharedWorkspaceJob
@@ -34,7 +34,7 @@ class WorkspaceJob(IndexChoices, Arm):
     """Name of the analysis."""
     sampling: Sampling = Grid()
     """How the joint space is sampled."""
-    voxel_size_m: PositiveNumber | None = None
+    voxel_size_m: VoxelSize | None = None
     """Edge of a voxel [m]; null: a hundredth of the cube root of the workspace's convex-hull volume."""
     voxel_statistics: Statistics = ("count", "maximum")
     """What is kept per voxel, from count, maximum, mean, minimum; count always is."""

@@ -10,7 +10,7 @@ from wsrender.spec.arm import Arm
 from wsrender.spec.document import Document
 from wsrender.spec.options import Device, Task
 from wsrender.spec.problems import tagged
-from wsrender.spec.quantities import Number, PositiveNumber, Seed, integer, real, sequence
+from wsrender.spec.quantities import Number, PositiveNumber, Seed, VoxelSize, integer, real, sequence
 from wsrender.spec.robot import Transform, Vector
 from wsrender.spec.sampling import BoundaryBiased, Grid, Random, Sampling, Sobol
 
@@ -203,7 +203,7 @@ class KinetostaticFieldJob(Arm):
     """Which forces act."""
     sampling: Sampling = Sobol(100_000)
     """Configurations at which the field is evaluated; a voxel holds the mean over those that reach it."""
-    voxel_size_m: PositiveNumber | None = None
+    voxel_size_m: VoxelSize | None = None
     """Edge of a voxel [m]; null: a twenty-fifth of the cube root of the workspace's convex-hull volume."""
     device: Device = "auto"
     """Where kernels run that find the workspace's boundary: "auto", "cpu", "cuda" or "cuda:N"."""

@@ -10,7 +10,7 @@ from wsrender.spec.document import Document
 from wsrender.spec.mechanism import MechanismSpec
 from wsrender.spec.options import Device
 from wsrender.spec.point_sets import PointSet, is_point_set
-from wsrender.spec.quantities import Number, PositiveNumber, Seed, integer, real, sequence
+from wsrender.spec.quantities import Number, PositiveNumber, Seed, VoxelSize, integer, real, sequence
 from wsrender.spec.robot import Transform, Vector
 from wsrender.spec.sampling import BoundaryBiased, Grid, Random, Sampling, Sobol
 
@@ -92,7 +92,7 @@ class Containment(Document):
     alpha_m: PositiveNumber | None = None
     """Radius α of the alpha shape [m]; null: twice the smallest with which all points belong
     to it."""
-    voxel_size_m: PositiveNumber | None = None
+    voxel_size_m: VoxelSize | None = None
     """Edge of the voxels [m]; it must be given for voxels."""
 
     def conflicts(self) -> Iterator[tuple[str, str]]:

@@ -10,7 +10,7 @@ from wsrender.spec.document import Document
 from wsrender.spec.mechanism import MechanismSpec
 from wsrender.spec.options import Device, IndicesOrNone, Task
 from wsrender.spec.orientations import MOST_ORIENTATIONS, Orientations
-from wsrender.spec.quantities import Count, PositiveNumber, RelativeTolerance, Seed, real
+from wsrender.spec.quantities import Count, PositiveNumber, RelativeTolerance, Seed, VoxelSize, real
 from wsrender.spec.robot import Transform, Vector
 
 BY_BOUNDARY = ("exact", "solids")
@@ -40,7 +40,7 @@ class ParallelWorkspaceJob(Document):
     """"grid" asks every leg at every point, "grid_by_subsystem" the next subsystem of legs where the last ones reach:
     the same voxels, sooner. "exact" (faces, volume, topology) and "solids" (boolean operations on meshes) are for the
     constant orientation of mechanisms whose workspace only spheres bound: UPS legs, pairs of PUS legs."""
-    voxel_size_m: PositiveNumber | None = None
+    voxel_size_m: VoxelSize | None = None
     """Edge of a voxel [m]; null: a hundredth of the cube root of the workspace's volume, estimated."""
     indices: IndicesOrNone = ()
     """Local indices at the voxels' centres: "kinematic" or a list of names; []: none. Of constant_orientation. With

@@ -99,6 +99,7 @@ def quoted(names: Iterable[str]) -> str:
 
 Number = Annotated[float, BeforeValidator(real)]
 PositiveNumber = Annotated[float, Field(gt=0), BeforeValidator(real)]
+VoxelSize = Annotated[float, Field(gt=0, le=1_000_000), BeforeValidator(real)]  # beyond any robot, far from overflow
 RelativeTolerance = Annotated[float, Field(ge=1e-4, le=0.5), BeforeValidator(real)]
 Count = Annotated[int, Field(ge=1, le=LARGEST_COUNT), BeforeValidator(integer)]
 Seed = Annotated[int, Field(ge=0, le=LARGEST_SEED), BeforeValidator(integer)]

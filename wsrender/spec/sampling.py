@@ -151,7 +151,17 @@ class Converge(_Sampling):
     __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
 
 
+def _no_number(value: Any) -> Any:
+    if isinstance(value, int) and not isinstance(value, bool):
+        raise ValueError(
+            'must be an object, such as {"method": "sobol", "count": 1000000}, in Python ws.Sobol(1000000)'
+        )
+    return value
+
+
 _AnySampling = Grid | Random | Sobol | BoundaryBiased | Converge
 METHODS: tuple[str, ...] = tuple(model.model_fields["method"].default for model in get_args(_AnySampling))
 
-Sampling = Annotated[_AnySampling, Discriminator("method"), BeforeValidator(tagged("method", METHODS))]
+Sampling = Annotated[
+    _AnySampling, Discriminator("method"), BeforeValidator(tagged("method", METHODS)), BeforeValidator(_no_number)
+]

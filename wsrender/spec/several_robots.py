@@ -8,7 +8,7 @@ from pydantic import BeforeValidator, Field
 from wsrender.spec.arm import Arm, ArmPath
 from wsrender.spec.index_choices import IndexChoices
 from wsrender.spec.placement_scan import PlacementScan
-from wsrender.spec.quantities import Count, FileName, PositiveNumber, RelativeTolerance, sequence
+from wsrender.spec.quantities import Count, FileName, RelativeTolerance, VoxelSize, sequence
 from wsrender.spec.sampling import Grid, Sampling
 
 MOST_ROBOTS = 64
@@ -26,7 +26,7 @@ class PlacedRobot(Arm):
 class _SeveralRobotsJob(IndexChoices):
     robots: Annotated[tuple[PlacedRobot, ...], Field(min_length=2, max_length=MOST_ROBOTS), BeforeValidator(sequence)]
     """The robots and where they stand; the arms of one model are the same robot with other base and tip."""
-    voxel_size_m: PositiveNumber | None = None
+    voxel_size_m: VoxelSize | None = None
     """Edge of a voxel [m]; null: the smallest of those that the robots would have by themselves."""
     max_samples: Count = 10_000_000_000
     """Largest number of samples that each robot may take."""
