@@ -64,6 +64,14 @@ def test_slice_without_coordinate_shows_zero_or_the_fullest_plane():
         assert f"z = {(first + layer + 0.5) * 0.1:.3g} m" in plots.slice_plane(volume).axes[0].get_title()
 
 
+@pytest.mark.parametrize(("at_zero", "shown"), [(4, 0.05), (3, 0.15)])
+def test_slice_without_coordinate_shows_no_plane_that_is_almost_empty(at_zero, shown):
+    count = np.ones((4, 4, 2), int)
+    count[:, :, 0] = np.arange(16).reshape(4, 4) < at_zero
+    title = plots.slice_plane(VolumeData(0.1, (0, 0, 0), count)).axes[0].get_title()
+    assert title.startswith(f"z = {shown} m")
+
+
 def test_slice_without_coordinate_shows_a_plane_with_values():
     """A product of two robots is known where both reach: not at 0 here."""
     product = np.full((3, 3, 3), np.nan)

@@ -22,6 +22,7 @@ from wsrender.volume.volume_data import VolumeData
 
 NAMES = "xyz"
 ACROSS = ((1, 2), (0, 2), (0, 1))  # horizontal and vertical axis of the plane normal to x, y, z
+_SPARSE = 0.25  # least share of the voxels of the fullest plane that the plane at 0 is shown with
 _THINNEST = 0.25  # least extent of a drawn plane, relative to its longest: planar sets keep a legible panel
 
 
@@ -54,7 +55,7 @@ def slice_plane(
 ) -> Figure:
     """The voxels cut by one plane, given by its coordinate x, y or z [m] in the world frame.
 
-    Without a coordinate: z = 0, or the plane with most voxels where nothing is occupied there. ``statistic``
+    Without a coordinate: z = 0, or the plane with most voxels where that has less than a quarter of them. ``statistic``
     is by default the maximum if the volume holds it; ``"count"`` shows the number of samples. ``index`` is by
     default the first. Colours span the whole volume, so slices compare.
 
@@ -137,8 +138,8 @@ def _listed(names) -> str:
 def layer_at(volume: VolumeData, axis: int, at: float | None, field: Field | None = None) -> int:
     """Number of the voxel layer cut at a coordinate [m] along an axis.
 
-    Without a coordinate: the one at 0, or the one with most voxels where nothing is occupied there, or has a value of
-    the ``field``. Raises InputError for a coordinate outside the volume.
+    Without a coordinate: the one at 0, or the one with most voxels (with a value of the ``field``) where that has less
+    than a quarter of them. Raises InputError for a coordinate outside the volume.
     """
     size, layers = volume.voxel_size_m, volume.count.shape[axis]
     first = volume.first_voxel[axis]
@@ -146,7 +147,7 @@ def layer_at(volume: VolumeData, axis: int, at: float | None, field: Field | Non
         shown = volume.count > 0 if field is None else ~np.isnan(field.values)
         occupied = np.count_nonzero(shown, axis=ACROSS[axis])
         zero = -first
-        return zero if 0 <= zero < layers and occupied[zero] else int(occupied.argmax())
+        return zero if 0 <= zero < layers and occupied[zero] >= _SPARSE * occupied.max() else int(occupied.argmax())
     cells = at / size - first
     if not -1e-9 <= cells <= layers + 1e-9:
         name, low, high = NAMES[axis], first * size, (first + layers) * size
