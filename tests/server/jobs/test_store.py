@@ -15,6 +15,7 @@ from tests.server.jobs.documents import canonical
 from wsrender.errors import InputError
 
 HASH = "ab" * 32
+AT_ONCE = 1e-6  # s: a timeout that is over when the next statement runs
 
 
 def running(store, document, owner="ann", **options):
@@ -258,7 +259,7 @@ def test_deleting_the_last_job_removes_the_result(store, document):
 
 
 def test_a_computation_whose_jobs_are_deleted_while_it_stops_is_forgotten(store, document):
-    job, computation = running(store, document, timeout_s=0.001)
+    job, computation = running(store, document, timeout_s=AT_ONCE)
     assert store.time_out() == [job]
     store.delete("ann", job)
     assert store.unfinished()[computation][0] == ComputationState.STOPPING
@@ -289,7 +290,7 @@ def test_artifacts_are_of_succeeded_jobs_only(store, document):
 
 
 def test_timeouts_detach_their_own_job_only(store, document):
-    first, computation = running(store, document, timeout_s=0.001)
+    first, computation = running(store, document, timeout_s=AT_ONCE)
     second = store.submit("ann", document, timeout_s=3600).job.id
     assert store.time_out() == [first] and store.time_out() == []
     assert states(store, "ann", first, second) == [JobState.TIMED_OUT, JobState.RUNNING]
@@ -298,7 +299,7 @@ def test_timeouts_detach_their_own_job_only(store, document):
 
 
 def test_a_timed_out_computation_stops(store, document):
-    job, computation = running(store, document, timeout_s=0.001)
+    job, computation = running(store, document, timeout_s=AT_ONCE)
     store.time_out()
     assert states(store, "ann", job) == [JobState.TIMED_OUT]
     assert store.unfinished()[computation][0] == ComputationState.STOPPING
