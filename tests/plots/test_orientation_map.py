@@ -21,6 +21,7 @@ def test_a_disc_has_the_sectors_that_are_reached():
     (axes,) = orientations(table, title="one").axes
     values = np.asarray(axes.collections[0].get_array()).reshape(4, 6)  # by tilt, then azimuth
     np.testing.assert_array_equal(values, np.array([1, 1, 0, 0])[:, None] * np.ones(6))
+    assert axes.get_xlabel() == "azimuth around, tilt outwards"
 
 
 def test_planes_by_the_last_angle():

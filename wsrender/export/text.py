@@ -53,7 +53,8 @@ def _facts(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
             most = f"{100 * search['most_inside']:.3g} % are inside at {search['at_factor']:.3g}"
             yield "search", f"no scale fits; at most {most}. The mapping is the job's own"
     if found := document.get("orientation_workspace"):
-        yield "orientations reached", f"{found['reached']:,} of {found['orientations']:,}, {100 * found['share']:.3g} %"
+        share = f"{100 * found['share']:.3g} % of their measure"  # a solid angle or a volume of rotations
+        yield "orientations reached", f"{found['reached']:,} of {found['orientations']:,}, {share}"
     yield from _planar(document)
     yield from _patches(document)
     targets = document.get("targets") or {}

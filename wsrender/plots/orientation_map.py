@@ -61,6 +61,7 @@ def _disc(axes: PolarAxes, azimuth: np.ndarray, tilt: np.ndarray, reached: np.nd
     axes.yaxis.set_major_locator(MaxNLocator(4, prune="lower"))
     axes.yaxis.set_major_formatter(lambda value, _: f"{value:g}°")
     axes.tick_params(axis="y", colors=GREY)
+    axes.set_xlabel("azimuth around, tilt outwards", fontsize=8)
     axes.grid(color="white", lw=0.5)
 
 
