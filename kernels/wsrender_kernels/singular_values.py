@@ -21,7 +21,6 @@ from wsrender_kernels.factories import factory
 from wsrender_kernels.matrices import transpose
 
 SWEEPS = {wp.float32: 4, wp.float64: 5}  # of a triangular factor
-ROTATED_LANES = 32  # at a time, a part of a block: their factors stay in the first cache; more than Warp unrolls
 # Of a third of an angle: degree of the polynomials, and steps that square their error.
 DEGREE, NEWTON_STEPS = {wp.float32: 9, wp.float64: 10}, {wp.float32: 0, wp.float64: 1}
 
@@ -332,11 +331,11 @@ def _rotation(real):
 
 
 @factory
-def rotations(real, m: int, n: int, graded: bool) -> SimpleNamespace:
+def _rotations(real, m: int, n: int, graded: bool) -> SimpleNamespace:
     """One-sided Jacobi on the rows of R, (the n columns, or the m rows) P = Q R with pivoting, in stages.
 
     Device functions ``start(A) -> R, scale``, ``rotated(R) -> R`` after all sweeps and ``finish(R, scale) -> (m,)
-    values``; for many samples at once ``swept(lanes) -> lanes``: see `_swept`.
+    values``.
 
     Columns are graded, and may be so along their coordinates too: with the longest of these first, the reflections err
     relative to each (Powell & Reid 1969; Cox & Higham 1998).
@@ -398,27 +397,69 @@ def rotations(real, m: int, n: int, graded: bool) -> SimpleNamespace:
             sigma[i] = norms[i]
         return sigma
 
-    return SimpleNamespace(
-        start=start,
-        rotated=rotated,
-        finish=finish,
-        swept=_swept(real, RANK, COUNT),
-        factor_shape=(RANK, COUNT),
-        factor_type=factor_type,
-        lanes_type=wp.types.vector(RANK * COUNT * ROTATED_LANES, real),
-    )
+    return SimpleNamespace(start=start, rotated=rotated, finish=finish, factor_shape=(RANK, COUNT))
 
 
 @factory
-def _swept(real, count: int, length: int):
-    """Device function lanes -> lanes: all sweeps of the vectors (count, length) of ROTATED_LANES samples.
+def singular_values_of_lanes(real, m: int, n: int, graded: bool, lanes: int):
+    """Device function (m n lanes) -> (m lanes): singular values of many matrices of four to six rows side by side.
 
-    Number c of vector i of a sample is ``lanes[(i * length + c) * ROTATED_LANES + lane]``. One round is all the code
+    Number (r, c) of a lane's matrix is ``matrices[(r * n + c) * lanes + lane]``, value r ``values[r * lanes + lane]``.
+    Loops over lanes instead of one function per matrix: less to compile, and SIMD.
+    """
+    stages = _rotations(real, m, n, graded)
+    ROWS, COLUMNS = stages.factor_shape
+    start, finish, swept = stages.start, stages.finish, _swept(real, ROWS, COLUMNS, lanes)
+    mat_mn, factor_type = wp.types.matrix((m, n), real), wp.types.matrix((ROWS, COLUMNS), real)
+    matrices_type, factors_type, scales_type, values_type = (
+        wp.types.vector(size * lanes, real) for size in (m * n, ROWS * COLUMNS, 1, m)
+    )
+
+    @wp.func(inline=True)
+    def values_of_lanes(matrices: matrices_type):
+        factors = factors_type()
+        scales = scales_type()
+        values = values_type()
+        for lane in range(lanes):
+            A = mat_mn()
+            at = lane
+            for r in range(m):
+                for c in range(n):
+                    A[r, c] = matrices[at]
+                    at += lanes
+            R, scale = start(A)
+            scales[lane] = scale
+            at = lane
+            for i in range(ROWS):
+                for c in range(COLUMNS):
+                    factors[at] = R[i, c]
+                    at += lanes
+        orthogonal = swept(factors)
+        for lane in range(lanes):
+            factor = factor_type()
+            place = lane
+            for i in range(ROWS):
+                for c in range(COLUMNS):
+                    factor[i, c] = orthogonal[place]
+                    place += lanes
+            sigma = finish(factor, scales[lane])
+            for r in range(m):
+                values[r * lanes + lane] = sigma[r]
+        return values
+
+    return values_of_lanes
+
+
+@factory
+def _swept(real, count: int, length: int, lanes: int):
+    """Device function vectors -> vectors: all sweeps of the vectors (count, length) of as many samples as lanes.
+
+    Number c of vector i of a sample is ``vectors[(i * length + c) * lanes + lane]``. One round is all the code
     there is, in a lane loop: written out for one sample after the other, the sweeps would be twenty times as much to
     compile. Angles have a loop of their own: they are long chains of operations, of which a core overlaps those of
     several samples where little else is between.
     """
-    PART, ROUNDS, NUMBER_OF_SWEEPS, PAIRS = ROTATED_LANES, _rounds(count), SWEEPS[real], _pairs(count)
+    PART, ROUNDS, NUMBER_OF_SWEEPS, PAIRS = lanes, _rounds(count), SWEEPS[real], _pairs(count)
     mat, vec, vec_pairs = (wp.types.matrix((count, length), real), *(wp.types.vector(k, real) for k in (count, PAIRS)))
     vectors_type, squares_type, pairs_type = (
         wp.types.vector(rows * PART, real) for rows in (count * length, count, PAIRS)
@@ -426,8 +467,8 @@ def _swept(real, count: int, length: int):
     angles, turned, ZERO = _angles(real, count, length), _turned(real, count, length), real(0.0)
 
     @wp.func
-    def swept(lanes: vectors_type):
-        out = lanes
+    def swept(vectors_before: vectors_type):
+        out = vectors_before
         lane_squares = squares_type()
         lane_cosines = pairs_type()
         lane_sines = pairs_type()
@@ -484,8 +525,8 @@ def _swept(real, count: int, length: int):
 
 
 def _by_rotations(real, m: int, n: int, graded: bool):
-    """Device function A (m, n) -> singular values (m,), all stages of `rotations` for one matrix."""
-    stages, mat_mn = rotations(real, m, n, graded), wp.types.matrix((m, n), real)
+    """Device function A (m, n) -> singular values (m,), all stages of `_rotations` for one matrix."""
+    stages, mat_mn = _rotations(real, m, n, graded), wp.types.matrix((m, n), real)
     start, rotated, finish = stages.start, stages.rotated, stages.finish
 
     @wp.func(inline=True)  # as _three_rows

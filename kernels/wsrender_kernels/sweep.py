@@ -26,7 +26,7 @@ from wsrender_kernels.memory import align_scratch, cuda_atomics, memory
 from wsrender_kernels.model import model_type
 from wsrender_kernels.options import CUDA_OPTIONS, LONG_CUDA_OPTIONS, LONG_OPTIONS, SHORT_OPTIONS
 from wsrender_kernels.sampling import LANES, base_levels, blocks, grid_level, sample_space, sampling
-from wsrender_kernels.singular_values import ROTATED_LANES, rotations, singular_values
+from wsrender_kernels.singular_values import singular_values, singular_values_of_lanes
 from wsrender_kernels.spectrum import in_base_axes, spectrum
 from wsrender_kernels.voxels import lattice, lowest, voxels
 
@@ -38,6 +38,7 @@ BLOCK_CUDA = {wp.float32: 128, wp.float64: 256}
 # be slower, float32 with an inertia matrix too; without one it takes no more than that, or little.
 REGISTERS_CUDA = 128
 TOTAL_SLOTS = 64  # parts in which CUDA threads add totals: on one address they would wait for each other
+PART_LANES = 32  # of a block at a time, for rotations: their matrices stay in the first cache; more than Warp unrolls
 
 
 @wp.func
@@ -290,28 +291,27 @@ def _spectra(shape: Shape) -> SimpleNamespace:
 def _staged_lanes(shape: Shape):
     """Device function ``(model, space, block, first, valid) -> outputs`` of a block, one row of LANES per output.
 
-    In stages, for singular values of many rotations: in a single lane loop they would take long to compile.
+    In stages, for singular values of many rotations: in a single lane loop they would take long to compile. Those of A
+    and of B are taken side by side, by one code: of two columns of lanes, or one.
     """
     real, spectra, around = shape.real, _spectra(shape), _around_values(shape)
     matrices, indices_of = around.matrices, around.indices_of
-    of_a = rotations(real, *spectra.kinematic_shape, shape.penalty)
-    of_b = rotations(real, *spectra.dynamic_shape, True) if shape.dynamic else of_a  # not called
-    start_a, swept_a, finish_a, lanes_a, R_a = of_a.start, of_a.swept, of_a.finish, of_a.lanes_type, of_a.factor_type
-    start_b, swept_b, finish_b, lanes_b, R_b = of_b.start, of_b.swept, of_b.finish, of_b.lanes_type, of_b.factor_type
-    ROWS_A, COLUMNS_A = of_a.factor_shape
-    ROWS_B, COLUMNS_B = of_b.factor_shape
+    (ROWS_A, COLUMNS), (ROWS_B, COLUMNS_B) = spectra.kinematic_shape, spectra.dynamic_shape
+    # A B of one number is none, one of fewer columns than A has zeros for the others.
+    DYNAMIC = ROWS_B == ROWS_A
+    SIDE_BY_SIDE = PART_LANES * (2 if DYNAMIC else 1)
+    values_of_lanes = singular_values_of_lanes(real, ROWS_A, COLUMNS, shape.penalty or DYNAMIC, SIDE_BY_SIDE)
     Model, Space = model_type(real, shape.n, len(shape.sources)), sample_space(real, shape.n)
-    values_type, numbers_type = wp.types.vector(shape.n_outputs * LANES, real), wp.types.vector(3 * ROTATED_LANES, real)
-    sigma_b_type = wp.types.vector(spectra.dynamic_shape[0], real)
-    N_OUTPUTS, FOUND, BLOCK, PART, DYNAMIC = shape.n_outputs, shape.n_indices + 2, LANES, ROTATED_LANES, shape.dynamic
+    values_type, numbers_type = wp.types.vector(shape.n_outputs * LANES, real), wp.types.vector(PART_LANES, real)
+    lanes_type = wp.types.vector(ROWS_A * COLUMNS * SIDE_BY_SIDE, real)
+    sigma_a_type, sigma_b_type = wp.types.vector(ROWS_A, real), wp.types.vector(ROWS_B, real)
+    N_OUTPUTS, FOUND, BLOCK, PART = shape.n_outputs, shape.n_indices + 2, LANES, PART_LANES
 
     @wp.func(inline=True)
     def staged_lanes(model: Model, space: Space, block: Any, first: wp.int64, valid: wp.int32):
         values = values_type()
-        in_a = lanes_a()
-        if wp.static(DYNAMIC):
-            in_b = lanes_b()
-        numbers = numbers_type()
+        lanes = lanes_type()
+        volumes = numbers_type()
         part = wp.int32(0)
         while part < BLOCK:
             for lane in range(PART):
@@ -320,43 +320,29 @@ def _staged_lanes(shape: Shape):
                 for r in range(N_OUTPUTS):
                     values[at] = out[r]
                     at += BLOCK
-                numbers[lane] = volume
-                R, scale_a = start_a(A)
-                numbers[PART + lane] = scale_a
+                volumes[lane] = volume
                 at = lane
-                for i in range(ROWS_A):
-                    for c in range(COLUMNS_A):
-                        in_a[at] = R[i, c]
-                        at += PART
+                for r in range(ROWS_A):
+                    for c in range(COLUMNS):
+                        lanes[at] = A[r, c]
+                        at += SIDE_BY_SIDE
                 if wp.static(DYNAMIC):
-                    S, scale_b = start_b(B)
-                    numbers[2 * PART + lane] = scale_b
-                    at = lane
-                    for i in range(ROWS_B):
+                    for r in range(ROWS_A):
+                        at = r * wp.static(COLUMNS * SIDE_BY_SIDE) + (PART + lane)
                         for c in range(COLUMNS_B):
-                            in_b[at] = S[i, c]
-                            at += PART
-            out_a = swept_a(in_a)
-            if wp.static(DYNAMIC):
-                out_b = swept_b(in_b)
+                            lanes[at] = B[r, c]
+                            at += SIDE_BY_SIDE
+            sigma = values_of_lanes(lanes)
             for lane in range(PART):
-                orthogonal_a = R_a()
-                place = lane
-                for i in range(ROWS_A):
-                    for c in range(COLUMNS_A):
-                        orthogonal_a[i, c] = out_a[place]
-                        place += PART
-                sigma_a = finish_a(orthogonal_a, numbers[PART + lane])
+                sigma_a = sigma_a_type()
                 sigma_b = sigma_b_type()
-                if wp.static(DYNAMIC):
-                    orthogonal_b = R_b()
-                    place = lane
-                    for i in range(ROWS_B):
-                        for c in range(COLUMNS_B):
-                            orthogonal_b[i, c] = out_b[place]
-                            place += PART
-                    sigma_b = finish_b(orthogonal_b, numbers[2 * PART + lane])
-                found = indices_of(numbers[lane], sigma_a, sigma_b)
+                place = lane
+                for r in range(ROWS_A):
+                    sigma_a[r] = sigma[place]
+                    if wp.static(DYNAMIC):
+                        sigma_b[r] = sigma[place + PART]
+                    place += SIDE_BY_SIDE
+                found = indices_of(volumes[lane], sigma_a, sigma_b)
                 place = part + lane  # added up in another order, clang does not see that it is no negative index
                 for k in range(FOUND):
                     values[(3 + k) * BLOCK + place] = found[k]

@@ -8,7 +8,7 @@ import warp as wp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from wsrender_kernels.options import LONG_OPTIONS, MODULE_OPTIONS
-from wsrender_kernels.singular_values import ROTATED_LANES, rotations, singular_values, without_noise
+from wsrender_kernels.singular_values import singular_values, singular_values_of_lanes, without_noise
 
 from wsrender.tolerances import TOLERANCES, epsilon
 
@@ -158,49 +158,40 @@ def test_rotations_err_by_some_roundings(m, n, graded, precision, device):
     assert_some_roundings(evaluated(A, precision, graded, device), A, precision)
 
 
+LANES = 32
+
+
 @cache
 def lanes_kernel(precision, m, n, graded):
-    """Kernel: singular values of ROTATED_LANES matrices a task, their sweeps by lane loops as in a sweep on the CPU."""
+    """Kernel: singular values of LANES matrices a task, by lane loops as in a sweep on the CPU."""
     real = REAL[precision]
-    stages = rotations(real, m, n, graded)
-    start, swept, finish, factor_type, lanes_type = (
-        getattr(stages, name) for name in ("start", "swept", "finish", "factor_type", "lanes_type")
-    )
-    rows, columns = stages.factor_shape
-    LANES = ROTATED_LANES
-    mat, vec, scales_type = (wp.types.matrix((m, n), real), *(wp.types.vector(k, real) for k in (m, LANES)))
+    values_of_lanes = singular_values_of_lanes(real, m, n, graded, LANES)
+    vector = wp.types.vector(m * n * LANES, real)
 
     @wp.kernel(module="unique", module_options=LONG_OPTIONS, enable_backward=False)
-    def values_of_lanes(A: wp.array(dtype=mat), out: wp.array(dtype=vec)):
-        first = wp.tid() * LANES
-        lanes = lanes_type()
-        scales = scales_type()
-        for lane in range(LANES):
-            R, scale = start(A[first + lane])
-            scales[lane] = scale
-            for i in range(rows):
-                for c in range(columns):
-                    lanes[(i * columns + c) * LANES + lane] = R[i, c]
-        orthogonal = swept(lanes)
-        for lane in range(LANES):
-            swept_factor = factor_type()
-            for k in range(rows):
-                for d in range(columns):
-                    swept_factor[k, d] = orthogonal[(k * columns + d) * LANES + lane]
-            out[first + lane] = finish(swept_factor, scales[lane])
+    def of_lanes(A: wp.array2d(dtype=real), out: wp.array2d(dtype=real)):
+        lanes = vector()
+        for k in range(len(lanes)):
+            lanes[k] = A[wp.tid(), k]
+        values = values_of_lanes(lanes)
+        for k in range(len(values)):
+            out[wp.tid(), k] = values[k]
 
-    return values_of_lanes
+    return of_lanes
 
 
 @pytest.mark.parametrize("graded", [False, True])
 @pytest.mark.parametrize(("m", "n"), [(4, 7), (5, 7), (6, 1), (6, 3), (6, 6), (6, 12)])
-def test_sweeps_by_lane_loops_as_on_a_cpu(m, n, graded, precision):
+def test_lane_loops_as_on_a_cpu(m, n, graded, precision):
     A = hard_matrices(m, n)
-    assert len(A) % ROTATED_LANES == 0
-    given_ = wp.array(A.astype(precision), dtype=wp.types.matrix((m, n), REAL[precision]), device="cpu")
-    out = wp.empty(len(A), dtype=wp.types.vector(m, REAL[precision]), device="cpu")
-    wp.launch(lanes_kernel(precision, m, n, graded), len(A) // ROTATED_LANES, [given_], [out], device="cpu")
-    assert_some_roundings(out.numpy(), A, precision)
+    tasks = len(A) // LANES
+    assert len(A) == tasks * LANES
+    side_by_side = A.reshape(tasks, LANES, m * n).swapaxes(1, 2).reshape(tasks, -1)
+    given_ = wp.array(side_by_side.astype(precision), dtype=REAL[precision], device="cpu")
+    out = wp.empty((tasks, m * LANES), dtype=REAL[precision], device="cpu")
+    wp.launch(lanes_kernel(precision, m, n, graded), tasks, [given_], [out], device="cpu")
+    found = out.numpy().reshape(tasks, m, LANES).swapaxes(1, 2).reshape(-1, m)
+    assert_some_roundings(found, A, precision)
 
 
 @pytest.mark.parametrize("m", [3, 6])
