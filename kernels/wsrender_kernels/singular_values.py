@@ -31,10 +31,13 @@ def epsilon(real) -> float:
 
 
 @factory
-def singular_values(real, m: int, n: int, graded: bool = False):
-    """Device function ``(A: (m, n)) -> (m,)``, descending, as computed; the last m - n are exactly 0."""
+def singular_values(real, m: int, n: int, graded: bool = False, inline: bool = True):
+    """Device function ``(A: (m, n)) -> (m,)``, descending, as computed; the last m - n are exactly 0.
+
+    Of more than three rows, ``inline`` or a function that is called.
+    """
     if m > 3:
-        return _by_rotations(real, m, n, graded)
+        return _by_rotations(real, m, n, graded, inline)
     solver = _two_rows(real, n, graded) if m == 2 else {1: _one_row, 3: _three_rows}[m](real, n)
     rotated = _by_largest_columns(real, n) if graded and m == 3 else _as_it_is(real, m, n)
     vec_m = wp.types.vector(m, real)
@@ -524,12 +527,12 @@ def _swept(real, count: int, length: int, lanes: int):
     return swept
 
 
-def _by_rotations(real, m: int, n: int, graded: bool):
+def _by_rotations(real, m: int, n: int, graded: bool, inline: bool):
     """Device function A (m, n) -> singular values (m,), all stages of `_rotations` for one matrix."""
     stages, mat_mn = _rotations(real, m, n, graded), wp.types.matrix((m, n), real)
     start, rotated, finish = stages.start, stages.rotated, stages.finish
 
-    @wp.func(inline=True)  # as _three_rows
+    @wp.func(inline=inline)
     def by_rotations(A: mat_mn):
         R, scale = start(A)
         return finish(rotated(R), scale)

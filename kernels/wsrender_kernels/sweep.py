@@ -266,8 +266,10 @@ def _evaluation(shape: Shape):
     """Device function ``(model, space, block, first, lane) -> outputs`` of a sample."""
     real, spectra, around = shape.real, _spectra(shape), _around_values(shape)
     matrices, indices_of = around.matrices, around.indices_of
-    kinematic_values = singular_values(real, *spectra.kinematic_shape, shape.penalty)
-    dynamic_values = singular_values(real, *spectra.dynamic_shape, True)
+    # Rotations are long: one function that A and B call compiles in little more than half the time.
+    CALLED = shape.many_rows and shape.dynamic
+    kinematic_values = singular_values(real, *spectra.kinematic_shape, shape.penalty or CALLED, not CALLED)
+    dynamic_values = singular_values(real, *spectra.dynamic_shape, True, not CALLED)
     Model, Space = model_type(real, shape.n, len(shape.sources)), sample_space(real, shape.n)
     FOUND = shape.n_indices + 2
 
