@@ -1,4 +1,4 @@
-"""Transposition, written out whole for any number of rows and columns.
+"""Functions of one matrix, written out whole for any number of rows and columns.
 
 Warp's own matrix operations stay loops from some 60 numbers on, and the lane loop around them is then not vectorised.
 """
@@ -27,3 +27,15 @@ def transpose(real, rows: int, columns: int):
     def transposed(A: given_type) -> transposed_type: ...
 
     return transposed
+
+
+@factory
+def as_it_is(real, rows: int, columns: int):
+    """Device function A (rows, columns) -> A."""
+    mat = wp.types.matrix((rows, columns), real)
+
+    @wp.func
+    def unchanged(A: mat):
+        return A
+
+    return unchanged

@@ -2,15 +2,12 @@
 
 Up to three rows: an orthogonal factorisation of the rows gives det(A Aᵀ) without squaring the condition number; the
 largest eigenvalue and the gap of the others come from the angle between the deviators of H = A Aᵀ and of H², the
-smallest by deflation. Four to six rows: one-sided Jacobi (Hestenes 1958; Demmel & Veselić 1992) on the triangular
-factor, which spares two sweeps (Drmač & Veselić 2008).
+smallest by deflation. Four to six rows: `rotations`.
 
 The columns of J M^-1 differ by the ratio of the links' inertias, often 1e5. Errors then must stay relative to each
 column, or float32 loses the small singular values: ``graded`` matrices are rotated by their largest columns first, or
 orthogonalised by columns (Demmel & Veselić: Jacobi is accurate for a well-conditioned matrix times any scaling).
 """
-
-from types import SimpleNamespace
 
 import numpy as np
 import warp as wp
@@ -18,9 +15,9 @@ from numpy.polynomial import Chebyshev, Polynomial
 
 from wsrender_kernels.elementary import elementary
 from wsrender_kernels.factories import factory
-from wsrender_kernels.matrices import transpose
+from wsrender_kernels.matrices import as_it_is, transpose
+from wsrender_kernels.rotations import by_rotations, tiny
 
-SWEEPS = {wp.float32: 4, wp.float64: 5}  # of a triangular factor
 # Of a third of an angle: degree of the polynomials, and steps that square their error.
 DEGREE, NEWTON_STEPS = {wp.float32: 9, wp.float64: 10}, {wp.float32: 0, wp.float64: 1}
 
@@ -37,9 +34,9 @@ def singular_values(real, m: int, n: int, graded: bool = False, inline: bool = T
     Of more than three rows, ``inline`` or a function that is called.
     """
     if m > 3:
-        return _by_rotations(real, m, n, graded, inline)
+        return by_rotations(real, m, n, graded, inline)
     solver = _two_rows(real, n, graded) if m == 2 else {1: _one_row, 3: _three_rows}[m](real, n)
-    rotated = _by_largest_columns(real, n) if graded and m == 3 else _as_it_is(real, m, n)
+    rotated = _by_largest_columns(real, n) if graded and m == 3 else as_it_is(real, m, n)
     vec_m = wp.types.vector(m, real)
     mat_mn = wp.types.matrix((m, n), real)
     RANK = min(m, n)
@@ -71,20 +68,10 @@ def without_noise(real, m: int, n: int, length: int):
     return regular
 
 
-def _as_it_is(real, m: int, n: int):
-    mat_mn = wp.types.matrix((m, n), real)
-
-    @wp.func
-    def as_it_is(A: mat_mn):
-        return A
-
-    return as_it_is
-
-
 def _by_largest_columns(real, n: int):
     """Device function A -> R = E A: rows of E span the largest column, then the largest remainder (pivoted QR)."""
     vec3, vec_n, mat_3n = wp.types.vector(3, real), wp.types.vector(n, real), wp.types.matrix((3, n), real)
-    ZERO, TINY = real(0.0), _tiny(real)
+    ZERO, TINY = real(0.0), tiny(real)
     inverse_root, columns_of = elementary(real).inverse_root, transpose(real, 3, n)
     NONE = wp.int32(-1)
 
@@ -149,7 +136,7 @@ def _two_rows(real, n: int, graded: bool):
     mat_2n = wp.types.matrix((2, n), real)
     # The remainder of a large column errs by its rounding; orthogonalised once more, by the square of it.
     PASSES = 2 if graded else 1
-    HALF, ZERO, ONE, TINY = real(0.5), real(0.0), real(1.0), _tiny(real)
+    HALF, ZERO, ONE, TINY = real(0.5), real(0.0), real(1.0), tiny(real)
     scales = elementary(real).scales
 
     @wp.func
@@ -183,7 +170,7 @@ def _three_rows(real, n: int):
     THIRD, SIXTH, ROOT_6, ROOT_12, ROOT_SIXTH, TWO_ROOT_3 = (
         real(v) for v in (1 / 3, 1 / 6, 6**0.5, 12**0.5, 6**-0.5, 2 * 3**0.5)
     )
-    TINY = _tiny(real)
+    TINY = tiny(real)
     # A row below the rounding noise of the others spans nothing: its reciprocal would overflow.
     NOISE = real(1e-18 if real is wp.float32 else 1e-36)
 
@@ -308,391 +295,3 @@ def _polynomial(real, function, degree: int):
     """Coefficients, lowest first, of a function on [0, 1], through Chebyshev points."""
     fitted = Chebyshev.interpolate(function, degree, [0, 1]).convert(kind=Polynomial)
     return wp.types.vector(degree + 1, real)(*fitted.coef)
-
-
-def _rotation(real):
-    """Device function (b·b - a·a, 2 a·b) -> cosine, sine, tangent of the rotation, within 45°, that makes a ⟂ b.
-
-    By the cosine and sine of twice the angle: c² = (1 + cosine) / 2 and s = sine / (2 c). Inverse roots cost less than
-    divisions.
-    """
-    ZERO, HALF, ONE, TINY = real(0.0), real(0.5), real(1.0), _tiny(real)
-    inverse_root = elementary(real).inverse_root
-
-    @wp.func
-    def rotation(difference: real, twice: real):
-        square = difference * difference + twice * twice
-        regular = square > TINY
-        per_length = wp.where(regular, inverse_root(square), ZERO)
-        cosine = wp.where(regular, wp.abs(difference) * per_length, ONE)
-        c_square = HALF * cosine + HALF
-        per_c = inverse_root(c_square)
-        sine = wp.where(difference < ZERO, -twice, twice) * (HALF * per_length * per_c)
-        return c_square * per_c, sine, sine * per_c
-
-    return rotation
-
-
-@factory
-def _rotations(real, m: int, n: int, graded: bool) -> SimpleNamespace:
-    """One-sided Jacobi on the rows of R, (the n columns, or the m rows) P = Q R with pivoting, in stages.
-
-    Device functions ``start(A) -> R, scale``, ``rotated(R) -> R`` after all sweeps and ``finish(R, scale) -> (m,)
-    values``.
-
-    Columns are graded, and may be so along their coordinates too: with the longest of these first, the reflections err
-    relative to each (Powell & Reid 1969; Cox & Higham 1998).
-    """
-    by_columns = m > n or graded
-    COUNT, LENGTH = (n, m) if by_columns else (m, n)
-    RANK = min(m, n)
-    mat_mn, vec_m, vec_rank = wp.types.matrix((m, n), real), wp.types.vector(m, real), wp.types.vector(RANK, real)
-    factor_type = wp.types.matrix((RANK, COUNT), real)
-    triangular_factor = _triangular_factor(real, COUNT, LENGTH)
-    ordered = _longest_rows_first(real, m, n) if by_columns else _as_it_is(real, m, n)
-    oriented = transpose(real, m, n) if by_columns else _as_it_is(real, m, n)
-    angles, turned = _angles(real, RANK, COUNT), _turned(real, RANK, COUNT)
-    ROUNDS, NUMBER_OF_SWEEPS = _rounds(RANK), SWEEPS[real]
-    ZERO, ONE, TINY = real(0.0), real(1.0), _tiny(real)
-
-    @wp.func
-    def start(A: mat_mn):
-        W = oriented(ordered(A))
-        # Unit scale, so that squares of small robots' lengths do not underflow.
-        scale = ZERO
-        for i in range(COUNT):
-            scale = scale + wp.dot(W[i], W[i])
-        scale = wp.sqrt(scale)
-        per_scale = ONE / wp.max(scale, TINY)
-        for i in range(COUNT):  # W * per_scale stays a loop where n is large, and the lane loop then scalar
-            W[i] *= per_scale
-        return triangular_factor(W), scale
-
-    @wp.func
-    def rotated(R: factor_type):
-        # No ranges, which Warp would write out: two spectra of a sample do not fit in a GPU's registers then.
-        out = R
-        sweeps = wp.int32(0)
-        while sweeps < NUMBER_OF_SWEEPS:
-            squares = vec_rank()  # cancellation in them costs convergence at most: every sweep begins with new ones
-            for i in range(RANK):
-                squares[i] = wp.dot(out[i], out[i])
-            rounds = wp.int32(0)
-            while rounds < ROUNDS:
-                cosines, sines, squares = angles(out, squares)
-                out = turned(out, cosines, sines)
-                rounds += 1
-            sweeps += 1
-        return out
-
-    @wp.func
-    def finish(R: factor_type, scale: real):
-        norms = vec_rank()
-        for i in range(RANK):
-            norms[i] = wp.sqrt(wp.dot(R[i], R[i])) * scale
-        for last in range(wp.static(RANK - 1), 0, -1):
-            for i in range(last):
-                larger = wp.max(norms[i], norms[i + 1])
-                norms[i + 1] = wp.min(norms[i], norms[i + 1])
-                norms[i] = larger
-        sigma = vec_m()
-        for i in range(RANK):
-            sigma[i] = norms[i]
-        return sigma
-
-    return SimpleNamespace(start=start, rotated=rotated, finish=finish, factor_shape=(RANK, COUNT))
-
-
-@factory
-def singular_values_of_lanes(real, m: int, n: int, graded: bool, lanes: int):
-    """Device function (m n lanes) -> (m lanes): singular values of many matrices of four to six rows side by side.
-
-    Number (r, c) of a lane's matrix is ``matrices[(r * n + c) * lanes + lane]``, value r ``values[r * lanes + lane]``.
-    Loops over lanes instead of one function per matrix: less to compile, and SIMD.
-    """
-    stages = _rotations(real, m, n, graded)
-    ROWS, COLUMNS = stages.factor_shape
-    start, finish, swept = stages.start, stages.finish, _swept(real, ROWS, COLUMNS, lanes)
-    mat_mn, factor_type = wp.types.matrix((m, n), real), wp.types.matrix((ROWS, COLUMNS), real)
-    matrices_type, factors_type, scales_type, values_type = (
-        wp.types.vector(size * lanes, real) for size in (m * n, ROWS * COLUMNS, 1, m)
-    )
-
-    @wp.func(inline=True)
-    def values_of_lanes(matrices: matrices_type):
-        factors = factors_type()
-        scales = scales_type()
-        values = values_type()
-        for lane in range(lanes):
-            A = mat_mn()
-            at = lane
-            for r in range(m):
-                for c in range(n):
-                    A[r, c] = matrices[at]
-                    at += lanes
-            R, scale = start(A)
-            scales[lane] = scale
-            at = lane
-            for i in range(ROWS):
-                for c in range(COLUMNS):
-                    factors[at] = R[i, c]
-                    at += lanes
-        orthogonal = swept(factors)
-        for lane in range(lanes):
-            factor = factor_type()
-            place = lane
-            for i in range(ROWS):
-                for c in range(COLUMNS):
-                    factor[i, c] = orthogonal[place]
-                    place += lanes
-            sigma = finish(factor, scales[lane])
-            for r in range(m):
-                values[r * lanes + lane] = sigma[r]
-        return values
-
-    return values_of_lanes
-
-
-@factory
-def _swept(real, count: int, length: int, lanes: int):
-    """Device function vectors -> vectors: all sweeps of the vectors (count, length) of as many samples as lanes.
-
-    Number c of vector i of a sample is ``vectors[(i * length + c) * lanes + lane]``. One round is all the code
-    there is, in a lane loop: written out for one sample after the other, the sweeps would be twenty times as much to
-    compile. Angles have a loop of their own: they are long chains of operations, of which a core overlaps those of
-    several samples where little else is between.
-    """
-    PART, ROUNDS, NUMBER_OF_SWEEPS, PAIRS = lanes, _rounds(count), SWEEPS[real], _pairs(count)
-    mat, vec, vec_pairs = (wp.types.matrix((count, length), real), *(wp.types.vector(k, real) for k in (count, PAIRS)))
-    vectors_type, squares_type, pairs_type = (
-        wp.types.vector(rows * PART, real) for rows in (count * length, count, PAIRS)
-    )
-    angles, turned, ZERO = _angles(real, count, length), _turned(real, count, length), real(0.0)
-
-    @wp.func
-    def swept(vectors_before: vectors_type):
-        out = vectors_before
-        lane_squares = squares_type()
-        lane_cosines = pairs_type()
-        lane_sines = pairs_type()
-        sweeps = wp.int32(0)
-        while sweeps < NUMBER_OF_SWEEPS:
-            for lane in range(PART):
-                at = lane
-                for i in range(count):
-                    square = ZERO
-                    for _c in range(length):
-                        square += out[at] * out[at]
-                        at += PART
-                    lane_squares[i * PART + lane] = square
-            rounds = wp.int32(0)
-            while rounds < ROUNDS:
-                for lane in range(PART):
-                    vectors = mat()
-                    squares = vec()
-                    at = lane
-                    for i in range(count):
-                        squares[i] = lane_squares[i * PART + lane]
-                        for c in range(length):
-                            vectors[i, c] = out[at]
-                            at += PART
-                    cosines, sines, squares = angles(vectors, squares)
-                    for k in range(PAIRS):
-                        lane_cosines[k * PART + lane] = cosines[k]
-                        lane_sines[k * PART + lane] = sines[k]
-                    for i in range(count):
-                        lane_squares[i * PART + lane] = squares[i]
-                for lane in range(PART):
-                    before = mat()
-                    at = lane
-                    for i in range(count):
-                        for c in range(length):
-                            before[i, c] = out[at]
-                            at += PART
-                    c_of = vec_pairs()
-                    s_of = vec_pairs()
-                    for k in range(PAIRS):
-                        c_of[k] = lane_cosines[k * PART + lane]
-                        s_of[k] = lane_sines[k * PART + lane]
-                    after = turned(before, c_of, s_of)
-                    at = lane
-                    for i in range(count):
-                        for c in range(length):
-                            out[at] = after[i, c]
-                            at += PART
-                rounds += 1
-            sweeps += 1
-        return out
-
-    return swept
-
-
-def _by_rotations(real, m: int, n: int, graded: bool, inline: bool):
-    """Device function A (m, n) -> singular values (m,), all stages of `_rotations` for one matrix."""
-    stages, mat_mn = _rotations(real, m, n, graded), wp.types.matrix((m, n), real)
-    start, rotated, finish = stages.start, stages.rotated, stages.finish
-
-    @wp.func(inline=inline)
-    def by_rotations(A: mat_mn):
-        R, scale = start(A)
-        return finish(rotated(R), scale)
-
-    return by_rotations
-
-
-def _rounds(count: int) -> int:
-    """Rounds in which each of ``count`` vectors meets each other once, nobody twice in a round (of one, nobody)."""
-    return count - 1 + count % 2
-
-
-def _pairs(count: int) -> int:
-    """Pairs of a round, or 1: Warp has no empty vectors."""
-    return max(count // 2, 1)
-
-
-def _seats(count: int):
-    """Seat of every vector in the next round of a tournament.
-
-    Those that sit opposite each other meet: the first and the last, the second and the last but one; if they are odd in
-    number, the first meets nobody, and they begin with the second. Then all but the first (odd: all) move on by one
-    seat. So every round is the same code, and after the last one all are back where they began.
-    """
-    moving = list(range(1 - count % 2, count))
-    seats = dict(zip(moving, [*moving[1:], *moving[:1]], strict=True))
-    return wp.types.vector(count, wp.int32)(*[seats.get(i, i) for i in range(count)])
-
-
-@factory
-def _angles(real, count: int, length: int):
-    """Device function (vectors (count, length), squared lengths) -> cosines, sines, squared lengths after a round."""
-    mat, vec, vec_pairs = (
-        wp.types.matrix((count, length), real),
-        *(wp.types.vector(k, real) for k in (count, _pairs(count))),
-    )
-    PAIRS, LAST, ODD, NEXT = count // 2, count - 1, count % 2, _seats(count)
-    TWO = real(2.0)
-    rotation = _rotation(real)
-
-    @wp.func
-    def angles(vectors: mat, squares: vec):
-        out = vec()
-        cosines = vec_pairs()
-        sines = vec_pairs()
-        out[NEXT[0]] = squares[0]  # meets nobody, or is overwritten
-        for k in range(PAIRS):
-            i = wp.static(ODD) + k
-            j = LAST - k
-            along = wp.dot(vectors[i], vectors[j])
-            c, s, t = rotation(squares[j] - squares[i], TWO * along)
-            cosines[k] = c
-            sines[k] = s
-            out[NEXT[i]] = squares[i] - t * along
-            out[NEXT[j]] = squares[j] + t * along
-        return cosines, sines, out
-
-    return angles
-
-
-@factory
-def _turned(real, count: int, length: int):
-    """Device function (vectors (count, length), cosines, sines) -> vectors after a round, in their next seats."""
-    mat, vec_pairs = wp.types.matrix((count, length), real), wp.types.vector(_pairs(count), real)
-    PAIRS, LAST, ODD, NEXT = count // 2, count - 1, count % 2, _seats(count)
-
-    @wp.func
-    def turned(vectors: mat, cosines: vec_pairs, sines: vec_pairs):
-        out = mat()
-        out[NEXT[0]] = vectors[0]  # meets nobody, or is overwritten
-        for k in range(PAIRS):
-            i = wp.static(ODD) + k
-            j = LAST - k
-            a = vectors[i]
-            b = vectors[j]
-            out[NEXT[i]] = a * cosines[k] - b * sines[k]
-            out[NEXT[j]] = a * sines[k] + b * cosines[k]
-        return out
-
-    return turned
-
-
-def _longest_rows_first(real, rows: int, columns: int):
-    """Device function A (rows, columns) -> A with its rows sorted, the longest first."""
-    mat, vec_rows = wp.types.matrix((rows, columns), real), wp.types.vector(rows, real)
-    LAST = rows - 1
-
-    @wp.func
-    def longest_rows_first(A: mat):
-        out = A
-        sizes = vec_rows()
-        for r in range(rows):
-            sizes[r] = wp.dot(out[r], out[r])
-        for last in range(LAST, 0, -1):
-            for r in range(last):
-                a = out[r]
-                b = out[r + 1]
-                swap = sizes[r] < sizes[r + 1]
-                larger = wp.max(sizes[r], sizes[r + 1])
-                sizes[r + 1] = wp.min(sizes[r], sizes[r + 1])
-                sizes[r] = larger
-                out[r] = wp.where(swap, b, a)
-                out[r + 1] = wp.where(swap, a, b)
-        return out
-
-    return longest_rows_first
-
-
-@factory
-def _triangular_factor(real, count: int, length: int):
-    """Device function vectors (count, length) -> R (min(count, length), count), vectors P = Q R with pivoting."""
-    rank = min(count, length)
-    mat, vec_count = wp.types.matrix((count, length), real), wp.types.vector(count, real)
-    factor_type = wp.types.matrix((rank, count), real)
-    LAST, LAST_COORDINATE, STEPS = count - 1, length - 1, min(count, length - 1)
-    ZERO, ONE, TINY = real(0.0), real(1.0), _tiny(real)
-    by_coordinate = transpose(real, count, length)
-
-    @wp.func
-    def triangular_factor(vectors: mat):
-        out = vectors
-        for k in range(STEPS):
-            # The longest of the vectors that are left comes next. Lengths are those across the coordinates before k.
-            sizes = vec_count()
-            for i in range(k, count):
-                sizes[i] = out[i, k] * out[i, k]
-                for r in range(LAST_COORDINATE, k, -1):
-                    sizes[i] += out[i, r] * out[i, r]
-            for i in range(LAST, k, -1):
-                swap = sizes[i] > sizes[i - 1]
-                sizes[i - 1] = wp.max(sizes[i], sizes[i - 1])
-                a = out[i - 1]
-                b = out[i]
-                out[i - 1] = wp.where(swap, b, a)
-                out[i] = wp.where(swap, a, b)
-            # A reflection turns it onto coordinate k.
-            reflected = wp.copysign(wp.sqrt(sizes[k]), out[k, k])
-            first = out[k, k] + reflected
-            size = reflected * first
-            scale = wp.where(size > TINY, ONE / wp.max(size, TINY), ZERO)
-            for i in range(LAST, k, -1):
-                along = first * out[i, k]
-                for r in range(LAST_COORDINATE, k, -1):
-                    along += out[k, r] * out[i, r]
-                along *= scale
-                out[i, k] -= along * first
-                for r in range(LAST_COORDINATE, k, -1):
-                    out[i, r] -= along * out[k, r]
-            out[k, k] = -reflected
-            for r in range(LAST_COORDINATE, k, -1):
-                out[k, r] = ZERO
-        coordinates = by_coordinate(out)
-        R = factor_type()
-        for k in range(rank):
-            R[k] = coordinates[k]
-        return R
-
-    return triangular_factor
-
-
-def _tiny(real):
-    """A number whose square root and reciprocal are finite: below it a square counts as 0."""
-    return real(1e-36 if real is wp.float32 else 1e-300)

@@ -25,8 +25,9 @@ from wsrender_kernels.kinematics import kinematics, orientation
 from wsrender_kernels.memory import align_scratch, cuda_atomics, memory
 from wsrender_kernels.model import model_type
 from wsrender_kernels.options import CUDA_OPTIONS, LONG_CUDA_OPTIONS, LONG_OPTIONS, SHORT_OPTIONS
+from wsrender_kernels.rotations import singular_values_of_lanes
 from wsrender_kernels.sampling import LANES, base_levels, blocks, grid_level, sample_space, sampling
-from wsrender_kernels.singular_values import singular_values, singular_values_of_lanes
+from wsrender_kernels.singular_values import singular_values
 from wsrender_kernels.spectrum import in_base_axes, spectrum
 from wsrender_kernels.voxels import lattice, lowest, voxels
 

@@ -8,7 +8,8 @@ import warp as wp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from wsrender_kernels.options import LONG_OPTIONS, MODULE_OPTIONS
-from wsrender_kernels.singular_values import singular_values, singular_values_of_lanes, without_noise
+from wsrender_kernels.rotations import singular_values_of_lanes
+from wsrender_kernels.singular_values import singular_values, without_noise
 
 from wsrender.tolerances import TOLERANCES, epsilon
 
