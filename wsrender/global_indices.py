@@ -7,7 +7,7 @@ import numpy as np
 from wsrender.engine import Partial, SweepPlan
 from wsrender.robots.chain import Chain
 from wsrender.robots.dh import structural_length
-from wsrender.volume.neighbours import inner_and_outer
+from wsrender.volume.neighbours import inner_and_outer_counts
 from wsrender.volume.volume_data import VolumeData
 
 
@@ -23,8 +23,8 @@ def workspace_mean(volume: VolumeData, name: str) -> float | None:
     None where neither statistic was kept.
     """
     for statistic in ("maximum", "mean"):
-        if statistic in volume.statistics:
-            values = volume.statistics[statistic][name][volume.occupied].astype(np.float64)
+        if statistic in volume.voxels.statistics:
+            values = volume.voxels.statistics[statistic][name][volume.voxels.count > 0].astype(np.float64)
             return float(_divided(values.mean(), values.max())) if len(values) else None
     return None
 
@@ -46,8 +46,8 @@ class VoxelVolumes:
 def voxel_volumes(volume: VolumeData) -> VoxelVolumes:
     """Estimates of the reachable volume from occupied voxels; inner and outer are no rigorous bounds."""
     voxel = volume.voxel_size_m**3
-    cells = volume.occupied, *inner_and_outer(volume.occupied)
-    return VoxelVolumes(*(float(np.count_nonzero(voxels)) * voxel for voxels in cells))
+    counts = volume.n_occupied, *inner_and_outer_counts(volume.occupied)
+    return VoxelVolumes(*(count * voxel for count in counts))
 
 
 def global_isotropy(partial: Partial) -> float:

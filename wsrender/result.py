@@ -147,7 +147,7 @@ class Result:
         """
         pictures = [Picture(name, plots.png(draw())) for name, draw in self._pictures().items()]
         notes = []
-        has_volume = any(each.volume is not None and each.volume.occupied.any() for each in self._subjects(""))
+        has_volume = any(each.volume is not None and each.volume.n_occupied for each in self._subjects(""))
         for view in views if has_volume else ():
             try:
                 pictures.append(Picture(view, plots.png(self.render(view))))
@@ -231,7 +231,7 @@ def _all_restored(files: dict[str, Path], ending: str, reader: str) -> dict[str,
 
 def _meshes(result: Result) -> "dict[str, trimesh.Trimesh]":
     """The result's meshes; where it has none, the surface of its occupied voxels."""
-    if result.meshes or result.volume is None or not result.volume.occupied.any():
+    if result.meshes or result.volume is None or not result.volume.n_occupied:
         return result.meshes
     from wsrender.boundary.voxel_surface import occupied_surface
 
@@ -274,7 +274,7 @@ def _volume_files(name: str, volume: VolumeData, formats: tuple[str, ...]) -> It
     units |= {vector: volume.units.get(vector, "1") for vector in volume.vectors}
     for ending in ("vtkhdf", *(ending for ending in ("npz", "csv", "mat") if ending in formats)):
         write = partial(getattr(export, f"write_volume_{ending}"), volume)
-        yield Artifact(f"{name}.{ending}", write, volume.count.shape, units)
+        yield Artifact(f"{name}.{ending}", write, volume.shape, units)
 
 
 def _mesh_files(name: str, mesh: "trimesh.Trimesh", formats: tuple[str, ...]) -> Iterator[Artifact]:

@@ -50,13 +50,38 @@ def test_voxels_that_do_not_fit_are_refused_with_their_numbers():
         ws.analyze("phantom_omni", ws.Random(1000), voxel_size_m=2e-5, device="cpu")
 
 
-def test_values_that_do_not_fit_are_refused_with_their_numbers(monkeypatch):
-    plan = run.plan(job("float32", keep_map=False))
-    partial = run.run_shard(plan, 0)
-    monkeypatch.setattr(importlib.import_module("wsrender.engine.voxel_data"), "available_bytes", lambda: 1000)
-    message = r"voxel_size_m: the \d+ x \d+ x \d+ voxels of the workspace need [\d.]+ GiB .* 0\.0 GiB are free: choose"
-    with pytest.raises(ResourceError, match=message):
-        run.finish(plan, partial)
+def test_large_lattices_take_the_memory_of_their_occupied_voxels(monkeypatch, tmp_path):
+    """All of it, from sweep to files and back, but for the arrays that are asked for."""
+    fine = {"robot": "phantom_omni", "sampling": ws.Random(20_000, seed=3), "device": "cpu"}
+    names = ["manipulability", "inverse_condition_number"]
+    module = importlib.import_module("wsrender.volume.volume_data")
+    monkeypatch.setattr(module, "available_bytes", lambda: 1_000_000)
+    result = ws.analyze(**fine, indices=names, voxel_size_m=0.002, voxel_statistics=["count", "maximum", "mean"])
+    result.save(tmp_path / "out")
+    loaded = ws.Result.load(tmp_path / "out")
+    voxels = result.volume.voxels
+    assert np.prod(voxels.shape) > 1_000_000 > 40 * len(voxels.cells) and voxels.count.sum() == 20_000
+    for volume in (result.volume, loaded.volume):
+        with pytest.raises(ResourceError, match=r"volume: \d+ x \d+ x \d+ voxels need .* 0\.0 GiB are free: take"):
+            _ = volume.count
+    monkeypatch.undo()
+    np.testing.assert_array_equal(loaded.volume.count, result.volume.count)
+    for statistic in ("maximum", "mean"):
+        for name in names:
+            array = result.volume.statistics[statistic][name]
+            np.testing.assert_array_equal(loaded.volume.statistics[statistic][name], array)
+            np.testing.assert_array_equal(np.isnan(array), result.volume.count == 0)
+    at = tuple(result.volume.voxels.at)
+    np.testing.assert_array_equal(result.volume.count[at], voxels.count)
+
+
+def test_few_samples_of_many_voxels_keep_one_thread_busy(monkeypatch):
+    """Private records of two threads would take twice the memory, or twice the slabs."""
+    slabs = importlib.import_module("wsrender.engine.slabs")
+    plan = run.plan(job("float32", keep_map=False, device="cpu")).sweep
+    monkeypatch.setattr(slabs, "available_bytes", lambda: 2**40)
+    few, many = (slabs.fitted(plan.block, plan.shape, devices_of("cpu") * 2, n)[0] for n in (100, 10**9))
+    assert (len(few), len(many)) == (1, 2)
 
 
 @pytest.mark.parametrize("method", ["random", "grid"])
@@ -72,7 +97,7 @@ def test_slabs_of_the_lattice_change_no_bit(method, precision, device, monkeypat
     if device == "cuda":
         monkeypatch.setattr(slabs, "SHARE_SLAB", free * slabs.SHARE_SLAB / devices_of(device)[0].free_memory)
     monkeypatch.setattr(slabs, "available_bytes", lambda: free)
-    assert len(slabs.fitted(plan.sweep.block, shape, devices_of(device)[:1])[1]) in (4, 5)
+    assert len(slabs.fitted(plan.sweep.block, shape, devices_of(device)[:1], 20_000)[1]) in (4, 5)
     found = run.run_shard(plan, 0, done.append, threads=1).sweep
     for name in ("extremes", "totals", "cells", "count", "records", "sums"):
         assert getattr(found, name).tobytes() == getattr(expected, name).tobytes(), name
@@ -126,9 +151,9 @@ def test_many_threads_do_not_refuse_what_one_can_do(monkeypatch):
     workers = devices_of("cpu") * 64
     for fitting, chosen in ((1, 1), (5, 5), (64, 64)):
         monkeypatch.setattr(slabs, "available_bytes", lambda fitting=fitting: fitting * block_bytes / slabs.SHARE + 1)
-        found, parts = slabs.fitted(plan.block, plan.shape, workers)
+        found, parts = slabs.fitted(plan.block, plan.shape, workers, 10**9)
         assert len(found) == chosen and parts == [plan.block]
     monkeypatch.setattr(slabs, "available_bytes", lambda: block_bytes / slabs.SHARE_SLAB / 12)
-    found, parts = slabs.fitted(plan.block, plan.shape, workers)
+    found, parts = slabs.fitted(plan.block, plan.shape, workers, 10**9)
     assert len(found) == 1 and 12 <= len(parts) <= slabs.MOST_SLABS
     assert sum(slab.shape[0] for slab in parts) == plan.block.shape[0]

@@ -143,9 +143,9 @@ def test_foreign_hdf5_is_refused(tmp_path):
         read_volume_vtkhdf(tmp_path / "volume.vtkhdf")
 
 
-def test_arrays_of_another_shape_are_refused(tmp_path):
-    volume = VolumeData(0.1, (0, 0, 0), np.ones((2, 2, 2), int), {"mean": {"w": np.zeros((2, 2, 1))}})
-    for write in (write_volume_vtkhdf, write_volume_npz, write_volume_csv):
-        with pytest.raises(InputError, match=r"statistics\.mean\.w: has shape"):
-            write(volume, tmp_path / "volume")
-    assert not list(tmp_path.iterdir())
+def test_arrays_of_another_shape_are_refused():
+    count = np.ones((2, 2, 2), int)
+    with pytest.raises(InputError, match=r"statistics\.mean\.w: has shape \(2, 2, 1\); the volume has \(2, 2, 2\)"):
+        VolumeData(0.1, (0, 0, 0), count, {"mean": {"w": np.zeros((2, 2, 1))}})
+    with pytest.raises(InputError, match=r"vectors\.v: has shape"):
+        VolumeData(0.1, (0, 0, 0), count, vectors={"v": np.zeros((2, 2, 2))})

@@ -15,7 +15,7 @@ def inscribed_sphere_radius(volume: VolumeData | None) -> float:
 
     Distance transform to the centres of voxels outside, less half a voxel; right to SPHERE_ERROR.
     """
-    if volume is None or not volume.occupied.any():
+    if volume is None or not volume.n_occupied:
         return 0.0
     distance = np.asarray(distance_transform_edt(np.pad(volume.occupied, 1)))
     return float((distance.max() - 0.5) * volume.voxel_size_m)
@@ -23,7 +23,7 @@ def inscribed_sphere_radius(volume: VolumeData | None) -> float:
 
 def inscribed_cube_edge(volume: VolumeData | None) -> float:
     """Edge [m] of the largest cube of occupied voxels, faces along the axes; 0 of an empty volume. CUBE_ERROR."""
-    if volume is None or not volume.occupied.any():
+    if volume is None or not volume.n_occupied:
         return 0.0
     sums = np.pad(volume.occupied.astype(np.int64), ((1, 0),) * 3).cumsum(0).cumsum(1).cumsum(2)
     fits, fails = 1, min(volume.occupied.shape) + 1

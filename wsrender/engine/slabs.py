@@ -5,20 +5,24 @@ from math import ceil, inf
 import warp as wp
 from wsrender_kernels.sweep import Shape
 
-from wsrender.engine.memory import SHARE, available_bytes
 from wsrender.errors import ResourceError
+from wsrender.memory import SHARE, available_bytes
 from wsrender.volume.lattice import LatticeBlock
 
 SHARE_SLAB = 0.4  # of the free memory, for a slab: what it held is kept beside the next
 LARGEST_ARRAY = 2**31 - 1  # elements of a Warp array along one axis
+VOXEL_SAMPLES = 0.25  # samples that take as long as one voxel's record to be cleared and read, at the least
 MOST_SLABS = 32  # each costs another evaluation of all samples
 
 
-def fitted(block: LatticeBlock, shape: Shape, workers: list[wp.Device]) -> tuple[list[wp.Device], list[LatticeBlock]]:
+def fitted(
+    block: LatticeBlock, shape: Shape, workers: list[wp.Device], samples: int
+) -> tuple[list[wp.Device], list[LatticeBlock]]:
     """The workers that sweep the block soonest, and the slabs of it whose records they keep at a time.
 
     That is the whole block, or where their private records of it do not fit in memory, equal slabs along x and a rest;
-    on a CPU, whose workers share its memory, fewer workers may take fewer slabs.
+    on a CPU, whose workers share its memory, fewer workers may take fewer slabs, and less time where the samples are
+    few beside the voxels.
 
     Raises ResourceError, with the numbers, where more than MOST_SLABS would be needed.
     """
@@ -26,7 +30,10 @@ def fitted(block: LatticeBlock, shape: Shape, workers: list[wp.Device]) -> tuple
     free = min(worker.free_memory for worker in workers) if device.is_cuda else available_bytes()
     counts = range(1, 2 if device.is_cuda else len(workers) + 1)
     widths = {count: _slab_width(block, shape, free / count) for count in counts}
-    times = {count: ceil(nx / widths[count]) / count if widths[count] else inf for count in counts}
+    times = {
+        count: ceil(nx / widths[count]) * samples / count + VOXEL_SAMPLES * block.size * count if widths[count] else inf
+        for count in counts
+    }
     count = min(reversed(counts), key=times.__getitem__)
     if times[count] == inf:
         raise ResourceError(

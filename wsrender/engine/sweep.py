@@ -25,7 +25,7 @@ from wsrender.engine.grid_structure import (
     structure_of,
 )
 from wsrender.engine.kernel_cache import launch, loaded
-from wsrender.engine.memory import as_type, device_memory
+from wsrender.engine.memory import as_type, device_memory, fetched
 from wsrender.engine.partial import Partial, joined, merge
 from wsrender.engine.row_buffer import RowBuffer
 from wsrender.engine.slabs import fitted
@@ -36,7 +36,7 @@ from wsrender.volume.lattice import LatticeBlock
 CHUNK_CPU, CHUNK_CUDA, CHUNK_ROWS, CHUNK_GIVEN = 1 << 20, 1 << 28, 1 << 18, 1 << 14
 CHUNK_LEAST, CHUNKS_PER_THREAD = 1 << 15, 8
 THREADS_PER_SM = 2048  # of a GPU: a whole multiple of those that run at a time
-VOXELS_ABSORBED = 1 << 14
+VOXELS_ABSORBED, VOXELS_FETCHED = 1 << 14, 1 << 23  # at a time
 FOLD_AFTER = 2**31 - 2**29  # samples until the CPU, which counts in 32 bits, moves its counts to 64-bit ones
 
 
@@ -122,7 +122,7 @@ def sweep(
     workers = workers[: max(-(-count // chunk), 1)]
     slabs = [None]
     if plan.block is not None:
-        workers, slabs = fitted(plan.block, shape, workers)
+        workers, slabs = fitted(plan.block, shape, workers, count * plan.structure.base_levels)
     partials = []
     for number, slab in enumerate(slabs):
 
@@ -222,7 +222,8 @@ class Accumulator:
         bits = bits_type(real)
         self._lowest = lowest(real)
         self._empty_count = int(np.full(shape.count_size, self._lowest, wp.dtype_to_numpy(bits)).view(np.int64)[0])
-        voxels = slab.size + 1 if slab else 0  # one to spare for positions outside
+        self._size = slab.size if slab else 0
+        voxels = self._size + 1 if slab else 0  # one to spare for positions outside
         self._kernel = loaded(sweep_kernel(shape, device.is_cuda), device)
         self._model = evaluation_model(plan.evaluation, plan.precision)
         given = shape.method == "given"
@@ -276,7 +277,8 @@ class Accumulator:
         extremes, totals = self._extremes.numpy(), self._totals.numpy()
         np.maximum(extremes, other._extremes.numpy(), out=extremes)
         totals += other._totals.numpy()
-        own, added = self._voxels(), other._voxels()
+        everywhere = slice(0, self._size)
+        own, added = self._voxels(everywhere), other._voxels(everywhere)
 
         def absorb_voxels(start: int) -> None:
             part = slice(start, start + VOXELS_ABSORBED)
@@ -328,19 +330,31 @@ class Accumulator:
             model.inertia_given = device_array(inertia.reshape(count, -1).T.ravel(), real, device)
         return given_space(q, first, precision, device)
 
-    def _voxels(self) -> tuple[np.ndarray, np.ndarray]:
-        """Records and sums of the voxels of the slab, (V, record_size) and (V, sums_size)."""
-        size, width = self.shape.record_size, self.shape.sums_size
-        records, sums = self._records.numpy().reshape(-1, size)[:-1], self._sums.numpy()
-        return records, sums.reshape(-1, width)[:-1] if width else np.empty((len(records), 0), np.int64)
+    def _voxels(self, part: slice) -> tuple[np.ndarray, np.ndarray]:
+        """Records and sums of some of the slab's voxels, (V, record_size) and (V, sums_size)."""
+        voxels, size, width = part.stop - part.start, self.shape.record_size, self.shape.sums_size
+        records = fetched(self._records, part.start * size, part.stop * size)
+        sums = fetched(self._sums, part.start * width, part.stop * width)
+        return records.reshape(voxels, size), sums.reshape(voxels, width)
+
+    def _occupied(self) -> list[np.ndarray]:
+        """Cells, counts, extremes and sums of the slab's occupied voxels.
+
+        Part by part: the host of a GPU may not have the memory for all records.
+        """
+        first, found = self.shape.count_size, []
+        for start in range(0, max(self._size, 1), VOXELS_FETCHED):
+            records, sums = self._voxels(slice(start, min(start + VOXELS_FETCHED, self._size)))
+            counts = _counts(records)
+            cells = np.flatnonzero(counts != self._empty_count)
+            extremes = records[cells, first : first + self.shape.extremes]
+            kept = sums[cells, : self.shape.n_indices * self.shape.sums]
+            found.append((start + cells, counts[cells] - self._empty_count, extremes, kept))
+        return [np.concatenate(parts) for parts in zip(*found, strict=True)]
 
     def _fold(self) -> None:
         """Add what the device holds to the 64-bit host arrays."""
-        records, sums = self._voxels()
-        counts = _counts(records)
-        cells = np.flatnonzero(counts != self._empty_count)
-        count, width = counts[cells], self.shape.count_size
-        count -= self._empty_count
+        cells, count, extremes, sums = self._occupied()
         weight = self.plan.structure.weight
         held = Partial(
             self._counted * weight,
@@ -348,8 +362,8 @@ class Accumulator:
             self._totals.numpy().reshape(TOTAL_SLOTS, -1).sum(axis=0) * weight,
             cells,
             count * weight,
-            records[cells, width : width + self.shape.extremes],
-            sums[cells, : self.shape.n_indices * self.shape.sums] * weight,
+            extremes,
+            sums * weight,
             self._rows,
         )
         self._folded = held if self._folded is None else merge(self._folded, held)

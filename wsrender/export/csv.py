@@ -7,7 +7,7 @@ import pyarrow as pa
 import pyarrow.csv
 
 from wsrender.export.atomic import new_file
-from wsrender.export.cells import cell_array, cell_names, vector_array
+from wsrender.export.cells import cell_names
 from wsrender.export.column_type import column_type
 from wsrender.export.columns import arrays_by_column, columns_of
 from wsrender.volume.distribution_map import DistributionMap
@@ -36,20 +36,22 @@ def write_volume_csv(volume: VolumeData, path: str | Path) -> None:
     """
     lattice = ("i", "j", "k", "x", "y", "z", "count")
     names = cell_names(volume, taken=set(lattice))
+    voxels = volume.voxels.among(volume.voxels.count > 0)
     components = {
-        f"{name}_{axis}": vector_array(volume, name)[..., k] for name in volume.vectors for k, axis in enumerate("xyz")
+        f"{name}_{axis}": vector[:, k] for name, vector in voxels.vectors.items() for k, axis in enumerate("xyz")
     }
-    arrays = [volume.count, *(cell_array(volume, *key) for key in names), *components.values()]
+    values = [voxels.statistics[statistic][index] for statistic, index in names]
+    arrays = [voxels.count, *values, *components.values()]
     types = [pa.int64()] * 3 + [pa.float64()] * 3 + [pa.from_numpy_dtype(array.dtype) for array in arrays]
     header = [*lattice, *names.values(), *components]
     schema = pa.schema(list(zip(header, types, strict=True)))
     with new_file(path) as temporary, pyarrow.csv.CSVWriter(temporary, schema) as writer:
-        for i in range(volume.count.shape[0]):
-            j, k = np.nonzero(volume.count[i])
-            cell = (np.full_like(j, i), j, k)
-            voxel = [start + along for start, along in zip(volume.first_voxel, cell, strict=True)]
+        for start in range(0, len(voxels.cells), ROWS_PER_BLOCK):
+            rows = slice(start, start + ROWS_PER_BLOCK)
+            cell = voxels.among(rows).at
+            voxel = [first + along for first, along in zip(volume.first_voxel, cell, strict=True)]
             centers = [volume.centers(axis)[cell[axis]] for axis in range(3)]
-            writer.write_batch(_batch([*voxel, *centers, *(array[i][j, k] for array in arrays)], schema))
+            writer.write_batch(_batch([*voxel, *centers, *(array[rows] for array in arrays)], schema))
 
 
 def _batch(arrays: list[np.ndarray], schema: pa.Schema) -> pa.RecordBatch:

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.io import savemat
 
 from wsrender.export.atomic import new_file
-from wsrender.export.cells import cell_array, cell_names, vector_array, vector_names
+from wsrender.export.cells import cell_arrays, cell_names, vector_names
 from wsrender.export.columns import arrays_by_column, columns_of
 from wsrender.volume.distribution_map import DistributionMap
 from wsrender.volume.table import Table
@@ -28,13 +28,8 @@ def write_volume_mat(volume: VolumeData, path: str | Path) -> None:
     """Write ``count``, ``<statistic>_<index>`` (nx, ny, nz), vectors (nx, ny, nz, 3), origin_m and voxel_size_m."""
     taken = {"count", "origin_m", "voxel_size_m"}
     names, vectors = cell_names(volume, taken), vector_names(volume, taken)
-    arrays = {
-        "count": volume.count,
-        "origin_m": volume.origin_m,
-        "voxel_size_m": np.array(volume.voxel_size_m),
-    }
-    arrays |= {name: cell_array(volume, *key) for key, name in names.items()}
-    arrays |= {name: vector_array(volume, vector) for vector, name in vectors.items()}
+    arrays = dict(cell_arrays(volume, names, vectors))
+    arrays |= {"origin_m": volume.origin_m, "voxel_size_m": np.array(volume.voxel_size_m)}
     units = {name: volume.units.get(index, "1") for (_, index), name in names.items()}
     _write(path, arrays, units | {name: volume.units.get(vector, "1") for vector, name in vectors.items()})
 

@@ -6,13 +6,15 @@ The array ``wsrender`` holds a description as JSON text: names, units and frame.
 import json
 import zipfile
 import zlib
+from collections.abc import Iterable
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
 
 from wsrender.errors import InputError
 from wsrender.export.atomic import new_file
-from wsrender.export.cells import cell_array, cell_names, vector_array, vector_names
+from wsrender.export.cells import cell_arrays, cell_names, vector_names
 from wsrender.export.columns import DESCRIPTION, arrays_by_column, columns_from_json, columns_of
 from wsrender.volume.distribution_map import DistributionMap
 from wsrender.volume.table import Table
@@ -22,7 +24,7 @@ from wsrender.volume.volume_data import VolumeData
 def write_table_npz(data: DistributionMap | Table, path: str | Path) -> None:
     """Write a map or table as one array (N,) per column, named as in Parquet."""
     columns = columns_of(data)
-    _write(path, columns.to_json(), arrays_by_column(data, columns))
+    _write(path, columns.to_json(), arrays_by_column(data, columns).items())
 
 
 def read_table_npz(path: str | Path) -> DistributionMap | Table:
@@ -47,10 +49,7 @@ def write_volume_npz(volume: VolumeData, path: str | Path) -> None:
         "vectors": vectors,
         "units": volume.units,
     }
-    arrays = {"count": volume.count}
-    arrays |= {name: cell_array(volume, *key) for key, name in names.items()}
-    arrays |= {name: vector_array(volume, vector) for vector, name in vectors.items()}
-    _write(path, json.dumps(description), arrays)
+    _write(path, json.dumps(description), cell_arrays(volume, names, vectors))
 
 
 def read_volume_npz(path: str | Path) -> VolumeData:
@@ -74,13 +73,13 @@ def read_volume_npz(path: str | Path) -> VolumeData:
         raise InputError(path.name, f"is not volume data of wsrender: {error!r}") from error
 
 
-def _write(path: str | Path, description: str, arrays: dict[str, np.ndarray]) -> None:
+def _write(path: str | Path, description: str, arrays: Iterable[tuple[str, np.ndarray]]) -> None:
     # Not np.savez: it takes the names as keyword arguments, so an index called "file" would fail.
     with (
         new_file(path) as temporary,
         zipfile.ZipFile(temporary, "w", zipfile.ZIP_DEFLATED, compresslevel=1) as file,
     ):
-        for name, array in {DESCRIPTION: np.array(description), **arrays}.items():
+        for name, array in chain([(DESCRIPTION, np.array(description))], arrays):
             with file.open(zipfile.ZipInfo(f"{name}.npy"), "w", force_zip64=True) as member:
                 np.lib.format.write_array(member, np.asarray(array), allow_pickle=False)
 

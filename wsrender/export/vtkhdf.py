@@ -16,8 +16,9 @@ import numpy as np
 
 from wsrender.errors import InputError
 from wsrender.export.atomic import new_file
-from wsrender.export.cells import cell_array, cell_names, vector_array, vector_names
+from wsrender.export.cells import cell_names, vector_names
 from wsrender.volume.volume_data import VolumeData
+from wsrender.volume.voxels import Voxels, empty_array
 
 _CHUNK_BYTES = 1 << 21
 _COMPRESSION_LEVEL = 1  # voxel values are mostly noise in their low bits: higher levels gain little
@@ -27,11 +28,12 @@ def write_volume_vtkhdf(volume: VolumeData, path: str | Path) -> None:
     """Write volume data as one ImageData with cell arrays; InputError where an array's shape differs."""
     taken = {"count"}
     names, vectors = cell_names(volume, taken), vector_names(volume, taken)
+    layers = _Layers(volume.voxels)
     with new_file(path) as temporary, h5py.File(temporary, "w") as file:
         root = file.create_group("VTKHDF")
         root.attrs.create("Version", np.array([1, 0], np.int64))
         root.attrs.create("Type", b"ImageData", dtype=h5py.string_dtype("ascii", 9))
-        extent = [bound for size in volume.count.shape for bound in (0, size)]
+        extent = [bound for size in volume.shape for bound in (0, size)]
         root.attrs["WholeExtent"] = np.array(extent, np.int64)
         root.attrs["Origin"] = np.asarray(volume.origin_m, np.float64)
         root.attrs["Spacing"] = np.full(3, volume.voxel_size_m, np.float64)
@@ -40,47 +42,64 @@ def write_volume_vtkhdf(volume: VolumeData, path: str | Path) -> None:
         root.attrs["frame"] = "world"
         root.attrs["units"] = json.dumps(volume.units)
         cells = root.create_group("CellData", track_order=True)
-        _write_array(cells, "count", volume.count).attrs["unit"] = "samples"
+        _write_array(cells, "count", layers, volume.voxels.count).attrs["unit"] = "samples"
         for (statistic, index), name in names.items():
-            dataset = _write_array(cells, name, cell_array(volume, statistic, index))
+            dataset = _write_array(cells, name, layers, volume.voxels.statistics[statistic][index])
             unit = volume.units.get(index, "1")
             dataset.attrs.update({"statistic": statistic, "index": index, "unit": unit})
         for vector, name in vectors.items():
-            values = vector_array(volume, vector).transpose(2, 1, 0, 3)
-            options = {"compression": "gzip", "compression_opts": _COMPRESSION_LEVEL, "track_times": False}
-            dataset = cells.create_dataset(name, data=values, **options)
+            dataset = _write_array(cells, name, layers, volume.voxels.vectors[vector])
             dataset.attrs.update({"vector": vector, "unit": volume.units.get(vector, "1")})
 
 
-def _write_array(group: h5py.Group, name: str, array: np.ndarray) -> h5py.Dataset:
-    """Write (nx, ny, nz) as (nz, ny, nx) in slabs of constant z, compressed in parallel."""
-    file_order = array.T
-    if array.size == 0:
-        return group.create_dataset(name, data=file_order, track_times=False)
-    layer_bytes = array.itemsize * file_order[0].size
-    layers = int(np.clip(_CHUNK_BYTES // layer_bytes, 1, len(file_order)))
+class _Layers:
+    """The voxels of a block in the order of the file, x fastest, and dense arrays of some layers of constant z."""
+
+    def __init__(self, voxels: Voxels):
+        x, y, z = voxels.at
+        nx, ny, nz = voxels.shape
+        self.shape = nz, ny, nx
+        # The same for all arrays, so that a reader needs no chunk twice.
+        self.thickness = int(np.clip(_CHUNK_BYTES // max(8 * ny * nx, 1), 1, max(nz, 1)))
+        cells = (z * ny + y) * nx + x
+        self._order = np.argsort(cells)
+        self._cells = cells[self._order]
+
+    def chunk(self, values: np.ndarray, start: int) -> np.ndarray:
+        """Values (V,) or (V, 3) in ``thickness`` layers from ``start`` on; layers past the last are empty."""
+        _nz, ny, nx = self.shape
+        below, size = start * ny * nx, self.thickness * ny * nx
+        first, last = np.searchsorted(self._cells, [below, below + size])
+        dense = empty_array((size, *values.shape[1:]), values.dtype)
+        dense[self._cells[first:last] - below] = values[self._order[first:last]]
+        return dense
+
+
+def _write_array(group: h5py.Group, name: str, layers: _Layers, values: np.ndarray) -> h5py.Dataset:
+    """Write the array of values (V,) or (V, 3) in slabs of constant z, compressed in parallel."""
+    shape = (*layers.shape, *values.shape[1:])
+    if 0 in shape:
+        return group.create_dataset(name, shape=shape, dtype=values.dtype, track_times=False)
     dataset = group.create_dataset(
         name,
-        shape=file_order.shape,
-        dtype=array.dtype,
-        chunks=(layers, *file_order.shape[1:]),
+        shape=shape,
+        dtype=values.dtype,
+        chunks=(layers.thickness, *shape[1:]),
         shuffle=True,
         compression="gzip",
         compression_opts=_COMPRESSION_LEVEL,
         track_times=False,
     )
-    starts = range(0, len(file_order), layers)
+    starts = range(0, shape[0], layers.thickness)
     with ThreadPoolExecutor() as pool:  # zlib releases the interpreter's lock
-        chunks = pool.map(lambda start: _compressed(file_order[start : start + layers], layers), starts)
+        chunks = pool.map(lambda start: _compressed(layers.chunk(values, start)), starts)
         for start, chunk in zip(starts, chunks, strict=True):
-            dataset.id.write_direct_chunk((start, 0, 0), chunk)
+            dataset.id.write_direct_chunk((start, *(0 for _ in shape[1:])), chunk)
     return dataset
 
 
-def _compressed(slab: np.ndarray, layers: int) -> bytes:
-    """One chunk through HDF5's shuffle and deflate filters; the last slab is padded with zeros."""
-    chunk = np.zeros((layers, *slab.shape[1:]), slab.dtype)
-    chunk[: len(slab)] = slab
+def _compressed(chunk: np.ndarray) -> bytes:
+    """One chunk through HDF5's shuffle and deflate filters."""
     bytes_of_values = chunk.reshape(-1, 1).view(np.uint8)
     return zlib.compress(bytes_of_values.T.tobytes(), _COMPRESSION_LEVEL)
 
@@ -103,29 +122,26 @@ def read_volume_vtkhdf(path: str | Path) -> VolumeData:
 def _read(file: Any) -> VolumeData:  # h5py's own types are unions of all that a name may hold
     root = file["VTKHDF"]
     cells = root["CellData"]
+    nz, ny, nx = cells["count"].shape
+    step = cells["count"].chunks[0] if cells["count"].chunks else max(1, nz)
+    # Slab by slab, so that the arrays are never all held with their empty voxels.
+    slabs = [
+        _voxels(cells, slice(start, start + step)).moved((nx, ny, nz), np.array([0, 0, start]))
+        for start in range(0, max(1, nz), step)
+    ]
+    i, j, k = (int(first) for first in root.attrs["first_voxel"])
+    size, units = float(root.attrs["Spacing"][0]), dict(json.loads(root.attrs["units"]))
+    return VolumeData.of_voxels(size, (i, j, k), Voxels.joined(slabs), units)
+
+
+def _voxels(cells: Any, layers: slice) -> Voxels:
+    """What the voxels in some layers of constant z hold."""
     statistics: dict[str, dict[str, np.ndarray]] = {}
     vectors: dict[str, np.ndarray] = {}
     for dataset in cells.values():
         if "statistic" in dataset.attrs:
             by_index = statistics.setdefault(str(dataset.attrs["statistic"]), {})
-            by_index[str(dataset.attrs["index"])] = _read_array(dataset)
+            by_index[str(dataset.attrs["index"])] = dataset[layers].T
         elif "vector" in dataset.attrs:
-            vectors[str(dataset.attrs["vector"])] = dataset[...].transpose(2, 1, 0, 3)
-    i, j, k = root.attrs["first_voxel"]
-    return VolumeData(
-        voxel_size_m=float(root.attrs["Spacing"][0]),
-        first_voxel=(int(i), int(j), int(k)),
-        count=_read_array(cells["count"]),
-        statistics=statistics,
-        units=dict(json.loads(root.attrs["units"])),
-        vectors=vectors,
-    )
-
-
-def _read_array(dataset: h5py.Dataset) -> np.ndarray:
-    """The array (nx, ny, nz), contiguous, read slab by slab so that no second copy is held."""
-    array = np.empty(dataset.shape[::-1], dataset.dtype)
-    step = dataset.chunks[0] if dataset.chunks else max(1, len(dataset))
-    for start in range(0, len(dataset), step):
-        array[:, :, start : start + step] = dataset[start : start + step].T
-    return array
+            vectors[str(dataset.attrs["vector"])] = dataset[layers].transpose(2, 1, 0, 3)
+    return Voxels.of_arrays(cells["count"][layers].T, statistics, vectors)

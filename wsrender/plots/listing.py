@@ -34,7 +34,7 @@ def _of_samples(plot: ResultPlots) -> Pictures:
         pictures["robot"] = plot.robot
     if plot.samples is not None and len(plot.samples):
         pictures["scatter"] = plot.scatter
-    if plot.volume is not None and plot.volume.occupied.any():
+    if plot.volume is not None and plot.volume.n_occupied:
         pictures["slices"] = plot.slices
     if "scatter" in pictures and plot.samples is not None and plot.samples.indices:
         pictures["histogram"] = plot.histogram

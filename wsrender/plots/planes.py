@@ -19,6 +19,7 @@ from wsrender.plots.style import (
     value_range,
 )
 from wsrender.volume.volume_data import VolumeData
+from wsrender.volume.voxels import Voxels
 
 NAMES = "xyz"
 ACROSS = ((1, 2), (0, 2), (0, 1))  # horizontal and vertical axis of the plane normal to x, y, z
@@ -28,11 +29,20 @@ _THINNEST = 0.25  # least extent of a drawn plane, relative to its longest: plan
 
 @dataclass(frozen=True)
 class Field:
-    """A scalar per voxel, (nx, ny, nz), NaN where empty, with its label; colours span all its values."""
+    """A scalar of each of a volume's ``voxels``, (V,), NaN where empty, with its label; colours span all its values."""
 
+    voxels: Voxels
     values: np.ndarray
     label: str
     norm: Normalize
+
+    def dense(self) -> np.ndarray:
+        """The values as an array of the block, (nx, ny, nz)."""
+        return self.voxels.dense(self.values)
+
+    def plane(self, axis: int, layer: int) -> np.ndarray:
+        """The values of one layer of voxels, NaN where empty, over its two axes."""
+        return self.voxels.plane(self.values, axis, layer)
 
     @property
     def ticks(self) -> MaxNLocator | None:
@@ -109,13 +119,14 @@ def voxel_field(volume: VolumeData, index: str | None, statistic: str | None) ->
 
     Raises InputError for an unknown index or statistic, or a volume without occupied voxels.
     """
-    if not volume.occupied.any():
+    if not volume.n_occupied:
         raise InputError("volume", "has no occupied voxel, so there is nothing to draw")
+    voxels = volume.voxels
     if statistic == "count" or not (volume.statistics or statistic or index):
-        values, label = np.where(volume.occupied, volume.count, np.nan), "Samples per voxel"
+        values, label = np.where(voxels.count > 0, voxels.count, np.nan), "Samples per voxel"
     else:
         values, label = _statistic(volume, index, statistic)
-    return Field(values, label, value_range(np.nanmin(values), np.nanmax(values)))
+    return Field(voxels, values, label, value_range(np.nanmin(values), np.nanmax(values)))
 
 
 def _statistic(volume: VolumeData, index: str | None, statistic: str | None) -> tuple[np.ndarray, str]:
@@ -123,7 +134,7 @@ def _statistic(volume: VolumeData, index: str | None, statistic: str | None) -> 
         statistic = next(iter(sorted(volume.statistics, key=lambda name: name != "maximum")), "maximum")
     if statistic not in volume.statistics:
         raise InputError("statistic", f"the volume has no {statistic!r}; it holds {_listed(volume.statistics)}")
-    by_index = volume.statistics[statistic]
+    by_index = volume.voxels.statistics[statistic]
     if index is None:
         index = next(iter(by_index))
     if index not in by_index:
@@ -141,11 +152,11 @@ def layer_at(volume: VolumeData, axis: int, at: float | None, field: Field | Non
     Without a coordinate: the one at 0, or the one with most voxels (with a value of the ``field``) where that has less
     than a quarter of them. Raises InputError for a coordinate outside the volume.
     """
-    size, layers = volume.voxel_size_m, volume.count.shape[axis]
+    size, layers = volume.voxel_size_m, volume.shape[axis]
     first = volume.first_voxel[axis]
     if at is None:
-        shown = volume.count > 0 if field is None else ~np.isnan(field.values)
-        occupied = np.count_nonzero(shown, axis=ACROSS[axis])
+        shown = volume.voxels.count > 0 if field is None else ~np.isnan(field.values)
+        occupied = np.bincount(volume.voxels.at[axis][shown], minlength=layers)
         zero = -first
         return zero if 0 <= zero < layers and occupied[zero] >= _SPARSE * occupied.max() else int(occupied.argmax())
     cells = at / size - first
@@ -157,7 +168,7 @@ def layer_at(volume: VolumeData, axis: int, at: float | None, field: Field | Non
 
 def plane_extents(volume: VolumeData, axis: int) -> tuple[float, float]:
     """Width and height of the drawn plane [m]."""
-    size = [volume.count.shape[across] * volume.voxel_size_m for across in ACROSS[axis]]
+    size = [volume.shape[across] * volume.voxel_size_m for across in ACROSS[axis]]
     width, height = (max(extent, _THINNEST * max(size)) * 1.04 for extent in size)
     return width, height
 
@@ -166,11 +177,10 @@ def draw_plane(axes: Axes, volume: VolumeData, field: Field, axis: int, layer: i
     """Draw one layer of voxels normal to an axis, with the labels of its axes."""
     horizontal, vertical = ACROSS[axis]
     edges = [
-        volume.first_voxel[across] * volume.voxel_size_m
-        + np.array([0, volume.count.shape[across]]) * volume.voxel_size_m
+        volume.first_voxel[across] * volume.voxel_size_m + np.array([0, volume.shape[across]]) * volume.voxel_size_m
         for across in (horizontal, vertical)
     ]
-    plane = np.ma.masked_invalid(field.values.take(layer, axis))
+    plane = np.ma.masked_invalid(field.plane(axis, layer))
     axes.imshow(
         plane.T,
         origin="lower",

@@ -36,9 +36,11 @@ def vector_planes(
     name = next(iter(volume.vectors)) if name is None else name
     if name not in volume.vectors:
         raise InputError("vector", f"the volume has no {name!r}; it holds {', '.join(volume.vectors)}")
-    vectors = volume.vectors[name].astype(np.float64)
-    size = np.linalg.norm(vectors, axis=3)
-    field = Field(size, quantity(f"mean {name}", volume.units.get(name)), value_range(0.0, float(np.nanmax(size))))
+    vectors = volume.voxels.vectors[name].astype(np.float64)
+    size = np.linalg.norm(vectors, axis=1)
+    largest = float(np.nanmax(size))
+    label = quantity(f"mean {name}", volume.units.get(name))
+    field = Field(volume.voxels, size, label, value_range(0.0, largest))
     extents = [plane_extents(volume, axis) for axis in range(3)]
     widths = [width for width, _ in extents]
     scale = min(11.0 / sum(widths), 4.4 / max(height for _, height in extents))
@@ -46,21 +48,21 @@ def vector_planes(
     figure = new_figure(max(sum(widths) * scale + 2.6, 6.0), max(tallest + 1.0, 2.4))
     panels = figure.subplots(1, 3, width_ratios=widths)
     for axis, (axes, coordinate) in enumerate(zip(panels, at, strict=True)):
-        fullest = volume.centers(axis)[np.count_nonzero(volume.count, axis=ACROSS[axis]).argmax()]
+        fullest = volume.centers(axis)[np.bincount(volume.voxels.at[axis][volume.voxels.count > 0]).argmax()]
         layer = layer_at(volume, axis, float(fullest) if coordinate is None else coordinate)
         draw_plane(axes, volume, field, axis, layer, frame)
-        _draw_lines(axes, volume, vectors, axis, layer)
+        plane = volume.voxels.plane(vectors, axis, layer)
+        _draw_lines(axes, volume, plane, axis, largest)
     add_color_bar(figure, field.norm, field.label, ax=list(panels), shrink=0.8, aspect=28, pad=0.02)
     add_title(figure, title)
     return figure
 
 
-def _draw_lines(axes: Axes, volume: VolumeData, vectors: np.ndarray, axis: int, layer: int) -> None:
-    """Stream lines of the part in the plane; arrows where the plane has too few cells for lines."""
-    plane = vectors.take(layer, axis)  # (a, b, 3) over the two other axes
+def _draw_lines(axes: Axes, volume: VolumeData, plane: np.ndarray, axis: int, largest: float) -> None:
+    """Stream lines of the part of vectors (a, b, 3) in the plane; arrows where it has too few cells for lines."""
     along, across = ACROSS[axis]
     u, v = plane[..., along].T, plane[..., across].T
-    felt = np.hypot(u, v) > _FELT * np.nanmax(np.linalg.norm(vectors, axis=3), initial=0.0)
+    felt = np.hypot(u, v) > _FELT * largest
     if not felt.any():
         return
     x, y = volume.centers(along), volume.centers(across)

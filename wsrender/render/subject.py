@@ -68,16 +68,16 @@ class Subject:
 
     def voxels(self) -> VolumeData:
         """Its volume data; InputError where there are none or all are empty."""
-        if self.volume is None or not self.volume.occupied.any():
+        if self.volume is None or not self.volume.n_occupied:
             raise InputError("view", f"the result of {self.name} holds no occupied voxel")
         return self.volume
 
     def dense_voxels(self) -> VolumeData:
         """Its volume data on voxels so large that gaps are gaps of the workspace, not between samples."""
         merged = volume = self.voxels()
-        for factor in range(2, max(volume.count.shape) // FEWEST_VOXELS + 1):
-            occupied = np.count_nonzero(merged.count)
-            if merged.count.sum() >= DENSE * occupied and occupied <= MOST_OCCUPIED:
+        for factor in range(2, max(volume.shape) // FEWEST_VOXELS + 1):
+            occupied = merged.n_occupied
+            if merged.voxels.count.sum() >= DENSE * occupied and occupied <= MOST_OCCUPIED:
                 break
             merged = coarser(volume, factor)
         return merged

@@ -1,7 +1,7 @@
 """The views: what each draws of its subjects."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -65,9 +65,9 @@ def boundary(subjects: Sequence[Subject], choice: Choice) -> Drawing:
     if len(subjects) > 1 and choice.index is None and choice.statistic is None:
         return _plain_boundaries(subjects, volumes, choice.alpha)
     fields, drawing = _fields(volumes, choice)
-    for volume, values in zip(volumes, fields, strict=True):
+    for volume, shown in zip(volumes, fields, strict=True):
         mesh = occupied_surface(volume)
-        colors = _vertex_colors(mesh.vertices, volume, values, drawing)
+        colors = _vertex_colors(mesh.vertices, volume, shown.dense(), drawing)
         drawing.layers.append(Surface(mesh.vertices, mesh.faces, colors=colors, alpha=choice.alpha, smooth=True))
     drawing.handles.append(Patch(facecolor=color_map()(0.5), alpha=max(choice.alpha, 0.3), label="workspace boundary"))
     drawing.notes.append(_lattice_note(volumes))
@@ -83,9 +83,9 @@ def solid(subjects: Sequence[Subject], choice: Choice) -> Drawing:
         return _faces(subjects, 1.0)
     volumes = [_cut_open(subject, choice.azimuth_deg) for subject in subjects]
     fields, drawing = _fields(volumes, choice)
-    for volume, values in zip(volumes, fields, strict=True):
+    for volume, shown in zip(volumes, fields, strict=True):
         mesh = occupied_surface(volume)
-        colors = _vertex_colors(mesh.vertices, volume, values, drawing)
+        colors = _vertex_colors(mesh.vertices, volume, shown.dense(), drawing)
         drawing.layers.append(Surface(mesh.vertices, mesh.faces, colors=colors, smooth=True))
     drawing.handles.append(Patch(facecolor=color_map()(0.5), label="workspace"))
     drawing.notes.append(_lattice_note(volumes))
@@ -121,8 +121,9 @@ def volume(subjects: Sequence[Subject], choice: Choice) -> Drawing:
     table[1:, :3] = color_map()(np.linspace(0, 1, 255))[:, :3]
     table[:, 3] = choice.alpha
     table[0] = 0
-    for voxels, values in zip(volumes, fields, strict=True):
-        levels = np.where(voxels.occupied, 1 + np.round(254 * np.nan_to_num(np.asarray(norm(values)))), 0)
+    for voxels, shown in zip(volumes, fields, strict=True):
+        shares = np.nan_to_num(np.asarray(norm(shown.dense())))
+        levels = np.where(voxels.occupied, 1 + np.round(254 * shares), 0)
         drawing.layers.append(Cloud(levels.astype(np.uint8), table, voxels.origin_m, voxels.voxel_size_m))
     drawing.handles.append(Patch(facecolor=color_map()(0.5), alpha=0.6, label="voxels"))
     drawing.notes.append(_lattice_note(volumes))
@@ -139,10 +140,10 @@ def slice(subjects: Sequence[Subject], choice: Choice) -> Drawing:
     norm, _ = drawing.scale or (Normalize(), "")
     layers = [layer_at(volumes[0], axis, at) for axis, at in enumerate(choice.at)]
     planes = [float(volumes[0].centers(axis)[layer]) for axis, layer in enumerate(layers)]
-    for voxels, values in zip(volumes, fields, strict=True):
+    for voxels, shown in zip(volumes, fields, strict=True):
         for axis, at in enumerate(planes):
-            if abs(at - voxels.centers(axis).mean()) < voxels.count.shape[axis] * voxels.voxel_size_m / 2:
-                drawing.layers.append(_plates(voxels, values, axis, layer_at(voxels, axis, at), norm))
+            if abs(at - voxels.centers(axis).mean()) < voxels.shape[axis] * voxels.voxel_size_m / 2:
+                drawing.layers.append(_plates(voxels, shown, axis, layer_at(voxels, axis, at), norm))
     drawing.layers += _shells(subjects, choice.alpha)
     drawing.handles.append(Patch(facecolor=color_map()(0.5), label="slices"))
     drawing.handles.append(Patch(facecolor=_SHELL_GREY, alpha=0.3, label="workspace boundary"))
@@ -155,7 +156,8 @@ def isosurface(subjects: Sequence[Subject], choice: Choice) -> Drawing:
     """Surface around the voxels whose value is at least a share of the maximum, in the translucent boundary."""
     volumes = [subject.dense_voxels() for subject in subjects]
     fields, drawing = _fields(volumes, choice)
-    for voxels, values in zip(volumes, fields, strict=True):
+    for voxels, shown in zip(volumes, fields, strict=True):
+        values = shown.dense()
         inside = voxels.occupied & (values >= choice.threshold * np.nanmax(values))
         kept = VolumeData(voxels.voxel_size_m, voxels.first_voxel, inside.astype(np.int64))
         mesh = occupied_surface(kept)
@@ -179,16 +181,16 @@ VIEWS: dict[str, Callable[[Sequence[Subject], Choice], Drawing]] = {
 }
 
 
-def _fields(volumes: Sequence[VolumeData], choice: Choice) -> tuple[list[np.ndarray], Drawing]:
+def _fields(volumes: Sequence[VolumeData], choice: Choice) -> tuple[list[Field], Drawing]:
     """The values per voxel of each volume, and a drawing whose scale spans them all."""
-    fields: list[Field] = [voxel_field(volume, choice.index, choice.statistic) for volume in volumes]
+    fields = [voxel_field(volume, choice.index, choice.statistic) for volume in volumes]
     if len({field.label for field in fields}) > 1:
         labels = ", ".join(field.label for field in fields)
         raise InputError("index", f"the results show different quantities ({labels}); name an index that all hold")
     norm = value_range(
         min(float(np.nanmin(field.values)) for field in fields), max(float(np.nanmax(field.values)) for field in fields)
     )
-    return [field.values for field in fields], Drawing(scale=(norm, fields[0].label))
+    return fields, Drawing(scale=(norm, fields[0].label))
 
 
 def _plain_boundaries(subjects: Sequence[Subject], volumes: Sequence[VolumeData], alpha: float) -> Drawing:
@@ -240,9 +242,9 @@ def _colors(shares: np.ndarray) -> np.ndarray:
     return color_map()(np.asarray(shares), bytes=True)[:, :3]
 
 
-def _plates(volume: VolumeData, values: np.ndarray, axis: int, layer: int, norm: Normalize) -> Plates:
+def _plates(volume: VolumeData, field: Field, axis: int, layer: int, norm: Normalize) -> Plates:
     """The occupied voxels of a layer as squares through their centres."""
-    plane = values.take(layer, axis)
+    plane = field.plane(axis, layer)
     cells = np.argwhere(np.isfinite(plane))
     across = [k for k in range(3) if k != axis]
     corners = np.empty((len(cells), 4, 3))
@@ -256,15 +258,10 @@ def _plates(volume: VolumeData, values: np.ndarray, axis: int, layer: int, norm:
 def _cut_open(subject: Subject, azimuth_deg: float) -> VolumeData:
     """The volume without the voxels between the arm and the eye."""
     volume = subject.dense_voxels()
-    centers = np.stack(np.meshgrid(*map(volume.centers, range(3)), indexing="ij"), axis=-1)
-    hidden = _towards_eye(centers[volume.occupied], subject, azimuth_deg)
-    count = volume.count.copy()
-    count[volume.occupied] = np.where(hidden, 0, count[volume.occupied])
-    statistics = {
-        statistic: {name: np.where(count > 0, values, np.nan) for name, values in by_index.items()}
-        for statistic, by_index in volume.statistics.items()
-    }
-    return replace(volume, count=count, statistics=statistics)
+    voxels = volume.voxels.among(volume.voxels.count > 0)
+    centers = (voxels.at.T + volume.first_voxel + 0.5) * volume.voxel_size_m
+    kept = voxels.among(~_towards_eye(centers, subject, azimuth_deg))
+    return VolumeData.of_voxels(volume.voxel_size_m, volume.first_voxel, kept, volume.units)
 
 
 def _towards_eye(points: np.ndarray, subject: Subject, azimuth_deg: float) -> np.ndarray:

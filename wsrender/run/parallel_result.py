@@ -210,7 +210,7 @@ def refined_entry(plan: "ParallelPlan", partial: "Arrays", progress: Callable[[i
         inner, outer = inner_and_outer(volume.occupied)
         around = tuple(
             slice(f - o - 1, f - o + n + 1)
-            for f, o, n in zip(volume.first_voxel, plan.block.first_voxel, volume.count.shape, strict=True)
+            for f, o, n in zip(volume.first_voxel, plan.block.first_voxel, volume.shape, strict=True)
         )
         padded = np.pad(classes, 1)
         padded[tuple(slice(s.start + 1, s.stop + 1) for s in around)] = inner.astype(np.int8) + outer
@@ -280,7 +280,7 @@ def _bounds(volume: VolumeData | None) -> dict[str, list[float]]:
     if volume is None:
         return {}
     lower = volume.origin_m
-    return {"lower": lower.tolist(), "upper": (lower + np.array(volume.count.shape) * volume.voxel_size_m).tolist()}
+    return {"lower": lower.tolist(), "upper": (lower + np.array(volume.shape) * volume.voxel_size_m).tolist()}
 
 
 def _singularity_entry(volume: VolumeData, changes: dict[int, np.ndarray]) -> dict[str, Any]:

@@ -145,7 +145,7 @@ def _meshes(shared: VolumeData) -> "tuple[dict[str, trimesh.Trimesh], dict[str, 
 
     meshes = {"union": occupied_surface(shared)}
     both = reached_by(shared, 2)
-    if both.occupied.any():
+    if both.n_occupied:
         meshes["intersection"] = occupied_surface(both)
     return meshes, {name: surface_entry(name, mesh) for name, mesh in meshes.items()}
 

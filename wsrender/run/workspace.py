@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 
 from wsrender.engine import Partial, SweepPlan, devices_of, merge, sweep
-from wsrender.engine.memory import SHARE, available_bytes
 from wsrender.engine.voxel_data import volume_data
 from wsrender.errors import InputError, NotConvergedError, ResourceError
 from wsrender.global_indices import joint_means, workspace_mean
+from wsrender.memory import SHARE, available_bytes
 from wsrender.result import Result
 from wsrender.robot import Robot
 from wsrender.robot.indices import evaluation_of

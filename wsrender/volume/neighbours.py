@@ -2,6 +2,8 @@
 
 import numpy as np
 
+LAYERS = 32  # of voxels at a time
+
 
 def inner_and_outer(occupied: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Of a set of voxels (nx, ny, nz) bool: those with all 26 neighbours in it, and it with all its neighbours.
@@ -14,6 +16,19 @@ def inner_and_outer(occupied: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         inner = inner & before & after
         before, after = _shifted(outer, 1, axis), _shifted(outer, -1, axis)
         outer = outer | before | after
+    return inner, outer
+
+
+def inner_and_outer_counts(occupied: np.ndarray) -> tuple[int, int]:
+    """Numbers of the voxels that `inner_and_outer` gives, counted in parts, so that it takes little memory."""
+    inner = outer = 0
+    for start in range(-1, len(occupied) + 1, LAYERS):
+        stop = min(start + LAYERS, len(occupied) + 1)
+        low = max(start - 1, 0)
+        more_inner, more_outer = inner_and_outer(occupied[low : stop + 1])  # from the layer low - 1 on
+        part = slice(start - low + 1, stop - low + 1)
+        inner += int(np.count_nonzero(more_inner[part]))
+        outer += int(np.count_nonzero(more_outer[part]))
     return inner, outer
 
 

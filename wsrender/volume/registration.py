@@ -1,7 +1,6 @@
 """Volumes of several robots on one block of the lattice."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 
@@ -18,16 +17,14 @@ def registered(volumes: Sequence[VolumeData]) -> list[VolumeData]:
         sizes = ", ".join(f"{volume.voxel_size_m:g}" for volume in volumes)
         raise InputError("voxel_size_m", f"must be the same for all volumes, not {sizes}")
     first = np.min([volume.first_voxel for volume in volumes], axis=0)
-    end = np.max([np.add(volume.first_voxel, volume.count.shape) for volume in volumes], axis=0)
-    return [_on_block(volume, first, end - first) for volume in volumes]
-
-
-def _on_block(volume: VolumeData, first: np.ndarray, shape: np.ndarray) -> VolumeData:
-    before = np.subtract(volume.first_voxel, first)
-    widths = list(zip(before, shape - before - volume.count.shape, strict=True))
-    statistics = {
-        statistic: {name: np.pad(values, widths, constant_values=np.nan) for name, values in by_index.items()}
-        for statistic, by_index in volume.statistics.items()
-    }
-    x, y, z = (int(at) for at in first)
-    return replace(volume, first_voxel=(x, y, z), count=np.pad(volume.count, widths), statistics=statistics)
+    end = np.max([np.add(volume.first_voxel, volume.shape) for volume in volumes], axis=0)
+    (x, y, z), (nx, ny, nz) = first.tolist(), (end - first).tolist()
+    return [
+        VolumeData.of_voxels(
+            volume.voxel_size_m,
+            (x, y, z),
+            volume.voxels.moved((nx, ny, nz), np.subtract(volume.first_voxel, first)),
+            volume.units,
+        )
+        for volume in volumes
+    ]

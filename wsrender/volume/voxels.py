@@ -1,0 +1,99 @@
+"""What the voxels of a block hold, without those that hold nothing."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from math import prod
+
+import numpy as np
+
+Values = Mapping[str, np.ndarray]
+
+
+@dataclass(frozen=True, eq=False)
+class Voxels:
+    """The V voxels of a block that hold something: a sample, or a value.
+
+    ``shape`` is the block's, (nx, ny, nz); ``cells`` (V,) int64, sorted: their numbers in it, z fastest; ``count`` (V,)
+    int64: samples; ``statistics[s][name]`` (V,) and ``vectors[name]`` (V, 3): NaN where unknown.
+    """
+
+    shape: tuple[int, int, int]
+    cells: np.ndarray
+    count: np.ndarray
+    statistics: Mapping[str, Values] = field(default_factory=dict)
+    vectors: Values = field(default_factory=dict)
+
+    @classmethod
+    def of_arrays(cls, count: np.ndarray, statistics: Mapping[str, Values], vectors: Values) -> "Voxels":
+        """From dense arrays (nx, ny, nz), of vectors (nx, ny, nz, 3)."""
+        holds = count != 0
+        for array in (*(array for by_index in statistics.values() for array in by_index.values()), *vectors.values()):
+            known = ~np.isnan(array) if array.dtype.kind == "f" else np.ones(array.shape, bool)
+            holds = holds | (known.any(axis=3) if array.ndim == 4 else known)
+        nx, ny, nz = count.shape
+
+        def taken(array: np.ndarray) -> np.ndarray:
+            return array[holds]
+
+        of_statistics = {s: _mapped(by_index, taken) for s, by_index in statistics.items()}
+        return cls((nx, ny, nz), np.flatnonzero(holds), count[holds], of_statistics, _mapped(vectors, taken))
+
+    @property
+    def at(self) -> np.ndarray:
+        """Places of the voxels in the block, (3, V) int64."""
+        _nx, ny, nz = (max(size, 1) for size in self.shape)
+        return np.stack([self.cells // (ny * nz), self.cells // nz % ny, self.cells % nz])
+
+    def among(self, kept: np.ndarray | slice) -> "Voxels":
+        """Some of the voxels: a mask (V,), places in increasing order, or a range of them."""
+        return self._changed(self.shape, self.cells[kept], lambda values: values[kept])
+
+    def moved(self, shape: tuple[int, int, int], by: np.ndarray) -> "Voxels":
+        """The same in a block of another shape, where they stand ``by`` (3,) voxels farther."""
+        (x, y, z), (_nx, ny, nz) = self.at + np.asarray(by)[:, None], shape
+        return self._changed(shape, (x * ny + y) * nz + z, lambda values: values)
+
+    @classmethod
+    def joined(cls, parts: "Sequence[Voxels]") -> "Voxels":
+        """The voxels of all parts of one block, of which no two hold the same."""
+        cells = np.concatenate([part.cells for part in parts])
+        order = np.argsort(cells, kind="stable")
+
+        def joined(of: Callable[[Voxels], np.ndarray]) -> np.ndarray:
+            return np.concatenate([of(part) for part in parts])[order]
+
+        first = parts[0]
+        statistics = {
+            s: {name: joined(lambda part, s=s, name=name: part.statistics[s][name]) for name in by_index}
+            for s, by_index in first.statistics.items()
+        }
+        vectors = {name: joined(lambda part, name=name: part.vectors[name]) for name in first.vectors}
+        return cls(first.shape, cells[order], joined(lambda part: part.count), statistics, vectors)
+
+    def dense(self, values: np.ndarray) -> np.ndarray:
+        """Values (V,) or (V, 3) of the voxels as an array of the block: NaN, or of whole numbers 0, in the others."""
+        array = empty_array((prod(self.shape), *values.shape[1:]), values.dtype)
+        array[self.cells] = values
+        return array.reshape(*self.shape, *values.shape[1:])
+
+    def plane(self, values: np.ndarray, axis: int, layer: int) -> np.ndarray:
+        """One layer of what ``dense`` gives."""
+        at = self.at
+        here = at[axis] == layer
+        across = [k for k in range(3) if k != axis]
+        plane = empty_array((*(self.shape[k] for k in across), *values.shape[1:]), values.dtype)
+        plane[tuple(at[across][:, here])] = values[here]
+        return plane
+
+    def _changed(self, shape: tuple[int, int, int], cells: np.ndarray, of: Callable[[np.ndarray], np.ndarray]):
+        statistics = {s: _mapped(by_index, of) for s, by_index in self.statistics.items()}
+        return Voxels(shape, cells, of(self.count), statistics, _mapped(self.vectors, of))
+
+
+def empty_array(shape: tuple[int, ...], dtype: np.dtype) -> np.ndarray:
+    """What arrays hold of voxels that hold nothing: NaN, or of whole numbers 0."""
+    return np.full(shape, np.nan, dtype) if dtype.kind == "f" else np.zeros(shape, dtype)
+
+
+def _mapped(values: Values, of: Callable[[np.ndarray], np.ndarray]) -> dict[str, np.ndarray]:
+    return {name: of(array) for name, array in values.items()}
