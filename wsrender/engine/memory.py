@@ -27,5 +27,5 @@ def as_type(values: wp.array, dtype) -> wp.array:
 
 
 def fetched(values: wp.array, start: int, stop: int) -> np.ndarray:
-    """Part of an array on the host, its own memory on the CPU, else a copy; it may be empty, unlike a slice of Warp's."""
+    """Part of an array on the host, its own memory on the CPU, else a copy; unlike a slice of Warp it may be empty."""
     return values[start:stop].numpy() if start < stop else np.empty(0, wp.dtype_to_numpy(values.dtype))
