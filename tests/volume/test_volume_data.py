@@ -1,0 +1,35 @@
+import numpy as np
+import pytest
+
+from tests.export.sample_data import assert_same_volume, random_volume
+from wsrender.volume import volume_data
+from wsrender.volume.registration import registered
+from wsrender.volume.volume_data import VolumeData
+
+
+@pytest.mark.parametrize("kept", [0, 1 << 26])
+@pytest.mark.parametrize("shape", [(5, 4, 3), (1, 7, 1), (0, 0, 0)], ids=str)
+def test_arrays_and_voxels_hold_the_same(shape, kept, monkeypatch):
+    monkeypatch.setattr(volume_data, "KEPT", kept)
+    whole = random_volume(shape) if np.prod(shape) else VolumeData(0.05, (0, 0, 0), np.zeros(shape, np.int64))
+    vectors = np.where(whole.count[..., None] > 1, np.random.default_rng(0).normal(size=(*shape, 3)), np.nan)
+    whole.vectors = {"force": vectors}
+    found = VolumeData.of_voxels(whole.voxel_size_m, whole.first_voxel, whole.voxels, whole.units)
+    assert_same_volume(whole, found)
+    np.testing.assert_array_equal(found.vectors["force"], vectors)
+    np.testing.assert_array_equal(found.occupied, whole.count > 0)
+    assert found.n_occupied == np.count_nonzero(whole.count)
+    for axis in range(3):
+        for layer in range(shape[axis]):
+            plane = whole.voxels.plane(whole.voxels.count, axis, layer)
+            np.testing.assert_array_equal(plane, whole.count.take(layer, axis))
+
+
+def test_values_of_voxels_without_samples_stay():
+    label = np.array([[[np.nan, 1.0, 0.0]]], np.float32)
+    volume = VolumeData(0.1, (0, 0, 0), np.array([[[0, 2, 0]]]), {"center": {"label": label}})
+    (other, again) = registered([VolumeData(0.1, (-1, 0, 1), np.array([[[1]]])), volume])
+    assert again.shape == (2, 1, 3) and again.first_voxel == (-1, 0, 0)
+    np.testing.assert_array_equal(again.statistics["center"]["label"][1:], label)
+    np.testing.assert_array_equal(again.count[1:], volume.count)
+    assert other.count[0, 0, 1] == 1 and other.count.sum() == 1
