@@ -143,6 +143,19 @@ def test_foreign_hdf5_is_refused(tmp_path):
         read_volume_vtkhdf(tmp_path / "volume.vtkhdf")
 
 
+@pytest.mark.parametrize("shape", [(1, 1, 1), (3, 4, 4), (2, 4, 5), (3,)], ids=str)
+def test_a_file_whose_arrays_differ_in_shape_is_refused(tmp_path, shape):
+    path = tmp_path / "volume.vtkhdf"
+    write_volume_vtkhdf(random_volume((5, 4, 3)), path)
+    with h5py.File(path, "a") as file:
+        cells = file["VTKHDF/CellData"]
+        attributes = dict(cells["mean_x"].attrs)
+        del cells["mean_x"]
+        cells.create_dataset("mean_x", data=np.ones(shape, np.float32)).attrs.update(attributes)
+    with pytest.raises(InputError, match=r"volume\.vtkhdf: cannot be read as volume data"):
+        read_volume_vtkhdf(path)
+
+
 def test_arrays_of_another_shape_are_refused():
     count = np.ones((2, 2, 2), int)
     with pytest.raises(InputError, match=r"statistics\.mean\.w: has shape \(2, 2, 1\); the volume has \(2, 2, 2\)"):

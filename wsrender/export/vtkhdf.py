@@ -113,7 +113,7 @@ def read_volume_vtkhdf(path: str | Path) -> VolumeData:
     try:
         with h5py.File(path, "r") as file:
             return _read(file)
-    except (OSError, KeyError, ValueError, TypeError) as error:
+    except (OSError, KeyError, IndexError, ValueError, TypeError) as error:
         if isinstance(error, InputError):
             raise
         raise InputError(path.name, f"cannot be read as volume data: {error}") from error
