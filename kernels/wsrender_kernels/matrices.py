@@ -1,7 +1,11 @@
 """Functions of one matrix, written out whole for any number of rows and columns.
 
 Warp's own matrix operations stay loops from some 60 numbers on, and the lane loop around them is then not vectorised.
+Algorithms that go through a matrix number by number are written out as C++, of one variable per number: Warp's
+statements, several calls for each operation on a matrix in memory, would take most of the time to compile a kernel.
 """
+
+from collections.abc import Iterable
 
 import warp as wp
 
@@ -39,3 +43,18 @@ def as_it_is(real, rows: int, columns: int):
         return A
 
     return unchanged
+
+
+def written_out(real, *lines: str) -> str:
+    """C++ body of a native device function of these lines, in which R is the working precision."""
+    return "\n".join([f"using R = wp::{real.__name__};", *lines])
+
+
+def minus(terms: Iterable[str]) -> str:
+    """C++ of what is subtracted from an expression, one term after the other."""
+    return "".join(f" - {term}" for term in terms)
+
+
+def plus(terms: Iterable[str]) -> str:
+    """C++ of what is added to an expression, one term after the other."""
+    return "".join(f" + {term}" for term in terms)

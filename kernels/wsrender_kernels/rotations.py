@@ -10,7 +10,7 @@ import warp as wp
 
 from wsrender_kernels.elementary import elementary
 from wsrender_kernels.factories import factory
-from wsrender_kernels.matrices import as_it_is, transpose
+from wsrender_kernels.matrices import as_it_is, plus, transpose, written_out
 
 SWEEPS = {wp.float32: 4, wp.float64: 5}  # of a triangular factor
 
@@ -28,7 +28,7 @@ def by_rotations(real, m: int, n: int, graded: bool, inline: bool):
     ROUNDS, NUMBER_OF_SWEEPS = _rounds(RANK), SWEEPS[real]
     ZERO, ONE, TINY = real(0.0), real(1.0), tiny(real)
 
-    @wp.func
+    @wp.func(inline=True)  # or CUDA's compiler, optimizing little, passes matrices through memory
     def start(A: mat_mn):
         W = oriented(ordered(A))
         # Unit scale, so that squares of small robots' lengths do not underflow.
@@ -222,53 +222,50 @@ def _longest_rows_first(real, rows: int, columns: int):
 @factory
 def _triangular_factor(real, count: int, length: int):
     """Device function vectors (count, length) -> R (min(count, length), count), vectors P = Q R with pivoting."""
-    rank = min(count, length)
-    mat, vec_count = wp.types.matrix((count, length), real), wp.types.vector(count, real)
-    factor_type = wp.types.matrix((rank, count), real)
-    LAST, LAST_COORDINATE, STEPS = count - 1, length - 1, min(count, length - 1)
-    ZERO, ONE, TINY = real(0.0), real(1.0), tiny(real)
-    by_coordinate = transpose(real, count, length)
+    mat, factor_type = wp.types.matrix((count, length), real), wp.types.matrix((min(count, length), count), real)
 
-    @wp.func
-    def triangular_factor(vectors: mat):
-        out = vectors
-        for k in range(STEPS):
-            # The longest of the vectors that are left comes next. Lengths are those across the coordinates before k.
-            sizes = vec_count()
-            for i in range(k, count):
-                sizes[i] = out[i, k] * out[i, k]
-                for r in range(LAST_COORDINATE, k, -1):
-                    sizes[i] += out[i, r] * out[i, r]
-            for i in range(LAST, k, -1):
-                swap = sizes[i] > sizes[i - 1]
-                sizes[i - 1] = wp.max(sizes[i], sizes[i - 1])
-                a = out[i - 1]
-                b = out[i]
-                out[i - 1] = wp.where(swap, b, a)
-                out[i] = wp.where(swap, a, b)
-            # A reflection turns it onto coordinate k.
-            reflected = wp.copysign(wp.sqrt(sizes[k]), out[k, k])
-            first = out[k, k] + reflected
-            size = reflected * first
-            scale = wp.where(size > TINY, ONE / wp.max(size, TINY), ZERO)
-            for i in range(LAST, k, -1):
-                along = first * out[i, k]
-                for r in range(LAST_COORDINATE, k, -1):
-                    along += out[k, r] * out[i, r]
-                along *= scale
-                out[i, k] -= along * first
-                for r in range(LAST_COORDINATE, k, -1):
-                    out[i, r] -= along * out[k, r]
-            out[k, k] = -reflected
-            for r in range(LAST_COORDINATE, k, -1):
-                out[k, r] = ZERO
-        coordinates = by_coordinate(out)
-        R = factor_type()
-        for k in range(rank):
-            R[k] = coordinates[k]
-        return R
+    @wp.func_native(_triangular_factor_in_cpp(real, count, length))
+    def triangular_factor(vectors: mat) -> factor_type: ...
 
     return triangular_factor
+
+
+def _triangular_factor_in_cpp(real, count: int, length: int) -> str:
+    """Written out: see `matrices`. ``v0_1`` is coordinate 1 of the first vector, ``size0`` its squared length."""
+    rank = min(count, length)
+    lines = [f"R v{i}_{r} = vectors.data[{i}][{r}];" for i in range(count) for r in range(length)]
+    lines += [f"R size{i};" for i in range(count)]
+    for k in range(min(count, length - 1)):
+        later, others = range(length - 1, k, -1), range(count - 1, k, -1)
+        # The longest of the vectors that are left comes next. Lengths are those across the coordinates before k.
+        for i in range(k, count):
+            lines.append(f"size{i} = v{i}_{k} * v{i}_{k}{plus(f'v{i}_{r} * v{i}_{r}' for r in later)};")
+        for i in others:
+            lines.append(f"swap = size{i} > size{i - 1};")
+            lines.append(f"size{i - 1} = wp::max(size{i}, size{i - 1});")
+            for r in range(length):
+                a, b = f"v{i - 1}_{r}", f"v{i}_{r}"
+                lines.append(f"before = {a}; {a} = swap ? {b} : before; {b} = swap ? before : {b};")
+        # A reflection turns it onto coordinate k.
+        lines.append(f"reflected = wp::copysign(wp::sqrt(size{k}), v{k}_{k});")
+        lines.append(f"v{k}_{k} += reflected;")
+        lines.append(f"size = reflected * v{k}_{k};")
+        lines.append("scale = size > TINY ? R(1) / wp::max(size, TINY) : R(0);")
+        for i in others:
+            lines.append(f"along = (v{k}_{k} * v{i}_{k}{plus(f'v{k}_{r} * v{i}_{r}' for r in later)}) * scale;")
+            lines += [f"v{i}_{r} -= along * v{k}_{r};" for r in (k, *later)]
+        lines.append(f"v{k}_{k} = -reflected;")
+        lines += [f"v{k}_{r} = R(0);" for r in later]
+    lines += [f"factor.data[{k}][{i}] = v{i}_{k};" for k in range(rank) for i in range(count)]
+    return written_out(
+        real,
+        f"const R TINY = R({float(tiny(real))});",
+        "R before, reflected, size, scale, along;",
+        "bool swap;",
+        f"wp::mat_t<{rank}, {count}, R> factor;",
+        *lines,
+        "return factor;",
+    )
 
 
 @factory

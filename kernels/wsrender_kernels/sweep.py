@@ -91,11 +91,8 @@ class Shape:
 
     @property
     def long(self) -> bool:
-        """Whether the compiler for an H200, optimizing all it can, takes some 8 s or more."""
-        most_joints = 9
-        if self.many_rows:  # in float64, which runs out of registers anyway, slower at most by 7 %
-            most_joints = 7 if self.real is wp.float32 else 5
-        return self.dynamic and len(self.sources) > most_joints
+        """Whether the compiler for an H200, optimizing all it can, takes some 6 s or more."""
+        return self.dynamic and len(self.sources) > 9
 
     @property
     def n_outputs(self) -> int:
