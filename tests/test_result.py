@@ -11,6 +11,7 @@ from wsrender.errors import InputError
 from wsrender.export.artifacts import sha256
 from wsrender.result import Result
 from wsrender.volume.table import Table
+from wsrender.volume.volume_data import VolumeData
 
 SKELETON = np.cumsum(np.ones((2, 5, 3)), axis=1)
 
@@ -124,8 +125,7 @@ def test_map_alone_and_document_alone_are_restored(tmp_path):
 
 
 def test_empty_map_and_volume_without_samples_are_saved(tmp_path):
-    volume = random_volume((2, 2, 2))
-    volume.count[:] = 0
+    volume = VolumeData(0.1, (0, 0, 0), np.zeros((2, 2, 2), np.int64), {"mean": {"x": np.full((2, 2, 2), np.nan)}})
     Result(document(), map=random_map(0), volume=volume).save(tmp_path / "out")
     assert len(Result.load(tmp_path / "out").map) == 0
 

@@ -46,7 +46,7 @@ class VoxelVolumes:
 def voxel_volumes(volume: VolumeData) -> VoxelVolumes:
     """Estimates of the reachable volume from occupied voxels; inner and outer are no rigorous bounds."""
     voxel = volume.voxel_size_m**3
-    counts = volume.n_occupied, *inner_and_outer_counts(volume.occupied)
+    counts = volume.n_occupied, *inner_and_outer_counts(volume.voxels)
     return VoxelVolumes(*(count * voxel for count in counts))
 
 

@@ -51,11 +51,11 @@ def test_voxels_that_do_not_fit_are_refused_with_their_numbers():
 
 
 def test_large_lattices_take_the_memory_of_their_occupied_voxels(monkeypatch, tmp_path):
-    """All of it, from sweep to files and back, but for the arrays that are asked for."""
+    """From sweep to files and back, but for the arrays that are asked for, and the surface's byte per voxel."""
     fine = {"robot": "phantom_omni", "sampling": ws.Random(20_000, seed=3), "device": "cpu"}
     names = ["manipulability", "inverse_condition_number"]
-    module = importlib.import_module("wsrender.volume.volume_data")
-    monkeypatch.setattr(module, "available_bytes", lambda: 1_000_000)
+    module = importlib.import_module("wsrender.volume.voxels")
+    monkeypatch.setattr(module, "available_bytes", lambda: 12_000_000)
     result = ws.analyze(**fine, indices=names, voxel_size_m=0.002, voxel_statistics=["count", "maximum", "mean"])
     result.save(tmp_path / "out")
     loaded = ws.Result.load(tmp_path / "out")
@@ -64,6 +64,10 @@ def test_large_lattices_take_the_memory_of_their_occupied_voxels(monkeypatch, tm
     for volume in (result.volume, loaded.volume):
         with pytest.raises(ResourceError, match=r"volume: \d+ x \d+ x \d+ voxels need .* 0\.0 GiB are free: take"):
             _ = volume.count
+        assert volume.occupied.sum() == len(voxels.cells)
+        with monkeypatch.context() as less, pytest.raises(ResourceError, match=r"0\.0 GiB are free"):
+            less.setattr(module, "available_bytes", lambda: 1_000_000)
+            _ = volume.occupied
     monkeypatch.undo()
     np.testing.assert_array_equal(loaded.volume.count, result.volume.count)
     for statistic in ("maximum", "mean"):
@@ -98,6 +102,7 @@ def test_slabs_of_the_lattice_change_no_bit(method, precision, device, monkeypat
         monkeypatch.setattr(slabs, "SHARE_SLAB", free * slabs.SHARE_SLAB / devices_of(device)[0].free_memory)
     monkeypatch.setattr(slabs, "available_bytes", lambda: free)
     assert len(slabs.fitted(plan.sweep.block, shape, devices_of(device)[:1], 20_000)[1]) in (4, 5)
+    monkeypatch.setattr(importlib.import_module("wsrender.engine.sweep"), "VOXELS_FETCHED", 777)  # in many parts too
     found = run.run_shard(plan, 0, done.append, threads=1).sweep
     for name in ("extremes", "totals", "cells", "count", "records", "sums"):
         assert getattr(found, name).tobytes() == getattr(expected, name).tobytes(), name

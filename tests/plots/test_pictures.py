@@ -56,6 +56,26 @@ def test_colours_of_robots_side_by_side_span_their_values_alone():
     assert len(images) >= 6 and {(image.norm.vmin, image.norm.vmax) for image in images[:6]} == {(5.0, 7.0)}
 
 
+def test_robots_side_by_side_are_cut_where_most_voxels_are_occupied():
+    """Not where most hold a value: labels of voxels without samples count for nothing."""
+    count = np.zeros((3, 3, 6), int)
+    count[:2, :2, 1] = 1
+    label = np.where(count > 0, 1.0, np.nan)
+    label[:, :, 4] = 0.0
+    volume = VolumeData(0.1, (0, 0, 0), count, {"maximum": {"x": label}})
+    figure = plots.side_by_side({"a": volume, "b": volume}, index="x")
+    shown = np.ma.filled(figure.axes[2].images[0].get_array(), np.nan)
+    np.testing.assert_array_equal(shown, label[:, :, 1].T)
+
+
+@pytest.mark.parametrize("vectors", [np.nan, 1.0])
+def test_vectors_of_a_volume_without_occupied_voxels_are_not_drawn(vectors):
+    shape = (3, 4, 5)
+    volume = VolumeData(0.1, (0, 0, 0), np.zeros(shape, int), vectors={"force": np.full((*shape, 3), vectors)})
+    with pytest.raises(InputError, match="volume: has no occupied voxel"):
+        plots.vector_planes(volume)
+
+
 def test_slice_without_coordinate_shows_zero_or_the_fullest_plane():
     count = np.ones((2, 2, 3), int)
     count[0, 0, 0] = 0

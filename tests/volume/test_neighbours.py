@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 
 from wsrender.volume.neighbours import LAYERS, inner_and_outer, inner_and_outer_counts
+from wsrender.volume.voxels import Voxels
 
 
 @pytest.mark.parametrize("layers", [0, 1, 2, LAYERS - 2, LAYERS - 1, LAYERS, 2 * LAYERS + 3])
@@ -9,4 +10,5 @@ from wsrender.volume.neighbours import LAYERS, inner_and_outer, inner_and_outer_
 def test_counts_in_parts_are_those_of_the_whole(layers, share):
     occupied = np.random.default_rng(layers).random((layers, 7, 5)) < share
     inner, outer = inner_and_outer(occupied)
-    assert inner_and_outer_counts(occupied) == (inner.sum(), outer.sum())
+    voxels = Voxels.of_arrays(occupied.astype(np.int64), {}, {})
+    assert inner_and_outer_counts(voxels) == (inner.sum(), outer.sum())

@@ -80,7 +80,7 @@ def _write(path: str | Path, description: str, arrays: Iterable[tuple[str, np.nd
         zipfile.ZipFile(temporary, "w", zipfile.ZIP_DEFLATED, compresslevel=1) as file,
     ):
         for name, array in chain([(DESCRIPTION, np.array(description))], arrays):
-            with file.open(zipfile.ZipInfo(f"{name}.npy"), "w", force_zip64=True) as member:
+            with file.open(f"{name}.npy", "w", force_zip64=True) as member:
                 np.lib.format.write_array(member, np.asarray(array), allow_pickle=False)
 
 

@@ -25,7 +25,7 @@ _COMPRESSION_LEVEL = 1  # voxel values are mostly noise in their low bits: highe
 
 
 def write_volume_vtkhdf(volume: VolumeData, path: str | Path) -> None:
-    """Write volume data as one ImageData with cell arrays; InputError where an array's shape differs."""
+    """Write volume data as one ImageData with cell arrays."""
     taken = {"count"}
     names, vectors = cell_names(volume, taken), vector_names(volume, taken)
     layers = _Layers(volume.voxels)
@@ -112,17 +112,21 @@ def read_volume_vtkhdf(path: str | Path) -> VolumeData:
     path = Path(path)
     try:
         with h5py.File(path, "r") as file:
-            return _read(file)
+            return _read(file, path.name)
     except (OSError, KeyError, IndexError, ValueError, TypeError) as error:
         if isinstance(error, InputError):
             raise
         raise InputError(path.name, f"cannot be read as volume data: {error}") from error
 
 
-def _read(file: Any) -> VolumeData:  # h5py's own types are unions of all that a name may hold
+def _read(file: Any, name: str) -> VolumeData:  # h5py's own types are unions of all that a name may hold
     root = file["VTKHDF"]
     cells = root["CellData"]
     nz, ny, nx = cells["count"].shape
+    for array, dataset in cells.items():
+        expected = (nz, ny, nx, 3) if "vector" in dataset.attrs else (nz, ny, nx)
+        if ("vector" in dataset.attrs or "statistic" in dataset.attrs) and dataset.shape != expected:
+            raise InputError(name, f"array {array!r} has shape {dataset.shape}, not {expected}")
     step = cells["count"].chunks[0] if cells["count"].chunks else max(1, nz)
     # Slab by slab, so that the arrays are never all held with their empty voxels.
     slabs = [

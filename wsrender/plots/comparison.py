@@ -31,7 +31,7 @@ def side_by_side(
     values = np.concatenate([field.values[np.isfinite(field.values)] for field in fields])
     norm = value_range(float(values.min()), float(values.max()))
     extents = [plane_extents(placed[0], axis) for axis in range(3)]
-    reached = np.unique(np.concatenate([volume.voxels.cells for volume in placed]))
+    reached = np.unique(np.concatenate([volume.voxels.cells[volume.voxels.count > 0] for volume in placed]))
     together = Voxels(placed[0].shape, reached, np.ones_like(reached))
     widths, tallest = [width for width, _ in extents], max(height for _, height in extents)
     scale = min(9.6 / sum(widths), 3.2 / tallest)

@@ -17,7 +17,7 @@ def pictures_of(plot: ResultPlots, document: Mapping[str, Any]) -> Pictures:
     """What draws each picture that a result has data for, by its name; ``document`` is the result document."""
     pictures = _of_samples(plot)
     pictures |= {name: partial(plot.curves, name) for name in CURVES if len(plot.tables.get(name, ()))}
-    if plot.volume is not None and plot.volume.vectors:
+    if plot.volume is not None and plot.volume.vectors and plot.volume.n_occupied:
         pictures["field"] = plot.vectors
     if {"posture", "ellipsoids"} <= set(plot.tables):
         pictures["posture"] = plot.posture

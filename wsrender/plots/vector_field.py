@@ -29,13 +29,15 @@ def vector_planes(
     """Three planes, normal to x, y and z at ``at`` [m] (by default those with most voxels): stream lines of a vector.
 
     Lines follow the vector's part in the plane, colours are its whole size. Raises InputError for a volume without
-    vectors or without the one asked, and a plane outside.
+    vectors, without the one asked or without occupied voxels, and a plane outside.
     """
     if not volume.vectors:
         raise InputError("volume", "holds no vectors")
     name = next(iter(volume.vectors)) if name is None else name
     if name not in volume.vectors:
         raise InputError("vector", f"the volume has no {name!r}; it holds {', '.join(volume.vectors)}")
+    if not volume.n_occupied:
+        raise InputError("volume", "has no occupied voxel, so there is nothing to draw")
     vectors = volume.voxels.vectors[name].astype(np.float64)
     size = np.linalg.norm(vectors, axis=1)
     largest = float(np.nanmax(size))

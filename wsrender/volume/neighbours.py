@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from wsrender.volume.voxels import Voxels
+
 LAYERS = 32  # of voxels at a time
 
 
@@ -19,13 +21,20 @@ def inner_and_outer(occupied: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return inner, outer
 
 
-def inner_and_outer_counts(occupied: np.ndarray) -> tuple[int, int]:
-    """Numbers of the voxels that `inner_and_outer` gives, counted in parts, so that it takes little memory."""
+def inner_and_outer_counts(voxels: Voxels) -> tuple[int, int]:
+    """Numbers of the voxels that `inner_and_outer` gives of the occupied ones, counted in parts, of little memory."""
+    nx, ny, nz = voxels.shape
+    cells = voxels.cells[voxels.count > 0]
     inner = outer = 0
-    for start in range(-1, len(occupied) + 1, LAYERS):
-        stop = min(start + LAYERS, len(occupied) + 1)
-        low = max(start - 1, 0)
-        more_inner, more_outer = inner_and_outer(occupied[low : stop + 1])  # from the layer low - 1 on
+    for start in range(-1, nx + 1, LAYERS):
+        stop = min(start + LAYERS, nx + 1)
+        low, high = max(start - 1, 0), min(stop + 1, nx)
+        first, last = np.searchsorted(cells, [low * ny * nz, high * ny * nz])
+        if first == last:
+            continue
+        occupied = np.zeros((high - low, ny, nz), bool)
+        occupied.flat[cells[first:last] - low * ny * nz] = True
+        more_inner, more_outer = inner_and_outer(occupied)  # from the layer low - 1 on
         part = slice(start - low + 1, stop - low + 1)
         inner += int(np.count_nonzero(more_inner[part]))
         outer += int(np.count_nonzero(more_outer[part]))

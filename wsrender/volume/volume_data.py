@@ -2,15 +2,13 @@
 
 from collections.abc import Iterator, Mapping
 from functools import cached_property
-from math import prod
 
 import numpy as np
 
-from wsrender.errors import InputError, ResourceError
-from wsrender.memory import SHARE, available_bytes
+from wsrender.errors import InputError
 from wsrender.volume.voxels import Values, Voxels
 
-KEPT = 1 << 26  # voxels of a block up to which its arrays are kept once they are made
+KEPT = 1 << 26  # numbers in all arrays of a volume that are kept once they are made
 
 
 class VolumeData:
@@ -23,7 +21,7 @@ class VolumeData:
 
     ``voxels`` is the same without the empty voxels. A volume made of them (`of_voxels`) makes each array when it is
     asked for, which raises ResourceError, with the numbers, where it does not fit in memory. One made of arrays raises
-    InputError, naming the array, where its shape is not that of ``count``.
+    InputError, naming the array, where its shape is not that of ``count``. Arrays are read-only: copy one to change it.
     """
 
     statistics: Mapping[str, Values]
@@ -41,8 +39,9 @@ class VolumeData:
         self.voxel_size_m, self.first_voxel, self.units = voxel_size_m, first_voxel, dict(units or {})
         nx, ny, nz = count.shape
         self.shape = nx, ny, nz
-        self._count: Values = {"count": count}
-        self.statistics, self.vectors = dict(statistics or {}), dict(vectors or {})
+        self._count: Values = _read_only({"count": count})
+        self.statistics = {s: _read_only(by_index) for s, by_index in (statistics or {}).items()}
+        self.vectors = _read_only(vectors or {})
         for statistic, by_index in self.statistics.items():
             for name, values in by_index.items():
                 _check_shape(f"statistics.{statistic}.{name}", values, self.shape)
@@ -61,9 +60,10 @@ class VolumeData:
         volume = cls.__new__(cls)
         volume.voxel_size_m, volume.first_voxel, volume.units = voxel_size_m, first_voxel, dict(units or {})
         volume.shape, volume.voxels = voxels.shape, voxels
-        volume._count = _Arrays(voxels, {"count": voxels.count})
-        volume.statistics = {s: _Arrays(voxels, by_index) for s, by_index in voxels.statistics.items()}
-        volume.vectors = _Arrays(voxels, voxels.vectors)
+        made: dict[int, np.ndarray] = {}
+        volume._count = _Arrays(voxels, {"count": voxels.count}, made)
+        volume.statistics = {s: _Arrays(voxels, by_index, made) for s, by_index in voxels.statistics.items()}
+        volume.vectors = _Arrays(voxels, voxels.vectors, made)
         return volume
 
     @cached_property
@@ -101,28 +101,35 @@ def _check_shape(field: str, values: np.ndarray, shape: tuple[int, ...]) -> None
         raise InputError(field, f"has shape {values.shape}; the volume has {shape}")
 
 
-class _Arrays(Mapping[str, np.ndarray]):
-    """Dense arrays of voxels by name, each made when it is asked for."""
+def _read_only(arrays: Values) -> dict[str, np.ndarray]:
+    """Views that cannot be written to: `VolumeData.voxels` would not change with them."""
+    views = {name: array.view() for name, array in arrays.items()}
+    for view in views.values():
+        view.flags.writeable = False
+    return views
 
-    def __init__(self, voxels: Voxels, values: Values):
-        self._voxels, self._values, self._made = voxels, values, {}
+
+class _Arrays(Mapping[str, np.ndarray]):
+    """Dense arrays of voxels by name, each made when it is asked for.
+
+    ``made`` holds those that a volume keeps, by the identity of their values.
+    """
+
+    def __init__(self, voxels: Voxels, values: Values, made: dict[int, np.ndarray]):
+        self._voxels, self._values, self._made = voxels, values, made
 
     def __getitem__(self, name: str) -> np.ndarray:
-        if name in self._made:
-            return self._made[name]
         values = self._values[name]
-        size = prod(self._voxels.shape)
-        needed, free = size * values[:1].nbytes if len(values) else 0, available_bytes()
-        if needed > SHARE * free:
-            raise ResourceError(
-                "volume",
-                f"{' x '.join(map(str, self._voxels.shape))} voxels need {needed / 2**30:.1f} GiB as an array; "
-                f"{free / 2**30:.1f} GiB are free: take volume.voxels, which holds those that are not empty",
-            )
+        if id(values) in self._made:
+            return self._made[id(values)]
         array = self._voxels.dense(values)
-        if size <= KEPT:
-            self._made[name] = array
+        array.flags.writeable = False
+        if sum(kept.size for kept in self._made.values()) + array.size <= KEPT:
+            self._made[id(values)] = array
         return array
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._values  # a Mapping's own would make the array
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._values)

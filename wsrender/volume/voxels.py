@@ -6,6 +6,9 @@ from math import prod
 
 import numpy as np
 
+from wsrender.errors import ResourceError
+from wsrender.memory import SHARE, available_bytes
+
 Values = Mapping[str, np.ndarray]
 
 
@@ -71,7 +74,19 @@ class Voxels:
         return cls(first.shape, cells[order], joined(lambda part: part.count), statistics, vectors)
 
     def dense(self, values: np.ndarray) -> np.ndarray:
-        """Values (V,) or (V, 3) of the voxels as an array of the block: NaN, or of whole numbers 0, in the others."""
+        """Values (V,) or (V, 3) of the voxels as an array of the block: NaN, or of whole numbers 0, in the others.
+
+        Raises ResourceError, with the numbers, where the array does not fit in memory.
+        """
+        needed = prod((*self.shape, *values.shape[1:])) * values.itemsize
+        free = available_bytes()
+        if needed > SHARE * free:
+            raise ResourceError(
+                "volume",
+                f"{' x '.join(map(str, self.shape))} voxels need {needed / 2**30:.1f} GiB as an array; "
+                f"{free / 2**30:.1f} GiB are free: take volume.voxels, which holds those that are not empty, choose "
+                "larger voxels, or leave out formats of whole arrays (npz, mat)",
+            )
         array = empty_array((prod(self.shape), *values.shape[1:]), values.dtype)
         array[self.cells] = values
         return array.reshape(*self.shape, *values.shape[1:])
