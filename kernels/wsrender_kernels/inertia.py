@@ -21,7 +21,7 @@ from wsrender_kernels.kinematics import (
     frames_type,
     turns,
 )
-from wsrender_kernels.matrices import minus, written_out
+from wsrender_kernels.matrices import followed_by, written_out
 
 # Mass of the joint's link and all after it; of these, as if at the next joint's origin, with the link: first moment
 # xyz and inertia xx yy zz xy xz yz about the joint's origin; armature.
@@ -290,7 +290,7 @@ def inertia(real, n: int, sources: tuple[int, ...], plain: bool) -> SimpleNamesp
     def solve(m_rows: int):
         rows_type = wp.types.matrix((m_rows, n), real)
 
-        @wp.func_native(_solve_rows(real, n, m_rows))
+        @wp.func_native(_solve_rows_in_cpp(real, n, m_rows))
         def solve_rows(M: joint_inertia_type, A: rows_type) -> rows_type: ...
 
         return solve_rows
@@ -298,23 +298,25 @@ def inertia(real, n: int, sources: tuple[int, ...], plain: bool) -> SimpleNamesp
     return SimpleNamespace(inertia_matrix=inertia_matrix, solve=solve, joint_inertia_type=joint_inertia_type)
 
 
-def _solve_rows(real, n: int, m_rows: int) -> str:
-    """C++ of (M, A) -> X = A M^-1, written out (see `matrices`): L D L^T of M, then rows of A M^-1, M being symmetric.
+def _solve_rows_in_cpp(real, n: int, m_rows: int) -> str:
+    """(M, A) -> X = A M^-1 written out (see `matrices`): L D L^T of M, then the rows of A M^-1, M being symmetric.
 
     ``LD`` is L D, ``L`` without its diagonal of ones, ``P`` 1 / D.
     """
     lines = []
     for i in range(n):
         for j in range(i):
-            lines.append(f"const R LD{i}_{j} = M.data[{i}][{j}]{minus(f'LD{i}_{k} * L{j}_{k}' for k in range(j))};")
+            less = followed_by("-", (f"LD{i}_{k} * L{j}_{k}" for k in range(j)))
+            lines.append(f"const R LD{i}_{j} = M.data[{i}][{j}]{less};")
             lines.append(f"const R L{i}_{j} = LD{i}_{j} * P{j};")
-        lines.append(f"const R P{i} = R(1) / (M.data[{i}][{i}]{minus(f'L{i}_{j} * LD{i}_{j}' for j in range(i))});")
+        less = followed_by("-", (f"L{i}_{j} * LD{i}_{j}" for j in range(i)))
+        lines.append(f"const R P{i} = R(1) / (M.data[{i}][{i}]{less});")
     for r in range(m_rows):
         for i in range(n):
-            lines.append(f"R x{r}_{i} = A.data[{r}][{i}]{minus(f'x{r}_{k} * L{i}_{k}' for k in range(i))};")
-        for i in range(n):
-            lines.append(f"x{r}_{i} *= P{i};")
+            less = followed_by("-", (f"x{r}_{k} * L{i}_{k}" for k in range(i)))
+            lines.append(f"R x{r}_{i} = A.data[{r}][{i}]{less};")
+        lines += [f"x{r}_{i} *= P{i};" for i in range(n)]
         for i in reversed(range(n)):
-            lines.append(f"x{r}_{i} = x{r}_{i}{minus(f'x{r}_{k} * L{k}_{i}' for k in reversed(range(i + 1, n)))};")
-            lines.append(f"X.data[{r}][{i}] = x{r}_{i};")
+            less = followed_by("-", (f"x{r}_{k} * L{k}_{i}" for k in reversed(range(i + 1, n))))
+            lines.append(f"X.data[{r}][{i}] = x{r}_{i} = x{r}_{i}{less};")
     return written_out(real, f"wp::mat_t<{m_rows}, {n}, R> X;", *lines, "return X;")

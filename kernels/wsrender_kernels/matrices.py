@@ -50,11 +50,6 @@ def written_out(real, *lines: str) -> str:
     return "\n".join([f"using R = wp::{real.__name__};", *lines])
 
 
-def minus(terms: Iterable[str]) -> str:
-    """C++ of what is subtracted from an expression, one term after the other."""
-    return "".join(f" - {term}" for term in terms)
-
-
-def plus(terms: Iterable[str]) -> str:
-    """C++ of what is added to an expression, one term after the other."""
-    return "".join(f" + {term}" for term in terms)
+def followed_by(sign: str, terms: Iterable[str]) -> str:
+    """C++ of what is added to an expression or subtracted from it, one term after the other."""
+    return "".join(f" {sign} {term}" for term in terms)

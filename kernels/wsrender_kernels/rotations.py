@@ -10,7 +10,7 @@ import warp as wp
 
 from wsrender_kernels.elementary import elementary
 from wsrender_kernels.factories import factory
-from wsrender_kernels.matrices import as_it_is, plus, transpose, written_out
+from wsrender_kernels.matrices import as_it_is, followed_by, transpose, written_out
 
 SWEEPS = {wp.float32: 4, wp.float64: 5}  # of a triangular factor
 
@@ -231,7 +231,7 @@ def _triangular_factor(real, count: int, length: int):
 
 
 def _triangular_factor_in_cpp(real, count: int, length: int) -> str:
-    """Written out: see `matrices`. ``v0_1`` is coordinate 1 of the first vector, ``size0`` its squared length."""
+    """`_triangular_factor` written out (see `matrices`). ``v0_1``: coordinate 1 of vector 0; ``size0``: its square."""
     rank = min(count, length)
     lines = [f"R v{i}_{r} = vectors.data[{i}][{r}];" for i in range(count) for r in range(length)]
     lines += [f"R size{i};" for i in range(count)]
@@ -239,7 +239,8 @@ def _triangular_factor_in_cpp(real, count: int, length: int) -> str:
         later, others = range(length - 1, k, -1), range(count - 1, k, -1)
         # The longest of the vectors that are left comes next. Lengths are those across the coordinates before k.
         for i in range(k, count):
-            lines.append(f"size{i} = v{i}_{k} * v{i}_{k}{plus(f'v{i}_{r} * v{i}_{r}' for r in later)};")
+            more = followed_by("+", (f"v{i}_{r} * v{i}_{r}" for r in later))
+            lines.append(f"size{i} = v{i}_{k} * v{i}_{k}{more};")
         for i in others:
             lines.append(f"swap = size{i} > size{i - 1};")
             lines.append(f"size{i - 1} = wp::max(size{i}, size{i - 1});")
@@ -252,7 +253,8 @@ def _triangular_factor_in_cpp(real, count: int, length: int) -> str:
         lines.append(f"size = reflected * v{k}_{k};")
         lines.append("scale = size > TINY ? R(1) / wp::max(size, TINY) : R(0);")
         for i in others:
-            lines.append(f"along = (v{k}_{k} * v{i}_{k}{plus(f'v{k}_{r} * v{i}_{r}' for r in later)}) * scale;")
+            more = followed_by("+", (f"v{k}_{r} * v{i}_{r}" for r in later))
+            lines.append(f"along = (v{k}_{k} * v{i}_{k}{more}) * scale;")
             lines += [f"v{i}_{r} -= along * v{k}_{r};" for r in (k, *later)]
         lines.append(f"v{k}_{k} = -reflected;")
         lines += [f"v{k}_{r} = R(0);" for r in later]

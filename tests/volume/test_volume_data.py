@@ -1,3 +1,5 @@
+import pickle
+
 import numpy as np
 import pytest
 
@@ -43,6 +45,15 @@ def test_arrays_are_kept_up_to_a_limit_for_all_of_them(monkeypatch):
     first, second, third = (volume.statistics[s]["x"] for s in ("minimum", "maximum", "mean"))
     assert volume.statistics["minimum"]["x"] is first and volume.statistics["maximum"]["x"] is second
     assert volume.statistics["mean"]["x"] is not third
+
+
+def test_a_copy_makes_its_own_arrays():
+    """Through pickle, as to another process: what was kept stays that of its name."""
+    volume = of_voxels(random_volume((5, 4, 3)))
+    _ = volume.count, volume.statistics["mean"]["x"]
+    copy = pickle.loads(pickle.dumps(volume))
+    assert_same_volume(volume, copy)
+    assert copy.count is copy.count and len(copy._count._made) == 2 * len(volume.statistics["mean"]) + 1
 
 
 @pytest.mark.parametrize("made", [lambda whole: whole, of_voxels], ids=["arrays", "voxels"])

@@ -60,10 +60,13 @@ class VolumeData:
         volume = cls.__new__(cls)
         volume.voxel_size_m, volume.first_voxel, volume.units = voxel_size_m, first_voxel, dict(units or {})
         volume.shape, volume.voxels = voxels.shape, voxels
-        made: dict[int, np.ndarray] = {}
-        volume._count = _Arrays(voxels, {"count": voxels.count}, made)
-        volume.statistics = {s: _Arrays(voxels, by_index, made) for s, by_index in voxels.statistics.items()}
-        volume.vectors = _Arrays(voxels, voxels.vectors, made)
+        made: dict[tuple[str, str], np.ndarray] = {}
+        volume._count = _Arrays("count", voxels, {"count": voxels.count}, made)
+        volume.statistics = {
+            statistic: _Arrays(f"statistics.{statistic}", voxels, by_index, made)
+            for statistic, by_index in voxels.statistics.items()
+        }
+        volume.vectors = _Arrays("vectors", voxels, voxels.vectors, made)
         return volume
 
     @cached_property
@@ -102,7 +105,7 @@ def _check_shape(field: str, values: np.ndarray, shape: tuple[int, ...]) -> None
 
 
 def _read_only(arrays: Values) -> dict[str, np.ndarray]:
-    """Views that cannot be written to: `VolumeData.voxels` would not change with them."""
+    """Views that cannot be written to: `VolumeData.voxels` would not change with the arrays."""
     views = {name: array.view() for name, array in arrays.items()}
     for view in views.values():
         view.flags.writeable = False
@@ -110,22 +113,22 @@ def _read_only(arrays: Values) -> dict[str, np.ndarray]:
 
 
 class _Arrays(Mapping[str, np.ndarray]):
-    """Dense arrays of voxels by name, each made when it is asked for.
+    """Dense arrays of a ``kind`` by name, each made when it is asked for.
 
-    ``made`` holds those that a volume keeps, by the identity of their values.
+    ``made`` holds those that a volume keeps, of all kinds.
     """
 
-    def __init__(self, voxels: Voxels, values: Values, made: dict[int, np.ndarray]):
-        self._voxels, self._values, self._made = voxels, values, made
+    def __init__(self, kind: str, voxels: Voxels, values: Values, made: dict[tuple[str, str], np.ndarray]):
+        self._kind, self._voxels, self._values, self._made = kind, voxels, values, made
 
     def __getitem__(self, name: str) -> np.ndarray:
-        values = self._values[name]
-        if id(values) in self._made:
-            return self._made[id(values)]
-        array = self._voxels.dense(values)
+        key = self._kind, name
+        if key in self._made:
+            return self._made[key]
+        array = self._voxels.dense(self._values[name])
         array.flags.writeable = False
         if sum(kept.size for kept in self._made.values()) + array.size <= KEPT:
-            self._made[id(values)] = array
+            self._made[key] = array
         return array
 
     def __contains__(self, name: object) -> bool:
