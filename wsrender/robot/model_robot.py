@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from wsrender.errors import InputError, MissingInertiaError
+from wsrender.notices import Notice
 from wsrender.robots import load, load_dh, load_library, load_mjcf, load_path, load_uploaded, load_urdf
 from wsrender.robots.chain import Chain
 from wsrender.spec.robot import DHTable, RobotSpec, Transform
@@ -53,6 +54,11 @@ class Robot:
     def model_hash(self) -> str:
         """SHA-256 of the model's source text."""
         return self._loaded.source_hash
+
+    @property
+    def notices(self) -> tuple[Notice, ...]:
+        """What was odd about the model when it was loaded; results hold it among their warnings."""
+        return self._loaded.notices
 
     @property
     def joint_names(self) -> tuple[str, ...]:

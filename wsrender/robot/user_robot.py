@@ -8,6 +8,7 @@ from typing import Any, Protocol, runtime_checkable
 import numpy as np
 
 from wsrender.errors import InputError, ModelError
+from wsrender.notices import Notice
 from wsrender.robot.model_robot import Robot, configuration_rows, load_robot
 from wsrender.robots.host_chain import HostChain
 from wsrender.spec.robot import DHTable, Transform
@@ -55,6 +56,11 @@ class HostRobot(Robot):
     def chain(self) -> HostChain:
         """Names, kinds and limits of the joints, and the user's kinematics."""
         return self._chain
+
+    @property
+    def notices(self) -> tuple[Notice, ...]:
+        """None: a class that is odd is refused."""
+        return ()
 
     @property
     def model_hash(self) -> str:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
+from wsrender.notices import Notice
 from wsrender.robots.chain import Chain
 
 
@@ -23,6 +24,7 @@ class LoadedRobot:
     qpos_addresses: np.ndarray  # (L,) int
     dof_addresses: np.ndarray  # (L,) int
     reference_qpos: np.ndarray  # (nq,)
+    notices: tuple[Notice, ...] = ()  # what was odd about the model
 
     @property
     def coupling(self) -> np.ndarray:

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any, Protocol, runtime_checkable
 
 from wsrender.errors import InputError
+from wsrender.notices import Notice, entries
 from wsrender.result import Result
 from wsrender.robot import Robot, as_robot, robot_of_spec
 from wsrender.spec import (
@@ -56,6 +57,7 @@ class Plan(Protocol):
     """A job with everything resolved: device target, voxel size, sampling path, shards, estimate."""
 
     job: Any
+    notices: tuple[Notice, ...]  # of its robots; `plan` sets them
 
     @property
     def shards(self) -> list[tuple[int, int]]:
@@ -132,7 +134,9 @@ def plan(document: Any, robot: Any = None, *, resolved: dict[str, Any] | None = 
     given = robot if isinstance(robot, list) else [robot] * len(arms)
     robots = [_robot(path, arm, one) for (path, arm), one in zip(arms.items(), given, strict=True)]
     module, _, planner = PLANNERS[type(job)].partition(":")
-    return getattr(import_module(f"wsrender.run.{module}"), planner)(job, *robots, resolved=resolved)
+    planned = getattr(import_module(f"wsrender.run.{module}"), planner)(job, *robots, resolved=resolved)
+    planned.notices = tuple(notice for each in robots for notice in each.notices)
+    return planned
 
 
 def _robot(path: ArmPath, arm: Arm, given: Any) -> Robot:
@@ -183,7 +187,9 @@ def finish(
         partial = plan.refine(merged, progress)
         if partial is not merged:
             seconds["refine"] = time.perf_counter() - started
-    return plan.finish(partial, seconds)
+    result = plan.finish(partial, seconds)
+    result.document["warnings"] = entries(plan.notices) + result.document.get("warnings", [])
+    return result
 
 
 def execute(document: Any, progress: Progress | None = None, robot: Any = None, **execution: Any) -> Result:
