@@ -180,45 +180,48 @@ def spherical_pair(m=80):
     return 2 * step**2 * float((each - both).sum()), 2 * step**2 * float(both.sum())
 
 
-def _arm(*rows, **placing):
+def dh_arm(*rows, **placing):
+    """A chain of modified DH rows (a, alpha [deg], d, theta [deg], joint)."""
     names = ("a", "alpha_deg", "d", "theta_deg")
     joints = [ws.DHRow(**dict(zip(names, row[:4], strict=True)), **row[4]) for row in rows]
     return ws.load_robot(ws.DHTable(convention="modified", rows=joints, name="arm"), **placing)
 
 
-def _slide(low, high):
+def slide(low, high):
+    """A prismatic joint of a DH row [m]."""
     return {"joint": "prismatic", "limits": (low, high)}
 
 
-def _tool(x=0.0, z=0.0):
+def tool(x=0.0, z=0.0):
+    """A tool point in the plane of the last joint [m]."""
     return ws.Transform(position_m=(x, 0.0, z))
 
 
 def _elbow(upper, lower):
-    return _arm((0, 0, 0, 0, {}), (0, 90, 0, 0, {}), (upper, 0, 0, 0, {}), tool=_tool(x=lower))
+    return dh_arm((0, 0, 0, 0, {}), (0, 90, 0, 0, {}), (upper, 0, 0, 0, {}), tool=tool(x=lower))
 
 
 def _torus():
-    return _arm((0, 0, 0, 0, {}), (0.5, 90, 0, 0, {}), (0, 90, 0, 0, _slide(0.1, 0.2)))
+    return dh_arm((0, 0, 0, 0, {}), (0.5, 90, 0, 0, {}), (0, 90, 0, 0, slide(0.1, 0.2)))
 
 
 def _thin_shell():
-    return _arm((0, 0, 0, 0, {}), (0, 90, 0, 0, {"limits_deg": (0, 180)}), (0, -90, 0, 0, _slide(0.4, 0.401)))
+    return dh_arm((0, 0, 0, 0, {}), (0, 90, 0, 0, {"limits_deg": (0, 180)}), (0, -90, 0, 0, slide(0.4, 0.401)))
 
 
 def _gimbal():
-    return _arm((0, 0, 0, 0, {}), (0, 90, 0, 0, {}), (0, -90, 0, 0, {}), tool=_tool(x=0.3, z=0.1))
+    return dh_arm((0, 0, 0, 0, {}), (0, 90, 0, 0, {}), (0, -90, 0, 0, {}), tool=tool(x=0.3, z=0.1))
 
 
 def _seven_joints():
     bends = (0, -90, 90, -90, 90, -90, 90)
     lengths = (0, 0, 0.4, 0, 0.3, 0, 0)
-    return _arm(*((0, bend, d, 0, {}) for bend, d in zip(bends, lengths, strict=True)), tool=_tool(z=0.1))
+    return dh_arm(*((0, bend, d, 0, {}) for bend, d in zip(bends, lengths, strict=True)), tool=tool(z=0.1))
 
 
 def _box(x, y, z, turned=(0.0, 0.0, 0.0)):
-    slides = ((0, 0, 0, 0, _slide(0, z)), (0, 90, 0, 90, _slide(0, y)), (0, 90, 0, 0, _slide(0, x)))
-    return _arm(*slides, placement=ws.Transform(rpy_deg=turned))
+    slides = ((0, 0, 0, 0, slide(0, z)), (0, 90, 0, 90, slide(0, y)), (0, 90, 0, 0, slide(0, x)))
+    return dh_arm(*slides, placement=ws.Transform(rpy_deg=turned))
 
 
 def _library(name):

@@ -9,9 +9,13 @@
         tolerance=0.005,
     )
     found.volumes["all"].value, found.volumes["all"].low, found.volumes["all"].high  # m³
+
+`refined_measure(chain, tolerance)` gives the area of an arm that moves in a plane and the length of one that moves on a
+line too, and says why where a set has no measure; `refined_measures` is the same of several chains.
 """
 
 from wsrender.reachability.inverse_solver import InverseSolver, Solutions
+from wsrender.reachability.refined_measure import RefinedMeasure, refined_measure, refined_measures
 from wsrender.reachability.refined_volume import RefinedVolumes, refined_volume, refined_volumes
 from wsrender.reachability.targets import Reachability, reachable
 from wsrender.reachability.volume_estimate import Event, VolumeEstimate, estimate_volumes
@@ -20,11 +24,14 @@ __all__ = [
     "Event",
     "InverseSolver",
     "Reachability",
+    "RefinedMeasure",
     "RefinedVolumes",
     "Solutions",
     "VolumeEstimate",
     "estimate_volumes",
     "reachable",
+    "refined_measure",
+    "refined_measures",
     "refined_volume",
     "refined_volumes",
 ]

@@ -1,4 +1,6 @@
-"""Whether the positions of a chain fill a volume, or a surface or line only."""
+"""What the positions of a chain fill: a volume, a surface, a curve, or one point; and whether that is flat."""
+
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -10,19 +12,65 @@ from wsrender.spec.sampling import Sobol
 SAMPLES = 1 << 10
 # Thickness that counts as none, relative to the size: model files that mean a right angle say 1.5708.
 FLAT = 1e-5
+MARGIN = 2.0  # of the samples' thickness, for what they do not show
+
+
+@dataclass(frozen=True, eq=False)
+class TipSet:
+    """The set of positions of a chain.
+
+    ``dimension``: 3 a volume, 2 a surface, 1 a curve, 0 a point. ``span``: that of the smallest space that holds it, at
+    least ``dimension``. ``T_world_own`` (4, 4): the frame at the middle of the set whose first axes span that space.
+    ``positions`` (N, 3) [m] in the world: samples.
+    """
+
+    dimension: int
+    span: int
+    T_world_own: np.ndarray
+    positions: np.ndarray
+
+    @property
+    def flat(self) -> bool:
+        """Whether it fills the space that holds it: a volume, a part of a plane or of a line."""
+        return self.span == self.dimension
+
+    def thickness_m(self, T_world_own: np.ndarray, dimension: int) -> float:
+        """How far positions lie beside the first ``dimension`` axes of a frame [m], with a margin."""
+        beside = (self.positions - T_world_own[:3, 3]) @ T_world_own[:3, dimension:3]
+        return MARGIN * float(np.linalg.norm(beside, axis=1).max())
+
+    @property
+    def extent_m(self) -> float:
+        """Largest distance of a position from the middle [m]."""
+        return float(np.linalg.norm(self.positions - self.T_world_own[:3, 3], axis=1).max())
+
+
+def tip_set(chain: Chain) -> TipSet:
+    """What the positions of a chain fill, from samples.
+
+    The dimension is the largest rank of the linear Jacobian (Sard 1942: where it is below 3 everywhere, the positions
+    have no volume), whose columns are multiplied by the joints' ranges.
+    """
+    q = configurations(plan_sampling(chain, Sobol(SAMPLES)), np.arange(SAMPLES))
+    found = evaluate_kinematics(chain, q, device="cpu")
+    ranges = chain.upper_limits - chain.lower_limits
+    sigma = np.zeros(3)
+    sigma[: min(3, chain.n)] = np.linalg.svd(found.jacobian[:, :3] * ranges, compute_uv=False).max(axis=0)
+    moves = sigma > FLAT * max(sigma[0], FLAT * chain.reach)
+    positions = found.pose[:, :3, 3]
+    middle = positions.mean(axis=0)
+    _, sizes, axes = np.linalg.svd(positions - middle, full_matrices=False)
+    T = np.eye(4)
+    T[:3, :3], T[:3, 3] = axes.T, middle
+    T[:3, 2] *= np.sign(np.linalg.det(T[:3, :3]))
+    dimension = int(moves.sum())
+    span = max(dimension, int((sizes > FLAT * sizes[0]).sum())) if dimension else 0
+    return TipSet(dimension, span, T, positions)
 
 
 def fills_volume(chain: Chain) -> bool:
-    """Whether three independent directions are open to the end effector anywhere (Sard 1942: else it has no volume).
-
-    They are the left singular vectors of the linear Jacobian whose columns are multiplied by the joints' ranges.
-    """
-    if chain.n < 3:
-        return False
-    q = configurations(plan_sampling(chain, Sobol(SAMPLES)), np.arange(SAMPLES))
-    J = evaluate_kinematics(chain, q, device="cpu").jacobian[:, :3] * (chain.upper_limits - chain.lower_limits)
-    sigma = np.linalg.svd(J, compute_uv=False).max(axis=0)
-    return bool(sigma[2] > FLAT * sigma[0])
+    """Whether the positions of a chain fill a volume."""
+    return chain.n >= 3 and tip_set(chain).dimension == 3
 
 
 def in_own_voxel(points: np.ndarray, cells: np.ndarray, voxel_size_m: float) -> np.ndarray:

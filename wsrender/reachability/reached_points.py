@@ -4,7 +4,7 @@ import numpy as np
 
 from wsrender.engine import evaluate_poses
 from wsrender.reachability.inverse_solver import REACHABLE, UNDECIDED, InverseSolver
-from wsrender.reachability.refined_volume import tolerance_m
+from wsrender.reachability.reached_set import tolerance_m
 from wsrender.robots.chain import Chain
 
 

@@ -2,51 +2,24 @@
 
 Membership of a point is decided by inverse kinematics. The strata are, for every robot, the inner voxels of what a
 Sobol set of configurations reaches (all 26 neighbours occupied), the border, and the rest of a box that holds the
-reach: inner points are decided too, which finds voids.
+reach: inner points are decided too, which finds voids. In a plane or on a line the same gives areas and lengths.
 """
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
-from wsrender.engine import configurations, evaluate_poses
-from wsrender.reachability.dimension import fills_volume
-from wsrender.reachability.inverse_solver import UNREACHABLE, InverseSolver
-from wsrender.reachability.occupied_cells import occupied_cells
+from wsrender.reachability.dimension import TipSet, tip_set
+from wsrender.reachability.reached_set import CELLS, FalseNegatives, ReachedSet
 from wsrender.reachability.volume_estimate import Event, VolumeEstimate, estimate_volumes
 from wsrender.robots.chain import Chain
-from wsrender.robots.reachable_box import reachable_box
-from wsrender.sampling import plan_sampling
-from wsrender.spec.sampling import Sobol
 from wsrender.volume.lattice import LatticeBlock, block_around
-from wsrender.volume.neighbours import inner_and_outer
-
-POSITION = 1e-8  # of the reach
-SAMPLES_PER_CELL = 16
-# Cells along the box's mean edge: as many as make the border's share fit a tolerance of 0.5 %; finer tolerances cut
-# the border further (`estimate_volumes`).
-CELLS = 64
-TESTS, TEST_SAMPLES = 4096, 1 << 16  # targets of the measured false-negative rate, chosen from so many samples
-
-
-@dataclass(frozen=True)
-class FalseNegatives:
-    """Reachable targets, spread evenly over the workspace, that the solver was tried on, and called unreachable."""
-
-    tested: int
-    missed: int
-
-    @property
-    def rate(self) -> float:
-        """Missed targets over all."""
-        return self.missed / self.tested if self.tested else 0.0
 
 
 @dataclass(frozen=True)
 class RefinedVolumes:
-    """Volumes by event [m³], the points decided for them, and each robot's measured false negatives.
+    """Volumes by event [m³; m² in a plane, m on a line], the points decided for them, each robot's false negatives.
 
     ``position_m``: the largest residual that counted as reached [m].
     """
@@ -81,24 +54,56 @@ def refined_volumes(
 
     ``events``: by name the least and largest number of chains, such as ``{"any": Event(1, 2), "all": Event(2, 2)}``;
     those that are not ``precise`` are estimated from the same points. ``progress``: called with the points decided
-    and about how many there will be.
+    and about how many there will be. Surfaces and curves have no volume: 0 (`refined_measures` gives what they have).
     """
-    arms = [_Arm(chain, seed, device, threads) for chain in chains]
-    low = np.min([arm.low for arm in arms], axis=0)
-    high = np.max([arm.high for arm in arms], axis=0)
-    solid = [arm for arm in arms if arm.solid]
-    position_m = max(map(tolerance_m, chains))
+    options = {"seed": seed, "max_points": max_points, "device": device, "threads": threads, "progress": progress}
+    return decided_volumes(chains, [tip_set(chain) for chain in chains], np.eye(4), 3, events, tolerance, **options)
+
+
+def decided_volumes(
+    chains: Sequence[Chain],
+    sets: Sequence[TipSet],
+    T_world_own: np.ndarray,
+    dimension: int,
+    events: Mapping[str, Event],
+    tolerance: float,
+    *,
+    seed: int,
+    max_points: int,
+    device: str,
+    threads: int | None,
+    progress: Callable[[int, int], None] | None,
+) -> RefinedVolumes:
+    """`refined_volumes` in the space of the first ``dimension`` axes of a frame, in which all of ``chains`` move.
+
+    ``sets``: what their positions fill; those of a smaller dimension add nothing.
+    """
+    into = np.linalg.inv(T_world_own)
+    reached = [
+        ReachedSet(
+            chain.placed(into @ chain.T_world_base),
+            dimension,
+            solid=filled.dimension == dimension,
+            thickness_m=filled.thickness_m(T_world_own, dimension),
+            seed=seed,
+            device=device,
+            threads=threads,
+        )
+        for chain, filled in zip(chains, sets, strict=True)
+    ]
+    position_m = max(each.position_m for each in reached)
+    solid = [each for each in reached if each.solid]
     if not solid:
         volumes = {name: VolumeEstimate(0.0, 0.0, 0.0, 0.0, met=True) for name in events}
-        return RefinedVolumes(volumes, 0, tuple(FalseNegatives(0, 0) for _ in arms), position_m)
-    block = block_around(low, high, float(np.cbrt(np.prod(high - low))) / CELLS)
-    classes = sum(arm.classes(block).astype(np.int64) * 3**k for k, arm in enumerate(solid))
-    strata = [np.argwhere(classes == code) + block.first_voxel for code in np.unique(classes)]
-    misses = [arm.false_negatives(block) for arm in arms]
+        return RefinedVolumes(volumes, 0, tuple(FalseNegatives(0, 0) for _ in reached), position_m)
+    block = _block(solid)
+    classes = sum(each.classes(block).astype(np.int64) * 3**k for k, each in enumerate(solid))
+    strata = [np.argwhere(classes == code) + block.first_voxel[:dimension] for code in np.unique(classes)]
+    misses = [each.false_negatives(block) for each in reached]
     hidden = sum(miss.rate / (1 - miss.rate) if miss.rate < 1 else np.inf for miss in misses)
 
     def membership(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        decided = [arm.decided(points) for arm in arms]
+        decided = [each.decided(points) for each in reached]
         return np.stack([label for label, _ in decided], axis=1), np.stack([far for _, far in decided], axis=1)
 
     found = estimate_volumes(
@@ -115,52 +120,9 @@ def refined_volumes(
     return RefinedVolumes(found.volumes, found.points, tuple(misses), position_m)
 
 
-def tolerance_m(chain: Chain) -> float:
-    """Residual that counts as reached [m]: a shell so thin adds nothing to any volume that is not flat."""
-    return POSITION * (chain.reach or 1.0)
-
-
-class _Arm:
-    """One chain: its box, what its samples reach, and its solver."""
-
-    def __init__(self, chain: Chain, seed: int, device: str, threads: int | None):
-        self.solver = InverseSolver(chain, position_m=tolerance_m(chain), seed=seed, device=device, threads=threads)
-        self.chain, self.seed, self.device, self.threads = self.solver.chain, seed, device, threads
-        self.low, self.high = reachable_box(self.chain, self.chain.lower_limits, self.chain.upper_limits)
-
-    @cached_property
-    def solid(self) -> bool:
-        """Whether the positions fill a volume."""
-        return fills_volume(self.chain)
-
-    def decided(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Labels (N,) int8 of points (N, 3), and distances (N,) [m] to the nearest reachable point that was found.
-
-        A surface or a line has no volume: nothing lies in it by chance, and nothing has to be looked for near it.
-        """
-        if not self.solid:
-            return np.full(len(points), UNREACHABLE, np.int8), np.full(len(points), np.inf)
-        found = self.solver.solve(points)
-        return found.label, found.distance_m
-
-    def classes(self, block: LatticeBlock) -> np.ndarray:
-        """Of every cell: 0 rest, 1 border, 2 inner, (nx, ny, nz)."""
-        occupied = occupied_cells(self.chain, block, SAMPLES_PER_CELL * CELLS**3, self.seed, self.device, self.threads)
-        inner, outer = inner_and_outer(occupied)
-        return (inner.astype(np.int8) + outer)[1:-1, 1:-1, 1:-1]
-
-    def false_negatives(self, block: LatticeBlock) -> FalseNegatives:
-        """The solver tried on positions of samples that are none of its starts, one per cell."""
-        if not self.solid:
-            return FalseNegatives(0, 0)
-        positions = self._positions(TEST_SAMPLES)
-        cells = np.floor(positions / block.voxel_size_m).astype(np.int64) - block.first_voxel
-        _, chosen = np.unique(np.ravel_multi_index(tuple(cells.T), block.shape), return_index=True)
-        chosen = np.random.Generator(np.random.Philox(key=self.seed)).permutation(chosen)[:TESTS]
-        labels, _ = self.decided(positions[chosen])
-        return FalseNegatives(len(chosen), int((labels == UNREACHABLE).sum()))
-
-    def _positions(self, count: int) -> np.ndarray:
-        """Positions (N, 3) of a Sobol set of another seed than the solver's."""
-        plan = plan_sampling(self.chain, Sobol(count, seed=(self.seed + 1) % 2**63))
-        return evaluate_poses(self.chain, configurations(plan, np.arange(count)), device="cpu")[:, :3, 3]
+def _block(sets: Sequence[ReachedSet]) -> LatticeBlock:
+    """The cells that hold all of the sets; beside their space, those around it."""
+    low, high = np.min([each.low for each in sets], axis=0), np.max([each.high for each in sets], axis=0)
+    edge = float(np.prod(high - low) ** (1 / len(low))) / CELLS
+    beside = (0, 3 - len(low))
+    return block_around(np.pad(low, beside), np.pad(high, beside), edge)

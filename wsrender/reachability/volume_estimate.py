@@ -7,15 +7,18 @@ points per cell sorts its cells: those whose points agree become strata of their
 others are cut in eight, and so are cells outside that a set comes near to, for thin sets pass between few points. So
 the work grows with the boundary of what is measured, not with its volume. Pilot points only sort cells; they do not
 enter the estimate, whose points are drawn afterwards.
+
+Cells have one, two or three indices: the volume of a set in a plane is its area, on a line its length.
 """
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
+from itertools import product
 
 import numpy as np
 
 Membership = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
-"""Points (N, 3) [m] → labels (N, K) int8 for K sets: 1 inside, 0 outside, -1 undecided; and about how far each point is
+"""Points (N, d) [m] → labels (N, K) int8 for K sets: 1 inside, 0 outside, -1 undecided; and about how far each point is
 from the sets, (N, K) [m]."""
 
 QUANTILE = 1.959963984540054  # of the normal distribution: 95 %
@@ -26,7 +29,6 @@ GROWTH = 4.0  # largest factor by which a stratum's points grow between two look
 SAFETY = 0.9  # of the tolerance that is aimed at
 BATCH = 1 << 15  # points decided at a time
 PURE_SHARE = 0.4  # of the half width that strata without any variance may take together
-OCTANTS = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)])
 
 
 @dataclass(frozen=True)
@@ -59,7 +61,7 @@ class VolumeEstimates:
 
 @dataclass(eq=False)
 class _Stratum:
-    cells: np.ndarray  # (M, 3) int64
+    cells: np.ndarray  # (M, d) int64
     edge: float  # [m]; a cell covers [i, i + 1) edge
     events: int
     depth: int = 0
@@ -73,7 +75,7 @@ class _Stratum:
 
     @property
     def volume(self) -> float:
-        return len(self.cells) * self.edge**3
+        return len(self.cells) * self.edge ** self.cells.shape[1]
 
     @property
     def mixed(self) -> bool:
@@ -97,9 +99,9 @@ def estimate_volumes(
 
     Relative to the volume, or to that of all strata where no point was found.
 
-    ``strata``: sets of cells (M, 3) int64 of the lattice of edge ``cell_edge_m`` that together hold everything to be
+    ``strata``: sets of cells (M, d) int64 of the lattice of edge ``cell_edge_m`` that together hold everything to be
     measured; cell (i, j, k) covers [i, i + 1) edge, and so on. ``missed`` (value) is the volume that wrong "outside"
-    labels may hide [m³]: it widens the interval. ``progress``: called with the points decided and about how many there
+    labels may hide: it widens the interval. ``progress``: called with the points decided and about how many there
     will be.
     """
     return _Estimation(membership, events, tolerance, missed, seed, max_points, progress).run(strata, cell_edge_m)
@@ -195,17 +197,19 @@ class _Estimation:
         return np.stack(surely, axis=1), np.stack(possibly, axis=1)
 
     def _sort(self, stratum: _Stratum) -> None:
-        """Replace a stratum by those of its cells whose pilot points agree, label by label, and the others' octants."""
+        """Replace a stratum by those of its cells whose pilot points agree, label by label, and the others' parts."""
         cells = np.repeat(stratum.cells, PILOT_POINTS, axis=0)
         labels, distance = self._decided(cells, stratum.edge)
         code = (labels.astype(np.int64) + 1) @ 3 ** np.arange(labels.shape[1])
         code = code.reshape(-1, PILOT_POINTS)
         near = ((labels == 0) & (distance < NEAR * stratum.edge)).any(axis=1).reshape(-1, PILOT_POINTS)
         agree = (code == code[:, :1]).all(axis=1) & ~near.any(axis=1)
-        octants = (2 * stratum.cells[~agree, None] + OCTANTS).reshape(-1, 3)
+        dimension = stratum.cells.shape[1]
+        halves = np.array(list(product((0, 1), repeat=dimension)))
+        finer = (2 * stratum.cells[~agree, None] + halves).reshape(-1, dimension)
         parts = [stratum.cells[agree & (code[:, 0] == c)] for c in np.unique(code[agree, 0])]
         new = [_Stratum(part, stratum.edge, stratum.events, DEEPEST) for part in parts]
-        new += [_Stratum(octants, stratum.edge / 2, stratum.events, stratum.depth + 1)] * bool(len(octants))
+        new += [_Stratum(finer, stratum.edge / 2, stratum.events, stratum.depth + 1)] * bool(len(finer))
         self.strata.remove(stratum)
         self.strata += new
 

@@ -25,8 +25,10 @@ def reachable_box(chain: Chain, lower: np.ndarray, upper: np.ndarray) -> tuple[n
             low, high = _turned(low, high, first, last)
         else:
             low, high = low + np.array([0, 0, first]), high + np.array([0, 0, last])
-        low, high = _transformed(chain.T_joint[i], low, high)
-    return _transformed(chain.T_world_base, low, high)
+        # The placement together with the first joint's frame: turned back and forth, a box would only grow.
+        T = chain.T_joint[i] if i else chain.T_world_base @ chain.T_joint[0]
+        low, high = _transformed(T, low, high)
+    return low, high
 
 
 def _transformed(T: np.ndarray, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -10,10 +10,11 @@ LAYERS = 32  # of voxels at a time
 def inner_and_outer(occupied: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Of a set of voxels (nx, ny, nz) bool: those with all 26 neighbours in it, and it with all its neighbours.
 
-    Both have one more layer of voxels on every side, (nx + 2, ny + 2, nz + 2).
+    Both have one more layer of voxels on every side, (nx + 2, ny + 2, nz + 2). In a plane, cells (nx, ny) have 8
+    neighbours, on a line 2.
     """
     inner = outer = np.pad(occupied, 1)
-    for axis in range(3):
+    for axis in range(occupied.ndim):
         before, after = _shifted(inner, 1, axis), _shifted(inner, -1, axis)
         inner = inner & before & after
         before, after = _shifted(outer, 1, axis), _shifted(outer, -1, axis)
@@ -44,7 +45,7 @@ def inner_and_outer_counts(voxels: Voxels) -> tuple[int, int]:
 def _shifted(voxels: np.ndarray, by: int, axis: int) -> np.ndarray:
     """The set moved by one voxel, what would leave the array lost."""
     moved = np.roll(voxels, by, axis)
-    edge = [slice(None)] * 3
+    edge = [slice(None)] * voxels.ndim
     edge[axis] = slice(0, 1) if by > 0 else slice(-1, None)
     moved[tuple(edge)] = False
     return moved

@@ -1,0 +1,101 @@
+"""What one chain reaches of a space of one, two or three dimensions: points decided one by one, and strata of cells."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from wsrender.engine import configurations, evaluate_poses
+from wsrender.reachability.inverse_solver import UNREACHABLE, InverseSolver
+from wsrender.reachability.occupied_cells import occupied_cells
+from wsrender.robots.chain import Chain
+from wsrender.robots.reachable_box import reachable_box
+from wsrender.sampling import plan_sampling
+from wsrender.spec.sampling import Sobol
+from wsrender.volume.lattice import LatticeBlock
+from wsrender.volume.neighbours import inner_and_outer
+
+POSITION = 1e-8  # of the reach
+SAMPLES_PER_CELL = 16
+# Cells along the box's mean edge: as many as make the border's share fit a tolerance of 0.5 %; finer tolerances cut
+# the border further (`estimate_volumes`).
+CELLS = 64
+TESTS, TEST_SAMPLES = 4096, 1 << 16  # targets of the measured false-negative rate, chosen from so many samples
+
+
+@dataclass(frozen=True)
+class FalseNegatives:
+    """Reachable targets, spread evenly over the workspace, that the solver was tried on, and called unreachable."""
+
+    tested: int
+    missed: int
+
+    @property
+    def rate(self) -> float:
+        """Missed targets over all."""
+        return self.missed / self.tested if self.tested else 0.0
+
+
+def tolerance_m(chain: Chain) -> float:
+    """Residual that counts as reached [m]: a shell so thin adds nothing to any volume that is not flat."""
+    return POSITION * (chain.reach or 1.0)
+
+
+class ReachedSet:
+    """The positions of a chain in the space of the world's first ``dimension`` axes, in which they all lie.
+
+    ``solid``: whether they fill a part of it; what does not adds nothing to any volume. ``thickness_m``: how far beside
+    that space they may lie.
+    """
+
+    def __init__(
+        self,
+        chain: Chain,
+        dimension: int,
+        *,
+        solid: bool,
+        thickness_m: float,
+        seed: int,
+        device: str,
+        threads: int | None,
+    ):
+        self.dimension, self.solid = dimension, solid
+        self.position_m = max(tolerance_m(chain), thickness_m)
+        self.solver = InverseSolver(chain, position_m=self.position_m, seed=seed, device=device, threads=threads)
+        self.chain, self.seed, self.device, self.threads = self.solver.chain, seed, device, threads
+        low, high = reachable_box(self.chain, self.chain.lower_limits, self.chain.upper_limits)
+        self.low, self.high = low[:dimension], high[:dimension]
+
+    def decided(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Labels (N,) int8 of points (N, d), and distances (N,) [m] to the nearest reachable point that was found.
+
+        Nothing lies by chance in a set that fills nothing, and nothing has to be looked for near it.
+        """
+        if not self.solid:
+            return np.full(len(points), UNREACHABLE, np.int8), np.full(len(points), np.inf)
+        found = self.solver.solve(np.pad(points, ((0, 0), (0, 3 - self.dimension))))
+        return found.label, found.distance_m
+
+    def classes(self, block: LatticeBlock) -> np.ndarray:
+        """Of every cell of a block: 0 rest, 1 border, 2 inner, of ``dimension`` axes."""
+        count = SAMPLES_PER_CELL * CELLS**self.dimension
+        beside = tuple(range(self.dimension, 3))
+        occupied = occupied_cells(self.chain, block, count, self.seed, self.device, self.threads)
+        inner, outer = inner_and_outer(np.asarray(occupied.any(axis=beside)))
+        return (inner.astype(np.int8) + outer)[(slice(1, -1),) * self.dimension]
+
+    def false_negatives(self, block: LatticeBlock) -> FalseNegatives:
+        """The solver tried on positions of samples that are none of its starts, one per cell."""
+        if not self.solid:
+            return FalseNegatives(0, 0)
+        positions = self._positions(TEST_SAMPLES)[:, : self.dimension]
+        cells = np.floor(positions / block.voxel_size_m).astype(np.int64) - block.first_voxel[: self.dimension]
+        numbers = np.ravel_multi_index(tuple(cells.T), block.shape[: self.dimension])
+        _, chosen = np.unique(numbers, return_index=True)
+        chosen = np.random.Generator(np.random.Philox(key=self.seed)).permutation(chosen)[:TESTS]
+        labels, _ = self.decided(positions[chosen])
+        return FalseNegatives(len(chosen), int((labels == UNREACHABLE).sum()))
+
+    def _positions(self, count: int) -> np.ndarray:
+        """Positions (N, 3) of a Sobol set of another seed than the solver's."""
+        plan = plan_sampling(self.chain, Sobol(count, seed=(self.seed + 1) % 2**63))
+        return evaluate_poses(self.chain, configurations(plan, np.arange(count)), device="cpu")[:, :3, 3]

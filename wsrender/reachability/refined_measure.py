@@ -1,0 +1,143 @@
+"""What arms reach, in the measure that their positions have: a volume, in a plane an area, on a line a length.
+
+Where the end effector stays on a curved surface or curve there is none; the result says why.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from wsrender.reachability.dimension import FLAT, TipSet, tip_set
+from wsrender.reachability.reached_set import FalseNegatives, tolerance_m
+from wsrender.reachability.refined_volume import decided_volumes
+from wsrender.reachability.volume_estimate import Event, VolumeEstimate
+from wsrender.robots.chain import Chain
+
+QUANTITIES = {1: "length", 2: "area", 3: "volume"}
+UNITS = {"volume": "m3", "area": "m2", "length": "m"}
+CURVED = {0: "the tip does not move", 1: "the tip stays on a curve", 2: "the tip stays on a surface"}
+APART = {1: "the tips move on different lines", 2: "the tips move in different planes"}
+
+
+@dataclass(frozen=True)
+class RefinedMeasure:
+    """A volume, area or length with its 95 % interval.
+
+    ``quantity``: "volume", "area" or "length"; ``unit``: "m3", "m2" or "m". ``value`` and ``ci95`` are None where the
+    set has none, and ``reason`` says why; else it is "". ``met``: whether the interval is as narrow as asked.
+    ``undecided``: how much inverse kinematics left open, in the same unit. ``points``: how many it decided.
+    ``position_tolerance_m``: the largest residual that counted as reached. ``false_negatives``: of every chain.
+    """
+
+    quantity: str
+    value: float | None
+    ci95: tuple[float, float] | None
+    unit: str
+    reason: str
+    met: bool
+    undecided: float
+    points: int
+    position_tolerance_m: float
+    false_negatives: tuple[FalseNegatives, ...]
+
+
+def refined_measure(
+    chain: Chain,
+    tolerance: float,
+    *,
+    seed: int = 0,
+    device: str = "cpu",
+    threads: int | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> RefinedMeasure:
+    """What the end effector of one chain reaches, to a relative ``tolerance``; as in `refined_measures`."""
+    options = {"seed": seed, "device": device, "threads": threads, "progress": progress}
+    return refined_measures([chain], {"reachable": Event(1, 1)}, tolerance, **options)["reachable"]
+
+
+def refined_measures(
+    chains: Sequence[Chain],
+    events: Mapping[str, Event],
+    tolerance: float,
+    *,
+    seed: int = 0,
+    device: str = "cpu",
+    threads: int | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> dict[str, RefinedMeasure]:
+    """By event, what so many of the placed ``chains`` reach, to a relative ``tolerance`` (half the 95 % interval).
+
+    In the measure of the chains whose positions have the most dimensions: an arm that moves in a plane adds nothing to
+    a volume. ``progress``: called with the points decided and about how many there will be.
+    """
+    sets = [tip_set(chain) for chain in chains]
+    highest = max(filled.dimension for filled in sets)
+    filling = [k for k, filled in enumerate(sets) if filled.dimension == highest]
+    quantity = QUANTITIES[max(max(sets[k].span for k in filling), 1)]
+    T_world_own = _own_frame([chains[k] for k in filling], sets[filling[0]])
+    if reason := _without_measure([sets[k] for k in filling], T_world_own):
+        nothing = _without(quantity, reason, max(map(tolerance_m, chains)), len(chains))
+        return dict.fromkeys(events, nothing)
+    found = decided_volumes(
+        [chains[k] for k in filling],
+        [sets[k] for k in filling],
+        T_world_own,
+        highest,
+        events,
+        tolerance,
+        seed=seed,
+        max_points=10_000_000,
+        device=device,
+        threads=threads,
+        progress=progress,
+    )
+    tried = dict(zip(filling, found.false_negatives, strict=True))
+    misses = tuple(tried.get(k, FalseNegatives(0, 0)) for k in range(len(chains)))
+    return {
+        name: _measure(quantity, estimate, found.points, found.position_m, misses)
+        for name, estimate in found.volumes.items()
+    }
+
+
+def _own_frame(chains: list[Chain], first: TipSet) -> np.ndarray:
+    """The frame (4, 4) whose first axes hold the positions of all chains, if any does.
+
+    That of a volume is the base frame of a single chain, where the box that holds the reach is smallest.
+    """
+    if first.dimension < 3:
+        return first.T_world_own
+    return chains[0].T_world_base if len(chains) == 1 else np.eye(4)
+
+
+def _without_measure(sets: list[TipSet], T_world_own: np.ndarray) -> str:
+    """Why sets of the same dimension have no measure together, "" where they have one."""
+    dimension = sets[0].dimension
+    if dimension == 0 or not all(filled.flat for filled in sets):
+        return CURVED[dimension]
+    slack = FLAT * max(filled.extent_m for filled in sets)
+    beside = [filled.thickness_m(T_world_own, dimension) for filled in sets]
+    own = [filled.thickness_m(filled.T_world_own, dimension) for filled in sets]
+    return APART[dimension] if (np.array(beside) > np.array(own) + slack).any() else ""
+
+
+def _without(quantity: str, reason: str, position_m: float, chains: int) -> RefinedMeasure:
+    misses = (FalseNegatives(0, 0),) * chains
+    return RefinedMeasure(quantity, None, None, UNITS[quantity], reason, True, 0.0, 0, position_m, misses)
+
+
+def _measure(
+    quantity: str, estimate: VolumeEstimate, points: int, position_m: float, misses: tuple[FalseNegatives, ...]
+) -> RefinedMeasure:
+    return RefinedMeasure(
+        quantity,
+        estimate.value,
+        (estimate.low, estimate.high),
+        UNITS[quantity],
+        "",
+        estimate.met,
+        2 * estimate.undecided,
+        points,
+        position_m,
+        misses,
+    )
