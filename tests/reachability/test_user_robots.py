@@ -50,16 +50,15 @@ def test_labels_and_reasons_are_those_of_the_model(name, with_orientation):
 
 
 def test_the_refined_volume_is_exact():
-    result = ws.analyze(
-        SphericalClass(), ws.Sobol(20_000), ["manipulability"], refined_volume=0.03, voxel_size_m=0.03, device="cpu"
-    )
+    options = {"refined_volume": 0.03, "voxel_labels": True, "voxel_size_m": 0.03, "device": "cpu"}
+    result = ws.analyze(SphericalClass(), ws.Sobol(20_000), ["manipulability"], **options)
     refined = result.document["volume_m3"]["refined"]
     assert refined["ci95"][0] <= SPHERICAL <= refined["ci95"][1]
     assert refined["met"]
     (tried,) = refined["false_negatives"]
     assert tried["tested"] > 500
     assert tried["missed"] == 0
-    labels = refined["voxels"]["labels"]
+    labels = result.document["voxel_labels"]["labels"]
     x, y, z = (np.argwhere(np.ones((15, 28, 28), bool)).T + np.array([[0.5], [-13.5], [-13.5]])) * 0.03
     sector = (np.abs(y) <= x) & (np.abs(z) <= np.hypot(x, y)) & (np.abs(np.hypot(x, y) ** 2 + z**2 - 0.1) <= 0.06)
     edge = np.isclose(np.abs(y), x)  # centres in a face of the sector, which rounding decides

@@ -13,7 +13,12 @@ EXACT = np.pi / 2 * np.sqrt(2) * (0.4**3 - 0.2**3) / 3
 @pytest.fixture(scope="module")
 def result():
     return ws.analyze(
-        ws.load_robot("spherical"), ws.Sobol(20_000), voxel_size_m=0.02, refined_volume=0.02, device="cpu"
+        ws.load_robot("spherical"),
+        ws.Sobol(20_000),
+        voxel_size_m=0.02,
+        refined_volume=0.02,
+        voxel_labels=True,
+        device="cpu",
     )
 
 
@@ -41,7 +46,7 @@ def test_every_voxel_near_the_workspace_has_its_label(result, tmp_path):
     expected = np.where(truth, "", "joint limits")
     assert (np.array(REASONS)[reason[decided].astype(int)] == expected).all()
     assert ((radius < 0.2) | (radius > 0.4)).any()
-    voxels = result.document["volume_m3"]["refined"]["voxels"]
+    voxels = result.document["voxel_labels"]
     assert voxels["labels"] == {"reachable": truth.sum(), "unreachable": (~truth).sum(), "undecided": 0}
     result.save(tmp_path)
     restored = ws.Result.load(tmp_path).volumes["reachability"]
@@ -53,7 +58,8 @@ def test_voxels_of_an_arm_in_a_plane_beside_their_centres():
     rows = [ws.DHRow(a=0.3), ws.DHRow(a=0.15)]
     table = ws.DHTable(convention="standard", rows=rows)
     robot = ws.load_robot(table, placement=ws.Transform(position_m=(0.1, 0, 0.037), rpy_deg=(30, 0, 0)))
-    result = ws.analyze(robot, ws.Sobol(200_000), voxel_size_m=0.02, refined_volume=0.01, device="cpu")
+    options = {"voxel_size_m": 0.02, "refined_volume": 0.01, "voxel_labels": True, "device": "cpu"}
+    result = ws.analyze(robot, ws.Sobol(200_000), **options)
     labelled = result.volumes["reachability"]
     label = labelled.statistics["center"]["label"]
     assert (label[labelled.occupied] == 1).all()
@@ -65,13 +71,14 @@ def test_voxels_of_an_arm_in_a_plane_beside_their_centres():
     assert found[(height < 0.01) & (radius > 0.15) & (radius < 0.45)].all()
     assert not found[(height > 0.0174) | (radius < 0.13) | (radius > 0.47)].any()
     assert result.document["volume_m3"]["refined"]["value"] == 0.0
-    assert result.document["volume_m3"]["refined"]["voxels"]["labels"]["reachable"] == found.sum()
+    assert result.document["voxel_labels"]["labels"]["reachable"] == found.sum()
 
 
 def test_it_says_how_far_it_is():
     seen = []
-    job = {"analysis": "workspace", "robot": "spherical", "voxel_size_m": 0.02, "refined_volume": 0.02, "device": "cpu"}
-    ws.execute({**job, "sampling": {"method": "sobol", "count": 20_000}}, progress=lambda *report: seen.append(report))
+    job = {"analysis": "workspace", "robot": "spherical", "voxel_size_m": 0.02, "device": "cpu"}
+    asked = {"sampling": {"method": "sobol", "count": 20_000}, "refined_volume": 0.02, "voxel_labels": True}
+    ws.execute({**job, **asked}, progress=lambda *report: seen.append(report))
     for message in ("refined volume", "labels of voxels"):
         done, total = zip(*(report[:2] for report in seen if report[2] == message), strict=True)
         assert done[0] > 0 and done[-1] <= total[-1] and list(done) == sorted(done)
@@ -81,3 +88,17 @@ def test_a_held_joint_holds_for_the_refined_volume_too():
     held = ws.Sobol(20_000, locked={"joint3": 0.3})
     result = ws.analyze(ws.load_robot("spherical"), held, voxel_size_m=0.02, refined_volume=0.02, device="cpu")
     assert result.document["volume_m3"]["refined"]["value"] == 0.0
+
+
+@pytest.mark.parametrize(
+    ("asked", "made"),
+    [({"refined_volume": 0.05}, (True, False)), ({"voxel_labels": True}, (False, True)), ({}, (False, False))],
+    ids=["volume", "labels", "neither"],
+)
+def test_volume_and_labels_are_made_when_each_is_asked_for(asked, made):
+    result = ws.analyze(ws.load_robot("spherical"), ws.Sobol(2_000), voxel_size_m=0.04, device="cpu", **asked)
+    document = result.document
+    there = document["volume_m3"]["refined"] is not None, document["voxel_labels"] is not None
+    assert there == made
+    assert ("reachability" in result.volumes) == made[1]
+    assert document["global"]["structural_length_volume"] == ("refined" if made[0] else "occupied")

@@ -13,7 +13,7 @@ from wsrender.result import Result
 from wsrender.robot import Robot
 from wsrender.run.one_shard import OneShard
 from wsrender.run.provenance import job_entry, provenance, robot_entry
-from wsrender.run.refined import Progress, refined_together
+from wsrender.run.refined import Progress, refined_together, volume_entry
 from wsrender.run.sampled_positions import sampled_positions
 from wsrender.run.settled_device import settled_device
 from wsrender.spec import CollaborativeVolumeJob
@@ -78,7 +78,7 @@ class CollaborativePlan(OneShard):
         """Means and variances over the seeds, and the bias where the true volume is known."""
         volumes, job = partial["volumes"], self.job
         mean, variance = volumes.mean(axis=0), _variance(volumes)
-        true = json.loads(str(partial["refined"]))["true"] if "refined" in partial else None
+        true = volume_entry(json.loads(str(partial["refined"]))["true"]) if "refined" in partial else None
         document = {
             "analysis": "collaborative_volume",
             "job": job_entry(job, *self.robots),

@@ -1,4 +1,4 @@
-"""Refined volumes in result documents, and the labels of voxels."""
+"""Refined volumes, areas and lengths in result documents, and the labels of voxels."""
 
 import json
 from collections.abc import Callable, Mapping, Sequence
@@ -7,14 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from wsrender.reachability.refined_volume import (
-    Event,
-    RefinedVolumes,
-    VolumeEstimate,
-    refined_volume,
-    refined_volumes,
-)
-from wsrender.reachability.voxel_labels import counts, label_voxels
+from wsrender.reachability.refined_measure import RefinedMeasure, refined_measure, refined_measures
+from wsrender.reachability.volume_estimate import Event
+from wsrender.reachability.voxel_labels import label_voxels
 from wsrender.robots.chain import Chain
 from wsrender.volume.volume_data import VolumeData
 
@@ -24,43 +19,56 @@ VOLUME, VOXELS = "refined volume", "labels of voxels"  # what is going on
 
 @dataclass(frozen=True, eq=False)
 class Refined:
-    """The refined volume of one robot: its entry in the result document, and the labelled voxels."""
+    """What inverse kinematics says of one robot: the entry of its refined measure, the labelled voxels; None unasked.
 
-    entry: dict[str, Any]
-    voxels: VolumeData
+    ``measure``: see `measure_entry`.
+    """
+
+    measure: dict[str, Any] | None
+    voxels: VolumeData | None
 
 
-def refined(
-    chain: Chain, tolerance: float, volume: VolumeData, seed: int, device: str, progress: Progress | None
-) -> Refined:
-    """The refined volume of a chain, and the labels of a workspace's ``volume``."""
-    execution = {"seed": seed, "device": device}
-    estimate, found = refined_volume(chain, tolerance, **execution, progress=_named(progress, VOLUME))
-    labelled = label_voxels(chain, volume, **execution, progress=_named(progress, VOXELS))
-    return Refined({**volume_entry(estimate, found, tolerance), "voxels": counts(labelled)}, labelled)
+def refined(chain: Chain, tolerance: float, seed: int, device: str, progress: Progress | None) -> dict[str, Any]:
+    """The entry of the refined volume, area or length of a chain."""
+    found = refined_measure(chain, tolerance, seed=seed, device=device, progress=_named(progress, VOLUME))
+    return measure_entry(found, tolerance)
+
+
+def labelled(chain: Chain, volume: VolumeData, seed: int, device: str, progress: Progress | None) -> VolumeData:
+    """The labels of a workspace's ``volume``."""
+    return label_voxels(chain, volume, seed=seed, device=device, progress=_named(progress, VOXELS))
 
 
 def refined_together(
     chains: Sequence[Chain], events: Mapping[str, Event], tolerance: float, device: str, progress: Progress | None
 ) -> np.ndarray:
-    """Entries of volumes that so many of several placed chains reach, by event, as JSON text."""
-    found = refined_volumes(chains, events, tolerance, device=device, progress=_named(progress, VOLUME))
-    entries = {name: volume_entry(estimate, found, tolerance) for name, estimate in found.volumes.items()}
-    return np.array(json.dumps(entries))
+    """Entries of what so many of several placed chains reach, by event, as JSON text."""
+    found = refined_measures(chains, events, tolerance, device=device, progress=_named(progress, VOLUME))
+    return np.array(json.dumps({name: measure_entry(measure, tolerance) for name, measure in found.items()}))
 
 
-def volume_entry(estimate: VolumeEstimate, found: RefinedVolumes, tolerance: float) -> dict[str, Any]:
-    """What the result document says of one volume [m³] with its 95 % interval."""
+def measure_entry(found: RefinedMeasure, tolerance: float) -> dict[str, Any]:
+    """What a document says of a volume, area or length with its 95 % interval; ``value`` None where there is none."""
     return {
-        "value": estimate.value,
-        "ci95": [estimate.low, estimate.high],
+        "quantity": found.quantity,
+        "value": found.value,
+        "unit": found.unit,
+        "reason": found.reason,
+        "ci95": None if found.ci95 is None else list(found.ci95),
         "tolerance": tolerance,
-        "met": estimate.met,
-        "undecided": 2 * estimate.undecided,
+        "met": found.met,
+        "undecided": found.undecided,
         "points": found.points,
-        "position_tolerance_m": found.position_m,
+        "position_tolerance_m": found.position_tolerance_m,
         "false_negatives": [{"tested": f.tested, "missed": f.missed} for f in found.false_negatives],
     }
+
+
+def volume_entry(measure: dict[str, Any]) -> dict[str, Any]:
+    """A `measure_entry` as a volume [m³]: 0 of what is flat, or stays on a surface or curve."""
+    entry = {name: value for name, value in measure.items() if name not in ("quantity", "unit", "reason")}
+    solid = measure["quantity"] == "volume" and measure["value"] is not None
+    return entry if solid else entry | {"value": 0.0, "ci95": [0.0, 0.0], "met": True, "undecided": 0.0}
 
 
 def _named(progress: Progress | None, message: str) -> Callable[[int, int], None] | None:

@@ -13,7 +13,7 @@ from wsrender.result import Result
 from wsrender.robot import Robot
 from wsrender.run.one_shard import OneShard
 from wsrender.run.provenance import job_entry, provenance
-from wsrender.run.refined import Progress, refined_together
+from wsrender.run.refined import Progress, refined_together, volume_entry
 from wsrender.run.several_result import common_entries, skeletons
 from wsrender.run.several_robots import SeveralPlans, plan_several, progress_after, workspace_job
 from wsrender.run.workspace import WorkspacePlan, plan_workspace
@@ -87,7 +87,7 @@ class SharedWorkspacePlan(OneShard):
                 "any": any_m3,
                 "shared": shared_m3,
                 "exactly": {str(k): float(by_number[k]) for k in range(1, len(by_number))},
-                "refined": json.loads(str(partial["refined"])) if "refined" in partial else None,
+                "refined": _refined(partial),
             },
             "shared_ratio": shared_m3 / any_m3,
             "quality": _quality(shared),
@@ -148,6 +148,13 @@ def _meshes(shared: VolumeData) -> "tuple[dict[str, trimesh.Trimesh], dict[str, 
     if both.n_occupied:
         meshes["intersection"] = occupied_surface(both)
     return meshes, {name: surface_entry(name, mesh) for name, mesh in meshes.items()}
+
+
+def _refined(partial: dict[str, np.ndarray]) -> dict[str, Any] | None:
+    """The refined volumes by event, if asked."""
+    if "refined" not in partial:
+        return None
+    return {name: volume_entry(measure) for name, measure in json.loads(str(partial["refined"])).items()}
 
 
 def _quality(shared: VolumeData) -> dict[str, Any]:

@@ -23,13 +23,13 @@ from wsrender.boundary.spatial.spatial_boundary import (
 )
 from wsrender.reachability.moving_joints import moving_joints
 from wsrender.reachability.reached_points import ReachedPoints
-from wsrender.reachability.refined_volume import refined_volume
+from wsrender.reachability.refined_measure import refined_measure
 from wsrender.result import Result
 from wsrender.robot import Robot, robot_with_model
 from wsrender.robots.chain import Chain
 from wsrender.run.one_shard import OneShard
 from wsrender.run.provenance import job_entry, provenance, robot_entry
-from wsrender.run.refined import volume_entry
+from wsrender.run.refined import measure_entry, volume_entry
 from wsrender.run.settled_device import settled_device
 from wsrender.sampling import held_chain
 from wsrender.spec import BoundaryPatchesJob
@@ -105,8 +105,9 @@ class BoundaryPatchesPlan(OneShard):
             report(max(done - decided, 0))
             decided = max(done, decided)
 
-        estimate, refined = refined_volume(self.chain, VOLUME_TOLERANCE, device=self.device, progress=volume_progress)
-        volumes = {"enclosed": fitted.measures.volume, "refined": volume_entry(estimate, refined, VOLUME_TOLERANCE)}
+        measure = refined_measure(self.chain, VOLUME_TOLERANCE, device=self.device, progress=volume_progress)
+        refined = volume_entry(measure_entry(measure, VOLUME_TOLERANCE))
+        volumes = {"enclosed": fitted.measures.volume, "refined": refined}
         return fitted, {
             "volume_m3": volumes,
             "fit_tolerance_m": TOLERANCE * self.arm.size,

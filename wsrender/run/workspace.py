@@ -16,7 +16,7 @@ from wsrender.robot import Robot
 from wsrender.robot.indices import evaluation_of
 from wsrender.run.estimate import estimate, map_bytes
 from wsrender.run.first_pass import FirstPass
-from wsrender.run.refined import Progress, Refined, refined
+from wsrender.run.refined import Progress, Refined, labelled, refined
 from wsrender.run.settled_device import settled_device
 from wsrender.run.workspace_result import workspace_result
 from wsrender.sampling import SamplingPlan, plan_sampling
@@ -90,13 +90,18 @@ class WorkspacePlan:
         return WorkspacePartial(merge(a.sweep, b.sweep), self.sweep)
 
     def refine(self, partial: WorkspacePartial, progress: Progress | None) -> WorkspacePartial:
-        """With the refined volume and the labels of the voxels, if asked."""
-        tolerance, sampling = self.job.refined_volume, partial.plan.sampling
-        if tolerance is None:
+        """With the refined volume, area or length and the labels of the voxels, each if asked."""
+        tolerance, labels = self.job.refined_volume, self.job.voxel_labels
+        if tolerance is None and not labels:
             return partial
-        counts = volume_data(replace(partial.plan, statistics=frozenset()), partial.sweep, {})
         chain = self.robot.chain.held(self.job.sampling.locked)
-        return replace(partial, refined=refined(chain, tolerance, counts, sampling.seed, self.device, progress))
+        execution = partial.plan.sampling.seed, self.device, progress
+        counts = volume_data(replace(partial.plan, statistics=frozenset()), partial.sweep, {}) if labels else None
+        found = Refined(
+            None if tolerance is None else refined(chain, tolerance, *execution),
+            None if counts is None else labelled(chain, counts, *execution),
+        )
+        return replace(partial, refined=found)
 
     def finish(self, partial: WorkspacePartial, seconds: dict[str, float]) -> Result:
         """Map, volume, global values and the result document."""

@@ -15,10 +15,11 @@ from wsrender.global_indices import (
     workspace_mean,
 )
 from wsrender.indices.catalogue import unit
+from wsrender.reachability.voxel_labels import counts
 from wsrender.result import Result
 from wsrender.robot import Robot
 from wsrender.run.provenance import index_choices, job_entry, provenance, robot_entry
-from wsrender.run.refined import Refined
+from wsrender.run.refined import Refined, volume_entry
 from wsrender.sampling import subsample
 from wsrender.spec import WorkspaceJob
 from wsrender.volume.distribution_map import DistributionMap
@@ -46,7 +47,9 @@ def workspace_result(
     volume = volume_data(plan, partial, units)
     volumes = voxel_volumes(volume)
     sample = _picture_sample(plan, robot, units)
-    known = refined.entry["value"] if refined else volumes.occupied
+    measure = refined.measure if refined else None
+    labels = refined.voxels if refined else None
+    known = volume_entry(measure)["value"] if measure else volumes.occupied
     meshes, surface_entries = surfaces(job.surfaces, volume, sample.position)
     document: dict[str, Any] = {
         "analysis": "workspace",
@@ -60,8 +63,9 @@ def workspace_result(
             "occupied": volumes.occupied,
             "inner": volumes.inner,
             "outer": volumes.outer,
-            "refined": refined.entry if refined else None,
+            "refined": volume_entry(measure) if measure else None,
         },
+        "voxel_labels": counts(labels) if labels else None,
         "surfaces": surface_entries,
         "bounds_m": {
             "lower": [float(v) for v in partial.minimum[:3]],
@@ -70,7 +74,7 @@ def workspace_result(
         "global": {
             "global_isotropy": global_isotropy(partial),
             "structural_length_index": None if evaluation.host_chain else structural_length_index(robot.chain, known),
-            "structural_length_volume": "refined" if refined else "occupied",
+            "structural_length_volume": "refined" if measure else "occupied",
         },
         "convergence": convergence,
         "provenance": provenance(job.precision, target, sampling_path=plan.sampling_path, seed=plan.sampling.seed),
@@ -82,7 +86,7 @@ def workspace_result(
         volume=volume,
         skeleton=robot.skeleton(_middle(plan)),
         meshes=meshes,
-        volumes={"reachability": refined.voxels} if refined else {},
+        volumes={"reachability": labels} if labels else {},
     )
     document["timing_s"] = {**seconds, "finish": time.perf_counter() - started}
     return result

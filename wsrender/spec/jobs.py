@@ -39,8 +39,9 @@ class WorkspaceJob(IndexChoices, Arm):
     voxel_statistics: Statistics = ("count", "maximum")
     """What is kept per voxel, from count, maximum, mean, minimum; count always is."""
     refined_volume: RelativeTolerance | None = None
-    """Half width of the refined volume's 95 % interval, relative to the volume [1]; null: it is not computed. With it,
-    every voxel is labelled reachable, unreachable or undecided by inverse kinematics."""
+    """Half width of the refined volume's 95 % interval, relative to the volume [1]; null: it is not computed."""
+    voxel_labels: StrictBool = False
+    """Whether every voxel is labelled reachable, unreachable or undecided by inverse kinematics."""
     surfaces: Surfaces = ()
     """Meshes of the workspace, each with its volume: "marching_cubes" of the voxels, "convex_hull" and {"alpha_shape":
     α in metres} of the picture's subsample, {"iso_surface": index, "fraction": μ} of the voxels. Where none is asked
