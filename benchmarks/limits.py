@@ -122,7 +122,7 @@ def end_to_end(robot: ws.Robot, device: str, repeats: int) -> str:
         totals, sweeps = [], []
         for repeat in range(repeats + 1):
             started = time.perf_counter()
-            result = ws.analyze(robot, sampling, max_samples=10**11, **block)
+            result = ws.analyze(robot, sampling, max_samples=10**11, refined_volume=None, **block)
             if repeat:  # the first is not warm
                 totals.append(time.perf_counter() - started)
                 sweeps.append(result.document["timing_s"]["sweep"])

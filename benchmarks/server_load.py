@@ -26,6 +26,7 @@ QUICK = {
     "robot": {"library": "ur5e"},
     "indices": ["manipulability"],
     "voxel_size_m": 0.1,
+    "refined_volume": None,
 }
 GOAL_MS = 250.0
 

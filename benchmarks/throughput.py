@@ -105,7 +105,15 @@ def _sweep(plan: SweepPlan, count: int, device: str, threads: int) -> None:
 
 def _analyze(robot: ws.Robot, count: int, precision: str, dynamic: bool, device: str, threads: int) -> None:
     indices = "all" if dynamic else "kinematic"
-    ws.analyze(robot, ws.Random(count, seed=1), indices, precision=precision, device=device, threads=threads)
+    ws.analyze(
+        robot,
+        ws.Random(count, seed=1),
+        indices,
+        precision=precision,
+        refined_volume=None,
+        device=device,
+        threads=threads,
+    )
 
 
 def _sized(case: Case) -> Case:

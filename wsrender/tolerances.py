@@ -46,3 +46,7 @@ def epsilon(precision: str) -> float:
 # How far rounding may push a posture at the end of a link's reach or of a joint's limit beyond it: the law of cosines
 # adds and subtracts a few squares, each with an error of half an ulp (relative to the squared size; angles [rad]).
 CLOSURE = 64 * 2.0**-52
+
+# Thickness of a set of positions that counts as none, relative to its size: model files that mean a right angle say
+# 1.5708.
+FLAT = 1e-5

@@ -8,16 +8,12 @@ from wsrender.client import Client
 from wsrender.result import Result
 from wsrender_server.local_server import LocalServer
 
-SAMPLES = 1_000_000
-
 
 def job_document(robot: str) -> dict[str, Any]:
     """A workspace analysis that shows everything and takes seconds."""
     return {
         "analysis": "workspace",
         "robot": {"library": robot},
-        "sampling": {"method": "sobol", "count": SAMPLES},
-        "voxel_size_m": 0.04,  # so that a million samples leave few holes
         "keep_map": True,
     }
 

@@ -173,7 +173,7 @@ EXAMPLES = [
         "analysis": "workspace",
         "robot": {"library": "phantom_omni"},
         "tip": "tool",
-        "sampling": {"method": "grid", "per_joint": 5},
+        "sampling": {"method": "sobol", "count": 1000000},
         "indices": ["manipulability", "inverse_condition_number"],
         "task": "linear",
     },

@@ -92,7 +92,7 @@ def test_a_printed_document_can_be_run_again(run, tmp_path):
         (["ur5e", "--samples", "0"], "sampling.count: must be at least 1, not 0"),
         (["ur5e", "--samples", "nan"], "sampling.count: must be a whole number, not NaN"),
         (["ur5e", "--lock", "joint1"], '--lock: must be JOINT=VALUE, not "joint1"'),
-        (["ur5e", "--sampling", "random"], "sampling.count: is required"),
+        (["ur5e", "--sampling", "halton"], "sampling.method: must be one of"),
         (["ur5e", "--grid", "3", "--samples", "9"], "--grid: does not go with --samples"),
         (["ur5e", "--task", "up"], 'task: must be "linear", "angular", "full" or a list of rows from x y z rx ry rz'),
         (["missing.json"], "JOB: missing.json cannot be read: No such file or directory"),

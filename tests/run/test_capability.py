@@ -136,4 +136,4 @@ def test_a_partial_result_travels(result, tmp_path):
 
 
 def test_default_voxels_are_a_twentieth_of_the_workspace():
-    assert plan({"analysis": "capability", "robot": "ur5e", "device": "cpu"}).resolved()["voxel_size_m"] == 0.075
+    assert plan({"analysis": "capability", "robot": "ur5e", "device": "cpu"}).resolved()["voxel_size_m"] == 0.077

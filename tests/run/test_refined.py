@@ -6,7 +6,9 @@ import pytest
 import wsrender as ws
 from tests.reference import closed_form_inverse as closed_form
 from wsrender.reachability.voxel_labels import REASONS
+from wsrender.robots.dh import structural_length
 
+SURFACE = "the tip stays on a surface"
 EXACT = np.pi / 2 * np.sqrt(2) * (0.4**3 - 0.2**3) / 3
 
 
@@ -28,7 +30,15 @@ def test_refined_volume_stands_beside_the_counts(result):
     assert low <= EXACT <= high
     assert high - low <= 2 * 0.02 * refined["value"]
     assert (refined["met"], refined["tolerance"]) == (True, 0.02)
-    assert result.document["global"]["structural_length_volume"] == "refined"
+    assert result.document["headline"] == {
+        "quantity": "volume",
+        "value": refined["value"],
+        "ci95": [low, high],
+        "unit": "m3",
+        "reason": "",
+    }
+    length = structural_length(ws.load_robot("spherical").chain)
+    assert result.document["global"]["structural_length_index"] == pytest.approx(length / refined["value"] ** (1 / 3))
     assert "refined volume" in result.summary()
 
 
@@ -70,8 +80,14 @@ def test_voxels_of_an_arm_in_a_plane_beside_their_centres():
     # The inscribed ball of a voxel is .01 m, the circumscribed one .0173 m.
     assert found[(height < 0.01) & (radius > 0.15) & (radius < 0.45)].all()
     assert not found[(height > 0.0174) | (radius < 0.13) | (radius > 0.47)].any()
-    assert result.document["volume_m3"]["refined"]["value"] == 0.0
     assert result.document["voxel_labels"]["labels"]["reachable"] == found.sum()
+    document = result.document
+    assert (document["volume_m3"]["refined"], document["headline"]["quantity"]) == (None, "area")
+    assert document["area_m2"]["refined"]["ci95"] == document["headline"]["ci95"]
+    low, high = document["headline"]["ci95"]
+    assert low <= np.pi * (0.45**2 - 0.15**2) <= high
+    reason = document["global"]["structural_length_reason"]
+    assert document["global"]["structural_length_index"] is None and "area" in reason
 
 
 def test_it_says_how_far_it_is():
@@ -87,18 +103,30 @@ def test_it_says_how_far_it_is():
 def test_a_held_joint_holds_for_the_refined_volume_too():
     held = ws.Sobol(20_000, locked={"joint3": 0.3})
     result = ws.analyze(ws.load_robot("spherical"), held, voxel_size_m=0.02, refined_volume=0.02, device="cpu")
-    assert result.document["volume_m3"]["refined"]["value"] == 0.0
+    assert result.document["volume_m3"]["refined"] is None
+    assert (result.document["headline"]["value"], result.document["headline"]["reason"]) == (None, SURFACE)
+
+
+def test_a_tip_that_stays_on_a_surface_has_no_volume():
+    document = ws.analyze("slave_5r", ws.Sobol(20_000), device="cpu").document
+    assert document["headline"] == {"quantity": "volume", "value": None, "ci95": None, "unit": "m3", "reason": SURFACE}
+    assert document["volume_m3"]["refined"] is None
+    values = document["global"]
+    assert (values["structural_length_index"], values["structural_length_reason"]) == (None, SURFACE)
 
 
 @pytest.mark.parametrize(
     ("asked", "made"),
-    [({"refined_volume": 0.05}, (True, False)), ({"voxel_labels": True}, (False, True)), ({}, (False, False))],
-    ids=["volume", "labels", "neither"],
+    [({}, (True, False)), ({"voxel_labels": True}, (False, True)), ({"voxel_labels": False}, (False, False))],
+    ids=["volume, by default", "labels", "neither"],
 )
 def test_volume_and_labels_are_made_when_each_is_asked_for(asked, made):
-    result = ws.analyze(ws.load_robot("spherical"), ws.Sobol(2_000), voxel_size_m=0.04, device="cpu", **asked)
+    options = {"voxel_size_m": 0.04, "device": "cpu", **({"refined_volume": None} if asked else {}), **asked}
+    result = ws.analyze(ws.load_robot("spherical"), ws.Sobol(2_000), **options)
     document = result.document
     there = document["volume_m3"]["refined"] is not None, document["voxel_labels"] is not None
     assert there == made
     assert ("reachability" in result.volumes) == made[1]
-    assert document["global"]["structural_length_volume"] == ("refined" if made[0] else "occupied")
+    assert (document["headline"]["value"] is not None) == made[0]
+    assert (document["global"]["structural_length_index"] is not None) == made[0]
+    assert made[0] or "refined_volume is null" in document["headline"]["reason"]

@@ -9,7 +9,8 @@ from wsrender.result import Result
 from wsrender.run import finish, plan, run_shard
 from wsrender.run.partial_files import load_partial, save_partial
 
-OPTIONS = {"indices": ["manipulability"], "device": "cpu", "voxel_size_m": 0.01}
+OPTIONS = {"indices": ["manipulability"], "device": "cpu", "voxel_size_m": 0.01, "refined_volume": None}
+REFINED = {**OPTIONS, "refined_volume": 0.02}
 FULL = ws.Grid([20, 40, 30])  # one sample at the centre of each voxel of .3 × .4 × .2 m
 BOX = 0.3 * 0.4 * 0.2
 
@@ -69,9 +70,9 @@ def test_scan_of_an_offset():
     table = result.tables["scan"]
     common = np.maximum(0.3 - np.array(values), 0) * 0.4 * 0.2
     assert table["x"].tolist() == values
-    assert table["shared"] == pytest.approx(common)
-    assert table["any"] == pytest.approx(2 * BOX - common)
-    assert table.units == {"x": "m", "shared": "m^3", "any": "m^3"}
+    assert table["occupied_shared"] == pytest.approx(common)
+    assert table["occupied_any"] == pytest.approx(2 * BOX - common)
+    assert table.units == {"x": "m", "occupied_any": "m^3", "occupied_shared": "m^3"}
 
 
 def test_scan_of_an_angle():
@@ -79,8 +80,60 @@ def test_scan_of_an_angle():
     scan = {"robot": 0, "axis": "yaw", "values": [0, 90, 180]}
     result = ws.shared_workspace([gantry(), gantry()], FULL, scan=scan, **OPTIONS)
     # The box x 0….3, y -.4…0 turned by 90° is x 0….4, y 0….3.
-    assert result.tables["scan"]["shared"] == pytest.approx([BOX, 0, 0])
+    assert result.tables["scan"]["occupied_shared"] == pytest.approx([BOX, 0, 0])
     assert result.tables["scan"].units["yaw"] == "deg"
+
+
+def test_refined_volumes_are_the_headline_at_every_value_of_a_scan():
+    """The slides reach .29 × .39 × .19 m, which is less than the voxels that they touch."""
+    values, area = [0.0, 0.1, 0.4], 0.39 * 0.19
+    scan = {"axis": "x", "values": values}
+    result = ws.shared_workspace([gantry(), moved(0.1, 0, 0)], ws.Random(5000), scan=scan, **REFINED)
+    document, table = result.document, result.tables["scan"]
+    assert document["headline"]["quantity"] == "volume" and document["headline"]["reason"] == ""
+    low, high = document["headline"]["ci95"]
+    assert low <= 0.19 * area <= high and high - low <= 2 * 0.02 * document["headline"]["value"]
+    ratio = 0.19 / 0.39
+    assert document["shared_ratio"] == pytest.approx(ratio, rel=0.04) and document["shared_ratio_volume"] == "refined"
+    shared, any_ = (np.maximum(0.29 - np.array(values), 0) * area, (0.29 + np.minimum(values, 0.29)) * area)
+    for name, exact in (("shared", shared), ("any", any_)):
+        assert (table[f"{name}_low"] <= exact).all() and (exact <= table[f"{name}_high"]).all()
+        assert table[name] == pytest.approx(exact, rel=0.02)
+        assert (table[f"occupied_{name}"][:2] != table[name][:2]).all()
+        assert table.units[name] == "m^3"
+
+
+def test_occupied_voxels_far_from_the_volume_are_told():
+    """5,000 random samples touch less than half of the 13,000 voxels of a box."""
+    document = ws.shared_workspace([gantry(), gantry()], ws.Random(5000), **REFINED).document
+    assert [(w["code"], w["message"].split()[8]) for w in document["warnings"] if w["code"] == "occupied_differs"]
+    assert "of the shared volume" in " ".join(w["message"] for w in document["warnings"]).replace("from the", "of the")
+
+
+def test_robots_that_fill_no_volume_share_an_area_or_nothing():
+    flat = ws.shared_workspace([planar_arm(), planar_arm()], ws.Random(5000), **REFINED, task=["x", "y"]).document
+    assert flat["headline"]["quantity"] == "area" and flat["volume_m3"]["refined"] is None
+    low, high = flat["headline"]["ci95"]
+    inner = np.sqrt(0.5**2 + 0.4**2 + 2 * 0.5 * 0.4 * np.cos(np.radians(150)))
+    assert low <= np.pi * (0.9**2 - inner**2) <= high
+    assert flat["area_m2"]["refined"]["shared"]["value"] == flat["headline"]["value"]
+    other = planar_arm()
+    tilted = ws.load_robot(other.spec.dh, placement=ws.Transform(rpy_deg=(30, 0, 0)))
+    apart = ws.shared_workspace([other, tilted], ws.Random(5000), **REFINED, task=["x", "y"]).document
+    assert apart["headline"]["value"] is None and "different planes" in apart["headline"]["reason"]
+    assert apart["shared_ratio_volume"] == "occupied"
+
+
+def test_compared_robots_have_a_headline_each():
+    document = ws.robot_comparison([gantry(), planar_arm()], ws.Random(5000), **REFINED).document
+    box, plane = (robot["headline"] for robot in document["robots"])
+    assert (box["quantity"], plane["quantity"]) == ("volume", "area")
+    assert box["ci95"][0] <= 0.29 * 0.39 * 0.19 <= box["ci95"][1]
+    rows = {(row["quantity"], row["unit"]): row["values"] for row in document["comparison"]}
+    assert rows["volume.refined", "m^3"] == [box["value"], None]
+    assert rows["area.refined", "m^2"] == [None, plane["value"]]
+    assert document["headline"]["value"] is None and "robots" in document["headline"]["reason"]
+    assert {w["message"].split(":")[0] for w in document["warnings"]} >= {"gantry"}
 
 
 def test_two_arms_of_one_model():
@@ -104,7 +157,7 @@ def test_the_smallest_voxel_size_is_that_of_all():
 
 def test_saved_shards_and_files_hold_everything(tmp_path):
     scan = {"axis": "x", "values": [0.0, 0.2]}
-    whole = ws.shared_workspace([gantry(), moved(0.1, 0, 0)], ws.Random(5000), scan=scan, **OPTIONS)
+    whole = ws.shared_workspace([gantry(), moved(0.1, 0, 0)], ws.Random(5000), scan=scan, **REFINED)
     first = plan(whole.document["job"])
     assert first.shards == [(0, 20_000)]
     assert first.estimate["samples"] == 20_000
@@ -112,7 +165,8 @@ def test_saved_shards_and_files_hold_everything(tmp_path):
     again = plan(whole.document["job"], resolved=first.resolved())
     result = finish(again, load_partial(tmp_path / "0.npz", again))
     assert result.document["volume_m3"] == whole.document["volume_m3"]
-    np.testing.assert_array_equal(result.tables["scan"]["shared"], whole.tables["scan"]["shared"])
+    for name, column in whole.tables["scan"].columns.items():
+        np.testing.assert_array_equal(result.tables["scan"][name], column)
     result.save(tmp_path / "out")
     names = {record["name"] for record in result.document["artifacts"]}
     assert {"scan.parquet", "robot_gantry_2.vtkhdf", "union.glb", "plots/scan.png", "plots/product.png"} < names
@@ -203,7 +257,7 @@ def test_a_scanned_angle_needs_an_angle():
 
 
 def test_a_user_defined_robot_takes_part_and_is_scanned():
-    options = {"indices": ["manipulability"], "task": ["x", "y"], "device": "cpu", "voxel_size_m": 0.05}
+    options = {**OPTIONS, "task": ["x", "y"], "voxel_size_m": 0.05}
     result = ws.shared_workspace([PlanarClass(), PlanarClass()], ws.Grid(20), **options)
     volume = result.document["volume_m3"]
     assert volume["shared"] == volume["any"] > 0
@@ -214,7 +268,8 @@ def test_a_user_defined_robot_takes_part_and_is_scanned():
         .columns
         for one in (PlanarClass(), planar_arm())
     ]
-    assert scans[0]["shared"].tolist() == scans[1]["shared"].tolist()
-    assert scans[0]["shared"][1] > scans[0]["shared"][2] == 0
+    shared = [scan["occupied_shared"].tolist() for scan in scans]
+    assert shared[0] == shared[1]
+    assert shared[0][1] > shared[0][2] == 0
     with pytest.raises(ws.InputError, match="robots: there are 3 samplings and 2 names for 2 robots"):
         ws.shared_workspace([gantry()] * 2, [FULL] * 3, **options)

@@ -6,8 +6,10 @@ from scipy import ndimage
 
 import wsrender as ws
 from tests.run.simple_robots import PLANAR, gantry, planar_arm
+from wsrender.run.volume_notices import few_samples, occupied_differs
 
 LINEAR = {"indices": ["manipulability", "inverse_condition_number"], "device": "cpu"}
+UNREFINED = {**LINEAR, "refined_volume": None}
 
 
 @pytest.fixture(scope="module")
@@ -23,20 +25,40 @@ def planar_result():
     )
 
 
-@pytest.mark.parametrize(("levels", "told"), [(4, "none of the occupied"), (20, None)])
-def test_summaries_tell_of_too_few_samples(levels, told):
-    result = ws.analyze(gantry(), ws.Grid(levels), voxel_size_m=0.02, **LINEAR)
-    assert (result.document["volume_m3"]["inner"] == 0) == bool(told)
-    assert ("too few samples" in result.summary()) == bool(told)
-    assert told is None or told in result.summary()
+def codes(result):
+    return [warning["code"] for warning in result.document["warnings"]]
 
 
-@pytest.mark.parametrize(("count", "sparse"), [(10**6, True), (2 * 10**7, False)])
-def test_summaries_tell_of_volumes_that_more_samples_would_enlarge(count, sparse):
-    """The UR5e reaches 3.80 m³ (see the refined volumes); a million samples find half of it."""
-    result = ws.analyze("ur5e", ws.Sobol(count), max_samples=10**8, **LINEAR)
-    assert (result.document["volume_m3"]["occupied"] < 0.9 * 3.80) == sparse
-    assert ("% of the occupied voxels have all neighbours" in result.summary()) == sparse
+@pytest.mark.parametrize("options", [LINEAR, UNREFINED], ids=["by inverse kinematics", "by the samples"])
+@pytest.mark.parametrize(("size", "told"), [(0.015, True), (None, False)])
+def test_too_few_samples_are_told(size, told, options):
+    """The UR5e reaches 3.80 m³ (see the refined volumes); in voxels of 15 mm a million samples find half of it."""
+    result = ws.analyze("ur5e", ws.Sobol(10**6), voxel_size_m=size, **options)
+    assert (result.document["volume_m3"]["occupied"] < 0.9 * 3.80) == told
+    assert ("few_samples" in codes(result)) == told
+    for warning in result.document["warnings"]:
+        assert warning["field"] == "voxel_size_m" and warning["message"] and warning["remedy"]
+
+
+def test_layers_that_a_grid_leaves_out_are_holes():
+    """10 levels of 32 mm in voxels of 17.6 mm: whole layers of voxels within reach hold no sample."""
+    result = ws.analyze(gantry(), ws.Grid([200, 200, 10]), voxel_size_m=0.0176, **LINEAR)
+    (warning,) = (w for w in result.document["warnings"] if w["code"] == "few_samples")
+    share = float(warning["message"].split(" about ")[1].split()[0])
+    layers = np.floor(np.linspace(0.005, 0.295, 10) / 0.0176)
+    assert share == pytest.approx(100 * (np.ptp(layers) + 1 - len(set(layers))) / len(set(layers)), rel=0.3)
+
+
+@pytest.mark.parametrize(("scale", "told"), [(1.09, False), (1.11, True), (0.91, False), (0.89, True)])
+def test_occupied_volumes_are_told_where_they_differ_by_more_than_a_tenth(scale, told):
+    notices = list(occupied_differs(scale * 0.5, 0.5))
+    assert [notice.code for notice in notices] == ["occupied_differs"] * told
+    assert not list(occupied_differs(scale, None)) and not list(occupied_differs(scale, 0.0))
+
+
+def test_shares_of_holes_and_of_unseen_voxels_that_are_told():
+    told = [bool(list(few_samples(*shares))) for shares in ((0.0051, 0), (0.0049, 9), (None, 0.21), (None, 0.19))]
+    assert told == [True, False, True, False]
 
 
 def test_summaries_tell_of_a_task_that_the_arm_cannot_do():
@@ -58,8 +80,16 @@ def test_a_gantry_fills_its_box():
     assert document["bounds_m"]["upper"] == pytest.approx([0.295, -0.005, 0.195], abs=1e-6)
     assert document["global"]["global_isotropy"] == pytest.approx(1.0)
     # Waldron's length sum of three slides is the sum of their largest displacements.
-    length = 0.195 + 0.395 + 0.295
-    assert document["global"]["structural_length_index"] == pytest.approx(length / 0.024 ** (1 / 3))
+    length, volume = 0.195 + 0.395 + 0.295, document["volume_m3"]["refined"]["value"]
+    assert volume == pytest.approx(0.29 * 0.39 * 0.19, rel=0.01)
+    assert document["global"]["structural_length_index"] == pytest.approx(length / volume ** (1 / 3))
+    assert document["headline"] == {
+        "quantity": "volume",
+        "value": volume,
+        "ci95": document["volume_m3"]["refined"]["ci95"],
+        "unit": "m3",
+        "reason": "",
+    }
     for values in document["indices"].values():
         assert values["joint_mean"] == pytest.approx(1.0)
         assert values["workspace_mean"] == pytest.approx(1.0)
@@ -156,31 +186,6 @@ def test_rows_of_the_map_are_the_samples_in_order(planar_result):
     assert samples.indices["manipulability"] == pytest.approx(0.2 * np.sin(samples.configuration[:, 1]), abs=1e-6)
     assert np.abs(samples.quat_wxyz[:, 0]) == pytest.approx(np.abs(np.cos(elbow / 2)), abs=1e-6)
     assert samples.joint_names == ("joint1", "joint2")
-
-
-@pytest.mark.parametrize(
-    ("robot", "task", "extent", "dimension"),
-    [
-        (gantry(), ["x", "y", "z"], 0.29 * 0.39 * 0.19, 3),
-        # The hull of a full ring is its outer disk, of 2^16 samples to two digits.
-        (planar_arm(), ["x", "y"], np.pi * 0.9**2, 2),
-        (gantry(y=(0.1, 0.1001)), ["x", "z"], None, None),
-    ],
-    ids=["volume", "area", "thin box"],
-)
-def test_default_voxel_size(robot, task, extent, dimension):
-    options = {"indices": ["manipulability", "inverse_condition_number"], "device": "cpu", "task": task}
-    if dimension is None:
-        extent, dimension = 0.29 * 0.19 * 0.0001, 3
-    size = ws.analyze(robot, ws.Grid(3), **options).document["voxel_size_m"]
-    assert size == pytest.approx(extent ** (1 / dimension) / 100, rel=0.05)
-    assert float(f"{size:.1e}") == size
-
-
-def test_default_voxel_size_of_a_line():
-    locked = {"joint2": 0.1, "joint3": 0.1}
-    size = ws.analyze(gantry(), ws.Grid(3, locked=locked), **LINEAR).document["voxel_size_m"]
-    assert size == 0.0019
 
 
 def test_a_tip_that_does_not_move_needs_a_voxel_size():

@@ -39,9 +39,9 @@ def test_example_of_the_design():
 def test_defaults():
     job = parse_job(UR5E)
     assert (job.base, job.tip, job.indices, job.task) == (None, None, "kinematic", "linear")
-    assert (job.sampling, job.convention, job.joint_limit_penalty) == (Grid(15), "standard", None)
+    assert (job.sampling, job.convention, job.joint_limit_penalty) == (Sobol(2**24), "standard", None)
     assert (job.torque_scaling, job.inertia, job.characteristic_length_m) == (False, "kernel", 1.0)
-    assert (job.voxel_size_m, job.voxel_statistics, job.refined_volume) == (None, ("count", "maximum"), None)
+    assert (job.voxel_size_m, job.voxel_statistics, job.refined_volume) == (None, ("count", "maximum"), 0.01)
     assert job.voxel_labels is False
     assert (job.keep_map, job.map_columns, job.max_samples) == (False, (), 10**10)
     assert (job.precision, job.device) == ("float32", "auto")
@@ -163,7 +163,14 @@ def test_schema_describes_every_field_and_shows_every_default():
         assert field.get("description"), f"{title}.{name} has no description"
     fields = job_schema("workspace")["properties"]
     assert {name for name, field in fields.items() if "default" not in field} == {"robot"}
-    assert fields["sampling"]["default"] == {"method": "grid", "per_joint": 15, "locked": {}}
+    assert fields["sampling"]["default"] == {"method": "sobol", "count": 2**24, "seed": 0, "locked": {}}
+
+
+def test_fewer_samples_by_default_where_rows_are_kept_or_robots_are_several():
+    assert parse_job({**UR5E, "keep_map": True}).sampling == Sobol(2**20)
+    assert parse_job({**UR5E, "keep_map": True, "sampling": {"method": "grid"}}).sampling == Grid(15)
+    shared = parse_job({"analysis": "shared_workspace", "robots": [{"robot": "ur5e"}, {"robot": "ur5e"}]})
+    assert [arm.sampling for arm in shared.robots] == [Sobol(2**20)] * 2
 
 
 def test_schema_covers_the_union_and_each_analysis():

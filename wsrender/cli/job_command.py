@@ -80,11 +80,14 @@ def _document(
     keep_map: Annotated[bool, typer.Option("--keep-map", help="Keep one row per sample (map.parquet).")] = False,
 ) -> dict[str, Any]:
     """The job document that JOB and the options say; options override the fields of a document."""
+    from wsrender.spec.sampling import DEFAULT_COUNT, SEVERAL_COUNT
+
     document = job_document(job)
+    count = SEVERAL_COUNT if keep_map else DEFAULT_COUNT
     given = {
         "tip": tip,
         "base": base,
-        "sampling": sampling_document(document.get("sampling"), sampling, grid, samples, seed, lock or []),
+        "sampling": sampling_document(document.get("sampling"), sampling, grid, samples, seed, lock or [], count),
         "indices": name_or_list(indices, ("kinematic", "dynamic", "all")),
         "task": name_or_list(task, ("linear", "angular", "full")),
         "convention": convention,

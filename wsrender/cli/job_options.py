@@ -27,29 +27,38 @@ def job_document(job: str) -> dict[str, Any]:
 
 
 def sampling_document(
-    current: Any, method: str | None, grid: str | None, samples: str | None, seed: int | None, lock: list[str]
+    current: Any,
+    method: str | None,
+    grid: str | None,
+    samples: str | None,
+    seed: int | None,
+    lock: list[str],
+    count: int,
 ) -> dict[str, Any] | None:
     """The sampling that the options ask for, on top of that of the document; None without options.
 
-    A grid size chooses the grid, a number of samples the Sobol sequence unless the method is counted.
+    A grid size chooses the grid, anything else the Sobol sequence; ``count``: its samples where none are given.
     Raises InputError naming the option.
     """
     if not lock and all(option is None for option in (method, grid, samples, seed)):
         return None
     if grid is not None and (samples is not None or method in COUNTED_METHODS):
         raise InputError("--grid", "does not go with --samples, nor with a method that takes a number of samples")
-    fields: dict[str, Any] = dict(current) if isinstance(current, dict) else {"method": "grid"}
+    fields: dict[str, Any] = dict(current) if isinstance(current, dict) else {"method": "sobol"}
     if method is None and grid is not None:
         method = "grid"
     if method is None and samples is not None and fields.get("method") not in COUNTED_METHODS:
         method = "sobol"
     if method is not None and method != fields.get("method"):
-        fields = {"method": method, "locked": fields.get("locked", {})}
+        counted = {"count": fields["count"]} if "count" in fields and method in COUNTED_METHODS else {}
+        fields = {"method": method, **counted, "locked": fields.get("locked", {})}
     if grid is not None:
         counts = [_number("--grid", text) for text in grid.split(",")]
         fields["per_joint"] = counts if len(counts) > 1 else counts[0]
     if samples is not None:
         fields["count"] = _number("--samples", samples)
+    if fields["method"] in COUNTED_METHODS:
+        fields.setdefault("count", count)
     if seed is not None:
         fields["seed"] = seed
     if lock:

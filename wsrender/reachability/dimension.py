@@ -8,10 +8,9 @@ from wsrender.engine import configurations, evaluate_kinematics
 from wsrender.robots.chain import Chain
 from wsrender.sampling import plan_sampling
 from wsrender.spec.sampling import Sobol
+from wsrender.tolerances import FLAT
 
 SAMPLES = 1 << 10
-# Thickness that counts as none, relative to the size: model files that mean a right angle say 1.5708.
-FLAT = 1e-5
 MARGIN = 2.0  # of the samples' thickness, for what they do not show
 
 

@@ -80,6 +80,7 @@ def _means(
         "precision": "float64",
         "device": "cpu",
         "voxel_size_m": 0.05,
+        "refined_volume": None,
     }
     return execute(document, progress).global_indices["joint_mean"]
 

@@ -23,8 +23,9 @@ def analyze(
     """Sample a robot's joint space: distribution map, volume data and global indices.
 
     ``robot`` is a Robot, a user-defined robot or what `load_robot` takes; ``sampling`` one of Grid, Random, Sobol,
-    BoundaryBiased, Converge (default Grid(15)) or its part of a job document; ``fields`` are the other fields of the
-    job document ``workspace``: convention, joint_limit_penalty, characteristic_length_m, torque_scaling, inertia,
+    BoundaryBiased, Converge (default Sobol(2**24), with ``keep_map`` Sobol(2**20), of a user-defined robot
+    Sobol(2**16)) or its part of a job document; ``fields`` are the other fields of the job document ``workspace``:
+    refined_volume, voxel_labels, convention, joint_limit_penalty, characteristic_length_m, torque_scaling, inertia,
     voxel_size_m, voxel_statistics, keep_map, map_columns, max_samples, precision, device. ``progress``: True shows a
     bar on work of more than a second; or a function (done, total, message). ``threads`` and ``chunk_size`` change no
     bit of the result. Raises DocumentError, InputError, ModelError, ResourceError, NumericalError, NotConvergedError.
@@ -33,7 +34,7 @@ def analyze(
     document = {
         "analysis": "workspace",
         **arm_entry(subject),
-        "sampling": sampling_entry(sampling),
+        **sampling_entry(sampling, subject),
         "indices": indices if isinstance(indices, str) else list(indices),
         "task": task if isinstance(task, str) else list(task),
         **plain(fields),
@@ -53,6 +54,5 @@ def kinetostatic_field(
     Raises DocumentError, InputError, ModelError, ResourceError.
     """
     subject = as_robot(robot)
-    sampled = {} if sampling is None else {"sampling": sampling_entry(sampling)}
-    document = {"analysis": "kinetostatic_field", **arm_entry(subject), **sampled, **plain(fields)}
+    document = {"analysis": "kinetostatic_field", **arm_entry(subject), **sampling_entry(sampling), **plain(fields)}
     return execute_here(document, subject, progress)

@@ -17,12 +17,12 @@ from wsrender.run.settled_device import settled_device
 from wsrender.sampling import plan_sampling
 from wsrender.spec.capability import CapabilityJob
 from wsrender.spec.sampling import Sobol
-from wsrender.volume.lattice import default_voxel_size, round_to_digits
+from wsrender.volume.lattice import default_voxel_size
 from wsrender.volume.table import Table
 from wsrender.volume.volume_data import VolumeData
 
 RATE = 2e4  # pairs of voxel and direction per second of one core, rounded down from benchmarks/inverse.py
-COARSER = 5.0  # than the voxels of a workspace: every one has many directions
+DIVISIONS = 20  # of the size of a workspace: every voxel has many directions
 FIRST_SAMPLES = 1 << 16
 
 
@@ -138,7 +138,7 @@ def plan_capability(job: CapabilityJob, robot: Robot, resolved: dict[str, Any] |
     device, target = settled_device(job.device, resolved)
     if resolved is None:
         positions = _positions(chain)
-        size = job.voxel_size_m or round_to_digits(COARSER * default_voxel_size(positions), 2)
+        size = job.voxel_size_m or default_voxel_size(positions, divisions=DIVISIONS)
         voxels = len(np.unique(np.floor(positions / size), axis=0))
         shards = [(0, voxels * job.directions)]
     else:

@@ -8,8 +8,10 @@ import numpy as np
 
 from wsrender.result import Result
 from wsrender.robot import Robot
+from wsrender.run.headline import TABLE_UNITS, no_headline
 from wsrender.run.one_shard import OneShard
 from wsrender.run.provenance import job_entry, provenance
+from wsrender.run.refined import Progress
 from wsrender.run.several_result import common_entries, skeletons
 from wsrender.run.several_robots import SeveralPlans, plan_several
 from wsrender.spec import RobotComparisonJob
@@ -47,6 +49,10 @@ class RobotComparisonPlan(OneShard):
         """Partial results of the robots."""
         return self.several.run(progress, **execution)
 
+    def refine(self, partial: dict[str, np.ndarray], progress: Progress | None) -> dict[str, np.ndarray]:
+        """With the refined measure of every robot, if asked."""
+        return self.several.refine(partial, progress)
+
     def finish(self, partial: dict[str, np.ndarray], seconds: dict[str, float]) -> Result:
         """Every robot's volume, and the table of values and differences from the first robot."""
         results = self.several.results(partial)
@@ -57,6 +63,7 @@ class RobotComparisonPlan(OneShard):
             "analysis": "robot_comparison",
             "job": job_entry(self.job, *self.robots),
             **common,
+            "headline": no_headline("a comparison has a headline for each robot: robots[].headline"),
             "comparison": rows,
             "provenance": provenance(self.job.precision, self.target, sampling_path="direct"),
             "timing_s": seconds,
@@ -88,6 +95,8 @@ def _rows(robots: list[dict[str, Any]]) -> list[dict[str, Any]]:
 
 
 def _facts(robot: dict[str, Any]) -> Iterator[tuple[tuple[str, str], float]]:
+    if (found := robot["headline"])["value"] is not None:
+        yield (f"{found['quantity']}.refined", TABLE_UNITS[found["unit"]]), found["value"]
     for name, value in robot["volume_m3"].items():
         if isinstance(value, float):
             yield (f"volume.{name}", "m^3"), value

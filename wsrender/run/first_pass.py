@@ -5,14 +5,16 @@ from functools import cached_property
 
 import numpy as np
 
-from wsrender.engine import Evaluated, Evaluation, configurations, evaluate_at
+from wsrender.engine import Evaluated, Evaluation, configurations, evaluate_at, evaluate_kinematics
 from wsrender.engine.sums import bound_from_reach, scales_for
 from wsrender.robots.reachable_box import reachable_box
-from wsrender.sampling import plan_sampling
+from wsrender.sampling import SamplingPlan, plan_sampling
 from wsrender.spec.sampling import Sobol
+from wsrender.tolerances import FLAT
 from wsrender.volume.lattice import LatticeBlock, block_around, default_voxel_size
 
 SAMPLES = 2**16
+STEP_SAMPLES = 2**10
 # An index without a bound from the reach may take this many times its coarse maximum. The pseudo-inverse of
 # the original program jumps up in exactly singular postures, which grids hit and the first pass does not.
 HEADROOM, HEADROOM_CODE = 2.0, 1024.0
@@ -29,13 +31,35 @@ class FirstPass:
     @cached_property
     def evaluated(self) -> Evaluated:
         """Positions and values of the coarse samples, in float64 on the CPU: the same on every target."""
-        sampling = plan_sampling(self.evaluation.chain, Sobol(count=SAMPLES, seed=0, locked=self.locked))
-        q = configurations(sampling, np.arange(SAMPLES))
-        return evaluate_at(self.evaluation, q)
+        return evaluate_at(self.evaluation, configurations(self._coarse, np.arange(SAMPLES)))
 
-    def voxel_size(self) -> float:
-        """Default voxel edge [m]."""
-        return default_voxel_size(self.evaluated.position)
+    @property
+    def _coarse(self) -> SamplingPlan:
+        return plan_sampling(self.evaluation.chain, Sobol(count=SAMPLES, seed=0, locked=self.locked))
+
+    def voxel_size(self, sampling: SamplingPlan | None) -> float:
+        """Default voxel edge [m] for the samples of a plan; None: for as many as it takes.
+
+        Of a grid count its distinct positions, and voxels are no smaller than the longest step that one level of one
+        joint makes, in the median over configurations.
+        """
+        positions = self.evaluated.position
+        if sampling is None:
+            return default_voxel_size(positions)
+        if sampling.method != "grid":
+            return default_voxel_size(positions, sampling.count)
+        steps = self._steps(sampling)
+        moving = steps.max(axis=0) > FLAT * np.ptp(positions, axis=0).max()
+        distinct = np.prod(sampling.levels[moving], dtype=float)
+        return default_voxel_size(positions, distinct, least=float(np.median(steps.max(axis=1))))
+
+    def _steps(self, grid: SamplingPlan) -> np.ndarray:
+        """How far one level of each joint moves the end effector, (N, n) [m], at some of the coarse samples."""
+        chain = self.evaluation.chain
+        q = configurations(self._coarse, np.arange(STEP_SAMPLES))
+        slopes = np.linalg.norm(evaluate_kinematics(chain, q, device="cpu").jacobian[:, :3], axis=1)
+        turned = 2 * np.sin(np.minimum(grid.step, np.pi) / 2)  # the chord, of radius 1
+        return slopes * np.where(chain.revolute, turned, grid.step)
 
     def block(self, voxel_size_m: float) -> LatticeBlock:
         """A block that holds every position the robot can reach."""

@@ -7,11 +7,12 @@ import numpy as np
 from wsrender.progress import RunProgress
 from wsrender.result import Result
 from wsrender.robot import Robot, as_robot
+from wsrender.robot.user_robot import HostRobot
 from wsrender.run.steps import Progress, execute
 from wsrender.spec import parse_job
 from wsrender.spec.document import Document
 from wsrender.spec.robot import RobotSpec
-from wsrender.spec.sampling import Grid
+from wsrender.spec.sampling import PYTHON_COUNT, Sobol
 
 
 def as_source(source: Any) -> Robot | np.ndarray | dict[str, Any]:
@@ -32,11 +33,13 @@ def arm_entry(robot: Robot) -> dict[str, Any]:
     return {"robot": spec.model_dump(mode="json", exclude_none=True), "base": robot.base, "tip": robot.tip}
 
 
-def sampling_entry(sampling: Any) -> Any:
-    """Sampling of a job document; None is Grid(15)."""
+def sampling_entry(sampling: Any, robot: Robot | None = None) -> dict[str, Any]:
+    """The field ``sampling`` of a job document, if one is given; of a robot that is a Python class always."""
+    if sampling is None and isinstance(robot, HostRobot):
+        sampling = Sobol(PYTHON_COUNT)
     if sampling is None:
-        return Grid().model_dump(mode="json")
-    return sampling.model_dump(mode="json") if isinstance(sampling, Document) else sampling
+        return {}
+    return {"sampling": sampling.model_dump(mode="json") if isinstance(sampling, Document) else sampling}
 
 
 def plain(fields: dict[str, Any]) -> dict[str, Any]:

@@ -19,11 +19,11 @@ from wsrender.run.settled_device import settled_device
 from wsrender.sampling import plan_sampling
 from wsrender.spec.kinetostatics import KinetostaticFieldJob
 from wsrender.spec.sampling import Sobol
-from wsrender.volume.lattice import default_voxel_size, round_to_digits
+from wsrender.volume.lattice import default_voxel_size
 from wsrender.volume.volume_data import VolumeData
 
 RATE = 1e4  # configurations per second of one core, rounded down
-COARSER = 4.0  # than the voxels of a workspace: a mean needs several configurations
+DIVISIONS = 25  # of the size of a workspace: a mean needs several configurations
 FIRST_SAMPLES, DRAWN = 1 << 14, 3
 MOST_SAMPLES = 100_000_000
 SHOWN = (0.3, 0.9)  # nearness to a limit of the posture in the picture, the first such sample
@@ -170,13 +170,13 @@ def plan_kinetostatic_field(
     force_field = ForceField(robot, checked)
     device, target = settled_device(job.device, resolved)
     count = plan_sampling(robot.chain, job.sampling, MOST_SAMPLES).count
-    size = resolved["voxel_size_m"] if resolved else job.voxel_size_m or _voxel_size(force_field)
+    size = resolved["voxel_size_m"] if resolved else job.voxel_size_m or _voxel_size(force_field, count)
     estimate = {"samples": float(count), "bytes": 100.0 * count, "seconds": count / RATE}
     return KinetostaticFieldPlan(job, robot, size, device, target, [(0, count)], estimate)
 
 
-def _voxel_size(force_field: ForceField) -> float:
+def _voxel_size(force_field: ForceField, samples: int) -> float:
     chain = force_field.chain
     q = configurations(plan_sampling(chain, Sobol(FIRST_SAMPLES)), np.arange(FIRST_SAMPLES))
     positions = evaluate_poses(chain, q, device="cpu")[:, :3, 3]
-    return round_to_digits(COARSER * default_voxel_size(positions), 2)
+    return default_voxel_size(positions, samples, divisions=DIVISIONS)

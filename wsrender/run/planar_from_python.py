@@ -22,8 +22,7 @@ def planar_boundary(
     Raises ModelError, naming the joint, for an arm that is not planar; DocumentError, InputError.
     """
     subject = as_robot(robot)
-    sampled = {} if sampling is None else {"sampling": sampling_entry(sampling)}
-    document = {"analysis": "planar_boundary", **arm_entry(subject), **sampled, **plain(fields)}
+    document = {"analysis": "planar_boundary", **arm_entry(subject), **sampling_entry(sampling), **plain(fields)}
     return execute_here(document, subject, progress)
 
 

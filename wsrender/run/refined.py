@@ -1,11 +1,8 @@
 """Refined volumes, areas and lengths in result documents, and the labels of voxels."""
 
-import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
-
-import numpy as np
 
 from wsrender.reachability.refined_measure import RefinedMeasure, refined_measure, refined_measures
 from wsrender.reachability.volume_estimate import Event
@@ -14,6 +11,7 @@ from wsrender.robots.chain import Chain
 from wsrender.volume.volume_data import VolumeData
 
 Progress = Callable[[int, int, str], None]
+POWERS = {"volume": "m3", "area": "m2", "length": "m"}
 VOLUME, VOXELS = "refined volume", "labels of voxels"  # what is going on
 
 
@@ -41,10 +39,10 @@ def labelled(chain: Chain, volume: VolumeData, seed: int, device: str, progress:
 
 def refined_together(
     chains: Sequence[Chain], events: Mapping[str, Event], tolerance: float, device: str, progress: Progress | None
-) -> np.ndarray:
-    """Entries of what so many of several placed chains reach, by event, as JSON text."""
+) -> dict[str, dict[str, Any]]:
+    """Entries of what so many of several placed chains reach, by event."""
     found = refined_measures(chains, events, tolerance, device=device, progress=_named(progress, VOLUME))
-    return np.array(json.dumps({name: measure_entry(measure, tolerance) for name, measure in found.items()}))
+    return {name: measure_entry(measure, tolerance) for name, measure in found.items()}
 
 
 def measure_entry(found: RefinedMeasure, tolerance: float) -> dict[str, Any]:
@@ -62,6 +60,14 @@ def measure_entry(found: RefinedMeasure, tolerance: float) -> dict[str, Any]:
         "position_tolerance_m": found.position_tolerance_m,
         "false_negatives": [{"tested": f.tested, "missed": f.missed} for f in found.false_negatives],
     }
+
+
+def by_measure(measure: dict[str, Any] | None, entry: Any) -> dict[str, Any]:
+    """The ``entry`` under what the measure is, {"volume_m3": {"refined": …}} …: None there where it has no value."""
+    quantity = measure["quantity"] if measure else "volume"
+    known = measure is not None and measure["value"] is not None
+    found = {"volume_m3": {"refined": None}}
+    return found | {f"{quantity}_{POWERS[quantity]}": {"refined": entry if known else None}}
 
 
 def volume_entry(measure: dict[str, Any]) -> dict[str, Any]:

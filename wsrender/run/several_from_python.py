@@ -24,8 +24,9 @@ def shared_workspace(
 
     ``robots`` are Robots (placed by ``load_robot(…, placement=…)``), user-defined robots or what `load_robot` takes;
     the arms of one model are loaded with other ``base`` and ``tip``. ``sampling`` is one for all or a list of one for
-    each (default Grid(15)). ``fields`` are the other fields of the job document ``shared_workspace``: scan, indices,
-    task, voxel_size_m, max_samples, precision, device …; ``names`` says what the result calls the robots.
+    each (default Sobol(2**20), of user-defined robots Sobol(2**16)). ``fields`` are the other fields of the job
+    document ``shared_workspace``: scan, refined_volume, indices, task, voxel_size_m, max_samples, precision, device …;
+    ``names`` says what the result calls the robots.
 
     Raises DocumentError, InputError, ModelError, ResourceError, NumericalError, NotConvergedError.
     """
@@ -64,8 +65,7 @@ def master_slave_mapping(master: Any, slave: Any, *, progress: Progress | bool |
     Raises DocumentError, InputError, ModelError, ResourceError.
     """
     sampling = fields.pop("sampling", None)
-    sampled = {} if sampling is None else {"sampling": sampling_entry(sampling)}
-    return _two("master_slave_mapping", {"master": master, "slave": slave}, sampled, progress, fields)
+    return _two("master_slave_mapping", {"master": master, "slave": slave}, sampling_entry(sampling), progress, fields)
 
 
 def _two(
@@ -91,7 +91,7 @@ def _several(
         counts = f"{len(samplings)} samplings and {len(names)} names for {len(subjects)} robots"
         raise InputError("robots", f"there are {counts}; one for each is needed")
     arms = [
-        {**arm_entry(subject), "sampling": sampling_entry(own), "name": name}
+        {**arm_entry(subject), **sampling_entry(own, subject), "name": name}
         for subject, own, name in zip(subjects, samplings, names, strict=True)
     ]
     return execute_here({"analysis": analysis, "robots": arms, **plain(fields)}, subjects, progress)

@@ -7,7 +7,7 @@ import numpy as np
 from wsrender.result import Result
 from wsrender.run.several_robots import SeveralPlans
 
-OF_EACH = ("robot", "sampling", "indices", "volume_m3", "bounds_m", "global", "convergence")
+OF_EACH = ("robot", "sampling", "indices", "volume_m3", "headline", "bounds_m", "global", "convergence")
 
 
 def common_entries(job: Any, several: SeveralPlans, results: list[Result]) -> dict[str, Any]:
@@ -17,7 +17,16 @@ def common_entries(job: Any, several: SeveralPlans, results: list[Result]) -> di
         {"name": name, **{key: document[key] for key in OF_EACH}}
         for name, document in zip(several.names, documents, strict=True)
     ]
-    return {"robots": robots, "choices": documents[0]["choices"], "voxel_size_m": several.plans[0].voxel_size_m}
+    return {
+        "robots": robots,
+        "choices": documents[0]["choices"],
+        "voxel_size_m": several.plans[0].voxel_size_m,
+        "warnings": [
+            {**warning, "message": f"{name}: {warning['message']}"}
+            for name, document in zip(several.names, documents, strict=True)
+            for warning in document["warnings"]
+        ],
+    }
 
 
 def skeletons(results: list[Result]) -> np.ndarray:

@@ -1,7 +1,8 @@
 """Several robots on one lattice: a workspace plan for each, swept one after the other."""
 
+import json
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import count
 from typing import Any
 
@@ -11,11 +12,14 @@ from wsrender.errors import InputError
 from wsrender.result import Result
 from wsrender.robot import Robot
 from wsrender.run.partial_arrays import partial_of_arrays, partial_to_arrays
+from wsrender.run.refined import Progress, Refined
 from wsrender.run.workspace import WorkspacePlan, plan_workspace
 from wsrender.spec import WorkspaceJob
 from wsrender.spec.arm import dotted
 from wsrender.spec.index_choices import IndexChoices
-from wsrender.spec.several_robots import PlacedRobot
+from wsrender.spec.several_robots import PlacedRobot, RobotComparisonJob
+
+MEASURE = "measure"  # array of a robot's refined measure
 
 
 @dataclass(eq=False)
@@ -52,12 +56,19 @@ class SeveralPlans:
             done += plan.shards[0][1]
         return arrays
 
+    def refine(self, arrays: dict[str, np.ndarray], progress: Progress | None) -> dict[str, np.ndarray]:
+        """With the refined measure of every robot whose plan asks for it."""
+        measures = {f"{k}_{MEASURE}": plan.measured(progress) for k, plan in enumerate(self.plans)}
+        return arrays | {name: np.array(json.dumps(entry)) for name, entry in measures.items() if entry}
+
     def results(self, arrays: dict[str, np.ndarray]) -> list[Result]:
         """The workspace result of every robot."""
         found = []
         for k, plan in enumerate(self.plans):
             own = {name.partition("_")[2]: array for name, array in arrays.items() if name.startswith(f"{k}_")}
-            found.append(plan.finish(partial_of_arrays(own, plan), {}))
+            entry = json.loads(str(own.pop(MEASURE))) if MEASURE in own else None
+            partial = replace(partial_of_arrays(own, plan), refined=entry and Refined(entry, None))
+            found.append(plan.finish(partial, {}))
         return found
 
 
@@ -75,8 +86,9 @@ def plan_several(job: Any, robots: tuple[Robot, ...], resolved: dict[str, Any] |
 
 
 def workspace_job(job: Any, arm: PlacedRobot) -> WorkspaceJob:
-    """The workspace job of one robot of a job of several."""
+    """The workspace job of one robot of a job of several: with its own refined volume where robots are compared."""
     choices = {name: getattr(job, name) for name in (*IndexChoices.model_fields, "voxel_size_m", "max_samples")}
+    choices["refined_volume"] = job.refined_volume if isinstance(job, RobotComparisonJob) else None
     own = {"robot": arm.robot, "base": arm.base, "tip": arm.tip, "sampling": arm.sampling}
     return WorkspaceJob(**choices, **own)
 

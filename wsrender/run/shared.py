@@ -1,21 +1,24 @@
 """The analysis ``shared_workspace``: what several robots reach together."""
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from wsrender.multi.shared_volume import NUMBER, PRODUCT, reached_by, shared_volume, volume_by_number
+from wsrender.notices import Notice, entries
 from wsrender.reachability import Event
 from wsrender.result import Result
 from wsrender.robot import Robot
+from wsrender.run.headline import TABLE_UNITS, headline_of
 from wsrender.run.one_shard import OneShard
 from wsrender.run.provenance import job_entry, provenance
-from wsrender.run.refined import Progress, refined_together, volume_entry
+from wsrender.run.refined import Progress, by_measure, refined_together
 from wsrender.run.several_result import common_entries, skeletons
 from wsrender.run.several_robots import SeveralPlans, plan_several, progress_after, workspace_job
+from wsrender.run.volume_notices import occupied_differs
 from wsrender.run.workspace import WorkspacePlan, plan_workspace
 from wsrender.spec import SharedWorkspaceJob
 from wsrender.spec.placement_scan import PlacementScan
@@ -24,6 +27,9 @@ from wsrender.volume.volume_data import VolumeData
 
 if TYPE_CHECKING:
     import trimesh
+
+
+REACHED = {"any": "jointly reachable", "shared": "shared"}  # of which volume
 
 
 @dataclass(eq=False)
@@ -63,13 +69,23 @@ class SharedWorkspacePlan(OneShard):
 
     def refine(self, partial: dict[str, np.ndarray], progress: Progress | None) -> dict[str, np.ndarray]:
         """With the refined volumes, if asked."""
-        if self.job.refined_volume is None:
+        tolerance, scan = self.job.refined_volume, self.job.scan
+        if tolerance is None:
             return partial
         robots = zip(self.robots, self.job.robots, strict=True)
         chains = [robot.chain.held(arm.sampling.locked) for robot, arm in robots]
         events = {"any": Event(1, len(chains)), "shared": Event(2, len(chains))}
-        device = self.several.plans[0].device
-        return partial | {"refined": refined_together(chains, events, self.job.refined_volume, device, progress)}
+        execution = {"tolerance": tolerance, "device": self.several.plans[0].device, "progress": progress}
+        together = refined_together(chains, events, **execution)
+        found = partial | {"refined": np.array(json.dumps(together))}
+        if scan is None or together["shared"]["value"] is None:
+            return found
+        rows = []
+        for T_world_base in self._scanned_bases():
+            chains[scan.robot] = chains[scan.robot].placed(T_world_base)
+            volumes = refined_together(chains, events, **execution)
+            rows.append([[volumes[name]["value"], *volumes[name]["ci95"]] for name in events])
+        return found | {"scan_refined": np.array(rows)}
 
     def finish(self, partial: dict[str, np.ndarray], seconds: dict[str, float]) -> Result:
         """Number of robots by voxel, product of their normalised indices, union and intersection."""
@@ -78,27 +94,43 @@ class SharedWorkspacePlan(OneShard):
         shared = shared_volume(list(volumes.values()))
         by_number = volume_by_number(shared, len(volumes))
         meshes, surfaces = _meshes(shared)
+        common = common_entries(self.job, self.several, results)
         any_m3, shared_m3 = float(by_number.sum()), float(by_number[2:].sum())
+        found = json.loads(str(partial["refined"])) if "refined" in partial else None
+        shared_measure = found and found["shared"]
+        measures = by_measure(shared_measure, found)
+        refined = measures["volume_m3"]["refined"]
+        known = found if shared_measure and shared_measure["value"] is not None else None
         document = {
             "analysis": "shared_workspace",
             "job": job_entry(self.job, *self.robots),
-            **common_entries(self.job, self.several, results),
+            **common,
+            **measures,
             "volume_m3": {
                 "any": any_m3,
                 "shared": shared_m3,
                 "exactly": {str(k): float(by_number[k]) for k in range(1, len(by_number))},
-                "refined": _refined(partial),
+                "refined": refined,
             },
-            "shared_ratio": shared_m3 / any_m3,
+            "headline": headline_of(shared_measure),
+            "shared_ratio": _ratio(known) if known else shared_m3 / any_m3,
+            "shared_ratio_volume": "refined" if known else "occupied",
+            "warnings": common["warnings"] + entries(_notices({"any": any_m3, "shared": shared_m3}, refined)),
             "quality": _quality(shared),
             "surfaces": surfaces,
             "provenance": provenance(self.job.precision, self.target, sampling_path="direct"),
             "timing_s": seconds,
         }
-        tables = {"scan": _scan_table(self.job.scan, partial["scan"])} if self.job.scan else {}
+        scan = self.job.scan
+        scanned = partial.get("scan_refined")
+        tables = {"scan": _scan_table(scan, partial["scan"], scanned, shared_measure)} if scan else {}
         return Result(
             document, volume=shared, skeleton=skeletons(results), meshes=meshes, tables=tables, volumes=volumes
         )
+
+    def _scanned_bases(self) -> list[np.ndarray]:
+        """Where the base of the moved robot stands at each value, (4, 4) each."""
+        return [plan.robot.chain.T_world_base for plan in self.scanned]
 
     def _scan(
         self,
@@ -150,13 +182,6 @@ def _meshes(shared: VolumeData) -> "tuple[dict[str, trimesh.Trimesh], dict[str, 
     return meshes, {name: surface_entry(name, mesh) for name, mesh in meshes.items()}
 
 
-def _refined(partial: dict[str, np.ndarray]) -> dict[str, Any] | None:
-    """The refined volumes by event, if asked."""
-    if "refined" not in partial:
-        return None
-    return {name: volume_entry(measure) for name, measure in json.loads(str(partial["refined"])).items()}
-
-
 def _quality(shared: VolumeData) -> dict[str, Any]:
     """Largest and mean product of each index over the shared voxels; None where there are none."""
     entries = {}
@@ -170,6 +195,28 @@ def _quality(shared: VolumeData) -> dict[str, Any]:
     return entries
 
 
-def _scan_table(scan: PlacementScan, at_least: np.ndarray) -> Table:
-    columns = {scan.axis: np.array(scan.values), "shared": at_least[:, 1], "any": at_least[:, 0]}
-    return Table(columns, {scan.axis: scan.unit, "shared": "m^3", "any": "m^3"})
+def _scan_table(
+    scan: PlacementScan, at_least: np.ndarray, refined: np.ndarray | None, measure: dict[str, Any] | None
+) -> Table:
+    """By value: volumes of the occupied voxels, and the refined ones with their intervals where they were asked for."""
+    names = ("any", "shared")
+    units = {f"occupied_{name}": "m^3" for name in names}
+    columns = {f"occupied_{name}": at_least[:, k] for k, name in enumerate(names)}
+    if refined is not None and measure is not None:
+        found = {}
+        for k, name in enumerate(names):
+            found |= dict(zip((name, f"{name}_low", f"{name}_high"), refined[:, k].T, strict=True))
+        units |= dict.fromkeys(found, TABLE_UNITS[measure["unit"]])
+        columns = found | columns
+    return Table({scan.axis: np.array(scan.values), **columns}, {scan.axis: scan.unit, **units})
+
+
+def _ratio(refined: dict[str, Any]) -> float:
+    """Shared over any; 0 where nothing is reached."""
+    return refined["shared"]["value"] / refined["any"]["value"] if refined["any"]["value"] else 0.0
+
+
+def _notices(occupied: dict[str, float], refined: dict[str, Any] | None) -> Iterator[Notice]:
+    """Where the occupied voxels are far from the volumes."""
+    for name, volume in occupied.items():
+        yield from occupied_differs(volume, refined[name]["value"] if refined else None, REACHED[name])

@@ -179,7 +179,8 @@ def finish(
 ) -> Result:
     """The result of the merged partial results; ``seconds`` goes into ``timing_s``.
 
-    ``progress(done, total, message)`` is called while a plan refines, with points and about how many there will be.
+    ``progress(done, total, message)`` is called while a plan refines, with points and about how many there will be,
+    and with all samples once the rest begins.
     """
     seconds = dict(seconds or {})
     if isinstance(plan, Refining):
@@ -187,6 +188,9 @@ def finish(
         partial = plan.refine(merged, progress)
         if partial is not merged:
             seconds["refine"] = time.perf_counter() - started
+    if progress:
+        total = sum(count for _, count in plan.shards)
+        progress(total, total, "finishing")
     result = plan.finish(partial, seconds)
     result.document["warnings"] = entries(plan.notices) + result.document.get("warnings", [])
     return result
@@ -211,6 +215,4 @@ def execute(document: Any, progress: Progress | None = None, robot: Any = None, 
 
     partial = run_shard(planned, 0, report, **execution)
     swept_at = time.perf_counter()
-    if progress:
-        progress(total, total, "finishing")
     return finish(planned, partial, {"plan": planned_at - started, "sweep": swept_at - planned_at}, progress)

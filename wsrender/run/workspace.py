@@ -24,6 +24,7 @@ from wsrender.spec import WorkspaceJob
 from wsrender.spec.sampling import Converge, Grid
 from wsrender.spec.surfaces import IsoSurface
 from wsrender.volume.lattice import LatticeBlock
+from wsrender.volume.volume_data import VolumeData
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,19 +90,26 @@ class WorkspacePlan:
         """The partial result of both; bit for bit the same in any order."""
         return WorkspacePartial(merge(a.sweep, b.sweep), self.sweep)
 
+    def measured(self, progress: Progress | None) -> dict[str, Any] | None:
+        """The entry of the refined volume, area or length, if asked."""
+        if self.job.refined_volume is None:
+            return None
+        chain, seed = self.robot.chain.held(self.job.sampling.locked), self.sweep.sampling.seed
+        return refined(chain, self.job.refined_volume, seed, self.device, progress)
+
     def refine(self, partial: WorkspacePartial, progress: Progress | None) -> WorkspacePartial:
         """With the refined volume, area or length and the labels of the voxels, each if asked."""
-        tolerance, labels = self.job.refined_volume, self.job.voxel_labels
-        if tolerance is None and not labels:
+        if self.job.refined_volume is None and not self.job.voxel_labels:
             return partial
+        return replace(partial, refined=Refined(self.measured(progress), self._labelled(partial, progress)))
+
+    def _labelled(self, partial: WorkspacePartial, progress: Progress | None) -> VolumeData | None:
+        """The labels of the voxels, if asked."""
+        if not self.job.voxel_labels:
+            return None
+        counts = volume_data(replace(partial.plan, statistics=frozenset()), partial.sweep, {})
         chain = self.robot.chain.held(self.job.sampling.locked)
-        execution = partial.plan.sampling.seed, self.device, progress
-        counts = volume_data(replace(partial.plan, statistics=frozenset()), partial.sweep, {}) if labels else None
-        found = Refined(
-            None if tolerance is None else refined(chain, tolerance, *execution),
-            None if counts is None else labelled(chain, counts, *execution),
-        )
-        return replace(partial, refined=found)
+        return labelled(chain, counts, partial.plan.sampling.seed, self.device, progress)
 
     def finish(self, partial: WorkspacePartial, seconds: dict[str, float]) -> Result:
         """Map, volume, global values and the result document."""
@@ -182,7 +190,8 @@ def plan_workspace(job: WorkspaceJob, robot: Robot, resolved: dict[str, Any] | N
     sampling = _first_sampling(job, robot)
     first_pass = FirstPass(evaluation, dict(job.sampling.locked))
     if resolved is None:
-        block = first_pass.block(job.voxel_size_m or first_pass.voxel_size())
+        settled = None if isinstance(job.sampling, Converge) else sampling
+        block = first_pass.block(job.voxel_size_m or first_pass.voxel_size(settled))
         scales, bounds = first_pass.sum_scales(sampling.count, job.precision)
     else:
         block = _settled_block(resolved)

@@ -1,6 +1,7 @@
 """The result of a ``workspace`` job from its merged partial result."""
 
 import time
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -8,6 +9,7 @@ import numpy as np
 from wsrender.engine import Partial, SweepPlan, configurations, evaluate_at
 from wsrender.engine.voxel_data import volume_data
 from wsrender.global_indices import (
+    VoxelVolumes,
     global_isotropy,
     joint_means,
     structural_length_index,
@@ -15,11 +17,16 @@ from wsrender.global_indices import (
     workspace_mean,
 )
 from wsrender.indices.catalogue import unit
+from wsrender.notices import Notice, entries
+from wsrender.reachability.holes import share_of_holes, share_unseen
 from wsrender.reachability.voxel_labels import counts
 from wsrender.result import Result
 from wsrender.robot import Robot
+from wsrender.robots.host_chain import HostChain
+from wsrender.run.headline import NOT_ASKED, headline_of
 from wsrender.run.provenance import index_choices, job_entry, provenance, robot_entry
-from wsrender.run.refined import Refined, volume_entry
+from wsrender.run.refined import Refined, by_measure
+from wsrender.run.volume_notices import few_samples, occupied_differs
 from wsrender.sampling import subsample
 from wsrender.spec import WorkspaceJob
 from wsrender.volume.distribution_map import DistributionMap
@@ -49,7 +56,8 @@ def workspace_result(
     sample = _picture_sample(plan, robot, units)
     measure = refined.measure if refined else None
     labels = refined.voxels if refined else None
-    known = volume_entry(measure)["value"] if measure else volumes.occupied
+    measures = by_measure(measure, measure)
+    solid = measures["volume_m3"]["refined"]
     meshes, surface_entries = surfaces(job.surfaces, volume, sample.position)
     document: dict[str, Any] = {
         "analysis": "workspace",
@@ -59,12 +67,14 @@ def workspace_result(
         "indices": _index_entries(plan, partial, volume, units),
         "choices": index_choices(job, evaluation.rows),
         "voxel_size_m": plan.block.voxel_size_m if plan.block else None,
+        **measures,
         "volume_m3": {
             "occupied": volumes.occupied,
             "inner": volumes.inner,
             "outer": volumes.outer,
-            "refined": volume_entry(measure) if measure else None,
+            "refined": solid,
         },
+        "headline": headline_of(measure),
         "voxel_labels": counts(labels) if labels else None,
         "surfaces": surface_entries,
         "bounds_m": {
@@ -73,10 +83,10 @@ def workspace_result(
         },
         "global": {
             "global_isotropy": global_isotropy(partial),
-            "structural_length_index": None if evaluation.host_chain else structural_length_index(robot.chain, known),
-            "structural_length_volume": "refined" if measure else "occupied",
+            **_structural_length(robot, measure),
         },
         "convergence": convergence,
+        "warnings": entries(_notices(job, robot, plan, volume, volumes, solid)),
         "provenance": provenance(job.precision, target, sampling_path=plan.sampling_path, seed=plan.sampling.seed),
     }
     result = Result(
@@ -90,6 +100,36 @@ def workspace_result(
     )
     document["timing_s"] = {**seconds, "finish": time.perf_counter() - started}
     return result
+
+
+def _structural_length(robot: Robot, measure: dict[str, Any] | None) -> dict[str, Any]:
+    """The index, of the refined volume alone; else None, with the reason."""
+    index, reason = None, ""
+    if isinstance(robot.chain, HostChain):
+        reason = "a robot that is defined by a Python class has no lengths of links"
+    elif measure is None:
+        reason = NOT_ASKED
+    elif measure["quantity"] != "volume":
+        reason = f"the tip reaches no volume but an {measure['quantity']}".replace("an l", "a l")
+    elif not (index := structural_length_index(robot.chain, measure["value"] or 0.0)):
+        reason = measure["reason"] or "the volume is 0"
+    return {"structural_length_index": index, "structural_length_reason": reason}
+
+
+def _notices(
+    job: WorkspaceJob,
+    robot: Robot,
+    plan: SweepPlan,
+    volume: VolumeData,
+    volumes: VoxelVolumes,
+    solid: dict[str, Any] | None,
+) -> Iterator[Notice]:
+    """What to know of the volume: too few samples, or voxels that are far from what is reachable."""
+    holes = None
+    if solid and not isinstance(robot.chain, HostChain):
+        holes = share_of_holes(robot.chain.held(job.sampling.locked), volume, seed=plan.sampling.seed)
+    yield from few_samples(holes, share_unseen(volume))
+    yield from occupied_differs(volumes.occupied, solid["value"] if solid else None)
 
 
 def _sampling_entry(job: WorkspaceJob, plan: SweepPlan, partial: Partial) -> dict[str, Any]:

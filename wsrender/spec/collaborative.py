@@ -1,9 +1,9 @@
 """The job of the body-elemental algorithm."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field
+from pydantic import BeforeValidator, Field, model_validator
 
 from wsrender.spec.arm import Arm, ArmPath
 from wsrender.spec.document import Document
@@ -53,11 +53,20 @@ class CollaborativeVolumeJob(Document):
     neighbours: Annotated[Literal[4, 6], BeforeValidator(integer)] = 4
     """Neighbours that make a boundary cell: 4 in its layer of constant z, or 6."""
     refined_volume: RelativeTolerance | None = None
-    """Relative tolerance of the true volume that both robots reach [1], by inverse kinematics; null: none."""
+    """Relative tolerance of the true volume that both robots reach [1], by inverse kinematics: 0.01 if it is not given
+    for two robots. null: none."""
     max_samples: Count = 10_000_000_000
     """Largest number of configurations of all runs together."""
     device: Device = "auto"
     """Where the kernels run: "auto" (a GPU if there is one), "cpu", "cuda" or "cuda:N"."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _refined_for_two_robots(cls, data: Any) -> Any:
+        if not isinstance(data, Mapping) or "refined_volume" in data:
+            return data
+        robots = all(name in data and not is_point_set(data[name]) for name in ("left", "right"))
+        return {**data, "refined_volume": 0.01} if robots else data
 
     def arms(self) -> dict[ArmPath, Arm]:
         """The robots among left and right, by path."""

@@ -1,9 +1,9 @@
 """Job documents: what to analyse, one discriminated union on ``analysis``."""
 
-from collections.abc import Iterator
-from typing import Annotated, ClassVar, Literal, get_args
+from collections.abc import Iterator, Mapping
+from typing import Annotated, Any, ClassVar, Literal, get_args
 
-from pydantic import BeforeValidator, Discriminator, StrictBool
+from pydantic import BeforeValidator, Discriminator, StrictBool, model_validator
 
 from wsrender.spec.arm import Arm
 from wsrender.spec.boundary_patches import BoundaryPatchesJob
@@ -22,7 +22,7 @@ from wsrender.spec.planar_boundary import PlanarBoundaryJob
 from wsrender.spec.problems import tagged
 from wsrender.spec.quantities import Count, RelativeTolerance, VoxelSize
 from wsrender.spec.reachability import ReachabilityJob
-from wsrender.spec.sampling import Grid, Sampling
+from wsrender.spec.sampling import DEFAULT_COUNT, SEVERAL_COUNT, Sampling, Sobol
 from wsrender.spec.several_robots import RobotComparisonJob, SharedWorkspaceJob
 from wsrender.spec.surfaces import Surfaces
 
@@ -32,14 +32,16 @@ class WorkspaceJob(IndexChoices, Arm):
 
     analysis: Literal["workspace"] = "workspace"
     """Name of the analysis."""
-    sampling: Sampling = Grid()
-    """How the joint space is sampled."""
+    sampling: Sampling = Sobol(DEFAULT_COUNT)
+    """How the joint space is sampled; by default 2^24 Sobol samples, with a map 2^20."""
     voxel_size_m: VoxelSize | None = None
-    """Edge of a voxel [m]; null: a hundredth of the cube root of the workspace's convex-hull volume."""
+    """Edge of a voxel [m]; null: what holds 48 samples on average, at least a hundredth of the cube root of the
+    workspace's convex-hull volume."""
     voxel_statistics: Statistics = ("count", "maximum")
     """What is kept per voxel, from count, maximum, mean, minimum; count always is."""
-    refined_volume: RelativeTolerance | None = None
-    """Half width of the refined volume's 95 % interval, relative to the volume [1]; null: it is not computed."""
+    refined_volume: RelativeTolerance | None = 0.01
+    """Half width of the headline's 95 % interval, relative to it [1]: of the volume that inverse kinematics finds
+    reachable, of a planar workspace the area, of a line the length; null: none is computed."""
     voxel_labels: StrictBool = False
     """Whether every voxel is labelled reachable, unreachable or undecided by inverse kinematics."""
     surfaces: Surfaces = ()
@@ -52,6 +54,14 @@ class WorkspaceJob(IndexChoices, Arm):
     """More columns of the map: "configuration" [rad or m] and "orientation" (quat_wxyz)."""
     max_samples: Count = 10_000_000_000
     """Largest number of samples that the job may take."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _fewer_rows(cls, data: Any) -> Any:
+        """Fewer samples by default where a row is kept for each."""
+        if isinstance(data, Mapping) and "sampling" not in data and data.get("keep_map") is True:
+            return {**data, "sampling": Sobol(SEVERAL_COUNT)}
+        return data
 
     def conflicts(self) -> Iterator[tuple[str, str]]:
         """(field, message) of every pair of fields that do not go together."""

@@ -106,6 +106,14 @@ class BoundaryBiased(_Counted):
     __init__ = _Counted.__init__
 
 
+DEFAULT_COUNT = 2**24
+"""Sobol samples of a workspace by default: half a second to a second on two cores, and voxels of a seventieth of it."""
+SEVERAL_COUNT = 2**20
+"""Of each of several robots, and where a row is kept for every sample."""
+PYTHON_COUNT = 2**16
+"""Of a robot that is defined by a Python class."""
+
+
 class Converge(_Sampling):
     """Grids of growing size until a global index settles ([WSR] Algorithm 1)."""
 

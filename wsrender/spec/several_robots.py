@@ -9,7 +9,7 @@ from wsrender.spec.arm import Arm, ArmPath
 from wsrender.spec.index_choices import IndexChoices
 from wsrender.spec.placement_scan import PlacementScan
 from wsrender.spec.quantities import Count, FileName, RelativeTolerance, VoxelSize, sequence
-from wsrender.spec.sampling import Grid, Sampling
+from wsrender.spec.sampling import SEVERAL_COUNT, Sampling, Sobol
 
 MOST_ROBOTS = 64
 
@@ -19,8 +19,8 @@ class PlacedRobot(Arm):
 
     name: FileName | None = None
     """What the result calls it; null: the model's name, with a number where two have the same."""
-    sampling: Sampling = Grid()
-    """How its joint space is sampled."""
+    sampling: Sampling = Sobol(SEVERAL_COUNT)
+    """How its joint space is sampled; by default 2^20 Sobol samples."""
 
 
 class _SeveralRobotsJob(IndexChoices):
@@ -52,9 +52,9 @@ class SharedWorkspaceJob(_SeveralRobotsJob):
 
     analysis: Literal["shared_workspace"] = "shared_workspace"
     """Name of the analysis."""
-    refined_volume: RelativeTolerance | None = None
-    """Relative tolerance of the refined volumes that any and that at least two robots reach [1]: by inverse kinematics,
-    each with a 95 % interval. null: none."""
+    refined_volume: RelativeTolerance | None = 0.01
+    """Relative tolerance of the refined volumes that any and that at least two robots reach [1], at every value of a
+    scan too: by inverse kinematics, each with a 95 % interval. null: none."""
     scan: PlacementScan | None = None
     """A coordinate of a robot's placement to vary; gives shared volume against it. null: none."""
 
@@ -75,3 +75,6 @@ class RobotComparisonJob(_SeveralRobotsJob):
 
     analysis: Literal["robot_comparison"] = "robot_comparison"
     """Name of the analysis."""
+    refined_volume: RelativeTolerance | None = 0.01
+    """Half width of the 95 % interval of each robot's volume, area or length by inverse kinematics, relative to it [1];
+    null: none is computed."""

@@ -1,0 +1,35 @@
+"""The one number that an analysis is asked for, with its interval; or why there is none."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from wsrender.reachability.refined_measure import UNITS
+
+TABLE_UNITS = {"m3": "m^3", "m2": "m^2", "m": "m"}  # as tables have them
+NOT_ASKED = "refined_volume is null: none was asked for"
+
+
+def headline_of(measure: Mapping[str, Any] | None) -> dict[str, Any]:
+    """The headline of a `measure_entry`; None: none was asked for."""
+    if measure is None:
+        return no_headline(NOT_ASKED)
+    if measure["value"] is None:
+        return no_headline(measure["reason"], measure["quantity"])
+    return headline(measure["quantity"], measure["value"], measure["ci95"])
+
+
+def headline(quantity: str, value: float, ci95: Sequence[float]) -> dict[str, Any]:
+    """A measure [m³, m² or m] with its 95 % interval, as result documents hold it."""
+    low, high = ci95
+    return {
+        "quantity": quantity,
+        "value": float(value),
+        "ci95": [float(low), float(high)],
+        "unit": UNITS[quantity],
+        "reason": "",
+    }
+
+
+def no_headline(reason: str, quantity: str = "volume") -> dict[str, Any]:
+    """No measure, for a reason."""
+    return {"quantity": quantity, "value": None, "ci95": None, "unit": UNITS[quantity], "reason": reason}

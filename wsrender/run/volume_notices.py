@@ -1,0 +1,33 @@
+"""What to know of volumes made of voxels: where samples were too few, and where voxels are not the volume."""
+
+from collections.abc import Iterator
+
+from wsrender.notices import Notice
+
+MOST_HOLES = 0.005  # of the occupied voxels
+MOST_UNSEEN = 0.2  # of them, where nothing but the samples is known: a rougher measure, as large at thin borders
+MOST_DIFFERENCE = 0.1  # of the refined volume
+_REMEDY = "take more samples or larger voxels, or leave voxel_size_m out"
+
+
+def few_samples(holes: float | None, unseen: float) -> Iterator[Notice]:
+    """That samples leave ``holes``, a share of the occupied voxels; None: unknown, then by the share ``unseen``."""
+    if holes is not None and holes > MOST_HOLES:
+        found = f"for every 100 voxels that hold a sample about {100 * holes:.2g} are empty though wholly reachable"
+    elif holes is None and unseen > MOST_UNSEEN:
+        found = f"for every 100 voxels that hold a sample more samples would find at least {100 * unseen:.2g}"
+    else:
+        return
+    yield Notice("few_samples", f"too few samples for voxels of this size: {found}", _REMEDY, "voxel_size_m")
+
+
+def occupied_differs(occupied: float, refined: float | None, reached: str = "reachable") -> Iterator[Notice]:
+    """That the occupied voxels are another volume [m³] than the one that inverse kinematics finds to be ``reached``."""
+    if refined and abs(occupied - refined) > MOST_DIFFERENCE * refined:
+        more = f"{100 * (occupied / refined - 1):+.2g} %"
+        yield Notice(
+            "occupied_differs",
+            f"the occupied voxels make {occupied:.4g} m³, {more} from the {reached} volume of {refined:.4g} m³",
+            "take the headline for the volume; more samples and smaller voxels bring the two together",
+            "voxel_size_m",
+        )
