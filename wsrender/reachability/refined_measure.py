@@ -13,9 +13,8 @@ from wsrender.reachability.reached_set import FalseNegatives, tolerance_m
 from wsrender.reachability.refined_volume import decided_volumes
 from wsrender.reachability.volume_estimate import Event, VolumeEstimate
 from wsrender.robots.chain import Chain
+from wsrender.volume.measure import QUANTITIES, UNITS
 
-QUANTITIES = {1: "length", 2: "area", 3: "volume"}
-UNITS = {"volume": "m3", "area": "m2", "length": "m"}
 CURVED = {0: "the tip does not move", 1: "the tip stays on a curve", 2: "the tip stays on a surface"}
 APART = {1: "the tips move on different lines", 2: "the tips move in different planes"}
 

@@ -8,13 +8,14 @@ import numpy as np
 
 from wsrender.result import Result
 from wsrender.robot import Robot
-from wsrender.run.headline import TABLE_UNITS, no_headline
+from wsrender.run.headline import no_headline
 from wsrender.run.one_shard import OneShard
 from wsrender.run.provenance import job_entry, provenance
 from wsrender.run.refined import Progress
 from wsrender.run.several_result import common_entries, skeletons
 from wsrender.run.several_robots import SeveralPlans, plan_several
 from wsrender.spec import RobotComparisonJob
+from wsrender.volume.measure import TABLE_UNITS
 from wsrender.volume.table import Table
 
 

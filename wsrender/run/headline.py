@@ -3,9 +3,8 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from wsrender.reachability.refined_measure import UNITS
+from wsrender.volume.measure import UNITS
 
-TABLE_UNITS = {"m3": "m^3", "m2": "m^2", "m": "m"}  # as tables have them
 NOT_ASKED = "refined_volume is null: none was asked for"
 
 

@@ -8,10 +8,10 @@ from wsrender.reachability.refined_measure import RefinedMeasure, refined_measur
 from wsrender.reachability.volume_estimate import Event
 from wsrender.reachability.voxel_labels import label_voxels
 from wsrender.robots.chain import Chain
+from wsrender.volume.measure import UNITS
 from wsrender.volume.volume_data import VolumeData
 
 Progress = Callable[[int, int, str], None]
-POWERS = {"volume": "m3", "area": "m2", "length": "m"}
 VOLUME, VOXELS = "refined volume", "labels of voxels"  # what is going on
 
 
@@ -67,7 +67,7 @@ def by_measure(measure: dict[str, Any] | None, entry: Any) -> dict[str, Any]:
     quantity = measure["quantity"] if measure else "volume"
     known = measure is not None and measure["value"] is not None
     found = {"volume_m3": {"refined": None}}
-    return found | {f"{quantity}_{POWERS[quantity]}": {"refined": entry if known else None}}
+    return found | {f"{quantity}_{UNITS[quantity]}": {"refined": entry if known else None}}
 
 
 def volume_entry(measure: dict[str, Any]) -> dict[str, Any]:

@@ -12,7 +12,7 @@ from wsrender.notices import Notice, entries
 from wsrender.reachability import Event
 from wsrender.result import Result
 from wsrender.robot import Robot
-from wsrender.run.headline import TABLE_UNITS, headline_of
+from wsrender.run.headline import headline_of
 from wsrender.run.one_shard import OneShard
 from wsrender.run.provenance import job_entry, provenance
 from wsrender.run.refined import Progress, by_measure, refined_together
@@ -22,6 +22,7 @@ from wsrender.run.volume_notices import occupied_differs
 from wsrender.run.workspace import WorkspacePlan, plan_workspace
 from wsrender.spec import SharedWorkspaceJob
 from wsrender.spec.placement_scan import PlacementScan
+from wsrender.volume.measure import TABLE_UNITS
 from wsrender.volume.table import Table
 from wsrender.volume.volume_data import VolumeData
 

@@ -10,6 +10,7 @@ from wsrender.errors import InputError
 from wsrender.notices import Notice, entries
 from wsrender.result import Result
 from wsrender.robot import Robot, as_robot, robot_of_spec
+from wsrender.run.headline import no_headline
 from wsrender.spec import (
     BoundaryPatchesJob,
     CapabilityJob,
@@ -192,7 +193,9 @@ def finish(
         total = sum(count for _, count in plan.shards)
         progress(total, total, "finishing")
     result = plan.finish(partial, seconds)
-    result.document["warnings"] = entries(plan.notices) + result.document.get("warnings", [])
+    document = result.document
+    document.setdefault("headline", no_headline(f"the analysis {plan.job.analysis} measures none"))
+    document["warnings"] = entries(plan.notices) + document.get("warnings", [])
     return result
 
 

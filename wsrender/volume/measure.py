@@ -1,0 +1,8 @@
+"""The measures of sets of positions: what a set of each dimension has, and its units."""
+
+QUANTITIES = {1: "length", 2: "area", 3: "volume"}
+"""By dimension."""
+UNITS = {"volume": "m3", "area": "m2", "length": "m"}
+"""As result documents write them."""
+TABLE_UNITS = {"m3": "m^3", "m2": "m^2", "m": "m"}
+"""As tables have them."""
