@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from wsrender.engine import configurations, evaluate_poses
+from wsrender.reachability.cover import covered_cells
 from wsrender.reachability.inverse_solver import UNREACHABLE, InverseSolver
 from wsrender.reachability.occupied_cells import occupied_cells
 from wsrender.robots.chain import Chain
@@ -12,10 +13,10 @@ from wsrender.robots.reachable_box import reachable_box
 from wsrender.sampling import plan_sampling
 from wsrender.spec.sampling import Sobol
 from wsrender.volume.lattice import LatticeBlock
-from wsrender.volume.neighbours import inner_and_outer
+from wsrender.volume.neighbours import neighbours_and_itself
 
 POSITION = 1e-8  # of the reach
-SAMPLES_PER_CELL = 16
+SAMPLES_PER_CELL = 4
 # Cells along the box's mean edge: as many as make the border's share fit a tolerance of 0.5 %; finer tolerances cut
 # the border further (`estimate_volumes`).
 CELLS = 64
@@ -66,22 +67,28 @@ class ReachedSet:
         self.low, self.high = low[:dimension], high[:dimension]
 
     def decided(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Labels (N,) int8 of points (N, d), and distances (N,) [m] to the nearest reachable point that was found.
-
-        Nothing lies by chance in a set that fills nothing, and nothing has to be looked for near it.
-        """
-        if not self.solid:
-            return np.full(len(points), UNREACHABLE, np.int8), np.full(len(points), np.inf)
+        """Labels (N,) int8 of points (N, d), and distances (N,) [m] to the nearest reachable point that was found."""
         found = self.solver.solve(np.pad(points, ((0, 0), (0, 3 - self.dimension))))
         return found.label, found.distance_m
 
-    def classes(self, block: LatticeBlock) -> np.ndarray:
-        """Of every cell of a block: 0 rest, 1 border, 2 inner, of ``dimension`` axes."""
+    def decided_among(self, points: np.ndarray, possible: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The same of points in cells of which some are ``possible`` (N,) bool; near the others nothing is reached."""
+        label, far = np.full(len(points), UNREACHABLE, np.int8), np.full(len(points), np.inf)
+        label[possible], far[possible] = self.decided(points[possible])
+        return label, far
+
+    def classes(self, block: LatticeBlock, levels: int) -> np.ndarray:
+        """Of every cell of a block, of ``dimension`` axes: 0 out of reach, 1 rest, 2 … border, ``levels`` + 2 inner.
+
+        The more of a border cell's neighbours the samples reach, the more of it is reached: levels tell this apart.
+        """
         count = SAMPLES_PER_CELL * CELLS**self.dimension
         beside = tuple(range(self.dimension, 3))
-        occupied = occupied_cells(self.chain, block, count, self.seed, self.device, self.threads)
-        inner, outer = inner_and_outer(np.asarray(occupied.any(axis=beside)))
-        return (inner.astype(np.int8) + outer)[(slice(1, -1),) * self.dimension]
+        sampled = occupied_cells(self.chain, block, count, self.seed, self.device, self.threads)
+        number = neighbours_and_itself(np.asarray(sampled.any(axis=beside)))
+        border = 2 + (number.astype(np.int64) - 1) * levels // (3**self.dimension - 1)
+        rest = covered_cells(self.chain, block, self.dimension).astype(np.int64)
+        return np.where(number > 0, border, rest)
 
     def false_negatives(self, block: LatticeBlock) -> FalseNegatives:
         """The solver tried on positions of samples that are none of its starts, one per cell."""

@@ -1,8 +1,9 @@
 """The reachable volume with a confidence interval; of several robots, the volumes that so many of them reach.
 
 Membership of a point is decided by inverse kinematics. The strata are, for every robot, the inner voxels of what a
-Sobol set of configurations reaches (all 26 neighbours occupied), the border, and the rest of a box that holds the
-reach: inner points are decided too, which finds voids. In a plane or on a line the same gives areas and lengths.
+Sobol set of configurations reaches (all 26 neighbours occupied), the border by the number of neighbours that are
+occupied, and the rest of what cannot be proven to be out of reach: inner points are decided too, which finds voids. In
+a plane or on a line the same gives areas and lengths.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -15,6 +16,8 @@ from wsrender.reachability.reached_set import CELLS, FalseNegatives, ReachedSet
 from wsrender.reachability.volume_estimate import Event, VolumeEstimate, estimate_volumes
 from wsrender.robots.chain import Chain
 from wsrender.volume.lattice import LatticeBlock, block_around
+
+LEVELS = {1: 9, 2: 4}  # of the border, by the number of robots whose classes are combined; of more robots one
 
 
 @dataclass(frozen=True)
@@ -97,18 +100,20 @@ def decided_volumes(
         volumes = {name: VolumeEstimate(0.0, 0.0, 0.0, 0.0, met=True) for name in events}
         return RefinedVolumes(volumes, 0, tuple(FalseNegatives(0, 0) for _ in reached), position_m)
     block = _block(solid)
-    classes = sum(each.classes(block).astype(np.int64) * 3**k for k, each in enumerate(solid))
-    strata = [np.argwhere(classes == code) + block.first_voxel[:dimension] for code in np.unique(classes)]
+    levels = LEVELS.get(len(solid), 1)
+    classes = [each.classes(block, levels) for each in solid]
     misses = [each.false_negatives(block) for each in reached]
     hidden = sum(miss.rate / (1 - miss.rate) if miss.rate < 1 else np.inf for miss in misses)
 
     def membership(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        decided = [each.decided(points) for each in reached]
+        cells = np.floor(points / block.voxel_size_m).astype(np.int64) - block.first_voxel[:dimension]
+        at = tuple(np.clip(cells, 0, np.array(classes[0].shape) - 1).T)
+        decided = [each.decided_among(points, own[at] > 0) for each, own in zip(solid, classes, strict=True)]
         return np.stack([label for label, _ in decided], axis=1), np.stack([far for _, far in decided], axis=1)
 
     found = estimate_volumes(
         membership,
-        strata,
+        _strata(classes, min(event.least for event in events.values()), np.array(block.first_voxel[:dimension])),
         block.voxel_size_m,
         events,
         tolerance,
@@ -118,6 +123,16 @@ def decided_volumes(
         progress=progress,
     )
     return RefinedVolumes(found.volumes, found.points, tuple(misses), position_m)
+
+
+def _strata(classes: Sequence[np.ndarray], least: int, first_voxel: np.ndarray) -> list[np.ndarray]:
+    """Cells (M, d) of one class of every set, without those that fewer than ``least`` sets may hold anything of."""
+    wanted = np.argwhere(np.sum([own > 0 for own in classes], axis=0) >= least)
+    stratum = np.zeros(len(wanted), np.int64)
+    for own in classes:
+        _, stratum = np.unique(stratum * (own.max() + 1) + own[tuple(wanted.T)], return_inverse=True)
+    order = np.argsort(stratum, kind="stable")
+    return np.split(wanted[order] + first_voxel, np.flatnonzero(np.diff(stratum[order])) + 1)
 
 
 def _block(sets: Sequence[ReachedSet]) -> LatticeBlock:

@@ -22,7 +22,7 @@ Membership = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
 from the sets, (N, K) [m]."""
 
 QUANTILE = 1.959963984540054  # of the normal distribution: 95 %
-FIRST_POINTS = 500  # of every stratum
+FIRST_POINTS = 100  # of every stratum
 PILOT_POINTS, DEEPEST, PAYS = 4, 6, 2.0  # points per cell; cuts; needed points per pilot point that make it pay
 NEAR = 0.5  # edges of a cell: a pilot point outside a set that is nearer to it does not speak for its cell
 GROWTH = 4.0  # largest factor by which a stratum's points grow between two looks
@@ -157,7 +157,10 @@ class _Estimation:
         size = np.array([s.volume for s in self.strata])
         spread = size * np.sqrt(share * (1 - share))
         neyman = (QUANTILE / half) ** 2 * spread.sum() * spread
-        return np.maximum(neyman, size * QUANTILE**2 * np.sqrt(len(size)) / (PURE_SHARE * half))
+        # Where all points agree, the fewest for which the root of the squares of size · QUANTILE² / points is small.
+        pure = size * (spread == 0)
+        agreeing = np.cbrt(pure**2) * QUANTILE**2 * np.sqrt(np.cbrt(pure**2).sum()) / (PURE_SHARE * half)
+        return np.maximum(neyman, agreeing)
 
     def _volumes(self) -> dict[str, VolumeEstimate]:
         return {name: self._volume(k, event) for k, (name, event) in enumerate(self.events.items())}
