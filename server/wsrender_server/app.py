@@ -7,13 +7,13 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from fastapi import FastAPI, Request
+from fastapi import Depends, FastAPI, Request
 from fastapi.openapi.docs import get_swagger_ui_html
 from fastapi.openapi.utils import get_openapi
 from fastapi.routing import APIRoute
 from starlette.concurrency import run_in_threadpool
 from starlette.convertors import StringConvertor, register_url_convertor
-from starlette.responses import RedirectResponse, Response
+from starlette.responses import JSONResponse, RedirectResponse, Response
 from starlette.routing import compile_path
 from starlette.staticfiles import StaticFiles
 
@@ -24,6 +24,7 @@ from wsrender_server.jobs.service import JobService
 from wsrender_server.logs import configure_logs
 from wsrender_server.parts import Jobs, Parts
 from wsrender_server.problems import Problem, answer_errors
+from wsrender_server.query import known_parameters
 from wsrender_server.requests import RequestLayer
 from wsrender_server.settings import Settings
 
@@ -66,11 +67,13 @@ def create_app(settings: Settings, jobs: Jobs | None = None) -> FastAPI:
         version=__version__,
         description=DESCRIPTION,
         license_info={"name": "Apache-2.0", "identifier": "Apache-2.0"},
+        openapi_url=None,
         docs_url=None,
         redoc_url=None,
         redirect_slashes=False,
         generate_unique_id_function=lambda route: route.name,
         lifespan=_life,
+        dependencies=[Depends(known_parameters)],
     )
     app.state.parts = parts
     app.state.authenticator = authenticator
@@ -105,8 +108,12 @@ async def _life(app: FastAPI) -> AsyncIterator[None]:
 
 
 def _add_documentation(app: FastAPI) -> None:
-    """``/docs`` by files of our own: it works without internet."""
+    """``/docs`` by files of our own: it works without internet. Routes of the app, as all others are."""
     app.mount("/docs/files", StaticFiles(directory=STATIC / "swagger-ui"), name="swagger-ui")
+
+    @app.get("/openapi.json", include_in_schema=False)
+    async def openapi() -> Response:
+        return JSONResponse(app.openapi())
 
     @app.get("/docs", include_in_schema=False)
     async def docs() -> Response:

@@ -323,5 +323,5 @@ def problem_responses(*statuses: int) -> dict[int | str, dict[str, Any]]:
             "content": content,
             **({"headers": retry} if status in (429, 503) else {}),
         }
-        for status in sorted({*statuses, 400, 500, 503})
+        for status in sorted({*statuses, 400, 422, 500, 503})
     }

@@ -23,6 +23,7 @@ from wsrender_server.admission import Admission
 from wsrender_server.auth import Principal, entitled
 from wsrender_server.parts import Parts
 from wsrender_server.problems import HttpProblem, problem_of_error, problem_responses, response_of_problem
+from wsrender_server.query import check_parameters
 from wsrender_server.streams.message_rate import MessageRate
 from wsrender_server.streams.sessions import Session
 
@@ -68,6 +69,7 @@ async def kinetostatic_stream(websocket: WebSocket) -> None:
 
 def _entitled(websocket: WebSocket, offered: list[str]) -> Principal:
     """Who connects: by the header Authorization, or by a subprotocol; raises HttpProblem."""
+    check_parameters(websocket)
     origin = websocket.headers.get("origin")
     if origin is not None and _host_of(origin) != websocket.url.hostname:
         raise HttpProblem(403, f"pages of {origin} may not connect", "wrong_origin")
