@@ -1,4 +1,4 @@
-"""Progress of a run on standard error: a bar on a terminal, plain lines elsewhere."""
+"""Progress of a run: a bar on a terminal or in a notebook, plain lines on standard error elsewhere."""
 
 import sys
 import time
@@ -9,6 +9,8 @@ from typing import Self, TextIO
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
+from wsrender.notebook import NotebookBar, in_notebook
+
 QUIET_S = 1.0  # shorter work shows nothing
 LINE_EVERY_S = 5.0  # off a terminal
 
@@ -16,12 +18,11 @@ LINE_EVERY_S = 5.0  # off a terminal
 class RunProgress:
     """Called as ``progress(done, total, message)``; shows the part done, samples, rate and time left.
 
-    Use it as a context manager. Work that ends within a second shows nothing.
+    Use it as a context manager. Work that ends within a second shows nothing, except in a notebook.
     """
 
     def __init__(self, stream: TextIO | None = None):
-        console = Console(file=stream or sys.stderr, highlight=False, soft_wrap=True)
-        self._shown = _Bar(console) if console.is_terminal else _Lines(console)
+        self._shown = _Notebook() if stream is None and in_notebook() else _shown_on(stream or sys.stderr)
         self._phase: tuple[int, str] | None = None
         self._phase_start = (0.0, 0)  # time [s], done
 
@@ -32,7 +33,7 @@ class RunProgress:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self._shown.stop()
+        self._shown.stop(completed=kind is None)
 
     def __call__(self, done: int, total: int, message: str) -> None:
         """Report that ``done`` of ``total`` samples are finished; ``message`` names what is going on."""
@@ -42,6 +43,11 @@ class RunProgress:
         since, done_before = self._phase_start
         rate = (done - done_before) / (now - since) if done > done_before and now > since else None
         self._shown.show(done, total, message, rate)
+
+
+def _shown_on(stream: TextIO) -> "_Bar | _Lines":
+    console = Console(file=stream, highlight=False, soft_wrap=True)
+    return _Bar(console) if console.is_terminal else _Lines(console)
 
 
 class _Bar:
@@ -63,7 +69,7 @@ class _Bar:
     def start(self) -> None:
         self._timer.start()
 
-    def stop(self) -> None:
+    def stop(self, completed: bool) -> None:
         self._timer.cancel()
         self._timer.join()
         self._bar.stop()
@@ -83,7 +89,7 @@ class _Lines:
     def start(self) -> None:
         self._next = time.monotonic() + QUIET_S
 
-    def stop(self) -> None:
+    def stop(self, completed: bool) -> None:
         pass
 
     def show(self, done: int, total: int, message: str, rate: float | None) -> None:
@@ -92,6 +98,17 @@ class _Lines:
         self._next = time.monotonic() + LINE_EVERY_S
         left = f"{(total - done) / rate:.0f} s left"
         self._console.print(f"{message}: {100 * done / total:.0f} %, {_samples(done, rate)}, {left}")
+
+
+class _Notebook:
+    """A bar below the cell."""
+
+    def __init__(self):
+        self._bar = NotebookBar()
+        self.start, self.stop = self._bar.start, self._bar.stop
+
+    def show(self, done: int, total: int, message: str, rate: float | None) -> None:
+        self._bar.show(done / total if done else None, message, _samples(done, rate))
 
 
 def _samples(done: int, rate: float | None) -> str:

@@ -1,7 +1,7 @@
 """Pictures by matplotlib, drawn without a display and without pyplot's global state.
 
-Every function returns a ``matplotlib.figure.Figure``; ``save_figure`` writes it. The functions are loaded on
-first use, because matplotlib is heavy.
+Every function returns a ``matplotlib.figure.Figure`` that notebooks show; ``save_figure`` writes it. The functions are
+loaded on first use, because matplotlib is heavy.
 """
 
 from importlib import import_module

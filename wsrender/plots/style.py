@@ -16,6 +16,7 @@ from matplotlib.figure import Figure
 
 from wsrender.errors import InputError
 from wsrender.indices.units import pretty_unit
+from wsrender.plots.shown_figure import ShownFigure
 
 COLOR_MAP = "viridis"
 INK = "#222222"
@@ -58,7 +59,7 @@ def paper_style() -> Iterator[None]:
 
 def new_figure(width: float, height: float, layout: Literal["constrained"] | None = "constrained") -> Figure:
     """An empty figure of that size [in] which can be drawn without a display."""
-    figure = Figure(figsize=(width, height), layout=layout, dpi=100)
+    figure = ShownFigure(figsize=(width, height), layout=layout, dpi=100)
     FigureCanvasAgg(figure)
     return figure
 
