@@ -102,7 +102,8 @@ class Result:
 
         It is written to ``path`` (.png, .svg) if given.
         ``view``: boundary, solid, scatter, volume, slice or isosurface; ``others``: results drawn in the same box.
-        ``robot`` adds the bodies of the links, if the robot's model has any, at ``configuration`` [rad or m].
+        ``robot``, one of the result, adds the bodies of its links, if its model has any, at ``configuration`` [rad or
+        m]; given by name or file it stands as in the result.
         ``options``: index, statistic, threshold (of the iso-surface, share of the maximum), alpha, at (x, y, z of the
         slices [m]), environment (a list of ``wsrender.render`` Floor, Table, Box), azimuth_deg and elevation_deg of the
         eye. Needs the extra ``render``. Raises InputError, MissingExtraError; RenderError where VTK cannot draw.
@@ -110,7 +111,9 @@ class Result:
         results = [self, *others]
         subjects = [each for name, result in named_results(results).items() for each in result._subjects(name)]
         if robot is not None:
-            subjects[0] = subjects[0].with_robot(robot, configuration, self.document.get("sampling") or {})
+            k, own = render.own_robot(robot, self._robot_entries())
+            k = min(k, len(self._subjects("")) - 1)  # several arms may share one volume
+            subjects[k] = subjects[k].with_robot(own, configuration, self.document.get("sampling") or {})
         names = " + ".join(subject.name for subject in subjects)
         title = title or (sampling_text(self.document) if len(results) == 1 else names)
         shared = self.meshes.get("intersection") if len(results) == 1 and len(subjects) > 1 else None
@@ -118,6 +121,13 @@ class Result:
         if path is not None:
             plots.save_figure(figure, path)
         return figure
+
+    def _robot_entries(self) -> list[dict[str, Any]]:
+        """What the document says of each robot that a picture shows. Raises InputError for a mechanism."""
+        if mechanism := self.document.get("mechanism"):
+            raise InputError("robot", f"the result is of the mechanism {mechanism.get('name')}, of no single arm")
+        robots = [each.get("robot", each) for each in self.document.get("robots") or ()]
+        return robots or [self.document.get("robot") or {}]
 
     def _subjects(self, name: str) -> "list[render.Subject]":
         """What a 3-D picture shows of the result: its robot, or each of several with its own volume."""

@@ -68,3 +68,12 @@ def test_options_reach_the_picture(wsrender, folder, tmp_path, monkeypatch):
 def test_wrong_options_are_named(wsrender, folder, options, message, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert wsrender(folder, *options) == (2, "", f"error: {message}\n")
+
+
+def test_another_robot_is_refused(wsrender, tmp_path):
+    robot = {"name": "arm", "model_hash": "0123456789abcdef", "chain_hash": "0"}
+    volume = random_volume((6, 5, 4), names=("manipulability",))
+    ws.Result({"analysis": "workspace", "robot": robot}, volume=volume).save(tmp_path / "out")
+    code, _, error = wsrender(tmp_path / "out", "--robot", "scara", "-o", tmp_path / "view.png")
+    assert code == 2 and not (tmp_path / "view.png").exists()
+    assert error.startswith("error: robot: scara (model ") and "the result, arm (model 01234567)" in error

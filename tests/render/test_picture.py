@@ -2,6 +2,7 @@
 
 import sys
 from dataclasses import replace
+from pathlib import Path
 
 import matplotlib as mpl
 import numpy as np
@@ -211,20 +212,61 @@ def test_colours_of_a_surface_are_those_of_the_nearest_voxels(block):
         np.testing.assert_allclose(surface.colors[rows].astype(int), np.broadcast_to(expected, (rows.sum(), 3)), atol=2)
 
 
-def test_links_are_drawn_with_the_bodies_of_the_model(blank, planar_result, tmp_path):
-    (tmp_path / "arm.xml").write_text(
-        '<mujoco><worldbody><body><joint axis="0 0 1" range="-1 1"/>'
-        '<geom type="capsule" fromto="0 0 0 .5 0 0" size=".03"/>'
-        '<body pos=".5 0 0"><joint axis="0 0 1" range="-1 1"/><geom size=".05"/><site name="tool" pos=".4 0 0"/></body>'
-        "</body></worldbody></mujoco>"
-    )
-    planar_result.render(robot=str(tmp_path / "arm.xml"), configuration=[0.3, 0.4])
+ARM = (
+    '<mujoco model="arm"><worldbody><body><joint axis="0 0 1" range="-1 1"/>'
+    '<geom type="capsule" fromto="0 0 0 .5 0 0" size=".03"/>'
+    '<body pos=".5 0 0"><joint axis="0 0 1" range="-1 1"/><geom size=".05"/><site name="tool" pos="{} 0 0"/></body>'
+    "</body></worldbody></mujoco>"
+)
+
+
+@pytest.fixture
+def arm(tmp_path):
+    """A file of the arm, and its result where it stands elsewhere, with a tool."""
+    path = tmp_path / "arm.xml"
+    path.write_text(ARM.format(0.4))
+    robot = ws.load_robot(path, placement=ws.Transform(position_m=(0, 0, 1)), tool=ws.Transform(position_m=(0.1, 0, 0)))
+    return path, ws.analyze(robot, ws.Grid(5), ["manipulability"], ["x", "y"], voxel_size_m=0.1, device="cpu")
+
+
+def test_links_are_drawn_with_the_bodies_of_the_model(blank, arm):
+    path, result = arm
+    result.render(robot=str(path), configuration=[0.3, 0.4])
     scene = blank[0]
     links = [layer for layer in scene.layers if isinstance(layer, Surface) and layer.colors is None]
-    assert len(links) == 2
+    assert len(links) == 2 and links[0].vertices[:, 2].mean() == pytest.approx(1)
     (rods,) = [layer for layer in scene.layers if isinstance(layer, Rods)]
-    tip = [0.5 * np.cos(0.3) + 0.4 * np.cos(0.7), 0.5 * np.sin(0.3) + 0.4 * np.sin(0.7), 0]
+    tip = [0.5 * np.cos(0.3) + 0.5 * np.cos(0.7), 0.5 * np.sin(0.3) + 0.5 * np.sin(0.7), 1]
     np.testing.assert_allclose(rods.points[-1], tip)
+
+
+def test_another_arm_is_not_drawn_under_the_name_of_the_first(blank, arm, tmp_path):
+    _, result = arm
+    (tmp_path / "longer.xml").write_text(ARM.format(0.41).replace("arm", "longer", 1))
+    for other in (tmp_path / "longer.xml", "scara", ws.load_robot("scara")):
+        name = "longer" if isinstance(other, Path) else "scara"
+        message = rf"robot: {name} \(model \w{{8}}\) is another arm than that of the result, arm \(model \w{{8}}\)"
+        with pytest.raises(ws.InputError, match=message):
+            result.render(robot=other)
+    assert not blank
+
+
+def test_the_same_arm_elsewhere_is_not_drawn_either(blank, arm):
+    path, result = arm
+    placed = ws.load_robot(path, placement=ws.Transform(position_m=(0, 0, 1)))
+    with pytest.raises(ws.InputError, match=r"robot: arm goes from world to tool where it is placed.* the same base"):
+        result.render(robot=placed)
+
+
+def test_of_several_robots_it_is_the_one_that_is_given(blank):
+    arms = [ws.load_robot(name) for name in ("scara", "phantom_omni")]
+    both = ws.shared_workspace(arms, ws.Sobol(500), voxel_size_m=0.05, indices=["manipulability"], device="cpu")
+    tip = arms[1].forward_kinematics(np.zeros(6))[0, :3, 3]
+    both.render(robot="phantom_omni", configuration=np.zeros(6))
+    ends = [layer.points[-1] for layer in blank[-1].layers if isinstance(layer, Rods)]
+    assert len(ends) == 2 and np.linalg.norm(np.array(ends) - tip, axis=1).min() < 1e-6
+    with pytest.raises(ws.InputError, match=r"of the result, scara \(model \w+\) and phantom_omni \(model \w+\)"):
+        both.render(robot="puma560")
 
 
 @pytest.mark.parametrize(

@@ -27,7 +27,7 @@ def render(
     z: Annotated[float | None, typer.Option(help="Slice normal to z [m].")] = None,
     azimuth: Annotated[float, typer.Option(help="Direction of the eye about z, from x [deg].")] = -58.0,
     elevation: Annotated[float, typer.Option(help="Height of the eye [deg].")] = 24.0,
-    robot: Annotated[str | None, typer.Option(help="Robot file or name: draws the bodies of its links.")] = None,
+    robot: Annotated[str | None, typer.Option(help="The result's robot, by file or name: draws its links.")] = None,
     floor: Annotated[float | None, typer.Option(help="Height of a floor [m].", rich_help_panel=_SURROUNDINGS)] = None,
     table: Annotated[
         list[str] | None,

@@ -12,6 +12,7 @@ from wsrender.errors import MissingExtraError
 if TYPE_CHECKING:
     from wsrender.render.composition import picture
     from wsrender.render.environment import Box, Floor, Table
+    from wsrender.render.result_robot import own_robot
     from wsrender.render.subject import Subject
     from wsrender.render.views import VIEWS
 
@@ -22,10 +23,11 @@ _MODULES = {
     "Subject": "subject",
     "Table": "environment",
     "VIEWS": "views",
+    "own_robot": "result_robot",
     "picture": "composition",
 }
 
-__all__ = ["VIEWS", "Box", "Floor", "Subject", "Table", "picture"]
+__all__ = ["VIEWS", "Box", "Floor", "Subject", "Table", "own_robot", "picture"]
 
 
 def __getattr__(name: str):
