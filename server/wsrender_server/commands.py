@@ -2,7 +2,8 @@
 
 import signal
 import threading
-from contextlib import AbstractContextManager, closing
+from collections.abc import Iterator
+from contextlib import closing, contextmanager, nullcontext
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -22,7 +23,10 @@ app.add_typer(database, name="database")
 _WORKERS = "Workers"
 _TLS = "Certificates of the cluster"
 
-DataDir = Annotated[Path | None, typer.Option(help="Folder of models, partial results and artifacts.")]
+DataDir = Annotated[
+    Path | None,
+    typer.Option(help="Folder of database, models and results. [the user's own, such as ~/.local/share/wsrender]"),
+]
 Database = Annotated[
     str | None, typer.Option(help="postgresql+psycopg://…; default: SQLite in the data folder.", metavar="URL")
 ]
@@ -63,6 +67,7 @@ def serve(
         from wsrender_server.serving import listen, serve_until_stopped
 
         listener = listen(settings)
+        _say_where(settings)
 
         from wsrender_server.app import create_app  # takes a second: after what may be wrong
 
@@ -88,6 +93,7 @@ def worker(
         settings = settings_of(**_given(locals(), Settings))
         if settings.scheduler is None:
             raise InputError("--scheduler", "must be given, such as tls://lab:8786")
+        _say_where(settings)
         stop = threading.Event()
         for number in (signal.SIGTERM, signal.SIGINT):
             signal.signal(number, lambda number, frame: stop.set())
@@ -110,11 +116,15 @@ def create_key(
 ) -> None:
     """Make an API key and print it: it is kept as a hash only and never shown again."""
     with one_line_faults():
-        with _store(data_dir, database) as store:
+        from wsrender_server.jobs.store import open_store
+
+        settings = settings_of(**_given(locals(), Settings))
+        with closing(open_store(settings)) as store:
             key, secret = store.create_key(name, *([scope] if scope else []))
         typer.echo(secret)
         typer.echo(
-            f"key {key.id} of {name}: keep it now, it is never shown again; running servers ask for keys from now on",
+            f"key {key.id} of {name}: keep it now, it is never shown again; servers on {_database_of(settings)} "
+            "ask for keys from now on",
             err=True,
         )
 
@@ -128,8 +138,11 @@ def list_keys(data_dir: DataDir = None, database: Database = None) -> None:
         from rich.table import Table
 
         table = Table("id", "name", "scopes", "created", "revoked", box=SIMPLE_HEAD, show_edge=False)
-        with _store(data_dir, database) as store:
-            found = store.list_keys()
+        settings = settings_of(**_given(locals(), Settings))
+        with _existing_store(settings) as store:
+            found = [] if store is None else store.list_keys()
+        if store is None:
+            typer.echo(f"there is no database at {_database_of(settings)}, so there are no keys", err=True)
         for key in found:
             revoked = "" if key.revoked_at is None else f"{key.revoked_at:%Y-%m-%d %H:%M}"
             table.add_row(key.id, key.name, " ".join(key.scopes), f"{key.created_at:%Y-%m-%d %H:%M}", revoked)
@@ -142,10 +155,11 @@ def revoke_key(
 ) -> None:
     """Revoke an API key: requests with it are refused from now on."""
     with one_line_faults():
-        with _store(data_dir, database) as store:
-            revoked = store.revoke_key(id)
+        settings = settings_of(**_given(locals(), Settings))
+        with _existing_store(settings) as store:
+            revoked = None if store is None else store.revoke_key(id)
         if revoked is None:
-            raise NotFoundError(f"there is no key {id}")
+            raise NotFoundError(f"there is no key {id} in {_database_of(settings)}")
         typer.echo(f"key {id} is revoked")
 
 
@@ -190,10 +204,27 @@ def _given(options: dict[str, Any], kind: type[Settings]) -> dict[str, Any]:
     return {name: options[name] for name in kind.model_fields if options.get(name) is not None}
 
 
-def _store(data_dir: Path | None, database: str | None) -> AbstractContextManager[Any]:
-    from wsrender_server.jobs.store import open_store
+@contextmanager
+def _existing_store(settings: Settings) -> Iterator[Any]:
+    """The store for as long as it is needed, None where there is none yet: nothing is made."""
+    from wsrender_server.jobs.store import open_existing_store
 
-    return closing(open_store(settings_of(**_given(locals(), Settings))))
+    store = open_existing_store(settings)
+    with nullcontext() if store is None else closing(store):
+        yield store
+
+
+def _database_of(settings: Settings) -> str:
+    """Where the database is, without a password."""
+    if settings.database_file is not None:
+        return str(settings.database_file)
+    from sqlalchemy import make_url
+
+    return make_url(settings.database_url).render_as_string()
+
+
+def _say_where(settings: Settings) -> None:
+    typer.echo(f"wsrender keeps its data in {settings.data_dir.absolute()}")
 
 
 def _work_on(gpus: str, settings: Settings, stop: threading.Event) -> None:

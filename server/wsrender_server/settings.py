@@ -7,6 +7,8 @@ from typing import Self
 from pydantic import Field, model_validator
 from pydantic_settings import BaseSettings, SettingsConfigDict
 
+from wsrender_server.data_folder import default_data_dir
+
 GIB = 2**30
 
 
@@ -19,8 +21,9 @@ class Settings(BaseSettings):
     """Address to listen on; any other than loopback needs an API key."""
     port: int = Field(default=8000, ge=0, le=65535)
     """Port to listen on; 0 takes a free one."""
-    data_dir: Path = Path("wsrender-data")
-    """Folder of database, models, partial results and artifacts. Workers on other hosts need it shared."""
+    data_dir: Path = Field(default_factory=default_data_dir)
+    """Folder of database, models, partial results and artifacts; by default the user's own (``default_data_dir``).
+    Workers on other hosts need it shared."""
     workers: int = Field(default=1, ge=0)
     """Worker processes of the embedded cluster; each computes with all cores or its GPU."""
     threads_per_worker: int | None = Field(default=None, ge=1)
@@ -74,7 +77,12 @@ class Settings(BaseSettings):
     @cached_property
     def database_url(self) -> str:
         """SQLAlchemy URL of the database."""
-        return self.database or f"sqlite:///{self.data_dir.absolute() / 'wsrender.db'}"
+        return self.database or f"sqlite:///{self.database_file}"
+
+    @property
+    def database_file(self) -> Path | None:
+        """The SQLite file in the data folder; None where ``database`` names another."""
+        return self.data_dir.absolute() / "wsrender.db" if self.database is None else None
 
     def timeout_of(self, requested: float | None) -> float | None:
         """The timeout [s] of a job that asks for ``requested``; the shorter of it and the maximum."""

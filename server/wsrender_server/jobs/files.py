@@ -28,12 +28,16 @@ class DataFolder:
     """Paths and writes of the data folder; every file appears complete or not at all.
 
     Names are hashes and identifiers made by the server: anything else raises ValueError. Writes raise DiskFull
-    where the disk is full or holds less than ``reserve_bytes``.
+    where the disk is full or holds less than ``reserve_bytes``. ``make`` says whether missing folders are made.
     """
 
-    def __init__(self, root: Path, reserve_bytes: int = 0):
+    def __init__(self, root: Path, reserve_bytes: int = 0, make: bool = True):
         self.root = root.absolute()
         self.reserve_bytes = reserve_bytes
+        if make:
+            self._make()
+
+    def _make(self) -> None:
         for name in ("models", "partials", "results", "scratch"):
             (self.root / name).mkdir(parents=True, exist_ok=True)
 

@@ -287,11 +287,24 @@ def open_store(settings: Settings) -> JobStore:
 
     Raises StoreUnavailable for a database that does not answer, InputError for one that needs an upgrade.
     """
+    return _opened(settings, make=True)
+
+
+def open_existing_store(settings: Settings) -> JobStore | None:
+    """The store of the settings as it is, None where there is none: for queries, which make and upgrade nothing.
+
+    Raises StoreUnavailable, and InputError for a database that needs an upgrade.
+    """
+    file = settings.database_file
+    return None if file is not None and not file.exists() else _opened(settings, make=False)
+
+
+def _opened(settings: Settings, make: bool) -> JobStore:
     engine = open_database(settings.database_url)
-    upgrade(engine, check_only=engine.dialect.name != "sqlite")
+    upgrade(engine, check_only=not make or engine.dialect.name != "sqlite")
     return JobStore(
         engine,
-        DataFolder(settings.data_dir, settings.min_free_disk_bytes),
+        DataFolder(settings.data_dir, settings.min_free_disk_bytes, make),
         max_queued_per_owner=settings.max_queued_per_owner,
         shared_cache=settings.shared_cache,
         timeout_of=settings.timeout_of,
