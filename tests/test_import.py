@@ -96,5 +96,5 @@ def test_a_missing_extra_names_the_pip_command(monkeypatch):
 
     monkeypatch.setattr(ws, "import_module", import_module)
     monkeypatch.delitem(vars(ws), "load_robot", raising=False)
-    with pytest.raises(ws.MissingExtraError, match=r'warp is not installed; run: pip install "wsrender\[engine\]"'):
+    with pytest.raises(ws.MissingExtraError, match=r'warp is not installed; .*: pip install "\.\[engine\]"'):
         ws.load_robot  # noqa: B018

@@ -277,6 +277,6 @@ def test_missing_library_names_the_pip_command(monkeypatch, tmp_path):
 
     monkeypatch.setitem(sys.modules, "pyarrow", None)
     monkeypatch.delitem(sys.modules, "wsrender.export.parquet", raising=False)
-    with pytest.raises(MissingExtraError, match=r'pip install "wsrender\[engine\]"'):
+    with pytest.raises(MissingExtraError, match=r'pip install "\.\[engine\]"'):
         Result(document(), map=random_map(3)).save(tmp_path / "out")
     assert not list(tmp_path.iterdir())

@@ -130,12 +130,21 @@ class RenderWarning(UserWarning):
 
 
 class MissingExtraError(WsrenderError, ImportError):
-    """An optional dependency is not installed; the message is the pip command that installs it."""
+    """An optional dependency is not installed; the message holds the pip commands that install it.
+
+    wsrender is on no package index: it is installed from its clone or a wheel.
+    """
 
     code = "missing_extra"
 
     def __init__(self, package: str, extra: str):
-        super().__init__(f'{package} is not installed; run: pip install "wsrender[{extra}]"')
+        from wsrender import __version__
+
+        wheel = f"wsrender-{__version__}-py3-none-any.whl"
+        super().__init__(
+            f'{package} is not installed; in the clone of wsrender run: pip install ".[{extra}]", or beside its wheel: '
+            f'pip install "{wheel}[{extra}]"'
+        )
 
 
 class ServerError(WsrenderError):

@@ -52,7 +52,7 @@ def raising(error):
 
 
 def pip(what, extra):
-    return f'error: {what} is not installed; run: pip install "wsrender[{extra}]"\n'
+    return f"error: {MissingExtraError(what, extra)}\n"
 
 
 def test_version(wsrender):

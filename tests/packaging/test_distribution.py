@@ -126,4 +126,4 @@ with wsrender.Client({server.url!r}) as client:
     assert (tmp_path / "out/surface.glb").is_file()
     assert run(python, "-m", "wsrender", "--version", folder=tmp_path) == f"wsrender {ws.__version__}\n"
     refused = subprocess.run([python, "-m", "wsrender", "serve"], capture_output=True, text=True, cwd=tmp_path)
-    assert refused.returncode == 1 and 'pip install "wsrender[server]"' in refused.stderr
+    assert refused.returncode == 1 and f'pip install "{built[1].name}[server]"' in refused.stderr

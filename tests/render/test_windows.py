@@ -85,7 +85,7 @@ def test_the_first_window_that_draws_is_taken_and_remembered(monkeypatch, tmp_pa
 
 def test_without_pyvista_the_pip_command_is_named(monkeypatch):
     monkeypatch.setattr(process, "find_spec", lambda name: None)
-    with pytest.raises(MissingExtraError, match=r'pyvista is not installed; run: pip install "wsrender\[render\]"'):
+    with pytest.raises(MissingExtraError, match=r'pyvista is not installed; .*: pip install "\.\[render\]"'):
         process.drawn(SCENE)
 
 

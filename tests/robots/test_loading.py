@@ -195,7 +195,7 @@ from wsrender.errors import MissingExtraError
 try:
     robots.load_mjcf("<mujoco/>")
 except MissingExtraError as error:
-    sys.exit('pip install "wsrender[engine]"' not in str(error))
+    sys.exit('pip install ".[engine]"' not in str(error))
 sys.exit(1)
 """
     root = Path(__file__).parents[2]
