@@ -8,10 +8,11 @@ from typing import Any
 from sqlalchemy import delete, func, select, update
 from sqlalchemy.orm import Session
 
+from wsrender import __version__
 from wsrender_server.jobs.changes import Changes
 from wsrender_server.jobs.database import Transactions
 from wsrender_server.jobs.files import DataFolder
-from wsrender_server.jobs.identity import Identity
+from wsrender_server.jobs.identity import Identity, device_of
 from wsrender_server.jobs.records import ArtifactRecord, ComputationRecord, Progress, QueueSummary
 from wsrender_server.jobs.rows import enter, finish, move, report
 from wsrender_server.jobs.states import LIVE, UNFINISHED, ComputationState, JobState
@@ -157,10 +158,17 @@ class ComputationStore:
         return ids
 
     def recover(self) -> None:
-        """At the start, when this server has nothing out yet: what was running waits again."""
+        """At the start, when this server has nothing out yet: what was running waits again.
+
+        What another version of wsrender has begun starts anew: parts of two versions do not mix.
+        """
         with self.transactions.write() as session:
             running = Computation.state == ComputationState.RUNNING
             session.execute(update(Computation).where(running).values(state=ComputationState.WAITING))
+            others = Computation.version != __version__, Computation.state != ComputationState.SUCCEEDED
+            renewed = [self._renewed(session, row) for row in session.scalars(select(Computation).where(*others))]
+        for computation_id in renewed:
+            self.files.forget_partials(computation_id)
 
     def set_targets(self, targets: Mapping[str, str]) -> None:
         """Keep which target a request for a device ("auto", "cpu", "cuda", …) means on the workers there are."""
@@ -185,6 +193,16 @@ class ComputationStore:
         """Raise StoreUnavailable where the database does not answer."""
         with self.transactions.read() as session:
             session.execute(select(1))
+
+    def _renewed(self, session: Session, row: Computation) -> str:
+        """Let a computation without a result be one of this version; its id."""
+        row.version, row.resolved, row.target = __version__, None, None
+        row.attempt += row.state == ComputationState.WAITING
+        target = self._target(session, device_of(document := json.loads(row.document)))
+        key = self.identity.key(row.owner, document, target)
+        if session.scalar(select(Computation.id).where(Computation.key == key)) is None:
+            row.key = key
+        return row.id
 
     def _target(self, session: Session, device: str) -> str | None:
         row = session.get(DeviceTarget, device)

@@ -23,7 +23,7 @@ class Progress:
 class JobRecord:
     """A job. ``error`` holds code, message, retryable and where known field; ``document`` is None in lists.
 
-    ``last_event`` is the id of the job's newest event.
+    ``last_event`` is the id of the job's newest event, ``version`` that of the wsrender that computes it.
     """
 
     id: str
@@ -40,6 +40,7 @@ class JobRecord:
     progress: Progress
     error: dict[str, Any] | None
     last_event: int
+    version: str
     document: dict[str, Any] | None = None
 
 

@@ -15,8 +15,8 @@ from wsrender_server.jobs.tables import Computation, Event, Job
 log = structlog.get_logger("wsrender.jobs")
 
 
-def job_record(job: Job, document: dict[str, Any] | None = None) -> JobRecord:
-    """The plain value of a row."""
+def job_record(job: Job, version: str, document: dict[str, Any] | None = None) -> JobRecord:
+    """The plain value of a row; ``version`` is that of its computation."""
     return JobRecord(
         id=job.id,
         owner=job.owner,
@@ -32,6 +32,7 @@ def job_record(job: Job, document: dict[str, Any] | None = None) -> JobRecord:
         progress=Progress(**(job.progress or {})),
         error=job.error,
         last_event=job.last_event,
+        version=version,
         document=document,
     )
 

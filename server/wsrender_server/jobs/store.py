@@ -11,6 +11,7 @@ from sqlalchemy import Engine, delete, func, literal, select, tuple_
 from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
+from wsrender import __version__
 from wsrender.errors import InputError
 from wsrender.spec.arm import dotted, robots_in
 from wsrender_server.jobs.changes import Changes
@@ -92,7 +93,7 @@ class JobStore(ComputationStore, ResultStore, KeyStore):
                     job, cached = self._insert(
                         session, owner, document, dict(labels or {}), priority, timeout_s, idempotency_key, body_hash
                     )
-                    record = job_record(job, dict(document))
+                    record = job_record(job, __version__, dict(document))
             except IntegrityError:
                 continue  # another process inserted the same key or computation a moment before
             self.changes.notify(record.id)
@@ -103,11 +104,11 @@ class JobStore(ComputationStore, ResultStore, KeyStore):
         """A job with its document."""
         with self.transactions.read() as session:
             row = session.execute(
-                select(Job, Computation.document)
+                select(Job, Computation.version, Computation.document)
                 .join(Computation, Job.computation_id == Computation.id)
                 .where(Job.id == job_id, Job.owner == owner)
             ).first()
-            return None if row is None else job_record(row[0], json.loads(row[1]))
+            return None if row is None else job_record(row[0], row[1], json.loads(row[2]))
 
     def list(
         self,
@@ -123,7 +124,8 @@ class JobStore(ComputationStore, ResultStore, KeyStore):
 
         Raises InputError for a cursor that this method did not give.
         """
-        query = select(Job).where(Job.owner == owner)
+        query = select(Job, Computation.version).join(Computation, Job.computation_id == Computation.id)
+        query = query.where(Job.owner == owner)
         if state is not None:
             query = query.where(Job.state == state)
         if analysis is not None:
@@ -137,7 +139,7 @@ class JobStore(ComputationStore, ResultStore, KeyStore):
             query = query.where(tuple_(Job.created_at, Job.id) < place)
         query = query.order_by(Job.created_at.desc(), Job.id.desc()).limit(limit + 1)
         with self.transactions.read() as session:
-            records = [job_record(job) for job in session.scalars(query)]
+            records = [job_record(job, version) for job, version in session.execute(query)]
         more = len(records) > limit
         return records[:limit], cursor_after(records[limit - 1]) if more else None
 
@@ -151,7 +153,7 @@ class JobStore(ComputationStore, ResultStore, KeyStore):
                 raise InvalidTransition(job.state, "canceled")
             if job.state in LIVE:
                 self._detach(session, job, computation, JobState.CANCELED)
-            record = job_record(job, json.loads(computation.document))
+            record = job_record(job, computation.version, json.loads(computation.document))
         self.changes.notify(job_id)
         return record
 
@@ -168,7 +170,7 @@ class JobStore(ComputationStore, ResultStore, KeyStore):
             job.attempt += 1
             job.started_at = job.finished_at = job.deadline = job.progress = None
             subscribe(session, job, computation)
-            record = job_record(job, json.loads(computation.document))
+            record = job_record(job, computation.version, json.loads(computation.document))
         self.changes.notify(job_id)
         return record
 
@@ -180,7 +182,8 @@ class JobStore(ComputationStore, ResultStore, KeyStore):
                 return None
             if job.state not in ENDED:
                 raise InvalidTransition(job.state, "deleted")
-            record, computation_id = job_record(job, json.loads(computation.document)), computation.id
+            record = job_record(job, computation.version, json.loads(computation.document))
+            computation_id = computation.id
             for table in (Event, Label):
                 session.execute(delete(table).where(table.job_id == job_id))
             session.delete(job)
@@ -212,7 +215,7 @@ class JobStore(ComputationStore, ResultStore, KeyStore):
         if job.body_hash != body_hash:
             raise IdempotencyConflict("the idempotency key was used with another body; send a new key")
         computation = session.get_one(Computation, job.computation_id)
-        return job_record(job, json.loads(computation.document))
+        return job_record(job, computation.version, json.loads(computation.document))
 
     def _insert(
         self, session, owner, document, labels, priority, timeout_s, idempotency_key, body_hash
@@ -260,6 +263,7 @@ class JobStore(ComputationStore, ResultStore, KeyStore):
             priority=priority,
             attempt=1,
             created_at=datetime.now(UTC),
+            version=__version__,
         )
         session.add(computation)
         session.flush()

@@ -44,6 +44,7 @@ class Computation(Table):
     created_at: Mapped[datetime]
     resolved: Mapped[dict[str, Any] | None]
     target: Mapped[str | None] = mapped_column(String(128))
+    version: Mapped[str] = mapped_column(String(32), server_default="0.1.0")  # of wsrender, whose numbers it holds
 
 
 class Job(Table):

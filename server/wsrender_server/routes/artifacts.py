@@ -12,10 +12,12 @@ from fastapi import APIRouter, Depends, Header, Query, Request, Response
 from fastapi import Path as PathParameter
 from starlette.concurrency import run_in_threadpool
 
+from wsrender.notices import entries
 from wsrender_server.auth import Reader
 from wsrender_server.conversions import MEDIA_TYPES
 from wsrender_server.jobs.records import ArtifactRecord, JobRecord
 from wsrender_server.jobs.states import ENDED, JobState
+from wsrender_server.jobs.versions import notices_of
 from wsrender_server.parts import Parts, Server
 from wsrender_server.pictures import SOURCES, draw, slice_values
 from wsrender_server.problems import HttpProblem, problem_responses
@@ -78,10 +80,15 @@ Finished = Annotated[JobRecord, Depends(_finished)]
     responses=problem_responses(401, 403, 404, 409, 422),
 )
 def get_result(server: Server, job: Finished) -> Response:
-    """Values with units, volumes, hashes, versions, timings, and the list of files; 409 while there is none."""
+    """Values with units, volumes, hashes, versions, timings, warnings, and the list of files; 409 while there is none.
+
+    `headline` is the number that the analysis is about, `warnings` what should be known of it: each has code, message,
+    remedy and field; `other_version` says that another version of wsrender has computed it.
+    """
     document = server.store.result_document(job.owner, job.id)
     if document is None:
         raise _gone("result.json")
+    document["warnings"] = [*document.get("warnings", ()), *entries(notices_of(job.version))]
     return Response(json.dumps(document, ensure_ascii=False), media_type="application/json")
 
 

@@ -7,8 +7,10 @@ from typing import Annotated, Any, Generic, TypeVar
 from fastapi import Path
 from pydantic import BaseModel, ConfigDict, Field
 
+from wsrender.notices import entries
 from wsrender_server.jobs.records import EventRecord, JobRecord
 from wsrender_server.jobs.states import JobState
+from wsrender_server.jobs.versions import notices_of
 from wsrender_server.problems import HttpProblem, Problem, problem_of_job
 
 ItemT = TypeVar("ItemT")
@@ -63,6 +65,19 @@ class JobLinks(View):
     """Its files."""
 
 
+class WarningView(View):
+    """Something that a user should know."""
+
+    code: str = Field(examples=["other_version"])
+    """The kind of warning for programs; stable."""
+    message: str
+    """What was found."""
+    remedy: str
+    """What to do about it."""
+    field: str | None
+    """The field of the job document that decides it, dotted."""
+
+
 class JobView(View):
     """A job."""
 
@@ -92,17 +107,25 @@ class JobView(View):
     """Why it failed."""
     last_event: int = Field(ge=0)
     """Id of its newest event."""
+    version: str = Field(examples=["0.1.0"])
+    """Version of wsrender that computes it."""
+    warnings: list[WarningView]
+    """What should be known of it beside its result, such as that another version has computed it (other_version)."""
     links: JobLinks
     """Where else to look."""
 
 
+_MADE = ("progress", "error", "warnings", "links")  # here, of what the record holds
+
+
 def job_view(job: JobRecord) -> JobView:
     """A job as JSON."""
-    path = f"/v1/jobs/{job.id}"
+    path, has_result = f"/v1/jobs/{job.id}", job.state == JobState.SUCCEEDED
     return JobView(
-        **{name: getattr(job, name) for name in JobView.model_fields if name not in ("progress", "error", "links")},
+        **{name: getattr(job, name) for name in JobView.model_fields if name not in _MADE},
         progress=ProgressView(**asdict(job.progress)),
         error=None if job.error is None else Problem(**problem_of_job(job.error)),
+        warnings=[WarningView(**entry) for entry in entries(notices_of(job.version) if has_result else ())],
         links=JobLinks(self=path, events=f"{path}/events", result=f"{path}/result", artifacts=f"{path}/artifacts"),
     )
 

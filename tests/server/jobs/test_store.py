@@ -510,3 +510,48 @@ def test_a_nearly_full_disk_accepts_nothing(database, tmp_path, document):
             refused()
         assert fault.value.retryable
     assert store.list("ann") == ([], None)
+
+
+@pytest.fixture
+def another_version(monkeypatch):
+    """``another_version(version)`` is what this process is from now on."""
+
+    def become(version):
+        for module in ("identity", "store", "computations", "versions"):
+            monkeypatch.setattr(f"wsrender_server.jobs.{module}.__version__", version)
+
+    return become
+
+
+def test_results_of_another_version_are_no_hits(store, document, another_version):
+    another_version("0.0.9")
+    old, computation = running(store, document)
+    complete(store, computation)
+    assert store.submit("ann", document).cached and store.get("ann", old).version == "0.0.9"
+    another_version("0.1.0")
+    again = store.submit("ann", document)
+    assert not again.cached and again.job.state == JobState.QUEUED and again.job.version == "0.1.0"
+    assert [job.version for job in store.list("ann")[0]] == ["0.1.0", "0.0.9", "0.0.9"]
+    assert store.result_document("ann", old) == {"analysis": "workspace"}
+
+
+def test_parts_of_two_versions_do_not_mix(store, document, another_version):
+    another_version("0.0.9")
+    failed, other = running(store, canonical(precision="float64"))
+    store.fail(other, store.computation(other).attempt, {"code": "crashed", "message": "", "retryable": True})
+    job, computation = running(store, document)
+    store.settle(computation, {"shards": [[0, 81]]}, "cpu:a")
+    kept = [store.files.partials(each) / "0.npz" for each in (computation, other)]
+    for path in kept:
+        path.parent.mkdir()
+        path.touch()
+    store.recover()
+    assert all(path.exists() for path in kept) and store.computation(computation).resolved
+    another_version("0.1.0")
+    before = store.computation(computation).attempt
+    store.recover()
+    record = store.computation(computation)
+    assert not any(path.exists() for path in kept)
+    assert (record.resolved, record.target, record.attempt) == (None, None, before + 1)
+    assert store.get("ann", job).version == store.retry("ann", failed).version == "0.1.0"
+    assert not store.submit("ann", document).cached and len(store.unfinished()) == 2  # the twin joins it
