@@ -179,8 +179,8 @@ class Result:
 
         Always written, as far as the result holds the data: ``result.json``, ``map.parquet``,
         ``sample.parquet``, ``volume.vtkhdf``, ``skeleton.npy``, ``<name>.parquet`` of each table, ``<name>.vtkhdf``
-        of each further volume, ``<name>.glb`` and ``<name>.ply`` of each mesh, and ``plots/*.png`` with
-        ``plots/histogram.csv``. ``formats`` adds npz, csv, mat, stl and svg. A result
+        of each further volume, ``<name>.ply`` and ``<name>.glb`` (+Y up, as glTF has it) of each mesh, and
+        ``plots/*.png`` with ``plots/histogram.csv``. ``formats`` adds npz, csv, mat, stl and svg. A result
         that was in the folder before is replaced, other files stay; if writing fails nothing changes.
 
         Raises InputError for an unknown format or a folder that is a file.
@@ -290,7 +290,8 @@ def _volume_files(name: str, volume: VolumeData, formats: tuple[str, ...]) -> It
 def _mesh_files(name: str, mesh: "trimesh.Trimesh", formats: tuple[str, ...]) -> Iterator[Artifact]:
     for ending in ("glb", "ply", *(["stl"] if "stl" in formats else [])):
         write = partial(export.write_mesh, mesh)
-        yield Artifact(f"{name}.{ending}", write, mesh.vertices.shape, {"vertices": "m"})
+        frame = export.GLB_FRAME if ending == "glb" else "world"
+        yield Artifact(f"{name}.{ending}", write, mesh.vertices.shape, {"vertices": "m"}, frame)
 
 
 def _picture_files(result: Result, formats: tuple[str, ...]) -> Iterator[Artifact]:

@@ -7,7 +7,7 @@ import uuid
 from pathlib import Path
 from typing import Any
 
-from wsrender import export
+from wsrender import __version__, export
 from wsrender_server.jobs.files import DataFolder
 from wsrender_server.jobs.records import ArtifactRecord
 from wsrender_server.problems import HttpProblem
@@ -31,7 +31,10 @@ FORMATS[".ply"] = ("glb", "stl")
 
 
 class ConvertedFiles:
-    """Converted artifacts, in the folder ``converted`` of the data folder; the oldest of many are removed."""
+    """Converted artifacts, in the folder ``converted`` of the data folder; the oldest of many are removed.
+
+    What another version of wsrender has converted is converted anew.
+    """
 
     def __init__(self, files: DataFolder, side_process: SideProcess):
         self._files = files
@@ -61,13 +64,13 @@ class ConvertedFiles:
 
     def _kept(self, source_sha256: str, format: str) -> tuple[Path, str] | None:
         self._folder.mkdir(parents=True, exist_ok=True)
-        for path in self._folder.glob(f"{source_sha256}.*.{format}"):
+        for path in self._folder.glob(f"{source_sha256}.*.{__version__}.{format}"):
             os.utime(path)
             return path, path.name.split(".")[1]
         return None
 
     def _keep(self, made: Path, source_sha256: str, sha256: str, format: str) -> tuple[Path, str]:
-        path = made.replace(self._folder / f"{source_sha256}.{sha256}.{format}")
+        path = made.replace(self._folder / f"{source_sha256}.{sha256}.{__version__}.{format}")
         files = sorted(self._folder.iterdir(), key=lambda file: file.stat().st_mtime)
         for old in files[:-MOST_KEPT]:
             old.unlink(missing_ok=True)

@@ -13,13 +13,14 @@ if TYPE_CHECKING:
     from wsrender.export.csv import write_table_csv, write_volume_csv
     from wsrender.export.drawings import write_dxf, write_svg
     from wsrender.export.mat import write_table_mat, write_volume_mat
-    from wsrender.export.meshes import read_mesh, write_mesh
+    from wsrender.export.meshes import GLB_FRAME, read_mesh, write_mesh
     from wsrender.export.npz import read_table_npz, read_volume_npz, write_table_npz, write_volume_npz
     from wsrender.export.parquet import read_table_parquet, write_table_parquet
     from wsrender.export.skeleton import read_skeleton, write_skeleton
     from wsrender.export.vtkhdf import read_volume_vtkhdf, write_volume_vtkhdf
 
 _MODULES = {
+    "GLB_FRAME": "meshes",
     "read_mesh": "meshes",
     "read_table_npz": "npz",
     "read_table_parquet": "parquet",
@@ -41,6 +42,7 @@ _MODULES = {
 }
 
 __all__ = [
+    "GLB_FRAME",
     "read_mesh",
     "read_skeleton",
     "read_table_npz",

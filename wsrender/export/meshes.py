@@ -1,6 +1,13 @@
-"""Meshes ↔ PLY, GLB and STL files."""
+"""Meshes ↔ PLY, GLB and STL files.
 
+PLY and STL hold the world frame as it is, z up. GLB follows glTF 2.0, where +Y is up: a point (x, y, z) stands there as
+(x, z, −y), turned by −90° about x. Lengths are metres everywhere.
+"""
+
+import json
+import struct
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import trimesh
@@ -8,32 +15,62 @@ import trimesh
 from wsrender.errors import InputError
 from wsrender.export.atomic import new_file
 
+GLB_FRAME = "world, +Y up"
+# What the file itself says of its frame, in the glTF member ``asset.extras``.
+GLB_EXTRAS = {"up": "+Y", "unit": "m", "frame": "world frame (z up) turned by -90 degrees about x: (x, z, -y)"}
+_T_GLTF_WORLD = np.array([[1.0, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
+
 
 def write_mesh(mesh: trimesh.Trimesh, path: str | Path) -> None:
-    """Write a mesh in the format of the file name (.ply, .glb or .stl)."""
+    """Write a mesh [m, world frame] in the format of the file name (.ply, .glb or .stl)."""
     path = Path(path)
     file_type = path.suffix.removeprefix(".").lower()
     if file_type not in ("ply", "glb", "stl"):
         raise InputError("path", f"{path.name} must end in .ply, .glb or .stl")
+    options: dict[str, Any] = {}
+    if file_type == "glb":
+        mesh, options = mesh.copy().apply_transform(_T_GLTF_WORLD), {"tree_postprocessor": _add_extras}
     with new_file(path) as temporary, temporary.open("wb") as file:
-        mesh.export(file, file_type=file_type)
+        mesh.export(file, file_type=file_type, **options)
 
 
 def read_mesh(path: str | Path, ending: str | None = None) -> trimesh.Trimesh:
-    """Read what ``write_mesh`` wrote, vertices in float32; ``ending`` says the format where the name does not.
+    """Read what ``write_mesh`` wrote, vertices [m] in float32; ``ending`` says the format where the name does not.
 
-    Of PLY files the attributes of faces too, such as the number of the surface on which each lies.
+    Of PLY files the attributes of faces too, such as the number of the surface on which each lies. GLB files of
+    wsrender 0.1.0, which had z up, are known by what they lack, and read as they are.
 
     Raises InputError where the file is no mesh.
     """
     path = Path(path)
+    file_type = (ending or path.suffix).removeprefix(".").lower()
     try:
-        mesh = trimesh.load(path, file_type=(ending or path.suffix).removeprefix("."), force="mesh", process=False)
+        mesh = trimesh.load(path, file_type=file_type, force="mesh", process=False)
+        turned = file_type == "glb" and _has_y_up(_tree(path))
     except Exception as error:  # each of trimesh's readers has errors of its own
         raise InputError(path.name, f"cannot be read as a mesh: {error}") from error
     if not isinstance(mesh, trimesh.Trimesh):
         raise InputError(path.name, "holds no mesh")
+    if turned:
+        mesh.apply_transform(_T_GLTF_WORLD.T)
     raw = mesh.metadata.pop("_ply_raw", {}).get("face", {}).get("data")
     if isinstance(raw, np.ndarray) and raw.dtype.names is not None and len(raw) == len(mesh.faces):
         mesh.face_attributes |= {name: raw[name] for name in raw.dtype.names if raw[name].dtype.names is None}
     return mesh
+
+
+def _add_extras(tree: dict[str, Any]) -> None:
+    tree["asset"]["extras"] = GLB_EXTRAS
+
+
+def _has_y_up(tree: dict[str, Any]) -> bool:
+    """Whether a glTF file has +Y up: all but those of wsrender 0.1.0, written by trimesh without a word of it."""
+    asset = tree["asset"]
+    return "extras" in asset or "trimesh" not in asset.get("generator", "")
+
+
+def _tree(path: Path) -> dict[str, Any]:
+    """The JSON part of a GLB file: after a header of 12 bytes, the chunk's length and type (glTF 2.0, section 4.4)."""
+    with path.open("rb") as file:
+        header = file.read(20)
+        return json.loads(file.read(struct.unpack("<I", header[12:16])[0]))
