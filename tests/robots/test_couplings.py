@@ -8,6 +8,9 @@ from tests.reference import chain_kinematics as reference
 from tests.reference import mujoco_kinematics as by_mujoco
 from wsrender import robots
 from wsrender.errors import ModelError
+from wsrender.robot import evaluate_indices, robot_of_spec
+from wsrender.robots.model_warning import ModelWarning
+from wsrender.spec.robot import RobotSpec
 
 
 def arm(equality, extra=""):
@@ -42,14 +45,14 @@ def check(text, dependent, free):
         full = values | dependent(values)
         data = by_mujoco.at(model, full)
         T = by_mujoco.pose(model, data, "tool")
-        names = [name for name in "abcd" if name in full]
+        names = [name for name in "abcdfg" if name in full]
         J, M = by_mujoco.jacobian(model, data, "tool", names), by_mujoco.inertia_matrix(model, data, names)
         S = np.array(
             [[_slope(dependent, values, name, free[k], step[k, k]) for k in range(len(free))] for name in names]
         )
         np.testing.assert_allclose(reference.forward_kinematics(chain, q), T, atol=1e-12)
         np.testing.assert_allclose(reference.jacobian(chain, q), J @ S, atol=1e-12)
-        np.testing.assert_allclose(reference.inertia_matrix(chain, q), S.T @ M @ S, atol=1e-12)
+        np.testing.assert_allclose(reference.inertia_matrix(chain.dynamic, q), S.T @ M @ S, atol=1e-12)
         again = mujoco.MjData(robot.model)
         robot.set_configuration(again, q)
         np.testing.assert_allclose(again.qpos, data.qpos, atol=1e-15)
@@ -70,7 +73,7 @@ def test_a_follower_is_driven_by_its_leader():
 
 
 def test_a_follower_may_come_before_its_leader():
-    check(arm(follow("a", "d", "0 0.4 0 0 0")), lambda v: {"a": 0.4 * v["d"]}, ("b", "c", "d"))
+    check(arm(follow("a", "d", "0 0.4 0 0 0")), lambda v: {"a": 0.4 * v["d"]}, ("d", "b", "c"))
 
 
 def test_followers_of_followers():
@@ -83,9 +86,10 @@ def test_followers_of_followers():
     check(text, dependent, ("a", "b"))
 
 
-def test_a_joint_led_from_off_the_chain_is_held():
-    text = arm(follow("c", "f", "0.25 3 0 0 0"))
-    check(text, lambda v: {"c": 0.25}, ("a", "b", "d"))
+def test_a_joint_led_from_another_branch_keeps_its_freedom():
+    text = arm(follow("c", "f", "0.25 3 0 0 0")).replace('ref=".1"', 'ref=".1" range="-.5 .5"')
+    chain = check(text, lambda v: {"c": 0.25 + 3 * (v["f"] - 0.1)}, ("a", "b", "f", "d"))
+    assert (chain.lower_limits[2], chain.upper_limits[2]) == (-0.5, 0.5)
 
 
 def test_a_joint_held_by_a_constant_equality():
@@ -108,7 +112,8 @@ def test_inactive_equalities_do_not_bind():
 
 
 def test_limits_are_what_leader_and_followers_allow():
-    chain = robots.load_mjcf(arm(follow("c", "d", "1 -2 0 0 0"))).chain  # c = 1 − 2 d in [−2, 2]
+    with pytest.warns(ModelWarning, match="'c' allows it"):
+        chain = robots.load_mjcf(arm(follow("c", "d", "1 -2 0 0 0"))).chain  # c = 1 − 2 d in [−2, 2]
     assert chain.joint_names == ("a", "b", "d")
     assert (chain.lower_limits[2], chain.upper_limits[2]) == pytest.approx((-0.5, 1.5))
 
@@ -161,3 +166,82 @@ def test_tendon_equalities_on_the_chain_are_refused():
 def test_loops_within_a_link_and_mocap_bodies_are_fine(equality):
     chain = robots.load_mjcf(arm(equality, '<body name="m" mocap="true"/>')).chain
     assert chain.joint_names == ("a", "b", "c", "d")
+
+
+HAND = """<mujoco><compiler angle="radian"/><worldbody>
+  <body name="palm"><joint name="wrist" axis="0 1 0.3" range="-1 1"/><geom size=".1" pos=".1 0 0"/>
+    <body name="L1" pos=".1 .1 0" euler=".2 0 .1"><joint name="l1" axis="0 0 1" ref=".1" range="-1 1"/>
+      <geom size=".03" pos=".05 0 .01"/>
+      <body name="L2" pos=".1 0 0"><joint name="l2" axis=".1 0 1" range="-.5 .5"/><geom size=".02" pos=".03 .01 0"/>
+      </body></body>
+    <body name="R1" pos=".1 -.1 0"><joint name="r1" axis="0 .2 1" range="-3 3"/><geom size=".03" pos=".05 0 0"/>
+      <body name="R2" pos=".1 0 0"><joint name="r2" axis="0 0 1" range="-3 3"/><geom size=".02" pos=".03 0 0"/>
+        <site name="pad" pos=".06 0 .01"/></body></body>
+  </body></worldbody>
+  <equality><joint joint1="r1" joint2="l1" polycoef=".1 -1.5 0 0 0"/>
+    <joint joint1="r2" joint2="l2" polycoef="0 2 0 0 0"/></equality></mujoco>"""
+
+
+def followers(q):
+    wrist, l1, l2 = q
+    return {"wrist": wrist, "l1": l1, "l2": l2, "r1": 0.1 - 1.5 * (l1 - 0.1), "r2": 2 * l2}
+
+
+@pytest.mark.parametrize("method", ["kernel", "mujoco"])
+def test_leaders_on_another_branch_move_their_own_bodies(method):
+    """Kinematics, and inertia over both fingers, against MuJoCo: the path has 3 of the 5 joints that move."""
+    robot = robot_of_spec(RobotSpec(mjcf=HAND), tip="pad")
+    assert robot.joint_names == ("wrist", "l1", "l2")
+    assert list(robot.chain.joint_source) == [0, 1, 2]
+    assert list(robot.chain.dynamic.joint_source) == [0, 1, 2, 2, 1, 1, 2]
+    q = np.random.default_rng(3).uniform(robot.lower_limits, robot.upper_limits, (8, 3))
+    model = mujoco.MjModel.from_xml_string(HAND)
+    names = ["wrist", "l1", "l2", "r1", "r2"]
+    C = np.array([[1, 0, 0], [0, 1, 0], [0, 0, 1], [0, -1.5, 0], [0, 0, 2]])
+    T, J = robot.forward_kinematics(q, device="cpu"), robot.jacobian(q, device="cpu")
+    M = robot.inertia_matrix(q, method=method, device="cpu")
+    for row, *found in zip(q, T, J, M, strict=True):
+        data = by_mujoco.at(model, followers(row))
+        np.testing.assert_allclose(found[0], by_mujoco.pose(model, data, "pad"), atol=1e-12)
+        np.testing.assert_allclose(found[1], by_mujoco.jacobian(model, data, "pad", names) @ C, atol=1e-12)
+        full = by_mujoco.inertia_matrix(model, data, names)
+        np.testing.assert_allclose(found[2], C.T @ full @ C, atol=1e-13)
+
+
+def test_dynamic_indices_count_the_bodies_of_leaders():
+    robot = robot_of_spec(RobotSpec(mjcf=HAND), tip="pad")
+    q = np.random.default_rng(4).uniform(robot.lower_limits, robot.upper_limits, (5, 3))
+    found = evaluate_indices(robot, q, indices=["dynamic_manipulability"])["dynamic_manipulability"]
+    J, M = robot.jacobian(q, device="cpu")[:, :3], robot.inertia_matrix(q, method="mujoco")
+    np.testing.assert_allclose(found, np.abs(np.linalg.det(J)) / np.linalg.det(M), rtol=1e-9)
+
+
+def test_a_leader_above_the_base_moves_nothing_against_it():
+    text = arm(follow("c", "a", "0 2 0 0 0"))
+    robot = robots.load_mjcf(text, base="A")
+    assert robot.chain.joint_names == ("b", "a", "d")
+    assert robot.chain.with_branches is None
+    q = np.array([0.4, 0.3, -0.2])
+    data = by_mujoco.at(robot.model, {"a": 0.3, "b": 0.4, "c": 0.6, "d": -0.2})
+    T = np.linalg.inv(by_mujoco.pose(robot.model, data, "A")) @ by_mujoco.pose(robot.model, data, "tool")
+    np.testing.assert_allclose(reference.forward_kinematics(robot.chain, q), T, atol=1e-12)
+
+
+def test_a_leader_on_another_branch_must_be_led_linearly():
+    with pytest.raises(ModelError, match="joint 'c' follows another joint by a polynomial of higher degree"):
+        robots.load_mjcf(arm(follow("c", "f", "0.25 3 1 0 0")))
+
+
+def test_followers_that_narrow_their_leaders_limits_are_said():
+    text = arm(follow("c", "d", "1 -2 0 0 0"))  # c = 1 − 2 d in [−2, 2], d in [−2, 2]
+    told = r"the limits of joint 'd' are -0.5 … 1.5: its own are -2 … 2, but 'c' allows it -0.5 … 1.5; widen the limits"
+    with pytest.warns(ModelWarning, match=told):
+        robot = robots.load_mjcf(text)
+    (notice,) = robot.notices
+    assert (notice.code, notice.field) == ("follower_limits", "robot")
+    assert robots.load_mjcf(arm(follow("c", "d", "0 0.5 0 0 0"))).notices == ()
+
+
+def test_followers_that_leave_their_leader_nothing_are_named():
+    with pytest.raises(ModelError, match=r"leave 7 … 2; .*: its own are -2 … 2, but 'c' allows it 7 … 11$"):
+        robots.load_mjcf(arm(follow("c", "d", "-9 1 0 0 0")))

@@ -51,7 +51,8 @@ def test_coupled_hinges_without_limits():
     assert robots.load_mjcf(coupled(-2)).chain.periodic[0]  # both return after a turn of the leader
     with pytest.raises(ModelError, match="joint 'a' has no limits"):
         robots.load_mjcf(coupled(0.5))
-    chain = robots.load_mjcf(coupled(0.5, 'range="-1 2"')).chain
+    with pytest.warns(robots.ModelWarning, match="it has none of its own, but 'b' allows it -2 … 4"):
+        chain = robots.load_mjcf(coupled(0.5, 'range="-1 2"')).chain
     assert (chain.lower_limits[0], chain.upper_limits[0], chain.periodic[0]) == (-2.0, 4.0, False)
 
 

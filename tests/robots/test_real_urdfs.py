@@ -85,3 +85,26 @@ def test_limits_agree_with_pinocchio(case):
         assert periodic == (joint.nq == 2)
         if not periodic:
             assert (lower, upper) == (model.lowerPositionLimit[joint.idx_q], model.upperPositionLimit[joint.idx_q])
+
+
+@pytest.mark.parametrize("finger", ["panda_leftfinger", "panda_rightfinger"])
+def test_both_fingers_of_a_hand_have_one_freedom_more_than_its_arm(finger):
+    """One finger mimics the other: whichever ends the chain, the width of the hand is its last coordinate."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)
+        robot = ws.load_robot(str(ROBOTS / "panda_description/urdf/panda.urdf"), tip=finger)
+    assert robot.joint_names[7:] == ("panda_finger_joint1",)
+    q = _configurations(robot)
+    leads = finger == "panda_rightfinger"  # of the other chain nothing follows: it holds the right finger still
+    full = np.column_stack([q, leads * q[:, -1]])
+    model = pin.buildModelFromUrdf(str(ROBOTS / "panda_description/urdf/panda.urdf"))
+    C = np.eye(9, 8)
+    C[8, 7] = leads
+    M = robot.inertia_matrix(q, device="cpu")
+    for row, T, found in zip(full, robot.forward_kinematics(q, device="cpu"), M, strict=True):
+        data = model.createData()
+        pin.framesForwardKinematics(model, data, row)
+        np.testing.assert_allclose(T, data.oMf[model.getFrameId(finger)].homogeneous, atol=POSITION)
+        by_pin = pin.crba(model, data, row)
+        by_pin = C.T @ (np.triu(by_pin) + np.triu(by_pin, 1).T) @ C
+        np.testing.assert_allclose(found, by_pin, atol=INERTIA * abs(by_pin).max())

@@ -187,14 +187,21 @@ def test_mimic_joints_follow():
     assert (follower.lower_limits[0], follower.upper_limits[0]) == (-1.0, 1.0)
 
 
-def test_a_mimic_led_from_off_the_chain_is_held():
+def test_a_mimic_led_from_another_branch_keeps_its_freedom():
     text = tree(joint("finger", "a", "b"), joint("j", "a", "c"),
                 joint("held", "c", "d", more='<mimic joint="finger" offset="0.25"/>'))  # fmt: skip
     free = tree(joint("finger", "a", "b"), joint("j", "a", "c"), joint("held", "c", "d"))
     held, chain = robots.load_urdf(text, tip="d").chain, robots.load_urdf(free, tip="d").chain
-    assert held.joint_names == ("j",)
-    expected = reference.forward_kinematics(chain, [0.3, 0.25])
-    np.testing.assert_allclose(reference.forward_kinematics(held, [0.3]), expected, atol=1e-15)
+    assert held.joint_names == ("j", "finger")
+    expected = reference.forward_kinematics(chain, [0.3, 0.25 + 0.1])
+    np.testing.assert_allclose(reference.forward_kinematics(held, [0.3, 0.1]), expected, atol=1e-15)
+
+
+def test_a_leader_on_another_branch_needs_limits_too():
+    endless = '<joint name="finger" type="revolute"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/></joint>'
+    text = tree(endless, joint("j", "a", "c"), joint("held", "c", "d", more='<mimic joint="finger"/>'))
+    with pytest.raises(ModelError, match=r"'finger' has no <limit>.* \(it leads a joint of the chain\)"):
+        robots.load_urdf(text, tip="d")
 
 
 def test_limits_that_are_both_zero_count_as_none():

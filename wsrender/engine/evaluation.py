@@ -42,6 +42,11 @@ class Evaluation:
         return any(is_dynamic(name) for name in self.indices)
 
     @property
+    def device_chain(self) -> Chain:
+        """The chain that the kernels evaluate."""
+        return self.chain.dynamic if self.dynamic and self.host_inertia is None else self.chain
+
+    @property
     def host_chain(self) -> HostChain | None:
         """The chain of a robot that is defined by a Python class: the host computes its kinematics."""
         return self.chain if isinstance(self.chain, HostChain) else None
@@ -62,7 +67,7 @@ def shape_of(evaluation: Evaluation, precision: str, method: str, **outputs: boo
     real, n = REAL[precision], evaluation.chain.n
     body = index_source(evaluation.indices, evaluation.rows, n, evaluation.convention)
     length = spectrum_length(n, evaluation.rows, evaluation.convention)
-    sources, plain = drive(evaluation.chain)
+    sources, plain = drive(evaluation.device_chain)
     return Shape(
         real=real,
         n=n,
@@ -91,7 +96,7 @@ def drive(chain: Chain) -> tuple[tuple[int, ...], bool]:
 def evaluation_model(evaluation: Evaluation, precision: str):
     """The Model struct of an evaluation, without what the host computes."""
     chain, real = evaluation.chain, REAL[precision]
-    model = chain_model(chain, precision)
+    model = chain_model(evaluation.device_chain, precision)
     model.lower, model.upper = vector_of(chain.lower_limits, real), vector_of(chain.upper_limits, real)
     limited = ~chain.periodic & (chain.upper_limits > chain.lower_limits)
     model.limited = vector_of(limited, real)

@@ -46,7 +46,7 @@ class GridStructure:
 
 def structure_of(evaluation: Evaluation, sampling: SamplingPlan) -> GridStructure:
     """The structure that a sampling has under an evaluation; mostly none: every sample is evaluated."""
-    chain, levels = evaluation.chain, sampling.levels.copy()
+    chain, levels = evaluation.device_chain, sampling.levels.copy()
     own = np.array_equal(chain.joint_source, np.arange(chain.n))
     if sampling.method != "grid" or evaluation.on_host or evaluation.convention == "wsrender_code" or not own:
         return GridStructure(sampling)

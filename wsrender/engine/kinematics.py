@@ -53,6 +53,7 @@ def evaluate_poses(chain: Chain, q: np.ndarray, precision: str = "float64", devi
 
 def _evaluate(chain: Chain, q: np.ndarray, with_inertia: bool, precision: str, device: wp.Device) -> Kinematics:
     real, n = REAL[precision], chain.n
+    chain = chain.dynamic if with_inertia else chain
     pose = wp.empty((len(q), 12), dtype=real, device=device)
     jacobian = wp.empty((len(q), 6, n), dtype=real, device=device)
     inertia = wp.empty((len(q) if with_inertia else 0, n, n), dtype=real, device=device)

@@ -38,6 +38,8 @@ def moving_joints(chain: Chain, axis: bool = False) -> tuple[Chain, np.ndarray]:
         joint_source=np.searchsorted(kept, chain.joint_source[:joints]),
         armature=chain.armature[:joints],
         has_inertia=False,
+        with_branches=None,
+        leader_is_revolute=chain.revolute[kept],
         T_tip=T,
         T_tip_tool=np.eye(4),
         **{name: getattr(chain, name)[:joints] for name in per_joint},

@@ -123,7 +123,8 @@ class Robot:
         loaded, model = self._loaded, self.model
         data = mujoco.MjData(model)
         full = np.zeros((model.nv, model.nv))
-        dofs = np.ix_(loaded.dof_addresses, loaded.dof_addresses)
+        addresses, coupling = loaded.moving
+        dofs = np.ix_(addresses, addresses)
         out = np.empty((len(q), self.chain.n, self.chain.n))
         for i, row in enumerate(q):
             loaded.set_configuration(data, row)
@@ -131,7 +132,7 @@ class Robot:
             mujoco.mj_comPos(model, data)
             mujoco.mj_makeM(model, data)
             mujoco.mj_fullM(model, data, full)
-            out[i] = loaded.coupling.T @ full[dofs] @ loaded.coupling
+            out[i] = coupling.T @ full[dofs] @ coupling
         return out
 
     def placed(self, placement: Transform) -> "Robot":

@@ -19,7 +19,9 @@ class Chain:
 
     A chain has ``L`` joints driven by ``n`` coordinates (the configuration ``q``); ``L > n`` only where
     joints are coupled (mimic joints, linear joint equalities). Joint ``i`` is displaced by
-    ``joint_scale[i] * q[joint_source[i]] + joint_offset[i]`` [rad or m].
+    ``joint_scale[i] * q[joint_source[i]] + joint_offset[i]`` [rad or m]. The value of a coordinate is that of the
+    joint of its name, which need not be one of the L: a leader may stand on another branch. Coordinates stand in the
+    order of the first joints that they move.
 
     Every joint frame has the joint axis as its local z, its origin on the axis. ``T_joint[i]`` is the
     frame of joint ``i`` at zero displacement in the frame of joint ``i-1`` after its motion (in the base
@@ -47,6 +49,8 @@ class Chain:
     has_inertia: bool
     T_world_base: np.ndarray = field(default_factory=_identity)  # (4, 4) placement of the base frame
     T_tip_tool: np.ndarray = field(default_factory=_identity)  # (4, 4) tool in the end-effector frame
+    leader_is_revolute: np.ndarray | None = None  # (n,) bool; None: as the first joint that each coordinate moves
+    with_branches: "Chain | None" = None  # where bodies on other branches move too: see `dynamic`
 
     def __post_init__(self):
         for f in fields(self):
@@ -63,7 +67,9 @@ class Chain:
 
     @property
     def revolute(self) -> np.ndarray:
-        """Whether coordinate k is an angle, shape (n,) bool (that of the joint it drives first)."""
+        """Whether coordinate k is an angle, shape (n,) bool."""
+        if self.leader_is_revolute is not None:
+            return self.leader_is_revolute
         return np.array([bool(self.joint_is_revolute[self.joint_source == k][0]) for k in range(self.n)])
 
     @cached_property
@@ -75,9 +81,23 @@ class Chain:
             digest.update(f.name.encode())
             if isinstance(value, np.ndarray):
                 digest.update(f"{value.dtype.str}{value.shape}".encode() + value.tobytes())
+            elif isinstance(value, Chain):
+                digest.update(value.content_hash.encode())
             else:
                 digest.update(repr(value).encode())
         return digest.hexdigest()
+
+    @property
+    def dynamic(self) -> "Chain":
+        """The chain that has this one's joint-space inertia: itself, or one with leaders on other branches as joints.
+
+        Each is followed, after those that it carries, by a joint at the same place that undoes its motion, so that
+        nothing beyond moves with it.
+        """
+        if self.with_branches is None:
+            return self
+        names = ("lower_limits", "upper_limits", "periodic", "T_world_base", "T_tip_tool")
+        return replace(self.with_branches, **{name: getattr(self, name) for name in names})
 
     def placed(self, T_world_base: np.ndarray | None = None, T_tip_tool: np.ndarray | None = None) -> Self:
         """The same chain with its base placed in the world and a tool added at its tip ((4, 4) each)."""

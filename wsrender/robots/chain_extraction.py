@@ -1,12 +1,13 @@
 """From a compiled MuJoCo model to the Chain between a base and a tip."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import mujoco
 import numpy as np
 
 from wsrender.errors import ModelError
-from wsrender.robots import frames
+from wsrender.robots import branches, frames
 from wsrender.robots.chain import Chain
 from wsrender.robots.compiled_model import CompiledModel
 from wsrender.robots.couplings import Couplings, refuse_loops
@@ -26,7 +27,8 @@ def extract(
 
     The chain is read from MuJoCo's own kinematics with its joints at ``qpos0``; everything else is held at
     ``qpos0`` too, followers where their leaders put them, and its mass belongs to the joint that carries
-    it. Joints held by a coupling become part of the fixed links. Raises ModelError.
+    it. Joints held by a coupling become part of the fixed links; a leader on another branch is a coordinate.
+    Raises ModelError.
     """
     model = compiled.model
     base_frame, tip_frame = frames.choose(model, base, tip)
@@ -34,31 +36,36 @@ def extract(
     _refuse_faults(compiled, bodies, base_frame, tip_frame, field)
     couplings = Couplings(model, field)
     leaders, drives = _drives(model, bodies, couplings, field)
-    carrier = _carriers(model, [drive.joint for drive in drives])
+    aside = branches.leaders_aside(model, leaders, drives)
+    _refuse_leaders(compiled, aside, field)
+    moving = [*drives, *branches.moving_bodies(model, aside, base_frame)]
+    carrier = _carriers(model, [drive.joint for drive in moving])
     refuse_loops(model, carrier, field)
     for body, fault in compiled.inertia_faults.items():
         if carrier[body] >= 0:
             raise ModelError(field, fault)
     reference = couplings.reference_qpos()
-    geometry = _Geometry.at_reference(model, drives, reference, base_frame, tip_frame)
-    lower, upper, periodic = coordinate_limits(model, drives, leaders, field)
+    geometry = _Geometry.at_reference(model, moving, reference, base_frame, tip_frame)
+    lower, upper, periodic, notices = coordinate_limits(model, [*drives, *aside], leaders, field)
     names = tuple(joint_name(model, leader) for leader in leaders)
-    dofs = model.jnt_dofadr[[drive.joint for drive in drives]]
-    mass, center, inertia = _composite(model, geometry, carrier)
     chain = Chain(
         name=name, base_frame=base_frame.name, tip_frame=tip_frame.name, joint_names=names,
         lower_limits=lower, upper_limits=upper, periodic=periodic,
-        effort_limits=effort_limits(model, leaders),
-        joint_is_revolute=np.array([_is_hinge(model, drive.joint) for drive in drives]),
-        joint_source=np.array([drive.source for drive in drives]),
-        joint_scale=np.array([drive.scale for drive in drives]),
-        joint_offset=np.array([drive.offset for drive in drives]),
-        T_joint=geometry.between, T_tip=geometry.tip, mass=mass, center_of_mass=center, inertia=inertia,
-        armature=model.dof_armature[dofs], has_inertia=_has_inertia(model, carrier),
+        effort_limits=effort_limits(model, leaders), has_inertia=_has_inertia(model, carrier),
+        leader_is_revolute=np.array([_is_hinge(model, leader) for leader in leaders]),
+        **_links(model, geometry, [(drive, 1) for drive in drives]),
     )  # fmt: skip
-    _check(chain, field)
-    qpos = model.jnt_qposadr[[drive.joint for drive in drives]]
-    return LoadedRobot(model, chain, source_hash, qpos, dofs, reference)
+    if len(moving) > len(drives) and chain.has_inertia:
+        order = branches.serial_order(model, [drive.joint for drive in moving], len(drives))
+        links = _links(model, geometry, [(moving[number], sign) for number, sign in order])
+        chain = replace(chain, with_branches=replace(chain, **links))
+    _check(chain.dynamic, field)
+    qpos, dofs = (addresses[[drive.joint for drive in drives]] for addresses in (model.jnt_qposadr, model.jnt_dofadr))
+    return LoadedRobot(
+        model, chain, source_hash, qpos, dofs, reference, notices,
+        leaders=tuple((int(model.jnt_qposadr[drive.joint]), drive.source) for drive in aside),
+        branches=tuple((int(model.jnt_dofadr[drive.joint]), drive.source) for drive in moving[len(drives) :]),
+    )  # fmt: skip
 
 
 def _bodies_between(model: mujoco.MjModel, base: Frame, tip: Frame) -> list[int]:
@@ -94,16 +101,17 @@ def _refuse_faults(compiled: CompiledModel, bodies: list[int], base: Frame, tip:
 def _drives(
     model: mujoco.MjModel, bodies: list[int], couplings: Couplings, field: str
 ) -> tuple[list[int], list[Drive]]:
-    """Leaders (the joints whose values are the coordinates) and the joints that move, in chain order."""
+    """Leaders, the joints whose values are the coordinates, by what they move first, and the joints that move."""
     joints = [joint for body in bodies for joint in frames.joints_of(model, body)]
-    leaders = [joint for joint in joints if couplings.leader(joint) == joint]
+    leaders: list[int] = []
     drives = []
     for joint in joints:
         leader = couplings.leader(joint)
-        if leader not in leaders:
+        if leader is None:
             continue
         scale, offset = couplings.linear(joint)
         if scale != 0.0:
+            leaders += [leader] if leader not in leaders else []
             zero = float(model.qpos0[model.jnt_qposadr[leader]])
             drives.append(Drive(joint, leaders.index(leader), scale, offset - scale * zero))
     if not leaders:
@@ -112,8 +120,15 @@ def _drives(
     return leaders, drives
 
 
+def _refuse_leaders(compiled: CompiledModel, aside: list[Drive], field: str) -> None:
+    """Raises ModelError for a leader on another branch that could not be on the chain."""
+    for drive in aside:
+        if fault := compiled.path_faults.get(int(compiled.model.jnt_bodyid[drive.joint])):
+            raise ModelError(field, f"{fault} (it leads a joint of the chain)")
+
+
 def _carriers(model: mujoco.MjModel, joints: list[int]) -> np.ndarray:
-    """Number of the chain joint that carries each body, −1 for the base, (nbody,)."""
+    """Number of the moving joint that carries each body, −1 for the base, (nbody,)."""
     carrier = np.full(model.nbody, -1)
     for body in range(1, model.nbody):
         carrier[body] = carrier[model.body_parentid[body]]
@@ -124,12 +139,11 @@ def _carriers(model: mujoco.MjModel, joints: list[int]) -> np.ndarray:
 
 @dataclass(frozen=True)
 class _Geometry:
-    """Frames of the chain with its joints at ``qpos0``: of each joint in the last, and of the tip."""
+    """Places of everything with the moving joints at ``qpos0``, in the world: all, the base (4, 4), the tip (4, 4)."""
 
     data: mujoco.MjData
-    joint: np.ndarray  # (L, 4, 4) in the world
-    between: np.ndarray  # (L, 4, 4)
-    tip: np.ndarray  # (4, 4)
+    base: np.ndarray
+    tip: np.ndarray
 
     @classmethod
     def at_reference(
@@ -140,10 +154,32 @@ class _Geometry:
         moving = model.jnt_qposadr[[drive.joint for drive in drives]]
         data.qpos[moving] = model.qpos0[moving]
         mujoco.mj_kinematics(model, data)
-        joint = np.array([_joint_frame(model, data, drive.joint) for drive in drives])
-        before = np.concatenate([base.pose(data)[None], joint[:-1]])
-        between = np.array([_inverse(T) @ T_next for T, T_next in zip(before, joint, strict=True)])
-        return cls(data, joint, between, _inverse(joint[-1]) @ tip.pose(data))
+        return cls(data, base.pose(data), tip.pose(data))
+
+
+def _links(model: mujoco.MjModel, geometry: _Geometry, joints: list[tuple[Drive, int]]) -> dict[str, Any]:
+    """The fields of a Chain that have an entry for each of its joints, and ``T_tip``.
+
+    Joints with sign −1 undo the motion of what they name, and carry nothing themselves.
+    """
+    drives, signs = [drive for drive, _ in joints], np.array([sign for _, sign in joints])
+    carrier = _carriers(model, [drive.joint if sign > 0 else -1 for drive, sign in joints])
+    joint = np.array([_joint_frame(model, geometry.data, drive.joint) for drive in drives])
+    before = np.concatenate([geometry.base[None], joint[:-1]])
+    mass, center, inertia = _composite(model, geometry.data, joint, carrier)
+    armature = model.dof_armature[model.jnt_dofadr[[drive.joint for drive in drives]]]
+    return {
+        "joint_is_revolute": np.array([_is_hinge(model, drive.joint) for drive in drives]),
+        "joint_source": np.array([drive.source for drive in drives]),
+        "joint_scale": signs * [drive.scale for drive in drives],
+        "joint_offset": signs * [drive.offset for drive in drives],
+        "T_joint": np.array([_inverse(T) @ T_next for T, T_next in zip(before, joint, strict=True)]),
+        "T_tip": _inverse(joint[-1]) @ geometry.tip,
+        "mass": mass,
+        "center_of_mass": center,
+        "inertia": inertia,
+        "armature": np.where(signs > 0, armature, 0.0),
+    }
 
 
 def _joint_frame(model: mujoco.MjModel, data: mujoco.MjData, joint: int) -> np.ndarray:
@@ -172,19 +208,17 @@ def _is_hinge(model: mujoco.MjModel, joint: int) -> bool:
 
 
 def _composite(
-    model: mujoco.MjModel, geometry: _Geometry, carrier: np.ndarray
+    model: mujoco.MjModel, data: mujoco.MjData, joint: np.ndarray, carrier: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Mass (L,), centre of mass (L, 3) and inertia about it (L, 3, 3) of what each joint carries."""
-    count = len(geometry.joint)
+    """Mass (L,), centre of mass (L, 3) and inertia about it (L, 3, 3) of what each joint (L, 4, 4) carries."""
+    count = len(joint)
     mass, center, inertia = np.zeros(count), np.zeros((count, 3)), np.zeros((count, 3, 3))
-    for link, T in enumerate(geometry.joint):
+    for link, T in enumerate(joint):
         bodies = np.flatnonzero(carrier == link)
-        stated = _rigid_sum(model, geometry.data, bodies, T, MASSLESS)
+        stated = _rigid_sum(model, data, bodies, T, MASSLESS)
         # The negligible values that MuJoCo needs stay only where nothing else keeps M(q) regular.
         regular = np.linalg.eigvalsh(stated[2])[0] > MASSLESS
-        mass[link], center[link], inertia[link] = (
-            stated if regular else _rigid_sum(model, geometry.data, bodies, T, 0.0)
-        )
+        mass[link], center[link], inertia[link] = stated if regular else _rigid_sum(model, data, bodies, T, 0.0)
     return mass, center, inertia
 
 

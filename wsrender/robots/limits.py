@@ -6,8 +6,10 @@ import mujoco
 import numpy as np
 
 from wsrender.errors import ModelError
+from wsrender.notices import Notice
 
 LARGEST_ANGLE = 1e4  # rad
+ROUNDING = 1e-6  # share of a leader's range: rounding of a model file's numbers
 
 
 @dataclass(frozen=True)
@@ -32,16 +34,17 @@ def joint_name(model: mujoco.MjModel, joint: int) -> str:
 
 def coordinate_limits(
     model: mujoco.MjModel, drives: list[Drive], leaders: list[int], field: str
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Lower and upper limits [rad or m] and periodicity of the coordinates, (n,) each.
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, tuple[Notice, ...]]:
+    """Lower and upper limits [rad or m] and periodicity of the coordinates, (n,) each, and what narrows them.
 
-    ``leaders`` are the joints whose value is the coordinate. A coordinate is periodic, −π … π, if no joint
-    it drives has limits (or limits beyond 10⁴ rad, as some exporters write for none) and all of them turn by
-    whole turns; otherwise its interval is what all its joints
-    allow. Raises ModelError where that is empty or has no end.
+    ``leaders`` are the joints whose value is the coordinate; ``drives`` has them and all that follow. A coordinate
+    is periodic, −π … π, if no joint it drives has limits (or limits beyond 10⁴ rad, as some exporters write for
+    none) and all of them turn by whole turns; otherwise its interval is what all its joints allow. Raises
+    ModelError where that is empty or has no end.
     """
     lower, upper = np.empty(len(leaders)), np.empty(len(leaders))
     periodic = np.zeros(len(leaders), bool)
+    notices = []
     for k, leader in enumerate(leaders):
         driven = [drive for drive in drives if drive.source == k]
         interval = _intersection(model, driven)
@@ -51,13 +54,49 @@ def coordinate_limits(
                 raise ModelError(field, f"joint {name!r} has no limits: give its range")
             periodic[k], interval = True, (-np.pi, np.pi)
         lower[k], upper[k] = interval
+        limiting = _Limiting.of(model, leader, driven)
         if not (np.isfinite(interval).all() and lower[k] < upper[k]):
             raise ModelError(
                 field,
                 f"joint {name!r}: its limits and those of its followers leave {lower[k]:g} … {upper[k]:g}; "
-                "a finite interval is needed",
+                f"a finite interval is needed{limiting.told}",
             )
-    return lower, upper, periodic
+        if limiting.followers:
+            notices.append(limiting.notice(name, lower[k], upper[k]))
+    return lower, upper, periodic, tuple(notices)
+
+
+@dataclass(frozen=True)
+class _Limiting:
+    """The limits of a leader itself, None where it has none, and by follower those that are narrower."""
+
+    own: tuple[float, float] | None
+    followers: dict[str, tuple[float, float]]  # as the leader's values
+
+    @classmethod
+    def of(cls, model: mujoco.MjModel, leader: int, driven: list[Drive]) -> "_Limiting":
+        own = _intersection(model, [drive for drive in driven if drive.joint == leader])
+        low, high = own or (-np.inf, np.inf)
+        slack = ROUNDING * (high - low) if own else 0.0
+        found = {joint_name(model, d.joint): _intersection(model, [d]) for d in driven if d.joint != leader}
+        narrower = {n: i for n, i in found.items() if i and (i[0] > low + slack or i[1] < high - slack)}
+        return cls(own, narrower)
+
+    @property
+    def told(self) -> str:
+        """The limits that followers set, as the end of a sentence; empty for none."""
+        said = [f"{name!r} allows it {low:g} … {high:g}" for name, (low, high) in self.followers.items()]
+        own = "it has none of its own" if self.own is None else f"its own are {self.own[0]:g} … {self.own[1]:g}"
+        return f": {own}, but {' and '.join(said)}" if said else ""
+
+    def notice(self, name: str, low: float, high: float) -> Notice:
+        """That followers leave the leader ``name`` less than its own limits."""
+        return Notice(
+            "follower_limits",
+            f"the limits of joint {name!r} are {low:g} … {high:g}{self.told}",
+            "widen the limits of the followers if they are not meant",
+            "robot",
+        )
 
 
 def effort_limits(model: mujoco.MjModel, leaders: list[int]) -> np.ndarray | None:

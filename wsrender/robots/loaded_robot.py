@@ -25,21 +25,35 @@ class LoadedRobot:
     dof_addresses: np.ndarray  # (L,) int
     reference_qpos: np.ndarray  # (nq,)
     notices: tuple[Notice, ...] = ()  # what was odd about the model
+    leaders: tuple[tuple[int, int], ...] = ()  # off the path: address in ``qpos``, coordinate
+    branches: tuple[tuple[int, int], ...] = ()  # those of them that move a body: address in ``qvel``, coordinate
 
     @property
     def coupling(self) -> np.ndarray:
-        """(L, n) derivative of the displacements by the configuration: M(q) = couplingᵀ M_dof coupling."""
+        """(L, n) derivative of the displacements of the chain's joints by the configuration."""
         chain = self.chain
         matrix = np.zeros((len(chain.joint_source), chain.n))
         matrix[np.arange(len(matrix)), chain.joint_source] = chain.joint_scale
         return matrix
 
-    def set_configuration(self, data: mujoco.MjData, q: np.ndarray) -> None:
-        """Writes configuration ``q`` (n,) [rad or m] to ``data.qpos``, coupled joints included.
+    @property
+    def moving(self) -> tuple[np.ndarray, np.ndarray]:
+        """Addresses (D,) in ``qvel`` of all that moves, and C (D, n) with M(q) = Cᵀ M_dof C over them.
 
-        Everything off the chain takes its reference; velocities are left alone.
+        Those are the joints of the chain, then leaders on other branches.
+        """
+        rows = np.eye(self.chain.n)[[coordinate for _, coordinate in self.branches]]
+        dofs = np.array([dof for dof, _ in self.branches], int)
+        return np.concatenate([self.dof_addresses, dofs]), np.concatenate([self.coupling, rows])
+
+    def set_configuration(self, data: mujoco.MjData, q: np.ndarray) -> None:
+        """Writes configuration ``q`` (n,) [rad or m] to ``data.qpos``, coupled joints and leaders included.
+
+        Everything else takes its reference; velocities are left alone.
         """
         chain = self.chain
         displacement = chain.joint_scale * np.asarray(q)[chain.joint_source] + chain.joint_offset
         data.qpos[:] = self.reference_qpos
         data.qpos[self.qpos_addresses] = self.model.qpos0[self.qpos_addresses] + displacement
+        for address, coordinate in self.leaders:
+            data.qpos[address] = q[coordinate]

@@ -147,6 +147,8 @@ def _extracted(
     robot = extract(compiled, base, tip, name or compiled.name or "robot", source_hash, _FIELD)
     placed = robot.chain.placed(_rigid("placement", placement), _rigid("tool", tool))
     _warn_of_reach(placed)
+    for notice in robot.notices:
+        warnings.warn(str(notice), ModelWarning, stacklevel=2)
     return replace(robot, chain=placed)
 
 

@@ -1,5 +1,6 @@
 """Reading the XML of robot models from strangers: no entities, no outside files, bounded size and depth."""
 
+import codecs
 import io
 import math
 import re
@@ -14,6 +15,7 @@ MAX_BYTES = 16 * 2**20
 MAX_ELEMENTS = 20_000  # the largest robots have 4,000
 MAX_DEPTH = 200  # MuJoCo compiles bodies recursively
 
+_ENCODING = re.compile(rb"""<\?xml[^>]*\sencoding\s*=\s*["']([A-Za-z0-9._-]+)["']""")
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
 
 
@@ -65,11 +67,19 @@ def numbers(text: str, count: int, field: str, where: str) -> list[float]:
 
 def _input_source(text: str | bytes) -> InputSource:
     source = InputSource()
+    if isinstance(text, bytes):
+        text = _declared(text.removeprefix(codecs.BOM_UTF8).lstrip())
     if isinstance(text, str):
         source.setCharacterStream(io.StringIO(text.lstrip("\ufeff \t\r\n")))
     else:
-        source.setByteStream(io.BytesIO(text.lstrip()))
+        source.setByteStream(io.BytesIO(text))
     return source
+
+
+def _declared(text: bytes) -> str | bytes:
+    """Text in an encoding that it declares and the parser may not know (Shift_JIS, GBK), decoded."""
+    found = _ENCODING.match(text)
+    return text.decode(found[1].decode()) if found else text
 
 
 def _reason(error: Exception) -> str:
