@@ -77,7 +77,7 @@ def test_a_dh_table():
         ("no/such/file", "there is no file 'no/such/file'"),
         ("robot.urdf", "there is no file 'robot.urdf'"),
         (Path("/"), "there is no file '/'"),
-        (MJCF, "XML text is no path; use load_mjcf or load_urdf"),
+        ("<html/>", "the root element is <html>; <mujoco> is needed"),
     ],
 )
 def test_sources_that_are_not_there(source, message):
@@ -204,7 +204,7 @@ sys.exit(1)
 
 @pytest.mark.parametrize("source", [None, 3, [1], {"library": "ur5e"}])
 def test_what_is_no_source_is_refused(source):
-    with pytest.raises(ws.InputError, match="source: must be a library name, the path of a"):
+    with pytest.raises(ws.InputError, match="source: must be a library name, the path or text of an MJCF"):
         ws.load_robot(source)
 
 

@@ -55,7 +55,7 @@ XML = {
 
 MJCF = {
     "URDF given as MJCF": (urdf(), "the root element is <robot>; <mujoco> is needed"),
-    "include": (mjcf(more='<include file="/etc/passwd"/>'), "includes are refused: inline the file"),
+    "include": (mjcf(more='<include file="/etc/passwd"/>'), "includes are refused .*: inline the file, by"),
     "include in a body": (mjcf('<include file="arm.xml"/>'), "includes are refused"),
     "model asset": (mjcf(more='<asset><model name="m" file="m.xml"/></asset>'), "model assets are refused"),
     "attach": (mjcf('<attach model="m" prefix="p"/>'), "attached models are refused"),

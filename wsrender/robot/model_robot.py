@@ -3,21 +3,21 @@
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import cached_property
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from wsrender.errors import InputError, MissingInertiaError
 from wsrender.notices import Notice
-from wsrender.robots import load, load_dh, load_library, load_mjcf, load_path, load_uploaded, load_urdf
+from wsrender.robots import described, load, load_dh, load_library, load_mjcf, load_path, load_uploaded, load_urdf
 from wsrender.robots.chain import Chain
-from wsrender.spec.robot import DHTable, RobotSpec, Transform
+from wsrender.spec.robot import RobotSpec, Transform
 
 if TYPE_CHECKING:
     import mujoco
 
     from wsrender.robots.loaded_robot import LoadedRobot
+    from wsrender.robots.loading import Source
 
 
 class Robot:
@@ -193,7 +193,7 @@ def configuration_rows(q: Any, n: int, field: str = "q") -> np.ndarray:
 
 
 def load_robot(
-    source: "str | Path | DHTable",
+    source: "Source",
     *,
     base: str | None = None,
     tip: str | None = None,
@@ -201,26 +201,19 @@ def load_robot(
     placement: Any = None,
     tool: Any = None,
 ) -> Robot:
-    """Load a robot: a library name, the path of an MJCF (.xml) or URDF file, or a DH table.
+    """Load a robot: a library name, the path or text of an MJCF (.xml) or URDF file, a DH table, MjSpec or MjModel.
 
     ``base`` and ``tip`` name a site, body or link (default: the world, and the site "tool" or the only end).
     ``placement`` is the base frame in the world and ``tool`` the tool point in the tip frame, each a
     `Transform`, its fields as a dict, or a (4, 4) array. Raises InputError, ModelError for a malformed or
     unsupported model, FrameNotFoundError listing the frames.
     """
-    if not isinstance(source, str | Path | DHTable):
-        kinds = "a library name, the path of a .xml or .urdf file, or a DHTable"
-        raise InputError("source", f"must be {kinds}, not {type(source).__name__}")
+    kind, value = described(source)
     options: dict[str, Any] = {"base": base, "tip": tip, "name": name}
     placement, tool = _as_transform(placement), _as_transform(tool)
     options |= {"placement": _matrix(placement), "tool": _matrix(tool)}
     loaded = load(source, **options)
-    if isinstance(source, DHTable):
-        given: dict[str, Any] = {"dh": source}
-    else:
-        is_path = isinstance(source, Path) or source.lower().endswith((".xml", ".urdf")) or "/" in source
-        given = {"path": str(source)} if is_path else {"library": source}
-    spec = RobotSpec(**given, placement=_transform(placement), tool=_transform(tool))
+    spec = RobotSpec(**{kind: value}, placement=_transform(placement), tool=_transform(tool))
     return Robot(loaded, spec, name, base, tip)
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from wsrender.errors import InputError, ModelError
 from wsrender.notices import Notice
 from wsrender.robot.model_robot import Robot, configuration_rows, load_robot
+from wsrender.robots import of_mujoco
 from wsrender.robots.host_chain import HostChain
 from wsrender.spec.robot import DHTable, Transform
 
@@ -145,7 +146,7 @@ def as_robot(robot: Any) -> Robot:
     """
     if isinstance(robot, Robot):
         return robot
-    if isinstance(robot, str | Path | DHTable):
+    if isinstance(robot, str | Path | DHTable) or of_mujoco(robot):
         return load_robot(robot)
     if isinstance(robot, type):
         raise InputError("robot", f"{robot.__name__} is a class; give an object of it: {robot.__name__}()")

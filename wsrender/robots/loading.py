@@ -1,24 +1,29 @@
 """Loading robots: a library name, MJCF, URDF or a DH table becomes a compiled model and a chain."""
 
 import hashlib
+import sys
 import warnings
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 from xml.etree.ElementTree import Element
 
 import numpy as np
 
 from wsrender.errors import InputError, MissingExtraError, ModelError
-from wsrender.robots import xml_source
+from wsrender.robots import includes, xml_source
 from wsrender.robots.model_warning import ModelWarning
 
 if TYPE_CHECKING:
+    import mujoco
+
     from wsrender.robots.chain import Chain
     from wsrender.robots.loaded_robot import LoadedRobot
     from wsrender.robots.mjcf_model import ReadMesh
     from wsrender.spec.robot import DHTable
+
+    Source = str | Path | DHTable | mujoco.MjSpec | mujoco.MjModel
 
 PLAUSIBLE_REACH = (0.02, 20.0)  # [m]
 
@@ -26,7 +31,7 @@ _FIELD = "model"
 
 
 def load(
-    source: "str | Path | DHTable",
+    source: "Source",
     *,
     base: str | None = None,
     tip: str | None = None,
@@ -34,24 +39,46 @@ def load(
     placement: np.ndarray | None = None,
     tool: np.ndarray | None = None,
 ) -> "LoadedRobot":
-    """The robot of a library name, of a path to an MJCF or URDF file, or of a DH table.
+    """The robot of a library name, of a path to or the text of an MJCF or URDF file, of a DH table, MjSpec or MjModel.
 
-    A string is a path if it ends in .xml or .urdf or has a folder in it. ``base`` and ``tip`` name a site,
-    body or link. The base is the world by default. The tip is by default the site ``tool``, else the only
+    A string is text if it begins with <, a path if it ends in .xml or .urdf or has a folder in it. ``base`` and
+    ``tip`` name a site, body or link. The base is the world by default. The tip is by default the site ``tool``, else the only
     end of the model that a joint moves, else the link ``tool0``; a site goes before a body of its name.
     ``placement`` is the base frame in the world and ``tool`` the tool frame in the tip frame, (4, 4) each.
     Raises ModelError, FrameNotFoundError, InputError; gives a ModelWarning if the reach is implausible.
     """
     options = {"base": base, "tip": tip, "name": name, "placement": placement, "tool": tool}
+    kind, value = described(source)
+    loaders = {"library": load_library, "path": load_path, "dh": load_dh, "mjcf": load_mjcf, "urdf": load_urdf}
+    return loaders[kind](value, **options)
+
+
+def described(source: "Source") -> tuple[str, Any]:
+    """What the robot of a job document says of what `load` takes: the field of its source, and the value there.
+
+    Raises InputError for what is no source, ModelError for text that is no model.
+    """
+    from wsrender.spec.robot import DHTable
+
+    if of_mujoco(source):
+        return "mjcf", _mjcf_model().text_of(source, _FIELD)
+    if isinstance(source, DHTable):
+        return "dh", source
     if isinstance(source, Path):
-        return load_path(source, **options)
+        return "path", str(source)
     if not isinstance(source, str):
-        return load_dh(source, **options)
-    if source.lstrip().startswith("<"):
-        raise ModelError(_FIELD, "XML text is no path; use load_mjcf or load_urdf")
-    if source.lower().endswith((".xml", ".urdf")) or "/" in source or "\\" in source:
-        return load_path(source, **options)
-    return load_library(source, **options)
+        kinds = "a library name, the path or text of an MJCF (.xml) or URDF file, a DHTable, MjSpec or MjModel"
+        raise InputError("source", f"must be {kinds}, not {type(source).__name__}")
+    if source.lstrip("\ufeff \t\r\n").startswith("<"):
+        return ("urdf" if xml_source.parse(source, _FIELD).tag == "robot" else "mjcf"), source
+    is_path = source.lower().endswith((".xml", ".urdf")) or "/" in source or "\\" in source
+    return "path" if is_path else "library", source
+
+
+def of_mujoco(source: Any) -> bool:
+    """Whether a source is a model that was made with MuJoCo in Python: an MjSpec or an MjModel."""
+    mujoco = sys.modules.get("mujoco")  # one that is not imported has made nothing
+    return mujoco is not None and isinstance(source, mujoco.MjSpec | mujoco.MjModel)
 
 
 def load_library(robot: str, **options) -> "LoadedRobot":
@@ -71,10 +98,10 @@ def load_dh(table: "DHTable", **options) -> "LoadedRobot":
 def load_path(path: str | Path, **options) -> "LoadedRobot":
     """The robot of a file of the user's own, MJCF or URDF by its root element; ``options`` as in ``load``.
 
-    Meshes that an inertia is computed from are read relative to the file; nothing else is.
+    Files that an MJCF includes and meshes that an inertia is computed from are read relative to it; nothing else is.
     """
     path = Path(path)
-    content = _read(path)
+    content = xml_source.read(path, _FIELD)
     root = xml_source.parse(content, _FIELD)
     options = {**options, "name": options.get("name") or root.get("model") or root.get("name") or path.stem}
     if root.tag == "robot":
@@ -82,6 +109,7 @@ def load_path(path: str | Path, **options) -> "LoadedRobot":
     if root.tag != "mujoco":
         raise ModelError(_FIELD, f"the root element is <{root.tag}>; <mujoco> or <robot> (URDF) is needed")
     mjcf_model = _mjcf_model()
+    content = b"".join([content, *includes.put_in(root, path.parent, _FIELD)])
     return _from_mjcf(root, content, mjcf_model.from_folder(path.parent), **options)
 
 
@@ -114,17 +142,6 @@ def _root(text: str | bytes, tag: str) -> Element:
     if root.tag != tag:
         raise ModelError(_FIELD, f"the root element is <{root.tag}>; <{tag}> is needed")
     return root
-
-
-def _read(path: Path) -> bytes:
-    if not path.is_file():
-        raise ModelError(_FIELD, f"there is no file {str(path)!r}")
-    if (size := path.stat().st_size) > xml_source.MAX_BYTES:
-        raise ModelError(_FIELD, f"{path.name} has {size} bytes; at most {xml_source.MAX_BYTES} are allowed")
-    try:
-        return path.read_bytes()
-    except OSError as error:
-        raise ModelError(_FIELD, f"cannot read {str(path)!r}: {error.strerror}") from error
 
 
 def _from_mjcf(root: Element, text: str | bytes, read_mesh: "ReadMesh", **options) -> "LoadedRobot":

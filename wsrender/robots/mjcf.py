@@ -11,7 +11,8 @@ _SCENERY = ("option", "size", "visual", "statistic", "custom", "extension", "def
             "sensor", "keyframe")  # fmt: skip
 _DROPPED = {"camera", "light", "texture", "material", "hfield", "skin", "plugin"}
 _REFUSED = {
-    "include": "includes are refused: inline the file",
+    "include": "includes are refused where no folder is known to read them from: inline the file, by putting what is "
+    "inside its <mujoco> element in the place of <include>, or load the model by its path where it stands",
     "attach": "attached models are refused: inline the model",
     "model": "model assets are refused: inline the model",
     "composite": "composite bodies are not supported",

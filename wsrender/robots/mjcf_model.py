@@ -9,7 +9,7 @@ from xml.etree.ElementTree import Element
 import mujoco
 
 from wsrender.errors import ModelError
-from wsrender.robots import mjcf
+from wsrender.robots import mjcf, mjcf_text
 from wsrender.robots.compiled_model import MUJOCO_ERRORS, CompiledModel, quiet, refusal
 from wsrender.robots.inertials import compile_with_inertials
 from wsrender.robots.model_warning import ModelWarning
@@ -35,6 +35,19 @@ def from_folder(folder: Path) -> ReadMesh:
         return path.read_bytes()
 
     return read
+
+
+def text_of(source: mujoco.MjSpec | mujoco.MjModel, field: str) -> str:
+    """MJCF text of a model that was made with MuJoCo in Python. Raises ModelError where there is none.
+
+    An MjSpec is compiled first, with the meshes that it names: what MuJoCo writes of it has six digits.
+    """
+    if isinstance(source, mujoco.MjModel):
+        return mjcf_text.text_of(source, field)
+    model, faults = compile_with_inertials(source.copy(), field)
+    for fault in faults.values():
+        raise ModelError(field, fault)
+    return mjcf_text.text_of(model, field)
 
 
 def compile_mjcf(root: Element, read_mesh: ReadMesh, field: str) -> CompiledModel:

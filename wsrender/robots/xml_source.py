@@ -4,6 +4,7 @@ import codecs
 import io
 import math
 import re
+from pathlib import Path
 from xml.etree import ElementTree
 from xml.sax import SAXException
 from xml.sax.handler import ContentHandler
@@ -46,6 +47,18 @@ def parse(text: str | bytes, field: str = "model") -> ElementTree.Element:
             raise
         raise ModelError(field, f"not well-formed XML: {_reason(error)}") from error
     return builder.root()
+
+
+def read(path: Path, field: str = "model") -> bytes:
+    """The bytes of a model file. Raises ModelError for one that is not there, unreadable or too large."""
+    if not path.is_file():
+        raise ModelError(field, f"there is no file {str(path)!r}")
+    if (size := path.stat().st_size) > MAX_BYTES:
+        raise ModelError(field, f"{path.name} has {size} bytes; at most {MAX_BYTES} are allowed")
+    try:
+        return path.read_bytes()
+    except OSError as error:
+        raise ModelError(field, f"cannot read {str(path)!r}: {error.strerror}") from error
 
 
 def number(text: str, field: str, where: str) -> float:
