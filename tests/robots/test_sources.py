@@ -38,7 +38,7 @@ def test_text_is_a_source(tmp_path, text, tip):
     path.write_text(text.lstrip("\ufeff\n "))
     robot = ws.load_robot(text, tip=tip)
     same(robot, ws.load_robot(path, tip=tip))
-    assert robot.spec.source == ("urdf" if text == URDF else "mjcf")
+    assert robot.spec is not None and robot.spec.source == ("urdf" if text == URDF else "mjcf")
     assert as_robot(text).joint_names == robot.joint_names
 
 
@@ -48,6 +48,7 @@ def test_specs_and_models_of_mujoco_are_sources():
         robot = as_robot(source)
         same(robot, right)
         assert robot.name == "arm"
+        assert robot.spec is not None
         same(robot_of_spec(robot.spec), right)  # the job document holds it whole
 
 

@@ -42,8 +42,8 @@ def load(
     """The robot of a library name, of a path to or the text of an MJCF or URDF file, of a DH table, MjSpec or MjModel.
 
     A string is text if it begins with <, a path if it ends in .xml or .urdf or has a folder in it. ``base`` and
-    ``tip`` name a site, body or link. The base is the world by default. The tip is by default the site ``tool``, else the only
-    end of the model that a joint moves, else the link ``tool0``; a site goes before a body of its name.
+    ``tip`` name a site, body or link. The base is the world by default. The tip is by default the site ``tool``, else
+    the only end of the model that a joint moves, else the link ``tool0``; a site goes before a body of its name.
     ``placement`` is the base frame in the world and ``tool`` the tool frame in the tip frame, (4, 4) each.
     Raises ModelError, FrameNotFoundError, InputError; gives a ModelWarning if the reach is implausible.
     """
