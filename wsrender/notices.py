@@ -1,8 +1,12 @@
 """What a user should know of a model or a number: plain facts that go into results and onto every door."""
 
+import sys
+import warnings
 from collections.abc import Iterable
-from dataclasses import asdict, dataclass
-from typing import Any
+from dataclasses import asdict, dataclass, replace
+from typing import Any, Self
+
+_PACKAGES = ("wsrender", "wsrender_kernels", "wsrender_server")
 
 
 @dataclass(frozen=True)
@@ -20,6 +24,10 @@ class Notice:
     def __str__(self) -> str:
         return f"{self.message}; {self.remedy}" if self.remedy else self.message
 
+    def within(self, path: str) -> Self:
+        """The same notice, its field below ``path`` of the job document."""
+        return replace(self, field=f"{path}.{self.field}") if path and self.field else self
+
     def entry(self) -> dict[str, Any]:
         """The notice as result documents hold it."""
         return asdict(self)
@@ -28,3 +36,15 @@ class Notice:
 def entries(notices: Iterable[Notice]) -> list[dict[str, Any]]:
     """The distinct notices, in their order, as result documents hold them."""
     return [notice.entry() for notice in dict.fromkeys(notices)]
+
+
+def warn(notices: Iterable[Notice], category: type[Warning]) -> None:
+    """One warning per notice, at the line of the caller: that of the first frame outside these packages."""
+    frame = sys._getframe(1)
+    while frame.f_back is not None and frame.f_globals.get("__name__", "").partition(".")[0] in _PACKAGES:
+        frame = frame.f_back
+    module, registry = frame.f_globals.get("__name__"), frame.f_globals.setdefault("__warningregistry__", {})
+    for notice in notices:
+        warnings.warn_explicit(
+            str(notice), category, frame.f_code.co_filename, frame.f_lineno, module=module, registry=registry
+        )

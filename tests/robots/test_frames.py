@@ -60,10 +60,10 @@ def test_a_site_goes_before_the_body_of_its_name():
     assert chain.T_tip[:3, 3] == pytest.approx([0, 0, 3])
 
 
-def test_a_tip_that_must_be_chosen_lists_the_choices():
+def test_a_tip_that_must_be_chosen_lists_the_choices_ends_first():
     with pytest.raises(FrameNotFoundError, match="tip: the model ends in 2 places; its tip must be named") as caught:
         robots.load_mjcf(TWO_ARMS, base="pelvis")
-    assert caught.value.choices == ["neck", "grip", "chest", "left", "left_hand", "right", "right_hand"]
+    assert caught.value.choices == ["grip", "left_hand", "right_hand", "neck", "chest", "left", "right"]
 
 
 @pytest.mark.parametrize(
@@ -87,7 +87,7 @@ def test_unknown_frames(base, tip, message):
 @pytest.mark.parametrize(
     ("base", "message"),
     [
-        (None, "'root' is a free joint on the chain from 'world' to 'grip'.*name a base below it"),
+        (None, "'root' is a free joint on the chain from 'world' to 'grip'.*name a base below it, such as 'pelvis'"),
         ("right_hand", "there is no joint between base 'right_hand' and tip 'grip'"),
     ],
 )

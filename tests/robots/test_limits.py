@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from wsrender import robots
-from wsrender.errors import ModelError
+from wsrender.errors import InputError
 
 
 def arm(joint="", actuator="", kind="hinge"):
@@ -35,10 +35,57 @@ def test_degrees_are_the_default_of_mjcf():
     assert (chain.lower_limits[0], chain.upper_limits[0]) == pytest.approx((-np.pi / 2, np.pi / 4))
 
 
-def test_a_slide_needs_limits():
-    assert robots.load_mjcf(arm('range="-1 2"', kind="slide")).chain.upper_limits[0] == 2.0
-    with pytest.raises(ModelError, match="joint 'j' has no limits: give its range"):
-        robots.load_mjcf(arm(kind="slide"))
+ENDLESS = "has no usable limits: the workspace has no end; give a range"
+
+
+@pytest.mark.parametrize("limits", ["", 'range="-1e16 1e16"', 'range="0 3.4e38"', 'range="-999999 999999"'])
+def test_a_slide_without_usable_limits_is_endless(limits):
+    with pytest.warns(robots.ModelWarning, match=f"joint j {ENDLESS}") as caught:
+        robot = robots.load_mjcf(arm(limits, kind="slide"))
+    assert len(caught) == 1  # and none of millimetres
+    assert [(notice.code, notice.field) for notice in robot.notices] == [("no_usable_limits", "robot.limits")]
+    assert (robot.chain.lower_limits[0], robot.chain.upper_limits[0]) == (-np.inf, np.inf)
+    assert robot.chain.endless == ("j",)
+
+
+def test_the_longest_range_that_counts():
+    chain = robots.load_mjcf(arm('range="-1e5 1e5"', kind="slide")).chain
+    assert (chain.upper_limits[0], chain.endless) == (1e5, ())
+
+
+@pytest.mark.parametrize("kind", ["slide", "hinge"])
+@pytest.mark.parametrize("own", ["", 'range="-3 3"', 'range="2 1"'])
+def test_limits_that_are_given_go_before_the_models(kind, own):
+    robot = robots.load_mjcf(arm(own, kind=kind), limits={"j": (-0.5, 1.0)})
+    assert (robot.chain.lower_limits[0], robot.chain.upper_limits[0]) == (-0.5, 1.0)
+    assert not robot.chain.periodic[0]
+    assert robot.notices == ()
+
+
+def test_limits_in_degrees():
+    chain = robots.load_mjcf(arm(), limits_deg={"j": (-90, 45)}).chain
+    assert (chain.lower_limits[0], chain.upper_limits[0]) == pytest.approx((-np.pi / 2, np.pi / 4))
+    with pytest.raises(InputError, match=r'limits_deg\.j: is a slide: give it in metres, in "limits"'):
+        robots.load_mjcf(arm('range="0 1"', kind="slide"), limits_deg={"j": (-90, 45)})
+
+
+def test_limits_of_no_joint_of_the_chain():
+    with pytest.raises(InputError, match=r"limits\.k: is no joint of the chain that leads itself; allowed: j"):
+        robots.load_mjcf(arm(), limits={"k": (0, 1)})
+
+
+@pytest.mark.parametrize(
+    ("largest", "doubted"), [(12.5, False), (12.6, True), (90, True), (9999, True), (10001, False)]
+)
+def test_angles_beyond_two_turns_look_like_degrees(largest, doubted):
+    text = arm(f'range="0 {largest}"')
+    if not doubted:
+        assert robots.load_mjcf(text).notices == ()
+        return
+    with pytest.warns(robots.ModelWarning, match=rf"must be in radians, and look like degrees: j 0 … {largest:g} rad"):
+        robot = robots.load_mjcf(text)
+    assert [(notice.code, notice.field) for notice in robot.notices] == [("units_angle", "robot.limits_deg")]
+    assert robots.load_mjcf(text, limits={"j": (0, largest)}).notices == ()
 
 
 def coupled(coefficient, range_of_follower=""):
@@ -49,8 +96,8 @@ def coupled(coefficient, range_of_follower=""):
 
 def test_coupled_hinges_without_limits():
     assert robots.load_mjcf(coupled(-2)).chain.periodic[0]  # both return after a turn of the leader
-    with pytest.raises(ModelError, match="joint 'a' has no limits"):
-        robots.load_mjcf(coupled(0.5))
+    with pytest.warns(robots.ModelWarning, match=f"joint a {ENDLESS}"):
+        assert robots.load_mjcf(coupled(0.5)).chain.endless == ("a",)
     with pytest.warns(robots.ModelWarning, match="it has none of its own, but 'b' allows it -2 … 4"):
         chain = robots.load_mjcf(coupled(0.5, 'range="-1 2"')).chain
     assert (chain.lower_limits[0], chain.upper_limits[0], chain.periodic[0]) == (-2.0, 4.0, False)

@@ -119,7 +119,7 @@ def test_missing_meshes_are_dropped_with_one_warning(tmp_path):
 def test_a_missing_mesh_that_gives_the_inertia_is_an_error(tmp_path):
     (tmp_path / "arm.xml").write_text(with_mesh(""))
     message = "the inertia of body 'link' comes from meshes/parts/body.stl, which is not there"
-    with pytest.warns(robots.ModelWarning), pytest.raises(ModelError, match=message):
+    with pytest.raises(ModelError, match=message):
         robots.load(tmp_path / "arm.xml")
 
 

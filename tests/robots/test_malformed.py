@@ -76,10 +76,6 @@ MJCF = {
     "free joint": (mjcf('<freejoint name="f"/>'), "'f' is a free joint on the chain from 'world' to 'a'"),
     "unnamed free joint": (mjcf("<freejoint/>"), "'joint1' is a free joint on the chain"),
     "unknown joint type": (mjcf('<joint type="screw"/>'), "invalid keyword: 'screw'"),
-    "slide without limits": (
-        mjcf('<joint name="j" type="slide"/>'),
-        "joint 'j' has no limits: give its range",
-    ),
     "inverted limits": (mjcf('<joint name="j" range="1 -1"/>'), "joint 'j': its range is 1 … -1"),
     "NaN in a position": (
         mjcf('<site name="s" pos="0 nan 0"/>'),
@@ -203,7 +199,6 @@ URDF = {
     ),
     "NaN limit": (urdf(joint('<limit lower="nan" upper="1"/>')), "joint 'j': lower limit is 'nan'"),
     "negative effort": (urdf(joint('<limit lower="0" upper="1" effort="-1"/>')), "its effort limit is -1"),
-    "slide without limits": (urdf(joint("", "prismatic")), "joint 'j' has no limits: give its range"),
     "zero axis": (
         urdf(joint('<axis xyz="0 0 0"/>' + LIMIT)),
         "joint 'j': its axis is '0 0 0'; it must not be",

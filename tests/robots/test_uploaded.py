@@ -3,7 +3,6 @@
 import pytest
 
 import wsrender as ws
-from wsrender.robots import ModelWarning
 from wsrender.robots.uploaded import MODELS_VARIABLE
 
 SHA256 = "0" * 64
@@ -47,7 +46,7 @@ def test_files_beside_a_model_are_not_read(models):
         '<mujoco><asset><mesh file="mesh.stl"/></asset><worldbody><body><joint name="a" limited="true" range="-1 1"/>'
         '<geom type="mesh" mesh="mesh"/><site name="tool" pos="1 0 0"/></body></worldbody></mujoco>'
     )
-    with pytest.warns(ModelWarning), pytest.raises(ws.ModelError, match=r"mesh\.stl, which is not there"):
+    with pytest.raises(ws.ModelError, match=r"mesh\.stl, which is not there"):
         ws.execute(ROBOT)
 
 

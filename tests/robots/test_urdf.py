@@ -211,13 +211,17 @@ def test_limits_that_are_both_zero_count_as_none():
     assert chain.periodic.tolist() == [True, False]
 
 
-def test_faults_of_joints_off_the_chain_do_no_harm():
+def test_faults_of_joints_off_the_chain_are_notes():
     text = tree(
         joint("j", "a", "b"),
         joint("broken", "a", "c", more=""),
         joint("lost", "a", "d", more='<mimic joint="x"/>'),
     )
-    assert robots.load_urdf(text, tip="b").chain.joint_names == ("j",)
+    with pytest.warns(
+        robots.ModelWarning, match="off the chain, .*'broken' has no <limit>.*; joint 'lost' mimics"
+    ) as told:
+        assert robots.load_urdf(text, tip="b").chain.joint_names == ("j",)
+    assert len(told) == 1
     with pytest.raises(ModelError, match="revolute joint 'broken' has no <limit>"):
         robots.load_urdf(text, tip="c")
     with pytest.raises(ModelError, match="joint 'lost' mimics 'x', which is no other joint"):

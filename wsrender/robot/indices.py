@@ -1,6 +1,5 @@
 """Local indices of a robot: from the words of a job document to an evaluation of the engine."""
 
-import warnings
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -8,6 +7,7 @@ import numpy as np
 
 from wsrender.errors import InputError, MissingInertiaError
 from wsrender.indices.catalogue import CONVENTIONS, is_dynamic, resolve
+from wsrender.notices import Notice, warn
 from wsrender.robot.model_robot import Robot, configuration_rows
 from wsrender.robot.user_robot import HostRobot, as_robot
 from wsrender.robots.model_warning import ModelWarning
@@ -118,16 +118,14 @@ def _check_inertias(robot: Robot, precision: str) -> None:
     Float64 does, but a link without mass, whose acceleration has no bound, is worth a warning.
     """
     chain = robot.chain
-    middle = 0.5 * (chain.lower_limits + chain.upper_limits)
+    lower, upper = (np.where(np.isinf(ends), 0.0, ends) for ends in (chain.lower_limits, chain.upper_limits))
+    middle = 0.5 * (lower + upper)
     about_joints = np.diagonal(robot.mujoco_inertia(middle[None])[0])
     ratio = about_joints.max() / about_joints.min()
     if ratio > SUSPECT_INERTIA_RATIO and precision == "float64":
-        warnings.warn(
-            f"the inertias about the joints of {robot.name} differ by a factor of {ratio:.1g} (a link without mass?): "
-            "dynamic indices tell of the lightest link",
-            ModelWarning,
-            stacklevel=4,
-        )
+        message = f"the inertias about the joints of {robot.name} differ by a factor of {ratio:.1g}"
+        remedy = "a link without mass?): dynamic indices tell of the lightest link"
+        warn([Notice("inertia_ratio", f"{message} ({remedy}")], ModelWarning)
     elif ratio > LARGEST_INERTIA_RATIO and precision == "float32":
         raise InputError(
             "precision",

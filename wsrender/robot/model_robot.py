@@ -11,6 +11,7 @@ from wsrender.errors import InputError, MissingInertiaError
 from wsrender.notices import Notice
 from wsrender.robots import described, load, load_dh, load_library, load_mjcf, load_path, load_uploaded, load_urdf
 from wsrender.robots.chain import Chain
+from wsrender.robots.plausibility import NO_LIMITS
 from wsrender.spec.robot import RobotSpec, Transform
 
 if TYPE_CHECKING:
@@ -141,6 +142,12 @@ class Robot:
         spec = self.spec and self.spec.model_copy(update={"placement": placement})
         return Robot(loaded, spec, self.name, self.base, self.tip)
 
+    def held(self, values: Mapping[str, float]) -> "Robot":
+        """The same robot with joints, by name, held at a value [rad or m]."""
+        chain = self.chain.held(values)
+        kept = tuple(notice for notice in self.notices if notice.code != NO_LIMITS or chain.endless)
+        return Robot(replace(self._loaded, chain=chain, notices=kept), self.spec, self.name, self.base, self.tip)
+
     def skeleton(self, q: Any) -> np.ndarray:
         """World positions [m] of base, joint origins and tip, (N, L + 2, 3), for drawing the arm."""
         chain = self.chain
@@ -200,20 +207,27 @@ def load_robot(
     name: str | None = None,
     placement: Any = None,
     tool: Any = None,
+    limits: Mapping[str, Any] | None = None,
+    limits_deg: Mapping[str, Any] | None = None,
+    length_unit_m: float | None = None,
 ) -> Robot:
     """Load a robot: a library name, the path or text of an MJCF (.xml) or URDF file, a DH table, MjSpec or MjModel.
 
     ``base`` and ``tip`` name a site, body or link (default: the world, and the site "tool" or the only end).
     ``placement`` is the base frame in the world and ``tool`` the tool point in the tip frame, each a
-    `Transform`, its fields as a dict, or a (4, 4) array. Raises InputError, ModelError for a malformed or
-    unsupported model, FrameNotFoundError listing the frames.
+    `Transform`, its fields as a dict, or a (4, 4) array. ``limits`` {joint: (lower, upper)} [rad or m] (or
+    ``limits_deg``) go before the model's; ``length_unit_m`` is the model's unit of length [m]: 0.001 converts
+    millimetres, 1 confirms metres. What is odd about a model is a ModelWarning, and among the robot's ``notices``.
+    Raises InputError, ModelError for a malformed or unsupported model, FrameNotFoundError listing the frames.
     """
     kind, value = described(source)
     options: dict[str, Any] = {"base": base, "tip": tip, "name": name}
     placement, tool = _as_transform(placement), _as_transform(tool)
     options |= {"placement": _matrix(placement), "tool": _matrix(tool)}
-    loaded = load(source, **options)
-    spec = RobotSpec(**{kind: value}, placement=_transform(placement), tool=_transform(tool))
+    given: dict[str, Any] = {"limits": limits or {}, "limits_deg": limits_deg or {}, "length_unit_m": length_unit_m}
+    stated = RobotSpec(**{kind: value}, **given)
+    loaded = load(source, **options, **_corrections(stated))
+    spec = stated.model_copy(update={"placement": _transform(placement), "tool": _transform(tool)})
     return Robot(loaded, spec, name, base, tip)
 
 
@@ -224,6 +238,7 @@ def robot_of_spec(spec: RobotSpec, base: str | None = None, tip: str | None = No
         "tip": tip,
         "placement": spec.placement.matrix() if spec.placement else None,
         "tool": spec.tool.matrix() if spec.tool else None,
+        **_corrections(spec),
     }
     loaders = {
         "library": load_library,
@@ -233,8 +248,16 @@ def robot_of_spec(spec: RobotSpec, base: str | None = None, tip: str | None = No
         "path": load_path,
         "model": load_uploaded,
     }
-    loaded = loaders[spec.source](getattr(spec, spec.source), **options)
+    try:
+        loaded = loaders[spec.source](getattr(spec, spec.source), **options)
+    except InputError as error:
+        raise (error.within("robot") if error.field.startswith("limits") else error) from None
     return Robot(loaded, spec, base=base, tip=tip)
+
+
+def _corrections(spec: RobotSpec) -> dict[str, Any]:
+    """What a document says of a model that the model itself does not, or not rightly."""
+    return {"limits": spec.limits, "limits_deg": spec.limits_deg, "length_unit_m": spec.length_unit_m}
 
 
 def _as_transform(value: Any) -> Any:

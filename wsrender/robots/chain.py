@@ -32,8 +32,8 @@ class Chain:
     base_frame: str
     tip_frame: str
     joint_names: tuple[str, ...]  # of the n coordinates
-    lower_limits: np.ndarray  # (n,) [rad or m]; -pi where periodic
-    upper_limits: np.ndarray  # (n,) [rad or m]; +pi where periodic
+    lower_limits: np.ndarray  # (n,) [rad or m]; -pi where periodic, -inf where endless
+    upper_limits: np.ndarray  # (n,) [rad or m]; +pi where periodic, inf where endless
     periodic: np.ndarray  # (n,) bool: a hinge without limits
     effort_limits: np.ndarray | None  # (n,) [N m or N], None where the model has none for some joint
     joint_is_revolute: np.ndarray  # (L,) bool
@@ -115,9 +115,15 @@ class Chain:
             periodic=self.periodic & ~held,
         )
 
+    @property
+    def endless(self) -> tuple[str, ...]:
+        """Names of the coordinates without usable limits: slides without any, hinges that whole turns do not suit."""
+        bounded = np.isfinite(self.lower_limits) & np.isfinite(self.upper_limits)
+        return tuple(name for name, ends in zip(self.joint_names, bounded, strict=True) if not ends)
+
     @cached_property
     def reach(self) -> float:
-        """Upper bound of the distance from the first joint's origin to the end effector [m]."""
+        """Upper bound of the distance from the first joint's origin to the end effector [m]; infinite where endless."""
         links = np.linalg.norm(self.T_joint[1:, :3, 3], axis=1).sum()
         tip = np.linalg.norm((self.T_tip @ self.T_tip_tool)[:3, 3])
         return float(links + self.largest_slide.sum() + tip)

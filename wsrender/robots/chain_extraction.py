@@ -1,5 +1,6 @@
 """From a compiled MuJoCo model to the Chain between a base and a tip."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -7,37 +8,47 @@ import mujoco
 import numpy as np
 
 from wsrender.errors import ModelError
+from wsrender.notices import Notice
 from wsrender.robots import branches, frames
 from wsrender.robots.chain import Chain
 from wsrender.robots.compiled_model import CompiledModel
 from wsrender.robots.couplings import Couplings, refuse_loops
 from wsrender.robots.frames import Frame, transform
+from wsrender.robots.gripper_tip import gripper_notices
 from wsrender.robots.inertials import MASSLESS
 from wsrender.robots.limits import Drive, coordinate_limits, effort_limits, joint_name
 from wsrender.robots.loaded_robot import LoadedRobot
 
 MAX_JOINTS = 16
+MOST_NOTED = 4  # faults that one notice tells
 LARGEST_NUMBER = 1e9  # of metres, radians, kilograms: beyond it, products overflow single precision
 
 
 def extract(
-    compiled: CompiledModel, base: str | None, tip: str | None, name: str, source_hash: str, field: str
+    compiled: CompiledModel,
+    base: str | None,
+    tip: str | None,
+    name: str,
+    source_hash: str,
+    limits: Mapping[str, tuple[float, float]],
+    field: str,
 ) -> LoadedRobot:
     """The robot between the frames ``base`` and ``tip`` (see ``frames.choose``) of a compiled model.
 
     The chain is read from MuJoCo's own kinematics with its joints at ``qpos0``; everything else is held at
     ``qpos0`` too, followers where their leaders put them, and its mass belongs to the joint that carries
     it. Joints held by a coupling become part of the fixed links; a leader on another branch is a coordinate.
-    Raises ModelError.
+    ``limits`` of joints, by name [rad or m], go before those of the model. Raises ModelError.
     """
     model = compiled.model
     base_frame, tip_frame = frames.choose(model, base, tip)
     bodies = _bodies_between(model, base_frame, tip_frame)
-    _refuse_faults(compiled, bodies, base_frame, tip_frame, field)
+    _refuse_faults(compiled, bodies, limits, base_frame, tip_frame, field)
     couplings = Couplings(model, field)
     leaders, drives = _drives(model, bodies, couplings, field)
     aside = branches.leaders_aside(model, leaders, drives)
-    _refuse_leaders(compiled, aside, field)
+    _refuse_leaders(compiled, aside, limits, field)
+    met = [*bodies, *(int(model.jnt_bodyid[drive.joint]) for drive in aside)]
     moving = [*drives, *branches.moving_bodies(model, aside, base_frame)]
     carrier = _carriers(model, [drive.joint for drive in moving])
     refuse_loops(model, carrier, field)
@@ -46,7 +57,7 @@ def extract(
             raise ModelError(field, fault)
     reference = couplings.reference_qpos()
     geometry = _Geometry.at_reference(model, moving, reference, base_frame, tip_frame)
-    lower, upper, periodic, notices = coordinate_limits(model, [*drives, *aside], leaders, field)
+    lower, upper, periodic, notices = coordinate_limits(model, [*drives, *aside], leaders, limits, field)
     names = tuple(joint_name(model, leader) for leader in leaders)
     chain = Chain(
         name=name, base_frame=base_frame.name, tip_frame=tip_frame.name, joint_names=names,
@@ -62,7 +73,11 @@ def extract(
     _check(chain.dynamic, field)
     qpos, dofs = (addresses[[drive.joint for drive in drives]] for addresses in (model.jnt_qposadr, model.jnt_dofadr))
     return LoadedRobot(
-        model, chain, source_hash, qpos, dofs, reference, notices,
+        model, chain, source_hash, qpos, dofs, reference,
+        notices=(
+            *compiled.notices, *_limit_notices(compiled, limits), *_notes_off_chain(compiled, met),
+            *notices, *(gripper_notices(model, tip_frame, drives) if tip is None else ()),
+        ),
         leaders=tuple((int(model.jnt_qposadr[drive.joint]), drive.source) for drive in aside),
         branches=tuple((int(model.jnt_dofadr[drive.joint]), drive.source) for drive in moving[len(drives) :]),
     )  # fmt: skip
@@ -74,10 +89,17 @@ def _bodies_between(model: mujoco.MjModel, base: Frame, tip: Frame) -> list[int]
     return path[path.index(base.body) + 1 :]
 
 
-def _refuse_faults(compiled: CompiledModel, bodies: list[int], base: Frame, tip: Frame, field: str) -> None:
+def _refuse_faults(
+    compiled: CompiledModel,
+    bodies: list[int],
+    limits: Mapping[str, tuple[float, float]],
+    base: Frame,
+    tip: Frame,
+    field: str,
+) -> None:
     model = compiled.model
     for body in bodies:
-        if fault := compiled.path_faults.get(body):
+        if fault := _fault(compiled, body, limits):
             raise ModelError(field, fault)
         for joint in frames.joints_of(model, body):
             kind = {mujoco.mjtJoint.mjJNT_FREE: "free", mujoco.mjtJoint.mjJNT_BALL: "ball"}
@@ -85,7 +107,8 @@ def _refuse_faults(compiled: CompiledModel, bodies: list[int], base: Frame, tip:
                 raise ModelError(
                     field,
                     f"{joint_name(model, joint)!r} is a {word} joint on the chain from {base.name!r} to "
-                    f"{tip.name!r}; only hinges and slides are supported: name a base below it",
+                    f"{tip.name!r}; only hinges and slides are supported: name a base below it"
+                    + (f", such as {name!r}" if (name := model.body(body).name) else ""),
                 )
     joints = [joint for body in bodies for joint in frames.joints_of(model, body)]
     if not joints:
@@ -120,11 +143,36 @@ def _drives(
     return leaders, drives
 
 
-def _refuse_leaders(compiled: CompiledModel, aside: list[Drive], field: str) -> None:
+def _refuse_leaders(
+    compiled: CompiledModel, aside: list[Drive], limits: Mapping[str, tuple[float, float]], field: str
+) -> None:
     """Raises ModelError for a leader on another branch that could not be on the chain."""
     for drive in aside:
-        if fault := compiled.path_faults.get(int(compiled.model.jnt_bodyid[drive.joint])):
+        if fault := _fault(compiled, int(compiled.model.jnt_bodyid[drive.joint]), limits):
             raise ModelError(field, f"{fault} (it leads a joint of the chain)")
+
+
+def _fault(compiled: CompiledModel, body: int, limits: Mapping[str, tuple[float, float]]) -> str:
+    """What forbids a chain through the joints of a body; empty for nothing, or nothing that ``limits`` do not mend."""
+    faults = [fault for fault in compiled.joint_faults if fault.body == body]
+    unmended = [fault.message for fault in faults if not (fault.by_limits and fault.joint in limits)]
+    return compiled.path_faults.get(body, "") or (unmended[0] if unmended else "")
+
+
+def _notes_off_chain(compiled: CompiledModel, bodies: list[int]) -> list[Notice]:
+    """What is wrong with joints off the chain: they stand still, so it does not matter to it."""
+    faults = [fault.message for fault in compiled.joint_faults if fault.body not in bodies]
+    if not faults:
+        return []
+    more = f", and {len(faults) - MOST_NOTED} more" if len(faults) > MOST_NOTED else ""
+    return [Notice("joints_off_chain", f"off the chain, where it stands still: {'; '.join(faults[:MOST_NOTED])}{more}")]
+
+
+def _limit_notices(compiled: CompiledModel, limits: Mapping[str, tuple[float, float]]) -> list[Notice]:
+    if not (names := [name for name in compiled.unset_limits if name not in limits]):
+        return []
+    message = f"the limits of {', '.join(names)} are both 0, which leaves no motion; taken as no limits"
+    return [Notice("limits_unset", message, "limits give them a range", "robot.limits")]
 
 
 def _carriers(model: mujoco.MjModel, joints: list[int]) -> np.ndarray:

@@ -8,7 +8,8 @@ from dataclasses import dataclass, field
 
 import mujoco
 
-from wsrender.errors import ModelError
+from wsrender.errors import ModelError, WsrenderError
+from wsrender.notices import Notice
 
 MUJOCO_ERRORS = (ValueError, RuntimeError, mujoco.FatalError)
 
@@ -35,15 +36,45 @@ def refusal(error: Exception, model_field: str) -> ModelError:
     return ModelError(model_field, f"MuJoCo refuses the model: {message}")
 
 
+@contextmanager
+def building(model_field: str) -> Iterator[None]:
+    """Whatever goes wrong while a model is built becomes a ModelError: the model is at fault, not the program."""
+    try:
+        yield
+    except (WsrenderError, MemoryError):
+        raise
+    except MUJOCO_ERRORS as error:
+        raise refusal(error, model_field) from error
+    except Exception as error:
+        raise ModelError(model_field, f"it cannot be built: {type(error).__name__}: {error}") from error
+
+
+@dataclass(frozen=True)
+class JointFault:
+    """What is wrong with a joint by which ``body`` moves: an error on a chain through it, a note off it.
+
+    Where ``by_limits``, limits that the user gives mend it.
+    """
+
+    body: int
+    joint: str
+    message: str
+    by_limits: bool = False
+
+
 @dataclass(frozen=True)
 class CompiledModel:
     """A compiled model and what its source said that MuJoCo's model cannot hold.
 
     ``path_faults`` and ``inertia_faults`` map a body's number to what forbids a chain through its joints, or
-    over its inertia; they are errors only for a chain that meets them.
+    over its inertia; they are errors only for a chain that meets them. ``unset_limits`` names the joints whose limits
+    were 0 … 0, taken as none.
     """
 
     model: mujoco.MjModel
     name: str
     path_faults: dict[int, str] = field(default_factory=dict)
     inertia_faults: dict[int, str] = field(default_factory=dict)
+    joint_faults: tuple[JointFault, ...] = ()
+    unset_limits: tuple[str, ...] = ()
+    notices: tuple[Notice, ...] = ()

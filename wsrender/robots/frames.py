@@ -87,7 +87,7 @@ def _find(model: mujoco.MjModel, name: str, field: str, offered) -> Frame:
     body = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, name)
     if body >= 0:
         return Frame(name, body)
-    choices = _names(model, offered)
+    choices = tip_names(model, offered) if field == "tip" else _names(model, offered)
     close = get_close_matches(name, choices, n=1)
     hint = f"; did you mean {close[0]!r}" if close else ""
     raise FrameNotFoundError(field, f"the model has no site, body or link {name!r}{hint}", choices)
@@ -100,12 +100,23 @@ def _names(model: mujoco.MjModel, bodies) -> list[str]:
     return [name for name in [*sites, *(model.body(body).name for body in bodies)] if name]
 
 
+def tip_names(model: mujoco.MjModel, bodies) -> list[str]:
+    """What can be a tip among the bodies and their sites: the ends of the model first."""
+    ends = _ends(model, bodies)
+    return [*dict.fromkeys([*_names(model, ends), *_names(model, bodies)])]
+
+
+def _ends(model: mujoco.MjModel, bodies) -> list[int]:
+    """Those of the bodies that carry no other."""
+    parents = set(model.body_parentid[1:].tolist())
+    return [body for body in bodies if body not in parents]
+
+
 def _default_tip(model: mujoco.MjModel, carried: list[int]) -> Frame:
     site = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_SITE, _DEFAULT_SITE)
     if site >= 0:
         return Frame(_DEFAULT_SITE, int(model.site_bodyid[site]), site)
-    parents = set(model.body_parentid[1:].tolist())
-    leaves = [body for body in carried if body not in parents]
+    leaves = _ends(model, carried)
     leaves = [body for body in leaves if not _floats(model, body)] or leaves
     named = [body for body in leaves if model.body(body).name == _DEFAULT_LINK]
     ends = leaves if len(leaves) == 1 else named
@@ -114,7 +125,7 @@ def _default_tip(model: mujoco.MjModel, carried: list[int]) -> Frame:
     if not leaves:
         raise ModelError("model", "there is nothing to move: the model has no body")
     places = f"the model ends in {len(leaves)} places; its tip must be named"
-    raise FrameNotFoundError("tip", places, _names(model, carried))
+    raise FrameNotFoundError("tip", places, tip_names(model, carried))
 
 
 def _floats(model: mujoco.MjModel, body: int) -> bool:

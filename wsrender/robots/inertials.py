@@ -5,14 +5,12 @@ as a negligible one, and the compiled model then receives the source's numbers: 
 falsify the joint-space inertia.
 """
 
-import warnings
-
 import mujoco
 import numpy as np
 
 from wsrender.errors import ModelError
+from wsrender.notices import Notice
 from wsrender.robots.compiled_model import MUJOCO_ERRORS, quiet, refusal
-from wsrender.robots.model_warning import ModelWarning
 
 NEGLIGIBLE = 1e-14  # [kg, kg m²] given to massless links; MuJoCo's own floor is mjMINVAL = 1e-15
 MASSLESS = 1e-12  # [kg, kg m²] up to here a link counts as having no inertia
@@ -20,13 +18,15 @@ _SEMIDEFINITE = 1e-9  # relative; negative moments below it are decimal rounding
 _ROUNDING = 1e-12  # relative; a violated inequality below it is decimal rounding
 
 
-def compile_with_inertials(spec: mujoco.MjSpec, field: str) -> tuple[mujoco.MjModel, dict[int, str]]:
+def compile_with_inertials(
+    spec: mujoco.MjSpec, field: str
+) -> tuple[mujoco.MjModel, dict[int, str], tuple[Notice, ...]]:
     """The compiled model of ``spec`` with the masses [kg] and inertias [kg m²] that the source states.
 
     Also returns, by body, the inertias that are not positive definite though no number of theirs is
-    negative: they matter only to a chain that carries them. A full inertia is about the axes of ``iquat``.
-    Raises ModelError for negative masses and moments, and where MuJoCo refuses the model; gives one
-    ModelWarning where inertias break the triangle inequality.
+    negative: they matter only to a chain that carries them; and a notice where inertias break the triangle
+    inequality. A full inertia is about the axes of ``iquat``. Raises ModelError for negative masses and moments, and
+    where MuJoCo refuses the model.
     """
     compiler = spec.compiler
     compiler.balanceinertia = False
@@ -45,8 +45,8 @@ def compile_with_inertials(spec: mujoco.MjSpec, field: str) -> tuple[mujoco.MjMo
             model.body_inertia[body.id] = m
         if restored:
             mujoco.mj_setConst(model, mujoco.MjData(model))
-    _warn_of_broken([body.name for body, m in restored if _excess(m) < -_ROUNDING * m.max()])
-    return model, {body.id: fault for body, fault in faults}
+    broken = _broken([body.name for body, m in restored if _excess(m) < -_ROUNDING * m.max()])
+    return model, {body.id: fault for body, fault in faults}, broken
 
 
 def _bound(bound: float) -> float:
@@ -90,14 +90,11 @@ def _fault(body: mujoco.MjsBody, moments: np.ndarray) -> str:
     return f"link {body.name!r}: its inertia is not positive (principal moment {moments.min():g} kg m²)"
 
 
-def _warn_of_broken(names: list[str]) -> None:
-    if names:
-        warnings.warn(
-            f"the inertia of {', '.join(names)} breaks the triangle inequality, so that no real body has it; "
-            "used as stated",
-            ModelWarning,
-            stacklevel=2,
-        )
+def _broken(names: list[str]) -> tuple[Notice, ...]:
+    if not names:
+        return ()
+    message = f"the inertia of {', '.join(names)} breaks the triangle inequality, so that no real body has it"
+    return (Notice("inertia_impossible", message, "used as stated"),)
 
 
 def _excess(moments: np.ndarray) -> float:

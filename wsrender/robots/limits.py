@@ -1,5 +1,6 @@
 """Limits of the coordinates of a chain: what every joint that a coordinate drives allows."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import mujoco
@@ -8,7 +9,7 @@ import numpy as np
 from wsrender.errors import ModelError
 from wsrender.notices import Notice
 
-LARGEST_ANGLE = 1e4  # rad
+LARGEST_ANGLE, LARGEST_SLIDE = 1e4, 1e5  # rad, m: beyond them an exporter has written that there is no limit
 ROUNDING = 1e-6  # share of a leader's range: rounding of a model file's numbers
 
 
@@ -33,29 +34,31 @@ def joint_name(model: mujoco.MjModel, joint: int) -> str:
 
 
 def coordinate_limits(
-    model: mujoco.MjModel, drives: list[Drive], leaders: list[int], field: str
+    model: mujoco.MjModel, drives: list[Drive], leaders: list[int], given: Mapping[str, tuple[float, float]], field: str
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, tuple[Notice, ...]]:
     """Lower and upper limits [rad or m] and periodicity of the coordinates, (n,) each, and what narrows them.
 
     ``leaders`` are the joints whose value is the coordinate; ``drives`` has them and all that follow. A coordinate
-    is periodic, −π … π, if no joint it drives has limits (or limits beyond 10⁴ rad, as some exporters write for
-    none) and all of them turn by whole turns; otherwise its interval is what all its joints allow. Raises
-    ModelError where that is empty or has no end.
+    is periodic, −π … π, if no joint it drives has limits (or limits beyond 10⁴ rad or 10⁵ m, as some exporters write
+    for none) and all of them turn by whole turns; otherwise its interval is what all its joints allow, infinite where
+    none has limits. Those ``given`` by name go before. Raises ModelError where an interval is empty.
     """
     lower, upper = np.empty(len(leaders)), np.empty(len(leaders))
     periodic = np.zeros(len(leaders), bool)
     notices = []
     for k, leader in enumerate(leaders):
         driven = [drive for drive in drives if drive.source == k]
-        interval = _intersection(model, driven)
         name = joint_name(model, leader)
+        if name in given:
+            lower[k], upper[k] = given[name]
+            continue
+        interval = _intersection(model, driven)
         if interval is None:
-            if not all(_whole_turns(model, drive) for drive in driven):
-                raise ModelError(field, f"joint {name!r} has no limits: give its range")
-            periodic[k], interval = True, (-np.pi, np.pi)
+            periodic[k] = all(_whole_turns(model, drive) for drive in driven)
+            interval = (-np.pi, np.pi) if periodic[k] else (-np.inf, np.inf)
         lower[k], upper[k] = interval
         limiting = _Limiting.of(model, leader, driven)
-        if not (np.isfinite(interval).all() and lower[k] < upper[k]):
+        if not lower[k] < upper[k]:
             raise ModelError(
                 field,
                 f"joint {name!r}: its limits and those of its followers leave {lower[k]:g} … {upper[k]:g}; "
@@ -122,9 +125,9 @@ def _intersection(model: mujoco.MjModel, driven: list[Drive]) -> tuple[float, fl
 
 
 def _no_limits(model: mujoco.MjModel, joint: int) -> bool:
-    """Whether a hinge's range is a way of writing none: its angles would have lost their digits."""
+    """Whether a range is a way of writing none: its values would have lost their digits."""
     hinge = model.jnt_type[joint] == mujoco.mjtJoint.mjJNT_HINGE
-    return bool(hinge and np.abs(model.jnt_range[joint]).max() > LARGEST_ANGLE)
+    return bool(np.abs(model.jnt_range[joint]).max() > (LARGEST_ANGLE if hinge else LARGEST_SLIDE))
 
 
 def _whole_turns(model: mujoco.MjModel, drive: Drive) -> bool:

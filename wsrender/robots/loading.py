@@ -2,30 +2,34 @@
 
 import hashlib
 import sys
-import warnings
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from xml.etree.ElementTree import Element
 
 import numpy as np
 
+from wsrender import notices
 from wsrender.errors import InputError, MissingExtraError, ModelError
 from wsrender.robots import includes, xml_source
 from wsrender.robots.model_warning import ModelWarning
+from wsrender.robots.plausibility import doubts
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     import mujoco
 
     from wsrender.robots.chain import Chain
+    from wsrender.robots.compiled_model import CompiledModel
     from wsrender.robots.loaded_robot import LoadedRobot
     from wsrender.robots.mjcf_model import ReadMesh
     from wsrender.spec.robot import DHTable
 
+    Limits = Mapping[str, tuple[float, float]]
     Source = str | Path | DHTable | mujoco.MjSpec | mujoco.MjModel
-
-PLAUSIBLE_REACH = (0.02, 20.0)  # [m]
 
 _FIELD = "model"
 
@@ -38,6 +42,9 @@ def load(
     name: str | None = None,
     placement: np.ndarray | None = None,
     tool: np.ndarray | None = None,
+    limits: "Limits | None" = None,
+    limits_deg: "Limits | None" = None,
+    length_unit_m: float | None = None,
 ) -> "LoadedRobot":
     """The robot of a library name, of a path to or the text of an MJCF or URDF file, of a DH table, MjSpec or MjModel.
 
@@ -45,9 +52,12 @@ def load(
     ``tip`` name a site, body or link. The base is the world by default. The tip is by default the site ``tool``, else
     the only end of the model that a joint moves, else the link ``tool0``; a site goes before a body of its name.
     ``placement`` is the base frame in the world and ``tool`` the tool frame in the tip frame, (4, 4) each.
-    Raises ModelError, FrameNotFoundError, InputError; gives a ModelWarning if the reach is implausible.
+    ``limits`` (``limits_deg``: hinges in degrees) of joints of the chain by name, (lower, upper) [rad or m], go before
+    the model's. ``length_unit_m`` is the model's unit of length [m]; given, no length is doubted.
+    Raises ModelError, FrameNotFoundError, InputError; gives a ModelWarning for each of the robot's notices.
     """
     options = {"base": base, "tip": tip, "name": name, "placement": placement, "tool": tool}
+    options |= {"limits": limits, "limits_deg": limits_deg, "length_unit_m": length_unit_m}
     kind, value = described(source)
     loaders = {"library": load_library, "path": load_path, "dh": load_dh, "mjcf": load_mjcf, "urdf": load_urdf}
     return loaders[kind](value, **options)
@@ -145,39 +155,56 @@ def _root(text: str | bytes, tag: str) -> Element:
 
 
 def _from_mjcf(root: Element, text: str | bytes, read_mesh: "ReadMesh", **options) -> "LoadedRobot":
-    return _extracted(_mjcf_model().compile_mjcf(root, read_mesh, _FIELD), text, **options)
+    compile_mjcf = partial(_mjcf_model().compile_mjcf, root, read_mesh, _FIELD)
+    return _loaded(compile_mjcf, text, **options)
 
 
 def _from_urdf(root: Element, text: str | bytes, **options) -> "LoadedRobot":
     _mjcf_model()
     from wsrender.robots.urdf_model import compile_urdf
 
-    return _extracted(compile_urdf(root, _FIELD), text, **options)
+    return _loaded(partial(compile_urdf, root, _FIELD), text, **options)
 
 
-def _extracted(
-    compiled, text: str | bytes, *, base=None, tip=None, name=None, placement=None, tool=None
+def _loaded(
+    compile_model: "Callable[[float], CompiledModel]",
+    text: str | bytes,
+    *,
+    base=None,
+    tip=None,
+    name=None,
+    placement=None,
+    tool=None,
+    limits=None,
+    limits_deg=None,
+    length_unit_m=None,
 ) -> "LoadedRobot":
+    """The robot of a model that ``compile_model`` makes of its unit of length; warns of its notices."""
     from wsrender.robots.chain_extraction import extract
+    from wsrender.robots.compiled_model import building
 
     source_hash = hashlib.sha256(text.encode() if isinstance(text, str) else text).hexdigest()
-    robot = extract(compiled, base, tip, name or compiled.name or "robot", source_hash, _FIELD)
-    placed = robot.chain.placed(_rigid("placement", placement), _rigid("tool", tool))
-    _warn_of_reach(placed)
-    for notice in robot.notices:
-        warnings.warn(str(notice), ModelWarning, stacklevel=2)
-    return replace(robot, chain=placed)
+    given = dict(limits or {}) | {joint: tuple(np.radians(ends)) for joint, ends in (limits_deg or {}).items()}
+    with building(_FIELD):
+        compiled = compile_model(1.0 if length_unit_m is None else length_unit_m)
+        robot = extract(compiled, base, tip, name or compiled.name or "robot", source_hash, given, _FIELD)
+    _check_limits(robot.chain, limits or {}, limits_deg or {})
+    chain = robot.chain.placed(_rigid("placement", placement), _rigid("tool", tool))
+    found = (*robot.notices, *doubts(chain, given, length_unit_m is not None))
+    notices.warn(found, ModelWarning)
+    return replace(robot, chain=chain, notices=found)
 
 
-def _warn_of_reach(chain: "Chain") -> None:
-    """Warns of lengths that were probably millimetres; a tip on the only axis has no reach at all."""
-    low, high = PLAUSIBLE_REACH
-    if chain.reach > 1e-9 and not low <= chain.reach <= high:
-        warnings.warn(
-            f"the reach of {chain.name!r} is {chain.reach:.3g} m; lengths must be in metres, not millimetres",
-            ModelWarning,
-            stacklevel=2,
-        )
+def _check_limits(chain: "Chain", limits: "Limits", limits_deg: "Limits") -> None:
+    """Raises InputError for limits of what is no coordinate of the chain, and for a slide's in degrees."""
+    revolute = dict(zip(chain.joint_names, chain.revolute, strict=True))
+    for field, given in (("limits", limits), ("limits_deg", limits_deg)):
+        for joint in given:
+            if joint not in revolute:
+                names = ", ".join(chain.joint_names)
+                raise InputError(f"{field}.{joint}", f"is no joint of the chain that leads itself; allowed: {names}")
+            if field == "limits_deg" and not revolute[joint]:
+                raise InputError(f"{field}.{joint}", 'is a slide: give it in metres, in "limits"')
 
 
 def _rigid(field: str, T: np.ndarray | None) -> np.ndarray | None:

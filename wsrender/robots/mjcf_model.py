@@ -1,7 +1,6 @@
 """MJCF → MuJoCo model; mesh files are read only where an inertia is computed from them."""
 
 import math
-import warnings
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from xml.etree.ElementTree import Element
@@ -9,10 +8,11 @@ from xml.etree.ElementTree import Element
 import mujoco
 
 from wsrender.errors import ModelError
+from wsrender.notices import Notice
 from wsrender.robots import mjcf, mjcf_text
-from wsrender.robots.compiled_model import MUJOCO_ERRORS, CompiledModel, quiet, refusal
+from wsrender.robots.compiled_model import MUJOCO_ERRORS, CompiledModel, JointFault, quiet, refusal
 from wsrender.robots.inertials import compile_with_inertials
-from wsrender.robots.model_warning import ModelWarning
+from wsrender.robots.length_unit import to_metres
 
 MAX_MESH_BYTES = 256 * 2**20
 
@@ -44,34 +44,41 @@ def text_of(source: mujoco.MjSpec | mujoco.MjModel, field: str) -> str:
     """
     if isinstance(source, mujoco.MjModel):
         return mjcf_text.text_of(source, field)
-    model, faults = compile_with_inertials(source.copy(), field)
+    model, faults, _ = compile_with_inertials(source.copy(), field)
     for fault in faults.values():
         raise ModelError(field, fault)
     return mjcf_text.text_of(model, field)
 
 
-def compile_mjcf(root: Element, read_mesh: ReadMesh, field: str) -> CompiledModel:
-    """The compiled model of a ``<mujoco>`` element (changed in the process).
+def compile_mjcf(root: Element, read_mesh: ReadMesh, field: str, length_unit_m: float = 1.0) -> CompiledModel:
+    """The compiled model of a ``<mujoco>`` element (changed in the process), its lengths in ``length_unit_m``.
 
     Geometry that needs a mesh stays only where it gives a body its inertia; meshes that are not there are
-    dropped with one ModelWarning, and noted as inertia faults where that leaves a body without inertia.
-    Raises ModelError.
+    dropped with one notice, and noted as inertia faults where that leaves a body without inertia. Ranges that are
+    upside down or empty, which MuJoCo would take for none, are joint faults. Raises ModelError.
     """
     mjcf.sanitized(root, field)
     folder, strip = mjcf.directories(root)
     spec = _parsed(mjcf.text(root), field)
-    _check_ranges(spec, field)
+    joint_faults = _range_faults(spec)
     files = {mesh.name: _file(mesh.file, folder, strip) for mesh in spec.meshes}
     faults, missing = _drop_geometry(spec, files, read_mesh)
-    if missing:
-        warnings.warn(
-            f"geometry of {len(missing)} meshes is dropped ({missing[0]}, …): the files are not there",
-            ModelWarning,
-            stacklevel=2,
-        )
-    model, inertia_faults = compile_with_inertials(spec, field)
-    inertia_faults |= {body.id: fault for body, fault in faults}
-    return CompiledModel(model, root.get("model", ""), inertia_faults=inertia_faults)
+    to_metres(spec, length_unit_m)
+    model, inertia_faults, notices = compile_with_inertials(spec, field)
+    return CompiledModel(
+        model,
+        root.get("model", ""),
+        inertia_faults=inertia_faults | {body.id: fault for body, fault in faults},
+        joint_faults=tuple(JointFault(joint.parent.id, joint.name, fault, True) for joint, fault in joint_faults),
+        notices=_dropped(missing) + notices,
+    )
+
+
+def _dropped(missing: list[str]) -> tuple[Notice, ...]:
+    if not missing:
+        return ()
+    message = f"geometry of {len(missing)} meshes is dropped ({missing[0]}, …): the files are not there"
+    return (Notice("meshes_missing", message),)
 
 
 def _parsed(text: str, field: str) -> mujoco.MjSpec:
@@ -82,13 +89,16 @@ def _parsed(text: str, field: str) -> mujoco.MjSpec:
         raise refusal(error, field) from error
 
 
-def _check_ranges(spec: mujoco.MjSpec, field: str) -> None:
-    """Refuses ranges that are upside down or empty, which MuJoCo would take for no range."""
+def _range_faults(spec: mujoco.MjSpec) -> list[tuple[mujoco.MjsJoint, str]]:
+    """Joints whose ranges are upside down or empty; they are compiled without limits."""
+    faults = []
     for joint in spec.joints:
         low, high = joint.range
         if joint.limited != mujoco.mjtLimited.mjLIMITED_FALSE and low >= high and (low, high) != (0.0, 0.0):
             name = joint.name or joint.parent.name
-            raise ModelError(field, f"joint {name!r}: its range is {low:g} … {high:g}; the first must be below")
+            faults.append((joint, f"joint {name!r}: its range is {low:g} … {high:g}; the first must be below"))
+            joint.limited = mujoco.mjtLimited.mjLIMITED_FALSE
+    return faults
 
 
 def _file(file: str, folder: str, strip: bool) -> str:

@@ -1,6 +1,7 @@
 """URDF: its links and joints, checked, as they stand in the file."""
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
 from xml.etree.ElementTree import Element
 
 import numpy as np
@@ -10,6 +11,7 @@ from wsrender.robots.xml_source import MAX_DEPTH, number, numbers
 
 JOINT_TYPES = ("revolute", "continuous", "prismatic", "fixed", "floating", "planar")
 _MOVABLE = ("revolute", "continuous", "prismatic")
+_INFINITE = {sign + word for sign in ("", "+", "-") for word in ("inf", "infinity")}
 
 
 @dataclass(frozen=True)
@@ -72,7 +74,10 @@ class Mimic:
 
 @dataclass(frozen=True)
 class Joint:
-    """A ``<joint>``; ``limits`` [rad or m] are None without ``<limit>``, ``effort`` 0 where not stated."""
+    """A ``<joint>``; ``limits`` [rad or m] are None without ``<limit>``, ``effort`` 0 where not stated.
+
+    ``fault`` says why nothing can be known of how it moves; empty where all of it can be read.
+    """
 
     name: str
     kind: str
@@ -80,14 +85,15 @@ class Joint:
     child: str
     pose: Pose
     axis: np.ndarray
-    limits: tuple[float, float] | None
-    effort: float
-    mimic: Mimic | None
+    limits: tuple[float, float] | None = None
+    effort: float = 0.0
+    mimic: Mimic | None = None
+    fault: str = ""
 
     @property
     def movable(self) -> bool:
         """Whether the joint has one degree of freedom."""
-        return self.kind in _MOVABLE
+        return self.kind in _MOVABLE and not self.fault
 
 
 @dataclass(frozen=True)
@@ -182,21 +188,28 @@ def _inertial(element: Element, field: str, where: str) -> Inertial:
 
 
 def _joint(element: Element, field: str) -> Joint:
+    """The joint; what is wrong with its motion alone is its fault, an error only on a chain through it."""
     name, kind = _name(element, field), element.get("type", "")
     where = f"joint {name!r}"
-    if kind not in JOINT_TYPES:
-        raise ModelError(field, f"{where} has type {kind!r}; allowed: {', '.join(JOINT_TYPES)}")
     ends = {}
     for end in ("parent", "child"):
         tag = element.find(end)
         ends[end] = "" if tag is None else tag.get("link", "").strip()
         if not ends[end]:
             raise ModelError(field, f"{where} has no <{end} link=…>")
-    limits, effort = _limits(element, kind, field, where)
-    return Joint(
-        name, kind, ends["parent"], ends["child"], _pose(element, field, where),
-        _axis(element, kind, field, where), limits, effort, _mimic(element, field, where),
-    )  # fmt: skip
+    still = Joint(name, kind, ends["parent"], ends["child"], _pose(element, field, where), np.array([1.0, 0.0, 0.0]))
+    try:
+        return _moving(still, element, field, where)
+    except ModelError as error:
+        return replace(still, fault=error.message)
+
+
+def _moving(joint: Joint, element: Element, field: str, where: str) -> Joint:
+    if joint.kind not in JOINT_TYPES:
+        raise ModelError(field, f"{where} has type {joint.kind!r}; allowed: {', '.join(JOINT_TYPES)}")
+    limits, effort = _limits(element, joint.kind, field, where)
+    axis = _axis(element, joint.kind, field, where)
+    return replace(joint, axis=axis, limits=limits, effort=effort, mimic=_mimic(element, field, where))
 
 
 def _axis(element: Element, kind: str, field: str, where: str) -> np.ndarray:
@@ -217,15 +230,19 @@ def _limits(element: Element, kind: str, field: str, where: str) -> tuple[tuple[
     effort = _effort(tag.get("effort", "0"), field, where)
     if kind not in ("revolute", "prismatic"):
         return None, effort
-    lower, upper = (number(tag.get(end, "0"), field, f"{where}: {end} limit") for end in ("lower", "upper"))
-    if lower > upper:
-        raise ModelError(field, f"{where}: its lower limit {lower:g} is above its upper limit {upper:g}")
+    lower, upper = (_limit(tag.get(end, "0"), field, f"{where}: {end} limit") for end in ("lower", "upper"))
     return (lower, upper), effort
+
+
+def _limit(text: str, field: str, where: str) -> float:
+    """A limit, infinite where it is written so."""
+    infinite = text.strip().lower() in _INFINITE
+    return math.copysign(math.inf, -1 if "-" in text else 1) if infinite else number(text, field, where)
 
 
 def _effort(text: str, field: str, where: str) -> float:
     """Effort limit; 0 (none) where it is infinite."""
-    if text.strip().lower() in ("inf", "+inf", "infinity"):
+    if text.strip().lower() in _INFINITE and "-" not in text:
         return 0.0
     effort = number(text, field, f"{where}: effort limit")
     if effort < 0.0:

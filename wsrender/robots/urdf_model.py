@@ -1,16 +1,18 @@
 """URDF → MuJoCo model, link by link; MuJoCo's own URDF reader fuses, guesses and skips too much."""
 
-import warnings
+import math
 from xml.etree.ElementTree import Element
 
 import mujoco
 import numpy as np
 
-from wsrender.robots.compiled_model import CompiledModel
+from wsrender.notices import Notice
+from wsrender.robots.compiled_model import CompiledModel, JointFault
 from wsrender.robots.inertials import compile_with_inertials
-from wsrender.robots.model_warning import ModelWarning
+from wsrender.robots.length_unit import to_metres
 from wsrender.robots.urdf import Joint, Link, Mimic, Shape, Urdf, read_urdf
 
+_WORLD = "world"  # what MuJoCo calls the ground
 _SHAPES = {
     "box": mujoco.mjtGeom.mjGEOM_BOX,
     "cylinder": mujoco.mjtGeom.mjGEOM_CYLINDER,
@@ -18,14 +20,16 @@ _SHAPES = {
 }
 
 
-def compile_urdf(robot: Element, field: str) -> CompiledModel:
-    """The compiled model of a ``<robot>`` element.
+def compile_urdf(robot: Element, field: str, length_unit_m: float = 1.0) -> CompiledModel:
+    """The compiled model of a ``<robot>`` element, its lengths in ``length_unit_m``.
 
-    Every link, fixed or not, becomes a body of its name; the root link stands still in the world. Inertia
+    Every link, fixed or not, becomes a body of its name; the root link stands still in the world, and its inertia is
+    left out. A link "world" that is not the root is a body of another name with a site "world". Inertia
     comes from ``<inertial>`` alone. Primitive shapes are kept as massless geometry, meshes are dropped with
-    one ModelWarning. Floating and planar joints are held at zero, and noted as faults of the path through
-    them, as are revolute joints whose limits are missing or equal. Limits that are both 0, as exporters
-    write them where none were set, count as none, with one ModelWarning. Raises ModelError.
+    one notice. Floating and planar joints are held at zero, and noted as faults of the path through
+    them. Joints that cannot be read, which are held too, and revolute ones whose limits are missing, equal or upside
+    down are joint faults. Limits that are both 0, as exporters write them where none were set, or infinite count as
+    none. Raises ModelError.
     """
     urdf = read_urdf(robot, field)
     spec = mujoco.MjSpec()
@@ -34,31 +38,56 @@ def compile_urdf(robot: Element, field: str) -> CompiledModel:
     spec.compiler.inertiafromgeom = mujoco.mjtInertiaFromGeom.mjINERTIAFROMGEOM_FALSE
     _add_links(spec, urdf)
     _add_mimics(spec, urdf)
-    _warn_of_meshes(urdf)
-    _warn_of_unset_limits(urdf)
-    model, inertia_faults = compile_with_inertials(spec, field)
-    path_faults = {
-        model.body(joint.child).id: fault for joint in urdf.joints.values() if (fault := _fault(joint, urdf.joints))
-    }
-    return CompiledModel(model, urdf.name, path_faults, inertia_faults)
+    to_metres(spec, length_unit_m)
+    model, inertia_faults, notices = compile_with_inertials(spec, field)
+    joints = [(joint, model.body(_body_name(joint.child, urdf)).id) for joint in urdf.joints.values()]
+    return CompiledModel(
+        model,
+        urdf.name,
+        path_faults={
+            body: f"joint {joint.name!r} is {joint.kind}: name a base below it, such as {joint.child!r}"
+            for joint, body in joints
+            if joint.kind in ("floating", "planar")
+        },
+        inertia_faults=inertia_faults,
+        joint_faults=tuple(fault for joint, body in joints if (fault := _fault(joint, body, urdf.joints))),
+        unset_limits=tuple(j.name for j, _ in joints if j.kind == "revolute" and j.limits == (0.0, 0.0)),
+        notices=_dropped_meshes(urdf) + notices,
+    )
 
 
 def _add_links(spec: mujoco.MjSpec, urdf: Urdf) -> None:
     world = spec.worldbody
-    bodies = {urdf.root: world if urdf.root == "world" else world.add_body(name=urdf.root)}
-    _fill(bodies[urdf.root], urdf.links[urdf.root])
+    bodies = {urdf.root: world if urdf.root == _WORLD else world.add_body(name=urdf.root)}
+    _add_shapes(bodies[urdf.root], urdf.links[urdf.root])
     for joint in urdf.joints.values():
-        body = bodies[joint.parent].add_body(name=joint.child, pos=joint.pose.position, quat=joint.pose.quat_wxyz)
+        body = bodies[joint.parent].add_body(
+            name=_body_name(joint.child, urdf), pos=joint.pose.position, quat=joint.pose.quat_wxyz
+        )
         bodies[joint.child] = body
-        _fill(body, urdf.links[joint.child])
+        if joint.child == _WORLD:
+            body.add_site(name=_WORLD)
+        _add_shapes(body, urdf.links[joint.child])
+        _add_inertial(body, urdf.links[joint.child])
         if joint.movable:
             _add_joint(body, joint)
 
 
-def _fill(body: mujoco.MjsBody, link: Link) -> None:
+def _body_name(link: str, urdf: Urdf) -> str:
+    """The link's own name, unless it is MuJoCo's name of the ground, which a site on the body then has."""
+    name = link
+    while name == _WORLD or (link == _WORLD and name in urdf.links):
+        name += "_"
+    return name
+
+
+def _add_shapes(body: mujoco.MjsBody, link: Link) -> None:
     for shape in link.shapes:
         if shape.kind != "mesh" and min(shape.size) > 0.0:
             _add_shape(body, shape)
+
+
+def _add_inertial(body: mujoco.MjsBody, link: Link) -> None:
     if link.inertial is None:
         return
     xx, xy, xz, _, yy, yz, _, _, zz = link.inertial.inertia.ravel()
@@ -86,7 +115,7 @@ def _add_joint(body: mujoco.MjsBody, joint: Joint) -> None:
         type=mujoco.mjtJoint.mjJNT_SLIDE if slide else mujoco.mjtJoint.mjJNT_HINGE,
         axis=joint.axis,
     )
-    if joint.limits is not None and joint.limits[0] < joint.limits[1]:
+    if joint.limits is not None and joint.limits[0] < joint.limits[1] and all(map(math.isfinite, joint.limits)):
         added.limited, added.range = mujoco.mjtLimited.mjLIMITED_TRUE, joint.limits
     if joint.effort > 0.0:
         added.actfrclimited = mujoco.mjtLimited.mjLIMITED_TRUE
@@ -117,39 +146,36 @@ def _leader(mimic: Mimic, joint: Joint, joints: dict[str, Joint]) -> Joint | Non
     return leader if usable else None
 
 
-def _fault(joint: Joint, joints: dict[str, Joint]) -> str:
-    """Why the joint cannot be on a chain; empty if it can."""
-    if joint.kind in ("floating", "planar"):
-        return f"joint {joint.name!r} is {joint.kind}: name a base below it"
-    if joint.mimic is not None:
+def _fault(joint: Joint, body: int, joints: dict[str, Joint]) -> JointFault | None:
+    """Why the joint cannot be on a chain; None if it can, or is none of one freedom."""
+    message, by_limits = joint.fault, False
+    if not message and joint.movable and joint.mimic is not None:
         if _leader(joint.mimic, joint, joints) is None:
-            return f"joint {joint.name!r} mimics {joint.mimic.leader!r}, which is no other joint of one freedom"
-        return ""
-    if joint.kind == "revolute" and joint.limits is None:
-        return f"revolute joint {joint.name!r} has no <limit>: give its limits, or make it continuous"
-    if joint.limits is not None and joint.limits[0] == joint.limits[1] != 0.0:
+            message = f"joint {joint.name!r} mimics {joint.mimic.leader!r}, which is no other joint of one freedom"
+    elif not message and joint.movable:
+        message, by_limits = _limit_fault(joint), True
+    return JointFault(body, joint.name, message, by_limits) if message else None
+
+
+def _limit_fault(joint: Joint) -> str:
+    """What is wrong with the limits of a joint that leads itself; empty where they can be used."""
+    if joint.limits is None:
+        unlimited = f"revolute joint {joint.name!r} has no <limit>: give its limits, or make it continuous"
+        return unlimited if joint.kind == "revolute" else ""
+    lower, upper = joint.limits
+    if lower > upper:
+        return f"joint {joint.name!r}: its lower limit {lower:g} is above its upper limit {upper:g}: give its limits"
+    if lower == upper != 0.0:
         return (
-            f"joint {joint.name!r}: its limits are both {joint.limits[0]:g}, which leaves no motion; "
+            f"joint {joint.name!r}: its limits are both {lower:g}, which leaves no motion; "
             "give its limits, or make it continuous or fixed"
         )
     return ""
 
 
-def _warn_of_meshes(urdf: Urdf) -> None:
+def _dropped_meshes(urdf: Urdf) -> tuple[Notice, ...]:
     files = [shape.file for link in urdf.links.values() for shape in link.shapes if shape.kind == "mesh"]
-    if files:
-        warnings.warn(
-            f"geometry of {len(files)} meshes is dropped ({files[0]}, …): kinematics and inertia do not need it",
-            ModelWarning,
-            stacklevel=2,
-        )
-
-
-def _warn_of_unset_limits(urdf: Urdf) -> None:
-    names = [joint.name for joint in urdf.joints.values() if joint.kind == "revolute" and joint.limits == (0.0, 0.0)]
-    if names:
-        warnings.warn(
-            f"the limits of {', '.join(names)} are both 0, which leaves no motion; taken as no limits",
-            ModelWarning,
-            stacklevel=2,
-        )
+    if not files:
+        return ()
+    message = f"geometry of {len(files)} meshes is dropped ({files[0]}, …): kinematics and inertia do not need it"
+    return (Notice("meshes_dropped", message),)

@@ -4,6 +4,8 @@ import platform
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
+import numpy as np
+
 from wsrender import __version__
 from wsrender.robot import Robot
 from wsrender.robot.user_robot import HostRobot
@@ -24,10 +26,15 @@ def robot_entry(robot: Robot) -> dict[str, Any]:
         "T_world_base": chain.T_world_base.tolist(),
         "T_tip_tool": chain.T_tip_tool.tolist(),
         "joint_names": list(chain.joint_names),
-        "lower_limits": chain.lower_limits.tolist(),
-        "upper_limits": chain.upper_limits.tolist(),
+        "lower_limits": _finite(chain.lower_limits),
+        "upper_limits": _finite(chain.upper_limits),
         "has_inertia": chain.has_inertia,
     }
+
+
+def _finite(limits: np.ndarray) -> list[float | None]:
+    """Limits as JSON writes them: null where a joint has none."""
+    return [end if np.isfinite(end) else None for end in limits.tolist()]
 
 
 def job_entry(job: Any, *robots: Robot) -> dict[str, Any]:

@@ -11,6 +11,7 @@ from wsrender.notices import Notice, entries
 from wsrender.result import Result
 from wsrender.robot import Robot, as_robot, robot_of_spec
 from wsrender.run.headline import no_headline
+from wsrender.run.usable_robots import usable
 from wsrender.spec import (
     BoundaryPatchesJob,
     CapabilityJob,
@@ -133,10 +134,14 @@ def plan(document: Any, robot: Any = None, *, resolved: dict[str, Any] | None = 
     job = document if isinstance(document, tuple(PLANNERS)) else parse_job(document)
     arms = job.arms()
     given = robot if isinstance(robot, list) else [robot] * len(arms)
-    robots = [_robot(path, arm, one) for (path, arm), one in zip(arms.items(), given, strict=True)]
+    robots = [
+        usable(_robot(path, arm, one), arm, path, job) for (path, arm), one in zip(arms.items(), given, strict=True)
+    ]
     module, _, planner = PLANNERS[type(job)].partition(":")
     planned = getattr(import_module(f"wsrender.run.{module}"), planner)(job, *robots, resolved=resolved)
-    planned.notices = tuple(notice for each in robots for notice in each.notices)
+    planned.notices = tuple(
+        n.within(dotted(path)) for path, each in zip(arms, robots, strict=True) for n in each.notices
+    )
     return planned
 
 

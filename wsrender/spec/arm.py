@@ -1,6 +1,6 @@
 """A robot with the frames between which its chain runs, and every robot of a document."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Annotated, Any
 
 from pydantic import BeforeValidator
@@ -26,6 +26,16 @@ class Arm(Document):
     """Body, link or site at which the chain starts; null: the world."""
     tip: Name | None = None
     """Site, body or link at the end of the chain; null: the site "tool", or else the only end there is."""
+
+    @property
+    def held_joints(self) -> Mapping[str, float]:
+        """Joints that the job holds at a value, by name [rad or m]."""
+        return getattr(getattr(self, "sampling", self), "locked", {})
+
+    @property
+    def needs_ranges(self) -> bool:
+        """Whether every other joint must have limits."""
+        return True
 
     def arms(self) -> "dict[ArmPath, Arm]":
         """Every arm of a job by its path, in the order of its robots; a job of one robot is an arm itself."""

@@ -82,6 +82,11 @@ class IndicesAtJob(IndexChoices, Arm):
     precision: Literal["float32", "float64"] = "float64"
     """Floating-point type of the kernels."""
 
+    @property
+    def needs_ranges(self) -> bool:
+        """Only where their ends are penalised: the configurations are given."""
+        return self.joint_limit_penalty not in (None, False)
+
 
 _AnyJob = (
     WorkspaceJob

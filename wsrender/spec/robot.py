@@ -60,10 +60,18 @@ def _joint_name(value: Any) -> Any:
     return value
 
 
+def _range(value: Any) -> tuple[float, ...]:
+    if (limits := _interval(value)) is None:
+        raise ValueError("must be [lower, upper], two finite numbers")
+    return limits
+
+
 Vector = Annotated[tuple[float, float, float], _numbers(3)]
 Quaternion = Annotated[tuple[float, float, float, float], _numbers(4)]
 Inertia = Annotated[tuple[float, ...], Field(min_length=3, max_length=6), _numbers(3, 6)]
 Limits = Annotated[tuple[float, float] | None, BeforeValidator(_interval)]
+Range = Annotated[tuple[float, float], BeforeValidator(_range)]
+LengthUnit = Annotated[float, Field(ge=1e-9, le=LARGEST), BeforeValidator(real)]
 Length = Annotated[float, Field(ge=-LARGEST, le=LARGEST), BeforeValidator(real)]
 NotNegative = Annotated[float, Field(ge=0), BeforeValidator(real)]
 
@@ -212,7 +220,7 @@ class DHTable(Document):
 
 
 class RobotSpec(Document):
-    """A robot: exactly one source of its model, and optionally where it stands and its tool."""
+    """A robot: exactly one source of its model, and optionally where it stands, its tool, and what the model lacks."""
 
     library: Name | None = None
     """Name of a robot of the library."""
@@ -230,6 +238,14 @@ class RobotSpec(Document):
     """The robot's base frame in the world; null: they coincide."""
     tool: Transform | None = None
     """The tool point in the frame of the tip; null: they coincide."""
+    limits: dict[Name, Range] = Field(default={})
+    """[lower, upper] of joints of the chain, by name [rad or m], instead of the model's."""
+    limits_deg: dict[Name, Range] = Field(default={})
+    """[lower, upper] of hinges of the chain, by name [°], instead of the model's."""
+    length_unit_m: LengthUnit | None = None
+    """The model's unit of length [m]: 0.001 for millimetres; 1 confirms metres. The model's positions, sizes, slides
+    and centres of mass are multiplied by it, its inertias [kg unit²] by its square. null: metres, and a job is refused
+    where they are beyond any arm."""
 
     def conflicts(self) -> Iterator[tuple[str, str]]:
         """(field, message) of every pair of fields that do not go together."""
@@ -238,6 +254,8 @@ class RobotSpec(Document):
             yield SOURCES[0], f"is required, or another source of the robot: one of {quoted(SOURCES)}"
         for name in given[1:]:
             yield name, f'must not be given together with "{given[0]}": a robot has one source'
+        for joint in sorted(self.limits.keys() & self.limits_deg.keys()):
+            yield f"limits_deg.{joint}", 'must not be given together with "limits": one of the two is enough'
 
     @property
     def source(self) -> str:

@@ -1,0 +1,113 @@
+"""Model files that others publish, all of them: each loads, or is refused for a reason that is in the table.
+
+The packages are the extra ``test-models``. Run it whole with ``python -m tests.robots.model_packages``.
+"""
+
+import re
+import sys
+import warnings
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+import wsrender as ws
+from wsrender.errors import FrameNotFoundError, ModelError
+from wsrender.robots.model_warning import ModelWarning
+
+SUFFIXES = (".urdf", ".xml", ".xacro", ".sdf")
+MOST_CHOICES = 3  # of base and tip, one after the other, before a file counts as refused
+
+# Why a file is refused: the reason in the message, and in words.
+REASONS = {
+    r"^there is no joint between base": "nothing moves: objects, planes, things that float as a whole",
+    r"^there is nothing to move|^the URDF has no <link>": "nothing is there: a part that other files include",
+    r"^the root element is <": "no URDF or MJCF: SDF, descriptions of packages, parts that other files include",
+    r"run the file through xacro first|is '\$\(": "xacro that was not expanded",
+    r"^not well-formed XML": "not well-formed XML",
+    r"(a finite number is|\d numbers are) needed$": "numbers that cannot be read",
+    r"its lower limit .* is above its upper limit": "limits upside down, on the chain",
+    r"has type 'spherical'; allowed": "a joint of three freedoms, on the chain",
+    r"is a (free|ball) joint on the chain": "a joint of several freedoms on the chain, above links without names",
+    r"not found in tendon|unknown element .* in equality": "a part of a model: the rest stands in another file",
+    r"global coordinates no longer supported|Schema violation|invalid keyword|required attribute missing": (
+        "MJCF that today's MuJoCo does not read"
+    ),
+    r"plane size\(3\) must be positive": "MJCF that MuJoCo refuses",
+}
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What came of a file: ``message`` is empty where it loaded, ``choices`` are the base and tip it took."""
+
+    file: Path
+    message: str
+    choices: tuple[tuple[str, str], ...] = ()
+
+    @property
+    def reason(self) -> str | None:
+        """The reason of the table, "" where the file loaded, None where it was refused for no reason of the table."""
+        if not self.message:
+            return ""
+        return next((said for pattern, said in REASONS.items() if re.search(pattern, self.message)), None)
+
+
+def folders() -> list[Path]:
+    """Where the installed packages have their models."""
+    found = []
+    for package in ("rtbdata", "pybullet_data", "gymnasium_robotics"):
+        if (spec := find_spec(package)) and spec.origin:
+            found.append(Path(spec.origin).parent)
+    for site in map(Path, sys.path):
+        found += [*site.glob("cmeel.prefix/share/example-robot-data/robots")]
+    return found
+
+
+def files() -> list[Path]:
+    """Every file that is, or looks like, a model, in an order that depends on names alone."""
+    found = [path for folder in folders() for path in folder.rglob("*") if path.suffix in SUFFIXES and path.is_file()]
+    return sorted(dict.fromkeys(found), key=lambda path: (path.parts[-3:], path.parts))
+
+
+def outcome(file: Path) -> Outcome:
+    """Loads a file; where a tip or a base must be named, with the first that the error offers."""
+    choices: dict[str, Any] = {}
+    message = ""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ModelWarning)
+        for _ in range(MOST_CHOICES):
+            try:
+                ws.load_robot(file, **choices)
+            except ModelError as error:
+                message, chosen = error.message, _chosen(error)
+                if chosen is None or chosen[0] in choices:
+                    break
+                choices |= dict([chosen])
+            else:
+                return Outcome(file, "", tuple(choices.items()))
+    return Outcome(file, message, tuple(choices.items()))
+
+
+def _chosen(error: ModelError) -> tuple[str, str] | None:
+    if isinstance(error, FrameNotFoundError):
+        return error.field, error.choices[0]
+    below = re.search(r"name a base below it, such as '(.+)'$", error.message)
+    return ("base", below[1]) if below else None
+
+
+def whole(part: slice = slice(None)) -> Sequence[Outcome]:
+    """What came of every file, or of a part of them."""
+    return [outcome(file) for file in files()[part]]
+
+
+if __name__ == "__main__":
+    found = whole()
+    told = Counter(each.reason if each.reason is not None else f"NOT IN THE TABLE: {each.message}" for each in found)
+    for reason, count in told.most_common():
+        print(count, reason or "loaded")
+    for each in found:
+        if each.reason is None:
+            print(each.file, each.choices, each.message)

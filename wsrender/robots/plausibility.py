@@ -1,0 +1,86 @@
+"""Numbers of a chain that its author probably did not mean: other units than metres and radians, no limits."""
+
+from collections.abc import Collection
+from math import pi
+
+import numpy as np
+
+from wsrender.notices import Notice
+from wsrender.robots.chain import Chain
+
+NO_LIMITS, LENGTH, ANGLE = "no_usable_limits", "units_length", "units_angle"
+
+PLAUSIBLE_REACH = (0.02, 20.0)  # [m]
+LARGEST_TURN = 4 * pi  # [rad] from zero
+NO_LENGTH = 1e-9  # [m]
+
+
+def doubts(chain: Chain, confirmed: Collection[str], length_confirmed: bool) -> list[Notice]:
+    """What a user should check of a chain; limits of the joints ``confirmed`` are the user's own."""
+    found = [_endless(chain), _degrees(chain, confirmed), None if length_confirmed else _lengths(chain)]
+    return [notice for notice in found if notice is not None]
+
+
+def lengths(chain: Chain) -> dict[str, float]:
+    """What the reach of a chain is made of [m], by name: links, the tip, and the largest displacements of slides.
+
+    Slides without limits are left out, and so is a virtual base: slides before any length that go as far to both sides.
+    """
+    links = np.linalg.norm(chain.T_joint[:, :3, 3], axis=1)
+    found: dict[str, float] = {}
+    for i, source in enumerate(chain.joint_source):
+        name = chain.joint_names[source]
+        if i and links[i] > NO_LENGTH:
+            found[f"the link before joint {name!r}"] = float(links[i])
+        virtual = not found and np.isclose(chain.lower_limits[source], -chain.upper_limits[source])
+        slide = float(chain.largest_slide[i])
+        if 0.0 < slide < np.inf and not virtual:
+            found[f"the range of slide {name!r}"] = slide
+    found["the tip beyond the last joint"] = float(np.linalg.norm((chain.T_tip @ chain.T_tip_tool)[:3, 3]))
+    return found
+
+
+def too_long(chain: Chain) -> str:
+    """How long a chain is, and what makes it so, where that is no arm's length; empty where it is one's."""
+    parts = lengths(chain)
+    if (reach := sum(parts.values())) <= PLAUSIBLE_REACH[1]:
+        return ""
+    longest = max(parts, key=lambda name: parts[name])
+    return f"the reach of {chain.name!r} is {reach:.3g} m ({longest} alone {parts[longest]:.3g} m)"
+
+
+def _endless(chain: Chain) -> Notice | None:
+    if not chain.endless:
+        return None
+    message = f"{_joints(chain.endless)} no usable limits: the workspace has no end"
+    remedy = "give a range (limits), hold the joint (locked), or name a base beyond it"
+    return Notice(NO_LIMITS, message, remedy, "robot.limits")
+
+
+def _degrees(chain: Chain, confirmed: Collection[str]) -> Notice | None:
+    largest = np.maximum(np.abs(chain.lower_limits), np.abs(chain.upper_limits))
+    turned = chain.revolute & (largest > LARGEST_TURN) & np.isfinite(largest)
+    ranges = [
+        f"{name} {low:g} … {high:g} rad ({(high - low) / (2 * pi):.3g} turns)"
+        for name, low, high, far in zip(chain.joint_names, chain.lower_limits, chain.upper_limits, turned, strict=True)
+        if far and name not in confirmed
+    ]
+    if not ranges:
+        return None
+    message = f"limits must be in radians, and look like degrees: {', '.join(ranges)}"
+    return Notice(ANGLE, message, "correct the model, or give limits_deg", "robot.limits_deg")
+
+
+def _lengths(chain: Chain) -> Notice | None:
+    reach = sum(lengths(chain).values())
+    if message := too_long(chain):
+        remedy = "length_unit_m 0.001 converts millimetres, 1 confirms metres; limits give a slide its range"
+        return Notice(LENGTH, f"{message}; lengths must be in metres, not millimetres", remedy, "robot.length_unit_m")
+    if NO_LENGTH < reach < PLAUSIBLE_REACH[0] and not chain.endless:
+        message = f"the reach of {chain.name!r} is {reach:.3g} m; lengths must be in metres, not millimetres"
+        return Notice(LENGTH, message, "length_unit_m converts other units, 1 confirms metres", "robot.length_unit_m")
+    return None
+
+
+def _joints(names: Collection[str]) -> str:
+    return f"joint {', '.join(names)} has" if len(names) == 1 else f"joints {', '.join(names)} have"
