@@ -52,6 +52,10 @@ class Evaluations:
         """Scores (N,) of designs (N, n)."""
         return scores(self.values(designs), self.weights)
 
+    def feasible(self, designs: np.ndarray) -> np.ndarray:
+        """Whether each of designs (N, n) has all its values and is not empty, (N,); see `feasible`."""
+        return feasible(self.values(designs), self.weights)
+
     def rows(self) -> tuple[np.ndarray, np.ndarray]:
         """All designs (E, n) that were asked for, in that order, and their values (E, k)."""
         return np.array(list(self._asked)), np.array(list(self._asked.values()))
@@ -60,3 +64,9 @@ class Evaluations:
 def scores(values: np.ndarray, weights: np.ndarray) -> np.ndarray:
     """Weighted sums (N,) of values (N, k); -inf where one is missing."""
     return np.where(np.isfinite(values).all(axis=1), np.nan_to_num(values) @ weights, -np.inf)
+
+
+def feasible(values: np.ndarray, weights: np.ndarray) -> np.ndarray:
+    """Whether rows of values (N, k) are whole, and not 0 in all that shall be large: an empty workspace, (N,)."""
+    whole, large = np.asarray(np.isfinite(values).all(axis=1)), weights > 0
+    return whole & np.any(values[:, large] != 0, axis=1) if large.any() else whole

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 from scipy import optimize
+from scipy.stats import qmc
 
 from wsrender.design.evaluations import Evaluations
 from wsrender.errors import MissingExtraError
@@ -53,27 +54,67 @@ def grid(space: Space, counts: tuple[int, ...]) -> np.ndarray:
     return designs[space.allows(designs)]
 
 
+class NothingFeasibleError(Exception):
+    """No design of a search's first population is feasible: it has no direction to go."""
+
+
+def feasible_population(
+    space: Space, evaluations: Evaluations, *, count: int, rounds: int, seed: int
+) -> tuple[np.ndarray | None, int]:
+    """The first of so many ``rounds`` of designs (count, n) with a feasible one, and its number; None where none has.
+
+    The designs fill the space evenly (Halton 1960).
+    """
+    sequence = qmc.Halton(len(space.lower), rng=np.random.default_rng(seed))
+    for number in range(1, rounds + 1):
+        designs = qmc.scale(sequence.random(count), space.lower, space.upper)
+        allowed = designs[space.allows(designs)]
+        if len(allowed) and evaluations.feasible(allowed).any():
+            return designs, number
+    return None, rounds
+
+
 def evolve(
     space: Space, evaluations: Evaluations, *, population: int, generations: int, tolerance: float, seed: int
 ) -> str:
-    """Differential evolution (Storn and Price 1997) of the score; says why it ended."""
+    """Differential evolution (Storn and Price 1997) of the score, from a feasible design on; says why it ended."""
+    count, evaluated = max(5, population * len(space.lower)), False
 
     def energies(designs: np.ndarray) -> np.ndarray:
+        nonlocal evaluated
+        if not evaluated and not evaluations.feasible(designs.T).any():
+            raise NothingFeasibleError
+        evaluated = True
         return -evaluations.scores(designs.T)
 
-    found = optimize.differential_evolution(
-        energies,
-        space.bounds,
-        popsize=population,
-        maxiter=generations,
-        tol=tolerance,
-        rng=np.random.default_rng(seed),
-        constraints=space.scipy_constraints(),
-        polish=False,
-        vectorized=True,
-        updating="deferred",
-    )
-    return f"differential evolution: {found.message}".rstrip(".")
+    def run(first: Any, most: int) -> str:
+        found = optimize.differential_evolution(
+            energies,
+            space.bounds,
+            popsize=population,
+            init=first,
+            maxiter=most,
+            tol=tolerance,
+            rng=np.random.default_rng(seed),
+            constraints=space.scipy_constraints(),
+            polish=False,
+            vectorized=True,
+            updating="deferred",
+        )
+        return f"differential evolution: {found.message}".rstrip(".")
+
+    try:
+        return run("latinhypercube", generations)
+    except NothingFeasibleError:
+        first, rounds = feasible_population(space, evaluations, count=count, rounds=generations, seed=seed)
+    if first is None:
+        return f"no feasible design among {len(evaluations)}"
+    evaluated = True
+    return f"{_looked(rounds)}; {run(first, generations - rounds)}"
+
+
+def _looked(rounds: int) -> str:
+    return f"a feasible design after {rounds} more population{'s' if rounds > 1 else ''}"
 
 
 def refine(
@@ -94,7 +135,7 @@ def refine(
 
 
 def pareto(space: Space, evaluations: Evaluations, *, population: int, generations: int, seed: int) -> str:
-    """NSGA-II (Deb et al. 2002) of the weighted values; MissingExtraError without pymoo."""
+    """NSGA-II (Deb et al. 2002) of the weighted values, from a feasible design on; MissingExtraError without pymoo."""
     try:
         from pymoo.algorithms.moo.nsga2 import NSGA2
         from pymoo.core.problem import Problem
@@ -102,11 +143,15 @@ def pareto(space: Space, evaluations: Evaluations, *, population: int, generatio
     except ModuleNotFoundError as error:
         raise MissingExtraError(error.name or "pymoo", "design") from None
 
-    limits = np.isfinite(space.least), np.isfinite(space.most)
+    limits, evaluated = (np.isfinite(space.least), np.isfinite(space.most)), False
 
     class Designs(Problem):
         def _evaluate(self, x: np.ndarray, out: dict[str, Any], *args: Any, **kwargs: Any) -> None:
+            nonlocal evaluated
             allowed = space.allows(x)
+            if not evaluated and allowed.any() and not evaluations.feasible(x[allowed]).any():
+                raise NothingFeasibleError
+            evaluated = evaluated or bool(allowed.any())
             costs = np.full((len(x), len(evaluations.weights)), np.nan)
             costs[allowed] = evaluations.values(x[allowed]) * -evaluations.weights
             out["F"] = np.where(np.isfinite(costs), costs, WORST)
@@ -120,8 +165,18 @@ def pareto(space: Space, evaluations: Evaluations, *, population: int, generatio
         xl=space.lower,
         xu=space.upper,
     )
-    minimize(problem, NSGA2(pop_size=population), ("n_gen", generations), seed=seed, verbose=False)
-    return f"{generations} generations"
+    try:
+        minimize(problem, NSGA2(pop_size=population), ("n_gen", generations), seed=seed, verbose=False)
+        return f"{generations} generations"
+    except NothingFeasibleError:
+        rounds = generations - 1
+        first, rounds = feasible_population(space, evaluations, count=population, rounds=rounds, seed=seed)
+    if first is None:
+        return f"no feasible design among {len(evaluations)}"
+    evaluated, left = True, generations - rounds
+    start: Any = first  # annotated as a sampling in pymoo
+    minimize(problem, NSGA2(pop_size=population, sampling=start), ("n_gen", left), seed=seed, verbose=False)
+    return f"{_looked(rounds)}; {left} generations"
 
 
 def front(values: np.ndarray, weights: np.ndarray) -> np.ndarray:

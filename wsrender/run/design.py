@@ -8,15 +8,17 @@ from typing import Any
 import numpy as np
 
 from wsrender.design.evaluation_file import EvaluationFile
-from wsrender.design.evaluations import Evaluations, scores
+from wsrender.design.evaluations import Evaluations, feasible, scores
 from wsrender.design.search import Space, evolve, grid, pareto, refine
 from wsrender.errors import InputError, NotConvergedError
+from wsrender.notices import entries
 from wsrender.parallel.ball_region import BallRegion
 from wsrender.parallel.mechanism import mechanism_of
 from wsrender.result import Result
 from wsrender.robot import Robot
-from wsrender.run.design_result import best_entries, exact_best, objective_entries, tables_of
-from wsrender.run.design_values import Evaluator
+from wsrender.run.design_notices import design_notices, fault_entries
+from wsrender.run.design_result import best_entries, best_headline, exact_best, objective_entries, tables_of
+from wsrender.run.design_values import FAULTS, Evaluator
 from wsrender.run.one_shard import OneShard
 from wsrender.run.parallel_exact import region_of
 from wsrender.run.provenance import job_entry, provenance, robot_entry
@@ -118,14 +120,14 @@ class DesignPlan(OneShard):
         designs, values = evaluations.rows()
         if not np.isfinite(values).any() and evaluator.fault is not None:
             raise evaluator.fault
-        about = {"ended": ended, "evaluated": evaluator.count, "fault": str(evaluator.fault or "")}
+        about = {"ended": ended, "evaluated": evaluator.count, "faults": fault_entries(evaluator)}
         return {"designs": designs, "values": values, "about": np.array(json.dumps(about))}
 
     def finish(self, partial: Arrays, seconds: dict[str, float]) -> Result:
         """The best design, all designs, how the search went, and the best design's mesh where it is exact."""
         designs, values, about = partial["designs"], partial["values"], json.loads(str(partial["about"]))
         score = scores(values, self.weights)
-        entries = best_entries(self, designs, values, score)
+        best = best_entries(self, designs, values, score)
         document = {
             "analysis": "design_optimization",
             "job": job_entry(self.job, *self.robots),
@@ -138,13 +140,16 @@ class DesignPlan(OneShard):
                 "designs": len(designs),
                 "evaluated": about["evaluated"],
                 "without_value": int((~np.isfinite(score)).sum()),
-                "first_fault": about["fault"] or None,
+                "first_fault": about["faults"][0]["reason"] if about["faults"] else None,
+                "faults": about["faults"],
             },
-            **entries,
+            **best,
+            "headline": best_headline(self, best["best"]),
             "provenance": provenance("float64", self.target),
             "timing_s": seconds,
+            "warnings": entries(design_notices(self, designs, values, about["faults"])),
         }
-        meshes, tables = exact_best(self, entries["best"])
+        meshes, tables = exact_best(self, best["best"])
         return Result(document, tables={**tables_of(self, designs, values, score), **tables}, meshes=meshes)
 
     def placed_region(self, design: np.ndarray) -> tuple[BallRegion, np.ndarray]:
@@ -159,10 +164,9 @@ class DesignPlan(OneShard):
         return parse_job(self.document_of(design))
 
     def document_of(self, design: np.ndarray) -> Any:
-        """The document of the inner job at a design (n,), canonical but for the changes."""
+        """The document of the inner job at a design (n,), in the words that its pointers need."""
         values = zip(self.job.parameters, map(float, design), strict=True)
-        document = self.job.design.model_dump(mode="json")
-        return changed(document, {pointer: value for p, value in values for pointer in p.pointers})
+        return changed(self.job.design_document, {pointer: value for p, value in values for pointer in p.pointers})
 
     @property
     def _columns(self) -> list[str]:
@@ -200,9 +204,18 @@ class DesignPlan(OneShard):
             raise NotConvergedError("no design that the constraints allow was found", [])
         if search.refine and {objective.value for objective in self.job.objectives} == {EXACT_VOLUME}:
             designs, values = evaluations.rows()
-            start = designs[scores(values, self.weights).argmax()]
-            ended += f"; {refine(space, evaluations, start, evaluator.gradient)}"
+            if feasible(values, self.weights).any():
+                start = designs[scores(values, self.weights).argmax()]
+                ended += f"; {_refined(space, evaluations, start, evaluator)}"
         return ended
+
+
+def _refined(space: Space, evaluations: Evaluations, start: np.ndarray, evaluator: Evaluator) -> str:
+    """How the search along gradients ended; a design on its way that is none ends it."""
+    try:
+        return refine(space, evaluations, start, evaluator.gradient)
+    except FAULTS as error:
+        return f"SLSQP: stopped by an error ({error})"
 
 
 def _with_values(rows: np.ndarray) -> np.ndarray:

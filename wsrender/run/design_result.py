@@ -9,7 +9,8 @@ from wsrender.design.inscribed import CUBE_ERROR, SPHERE_ERROR
 from wsrender.design.search import front
 from wsrender.parallel.ball_surfaces import surface_table
 from wsrender.parallel.exact import ExactWorkspace
-from wsrender.spec.design import CUBE, EXACT, EXACT_CUBE, EXACT_SPHERE, SPHERE, GridSweep, ParetoSearch
+from wsrender.run.headline import headline, no_headline
+from wsrender.spec.design import CUBE, EXACT, EXACT_CUBE, EXACT_SPHERE, EXACT_VOLUME, SPHERE, GridSweep, ParetoSearch
 from wsrender.volume.table import Table
 
 if TYPE_CHECKING:
@@ -18,6 +19,16 @@ if TYPE_CHECKING:
     from wsrender.run.design import DesignPlan
 
 AT_BOUND = 1e-6  # of a parameter's range
+
+
+def best_headline(plan: "DesignPlan", best: dict[str, Any] | None) -> dict[str, Any]:
+    """The exact volume of the best design, where that was improved."""
+    if best is None:
+        return no_headline("no design has a value")
+    if EXACT_VOLUME not in best["values"]:
+        return no_headline("the objectives are no exact volume; an analysis of the best design measures it")
+    volume = best["values"][EXACT_VOLUME]
+    return headline("volume", volume, (volume, volume))
 
 
 def objective_entries(plan: "DesignPlan") -> list[dict[str, Any]]:

@@ -1,5 +1,6 @@
 """Values of the designs of a ``design_optimization``: exact ones, or from runs of the job that is optimised."""
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -7,9 +8,10 @@ import numpy as np
 from wsrender.design.exact_inscribed import largest_ball, largest_cube
 from wsrender.design.exact_volume import volume_gradient, volumes_of
 from wsrender.design.inscribed import inscribed_cube_edge, inscribed_sphere_radius
-from wsrender.errors import InputError
+from wsrender.errors import InputError, NotConvergedError, NumericalError, ResourceError, WsrenderError
 from wsrender.parallel.ball_region import BallRegion
 from wsrender.result import Result
+from wsrender.spec import parse_job
 from wsrender.spec.design import CUBE, EXACT, EXACT_CUBE, EXACT_SPHERE, EXACT_VOLUME, SPHERE, Objective
 from wsrender.spec.json_pointer import found_at
 
@@ -17,23 +19,48 @@ if TYPE_CHECKING:
     from wsrender.run.design import DesignPlan
 
 
+FAULTS = (InputError, NotConvergedError, NumericalError, MemoryError)  # of a design: it has no value then
+FEW_SAMPLES, FEW_LEVELS = 256, 3  # of a run that shows what a result holds
+
+
+@dataclass
+class Fault:
+    """Why designs have no value: the first error of its kind, the design that raised it, and how many did."""
+
+    error: WsrenderError
+    design: list[float]
+    designs: int = 0
+
+
 class Evaluator:
     """Values of designs: exact ones many at a time, others by running the inner job of each.
 
-    ``fault`` is the first error of a design that is none, ``count`` the number of designs evaluated.
+    A design whose job ends in an error has no value. ``faults`` are these errors by their kind, the first one first;
+    ``count`` is the number of designs evaluated.
     """
 
     def __init__(self, plan: "DesignPlan", execution: dict[str, Any]):
         self.plan, self.execution = plan, execution
-        self.fault: InputError | None = None
+        self.faults: dict[tuple[str, str], Fault] = {}
         self.count = 0
+        self._pointers_hold = plan.is_exact
 
     def __call__(self, designs: np.ndarray) -> np.ndarray:
-        """Values (N, k) of designs (N, n), NaN where a design has none."""
+        """Values (N, k) of designs (N, n), NaN where a design has none.
+
+        Raises InputError for an objective that is no number of the result, before the first design runs where it can.
+        """
+        if not self._pointers_hold:
+            self._check_pointers()
         self.count += len(designs)
         if self.plan.is_exact:
             return self._exact(designs)
         return np.array([self._by_running(design) for design in designs])
+
+    @property
+    def fault(self) -> WsrenderError | None:
+        """The first error of a design."""
+        return next((fault.error for fault in self.faults.values()), None)
 
     def gradient(self, design: np.ndarray) -> np.ndarray:
         """Derivatives (n,) of the score of an exact volume."""
@@ -45,28 +72,72 @@ class Evaluator:
 
         return self.plan.weights.sum() * volume_gradient(regions_at, inside, space.lower, space.upper)
 
+    def _check_pointers(self) -> None:
+        """Look the objectives up in the result of a small run in the middle of the bounds, where there is one."""
+        space = self.plan.space
+        middle = (space.lower + space.upper) / 2
+        document = self.plan.document_of(middle)
+        if (small := with_few_samples(document)) == document:
+            return  # a design takes no longer
+        try:
+            result = self._run(parse_job(small))
+        except FAULTS:
+            return  # the first design that has a result will tell
+        for objective in self.plan.job.objectives:
+            if objective.value not in EXACT:
+                self._value(objective, result, middle)
+        self._pointers_hold = "empty" not in result.document
+
+    def _run(self, job: Any) -> Result:
+        from wsrender.run.steps import execute  # which knows this analysis too
+
+        return execute(job, **self.execution)
+
     def _exact(self, designs: np.ndarray) -> np.ndarray:
         placed, rows = [], []
         for row, design in enumerate(designs):
             try:
                 placed.append(self.plan.placed_region(design))
                 rows.append(row)
-            except InputError as error:
-                self.fault = self.fault or error.within("design")
+            except FAULTS as error:
+                self._keep(error, design)
         values = np.full((len(designs), len(self.plan.job.objectives)), np.nan)
-        if rows:
-            values[rows] = np.column_stack([exact_values(o.value, placed) for o in self.plan.job.objectives])
+        try:
+            if rows:
+                values[rows] = self._exact_rows(placed)
+        except FAULTS:
+            for row, one in zip(rows, placed, strict=True):
+                try:
+                    values[row] = self._exact_rows([one])[0]
+                except FAULTS as error:
+                    self._keep(error, designs[row])
         return values
 
-    def _by_running(self, design: np.ndarray) -> list[float]:
-        from wsrender.run.steps import execute  # which knows this analysis too
+    def _exact_rows(self, placed: list[tuple[BallRegion, np.ndarray]]) -> np.ndarray:
+        return np.column_stack([exact_values(o.value, placed) for o in self.plan.job.objectives])
 
+    def _by_running(self, design: np.ndarray) -> list[float]:
+        result = None
         try:
-            result = execute(self.plan.job_of(design), **self.execution)
-        except InputError as error:
-            self.fault = self.fault or error.within("design")
+            result = self._run(self.plan.job_of(design))
+            values = [self._value(objective, result, design) for objective in self.plan.job.objectives]
+        except FAULTS as error:
+            if result is not None and not self._pointers_hold:
+                raise
+            self._keep(error, design)
             return [np.nan] * len(self.plan.job.objectives)
-        return [self._value(objective, result, design) for objective in self.plan.job.objectives]
+        self._pointers_hold = self._pointers_hold or "empty" not in result.document
+        return values
+
+    def _keep(self, error: Exception, design: np.ndarray) -> None:
+        """Count a design's error with those of its kind and field."""
+        if isinstance(error, MemoryError):
+            error = ResourceError("design", f"needs more memory than there is ({str(error) or 'MemoryError'})")
+        elif isinstance(error, InputError) and error.field != "objectives":
+            error = error.within("design")
+        assert isinstance(error, WsrenderError)
+        kind = error.code, getattr(error, "field", "")
+        self.faults.setdefault(kind, Fault(error, design.tolist())).designs += 1
 
     def _value(self, objective: Objective, result: Result, design: np.ndarray) -> float:
         """The value of an objective; NaN where the result has null there, or nothing because it is empty."""
@@ -85,6 +156,20 @@ class Evaluator:
         if isinstance(found, bool) or not isinstance(found, int | float | None):
             raise InputError("objectives", f"{objective.value} is no number in the result document")
         return np.nan if found is None else float(found)
+
+
+def with_few_samples(document: Any) -> Any:
+    """A job document whose joint spaces are sampled as little as shows what its result holds."""
+    if isinstance(document, dict):
+        document = {name: with_few_samples(item) for name, item in document.items()}
+        sampling = document.get("sampling")
+        if isinstance(sampling, dict) and isinstance(sampling.get("count"), int):
+            document["sampling"] = {**sampling, "count": min(sampling["count"], FEW_SAMPLES)}
+        elif isinstance(sampling, dict) and "per_joint" in sampling:
+            levels = np.minimum(sampling["per_joint"], FEW_LEVELS).tolist()
+            document["sampling"] = {**sampling, "per_joint": levels}
+        return document
+    return [with_few_samples(item) for item in document] if isinstance(document, list) else document
 
 
 def exact_values(value: str, placed: list[tuple[BallRegion, np.ndarray]]) -> np.ndarray:

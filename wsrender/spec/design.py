@@ -2,15 +2,29 @@
 
 import re
 from collections.abc import Iterator, Mapping
-from typing import Annotated, Any, ClassVar, Literal
+from copy import deepcopy
+from typing import Annotated, Any, ClassVar, Literal, Self
 
-from pydantic import BeforeValidator, Discriminator, Field, SerializeAsAny, StrictBool, ValidationError, WithJsonSchema
+from pydantic import (
+    BeforeValidator,
+    Discriminator,
+    Field,
+    PrivateAttr,
+    SerializeAsAny,
+    SerializerFunctionWrapHandler,
+    StrictBool,
+    ValidationError,
+    WithJsonSchema,
+    field_serializer,
+    model_validator,
+)
+from pydantic.functional_validators import ModelWrapValidatorHandler
 
 from wsrender.errors import DocumentError
 from wsrender.spec.arm import Arm, ArmPath
 from wsrender.spec.document import Document
-from wsrender.spec.json_pointer import found_at, steps_of
-from wsrender.spec.problems import located, tagged
+from wsrender.spec.json_pointer import in_words_of, numbers_at, steps_of
+from wsrender.spec.problems import located, path_text, tagged
 from wsrender.spec.quantities import FileName, Name, Number, PositiveNumber, Seed, integer, quoted, real, sequence
 
 MOST_PARAMETERS, MOST_OBJECTIVES = 50, 6
@@ -87,7 +101,8 @@ class DesignParameter(Document):
     name: FileName
     """What tables and constraints call it."""
     pointers: Pointers
-    """Where it stands in the design, as JSON pointers: "/robot/dh/rows/1/a", "/mechanism/link_m"; all get the value."""
+    """Where it stands in the design as it is written, or in its canonical form, as JSON pointers: "/robot/dh/rows/1/a",
+    "/robot/dh/rows/0/limits_deg/1", "/mechanism/link_m"; all get the value."""
     bounds: Bounds
     """[low, high], in the unit of the field."""
 
@@ -239,6 +254,31 @@ class DesignOptimizationJob(Document):
     parameters and values (null: none), or {"path": file.csv}, which is read if it exists and to which every design is
     added at once; local runs only."""
 
+    _document: Any = PrivateAttr(None)
+
+    @model_validator(mode="wrap")
+    @classmethod
+    def _in_its_own_words(cls, data: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
+        """The job, whose pointers refer to the design as it was written, which pydantic no longer knows."""
+        job = handler(data)
+        if job._document is None:
+            written = data.get("design") if isinstance(data, Mapping) else None
+            canonical = job.design.model_dump(mode="json")
+            pointers = [pointer for parameter in job.parameters for pointer in parameter.pointers]
+            job._document = in_words_of(written, canonical, pointers) if isinstance(written, Mapping) else canonical
+        if problems := [located(field, message) for field, message in job._pointer_conflicts()]:
+            raise ValidationError.from_exception_data(cls.__name__, problems)
+        return job
+
+    @property
+    def design_document(self) -> Any:
+        """The document of the design in which all pointers find their numbers: canonical, or as it was written."""
+        return deepcopy(self._document)
+
+    @field_serializer("design", mode="wrap", when_used="json")
+    def _as_pointed_to(self, design: Any, handler: SerializerFunctionWrapHandler) -> Any:
+        return handler(design) if self._document is None else self.design_document
+
     def arms(self) -> dict[ArmPath, Arm]:
         """The robots of the design."""
         inner: Any = self.design
@@ -259,7 +299,6 @@ class DesignOptimizationJob(Document):
         names = [parameter.name for parameter in self.parameters]
         if len(set(names)) < len(names):
             yield "parameters", f"must have different names, not {quoted(names)}"
-        yield from self._pointer_conflicts()
         for k, constraint in enumerate(self.constraints):
             for name in constraint.coefficients.keys() - set(names):
                 yield f"constraints.{k}.coefficients", f'must name parameters, {quoted(names)}, not "{name}"'
@@ -282,22 +321,23 @@ class DesignOptimizationJob(Document):
             yield "evaluations", f"must be rows of {columns}: the parameters, then the values (null: none)"
 
     def _pointer_conflicts(self) -> Iterator[tuple[str, str]]:
-        document = self.design.model_dump(mode="json")
         used: set[str] = set()
         for k, parameter in enumerate(self.parameters):
             for n, pointer in enumerate(parameter.pointers):
                 field = f"parameters.{k}.pointers.{n}"
                 try:
-                    found = found_at(document, pointer)
+                    numbers_at(self._document, pointer)
                 except ValueError as error:
                     yield field, str(error)
                     continue
-                if not all(_is_number(item) for item in (found if isinstance(found, list) else [found])):
-                    yield field, f"must point to a number, or a list of numbers, not {found!r}"[:200]
                 if pointer in used:
                     yield field, "must not point where another parameter does"
                 used.add(pointer)
-
-
-def _is_number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)
+        try:
+            _design(self._document)
+        except ValidationError as error:  # two names of one number are pointed to, such as limits and limits_deg
+            (problem, *_) = error.errors(include_url=False)
+            yield (
+                "parameters",
+                f"point to fields that do not go together: {path_text('design', *problem['loc'])}: {problem['msg']}",
+            )

@@ -1,6 +1,6 @@
 """JSON pointers (RFC 6901): places in a document."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from copy import deepcopy
 from typing import Any
 
@@ -35,6 +35,65 @@ def changed(document: Any, values: dict[str, Any]) -> Any:
             node = node[int(step)] if isinstance(node, list) else node[step]
         node[int(last) if isinstance(node, list) else last] = value
     return copy
+
+
+def numbers_at(document: Any, pointer: str) -> Any:
+    """The number or list of numbers that a document holds there; ValueError where it holds nothing or another thing."""
+    found = found_at(document, pointer)
+    if not all(_is_number(item) for item in (found if isinstance(found, list) else [found])):
+        raise ValueError(f"must point to a number, or a list of numbers, not {found!r}"[:200])
+    return found
+
+
+def in_words_of(written: Any, canonical: Any, pointers: Sequence[str]) -> Any:
+    """A canonical document in the words of the one that was ``written``, as far as pointers to numbers need them.
+
+    The canonical document says ``limits`` where ``limits_deg`` was written: an object with an entry that only the
+    written one has becomes the written object, with the canonical entries that other pointers need.
+    """
+    document, written = deepcopy(canonical), _plain(written)
+    for pointer in pointers:
+        if not _has_numbers(document, pointer) and _has_numbers(written, pointer):
+            _take(document, written, steps_of(pointer), whole=True)
+    for pointer in pointers:
+        if not _has_numbers(document, pointer) and _has_numbers(canonical, pointer):
+            _take(document, canonical, steps_of(pointer), whole=False)
+    return document
+
+
+def _take(document: Any, other: Any, steps: tuple[str, ...], whole: bool) -> None:
+    """Take from another document the object (``whole``) or the entry at which the steps have nothing in this one."""
+    parent: Any = None
+    key: Any = None
+    for step in steps:
+        child, there = dict(_entries(document)).get(step), dict(_entries(other))[step]
+        if child is None:
+            if whole and parent is not None:
+                parent[key] = deepcopy(other)
+            else:
+                document[step] = deepcopy(there)
+            return
+        parent, key = document, int(step) if isinstance(document, list) else step
+        document, other = child, there
+
+
+def _has_numbers(document: Any, pointer: str) -> bool:
+    try:
+        numbers_at(document, pointer)
+    except ValueError:
+        return False
+    return True
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def _plain(value: Any) -> Any:
+    """Mappings as dicts and sequences as lists, as JSON has them."""
+    if isinstance(value, Mapping):
+        return {name: _plain(item) for name, item in value.items()}
+    return [_plain(item) for item in value] if isinstance(value, list | tuple) else value
 
 
 def _entries(node: Any) -> Iterator[tuple[str, Any]]:
