@@ -52,10 +52,35 @@ def test_three_scales_fill_the_box():
     assert result.document["mapping"]["efficiency"] == pytest.approx(1, rel=1e-5)
 
 
+def test_a_scale_is_the_scale_itself_whatever_the_jobs_own_is():
+    """Bounds, found scale, curve and table of a job with a scale of 2 are those of a job with a scale of 1."""
+    search = {"scale": [0.5, 5], "steps": 10}
+    one, two = (mapped(MASTER_BOX, SLAVE_BOX, search=search, scale=scale) for scale in (1, 2))
+    assert two.document["mapping"]["scale"] == pytest.approx([3, 3, 3], rel=0.005)
+    assert two.document["mapping"]["volume_m3"] == pytest.approx(0.6**3, rel=0.02)
+    assert two.document["search"]["scale"] == [0.5, 5]
+    for name in ("scale", "volume", "share_inside"):
+        assert two.tables["scales"][name] == pytest.approx(one.tables["scales"][name], rel=1e-6)
+    assert two.tables["scales"]["volume"] == pytest.approx((0.2 * two.tables["scales"]["scale"]) ** 3, rel=1e-5)
+    assert [warning["code"] for warning in two.document["warnings"]] == ["scale_bounds"]
+    assert one.document["warnings"] == []
+
+
+def test_a_scale_of_three_keeps_its_proportions_and_is_their_geometric_mean():
+    """In the proportions 2 : 2 : 1 the cube of .2 m touches the box of .8 m: 4, 4, 2, whose mean is ∛32."""
+    search = {"scale": [1, 4], "steps": 10}
+    result = mapped(MASTER_BOX, SLAVE_BOX, search=search, scale=[1, 1, 0.5])
+    assert result.document["mapping"]["scale"] == pytest.approx([4, 4, 2], rel=1e-6)
+    curve = result.tables["scales"]
+    assert (np.isfinite(curve["volume_inside"]) == (curve["scale"] <= 32 ** (1 / 3))).all()
+    three = mapped(MASTER_BOX, SLAVE_BOX, search={"scale": [0.5, 4.5], "uniform": False}, scale=[1, 1, 0.5])
+    assert three.document["mapping"]["scale"] == pytest.approx([4.5, 4, 3], rel=1e-6)
+
+
 def test_the_offset_is_found():
     away = SLAVE_BOX + np.array([0.7, -0.3, 0.2])
     search = {"scale": [0.5, 5], "offset_m": [[-3, 3]] * 3}
-    found = mapped(MASTER_BOX, away, search=search).document["mapping"]
+    found = mapped(MASTER_BOX, away, search=search, scale=0.5).document["mapping"]
     assert found["succeeded"]
     assert found["scale"][0] == pytest.approx(3, rel=0.005)
     center = np.array([0.7, -0.3, 0.2]) * found["scale"] + found["offset_m"]
@@ -113,7 +138,7 @@ def test_points_that_fail_are_returned(tmp_path):
 def test_no_scale_succeeds_far_away():
     found = mapped(MASTER_BOX, SLAVE_BOX, offsets_m=[[9, 9, 9]], search={"scale": [0.5, 2]}).document["mapping"]
     assert (found["succeeded"], found["inside"], found["scale"]) == (False, 0.0, [1, 1, 1])
-    everywhere = mapped(MASTER_BOX, SLAVE_BOX, scale=20, search={"scale": [1, 1.5], "offset_m": [[-1, 1]] * 3})
+    everywhere = mapped(MASTER_BOX, SLAVE_BOX, scale=20, search={"scale": [20, 30], "offset_m": [[-1, 1]] * 3})
     assert not everywhere.document["mapping"]["succeeded"]
 
 
@@ -187,8 +212,12 @@ def test_malformed_jobs(fields, message):
 def test_a_search_that_finds_nothing_says_so():
     result = mapped(SLAVE_BOX, MASTER_BOX, search={"scale": [0.5, 5], "steps": 4})
     assert result.document["search"]["found"] is False and not result.document["mapping"]["succeeded"]
-    assert result.document["search"]["most_inside"] < 1 and result.document["search"]["at_factor"] == 0.5
+    assert result.document["search"]["most_inside"] < 1 and result.document["search"]["at_scale"] == 0.5
     assert "no scale fits; at most" in result.summary()
+    (warning,) = result.document["warnings"]
+    assert (warning["code"], warning["field"]) == ("no_scale_fits", "search.scale")
+    result.document["search"]["at_factor"] = result.document["search"].pop("at_scale")  # of version 0.1
+    assert "% are inside at 0.5" in result.summary()
     assert mapped(MASTER_BOX, SLAVE_BOX, search={"scale": [0.5, 5]}).document["search"]["found"] is True
 
 

@@ -50,7 +50,8 @@ def _facts(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
         yield "mapping", f"{outside}; scale {scale}; offset {offset} m; efficiency {mapping['efficiency']:.4g}"
         search = document.get("search") or {"found": True}
         if not search["found"]:
-            most = f"{100 * search['most_inside']:.3g} % are inside at {search['at_factor']:.3g}"
+            at = search.get("at_scale", search.get("at_factor"))  # a factor on the job's scale before version 0.2
+            most = f"{100 * search['most_inside']:.3g} % are inside at {at:.3g}"
             yield "search", f"no scale fits; at most {most}. The mapping is the job's own"
     if found := document.get("orientation_workspace"):
         share = f"{100 * found['share']:.3g} % of their measure"  # a solid angle or a volume of rotations

@@ -1,8 +1,8 @@
 """The analysis ``master_slave_mapping``: a slave's workspace in its master's ([WSR] III.D)."""
 
 import json
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -13,9 +13,11 @@ from wsrender.errors import ResourceError
 from wsrender.mapping.linear_mapping import LinearMapping, Space
 from wsrender.mapping.scale_search import best_mapping, largest_factor, scale_curve
 from wsrender.mapping.voxel_set import VoxelSet
+from wsrender.notices import Notice, entries
 from wsrender.parallel.workspace_points import workspace_points
 from wsrender.result import Result
 from wsrender.robot import Robot
+from wsrender.run.headline import no_headline
 from wsrender.run.one_shard import OneShard
 from wsrender.run.provenance import job_entry, provenance, robot_entry
 from wsrender.run.sampled_positions import sampled_positions
@@ -61,14 +63,14 @@ class MappingPlan(OneShard):
         given = [self._given(np.array(offset)) for offset in self.job.offsets_m]
         found = [self._found(space, master, slave, each) for each in given]
         mappings = [sought or own_scale for sought, own_scale in zip(found, given, strict=True)]
-        entries = [_entry(mapping, space, own, slave) for mapping in mappings]
+        tested = [_entry(mapping, space, own, slave) for mapping in mappings]
         # What the search found first; of it the largest that succeeds, else the one with most points inside.
-        best = max(range(len(entries)), key=lambda k: (found[k] is not None, *_merit(entries[k])))
-        about = {"best": best, "offsets": entries, "master_m3": space.volume_m3, "slave_m3": own.volume_m3}
+        best = max(range(len(tested)), key=lambda k: (found[k] is not None, *_merit(tested[k])))
+        about = {"best": best, "offsets": tested, "master_m3": space.volume_m3, "slave_m3": own.volume_m3}
         arrays = {"master": master, "slave": slave}
         if self.job.search is not None:
-            curve = scale_curve(space, slave, self._of_factor_one(mappings[best]), _factors(self.job.search))
-            arrays |= {"factors": curve.factors, "inside": curve.inside}
+            curve = scale_curve(space, slave, _of_scale_one(mappings[best]), _scales(self.job.search))
+            arrays |= {"scales": curve.factors, "inside": curve.inside}
             about["found"] = found[best] is not None
         if progress:
             progress(self.samples)
@@ -93,22 +95,24 @@ class MappingPlan(OneShard):
             "mapping": best,
             "offsets": about["offsets"],
             "volume_m3": {"master": about["master_m3"], "slave": about["slave_m3"], "mapped": best["volume_m3"]},
+            "headline": no_headline("the volumes are of shapes around points, estimates without an interval"),
             "surfaces": {name: surface_entry(name, mesh) for name, mesh in meshes.items()},
             "provenance": provenance("float64", self.target),
             "timing_s": seconds,
         }
-        if "factors" in partial:
+        if "scales" in partial:
             most = int(np.argmax(partial["inside"]))
             document["search"] = {
                 "found": about["found"],
-                "scale": [float(partial["factors"][0]), float(partial["factors"][-1])],
+                "scale": [float(partial["scales"][0]), float(partial["scales"][-1])],
                 "most_inside": float(partial["inside"][most]),
-                "at_factor": float(partial["factors"][most]),
+                "at_scale": float(partial["scales"][most]),
             }
+            document["warnings"] = entries(_search_notices(self.job, about["found"]))
         failing = {"position": mapped[~inside], "slave_position": partial["slave"][~inside]}
         tables = {"failing": Table(failing, POSITIONS), "mapping": _points_table(master, mapped, inside)}
-        if "factors" in partial:
-            tables["scales"] = _curve_table(partial, about["slave_m3"] * self._of_factor_one(mapping).volume_factor)
+        if "scales" in partial:
+            tables["scales"] = _curve_table(partial, about["slave_m3"])
         return Result(document, tables=tables, meshes=meshes)
 
     def _points(self, source: Source, side: int) -> np.ndarray:
@@ -121,10 +125,6 @@ class MappingPlan(OneShard):
     def _rotation(self) -> np.ndarray:
         return self.job.rotation.matrix()[:3, :3] if self.job.rotation else np.eye(3)
 
-    def _of_factor_one(self, found: LinearMapping) -> LinearMapping:
-        """The found mapping shrunk or grown to the volume of the job's own scales."""
-        return found.scaled(float(np.cbrt(np.prod(self.job.scale) / found.volume_factor)))
-
     def _given(self, offset: np.ndarray) -> LinearMapping:
         return LinearMapping(np.array(self.job.scale), self._rotation(), offset)
 
@@ -134,13 +134,14 @@ class MappingPlan(OneShard):
         if search is None:
             return None
         if search.uniform and search.offset_m is None:
-            factor = largest_factor(space, slave, given, scale_curve(space, slave, given, _factors(search)))
-            return None if factor is None else given.scaled(factor)
+            start = _of_scale_one(given)
+            scale = largest_factor(space, slave, start, scale_curve(space, slave, start, _scales(search)))
+            return None if scale is None else start.scaled(scale)
         return best_mapping(
             space,
             (master.min(axis=0), master.max(axis=0)),
             slave,
-            given,
+            _of_scale_one(given) if search.uniform else replace(given, scale=np.ones(3)),
             scale_bounds=search.scale,
             uniform=search.uniform,
             offset_bounds=search.offset_m,
@@ -211,8 +212,33 @@ def _merit(entry: dict[str, Any]) -> tuple[bool, float]:
     return entry["succeeded"], entry["volume_m3"] if entry["succeeded"] else entry["inside"]
 
 
-def _factors(search: MappingSearch) -> np.ndarray:
+def _of_scale_one(mapping: LinearMapping) -> LinearMapping:
+    """The mapping in its proportions, its scale 1: the geometric mean of the three."""
+    return mapping.scaled(float(np.cbrt(1 / mapping.volume_factor)))
+
+
+def _scales(search: MappingSearch) -> np.ndarray:
     return np.linspace(*search.scale, search.steps)
+
+
+def _search_notices(job: MasterSlaveMappingJob, found: bool) -> Iterator[Notice]:
+    """That nothing fits; that bounds of a job with a scale of its own were once factors on it."""
+    if not found:
+        yield Notice(
+            "no_scale_fits",
+            "no mapping with scales within the bounds lies in the master's workspace; shown is the job's own scale",
+            "widen the bounds, or let the search move the offset",
+            "search.scale",
+        )
+    if job.search is not None and any(scale != 1.0 for scale in job.scale):
+        low, high = job.search.scale
+        yield Notice(
+            "scale_bounds",
+            f"the search looked at scales of {low:g} … {high:g}; before version 0.2 its bounds were factors on the "
+            "job's scale",
+            "give the bounds of the scale itself",
+            "search.scale",
+        )
 
 
 def _points_table(master: np.ndarray, mapped: np.ndarray, inside: np.ndarray) -> Table:
@@ -225,12 +251,12 @@ def _points_table(master: np.ndarray, mapped: np.ndarray, inside: np.ndarray) ->
     return Table(columns, POSITIONS)
 
 
-def _curve_table(partial: dict[str, np.ndarray], unit_volume_m3: float) -> Table:
-    """Volume of the mapped slave against the factor on its scales, and where all of it lies inside."""
-    factors, inside = partial["factors"], partial["inside"]
-    volume = unit_volume_m3 * factors**3
+def _curve_table(partial: dict[str, np.ndarray], slave_m3: float) -> Table:
+    """Volume of the mapped slave against its scale (of three, the geometric mean), and where it is all inside."""
+    scales, inside = partial["scales"], partial["inside"]
+    volume = slave_m3 * scales**3
     columns = {
-        "scale": factors,
+        "scale": scales,
         "volume": volume,
         "volume_inside": np.where(inside == 1.0, volume, np.nan),
         "share_inside": inside,

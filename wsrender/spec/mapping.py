@@ -108,13 +108,14 @@ class Containment(Document):
 class MappingSearch(Document):
     """Search of the mapping with the largest slave volume that succeeds.
 
-    One factor at a given offset is found to a millionth, with an offset a local optimum to about 0.5 %.
+    One scale at a given offset is found to a millionth, with an offset a local optimum to about 0.5 %.
     """
 
     scale: PositiveBounds = (0.1, 10.0)
-    """Bounds of the factors on the job's scale [1]."""
+    """Bounds [low, high] of the scale itself [1]: of each of three, or of one number, the geometric mean of the scales
+    along x, y, z, which keep the job's proportions."""
     uniform: StrictBool = True
-    """Whether one factor scales x, y and z, or three."""
+    """Whether one number scales x, y and z in the job's proportions, or three."""
     offset_m: tuple[Bounds, Bounds, Bounds] | None = None
     """Bounds [low, high] of the offset along x, y, z [m]; null: it stays each of the job's offsets."""
     steps: Annotated[int, Field(ge=2, le=10_000), BeforeValidator(integer)] = 50
