@@ -3,11 +3,16 @@
 import numpy as np
 import pytest
 
-from tests.boundary.planar_arms import boundary, revolute_joints, slide_and_turn, turn_and_slide
+import wsrender as ws
+from tests.boundary.planar_arms import boundary, revolute_joints, slide_and_turn, sliding, turn_and_slide, turning
 from tests.reference.planar_membership import PlanarArm
 from wsrender.boundary.fits import fit_circle, fit_line
+from wsrender.boundary.planar.agreement import INWARD, LARGEST_ERROR, disagreements, signed_area
 from wsrender.boundary.planar.cell_loops import cell_loops
+from wsrender.boundary.planar.exact_boundary import ExactBoundary
+from wsrender.boundary.planar.monte_carlo import CELLS as NUMBERS
 from wsrender.boundary.planar.monte_carlo import monte_carlo_boundary
+from wsrender.sampling import held_chain
 
 SAMPLES, CELLS = 100_000, 2500  # as published
 ARMS = {
@@ -25,11 +30,6 @@ def test_fits_of_exact_points():
     assert fit_line(np.array([[0, 0], [1, 2], [3, 6.0]])) == pytest.approx(0, abs=1e-30)
     # Distances of ±1 from the x axis: mean square 1.
     assert fit_line(np.array([[0, 1], [0, -1], [9, 1], [9, -1.0]])) == pytest.approx(1)
-
-
-def signed_area(loop):
-    x, y = loop.T
-    return (x * np.roll(y, -1) - np.roll(x, -1) * y).sum() / 2
 
 
 def square_with_a_hole(step=0.02):
@@ -54,9 +54,10 @@ def test_cells_of_a_line_and_of_a_point():
     assert cell_loops(np.zeros((5, 2)), 30).loops == []
 
 
-def sampled(arm, seed):
-    q = np.random.default_rng(seed).uniform(arm.low, arm.high, (SAMPLES, len(arm.low)))
-    at = arm.positions(q)
+def sampled(arm, seed, count=SAMPLES, biased=False):
+    rng, size = np.random.default_rng(seed), (count, len(arm.low))
+    share = rng.beta(0.5, 0.5, size) if biased else rng.random(size)
+    at = arm.positions(np.array(arm.low) + share * (np.array(arm.high) - np.array(arm.low)))
     return np.column_stack([at.real, at.imag])
 
 
@@ -123,3 +124,100 @@ def test_tolerances_decide_how_many_segments():
     points = sampled(PlanarArm(joints, tip), 0)
     counts = [len(monte_carlo_boundary(exact.chain, points, CELLS, t**2, t**2).segments[0]) for t in (0.02, 0.1, 2)]
     assert counts[0] > counts[1] > counts[2]
+
+
+def scara(method, count):
+    """The library's arm in its plane; its exact boundary, and that of so many samples."""
+    robot = ws.load_robot("scara")
+    exact = ExactBoundary.of(held_chain(robot.chain, {"joint4": 0.0}))
+    low, high = robot.chain.lower_limits, robot.chain.upper_limits
+    rng = np.random.default_rng(0)
+    share = rng.random((count, 4)) if method == "random" else rng.beta(0.5, 0.5, (count, 4))
+    q = low + share * (high - low)
+    q[:, 3] = 0
+    return exact, exact.chain.plane.coordinates(robot.forward_kinematics(q)[:, :3, 3])
+
+
+def test_samples_that_seldom_reach_the_boundary_have_not_converged():
+    """Of three joints two at limits draw it: samples thin out towards it, whatever the cells."""
+    exact, points = scara("random", SAMPLES)
+    found = monte_carlo_boundary(exact.chain, points)
+    assert found.cells.whole and found.cell_width_m > 1.5 * cell_loops(points, CELLS).width_m
+    (because,) = disagreements(found, exact)
+    assert because.startswith("its area is -1") and "% off" in because
+    published = monte_carlo_boundary(exact.chain, points, CELLS)  # what is asked for is done
+    assert published.cell_width_m == cell_loops(points, CELLS).width_m
+    because = [*disagreements(published, exact)]
+    assert "% of its cells hold one sample alone; at most 5 % should" in because[0] and "% off" in because[-1]
+    exact, points = scara("random", 20_000)
+    assert "holes may be cells that no sample happened to hit" in str(
+        [*disagreements(monte_carlo_boundary(exact.chain, points, CELLS), exact)]
+    )
+
+
+def test_samples_near_joint_limits_find_the_boundary_of_three_joints():
+    exact, points = scara("boundary", SAMPLES)
+    found = monte_carlo_boundary(exact.chain, points)
+    assert [*disagreements(found, exact)] == []
+    assert (len(found.loops), len(found.critical)) == (1, 6)
+    assert sum(map(signed_area, found.loops)) == pytest.approx(exact.area, rel=0.035)
+    assert len(found.segments[0]) <= 10  # of 8
+
+
+def random_arms(count, seed):
+    """Chains of two to four joints with limits."""
+    rng = np.random.default_rng(seed)
+    while count:
+        joints, x = [], 0.0
+        for turns in rng.random(rng.integers(2, 5)) < 0.7:
+            if turns:
+                low = rng.uniform(-180, 100)
+                joints.append(turning(x, 0, low, low + rng.uniform(40, 180)))
+                x += rng.uniform(0.5, 3)
+            else:
+                low = rng.uniform(0, 2)
+                joints.append(sliding(rng.uniform(0, 180), low, low + rng.uniform(0.5, 3)))
+        exact = boundary(joints, (x, 0.0))
+        if exact.dimension == 2:
+            count -= 1
+            yield exact, PlanarArm(joints, (x, 0.0))
+
+
+@pytest.mark.parametrize("biased", [False, True], ids=["random", "boundary"])
+def test_random_arms_are_right_or_say_that_they_are_not(biased):
+    converged = 0
+    for exact, arm in random_arms(25, seed=1):
+        found = monte_carlo_boundary(exact.chain, sampled(arm, 0, biased=biased))
+        for loop in found.segments:  # each segment begins where the one before it ends
+            ends, starts = ([getattr(s, name) for s in loop] for name in ("end", "start"))
+            assert np.array_equal(ends, [*starts[1:], starts[0]])
+        if [*disagreements(found, exact)]:
+            continue
+        converged += 1
+        areas = np.array([signed_area(loop) for loop in found.loops])
+        assert ((areas < 0).sum(), (areas > 0).sum()) == (sum(loop.hole for loop in exact.loops), 1)
+        inward = (exact.area - areas.sum()) / (exact.perimeter * found.cell_width_m)
+        assert INWARD[0] <= inward <= INWARD[1] and abs(areas.sum() / exact.area - 1) <= LARGEST_ERROR
+        arcs = [segment for loop in found.segments for segment in loop if segment.kind == "arc"]
+        scatter = [abs(np.linalg.norm(arc.start - arc.center) - arc.radius) for arc in arcs]
+        assert max(scatter, default=0) <= 1.5 * found.cell_width_m
+    assert converged >= (18 if biased else 5)
+
+
+def test_the_number_of_cells_falls_until_the_samples_fill_them():
+    joints, tip = ARMS["PR"]
+    exact, arm = boundary(joints, tip), PlanarArm(joints, tip)
+    points = sampled(arm, 0, 20_000)
+    assert not cell_loops(points, NUMBERS[0]).whole and len(cell_loops(points, NUMBERS[0]).loops) > 1
+    found = monte_carlo_boundary(exact.chain, points)
+    assert len(found.loops) == 1 and [*disagreements(found, exact)] == []
+    assert (NUMBERS[0], NUMBERS[-1]) == (2500, 110)
+
+
+def test_parts_and_chance_holes_of_cells():
+    square = square_with_a_hole()
+    found = cell_loops(square, 100)
+    assert (found.parts, found.chance, found.single) == (1, 0, 0) and found.whole
+    few = np.random.default_rng(0).choice(square, 120)  # one to a cell, or none
+    assert cell_loops(few, 100).chance > 0 and not cell_loops(few, 100).whole
+    assert cell_loops(np.concatenate([square, square + 20]), 900).parts == 2

@@ -46,6 +46,35 @@ def test_monte_carlo_lies_inside(result):
     assert len(result.tables["monte_carlo"]) > 2
 
 
+def test_a_monte_carlo_boundary_that_has_not_converged_says_so_and_is_drawn_so(result):
+    """20,000 samples of three joints: in the document, its warnings, the summary, the table and the picture."""
+    estimated = result.document["monte_carlo"]
+    assert not estimated["converged"] and "% off" in estimated["not_converged_because"][-1]
+    (warning,) = result.document["warnings"]
+    assert (warning["code"], warning["field"]) == ("monte_carlo_not_converged", "sampling")
+    assert estimated["not_converged_because"][-1] in warning["message"] and '"boundary"' in warning["remedy"]
+    assert "m², not converged)" in result.summary()
+    assert not result.tables["monte_carlo"]["converged"].any()
+    lines, labels = drawn_lines(result)
+    assert labels == ["samples", "Monte Carlo,\nnot converged", "exact", "inside", "outside"]
+    assert lines[0].get_alpha() < 0.5 and lines[0].get_linestyle()[0][1] is not None
+    converged = execute(JOB | {"sampling": {"method": "boundary", "count": 100_000}})
+    assert converged.document["monte_carlo"]["converged"] and converged.document["warnings"] == []
+    lines, labels = drawn_lines(converged)
+    assert labels[1] == "Monte Carlo" and lines[0].get_alpha() is None and lines[0].get_linestyle()[0][1] is None
+
+
+def drawn_lines(result):
+    axes = result.plot.boundary().axes[0]
+    return axes.collections, [text.get_text() for text in axes.get_legend().get_texts()]
+
+
+def test_the_headline_is_the_exact_area(result):
+    area = result.document["exact"]["area_m2"]
+    expected = {"quantity": "area", "value": area, "ci95": [area, area], "unit": "m2", "reason": ""}
+    assert result.document["headline"] == expected
+
+
 def test_points_are_answered(result):
     table = result.tables["points"]
     assert table["inside"].tolist() == [False, True]
@@ -99,7 +128,11 @@ def test_three_joints_have_regions_by_number_of_self_motions(result):
 def test_sets_without_area_are_results(rows, tmp_path):
     robot = {"dh": {"convention": "standard", "rows": rows}}
     found = execute(JOB | {"robot": robot, "sampling": {"method": "random", "count": 500}})
-    assert found.document["exact"]["area_m2"] == 0
+    assert found.document["exact"]["area_m2"] == 0 and found.document["warnings"] == []
+    length = 8 * np.pi / 3 if rows[0]["a"] else 0.0  # of 4 m over 120°
+    headline = found.document["headline"]
+    assert headline["value"] == (pytest.approx(length) if length else None) and bool(headline["reason"]) != bool(length)
+    assert headline["quantity"] == ("length" if length else "area")
     found.save(tmp_path / "out")
     assert (tmp_path / "out/plots/boundary.png").is_file()
 

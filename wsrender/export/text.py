@@ -134,7 +134,8 @@ def _planar(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
     """Area, perimeter and number of segments of a planar boundary, and the area by Monte Carlo."""
     exact, estimated = document.get("exact") or {}, document.get("monte_carlo") or {}
     if "perimeter_m" in exact:
-        yield "area", f"{exact['area_m2']:.9g} m² (Monte Carlo: {estimated['area_m2']:.4g} m²)"
+        unsure = "" if estimated.get("converged", True) else ", not converged"
+        yield "area", f"{exact['area_m2']:.9g} m² (Monte Carlo: {estimated['area_m2']:.4g} m²{unsure})"
         yield "perimeter", f"{exact['perimeter_m']:.9g} m"
         kinds = [segment["kind"] for loop in exact["loops"] for segment in loop["segments"]]
         holes = sum(loop["hole"] for loop in exact["loops"])

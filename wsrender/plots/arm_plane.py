@@ -22,7 +22,8 @@ _LONGEST, _LEAST = 5.6, 1.6  # edges of the axes [in]
 def planar_boundary(tables: Mapping[str, Table], *, title: str = "") -> Figure:
     """Tables ``boundary``, ``monte_carlo``, ``samples`` and ``points`` of the analysis, as far as there are any.
 
-    Raises InputError where neither of the first three holds anything.
+    A Monte Carlo boundary that has not converged, by the column of that name, is pale and dashed, and the legend says
+    so. Raises InputError where neither of the first three holds anything.
     """
     samples = tables["samples"]["position"] if "samples" in tables else np.empty((0, 2))
     lines = {name: _lines(tables[name]) for name in ("monte_carlo", "boundary") if name in tables}
@@ -37,15 +38,22 @@ def planar_boundary(tables: Mapping[str, Table], *, title: str = "") -> Figure:
         "monte_carlo": {"color": ESTIMATED, "lw": 1.6, "label": "Monte Carlo", "zorder": 3},
         "boundary": {"color": INK, "lw": 1.1, "label": "exact", "zorder": 4},
     }
+    if "monte_carlo" in tables and not np.all(tables["monte_carlo"].columns.get("converged", True)):
+        styles["monte_carlo"] |= {"alpha": 0.45, "ls": (0, (4, 2)), "label": "Monte Carlo,\nnot converged"}
     for name, pieces in lines.items():
         axes.add_collection(LineCollection(pieces, **styles[name]))
         starts = np.array([piece[0] for piece in pieces])
-        axes.plot(*starts.T, ls="", marker="o", ms=3.2, mew=0, color=styles[name]["color"], zorder=5)
+        axes.plot(*starts.T, ls="", marker="o", ms=3.2, mew=0, zorder=5, **_marked(styles[name]))
     if "points" in tables:
         _draw_points(axes, tables["points"])
     axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), frameon=False, fontsize=8)
     add_title(figure, title)
     return figure
+
+
+def _marked(style: dict[str, Any]) -> dict[str, Any]:
+    """Colour of the ends of segments in a style of lines."""
+    return {name: style[name] for name in ("color", "alpha") if name in style}
 
 
 def _lines(table: Table) -> list[np.ndarray]:
@@ -58,7 +66,7 @@ def _new_plane(points: np.ndarray) -> tuple[Figure, Axes]:
     extent = np.maximum(high - low, 0.25 * max((high - low).max(), 1e-6))
     middle, half = (low + high) / 2, 0.54 * extent
     width, height = np.maximum(_LONGEST * extent / extent.max(), _LEAST)
-    figure = new_figure(float(width) + 1.9, float(height) + 0.9)
+    figure = new_figure(float(width) + 2.3, float(height) + 0.9)
     axes = figure.add_subplot()
     axes.set_aspect("equal")
     axes.set_xlim(middle[0] - half[0], middle[0] + half[0])

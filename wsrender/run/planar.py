@@ -1,20 +1,23 @@
 """The analysis ``planar_boundary``: the exact boundary of a planar arm, and the Monte Carlo one beside it."""
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from wsrender.boundary.planar.agreement import disagreements, signed_area
 from wsrender.boundary.planar.exact_boundary import ExactBoundary
 from wsrender.boundary.planar.inverse_solutions import NumberRegions
 from wsrender.boundary.planar.monte_carlo import MonteCarloBoundary, monte_carlo_boundary
 from wsrender.boundary.planar.planar_chain import PlanarChain, planar_chain
 from wsrender.boundary.planar.segments import segment_entry, segment_table
 from wsrender.errors import NumericalError
+from wsrender.notices import Notice, entries
 from wsrender.result import Result
 from wsrender.robot import Robot, robot_with_model
+from wsrender.run.headline import headline, no_headline
 from wsrender.run.one_shard import OneShard
 from wsrender.run.partial_tables import arrays_of_tables, tables_of_arrays
 from wsrender.run.provenance import job_entry, provenance, robot_entry
@@ -62,7 +65,7 @@ class PlanarBoundaryPlan(OneShard):
         rows = np.unique(np.linspace(0, len(points) - 1, min(len(points), DRAWN)).astype(np.int64))
         tables = {
             "boundary": segment_table(exact.segments),
-            "monte_carlo": segment_table(estimated.segments),
+            "monte_carlo": _estimated_table(estimated, about["monte_carlo"]["converged"]),
             "samples": Table({"position": points[rows]}, {"position": "m"}),
         }
         if job.points_m:
@@ -87,6 +90,8 @@ class PlanarBoundaryPlan(OneShard):
             "provenance": provenance("float64", self.target, seed=getattr(job.sampling, "seed", None)),
             "timing_s": seconds,
         }
+        document["headline"] = _headline(document["exact"])
+        document["warnings"] = entries(_notices(document["monte_carlo"]))
         tables = {name: table for name, table in tables_of_arrays(partial).items() if len(table)}
         return Result(document, tables=tables)
 
@@ -102,6 +107,25 @@ def plan_planar_boundary(
     samples = plan_sampling(chain, job.sampling).count
     planar = planar_chain(chain.held(job.sampling.locked))
     return PlanarBoundaryPlan(job, robot, planar, *settled_device(job.device, resolved), samples)
+
+
+def _headline(exact: dict[str, Any]) -> dict[str, Any]:
+    """The exact area, or the length of a curve."""
+    if exact["dimension"] == 0:
+        return no_headline("the arm reaches one point", "area")
+    quantity, value = ("area", exact["area_m2"]) if exact["dimension"] == 2 else ("length", exact["perimeter_m"])
+    return headline(quantity, value, (value, value))
+
+
+def _notices(estimated: dict[str, Any]) -> Iterator[Notice]:
+    if because := estimated["not_converged_because"]:
+        yield Notice(
+            "monte_carlo_not_converged",
+            f"the Monte Carlo boundary has not converged: {'; '.join(because)}",
+            'take the exact boundary; samples of the method "boundary", more of them, or fewer cells bring this one '
+            "nearer",
+            "sampling",
+        )
 
 
 def _exact_entry(exact: ExactBoundary) -> dict[str, Any]:
@@ -139,8 +163,8 @@ def _regions_entry(number: str, regions: list[NumberRegions] | None) -> list[dic
 
 
 def _estimated_entry(estimated: MonteCarloBoundary, exact: ExactBoundary) -> dict[str, Any]:
-    """Cells and tolerances, how far inside the exact boundary the cells' centroids lie, loops with their segments."""
-    width, loops = estimated.cell_width_m, estimated.loops
+    """Cells and tolerances, how far inside the exact boundary they lie, whether it has converged, loops of segments."""
+    width, loops, differs = estimated.cell_width_m, estimated.loops, [*disagreements(estimated, exact)]
     centroids = np.concatenate([*loops, np.empty((0, 2))])
     inward = float(exact.nearest(centroids).distance.mean()) if len(centroids) else None
     return {
@@ -148,17 +172,20 @@ def _estimated_entry(estimated: MonteCarloBoundary, exact: ExactBoundary) -> dic
         "boundary_cells": len(centroids),
         "line_tolerance_m2": estimated.line_tolerance_m2,
         "arc_tolerance_m4": estimated.arc_tolerance_m4,
-        "area_m2": float(sum(map(_polygon_area, loops))),
+        "area_m2": float(sum(map(signed_area, loops))),
         "mean_distance_to_exact_m": inward,
         "mean_distance_to_exact_cells": inward / width if inward is not None else None,
         "critical_points_m": estimated.critical.tolist(),
+        "converged": not differs and exact.dimension == 2,
+        "not_converged_because": differs,
         "loops": [{"segments": [segment_entry(segment) for segment in loop]} for loop in estimated.segments],
     }
 
 
-def _polygon_area(loop: np.ndarray) -> float:
-    x, y = loop.T
-    return float((x * np.roll(y, -1) - np.roll(x, -1) * y).sum() / 2)
+def _estimated_table(estimated: MonteCarloBoundary, converged: bool) -> Table:
+    """One row per segment; the column ``converged``, the same in all, is for those who draw them."""
+    table = segment_table(estimated.segments)
+    return Table(table.columns | {"converged": np.full(len(table), converged)}, table.units)
 
 
 def _point_table(exact: ExactBoundary, points: np.ndarray) -> Table:

@@ -25,8 +25,9 @@ class PlanarBoundaryJob(Arm):
     """Name of the analysis."""
     sampling: Sampling = Random(100_000)
     """Samples of the Monte Carlo boundary, N_m in number. Joints locked here are held for the exact boundary too."""
-    cells: Annotated[int, Field(ge=1, le=MOST_CELLS), BeforeValidator(integer)] = 2500
-    """N_g: number of cells of the grid over the samples."""
+    cells: Annotated[int, Field(ge=1, le=MOST_CELLS), BeforeValidator(integer)] | None = None
+    """N_g: number of cells of the grid over the samples; null: 2500, as published, or the most that the samples fill,
+    down to 110."""
     line_tolerance_m2: PositiveNumber | None = None
     """TOLL: largest mean squared distance of boundary cells from a line [m²]; null: by the cells' width."""
     arc_tolerance_m4: PositiveNumber | None = None
