@@ -86,3 +86,12 @@ def test_pairs_on_one_side_are_no_pair():
     legs = [{**leg, "slide_m": [-2, 1], "branch": "minus"}, {**leg, "slide_m": [0, 2], "branch": "plus"}]
     with pytest.raises(InputError, match="is a PUS leg"):
         ball_region(mechanism({"legs": legs}), np.eye(3))
+
+
+def test_a_leg_that_hardly_moves_has_no_region():
+    """A range of 1e-9 of the length was an empty workspace, in silence."""
+    region = ball_region(mechanism(ups([[0, 0, 0]], [[0, 0, 0]], [1.0, 1.0 + 1e-7])), np.eye(3))
+    assert region.outside_radii.tolist() == [1.0]
+    with pytest.raises(InputError, match="must have limits 1e-08 m apart or more, not 1e-09 m") as caught:
+        ball_region(mechanism(ups([[0, 0, 0]], [[0, 0, 0]], [1.0, 1.0 + 1e-9])), np.eye(3))
+    assert caught.value.field == "legs.0"

@@ -10,7 +10,8 @@ from scipy.spatial.transform import Rotation
 
 from tests.parallel.ball_regions import at_origin, moved, random_region, region, six_pus
 from tests.parallel.mechanisms import known_ups, ups
-from wsrender.errors import InputError
+from wsrender.errors import InputError, NumericalError
+from wsrender.parallel.ball_region import BallRegion
 from wsrender.parallel.ball_surfaces import surface_table
 from wsrender.parallel.exact import ExactWorkspace, Topology, exact_volumes
 from wsrender.parallel.solids import solid_workspace
@@ -292,3 +293,44 @@ def test_every_triangle_lies_on_the_surface_that_it_names(seed):
     surfaces = np.column_stack([table["center"].round(9), table["radius"].round(9)])
     twin = np.unique(surfaces, axis=0, return_inverse=True)[1].ravel()
     np.testing.assert_allclose(*(np.bincount(twin, each) for each in (by_surface, table["area"])), atol=2e-2)
+
+
+def shells(thickness, count):
+    """Shells [1, 1 + thickness] about some of three centres of a circle of .6 m, above their plane."""
+    angle = 2 * np.pi * np.arange(count) / 3
+    centres = np.stack([0.6 * np.cos(angle), 0.6 * np.sin(angle), 0 * angle], axis=1)
+    radii, box = np.ones(count), (np.array([-np.inf, -np.inf, 0.0]), np.full(3, np.inf))
+    return BallRegion(centres, radii + thickness, centres, radii, *box)
+
+
+def thin_volume(thickness, count):
+    """By integration: one half shell; two, a ring of parallelograms (their area about circles of any radii,
+    ∬ r s / D² … = thickness² (2 + thickness)² / (4 D) · π); three, leading order: a parallelepiped."""
+    t = thickness
+    if count == 1:
+        return 2 * np.pi / 3 * (3 * t + 3 * t**2 + t**3)
+    distance = 0.6 * np.sqrt(3)
+    if count == 2:  # bipolar coordinates r, s about two foci: dV = r s / D dr ds dφ, half a turn above the plane
+        return np.pi / distance * (t + t**2 / 2) ** 2
+    normals = np.array([0.0, 0.0, 0.8]) - shells(t, 3).inside_centres
+    return t**3 / abs(np.linalg.det(normals))
+
+
+@pytest.mark.parametrize(("count", "exponents"), [(1, range(1, 8)), (2, range(1, 5)), (3, range(1, 4))])
+def test_thin_shells_have_the_volume_of_the_integral(count, exponents):
+    for exponent in exponents:
+        t = 10.0**-exponent
+        expected = thin_volume(t, count)
+        # Of three shells the leading order alone is known: it is left by about the thickness.
+        tolerance = 1e-6 if count < 3 else 1.5 * t
+        assert ExactWorkspace.of(shells(t, count)).volume_m3 == pytest.approx(expected, rel=tolerance)
+
+
+@pytest.mark.parametrize(("count", "exponents"), [(1, range(9, 11)), (2, range(6, 11)), (3, range(4, 11))])
+def test_what_float64_does_not_resolve_is_refused(count, exponents):
+    """Wrong, then negative: 1.03 of the volume at 1e-5 of the radius, minus forty times it at 1e-6."""
+    for exponent in exponents:
+        region = shells(10.0**-exponent, count)
+        with pytest.raises(NumericalError, match="too thin for an exact volume"):
+            ExactWorkspace.of(region)
+        assert np.isnan(exact_volumes([region]).volume).all()

@@ -7,8 +7,9 @@ from tests.parallel.ball_regions import region
 from wsrender.errors import InputError
 from wsrender.parallel.ball_surfaces import surface_table
 from wsrender.parallel.exact import ExactWorkspace
-from wsrender.plots.faces import faces_of
+from wsrender.plots.faces import faces_of, leg_numbers
 from wsrender.plots.surface_faces import in_sight, surface_faces
+from wsrender.volume.table import Table
 
 LENS = region([(0, 0, 0, 1), (1, 0, 0, 1)])  # two unit balls: two caps that share one circle
 
@@ -52,7 +53,7 @@ def test_the_edge_of_a_lens_is_its_circle_and_half_of_it_is_in_sight():
 def test_a_picture_names_every_face_and_a_mesh_without_faces_has_one_colour(published):
     figure = published.plot.surface()
     texts = [text.get_text() for text in figure.legends[0].texts]
-    assert len(texts) == 11 + 2 and {"leg 0 at its upper limit", "leg 5 at its lower limit", "edge", "vertex"} <= {
+    assert len(texts) == 11 + 2 and {"leg 1 at its upper limit", "leg 6 at its lower limit", "edge", "vertex"} <= {
         *texts
     }
     assert {axes.get_xlabel() for axes in figure.axes} == {"x [m]"}
@@ -70,3 +71,12 @@ def test_the_faces_of_a_saved_result_are_those_of_the_result(published, tmp_path
     again = ws.Result.load(tmp_path)
     found, expected = (result.meshes["workspace"].face_attributes["surface"] for result in (again, published))
     np.testing.assert_array_equal(found, expected)
+
+
+def test_legs_are_counted_from_one():
+    """Tables of version 0.1 counted from 0, with −1 for none: their pictures name the same legs as new ones."""
+    new = Table({"leg": np.array([1, 2, 1, 0]), "limit": np.array(["upper", "upper", "lower", ""])})
+    old = Table({"leg": np.array([0, 1, 0, -1]), "limit": np.array(["upper", "upper", "lower", ""])})
+    balls = Table({"leg": np.array([-1, -1]), "limit": np.array(["", ""])})
+    assert leg_numbers(new).tolist() == leg_numbers(old).tolist() == [1, 2, 1, 0]
+    assert leg_numbers(balls).tolist() == [0, 0]

@@ -14,7 +14,7 @@ Regions = Callable[[np.ndarray], list[BallRegion]]
 
 
 def volumes_of(regions: list[BallRegion]) -> np.ndarray:
-    """Volumes (N,) [m³]; those with the same numbers of balls are computed together."""
+    """Volumes (N,) [m³], NaN of regions too thin for float64; those with the same numbers of balls are joined."""
     kinds: dict[tuple, list[int]] = {}
     for k, region in enumerate(regions):
         kinds.setdefault(make_up(region), []).append(k)

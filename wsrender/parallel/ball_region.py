@@ -13,6 +13,8 @@ import numpy as np
 from wsrender.errors import InputError
 from wsrender.parallel.mechanism import Mechanism
 
+THINNEST = 1e-8  # range of a leg, relative to its longest: below it surfaces count as one (`exact.surfaces.APART`)
+
 
 @dataclass(frozen=True, eq=False)
 class BallRegion:
@@ -51,7 +53,7 @@ def ball_region(mechanism: Mechanism, rotation: np.ndarray) -> BallRegion:
     """The constant-orientation workspace of a mechanism at a platform orientation (3, 3), both in the base frame.
 
     Raises InputError where a leg is neither UPS nor one of a pair of PUS legs, or where a joint's cone or the distance
-    of the legs is limited: then the workspace is bounded by other surfaces too.
+    of the legs is limited: then the workspace is bounded by other surfaces too; and where a leg hardly moves.
     """
     if mechanism.clearance_m > 0:
         raise InputError("minimum_leg_distance_m", "must be null: else not only spheres bound the workspace")
@@ -65,6 +67,7 @@ def ball_region(mechanism: Mechanism, rotation: np.ndarray) -> BallRegion:
     for k, kind in enumerate(mechanism.kinds):
         if max(mechanism.base_cone_cosine[k], mechanism.platform_cone_cosine[k]) > -1:
             raise InputError(f"legs.{k}", "must have no cone: else not only spheres bound the workspace")
+        _check_range(mechanism, k)
         if kind == "UPS":
             inner, outer = (mechanism.base[k], mechanism.upper[k]), (mechanism.base[k], mechanism.lower[k])
             sides = "upper", "lower"
@@ -85,6 +88,14 @@ def ball_region(mechanism: Mechanism, rotation: np.ndarray) -> BallRegion:
             at_outside.append((k, sides[1]))
     box = mechanism.region_lower, mechanism.region_upper
     return BallRegion(*_stacked(inside), *_stacked(outside), *box, (*at_inside, *at_outside))
+
+
+def _check_range(mechanism: Mechanism, leg: int) -> None:
+    lower, upper = mechanism.lower[leg], mechanism.upper[leg]
+    longest = max(abs(lower), abs(upper), mechanism.link[leg])
+    if upper - lower < THINNEST * longest:
+        message = f"must have limits {THINNEST * longest:.3g} m apart or more, not {upper - lower:.3g} m"
+        raise InputError(f"legs.{leg}", f"{message}: surfaces so near each other are one in float64")
 
 
 def _stacked(balls: list[tuple[np.ndarray, float]]) -> tuple[np.ndarray, np.ndarray]:

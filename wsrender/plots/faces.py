@@ -59,16 +59,26 @@ def faces_of(mesh: "trimesh.Trimesh", table: Table | None) -> Faces:
     if number is None or table is None:
         none = np.zeros(len(mesh.faces), np.int64)
         return Faces(np.asarray(mesh.vertices), np.asarray(mesh.faces), none, {}, {0: PLAIN})
-    present = sorted(np.unique(number).tolist(), key=lambda row: (table["leg"][row] < 0, table["leg"][row], row))
+    legs = leg_numbers(table)
+    present = sorted(np.unique(number).tolist(), key=lambda row: (legs[row] == 0, legs[row], row))
     labels = {row: _label(table, row) for row in present}
     colors = {row: _color(table, row) for row in present}
     return Faces(np.asarray(mesh.vertices), np.asarray(mesh.faces), number, labels, colors)
 
 
+def leg_numbers(table: Table) -> np.ndarray:
+    """The leg of each surface, counted from 1, (K,) int64; 0: none.
+
+    Tables of version 0.1 count from 0, and have −1 for none: there the first leg is at a limit of its own.
+    """
+    from_zero = bool(((table["leg"] == 0) & (table["limit"] != "")).any())
+    return np.maximum(table["leg"] + from_zero, 0)
+
+
 def _label(table: Table, row: int) -> str:
     """Such as ``leg 2 at its upper limit``, ``inside ball 3`` or ``z = 0.5 m``."""
-    kind, leg = str(table["kind"][row]), int(table["leg"][row])
-    if leg >= 0:
+    kind, leg = str(table["kind"][row]), int(leg_numbers(table)[row])
+    if leg:
         return f"leg {leg} at its {table['limit'][row]} limit"
     if kind != "plane":
         return f"{kind} ball {row}"
@@ -78,11 +88,11 @@ def _label(table: Table, row: int) -> str:
 
 
 def _color(table: Table, row: int) -> Color:
-    leg = int(table["leg"][row])
+    leg = int(leg_numbers(table)[row])
     if table["kind"][row] == "plane":
         return _rgb(_GREYS[row % len(_GREYS)])
-    color = _rgb(_LEGS[(leg if leg >= 0 else row) % len(_LEGS)])
-    if table["limit"][row] == "lower" or (leg < 0 and table["kind"][row] == "outside"):
+    color = _rgb(_LEGS[(leg - 1 if leg else row) % len(_LEGS)])
+    if table["limit"][row] == "lower" or (leg == 0 and table["kind"][row] == "outside"):
         red, green, blue = (1 - _PALE * (1 - part) for part in color)
         return red, green, blue
     return color

@@ -114,7 +114,10 @@ class Evaluator:
         return values
 
     def _exact_rows(self, placed: list[tuple[BallRegion, np.ndarray]]) -> np.ndarray:
-        return np.column_stack([exact_values(o.value, placed) for o in self.plan.job.objectives])
+        values = np.column_stack([exact_values(o.value, placed) for o in self.plan.job.objectives])
+        if np.isnan(values).any():
+            raise NumericalError("a design's workspace is too thin for an exact volume")
+        return values
 
     def _by_running(self, design: np.ndarray) -> list[float]:
         result = None
@@ -173,7 +176,10 @@ def with_few_samples(document: Any) -> Any:
 
 
 def exact_values(value: str, placed: list[tuple[BallRegion, np.ndarray]]) -> np.ndarray:
-    """An exact value (N,) of regions with their ``T_world_base``: volume [m³], radius or edge [m]; 0 of empty ones."""
+    """An exact value (N,) of regions with their ``T_world_base``: volume [m³], radius or edge [m]; 0 of empty ones.
+
+    The volume is NaN where a region is too thin for float64.
+    """
     if value == EXACT_VOLUME:
         return volumes_of([region for region, _ in placed])
     largest, factor = {EXACT_SPHERE: (largest_ball, 1.0), EXACT_CUBE: (largest_cube, 2.0)}[value]

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from wsrender.errors import NumericalError
 from wsrender.parallel.exact.arcs import Arcs
 from wsrender.parallel.exact.circles import cross, dot
 
@@ -18,6 +19,7 @@ from wsrender.parallel.exact.circles import cross, dot
 PROBES = np.array([[0.3608, 0.4817, 0.7986], [-0.7529, 0.1632, -0.6376], [0.2173, -0.9361, 0.2767]])
 PROBES /= np.linalg.norm(PROBES, axis=1)[:, None]
 ALMOST = 1e-6  # solid angle [sr] within which an area may be 0 or 4π
+UNCERTAIN = 1e-6  # of a volume: a region so thin that less of it is sure has no exact volume
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,11 +27,27 @@ class Measures:
     """Of M regions, in metres: ``volume`` (M,), ``area`` (M, K) and vector area ``facing`` (M, K, 3) by surface.
 
     The vector area is the integral of the normal that points away from the centre, or out of a half space.
+    ``uncertain`` (M,) [m³]: what rounding and the surfaces' small moves may have changed of the volume.
     """
 
     volume: np.ndarray
+    uncertain: np.ndarray
     area: np.ndarray
     facing: np.ndarray
+
+    @property
+    def resolved(self) -> np.ndarray:
+        """Whether float64 resolves the volume of each region, (M,) bool: thin ones are differences of large numbers."""
+        return self.uncertain <= UNCERTAIN * np.abs(self.volume)
+
+    def check_resolved(self) -> None:
+        """Raise NumericalError, with the numbers, where a volume is not resolved."""
+        for row in np.flatnonzero(~self.resolved)[:1]:
+            raise NumericalError(
+                f"the workspace is too thin for an exact volume: {self.volume[row]:.3g} m³ is uncertain by "
+                f"{self.uncertain[row]:.1g} m³, more than {UNCERTAIN:g} of it; use wider limits, a thousandth of the "
+                'leg\'s length or more, or the method "grid" with a refined volume'
+            )
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,7 +113,12 @@ def _triangle(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray:
 
 
 def measures(arcs: Arcs, edges: HalfEdges) -> Measures:
-    """Volume, areas and vector areas of every region."""
+    """Volume, areas and vector areas of every region.
+
+    The surfaces stand a hair inside the region (`Surfaces.moved_apart`): the volume is that where they were, to first
+    order. The square of what that changed is left, and the rounding of solid angles, whose terms are of order 1
+    however small the region is.
+    """
     surfaces = arcs.surfaces
     count, shape = surfaces.count, (len(surfaces), surfaces.count)
     place = np.concatenate([arcs.region, arcs.region]) * count + edges.surface
@@ -109,8 +132,14 @@ def measures(arcs: Arcs, edges: HalfEdges) -> Measures:
     area = np.concatenate([angle * r**2, dot(facing[:, surfaces.spheres :], surfaces.normals)], axis=1)
     flux = surfaces.side * (r**3 * angle + dot(c, facing[:, spheres]))
     volume = (flux.sum(axis=1) + (surfaces.offsets * area[:, surfaces.spheres :]).sum(axis=1)) / 3
+    moved = (np.abs(area) * surfaces.moves).sum(axis=1)
+    edges_of = np.bincount(arcs.region, minlength=len(surfaces))
+    rounding = np.finfo(float).eps * (np.sqrt(edges_of) + np.abs(flux).sum(axis=1))
+    volume = volume + moved
+    uncertain = rounding + moved**2 / np.maximum(np.abs(volume), np.finfo(float).tiny)
     scale = surfaces.scale
-    return Measures(volume * scale**3, area * scale[:, None] ** 2, facing * scale[:, None, None] ** 2)
+    lengths = scale[:, None] ** 2
+    return Measures(volume * scale**3, uncertain * scale**3, area * lengths, facing * lengths[..., None])
 
 
 def solid_angles(angle: np.ndarray, touched: np.ndarray, probed: np.ndarray) -> np.ndarray:

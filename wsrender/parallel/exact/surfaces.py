@@ -22,7 +22,8 @@ class Surfaces:
     """M regions of S spheres and P axis-aligned planes, each about its own ``origin`` in units of its ``scale`` [m].
 
     ``centres`` (M, S, 3), ``radii`` (M, S); ``side`` (S,) is +1 where the region is inside the sphere, −1 where
-    outside. ``normals`` (P, 3) point out of the half spaces x·n ≤ ``offsets`` (M, P).
+    outside. ``normals`` (P, 3) point out of the half spaces x·n ≤ ``offsets`` (M, P). ``moves`` (K,): how far each
+    surface was moved into the region, scaled; 0: not at all.
     """
 
     centres: np.ndarray
@@ -32,6 +33,7 @@ class Surfaces:
     offsets: np.ndarray
     origin: np.ndarray
     scale: np.ndarray
+    moves: np.ndarray | float = 0.0
 
     def __len__(self) -> int:
         return len(self.centres)
@@ -77,7 +79,7 @@ class Surfaces:
         """Some of the regions."""
         fields = (self.centres, self.radii, self.offsets, self.origin, self.scale)
         centres, radii, offsets, origin, scale = (field[regions] for field in fields)
-        return Surfaces(centres, radii, self.side, self.normals, offsets, origin, scale)
+        return Surfaces(centres, radii, self.side, self.normals, offsets, origin, scale, self.moves)
 
     def moved_apart(self, attempt: int = 0) -> "Surfaces":
         """The same surfaces, each moved into the region by its own small length; other lengths at each attempt."""
@@ -88,7 +90,7 @@ class Surfaces:
         offsets = self.offsets - moves[self.spheres :]
         # Balls that are points stay points: a region inside one is empty, one outside is none the smaller.
         radii = np.where(self.is_curved, radii, 0.0)
-        return Surfaces(self.centres, radii, self.side, self.normals, offsets, self.origin, self.scale)
+        return Surfaces(self.centres, radii, self.side, self.normals, offsets, self.origin, self.scale, moves)
 
 
 def make_up(region: BallRegion) -> tuple:

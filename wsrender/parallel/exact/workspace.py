@@ -39,10 +39,15 @@ class ExactWorkspace:
 
     @classmethod
     def of(cls, region: BallRegion) -> "ExactWorkspace":
-        """The workspace of a region; InputError where it is unbounded, NumericalError where edges do not close."""
+        """The workspace of a region.
+
+        InputError where it is unbounded; NumericalError where edges do not close, or it is too thin for float64.
+        """
         found = arcs(surfaces_of([region]))
         halves = half_edges(found)
-        return cls(found, halves, measures(found, halves))
+        measured = measures(found, halves)
+        measured.check_resolved()
+        return cls(found, halves, measured)
 
     @property
     def volume_m3(self) -> float:
@@ -110,7 +115,7 @@ class ExactVolumes:
     """Volumes (M,) [m³] of regions, and their derivatives by each region's centres, radii and finite bounds [m²].
 
     ``by_centre`` (M, S, 3) and ``by_radius`` (M, S): inside balls first, then outside balls. ``by_bound`` (M, P): the
-    finite lower bounds, then the upper.
+    finite lower bounds, then the upper. The volume is NaN where a region is too thin for float64.
     """
 
     volume: np.ndarray
@@ -136,4 +141,5 @@ def _volumes(regions: Sequence[BallRegion]) -> tuple[np.ndarray, ...]:
     measured, spheres = measures(found, half_edges(found)), found.surfaces.spheres
     side = found.surfaces.side
     by_bound = measured.area[:, spheres:] * found.surfaces.normals.sum(axis=1)
-    return measured.volume, measured.facing[:, :spheres] * side[:, None], measured.area[:, :spheres] * side, by_bound
+    volume = np.where(measured.resolved, measured.volume, np.nan)
+    return volume, measured.facing[:, :spheres] * side[:, None], measured.area[:, :spheres] * side, by_bound
