@@ -56,7 +56,7 @@ if TYPE_CHECKING:
     from wsrender.spec.robot import DHRow, DHTable, Transform
     from wsrender.spec.sampling import BoundaryBiased, Converge, Grid, Random, Sobol
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 __all__ = [
     "AccessError",
