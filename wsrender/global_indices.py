@@ -57,5 +57,9 @@ def global_isotropy(partial: Partial) -> float:
 
 
 def structural_length_index(chain: Chain, volume_m3: float) -> float | None:
-    """Length sum over the cube root of the workspace volume; None where the volume is 0."""
-    return structural_length(chain) / float(np.cbrt(volume_m3)) if volume_m3 > 0 else None
+    """Length sum over the cube root of the workspace volume; None where the volume is 0.
+
+    What lies between the base frame and a first joint many reaches away is no link but a placement.
+    """
+    chain = chain.placed(np.eye(4))
+    return structural_length(chain.relative_to(chain.origin)) / float(np.cbrt(volume_m3)) if volume_m3 > 0 else None

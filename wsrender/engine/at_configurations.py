@@ -6,7 +6,7 @@ import numpy as np
 
 from wsrender.engine.devices import devices_of
 from wsrender.engine.evaluation import Evaluation
-from wsrender.engine.sweep import SweepPlan, sweep
+from wsrender.engine.sweep import SweepPlan, from_origin, sweep
 from wsrender.sampling import given_sampling
 
 
@@ -44,7 +44,7 @@ def evaluate_at(
     partial = sweep(plan, 0, len(q), devices_of(device), threads=threads)
     rows = np.concatenate([partial.rows[first] for first in sorted(partial.rows)] or [_none(plan)], axis=1)
     quat = np.ascontiguousarray(rows[3 + K : 7 + K].T) if with_orientation else None
-    return Evaluated(np.ascontiguousarray(rows[:3].T), rows[3 : 3 + K], quat)
+    return Evaluated(from_origin(plan, rows), rows[3 : 3 + K], quat)
 
 
 def _none(plan: SweepPlan) -> np.ndarray:

@@ -93,10 +93,10 @@ def drive(chain: Chain) -> tuple[tuple[int, ...], bool]:
     return tuple(int(s) for s in chain.joint_source), bool(own and np.all(chain.joint_is_revolute))
 
 
-def evaluation_model(evaluation: Evaluation, precision: str):
-    """The Model struct of an evaluation, without what the host computes."""
+def evaluation_model(evaluation: Evaluation, precision: str, origin: np.ndarray):
+    """The Model struct of an evaluation, without what the host computes; positions are relative to ``origin`` (3,)."""
     chain, real = evaluation.chain, REAL[precision]
-    model = chain_model(evaluation.device_chain, precision)
+    model = chain_model(evaluation.device_chain.relative_to(origin), precision)
     model.lower, model.upper = vector_of(chain.lower_limits, real), vector_of(chain.upper_limits, real)
     limited = ~chain.periodic & (chain.upper_limits > chain.lower_limits)
     model.limited = vector_of(limited, real)

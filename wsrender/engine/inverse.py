@@ -38,6 +38,9 @@ def solve_inverse(
     ``without_limits`` lets hinges turn for ever; slides keep their limits, which are their length. The kinematics of a
     robot that is defined by a Python class run on the host, in float64.
     """
+    if (origin := chain.origin).any():
+        chain, targets = chain.relative_to(origin), targets.copy()
+        targets[:, :3] -= origin
     if isinstance(chain, HostChain):
         return host_tries(chain, targets, starts, accuracy, without_limits, steps)
     devices = devices_of(device)

@@ -17,7 +17,10 @@ BATCH = 1 << 20
 
 @dataclass(frozen=True, eq=False)
 class Kinematics:
-    """Poses (N, 4, 4), Jacobians (N, 6, n) and, where asked, inertia matrices (N, n, n), in the world frame."""
+    """Poses (N, 4, 4), Jacobians (N, 6, n) and, where asked, inertia matrices (N, n, n), in the world frame.
+
+    Poses of a robot far from the world's origin are float64 in any precision: no other holds them.
+    """
 
     pose: np.ndarray
     jacobian: np.ndarray
@@ -52,7 +55,7 @@ def evaluate_poses(chain: Chain, q: np.ndarray, precision: str = "float64", devi
 
 
 def _evaluate(chain: Chain, q: np.ndarray, with_inertia: bool, precision: str, device: wp.Device) -> Kinematics:
-    real, n = REAL[precision], chain.n
+    real, n, origin = REAL[precision], chain.n, chain.origin
     chain = chain.dynamic if with_inertia else chain
     pose = wp.empty((len(q), 12), dtype=real, device=device)
     jacobian = wp.empty((len(q), 6, n), dtype=real, device=device)
@@ -61,11 +64,12 @@ def _evaluate(chain: Chain, q: np.ndarray, with_inertia: bool, precision: str, d
         launch(
             loaded(kinematics_kernel(real, n, *drive(chain), with_inertia), device),
             dim=len(q),
-            inputs=[chain_model(chain, precision), device_array(q, real, device)],
+            inputs=[chain_model(chain.relative_to(origin), precision), device_array(q, real, device)],
             outputs=[pose, jacobian, inertia],
             device=device,
         )
-    T = np.zeros((len(q), 4, 4), wp.dtype_to_numpy(real))
+    T = np.zeros((len(q), 4, 4), np.float64 if origin.any() else wp.dtype_to_numpy(real))
     T[:, :3, :] = pose.numpy().reshape(-1, 4, 3).transpose(0, 2, 1)
+    T[:, :3, 3] += origin
     T[:, 3, 3] = 1
     return Kinematics(T, jacobian.numpy(), inertia.numpy() if with_inertia else None)

@@ -50,8 +50,8 @@ class LegTest:
         kinds = tuple(sorted({kind_of(kind) for kind in legs.kinds}))
         return MembershipShape(REAL[self.precision], kinds, len(legs.kinds), bool(cones), bool(self.pairs))
 
-    def model(self, shape: MembershipShape | None = None):
-        """The struct of the kernels of a shape, by default the test's own."""
+    def model(self, shape: MembershipShape | None = None, origin: np.ndarray | None = None):
+        """The struct of the kernels of a shape, by default the test's own; the world is seen from ``origin`` (3,)."""
         legs, real, count = self.legs, REAL[self.precision], len(self.legs.kinds)
         model = mechanism_type(shape or self.shape)()
         packed = pack_legs(legs)
@@ -64,7 +64,7 @@ class LegTest:
         model.clearance_2 = legs.clearance_m**2
         model.lower, model.upper = vector_of(legs.region_lower, real), vector_of(legs.region_upper, real)
         model.axes = wp.types.matrix((3, 3), real)(*legs.T_world_base[:3, :3].T.ravel().tolist())
-        model.origin = vector_of(legs.T_world_base[:3, 3], real)
+        model.origin = vector_of(legs.T_world_base[:3, 3] - (0.0 if origin is None else origin), real)
         return model
 
 
@@ -183,7 +183,7 @@ class _Lattice:
         shape = replace(test.shape, given=not isinstance(places, LatticeBlock))
         self.device, self.by_subsystem, self.orientations = device, int(by_subsystem), len(rotations)
         self.kernel = loaded(lattice_kernel(shape, device.is_cuda), device)
-        self.model = test.model(shape)
+        self.model = test.model(shape, places.origin if isinstance(places, LatticeBlock) else None)
         joints = np.einsum("nij,lj->nli", rotations, test.legs.platform)
         cones = np.einsum("nij,lj->nli", rotations, test.legs.platform_cone_axis)
         self.points = device_array(points.T.ravel(), real, device)
@@ -193,7 +193,7 @@ class _Lattice:
         self.grid.size_y = self.grid.size_z = 1
         if isinstance(places, LatticeBlock):
             self.grid.edge = places.voxel_size_m
-            self.grid.first_x, self.grid.first_y, self.grid.first_z = places.first_voxel
+            self.grid.first_x, self.grid.first_y, self.grid.first_z = places.first_from_origin
             _, self.grid.size_y, self.grid.size_z = places.shape
 
     def __call__(self, first: int, count: int) -> OrientationCounts:

@@ -8,7 +8,7 @@ from wsrender_kernels.voxels import decode_extreme
 
 @dataclass(frozen=True, eq=False)
 class Partial:
-    """What a range of samples contributes.
+    """What a range of samples contributes; positions are relative to the plan's ``origin``.
 
     ``extremes`` (2 R,): largest value and largest complement of each of the R = 5 + K outputs in ordered-integer
     form; ``totals`` (K,) int64: fixed-point sums. Of the occupied voxels, sorted by ``cells`` (V,) int64 (flat index

@@ -67,6 +67,11 @@ class SweepPlan:
         return GridStructure(self.sampling) if direct else structure_of(self.evaluation, self.sampling)
 
     @property
+    def origin(self) -> np.ndarray:
+        """Where the positions of a `Partial` are counted from, in the world (3,) [m]."""
+        return self.evaluation.chain.origin if self.block is None else self.block.origin
+
+    @property
     def sampling_path(self) -> str:
         """How the samples are evaluated: "direct", one by one, or "collapsed", by the structure of a grid."""
         return "collapsed" if self.structure.multiplicity > 1 else "direct"
@@ -135,6 +140,12 @@ def sweep(
     result = joined(partials, slabs[0].size if slabs[0] else 0)
     _check_values(plan, result)
     return result
+
+
+def from_origin(plan: SweepPlan, rows: np.ndarray) -> np.ndarray:
+    """Positions (N, 3) [m] in the world of rows of a sweep; of a robot far from the world's origin in float64."""
+    positions = np.ascontiguousarray(rows[:3].T)
+    return positions + plan.origin if plan.origin.any() else positions
 
 
 def _swept(accumulators: list["Accumulator"], queue: "_Queue", report: Callable[[int], None]) -> Partial:
@@ -225,13 +236,13 @@ class Accumulator:
         self._size = slab.size if slab else 0
         voxels = self._size + 1 if slab else 0  # one to spare for positions outside
         self._kernel = loaded(sweep_kernel(shape, device.is_cuda), device)
-        self._model = evaluation_model(plan.evaluation, plan.precision)
+        self._model = evaluation_model(plan.evaluation, plan.precision, plan.origin)
         given = shape.method == "given"
         evaluated = plan.structure.evaluated
         self._run = run_length(evaluated, shape.shared)
         self._space = None if given else device_space(evaluated, plan.precision, device, self._run)
         self._base = device_base(plan.structure, plan.sampling, real)
-        self._lattice = _device_lattice(slab, real)
+        self._lattice = _device_lattice(slab, plan.block, real)
         reduced = shape.reduced
         self._extremes = device_memory(2 * reduced, bits, device)
         self._totals = device_memory(TOTAL_SLOTS * shape.n_indices, wp.int64, device)
@@ -323,6 +334,7 @@ class Accumulator:
         real, device, model = self.shape.real, self.device, self._model
         chain = evaluation.host_chain
         if chain is not None:
+            chain = chain.relative_to(self.plan.origin)
             model.position_given = device_array(chain.poses(q)[:, :3, 3].T.ravel(), real, device)
             model.jacobian_given = device_array(chain.jacobians(q).reshape(count, -1).T.ravel(), real, device)
         if evaluation.dynamic and evaluation.host_inertia is not None:
@@ -382,12 +394,14 @@ def _counts(records: np.ndarray) -> np.ndarray:
     return records.view(np.int64)[:, 0]
 
 
-def _device_lattice(block: LatticeBlock | None, real):
+def _device_lattice(block: LatticeBlock | None, whole: LatticeBlock | None, real):
+    """The Lattice struct of a block, or of a slab of the ``whole``, which says where positions are counted from."""
     grid = lattice(real)()
     # The reciprocal of the edge as the kernel holds it, rounded once.
     edge = wp.dtype_to_numpy(real)(block.voxel_size_m if block else 1.0)
     grid.edge, grid.per_edge = float(edge), float(1 / edge)
-    grid.first_x, grid.first_y, grid.first_z = block.first_voxel if block else (0, 0, 0)
+    first, origin = (block.first_voxel, whole.origin_voxel) if block and whole else ((0, 0, 0), (0, 0, 0))
+    grid.first_x, grid.first_y, grid.first_z = (at - start for at, start in zip(first, origin, strict=True))
     grid.size_x, grid.size_y, grid.size_z = block.shape if block else (1, 1, 1)
     grid.spare = block.size if block else 1
     return grid
@@ -407,12 +421,12 @@ def _check_values(plan: SweepPlan, partial: Partial) -> None:
                 "pass: its sums would overflow; give another seed or bound the index with wsrender.math.minimum"
             )
     if plan.block is not None:
-        edge, first, shape = plan.block.voxel_size_m, plan.block.first_voxel, plan.block.shape
+        edge, first, shape = plan.block.voxel_size_m, plan.block.first_from_origin, plan.block.shape
         for axis in range(3):
             if not np.isfinite([low[axis], high[axis]]).all():
                 raise NumericalError(f"the end effector's {'xyz'[axis]} is not finite")
             if low[axis] < first[axis] * edge or high[axis] > (first[axis] + shape[axis]) * edge:
                 raise NumericalError(
-                    f"the end effector reaches {'xyz'[axis]} = {low[axis]:.6g} … {high[axis]:.6g} m, outside the "
-                    "lattice block planned for it"
+                    f"the end effector reaches {'xyz'[axis]} = {low[axis]:.6g} … {high[axis]:.6g} m from "
+                    f"{plan.origin[axis]:.9g} m, outside the lattice block planned for it"
                 )

@@ -36,9 +36,11 @@ class RefinedVolumes:
 def refined_volume(chain: Chain, tolerance: float, **options) -> tuple[VolumeEstimate, RefinedVolumes]:
     """The volume that the end effector of one chain reaches; options of `refined_volumes`.
 
-    In the base frame, where the box that holds the reach is smallest: no volume depends on a placement.
+    In the base frame, where the box that holds the reach is smallest, and near the base: no volume depends on a
+    placement.
     """
-    found = refined_volumes([chain.placed(np.eye(4))], {"reachable": Event(1, 1)}, tolerance, **options)
+    chain = chain.placed(np.eye(4))
+    found = refined_volumes([chain.relative_to(chain.origin)], {"reachable": Event(1, 1)}, tolerance, **options)
     return found.volumes["reachable"], found
 
 

@@ -8,9 +8,17 @@ from typing import Self
 
 import numpy as np
 
+FAR = 8  # reaches away from the world's origin that single precision bears: three of its 24 bits
+
 
 def _identity() -> np.ndarray:
     return np.eye(4)
+
+
+def _first_moved(T_joint: np.ndarray, by: np.ndarray) -> np.ndarray:
+    T_joint = T_joint.copy()
+    T_joint[0, :3, 3] -= by
+    return T_joint
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,6 +140,30 @@ class Chain:
     def center(self) -> np.ndarray:
         """Centre of a sphere of radius `reach` that holds every position, (3,) [m]: the first joint's origin."""
         return (self.T_world_base @ self.T_joint[0])[:3, 3]
+
+    @cached_property
+    def origin(self) -> np.ndarray:
+        """Where positions on a device are counted from, (3,) [m]: the world's origin, or far from it the center."""
+        far = np.linalg.norm(self.center) > FAR * self.reach
+        return self.center if far else np.zeros(3)
+
+    def relative_to(self, origin: np.ndarray) -> Self:
+        """The same chain in a world whose origin stands at ``origin`` (3,) [m].
+
+        The offset of the first joint moves to the base: what is far away is subtracted before it is rounded.
+        """
+        if not origin.any():
+            return self
+        offset = self.T_joint[0, :3, 3]
+        T_world_base = self.T_world_base.copy()
+        T_world_base[:3, 3] = self.center - origin
+        whole = self.with_branches
+        return replace(
+            self,
+            T_world_base=T_world_base,
+            T_joint=_first_moved(self.T_joint, offset),
+            with_branches=whole and replace(whole, T_joint=_first_moved(whole.T_joint, offset)),
+        )
 
     @property
     def largest_slide(self) -> np.ndarray:

@@ -1,5 +1,6 @@
 """From a compiled MuJoCo model to the Chain between a base and a tip."""
 
+import copy
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
@@ -10,10 +11,10 @@ import numpy as np
 from wsrender.errors import ModelError
 from wsrender.notices import Notice
 from wsrender.robots import branches, frames
-from wsrender.robots.chain import Chain
+from wsrender.robots.chain import FAR, Chain
 from wsrender.robots.compiled_model import CompiledModel
 from wsrender.robots.couplings import Couplings, refuse_loops
-from wsrender.robots.frames import Frame, transform
+from wsrender.robots.frames import Frame, joints_of, transform
 from wsrender.robots.gripper_tip import gripper_notices
 from wsrender.robots.inertials import MASSLESS
 from wsrender.robots.limits import Drive, coordinate_limits, effort_limits, joint_name
@@ -187,7 +188,11 @@ def _carriers(model: mujoco.MjModel, joints: list[int]) -> np.ndarray:
 
 @dataclass(frozen=True)
 class _Geometry:
-    """Places of everything with the moving joints at ``qpos0``, in the world: all, the base (4, 4), the tip (4, 4)."""
+    """Places of everything with the moving joints at ``qpos0``: all, the base (4, 4), the tip (4, 4).
+
+    They are in the world, or where the first joint is far from its origin, in axes through that: differences of large
+    numbers would lose digits of the links.
+    """
 
     data: mujoco.MjData
     base: np.ndarray
@@ -202,7 +207,28 @@ class _Geometry:
         moving = model.jnt_qposadr[[drive.joint for drive in drives]]
         data.qpos[moving] = model.qpos0[moving]
         mujoco.mj_kinematics(model, data)
-        return cls(data, base.pose(data), tip.pose(data))
+        anchors = data.xanchor[[drive.joint for drive in drives]]
+        size = max(np.ptp(anchors, axis=0).max(), np.abs(tip.pose(data)[:3, 3] - anchors[0]).max())
+        T_base = base.pose(data)
+        if np.abs(anchors[0]).max() > FAR * size:
+            model, data = _moved(model, data, -anchors[0])
+            mujoco.mj_kinematics(model, data)
+            T_base = base.pose(data) if base.body else transform(T_base[:3, 3] - anchors[0], T_base[:3, :3])
+        return cls(data, T_base, tip.pose(data))
+
+
+def _moved(model: mujoco.MjModel, data: mujoco.MjData, by: np.ndarray) -> tuple[mujoco.MjModel, mujoco.MjData]:
+    """Copies with everything but what is fixed to the world itself moved ``by`` (3,) [m]."""
+    model, data = copy.copy(model), copy.copy(data)
+    for body in np.flatnonzero(model.body_parentid == 0)[1:]:
+        joints = joints_of(model, body)
+        if len(joints) and model.jnt_type[joints[0]] == mujoco.mjtJoint.mjJNT_FREE:
+            at = model.jnt_qposadr[joints[0]]
+            data.qpos[at : at + 3] += by
+        model.body_pos[body] += by
+        if model.body_mocapid[body] >= 0:
+            data.mocap_pos[model.body_mocapid[body]] += by
+    return model, data
 
 
 def _links(model: mujoco.MjModel, geometry: _Geometry, joints: list[tuple[Drive, int]]) -> dict[str, Any]:

@@ -1,12 +1,13 @@
 """A chain whose kinematics are functions of the host: that of a robot defined by a Python class."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Self
 
 import numpy as np
 
-from wsrender.robots.chain import Chain
+from wsrender.robots.chain import FAR, Chain
 
 SAMPLES = 1 << 14
 MARGIN, FLAT = 0.25, 1e-3  # beyond the samples, of their extent along an axis; where that is nothing, of the diagonal
@@ -44,6 +45,19 @@ class HostChain(Chain):
         low, high = positions.min(axis=0), positions.max(axis=0)
         margin = MARGIN * (high - low) + FLAT * np.linalg.norm(high - low)
         return low - margin, high + margin
+
+    @cached_property
+    def origin(self) -> np.ndarray:
+        """As a chain's; that of a placement alone, for nothing is known of where the functions reach."""
+        placement = self.T_world_base[:3, 3]
+        far = placement.any() and np.linalg.norm(placement) > FAR * self.reach
+        return placement if far else np.zeros(3)
+
+    def relative_to(self, origin: np.ndarray) -> Self:
+        """The same in a world whose origin stands at ``origin`` (3,) [m]."""
+        T = self.T_world_base.copy()
+        T[:3, 3] -= origin
+        return replace(self, T_world_base=T)
 
     @cached_property
     def reach(self) -> float:

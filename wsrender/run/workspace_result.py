@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from wsrender.engine import Partial, SweepPlan, configurations, evaluate_at
+from wsrender.engine.sweep import from_origin
 from wsrender.engine.voxel_data import volume_data
 from wsrender.global_indices import (
     VoxelVolumes,
@@ -78,8 +79,8 @@ def workspace_result(
         "voxel_labels": counts(labels) if labels else None,
         "surfaces": surface_entries,
         "bounds_m": {
-            "lower": [float(v) for v in partial.minimum[:3]],
-            "upper": [float(v) for v in partial.maximum[:3]],
+            "lower": [float(v) for v in partial.minimum[:3] + plan.origin],
+            "upper": [float(v) for v in partial.maximum[:3] + plan.origin],
         },
         "global": {
             "global_isotropy": global_isotropy(partial),
@@ -163,7 +164,7 @@ def _kept_map(plan: SweepPlan, partial: Partial, robot: Robot, units: dict[str, 
     after += n * plan.keep_configuration
     quat = rows[after : after + 4].T if plan.keep_orientation else None
     return DistributionMap(
-        rows[:3].T,
+        from_origin(plan, rows),
         dict(zip(plan.evaluation.indices, rows[3 : 3 + K], strict=True)),
         units,
         q,

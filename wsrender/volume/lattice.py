@@ -8,7 +8,9 @@ import numpy as np
 from wsrender.errors import InputError
 from wsrender.tolerances import FLAT
 
-LARGEST_COORDINATE = 2.0**30  # of a voxel; the kernels hold 32-bit integers
+LARGEST_BLOCK = 2.0**30  # voxels along an axis: the kernels hold 32-bit integers
+LARGEST_COORDINATE = 2.0**50  # of a voxel: float64 holds its corners
+FAR = 4  # extents of a block away from the world's origin that single precision bears: three of its 24 bits
 # 48 samples a voxel of the convex hull left at most .25 % holes in the workspace of a Panda, 32 .67, 16 up to 1.75 %.
 SAMPLES_PER_VOXEL, MOST_DIVISIONS = 48, 100
 
@@ -27,6 +29,28 @@ class LatticeBlock:
         nx, ny, nz = self.shape
         return nx * ny * nz
 
+    @property
+    def origin_voxel(self) -> tuple[int, int, int]:
+        """The voxel whose lower corner is the origin of positions on a device.
+
+        That of the world; of a block that lies far away, its middle.
+        """
+        middle = [first + size // 2 for first, size in zip(self.first_voxel, self.shape, strict=True)]
+        far = max(map(abs, middle)) > FAR * max(self.shape)
+        x, y, z = middle if far else (0, 0, 0)
+        return x, y, z
+
+    @property
+    def origin(self) -> np.ndarray:
+        """That corner in the world, (3,) [m]."""
+        return np.array(self.origin_voxel) * self.voxel_size_m
+
+    @property
+    def first_from_origin(self) -> tuple[int, int, int]:
+        """The first voxel as counted from there."""
+        x, y, z = (first - at for first, at in zip(self.first_voxel, self.origin_voxel, strict=True))
+        return x, y, z
+
     def centers(self, cells: np.ndarray) -> np.ndarray:
         """Centres (N, 3) [m] of voxels by their numbers (N,) in the block, z fastest."""
         at = np.stack(np.unravel_index(cells, self.shape), axis=1)
@@ -35,9 +59,11 @@ class LatticeBlock:
 
 def block_around(lower: np.ndarray, upper: np.ndarray, voxel_size_m: float) -> LatticeBlock:
     """The block that contains the box lower … upper [m], with one voxel to spare for rounding."""
-    if max(np.abs(lower).max(), np.abs(upper).max()) >= LARGEST_COORDINATE * voxel_size_m:
-        extent = float(np.ptp([lower, upper]))
+    extent, farthest = float(np.max(upper - lower)), float(np.abs([lower, upper]).max())
+    if extent >= LARGEST_BLOCK * voxel_size_m:
         raise InputError("voxel_size_m", f"{voxel_size_m} is too small for a workspace of {extent:.3g} m")
+    if farthest >= LARGEST_COORDINATE * voxel_size_m:
+        raise InputError("voxel_size_m", f"{voxel_size_m} is too small {farthest:.3g} m from the world's origin")
     first = np.floor(np.asarray(lower) / voxel_size_m).astype(np.int64) - 1
     last = np.floor(np.asarray(upper) / voxel_size_m).astype(np.int64) + 1
     x, y, z = (int(v) for v in first)
