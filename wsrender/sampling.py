@@ -10,6 +10,7 @@ import numpy as np
 
 from wsrender.errors import InputError, ResourceError
 from wsrender.robots.chain import Chain
+from wsrender.robots.plausibility import need_ranges
 from wsrender.spec.quantities import argument, real
 from wsrender.spec.sampling import BoundaryBiased, Converge, Grid, Random, Sobol
 
@@ -98,10 +99,13 @@ def given_sampling(chain: Chain, q: np.ndarray) -> SamplingPlan:
 def held_chain(chain: Chain, locked: Mapping[str, float]) -> Chain:
     """The chain with joints held, by name, at a value [rad or m].
 
-    Raises InputError, naming ``locked``, for an unknown joint or a value beyond its limits.
+    Raises InputError, naming ``locked``, for an unknown joint or a value beyond its limits; naming ``robot.limits`` for
+    another joint without usable ones.
     """
     _locked_values(chain, locked, "locked")
-    return chain.held(locked)
+    held = chain.held(locked)
+    need_ranges(held, "robot.limits")
+    return held
 
 
 def _locked_values(chain: Chain, locked: Mapping[str, float], field: str) -> np.ndarray:

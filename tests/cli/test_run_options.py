@@ -77,6 +77,18 @@ def test_options_override_a_job_document(run, tmp_path):
     }  # fmt: skip
 
 
+def test_options_correct_the_robot(run, tmp_path):
+    given = ["--limits", "rail=-0.5,1", "--limits", "j=a=0,2", "--length-unit-m", "0.001"]
+    corrected = {"limits": {"rail": [-0.5, 1.0], "j=a": [0.0, 2.0]}, "length_unit_m": 0.001}
+    robot = document(run, "arm.urdf", *given)["robot"]
+    assert {name: robot[name] for name in ("path", *corrected)} == {"path": "arm.urdf", **corrected}
+    job = tmp_path / "job.json"
+    job.write_text(json.dumps({"analysis": "workspace", "robot": {"library": "scara", "limits": {"k": [0, 1]}}}))
+    assert document(run, str(job), *given)["robot"]["limits"] == {"k": [0.0, 1.0], **corrected["limits"]}
+    job.write_text(json.dumps({"analysis": "workspace", "robot": "scara"}))
+    assert document(run, str(job), "--length-unit-m", "1")["robot"]["length_unit_m"] == 1
+
+
 def test_a_printed_document_can_be_run_again(run, tmp_path):
     _, out, _ = run("ur5e", "--samples", "1e5", "--task", "x,z")
     job = tmp_path / "again.json"
@@ -93,6 +105,9 @@ def test_a_printed_document_can_be_run_again(run, tmp_path):
         (["ur5e", "--samples", "nan"], "sampling.count: must be a whole number, not NaN"),
         (["ur5e", "--lock", "joint1"], '--lock: must be JOINT=VALUE, not "joint1"'),
         (["ur5e", "--sampling", "halton"], "sampling.method: must be one of"),
+        (["ur5e", "--limits", "joint1=1"], '--limits: must be JOINT=LOWER,UPPER, not "joint1=1"'),
+        (["ur5e", "--limits", "joint1=0,one"], '--limits: must be a number, not "one"'),
+        (["ur5e", "--limits", "joint1=1,0"], "robot.limits.joint1: must have the lower limit below the upper one"),
         (["ur5e", "--grid", "3", "--samples", "9"], "--grid: does not go with --samples"),
         (["ur5e", "--task", "up"], 'task: must be "linear", "angular", "full" or a list of rows from x y z rx ry rz'),
         (["missing.json"], "JOB: missing.json cannot be read: No such file or directory"),
@@ -111,3 +126,10 @@ def test_a_job_file_that_is_not_an_object(run, tmp_path):
     code, _, err = run(str(job))
     assert code == 2
     assert "must hold an object, not list" in err
+
+
+def test_corrections_need_one_robot(run, tmp_path):
+    job = tmp_path / "job.json"
+    job.write_text(json.dumps({"analysis": "robot_comparison", "robots": [{"robot": "scara"}]}))
+    code, _, err = run(str(job), "--limits", "joint1=0,1")
+    assert (code, err) == (2, "error: --limits: goes with a job of one robot\n")

@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import typer
 
 from wsrender.cli.faults import one_line_faults
-from wsrender.cli.job_options import job_document, name_or_list, sampling_document
+from wsrender.cli.job_options import corrected_robot, job_document, name_or_list, sampling_document
 
 _SAMPLING = "Sampling"
 _ANALYSIS = "Analysis"
@@ -46,6 +46,13 @@ def _document(
     job: Annotated[str, typer.Argument(metavar="JOB", help="Job document (.json), robot file or robot name.")],
     tip: Annotated[str | None, typer.Option(help="Site, body or link at the end of the chain.")] = None,
     base: Annotated[str | None, typer.Option(help="Body or link at which the chain starts.")] = None,
+    limits: Annotated[
+        list[str] | None,
+        typer.Option(help="JOINT=LOWER,UPPER instead of the model's limits, in rad or m; repeatable."),
+    ] = None,
+    length_unit_m: Annotated[
+        float | None, typer.Option(help="The model's unit of length in metres; 1 confirms metres.")
+    ] = None,
     sampling: Annotated[
         str | None, typer.Option(help="grid, random, sobol, boundary or converge.", rich_help_panel=_SAMPLING)
     ] = None,
@@ -85,6 +92,7 @@ def _document(
     document = job_document(job)
     count = SEVERAL_COUNT if keep_map else DEFAULT_COUNT
     given = {
+        "robot": corrected_robot(document, limits or [], length_unit_m),
         "tip": tip,
         "base": base,
         "sampling": sampling_document(document.get("sampling"), sampling, grid, samples, seed, lock or [], count),

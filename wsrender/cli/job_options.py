@@ -26,6 +26,21 @@ def job_document(job: str) -> dict[str, Any]:
     return {"analysis": "workspace", "robot": {source: job}}
 
 
+def corrected_robot(document: dict[str, Any], limits: list[str], length_unit_m: float | None) -> dict[str, Any] | None:
+    """The robot of a document with limits and unit of length from options; None without options.
+
+    Raises InputError naming the option, and for a document that has not one robot.
+    """
+    if not limits and length_unit_m is None:
+        return None
+    robot = document.get("robot")
+    robot = {"library": robot} if isinstance(robot, str) else robot
+    if not isinstance(robot, dict):
+        raise InputError("--limits" if limits else "--length-unit-m", "goes with a job of one robot")
+    given = {"limits": robot.get("limits", {}) | dict(_limits(text) for text in limits), "length_unit_m": length_unit_m}
+    return robot | {field: value for field, value in given.items() if value}
+
+
 def sampling_document(
     current: Any,
     method: str | None,
@@ -83,6 +98,13 @@ def _locked(text: str) -> tuple[str, float]:
     if not equals or not joint:
         raise InputError("--lock", f'must be JOINT=VALUE, not "{text}"')
     return joint, _number("--lock", value)
+
+
+def _limits(text: str) -> tuple[str, list[float]]:
+    joint, equals, ends = text.rpartition("=")
+    if not equals or not joint or ends.count(",") != 1:
+        raise InputError("--limits", f'must be JOINT=LOWER,UPPER, not "{text}"')
+    return joint, [_number("--limits", end) for end in ends.split(",")]
 
 
 def _number(option: str, text: str) -> float:

@@ -11,6 +11,7 @@ import numpy as np
 
 from wsrender.robot import Robot, robot_with_model
 from wsrender.robots import frames
+from wsrender.robots.plausibility import need_ranges
 
 
 @dataclass(eq=False, slots=True)
@@ -29,15 +30,18 @@ class Posture:
 
 
 class Kinematics:
-    """Float64 kinematics of a robot's model, one posture at a time. Raises InputError for a user-defined robot."""
+    """Float64 kinematics of a robot's model, one posture at a time.
+
+    Raises InputError for a user-defined robot, and for one whose joints have no usable limits.
+    """
 
     def __init__(self, robot: Robot):
         loaded = robot_with_model(robot)._loaded
         self.chain = chain = loaded.chain
         self._model, self._data = loaded.model, mujoco.MjData(loaded.model)
         base, tip = frames.choose(loaded.model, robot.base, robot.tip)
-        middle = (chain.lower_limits + chain.upper_limits) / 2
-        loaded.set_configuration(self._data, middle)  # what is off the chain stays where it is now
+        need_ranges(chain, "robot.limits")
+        loaded.set_configuration(self._data, chain.within(0.5))  # what is off the chain stays where it is now
         mujoco.mj_kinematics(self._model, self._data)
         T_world_model = chain.T_world_base @ np.linalg.inv(base.pose(self._data))
         self._R_world, self._p_world = np.ascontiguousarray(T_world_model[:3, :3]), T_world_model[:3, 3].copy()

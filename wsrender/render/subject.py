@@ -43,8 +43,7 @@ class Subject:
         """
         robot = as_robot(robot)
         if configuration is None:
-            low, high = robot.lower_limits, robot.upper_limits
-            configuration = low + 0.25 * (high - low)
+            configuration = robot.chain.within(0.25)
             for name, value in (sampling.get("locked") or {}).items():
                 configuration[list(robot.joint_names).index(name)] = value
         body = [Surface(shape.vertices, shape.faces, shape.color) for shape in link_shapes(robot, configuration)]

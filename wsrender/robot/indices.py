@@ -11,6 +11,7 @@ from wsrender.notices import Notice, warn
 from wsrender.robot.model_robot import Robot, configuration_rows
 from wsrender.robot.user_robot import HostRobot, as_robot
 from wsrender.robots.model_warning import ModelWarning
+from wsrender.robots.plausibility import need_ranges
 from wsrender.spec.options import DEFAULT_PENALTY, LARGEST_PENALTY, NAMED_TASKS, SMALLEST_PENALTY, TASK_ROWS
 from wsrender.spec.quantities import argument, positive, real, sequence
 
@@ -100,12 +101,14 @@ def evaluation_of(
         if dynamic:
             _check_inertias(robot, precision)
         host_inertia = robot.mujoco_inertia if dynamic and inertia == "mujoco" else None
+    if (penalty := _penalty(joint_limit_penalty)) is not None:
+        need_ranges(chain, "robot.limits")
     return Evaluation(
         chain=chain,
         indices=names,
         rows=task_rows(task),
         convention=convention,
-        penalty=_penalty(joint_limit_penalty),
+        penalty=penalty,
         characteristic_length_m=characteristic_length_m,
         torque_scaling=torque_scaling,
         host_inertia=host_inertia,
@@ -118,9 +121,7 @@ def _check_inertias(robot: Robot, precision: str) -> None:
     Float64 does, but a link without mass, whose acceleration has no bound, is worth a warning.
     """
     chain = robot.chain
-    lower, upper = (np.where(np.isinf(ends), 0.0, ends) for ends in (chain.lower_limits, chain.upper_limits))
-    middle = 0.5 * (lower + upper)
-    about_joints = np.diagonal(robot.mujoco_inertia(middle[None])[0])
+    about_joints = np.diagonal(robot.mujoco_inertia(chain.within(0.5)[None])[0])
     ratio = about_joints.max() / about_joints.min()
     if ratio > SUSPECT_INERTIA_RATIO and precision == "float64":
         message = f"the inertias about the joints of {robot.name} differ by a factor of {ratio:.1g}"

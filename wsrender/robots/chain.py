@@ -129,6 +129,12 @@ class Chain:
         bounded = np.isfinite(self.lower_limits) & np.isfinite(self.upper_limits)
         return tuple(name for name, ends in zip(self.joint_names, bounded, strict=True) if not ends)
 
+    def within(self, share: float) -> np.ndarray:
+        """The configuration (n,) at a share 0 … 1 of every range [rad or m]; 0 where a coordinate is endless."""
+        ends = np.stack([self.lower_limits, self.upper_limits])
+        lower, upper = np.where(np.isfinite(ends).all(axis=0), ends, 0.0)
+        return lower + share * (upper - lower)
+
     @cached_property
     def reach(self) -> float:
         """Upper bound of the distance from the first joint's origin to the end effector [m]; infinite where endless."""

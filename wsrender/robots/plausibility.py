@@ -5,6 +5,7 @@ from math import pi
 
 import numpy as np
 
+from wsrender.errors import InputError
 from wsrender.notices import Notice
 from wsrender.robots.chain import Chain
 
@@ -19,6 +20,18 @@ def doubts(chain: Chain, confirmed: Collection[str], length_confirmed: bool) -> 
     """What a user should check of a chain; limits of the joints ``confirmed`` are the user's own."""
     found = [_endless(chain), _degrees(chain, confirmed), None if length_confirmed else _lengths(chain)]
     return [notice for notice in found if notice is not None]
+
+
+def need_ranges(chain: Chain, field: str) -> None:
+    """Raises InputError, naming ``field``, where a joint has no usable limits."""
+    if not chain.endless:
+        return
+    example = f'{{"{chain.endless[0]}": [lower, upper]}}'
+    raise InputError(
+        field,
+        f"must give the range of {', '.join(chain.endless)}, such as {example}: the model of {chain.name} has no "
+        "usable limits there; or hold the joint (locked), or name a base beyond it",
+    )
 
 
 def lengths(chain: Chain) -> dict[str, float]:

@@ -4,9 +4,9 @@ from typing import Any
 
 import numpy as np
 
-from wsrender.errors import InputError, ResourceError
+from wsrender.errors import ResourceError
 from wsrender.robot import Robot
-from wsrender.robots.plausibility import LENGTH, too_long
+from wsrender.robots.plausibility import LENGTH, need_ranges, too_long
 from wsrender.robots.reachable_box import reachable_box
 from wsrender.spec.arm import Arm, ArmPath, dotted
 
@@ -21,20 +21,11 @@ def usable(robot: Robot, arm: Arm, path: ArmPath, job: Any) -> Robot:
     """
     held = {name: value for name, value in arm.held_joints.items() if name in robot.chain.endless}
     robot = robot.held(held) if held else robot
-    if arm.needs_ranges and robot.chain.endless:
-        raise InputError(dotted(path, "robot", "limits"), _no_range(robot))
+    if arm.needs_ranges:
+        need_ranges(robot.chain, dotted(path, "robot", "limits"))
     if any(notice.code == LENGTH for notice in robot.notices) and (long := too_long(robot.chain)):
         raise ResourceError(dotted(path, "robot", "length_unit_m"), _too_large(robot, job, long))
     return robot
-
-
-def _no_range(robot: Robot) -> str:
-    names = ", ".join(robot.chain.endless)
-    example = f'{{"{robot.chain.endless[0]}": [lower, upper]}}'
-    return (
-        f"must give the range of {names}, such as {example}: the model of {robot.name} has no usable limits there; "
-        "or hold the joint (locked), or name a base beyond it"
-    )
 
 
 def _too_large(robot: Robot, job: Any, long: str) -> str:

@@ -84,8 +84,8 @@ class IndicesAtJob(IndexChoices, Arm):
 
     @property
     def needs_ranges(self) -> bool:
-        """Only where their ends are penalised: the configurations are given."""
-        return self.joint_limit_penalty not in (None, False)
+        """No: the configurations are given. Where the ends of ranges are penalised, the evaluation asks for them."""
+        return False
 
 
 _AnyJob = (

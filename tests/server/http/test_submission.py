@@ -164,6 +164,24 @@ def test_validation_plans_the_job(client, jobs):
     assert "tool" in problem["choices"] and problem["errors"][0]["pointer"] == "#/tip"
 
 
+@pytest.mark.parametrize(
+    ("length", "slide", "code", "pointer"),
+    [
+        (0.4, "", "invalid_input", "#/robot/limits"),
+        (0.4, 'range="-1e16 1e16"', "invalid_input", "#/robot/limits"),
+        (400, 'range="0 1"', "resource_limit", "#/robot/length_unit_m"),
+    ],
+)
+def test_robots_without_usable_limits_or_in_millimetres(client, length, slide, code, pointer):
+    mjcf = f"""<mujoco><worldbody><body><joint name="rail" type="slide" {slide}/><geom size=".1"/><body><joint/>
+      <geom size=".1"/><site name="tool" pos="{length} 0 0"/></body></body></worldbody></mujoco>"""
+    document = {"analysis": "workspace", "robot": {"mjcf": mjcf}, "sampling": {"method": "grid", "per_joint": 3}}
+    problem = problem_of(client.post("/v1/jobs:validate", json=document), 409, code)
+    assert [error["pointer"] for error in problem["errors"]] == [pointer]
+    document["robot"] |= {"limits": {"rail": [0, 1]}, "length_unit_m": 1}
+    assert client.post("/v1/jobs:validate", json=document).json()["samples"] == 9
+
+
 @pytest.mark.parametrize("path", ["/etc/passwd", "points.npy"])
 def test_points_in_files_are_not_opened(client, jobs, path):
     document = {"analysis": "collaborative_volume", "left": {"path": path}, "right": {"points": [[0, 0, 0]]}}
