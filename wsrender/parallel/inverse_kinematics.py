@@ -8,10 +8,11 @@ Merlet, *Parallel Robots*, 2006, chapter 3.
 """
 
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 
-from wsrender.parallel.leg_distance import least_distance
+from wsrender.parallel.leg_distance import least_distance, leg_pairs, segment_distance
 from wsrender.parallel.mechanism import Mechanism
 
 FAULTS = (
@@ -56,10 +57,13 @@ def inverse_kinematics(mechanism: Mechanism, poses: np.ndarray) -> LegSolutions:
     """Legs in closed form of platform poses (N, 4, 4), base frame [m]."""
     position, rotation = poses[:, :3, 3], poses[:, :3, :3]
     joints = position[:, None] + np.einsum("nij,lj->nli", rotation, mechanism.platform)
+    solved = [_solutions(mechanism, k, joints[:, k], rotation) for k in range(len(mechanism.kinds))]
     values, faults = np.zeros(joints.shape[:2]), np.zeros(joints.shape[:2], np.int8)
     elbows = np.zeros(joints.shape)
-    for k in range(len(mechanism.kinds)):
-        values[:, k], elbows[:, k], faults[:, k] = _leg(mechanism, k, joints[:, k], rotation)
+    for k, chosen in enumerate(_chosen(mechanism, solved, joints)):
+        for branch, (value, elbow, fault) in solved[k].items():
+            at = chosen == branch
+            values[at, k], elbows[at, k], faults[at, k] = value[at], elbow[at], fault[at]
     inside = np.all((position >= mechanism.region_lower) & (position <= mechanism.region_upper), axis=1)
     level = np.all(np.abs(rotation - np.eye(3)) <= SAME_ORIENTATION, axis=(1, 2))
     return LegSolutions(
@@ -94,25 +98,57 @@ Solved = tuple[np.ndarray, np.ndarray, np.ndarray]
 """Values (N,), elbows (N, 3), faults (N,) of one leg."""
 
 
-def _leg(mechanism: Mechanism, k: int, joint: np.ndarray, rotation: np.ndarray) -> Solved:
-    """The solution "plus" where it counts and is within all limits, else "minus" where that is; else the first."""
-    best: Solved | None = None
+MOST_CHOICES = 1 << 20  # (pose, combination of branches) at a time
+
+
+def _solutions(mechanism: Mechanism, k: int, joint: np.ndarray, rotation: np.ndarray) -> dict[int, Solved]:
+    """What a leg does on each branch that counts, "plus" (1) before "minus" (0)."""
+    found = {}
     for branch in (1, 0):
-        if not mechanism.branches[k, branch]:
-            continue
-        value, elbow = _solution(mechanism, k, joint, branch)
-        found = value, elbow, _faults(mechanism, k, value, elbow, joint, rotation)
-        if best is None:
-            best = found
-            continue
-        other = (best[2] != FINE) & (found[2] == FINE)
-        best = (
-            np.where(other, value, best[0]),
-            np.where(other[:, None], elbow, best[1]),
-            np.where(other, found[2], best[2]),
-        )
-    assert best is not None  # a leg has a branch
-    return best
+        if mechanism.branches[k, branch]:
+            value, elbow = _solution(mechanism, k, joint, branch)
+            found[branch] = value, elbow, _faults(mechanism, k, value, elbow, joint, rotation)
+    return found
+
+
+def _chosen(mechanism: Mechanism, solved: list[dict[int, Solved]], joints: np.ndarray) -> list[np.ndarray]:
+    """The branch (N,) of every leg: the first that is within all limits, or the leg's first.
+
+    Where the distance of legs is limited, that of the first combination of branches that keep it, if there is one.
+    """
+    chosen = []
+    for branches in solved:
+        first, *others = branches
+        best = np.full(len(joints), first)
+        for other in others:
+            best[(branches[first][2] != FINE) & (branches[other][2] == FINE)] = other
+        chosen.append(best)
+    if mechanism.clearance_m == 0 or not mechanism.branched:
+        return chosen
+    combinations = list(product(*solved))
+    at_once = max(MOST_CHOICES // len(combinations), 1)
+    for start in range(0, len(joints), at_once):
+        part = slice(start, start + at_once)
+        rows = [{b: tuple(x[part] for x in one) for b, one in branches.items()} for branches in solved]
+        clear = _clear(mechanism, rows, joints[part], combinations)
+        some, first_clear = clear.any(axis=1), clear.argmax(axis=1)
+        for k, best in enumerate(chosen):
+            best[part] = np.where(some, np.array(combinations)[first_clear, k], best[part])
+    return chosen
+
+
+def _clear(mechanism: Mechanism, solved, joints: np.ndarray, combinations: list[tuple[int, ...]]) -> np.ndarray:
+    """Whether all legs are within limits and keep their distance on each combination of branches, (N, C) bool."""
+    taken = np.array(combinations)
+    clear = np.ones((len(joints), len(combinations)), bool)
+    for k, branches in enumerate(solved):
+        for branch, (_, _, fault) in branches.items():
+            clear[:, taken[:, k] == branch] &= (fault == FINE)[:, None]
+    for a, b in leg_pairs(mechanism):
+        for (one, (_, elbow_a, _)), (other, (_, elbow_b, _)) in product(solved[a].items(), solved[b].items()):
+            far = segment_distance(elbow_a, joints[:, a], elbow_b, joints[:, b]) >= mechanism.clearance_m
+            clear[:, (taken[:, a] == one) & (taken[:, b] == other)] &= far[:, None]
+    return clear
 
 
 def _solution(mechanism: Mechanism, k: int, joint: np.ndarray, branch: int) -> tuple[np.ndarray, np.ndarray]:

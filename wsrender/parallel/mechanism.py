@@ -1,7 +1,8 @@
 """Parallel mechanisms as arrays: one row per leg, in the base frame."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import product
 
 import numpy as np
 
@@ -55,6 +56,16 @@ class Mechanism:
     def translational(self) -> bool:
         """Whether parallelograms keep the platform from turning."""
         return "delta" in self.kinds
+
+    @property
+    def branched(self) -> bool:
+        """Whether a leg may stand on either of two branches."""
+        return bool(self.branches.all(axis=1).any())
+
+    def on_each_branch(self) -> "list[Mechanism]":
+        """The mechanism with every leg on one branch, once for each combination; the first prefers "plus"."""
+        choices = [[k for k in (1, 0) if allowed[k]] for allowed in self.branches]
+        return [replace(self, branches=np.eye(2, dtype=bool)[list(chosen)]) for chosen in product(*choices)]
 
     @property
     def numbers(self) -> list[int]:

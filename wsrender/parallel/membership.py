@@ -1,11 +1,12 @@
 """Which poses a mechanism reaches, and the box that holds its workspace.
 
 Legs in closed form are asked by kernels at a lattice of poses; where there are others too, poses are made here and
-every numeric leg is asked at those that the legs before it leave (method B) or at all (method A).
+every numeric leg is asked at those that the legs before it leave (method B) or at all (method A). So are they where
+legs on either branch must keep their distance: a pose is reached where some combination of their branches does.
 """
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -34,6 +35,16 @@ def leg_test(mechanism: Mechanism, precision: str = "float64") -> LegTest:
     ends = np.array([k + 1 == count or not np.array_equal(*mechanism.base[[k, k + 1]]) for k in range(count)])
     pairs = leg_pairs(mechanism) if mechanism.clearance_m > 0 else []
     return LegTest(mechanism, ends, pairs, precision)
+
+
+def _by_pose(mechanism: Mechanism) -> bool:
+    """Whether poses are asked one by one, not by the kernels of lattices."""
+    return bool(mechanism.numeric) or _joint_branches(mechanism)
+
+
+def _joint_branches(mechanism: Mechanism) -> bool:
+    """Whether the distance of legs depends on which of their branches are taken together."""
+    return mechanism.clearance_m > 0 and mechanism.branched
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,7 +121,7 @@ def count_lattice(
 ) -> OrientationCounts:
     """At how many of the orientations voxel centres are reached; as `wsrender.engine.count_orientations`."""
     options: dict[str, Any] = {"weights": weights, "by_subsystem": by_subsystem, "device": device, "threads": threads}
-    if not mechanism.numeric:
+    if not _by_pose(mechanism):
         test, options = leg_test(mechanism, precision), {**options, "chunk_size": chunk_size, "progress": progress}
         return count_orientations(test, block, rotations, first, count, **options)
     places = max((chunk_size or BATCH) // len(rotations), 1)
@@ -138,7 +149,7 @@ def count_at(
 
     Positions that are reached at none may be missing from the ``cells``, numbers of positions.
     """
-    if not mechanism.numeric:
+    if not _by_pose(mechanism):
         test = leg_test(mechanism, precision)
         return count_orientations_at(test, positions, rotations, weights=weights, device=device, threads=threads)
     if weights is None:
@@ -161,7 +172,11 @@ def poses_labelled(
     """Labels (N,) int8 of platform poses (N, 4, 4), base frame, as of `InverseSolver`, and (pose, leg) pairs asked."""
     asked = len(mechanism.kinds) * len(poses)
     if mechanism.kinds:
-        fits = poses_reached(leg_test(mechanism, precision), poses, device=device, threads=threads)
+        test = replace(mechanism, clearance_m=0.0) if _joint_branches(mechanism) else mechanism
+        fits = poses_reached(leg_test(test, precision), poses, device=device, threads=threads)
+        if _joint_branches(mechanism):
+            some = np.flatnonzero(fits)
+            fits[some] = inverse_kinematics(mechanism, poses[some]).feasible
     else:
         fits = inverse_kinematics(mechanism, poses).inside
     labels = np.where(fits, REACHABLE, UNREACHABLE).astype(np.int8)

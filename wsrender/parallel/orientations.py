@@ -41,6 +41,38 @@ def orientation_set(spec: EulerRanges | TiltRanges) -> OrientationSet:
     return _euler(spec) if isinstance(spec, EulerRanges) else _tilts(spec)
 
 
+def finer(spec: EulerRanges | TiltRanges) -> EulerRanges | TiltRanges:
+    """The same ranges with every step halved; the orientations that there were are among the new ones."""
+    if isinstance(spec, EulerRanges):
+        return spec.model_copy(update={"per_angle": tuple(_halved(count) for count in spec.per_angle)})
+    halved = {name: _halved(getattr(spec, name)) for name in ("tilts", "torsions")}
+    return spec.model_copy(update={**halved, "azimuths": 2 * spec.azimuths})
+
+
+def _halved(levels: int) -> int:
+    return 2 * levels - 1 if levels > 1 else 2
+
+
+def random_orientations(spec: EulerRanges | TiltRanges, count: int, seed: int) -> np.ndarray:
+    """Independent orientations of the ranges, uniform by the invariant measure of rotations, (count, 3, 3)."""
+    random = np.random.Generator(np.random.Philox(key=seed))
+    u, v, w = random.random((3, count))
+    if isinstance(spec, EulerRanges):
+        (a0, a1), (b0, b1), (c0, c1) = np.deg2rad(spec.euler_xyz_deg)
+        return _turn(0, a0 + u * (a1 - a0)) @ _turn(1, _by_cosine(v, b0, b1)) @ _turn(2, c0 + w * (c1 - c0))
+    azimuth, tilt = 2 * np.pi * u, np.arccos(1 - v * (1 - np.cos(np.deg2rad(spec.tilt_deg))))
+    low, high = np.deg2rad(spec.torsion_deg)
+    torsion = low + w * (high - low)
+    return _turn(2, azimuth) @ _turn(1, tilt) @ _turn(2, torsion - azimuth)
+
+
+def _by_cosine(share: np.ndarray, low: float, high: float) -> np.ndarray:
+    """Angles of low … high whose density is that of |cos|, from shares (N,) of it."""
+    angles = np.linspace(low, high, 4097)
+    total = np.concatenate([[0.0], np.cumsum(np.abs(np.cos((angles[1:] + angles[:-1]) / 2)))])
+    return np.interp(share, total / total[-1], angles) if high > low else np.full(len(share), low)
+
+
 def _euler(spec: EulerRanges) -> OrientationSet:
     axes = [_levels(*limits, count) for limits, count in zip(spec.euler_xyz_deg, spec.levels, strict=True)]
     ends = [_trapezoid(count) for count in spec.levels]

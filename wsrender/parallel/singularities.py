@@ -17,10 +17,14 @@ def sign_changes(volume: VolumeData) -> dict[int, np.ndarray]:
     The volume holds the determinants as statistic "center". A determinant that is 0 at a centre counts there.
     """
     first = np.array(volume.first_voxel)
-    return {kind: _zeros(volume.statistics["center"][name], first, volume.voxel_size_m) for kind, name in TYPES.items()}
+    return {kind: zeros(volume.statistics["center"][name], first, volume.voxel_size_m) for kind, name in TYPES.items()}
 
 
-def _zeros(values: np.ndarray, first: np.ndarray, edge: float) -> np.ndarray:
+def zeros(values: np.ndarray, first: np.ndarray, edge: float) -> np.ndarray:
+    """Points (N, 3) [m] where values (nx, ny, nz) at centres of voxels, the ``first`` one (3,), pass through 0.
+
+    NaN: no value there.
+    """
     found = [np.argwhere(values == 0.0).astype(np.float64)]
     for axis in range(3):
         count = values.shape[axis]

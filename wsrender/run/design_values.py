@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 
 FAULTS = (InputError, NotConvergedError, NumericalError, MemoryError)  # of a design: it has no value then
+REFINED = ("refined", "headline")  # in pointers to what is read of refined volumes
 FEW_SAMPLES, FEW_LEVELS = 256, 3  # of a run that shows what a result holds
 
 
@@ -122,7 +123,7 @@ class Evaluator:
     def _by_running(self, design: np.ndarray) -> list[float]:
         result = None
         try:
-            result = self._run(self.plan.job_of(design))
+            result = self._run(self._inner_job(design))
             values = [self._value(objective, result, design) for objective in self.plan.job.objectives]
         except FAULTS as error:
             if result is not None and not self._pointers_hold:
@@ -141,6 +142,14 @@ class Evaluator:
         assert isinstance(error, WsrenderError)
         kind = error.code, getattr(error, "field", "")
         self.faults.setdefault(kind, Fault(error, design.tolist())).designs += 1
+
+    def _inner_job(self, design: np.ndarray) -> Any:
+        """The job of a design; volumes are refined only where an objective reads them."""
+        job = self.plan.job_of(design)
+        read = any(part in objective.value for objective in self.plan.job.objectives for part in REFINED)
+        if read or getattr(job, "refined_volume", None) is None:
+            return job
+        return job.model_copy(update={"refined_volume": None})
 
     def _value(self, objective: Objective, result: Result, design: np.ndarray) -> float:
         """The value of an objective; NaN where the result has null there, or nothing because it is empty."""

@@ -1,7 +1,7 @@
 """The analysis ``parallel_workspace``: plan, shards, merge."""
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -11,37 +11,40 @@ from wsrender.engine import OrientationCounts, thread_count
 from wsrender.engine.membership import LANES
 from wsrender.errors import InputError, ResourceError
 from wsrender.indices.catalogue import is_dynamic, resolve
-from wsrender.parallel.hybrid import Variant, added, count_union, middle, reachable_box_of, reached_by_any, variants
-from wsrender.parallel.inverse_kinematics import SAME_ORIENTATION
+from wsrender.parallel.hybrid import Variant, added, count_union, middle, variants
+from wsrender.parallel.inverse_kinematics import inverse_kinematics
 from wsrender.parallel.jacobians import check_square
 from wsrender.parallel.local_indices import CONDITION_NUMBERS, DETERMINANTS, pose_indices
 from wsrender.parallel.mechanism import Mechanism
-from wsrender.parallel.membership import Box, count_lattice, fault_at, in_base_frame, orientations_labelled
-from wsrender.parallel.orientations import OrientationSet, orientation_set
+from wsrender.parallel.membership import count_lattice, fault_at, in_base_frame, orientations_labelled
+from wsrender.parallel.orientations import OrientationSet, orientation_set, random_orientations
+from wsrender.parallel.serial_search import SerialSearch, serial_search
 from wsrender.reachability.inverse_solver import REACHABLE, UNDECIDED, UNREACHABLE
+from wsrender.reachability.volume_estimate import wilson
 from wsrender.result import Result
 from wsrender.robot import Robot
 from wsrender.robot.indices import task_rows
 from wsrender.run.parallel_exact import boundary_partial, boundary_result, region_of
-from wsrender.run.parallel_result import orientation_result, positions_result, refined_entry
+from wsrender.run.parallel_lattice import described, lattice_of, quantity, settled_lattice
+from wsrender.run.parallel_refined import labels_at_poses, refined_entry
+from wsrender.run.parallel_result import orientation_result, positions_result
 from wsrender.run.settled_device import settled_device
 from wsrender.spec.parallel_workspace import BY_BOUNDARY, ParallelWorkspaceJob
 from wsrender.spec.robot import Transform
-from wsrender.volume.lattice import LatticeBlock, block_around, round_to_digits
+from wsrender.volume.lattice import LatticeBlock
 
 Arrays = dict[str, np.ndarray]
 
 RATE_CPU_CORE, RATE_GPU = 8e7, 4e8  # poses per second, rounded down from benchmarks/parallel.py
 RATE_NUMERIC_CORE = 5e4  # poses of a numeric leg per second, from benchmarks/inverse.py
-FIRST_POINTS, FEWEST_POINTS = 1 << 16, 1 << 10  # of the estimate that the default voxel size is made of
-LEAST_SHARE = 1e-3  # of the box: where hardly anything is reached
 
 
 @dataclass(eq=False)
 class ParallelPlan:
     """A resolved ``parallel_workspace`` job; ``block`` is None where no lattice is tested.
 
-    ``variants``: the mechanism at every combination of values of its serial joints, one where it has none.
+    ``variants``: the mechanism at every combination of values of its serial joints, one where it has none; ``search``:
+    over all their values, None where it has none.
     """
 
     job: ParallelWorkspaceJob
@@ -54,6 +57,7 @@ class ParallelPlan:
     target: str
     shards: list[tuple[int, int]]
     estimate: dict[str, float] = field(default_factory=dict)
+    search: SerialSearch | None = None
 
     def resolved(self) -> dict[str, Any]:
         """What is settled once: the device that "auto" means, target, lattice block, shards."""
@@ -61,7 +65,7 @@ class ParallelPlan:
         return {
             "device": self.device,
             "target": self.target,
-            "block": None if block is None else [block.voxel_size_m, list(block.first_voxel), list(block.shape)],
+            "block": described(block),
             "shards": [list(shard) for shard in self.shards],
             "shard_unit": None if block is None else LANES * self._count,
         }
@@ -79,8 +83,24 @@ class ParallelPlan:
     @property
     def center_names(self) -> tuple[str, ...]:
         """What is kept at voxels' centres beside the indices; determinants where a place has one posture."""
-        single = len(self.variants) == 1 and not self.mechanism.numeric
+        single = self.has_determinants and not self.mechanism.branched
         return (*CONDITION_NUMBERS, *DETERMINANTS) if single else CONDITION_NUMBERS
+
+    @property
+    def quantity(self) -> tuple[str, str]:
+        """What is measured, and its unit: volume, or in a plane area, on a line length."""
+        return quantity(self.block)
+
+    @property
+    def has_determinants(self) -> bool:
+        """Whether a place has one posture on each combination of the legs' branches."""
+        return len(self.variants) == 1 and not self.mechanism.numeric
+
+    def counted(self, partial: Arrays) -> np.ndarray:
+        """Which of the partial's voxels belong to the workspace: all but those that miss one of all orientations."""
+        if self.job.kind == "total_orientation":
+            return partial["orientations"] == len(self.orientations.rotations)
+        return np.ones(len(partial["cells"]), bool)
 
     def run_shard(self, shard: int, progress: Callable[[int], None] | None, **execution: Any) -> Arrays:
         """Of the shard's voxels that are reached: flat number in the block, orientations, weights, indices."""
@@ -135,25 +155,39 @@ class ParallelPlan:
             "asked": np.array([found.asked, found.undecided]),
         }
         if self.names:
-            values = {name: np.full(len(found.cells), -np.inf) for name in (*self.names, *self.center_names)}
-            for variant, cells in zip(self.variants, cells_of_variants, strict=False):
-                at = np.searchsorted(found.cells, cells)
-                for name, of_variant in self._indices(variant, cells).items():
-                    values[name][at] = np.maximum(values[name][at], of_variant)
-            partial |= {f"index_{name}": array for name, array in values.items()}
+            partial |= self._indices(found.cells, cells_of_variants)
         return partial
 
-    def _indices(self, variant: Variant, cells: np.ndarray) -> Arrays:
-        """Indices at voxels that a variant reaches; those of hybrids are maxima over their serial joints."""
-        hybrid = len(self.variants) > 1
-        return pose_indices(
-            variant.mechanism,
-            self._poses(variant, cells),
-            self.names,
-            self.rows,
-            self.job.characteristic_length_m,
-            variant.composed if hybrid else None,
-        )
+    def _indices(self, cells: np.ndarray, cells_of_variants: list[np.ndarray]) -> Arrays:
+        """Indices at voxels: maxima over the serial joints' values, and over the branches on which legs reach them.
+
+        Determinants have a sign of their own on each combination of branches, a column of ``branch_…`` (V, C).
+        """
+        values = {name: np.full(len(cells), -np.inf) for name in (*self.names, *self.center_names)}
+        each = self.mechanism.on_each_branch()
+        by_branch = self.has_determinants and len(each) > 1
+        signed = {name: np.full((len(cells), len(each)), np.nan) for name in DETERMINANTS} if by_branch else {}
+        for variant, own in zip(self.variants, cells_of_variants, strict=False):
+            at = np.searchsorted(cells, own)
+            for column, (rows, found) in enumerate(self._on_branches(variant, own)):
+                for name in values:
+                    values[name][at[rows]] = np.maximum(values[name][at[rows]], found[name])
+                for name, table in signed.items():
+                    table[at[rows], column] = found[name]
+        return {f"index_{name}": array for name, array in values.items()} | {
+            f"branch_{name}": table for name, table in signed.items()
+        }
+
+    def _on_branches(self, variant: Variant, cells: np.ndarray) -> Iterator[tuple[np.ndarray, Arrays]]:
+        """On each combination of branches, which of a variant's voxels are reached, and the indices there."""
+        poses, every = self._poses(variant, cells), variant.mechanism.on_each_branch()
+        for mechanism in every:
+            rows = np.arange(len(cells))
+            if len(every) > 1:
+                rows = np.flatnonzero(inverse_kinematics(mechanism, poses).feasible)
+            hybrid = variant.composed if len(self.variants) > 1 else None
+            length = self.job.characteristic_length_m
+            yield rows, pose_indices(mechanism, poses[rows], self.names, self.rows, length, hybrid)
 
     def _poses(self, variant: Variant, cells: np.ndarray) -> np.ndarray:
         """Platform poses (V, 4, 4) at the centres of voxels, base frame, at the first orientation."""
@@ -176,7 +210,18 @@ class ParallelPlan:
             labels = np.where(labels == REACHABLE, labels, np.where(found == UNREACHABLE, labels, found))
             if progress:
                 progress(number * len(rotations))
-        return {"reached": labels == REACHABLE, "undecided": labels == UNDECIDED}
+        return {"reached": labels == REACHABLE, "undecided": labels == UNDECIDED, "share": self._share_at_point()}
+
+    def _share_at_point(self) -> np.ndarray:
+        """Value and 95 % interval (3,) of the share of the orientations' ranges, from random ones, not from levels."""
+        assert self.job.orientations is not None and self.job.position_m is not None
+        numeric, searched = self.mechanism.numeric, self.search is not None
+        count = 1000 if numeric else 4000 if searched else 100_000
+        rotations = random_orientations(self.job.orientations, count, self.job.seed)
+        labels = labels_at_poses(self, np.tile(self.job.position_m, (count, 1)), rotations)
+        surely, possibly = int((labels == REACHABLE).sum()), int((labels != UNREACHABLE).sum())
+        low, high = wilson(np.array(surely), np.array(count))[0], wilson(np.array(possibly), np.array(count))[1]
+        return np.array([(surely + possibly) / (2 * count), low, high])
 
     def merge(self, a: Arrays, b: Arrays) -> Arrays:
         """The voxels of both ranges, in the order of their numbers."""
@@ -225,20 +270,23 @@ def plan_parallel(job: ParallelWorkspaceJob, *robots: Robot, resolved: dict[str,
     if job.method in BY_BOUNDARY:
         _check_boundary(mechanism, orientations)
     if resolved is None:
+        postures = 1 if len(found) > 1 or mechanism.numeric else len(mechanism.on_each_branch())
+        columns = len(names) + len(CONDITION_NUMBERS) + 2 * postures if names else 0
         on_lattice = job.kind != "orientation" and job.method not in BY_BOUNDARY
-        block = _block(job, found, orientations, device) if on_lattice else None
+        block = lattice_of(job, found, orientations, columns, device) if on_lattice else None
         poses = len(found) * len(orientations.rotations) * (block.size if block else 1)
         if poses > job.max_poses:
             raise ResourceError("max_poses", f"is {job.max_poses:.4g}; the job has {poses:.4g} poses: larger voxels?")
         shards = [(0, poses)]
     else:
-        block = _settled(resolved["block"])
+        block = settled_lattice(resolved["block"])
         shards = [(first, count) for first, count in resolved["shards"]]
     poses = float(sum(count for _, count in shards))
     rate = RATE_GPU if target.startswith("cuda") else RATE_CPU_CORE * thread_count()
     seconds = poses / rate + poses * len(mechanism.numeric) / (RATE_NUMERIC_CORE * thread_count())
     estimate = {"samples": poses, "bytes": 8 * poses / len(orientations.rotations), "seconds": seconds}
-    return ParallelPlan(job, found, orientations, block, rows, names, device, target, shards, estimate)
+    serial = serial_search(job.mechanism, robots) if len(found) > 1 else None
+    return ParallelPlan(job, found, orientations, block, rows, names, device, target, shards, estimate, serial)
 
 
 def _check_home(mechanism: Mechanism) -> None:
@@ -274,13 +322,6 @@ def _orientations(job: ParallelWorkspaceJob) -> OrientationSet:
     return OrientationSet(("alpha", "beta", "gamma"), np.zeros((1, 3)), rotation, np.ones(1), (1, 1, 1))
 
 
-def _settled(block: list[Any] | None) -> LatticeBlock | None:
-    if block is None:
-        return None
-    size, first, shape = block
-    return LatticeBlock(size, tuple(first), tuple(shape))
-
-
 def _check_combination(job: ParallelWorkspaceJob, found: list[Variant]) -> None:
     """Raise InputError for what has no sense of this mechanism."""
     if found[0].mechanism.translational and job.kind != "constant_orientation":
@@ -289,26 +330,3 @@ def _check_combination(job: ParallelWorkspaceJob, found: list[Variant]) -> None:
     if len(found) > 1 and job.method in BY_BOUNDARY:
         message = "the workspace is a union over the values of the serial joints"
         raise InputError("method", f'must be "grid" or "grid_by_subsystem", not "{job.method}": {message}')
-
-
-def _block(
-    job: ParallelWorkspaceJob, found: list[Variant], orientations: OrientationSet, device: str
-) -> LatticeBlock | None:
-    """The lattice around all that the legs can reach; None where that is nothing."""
-    level = np.allclose(orientations.rotations, np.eye(3), rtol=0, atol=SAME_ORIENTATION)
-    if found[0].mechanism.translational and not level:
-        raise InputError("orientation", "must be null: the parallelograms of a delta do not let its platform turn")
-    box = reachable_box_of(found, orientations.rotations)
-    if box is None:
-        return None
-    return block_around(box.lower, box.upper, job.voxel_size_m or _voxel_size(found, orientations, box, device))
-
-
-def _voxel_size(found: list[Variant], orientations: OrientationSet, box: Box, device: str) -> float:
-    """A hundredth of the cube root of the volume reached at any orientation, estimated, to two significant digits."""
-    from scipy.stats.qmc import Sobol
-
-    points = max(FIRST_POINTS // len(orientations.rotations), FEWEST_POINTS)
-    unit = Sobol(3, scramble=False).random_base2(int(points).bit_length() - 1)
-    inside = reached_by_any(found, box.lower + unit * (box.upper - box.lower), orientations.rotations, device=device)
-    return round_to_digits(float(np.cbrt(box.volume * max(inside.mean(), LEAST_SHARE))) / 100.0, 2)

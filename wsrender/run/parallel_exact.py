@@ -16,6 +16,7 @@ from wsrender.parallel.exact import ExactWorkspace
 from wsrender.parallel.mechanism import Mechanism
 from wsrender.parallel.solids import solid_workspace
 from wsrender.result import Result
+from wsrender.run.parallel_headline import headline_entry
 from wsrender.run.parallel_result import mechanism_document, skeleton_at
 from wsrender.volume.table import Table
 
@@ -62,6 +63,13 @@ def boundary_partial(plan: "ParallelPlan") -> "Arrays":
     }
 
 
+def _headline(method: str, volume_m3: float) -> dict[str, Any]:
+    """The exact volume; that of meshes has no interval."""
+    if method == "exact":
+        return headline_entry("volume", "m^3", volume_m3, [volume_m3, volume_m3])
+    return headline_entry("volume", "m^3", volume_m3, None, "balls are meshes of triangles: there is no interval")
+
+
 def _surfaces(region: BallRegion) -> int:
     """How many surfaces may bound a region."""
     return len(region.inside_radii) + len(region.outside_radii) + len(region.sides_of_box()[1])
@@ -75,6 +83,7 @@ def boundary_result(plan: "ParallelPlan", partial: "Arrays", seconds: dict[str, 
         "sampling": {"method": method},
         "volume_m3": {method: about["volume_m3"]},
         "area_m2": about["area_m2"],
+        "headline": _headline(method, about["volume_m3"]),
     }
     region = region_of(plan.mechanism, plan.orientations.rotations[0])
     tables = {"surfaces": surface_table(region, partial["areas"], plan.mechanism.T_world_base)}

@@ -1,42 +1,41 @@
 """The result of a ``parallel_workspace`` job."""
 
-import json
 import time
-from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from wsrender.engine import OrientationCounts
 from wsrender.global_indices import voxel_volumes, workspace_mean
 from wsrender.indices.catalogue import unit
-from wsrender.parallel.hybrid import Variant, count_union, from_middle, middle, reached_by_any
+from wsrender.parallel.hybrid import Variant, from_middle, middle
 from wsrender.parallel.inverse_kinematics import inverse_kinematics
 from wsrender.parallel.local_indices import DETERMINANTS
 from wsrender.parallel.mechanism import Mechanism
-from wsrender.parallel.membership import count_at, fault_at, in_base_frame, in_world
-from wsrender.parallel.singularities import TYPES, sign_changes
-from wsrender.reachability import Event, estimate_volumes
+from wsrender.parallel.membership import fault_at, in_base_frame, in_world
 from wsrender.result import Result
+from wsrender.run.parallel_headline import headline, notices, refined_of
+from wsrender.run.parallel_lattice import FlatLattice, quantity
+from wsrender.run.parallel_singularities import singularities
 from wsrender.run.provenance import job_entry, provenance, robot_entry
 from wsrender.sampling import subsample
 from wsrender.spec.options import TASK_ROWS
 from wsrender.volume.distribution_map import DistributionMap
-from wsrender.volume.neighbours import inner_and_outer
+from wsrender.volume.lattice import LatticeBlock
 from wsrender.volume.table import Table
 from wsrender.volume.volume_data import VolumeData
+from wsrender.volume.voxels import Voxels
 
 if TYPE_CHECKING:
     from wsrender.run.parallel import Arrays, ParallelPlan
 
 PICTURE_SAMPLES = 30_000
-EVENTS = {"constant_orientation": "reached", "total_orientation": "all orientations", "dexterous": "dexterous"}
+ON_FACE = 1e-9  # of a voxel: a plane on the faces between two layers lies in the upper one
 
 
 def positions_result(plan: "ParallelPlan", partial: "Arrays", seconds: dict[str, float]) -> Result:
     """Of the kinds whose positions vary."""
     started = time.perf_counter()
-    job, found = plan.job, _counted(plan, partial)
+    job, found = plan.job, plan.counted(partial)
     volume = _volume(plan, partial, found)
     document = mechanism_document(plan) | {
         "sampling": {
@@ -50,15 +49,17 @@ def positions_result(plan: "ParallelPlan", partial: "Arrays", seconds: dict[str,
         "indices": _index_entries(plan, volume) if volume else {},
         "bounds_m": _bounds(volume),
     }
+    if isinstance(plan.block, FlatLattice):
+        document["flat"] = _flat_entry(plan.block, int(found.sum()), refined_of(partial))
     if volume is None:
         document["empty"] = _reason(plan)
+    document["headline"] = headline(plan, partial)
+    document["warnings"] = [notice.entry() for notice in notices(plan, partial, volume)]
     tables = {}
     if volume and plan.names:
         document["conditioning"] = _conditioning_entry(volume)
-    if volume and plan.names and DETERMINANTS[0] in plan.center_names:
-        changes = sign_changes(volume)
-        document["singularities"] = _singularity_entry(volume, changes)
-        tables["singularities"] = _singularity_table(changes)
+    if volume and plan.names and plan.has_determinants:
+        document["singularities"], tables["singularities"] = singularities(plan, partial, volume)
     document["timing_s"] = {**seconds, "finish": time.perf_counter() - started}
     skeleton = None if volume is None else skeleton_at(plan, _middle(volume))
     return Result(document, volume=volume, sample=_sample(volume), skeleton=skeleton, tables=tables)
@@ -85,8 +86,11 @@ def orientation_result(plan: "ParallelPlan", partial: "Arrays", seconds: dict[st
             "orientations": len(is_reached),
             "reached": int(is_reached.sum()),
             "share": share,
+            "share_of_ranges": float(partial["share"][0]),
+            "share_of_ranges_ci95": partial["share"][1:].tolist(),
             "measure": "invariant measure of rotations over the ranges given",
         },
+        "headline": headline(plan, partial),
         "timing_s": seconds,
     }
     if not is_reached.any():
@@ -136,36 +140,32 @@ def mechanism_entry(mechanism: Mechanism) -> dict[str, Any]:
     }
 
 
-def _counted(plan: "ParallelPlan", partial: "Arrays") -> np.ndarray:
-    """Which of the partial's voxels belong to the workspace: all but those that miss one of all orientations."""
-    if plan.job.kind == "total_orientation":
-        return partial["orientations"] == len(plan.orientations.rotations)
-    return np.ones(len(partial["cells"]), bool)
-
-
 def _shares(plan: "ParallelPlan", partial: "Arrays") -> np.ndarray:
     """The share of the orientations reached per voxel, by their measure; exactly 1 where all are."""
     return partial["weights"] / plan.orientations.whole_weights.sum(dtype=np.int64)
 
 
 def _volume(plan: "ParallelPlan", partial: "Arrays", found: np.ndarray) -> VolumeData | None:
-    """``count``: poses reached (orientations, or serial configurations); None where nothing is reached."""
+    """``count``: poses reached (orientations, or serial configurations); None where nothing is reached.
+
+    Cells of a plane or line that lie in one voxel are one: poses are added, the best values taken.
+    """
     if plan.block is None or not found.any():
         return None
-    at = np.stack(np.unravel_index(partial["cells"][found], plan.block.shape))
-    low = at.min(axis=1)
-    shape = tuple(at.max(axis=1) - low + 1)
-    place = tuple(at - low[:, None])
+    at = _voxels_of(plan.block, partial["cells"][found])
+    low = at.min(axis=0)
+    nx, ny, nz = (int(size) for size in at.max(axis=0) - low + 1)
+    cells, place = np.unique(np.ravel_multi_index(tuple((at - low).T), (nx, ny, nz)), return_inverse=True)
 
-    def dense(values: np.ndarray, empty, dtype) -> np.ndarray:
-        block = np.full(shape, empty, dtype)
-        block[place] = values[found]
-        return block
+    def kept(values: np.ndarray) -> np.ndarray:
+        best = np.full(len(cells), -np.inf)
+        np.maximum.at(best, place, values[found])
+        return best
 
     statistics: dict[str, dict[str, np.ndarray]] = {}
     units: dict[str, str] = {}
     if plan.names:
-        values = {n: dense(partial[f"index_{n}"], np.nan, np.float64) for n in (*plan.names, *plan.center_names)}
+        values = {name: kept(partial[f"index_{name}"]) for name in (*plan.names, *plan.center_names)}
         statistics["maximum"] = {name: values[name] for name in plan.names}
         statistics["center"] = {name: values[name] for name in plan.center_names}
         units = {n: unit(n, plan.rows, "standard") for n in plan.names} | dict.fromkeys(plan.center_names, "1")
@@ -173,17 +173,25 @@ def _volume(plan: "ParallelPlan", partial: "Arrays", found: np.ndarray) -> Volum
         if DETERMINANTS[1] in units and cranks:
             units[DETERMINANTS[1]] = f"m^{cranks}"  # a row of A has no unit, one of B that of its joint
     if plan.job.kind == "dexterous":
-        statistics["fraction"] = {"orientations": dense(_shares(plan, partial), np.nan, np.float64)}
+        statistics["fraction"] = {"orientations": kept(_shares(plan, partial))}
         units["orientations"] = "1"
-    x, y, z = (int(f + o) for f, o in zip(plan.block.first_voxel, low, strict=True))
-    count = dense(partial["orientations"], 0, np.int64)
-    return VolumeData(plan.block.voxel_size_m, (x, y, z), count, statistics, units)
+    count = np.bincount(place, partial["orientations"][found], len(cells)).astype(np.int64)
+    first = int(low[0]), int(low[1]), int(low[2])
+    return VolumeData.of_voxels(plan.block.voxel_size_m, first, Voxels((nx, ny, nz), cells, count, statistics), units)
+
+
+def _voxels_of(block: LatticeBlock, cells: np.ndarray) -> np.ndarray:
+    """The voxels (V, 3) of the world's lattice in which cells (V,) of a block have their centres."""
+    if not isinstance(block, FlatLattice):
+        return np.stack(np.unravel_index(cells, block.shape), axis=1) + block.first_voxel
+    at = block.centers(cells) / block.voxel_size_m
+    return np.floor(at + ON_FACE).astype(np.int64)
 
 
 def _volumes(plan: "ParallelPlan", partial: "Arrays", volume: VolumeData | None) -> dict[str, Any]:
     """Volumes [m³] by voxels, and the refined one if asked."""
-    refined = json.loads(str(partial["refined"])) if "refined" in partial else None
-    if volume is None:
+    refined = None if isinstance(plan.block, FlatLattice) else refined_of(partial)
+    if volume is None or isinstance(plan.block, FlatLattice):
         return {"occupied": 0.0, "inner": 0.0, "outer": 0.0, "refined": refined}
     found, voxel = voxel_volumes(volume), volume.voxel_size_m**3
     entry: dict[str, Any] = {"occupied": found.occupied, "inner": found.inner, "outer": found.outer}
@@ -194,66 +202,24 @@ def _volumes(plan: "ParallelPlan", partial: "Arrays", volume: VolumeData | None)
     return entry | {"refined": refined}
 
 
-def refined_entry(plan: "ParallelPlan", partial: "Arrays", progress: Callable[[int, int], None]) -> dict[str, Any]:
-    """The volume with its 95 % interval from uniform points that inverse kinematics decides.
-
-    The strata are the inner voxels, the border and the rest of the lattice block. ``progress``: points decided, and
-    about how many there will be.
-    """
-    job, tolerance = plan.job, plan.job.refined_volume
-    volume = _volume(plan, partial, _counted(plan, partial))
-    assert tolerance is not None
-    if plan.block is None:
-        return {"value": 0.0, "ci95": [0.0, 0.0], "tolerance": tolerance, "met": True, "points": 0}
-    classes = np.zeros(plan.block.shape, np.int8)
-    if volume is not None:
-        inner, outer = inner_and_outer(volume.occupied)
-        around = tuple(
-            slice(f - o - 1, f - o + n + 1)
-            for f, o, n in zip(volume.first_voxel, plan.block.first_voxel, volume.shape, strict=True)
-        )
-        padded = np.pad(classes, 1)
-        padded[tuple(slice(s.start + 1, s.stop + 1) for s in around)] = inner.astype(np.int8) + outer
-        classes = padded[1:-1, 1:-1, 1:-1]
-    strata = [np.argwhere(classes == code) + plan.block.first_voxel for code in np.unique(classes)]
-    rotations, weights = plan.orientations.rotations, plan.orientations.whole_weights
-    least = int(np.ceil(job.dexterous_threshold * weights.sum(dtype=np.int64))) if job.kind == "dexterous" else 0
-
-    def membership(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        unknown = np.full((len(points), 1), np.inf)  # how far points outside are: cells are judged by labels alone
-        if job.kind == "constant_orientation":
-            hits = reached_by_any(plan.variants, points, rotations, device=plan.device)
-            return hits.astype(np.int8)[:, None], unknown
-
-        def count(variant: Variant, turned: np.ndarray, weights: np.ndarray) -> OrientationCounts:
-            there = in_base_frame(variant.mechanism, points)
-            return count_at(variant.mechanism, there, turned, weights=weights, device=plan.device)
-
-        found = count_union(plan.variants, count, rotations, weights, len(points))
-        inside = np.zeros((len(points), 1), np.int8)
-        inside[found.cells, 0] = found.weights >= least if least else found.reached == len(rotations)
-        return inside, unknown
-
-    events = {EVENTS[job.kind]: Event(1, 1)}
-    found = estimate_volumes(
-        membership, strata, plan.block.voxel_size_m, events, tolerance, seed=job.seed, progress=progress
-    )
-    (estimate,) = found.volumes.values()
+def _flat_entry(block: FlatLattice, cells: int, refined: dict[str, Any] | None) -> dict[str, Any]:
+    """Area or length of the cells reached, and refined, and where the plane or line lies in the world."""
+    name, unit_of = quantity(block)
     return {
-        "value": estimate.value,
-        "ci95": [estimate.low, estimate.high],
-        "tolerance": tolerance,
-        "met": estimate.met,
-        "of": EVENTS[job.kind],
-        "points": found.points,
+        "quantity": name,
+        "unit": unit_of,
+        "occupied": cells * block.voxel_size_m**block.dimension,
+        "refined": refined,
+        "origin_m": list(block.origin),
+        "axes": [list(axis) for axis in block.axes[: block.dimension]],
     }
 
 
 def _index_entries(plan: "ParallelPlan", volume: VolumeData) -> dict[str, Any]:
     return {
         name: {
-            "maximum": float(np.nanmax(volume.statistics["maximum"][name])),
-            "minimum": float(np.nanmin(volume.statistics["maximum"][name])),
+            "maximum": float(np.nanmax(volume.voxels.statistics["maximum"][name])),
+            "minimum": float(np.nanmin(volume.voxels.statistics["maximum"][name])),
             "workspace_mean": workspace_mean(volume, name),
             "unit": volume.units[name],
             "task": [TASK_ROWS[r] for r in plan.rows],
@@ -266,7 +232,7 @@ def _conditioning_entry(volume: VolumeData) -> dict[str, Any]:
     """The least condition number (null: infinite everywhere) and the mean of 1/κ over the voxels, of A, B and J."""
     entry = {}
     for matrix in "ABJ":
-        inverse = volume.statistics["center"][f"inverse_condition_number_{matrix}"][volume.occupied]
+        inverse = volume.voxels.statistics["center"][f"inverse_condition_number_{matrix}"]
         largest = float(inverse.max())
         entry[matrix] = {
             "least_condition_number": 1 / largest if largest > 0 else None,
@@ -283,26 +249,6 @@ def _bounds(volume: VolumeData | None) -> dict[str, list[float]]:
     return {"lower": lower.tolist(), "upper": (lower + np.array(volume.shape) * volume.voxel_size_m).tolist()}
 
 
-def _singularity_entry(volume: VolumeData, changes: dict[int, np.ndarray]) -> dict[str, Any]:
-    """How often the determinants change sign; a determinant that is 0 everywhere says so."""
-    entry: dict[str, Any] = {}
-    for kind, name in TYPES.items():
-        values = volume.statistics["center"][name][volume.occupied]
-        entry[f"type_{kind}"] = {
-            "determinant": name,
-            "sign_changes": len(changes[kind]),
-            "positive_voxels": int((values > 0).sum()),
-            "negative_voxels": int((values < 0).sum()),
-            "everywhere": bool((values == 0).all()),
-        }
-    return entry
-
-
-def _singularity_table(changes: dict[int, np.ndarray]) -> Table:
-    kinds = np.repeat(np.array(list(changes), np.int64), [len(points) for points in changes.values()])
-    return Table({"position": np.concatenate(list(changes.values())), "type": kinds}, {"position": "m"})
-
-
 def _reason(plan: "ParallelPlan") -> str:
     """Why nothing is reached."""
     if plan.block is None and plan.job.kind != "orientation":
@@ -312,6 +258,8 @@ def _reason(plan: "ParallelPlan") -> str:
     else:
         assert plan.block is not None
         position = (np.array(plan.block.first_voxel) + np.array(plan.block.shape) / 2) * plan.block.voxel_size_m
+    if isinstance(plan.block, FlatLattice):
+        position = plan.block.flat.in_world(position[None])[0]
     variant = middle(plan.variants)
     fault = fault_at(variant.mechanism, _pose(plan, variant, position))
     where = f"at {np.round(position, 6).tolist()} m" + (", serial joints half way," if len(plan.variants) > 1 else "")
@@ -328,7 +276,7 @@ def _pose(plan: "ParallelPlan", variant: Variant, position_world: np.ndarray, or
 
 def _middle(volume: VolumeData) -> np.ndarray:
     """The centre of the reached voxel that is nearest to their mean [m]."""
-    cells = np.argwhere(volume.count == volume.count.max())
+    cells = volume.voxels.at[:, volume.voxels.count == volume.voxels.count.max()].T
     nearest = cells[((cells - cells.mean(axis=0)) ** 2).sum(axis=1).argmin()]
     return (nearest + volume.first_voxel + 0.5) * volume.voxel_size_m
 
@@ -365,9 +313,7 @@ def _sample(volume: VolumeData | None) -> DistributionMap | None:
     """A fixed subsample of the voxels' centres with their values."""
     if volume is None:
         return None
-    cells = np.argwhere(volume.occupied)
-    cells = cells[subsample(len(cells), PICTURE_SAMPLES)]
-    at = tuple(cells.T)
-    kept = volume.statistics.get("maximum") or volume.statistics.get("fraction") or {}
-    positions = (cells + volume.first_voxel + 0.5) * volume.voxel_size_m
-    return DistributionMap(positions, {name: values[at] for name, values in kept.items()}, dict(volume.units))
+    shown = subsample(volume.n_occupied, PICTURE_SAMPLES)
+    kept = volume.voxels.statistics.get("maximum") or volume.voxels.statistics.get("fraction") or {}
+    positions = (volume.voxels.at[:, shown].T + volume.first_voxel + 0.5) * volume.voxel_size_m
+    return DistributionMap(positions, {name: values[shown] for name, values in kept.items()}, dict(volume.units))

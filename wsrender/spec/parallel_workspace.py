@@ -1,9 +1,9 @@
 """The job ``parallel_workspace``: where, and in which orientations, a parallel mechanism holds its platform."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field
+from pydantic import BeforeValidator, Field, model_validator
 
 from wsrender.spec.arm import Arm, ArmPath
 from wsrender.spec.document import Document
@@ -51,8 +51,9 @@ class ParallelWorkspaceJob(Document):
     """Length that divides the linear rows where a task has angular ones too [m]."""
     dexterous_threshold: Annotated[float, Field(gt=0, le=1), BeforeValidator(real)] = 1.0
     """Least share of the orientations that counts as dexterous [1]."""
-    refined_volume: RelativeTolerance | None = None
-    """Half width of the 95 % interval of the volume, relative to it [1], from random points; null: not computed."""
+    refined_volume: RelativeTolerance | None = 0.01
+    """Half width of the 95 % interval of the volume, relative to it [1], from random points; null: not computed. The
+    default is 0.01 of a constant orientation by the methods "grid" and "grid_by_subsystem", else null."""
     seed: Seed = 0
     """Seed of the random points."""
     max_poses: Count = 10_000_000_000
@@ -61,6 +62,15 @@ class ParallelWorkspaceJob(Document):
     """Floating-point type of the kernels."""
     device: Device = "auto"
     """Where the kernels run: "auto" (a GPU if there is one), "cpu", "cuda" or "cuda:N"."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _refined_by_default(cls, data: Any) -> Any:
+        if not isinstance(data, Mapping) or "refined_volume" in data:
+            return data
+        plain = data.get("kind", "constant_orientation") == "constant_orientation"
+        on_grid = data.get("method", "grid_by_subsystem") not in BY_BOUNDARY
+        return dict(data) if plain and on_grid else {**data, "refined_volume": None}
 
     def arms(self) -> dict[ArmPath, Arm]:
         """The legs of the mechanism that are robots, by path."""

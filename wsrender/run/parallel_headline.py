@@ -1,0 +1,96 @@
+"""The one number that a ``parallel_workspace`` is asked for, and what a reader should know of it."""
+
+import json
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from wsrender.notices import Notice
+from wsrender.run.parallel_lattice import FlatLattice
+from wsrender.volume.volume_data import VolumeData
+
+if TYPE_CHECKING:
+    from wsrender.run.parallel import Arrays, ParallelPlan
+
+DIFFERS = 0.1  # relative: voxels that differ by more from what is refined mislead
+
+
+def refined_of(partial: "Arrays") -> dict[str, Any] | None:
+    """The refined volume, area or length; None where none was asked for."""
+    return json.loads(str(partial["refined"])) if "refined" in partial else None
+
+
+def headline(plan: "ParallelPlan", partial: "Arrays") -> dict[str, Any]:
+    """Quantity, value, 95 % interval, unit and, where there is none, the reason."""
+    if plan.job.kind == "orientation":
+        reason = 'only the orientation varies: "orientation_workspace" holds the share that is reached'
+        return headline_entry("volume", "m^3", None, None, reason)
+    refined = refined_of(partial)
+    name, unit = plan.quantity
+    if name == "point":
+        return headline_entry("volume", "m^3", None, None, "the platform stays at a point")
+    if refined is None:
+        return headline_entry(name, unit, None, None, "no refined volume was asked for: give refined_volume")
+    return headline_entry(name, unit, refined["value"], refined["ci95"])
+
+
+def headline_entry(name: str, unit: str, value: float | None, ci95: list[float] | None, reason: str | None = None):
+    """As all result documents hold it."""
+    return {"quantity": name, "value": value, "ci95": ci95, "unit": unit, "reason": reason}
+
+
+def notices(plan: "ParallelPlan", partial: "Arrays", volume: VolumeData | None) -> Iterator[Notice]:
+    """What a reader of the numbers should know."""
+    refined = refined_of(partial)
+    if plan.search is not None:
+        yield from _of_levels(plan, volume, refined)
+        if refined is not None and not plan.search.proves:
+            yield Notice(
+                "serial_joints_sampled",
+                "cones, distances of legs or serial legs are tried at many values of the serial joints, not searched: "
+                "the refined volume may miss what is reached between them",
+                field="refined_volume",
+            )
+    if refined is not None and not refined["met"]:
+        yield Notice(
+            "tolerance_not_met",
+            f"the refined {plan.quantity[0]} has a wider interval than asked for: {refined['points']} points were "
+            "decided, the most there may be",
+            "read the interval, or give a larger refined_volume",
+            "refined_volume",
+        )
+    if plan.search is None and refined is not None and not isinstance(plan.block, FlatLattice):
+        yield from _of_voxels(plan, volume, refined)
+
+
+def _of_levels(plan: "ParallelPlan", volume: VolumeData | None, refined: dict[str, Any] | None) -> Iterator[Notice]:
+    levels = " x ".join(str(joint.levels) for joint in plan.search.joints) if plan.search else ""
+    remedy = "give the serial joints more levels, or read the refined volume, which searches all their values"
+    if refined is None:
+        text = f"voxels are those reached at {levels} levels of the serial joints: between them more may be reached"
+        yield Notice("serial_levels", text, remedy, "mechanism")
+        return
+    occupied = _occupied(plan, volume)
+    if plan.job.kind == "constant_orientation" and occupied < refined["ci95"][0]:
+        text = (
+            f"the voxels reached at {levels} levels of the serial joints hold {occupied:.4g} m³, less than the refined "
+            f"volume of {refined['value']:.4g} m³ (at least {refined['ci95'][0]:.4g})"
+        )
+        yield Notice("serial_levels", text, remedy, "mechanism")
+
+
+def _of_voxels(plan: "ParallelPlan", volume: VolumeData | None, refined: dict[str, Any]) -> Iterator[Notice]:
+    occupied = _occupied(plan, volume)
+    if plan.job.kind == "constant_orientation" and abs(occupied - refined["value"]) > DIFFERS * refined["value"]:
+        yield Notice(
+            "occupied_differs",
+            f"the occupied voxels hold {occupied:.4g} m³, the workspace {refined['value']:.4g} m³",
+            "read the refined volume, or choose smaller voxels",
+            "voxel_size_m",
+        )
+
+
+def _occupied(plan: "ParallelPlan", volume: VolumeData | None) -> float:
+    """What the occupied voxels hold [m³]."""
+    return 0.0 if volume is None else float(np.count_nonzero(volume.voxels.count)) * volume.voxel_size_m**3

@@ -1,0 +1,179 @@
+"""The lattice of a ``parallel_workspace``: of the space, or of the plane or line in which the platform stays."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from wsrender.errors import InputError, ResourceError
+from wsrender.memory import SHARE, available_bytes
+from wsrender.parallel.flat import MEASURES, Flat, flat_of
+from wsrender.parallel.hybrid import Variant, reachable_box_of, reached_by_any
+from wsrender.parallel.inverse_kinematics import SAME_ORIENTATION
+from wsrender.parallel.membership import Box, placed_box, reachable_box
+from wsrender.parallel.orientations import OrientationSet
+from wsrender.spec.parallel_workspace import ParallelWorkspaceJob
+from wsrender.volume.lattice import LatticeBlock, block_around, round_to_digits
+
+FIRST_POINTS, FEWEST_POINTS = 1 << 16, 1 << 10  # of the estimate that the default voxel size is made of
+SHARE_POINTS = 1 << 12  # of the estimate of how many voxels are kept
+LEAST_SHARE = 1e-3  # of the box: where hardly anything is reached
+COPIES = 3  # of what is kept of a voxel: of shards, merged, and of the result
+FLAT_AREA = 1e-9  # relative to its extent: thickness of a box that holds a plane
+
+
+@dataclass(frozen=True)
+class FlatLattice(LatticeBlock):
+    """Cells of a plane or line as a block one voxel thick: its own axes first, then those across.
+
+    Cell (i, j) covers [i, i + 1) edges along each of its axes from `Flat.origin`; its centre lies in the flat.
+    """
+
+    dimension: int = 2
+    origin: tuple[float, ...] = (0.0, 0.0, 0.0)
+    axes: tuple[tuple[float, ...], ...] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+
+    @cached_property
+    def flat(self) -> Flat:
+        """Where the cells lie."""
+        return Flat(self.dimension, np.array(self.origin), np.array(self.axes))
+
+    def centers(self, cells: np.ndarray) -> np.ndarray:
+        """Centres (N, 3) of cells by number, world [m]."""
+        return self.flat.in_world(super().centers(cells))
+
+
+def lattice_of(
+    job: ParallelWorkspaceJob, found: Sequence[Variant], orientations: OrientationSet, columns: int, device: str
+) -> LatticeBlock | None:
+    """The lattice around all that the legs can reach; None where that is nothing. ``columns``: values of a voxel.
+
+    Raises InputError for a turned delta, ResourceError where the voxels that are kept do not fit in memory.
+    """
+    level = np.allclose(orientations.rotations, np.eye(3), rtol=0, atol=SAME_ORIENTATION)
+    if found[0].mechanism.translational and not level:
+        raise InputError("orientation", "must be null: the parallelograms of a delta do not let its platform turn")
+    flat = common_flat(found, orientations)
+    block = _in_space(job, found, orientations, device) if flat is None else _in_flat(job, flat, found, orientations)
+    if block is not None:
+        _check_memory(block, columns, found, orientations, device)
+    return block
+
+
+def common_flat(found: Sequence[Variant], orientations: OrientationSet) -> Flat | None:
+    """The plane, line or point in which the platform's origin stays, whatever the serial joints, or None."""
+    flats = [flat_of(v.mechanism, v.rotations(orientations.rotations[:1])[0]) for v in found]
+    first = flats[0]
+    if first is None:
+        return None
+    size = max(leg.chain.reach for leg in found[0].mechanism.numeric)
+    return first if all(flat is not None and first.same(flat, size) for flat in flats) else None
+
+
+def settled_lattice(block: list[Any] | None) -> LatticeBlock | None:
+    """The lattice that `described` describes."""
+    if block is None:
+        return None
+    size, first, shape, *flat = block
+    if not flat:
+        return LatticeBlock(size, tuple(first), tuple(shape))
+    dimension, origin, axes = flat
+    return FlatLattice(size, tuple(first), tuple(shape), dimension, tuple(origin), tuple(map(tuple, axes)))
+
+
+def described(block: LatticeBlock | None) -> list[Any] | None:
+    """A lattice as lists and numbers."""
+    if block is None:
+        return None
+    entry: list[Any] = [block.voxel_size_m, list(block.first_voxel), list(block.shape)]
+    if isinstance(block, FlatLattice):
+        entry += [block.dimension, list(block.origin), [list(axis) for axis in block.axes]]
+    return entry
+
+
+def _in_space(job, found, orientations, device: str) -> LatticeBlock | None:
+    box = reachable_box_of(found, orientations.rotations)
+    if box is None:
+        return None
+    return block_around(box.lower, box.upper, job.voxel_size_m or _voxel_size(found, orientations, box, None, device))
+
+
+def _in_flat(job, flat: Flat, found, orientations) -> LatticeBlock | None:
+    box = _local_box(flat, found, orientations)
+    if flat.dimension == 0 or np.any(box.lower[: flat.dimension] >= box.upper[: flat.dimension]):
+        return None
+    size = job.voxel_size_m or _voxel_size(found, orientations, box, flat, job.device)
+    block = block_around(box.lower, box.upper, size)
+    first, shape = list(block.first_voxel), list(block.shape)
+    first[flat.dimension :], shape[flat.dimension :] = [0] * (3 - flat.dimension), [1] * (3 - flat.dimension)
+    (x, y, z), (nx, ny, nz) = first, shape
+    place = flat.dimension, tuple(flat.origin.tolist()), tuple(map(tuple, flat.axes.tolist()))
+    return FlatLattice(block.voxel_size_m, (x, y, z), (nx, ny, nz), *place)
+
+
+def _local_box(flat: Flat, found: Sequence[Variant], orientations: OrientationSet) -> Box:
+    """A box in the axes of a flat that holds all that any variant reaches."""
+    corners = []
+    for variant in found:
+        box = reachable_box(variant.mechanism, variant.rotations(orientations.rotations))
+        # Rounding may leave a box whose sides meet a hair apart: planes are thin.
+        low, high = np.minimum(box.lower, box.upper), np.maximum(box.lower, box.upper)
+        if np.any(box.lower > box.upper + FLAT_AREA * np.abs(high - low).max()):
+            continue
+        placed = placed_box(variant.mechanism, Box(low, high))
+        grid = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)])
+        corners.append(flat.local(placed.lower + grid * (placed.upper - placed.lower)))
+    if not corners:
+        return Box(np.zeros(3), np.zeros(3))
+    points = np.concatenate(corners)
+    return Box(points.min(axis=0), points.max(axis=0))
+
+
+def _voxel_size(found, orientations: OrientationSet, box: Box, flat: Flat | None, device: str) -> float:
+    """A hundredth of the cube root of the volume reached at any orientation, estimated, to two significant digits.
+
+    In a plane of the square root of its area, on a line of its length.
+    """
+    points = max(FIRST_POINTS // len(orientations.rotations), FEWEST_POINTS)
+    if flat is not None:
+        points = min(points, FEWEST_POINTS)
+    dimension = 3 if flat is None else flat.dimension
+    share = max(_share(found, orientations, box, flat, points, device), LEAST_SHARE)
+    size = np.prod((box.upper - box.lower)[:dimension]) * share
+    return round_to_digits(float(size ** (1 / dimension)) / 100.0, 2)
+
+
+def _share(found, orientations: OrientationSet, box: Box, flat: Flat | None, points: int, device: str) -> float:
+    """The share of a box that is reached at any orientation, from a Sobol set."""
+    from scipy.stats.qmc import Sobol
+
+    unit = Sobol(3, scramble=False).random_base2(int(points).bit_length() - 1)
+    local = box.lower + unit * (box.upper - box.lower)
+    world = local if flat is None else flat.in_world(local)
+    return float(reached_by_any(found, world, orientations.rotations, device=device).mean())
+
+
+def _check_memory(block: LatticeBlock, columns: int, found, orientations, device: str) -> None:
+    """Raise ResourceError where what is kept of the voxels that are reached does not fit in memory."""
+    each = COPIES * 8 * (3 + columns)
+    free = SHARE * available_bytes()
+    if block.size * each <= free:
+        return
+    low = np.array(block.first_voxel) * block.voxel_size_m
+    box = Box(low, low + np.array(block.shape) * block.voxel_size_m)
+    flat = block.flat if isinstance(block, FlatLattice) else None
+    needed = block.size * each * _share(found, orientations, box, flat, SHARE_POINTS, device)
+    if needed > free:
+        edge = block.voxel_size_m * float(np.cbrt(needed / free))
+        raise ResourceError(
+            "voxel_size_m",
+            f"{block.voxel_size_m:.3g} gives {' x '.join(map(str, block.shape))} voxels, of which those that are "
+            f"reached need {needed / 2**30:.1f} GiB; {free / 2**30:.1f} GiB are free: choose {edge:.2g} or more",
+        )
+
+
+def quantity(block: LatticeBlock | None) -> tuple[str, str]:
+    """What a lattice measures and in which unit: volume, area or length."""
+    return MEASURES[block.dimension if isinstance(block, FlatLattice) else 3]

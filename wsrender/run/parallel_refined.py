@@ -1,0 +1,241 @@
+"""The refined volume (area, length) of a ``parallel_workspace``: its 95 % interval covers what is sampled by levels.
+
+Serial joints are searched, not sampled (`wsrender.parallel.serial_search`). Sets of orientations stand for ranges:
+points are decided by the set and by one of half the steps, and what the two differ in widens the interval.
+"""
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from wsrender.engine import OrientationCounts
+from wsrender.parallel.flat import Flat
+from wsrender.parallel.membership import count_at, in_base_frame, poses_labelled
+from wsrender.parallel.orientations import OrientationSet, finer, orientation_set
+from wsrender.reachability import Event, estimate_volumes
+from wsrender.reachability.inverse_solver import REACHABLE, UNDECIDED, UNREACHABLE
+from wsrender.reachability.volume_estimate import VolumeEstimates
+from wsrender.run.parallel_lattice import FlatLattice
+from wsrender.volume.lattice import LatticeBlock, block_around
+from wsrender.volume.neighbours import inner_and_outer
+
+if TYPE_CHECKING:
+    from wsrender.run.parallel import Arrays, ParallelPlan
+
+EVENTS = {"constant_orientation": "reached", "total_orientation": "all orientations", "dexterous": "dexterous"}
+# Along the mean edge of the box that holds everything; fewer where each cell's middle is searched.
+CELLS, CELLS_FLAT, CELLS_SEARCHED = 64, 256, 32
+# Poses decided at most, of legs in closed form, with serial joints that are searched, and with numerical solutions.
+BUDGET, BUDGET_SEARCHED, BUDGET_NUMERIC = 2_000_000_000, 100_000, 100_000
+MOST_POINTS, FEWEST_POINTS = 10_000_000, 4_000
+FINEST = 100_000  # orientations of the halved steps; of more the asked ones are the finer set
+
+Labelled = Callable[[np.ndarray], np.ndarray]
+"""Points (N, 3), world → labels (N, K) int8, as of `estimate_volumes`."""
+
+
+def refined_entry(plan: "ParallelPlan", partial: "Arrays", progress: Callable[[int, int], None]) -> dict[str, Any]:
+    """What is measured with its 95 % interval, from uniform points that inverse kinematics decides.
+
+    The strata are inner cells, the border and the rest of a coarse lattice around what can be reached. ``progress``:
+    points decided, and about how many there will be.
+    """
+    tolerance = plan.job.refined_volume
+    assert tolerance is not None
+    about = {"tolerance": tolerance, "of": EVENTS[plan.job.kind]}
+    if plan.block is None:
+        return {"value": 0.0, "ci95": [0.0, 0.0], **about, "met": True, "points": 0}
+    cells = _cells(plan)
+    flat = cells.flat if isinstance(cells, FlatLattice) else None
+    sets = _sets(plan)
+    labelled = _labelled(plan, sets)
+
+    def membership(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        labels = labelled(points if flat is None else flat.in_world(points))
+        return labels, np.full(labels.shape, np.inf)  # how far points outside are: cells are judged by labels alone
+
+    events = {"all": Event(len(sets), len(sets)), "any": Event(1, len(sets), precise=False)}
+    found = estimate_volumes(
+        membership,
+        _strata(plan, partial, cells),
+        cells.voxel_size_m,
+        events if len(sets) > 1 else {"all": events["all"]},
+        tolerance,
+        seed=plan.job.seed,
+        max_points=_most_points(plan, sets),
+        progress=progress,
+    )
+    nested = plan.job.kind == "total_orientation" or plan.job.dexterous_threshold == 1
+    return _entry(found, flat, cells.voxel_size_m, nested) | about | {"points": found.points}
+
+
+def _entry(found: VolumeEstimates, flat: Flat | None, edge: float, nested: bool) -> dict[str, Any]:
+    """Value and interval; where two sets of orientations differ, that much of the measure is added on both sides.
+
+    ``nested``: all orientations are asked for, so that what the finer set allows is what both do.
+    """
+    across = edge ** (0 if flat is None else 3 - flat.dimension)  # cells of a flat are one edge thick
+    both = found.volumes["all"]
+    if "any" not in found.volumes:
+        return {"value": both.value / across, "ci95": [both.low / across, both.high / across], "met": both.met}
+    some = found.volumes["any"]
+    spread = some.value - both.value
+    value = both.value if nested else both.value + spread / 2
+    low, high = max(both.low - spread, 0.0), some.high if nested else some.high + spread
+    return {
+        "value": value / across,
+        "ci95": [low / across, high / across],
+        "met": both.met,
+        "orientation_steps": spread / across,
+    }
+
+
+def _sets(plan: "ParallelPlan") -> list[OrientationSet]:
+    """The orientations asked for, and where they are levels of ranges a set of half the steps, or twice as wide."""
+    spec = plan.job.orientations
+    if spec is None:
+        return [plan.orientations]
+    halved = finer(spec)
+    closed_form = len(plan.variants) == 1 and not plan.mechanism.numeric
+    if halved.count <= (FINEST if closed_form else FINEST // 1000):
+        return [plan.orientations, orientation_set(halved)]
+    return [plan.orientations, orientation_set(_coarser(spec))]
+
+
+def _coarser(spec):
+    """The ranges with about twice the steps."""
+    names = ("per_angle",) if hasattr(spec, "per_angle") else ("tilts", "azimuths", "torsions")
+    update = {}
+    for name in names:
+        levels = getattr(spec, name)
+        update[name] = tuple(map(_doubled, levels)) if isinstance(levels, tuple) else _doubled(levels)
+    return spec.model_copy(update=update)
+
+
+def _doubled(levels: int) -> int:
+    return (levels + 1) // 2 if levels > 2 else levels
+
+
+def _labelled(plan: "ParallelPlan", sets: list[OrientationSet]) -> Labelled:
+    if plan.job.kind == "constant_orientation":
+        rotations = plan.orientations.rotations[0]
+        return lambda points: labels_at_poses(plan, points, rotations)[:, None]
+    return lambda points: np.stack([_of_set(plan, points, each) for each in sets], axis=1)
+
+
+def labels_at_poses(plan: "ParallelPlan", points: np.ndarray, rotations: np.ndarray) -> np.ndarray:
+    """Labels (N,) int8 of points (N, 3), world, at orientations (3, 3) or (N, 3, 3) against the fixed base."""
+    if plan.search is not None:
+        return plan.search.labels(points, rotations, device=plan.device)
+    mechanism = plan.mechanism
+    there = in_base_frame(mechanism, points)
+    if mechanism.numeric or rotations.ndim == 3:
+        poses = np.broadcast_to(np.eye(4), (len(points), 4, 4)).copy()
+        poses[:, :3, :3], poses[:, :3, 3] = rotations, there
+        return poses_labelled(mechanism, poses, device=plan.device)[0]
+    counts = count_at(mechanism, there, rotations[None], device=plan.device)
+    labels = np.zeros(len(points), np.int8)
+    labels[counts.cells[counts.reached > 0]] = REACHABLE
+    return labels
+
+
+def _of_set(plan: "ParallelPlan", points: np.ndarray, orientations: OrientationSet) -> np.ndarray:
+    """Whether enough of a set's orientations are reached, labels (N,)."""
+    weights = orientations.whole_weights.astype(np.int64)
+    least = (
+        int(np.ceil(plan.job.dexterous_threshold * weights.sum())) if plan.job.kind == "dexterous" else weights.sum()
+    )
+    if plan.search is None and not plan.mechanism.numeric:
+        found: OrientationCounts = count_at(
+            plan.mechanism,
+            in_base_frame(plan.mechanism, points),
+            orientations.rotations,
+            weights=weights.astype(np.int32),
+            device=plan.device,
+        )
+        labels = np.zeros(len(points), np.int8)
+        labels[found.cells[found.weights >= least]] = REACHABLE
+        return labels
+    surely, lost = np.zeros(len(points), np.int64), np.zeros(len(points), np.int64)
+    for rotation, weight in zip(orientations.rotations, weights, strict=True):
+        open_points = np.flatnonzero(weights.sum() - lost >= least)  # others can have too few only
+        labels = labels_at_poses(plan, points[open_points], rotation)
+        surely[open_points[labels == REACHABLE]] += weight
+        lost[open_points[(labels != REACHABLE) & (labels != UNDECIDED)]] += weight
+    may = weights.sum() - lost >= least
+    return np.where(surely >= least, 1, np.where(may, -1, 0)).astype(np.int8)
+
+
+def _most_points(plan: "ParallelPlan", sets: list[OrientationSet]) -> int:
+    budget = BUDGET if plan.search is None else BUDGET_SEARCHED
+    if plan.mechanism.numeric:
+        budget = BUDGET_NUMERIC
+    poses = sum(len(each.rotations) for each in sets)
+    return int(np.clip(budget // poses, FEWEST_POINTS, MOST_POINTS))
+
+
+def _cells(plan: "ParallelPlan") -> LatticeBlock:
+    """A coarse lattice around all that can be reached, no finer than the voxels."""
+    block = plan.block
+    assert block is not None
+    voxel, shape = block.voxel_size_m, np.array(block.shape)
+    if isinstance(block, FlatLattice):
+        mean = float(np.prod(shape[: block.dimension]) ** (1 / block.dimension))
+        ratio = max(int(mean / CELLS_FLAT), 1)  # whole voxels: cells are one thick across
+        first = np.floor_divide(block.first_voxel, ratio)
+        last = np.floor_divide(np.array(block.first_voxel) + shape - 1, ratio)
+        (x, y, z), (nx, ny, nz) = first.tolist(), (last - first + 1).tolist()
+        return FlatLattice(voxel * ratio, (x, y, z), (nx, ny, nz), block.dimension, block.origin, block.axes)
+    lower = np.array(block.first_voxel) * voxel
+    upper = lower + shape * voxel
+    count = CELLS
+    if plan.search is not None:
+        (lower, upper), count = _between_levels(plan, lower, upper), CELLS_SEARCHED
+    edge = max(float(np.cbrt(np.prod(upper - lower))) / count, voxel)
+    return block_around(lower, upper, edge)
+
+
+def _between_levels(plan: "ParallelPlan", lower: np.ndarray, upper: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """A box [m] around what is reached between the levels too: each joint moves by half a step at most."""
+    search = plan.search
+    assert search is not None
+    most = sum(
+        (search.reach_m if joint.type == "revolute" else 1.0) * np.ptp(joint.limits) / (joint.levels - 1) / 2
+        for joint in search.joints
+    )
+    origin = search.mechanism.T_world_base[:3, 3]
+    return np.maximum(lower - most, origin - search.reach_m), np.minimum(upper + most, origin + search.reach_m)
+
+
+def _strata(plan: "ParallelPlan", partial: "Arrays", cells: LatticeBlock) -> list[np.ndarray]:
+    """Inner cells, the border and the rest: cells (M, 3) in which voxels were reached, and their neighbours."""
+    assert plan.block is not None
+    if plan.search is not None and plan.job.kind == "constant_orientation":
+        return _searched_strata(plan, cells)
+    found = plan.counted(partial)
+    centers = plan.block.centers(partial["cells"][found])
+    if isinstance(cells, FlatLattice):
+        centers = cells.flat.local(centers)
+    at = np.floor(centers / cells.voxel_size_m).astype(np.int64) - cells.first_voxel
+    occupied = np.zeros(cells.shape, bool)
+    inside = np.all((at >= 0) & (at < cells.shape), axis=1)
+    occupied[tuple(at[inside].T)] = True
+    return _inner_border_rest(occupied, cells, np.ones(cells.shape, bool))
+
+
+def _searched_strata(plan: "ParallelPlan", cells: LatticeBlock) -> list[np.ndarray]:
+    """The same by searching the middles of cells; those that nothing near them reaches, by proof, belong to none."""
+    assert plan.search is not None
+    flat = cells.flat if isinstance(cells, FlatLattice) else None
+    centers = cells.centers(np.arange(cells.size))
+    around = cells.voxel_size_m / 2 * np.sqrt(3 if flat is None else flat.dimension)
+    rotation = plan.orientations.rotations[0]
+    labels = plan.search.labels(centers, rotation, around_m=around, device=plan.device).reshape(cells.shape)
+    return _inner_border_rest(labels == REACHABLE, cells, labels != UNREACHABLE)
+
+
+def _inner_border_rest(occupied: np.ndarray, cells: LatticeBlock, kept: np.ndarray) -> list[np.ndarray]:
+    inner, outer = inner_and_outer(occupied)
+    classes = (inner.astype(np.int8) + outer)[1:-1, 1:-1, 1:-1]
+    return [np.argwhere((classes == code) & kept) + cells.first_voxel for code in np.unique(classes)]
