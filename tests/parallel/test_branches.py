@@ -18,10 +18,10 @@ HEXAPOD = [leg.model_dump(mode="json") for leg in legs_of(SPEC.validate_python("
 
 
 def one_crank(branch):
-    """Five UPS legs and one RUS, its crank from 20 to 100°."""
+    """Five UPS legs and one RUS, its crank from 20 to 160°."""
     x, y, _ = HEXAPOD[0]["base_m"]
-    crank = {"type": "RUS", "base_m": [x, y, 0.0], "platform_m": HEXAPOD[0]["platform_m"], "axis": [y, -x, 0.0],
-             "zero": [x, y, 0.0], "crank_m": 0.3, "link_m": 0.55, "angle_deg": [20, 100], "branch": branch}  # fmt: skip
+    crank = {"type": "RUS", "base_m": [x, y, 0.0], "platform_m": HEXAPOD[0]["platform_m"], "axis": [x, y, 0.0],
+             "zero": [-y, x, 0.0], "crank_m": 0.3, "link_m": 0.4, "angle_deg": [20, 160], "branch": branch}  # fmt: skip
     return {"legs": [crank, *HEXAPOD[1:]], "region": {"lower_m": [None, None, 0.0]}}
 
 
