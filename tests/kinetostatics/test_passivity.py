@@ -4,7 +4,15 @@ import numpy as np
 import pytest
 
 import wsrender as ws
-from wsrender.kinetostatics.passivity import largest_loop_work, loop_work, stiffness_bound, stiffnesses
+from tests.kinetostatics.test_force_field import OBSTACLES, SOFT, STRONG, arm
+from wsrender.kinetostatics.passivity import (
+    largest_loop_work,
+    loop_path,
+    loop_work,
+    path_work,
+    stiffness_bound,
+    stiffnesses,
+)
 from wsrender.spec.kinetostatics import HapticDevice
 
 MASS, DAMPING, PERIOD, SUBSTEPS = 0.05, 0.5, 1e-3, 10
@@ -82,6 +90,90 @@ def test_work_of_closed_paths():
     assert potential.work_j < 0.02 * normalised.work_j
     dissipated = normalised.damping_n_s_per_m * normalised.speed_m_per_s * normalised.length_m
     assert dissipated == pytest.approx(normalised.work_j)
+
+
+TERMS = {"joint_limits": SOFT, "conditioning": {"inverse_condition_on": 0.6, "stiffness_n_m": 5.0}}
+TERMS |= {"obstacles": OBSTACLES | {"stiffness_n_per_m": 100.0}}
+
+
+def potential(joints, kind="force", **device):
+    """All terms that act on the tip or the joints; nothing is clipped by a strong device."""
+    choices = {**TERMS, "task": "full" if kind == "wrench" else "linear"}
+    device = {"kind": kind, **(device or STRONG)}
+    return ws.force_field(arm(joints), form="potential", haptic_device=device, **choices)
+
+
+def joint_loops(field, count, steps, seed=0, farthest=50.0):
+    """Closed paths (steps + 1, n) of the joints through a sixth of their ranges, across ramps and beyond limits.
+
+    Their Jacobians have condition numbers below ``farthest``: the pseudo-inverse is damped above 100.
+    """
+    random, chain = np.random.default_rng(seed), field.chain
+    span = chain.upper_limits - chain.lower_limits
+    angle = 2 * np.pi * np.arange(steps + 1)[:, None] / steps
+    while count:
+        middle = random.uniform(chain.lower_limits, chain.upper_limits)
+        swings = random.normal(size=(2, chain.n)) * span / 12
+        path = middle + np.cos(angle) * swings[0] + np.sin(angle) * swings[1]
+        path[-1] = path[0]
+        if max(np.linalg.cond(field._jacobian(field.kinematics.at(q))) for q in path[::4]) < farthest:
+            count -= 1
+            yield path
+
+
+@pytest.mark.parametrize(("joints", "kind"), [(3, "force"), (6, "wrench")])
+def test_a_potential_that_is_not_clipped_does_no_work_round_closed_loops_of_the_joints(joints, kind):
+    """∮ F·dx → 0 with the steps, while forces do joules on the way."""
+    field, ratios = potential(joints, kind), []
+    for path in joint_loops(field, 6, 400):
+        fine, coarse = path_work(field, path), path_work(field, path[::2])
+        done = sum(abs(path_work(field, part).work_j) for part in (path[:101], path[100:201], path[200:301]))
+        assert abs(fine.work_j) < 1e-3 * max(done, 1e-2)
+        ratios.append(fine.hidden_j / coarse.hidden_j)
+        assert fine.clipped_j == 0 and fine.energy_j == pytest.approx(0, abs=1e-12)
+        assert fine.hidden_j < 0.01 * max(done, 1e-2)  # kinks inside of obstacles
+    assert np.median(ratios) < 0.4
+
+
+def test_a_redundant_arm_gives_what_its_energy_loses_where_its_joints_follow_the_tip():
+    """Along q̇ = J⁺ ẋ, which need not come back: ∫ F·dx = −ΔU. Round loops of the joints self-motions take part."""
+    field = potential(6)
+    random, followed = np.random.default_rng(2), 0
+    for closed in joint_loops(field, 6, 60):
+        path = loop_path(field, closed[0], 0.02 * np.linalg.qr(random.normal(size=(3, 2)))[0])
+        if path is None:
+            continue
+        work = path_work(field, path)
+        assert work.work_j == pytest.approx(-work.energy_j, abs=1e-3)
+        followed += abs(work.energy_j) > 5e-3
+        round_ = path_work(field, closed)
+        assert abs(round_.work_j) <= round_.bound_j
+    assert followed > 0
+    self_motions = [path_work(field, path) for path in joint_loops(field, 6, 200)]
+    assert max(abs(each.work_j) for each in self_motions) > 0.01  # not felt, and said so
+    assert all(abs(each.work_j) <= each.hidden_j for each in self_motions)
+
+
+def test_the_work_of_a_clipped_potential_is_bounded():
+    """6.4 N of far more: net work, below what was cut off and below peak × length."""
+    field = potential(3, peak_force_n=6.4, continuous_force_n=1.4)
+    works = [path_work(field, path) for path in joint_loops(field, 12, 200)]
+    assert max(abs(each.work_j) for each in works) > 0.05
+    for each in works:
+        assert abs(each.work_j) <= each.bound_j <= each.peak_j
+        assert each.bound_j <= each.clipped_j + each.hidden_j + abs(each.energy_j)
+    assert min(each.bound_j / each.peak_j for each in works) < 0.5
+    assert any(each.clipped_j == 0 and abs(each.work_j) < 1e-3 for each in works) or len(works) == 12
+
+
+def test_the_loops_of_a_result_have_a_bound():
+    for form in ("potential", "normalised"):
+        loop = largest_loop_work(ws.force_field("phantom_omni", form=form), 24)
+        assert 0 < loop.work_j <= loop.bound_j <= 6.4 * loop.length_m * 1.001
+        assert (loop.clipped > 0) == (form == "potential")
+    soft = {"joint_limits": {"stiffness_n_m_per_rad": 0.5}, "conditioning": {"stiffness_n_m": 0.05}}
+    whole = largest_loop_work(ws.force_field("phantom_omni", form="potential", haptic_device=DEVICE, **soft), 24)
+    assert whole.clipped == 0 and whole.bound_j < 0.02 * loop.bound_j
 
 
 def test_loop_work_of_a_constant_curl():

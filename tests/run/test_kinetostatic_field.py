@@ -59,7 +59,29 @@ def test_document(result):
     passivity = entry["passivity"]
     assert passivity["stiffness_bound_n_per_m"] == pytest.approx(1000)
     assert passivity["loops"] > 0
-    assert "work of closed paths" in result.summary()
+    assert (
+        passivity["largest_loop_work_j"] <= passivity["loop_work_bound_j"] <= 6.4 * passivity["loop_length_m"] * 1.001
+    )
+    assert passivity["conservative"].startswith("no: unit directions are no gradient")
+    assert "work of closed paths" in result.summary() and " J at most, bound " in result.summary()
+    assert result.document["warnings"] == []
+    assert result.document["headline"]["value"] is None and result.document["headline"]["reason"]
+
+
+def test_a_potential_that_is_clipped_says_where_it_is_none():
+    field = {"task": ["x", "y"], "form": "potential"}
+    document = execute({**JOB, "field": field, "sampling": {"method": "sobol", "count": 64}}).document
+    passivity = document["kinetostatic_field"]["passivity"]
+    assert "no singular posture is near" in passivity["conservative"]
+    (warning,) = document["warnings"]
+    assert (warning["code"], warning["field"]) == ("force_clipped", "field.haptic_device.peak_force_n")
+    assert passivity["share_of_loops_clipped"] > 0 and "not conservative" in warning["message"]
+    assert 0 < passivity["largest_loop_work_j"] <= passivity["loop_work_bound_j"]
+    strong = {"peak_force_n": 1e6, "continuous_force_n": 1e6}
+    soft = {"joint_limits": {"stiffness_n_m_per_rad": 0.5, "stiffness_n_per_m": 10.0}}
+    field |= {"haptic_device": strong, "conditioning": None, **soft}
+    document = execute({**JOB, "field": field, "sampling": {"method": "sobol", "count": 64}}).document
+    assert document["warnings"] == []
 
 
 def test_vectors_in_files(result, tmp_path):

@@ -71,7 +71,11 @@ def _facts(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
         yield "force", f"{found['mean_force_n']:.4g} N on average, {found['largest_force_n']:.4g} N at most"
         share, bound = passivity["share_of_postures_within_bound"], passivity["stiffness_bound_n_per_m"]
         yield "passive stiffness", f"{100 * share:.3g} % of postures are below {bound:.4g} N/m"
-        yield "work of closed paths", f"{passivity['largest_loop_work_j']:.3g} J at most"
+        bound = passivity.get("loop_work_bound_j")  # since version 0.2
+        yield (
+            "work of closed paths",
+            f"{passivity['largest_loop_work_j']:.3g} J at most" + ("" if bound is None else f", bound {bound:.3g} J"),
+        )
     for found in document.get("workspaces", ()):
         mode = found["working_mode"]
         own = [each for each in document["aspects"] if each["working_mode"] == mode]

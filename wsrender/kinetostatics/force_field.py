@@ -4,6 +4,11 @@ Two forms. ``normalised``: every term is a ramp of force along a unit direction;
 closed path can do net work. ``potential``: F = −∇U. A quantity g(q) has the Cartesian gradient (J⁺)ᵀ ∂g/∂q with the
 damped pseudo-inverse J⁺, which is the exact one unless a singular value is below a hundredth of the largest: it is the
 gradient along motions q̇ = J⁺ ẋ, and F·ẋ = −dU/dt along them.
+
+So the potential form does no net work on a closed path of the joints, but for three things, which
+`passivity.path_work` measures: the force is clipped at the device's peak; near singular postures the pseudo-inverse is
+damped; and where an arm has more joints than the device has directions, joints may move while the tip rests
+(self-motions), which changes U and is not felt. On any path the work is at most the device's peak times its length.
 """
 
 import math
@@ -35,15 +40,17 @@ STEP = 1e-6  # of central differences [m]; torque devices turn by as many metres
 class FieldState:
     """What a posture feels.
 
-    ``force`` (3,) [N] and ``torque`` (3,) [N m] at the tip, world axes, clipped at the device's peak. ``energy`` [J] of
-    the form "potential", else 0. ``limit_distances`` (n,) [rad or m], ``boundary_m`` and ``obstacle_m`` [m] (infinite
-    where there is none). ``nearness`` 0 … 1 to the nearest of these limits, ``ill_conditioning`` 0 … 1 the share of
+    ``force`` (3,) [N] and ``torque`` (3,) [N m] at the tip, world axes, clipped at the device's peak; ``clipped`` [N]:
+    how much larger they would be, 0 where they are whole. ``energy`` [J] of the form "potential", else 0.
+    ``limit_distances`` (n,) [rad or m], ``boundary_m`` and ``obstacle_m`` [m] (infinite where there is none).
+    ``nearness`` 0 … 1 to the nearest of these limits, ``ill_conditioning`` 0 … 1 the share of
     the conditioning ramp. ``unfelt``: joints at a limit whose direction no force of the device shows.
     """
 
     posture: Posture
     force: np.ndarray
     torque: np.ndarray
+    clipped: float
     energy: float
     inverse_condition: float
     limit_distances: np.ndarray
@@ -136,9 +143,9 @@ class ForceField:
             pushes.wrench = u.dot(along) if self._normalised else self._dual(u.dot(along))
         boundary = self._add_surface(pushes, self._boundary, posture.position)
         obstacle = self._add_surface(pushes, self._obstacles, posture.position)
-        force, torque = self._clipped(pushes.wrench)
+        force, torque, clipped = self._clipped(pushes.wrench)
         return FieldState(
-            posture, force, torque, pushes.energy, condition.inverse, self.joint_limits.distances(posture.q),
+            posture, force, torque, clipped, pushes.energy, condition.inverse, self.joint_limits.distances(posture.q),
             boundary, obstacle, pushes.nearness, share, pushes.unfelt,
         )  # fmt: skip
 
@@ -214,10 +221,12 @@ class ForceField:
             pushes.nearness = max(pushes.nearness, ramp.share(distance))
         return distance
 
-    def _clipped(self, wrench: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Force [N] and torque [N m], no larger together than the device's peak."""
-        wrench = _bounded(wrench, self.device.peak_force_n)
-        return wrench[:3], wrench[3:] * self.length.length_m if self.is_wrench else np.zeros(3)
+    def _clipped(self, wrench: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
+        """Force [N] and torque [N m], no larger together than the device's peak, and by how much they were [N]."""
+        peak = self.device.peak_force_n
+        clipped = max(math.sqrt(wrench.dot(wrench)) - peak, 0.0)
+        wrench = _bounded(wrench, peak)
+        return wrench[:3], wrench[3:] * self.length.length_m if self.is_wrench else np.zeros(3), clipped
 
 
 def _bounded(vector: np.ndarray, most: float) -> np.ndarray:
@@ -231,6 +240,10 @@ def force_field(robot: Any, *, device: str = "auto", **choices: Any) -> ForceFie
 
     ``choices`` are the fields of ``field`` in the job document ``kinetostatic_field``: form, haptic_device, task,
     characteristic_length, joint_limits, conditioning, boundary, obstacles, as dicts or documents. ``device`` is where
-    the workspace's boundary is sampled. Raises DocumentError, InputError, ModelError.
+    the workspace's boundary is sampled.
+
+    The form "normalised" does net work on closed paths. "potential" does none as long as its force is below the
+    device's peak, no singular posture is near, and the joints of a redundant arm come back without moving by
+    themselves; else at most peak × length of the path. Raises DocumentError, InputError, ModelError.
     """
     return ForceField(as_robot(robot), ForceFieldChoice(**choices), device)

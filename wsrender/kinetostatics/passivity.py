@@ -4,6 +4,7 @@ A loop of period T with zero-order hold renders a spring of stiffness K passivel
 b > K T / 2 (Colgate and Schenkel, *Passivity of a class of sampled-data systems*, 1997).
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,15 +18,40 @@ HAND_SPEED = 0.1  # m/s, at which a person explores a surface
 
 
 @dataclass(frozen=True)
+class PathWork:
+    """Energies [J] of a field along a path.
+
+    ``work_j`` = ∫ F·dx of the force on the tip, with the torque of a wrench device; ``peak_j`` = ∫ F_peak ds.
+    ``energy_j``: by how much the potential energy U rises, ``clipped_j`` = ∫ |(F before the clipping − F)·dx|,
+    ``hidden_j`` = ∫ |F·dx + dU| with the force before the clipping: what damping near singular postures and
+    self-motions of a redundant arm do. These are of the form "potential"; the other has no energy.
+    """
+
+    work_j: float
+    peak_j: float
+    energy_j: float = 0.0
+    clipped_j: float = math.inf
+    hidden_j: float = math.inf
+
+    @property
+    def bound_j(self) -> float:
+        """What the work is at most, either way: all of the peak, or what U, clipping and damping can give."""
+        return min(self.peak_j, abs(self.energy_j) + self.clipped_j + self.hidden_j)
+
+
+@dataclass(frozen=True)
 class LoopWork:
     """The largest net work [J] of the force on closed paths of the tip, among how many, and their length [m].
 
-    ``damping_n_s_per_m`` dissipates as much on such a path at ``speed_m_per_s``.
+    ``bound_j`` [J] is the largest `PathWork.bound_j` of them, ``clipped`` the share of the paths on which a force of
+    the form "potential" was clipped. ``damping_n_s_per_m`` dissipates as much on such a path at ``speed_m_per_s``.
     """
 
     work_j: float
     length_m: float
     paths: int
+    bound_j: float = 0.0
+    clipped: float = 0.0
     speed_m_per_s: float = HAND_SPEED
 
     @property
@@ -57,33 +83,56 @@ def largest_loop_work(field: ForceField, loops: int = LOOPS, seed: int = 0) -> L
     """
     random = np.random.default_rng(seed)
     radius = 0.05 * min(field.length.length_m, field.chain.reach)
-    works = []
+    found = []
     for q in random_postures(field, loops, random):
         directions = field.kinematics.at(q).J[:3] @ random.normal(size=(field.chain.n, 2))  # where the tip can go
-        plane = np.linalg.qr(directions)[0]
-        work = loop_work(field, q, plane * radius)
-        works += [] if work is None else [abs(work)]
-    return LoopWork(max(works, default=0.0), 2 * np.pi * radius, len(works))
+        path = loop_path(field, q, np.linalg.qr(directions)[0] * radius)
+        found += [] if path is None else [path_work(field, path)]
+    most = max((abs(each.work_j) for each in found), default=0.0)
+    bound = max((each.bound_j for each in found), default=0.0)
+    clipped = sum(0 < each.clipped_j < math.inf for each in found) / max(len(found), 1)
+    return LoopWork(most, 2 * np.pi * radius, len(found), bound, clipped)
 
 
 def loop_work(field: ForceField, q: np.ndarray, plane: np.ndarray) -> float | None:
-    """∮ F·dx [J] on the ellipse x + plane (cos φ − 1, sin φ), ``plane`` (3, 2) [m], from a configuration (n,).
+    """∮ F·dx [J] on the ellipse x + plane (cos φ − 1, sin φ), see `loop_path`; None where the tip strays from it."""
+    path = loop_path(field, q, plane)
+    return None if path is None else path_work(field, path).work_j
 
-    By the trapezoidal rule on what the tip really does; None where it strays from the path.
+
+def loop_path(field: ForceField, q: np.ndarray, plane: np.ndarray) -> np.ndarray | None:
+    """Configurations (STEPS + 1, n) of the tip on the ellipse x + plane (cos φ − 1, sin φ), ``plane`` (3, 2) [m].
+
+    From a configuration (n,); None where the tip strays from the path.
     """
-    start = field.kinematics.at(q).position
-    state, work = field.evaluate(q), 0.0
+    start, path = field.kinematics.at(q).position, [q]
     for angle in 2 * np.pi * np.arange(1, STEPS + 1) / STEPS:
         target = start + plane @ [np.cos(angle) - 1, np.sin(angle)]
         for _ in range(2):  # Newton steps: the second corrects the first
             posture = field.kinematics.at(q)
             q = q + field.inverse_jacobian(posture)[:, :3] @ (target - posture.position)
-        following = field.evaluate(q)
-        if np.linalg.norm(following.posture.position - target) > STRAY * np.linalg.norm(plane):
+        if np.linalg.norm(field.kinematics.at(q).position - target) > STRAY * np.linalg.norm(plane):
             return None
-        work += float((state.force + following.force) @ (following.posture.position - state.posture.position)) / 2
-        state = following
-    return work
+        path.append(q)
+    return np.array(path)
+
+
+def path_work(field: ForceField, path: np.ndarray) -> PathWork:
+    """Work and energies along a path of configurations (N, n), by the rule of the middle between two of them."""
+    size, peak = 6 if field.is_wrench else 3, field.device.peak_force_n
+    turning = np.array([1.0] * 3 + [field.length.length_m] * 3)[:size]
+    work = length = clipped = hidden = 0.0
+    energies = [field.evaluate(q).energy for q in path]
+    for q, after, rise in zip(path[:-1], path[1:], np.diff(energies), strict=True):
+        state = field.evaluate((q + after) / 2)
+        moved = state.posture.J[:size] @ (after - q)
+        done = float(np.concatenate([state.force, state.torque])[:size] @ moved)
+        work, length = work + done, length + float(np.linalg.norm(moved * turning))
+        clipped += abs(done) * state.clipped / peak
+        hidden += abs(done * (1 + state.clipped / peak) + float(rise))
+    if field.choice.form != "potential":
+        return PathWork(work, peak * length)
+    return PathWork(work, peak * length, energies[-1] - energies[0], clipped, hidden)
 
 
 def random_postures(field: ForceField, count: int, random: np.random.Generator) -> np.ndarray:

@@ -1,6 +1,6 @@
 """The analysis ``kinetostatic_field``: forces of limits and conditioning over the workspace."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -11,8 +11,10 @@ from wsrender.kinetostatics.characteristic_length import CharacteristicLength
 from wsrender.kinetostatics.force_field import ForceField
 from wsrender.kinetostatics.passivity import LoopWork, largest_loop_work, stiffness_bound, stiffnesses
 from wsrender.kinetostatics.posture_data import posture_tables
+from wsrender.notices import Notice, entries
 from wsrender.result import Result
 from wsrender.robot import Robot
+from wsrender.run.headline import no_headline
 from wsrender.run.one_shard import OneShard
 from wsrender.run.provenance import job_entry, provenance, robot_entry
 from wsrender.run.settled_device import settled_device
@@ -31,6 +33,14 @@ CHUNK = 1 << 12
 ON_FACE = 1e-9  # of a voxel below its face counts as on it: a planar arm would be torn in two by rounding
 SCALARS = ("force", "inverse_condition_number", "limit_nearness")
 UNITS = {"force": "N", "torque": "N m", "inverse_condition_number": "1", "limit_nearness": "1"}
+
+# What result documents say of the work on closed paths.
+CONSERVATIVE = {
+    "normalised": "no: unit directions are no gradient, and closed paths do net work, at most peak force × length",
+    "potential": "where the force is below the device's peak, no singular posture is near and the joints of a "
+    "redundant arm come back without self-motions; elsewhere closed paths do net work, at most loop_work_bound_j on "
+    "those tried",
+}
 
 
 @dataclass(eq=False)
@@ -52,7 +62,8 @@ class KinetostaticFieldPlan(OneShard):
     def run_shard(self, shard: int, progress: Callable[[int], None] | None, **execution: Any) -> dict[str, np.ndarray]:
         """Of every voxel: cell (V, 3), number of configurations (V,), sums (V, 6 + scalars), greatest force (V,).
 
-        ``stiffness`` (P,) [N/m] at random postures; ``loop`` (3,): most work of closed paths [J], length [m], how many.
+        ``stiffness`` (P,) [N/m] at random postures; ``loop`` (5,): most work of closed paths [J], length [m], how many,
+        bound of the work [J], share of paths on which the force is clipped.
         """
         force_field = ForceField(self.robot, self.job.field, self.device)
         sampling = plan_sampling(self.robot.chain, self.job.sampling, MOST_SAMPLES)
@@ -76,8 +87,8 @@ class KinetostaticFieldPlan(OneShard):
         loop = largest_loop_work(force_field)
         shown = configurations(sampling, np.zeros(1, np.int64))[0] if shown is None else shown
         arrays = {"shown": shown, "cells": found, "count": count, "sums": sums, "greatest": greatest}
-        energetics = {"stiffness": stiffnesses(force_field), "loop": np.array([loop.work_j, loop.length_m, loop.paths])}
-        return arrays | energetics
+        about = np.array([loop.work_j, loop.length_m, loop.paths, loop.bound_j, loop.clipped])
+        return arrays | {"stiffness": stiffnesses(force_field), "loop": about}
 
     def finish(self, partial: dict[str, np.ndarray], seconds: dict[str, float]) -> Result:
         """Volume data with the vector "force" (and "torque") per voxel, and the document."""
@@ -86,6 +97,7 @@ class KinetostaticFieldPlan(OneShard):
         # Without what is slow to build: the picture's force is that of limits and conditioning.
         plain = job.field.model_copy(update={"boundary": None, "obstacles": None})
         plain_field = ForceField(self.robot, plain, self.device)
+        loop = LoopWork(*partial["loop"].tolist())
         document = {
             "analysis": "kinetostatic_field",
             "job": job_entry(job, self.robot),
@@ -99,10 +111,12 @@ class KinetostaticFieldPlan(OneShard):
                 "share_of_voxels_with_force": float((partial["greatest"] > 0).mean()),
                 "largest_force_n": float(partial["greatest"].max()),
                 "mean_force_n": float(partial["sums"][:, 6].sum() / count.sum()),
-                "passivity": self._passivity(partial["stiffness"], LoopWork(*partial["loop"].tolist())),
+                "passivity": self._passivity(partial["stiffness"], loop),
             },
             "provenance": provenance("float64", self.target),
             "timing_s": seconds,
+            "headline": no_headline("a field of forces measures no workspace"),
+            "warnings": entries(_notices(job.field.form, loop)),
         }
         chain = self.robot.chain
         spread = np.linspace(0.25, 0.75, DRAWN)[:, None]
@@ -111,7 +125,7 @@ class KinetostaticFieldPlan(OneShard):
         tables = posture_tables(plain_field, partial["shown"])
         return Result(document, volume=volume, skeleton=skeleton, tables=tables)
 
-    def _passivity(self, stiffness: np.ndarray, loop: LoopWork) -> dict[str, float]:
+    def _passivity(self, stiffness: np.ndarray, loop: LoopWork) -> dict[str, Any]:
         """Stiffness beside what the device renders, and the work of closed paths beside what would dissipate it."""
         bound = stiffness_bound(self.job.field.haptic_device)
         return {
@@ -119,6 +133,9 @@ class KinetostaticFieldPlan(OneShard):
             "largest_stiffness_n_per_m": float(stiffness.max()),
             "share_of_postures_within_bound": float((stiffness < bound).mean()),
             "largest_loop_work_j": loop.work_j,
+            "loop_work_bound_j": loop.bound_j,
+            "share_of_loops_clipped": loop.clipped,
+            "conservative": CONSERVATIVE[self.job.field.form],
             "loop_length_m": loop.length_m,
             "loops": int(loop.paths),
             "damping_that_dissipates_it_n_s_per_m": loop.damping_n_s_per_m,
@@ -148,6 +165,19 @@ class KinetostaticFieldPlan(OneShard):
             vectors["torque"] = dense(means[:, 3:6])
         units = {name: unit for name, unit in UNITS.items() if name in vectors or name in SCALARS}
         return VolumeData(self.voxel_size_m, (x, y, z), counts, statistics, units, vectors)
+
+
+def _notices(form: str, loop: LoopWork) -> Iterator[Notice]:
+    """That a potential is none where its force is clipped."""
+    if form == "potential" and loop.clipped > 0:
+        yield Notice(
+            "force_clipped",
+            f"on {100 * loop.clipped:.0f} % of the closed paths tried the force is clipped at the device's peak: there "
+            f'the form "potential" is not conservative, and a path does up to {loop.work_j:.2g} J (bound '
+            f"{loop.bound_j:.2g} J)",
+            "less stiffness (joint_limits, conditioning, boundary, obstacles) or a device with a higher peak",
+            "field.haptic_device.peak_force_n",
+        )
 
 
 def _length_entry(length: CharacteristicLength) -> dict[str, Any]:

@@ -177,7 +177,9 @@ class ForceFieldChoice(Document):
     """The forces by which a person feels the limits and the conditioning of a robot."""
 
     form: Literal["normalised", "potential"] = "potential"
-    """ "normalised": ramps along unit directions; "potential": minus the gradient of a potential energy."""
+    """ "normalised": ramps along unit directions, which do net work on closed paths; "potential": minus the gradient of
+    a potential energy, conservative where it is not clipped at the device's peak, no singular posture is near and the
+    joints of a redundant arm come back."""
     haptic_device: HapticDevice = HapticDevice()
     """The device that renders them."""
     task: Task = "linear"
