@@ -11,6 +11,7 @@ import pytest
 from PIL import Image
 
 import wsrender as ws
+import wsrender.notices
 from wsrender import cli, render
 from wsrender.errors import InputError, MissingExtraError, RenderError, RenderWarning
 from wsrender.report.entries import MOST_ROWS, facts_html, label, table_html
@@ -169,6 +170,25 @@ def test_command(result, tmp_path, capsys):
         cli.main(["report", str(tmp_path / "out"), "--flat"])
     assert (ended.value.code, capsys.readouterr().out) == (0, f"{tmp_path / 'out' / 'report.html'}\n")
     assert "Files" in Page((tmp_path / "out" / "report.html").read_text(encoding="utf-8")).text
+
+
+def test_headline_and_warnings_come_first(tmp_path, capsys):
+    headline = {"quantity": "volume", "value": 3.8, "ci95": [3.78, 3.83], "unit": "m3", "reason": ""}
+    warnings = [ws.notices.Notice("odd", f"odd {HOSTILE}", "mend it", "robot.urdf").entry()]
+    found = ws.Result({"analysis": "workspace", "voxel_size_m": 0.1, "headline": headline, "warnings": warnings})
+    found.save(tmp_path / "out")
+    with pytest.raises(SystemExit):
+        cli.main(["report", str(tmp_path / "out"), "--flat"])
+    written = capsys.readouterr()
+    assert written.out == f"{tmp_path / 'out' / 'report.html'}\n"
+    lines = ["reachable volume 3.80 m³ (95 %: 3.78 … 3.83)", f"warning: odd {HOSTILE}; mend it (field robot.urdf)"]
+    assert written.err.splitlines() == lines
+    text = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    page = Page(text)
+    assert ("p", {"class": "headline"}) in page.elements and ("section", {"class": "warnings"}) in page.elements
+    places = [page.text.index(line.removeprefix("warning: ")) for line in lines]
+    assert sorted(places) == places and places[-1] < page.text.index("Main values")
+    assert page.text.count(HOSTILE) == 1 and not page.named("script")
 
 
 def test_a_comparison_names_its_robots(tmp_path):

@@ -22,8 +22,12 @@ def report(
 ) -> None:
     """Write one HTML page about a saved result: pictures, tables, provenance and job document."""
     with one_line_faults(traceback):
+        from wsrender.export.headline import head_lines
         from wsrender.result import REPORT_VIEWS, Result
 
         path = output or folder / "report.html"
-        Result.load(folder).report(path, () if flat else view or REPORT_VIEWS)
+        result = Result.load(folder)
+        result.report(path, () if flat else view or REPORT_VIEWS)
+        for line in head_lines(result.document):
+            typer.echo(line, err=True)  # the path alone is for programs
         typer.echo(path)

@@ -4,10 +4,9 @@ from collections import Counter
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from wsrender.export.headline import head_lines
 from wsrender.indices.units import pretty_unit
 
-# Of the occupied volume, what is left of it inside in well sampled workspaces is 0.8, with too few samples below 0.1.
-SPARSE = 0.25
 METHOD_LETTERS = {"grid": "A", "grid_by_subsystem": "B", "exact": "C", "solids": "D"}
 
 
@@ -24,23 +23,16 @@ def sampling_text(document: dict[str, Any]) -> str:
 
 
 def summary_text(document: dict[str, Any]) -> str:
-    """Volume, bounds, global indices, and the range and means of each local index; several lines."""
+    """Headline, warnings, volumes, bounds, global indices, range and means of each local index; several lines."""
+    head = [f"  {line}" for line in head_lines(document)]
     facts = [f"  {name:<24}{value}" for name, value in _facts(document)]
     table = _index_table(document.get("indices") or {})
-    return "\n".join([sampling_text(document), *facts, *table, *_difference_table(document)])
+    return "\n".join([sampling_text(document), *head, *facts, *table, *_difference_table(document)])
 
 
 def _facts(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
     volumes = document.get("volume_m3") or {}
     yield from _volumes(volumes)
-    occupied, inner = volumes.get("occupied"), volumes.get("inner")
-    if occupied and inner is not None and inner < SPARSE * occupied:
-        share = f"{100 * inner / occupied:.2g} %" if inner else "none"
-        yield (
-            "note",
-            f"{share} of the occupied voxels have all neighbours occupied: a thin workspace, or too few samples",
-        )
-        yield "", "for voxels of this size, and a volume far too small: take more samples or larger voxels"
     if "shared_ratio" in document:
         yield "shared / any", f"{document['shared_ratio']:.4g}"
     mapping = document.get("mapping") or {}

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from html import escape
 from typing import Any
 
+from wsrender.export.headline import headline_lines, warning_lines
 from wsrender.export.text import method_rows
 from wsrender.report.entries import facts_html, label, records_html, table_html, value_html
 from wsrender.volume.table import Table
@@ -15,6 +16,7 @@ from wsrender.volume.table import Table
 # Nothing but what is in the page itself: whatever a name may hold, no script runs and nothing is fetched.
 _POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'"
 _MOST_JOB_TEXT = 100_000  # characters of the job document; result.json has all
+_FIRST = ("warnings",)  # above all sections
 _LATER = ("robot", "robots", "mechanism", "sampling", "choices")  # after the pictures; results come before them
 _NAMED_IN_TABLE = ("comparison",)  # results whose table says the same, with the names of robots over its columns
 _LAST = ("job", "artifacts", "provenance", "timing_s")  # sections of their own, at the end
@@ -42,6 +44,11 @@ body { font: 15px/1.5 system-ui, "DejaVu Sans", sans-serif; color: #222; backgro
 h1 { font-size: 1.6rem; margin: 0 0 .2rem; overflow-wrap: anywhere; }
 h2 { font-size: 1.15rem; margin: 2.2rem 0 .6rem; border-bottom: 1px solid #ddd; padding-bottom: .2rem; }
 h3 { font-size: 1rem; margin: 1.4rem 0 .4rem; }
+p.headline { font-size: 1.25rem; font-weight: 600; margin: .8rem 0 .2rem; }
+section.warnings { background: #fff6e0; border-left: .3rem solid #e0a000; padding: .1rem 1rem; margin: 1rem 0; }
+section.warnings h2 { border: 0; margin: .5rem 0 .2rem; }
+section.warnings ul { margin: .2rem 0 .6rem; padding-left: 1.1rem; }
+section.warnings li { overflow-wrap: anywhere; }
 p.note, figcaption { color: #666; font-size: .85rem; }
 table { border-collapse: collapse; font-size: .85rem; margin: .3rem 0; }
 th, td { text-align: left; vertical-align: top; padding: .18rem .9rem .18rem 0; }
@@ -99,8 +106,8 @@ def report_page(
     }
     if document.get("analysis") == "method_comparison":
         nested["methods"] = method_rows(document)
-    sections = [_section("Main values", facts_html(single))]
-    results = [key for key in nested if key not in _LATER + _LAST]
+    sections = [_head(document), _section("Main values", facts_html(single))]
+    results = [key for key in nested if key not in _FIRST + _LATER + _LAST]
     named = {key: tables[key] for key in _NAMED_IN_TABLE if key in tables}
     sections += [
         _section(label(key), table_html(named[key]) if key in named else value_html(nested[key])) for key in results
@@ -136,6 +143,13 @@ _PAGE = """<!DOCTYPE html>
 def _section(heading: str, content: str) -> str:
     heading = heading[:1].upper() + heading[1:]
     return f"<section><h2>{escape(heading)}</h2><div class=wide>{content}</div></section>"
+
+
+def _head(document: Mapping[str, Any]) -> str:
+    """The headline, large, and every warning."""
+    lines = "".join(f"<p class=headline>{escape(line)}</p>" for line in headline_lines(document))
+    items = "".join(f"<li>{escape(text)}</li>" for text in warning_lines(document))
+    return lines + (f"<section class=warnings><h2>Warnings</h2><ul>{items}</ul></section>" if items else "")
 
 
 def _pictures(pictures: Sequence[Picture], notes: Sequence[str]) -> str:

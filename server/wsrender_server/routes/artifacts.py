@@ -10,6 +10,7 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from fastapi import APIRouter, Depends, Header, Query, Request, Response
 from fastapi import Path as PathParameter
+from pydantic import ConfigDict
 from starlette.concurrency import run_in_threadpool
 
 from wsrender.notices import entries
@@ -22,7 +23,7 @@ from wsrender_server.parts import Parts, Server
 from wsrender_server.pictures import SOURCES, draw, slice_values
 from wsrender_server.problems import HttpProblem, problem_responses
 from wsrender_server.routes.files import file_response
-from wsrender_server.routes.job_views import JobId, Page, View, found
+from wsrender_server.routes.job_views import JobId, Page, View, WarningView, found
 
 router = APIRouter(prefix="/v1", tags=["results"])
 
@@ -61,6 +62,32 @@ class ArtifactView(View):
     """Where it is."""
 
 
+class HeadlineView(View):
+    """The number that an analysis is about."""
+
+    quantity: Literal["volume", "area", "length"]
+    """What is measured."""
+    value: float | None
+    """The measure; null where there is none."""
+    ci95: tuple[float, float] | None
+    """Interval that holds it with 95 % confidence."""
+    unit: Literal["m3", "m2", "m"]
+    """Unit of value and interval."""
+    reason: str
+    """Why there is none."""
+
+
+class ResultDocument(View):
+    """What an analysis has found; the fields beside these are those of the analysis."""
+
+    model_config = ConfigDict(use_attribute_docstrings=True, extra="allow")
+
+    headline: HeadlineView | None = None
+    """The number that the analysis is about; missing in results of 0.1."""
+    warnings: list[WarningView]
+    """What should be known of the model and the numbers."""
+
+
 def _finished(server: Server, principal: Reader, job_id: JobId) -> JobRecord:
     job = found(server.store.get(principal.owner, job_id))
     if job.state != JobState.SUCCEEDED:
@@ -76,7 +103,7 @@ Finished = Annotated[JobRecord, Depends(_finished)]
 @router.get(
     "/jobs/{job_id:id}/result",
     summary="The result document",
-    response_model=dict[str, Any],
+    response_model=ResultDocument,
     responses=problem_responses(401, 403, 404, 409, 422),
 )
 def get_result(server: Server, job: Finished) -> Response:

@@ -27,6 +27,18 @@ def test_every_operation_is_described(document):
                 assert schema == {"$ref": "#/components/schemas/Problem"}
 
 
+def test_a_result_keeps_to_its_schema(client, finished, document):
+    jsonschema = pytest.importorskip("jsonschema")
+    schema = document["paths"]["/v1/jobs/{job_id}/result"]["get"]["responses"]["200"]["content"]["application/json"]
+    result = client.get(f"{finished}/result").json()
+    named = {"$ref": "#/components/schemas/ResultDocument", "components": document["components"]}
+    assert schema == {"schema": {"$ref": "#/components/schemas/ResultDocument"}}
+    validator = jsonschema.Draft202012Validator(named)
+    assert validator.is_valid(result) and result["headline"]["reason"] == "" and result["warnings"] == []
+    assert not validator.is_valid(result | {"warnings": [{"code": "odd"}]})
+    assert not validator.is_valid(result | {"headline": {"value": 1.0}})
+
+
 def test_every_reference_is_there(document):
     text = json.dumps(document)
     names = {part.partition('"')[0] for part in text.split('"#/components/schemas/')[1:]}

@@ -1,0 +1,62 @@
+"""What is read first of a result: its headline and its warnings, in words."""
+
+import pytest
+
+import wsrender as ws
+from wsrender.export.headline import headline_lines, headline_text, warning_lines
+from wsrender.notices import Notice
+
+VOLUME = {"quantity": "volume", "value": 3.8012, "ci95": [3.7812, 3.8263], "unit": "m3", "reason": ""}
+NONE = {"quantity": "volume", "value": None, "ci95": None, "unit": "m3", "reason": "the tip stays on a surface"}
+FEW = Notice("few_samples", "too few samples", "take more", "voxel_size_m")
+ODD = Notice("inertia_dropped", "the model has no inertias")
+
+
+@pytest.mark.parametrize(
+    ("fields", "text"),
+    [
+        ({}, "reachable volume 3.80 m³ (95 %: 3.78 … 3.83)"),
+        ({"value": 0.0313, "ci95": [0.0311, 0.0315]}, "reachable volume 0.0313 m³ (95 %: 0.0311 … 0.0315)"),
+        ({"value": 1.0, "ci95": [0.8, 1.2]}, "reachable volume 1.00 m³ (95 %: 0.80 … 1.20)"),
+        ({"value": 1.23e-5, "ci95": [1.21e-5, 1.25e-5]}, "reachable volume 1.23e-05 m³ (95 %: 1.21e-05 … 1.25e-05)"),
+        ({"value": 41234.0, "ci95": [41000.0, 41500.0]}, "reachable volume 41234 m³ (95 %: 41000 … 41500)"),
+        ({"value": 0.0, "ci95": [0.0, 0.1]}, "reachable volume 0.00 m³ (95 %: 0.00 … 0.10)"),
+        ({"value": 1 / 3, "ci95": [1 / 3, 1 / 3]}, "reachable volume 0.333333 m³"),
+        ({"quantity": "area", "unit": "m2"}, "reachable area 3.80 m² (95 %: 3.78 … 3.83)"),
+        ({"quantity": "length", "unit": "m", "ci95": None}, "reachable length 3.8012 m"),
+        (NONE, "no volume: the tip stays on a surface"),
+    ],
+)
+def test_headlines_in_words(fields, text):
+    assert headline_text(VOLUME | fields) == text
+
+
+def test_a_summary_starts_with_headline_and_warnings():
+    document = {"robot": {"name": "arm"}, "headline": VOLUME, "warnings": [FEW.entry(), ODD.entry()]}
+    assert ws.Result(document).summary().splitlines()[:4] == [
+        "arm",
+        "  reachable volume 3.80 m³ (95 %: 3.78 … 3.83)",
+        "  warning: too few samples; take more (field voxel_size_m)",
+        "  warning: the model has no inertias",
+    ]
+
+
+def test_several_robots_have_a_headline_each():
+    robots = [{"name": "left", "headline": VOLUME}, {"name": "right", "headline": NONE}]
+    document = {"analysis": "shared_workspace", "headline": VOLUME, "robots": robots}
+    assert headline_lines(document) == [
+        "shared volume 3.80 m³ (95 %: 3.78 … 3.83)",
+        "left: reachable volume 3.80 m³ (95 %: 3.78 … 3.83)",
+        "right: no volume: the tip stays on a surface",
+    ]
+
+
+def test_results_of_the_first_version_have_neither():
+    assert headline_lines({"robot": {}}) == [] == warning_lines({"robot": {}})
+
+
+def test_a_real_result_has_both():
+    result = ws.analyze("spherical", ws.Sobol(2000), indices=["manipulability"], voxel_size_m=0.02, device="cpu")
+    first, *rest = result.summary().splitlines()[1:]
+    assert first == f"  {headline_text(result.document['headline'])}" and "m³ (95 %: " in first
+    assert any(line.startswith("  warning: too few samples") and "(field voxel_size_m)" in line for line in rest)

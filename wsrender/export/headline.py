@@ -1,0 +1,63 @@
+"""The headline and the warnings of a result document in words, the same in every door."""
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from wsrender.notices import Notice
+
+_UNITS = {"m3": "m³", "m2": "m²", "m": "m"}
+_MEASURED = {"shared_workspace": "shared", "collaborative_volume": "collaborative"}  # others: what is reachable
+_SCIENTIFIC = 1e-4  # below: 1.23e-05 rather than 0.0000123
+
+
+def headline_lines(document: Mapping[str, Any]) -> list[str]:
+    """``reachable volume 3.80 m³ (95 %: 3.78 … 3.83)``, or ``no volume: <reason>``; none in results of 0.1.
+
+    Where a result has a headline for each of several robots and none of all, those follow under their names.
+    """
+    whose = _MEASURED.get(str(document.get("analysis")), "reachable")
+    found = document.get("headline")
+    if not found:
+        return []
+    each = [robot for robot in document.get("robots") or () if robot.get("headline")]
+    lines = [headline_text(found, whose)]
+    return lines + [f"{robot.get('name')}: {headline_text(robot['headline'])}" for robot in each]
+
+
+def headline_text(headline: Mapping[str, Any], whose: str = "reachable") -> str:
+    """One headline: three digits at least, and as many decimals as the half width of its interval starts with."""
+    quantity, value, interval = headline["quantity"], headline["value"], headline.get("ci95")
+    if value is None:
+        return f"no {quantity}: {headline['reason']}"
+    unit, reason = _UNITS[headline["unit"]], f"; {headline['reason']}" if headline.get("reason") else ""
+    if not interval or not interval[1] > interval[0]:
+        return f"{whose} {quantity} {value:.6g} {unit}{reason}"
+    decimals = math.ceil(-math.log10((interval[1] - interval[0]) / 2))
+    decimals = max(decimals, 2 - math.floor(math.log10(abs(value)))) if value else decimals
+    low, high = (_rounded(end, decimals) for end in interval)
+    return f"{whose} {quantity} {_rounded(value, decimals)} {unit} (95 %: {low} … {high}){reason}"
+
+
+def warning_lines(document: Mapping[str, Any]) -> list[str]:
+    """Every warning: what was found, what to do about it, and the field that decides it."""
+    return [warning_text(entry) for entry in document.get("warnings") or ()]
+
+
+def warning_text(entry: Mapping[str, Any]) -> str:
+    """One entry of ``warnings``."""
+    field = f" (field {entry['field']})" if entry.get("field") else ""
+    return f"{Notice(entry['code'], entry['message'], entry.get('remedy') or '')}{field}"
+
+
+def _rounded(value: float, decimals: int) -> str:
+    """A number with that many decimals, at least none; small ones with a power of ten."""
+    if 0 < abs(value) < _SCIENTIFIC:
+        return f"{value:.{max(decimals + math.floor(math.log10(abs(value))), 0)}e}"
+    return f"{value:.{max(decimals, 0)}f}"
+
+
+def head_lines(document: Mapping[str, Any]) -> Iterator[str]:
+    """Headline and warnings, one a line: what is read first."""
+    yield from headline_lines(document)
+    yield from (f"warning: {text}" for text in warning_lines(document))
