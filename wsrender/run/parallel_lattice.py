@@ -32,13 +32,13 @@ class FlatLattice(LatticeBlock):
     """
 
     dimension: int = 2
-    origin: tuple[float, ...] = (0.0, 0.0, 0.0)
+    origin_m: tuple[float, ...] = (0.0, 0.0, 0.0)
     axes: tuple[tuple[float, ...], ...] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
     @cached_property
     def flat(self) -> Flat:
         """Where the cells lie."""
-        return Flat(self.dimension, np.array(self.origin), np.array(self.axes))
+        return Flat(self.dimension, np.array(self.origin_m), np.array(self.axes))
 
     def centers(self, cells: np.ndarray) -> np.ndarray:
         """Centres (N, 3) of cells by number, world [m]."""
@@ -89,7 +89,7 @@ def described(block: LatticeBlock | None) -> list[Any] | None:
         return None
     entry: list[Any] = [block.voxel_size_m, list(block.first_voxel), list(block.shape)]
     if isinstance(block, FlatLattice):
-        entry += [block.dimension, list(block.origin), [list(axis) for axis in block.axes]]
+        entry += [block.dimension, list(block.origin_m), [list(axis) for axis in block.axes]]
     return entry
 
 

@@ -186,7 +186,7 @@ def _cells(plan: "ParallelPlan") -> LatticeBlock:
         first = np.floor_divide(block.first_voxel, ratio)
         last = np.floor_divide(np.array(block.first_voxel) + shape - 1, ratio)
         (x, y, z), (nx, ny, nz) = first.tolist(), (last - first + 1).tolist()
-        return FlatLattice(voxel * ratio, (x, y, z), (nx, ny, nz), block.dimension, block.origin, block.axes)
+        return FlatLattice(voxel * ratio, (x, y, z), (nx, ny, nz), block.dimension, block.origin_m, block.axes)
     lower = np.array(block.first_voxel) * voxel
     upper = lower + shape * voxel
     count = CELLS

@@ -210,7 +210,7 @@ def _flat_entry(block: FlatLattice, cells: int, refined: dict[str, Any] | None) 
         "unit": unit_of,
         "occupied": cells * block.voxel_size_m**block.dimension,
         "refined": refined,
-        "origin_m": list(block.origin),
+        "origin_m": list(block.origin_m),
         "axes": [list(axis) for axis in block.axes[: block.dimension]],
     }
 
