@@ -10,7 +10,7 @@ import numpy as np
 
 from wsrender.reachability.dimension import FLAT, TipSet, tip_set
 from wsrender.reachability.reached_set import FalseNegatives, tolerance_m
-from wsrender.reachability.refined_volume import decided_volumes
+from wsrender.reachability.refined_volume import by_the_origin, decided_volumes
 from wsrender.reachability.volume_estimate import Event, VolumeEstimate
 from wsrender.robots.chain import Chain
 from wsrender.volume.measure import QUANTITIES, UNITS
@@ -70,6 +70,7 @@ def refined_measures(
     In the measure of the chains whose positions have the most dimensions: an arm that moves in a plane adds nothing to
     a volume. ``progress``: called with the points decided and about how many there will be.
     """
+    chains = by_the_origin(chains)
     sets = [tip_set(chain) for chain in chains]
     highest = max(filled.dimension for filled in sets)
     filling = [k for k, filled in enumerate(sets) if filled.dimension == highest]

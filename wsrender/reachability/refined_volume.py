@@ -39,8 +39,7 @@ def refined_volume(chain: Chain, tolerance: float, **options) -> tuple[VolumeEst
     In the base frame, where the box that holds the reach is smallest, and near the base: no volume depends on a
     placement.
     """
-    chain = chain.placed(np.eye(4))
-    found = refined_volumes([chain.relative_to(chain.origin)], {"reachable": Event(1, 1)}, tolerance, **options)
+    found = refined_volumes([chain], {"reachable": Event(1, 1)}, tolerance, **options)
     return found.volumes["reachable"], found
 
 
@@ -62,7 +61,18 @@ def refined_volumes(
     and about how many there will be. Surfaces and curves have no volume: 0 (`refined_measures` gives what they have).
     """
     options = {"seed": seed, "max_points": max_points, "device": device, "threads": threads, "progress": progress}
+    chains = by_the_origin(chains)
     return decided_volumes(chains, [tip_set(chain) for chain in chains], np.eye(4), 3, events, tolerance, **options)
+
+
+def by_the_origin(chains: Sequence[Chain]) -> list[Chain]:
+    """The chains in a world where their measures are the same and their positions have all their digits.
+
+    One chain stands with its base at the origin; of several that are far away, the first.
+    """
+    if len(chains) == 1:
+        chains = [chains[0].placed(np.eye(4))]
+    return [chain.relative_to(chains[0].origin) for chain in chains]
 
 
 def decided_volumes(
