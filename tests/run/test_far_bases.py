@@ -58,15 +58,15 @@ def test_the_same_voxels_as_at_the_origin(offset, precision):
 def test_links_keep_their_digits():
     """Lengths are no differences of map coordinates."""
     far, near = (robot.chain for robot in robots(OFFSETS[0]))
-    np.testing.assert_allclose(far.T_joint[1:], near.T_joint[1:], atol=1e-15)
-    np.testing.assert_allclose(far.T_tip, near.T_tip, atol=1e-15)
+    np.testing.assert_allclose(far.T_joint[1:], near.T_joint[1:], rtol=0, atol=1e-15)
+    np.testing.assert_allclose(far.T_tip, near.T_tip, rtol=0, atol=1e-15)
     np.testing.assert_array_equal(far.T_joint[0, :3, 3], OFFSETS[0])
     assert far.base_frame == "world"
 
 
 def test_a_base_below_the_far_joint_stands_at_the_origin():
     robot = ws.load_robot(CASE / "m.urdf", base="base")
-    np.testing.assert_allclose(robot.chain.T_joint, robots(OFFSETS[0])[1].chain.T_joint, atol=1e-15)
+    np.testing.assert_allclose(robot.chain.T_joint, robots(OFFSETS[0])[1].chain.T_joint, rtol=0, atol=1e-15)
 
 
 @pytest.mark.parametrize("precision", ["float32", "float64"])
