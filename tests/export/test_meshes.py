@@ -98,3 +98,26 @@ def test_the_surface_of_a_result_stands_upright_in_its_file(tmp_path):
     np.testing.assert_allclose(positions.max(axis=0), [upper[0], upper[2], -lower[1]], atol=1e-6)
     frames = {each["name"]: each["frame"] for each in ws.Result.load(tmp_path / "out").document["artifacts"]}
     assert (frames["surface.glb"], frames["surface.ply"]) == ("world, +Y up", "world")
+
+
+@pytest.mark.parametrize("ending", ["ply", "glb"])
+@pytest.mark.parametrize("origin", [(500000.0, 4649776.0, 120.0), (1.0, 2.0, 3.0)])
+def test_a_mesh_keeps_its_shape_wherever_it_stands(tmp_path, ending, origin):
+    """Far from the origin too, where single precision has steps of half a metre."""
+    ball = trimesh.creation.icosphere(2, 1.0)
+    ball.apply_translation(origin)
+    ball.face_attributes["surface"] = np.arange(len(ball.faces), dtype=np.int32)
+    write_mesh(ball, tmp_path / f"ball.{ending}")
+    read = read_mesh(tmp_path / f"ball.{ending}")
+    np.testing.assert_allclose(read.vertices, ball.vertices, rtol=0, atol=1e-6)
+    np.testing.assert_array_equal(read.faces, ball.faces)
+    if ending == "ply":
+        np.testing.assert_array_equal(read.face_attributes["surface"], ball.face_attributes["surface"])
+
+
+def test_stl_of_a_mesh_far_away_is_refused(tmp_path):
+    ball = trimesh.creation.icosphere(2, 1.0)
+    ball.apply_translation((5e5, 0, 0))
+    with pytest.raises(ws.InputError, match=r"ball.stl: the mesh is 5e\+05 m from .*; write .ply or .glb"):
+        write_mesh(ball, tmp_path / "ball.stl")
+    assert not list(tmp_path.iterdir())
