@@ -55,8 +55,8 @@ def read_mesh(path: str | Path, ending: str | None = None) -> trimesh.Trimesh:
     """Read what ``write_mesh`` wrote, vertices [m] in the file's precision.
 
     ``ending`` says the format where the name does not. Of PLY files the attributes of faces too, such as the number of
-    the surface on which each lies. GLB files of wsrender 0.1.0, which had z up, are known by what they lack, and read as
-    they are.
+    the surface on which each lies. GLB files of wsrender 0.1.0, which had z up, are known by what they lack, and read
+    as they are.
 
     Raises InputError where the file is no mesh.
     """
