@@ -140,3 +140,15 @@ def test_a_parallel_mechanism(precision):
     assert near.volume.n_occupied > 1000
     np.testing.assert_array_equal(far.volume.count, near.volume.count)
     assert far.document["volume_m3"] == near.document["volume_m3"]
+
+
+def test_pictures_show_the_arm_where_it_stands():
+    far, near = robots(OFFSETS[0])
+    points = far.skeleton(np.zeros(3))[0]
+    np.testing.assert_allclose(points - OFFSETS[0], near.skeleton(np.zeros(3))[0], atol=ROUNDING)
+    placed = near.placed(at(OFFSETS[1])).skeleton(np.zeros(3))[0]
+    np.testing.assert_array_equal(placed[0], OFFSETS[1])
+    for k, axes in enumerate(analyzed(far).plot.slices().axes[:3]):
+        name, value = axes.get_title().removesuffix(" m (world)").split(" = ")
+        assert name == "xyz"[k]
+        assert abs(float(value) - OFFSETS[0][k]) < 0.8

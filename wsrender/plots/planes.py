@@ -200,4 +200,9 @@ def draw_plane(axes: Axes, volume: VolumeData, field: Field, axis: int, layer: i
     axes.set_axisbelow(True)
     axes.set_xlabel(f"{NAMES[horizontal]} [m]")
     axes.set_ylabel(f"{NAMES[vertical]} [m]")
-    axes.set_title(f"{NAMES[axis]} = {volume.centers(axis)[layer]:.3g} m ({frame})")
+    axes.set_title(f"{NAMES[axis]} = {_told(volume.centers(axis)[layer], volume.voxel_size_m)} m ({frame})")
+
+
+def _told(coordinate: float, voxel_size_m: float) -> str:
+    """A coordinate with three digits, or as many as tell voxels apart far from the origin."""
+    return f"{coordinate:.{max(3, int(np.log10(abs(coordinate) / voxel_size_m)) + 1)}g}"

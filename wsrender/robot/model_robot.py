@@ -149,12 +149,15 @@ class Robot:
         return Robot(replace(self._loaded, chain=chain, notices=kept), self.spec, self.name, self.base, self.tip)
 
     def skeleton(self, q: Any) -> np.ndarray:
-        """World positions [m] of base, joint origins and tip, (N, L + 2, 3), for drawing the arm."""
+        """World positions [m] of base, joint origins and tip, (N, L + 2, 3), for drawing the arm.
+
+        The base stands at the first joint where its frame is many reaches away, as that of a map may be.
+        """
         chain = self.chain
         out = []
         for row in configuration_rows(q, chain.n):
             T = chain.T_world_base.copy()
-            points = [T[:3, 3].copy()]
+            points = [chain.foot.copy()]
             moved = chain.joint_scale * row[chain.joint_source] + chain.joint_offset
             for T_joint, revolute, value in zip(chain.T_joint, chain.joint_is_revolute, moved, strict=True):
                 T = T @ T_joint

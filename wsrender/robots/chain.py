@@ -153,6 +153,12 @@ class Chain:
         far = np.linalg.norm(self.center) > FAR * self.reach
         return self.center if far else np.zeros(3)
 
+    @property
+    def foot(self) -> np.ndarray:
+        """Where drawings of the arm begin, (3,) [m]: at its base frame, or far from that at its first joint."""
+        far = np.linalg.norm(self.T_joint[0, :3, 3]) > FAR * self.reach > 0.0
+        return self.center if far else self.T_world_base[:3, 3]
+
     def relative_to(self, origin: np.ndarray) -> Self:
         """The same chain in a world whose origin stands at ``origin`` (3,) [m].
 
