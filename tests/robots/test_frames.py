@@ -94,3 +94,49 @@ def test_unknown_frames(base, tip, message):
 def test_frames_with_no_chain_between(base, message):
     with pytest.raises(ModelError, match=message):
         robots.load_mjcf(TWO_ARMS, base=base, tip="grip")
+
+
+def with_gripper(*joints, palm="hand"):
+    """An arm whose joints have these names, each on a link of its own; the one before the last is ``palm``."""
+    links = [f"link{k}" for k in range(len(joints) - 1)] + ["end"]
+    links[-2] = palm
+    bodies = "".join(
+        f'<body name="{link}" pos=".1 0 0"><joint name="{joint}"/>{LINKS}'
+        for link, joint in zip(links, joints, strict=True)
+    )
+    return f"<mujoco><worldbody>{bodies}{'</body>' * len(joints)}</worldbody></mujoco>"
+
+
+@pytest.mark.parametrize("jaw", ["gripper", "jointGripper", "Jaw", "left_finger_joint", "claw"])
+def test_a_jaw_taken_for_the_tip_is_noticed(jaw):
+    text = with_gripper("shoulder", "wrist", jaw)
+    with pytest.warns(robots.ModelWarning) as caught:
+        robot = robots.load_mjcf(text)
+    assert str(caught[0].message) == (
+        f"the tip 'end', the only end of the model, is moved by {jaw} beyond wrist, the last joint of the arm; "
+        "tip='hand' ends before the gripper"
+    )
+    assert [(notice.code, notice.field) for notice in robot.notices] == [("gripper_tip", "tip")]
+    assert robots.load_mjcf(text, tip="hand").chain.joint_names == ("shoulder", "wrist")
+    assert robots.load_mjcf(text, tip="end").notices == ()
+
+
+def test_every_joint_of_a_gripper_is_named():
+    with pytest.warns(
+        robots.ModelWarning, match="is moved by gripper_rotation, gripper beyond elbow.*tip='link0' ends"
+    ):
+        robots.load_mjcf(with_gripper("elbow", "gripper_rotation", "gripper"))
+
+
+@pytest.mark.parametrize(
+    "text", [with_gripper("shoulder", "elbow", "wrist"), with_gripper("finger_0", "finger_1"), one_arm("")]
+)
+def test_arms_and_fingers_by_themselves_are_not_noticed(text):
+    assert robots.load_mjcf(text).notices == ()
+
+
+@pytest.mark.parametrize("palm", ["hand", "gripper", "Fixed_Jaw"])
+def test_a_moving_jaw_is_known_by_its_link(palm):
+    text = with_gripper("1", "2", "3", palm=palm).replace('"end"', '"Moving_Jaw"')
+    with pytest.warns(robots.ModelWarning, match=f"is moved by 3 beyond 2.*tip={palm!r} ends"):
+        robots.load_mjcf(text)

@@ -1,10 +1,12 @@
 """The doors: paths, texts, library names, DH tables; meshes; what may be read from disk."""
 
+import contextlib
 import hashlib
 import os
 import struct
 import subprocess
 import sys
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -214,3 +216,28 @@ def test_a_placement_may_be_a_dict():
     assert (placed.forward_kinematics(np.zeros(6)) == expected.forward_kinematics(np.zeros(6))).all()
     with pytest.raises(ws.DocumentError, match="place: is not a known field"):
         ws.load_robot("ur5e", tool={"place": [1, 2, 3]})
+
+
+ODD = URDF.replace('"1 0 0"', '"1000 0 0"')
+
+
+@pytest.mark.parametrize(
+    "act",
+    [
+        lambda path: ws.load_robot(path),
+        lambda path: robots.load(path),
+        lambda path: robots.load_path(path),
+        lambda path: robots.load_urdf(ODD),
+        lambda path: ws.evaluate_indices(path, [0.1], ["manipulability"], device="cpu"),
+        lambda path: ws.execute({"analysis": "indices_at", "robot": {"urdf": ODD}, "configurations": [[0]]}),
+    ],
+)
+def test_warnings_point_at_the_line_of_the_caller(tmp_path, act):
+    path = tmp_path / "arm.urdf"
+    path.write_text(ODD)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        with contextlib.suppress(ws.InputError):  # a job is refused
+            act(str(path))
+    assert [warning.category for warning in caught] == [robots.ModelWarning]
+    assert (caught[0].filename, caught[0].lineno) == (__file__, act.__code__.co_firstlineno)

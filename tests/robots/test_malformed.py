@@ -257,3 +257,24 @@ def test_files(tmp_path, name):
     (tmp_path / "wrong.urdf").write_text("<html/>")
     with pytest.raises(ModelError, match=r"not well-formed XML|<html>; <mujoco> or <robot> \(URDF\) is needed"):
         robots.load(tmp_path / name)
+
+
+def test_an_inverted_range_off_the_chain_is_a_note():
+    odd = '<body name="b"><joint name="odd" range="1 -1"/><geom size=".1"/></body>'
+    text = mjcf('<joint name="j" range="-1 1"/>').replace("</worldbody>", f"{odd}</worldbody>")
+    with pytest.warns(robots.ModelWarning, match="off the chain, .* joint 'odd': its range is 1 … -1") as caught:
+        assert robots.load_mjcf(text, tip="a").chain.joint_names == ("j",)
+    assert len(caught) == 1
+    with pytest.raises(ModelError, match="joint 'odd': its range is 1 … -1"):
+        robots.load_mjcf(text, tip="b")
+
+
+@pytest.mark.parametrize("error", [ValueError("what"), KeyError("what"), RuntimeError("what"), IndexError("what")])
+@pytest.mark.parametrize("stage", ["chain_extraction.extract", "urdf_model.read_urdf"])
+def test_every_error_while_a_model_is_built_is_a_model_error(monkeypatch, error, stage):
+    def broken(*_):
+        raise error
+
+    monkeypatch.setattr(f"wsrender.robots.{stage}", broken)
+    with pytest.raises(ModelError, match=r"model: .*what"):
+        robots.load_urdf(urdf(joint(LIMIT)))

@@ -226,3 +226,69 @@ def test_faults_of_joints_off_the_chain_are_notes():
         robots.load_urdf(text, tip="c")
     with pytest.raises(ModelError, match="joint 'lost' mimics 'x', which is no other joint"):
         robots.load_urdf(text, tip="d")
+
+
+@pytest.mark.parametrize(
+    ("attributes", "inside", "message"),
+    [
+        ('type="spherical"', "", "'odd' has type 'spherical'; allowed"),
+        ('type="free"', "", "'odd' has type 'free'; allowed"),
+        ("", "", "'odd' has type ''; allowed"),
+        ('type="revolute"', '<limit lower="1" upper="-1"/>', "its lower limit 1 is above its upper limit -1: give its"),
+        ('type="revolute"', '<limit lower="-1,5" upper="1,5"/>', "lower limit is '-1,5'"),
+        ('type="revolute"', '<limit lower="2" upper="2"/>', "its limits are both 2"),
+        ('type="continuous"', '<axis xyz="0 0 0"/>', "its axis is '0 0 0'; it must not be zero"),
+        ('type="continuous"', '<limit effort="-1"/>', "its effort limit is -1; it must not be negative"),
+        ('type="continuous"', '<mimic joint="j" multiplier="x"/>', "mimic multiplier is 'x'"),
+    ],
+)
+def test_an_odd_joint_is_a_note_off_the_chain_and_an_error_on_it(attributes, inside, message):
+    odd = f'<joint name="odd" {attributes}><parent link="a"/><child link="b"/><origin xyz="0 0 1"/>{inside}</joint>'
+    text = tree(odd, joint("j", "a", "c"), joint("k", "b", "d"))
+    with pytest.warns(robots.ModelWarning, match=re.escape(message)) as caught:
+        robot = robots.load_urdf(text, tip="c")
+    assert [notice.code for notice in robot.notices] == ["joints_off_chain"]
+    assert str(caught[0].message).startswith("off the chain, where it stands still: ")
+    with pytest.raises(ModelError, match=re.escape(message)):
+        robots.load_urdf(text, tip="d")
+    with pytest.warns(robots.ModelWarning):
+        assert robots.load_urdf(text, base="b", tip="d").chain.joint_names == ("k",)
+
+
+def test_a_note_tells_of_four_joints_and_counts_the_others():
+    odd = [joint(f"odd{k}", "a", link).replace('"revolute"', '"screw"') for k, link in enumerate("cdefgh")]
+    with pytest.warns(robots.ModelWarning, match=r"'odd0'.*'odd3' has type 'screw'[^']*, and 2 more$"):
+        robots.load_urdf(tree(joint("j", "a", "b"), *odd, links="abcdefgh"), tip="b")
+
+
+def test_limits_that_are_given_mend_those_of_the_file():
+    none, inverted = '<limit effort="1"/>', '<limit lower="1" upper="-1"/>'
+    for name, inside in (("j", ""), ("j", inverted), ("j", '<limit lower="2" upper="2"/>'), ("j", none)):
+        robot = robots.load_urdf(tree(joint(name, "a", "b", more=inside), links="ab"), limits={"j": (-0.5, 2)})
+        assert (robot.chain.lower_limits[0], robot.chain.upper_limits[0], robot.notices) == (-0.5, 2, ())
+
+
+@pytest.mark.parametrize("others", [[], ["world_"], ["world_", "world__"]])
+def test_a_link_called_world_that_is_not_the_root(others):
+    links = "".join(f'<link name="{name}"/>' for name in ("map", "world", "arm", *others))
+    fixed = "".join(
+        f'<joint name="f{k}" type="fixed"><parent link="map"/><child link="{name}"/></joint>'
+        for k, name in enumerate(others)
+    )
+    text = f"""<robot name="r">{links}{fixed}<joint name="up" type="fixed"><parent link="map"/><child link="world"/>
+      <origin xyz="0 0 0.5"/></joint><joint name="j" type="continuous"><parent link="world"/><child link="arm"/>
+      <origin xyz="0.25 0 0"/></joint></robot>"""
+    above, within = robots.load_urdf(text, tip="arm"), robots.load_urdf(text, base="world", tip="arm")
+    assert above.chain.T_joint[0, :3, 3] == pytest.approx([0.25, 0, 0.5])
+    assert within.chain.T_joint[0, :3, 3] == pytest.approx([0.25, 0, 0])
+    assert (above.chain.base_frame, within.chain.base_frame) == ("world", "world")
+
+
+@pytest.mark.parametrize("infinite", ["inf", "+Infinity", "1e10"])
+def test_a_hinge_with_infinite_limits_is_continuous(infinite):
+    lower = "-" + infinite.removeprefix("+")
+    text = tree(
+        joint("j", "a", "b", more=f'<limit lower="{lower}" upper="{infinite}" effort="{infinite}"/>'), links="ab"
+    )
+    robot = robots.load_urdf(text)
+    assert (robot.chain.periodic[0], robot.notices) == (True, ())
