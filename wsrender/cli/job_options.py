@@ -33,12 +33,11 @@ def corrected_robot(document: dict[str, Any], limits: list[str], length_unit_m: 
     """
     if not limits and length_unit_m is None:
         return None
-    robot = document.get("robot")
-    robot = {"library": robot} if isinstance(robot, str) else robot  # type: dict[str, Any] | None
+    robot: Any = document.get("robot")
+    robot = {"library": robot} if isinstance(robot, str) else robot
     if not isinstance(robot, dict):
         raise InputError("--limits" if limits else "--length-unit-m", "goes with a job of one robot")
-    ranges = {**robot.get("limits", {}), **dict(_limits(text) for text in limits)}
-    given = {"limits": ranges, "length_unit_m": length_unit_m}
+    given = {"limits": robot.get("limits", {}) | dict(_limits(text) for text in limits), "length_unit_m": length_unit_m}
     return robot | {field: value for field, value in given.items() if value}
 
 
