@@ -251,3 +251,94 @@ def test_a_result_survives_its_files(tmp_path):
     assert (tmp_path / "out/plots/robot.png").exists()
     assert "delta" in back.summary()
     assert len(back.plot.robot().axes) == 2
+
+
+def test_the_headline_is_the_refined_volume_by_default():
+    """Within 1 %, with the exact volume in its interval; null turns it off, and says so."""
+    job = {**SIX_PUS, "voxel_size_m": 0.1}
+    headline = execute(job).document["headline"]
+    low, high = headline["ci95"]
+    assert low < 0.717344315 < high and (high - low) / 2 <= 0.01 * headline["value"]
+    assert (headline["quantity"], headline["unit"], headline["reason"]) == ("volume", "m^3", None)
+    off = execute({**job, "refined_volume": None}).document["headline"]
+    assert off["value"] is None and off["ci95"] is None and "give refined_volume" in off["reason"]
+    exact = execute({**job, "voxel_size_m": None, "method": "exact"}).document["headline"]
+    assert exact["ci95"] == [exact["value"]] * 2 and exact["value"] == pytest.approx(0.717344315, rel=1e-8)
+    solids = execute({**job, "voxel_size_m": None, "method": "solids"}).document["headline"]
+    assert solids["value"] == pytest.approx(0.717, rel=1e-3) and solids["ci95"] is None and "meshes" in solids["reason"]
+    nowhere = execute({**STEWART, "mechanism": NOWHERE}).document["headline"]
+    assert nowhere["value"] == 0 and nowhere["ci95"] == [0.0, 0.0]
+    at_point = {**STEWART, "voxel_size_m": None, "kind": "orientation", "position_m": [0, 0, 0.55]}
+    headline = execute({**at_point, "orientations": TILTS}).document["headline"]
+    assert headline["value"] is None and "only the orientation varies" in headline["reason"]
+
+
+def test_voxels_far_from_the_refined_volume_are_warned_of():
+    found = execute({**SIX_PUS, "voxel_size_m": 0.7}).document["warnings"]
+    assert [each["code"] for each in found] == ["occupied_differs"] and found[0]["field"] == "voxel_size_m"
+    assert "m³" in found[0]["message"] and not execute(SIX_PUS).document["warnings"]
+
+
+def test_a_tolerance_that_is_not_met_is_said(monkeypatch):
+    monkeypatch.setattr("wsrender.run.parallel_refined.MOST_POINTS", 5000)
+    document = execute({**SIX_PUS, "refined_volume": 0.001}).document
+    low, high = document["headline"]["ci95"]
+    assert low < 0.717344315 < high and not document["volume_m3"]["refined"]["met"]
+    assert [each["code"] for each in document["warnings"]] == ["tolerance_not_met"]
+
+
+def test_voxels_that_do_not_fit_in_memory_are_refused_while_planning(monkeypatch):
+    """1.5e9 voxels were accepted, and ended in an ArrayMemoryError of 33 GiB in the refined volume."""
+    from wsrender.run import parallel_lattice
+
+    monkeypatch.setattr(parallel_lattice, "available_bytes", lambda: 2**30)
+    plan({**STEWART, "voxel_size_m": 0.004})
+    with pytest.raises(ws.ResourceError, match=r"GiB; 0\.8 GiB are free: choose 0\.00\d+ or more") as caught:
+        plan({**STEWART, "voxel_size_m": 0.001})
+    assert caught.value.field == "voxel_size_m"
+
+
+def test_strata_of_fine_voxels_stay_coarse(monkeypatch):
+    """However many voxels there are, the refined volume holds no more than 64³ cells or so."""
+    from wsrender.run import parallel_refined
+
+    seen = []
+    strata = parallel_refined._strata
+    monkeypatch.setattr(parallel_refined, "_strata", lambda *given: seen.append(strata(*given)) or seen[-1])
+    execute({**STEWART, "voxel_size_m": 0.008})
+    assert 0 < sum(map(len, seen[0])) < 2 * 64**3
+
+
+def test_the_interval_of_all_orientations_covers_the_range_between_the_levels():
+    """Shells about one point: turned about z, the joint at p is within them wherever a circle of radius |p| is.
+
+    The total orientation workspace for all turns ±90° about z of a leg [0.2, 1] whose platform joint is 0.5 m off the
+    tool: with two levels, ±90°, far too large; exact: positions whose whole half circle is inside.
+    """
+    leg = {"type": "UPS", "base_m": [0, 0, 0], "platform_m": [0.5, 0, 0], "length_m": [0.2, 1.0]}
+    turns = {"euler_xyz_deg": [[0, 0], [0, 0], [-90, 90]], "per_angle": [1, 1, 3]}
+    job = {**STEWART, "mechanism": {"legs": [leg]}, "kind": "total_orientation", "orientations": turns,
+           "refined_volume": 0.02, "voxel_size_m": 0.08}  # fmt: skip
+    refined = execute(job).document["volume_m3"]["refined"]
+    random = np.random.default_rng(0)
+    points = random.uniform(-1.6, 1.6, (50_000, 3))
+    angle = np.deg2rad(np.linspace(-90, 90, 181))
+    near, far = np.full(len(points), np.inf), np.zeros(len(points))
+    for c, s in zip(np.cos(angle), np.sin(angle), strict=True):
+        distance = np.linalg.norm(points + 0.5 * np.array([c, s, 0]), axis=1)
+        near, far = np.minimum(near, distance), np.maximum(far, distance)
+    share = ((near >= 0.2) & (far <= 1)).mean()
+    exact, error = share * 3.2**3, 3 * np.sqrt(share / len(points)) * 3.2**3
+    assert refined["ci95"][0] - error < exact < refined["ci95"][1] + error and refined["orientation_steps"] > 0
+    three = execute({**job, "refined_volume": None}).document["volume_m3"]["occupied"]
+    assert three > refined["value"]
+
+
+def test_the_share_of_orientations_at_a_point_has_an_interval():
+    """Random orientations of the ranges: a leg that reaches half of all tilts at a point, whatever the levels."""
+    leg = {"type": "UPS", "base_m": [0, 0, 0], "platform_m": [0, 0, 0.5], "length_m": [0.0, 1.25**0.5]}
+    job = {**STEWART, "voxel_size_m": None, "mechanism": {"legs": [leg]}, "kind": "orientation",
+           "position_m": [0, 0, 1.0], "orientations": {"tilt_deg": 180, "tilts": 3, "azimuths": 4}}  # fmt: skip
+    entry = execute(job).document["orientation_workspace"]
+    low, high = entry["share_of_ranges_ci95"]
+    assert low < 0.5 < high < low + 0.02 and entry["share"] != pytest.approx(0.5, abs=0.02)

@@ -32,7 +32,10 @@ def summary_text(document: dict[str, Any]) -> str:
 
 def _facts(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
     volumes = document.get("volume_m3") or {}
-    yield from _volumes(volumes)
+    if flat := document.get("flat"):
+        yield from _flat(flat)
+    else:
+        yield from _volumes(volumes)
     if "shared_ratio" in document:
         yield "shared / any", f"{document['shared_ratio']:.4g}"
     mapping = document.get("mapping") or {}
@@ -146,6 +149,15 @@ def _patches(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
         counts = Counter(patch["kind"].replace("_", " ") for patch in document["patches"])
         kinds = ", ".join(f"{count} {kind}" for kind, count in counts.items())
         yield "patches", f"{kinds}; {len(document['edges'])} edges, {len(document['corners'])} corners"
+
+
+def _flat(flat: dict[str, Any]) -> Iterator[tuple[str, str]]:
+    """Area or length of what a platform reaches that stays in a plane or on a line."""
+    unit = {"m^2": "m²"}.get(flat["unit"], flat["unit"])
+    yield f"occupied {flat['quantity']}", f"{flat['occupied']:.4g} {unit}"
+    if refined := flat["refined"]:
+        low, high = refined["ci95"]
+        yield f"refined {flat['quantity']}", f"{refined['value']:.4g} {unit} (95 %: {low:.4g} … {high:.4g})"
 
 
 def _volumes(volumes: dict[str, Any], prefix: str = "") -> Iterator[tuple[str, str]]:

@@ -17,7 +17,7 @@ from wsrender.spec.sampling import Sobol
 SAMPLES = 512
 FLAT = 1e-9  # thickness that counts as none, relative to the extent
 CROSSED = 1e-7  # sine between normals that are told apart
-MEASURES = {3: ("volume", "m^3"), 2: ("area", "m^2"), 1: ("length", "m"), 0: ("point", "1")}
+MEASURES = {3: ("volume", "m^3"), 2: ("area", "m^2"), 1: ("length", "m")}
 
 
 @dataclass(frozen=True, eq=False)

@@ -25,7 +25,7 @@ from wsrender.result import Result
 from wsrender.robot import Robot
 from wsrender.robot.indices import task_rows
 from wsrender.run.parallel_exact import boundary_partial, boundary_result, region_of
-from wsrender.run.parallel_lattice import described, lattice_of, quantity, settled_lattice
+from wsrender.run.parallel_lattice import common_flat, described, lattice_of, quantity, settled_lattice
 from wsrender.run.parallel_refined import labels_at_poses, refined_entry
 from wsrender.run.parallel_result import orientation_result, positions_result
 from wsrender.run.settled_device import settled_device
@@ -58,6 +58,7 @@ class ParallelPlan:
     shards: list[tuple[int, int]]
     estimate: dict[str, float] = field(default_factory=dict)
     search: SerialSearch | None = None
+    unmeasured: str = ""  # why what is reached has neither a volume nor an area or a length
 
     def resolved(self) -> dict[str, Any]:
         """What is settled once: the device that "auto" means, target, lattice block, shards."""
@@ -232,7 +233,7 @@ class ParallelPlan:
 
     def refine(self, partial: Arrays, progress: Callable[[int, int, str], None] | None) -> Arrays:
         """The merged partial result, with the refined volume if asked."""
-        if self.job.refined_volume is None:
+        if self.job.refined_volume is None or self.unmeasured:
             return partial
 
         def report(done: int, total: int) -> None:
@@ -285,8 +286,11 @@ def plan_parallel(job: ParallelWorkspaceJob, *robots: Robot, resolved: dict[str,
     rate = RATE_GPU if target.startswith("cuda") else RATE_CPU_CORE * thread_count()
     seconds = poses / rate + poses * len(mechanism.numeric) / (RATE_NUMERIC_CORE * thread_count())
     estimate = {"samples": poses, "bytes": 8 * poses / len(orientations.rotations), "seconds": seconds}
+    _, unmeasured = common_flat(found, orientations)
     serial = serial_search(job.mechanism, robots) if len(found) > 1 else None
-    return ParallelPlan(job, found, orientations, block, rows, names, device, target, shards, estimate, serial)
+    return ParallelPlan(
+        job, found, orientations, block, rows, names, device, target, shards, estimate, serial, unmeasured
+    )
 
 
 def _check_home(mechanism: Mechanism) -> None:

@@ -28,8 +28,8 @@ def headline(plan: "ParallelPlan", partial: "Arrays") -> dict[str, Any]:
         return headline_entry("volume", "m^3", None, None, reason)
     refined = refined_of(partial)
     name, unit = plan.quantity
-    if name == "point":
-        return headline_entry("volume", "m^3", None, None, "the platform stays at a point")
+    if plan.unmeasured:
+        return headline_entry(name, unit, None, None, plan.unmeasured)
     if refined is None:
         return headline_entry(name, unit, None, None, "no refined volume was asked for: give refined_volume")
     return headline_entry(name, unit, refined["value"], refined["ci95"])

@@ -21,6 +21,7 @@ FIRST_POINTS, FEWEST_POINTS = 1 << 16, 1 << 10  # of the estimate that the defau
 SHARE_POINTS = 1 << 12  # of the estimate of how many voxels are kept
 LEAST_SHARE = 1e-3  # of the box: where hardly anything is reached
 COPIES = 3  # of what is kept of a voxel: of shards, merged, and of the result
+MOST_COMPARED = 8  # values of serial joints at which planes are compared
 FLAT_AREA = 1e-9  # relative to its extent: thickness of a box that holds a plane
 
 
@@ -55,21 +56,29 @@ def lattice_of(
     level = np.allclose(orientations.rotations, np.eye(3), rtol=0, atol=SAME_ORIENTATION)
     if found[0].mechanism.translational and not level:
         raise InputError("orientation", "must be null: the parallelograms of a delta do not let its platform turn")
-    flat = common_flat(found, orientations)
+    flat, _ = common_flat(found, orientations)
     block = _in_space(job, found, orientations, device) if flat is None else _in_flat(job, flat, found, orientations)
     if block is not None:
         _check_memory(block, columns, found, orientations, device)
     return block
 
 
-def common_flat(found: Sequence[Variant], orientations: OrientationSet) -> Flat | None:
-    """The plane, line or point in which the platform's origin stays, whatever the serial joints, or None."""
-    flats = [flat_of(v.mechanism, v.rotations(orientations.rotations[:1])[0]) for v in found]
+def common_flat(found: Sequence[Variant], orientations: OrientationSet) -> tuple[Flat | None, str]:
+    """The plane or line in which the platform's origin stays, whatever the serial joints; None where there is none.
+
+    And why nothing is measured then, in words; empty where the platform has a volume.
+    """
+    if not found[0].mechanism.numeric:
+        return None, ""
+    some = found[:: max(len(found) // MOST_COMPARED, 1)]
+    flats = [flat_of(v.mechanism, v.rotations(orientations.rotations[:1])[0]) for v in some]
     first = flats[0]
     if first is None:
-        return None
+        return None, ""
     size = max(leg.chain.reach for leg in found[0].mechanism.numeric)
-    return first if all(flat is not None and first.same(flat, size) for flat in flats) else None
+    if not all(flat is not None and first.same(flat, size) for flat in flats):
+        return None, "the platform stays in a plane or on a line that the serial joints leave: that is not measured"
+    return first, "the platform stays at a point" if first.dimension == 0 else ""
 
 
 def settled_lattice(block: list[Any] | None) -> LatticeBlock | None:

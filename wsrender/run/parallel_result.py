@@ -52,7 +52,7 @@ def positions_result(plan: "ParallelPlan", partial: "Arrays", seconds: dict[str,
     if isinstance(plan.block, FlatLattice):
         document["flat"] = _flat_entry(plan.block, int(found.sum()), refined_of(partial))
     if volume is None:
-        document["empty"] = _reason(plan)
+        document["empty"] = plan.unmeasured or _reason(plan)
     document["headline"] = headline(plan, partial)
     document["warnings"] = [notice.entry() for notice in notices(plan, partial, volume)]
     tables = {}
@@ -61,7 +61,7 @@ def positions_result(plan: "ParallelPlan", partial: "Arrays", seconds: dict[str,
     if volume and plan.names and plan.has_determinants:
         document["singularities"], tables["singularities"] = singularities(plan, partial, volume)
     document["timing_s"] = {**seconds, "finish": time.perf_counter() - started}
-    skeleton = None if volume is None else skeleton_at(plan, _middle(volume))
+    skeleton = None if volume is None else skeleton_at(plan, _middle(plan, volume))
     return Result(document, volume=volume, sample=_sample(volume), skeleton=skeleton, tables=tables)
 
 
@@ -274,11 +274,16 @@ def _pose(plan: "ParallelPlan", variant: Variant, position_world: np.ndarray, or
     return pose
 
 
-def _middle(volume: VolumeData) -> np.ndarray:
-    """The centre of the reached voxel that is nearest to their mean [m]."""
+def _middle(plan: "ParallelPlan", volume: VolumeData) -> np.ndarray:
+    """The centre of the reached voxel that is nearest to their mean, or what is below it in the plane [m]."""
     cells = volume.voxels.at[:, volume.voxels.count == volume.voxels.count.max()].T
     nearest = cells[((cells - cells.mean(axis=0)) ** 2).sum(axis=1).argmin()]
-    return (nearest + volume.first_voxel + 0.5) * volume.voxel_size_m
+    center = (nearest + volume.first_voxel + 0.5) * volume.voxel_size_m
+    if not isinstance(plan.block, FlatLattice):
+        return center
+    flat = plan.block.flat
+    cell = np.floor(flat.local(center[None]) / volume.voxel_size_m) + 0.5
+    return flat.in_world(cell * volume.voxel_size_m)[0]
 
 
 def skeleton_at(plan: "ParallelPlan", position_world: np.ndarray, orientation: int = 0) -> np.ndarray | None:
