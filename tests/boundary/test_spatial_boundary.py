@@ -141,6 +141,17 @@ def test_general_arm_is_free_form_and_no_primitive_is_forced():
     assert found.measures.volume == pytest.approx(found.volume, rel=1e-2)
 
 
+def test_triangles_of_thin_parts_do_not_jump_to_another_sheet():
+    """A long triangle across a fold met the sheet beyond it: a fourth of the volume was lost."""
+    rows = [
+        {"a": 0.149, "alpha_deg": 90, "d": 0.106, "limits_deg": (-121, 169)},
+        {"joint": "prismatic", "a": 0.147, "alpha_deg": 60, "limits": (0.179, 0.424)},
+        {"a": 0.286, "d": 0.1, "limits_deg": (-100, 138)},
+    ]
+    found = boundary_of(robot(rows, "RPR", "standard"), 24)
+    assert found.measures.volume == pytest.approx(found.volume, rel=0.1)
+
+
 def test_crossings_that_no_critical_set_explains_are_kept_as_they_are(monkeypatch):
     """Without the sets of the singular configurations an elbow's shell is free form, from its points alone."""
     monkeypatch.setattr("wsrender.boundary.spatial.spatial_boundary.critical_sets", lambda arm: [])

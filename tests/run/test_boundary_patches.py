@@ -39,6 +39,31 @@ def test_document_and_tables(result):
     assert (len(result.tables["edges"]), len(result.tables["corners"])) == (12, 8)
     assert result.tables["edge_points"]["edge"].max() == 11
     json.dumps(document, allow_nan=False)
+    headline, error = document["headline"], document["integration_error_m3"]
+    assert headline["value"] == document["volume_m3"]["integrated"] and headline["quantity"] == "volume"
+    assert headline["ci95"] == [headline["value"] - error, headline["value"] + error]
+    assert document["warnings"] == []
+
+
+def test_parts_thinner_than_a_cell_are_said_to_be_missed():
+    """Turning 10° beyond a singular posture draws a lip 0.3 (1 − sin 100°) = 4.6 mm thick, a sixteenth of a cell."""
+    rows = [
+        {"a": 0.3, "alpha_deg": 90, "limits_deg": [-120, 120]},
+        {"joint": "prismatic", "limits": [0.2, 0.6]},
+        {"a": 0.3, "limits_deg": [-100, 100]},
+    ]
+    job = {"analysis": "boundary_patches", "cells": 24}
+    document = execute({**job, "robot": {"dh": {"convention": "standard", "name": "RPR", "rows": rows}}}).document
+    volumes = document["volume_m3"]
+    assert volumes["integrated"] == pytest.approx(0.403129, rel=1e-5)
+    assert 1e-3 < abs(volumes["enclosed"] / volumes["integrated"] - 1) < 1e-2
+    (warning,) = document["warnings"]
+    assert (warning["code"], warning["field"]) == ("enclosed_differs", "cells")
+    assert "thinner than a cell, 0.0708 m" in warning["message"]
+    rows[2]["limits_deg"] = [-60, 60]  # no lip
+    document = execute({**job, "robot": {"dh": {"convention": "standard", "name": "RPR", "rows": rows}}}).document
+    assert document["volume_m3"]["enclosed"] == pytest.approx(document["volume_m3"]["integrated"], rel=1e-3)
+    assert document["warnings"] == []
 
 
 def test_mesh_has_a_colour_per_patch(result):
@@ -101,6 +126,7 @@ def test_more_joints_than_three_are_fitted(tmp_path):
     document = found.document
     volumes = document["volume_m3"]
     low, high = volumes["refined"]["ci95"]
+    assert document["headline"]["ci95"] == [low, high] and document["warnings"] == []
     assert low < 80.107913632 < high and volumes["enclosed"] == pytest.approx(80.107913632, rel=1e-5)
     assert {patch["method"] for patch in document["patches"]} == {"fitted"}
     assert all(patch["generated_by"] == [] for patch in document["patches"])
@@ -123,6 +149,7 @@ def test_what_is_thinner_than_a_cell_has_a_volume_and_no_patches(heights, tmp_pa
     base = 0.06 * np.radians(120) * (np.cos(np.radians(20)) - np.cos(np.radians(150)))
     assert volume == pytest.approx(0.001 * base, rel=0.01)
     assert found.document["patches"] == [] and found.meshes == {}
+    assert [warning["code"] for warning in found.document["warnings"]] == ["enclosed_differs"]
 
 
 @pytest.mark.parametrize(

@@ -15,6 +15,8 @@ from wsrender.boundary.spatial.patches import Patch
 _LEVEL = 4  # facets along each side of a triangle
 NODES = np.array([(i, j, _LEVEL - i - j) for i in range(_LEVEL + 1) for j in range(_LEVEL + 1 - i)]) / _LEVEL
 _SIDES = ((0, 1), (1, 2), (2, 0))
+_FARTHEST = 0.3  # of a triangle's longest side, from it to its surface; what is farther is another sheet of the surface
+_TURNED = 0.7  # cosine between the normals there and between those of the corners, below which it is another sheet too
 INNER = np.array([0.25, 0.5, 0.75])  # where a sharp side is known, between its ends
 
 
@@ -60,7 +62,7 @@ def measures(triangles: Triangles, patches: list[Patch]) -> Measures:
 
 
 def _nodes(triangles: Triangles, patches: list[Patch]) -> tuple[np.ndarray, np.ndarray]:
-    """Positions and normals (T, 15, 3) on the surfaces."""
+    """Positions and normals (T, 15, 3) on the surfaces; of the flat triangle where one meets another sheet of them."""
     flat = np.einsum("kc,tcx->tkx", NODES, triangles.vertices)
     for side, (i, j) in enumerate(_SIDES):
         weight = NODES[:, i] + NODES[:, j]
@@ -76,6 +78,10 @@ def _nodes(triangles: Triangles, patches: list[Patch]) -> tuple[np.ndarray, np.n
         good = np.isfinite(meeting.s).reshape(len(rows), -1)
         s[rows] = np.where(good, meeting.s.reshape(good.shape), 0.0)
         normals[rows] = np.where(good[..., None], meeting.normal.reshape(*good.shape, 3), direction[rows])
+    sides = np.linalg.norm(triangles.vertices - np.roll(triangles.vertices, 1, axis=1), axis=2).max(axis=1)
+    own = np.abs(s).max(axis=1) <= _FARTHEST * sides
+    own &= (normals * direction).sum(axis=2).min(axis=1) >= _TURNED
+    s, normals = np.where(own[:, None], s, 0.0), np.where(own[:, None, None], normals, direction)
     return flat + s[..., None] * direction, normals
 
 
