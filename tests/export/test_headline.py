@@ -49,6 +49,11 @@ def test_several_robots_have_a_headline_each():
         "left: reachable volume 3.80 m³ (95 %: 3.78 … 3.83)",
         "right: no volume: the tip stays on a surface",
     ]
+    together = NONE | {"reason": "see each"}
+    assert headline_lines(document | {"analysis": "robot_comparison", "headline": together}) == [
+        "left: reachable volume 3.80 m³ (95 %: 3.78 … 3.83)",
+        "right: no volume: the tip stays on a surface",
+    ]
 
 
 def test_results_of_the_first_version_have_neither():

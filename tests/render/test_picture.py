@@ -240,6 +240,19 @@ def test_links_are_drawn_with_the_bodies_of_the_model(blank, arm):
     np.testing.assert_allclose(rods.points[-1], tip)
 
 
+def test_what_is_odd_about_a_robot_is_said_once(blank, arm):
+    path, result = arm
+    inertial = '<inertial pos="0 0 0" mass="1" diaginertia="1 1 9"/>'
+    path.write_text(ARM.format(0.4).replace("<geom type", f"{inertial}<geom type"))
+    placement, tool = ws.Transform(position_m=(0, 0, 1)), ws.Transform(position_m=(0.1, 0, 0))
+    with pytest.warns(UserWarning, match="triangle inequality"):
+        odd = ws.load_robot(path, placement=placement, tool=tool)
+    document = result.document | {"robot": result.document["robot"] | {"model_hash": odd.model_hash}}
+    with pytest.warns(UserWarning, match="triangle inequality") as said:
+        ws.Result(document, volume=result.volume).render(robot=path)
+    assert len(said) == 1
+
+
 def test_another_arm_is_not_drawn_under_the_name_of_the_first(blank, arm, tmp_path):
     _, result = arm
     (tmp_path / "longer.xml").write_text(ARM.format(0.41).replace("arm", "longer", 1))

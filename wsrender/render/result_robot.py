@@ -1,5 +1,6 @@
 """Whether a robot is the one that a result is of."""
 
+import warnings
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -39,7 +40,9 @@ def _same_model(robot: Robot, entry: Mapping[str, Any]) -> bool:
 def _as_in_result(robot: str | Path, entry: Mapping[str, Any]) -> Robot:
     names = {name: entry.get(f"{name}_frame") for name in ("base", "tip")}
     placement, tool = (np.array(entry[name]) if name in entry else None for name in _POSES)
-    return load_robot(robot, **names, placement=placement, tool=tool)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of the model: said when it was loaded to be compared
+        return load_robot(robot, **names, placement=placement, tool=tool)
 
 
 def _same_frames(robot: Robot, entry: Mapping[str, Any]) -> bool:
