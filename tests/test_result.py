@@ -247,8 +247,8 @@ def test_plots_use_the_sample_and_name_the_robot(result):
         result.plot.robot(),
     ):
         assert figure.get_suptitle() == "arm · 1,000,000 samples (sobol)"
-    (cloud,) = result.plot.scatter().axes[0].collections
-    assert len(cloud._offsets3d[0]) == 20
+    cloud = result.plot.scatter().axes[0].collections[-1]
+    assert len(cloud.get_offsets()) == 20
 
 
 def test_plots_of_what_is_not_there_say_so():

@@ -80,7 +80,12 @@ class Result:
         """Pictures as matplotlib Figures, such as ``plot.slice(z=0.3)`` or ``plot.scatter(index)``."""
         arms = len(self.document.get("robots") or []) or self._legs
         title, data = sampling_text(self.document), self._drawable()
-        return plots.ResultPlots(title, *data, self.tables, self.volumes, self.meshes, arms)
+        return plots.ResultPlots(title, *data, self.tables, self.volumes, self.meshes, arms, self._warnings)
+
+    @property
+    def _warnings(self) -> list[dict[str, Any]]:
+        """Those of the document; a result of an earlier version has none."""
+        return self.document.get("warnings") or []
 
     @property
     def _legs(self) -> int:
@@ -116,8 +121,9 @@ class Result:
             subjects[k] = subjects[k].with_robot(own, configuration, self.document.get("sampling") or {})
         names = " + ".join(subject.name for subject in subjects)
         title = title or (sampling_text(self.document) if len(results) == 1 else names)
+        warned = [warning for result in results for warning in result._warnings]
         shared = self.meshes.get("intersection") if len(results) == 1 and len(subjects) > 1 else None
-        figure = render.picture(subjects, view, title=title, shared=shared, **options)
+        figure = render.picture(subjects, view, title=plots.heading(title, warned, "volume"), shared=shared, **options)
         if path is not None:
             plots.save_figure(figure, path)
         return figure

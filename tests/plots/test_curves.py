@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from matplotlib.collections import PathCollection
 
 from wsrender.errors import InputError
 from wsrender.plots import curves, mapped_points
@@ -37,8 +38,8 @@ def test_points_inside_are_green_and_points_outside_red():
     position = np.random.default_rng(0).random((6, 3))
     slave, inside = np.array([0, 0, 1, 1, 1, 1], bool), np.array([1, 1, 1, 0, 0, 0], bool)
     figure = mapped_points(Table({"position": position, "slave": slave, "inside": inside}))
-    _, green, red = figure.axes[0].collections
-    assert (len(green._offsets3d[0]), len(red._offsets3d[0])) == (1, 3)
+    _, green, red = (dots for dots in figure.axes[0].collections if isinstance(dots, PathCollection))
+    assert (len(green.get_offsets()), len(red.get_offsets())) == (1, 3)
     assert green.get_facecolor()[0][1] > green.get_facecolor()[0][0]
     assert red.get_facecolor()[0][0] > red.get_facecolor()[0][1]
     assert [text.get_text() for text in figure.axes[0].get_legend().get_texts()][2] == "slave, outside (3)"

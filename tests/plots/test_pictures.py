@@ -6,16 +6,31 @@ from dataclasses import replace
 import matplotlib as mpl
 import numpy as np
 import pytest
+from matplotlib.collections import PathCollection
 from PIL import Image
 
 from tests.export.sample_data import ODD_NAMES, random_map, random_volume
 from wsrender import plots
 from wsrender.errors import InputError
+from wsrender.plots.box import AZIMUTH_DEG, ELEVATION_DEG, space_around
 from wsrender.plots.distribution import histogram_data
+from wsrender.plots.style import DPI
+from wsrender.plots.view import PLACE
 from wsrender.volume.distribution_map import DistributionMap
 from wsrender.volume.volume_data import VolumeData
 
 SKELETON = np.cumsum(np.random.default_rng(3).normal(size=(3, 5, 3)), axis=1)
+
+
+def dots_of(figure):
+    (dots,) = (each for each in figure.axes[0].collections if isinstance(each, PathCollection))
+    return dots
+
+
+def camera_of(points):
+    """That of a picture of space which holds the points."""
+    size = round(PLACE[2] * DPI), round(PLACE[3] * DPI)
+    return space_around(points, size, AZIMUTH_DEG, ELEVATION_DEG).camera
 
 
 def drawn_plane(figure) -> tuple[np.ndarray, list[float]]:
@@ -49,11 +64,11 @@ def test_colours_of_robots_side_by_side_span_their_values_alone():
     count = np.ones((3, 3, 3), int)
     volumes = {
         name: VolumeData(0.1, (0, 0, 0), count, {"maximum": {"x": np.full(count.shape, value)}})
-        for name, value in (("a", 5.0), ("b", 7.0))
+        for name, value in (("a", 5.5), ("b", 7.0))
     }
     figure = plots.side_by_side(volumes, index="x")
     images = [image for axes in figure.axes for image in axes.images]
-    assert len(images) >= 6 and {(image.norm.vmin, image.norm.vmax) for image in images[:6]} == {(5.0, 7.0)}
+    assert len(images) >= 6 and {(image.norm.vmin, image.norm.vmax) for image in images[:6]} == {(5.5, 7.0)}
 
 
 def test_robots_side_by_side_are_cut_where_most_voxels_are_occupied():
@@ -129,32 +144,33 @@ def test_volume_with_counts_alone_shows_counts():
 def test_scatter_colours_each_point_by_its_index():
     samples = random_map()
     figure = plots.scatter(samples, "x")
-    (cloud,) = figure.axes[0].collections
-    points = np.stack(cloud._offsets3d, axis=1)
-    np.testing.assert_array_equal(points, samples.position)
-    values = samples.indices["x"]
+    cloud, camera = dots_of(figure), camera_of(samples.position)
+    order = np.argsort(camera.nearness(samples.position))  # the nearest is drawn last, over the others
+    np.testing.assert_allclose(cloud.get_offsets(), camera.to_picture(samples.position[order]), atol=1e-12)
+    values = samples.indices["x"][order]
     expected = mpl.colormaps["viridis"]((values - values.min()) / (values.max() - values.min()))
-    figure.canvas.draw()  # sorts by depth
-    np.testing.assert_allclose(cloud.get_facecolor(), expected[cloud._z_markers_idx], atol=1 / 255)
+    np.testing.assert_allclose(cloud.get_facecolor(), expected, atol=1 / 255)
     assert figure.axes[1].get_ylabel() == "X [rad]"
 
 
 def test_space_has_equal_scales_in_metres():
-    axes = plots.scatter(random_map()).axes[0]
-    spans = np.array([np.ptp(axes.get_xlim()), np.ptp(axes.get_ylim()), np.ptp(axes.get_zlim())])
-    np.testing.assert_allclose(axes._box_aspect / axes._box_aspect.max(), spans / spans.max())
-    assert (axes.get_xlabel(), axes.get_ylabel(), axes.get_zlabel()) == ("x [m]", "y [m]", "z [m]")
+    figure = plots.scatter(random_map())
+    axes = figure.axes[0]
+    inches = axes.get_position().size * figure.get_size_inches()
+    spans = np.ptp([axes.get_xlim(), axes.get_ylim()], axis=1)
+    np.testing.assert_allclose(inches / spans, inches[0] / spans[0], rtol=1e-3)
+    assert {"x [m]", "y [m]", "z [m]"} <= {text.get_text() for text in axes.texts}
 
 
 def test_large_maps_are_thinned_evenly():
     position = np.zeros((100_000, 3))
     position[:, 0] = np.arange(100_000)
-    (cloud,) = plots.scatter(DistributionMap(position, {})).axes[0].collections
-    x = cloud._offsets3d[0]
-    assert len(x) == 30_000
-    assert x[0] == 0
-    assert x[-1] == 99_999
-    assert np.ptp(np.diff(x)) <= 1
+    shown = dots_of(plots.scatter(DistributionMap(position, {}))).get_offsets()
+    along = camera_of(position).to_picture(np.array([[0.0, 0, 0], [99_999, 0, 0]]))
+    share = (shown - along[0]) @ (along[1] - along[0]) / ((along[1] - along[0]) ** 2).sum()
+    x = np.sort(np.round(share * 99_999, 6))
+    assert (len(x), x[0], x[-1]) == (30_000, 0, 99_999)
+    assert np.ptp(np.diff(x)) <= 1.001
 
 
 def test_histogram_has_a_panel_per_index_whose_bars_sum_to_all_samples():
@@ -186,16 +202,17 @@ def test_histogram_csv_holds_what_is_drawn(tmp_path):
 
 @pytest.mark.parametrize("noise", [0.0, 2.0**-52, 1e-12])
 def test_an_index_that_is_constant_but_for_rounding_is_one_bar(noise):
-    edges, share = histogram_data(1.0 + noise * np.arange(-3.0, 4.0))
-    assert (edges[0], edges[-1]) == pytest.approx((0.5, 1.5)) and share.max() == share.sum() == pytest.approx(1)
+    values = 1.0 + noise * np.arange(-3.0, 4.0)
+    edges, share = histogram_data(values)
+    assert (edges[0], edges[-1]) == (values.min(), values.max()) and share.tolist() == [1]
 
 
 def test_robot_is_drawn_through_its_joints():
     figure = plots.robot(SKELETON, random_map())
-    lines = [np.stack(line.get_data_3d(), axis=1) for line in figure.axes[0].lines]
-    for arm in SKELETON:
-        assert any(line.shape == arm.shape and np.array_equal(line, arm) for line in lines)
-    assert any(np.array_equal(line, SKELETON[0, 1:-1]) for line in lines)
+    camera = camera_of(np.concatenate([SKELETON.reshape(-1, 3), random_map().position]))
+    lines = [line.get_xydata() for line in figure.axes[0].lines]
+    for arm in (*SKELETON, SKELETON[0, 1:-1]):
+        assert any(line.shape == (len(arm), 2) and np.allclose(line, camera.to_picture(arm)) for line in lines)
     labels = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
     assert labels == ["base", "joint", "tip"]
 

@@ -56,7 +56,8 @@ def test_a_picture_names_every_face_and_a_mesh_without_faces_has_one_colour(publ
     assert len(texts) == 11 + 2 and {"leg 1 at its upper limit", "leg 6 at its lower limit", "edge", "vertex"} <= {
         *texts
     }
-    assert {axes.get_xlabel() for axes in figure.axes} == {"x [m]"}
+    for axes in figure.axes:
+        assert {"x [m]", "y [m]", "z [m]"} <= {text.get_text() for text in axes.texts}
     plain = faces_of(trimesh.creation.box(), None)
     assert len(plain.borders()[0]) == 0 and not surface_faces(plain).legends[0].texts
     with pytest.raises(InputError, match="has no triangles"):

@@ -21,7 +21,7 @@ def render(
     index: Annotated[str | None, typer.Option(help="Index that gives the colours; by default the first.")] = None,
     statistic: Annotated[str | None, typer.Option(help="maximum, mean, minimum or count, of a voxel.")] = None,
     threshold: Annotated[float, typer.Option(help="Iso-surface, as a share of the maximum.")] = 0.9,
-    alpha: Annotated[float, typer.Option(help="1: opaque.")] = 0.1,
+    alpha: Annotated[float | None, typer.Option(help="1: opaque; by default 0.1, of a coloured boundary 1.")] = None,
     x: Annotated[float | None, typer.Option(help="Slice normal to x [m].")] = None,
     y: Annotated[float | None, typer.Option(help="Slice normal to y [m].")] = None,
     z: Annotated[float | None, typer.Option(help="Slice normal to z [m].")] = None,

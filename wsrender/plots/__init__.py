@@ -28,7 +28,9 @@ if TYPE_CHECKING:
     from wsrender.plots.style import png, save_figure
     from wsrender.plots.surface_faces import surface_faces
     from wsrender.plots.table_curves import curves
+    from wsrender.plots.targets import labelled_targets
     from wsrender.plots.vector_field import vector_planes
+    from wsrender.plots.warned import heading
 
 # Modules are not called like their functions: importing one would hide the function.
 _MODULES = {
@@ -39,7 +41,9 @@ _MODULES = {
     "curves": "table_curves",
     "errors_by_size": "method_comparison",
     "faces_of": "faces",
+    "heading": "warned",
     "histogram": "distribution",
+    "labelled_targets": "targets",
     "png": "style",
     "limits_and_ellipsoids": "posture",
     "mapped_points": "master_slave",
@@ -67,7 +71,9 @@ __all__ = [
     "curves",
     "errors_by_size",
     "faces_of",
+    "heading",
     "histogram",
+    "labelled_targets",
     "limits_and_ellipsoids",
     "mapped_points",
     "orientations",

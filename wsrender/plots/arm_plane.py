@@ -11,7 +11,7 @@ from matplotlib.ticker import MaxNLocator
 
 from wsrender.boundary.planar.segments import drawn
 from wsrender.errors import InputError
-from wsrender.plots.style import INK, add_title, new_figure, paper_style
+from wsrender.plots.style import INK, Heading, new_figure, paper_style
 from wsrender.volume.table import Table
 
 SAMPLES, ESTIMATED, INSIDE, OUTSIDE = "#9ecae1", "#e6550d", "#1a9641", "#c8102e"
@@ -19,7 +19,7 @@ _LONGEST, _LEAST = 5.6, 1.6  # edges of the axes [in]
 
 
 @paper_style()
-def planar_boundary(tables: Mapping[str, Table], *, title: str = "") -> Figure:
+def planar_boundary(tables: Mapping[str, Table], *, title: Heading | str = "") -> Figure:
     """Tables ``boundary``, ``monte_carlo``, ``samples`` and ``points`` of the analysis, as far as there are any.
 
     A Monte Carlo boundary that has not converged, by the column of that name, is pale and dashed, and the legend says
@@ -31,7 +31,7 @@ def planar_boundary(tables: Mapping[str, Table], *, title: str = "") -> Figure:
     if len(points) == 0:
         raise InputError("tables", "hold neither samples nor segments: there is nothing to draw")
     asked = tables["points"]["point"] if "points" in tables else np.empty((0, 2))
-    figure, axes = _new_plane(np.concatenate([points, asked]))
+    figure, axes = _new_plane(np.concatenate([points, asked]), title)
     axes.plot(*samples.T, ls="", marker=".", ms=1.2, mew=0, color=SAMPLES, rasterized=True)
     axes.plot([], [], ls="", marker=".", ms=6, mew=0, color=SAMPLES, label="samples")
     styles: dict[str, dict[str, Any]] = {
@@ -47,7 +47,6 @@ def planar_boundary(tables: Mapping[str, Table], *, title: str = "") -> Figure:
     if "points" in tables:
         _draw_points(axes, tables["points"])
     axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), frameon=False, fontsize=8)
-    add_title(figure, title)
     return figure
 
 
@@ -60,13 +59,13 @@ def _lines(table: Table) -> list[np.ndarray]:
     return [drawn(table, row) for row in range(len(table))]
 
 
-def _new_plane(points: np.ndarray) -> tuple[Figure, Axes]:
+def _new_plane(points: np.ndarray, heading: Heading | str) -> tuple[Figure, Axes]:
     """Axes with equal scales whose limits hold the points, with room for a legend on the right."""
     low, high = points.min(axis=0), points.max(axis=0)
     extent = np.maximum(high - low, 0.25 * max((high - low).max(), 1e-6))
     middle, half = (low + high) / 2, 0.54 * extent
     width, height = np.maximum(_LONGEST * extent / extent.max(), _LEAST)
-    figure = new_figure(float(width) + 2.3, float(height) + 0.9)
+    figure = new_figure(float(width) + 2.3, float(height) + 0.6, heading)
     axes = figure.add_subplot()
     axes.set_aspect("equal")
     axes.set_xlim(middle[0] - half[0], middle[0] + half[0])

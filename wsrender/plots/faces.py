@@ -39,6 +39,14 @@ class Faces:
         """Corners (T, 3, 3) of the triangles [m]."""
         return self.vertices[self.triangles]
 
+    @property
+    def closed(self) -> bool:
+        """Whether every side of a triangle is one of another's too, the other way round, and all face outwards."""
+        a, b = self.triangles, np.roll(self.triangles, -1, axis=1)
+        count = len(self.vertices)
+        there, back = (np.sort((p.astype(np.int64) * count + q).ravel()) for p, q in ((a, b), (b, a)))
+        return np.array_equal(there, back) and float(np.linalg.det(self.corners - self.vertices[0]).sum()) > 0
+
     def borders(self) -> tuple[np.ndarray, np.ndarray]:
         """Vertices (E, 2) of the sides that two faces share, and where three or more faces meet, (C,)."""
         sides = np.sort(self.triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)

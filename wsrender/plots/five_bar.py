@@ -13,7 +13,7 @@ from matplotlib.path import Path
 from matplotlib.ticker import MaxNLocator, MultipleLocator
 
 from wsrender.errors import InputError
-from wsrender.plots.style import INK, add_title, color_map, new_figure, paper_style
+from wsrender.plots.style import INK, Heading, color_map, new_figure, paper_style
 from wsrender.volume.table import Table
 from wsrender.volume.volume_data import VolumeData
 
@@ -37,7 +37,12 @@ _EVERYWHERE = ("type_1", "joint_limit", "type_2")
 
 @paper_style()
 def conditioning_maps(
-    volumes: Mapping[str, VolumeData], tables: Mapping[str, Table], matrix: str, space: str, *, title: str = ""
+    volumes: Mapping[str, VolumeData],
+    tables: Mapping[str, Table],
+    matrix: str,
+    space: str,
+    *,
+    title: Heading | str = "",
 ) -> Figure:
     """κ of A, B or J (``matrix``) over P ("cartesian") or the actuated angles ("joint"), with iso-curves and loci.
 
@@ -49,14 +54,14 @@ def conditioning_maps(
             raise InputError(field, f"{value!r} is not allowed; {', '.join(allowed)} are")
     modes = list(tables["drawn_postures"]["working_mode"])
     if space == "cartesian":
-        figure, drawn = _cartesian_panels(tables, modes)
+        figure, drawn = _cartesian_panels(tables, modes, title)
         for mode, axes in zip(modes, drawn, strict=True):
             if mode in volumes:
                 _draw_volume(axes, volumes[mode], f"inverse_kappa_{matrix}")
             _draw_curves(axes, tables, matrix, mode, "position")
             _draw_mechanism(axes, tables["drawn_postures"], mode)
     else:
-        figure, panels = _joint_panels(tables, modes)
+        figure, panels = _joint_panels(tables, modes, title)
         for (mode, assembly), axes in panels.items():
             _draw_sheet(axes, tables["joint_space"], matrix, mode, assembly)
             _draw_curves(axes, tables, matrix, mode, "theta", assembly)
@@ -64,15 +69,14 @@ def conditioning_maps(
     _add_bar(figure, drawn, matrix)
     levels = tables["iso_curves"]["level"][tables["iso_curves"]["quantity"] == f"kappa_{matrix}"]
     _add_legend(figure, tables["loci"], (*_EVERYWHERE, *_DRAWN[matrix]), np.unique(levels))
-    add_title(figure, title)
     return figure
 
 
 @paper_style()
-def aspect_maps(tables: Mapping[str, Table], *, title: str = "") -> Figure:
+def aspect_maps(tables: Mapping[str, Table], *, title: Heading | str = "") -> Figure:
     """The aspects of each working mode, coloured one by one, with their areas; loci and mechanism as in the maps."""
     modes = list(tables["drawn_postures"]["working_mode"])
-    figure, panels = _cartesian_panels(tables, modes, beside=1.7)
+    figure, panels = _cartesian_panels(tables, modes, title, beside=1.7)
     outlines = tables["aspect_outlines"]
     for mode, axes in zip(modes, panels, strict=True):
         handles = []
@@ -91,7 +95,6 @@ def aspect_maps(tables: Mapping[str, Table], *, title: str = "") -> Figure:
         )
         legend.set_zorder(9)
     _add_legend(figure, tables["loci"], _EVERYWHERE, np.empty(0))
-    add_title(figure, title)
     return figure
 
 
@@ -113,7 +116,7 @@ def _path(outlines: Table, rows: np.ndarray) -> Path:
 
 
 def _cartesian_panels(
-    tables: Mapping[str, Table], modes: Sequence[str], beside: float = 0.0
+    tables: Mapping[str, Table], modes: Sequence[str], heading: Heading | str, beside: float = 0.0
 ) -> tuple[Figure, list[Axes]]:
     """A panel for each mode with equal scales, large enough for workspace and mechanism, and ``beside`` [in]."""
     chains = tables["drawn_postures"]["chain"].reshape(-1, 2)
@@ -125,7 +128,9 @@ def _cartesian_panels(
     rows = -(-len(modes) // columns)
     scale = 3.6 / max(width, height)
     figure = new_figure(
-        columns * (width * scale + 0.9 + beside) + (0.3 if beside else 1.2), rows * (height * scale + 0.7) + 1.0
+        columns * (width * scale + 0.9 + beside) + (0.3 if beside else 1.2),
+        rows * (height * scale + 0.7) + 0.7,
+        heading,
     )
     panels = figure.subplots(rows, columns, squeeze=False, sharex=True, sharey=True)
     for axes in panels.flat[len(modes) :]:
@@ -143,13 +148,15 @@ def _cartesian_panels(
     return figure, list(panels.flat[: len(modes)])
 
 
-def _joint_panels(tables: Mapping[str, Table], modes: Sequence[str]) -> tuple[Figure, dict[tuple[str, str], Axes]]:
+def _joint_panels(
+    tables: Mapping[str, Table], modes: Sequence[str], heading: Heading | str
+) -> tuple[Figure, dict[tuple[str, str], Axes]]:
     """A row of panels for each assembly mode, a column for each working mode."""
     theta = tables["joint_space"]["theta"]
     lower, upper = (theta.min(axis=0), theta.max(axis=0)) if len(theta) else (np.full(2, -np.pi), np.full(2, np.pi))
     cells = np.maximum(tables["joint_space"]["cell"].max(axis=0, initial=0), 1)
     lower, upper = lower - (upper - lower) / cells / 2, upper + (upper - lower) / cells / 2
-    figure = new_figure(2.5 * len(modes) + 1.6, 6.2)
+    figure = new_figure(2.5 * len(modes) + 1.6, 5.9, heading)
     grid = figure.subplots(2, len(modes), squeeze=False, sharex=True, sharey=True)
     panels = {}
     for row, assembly in enumerate("+-"):

@@ -75,7 +75,12 @@ def _of_design(plot: ResultPlots, document: Mapping[str, Any]) -> Pictures:
     return pictures
 
 
+def _of_targets(plot: ResultPlots, document: Mapping[str, Any]) -> Pictures:
+    return {"targets": plot.targets} if len(plot.tables.get("targets", ())) else {}
+
+
 _OF_ANALYSES: dict[str, Callable[[ResultPlots, Mapping[str, Any]], Pictures]] = {
+    "reachability": _of_targets,
     "planar_boundary": lambda plot, _: {"boundary": plot.boundary},
     "boundary_patches": lambda plot, _: {"patches": plot.patches} if "patches" in plot.meshes else {},
     "master_slave_mapping": _of_mapping,

@@ -5,7 +5,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from wsrender.errors import InputError
-from wsrender.plots.style import add_title, color_map, new_figure, paper_style
+from wsrender.plots.style import Heading, color_map, new_figure, paper_style
 from wsrender.volume.table import Table
 
 LABELS = {
@@ -17,14 +17,14 @@ LEAST_ERROR = 1e-7  # smaller ones are drawn there
 
 
 @paper_style()
-def errors_by_size(table: Table, *, title: str = "") -> Figure:
+def errors_by_size(table: Table, *, title: Heading | str = "") -> Figure:
     """Size of the relative error of each method ([SNK] Fig. 10); that of the exact method is 0.
 
     Columns ``method``, ``size`` [m], ``relative_error``. InputError where a column is missing.
     """
     if not {"method", "size", "relative_error"} <= set(table.columns):
         raise InputError("table", f"holds {', '.join(table.columns)}; method, size and relative_error are needed")
-    figure = new_figure(5.6, 4.2)
+    figure = new_figure(5.6, 3.9, title)
     axes = figure.add_subplot()
     colors = color_map()(np.linspace(0.1, 0.75, len(LABELS)))
     for (method, label), color, marker in zip(LABELS.items(), colors, "osD", strict=True):
@@ -41,5 +41,4 @@ def errors_by_size(table: Table, *, title: str = "") -> Figure:
         axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
         axis.set_minor_formatter(NullFormatter())
     axes.legend(frameon=False, fontsize=8)
-    add_title(figure, title)
     return figure

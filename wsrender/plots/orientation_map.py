@@ -9,7 +9,7 @@ from matplotlib.projections.polar import PolarAxes
 from matplotlib.ticker import MaxNLocator
 
 from wsrender.errors import InputError
-from wsrender.plots.style import GREY, add_title, color_map, new_figure, paper_style
+from wsrender.plots.style import INK, Heading, color_map, new_figure, paper_style
 from wsrender.volume.table import Table
 
 SYMBOLS = {"alpha": "α", "beta": "β", "gamma": "γ", "torsion": "σ"}
@@ -18,7 +18,7 @@ _REACHED = "reached"
 
 
 @paper_style()
-def orientations(table: Table, *, title: str = "") -> Figure:
+def orientations(table: Table, *, title: Heading | str = "") -> Figure:
     """What of a grid of orientations is reached, one panel for each of at most six levels of the last angle.
 
     The table has three columns of angles [rad], of a regular grid with the last fastest, and ``reached``. Azimuth and
@@ -33,7 +33,7 @@ def orientations(table: Table, *, title: str = "") -> Figure:
     shown = np.unique(np.linspace(0, len(levels[2]) - 1, MOST_PANELS).round().astype(int))
     columns = min(len(shown), 3)
     rows = -(-len(shown) // columns)
-    figure = new_figure(2.9 * columns + 1.0, 3.0 * rows + 0.7)
+    figure = new_figure(2.9 * columns + 1.0, 3.0 * rows + 0.4, title)
     polar = names[0] == "azimuth"
     panels = figure.subplots(rows, columns, squeeze=False, subplot_kw={"projection": "polar"} if polar else {})
     for axes in panels.flat[len(shown) :]:
@@ -44,7 +44,6 @@ def orientations(table: Table, *, title: str = "") -> Figure:
             axes.set_title(f"{SYMBOLS[names[2]]} = {np.rad2deg(levels[2][level]):.3g}°")
     handles = [Patch(color=_colors()(code), label=label) for code, label in ((1.0, "reached"), (0.0, "not reached"))]
     figure.legend(handles=handles, loc="outside lower center", ncols=2, frameon=False, fontsize=8)
-    add_title(figure, title)
     return figure
 
 
@@ -60,7 +59,7 @@ def _disc(axes: PolarAxes, azimuth: np.ndarray, tilt: np.ndarray, reached: np.nd
     axes.pcolormesh(around, edges, reached.T.astype(float), cmap=_colors(), vmin=0, vmax=1, rasterized=True)
     axes.yaxis.set_major_locator(MaxNLocator(4, prune="lower"))
     axes.yaxis.set_major_formatter(lambda value, _: f"{value:g}°")
-    axes.tick_params(axis="y", colors=GREY)
+    axes.tick_params(axis="y", colors=INK)
     axes.set_xlabel("azimuth around, tilt outwards", fontsize=8)
     axes.grid(color="white", lw=0.5)
 

@@ -1,23 +1,17 @@
-"""Planes through the volume data, coloured by a statistic; empty voxels stay blank."""
+"""Planes through the volume data, coloured by a statistic; empty voxels stay blank. All have one scale."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from wsrender.errors import InputError
-from wsrender.plots.style import (
-    add_color_bar,
-    add_title,
-    color_map,
-    new_figure,
-    paper_style,
-    quantity,
-    value_range,
-)
+from wsrender.plots.color_scale import ColorScale, color_scale
+from wsrender.plots.style import INK, Heading, new_figure, paper_style, quantity
+from wsrender.plots.view import inches
 from wsrender.volume.volume_data import VolumeData
 from wsrender.volume.voxels import Voxels
 
@@ -25,16 +19,24 @@ NAMES = "xyz"
 ACROSS = ((1, 2), (0, 2), (0, 1))  # horizontal and vertical axis of the plane normal to x, y, z
 _SPARSE = 0.25  # least share of the voxels of the fullest plane that the plane at 0 is shown with
 _THINNEST = 0.25  # least extent of a drawn plane, relative to its longest: planar sets keep a legible panel
+_LARGEST = (9.6, 4.0)  # width of all planes of a row together, and height of one [in]
+_LEFT, _BELOW, _ABOVE = 0.68, 0.5, 0.3  # room for numbers and names of the axes, and for the title of a plane [in]
+_TITLE = 1.75  # least width of a plane with the room beside it: that of its title [in]
+_BAR = (0.22, 0.14, 0.95)  # room before a colour bar, its width, room for its numbers and label [in]
 
 
 @dataclass(frozen=True)
 class Field:
-    """A scalar of each of a volume's ``voxels``, (V,), NaN where empty, with its label; colours span all its values."""
+    """A scalar of each of a volume's ``voxels``, (V,), NaN where empty, with its colours, which span all its values."""
 
     voxels: Voxels
     values: np.ndarray
-    label: str
-    norm: Normalize
+    scale: ColorScale
+
+    @property
+    def label(self) -> str:
+        """Name and unit."""
+        return self.scale.label
 
     def dense(self) -> np.ndarray:
         """The values as an array of the block, (nx, ny, nz)."""
@@ -43,12 +45,6 @@ class Field:
     def plane(self, axis: int, layer: int) -> np.ndarray:
         """The values of one layer of voxels, NaN where empty, over its two axes."""
         return self.voxels.plane(self.values, axis, layer)
-
-    @property
-    def ticks(self) -> MaxNLocator | None:
-        """Whole numbers on the colour bar of what is counted; None leaves them to matplotlib."""
-        known = self.values[~np.isnan(self.values)]
-        return MaxNLocator(integer=True) if np.array_equal(known, np.floor(known)) else None
 
 
 @paper_style()
@@ -60,7 +56,7 @@ def slice_plane(
     z: float | None = None,
     index: str | None = None,
     statistic: str | None = None,
-    title: str = "",
+    title: Heading | str = "",
     frame: str = "world",
 ) -> Figure:
     """The voxels cut by one plane, given by its coordinate x, y or z [m] in the world frame.
@@ -78,13 +74,8 @@ def slice_plane(
         raise InputError("slice", "takes one of x, y, z; use slices for all three")
     axis, at = given[0] if given else (2, None)
     layer = layer_at(volume, axis, at, field)
-    width, height = plane_extents(volume, axis)
-    scale = min(4.6 / width, 4.4 / height)
-    figure = new_figure(width * scale + 1.8, max(height * scale + 1.0, 2.6))
-    axes = figure.add_subplot()
-    draw_plane(axes, volume, field, axis, layer, frame)
-    add_color_bar(figure, field.norm, field.label, ax=axes, shrink=0.9, aspect=28, ticks=field.ticks)
-    add_title(figure, title)
+    figure, panels = new_planes(volume, field.scale, title, axes=(axis,))
+    draw_plane(panels[0, 0], volume, field, axis, layer, frame)
     return figure
 
 
@@ -95,23 +86,50 @@ def slices(
     at: tuple[float | None, float | None, float | None] = (None, None, None),
     index: str | None = None,
     statistic: str | None = None,
-    title: str = "",
+    title: Heading | str = "",
     frame: str = "world",
 ) -> Figure:
     """Three panels: the planes normal to x, y and z at the coordinates ``at`` [m]; see ``slice_plane``."""
     field = voxel_field(volume, index, statistic)
-    extents = [plane_extents(volume, axis) for axis in range(3)]
-    widths = [width for width, _ in extents]
-    scale = min(9.6 / sum(widths), 4.0 / max(height for _, height in extents))
-    tallest = max(height for _, height in extents) * scale
-    figure = new_figure(max(sum(widths) * scale + 2.6, 6.0), max(tallest + 1.0, 2.4))
-    panels = figure.subplots(1, 3, width_ratios=widths)
-    for axis, (axes, coordinate) in enumerate(zip(panels, at, strict=True)):
+    figure, panels = new_planes(volume, field.scale, title)
+    for axis, (axes, coordinate) in enumerate(zip(panels[0], at, strict=True)):
         draw_plane(axes, volume, field, axis, layer_at(volume, axis, coordinate, field), frame)
-    place = {"ax": list(panels), "shrink": 0.8, "aspect": 28, "pad": 0.02}
-    add_color_bar(figure, field.norm, field.label, ticks=field.ticks, **place)
-    add_title(figure, title)
     return figure
+
+
+def new_planes(
+    volume: VolumeData,
+    scale: ColorScale,
+    heading: Heading | str,
+    *,
+    axes: Sequence[int] = (0, 1, 2),
+    rows: Sequence[str] = ("",),
+) -> tuple[Figure, np.ndarray]:
+    """A figure with the colour bar of a scale, and for each row a panel for the plane normal to each of ``axes``.
+
+    A metre is equally long in all panels, (rows, axes). ``rows`` are names, written at their left.
+    """
+    extents = [plane_extents(volume, axis) for axis in axes]
+    widths, heights = np.transpose(extents)
+    unit = min(_LARGEST[0] / 3 * len(axes) / widths.sum(), _LARGEST[1] / heights.max())  # inches of a metre
+    widths, heights = widths * unit, heights * unit
+    steps = np.maximum(_LEFT + widths, _TITLE)
+    left = 0.35 if any(rows) else 0.0
+    tall = _BELOW + heights.max() + _ABOVE
+    bar_left = left + steps.sum() + _BAR[0]
+    figure = new_figure(bar_left + _BAR[1] + _BAR[2], tall * len(rows), heading, layout=None)
+    panels = np.empty((len(rows), len(axes)), object)
+    for row, name in enumerate(rows):
+        bottom = tall * (len(rows) - 1 - row) + _BELOW
+        for k, start in enumerate(left + np.cumsum(steps) - steps + _LEFT):
+            panels[row, k] = figure.add_axes(inches(figure, (start, bottom, widths[k], heights[k])))
+        across, up = figure.get_size_inches()
+        middle = (bottom + heights.max() / 2) / up
+        figure.text(0.2 / across, middle, name, rotation=90, va="center", ha="center", color=INK, fontsize=10)
+    length = min(tall * len(rows) - _BELOW - _ABOVE, 4.5)
+    middle = (tall * len(rows) + _BELOW - _ABOVE) / 2
+    scale.add_bar(figure, cax=figure.add_axes(inches(figure, (bar_left, middle - length / 2, _BAR[1], length))))
+    return figure, panels
 
 
 def voxel_field(volume: VolumeData, index: str | None, statistic: str | None) -> Field:
@@ -126,7 +144,7 @@ def voxel_field(volume: VolumeData, index: str | None, statistic: str | None) ->
         values, label = np.where(voxels.count > 0, voxels.count, np.nan), "Samples per voxel"
     else:
         values, label = _statistic(volume, index, statistic)
-    return Field(voxels, values, label, value_range(np.nanmin(values), np.nanmax(values)))
+    return Field(voxels, values, color_scale(values, label))
 
 
 def _statistic(volume: VolumeData, index: str | None, statistic: str | None) -> tuple[np.ndarray, str]:
@@ -180,16 +198,18 @@ def draw_plane(axes: Axes, volume: VolumeData, field: Field, axis: int, layer: i
         volume.first_voxel[across] * volume.voxel_size_m + np.array([0, volume.shape[across]]) * volume.voxel_size_m
         for across in (horizontal, vertical)
     ]
-    plane = np.ma.masked_invalid(field.plane(axis, layer))
+    plane = field.plane(axis, layer)
     axes.imshow(
-        plane.T,
+        np.ma.masked_invalid(plane).T,
         origin="lower",
         extent=(*edges[0], *edges[1]),
-        cmap=color_map(),
-        norm=field.norm,
+        cmap=field.scale.colors,
+        norm=field.scale.norm,
         interpolation="nearest",
         zorder=2,
     )
+    if field.scale.diverging:
+        _draw_zero(axes, volume, plane, ACROSS[axis])
     extents = plane_extents(volume, axis)
     for (low, high), extent, ticks, limit in zip(
         edges, extents, (axes.xaxis, axes.yaxis), (axes.set_xlim, axes.set_ylim), strict=True
@@ -200,9 +220,17 @@ def draw_plane(axes: Axes, volume: VolumeData, field: Field, axis: int, layer: i
     axes.set_axisbelow(True)
     axes.set_xlabel(f"{NAMES[horizontal]} [m]")
     axes.set_ylabel(f"{NAMES[vertical]} [m]")
-    axes.set_title(f"{NAMES[axis]} = {_told(volume.centers(axis)[layer], volume.voxel_size_m)} m ({frame})")
+    axes.set_title(f"{NAMES[axis]} = {_told(volume.centers(axis)[layer], volume.voxel_size_m)} m ({frame})".replace("-", "−"))
 
 
 def _told(coordinate: float, voxel_size_m: float) -> str:
     """A coordinate with three digits, or as many as tell voxels apart far from the origin."""
     return f"{coordinate:.{max(3, int(np.log10(abs(coordinate) / voxel_size_m)) + 1)}g}"
+
+
+def _draw_zero(axes: Axes, volume: VolumeData, plane: np.ndarray, across: tuple[int, int]) -> None:
+    """The line between the signs of a plane (a, b); NaN is neither."""
+    known = plane[np.isfinite(plane)]
+    if min(plane.shape) > 1 and len(known) and known.min() < 0 < known.max():
+        x, y = (volume.centers(axis) for axis in across)
+        axes.contour(x, y, np.ma.masked_invalid(plane).T, levels=[0.0], colors=[INK], linewidths=1.0, zorder=3)

@@ -1,26 +1,29 @@
 """The sampled positions in space, coloured by an index."""
 
-from typing import Any
-
 import numpy as np
 from matplotlib.figure import Figure
 
-from wsrender.plots.space import color_points, new_space, thinned
-from wsrender.plots.style import add_title, paper_style
+from wsrender.plots.cloud import scale_of, thinned
+from wsrender.plots.style import Heading, color_map, paper_style
+from wsrender.plots.view import BAR, inches, new_view
 from wsrender.volume.distribution_map import DistributionMap
 
 
 @paper_style()
-def scatter(samples: DistributionMap, index: str | None = None, *, title: str = "", frame: str = "world") -> Figure:
+def scatter(
+    samples: DistributionMap, index: str | None = None, *, title: Heading | str = "", frame: str = "world"
+) -> Figure:
     """Positions [m] of at most 30,000 samples, coloured by ``index`` (by default the map's first).
 
     A map without indices is drawn in one colour. Raises InputError for an unknown index.
     """
-    figure, axes = new_space(samples.position, frame)
+    figure, view = new_view(samples.position, title, frame)
     rows = thinned(len(samples))
-    points = samples.position[rows]
-    colors = color_points(figure, samples, index, rows)
-    size: Any = np.clip(9e4 / max(len(rows), 1), 2.0, 24.0)  # [pt²]; annotated as int in matplotlib
-    axes.scatter(*points.T, s=size, c=colors, linewidths=0, depthshade=False, rasterized=True)
-    add_title(figure, title)
+    size = float(np.clip(9e4 / max(len(rows), 1), 2.0, 24.0))  # [pt²]
+    scale = scale_of(samples, index)
+    if scale is None:
+        view.add_dots(samples.position[rows], color_map()(np.full(len(rows), 0.35)), size)
+    else:
+        view.add_dots(samples.position[rows], scale[0](scale[1][rows]), size)
+        scale[0].add_bar(figure, cax=figure.add_axes(inches(figure, BAR)))
     return figure

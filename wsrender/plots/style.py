@@ -1,8 +1,10 @@
 """The look that all pictures share, and how they are written."""
 
+import textwrap
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
 from typing import Any, Literal
@@ -10,9 +12,9 @@ from typing import Any, Literal
 import matplotlib as mpl
 import matplotlib.style
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.cm import ScalarMappable
-from matplotlib.colors import Colormap, Normalize
+from matplotlib.colors import Colormap
 from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from wsrender.errors import InputError
 from wsrender.indices.units import pretty_unit
@@ -22,6 +24,10 @@ COLOR_MAP = "viridis"
 INK = "#222222"
 GREY = "#6b6b6b"
 DPI = 200
+WARNING = "#a33b00"
+# Height of a line and width of a letter [in].
+_TITLE, _NOTE = (0.2, 0.094), (0.135, 0.063)
+_BORDER = 0.09  # above a title, above its warnings [in]
 
 _PARAMETERS = {
     "font.family": "sans-serif",
@@ -57,11 +63,43 @@ def paper_style() -> Iterator[None]:
         yield
 
 
-def new_figure(width: float, height: float, layout: Literal["constrained"] | None = "constrained") -> Figure:
-    """An empty figure of that size [in] which can be drawn without a display."""
-    figure = ShownFigure(figsize=(width, height), layout=layout, dpi=100)
+@dataclass(frozen=True)
+class Heading:
+    """What stands above a picture: its title, and the warnings that concern it, each a line or two below."""
+
+    title: str = ""
+    warnings: tuple[str, ...] = ()
+
+
+def new_figure(
+    width: float, height: float, heading: Heading | str = "", layout: Literal["constrained"] | None = "constrained"
+) -> Figure:
+    """A figure which can be drawn without a display, empty but for its heading.
+
+    The axes have ``width`` and ``height`` [in] from its lower left; the heading stands above.
+    """
+    heading = Heading(heading) if isinstance(heading, str) else heading
+    title = textwrap.wrap(heading.title, int(width / _TITLE[1])) if heading.title else []
+    notes = [line for text in heading.warnings for line in _warning_lines(text, int(width / _NOTE[1]))]
+    band = sum(_BORDER for lines in (title, notes) if lines) + _TITLE[0] * len(title) + _NOTE[0] * len(notes)
+    figure = ShownFigure(figsize=(width, height + band), layout=layout, dpi=100)
     FigureCanvasAgg(figure)
+    whole = height + band
+    if title:
+        # Not part of the layout, which would leave room for it a second time.
+        figure.suptitle("\n".join(title), fontsize=11, y=1 - _BORDER / whole, va="top").set_in_layout(False)
+    if notes:
+        above = whole - (band - _NOTE[0] * len(notes) - _BORDER / 2)
+        place: dict[str, Any] = {"ha": "center", "va": "top", "fontsize": 7.5, "color": WARNING, "linespacing": 1.25}
+        figure.text(0.5, above / whole, "\n".join(notes), **place).set_in_layout(False)
+    if isinstance(engine := figure.get_layout_engine(), ConstrainedLayoutEngine):
+        engine.set(rect=(0, 0, 1, height / whole))
     return figure
+
+
+def _warning_lines(text: str, letters: int) -> list[str]:
+    """At most two lines of a warning."""
+    return textwrap.wrap(f"Warning: {text}", letters, max_lines=2, placeholder=" …")
 
 
 def color_map() -> Colormap:
@@ -74,26 +112,6 @@ def quantity(name: str, unit: str | None) -> str:
     text = name.replace("_", " ").strip()
     text = text[:1].upper() + text[1:]
     return text if unit in (None, "", "1", "-") else f"{text} [{pretty_unit(unit)}]"
-
-
-def value_range(lowest: float, highest: float) -> Normalize:
-    """Colours from the lowest to the highest value; widened where they are equal."""
-    if highest > lowest:
-        return Normalize(lowest, highest)
-    return Normalize(lowest - 0.5, lowest + 0.5) if lowest else Normalize(0, 1)
-
-
-def add_color_bar(figure: Figure, norm: Normalize, label: str, **place: Any) -> None:
-    """A colour bar with its label and unit, placed by the arguments of ``Figure.colorbar``."""
-    bar = figure.colorbar(ScalarMappable(norm, color_map()), **place)
-    bar.set_label(label)
-    bar.outline.set_visible(False)
-
-
-def add_title(figure: Figure, title: str) -> None:
-    """What robot and samples the figure shows, above all axes."""
-    if title:
-        figure.suptitle(title, fontsize=11, y=0.98 if figure.get_layout_engine() is None else None)
 
 
 def png(figure: Figure) -> bytes:

@@ -5,14 +5,14 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from wsrender.errors import InputError
-from wsrender.plots.style import add_title, color_map, new_figure, paper_style, quantity
+from wsrender.plots.style import Heading, color_map, new_figure, paper_style, quantity
 from wsrender.volume.table import Table
 
 _BAND = ("_low", "_high")  # endings of the columns that bound another
 
 
 @paper_style()
-def curves(table: Table, *, title: str = "") -> Figure:
+def curves(table: Table, *, title: Heading | str = "") -> Figure:
     """Every column of numbers against the first; ``<name>_low`` and ``<name>_high`` bound the band of ``<name>``.
 
     Raises InputError for a table without rows or with fewer than two columns of numbers.
@@ -25,7 +25,7 @@ def curves(table: Table, *, title: str = "") -> Figure:
     panels: dict[str, list[str]] = {}
     for name in drawn:
         panels.setdefault(table.units.get(name, "1"), []).append(name)
-    figure = new_figure(5.6, 2.6 * len(panels) + 0.6)
+    figure = new_figure(5.6, 2.6 * len(panels) + 0.3, title)
     for axes, (unit, names) in zip(figure.subplots(len(panels), 1, squeeze=False).flat, panels.items(), strict=True):
         for name, color in zip(names, color_map()(np.linspace(0.1, 0.75, len(names))), strict=True):
             order = np.argsort(numbers[across], kind="stable")
@@ -41,7 +41,6 @@ def curves(table: Table, *, title: str = "") -> Figure:
         axes.grid(zorder=0)
         if len(names) > 1:
             axes.legend(frameon=False, fontsize=8)
-    add_title(figure, title)
     return figure
 
 

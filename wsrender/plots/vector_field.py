@@ -7,8 +7,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from wsrender.errors import InputError
-from wsrender.plots.planes import ACROSS, Field, draw_plane, layer_at, plane_extents
-from wsrender.plots.style import INK, add_color_bar, add_title, new_figure, paper_style, quantity, value_range
+from wsrender.plots.color_scale import color_scale
+from wsrender.plots.planes import ACROSS, Field, draw_plane, layer_at, new_planes
+from wsrender.plots.style import INK, Heading, paper_style, quantity
 from wsrender.volume.volume_data import VolumeData
 
 _FELT = 0.02  # of the largest size: shorter vectors show no line
@@ -23,7 +24,7 @@ def vector_planes(
     name: str | None = None,
     *,
     at: tuple[float | None, float | None, float | None] = (None, None, None),
-    title: str = "",
+    title: Heading | str = "",
     frame: str = "world",
 ) -> Figure:
     """Three planes, normal to x, y and z at ``at`` [m] (by default those with most voxels): stream lines of a vector.
@@ -42,21 +43,14 @@ def vector_planes(
     size = np.linalg.norm(vectors, axis=1)
     largest = float(np.nanmax(size))
     label = quantity(f"mean {name}", volume.units.get(name))
-    field = Field(volume.voxels, size, label, value_range(0.0, largest))
-    extents = [plane_extents(volume, axis) for axis in range(3)]
-    widths = [width for width, _ in extents]
-    scale = min(11.0 / sum(widths), 4.4 / max(height for _, height in extents))
-    tallest = max(height for _, height in extents) * scale
-    figure = new_figure(max(sum(widths) * scale + 2.6, 6.0), max(tallest + 1.0, 2.4))
-    panels = figure.subplots(1, 3, width_ratios=widths)
-    for axis, (axes, coordinate) in enumerate(zip(panels, at, strict=True)):
+    field = Field(volume.voxels, size, color_scale(size, label))
+    figure, panels = new_planes(volume, field.scale, title)
+    for axis, (axes, coordinate) in enumerate(zip(panels[0], at, strict=True)):
         fullest = volume.centers(axis)[np.bincount(volume.voxels.at[axis][volume.voxels.count > 0]).argmax()]
         layer = layer_at(volume, axis, float(fullest) if coordinate is None else coordinate)
         draw_plane(axes, volume, field, axis, layer, frame)
         plane = volume.voxels.plane(vectors, axis, layer)
         _draw_lines(axes, volume, plane, axis, largest)
-    add_color_bar(figure, field.norm, field.label, ax=list(panels), shrink=0.8, aspect=28, pad=0.02)
-    add_title(figure, title)
     return figure
 
 

@@ -10,13 +10,13 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from wsrender.errors import InputError
-from wsrender.plots.style import INK
+from wsrender.plots.box import AZIMUTH_DEG, ELEVATION_DEG, Space, space_around
+from wsrender.plots.style import INK, Heading
 from wsrender.render import environment as surroundings
 from wsrender.render.environment import Floor, Item
 from wsrender.render.figure import PANEL_PIXELS, figure_of
 from wsrender.render.process import drawn
-from wsrender.render.scene import Cloud, Color, Layer, Plates, Points, Rods, Scene, Surface
-from wsrender.render.space import AZIMUTH_DEG, ELEVATION_DEG, Space, space_around
+from wsrender.render.scene import Cloud, Color, Layer, Lines, Plates, Points, Rods, Scene, Surface
 from wsrender.render.subject import Subject
 from wsrender.render.views import ROBOT_COLORS, SHARED_COLOR, VIEWS, Choice
 
@@ -36,13 +36,13 @@ def picture(
     index: str | None = None,
     statistic: str | None = None,
     threshold: float = 0.9,
-    alpha: float = 0.1,
+    alpha: float | None = None,
     at: tuple[float | None, float | None, float | None] = (None, None, None),
     environment: Sequence[Item] = (),
     shared: "trimesh.Trimesh | None" = None,
     azimuth_deg: float = AZIMUTH_DEG,
     elevation_deg: float = ELEVATION_DEG,
-    title: str = "",
+    title: Heading | str = "",
 ) -> Figure:
     """Draw subjects in one box, with axes in metres, legend and colour bar; the defaults are those of [WSR] Table II.
 
@@ -60,18 +60,20 @@ def picture(
         drawing.layers.append(Surface(shared.vertices, shared.faces, SHARED_COLOR, alpha=_SHARED_ALPHA, smooth=True))
         drawing.handles.append(Patch(facecolor=SHARED_COLOR, alpha=_SHARED_ALPHA, label="shared by at least two"))
     space = space_around(_extent(subjects, drawing.layers, environment), PANEL_PIXELS, azimuth_deg, elevation_deg)
-    layers = [*space.panes(), *_around(environment, space), *_robots(subjects, space), *drawing.layers]
+    grid, frame = space.panes()
+    panes = [Lines(grid, (0.87, 0.87, 0.87), 1.0), Lines(frame, (0.6, 0.6, 0.6), 1.2)]
+    layers = [*panes, *_around(environment, space), *_robots(subjects, space), *drawing.layers]
     image = drawn(Scene(space.camera, PANEL_PIXELS, layers))
     handles = [*_robot_handles(subjects), *drawing.handles, *_environment_handles(environment)]
     return figure_of(image, space, title=title, notes=drawing.notes, handles=handles, scale=drawing.scale)
 
 
-def _check(view: str, threshold: float, alpha: float, elevation_deg: float) -> None:
+def _check(view: str, threshold: float, alpha: float | None, elevation_deg: float) -> None:
     if view not in VIEWS:
         raise InputError("view", f"{view!r} is not a view; allowed: {', '.join(VIEWS)}")
     if not 0 < threshold <= 1:
         raise InputError("threshold", f"is {threshold}; allowed are values above 0, up to 1")
-    if not 0 < alpha <= 1:
+    if alpha is not None and not 0 < alpha <= 1:
         raise InputError("alpha", f"is {alpha}; allowed are values above 0 (invisible), up to 1 (opaque)")
     if not -80 <= elevation_deg <= 80:
         raise InputError("elevation_deg", f"is {elevation_deg}; allowed are -80 … 80")

@@ -4,19 +4,19 @@ from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.artist import Artist
-from matplotlib.axes import Axes
-from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
-from wsrender.plots.style import DPI, GREY, add_color_bar, add_title, new_figure, paper_style
-from wsrender.render.space import Space
+from wsrender.plots.box import Space
+from wsrender.plots.color_scale import ColorScale
+from wsrender.plots.style import DPI, Heading, new_figure, paper_style
+from wsrender.plots.view import inches, note, write_labels
 
-_WIDTH, _HEIGHT = 7.0, 5.4  # of the figure [in]
-_PANEL = (0.0, 0.0, 0.84, 0.93)  # of the drawn scene: left, bottom, width, height
-_BAR = (0.87, 0.2, 0.02, 0.56)
-_TICK_GAP, _LABEL_GAP = 0.055, 0.15  # of numbers and names from their edge, in half heights of the panel
+_SIZE = (7.0, 5.11)  # of the figure below its heading [in]
+_PANEL = (5.88, 5.02)  # width and height of the drawn scene [in]
+_BAR = (6.09, 1.08, 0.14, 3.02)  # left, bottom, width, height [in]
+_COLUMNS, _ROWS, _ROW = 4, 2, 0.17  # of the legend, the rows that the scene leaves room for, height of one [in]
 
-PANEL_PIXELS = (round(_WIDTH * _PANEL[2] * DPI), round(_HEIGHT * _PANEL[3] * DPI))
+PANEL_PIXELS = (round(_PANEL[0] * DPI), round(_PANEL[1] * DPI))
 POINT = DPI / 72  # pixels
 
 
@@ -25,56 +25,25 @@ def figure_of(
     picture: np.ndarray,
     space: Space,
     *,
-    title: str,
+    title: Heading | str,
     notes: Sequence[str],
     handles: list[Artist],
-    scale: tuple[Normalize, str] | None,
+    scale: ColorScale | None,
 ) -> Figure:
     """The picture (height, width, 3) with axes in metres, legend, and colour bar where there is a scale."""
-    figure = new_figure(_WIDTH, _HEIGHT, layout=None)
-    axes = figure.add_axes(_PANEL)
+    rows = -(-len(handles) // _COLUMNS)
+    height = _SIZE[1] + _ROW * max(rows - _ROWS, 0)
+    figure = new_figure(_SIZE[0], height, title, layout=None)
+    axes = figure.add_axes(inches(figure, (0.0, 0.0, *_PANEL)))
     axes.set_axis_off()
-    height, width, _ = picture.shape
-    wide = width / height
+    wide = picture.shape[1] / picture.shape[0]
     axes.imshow(picture, extent=(-wide, wide, -1, 1), interpolation="none")
-    for axis in range(3):
-        _add_numbers(axes, space, axis)
-    place = {"loc": "upper center", "bbox_to_anchor": (0.5, 0.945), "ncols": 4}
-    figure.legend(handles=handles, frameon=False, fontsize=8, columnspacing=1.5, **place)
+    write_labels(axes, space)
+    place = {"loc": "upper center", "bbox_to_anchor": (0.5, height / float(figure.get_size_inches()[1]))}
+    by_rows = [handle for k in range(_COLUMNS) for handle in handles[k::_COLUMNS]]  # matplotlib fills columns
+    figure.legend(handles=by_rows, frameon=False, fontsize=8, columnspacing=1.5, ncols=_COLUMNS, **place)
     if scale is not None:
-        norm, label = scale
-        add_color_bar(figure, norm, label, cax=figure.add_axes(_BAR))
-    for line, note in enumerate(reversed(["world frame", *notes])):
-        figure.text(0.02, 0.02 + 0.03 * line, note, fontsize=7.5, color=GREY)
-    add_title(figure, title)
+        scale.add_bar(figure, cax=figure.add_axes(inches(figure, _BAR)))
+    for line, text in enumerate(reversed(["world frame", *notes])):
+        note(figure, 0.14, 0.1 + 0.16 * line, text, fontsize=7.5)
     return figure
-
-
-def _add_numbers(axes: Axes, space: Space, axis: int) -> None:
-    """The round coordinates along an axis and its name, outside the box."""
-    start, end = space.edge(axis)
-    places = np.repeat(start[None], len(ticks := space.labelled_ticks(axis)), axis=0)
-    places[:, axis] = ticks
-    picture = space.camera.to_picture
-    away = _outward(*picture(np.stack([start, end])))
-    digits = _digits(ticks)
-    for place, tick in zip(picture(places), ticks, strict=True):
-        x, y = place + _TICK_GAP * away
-        number = f"{tick + 0.0:.{digits}f}".replace("-", "−")  # + 0.0: no −0
-        axes.text(x, y, number, fontsize=8, ha="center", va="center")
-    x, y = picture((start + end)[None] / 2)[0] + _LABEL_GAP * away
-    upright = 90 if axis == 2 else 0
-    axes.text(x, y, f"{'xyz'[axis]} [m]", fontsize=9, ha="center", va="center", rotation=upright)
-
-
-def _outward(start: np.ndarray, end: np.ndarray) -> np.ndarray:
-    """Unit vector across an edge of the picture, away from the middle of the picture."""
-    along = end - start
-    across = np.array([-along[1], along[0]]) / max(float(np.linalg.norm(along)), 1e-12)
-    return across if across @ (start + end) > 0 else -across
-
-
-def _digits(ticks: np.ndarray) -> int:
-    """Decimals that tell the ticks apart."""
-    step = float(np.diff(ticks).min()) if len(ticks) > 1 else 1.0
-    return next(digits for digits in range(10) if abs(step - round(step, digits)) < 1e-6 * step)

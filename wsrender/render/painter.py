@@ -80,12 +80,13 @@ def _surface(plotter: Any, surface: Surface) -> None:
     mesh: Any = pv.PolyData.from_regular_faces(surface.vertices, surface.faces)
     if surface.smooth:
         mesh = mesh.smooth_taubin(**SMOOTHING)
-    shading = {"opacity": surface.alpha, "smooth_shading": surface.smooth, "ambient": 0.25, "diffuse": 0.8}
     if surface.colors is None:
+        shading = {"opacity": surface.alpha, "smooth_shading": surface.smooth, "ambient": 0.25, "diffuse": 0.8}
         plotter.add_mesh(mesh, color=surface.color, **shading)
     else:
         mesh["colors"] = surface.colors
-        plotter.add_mesh(mesh, scalars="colors", rgb=True, **shading)
+        # Unlit: a shade would stand for another value of the colour bar.
+        plotter.add_mesh(mesh, scalars="colors", rgb=True, opacity=surface.alpha, lighting=False)
 
 
 def _plates(plotter: Any, plates: Plates) -> None:

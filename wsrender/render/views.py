@@ -6,15 +6,15 @@ from typing import Any
 
 import numpy as np
 from matplotlib.artist import Artist
-from matplotlib.colors import Normalize
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from wsrender.boundary.voxel_surface import occupied_surface
 from wsrender.errors import InputError
+from wsrender.plots.cloud import checked_index
+from wsrender.plots.color_scale import ColorScale, color_scale
 from wsrender.plots.planes import Field, layer_at, voxel_field
-from wsrender.plots.space import checked_index
-from wsrender.plots.style import color_map, quantity, value_range
+from wsrender.plots.style import color_map, quantity
 from wsrender.render.scene import Cloud, Color, Layer, Lines, Plates, Points, Surface
 from wsrender.render.subject import Subject
 from wsrender.volume.volume_data import VolumeData
@@ -24,6 +24,8 @@ ROBOT_COLORS: list[Color] = [
     (0.0, 0.447, 0.698), (0.835, 0.369, 0.0),
     (0.8, 0.475, 0.655), (0.902, 0.624, 0.0), (0.337, 0.706, 0.914),
 ]  # Okabe and Ito 2008: told apart by the colour-blind  # fmt: skip
+VEIL = 0.1  # opacity of translucent surfaces and of the mist of a voxel
+BLENDED = "colours blend with those behind: read values off the slices"
 DOT = 2.2  # diameter of a sample in pixels
 _SHELL_GREY: Color = (0.55, 0.6, 0.66)
 _EDGE_COLOR: Color = (0.13, 0.13, 0.13)
@@ -35,16 +37,21 @@ class Choice:
     """What a view shows.
 
     ``index`` and ``statistic`` are its colours (None: the first, the maximum), ``threshold`` is the iso-surface's share
-    of the maximum, ``alpha`` the transparency, ``at`` the planes x, y, z [m]; views are cut open towards
-    ``azimuth_deg``, the direction of the eye.
+    of the maximum, ``alpha`` the opacity (None: that of the view), ``at`` the planes x, y, z [m]; views are cut open
+    towards ``azimuth_deg``, the direction of the eye.
     """
 
     index: str | None
     statistic: str | None
     threshold: float
-    alpha: float
+    alpha: float | None
     at: tuple[float | None, float | None, float | None]
     azimuth_deg: float
+
+    @property
+    def veil(self) -> float:
+        """Opacity of what must not hide what is behind it: that of [WSR] Table II, where none is asked for."""
+        return VEIL if self.alpha is None else self.alpha
 
 
 @dataclass
@@ -53,24 +60,31 @@ class Drawing:
 
     layers: list[Layer] = field(default_factory=list)
     handles: list[Artist] = field(default_factory=list)
-    scale: tuple[Normalize, str] | None = None
+    scale: ColorScale | None = None
     notes: list[str] = field(default_factory=list)
 
 
 def boundary(subjects: Sequence[Subject], choice: Choice) -> Drawing:
-    """Translucent surfaces of the occupied voxels; of several robots each in its colour, unless an index is asked."""
+    """Translucent surfaces of the occupied voxels, each robot's in a colour of its own.
+
+    Where an index or a statistic is asked for they are in its colours, and opaque unless ``alpha`` is given: through
+    each other, colours are not those of the bar.
+    """
     if all(subject.faces for subject in subjects):
-        return _faces(subjects, choice.alpha)
+        return _faces(subjects, choice.veil)
     volumes = [subject.dense_voxels() for subject in subjects]
-    if len(subjects) > 1 and choice.index is None and choice.statistic is None:
-        return _plain_boundaries(subjects, volumes, choice.alpha)
-    fields, drawing = _fields(volumes, choice)
+    if choice.index is None and choice.statistic is None:
+        return _plain_boundaries(subjects, volumes, choice.veil)
+    alpha = 1.0 if choice.alpha is None else choice.alpha
+    fields, scale, drawing = _fields(volumes, choice)
     for volume, shown in zip(volumes, fields, strict=True):
         mesh = occupied_surface(volume)
-        colors = _vertex_colors(mesh.vertices, volume, shown.dense(), drawing)
-        drawing.layers.append(Surface(mesh.vertices, mesh.faces, colors=colors, alpha=choice.alpha, smooth=True))
-    drawing.handles.append(Patch(facecolor=color_map()(0.5), alpha=max(choice.alpha, 0.3), label="workspace boundary"))
+        colors = _vertex_colors(mesh.vertices, volume, shown.dense(), scale)
+        drawing.layers.append(Surface(mesh.vertices, mesh.faces, colors=colors, alpha=alpha, smooth=True))
+    drawing.handles.append(Patch(facecolor=color_map()(0.5), alpha=max(alpha, 0.3), label="workspace boundary"))
     drawing.notes.append(_lattice_note(volumes))
+    if alpha < 1:
+        drawing.notes.append(BLENDED)
     return drawing
 
 
@@ -82,10 +96,10 @@ def solid(subjects: Sequence[Subject], choice: Choice) -> Drawing:
     if all(subject.faces for subject in subjects):
         return _faces(subjects, 1.0)
     volumes = [_cut_open(subject, choice.azimuth_deg) for subject in subjects]
-    fields, drawing = _fields(volumes, choice)
+    fields, scale, drawing = _fields(volumes, choice)
     for volume, shown in zip(volumes, fields, strict=True):
         mesh = occupied_surface(volume)
-        colors = _vertex_colors(mesh.vertices, volume, shown.dense(), drawing)
+        colors = _vertex_colors(mesh.vertices, volume, shown.dense(), scale)
         drawing.layers.append(Surface(mesh.vertices, mesh.faces, colors=colors, smooth=True))
     drawing.handles.append(Patch(facecolor=color_map()(0.5), label="workspace"))
     drawing.notes.append(_lattice_note(volumes))
@@ -101,13 +115,13 @@ def scatter(subjects: Sequence[Subject], choice: Choice) -> Drawing:
     for cloud in clouds:
         checked_index(cloud, name)
     values = [cloud.indices[name] for cloud in clouds]
-    norm = value_range(min(map(np.min, values)), max(map(np.max, values)))
-    drawing = Drawing(scale=(norm, quantity(name, clouds[0].units.get(name))))
+    scale = color_scale(np.concatenate(values), quantity(name, clouds[0].units.get(name)))
+    drawing = Drawing(scale=scale)
     label = "samples"
     for subject, cloud, value in zip(subjects, clouds, values, strict=True):
         kept = ~_towards_eye(cloud.position, subject, choice.azimuth_deg)
         label = label if kept.all() else "samples, cut open"
-        drawing.layers.append(Points(cloud.position[kept], _colors(norm(value[kept])), DOT))
+        drawing.layers.append(Points(cloud.position[kept], _colors(scale, value[kept]), DOT))
     drawing.handles.append(Line2D([], [], ls="", marker="o", ms=3, color=color_map()(0.5), label=label))
     return drawing
 
@@ -115,18 +129,17 @@ def scatter(subjects: Sequence[Subject], choice: Choice) -> Drawing:
 def volume(subjects: Sequence[Subject], choice: Choice) -> Drawing:
     """Voxels as coloured mist whose transparency is alpha per voxel."""
     volumes = [subject.dense_voxels() for subject in subjects]
-    fields, drawing = _fields(volumes, choice)
-    norm, _ = drawing.scale or (Normalize(), "")
+    fields, scale, drawing = _fields(volumes, choice)
     table = np.ones((256, 4))
-    table[1:, :3] = color_map()(np.linspace(0, 1, 255))[:, :3]
-    table[:, 3] = choice.alpha
+    table[1:, :3] = scale.colors(np.linspace(0, 1, 255))[:, :3]
+    table[:, 3] = choice.veil
     table[0] = 0
     for voxels, shown in zip(volumes, fields, strict=True):
-        shares = np.nan_to_num(np.asarray(norm(shown.dense())))
+        shares = np.nan_to_num(scale.places(np.nan_to_num(shown.dense())))
         levels = np.where(voxels.occupied, 1 + np.round(254 * shares), 0)
         drawing.layers.append(Cloud(levels.astype(np.uint8), table, voxels.origin_m, voxels.voxel_size_m))
     drawing.handles.append(Patch(facecolor=color_map()(0.5), alpha=0.6, label="voxels"))
-    drawing.notes.append(_lattice_note(volumes))
+    drawing.notes += [_lattice_note(volumes), BLENDED]
     return drawing
 
 
@@ -136,15 +149,14 @@ def slice(subjects: Sequence[Subject], choice: Choice) -> Drawing:
     Where a plane is not given it is the one at 0, or the fullest of the first robot if that misses its workspace.
     """
     volumes = [subject.voxels() for subject in subjects]
-    fields, drawing = _fields(volumes, choice)
-    norm, _ = drawing.scale or (Normalize(), "")
+    fields, scale, drawing = _fields(volumes, choice)
     layers = [layer_at(volumes[0], axis, at) for axis, at in enumerate(choice.at)]
     planes = [float(volumes[0].centers(axis)[layer]) for axis, layer in enumerate(layers)]
     for voxels, shown in zip(volumes, fields, strict=True):
         for axis, at in enumerate(planes):
             if abs(at - voxels.centers(axis).mean()) < voxels.shape[axis] * voxels.voxel_size_m / 2:
-                drawing.layers.append(_plates(voxels, shown, axis, layer_at(voxels, axis, at), norm))
-    drawing.layers += _shells(subjects, choice.alpha)
+                drawing.layers.append(_plates(voxels, shown, axis, layer_at(voxels, axis, at), scale))
+    drawing.layers += _shells(subjects, choice.veil)
     drawing.handles.append(Patch(facecolor=color_map()(0.5), label="slices"))
     drawing.handles.append(Patch(facecolor=_SHELL_GREY, alpha=0.3, label="workspace boundary"))
     where = ", ".join(f"{name} = {at:.3g}" for name, at in zip("xyz", planes, strict=True))
@@ -155,15 +167,15 @@ def slice(subjects: Sequence[Subject], choice: Choice) -> Drawing:
 def isosurface(subjects: Sequence[Subject], choice: Choice) -> Drawing:
     """Surface around the voxels whose value is at least a share of the maximum, in the translucent boundary."""
     volumes = [subject.dense_voxels() for subject in subjects]
-    fields, drawing = _fields(volumes, choice)
+    fields, scale, drawing = _fields(volumes, choice)
     for voxels, shown in zip(volumes, fields, strict=True):
         values = shown.dense()
         inside = voxels.occupied & (values >= choice.threshold * np.nanmax(values))
         kept = VolumeData(voxels.voxel_size_m, voxels.first_voxel, inside.astype(np.int64))
         mesh = occupied_surface(kept)
-        colors = _vertex_colors(mesh.vertices, kept, np.where(inside, values, np.nan), drawing)
+        colors = _vertex_colors(mesh.vertices, kept, np.where(inside, values, np.nan), scale)
         drawing.layers.append(Surface(mesh.vertices, mesh.faces, colors=colors, smooth=True))
-    drawing.layers += _shells(subjects, choice.alpha)
+    drawing.layers += _shells(subjects, choice.veil)
     label = f"at least {choice.threshold:g} of the maximum"
     drawing.handles.append(Patch(facecolor=color_map()((1 + choice.threshold) / 2), label=label))
     drawing.handles.append(Patch(facecolor=_SHELL_GREY, alpha=0.3, label="workspace boundary"))
@@ -181,16 +193,14 @@ VIEWS: dict[str, Callable[[Sequence[Subject], Choice], Drawing]] = {
 }
 
 
-def _fields(volumes: Sequence[VolumeData], choice: Choice) -> tuple[list[Field], Drawing]:
-    """The values per voxel of each volume, and a drawing whose scale spans them all."""
+def _fields(volumes: Sequence[VolumeData], choice: Choice) -> tuple[list[Field], ColorScale, Drawing]:
+    """The values per voxel of each volume, and a scale that spans them all, with a drawing that holds it."""
     fields = [voxel_field(volume, choice.index, choice.statistic) for volume in volumes]
     if len({field.label for field in fields}) > 1:
         labels = ", ".join(field.label for field in fields)
         raise InputError("index", f"the results show different quantities ({labels}); name an index that all hold")
-    norm = value_range(
-        min(float(np.nanmin(field.values)) for field in fields), max(float(np.nanmax(field.values)) for field in fields)
-    )
-    return fields, Drawing(scale=(norm, fields[0].label))
+    scale = color_scale(np.concatenate([field.values for field in fields]), fields[0].label)
+    return fields, scale, Drawing(scale=scale)
 
 
 def _plain_boundaries(subjects: Sequence[Subject], volumes: Sequence[VolumeData], alpha: float) -> Drawing:
@@ -225,7 +235,7 @@ def _shells(subjects: Sequence[Subject], alpha: float) -> list[Layer]:
     return [Surface(mesh.vertices, mesh.faces, _SHELL_GREY, alpha=alpha, smooth=True) for mesh in meshes]
 
 
-def _vertex_colors(vertices: np.ndarray, volume: VolumeData, values: np.ndarray, drawing: Drawing) -> np.ndarray:
+def _vertex_colors(vertices: np.ndarray, volume: VolumeData, values: np.ndarray, scale: ColorScale) -> np.ndarray:
     """Colours (V, 3) of the nearest voxels' values, blended between them."""
     from scipy.ndimage import distance_transform_edt, map_coordinates
 
@@ -233,16 +243,15 @@ def _vertex_colors(vertices: np.ndarray, volume: VolumeData, values: np.ndarray,
     nearest: Any = distance_transform_edt(np.isnan(padded), return_distances=False, return_indices=True)
     filled = padded[tuple(nearest)].astype(np.float64)
     places = vertices / volume.voxel_size_m - np.array(volume.first_voxel) + 0.5
-    norm, _ = drawing.scale or (Normalize(), "")
-    return _colors(norm(map_coordinates(filled, places.T, order=1, mode="nearest")))
+    return _colors(scale, map_coordinates(filled, places.T, order=1, mode="nearest"))
 
 
-def _colors(shares: np.ndarray) -> np.ndarray:
-    """Colours (N, 3) uint8 of numbers 0 … 1."""
-    return color_map()(np.asarray(shares), bytes=True)[:, :3]
+def _colors(scale: ColorScale, values: np.ndarray) -> np.ndarray:
+    """Colours (N, 3) uint8 of values (N,)."""
+    return scale.colors(scale.norm(values), bytes=True)[:, :3]
 
 
-def _plates(volume: VolumeData, field: Field, axis: int, layer: int, norm: Normalize) -> Plates:
+def _plates(volume: VolumeData, field: Field, axis: int, layer: int, scale: ColorScale) -> Plates:
     """The occupied voxels of a layer as squares through their centres."""
     plane = field.plane(axis, layer)
     cells = np.argwhere(np.isfinite(plane))
@@ -251,7 +260,7 @@ def _plates(volume: VolumeData, field: Field, axis: int, layer: int, norm: Norma
     corners[:, :, axis] = volume.first_voxel[axis] + layer + 0.5
     square = np.array([[0, 0], [1, 0], [1, 1], [0, 1]])
     corners[:, :, across] = cells[:, None] + square + np.array(volume.first_voxel)[across]
-    colors = _colors(norm(plane[tuple(cells.T)]))
+    colors = _colors(scale, plane[tuple(cells.T)])
     return Plates(corners * volume.voxel_size_m, colors)
 
 

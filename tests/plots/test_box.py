@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from wsrender.render.space import space_around
+from wsrender.plots.box import space_around
 
 SIZE = (600, 500)
 DIRECTIONS = [(-58, 24), (30, 24), (130, -40), (200, 70)]
