@@ -68,10 +68,12 @@ def holds(measure, exact):
 @pytest.mark.parametrize("name", AREAS)
 def test_areas_of_planar_arms(name):
     robot, exact = AREAS[name]
-    measure = refined_measure(robot().chain, 0.01)
+    chain = robot().chain
+    found = [refined_measure(chain, 0.01, seed=seed) for seed in range(5)]
+    assert sum(holds(measure, exact) for measure in found) >= 4
+    measure = found[0]
     assert (measure.quantity, measure.unit, measure.reason, measure.met) == ("area", "m2", "", True)
     assert measure.value and measure.ci95
-    assert holds(measure, exact)
     low, high = measure.ci95
     assert high - low <= 0.02 * measure.value
     assert measure.undecided <= 1e-3 * exact
@@ -178,3 +180,19 @@ def test_a_planar_arm_adds_nothing_to_a_volume():
     assert holds(found["any"], CASES["spherical"].volume)
     assert found["all"].value == 0.0
     assert len(found["all"].false_negatives) == 2
+
+
+def test_a_budget_of_points_ends_the_work_with_an_honest_interval():
+    case = CASES["shell of 1 mm"]  # would take more than a million points
+    measure = refined_measure(case.robot().chain, 0.01)
+    assert not measure.met
+    assert 50_000 < measure.points <= 110_000
+    assert holds(measure, case.volume)
+
+
+@pytest.mark.parametrize("name", ["articulated", "dvrk_mtm", "gao_6r", "phantom_omni"])
+def test_library_arms_need_few_points(name):
+    """Border cells sorted by their neighbours, and what is proven out of reach left out: else 15,000 to 35,000."""
+    measure = refined_measure(ws.load_robot(name).chain, 0.01)
+    assert measure.met
+    assert measure.points < 10_000

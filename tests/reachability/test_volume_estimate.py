@@ -20,9 +20,9 @@ def in_shell(points, radius=1.0, hole=0.4):
     return (outside <= 0).astype(np.int8)[:, None], np.maximum(outside, 0)[:, None]
 
 
-def in_balls(points):
-    centers = np.array([[0.5, 0, 0], [-0.5, 0, 0]])
-    outside = np.linalg.norm(points[:, None] - centers, axis=2) - 1
+def in_balls(points, at=0.5, radius=1.0):
+    centers = np.array([[at, 0, 0], [-at, 0, 0]])
+    outside = np.linalg.norm(points[:, None] - centers, axis=2) - radius
     return (outside <= 0).astype(np.int8), np.maximum(outside, 0)
 
 
@@ -68,7 +68,7 @@ def test_exactly_so_many_sets():
 def test_a_part_of_a_point_is_a_point(monkeypatch):
     # A pair of arms once needed 0.4 points more, took none, and looked again for ever.
     estimation = _Estimation(in_shell, IN_ONE, 0.01, lambda value: 0.0, 0, 10_000, None)
-    estimation.strata = [_Stratum(np.zeros((1, 3), np.int64), EDGE, 1)]
+    estimation.strata = [_Stratum(np.zeros((1, 3), np.int64), EDGE, 1, 1)]
     estimation._add(estimation.strata[0], 500)
     monkeypatch.setattr(estimation, "_needed", lambda event, volume: np.array([500.4]))
     estimation._narrow(estimation._volumes())
@@ -137,3 +137,23 @@ def test_wilson():
     low, high = wilson(np.array([0, 5, 10]), np.array([10, 10, 10]))
     assert low == pytest.approx([0, 0.2366, 0.7225], abs=1e-4)
     assert high == pytest.approx([0.2775, 0.7634, 1], abs=1e-4)
+
+
+def test_sets_that_are_proven_apart_share_nothing():
+    """Of cells into which one set reaches, no point is drawn to see that two do not."""
+    cells = [np.argwhere(np.ones((36, 36, 36), bool)) - 18]
+    events = {"any": Event(1, 2, precise=False), "all": Event(2, 2)}
+    alone = partial(in_balls, at=1.0, radius=0.6)
+    unknown = estimate_volumes(alone, cells, EDGE, events, 0.01)
+    proven = estimate_volumes(alone, cells, EDGE, events, 0.01, sets=[1])
+    assert (proven.volumes["all"].low, proven.volumes["all"].high) == (0.0, 0.0)
+    assert unknown.volumes["all"].high > 0.0
+    assert proven.points <= unknown.points
+    assert proven.volumes["any"].low > 0.0
+
+
+def test_no_more_points_than_asked():
+    found = estimate_volumes(in_shell, strata(in_shell), EDGE, IN_ONE, 0.0005, max_points=20_000)
+    assert not found.volumes["in"].met
+    assert 19_000 < found.points < 22_000
+    assert found.volumes["in"].low <= SHELL <= found.volumes["in"].high

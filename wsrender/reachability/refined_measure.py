@@ -16,6 +16,9 @@ from wsrender.robots.chain import Chain
 from wsrender.volume.measure import QUANTITIES, UNITS
 
 CURVED = {0: "the tip does not move", 1: "the tip stays on a curve", 2: "the tip stays on a surface"}
+# Points that are decided at most: so many over the square of the tolerance, and never more than the most. Solid arms
+# take a tenth or less; the interval of a shell thinner than a hundredth of its size is wider than asked instead.
+BUDGET, MOST_POINTS = 10.0, 10_000_000
 APART = {1: "the tips move on different lines", 2: "the tips move in different planes"}
 
 
@@ -68,7 +71,9 @@ def refined_measures(
     """By event, what so many of the placed ``chains`` reach, to a relative ``tolerance`` (half the 95 % interval).
 
     In the measure of the chains whose positions have the most dimensions: an arm that moves in a plane adds nothing to
-    a volume. ``progress``: called with the points decided and about how many there will be.
+    a volume. A number of points that depends on the tolerance alone bounds the work; where it is not enough, ``met`` is
+    False and the interval as wide as it must be. ``progress``: called with the points decided and about how many there
+    will be.
     """
     chains = by_the_origin(chains)
     sets = [tip_set(chain) for chain in chains]
@@ -87,7 +92,7 @@ def refined_measures(
         events,
         tolerance,
         seed=seed,
-        max_points=10_000_000,
+        max_points=int(min(BUDGET / tolerance**2, MOST_POINTS)),
         device=device,
         threads=threads,
         progress=progress,

@@ -17,7 +17,7 @@ from wsrender.reachability.volume_estimate import Event, VolumeEstimate, estimat
 from wsrender.robots.chain import Chain
 from wsrender.volume.lattice import LatticeBlock, block_around
 
-LEVELS = {1: 9, 2: 4}  # of the border, by the number of robots whose classes are combined; of more robots one
+LEVELS = {1: 9, 2: 6, 3: 3}  # of the border, by the number of robots whose classes are combined; of more robots one
 
 
 @dataclass(frozen=True)
@@ -123,12 +123,14 @@ def decided_volumes(
         decided = [each.decided_among(points, own[at] > 0) for each, own in zip(solid, classes, strict=True)]
         return np.stack([label for label, _ in decided], axis=1), np.stack([far for _, far in decided], axis=1)
 
+    strata, reaching = _strata(classes, min(event.least for event in events.values()))
     found = estimate_volumes(
         membership,
-        _strata(classes, min(event.least for event in events.values()), np.array(block.first_voxel[:dimension])),
+        [cells + block.first_voxel[:dimension] for cells in strata],
         block.voxel_size_m,
         events,
         tolerance,
+        sets=reaching,
         missed=lambda value: hidden * value,
         seed=seed,
         max_points=max_points,
@@ -137,14 +139,20 @@ def decided_volumes(
     return RefinedVolumes(found.volumes, found.points, tuple(misses), position_m)
 
 
-def _strata(classes: Sequence[np.ndarray], least: int, first_voxel: np.ndarray) -> list[np.ndarray]:
-    """Cells (M, d) of one class of every set, without those that fewer than ``least`` sets may hold anything of."""
+def _strata(classes: Sequence[np.ndarray], least: int) -> tuple[list[np.ndarray], list[int]]:
+    """Cells (M, d) of the same classes, whichever set has which, and how many sets may hold anything of them.
+
+    Without those of which fewer than ``least`` sets may: it is their number alone that events ask for.
+    """
     wanted = np.argwhere(np.sum([own > 0 for own in classes], axis=0) >= least)
+    of_each = np.sort([own[tuple(wanted.T)] for own in classes], axis=0)
     stratum = np.zeros(len(wanted), np.int64)
-    for own in classes:
-        _, stratum = np.unique(stratum * (own.max() + 1) + own[tuple(wanted.T)], return_inverse=True)
+    for own in of_each:
+        _, stratum = np.unique(stratum * (own.max(initial=0) + 1) + own, return_inverse=True)
     order = np.argsort(stratum, kind="stable")
-    return np.split(wanted[order] + first_voxel, np.flatnonzero(np.diff(stratum[order])) + 1)
+    first = np.flatnonzero(np.diff(stratum[order], prepend=-1))
+    sets = (of_each[:, order[first]] > 0).sum(axis=0)
+    return np.split(wanted[order], first[1:]), sets.tolist()
 
 
 def _block(sets: Sequence[ReachedSet]) -> LatticeBlock:

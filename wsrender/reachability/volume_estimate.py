@@ -11,7 +11,7 @@ enter the estimate, whose points are drawn afterwards.
 Cells have one, two or three indices: the volume of a set in a plane is its area, on a line its length.
 """
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import product
 
@@ -64,6 +64,7 @@ class _Stratum:
     cells: np.ndarray  # (M, d) int64
     edge: float  # [m]; a cell covers [i, i + 1) edge
     events: int
+    sets: float  # at most so many reach into the cells
     depth: int = 0
     count: int = 0
     surely: np.ndarray = field(init=False)  # (E,) points in the event however undecided ones turn out
@@ -90,6 +91,7 @@ def estimate_volumes(
     events: Mapping[str, Event],
     tolerance: float,
     *,
+    sets: Sequence[int] | None = None,
     missed: Callable[[float], float] = lambda value: 0.0,
     seed: int = 0,
     max_points: int = 10_000_000,
@@ -100,11 +102,12 @@ def estimate_volumes(
     Relative to the volume, or to that of all strata where no point was found.
 
     ``strata``: sets of cells (M, d) int64 of the lattice of edge ``cell_edge_m`` that together hold everything to be
-    measured; cell (i, j, k) covers [i, i + 1) edge, and so on. ``missed`` (value) is the volume that wrong "outside"
-    labels may hide: it widens the interval. ``progress``: called with the points decided and about how many there
-    will be.
+    measured; cell (i, j, k) covers [i, i + 1) edge, and so on. ``sets``: into each of the strata at most so many sets
+    reach, as is proven (None: all may). ``missed`` (value) is the volume that wrong "outside" labels may hide: it
+    widens the interval. ``progress``: called with the points decided and about how many there will be.
     """
-    return _Estimation(membership, events, tolerance, missed, seed, max_points, progress).run(strata, cell_edge_m)
+    estimation = _Estimation(membership, events, tolerance, missed, seed, max_points, progress)
+    return estimation.run(list(strata), cell_edge_m, sets)
 
 
 class _Estimation:
@@ -115,8 +118,9 @@ class _Estimation:
         self.points = self.expected = 0
         self.strata: list[_Stratum] = []
 
-    def run(self, strata: Iterable[np.ndarray], edge: float) -> VolumeEstimates:
-        self.strata = [_Stratum(cells, edge, len(self.events)) for cells in strata if len(cells)]
+    def run(self, strata: list[np.ndarray], edge: float, sets: Sequence[int] | None) -> VolumeEstimates:
+        there = zip(strata, sets or [np.inf] * len(strata), strict=True)
+        self.strata = [_Stratum(cells, edge, len(self.events), most) for cells, most in there if len(cells)]
         while True:
             for stratum in self.strata:
                 if not stratum.count:
@@ -130,19 +134,19 @@ class _Estimation:
     def _narrow(self, volumes: dict[str, VolumeEstimate]) -> None:
         """Take more points, or cut strata, as the widest of the intervals needs it."""
         needed = np.ceil(np.max([self._needed(k, v) for k, v in enumerate(volumes.values())], axis=0))
-        missing = np.maximum(needed - [s.count for s in self.strata], 0).sum()
-        self.expected = int(min(self.points + missing, self.max_points))
-        left = self.max_points - self.points
-        for stratum, target in zip(list(self.strata), needed, strict=True):
-            more = int(min(target - stratum.count, (GROWTH - 1) * stratum.count, left))
+        missing = np.maximum(needed - [s.count for s in self.strata], 0)
+        self.expected = int(min(self.points + missing.sum(), self.max_points))
+        affordable = min((self.max_points - self.points) / max(missing.sum(), 1.0), 1.0)
+        for stratum, target, lack in zip(list(self.strata), needed, missing, strict=True):
+            more = int(np.ceil(min(affordable * lack, (GROWTH - 1) * stratum.count)))
             if more <= 0:
                 continue
-            pays = target > PAYS * PILOT_POINTS * len(stratum.cells) and stratum.depth < DEEPEST
+            pilot = PILOT_POINTS * len(stratum.cells)
+            pays = affordable * target > PAYS * pilot and stratum.depth < DEEPEST
             if pays and stratum.mixed:
                 self._sort(stratum)
             else:
                 self._add(stratum, more)
-            left = self.max_points - self.points
         if not (needed > [s.count for s in self.strata[: len(needed)]]).any() and len(needed) == len(self.strata):
             for stratum in self.strata:  # so near the goal that nothing is missing on paper
                 self._add(stratum, max(stratum.count // 4, 1))
@@ -158,7 +162,7 @@ class _Estimation:
         spread = size * np.sqrt(share * (1 - share))
         neyman = (QUANTILE / half) ** 2 * spread.sum() * spread
         # Where all points agree, the fewest for which the root of the squares of size · QUANTILE² / points is small.
-        pure = size * (spread == 0)
+        pure = size * (spread == 0) * self._may_happen(event)
         agreeing = np.cbrt(pure**2) * QUANTILE**2 * np.sqrt(np.cbrt(pure**2).sum()) / (PURE_SHARE * half)
         return np.maximum(neyman, agreeing)
 
@@ -173,7 +177,8 @@ class _Estimation:
         possibly = np.array([s.possibly[k] for s in self.strata])
         least, most = (size * surely / count).sum(), (size * possibly / count).sum()
         below = least - np.sqrt(((size * (surely / count - wilson(surely, count)[0])) ** 2).sum())
-        above = most + np.sqrt(((size * (wilson(possibly, count)[1] - possibly / count)) ** 2).sum())
+        more = size * (wilson(possibly, count)[1] - possibly / count) * self._may_happen(k)
+        above = most + np.sqrt((more**2).sum())
         value, hidden = (least + most) / 2, self.missed(most)
         above += hidden
         if event.most < max(e.most for e in self.events.values()):
@@ -181,6 +186,11 @@ class _Estimation:
         below = max(below, 0.0)
         met = bool(above - below <= 2 * self.tolerance * (value or size.sum()))
         return VolumeEstimate(float(value), float(below), float(above), float(most - least) / 2, met)
+
+    def _may_happen(self, event: int) -> np.ndarray:
+        """Whether enough sets reach into every stratum, (S,) bool."""
+        least = list(self.events.values())[event].least
+        return np.array([s.sets >= least for s in self.strata])
 
     def _add(self, stratum: _Stratum, count: int) -> None:
         """Decide more points of a stratum."""
@@ -211,8 +221,9 @@ class _Estimation:
         halves = np.array(list(product((0, 1), repeat=dimension)))
         finer = (2 * stratum.cells[~agree, None] + halves).reshape(-1, dimension)
         parts = [stratum.cells[agree & (code[:, 0] == c)] for c in np.unique(code[agree, 0])]
-        new = [_Stratum(part, stratum.edge, stratum.events, DEEPEST) for part in parts]
-        new += [_Stratum(finer, stratum.edge / 2, stratum.events, stratum.depth + 1)] * bool(len(finer))
+        about = stratum.events, stratum.sets
+        new = [_Stratum(part, stratum.edge, *about, DEEPEST) for part in parts]
+        new += [_Stratum(finer, stratum.edge / 2, *about, stratum.depth + 1)] * bool(len(finer))
         self.strata.remove(stratum)
         self.strata += new
 
