@@ -273,3 +273,26 @@ def test_a_user_defined_robot_takes_part_and_is_scanned():
     assert shared[0][1] > shared[0][2] == 0
     with pytest.raises(ws.InputError, match="robots: there are 3 samplings and 2 names for 2 robots"):
         ws.shared_workspace([gantry()] * 2, [FULL] * 3, **options)
+
+
+def test_planar_arms_share_an_area_and_none_in_different_planes():
+    """Rings of .252 to .9 m, .9 m apart; raised, the second arm moves in another plane."""
+    arms = [planar_arm(), planar_arm().placed(ws.Transform(position_m=(0.9, 0, 0)))]
+    options = {"indices": ["manipulability"], "task": ["x", "y"], "device": "cpu", "refined_volume": 0.02}
+    scan = {"axis": "z", "values": [0.0, 0.1]}
+    result = ws.shared_workspace(arms, ws.Sobol(2_000), scan=scan, **options)
+    # The discs share a lens; the edge of either goes through the centre of the hole of the other.
+    outer = 2 * 0.9**2 * np.arccos(0.5) - 0.45 * np.sqrt(4 * 0.9**2 - 0.9**2)
+    headline = result.document["headline"]
+    assert (headline["quantity"], headline["unit"]) == ("area", "m2")
+    hole = _half_discs_area(np.sqrt(0.5**2 + 0.4**2 - np.sqrt(3) * 0.5 * 0.4), 0.9)
+    assert headline["ci95"][0] <= outer - 2 * hole <= headline["ci95"][1]
+    shared = result.tables["scan"].columns["shared"]
+    assert shared[0] == headline["value"]
+    assert np.isnan(shared[1])
+
+
+def _half_discs_area(small, large):
+    """Area that a disc shares with one whose edge goes through its centre (circle–circle intersection)."""
+    a, b = np.arccos(small / (2 * large)), np.arccos(1 - small**2 / (2 * large**2))
+    return small**2 * a + large**2 * b - small * large * np.sin(a)

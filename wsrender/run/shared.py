@@ -85,7 +85,7 @@ class SharedWorkspacePlan(OneShard):
         for T_world_base in self._scanned_bases():
             chains[scan.robot] = chains[scan.robot].placed(T_world_base)
             volumes = refined_together(chains, events, **execution)
-            rows.append([[volumes[name]["value"], *volumes[name]["ci95"]] for name in events])
+            rows.append([_with_interval(volumes[name]) for name in events])
         return found | {"scan_refined": np.array(rows)}
 
     def finish(self, partial: dict[str, np.ndarray], seconds: dict[str, float]) -> Result:
@@ -194,6 +194,11 @@ def _quality(shared: VolumeData) -> dict[str, Any]:
             "mean": float(values.mean()) if there else None,
         }
     return entries
+
+
+def _with_interval(measure: dict[str, Any]) -> list[float]:
+    """Value and interval; not a number where there is none, as of arms that the scan moves into different planes."""
+    return [np.nan] * 3 if measure["value"] is None else [measure["value"], *measure["ci95"]]
 
 
 def _scan_table(
