@@ -220,7 +220,8 @@ def draw_plane(axes: Axes, volume: VolumeData, field: Field, axis: int, layer: i
     axes.set_axisbelow(True)
     axes.set_xlabel(f"{NAMES[horizontal]} [m]")
     axes.set_ylabel(f"{NAMES[vertical]} [m]")
-    axes.set_title(f"{NAMES[axis]} = {_told(volume.centers(axis)[layer], volume.voxel_size_m)} m ({frame})".replace("-", "−"))
+    at = _told(volume.centers(axis)[layer], volume.voxel_size_m)
+    axes.set_title(f"{NAMES[axis]} = {at} m ({frame})".replace("-", "−"))
 
 
 def _told(coordinate: float, voxel_size_m: float) -> str:
