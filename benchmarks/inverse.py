@@ -20,7 +20,7 @@ import wsrender as ws
 from tests.reference import closed_form_inverse as closed_form
 from wsrender.engine import Accuracy, solve_inverse
 from wsrender.reachability import InverseSolver, refined_volume
-from wsrender.reachability.inverse_solver import REACHABLE, UNDECIDED, UNREACHABLE
+from wsrender.reachability.evidence import REACHABLE, UNDECIDED, UNREACHABLE
 from wsrender.robots.reachable_box import reachable_box
 
 ROBOTS = ("ur5e", "franka_panda", "puma560", "spherical")

@@ -29,8 +29,8 @@ FIRST_DAMPING, LARGEST_DAMPING = 1e-3, 1e3
 LEAST_DAMPING = {wp.float32: 1e-6, wp.float64: 1e-12}
 GOOD, POOR, RELAX, STIFFEN, SHORTEN = 0.75, 0.25, 0.1, 10.0, 0.25
 LARGEST_STEP = 1.0  # rad, or metres over the reach: linearised, a longer one means nothing
-# A try has ended where the slope of the distance along any free joint is below so much of its largest possible value,
-# or where a step has become shorter than rounding.
+# A try has ended where the slope of the distance along any free joint is below so much of its largest possible value
+# (where no other flatness is asked), or where a step has become shorter than rounding.
 FLAT = {wp.float32: 1e-3, wp.float64: 3e-4}
 FAR_AWAY = 1e30  # squared errors before the first step, which any trial improves
 SHORTEST_STEP = {wp.float32: 1e-7, wp.float64: 1e-13}
@@ -50,6 +50,7 @@ def inverse_model(real, n: int, joints: int):
         length: real  # that makes angles comparable to distances [m]
         position_2: real  # square of the largest distance that counts as reached [m²]
         rotation_2: real  # of 2 sqrt(2) sin(angle / 2)
+        flat_2: real  # square of the slope at which a try has ended
 
     return InverseModel
 
@@ -75,7 +76,7 @@ def advance(real, n: int, sources: tuple[int, ...], plain: bool, kind: str) -> S
     RELAXED, STIFFENED, SHORTER = real(RELAX), real(STIFFEN), real(SHORTEN)
     MOST, LITTLE = real(GOOD), real(POOR)
     LEAST, LARGEST, MEAN = real(LEAST_DAMPING[real]), real(LARGEST_DAMPING), real(1.0 / M)
-    FLAT_2, SHORTEST, LONGEST = real(FLAT[real] ** 2), real(SHORTEST_STEP[real]), real(LARGEST_STEP)
+    SHORTEST, LONGEST = real(SHORTEST_STEP[real]), real(LARGEST_STEP)
     TINY = real(1e-30 if real is wp.float32 else 1e-200)
     GOING, AT_TARGET, AT_REST = wp.int32(RUNNING), wp.int32(REACHED), wp.int32(STATIONARY)
 
@@ -200,7 +201,7 @@ def advance(real, n: int, sources: tuple[int, ...], plain: bool, kind: str) -> S
             length = wp.max(length, wp.abs(new_dq[i]))
         new_expected = wp.where(better, HALF * along * shrink, expected * SHORTER)
         at_target = better and distance <= model.position_2 and rotation <= model.rotation_2
-        flat = better and slope <= FLAT_2 * size * (distance + weight * rotation)
+        flat = better and slope <= model.flat_2 * size * (distance + weight * rotation)
         verdict = wp.where(flat or length < SHORTEST, AT_REST, GOING)
         verdict = wp.where(at_target, AT_TARGET, verdict)
         distance = wp.where(better, distance, distance_2)

@@ -15,7 +15,7 @@ from wsrender.parallel.jacobians import jacobians
 from wsrender.parallel.local_indices import CONDITION_NUMBERS, pose_indices
 from wsrender.parallel.mechanism import legs_of
 from wsrender.parallel.membership import count_lattice, fault_at, placed_box, poses_labelled, reachable_box
-from wsrender.reachability.inverse_solver import REACHABLE, UNDECIDED
+from wsrender.reachability.evidence import REACHABLE, UNDECIDED
 from wsrender.run import execute, plan
 from wsrender.spec.legs import UPSLeg
 from wsrender.volume.lattice import block_around

@@ -105,7 +105,7 @@ class _HostTries:
         self.dq[at] = dq * self.scale * shrink[:, None]
         self.expected[at] = (dq * slopes).sum(axis=1) * shrink / 2
         cost = self.distance_2[at] + self.weight * self.rotation_2[at]
-        return (slopes**2).sum(axis=1) <= FLAT[wp.float64] ** 2 * size * cost
+        return (slopes**2).sum(axis=1) <= (self.accuracy.flatness * FLAT[wp.float64]) ** 2 * size * cost
 
 
 def _errors(poses: np.ndarray, targets: np.ndarray, length: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

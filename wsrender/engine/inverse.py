@@ -4,7 +4,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import warp as wp
-from wsrender_kernels.inverse import LANES, REACHED, STATIONARY, TARGET_SIZES, inverse_kernel, inverse_model
+from wsrender_kernels.inverse import FLAT, LANES, REACHED, STATIONARY, TARGET_SIZES, inverse_kernel, inverse_model
 
 from wsrender.engine.devices import devices_of, thread_count
 from wsrender.engine.evaluation import REAL, chain_model, device_array, drive, vector_of
@@ -89,4 +89,5 @@ def _model(chain: Chain, accuracy: Accuracy, without_limits: bool, precision: st
     model.length = accuracy.length
     model.position_2 = accuracy.position_m**2
     model.rotation_2 = accuracy.rotation_2
+    model.flat_2 = (accuracy.flatness * FLAT[real]) ** 2
     return model

@@ -9,11 +9,15 @@ from wsrender.robots.chain import Chain
 
 @dataclass(frozen=True)
 class Accuracy:
-    """What counts as reached: distance [m] and angle [rad]; ``length`` [m] makes angles comparable to distances."""
+    """What counts as reached: distance [m] and angle [rad]; ``length`` [m] makes angles comparable to distances.
+
+    ``flatness``: the slope at which a try counts as at rest, relative to the solver's FLAT.
+    """
 
     position_m: float
     angle_rad: float
     length: float
+    flatness: float = 1.0
 
     @property
     def rotation_2(self) -> float:

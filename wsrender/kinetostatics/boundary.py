@@ -11,7 +11,8 @@ from scipy.special import ndtri
 
 from wsrender.engine import configurations, evaluate_poses
 from wsrender.errors import InputError
-from wsrender.reachability.inverse_solver import REACHABLE, InverseSolver
+from wsrender.reachability.evidence import REACHABLE
+from wsrender.reachability.inverse_solver import InverseSolver
 from wsrender.robots.chain import Chain
 from wsrender.sampling import plan_sampling
 from wsrender.spec.kinetostatics import BoundaryForce

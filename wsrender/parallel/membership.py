@@ -22,7 +22,7 @@ from wsrender.engine import (
 from wsrender.parallel.inverse_kinematics import fault_text, inverse_kinematics
 from wsrender.parallel.leg_distance import leg_pairs
 from wsrender.parallel.mechanism import Mechanism
-from wsrender.reachability.inverse_solver import REACHABLE, UNDECIDED, UNREACHABLE
+from wsrender.reachability.evidence import REACHABLE, UNDECIDED, UNREACHABLE
 from wsrender.robots.reachable_box import reachable_box as box_of_chain
 from wsrender.volume.lattice import LatticeBlock
 

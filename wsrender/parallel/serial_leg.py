@@ -8,7 +8,7 @@ import numpy as np
 from wsrender.engine import evaluate_kinematics
 from wsrender.errors import InputError
 from wsrender.reachability import InverseSolver, Solutions
-from wsrender.reachability.inverse_solver import UNREACHABLE
+from wsrender.reachability.evidence import UNREACHABLE
 from wsrender.reachability.reached_set import tolerance_m
 from wsrender.reachability.targets import reasons_of
 from wsrender.robot import Robot, robot_of_spec

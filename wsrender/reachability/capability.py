@@ -11,7 +11,8 @@ import numpy as np
 
 from wsrender.engine import evaluate_poses
 from wsrender.reachability.dimension import fills_volume, in_own_voxel
-from wsrender.reachability.inverse_solver import REACHABLE, UNDECIDED, InverseSolver
+from wsrender.reachability.evidence import REACHABLE, UNDECIDED
+from wsrender.reachability.inverse_solver import InverseSolver
 from wsrender.reachability.occupied_cells import occupied_cells
 from wsrender.robots.chain import Chain
 from wsrender.robots.reachable_box import reachable_box

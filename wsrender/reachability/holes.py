@@ -4,7 +4,8 @@ from itertools import product
 
 import numpy as np
 
-from wsrender.reachability.inverse_solver import REACHABLE, InverseSolver
+from wsrender.reachability.evidence import REACHABLE
+from wsrender.reachability.inverse_solver import InverseSolver
 from wsrender.reachability.reached_set import tolerance_m
 from wsrender.robots.chain import Chain
 from wsrender.volume.volume_data import VolumeData

@@ -1,36 +1,30 @@
 """Inverse kinematics that decides: a target is reachable, unreachable, or undecided."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 
 import numpy as np
-from scipy.spatial import KDTree
 
-from wsrender.engine import Accuracy, Tries, configurations, evaluate_poses, solve_inverse, thread_count
+from wsrender.engine import Accuracy, Tries, evaluate_poses, solve_inverse, thread_count
+from wsrender.reachability.evidence import FLATTER, Evidence
 from wsrender.reachability.moving_joints import moving_joints
+from wsrender.reachability.starts import FURTHER, NEAR, NEAR_LIMITS, Starts, inwards
 from wsrender.robots.chain import Chain
 from wsrender.robots.host_chain import HostChain
 from wsrender.robots.reachable_box import reachable_box
-from wsrender.sampling import plan_sampling
-from wsrender.spec.sampling import Sobol
 
-REACHABLE, UNREACHABLE, UNDECIDED = 1, 0, -1
-LABELS = {REACHABLE: "reachable", UNREACHABLE: "unreachable", UNDECIDED: "undecided"}
-
-NEAREST = 8  # first starts: the nearest of a set of samples
-EPS = 1.0  # they may be farther by this share: exact neighbours of far targets cost more than the tries
-FRESH = 248  # then the same further samples for every target, so that a label depends on its target alone
 BATCH = 1 << 15  # targets that are solved together: their starts are held in memory
-GROUPS = (1, 7, 8, 16, 32, 64, 128)  # starts between two looks at what they found
-SAMPLES = {"position": 1 << 12, "axis": 1 << 13, "pose": 1 << 13}  # of the set
-# Evidence that a target is unreachable: so many tries came to rest where no motion within the limits leads nearer,
-# clearly off the target, and so many of them at the least residual of all, within 1 %.
-LEAST_ENDS = {"position": 12, "axis": 32, "pose": 32}
-LEAST_AGREEING, AGREEING, CLEARLY = 3, 1.01, 2.0
-# Nor is it clear so near, relative to the reach: beside a stretched arm a try comes to rest where the slope is below
-# the solver's FLAT, 3e-4, and the edge of a fold of curvature 1 / reach is up to reach · FLAT² / 2 away there.
-FOLD = 1e-7
+# Starts between two looks at what they found, by kind of target: a label depends on its target alone.
+LATER = ((FURTHER, 8), (FURTHER, 32), (FURTHER, 64), (FURTHER, 128))
+GROUPS = {
+    "position": ((NEAR, 1), (NEAR, 7), (NEAR_LIMITS, 8), *LATER),
+    "axis": ((NEAR, 1), (NEAR, 7), (NEAR_LIMITS, 16), *LATER),
+    "pose": ((NEAR, 1), (NEAR, 7), (NEAR_LIMITS, 16), *LATER),
+}
+SAMPLES = {"position": 1 << 12, "axis": 1 << 13, "pose": 1 << 13}  # of either kind of starts
+WITHOUT_LIMITS = 8  # tries of what limits keep the chain from
+STEP_BACK = 1e-3  # share of their ranges by which coordinates leave their limits before a last try
 AT_END = 1e-6  # share of a slide's range within which it stands at its end
 
 
@@ -97,12 +91,14 @@ class InverseSolver:
 
     def _solve(self, position: np.ndarray, orientation: np.ndarray | None) -> Solutions:
         targets = _targets(position, orientation)
-        search = _Search(len(targets), self.chain, self.kind, self.accuracy, self._out_of_reach(position))
-        for starts in self._starts(targets, search):
-            pending = search.pending
+        search = Evidence(self.chain, self.kind, self.accuracy, self._out_of_reach(position))
+        for starts in self._groups(targets, search):
             each = starts.shape[1]
-            tries = self._tries(np.repeat(targets[pending], each, axis=0), starts.reshape(-1, self.chain.n))
-            search.record(pending, tries, self._residual(tries).reshape(-1, each))
+            tries = self._tries(np.repeat(targets[search.pending], each, axis=0), starts.reshape(-1, self.chain.n))
+            search.record(tries, self._residual(tries).reshape(-1, each))
+        narrow = search.narrow
+        tries = self._tries(targets[narrow], inwards(self.chain, search.q[narrow], STEP_BACK), flatness=FLATTER)
+        search.settle(narrow, tries, self._residual(tries))
         q = np.tile((self.whole.lower_limits + self.whole.upper_limits) / 2, (len(targets), 1))
         q[:, self._kept] = self._within_a_turn(search.q)
         return Solutions(q, search.distance, search.angle, search.label, search.proven)
@@ -113,11 +109,11 @@ class InverseSolver:
         So it is where hinges that turn for ever reach the target, or come nearest with a slide at its end.
         """
         targets = _targets(position, orientation)
-        fresh = np.tile(self._fresh(0, NEAREST - 1), (len(targets), 1, 1))
-        starts = np.concatenate([q[:, None, self._kept], fresh], axis=1).reshape(-1, self.chain.n)
-        tries = self._tries(np.repeat(targets, NEAREST, axis=0), starts, without_limits=True)
-        residual = np.where(tries.reached, 0.0, self._residual(tries)).reshape(-1, NEAREST)
-        best = np.arange(len(targets)) * NEAREST + np.argmin(residual, axis=1)
+        further = np.tile(self._starts.further(0, WITHOUT_LIMITS - 1), (len(targets), 1, 1))
+        starts = np.concatenate([q[:, None, self._kept], further], axis=1).reshape(-1, self.chain.n)
+        tries = self._tries(np.repeat(targets, WITHOUT_LIMITS, axis=0), starts, without_limits=True)
+        residual = np.where(tries.reached, 0.0, self._residual(tries)).reshape(-1, WITHOUT_LIMITS)
+        best = np.arange(len(targets)) * WITHOUT_LIMITS + np.argmin(residual, axis=1)
         chain, nearest = self.chain, tries.q[best]
         margin = AT_END * (chain.upper_limits - chain.lower_limits)
         ended = (nearest <= chain.lower_limits + margin) | (nearest >= chain.upper_limits - margin)
@@ -127,30 +123,20 @@ class InverseSolver:
         """What the solver reduces, (N,) [m]."""
         return np.hypot(tries.distance, 2 * self.accuracy.length * np.sin(tries.angle / 2))
 
-    def _tries(self, targets: np.ndarray, starts: np.ndarray, without_limits: bool = False) -> Tries:
-        return solve_inverse(
-            self.chain, targets, starts, self.accuracy, without_limits=without_limits, **self._execution
-        )
+    def _tries(
+        self, targets: np.ndarray, starts: np.ndarray, *, without_limits: bool = False, flatness: float = 1.0
+    ) -> Tries:
+        accuracy = replace(self.accuracy, flatness=flatness)
+        return solve_inverse(self.chain, targets, starts, accuracy, without_limits=without_limits, **self._execution)
 
-    def _starts(self, targets: np.ndarray, search: "_Search") -> Iterator[np.ndarray]:
+    def _groups(self, targets: np.ndarray, search: Evidence) -> Iterator[np.ndarray]:
         """Starts (P, g, m) of the targets that are pending when each group's turn comes."""
-        first = 0
-        for each in GROUPS:
+        taken: dict[str, int] = {NEAR: 0, NEAR_LIMITS: 0, FURTHER: 0}
+        for source, each in GROUPS[self.kind]:
             if not len(search.pending):
                 return
-            last = first + each
-            if last <= NEAREST:
-                features = self._features(targets[search.pending])
-                # k as a list gives a column per neighbour.
-                neighbours = list(range(first + 1, last + 1))
-                _, near = self._tree.query(features, k=neighbours, eps=EPS, workers=self._workers)  # type: ignore[arg-type]
-                yield self._samples[near]
-            else:
-                yield np.tile(self._fresh(first - NEAREST, last - NEAREST), (len(search.pending), 1, 1))
-            first = last
-
-    def _fresh(self, first: int, last: int) -> np.ndarray:
-        return self._samples[SAMPLES[self.kind] :][first:last]
+            first, taken[source] = taken[source], taken[source] + each
+            yield self._starts.of(source, self._features(targets[search.pending]), first, first + each)
 
     def _out_of_reach(self, position: np.ndarray) -> np.ndarray:
         """Whether positions (N, 3) are farther than the tolerance from a sphere or a box that hold the workspace.
@@ -165,16 +151,13 @@ class InverseSolver:
         return far | (position < low - slack).any(axis=1) | (position > high + slack).any(axis=1)
 
     @cached_property
-    def _samples(self) -> np.ndarray:
-        """Configurations to start from (S, m): those of the tree, then the fresh ones."""
-        count = SAMPLES[self.kind] + FRESH
-        return configurations(plan_sampling(self.chain, Sobol(count, seed=self.seed)), np.arange(count))
+    def _starts(self) -> Starts:
+        return Starts(self.chain, self._features_at, count=SAMPLES[self.kind], seed=self.seed, workers=self._workers)
 
-    @cached_property
-    def _tree(self) -> KDTree:
-        pose = evaluate_poses(self.chain, self._samples[: SAMPLES[self.kind]], device="cpu")
+    def _features_at(self, q: np.ndarray) -> np.ndarray:
+        pose = evaluate_poses(self.chain, q, device="cpu")
         orientation = {"position": None, "axis": pose[:, :3, 2], "pose": pose[:, :3, :3]}[self.kind]
-        return KDTree(self._features(_targets(pose[:, :3, 3], orientation)))
+        return self._features(_targets(pose[:, :3, 3], orientation))
 
     def _features(self, targets: np.ndarray) -> np.ndarray:
         """Coordinates whose distance is the residual that the solver reduces."""
@@ -195,52 +178,3 @@ def _targets(position: np.ndarray, orientation: np.ndarray | None) -> np.ndarray
         return position
     columns = orientation if orientation.ndim == 2 else orientation.transpose(0, 2, 1).reshape(-1, 9)
     return np.hstack([position, columns])
-
-
-class _Search:
-    """The best of all tries of every target, and the evidence that nothing better exists."""
-
-    def __init__(self, count: int, chain: Chain, kind: str, accuracy: Accuracy, proven: np.ndarray):
-        self.accuracy, self.proven = accuracy, proven
-        self.q = np.zeros((count, chain.n))
-        self.distance, self.angle = np.full(count, np.inf), np.full(count, np.inf)
-        self.label = np.full(count, UNDECIDED, np.int8)
-        self.pending = np.arange(count)
-        self._residual = np.full(count, np.inf)  # of the best try
-        self._nearest_end = np.full(count, np.inf)  # least residual at which a try came to rest
-        self._least_ends = LEAST_ENDS[kind]
-        tolerance = np.hypot(accuracy.position_m, accuracy.length * accuracy.angle_rad * (kind != "position"))
-        self._clearly_off = max(CLEARLY * tolerance, FOLD * chain.reach)
-        self._ends, self._agreeing = np.zeros(count, np.int32), np.zeros(count, np.int32)
-
-    def record(self, pending: np.ndarray, tries: Tries, residual: np.ndarray) -> None:
-        """Take in the tries of every pending target, residuals (P, tries each), and settle what is decided."""
-        each = residual.shape[1]
-        reached, ended = tries.reached.reshape(residual.shape), tries.stationary.reshape(residual.shape)
-        best = np.argmin(np.where(reached, -1.0, residual), axis=1)
-        chosen = np.arange(len(pending)) * each + best
-        found = reached.any(axis=1)
-        better = found | (residual.ravel()[chosen] < self._residual[pending])
-        at, chosen = pending[better], chosen[better]
-        self._residual[at] = residual.ravel()[chosen]
-        self.q[at], self.distance[at], self.angle[at] = tries.q[chosen], tries.distance[chosen], tries.angle[chosen]
-        self._count_ends(pending, np.where(ended, residual, np.inf))
-        self.label[pending] = np.where(found, REACHABLE, np.where(self._unreachable(pending), UNREACHABLE, UNDECIDED))
-        self.pending = pending[self.label[pending] == UNDECIDED]
-
-    def _count_ends(self, pending: np.ndarray, ends: np.ndarray) -> None:
-        """Count tries that came to rest (residuals ``ends`` (P, g), infinite for others), and those at the best."""
-        before = self._nearest_end[pending]
-        nearest = np.minimum(before, ends.min(axis=1))
-        limit = AGREEING * nearest + self.accuracy.position_m
-        still = np.where(before <= limit, self._agreeing[pending], 0)
-        self._agreeing[pending] = still + (ends <= limit[:, None]).sum(axis=1) * np.isfinite(nearest)
-        self._ends[pending] += np.isfinite(ends).sum(axis=1)
-        self._nearest_end[pending] = nearest
-
-    def _unreachable(self, pending: np.ndarray) -> np.ndarray:
-        nearest = self._nearest_end[pending]
-        consistent = (self._ends[pending] >= self._least_ends) & (self._agreeing[pending] >= LEAST_AGREEING)
-        clear = np.isfinite(nearest) & (self._residual[pending] * AGREEING >= nearest)
-        off = self._residual[pending] > self._clearly_off
-        return self.proven[pending] | (consistent & clear & off)

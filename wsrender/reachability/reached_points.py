@@ -3,7 +3,8 @@
 import numpy as np
 
 from wsrender.engine import evaluate_poses
-from wsrender.reachability.inverse_solver import REACHABLE, UNDECIDED, InverseSolver
+from wsrender.reachability.evidence import REACHABLE, UNDECIDED
+from wsrender.reachability.inverse_solver import InverseSolver
 from wsrender.reachability.reached_set import tolerance_m
 from wsrender.robots.chain import Chain
 

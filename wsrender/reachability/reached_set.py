@@ -6,8 +6,10 @@ import numpy as np
 
 from wsrender.engine import configurations, evaluate_poses
 from wsrender.reachability.cover import covered_cells
-from wsrender.reachability.inverse_solver import UNREACHABLE, InverseSolver
+from wsrender.reachability.evidence import UNREACHABLE
+from wsrender.reachability.inverse_solver import InverseSolver
 from wsrender.reachability.occupied_cells import occupied_cells
+from wsrender.reachability.starts import inwards, towards_limits
 from wsrender.robots.chain import Chain
 from wsrender.robots.reachable_box import reachable_box
 from wsrender.sampling import plan_sampling
@@ -21,6 +23,7 @@ SAMPLES_PER_CELL = 4
 # the border further (`estimate_volumes`).
 CELLS = 64
 TESTS, TEST_SAMPLES = 4096, 1 << 16  # targets of the measured false-negative rate, chosen from so many samples
+NEXT_TO = 1e-3  # half of these have half their coordinates so near a limit, as a share of the range
 
 
 @dataclass(frozen=True)
@@ -103,6 +106,9 @@ class ReachedSet:
         return FalseNegatives(len(chosen), int((labels == UNREACHABLE).sum()))
 
     def _positions(self, count: int) -> np.ndarray:
-        """Positions (N, 3) of a Sobol set of another seed than the solver's."""
+        """Positions (N, 3), shuffled, of a Sobol set of another seed than the solver's, half of it next to limits."""
         plan = plan_sampling(self.chain, Sobol(count, seed=(self.seed + 1) % 2**63))
-        return evaluate_poses(self.chain, configurations(plan, np.arange(count)), device="cpu")[:, :3, 3]
+        q = configurations(plan, np.arange(count))
+        q[count // 2 :] = inwards(self.chain, towards_limits(self.chain, q[count // 2 :]), NEXT_TO)
+        q = np.random.Generator(np.random.Philox(key=self.seed)).permutation(q)
+        return evaluate_poses(self.chain, q, device="cpu")[:, :3, 3]

@@ -8,7 +8,8 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from wsrender.errors import InputError
-from wsrender.reachability.inverse_solver import CLEARLY, LABELS, UNDECIDED, UNREACHABLE, InverseSolver, Solutions
+from wsrender.reachability.evidence import CLEARLY, LABELS, UNDECIDED, UNREACHABLE
+from wsrender.reachability.inverse_solver import InverseSolver, Solutions
 from wsrender.robot import as_robot
 from wsrender.robots.chain import Chain
 from wsrender.spec.quantities import argument, positive

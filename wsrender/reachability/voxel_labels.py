@@ -6,7 +6,8 @@ import numpy as np
 
 from wsrender.engine import evaluate_poses
 from wsrender.reachability.dimension import fills_volume, in_own_voxel
-from wsrender.reachability.inverse_solver import LABELS, REACHABLE, InverseSolver
+from wsrender.reachability.evidence import LABELS, REACHABLE
+from wsrender.reachability.inverse_solver import InverseSolver
 from wsrender.reachability.reached_set import tolerance_m
 from wsrender.reachability.targets import INCONCLUSIVE, JOINT_LIMITS, OUT_OF_REACH, TOO_CLOSE, reasons_of
 from wsrender.robots.chain import Chain

@@ -19,7 +19,7 @@ from wsrender.parallel.mechanism import Mechanism
 from wsrender.parallel.membership import count_lattice, fault_at, in_base_frame, orientations_labelled
 from wsrender.parallel.orientations import OrientationSet, orientation_set, random_orientations
 from wsrender.parallel.serial_search import SerialSearch, serial_search
-from wsrender.reachability.inverse_solver import REACHABLE, UNDECIDED, UNREACHABLE
+from wsrender.reachability.evidence import REACHABLE, UNDECIDED, UNREACHABLE
 from wsrender.reachability.volume_estimate import wilson
 from wsrender.result import Result
 from wsrender.robot import Robot

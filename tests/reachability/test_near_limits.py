@@ -1,0 +1,83 @@
+"""Targets whose configurations stand near limits are found, and thin arms' folds told from what is out of reach."""
+
+from importlib import import_module
+
+import numpy as np
+import pytest
+
+import wsrender as ws
+from tests.reachability.near_limits import ACCURACY, ARMS, MOST_UNDECIDED, offset_chain, tallies, targets_at
+from tests.run.simple_robots import gantry
+from wsrender.reachability import InverseSolver, Solutions, refined_volume
+from wsrender.reachability.evidence import REACHABLE, UNDECIDED, UNREACHABLE
+from wsrender.reachability.starts import MOST_CORNERS, corners, towards_limits
+
+COUNT = 100  # targets for each arm, margin and kind; tests/long.py takes 2,000
+
+
+@pytest.mark.parametrize("arm", ARMS)
+def test_targets_near_limits_are_not_called_unreachable(arm):
+    for margin, found in tallies(arm, COUNT).items():
+        assert found.targets == 2 * COUNT
+        assert found.unreachable == 0
+        assert found.undecided <= MOST_UNDECIDED[margin] * found.targets
+
+
+@pytest.mark.parametrize("arm", ["offset chain, 8", "offset chain, 9"])
+def test_positions_with_joints_on_limits_are_not_called_unreachable(arm):
+    robot = ARMS[arm]()
+    random = np.random.default_rng(0)
+    q = random.uniform(robot.lower_limits, robot.upper_limits, (20_000, robot.chain.n))
+    found = InverseSolver(robot.chain, **ACCURACY).solve(*targets_at(robot, towards_limits(robot.chain, q), "position"))
+    assert (found.label == UNREACHABLE).sum() <= 1
+    assert (found.label == UNDECIDED).sum() <= 1
+
+
+def test_poses_out_of_reach_stay_decided():
+    robot = offset_chain(7, 2)
+    random = np.random.default_rng(1)
+    q = random.uniform(robot.lower_limits - 2, robot.upper_limits + 2, (2_000, robot.chain.n))  # most beyond limits
+    position, axes = targets_at(robot, q, "pose")
+    found = InverseSolver(robot.chain, kind="pose", **ACCURACY).solve(position, axes)
+    assert (found.label == UNREACHABLE).mean() > 0.9
+    assert (found.label == UNDECIDED).mean() <= 0.005
+
+
+@pytest.mark.parametrize("elbow_deg", [None, (-170, 0)], ids=["elbow turns", "elbow stops when stretched"])
+def test_the_fold_of_a_thin_arm_is_not_out_of_reach(elbow_deg):
+    """Beside the stretched arm of 0.3 and 0.27 m the slope vanishes before the target is reached."""
+    rows = [ws.DHRow(alpha_deg=90), ws.DHRow(a=0.3), ws.DHRow(a=0.27, limits_deg=elbow_deg)]
+    robot = ws.load_robot(ws.DHTable(convention="standard", rows=rows))
+    q = np.random.default_rng(1).uniform(robot.lower_limits, robot.upper_limits, (82_000, 3))
+    found = InverseSolver(robot.chain, position_m=6e-9).solve(*targets_at(robot, q, "position"))
+    assert (found.label == REACHABLE).all()
+
+
+def test_measured_false_negatives_include_targets_next_to_limits(monkeypatch):
+    """A solver that fails within half a percent of a slide's limit: 3 % of a uniform set of configurations."""
+    robot = gantry()
+
+    class FailsNextToLimits(InverseSolver):
+        def solve(self, position, orientation=None, progress=None):
+            found = super().solve(position, orientation, progress)
+            chain = self.chain
+            margin = 0.005 * (chain.upper_limits - chain.lower_limits)
+            close = (found.q < chain.lower_limits + margin) | (found.q > chain.upper_limits - margin)
+            label = np.where(close.any(axis=1), UNREACHABLE, found.label).astype(np.int8)
+            return Solutions(found.q, found.distance_m, found.angle_rad, label, found.proven)
+
+    module = import_module("wsrender.reachability.refined_volume")  # the package has a function of this name
+    monkeypatch.setattr(module, "InverseSolver", FailsNextToLimits)
+    _, found = refined_volume(robot.chain, 0.1, max_points=10_000)
+    (tried,) = found.false_negatives
+    assert tried.rate > 0.1
+
+
+def test_corners_of_the_joint_space():
+    few, many = offset_chain(5, 0).chain, offset_chain(12, 0).chain
+    assert len(np.unique(corners(few), axis=0)) == 2**5
+    for chain in (few, many):
+        q = corners(chain)
+        assert ((q == chain.lower_limits) | (q == chain.upper_limits)).all()
+    assert len(q) == MOST_CORNERS
+    assert ((q == many.upper_limits).mean(axis=0) > 0.4).all()
