@@ -15,7 +15,7 @@ from scipy.spatial.transform import Rotation
 from wsrender.parallel.leg_bounds import proves_all, surely_unreached
 from wsrender.parallel.mechanism import Mechanism, mechanism_of
 from wsrender.parallel.membership import in_base_frame, poses_labelled
-from wsrender.reachability.inverse_solver import REACHABLE, UNDECIDED, UNREACHABLE
+from wsrender.reachability.evidence import REACHABLE, UNDECIDED, UNREACHABLE
 from wsrender.robot import Robot
 from wsrender.robots.reachable_box import reachable_box
 from wsrender.spec.mechanism import MechanismSpec

@@ -14,7 +14,7 @@ from wsrender.parallel.flat import Flat
 from wsrender.parallel.membership import count_at, in_base_frame, poses_labelled
 from wsrender.parallel.orientations import OrientationSet, finer, orientation_set
 from wsrender.reachability import Event, estimate_volumes
-from wsrender.reachability.inverse_solver import REACHABLE, UNDECIDED, UNREACHABLE
+from wsrender.reachability.evidence import REACHABLE, UNDECIDED, UNREACHABLE
 from wsrender.reachability.volume_estimate import VolumeEstimates
 from wsrender.run.parallel_lattice import FlatLattice
 from wsrender.volume.lattice import LatticeBlock, block_around
