@@ -3,7 +3,7 @@
 from defusedxml import DefusedXmlException
 
 from wsrender.errors import ModelError
-from wsrender.robots import xml_source
+from wsrender.robots import mjcf, xml_source
 from wsrender_server.problems import problem_of_error, refusal
 
 ROOTS = ("mujoco", "robot")
@@ -14,8 +14,9 @@ def check_model(field: str, text: str, prefix: str = "") -> str:
 
     ``field`` within ``prefix`` is where in the body the text is.
 
-    Raises ModelError for hostile text: document types, entities, outside references, too large, too deep. Raises
-    HttpProblem 409 for text that is no model: not well-formed, or of another root element.
+    Raises ModelError for hostile text: document types, entities, outside references, too large, too deep; and for
+    files that it includes. Raises HttpProblem 409 for text that is no model: not well-formed, or of another root
+    element.
     """
     try:
         root = xml_source.parse(text, field)
@@ -27,6 +28,8 @@ def check_model(field: str, text: str, prefix: str = "") -> str:
     if root.tag not in ROOTS:
         wrong = ModelError(field, f"the root element is <{root.tag}>; <mujoco> or <robot> (URDF) is needed")
         raise refusal(problem_of_error(wrong, prefix), 409)
+    if root.tag == "mujoco":
+        mjcf.refuse_includes(root, field)
     return root.tag
 
 

@@ -29,6 +29,17 @@ def test_a_library_robot(tmp_path, capsys):
         assert hashlib.sha256(path.read_bytes()).hexdigest() == artifact["sha256"]
 
 
+def test_a_file_that_includes_others(tmp_path):
+    (tmp_path / "arm.xml").write_text(
+        '<mujoco><worldbody><body><joint name="j" range="-60 60"/><geom size=".1"/>'
+        '<site name="tcp" pos=".4 0 0"/></body></worldbody></mujoco>'
+    )
+    (tmp_path / "scene.xml").write_text('<mujoco><include file="arm.xml"/></mujoco>')
+    scene = str(tmp_path / "scene.xml")
+    assert run(scene, "--tip", "tcp", "--samples", "100", "--voxel-size", "0.05", "-o", str(tmp_path / "out")) == 0
+    assert ws.Result.load(tmp_path / "out").document["robot"]["joint_names"] == ["j"]
+
+
 def test_a_result_holds_the_job_that_made_it(tmp_path):
     first, second = tmp_path / "first", tmp_path / "second"
     assert run("scara", "--grid", "4", "--task", "x,y", "--voxel-size", "0.05", "-o", str(first)) == 0

@@ -26,6 +26,12 @@ _NUMERIC = {
 }  # fmt: skip
 
 
+def refuse_includes(mujoco: Element, field: str) -> None:
+    """Raises ModelError, with how to inline it, for a model that includes a file: of text, none is read."""
+    if next(mujoco.iter("include"), None) is not None:
+        raise ModelError(field, _REFUSED["include"])
+
+
 def sanitized(mujoco: Element, field: str) -> Element:
     """The ``<mujoco>`` element without scenery and materials, its numbers checked; changed in place.
 

@@ -123,6 +123,19 @@ def test_wrong_documents(client, jobs, fields, status, code, pointer):
     assert jobs.store.list("local") == ([], None)
 
 
+@pytest.mark.parametrize("upload", [False, True])
+def test_a_model_that_includes_files_is_refused_with_how_to_inline_them(client, upload):
+    """Nothing beside a model is opened: neither of text nor of an uploaded file."""
+    scene = '<mujoco><worldbody><include file="arm.xml"/></worldbody></mujoco>'
+    if upload:
+        response = client.post("/v1/models", content=scene, headers={"Content-Type": "application/xml"})
+    else:
+        response = client.post("/v1/jobs", json=DOCUMENT | {"robot": {"mjcf": scene}})
+    (error,) = problem_of(response, 422, "invalid_model")["errors"]
+    assert error["pointer"] == ("#" if upload else "#/robot/mjcf")
+    assert "inline the file, by putting what is inside its <mujoco> element in the place of <include>" in str(error)
+
+
 def test_configurations_must_be_given(client):
     document = {"analysis": "indices_at", "robot": {"library": "scara"}}
     problem = problem_of(client.post("/v1/jobs", json=document), 422, "invalid_document")
