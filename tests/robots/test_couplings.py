@@ -7,10 +7,14 @@ import pytest
 from tests.reference import chain_kinematics as reference
 from tests.reference import mujoco_kinematics as by_mujoco
 from wsrender import robots
+from wsrender.engine.grid_structure import structure_of
 from wsrender.errors import ModelError
 from wsrender.robot import evaluate_indices, robot_of_spec
+from wsrender.robot.indices import evaluation_of
 from wsrender.robots.model_warning import ModelWarning
+from wsrender.sampling import plan_sampling
 from wsrender.spec.robot import RobotSpec
+from wsrender.spec.sampling import Grid
 
 
 def arm(equality, extra=""):
@@ -214,6 +218,26 @@ def test_dynamic_indices_count_the_bodies_of_leaders():
     found = evaluate_indices(robot, q, indices=["dynamic_manipulability"])["dynamic_manipulability"]
     J, M = robot.jacobian(q, device="cpu")[:, :3], robot.inertia_matrix(q, method="mujoco")
     np.testing.assert_allclose(found, np.abs(np.linalg.det(J)) / np.linalg.det(M), rtol=1e-9)
+
+
+def test_grids_of_leaders_on_other_branches_take_no_short_cut_that_is_wrong():
+    """The first joint's coordinate moves a body far down the arm too: M is not the same at all its levels."""
+    text = arm(follow("a", "f", "0 1 0 0 0")).replace('ref=".1"', 'ref=".1" range="-.5 .5"')
+    robot = robot_of_spec(RobotSpec(mjcf=text))
+    assert robot.joint_names == ("f", "b", "c", "d")
+    structures = {}
+    for index in ("manipulability", "dynamic_manipulability"):
+        evaluation = evaluation_of(
+            robot, indices=[index], task="linear", convention="standard", joint_limit_penalty=None,
+            characteristic_length_m=1.0, torque_scaling=False, inertia="kernel", precision="float64",
+        )  # fmt: skip
+        structures[index] = structure_of(evaluation, plan_sampling(robot.chain, Grid(3)))
+    assert structures["manipulability"].base_levels == 3
+    assert structures["dynamic_manipulability"].base_levels == 1
+    q = np.full((2, 4), 0.2)
+    q[1, 0] = 0.4
+    M = robot.inertia_matrix(q, method="mujoco")
+    assert abs(M[0] - M[1]).max() > 1e-5 * abs(M).max()
 
 
 def test_a_leader_above_the_base_moves_nothing_against_it():

@@ -55,6 +55,25 @@ def test_the_same_voxels_as_at_the_origin(offset, precision):
         )
 
 
+@pytest.mark.parametrize("precision", ["float32", "float64"])
+def test_grids_move_the_base_joint_where_it_stands(precision):
+    far, near = robots(OFFSETS[0])
+    options = {"voxel_size_m": VOXEL, "refined_volume": None, "precision": precision, "device": "cpu"}
+    found, right = (ws.analyze(robot, ws.Grid(12), **options) for robot in (far, near))
+    assert right.document["provenance"]["sampling_path"] == "collapsed"
+    np.testing.assert_array_equal(found.volume.count, right.volume.count)
+
+
+def test_capability():
+    found = []
+    for robot in robots(OFFSETS[0]):
+        spec = robot.spec.model_dump(mode="json", exclude_none=True)
+        document = {"analysis": "capability", "robot": spec, "voxel_size_m": 0.2, "directions": 12, "device": "cpu"}
+        found.append(ws.execute(document).document["capability"])
+    assert found[0] == found[1]
+    assert found[0]["voxels"] > 50
+
+
 def test_links_keep_their_digits():
     """Lengths are no differences of map coordinates."""
     far, near = (robot.chain for robot in robots(OFFSETS[0]))
