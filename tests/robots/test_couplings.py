@@ -9,7 +9,8 @@ from tests.reference import mujoco_kinematics as by_mujoco
 from wsrender import robots
 from wsrender.engine.grid_structure import structure_of
 from wsrender.errors import ModelError
-from wsrender.robot import evaluate_indices, robot_of_spec
+from wsrender.kinetostatics.kinematics import Kinematics
+from wsrender.robot import evaluate_indices, link_shapes, robot_of_spec
 from wsrender.robot.indices import evaluation_of
 from wsrender.robots.model_warning import ModelWarning
 from wsrender.sampling import plan_sampling
@@ -269,3 +270,16 @@ def test_followers_that_narrow_their_leaders_limits_are_said():
 def test_followers_that_leave_their_leader_nothing_are_named():
     with pytest.raises(ModelError, match=r"leave 7 … 2; .*: its own are -2 … 2, but 'c' allows it 7 … 11$"):
         robots.load_mjcf(arm(follow("c", "d", "-9 1 0 0 0")))
+
+
+def test_postures_and_pictures_follow_leaders_on_another_branch():
+    robot = robot_of_spec(RobotSpec(mjcf=HAND), tip="pad")
+    q = np.array([0.3, -0.4, 0.2])
+    posture = Kinematics(robot).at(q)
+    np.testing.assert_allclose(posture.position, robot.forward_kinematics(q, device="cpu")[0, :3, 3], atol=1e-12)
+    np.testing.assert_allclose(posture.J, robot.jacobian(q, device="cpu")[0], atol=1e-12)
+    np.testing.assert_allclose(robot.skeleton(q)[0, -1], posture.position, atol=1e-12)
+    data = by_mujoco.at(robot.model, followers(q))
+    mujoco.mj_kinematics(robot.model, data)
+    drawn = [shape.vertices.mean(axis=0) for shape in link_shapes(robot, q)]
+    np.testing.assert_allclose(drawn, data.geom_xpos, atol=1e-9)
