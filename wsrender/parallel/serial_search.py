@@ -57,7 +57,8 @@ class SerialSearch:
         """Labels (N,) int8 of poses, as of `InverseSolver`.
 
         Positions (N, 3), world [m], and orientations against the fixed base, (3, 3) or (N, 3, 3). With ``around_m``
-        [m] unreachable means that no position so near is reached either; it is proven, and what is not is undecided.
+        [m] unreachable means that no position so near is reached either; it is proven, and what is not is undecided,
+        what serial legs reach too, which are not solved then.
         """
         most = MOST_NUMERIC if self.mechanism.numeric else MOST_CELLS
         found = np.full(len(positions), UNREACHABLE, np.int8)
@@ -137,6 +138,7 @@ class _Batch:
     def __init__(self, search: SerialSearch, positions: np.ndarray, rotations: np.ndarray, most: int, around: float):
         self.search, self.positions, self.rotations, self.most = search, positions, rotations, most
         self.around, self.settled = around, max(SETTLED * search.reach_m, around)
+        self.tries = not (around and search.mechanism.numeric)  # numerical solutions say nothing of what is near
         mechanism = search.mechanism
         none = np.full(3, np.inf)
         self.anywhere = replace(mechanism, region_lower=-none, region_upper=none)
@@ -180,7 +182,7 @@ class _Batch:
             beyond = np.maximum(mechanism.region_lower - tool, tool - mechanism.region_upper).max(axis=1)
             motion = motion + self.around
             near = (beyond <= motion) & ~surely_unreached(self.anywhere, platform, motion)
-            tried = np.flatnonzero(near & (beyond <= 0))
+            tried = np.flatnonzero(near & (beyond <= 0) & self.tries)
             labels, _ = poses_labelled(self.anywhere, platform[tried], device=device, threads=threads)
             self.labels[at[tried[labels == REACHABLE]]] = REACHABLE
             np.add.at(self.asked, at[near], 1)

@@ -13,6 +13,7 @@ from wsrender.engine import OrientationCounts
 from wsrender.parallel.flat import Flat
 from wsrender.parallel.membership import count_at, in_base_frame, poses_labelled
 from wsrender.parallel.orientations import OrientationSet, finer, orientation_set
+from wsrender.parallel.serial_search import MOST_NUMERIC
 from wsrender.reachability import Event, estimate_volumes
 from wsrender.reachability.evidence import REACHABLE, UNDECIDED, UNREACHABLE
 from wsrender.reachability.volume_estimate import VolumeEstimates
@@ -27,8 +28,8 @@ EVENTS = {"constant_orientation": "reached", "total_orientation": "all orientati
 # Along the mean edge of the box that holds everything; fewer where each cell's middle is searched.
 CELLS, CELLS_FLAT, CELLS_SEARCHED = 64, 256, 32
 # Poses decided at most, of legs in closed form, with serial joints that are searched, and with numerical solutions.
-BUDGET, BUDGET_SEARCHED, BUDGET_NUMERIC = 2_000_000_000, 100_000, 100_000
-MOST_POINTS, FEWEST_POINTS = 10_000_000, 4_000
+BUDGET, BUDGET_SEARCHED, BUDGET_NUMERIC = 2_000_000_000, 100_000, 30_000
+MOST_POINTS, FEWEST_POINTS = 10_000_000, 2_000
 FINEST = 100_000  # orientations of the halved steps; of more the asked ones are the finer set
 
 Labelled = Callable[[np.ndarray], np.ndarray]
@@ -170,7 +171,7 @@ def _of_set(plan: "ParallelPlan", points: np.ndarray, orientations: OrientationS
 def _most_points(plan: "ParallelPlan", sets: list[OrientationSet]) -> int:
     budget = BUDGET if plan.search is None else BUDGET_SEARCHED
     if plan.mechanism.numeric:
-        budget = BUDGET_NUMERIC
+        budget = BUDGET_NUMERIC if plan.search is None else BUDGET_NUMERIC // MOST_NUMERIC
     poses = sum(len(each.rotations) for each in sets)
     return int(np.clip(budget // poses, FEWEST_POINTS, MOST_POINTS))
 
@@ -211,8 +212,8 @@ def _between_levels(plan: "ParallelPlan", lower: np.ndarray, upper: np.ndarray) 
 def _strata(plan: "ParallelPlan", partial: "Arrays", cells: LatticeBlock) -> list[np.ndarray]:
     """Inner cells, the border and the rest: cells (M, 3) in which voxels were reached, and their neighbours."""
     assert plan.block is not None
-    if plan.search is not None and plan.job.kind == "constant_orientation":
-        return _searched_strata(plan, cells)
+    searched = plan.search is not None and plan.job.kind == "constant_orientation"
+    labels = _labels_of_cells(plan, cells) if searched else np.full(cells.shape, UNDECIDED)
     found = plan.counted(partial)
     centers = plan.block.centers(partial["cells"][found])
     if isinstance(cells, FlatLattice):
@@ -221,21 +222,17 @@ def _strata(plan: "ParallelPlan", partial: "Arrays", cells: LatticeBlock) -> lis
     occupied = np.zeros(cells.shape, bool)
     inside = np.all((at >= 0) & (at < cells.shape), axis=1)
     occupied[tuple(at[inside].T)] = True
-    return _inner_border_rest(occupied, cells, np.ones(cells.shape, bool))
+    inner, outer = inner_and_outer(occupied | (labels == REACHABLE))
+    classes = (inner.astype(np.int8) + outer)[1:-1, 1:-1, 1:-1]
+    kept = labels != UNREACHABLE  # by proof nothing in the others is reached
+    return [np.argwhere((classes == code) & kept) + cells.first_voxel for code in np.unique(classes)]
 
 
-def _searched_strata(plan: "ParallelPlan", cells: LatticeBlock) -> list[np.ndarray]:
-    """The same by searching the middles of cells; those that nothing near them reaches, by proof, belong to none."""
+def _labels_of_cells(plan: "ParallelPlan", cells: LatticeBlock) -> np.ndarray:
+    """Labels (nx, ny, nz) of cells: reachable where their middle is, unreachable where nothing in them is, by proof."""
     assert plan.search is not None
     flat = cells.flat if isinstance(cells, FlatLattice) else None
     centers = cells.centers(np.arange(cells.size))
     around = cells.voxel_size_m / 2 * np.sqrt(3 if flat is None else flat.dimension)
     rotation = plan.orientations.rotations[0]
-    labels = plan.search.labels(centers, rotation, around_m=around, device=plan.device).reshape(cells.shape)
-    return _inner_border_rest(labels == REACHABLE, cells, labels != UNREACHABLE)
-
-
-def _inner_border_rest(occupied: np.ndarray, cells: LatticeBlock, kept: np.ndarray) -> list[np.ndarray]:
-    inner, outer = inner_and_outer(occupied)
-    classes = (inner.astype(np.int8) + outer)[1:-1, 1:-1, 1:-1]
-    return [np.argwhere((classes == code) & kept) + cells.first_voxel for code in np.unique(classes)]
+    return plan.search.labels(centers, rotation, around_m=around, device=plan.device).reshape(cells.shape)

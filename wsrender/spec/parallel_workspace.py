@@ -53,7 +53,9 @@ class ParallelWorkspaceJob(Document):
     """Least share of the orientations that counts as dexterous [1]."""
     refined_volume: RelativeTolerance | None = 0.01
     """Half width of the 95 % interval of the volume, relative to it [1], from random points; null: not computed. The
-    default is 0.01 of a constant orientation by the methods "grid" and "grid_by_subsystem", else null."""
+    default is 0.01 of a constant orientation by the methods "grid" and "grid_by_subsystem", else null. Serial joints
+    are searched over all their values; the interval covers the steps of sets of orientations. In a plane it is that of
+    the area, on a line of the length."""
     seed: Seed = 0
     """Seed of the random points."""
     max_poses: Count = 10_000_000_000

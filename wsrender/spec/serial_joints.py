@@ -15,7 +15,10 @@ MOST_JOINTS = 3  # before, and after
 
 
 class SerialJoint(Document):
-    """A joint in series with the parallel mechanism, at one of so many levels of its range at a time."""
+    """A joint in series with the parallel mechanism.
+
+    Voxels are tested at so many levels of its range; refined volumes search all its values.
+    """
 
     type: Literal["revolute", "prismatic"] = "revolute"
     """Kind of joint."""
@@ -28,7 +31,7 @@ class SerialJoint(Document):
     limits_m: Interval | None = None
     """[lower, upper] position of a prismatic joint along its axis [m]."""
     levels: Annotated[int, Field(ge=2, le=1000), BeforeValidator(integer)] = 25
-    """Equal steps from the lower to the upper limit at which the joint is tested, both included."""
+    """Values from the lower to the upper limit, both included, at which voxels are tested."""
 
     def conflicts(self) -> Iterator[tuple[str, str]]:
         """(field, message) of every pair of fields that do not go together."""
