@@ -342,3 +342,14 @@ def test_the_share_of_orientations_at_a_point_has_an_interval():
     entry = execute(job).document["orientation_workspace"]
     low, high = entry["share_of_ranges_ci95"]
     assert low < 0.5 < high < low + 0.02 and entry["share"] != pytest.approx(0.5, abs=0.02)
+
+
+def test_solids_of_thin_workspaces_are_warned_of():
+    """Where six shells 1 mm thick cross, triangles of balls of 0.6 m are as thick; the exact volume is another."""
+    thin = {"library": "stewart_gough", "length_m": [0.6, 0.601]}
+    job = {**STEWART, "voxel_size_m": None, "mechanism": thin}
+    solids = execute({**job, "method": "solids"}).document
+    assert [each["code"] for each in solids["warnings"]] == ["coarse_meshes"]
+    assert not execute({**job, "method": "exact"}).document["warnings"]
+    thick = execute({**job, "mechanism": "stewart_gough", "method": "solids"}).document
+    assert not thick["warnings"]

@@ -2,6 +2,7 @@
 
 import json
 import time
+from collections.abc import Iterator
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
@@ -10,6 +11,7 @@ import trimesh
 
 from wsrender.boundary.surfaces import surface_entry
 from wsrender.errors import InputError
+from wsrender.notices import Notice
 from wsrender.parallel.ball_region import BallRegion, ball_region
 from wsrender.parallel.ball_surfaces import surface_table
 from wsrender.parallel.exact import ExactWorkspace
@@ -19,6 +21,9 @@ from wsrender.result import Result
 from wsrender.run.parallel_headline import headline_entry
 from wsrender.run.parallel_result import mechanism_document, skeleton_at
 from wsrender.volume.table import Table
+
+SAGITTA = 1.5e-4  # of a ball's radius: between the triangles of its mesh and the sphere, of 20,480 triangles
+COARSE = 0.05  # relative error by that which is warned of
 
 if TYPE_CHECKING:
     from wsrender.run.parallel import Arrays, ParallelPlan
@@ -70,6 +75,19 @@ def _headline(method: str, volume_m3: float) -> dict[str, Any]:
     return headline_entry("volume", "m^3", volume_m3, None, "balls are meshes of triangles: there is no interval")
 
 
+def _notices(region: BallRegion, about: dict[str, Any], method: str) -> Iterator[Notice]:
+    """What meshes of balls hide: thin workspaces lie within the error of their triangles."""
+    error = about["area_m2"] * SAGITTA * max(region.inside_radii, default=0.0)
+    if method == "solids" and error > COARSE * about["volume_m3"]:
+        yield Notice(
+            "coarse_meshes",
+            f"the workspace is thin: its {about['volume_m3']:.3g} m³ may be wrong by {error:.2g} m³, for the balls are "
+            "meshes of triangles",
+            'use the method "exact"',
+            "method",
+        )
+
+
 def _surfaces(region: BallRegion) -> int:
     """How many surfaces may bound a region."""
     return len(region.inside_radii) + len(region.outside_radii) + len(region.sides_of_box()[1])
@@ -105,6 +123,7 @@ def boundary_result(plan: "ParallelPlan", partial: "Arrays", seconds: dict[str, 
         skeleton = skeleton_at(plan, mesh.center_mass)
     else:
         document["empty"] = "no position is reached: the spheres that bound the workspace enclose none"
+    document["warnings"] = [notice.entry() for notice in _notices(region, about, method)]
     if method == "exact":
         document["topology"] = about["topology"]
         T = plan.mechanism.T_world_base
