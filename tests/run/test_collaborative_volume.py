@@ -32,6 +32,7 @@ def test_the_outward_pair_of_arms(tmp_path):
     assert volume["body_elemental"] == entries[3]["mean_m3"]
     assert volume["true"]["ci95"][0] <= 6.2190e-3 <= volume["true"]["ci95"][1]
     assert len(set(volumes[:, 3])) == 4
+    assert result.document["headline"]["value"] is None and "refined_volume" in result.document["headline"]["reason"]
     planned = plan(document)
     save_partial(run_shard(planned, 0), tmp_path / "0.npz")
     again = finish(planned, load_partial(tmp_path / "0.npz", planned))
@@ -44,6 +45,8 @@ def test_the_true_volume_stands_beside_it():
     result = ws.execute(job(**OUTWARD, seeds=2, samples=50_000, refined_volume=0.05))
     true = result.document["volume_m3"]["true"]
     low, high = true["ci95"]
+    headline = result.document["headline"]
+    assert (headline["value"], headline["ci95"], headline["reason"]) == (true["value"], [low, high], "")
     assert low < 6.2190e-3 < high
     assert high - low < 0.11 * 6.2190e-3
     (first, *_, last) = result.document["refinements"]

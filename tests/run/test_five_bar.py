@@ -28,6 +28,9 @@ def by_mode(entries):
 
 def test_known_values(result):
     document = result.document
+    headline = document["headline"]
+    assert headline["value"] == pytest.approx(319.776382597, abs=5e-10) and headline["ci95"] == [headline["value"]] * 2
+    assert (headline["quantity"], headline["unit"], headline["reason"]) == ("area", "m2", "")
     for mode, entry in by_mode(document["workspaces"]).items():
         assert entry["area_m2"] == pytest.approx(319.776382597, abs=5e-10)
         own = [each["area_m2"] for each in document["aspects"] if each["working_mode"] == mode]
@@ -147,6 +150,10 @@ def test_limits_and_modes_from_python():
     assert theta[:, 0].min() > -1 and theta[:, 0].max() < 2
     assert execute(found.document["job"]).document["aspects"] == found.document["aspects"]
     assert "working mode -+" in found.summary()
+    assert found.document["headline"]["value"] == found.document["workspaces"][0]["area_m2"]
+    several = ws.five_bar(limited, voxel_size_m=0.2, joint_steps=12).document
+    assert len({entry["area_m2"] for entry in several["workspaces"]}) > 1
+    assert several["headline"]["value"] is None and "working mode" in several["headline"]["reason"]
 
 
 def test_progress_ends_at_all_cells():

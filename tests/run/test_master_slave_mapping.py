@@ -36,6 +36,7 @@ def test_a_box_in_a_box():
     assert centred["scale"] == pytest.approx([3, 3, 3], rel=1e-6)
     assert shifted["scale"] == pytest.approx([2, 2, 2], rel=1e-6)
     assert result.document["mapping"] == centred
+    assert result.document["headline"]["value"] is None and result.document["headline"]["reason"]
     assert centred["succeeded"] and centred["failing_points"] == 0
     assert centred["volume_m3"] == pytest.approx(0.6**3, rel=1e-5)
     assert centred["efficiency"] == pytest.approx(0.6**3 / 0.48, rel=1e-5)

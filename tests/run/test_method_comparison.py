@@ -12,6 +12,7 @@ def test_the_four_methods_agree_on_the_published_six_pus(tmp_path):
     """DEFINITIONS section 9: A and B in identical voxels, to .5 % at .05 m; D to .1 %; C to 1e-6."""
     result = ws.method_comparison("six_pus", voxel_sizes_m=[0.2, 0.1, 0.05], ball_subdivisions=[2, 5], device="cpu")
     table = result.tables["methods"]
+    assert result.document["headline"]["value"] == pytest.approx(0.717344315, abs=1e-6)
     volumes = {
         (str(method), round(float(size), 3)): volume
         for method, size, volume in zip(table["method"], np.nan_to_num(table["size"]), table["volume"], strict=True)

@@ -11,6 +11,7 @@ from wsrender.multi.body_elements import body_elements
 from wsrender.reachability import Event
 from wsrender.result import Result
 from wsrender.robot import Robot
+from wsrender.run.headline import headline, no_headline
 from wsrender.run.one_shard import OneShard
 from wsrender.run.provenance import job_entry, provenance, robot_entry
 from wsrender.run.refined import Progress, refined_together, volume_entry
@@ -98,6 +99,7 @@ class CollaborativePlan(OneShard):
                 "boundary": float(partial["cells"][:, 1].mean()),
             },
             "volume_m3": {"body_elemental": float(mean[-1]), "true": true},
+            "headline": _headline(true),
             "provenance": provenance("float64", self.target, seed=job.seed),
             "timing_s": seconds,
         }
@@ -117,6 +119,13 @@ def plan_collaborative(
         source.array() if isinstance(source, PointSet) else left_to_place.pop(0) for source in (job.left, job.right)
     )
     return CollaborativePlan(job, robots, (left, right), *settled_device(job.device, resolved))
+
+
+def _headline(true: dict[str, Any] | None) -> dict[str, Any]:
+    """The true volume with its interval; the algorithm's own is biased both ways."""
+    if true is None:
+        return no_headline('the body-elemental volume is biased; "refined_volume" asks for the true one')
+    return headline("volume", true["value"], true["ci95"])
 
 
 def _variance(volumes: np.ndarray) -> np.ndarray | None:

@@ -34,6 +34,7 @@ from wsrender.parallel.five_bar.tables import (
 )
 from wsrender.plots.five_bar import MODE_VOLUMES
 from wsrender.result import Result
+from wsrender.run.headline import headline, no_headline
 from wsrender.run.one_shard import OneShard
 from wsrender.run.partial_tables import arrays_of_tables, tables_of_arrays
 from wsrender.run.provenance import job_entry, provenance
@@ -46,6 +47,7 @@ from wsrender.volume.volume_data import VolumeData
 CELLS_ACROSS = 250  # of the default Cartesian maps
 CELLS_PER_S = 5e5  # of maps and their curves, one CPU core
 UNITS = {"det_a": "m^2", "det_b": "m^4"}
+SAME_AREA = 1e-9  # of areas: rounding
 
 
 @dataclass(eq=False)
@@ -129,6 +131,7 @@ class FiveBarPlan(OneShard):
             "sampling": {"samples": self._cells + self._joint_cells, "method": "lattices"},
             "voxel_size_m": self.lattice.cell_m,
             **about,
+            "headline": _headline([each["area_m2"] for each in about["workspaces"]]),
             "provenance": provenance("float64", self.target),
             "timing_s": seconds,
         }
@@ -196,6 +199,13 @@ def plan_five_bar(job: FiveBarJob, resolved: dict[str, Any] | None = None) -> Fi
     extent = float((upper - lower).max())
     cell = job.voxel_size_m or round_to_digits(extent / CELLS_ACROSS, 2)
     return FiveBarPlan(job, five_bar, plane_lattice(five_bar, cell), *settled_device("cpu", resolved))
+
+
+def _headline(areas: list[float]) -> dict[str, Any]:
+    """The exact area, where it is that of every working mode."""
+    if not areas or np.ptp(areas) > SAME_AREA * max(areas):
+        return no_headline("each working mode has an area of its own, under workspaces", "area")
+    return headline("area", areas[0], (areas[0], areas[0]))
 
 
 def _name(job: FiveBarJob) -> str:

@@ -12,6 +12,7 @@ from wsrender.parallel.exact import ExactWorkspace
 from wsrender.parallel.mechanism import mechanism_of
 from wsrender.parallel.solids import solid_workspace
 from wsrender.result import Result
+from wsrender.run.headline import headline
 from wsrender.run.one_shard import OneShard
 from wsrender.run.parallel import plan_parallel
 from wsrender.run.parallel_exact import region_of
@@ -93,6 +94,7 @@ class MethodComparisonPlan(OneShard):
                 }
                 for name, edge, found, wrong in zip(method, size.tolist(), volume.tolist(), error.tolist(), strict=True)
             ],
+            "headline": headline("volume", exact.volume_m3, (exact.volume_m3, exact.volume_m3)),
             "provenance": provenance("float64", self.target),
             "timing_s": {**seconds, **dict(zip(map(_label, method, size), took.tolist(), strict=True))},
         }
