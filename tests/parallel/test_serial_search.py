@@ -32,7 +32,7 @@ def test_a_ball_on_a_turntable_has_the_volume_of_pappus(levels):
     low, high = refined["ci95"]
     assert low < exact < high and refined["met"] and (high - low) / 2 < 0.02 * exact
     assert result.document["headline"] == {
-        "quantity": "volume", "value": refined["value"], "ci95": [low, high], "unit": "m^3", "reason": None
+        "quantity": "volume", "value": refined["value"], "ci95": [low, high], "unit": "m3", "reason": ""
     }  # fmt: skip
     codes = {each["code"]: each for each in result.document["warnings"]}
     assert ("serial_levels" in codes) == (levels < 121)

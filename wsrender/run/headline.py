@@ -17,15 +17,14 @@ def headline_of(measure: Mapping[str, Any] | None) -> dict[str, Any]:
     return headline(measure["quantity"], measure["value"], measure["ci95"])
 
 
-def headline(quantity: str, value: float, ci95: Sequence[float]) -> dict[str, Any]:
-    """A measure [m³, m² or m] with its 95 % interval, as result documents hold it."""
-    low, high = ci95
+def headline(quantity: str, value: float, ci95: Sequence[float] | None, reason: str = "") -> dict[str, Any]:
+    """A measure [m³, m² or m] with its 95 % interval, or the reason why it has none, as result documents hold it."""
     return {
         "quantity": quantity,
         "value": float(value),
-        "ci95": [float(low), float(high)],
+        "ci95": None if ci95 is None else [float(end) for end in ci95],
         "unit": UNITS[quantity],
-        "reason": "",
+        "reason": reason,
     }
 
 

@@ -18,7 +18,7 @@ from wsrender.parallel.exact import ExactWorkspace
 from wsrender.parallel.mechanism import Mechanism
 from wsrender.parallel.solids import solid_workspace
 from wsrender.result import Result
-from wsrender.run.parallel_headline import headline_entry
+from wsrender.run.headline import headline
 from wsrender.run.parallel_result import mechanism_document, skeleton_at
 from wsrender.volume.table import Table
 
@@ -71,8 +71,8 @@ def boundary_partial(plan: "ParallelPlan") -> "Arrays":
 def _headline(method: str, volume_m3: float) -> dict[str, Any]:
     """The exact volume; that of meshes has no interval."""
     if method == "exact":
-        return headline_entry("volume", "m^3", volume_m3, [volume_m3, volume_m3])
-    return headline_entry("volume", "m^3", volume_m3, None, "balls are meshes of triangles: there is no interval")
+        return headline("volume", volume_m3, [volume_m3, volume_m3])
+    return headline("volume", volume_m3, None, "balls are meshes of triangles: there is no interval")
 
 
 def _notices(region: BallRegion, about: dict[str, Any], method: str) -> Iterator[Notice]:

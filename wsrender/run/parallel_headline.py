@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from wsrender.notices import Notice
+from wsrender.run.headline import headline, no_headline
 from wsrender.run.parallel_lattice import FlatLattice
 from wsrender.volume.volume_data import VolumeData
 
@@ -21,23 +22,17 @@ def refined_of(partial: "Arrays") -> dict[str, Any] | None:
     return json.loads(str(partial["refined"])) if "refined" in partial else None
 
 
-def headline(plan: "ParallelPlan", partial: "Arrays") -> dict[str, Any]:
-    """Quantity, value, 95 % interval, unit and, where there is none, the reason."""
+def workspace_headline(plan: "ParallelPlan", partial: "Arrays") -> dict[str, Any]:
+    """The headline of a result: the refined measure, or why there is none."""
     if plan.job.kind == "orientation":
-        reason = 'only the orientation varies: "orientation_workspace" holds the share that is reached'
-        return headline_entry("volume", "m^3", None, None, reason)
+        return no_headline('only the orientation varies: "orientation_workspace" holds the share that is reached')
     refined = refined_of(partial)
-    name, unit = plan.quantity
+    name, _ = plan.quantity
     if plan.unmeasured:
-        return headline_entry(name, unit, None, None, plan.unmeasured)
+        return no_headline(plan.unmeasured, name)
     if refined is None:
-        return headline_entry(name, unit, None, None, "no refined volume was asked for: give refined_volume")
-    return headline_entry(name, unit, refined["value"], refined["ci95"])
-
-
-def headline_entry(name: str, unit: str, value: float | None, ci95: list[float] | None, reason: str | None = None):
-    """As all result documents hold it."""
-    return {"quantity": name, "value": value, "ci95": ci95, "unit": unit, "reason": reason}
+        return no_headline("no refined volume was asked for: give refined_volume", name)
+    return headline(name, refined["value"], refined["ci95"])
 
 
 def notices(plan: "ParallelPlan", partial: "Arrays", volume: VolumeData | None) -> Iterator[Notice]:

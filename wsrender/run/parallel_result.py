@@ -13,7 +13,7 @@ from wsrender.parallel.local_indices import DETERMINANTS
 from wsrender.parallel.mechanism import Mechanism
 from wsrender.parallel.membership import fault_at, in_base_frame, in_world
 from wsrender.result import Result
-from wsrender.run.parallel_headline import headline, notices, refined_of
+from wsrender.run.parallel_headline import notices, refined_of, workspace_headline
 from wsrender.run.parallel_lattice import FlatLattice, quantity
 from wsrender.run.parallel_singularities import singularities
 from wsrender.run.provenance import job_entry, provenance, robot_entry
@@ -53,7 +53,7 @@ def positions_result(plan: "ParallelPlan", partial: "Arrays", seconds: dict[str,
         document["flat"] = _flat_entry(plan.block, int(found.sum()), refined_of(partial))
     if volume is None:
         document["empty"] = plan.unmeasured or _reason(plan)
-    document["headline"] = headline(plan, partial)
+    document["headline"] = workspace_headline(plan, partial)
     document["warnings"] = [notice.entry() for notice in notices(plan, partial, volume)]
     tables = {}
     if volume and plan.names:
@@ -90,7 +90,7 @@ def orientation_result(plan: "ParallelPlan", partial: "Arrays", seconds: dict[st
             "share_of_ranges_ci95": partial["share"][1:].tolist(),
             "measure": "invariant measure of rotations over the ranges given",
         },
-        "headline": headline(plan, partial),
+        "headline": workspace_headline(plan, partial),
         "timing_s": seconds,
     }
     if not is_reached.any():

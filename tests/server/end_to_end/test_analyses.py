@@ -5,9 +5,11 @@ import io
 import httpx2
 import numpy as np
 import pytest
+from wsrender_server.app import artifacts
 
 import wsrender as ws
 from tests.server.end_to_end.acceptance import PATIENCE_S, QUICK, assert_same_files, comparable, local_result
+from wsrender.export.headline import headline_lines
 from wsrender.spec import ANALYSES
 
 ARM = """<mujoco><worldbody><body><joint name="a" axis="0 0 1" range="-1 1"/><geom size="0.1"/>
@@ -112,6 +114,8 @@ def test_a_job_equals_the_local_run(client, tmp_path, analysis):
     assert job.record["analysis"] == analysis
     result = job.wait(timeout=PATIENCE_S).result()
     assert comparable(result.document) == comparable(local.document)
+    stated = artifacts.ResultDocument.model_validate(local.document)
+    assert headline_lines(local.document) and (stated.headline.value is not None or stated.headline.reason)
     result.save(tmp_path / "remote")
     assert_same_files(tmp_path / "remote", tmp_path / "local")
     assert [found.id for found in client.jobs(analysis=analysis)] == [job.id]
