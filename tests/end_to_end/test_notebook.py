@@ -91,6 +91,13 @@ def test_pictures_stay_whole_beside_pyplots(notebook, analyzed):
     assert png_of(output).startswith(PNG)
 
 
+def test_a_bar_of_work_that_ends_between_two_reports_is_full(notebook):
+    (bar,) = notebook.run(
+        "from wsrender.progress import RunProgress\nwith RunProgress() as progress:\n    progress(3, 4, 'computing')"
+    )
+    assert "100 %" in bar["text/plain"] and 'value="1.0000"' in bar["text/html"]
+
+
 def test_a_bar_of_work_that_fails_is_not_full(notebook):
     (bar,) = notebook.run(
         "from wsrender.progress import RunProgress\n"
