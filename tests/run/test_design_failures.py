@@ -69,7 +69,7 @@ def test_pointers_refer_to_the_document_as_it_was_written():
 
 def test_a_job_in_words_of_its_own_is_read_back_and_may_name_defaults():
     job = turn_and_slide()
-    pointers = ["/robot/dh/rows/0/alpha_deg", "/robot/dh/rows/0/a", "/robot/dh/rows/1/limits/1", "/cells"]
+    pointers = ["/robot/dh/rows/0/alpha_deg", "/robot/dh/rows/0/a", "/robot/dh/rows/1/limits/1", "/sampling/seed"]
     document = {
         "analysis": "design_optimization",
         "design": job,

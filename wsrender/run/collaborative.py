@@ -11,7 +11,7 @@ from wsrender.multi.body_elements import body_elements
 from wsrender.reachability import Event
 from wsrender.result import Result
 from wsrender.robot import Robot
-from wsrender.run.headline import headline, no_headline
+from wsrender.run.headline import headline_of, no_headline
 from wsrender.run.one_shard import OneShard
 from wsrender.run.provenance import job_entry, provenance, robot_entry
 from wsrender.run.refined import Progress, refined_together, volume_entry
@@ -23,6 +23,7 @@ from wsrender.spec.sampling import Random
 from wsrender.volume.table import Table
 
 POSITIONS_PER_S = 2e6  # of one CPU core
+BIASED = 'the body-elemental volume is biased; "refined_volume" gives the true one of two robots'
 
 
 @dataclass(eq=False)
@@ -79,7 +80,8 @@ class CollaborativePlan(OneShard):
         """Means and variances over the seeds, and the bias where the true volume is known."""
         volumes, job = partial["volumes"], self.job
         mean, variance = volumes.mean(axis=0), _variance(volumes)
-        true = volume_entry(json.loads(str(partial["refined"]))["true"]) if "refined" in partial else None
+        measure = json.loads(str(partial["refined"]))["true"] if "refined" in partial else None
+        true = None if measure is None else volume_entry(measure)
         document = {
             "analysis": "collaborative_volume",
             "job": job_entry(job, *self.robots),
@@ -99,7 +101,7 @@ class CollaborativePlan(OneShard):
                 "boundary": float(partial["cells"][:, 1].mean()),
             },
             "volume_m3": {"body_elemental": float(mean[-1]), "true": true},
-            "headline": _headline(true),
+            "headline": no_headline(BIASED) if measure is None else headline_of(measure),
             "provenance": provenance("float64", self.target, seed=job.seed),
             "timing_s": seconds,
         }
@@ -119,13 +121,6 @@ def plan_collaborative(
         source.array() if isinstance(source, PointSet) else left_to_place.pop(0) for source in (job.left, job.right)
     )
     return CollaborativePlan(job, robots, (left, right), *settled_device(job.device, resolved))
-
-
-def _headline(true: dict[str, Any] | None) -> dict[str, Any]:
-    """The true volume with its interval; the algorithm's own is biased both ways."""
-    if true is None:
-        return no_headline('the body-elemental volume is biased; "refined_volume" asks for the true one')
-    return headline("volume", true["value"], true["ci95"])
 
 
 def _variance(volumes: np.ndarray) -> np.ndarray | None:
