@@ -157,6 +157,25 @@ def test_objectives_are_looked_up_before_the_first_design_runs(monkeypatch, obje
     assert counts == [design_values.FEW_SAMPLES]
 
 
+def test_the_look_at_a_result_refines_no_volume_that_no_objective_reads(monkeypatch):
+    jobs = []
+    execute = steps.execute
+
+    def seen(job, *args, **execution):
+        jobs.append(job)
+        return execute(job, *args, **execution)
+
+    monkeypatch.setattr(steps, "execute", seen)
+    rows = [{"a": 0.4, "limits_deg": [-90, 90]}, {"a": 0.3, "limits_deg": [-90, 90]}]
+    robot = {"dh": {"convention": "standard", "rows": rows}}
+    design = {"analysis": "workspace", "robot": robot, "sampling": {"method": "sobol", "count": 500}, "device": "cpu"}
+    lengths = [{"name": "a", "pointers": "/robot/dh/rows/0/a", "bounds": [0.3, 0.5]}]
+    swept(design | {"task": ["x", "y"]}, lengths, [{"value": "/bounds_m/upper/0"}], steps=1)
+    look, run = jobs[-2:]
+    assert (look.sampling.count, run.sampling.count) == (design_values.FEW_SAMPLES, 500)
+    assert look.refined_volume is run.refined_volume is None
+
+
 def test_a_search_looks_for_a_feasible_design_first():
     """Balls 0 … 400 apart meet in a two-hundredth of that: the first five designs are empty."""
     search = {"method": "differential_evolution", "population": 5, "generations": 100, "seed": 2}

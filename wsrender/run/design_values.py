@@ -77,10 +77,10 @@ class Evaluator:
         """Look the objectives up in the result of a small run in the middle of the bounds, where there is one."""
         space = self.plan.space
         middle = (space.lower + space.upper) / 2
-        document = self.plan.document_of(middle)
-        if (small := with_few_samples(document)) == document:
-            return  # a design takes no longer
         try:
+            document = self._inner_job(middle).model_dump(mode="json")
+            if (small := with_few_samples(document)) == document:
+                return  # a design takes no longer
             result = self._run(parse_job(small))
         except FAULTS:
             return  # the first design that has a result will tell
