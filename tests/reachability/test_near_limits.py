@@ -4,13 +4,16 @@ from importlib import import_module
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 import wsrender as ws
 from tests.reachability.near_limits import ACCURACY, ARMS, MOST_UNDECIDED, offset_chain, tallies, targets_at
 from tests.run.simple_robots import gantry
+from wsrender.engine import Accuracy, Tries, solve_inverse
 from wsrender.reachability import InverseSolver, Solutions, refined_volume
-from wsrender.reachability.evidence import REACHABLE, UNDECIDED, UNREACHABLE
+from wsrender.reachability.evidence import REACHABLE, UNDECIDED, UNREACHABLE, Evidence
 from wsrender.reachability.starts import MOST_CORNERS, corners, towards_limits
+from wsrender.robots.reachable_box import reachable_box
 
 COUNT = 100  # targets for each arm, margin and kind; tests/long.py takes 2,000
 
@@ -41,6 +44,43 @@ def test_poses_out_of_reach_stay_decided():
     found = InverseSolver(robot.chain, kind="pose", **ACCURACY).solve(position, axes)
     assert (found.label == UNREACHABLE).mean() > 0.9
     assert (found.label == UNDECIDED).mean() <= 0.005
+
+
+@pytest.mark.parametrize(
+    ("on_limit", "residual_m", "enough"), [(False, 0.1, 32), (True, 0.1, 100), (False, 0.01, 200), (True, 0.01, 200)]
+)
+def test_ends_on_limits_and_narrow_misses_need_a_long_search(on_limit, residual_m, enough):
+    chain = ws.load_robot("franka_panda").chain
+    q = (chain.lower_limits + chain.upper_limits) / 2
+    q[3] = chain.upper_limits[3] if on_limit else q[3]
+    evidence = Evidence(chain, "pose", Accuracy(1e-5, 1e-5, chain.reach / 2), np.zeros(1, bool))
+    no, yes, residual = np.zeros(1, bool), np.ones(1, bool), np.full(1, residual_m)
+    for _ in range(enough - 1):
+        evidence.record(Tries(q[None], residual, np.zeros(1), no, yes), residual[None])
+    assert evidence.label[0] == UNDECIDED
+    evidence.record(Tries(q[None], residual, np.zeros(1), no, yes), residual[None])
+    assert evidence.label[0] == UNREACHABLE
+
+
+@pytest.mark.parametrize("name", ["ur5e", "puma560", "articulated"])
+def test_poses_out_of_reach_take_few_tries(name, monkeypatch):
+    """No more than six times the 32 that sufficed while ends on limits counted as others do."""
+    robot, taken = ws.load_robot(name), []
+
+    def counted(chain, targets, *rest, **options):
+        taken.append(len(targets))
+        return solve_inverse(chain, targets, *rest, **options)
+
+    low, high = reachable_box(robot.chain, robot.lower_limits, robot.upper_limits)
+    position = np.random.default_rng(2).uniform(low, high, (2_000, 3))
+    axes = Rotation.random(2_000, random_state=1).as_matrix()
+    solver = InverseSolver(robot.chain, kind="pose", **ACCURACY)
+    found = solver.solve(position, axes)
+    searched = (found.label != REACHABLE) & ~found.proven
+    monkeypatch.setattr("wsrender.reachability.inverse_solver.solve_inverse", counted)
+    solver.solve(position[searched], axes[searched])
+    print("TRIES", name, sum(taken) / searched.sum(), (found.label == UNDECIDED).sum())
+    assert sum(taken) <= 6 * 32 * searched.sum()
 
 
 @pytest.mark.parametrize("elbow_deg", [None, (-170, 0)], ids=["elbow turns", "elbow stops when stretched"])

@@ -12,7 +12,7 @@ from wsrender.robots.reachable_box import reachable_box
 
 RECOVERED = 0.995  # share of targets made by forward kinematics, to 1e-4 m
 EXACT = 1e-9  # m and rad: nothing lies so near the boundary by chance
-UNDECIDED = 0.01
+UNDECIDED = 0.005
 
 
 def forward(robot, count, seed=0):
