@@ -1,14 +1,16 @@
 """Model files that others publish, all of them: each loads, or is refused for a reason that is in the table.
 
-The packages are the extra ``test-models``. Run it whole with ``python -m tests.robots.model_packages``.
+The packages are the extra ``test-models``. ``PARTS`` and ``violations`` make it a long measurement: all files,
+a quarter in each part.
 """
 
 import re
 import sys
 import warnings
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -18,6 +20,7 @@ from wsrender.errors import FrameNotFoundError, ModelError
 from wsrender.robots.model_warning import ModelWarning
 
 SUFFIXES = (".urdf", ".xml", ".xacro", ".sdf")
+UNSTATED = "refused for no reason of the table:"
 MOST_CHOICES = 3  # of base and tip, one after the other, before a file counts as refused
 
 # Why a file is refused: the reason in the message, and in words.
@@ -103,11 +106,18 @@ def whole(part: slice = slice(None)) -> Sequence[Outcome]:
     return [outcome(file) for file in files()[part]]
 
 
-if __name__ == "__main__":
-    found = whole()
-    told = Counter(each.reason if each.reason is not None else f"NOT IN THE TABLE: {each.message}" for each in found)
-    for reason, count in told.most_common():
-        print(count, reason or "loaded")
-    for each in found:
-        if each.reason is None:
-            print(each.file, each.choices, each.message)
+def counted(part: slice) -> dict[str, int]:
+    """How many files of a part loaded, and were refused for each reason; by name where that is not in the table."""
+    found = whole(part)
+    named = (
+        f"{UNSTATED} {each.file}: {each.message}" if each.reason is None else each.reason or "loaded" for each in found
+    )
+    return dict(Counter(named).most_common())
+
+
+def violations(figures: Mapping[str, Mapping[str, int]]) -> list[str]:
+    """The files that were refused for no reason of the table."""
+    return [said for counts in figures.values() for said in counts if said.startswith(UNSTATED)]
+
+
+PARTS = {f"{first + 1} of 4": partial(counted, slice(first, None, 4)) for first in range(4)}

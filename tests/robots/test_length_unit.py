@@ -64,6 +64,7 @@ def rail(limits):
     [
         (arm(300), "300 m .the tip beyond the last joint alone 300 m."),
         (arm(0.3, slide=rail("0 400")), "401 m .the range of slide 'rail' alone 400 m."),
+        (arm(0.3, slide=rail("-400 400")), "401 m .the range of slide 'rail' alone 400 m."),
         (arm(0.3, before=rail("0 400")), "401 m .the range of slide 'rail' alone 400 m."),
     ],
 )

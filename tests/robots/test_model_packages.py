@@ -15,11 +15,16 @@ if not (FILES := model_packages.files()):
 
 
 def test_a_sample_loads_or_is_refused_for_a_stated_reason():
-    found = model_packages.whole(slice(None, None, EVERY))
-    unstated = [(str(each.file), each.message) for each in found if each.reason is None]
-    assert not unstated
-    assert len(found) == -(-len(FILES) // EVERY)
-    assert sum(each.reason == "" for each in found) > 0
+    found = model_packages.counted(slice(None, None, EVERY))
+    assert model_packages.violations({"sample": found}) == []
+    assert sum(found.values()) == -(-len(FILES) // EVERY)
+    assert found["loaded"] > 0
+
+
+def test_a_reason_that_is_not_in_the_table_is_told():
+    unknown = model_packages.Outcome(FILES[0], "something else")
+    assert unknown.reason is None
+    assert model_packages.violations({"a part": {"loaded": 2, f"{model_packages.UNSTATED} file: said": 1}}) != []
 
 
 # Files that show one fault of a kind each: what is said of them, and None where they load.

@@ -76,7 +76,7 @@ def _add_links(spec: mujoco.MjSpec, urdf: Urdf) -> None:
 def _body_name(link: str, urdf: Urdf) -> str:
     """The link's own name, unless it is MuJoCo's name of the ground, which a site on the body then has."""
     name = link
-    while name == _WORLD or (link == _WORLD and name in urdf.links):
+    while link == _WORLD and name in urdf.links:
         name += "_"
     return name
 
