@@ -77,6 +77,12 @@ def test_lengths_beyond_any_arm_are_doubted_until_confirmed(model, said):
     assert robots.load_mjcf(model, length_unit_m=1).chain.reach == robot.chain.reach
 
 
+def test_a_range_that_the_user_gives_a_slide_is_not_doubted():
+    assert robots.load_mjcf(arm(0.3, slide=rail("0 400")), limits={"rail": (0, 400)}).notices == ()
+    with pytest.warns(robots.ModelWarning, match="300 m .the tip beyond the last joint alone 300 m."):
+        robots.load_mjcf(arm(300, slide=rail("0 400")), limits={"rail": (0, 400)})
+
+
 @pytest.mark.parametrize("model", [arm(19.4), arm(0.3, before=rail("-90 90")), arm(0.3, slide=rail("-9 9"))])
 def test_long_arms_and_virtual_bases_are_not_doubted(model):
     assert robots.load_mjcf(model).notices == ()

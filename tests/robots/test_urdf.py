@@ -292,3 +292,17 @@ def test_a_hinge_with_infinite_limits_is_continuous(infinite):
     )
     robot = robots.load_urdf(text)
     assert (robot.chain.periodic[0], robot.notices) == (True, ())
+
+
+@pytest.mark.parametrize("moments", ["0 0 0", "0 1 5", "-1 1 1"])
+@pytest.mark.parametrize("mass", [0, 1, -1])
+@pytest.mark.parametrize("kind", ["fixed", "floating"])
+def test_the_inertia_of_what_no_joint_moves_matters_to_nothing(moments, mass, kind):
+    xx, yy, zz = moments.split()
+    inertia = f'<inertia ixx="{xx}" iyy="{yy}" izz="{zz}"/>'
+    inertial = f'<inertial><mass value="{mass}"/>{inertia}</inertial>'
+    text = tree(joint("f", "a", "b", kind, ""), joint("j", "b", "c"), links="abc")
+    for link in "ab":
+        text = text.replace(f'<link name="{link}"></link>', f'<link name="{link}">{inertial}</link>')
+    assert text.count("<inertial>") == 2
+    assert robots.load_urdf(text, base="b").notices == ()

@@ -18,7 +18,7 @@ NO_LENGTH = 1e-9  # [m]
 
 def doubts(chain: Chain, confirmed: Collection[str], length_confirmed: bool) -> list[Notice]:
     """What a user should check of a chain; limits of the joints ``confirmed`` are the user's own."""
-    found = [_endless(chain), _degrees(chain, confirmed), None if length_confirmed else _lengths(chain)]
+    found = [_endless(chain), _degrees(chain, confirmed), None if length_confirmed else _lengths(chain, confirmed)]
     return [notice for notice in found if notice is not None]
 
 
@@ -34,10 +34,11 @@ def need_ranges(chain: Chain, field: str) -> None:
     )
 
 
-def lengths(chain: Chain) -> dict[str, float]:
+def lengths(chain: Chain, confirmed: Collection[str] = ()) -> dict[str, float]:
     """What the reach of a chain is made of [m], by name: links, the tip, and the largest displacements of slides.
 
-    Slides without limits are left out, and so is a virtual base: slides before any length that go as far to both sides.
+    Left out are slides without limits, those ``confirmed``, and a virtual base: slides before any length that go as far
+    to both sides.
     """
     links = np.linalg.norm(chain.T_joint[:, :3, 3], axis=1)
     found: dict[str, float] = {}
@@ -47,15 +48,15 @@ def lengths(chain: Chain) -> dict[str, float]:
             found[f"the link before joint {name!r}"] = float(links[i])
         virtual = not found and np.isclose(chain.lower_limits[source], -chain.upper_limits[source])
         slide = float(chain.largest_slide[i])
-        if 0.0 < slide < np.inf and not virtual:
+        if 0.0 < slide < np.inf and not virtual and name not in confirmed:
             found[f"the range of slide {name!r}"] = slide
     found["the tip beyond the last joint"] = float(np.linalg.norm((chain.T_tip @ chain.T_tip_tool)[:3, 3]))
     return found
 
 
-def too_long(chain: Chain) -> str:
+def too_long(chain: Chain, confirmed: Collection[str] = ()) -> str:
     """How long a chain is, and what makes it so, where that is no arm's length; empty where it is one's."""
-    parts = lengths(chain)
+    parts = lengths(chain, confirmed)
     if (reach := sum(parts.values())) <= PLAUSIBLE_REACH[1]:
         return ""
     longest = max(parts, key=lambda name: parts[name])
@@ -84,9 +85,9 @@ def _degrees(chain: Chain, confirmed: Collection[str]) -> Notice | None:
     return Notice(ANGLE, message, "correct the model, or give limits_deg", "robot.limits_deg")
 
 
-def _lengths(chain: Chain) -> Notice | None:
-    reach = sum(lengths(chain).values())
-    if message := too_long(chain):
+def _lengths(chain: Chain, confirmed: Collection[str]) -> Notice | None:
+    reach = sum(lengths(chain, confirmed).values())
+    if message := too_long(chain, confirmed):
         remedy = "length_unit_m 0.001 converts millimetres, 1 confirms metres; limits give a slide its range"
         return Notice(LENGTH, f"{message}; lengths must be in metres, not millimetres", remedy, "robot.length_unit_m")
     if NO_LENGTH < reach < PLAUSIBLE_REACH[0] and not chain.endless:

@@ -23,10 +23,10 @@ _SHAPES = {
 def compile_urdf(robot: Element, field: str, length_unit_m: float = 1.0) -> CompiledModel:
     """The compiled model of a ``<robot>`` element, its lengths in ``length_unit_m``.
 
-    Every link, fixed or not, becomes a body of its name; the root link stands still in the world, and its inertia is
-    left out. A link "world" that is not the root is a body of another name with a site "world". Inertia
-    comes from ``<inertial>`` alone. Primitive shapes are kept as massless geometry, meshes are dropped with
-    one notice. Floating and planar joints are held at zero, and noted as faults of the path through
+    Every link, fixed or not, becomes a body of its name; a link "world" that is not the root is a body of another name
+    with a site "world". The root link stands still in the world. Inertia comes from ``<inertial>`` alone, and is left
+    out where no joint moves a link. Primitive shapes are kept as massless geometry, meshes are dropped with one notice.
+    Floating and planar joints are held at zero, and noted as faults of the path through
     them. Joints that cannot be read, which are held too, and revolute ones whose limits are missing, equal or upside
     down are joint faults. Limits that are both 0, as exporters write them where none were set, or infinite count as
     none. Raises ModelError.
@@ -59,6 +59,7 @@ def compile_urdf(robot: Element, field: str, length_unit_m: float = 1.0) -> Comp
 def _add_links(spec: mujoco.MjSpec, urdf: Urdf) -> None:
     world = spec.worldbody
     bodies = {urdf.root: world if urdf.root == _WORLD else world.add_body(name=urdf.root)}
+    standing = {urdf.root}  # links that no joint moves: what they weigh matters to nothing
     _add_shapes(bodies[urdf.root], urdf.links[urdf.root])
     for joint in urdf.joints.values():
         body = bodies[joint.parent].add_body(
@@ -68,7 +69,10 @@ def _add_links(spec: mujoco.MjSpec, urdf: Urdf) -> None:
         if joint.child == _WORLD:
             body.add_site(name=_WORLD)
         _add_shapes(body, urdf.links[joint.child])
-        _add_inertial(body, urdf.links[joint.child])
+        if joint.parent in standing and not joint.movable:
+            standing.add(joint.child)
+        else:
+            _add_inertial(body, urdf.links[joint.child])
         if joint.movable:
             _add_joint(body, joint)
 
