@@ -74,8 +74,9 @@ def test_the_faces_of_a_saved_result_are_those_of_the_result(published, tmp_path
     np.testing.assert_array_equal(found, expected)
 
 
-def test_legs_are_counted_from_one():
+def test_legs_are_counted_from_one(published):
     """Tables of version 0.1 counted from 0, with −1 for none: their pictures name the same legs as new ones."""
+    assert sorted(set(published.tables["surfaces"]["leg"].tolist())) == [0, 1, 2, 3, 4, 5, 6]  # 0: the plane z = 0
     new = Table({"leg": np.array([1, 2, 1, 0]), "limit": np.array(["upper", "upper", "lower", ""])})
     old = Table({"leg": np.array([0, 1, 0, -1]), "limit": np.array(["upper", "upper", "lower", ""])})
     balls = Table({"leg": np.array([-1, -1]), "limit": np.array(["", ""])})
