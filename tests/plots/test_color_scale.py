@@ -7,6 +7,7 @@ from matplotlib.colors import BoundaryNorm
 from wsrender import plots
 from wsrender.plots.color_scale import color_scale
 from wsrender.plots.style import new_figure
+from wsrender.volume.distribution_map import DistributionMap
 from wsrender.volume.volume_data import VolumeData
 
 VALUES = np.random.default_rng(0).uniform(2.0, 3.0, 1000)
@@ -55,6 +56,21 @@ def test_both_signs_have_zero_in_the_middle():
     assert max(red, green, blue) - min(red, green, blue) < 0.02 and red < 0.9  # grey: not the white of what is empty
     assert (scale(0.5)[0] > scale(0.5)[2]) and (scale(-0.5)[2] > scale(-0.5)[0])
     assert not color_scale(np.linspace(-1e-12, 1.0, 100), "rounding").diverging
+
+
+def test_determinants_of_one_sign_are_drawn_around_zero_too():
+    """In volumes and maps: which sign it is says on which side of a singularity a pose is."""
+    values = np.linspace(-0.5, -0.1, 60)
+    cells = values.reshape(5, 4, 3)
+    names = {"center": {"determinant_A": cells, "width": -cells}}
+    volume = VolumeData(0.1, (0, 0, 0), np.ones(cells.shape, int), names)
+    samples = DistributionMap(
+        np.random.default_rng(0).normal(size=(60, 3)), {"determinant_A": values, "width": -values}
+    )
+    for index, limits in (("determinant_A", (-0.5, 0.5)), ("width", (0.1, 0.5))):
+        for figure in (plots.slice_plane(volume, index=index), plots.scatter(samples, index)):
+            assert figure.axes[-1].get_ylim() == pytest.approx(limits)
+    assert plots.slice_plane(volume, index="determinant_A").axes[-1].get_ylabel() == "Determinant A"
 
 
 @pytest.mark.parametrize("values", [[1, 2], [0, 1, 5, 9], [3]])

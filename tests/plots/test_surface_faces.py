@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import trimesh
@@ -7,8 +9,11 @@ from tests.parallel.ball_regions import region
 from wsrender.errors import InputError
 from wsrender.parallel.ball_surfaces import surface_table
 from wsrender.parallel.exact import ExactWorkspace
+from wsrender.plots.camera import Camera
+from wsrender.plots.depth import DepthBuffer
 from wsrender.plots.faces import faces_of, leg_numbers
-from wsrender.plots.surface_faces import in_sight, surface_faces
+from wsrender.plots.patches import faces_of_patches
+from wsrender.plots.surface_faces import in_sight, shaded, surface_faces
 from wsrender.volume.table import Table
 
 LENS = region([(0, 0, 0, 1), (1, 0, 0, 1)])  # two unit balls: two caps that share one circle
@@ -64,6 +69,40 @@ def test_a_picture_names_every_face_and_a_mesh_without_faces_has_one_colour(publ
         surface_faces(faces_of(trimesh.Trimesh(), None))
     with pytest.raises(InputError, match="the result has no 'other'; it holds workspace"):
         published.plot.surface("other")
+
+
+def slivers():
+    """A part of a unit sphere around (1, 2, 3) whose triangles are long and thin, and the table that knows it."""
+    angle = np.linspace(0.2, 1.3, 60)
+    rim = [
+        np.column_stack([np.sin(t) * np.cos(angle), np.sin(t) * np.sin(angle), np.full(60, np.cos(t))])
+        for t in (0.5, 1)
+    ]
+    k = np.arange(59)
+    triangles = np.concatenate([np.column_stack([k, k + 60, k + 1]), np.column_stack([k + 1, k + 60, k + 61])])
+    mesh = trimesh.Trimesh(np.concatenate(rim) + np.array([1, 2, 3]), triangles, process=False)
+    mesh.face_attributes["surface"] = np.zeros(len(triangles), np.int64)
+    nan = np.array([np.nan])
+    columns = {"kind": np.array(["sphere"]), "point": np.array([[1.0, 2, 3]]), "axis": np.full((1, 3), np.nan)}
+    numbers = {"radius_m": np.array([1.0]), "tube_radius_m": nan, "half_angle_rad": nan}
+    return mesh, Table(columns | numbers | {"generated_by": np.array(["joint1 upper"])})
+
+
+def test_a_smooth_patch_is_lit_smoothly_however_its_triangles_lie():
+    mesh, table = slivers()
+    faces = faces_of_patches(mesh, table)
+    np.testing.assert_allclose(faces.normals, faces.corners - [1, 2, 3], atol=1e-9)
+
+
+def test_brightness_changes_smoothly_within_a_face():
+    ball = trimesh.creation.icosphere(2, 1.0)
+    ball.face_attributes["surface"] = np.zeros(len(ball.faces), np.int64)
+    faces = replace(faces_of(ball, None), labels={0: "ball"})
+    camera = Camera(np.zeros(3), np.array([0.0, 1, 0]), np.array([0.0, 0, 1]), 1.2)
+    corners, colors = shaded(faces, camera)
+    image = DepthBuffer.of(camera, (200, 200), corners).image(colors)
+    bright = image[50:150, 50:150, 0]
+    assert np.ptp(bright) > 0.1 and np.abs(np.diff(bright, axis=0)).max() < 0.02
 
 
 def test_the_faces_of_a_saved_result_are_those_of_the_result(published, tmp_path):

@@ -16,6 +16,7 @@ NUMBER_SIZE, NAME_SIZE = 8.0, 9.0  # of letters [pt]
 _LETTER = (0.64 / 72, 1.05 / 72)  # width and height of a letter of 1 pt [in]
 _GAP = (0.07, 0.06)  # from the box to its numbers, from these to the name [in]
 _FURTHER, _MOST_STEPS = 0.05, 40  # step by which a name gives way to something else [in], and how often it does
+_CORNER = 0.08  # least distance between the numbers of two axes [in]
 _APART = (0.09, 0.03)  # least distances between two numbers [in]
 _MARGIN = (0.58, 0.43)  # free border left and right, above and below the box [in]
 _MOST_MARGIN = 0.2  # of the picture's half width and height, where it is small
@@ -33,10 +34,10 @@ class Label:
     half: tuple[float, float]
     upright: bool = False  # to be read from the right
 
-    def overlaps(self, other: "Label") -> bool:
-        """Whether the texts would be written over each other."""
+    def overlaps(self, other: "Label", gap: float = 0.0) -> bool:
+        """Whether the texts would be written over each other, or nearer to each other than ``gap``."""
         apart = abs(self.x - other.x), abs(self.y - other.y)
-        return all(apart[k] < self.half[k] + other.half[k] for k in (0, 1))
+        return all(apart[k] < self.half[k] + other.half[k] + gap for k in (0, 1))
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,7 +75,7 @@ class Space:
         found: list[Label] = []
         rows = [self._numbers(axis) for axis in range(3)]
         for number in (number for row in rows for number in row):
-            if not any(number.overlaps(other) for other in found):
+            if not any(number.overlaps(other, _CORNER * self.inch) for other in found):
                 found.append(number)
         for axis, row in enumerate(rows):
             found.append(self._name(axis, row, found))

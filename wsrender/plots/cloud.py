@@ -4,7 +4,7 @@ import numpy as np
 
 from wsrender.errors import InputError
 from wsrender.plots.box import AZIMUTH_DEG, THINNEST
-from wsrender.plots.color_scale import ColorScale, color_scale
+from wsrender.plots.color_scale import SIGNED, ColorScale, color_scale
 from wsrender.plots.style import quantity
 from wsrender.volume.distribution_map import DistributionMap
 
@@ -20,7 +20,7 @@ def scale_of(samples: DistributionMap, index: str | None) -> tuple[ColorScale, n
         return None
     index = checked_index(samples, index)
     values = samples.indices[index]
-    return color_scale(values, quantity(index, samples.units.get(index))), values
+    return color_scale(values, quantity(index, samples.units.get(index)), index.startswith(SIGNED)), values
 
 
 def checked_index(samples: DistributionMap, index: str | None) -> str:

@@ -16,6 +16,7 @@ from wsrender.plots.style import INK, color_map
 
 # Red and blue around grey (Moreland 2009): colour-blind safe, and 0 is told from the white of what is empty.
 DIVERGING = "coolwarm"
+SIGNED = "determinant"  # start of the names of indices whose sign says on which side of a singularity a pose is
 MOST_STEPS = 12  # whole numbers that have a step of the bar each
 _INNER = (2.0, 98.0)  # percentiles of the values that decide what an outlier is
 _REACH = 1.0  # how far beyond them values are none, relative to what lies between them
@@ -74,8 +75,8 @@ class ColorScale:
         return bar
 
 
-def color_scale(values: np.ndarray, label: str) -> ColorScale:
-    """The scale of values; NaN count for nothing.
+def color_scale(values: np.ndarray, label: str, signed: bool = False) -> ColorScale:
+    """The scale of values; NaN count for nothing. ``signed`` values have 0 in the middle even if all are of one sign.
 
     Whole numbers, up to twelve, have a step of the bar each. Values of both signs are drawn in two colours, equally far
     to either side of 0. Limits are the least and the largest value that is no outlier: that lies no further from the
@@ -84,7 +85,7 @@ def color_scale(values: np.ndarray, label: str) -> ColorScale:
     known = np.asarray(values, np.float64).ravel()
     known = known[np.isfinite(known)]
     low, high = (float(known.min()), float(known.max())) if len(known) else (0.0, 1.0)
-    if np.array_equal(known, np.round(known)):
+    if not signed and np.array_equal(known, np.round(known)):
         if high - low < MOST_STEPS:
             return _steps(np.arange(low, high + 1), label)
         ticks = MaxNLocator(integer=True)
@@ -93,7 +94,7 @@ def color_scale(values: np.ndarray, label: str) -> ColorScale:
     if high - low <= _ROUNDING * max(abs(low), abs(high)):
         return _steps(np.array([low]), label)
     lower, upper = _without_outliers(known)
-    if low < -_ROUNDING * high and high > _ROUNDING * -low:
+    if signed or (low < -_ROUNDING * high and high > _ROUNDING * -low):
         size = max(-lower, upper)
         return ColorScale(Normalize(-size, size), mpl.colormaps[DIVERGING], label, _ends(low < -size, high > size))
     return ColorScale(Normalize(lower, upper), color_map(), label, _ends(low < lower, high > upper), ticks)

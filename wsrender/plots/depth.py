@@ -17,18 +17,21 @@ class DepthBuffer:
     """What of some triangles is seen at each pixel.
 
     ``nearest`` (height, width) is the number of the triangle, -1 where there is none; ``nearness`` (height, width) how
-    much nearer to the eye than the camera's centre it is there [m].
+    much nearer to the eye than the camera's centre it is there [m]; ``shares`` (height, width, 2) how much of its
+    second and third corner the place is.
     """
 
     camera: Camera
     nearest: np.ndarray
     nearness: np.ndarray
+    shares: np.ndarray
 
     @classmethod
     def of(cls, camera: Camera, size: tuple[int, int], corners: np.ndarray) -> "DepthBuffer":
         """Of triangles with corners (T, 3, 3) [m] in a picture of ``size`` (width, height) pixels."""
         width, height = (OVERSAMPLING * pixels for pixels in size)
-        buffer = cls(camera, np.full((height, width), -1), np.full((height, width), -np.inf))
+        shape = height, width
+        buffer = cls(camera, np.full(shape, -1), np.full(shape, -np.inf), np.zeros((*shape, 2), np.float32))
         flat = corners.reshape(-1, 3)
         pixels = buffer._pixels(flat).reshape(-1, 3, 2)
         near = camera.nearness(flat).reshape(-1, 3)
@@ -54,13 +57,16 @@ class DepthBuffer:
         return seen & (before > self.camera.nearness(points) + lifted)
 
     def image(self, colors: np.ndarray, alpha: float = 1.0) -> np.ndarray:
-        """The triangles in colours (T, 3) with an opacity, RGBA 0 … 1 (height, width, 4) of the picture's pixels."""
+        """RGBA 0 … 1 (height, width, 4) of the picture's pixels; ``colors`` (T, 3, 3) are those of corners."""
         height, width = self.nearest.shape
-        seen = self.nearest >= 0
-        image = np.zeros((height, width, 4))
-        image[seen, :3], image[..., 3] = colors[self.nearest[seen]], seen
+        seen = np.flatnonzero(self.nearest.ravel() >= 0)
+        a, b, c = colors[self.nearest.ravel()[seen]].astype(np.float32).transpose(1, 0, 2)
+        u, v = self.shares.reshape(-1, 2)[seen].T[..., None]
+        flat = np.zeros((height * width, 4), np.float32)
+        flat[seen, :3], flat[seen, 3] = a + u * (b - a) + v * (c - a), 1
         n = OVERSAMPLING
-        image = image.reshape(height // n, n, width // n, n, 4).mean(axis=(1, 3))
+        rows = flat.reshape(height, width, 4)
+        image = np.mean([rows[i::n, j::n] for i in range(n) for j in range(n)], axis=0)
         image[..., :3] /= np.maximum(image[..., 3:], 1e-12)
         image[..., 3] *= alpha
         return image.clip(0, 1)
@@ -92,6 +98,7 @@ class DepthBuffer:
         front = front[np.argsort(depth[front], kind="stable")]  # of one pixel's the nearest is written last
         self.nearness.ravel()[cell[front]] = depth[front]
         self.nearest.ravel()[cell[front]] = rows[triangle[front]]
+        self.shares.reshape(-1, 2)[cell[front]] = np.stack([u[front], v[front]], axis=1)
 
 
 def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:

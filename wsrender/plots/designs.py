@@ -61,7 +61,8 @@ def _draw_surface(figure: Figure, grid: np.ndarray, scale: ColorScale, names: tu
     view = add_view(figure, points, (0.0, 0.3, 4.5, 3.9), -125.0, 28.0, stretch=stretch, names=labels)
     if len(cells):
         corners = np.concatenate([cells[:, [0, 1, 2]], cells[:, [0, 2, 3]]]) * stretch
-        view.add_surface(corners, np.tile(scale(cells[:, :, 2].mean(axis=1))[:, :3], (2, 1)))
+        colors = np.tile(scale(cells[:, :, 2].mean(axis=1))[:, :3], (2, 1))
+        view.add_surface(corners, np.repeat(colors[:, None], 3, axis=1))
 
 
 def _levels(scale: ColorScale) -> list[float]:

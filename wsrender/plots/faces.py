@@ -18,6 +18,7 @@ PLAIN: Color = (0.45, 0.62, 0.75)
 # Okabe and Ito 2008, told apart by the colour-blind: of each leg one for its upper limit and a pale one for its lower.
 _LEGS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#b8a800", "#56b4e9")
 _PALE = 0.5
+_CREASE = 0.77  # cosine of the angle between a triangle and the mean around its corner from which on it is an edge
 _GREYS = ("#8c8c8c", "#a6a6a6", "#bfbfbf", "#707070", "#d9d9d9", "#595959")
 
 
@@ -25,7 +26,8 @@ _GREYS = ("#8c8c8c", "#a6a6a6", "#bfbfbf", "#707070", "#d9d9d9", "#595959")
 class Faces:
     """Triangles (T, 3) of vertices (V, 3) [m]; ``number`` (T,) says which face each belongs to.
 
-    ``labels`` and ``colors`` are of the numbers that occur.
+    ``labels`` and ``colors`` are of the numbers that occur; ``normals`` (T, 3, 3) those of the true surface at the
+    corners of each triangle, outwards, where it is known.
     """
 
     vertices: np.ndarray
@@ -33,6 +35,7 @@ class Faces:
     number: np.ndarray
     labels: Mapping[int, str]
     colors: Mapping[int, Color]
+    normals: np.ndarray | None = None
 
     @property
     def corners(self) -> np.ndarray:
@@ -47,6 +50,30 @@ class Faces:
         there, back = (np.sort((p.astype(np.int64) * count + q).ravel()) for p, q in ((a, b), (b, a)))
         return np.array_equal(there, back) and float(np.linalg.det(self.corners - self.vertices[0]).sum()) > 0
 
+    def facets(self) -> np.ndarray:
+        """Unit normals (T, 3) of the triangles; 0 of those without area."""
+        return _unit(self._across())
+
+    def smooth_normals(self) -> np.ndarray:
+        """Unit normals (T, 3, 3) at the corners: means of the triangles that meet there in a face, by their areas.
+
+        A surface that is not known by its faces keeps its creases: corners where a triangle is far from the mean.
+        """
+        at = self.number[:, None] * len(self.vertices) + self.triangles
+        at = np.unique(at, return_inverse=True)[1].reshape(at.shape)
+        across = np.repeat(self._across(), 3, axis=0)
+        total = np.stack([np.bincount(at.ravel(), across[:, k]) for k in range(3)], axis=1)
+        smooth = _unit(total)[at]
+        if self.labels:
+            return smooth
+        own = np.broadcast_to(self.facets()[:, None], smooth.shape)
+        return np.where((own * smooth).sum(axis=2, keepdims=True) > _CREASE, smooth, own)
+
+    def _across(self) -> np.ndarray:
+        """Normals (T, 3) of the triangles, twice as long as their areas."""
+        a, b, c = self.corners.transpose(1, 0, 2)
+        return np.cross(b - a, c - a)
+
     def borders(self) -> tuple[np.ndarray, np.ndarray]:
         """Vertices (E, 2) of the sides that two faces share, and where three or more faces meet, (C,)."""
         sides = np.sort(self.triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
@@ -56,6 +83,12 @@ class Faces:
         between = (sides[1:] == sides[:-1]).all(axis=1) & (number[1:] != number[:-1])
         at = np.unique(np.stack([self.triangles.ravel(), np.repeat(self.number, 3)], axis=1), axis=0)
         return sides[1:][between], np.flatnonzero(np.bincount(at[:, 0], minlength=len(self.vertices)) > 2)
+
+
+def _unit(vectors: np.ndarray) -> np.ndarray:
+    """Vectors (…, 3) of length 1; 0 stays 0."""
+    length = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return vectors / np.where(length > 0, length, 1.0)
 
 
 def faces_of(mesh: "trimesh.Trimesh", table: Table | None) -> Faces:

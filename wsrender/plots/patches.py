@@ -1,5 +1,6 @@
 """The patches of a spatial arm's boundary as faces in their colours."""
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -22,7 +23,41 @@ def faces_of_patches(mesh: "trimesh.Trimesh", patches: Table) -> Faces:
     rgba = np.asarray(visual.face_colors)[first] / 255.0
     colors = {int(k): (float(r), float(g), float(b)) for k, (r, g, b, _) in zip(present, rgba, strict=True)}
     labels = {k: _label(patches, k) for k in present[:_LISTED].tolist()}
-    return Faces(np.asarray(mesh.vertices), np.asarray(mesh.faces), number, labels, colors)
+    faces = Faces(np.asarray(mesh.vertices), np.asarray(mesh.faces), number, labels, colors)
+    return replace(faces, normals=_normals(faces, patches))
+
+
+def _normals(faces: Faces, patches: Table) -> np.ndarray:
+    """Normals (T, 3, 3) at corners: those of plane, sphere, cylinder and torus by their numbers, others by the mesh.
+
+    Where a patch is cut its triangles may be slivers, which do not say how the surface lies.
+    """
+    normals = faces.smooth_normals()
+    for k in np.unique(faces.number):
+        rows = faces.number == k
+        known = _known_normals(faces.corners[rows], patches, int(k))
+        if known is not None:
+            outwards = np.sign((known * normals[rows]).sum())
+            normals[rows] = outwards * known
+    return normals
+
+
+def _known_normals(points: np.ndarray, patches: Table, k: int) -> np.ndarray | None:
+    """Unit normals (…, 3) of a patch at points on it, to one of its sides; None where its kind does not say them."""
+    kind, axis = str(patches["kind"][k]), patches["axis"][k]
+    away = points - patches["point"][k]
+    radial = away - (away @ axis)[..., None] * axis
+    if kind == "plane":
+        normals = np.broadcast_to(axis, points.shape)
+    elif kind == "sphere":
+        normals = away
+    elif kind == "cylinder":
+        normals = radial
+    elif kind == "torus":
+        normals = away - patches["radius_m"][k] * radial / np.linalg.norm(radial, axis=-1, keepdims=True).clip(1e-12)
+    else:
+        return None
+    return normals / np.linalg.norm(normals, axis=-1, keepdims=True).clip(1e-12)
 
 
 def _label(patches: Table, k: int) -> str:

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from wsrender.errors import InputError
-from wsrender.plots.color_scale import ColorScale, color_scale
+from wsrender.plots.color_scale import SIGNED, ColorScale, color_scale
 from wsrender.plots.style import INK, Heading, new_figure, paper_style, quantity
 from wsrender.plots.view import inches
 from wsrender.volume.volume_data import VolumeData
@@ -17,6 +17,7 @@ from wsrender.volume.voxels import Voxels
 
 NAMES = "xyz"
 ACROSS = ((1, 2), (0, 2), (0, 1))  # horizontal and vertical axis of the plane normal to x, y, z
+_PLAIN = ("center", "value")  # statistics that are the index itself
 _SPARSE = 0.25  # least share of the voxels of the fullest plane that the plane at 0 is shown with
 _THINNEST = 0.25  # least extent of a drawn plane, relative to its longest: planar sets keep a legible panel
 _LARGEST = (9.6, 4.0)  # width of all planes of a row together, and height of one [in]
@@ -141,13 +142,14 @@ def voxel_field(volume: VolumeData, index: str | None, statistic: str | None) ->
         raise InputError("volume", "has no occupied voxel, so there is nothing to draw")
     voxels = volume.voxels
     if statistic == "count" or not (volume.statistics or statistic or index):
-        values, label = np.where(voxels.count > 0, voxels.count, np.nan), "Samples per voxel"
-    else:
-        values, label = _statistic(volume, index, statistic)
-    return Field(voxels, values, color_scale(values, label))
+        values = np.where(voxels.count > 0, voxels.count, np.nan)
+        return Field(voxels, values, color_scale(values, "Samples per voxel"))
+    name, values, label = _statistic(volume, index, statistic)
+    return Field(voxels, values, color_scale(values, label, name.startswith(SIGNED)))
 
 
-def _statistic(volume: VolumeData, index: str | None, statistic: str | None) -> tuple[np.ndarray, str]:
+def _statistic(volume: VolumeData, index: str | None, statistic: str | None) -> tuple[str, np.ndarray, str]:
+    """Name of the index, its values (V,) and their label."""
     if statistic is None:
         statistic = next(iter(sorted(volume.statistics, key=lambda name: name != "maximum")), "maximum")
     if statistic not in volume.statistics:
@@ -157,7 +159,8 @@ def _statistic(volume: VolumeData, index: str | None, statistic: str | None) -> 
         index = next(iter(by_index))
     if index not in by_index:
         raise InputError("index", f"the volume has no {index!r}; it holds {_listed(by_index)}")
-    return by_index[index], quantity(f"{statistic} of {index}", volume.units.get(index))
+    name = index if statistic in _PLAIN else f"{statistic} of {index}"
+    return index, by_index[index], quantity(name, volume.units.get(index))
 
 
 def _listed(names) -> str:

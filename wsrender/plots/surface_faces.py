@@ -55,15 +55,17 @@ def surface_faces(faces: Faces, *, title: Heading | str = "", frame: str = "worl
 
 
 def shaded(faces: Faces, camera: Camera, light: np.ndarray = _LIGHT) -> tuple[np.ndarray, np.ndarray]:
-    """Corners (T, 3, 3) [m] and colours (T, 3) of what can be seen of the faces, lit from a direction ``light`` (3,).
+    """Corners (T, 3, 3) [m] and their colours (T, 3, 3) of what can be seen, lit from a direction ``light`` (3,).
 
-    The back of a closed surface cannot: it has a front before it.
+    The back of a closed surface cannot: it has a front before it. Brightness changes smoothly within a face.
     """
-    corners, normals = faces.corners, _normals(faces.corners)
+    corners = faces.corners
+    at_corners = faces.smooth_normals() if faces.normals is None else faces.normals
+    lit = at_corners @ (light / np.linalg.norm(light))
     palette = np.array([faces.colors.get(k, (0.5, 0.5, 0.5)) for k in range(int(faces.number.max()) + 1)])
-    bright = _AMBIENT + (1 - _AMBIENT) * np.maximum(normals @ (light / np.linalg.norm(light)), 0.0)
-    colors = palette[faces.number] * bright[:, None]
-    shown = normals @ camera.forward < 0 if faces.closed else np.ones(len(corners), bool)
+    colors = palette[faces.number][:, None] * (_AMBIENT + (1 - _AMBIENT) * np.maximum(lit, 0.0))[:, :, None]
+    # By the mean of the corners: a sliver's own normal says little.
+    shown = at_corners.mean(axis=1) @ camera.forward < 0 if faces.closed else np.ones(len(corners), bool)
     return corners[shown], colors[shown]
 
 
@@ -82,7 +84,7 @@ def _draw_borders(view: View, faces: Faces, sides: np.ndarray, corners: np.ndarr
 def in_sight(points: np.ndarray, faces: Faces, eye: np.ndarray) -> np.ndarray:
     """Which points (N, 3) on the surface no triangle hides from the eye (3,) (Möller and Trumbore 1997)."""
     # What hides a point has a front in front of it.
-    a, b, c = faces.corners[_normals(faces.corners) @ eye > 0].transpose(1, 0, 2)
+    a, b, c = faces.corners[faces.facets() @ eye > 0].transpose(1, 0, 2)
     ab, ac = b - a, c - a
     p = np.cross(eye, ac)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -97,10 +99,3 @@ def in_sight(points: np.ndarray, faces: Faces, eye: np.ndarray) -> np.ndarray:
         v, t = q @ eye * inverse, (q * ac).sum(axis=2) * inverse
         hidden[first : first + step] = ((u >= 0) & (v >= 0) & (u + v <= 1) & (t > 0)).any(axis=1)
     return ~hidden
-
-
-def _normals(corners: np.ndarray) -> np.ndarray:
-    """Unit normals (T, 3) of triangles (T, 3, 3); 0 of those without area."""
-    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    length = np.linalg.norm(across, axis=1, keepdims=True)
-    return across / np.where(length > 0, length, 1.0)

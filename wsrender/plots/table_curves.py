@@ -22,6 +22,7 @@ def curves(table: Table, *, title: Heading | str = "") -> Figure:
         raise InputError("table", "has no rows, or fewer than two columns of numbers: there is nothing to draw")
     across, *others = numbers
     drawn = [name for name in others if not name.endswith(_BAND)]
+    drawn = [name for name in drawn if np.isfinite(numbers[name]).any()] or drawn  # none without values in a legend
     panels: dict[str, list[str]] = {}
     for name in drawn:
         panels.setdefault(table.units.get(name, "1"), []).append(name)

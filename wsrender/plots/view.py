@@ -38,7 +38,7 @@ class View:
         write_labels(self.axes, self.space)
 
     def add_surface(self, corners: np.ndarray, colors: np.ndarray, alpha: float = 1.0) -> None:
-        """Triangles with corners (T, 3, 3) [m] in colours (T, 3): at each pixel the one nearest to the eye."""
+        """Triangles with corners (T, 3, 3) [m] in colours (T, 3, 3): at each pixel the one nearest to the eye."""
         buffer = DepthBuffer.of(self.space.camera, self.size, corners)
         self.buffers.append(buffer)
         wide = self.size[0] / self.size[1]

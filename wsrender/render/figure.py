@@ -12,11 +12,11 @@ from wsrender.plots.style import DPI, Heading, new_figure, paper_style
 from wsrender.plots.view import inches, note, write_labels
 
 _SIZE = (7.0, 5.11)  # of the figure below its heading [in]
-_PANEL = (5.88, 5.02)  # width and height of the drawn scene [in]
+_PANEL = (0.0, 0.28, 5.88, 4.8)  # left, bottom, width, height of the drawn scene, above the notes [in]
 _BAR = (6.09, 1.08, 0.14, 3.02)  # left, bottom, width, height [in]
 _COLUMNS, _ROWS, _ROW = 4, 2, 0.17  # of the legend, the rows that the scene leaves room for, height of one [in]
 
-PANEL_PIXELS = (round(_PANEL[0] * DPI), round(_PANEL[1] * DPI))
+PANEL_PIXELS = (round(_PANEL[2] * DPI), round(_PANEL[3] * DPI))
 POINT = DPI / 72  # pixels
 
 
@@ -34,7 +34,7 @@ def figure_of(
     rows = -(-len(handles) // _COLUMNS)
     height = _SIZE[1] + _ROW * max(rows - _ROWS, 0)
     figure = new_figure(_SIZE[0], height, title, layout=None)
-    axes = figure.add_axes(inches(figure, (0.0, 0.0, *_PANEL)))
+    axes = figure.add_axes(inches(figure, _PANEL))
     axes.set_axis_off()
     wide = picture.shape[1] / picture.shape[0]
     axes.imshow(picture, extent=(-wide, wide, -1, 1), interpolation="none")
