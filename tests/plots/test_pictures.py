@@ -207,6 +207,16 @@ def test_an_index_that_is_constant_but_for_rounding_is_one_bar(noise):
     assert (edges[0], edges[-1]) == (values.min(), values.max()) and share.tolist() == [1]
 
 
+@pytest.mark.parametrize("value", [0.0, 0.25, -3.0])
+def test_an_index_that_is_constant_has_one_number_below_its_bar(value):
+    axes = plots.histogram(DistributionMap(np.zeros((9, 3)), {"w": np.full(9, value)})).axes[0]
+    assert axes.get_xticks().tolist() == [value]
+    assert [label.get_text() for label in axes.get_xticklabels()] == [f"{value:.4g}".replace("-", "−")]
+    bar = axes.patches[0].get_data()
+    low, high = axes.get_xlim()
+    assert bar.values.tolist() == [100] and low < bar.edges[0] < value < bar.edges[1] < high
+
+
 def test_robot_is_drawn_through_its_joints():
     figure = plots.robot(SKELETON, random_map())
     camera = camera_of(np.concatenate([SKELETON.reshape(-1, 3), random_map().position]))

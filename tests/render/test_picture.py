@@ -106,6 +106,19 @@ def test_slices_show_the_exact_colours_of_their_voxels(block):
         np.testing.assert_allclose(image[row, column], expected, atol=10)  # seen through the faint boundary
 
 
+@pytest.mark.usefixtures("opengl")
+def test_a_surface_has_the_colours_of_the_bar(block):
+    """A shade would stand for another value; an opaque boundary is one whose colours do not blend."""
+    drawing = VIEWS["boundary"]([block], replace(CHOICE, index="reach", alpha=None))
+    image, camera = render(drawing.layers)
+    for place, value in (([0, 0, 1.0], 8), ([0.1, -0.5, 0.25], 1)):  # the upper side, and low on one towards the eye
+        column, row = seen(camera, [place])[0].astype(int)
+        np.testing.assert_allclose(image[row, column], drawing.scale(value)[:3] * 255, atol=3)
+    assert not drawing.notes[1:]
+    assert VIEWS["boundary"]([block], replace(CHOICE, index="reach", alpha=0.5)).notes[1:]
+    assert VIEWS["boundary"]([block], replace(CHOICE, alpha=None)).scale is None
+
+
 @pytest.mark.parametrize("view", ["solid", "scatter"])
 def test_views_cut_open_leave_out_the_quarter_towards_the_eye(block, view):
     (layer,) = VIEWS[view]([block], CHOICE).layers

@@ -41,8 +41,9 @@ def histogram(samples: DistributionMap, index: str | None = None, *, title: Head
         axes.set_xlabel(_in_width(quantity(name, samples.units.get(name))))
     for axes in panels[:, 0]:
         axes.set_ylabel("Share of samples [%]")
-    mean = Line2D([], [], **_MEAN, label="mean")
-    figure.legend(handles=[mean], loc="outside lower right", frameon=False, fontsize=8)
+    if any(axes.lines for axes in panels.flat):
+        mean = Line2D([], [], **_MEAN, label="mean")
+        figure.legend(handles=[mean], loc="outside lower right", frameon=False, fontsize=8)
     return figure
 
 
