@@ -12,9 +12,10 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from tests.reachability import near_limits
+from tests.robots import model_packages
 
 # By name: a module with ``PARTS``, functions by name that return figures, and ``violations(figures by part)``.
-PIECES = {"near_limits": near_limits}
+PIECES = {"near_limits": near_limits, "model_packages": model_packages}
 
 
 def main() -> int:
