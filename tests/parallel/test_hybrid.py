@@ -16,7 +16,7 @@ from wsrender.parallel.workspace_points import workspace_points
 from wsrender.run import execute, plan
 
 LIFT = {"type": "prismatic", "limits_m": [0.0, 0.4], "levels": 5}
-DELTA = {"analysis": "parallel_workspace", "voxel_size_m": 0.05, "device": "cpu"}
+DELTA = {"analysis": "parallel_workspace", "voxel_size_m": 0.05, "device": "cpu", "refined_volume": None}
 
 
 def turned(axis, degrees):
@@ -193,7 +193,7 @@ def at_values(name, before, after, q):
 
 def test_indices_of_a_hybrid_are_the_best_of_its_variants():
     job = {"analysis": "parallel_workspace", "mechanism": HEXAPOD, "voxel_size_m": 0.06, "device": "cpu",
-           "indices": ["manipulability"], "characteristic_length_m": 0.3}  # fmt: skip
+           "indices": ["manipulability"], "characteristic_length_m": 0.3, "refined_volume": None}  # fmt: skip
     result = execute(job)
     values = result.volume.statistics["maximum"]["manipulability"]
     cell = np.argwhere(result.volume.count == result.volume.count.max())[0]

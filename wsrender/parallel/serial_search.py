@@ -63,7 +63,7 @@ class SerialSearch:
         most = MOST_NUMERIC if self.mechanism.numeric else MOST_CELLS
         found = np.full(len(positions), UNREACHABLE, np.int8)
         rotations = np.broadcast_to(rotations, (len(positions), 3, 3))
-        at_once = max(BATCH // 2 ** (FIRST_CUTS * len(self.joints)), 256)
+        at_once = BATCH // 2**FIRST_CUTS
         for first in range(0, len(positions), at_once):
             part = slice(first, first + at_once)
             batch = _Batch(self, in_base_frame(self.mechanism, positions[part]), rotations[part], most, around_m)
@@ -162,7 +162,8 @@ class _Batch:
         return self.labels
 
     def _first_cells(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        cuts = 2**FIRST_CUTS if not self.search.mechanism.numeric else 4
+        one_hinge = len(self.limits) == 1 and not self.search.mechanism.numeric
+        cuts = 2**FIRST_CUTS if one_hinge else 2
         shares = (np.arange(cuts) + 0.5) / cuts
         grid = np.stack(np.meshgrid(*[shares] * len(self.limits), indexing="ij"), axis=-1).reshape(-1, len(self.limits))
         middles = self.limits[:, 0] + grid * np.ptp(self.limits, axis=1)
