@@ -33,6 +33,16 @@ def test_numbers_and_names_of_a_box_do_not_overlap_and_are_not_cut(eye, extent):
             assert abs(label.x) + label.half[0] <= size[0] / size[1] and abs(label.y) + label.half[1] <= 1
 
 
+@pytest.mark.parametrize("eye", EYES)
+def test_at_most_the_number_at_a_corner_is_left_out(eye):
+    """A grid line without its number cannot be read; where there is no room there are fewer lines."""
+    for seed in range(20):
+        points = np.random.default_rng(seed).uniform(-1, 1, (9, 3)) * [1, 0.8, 0.7] + 0.3
+        space = space_around(points, (1060, 950), *eye)
+        numbers = len(space.labels()) - 3
+        assert numbers >= sum(len(space.ticks(axis)) for axis in range(3)) - 2
+
+
 @pytest.mark.parametrize("extent", EXTENTS, ids=str)
 def test_drawn_texts_do_not_overlap(extent):
     position = np.random.default_rng(0).uniform(-1, 1, (50, 3)) * extent + 0.3

@@ -74,9 +74,12 @@ class Space:
         """The numbers of the three axes and their names, none over another; a number without room is left out."""
         found: list[Label] = []
         rows = [self._numbers(axis) for axis in range(3)]
-        for number in (number for row in rows for number in row):
-            if not any(number.overlaps(other, _CORNER * self.inch) for other in found):
-                found.append(number)
+        for row in rows:
+            others = list(found)
+            for number in row:
+                near = any(number.overlaps(other, _CORNER * self.inch) for other in others)
+                if not near and not any(number.overlaps(other) for other in found):
+                    found.append(number)
         for axis, row in enumerate(rows):
             found.append(self._name(axis, row, found))
         return found
