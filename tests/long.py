@@ -1,13 +1,16 @@
 """Long measurements, too long for the suite: every piece prints its figures and fails where one is beyond its bound.
 
-python tests/long.py              # what there is
-python tests/long.py NAME [PART]  # a piece, or one of its parts
+python tests/long.py                           # what there is
+python tests/long.py NAME [PART]               # a piece, or one of its parts
+python tests/long.py --minutes 6 --choice TEXT # as many parts of all pieces as fit, another choice for every text
 """
 
 import argparse
+import random
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
@@ -21,25 +24,43 @@ PIECES = {"near_limits": near_limits, "model_packages": model_packages}
 def main() -> int:
     """Run a piece; 1 where it is violated."""
     arguments = _parser().parse_args()
+    if arguments.minutes is not None:
+        return _measured(_chosen(arguments.choice), 60 * arguments.minutes)
     if not arguments.piece:
         for name, piece in PIECES.items():
             print(f"{name}: {piece.__doc__}\n  " + "; ".join(piece.PARTS))
         return 0
-    piece = PIECES[arguments.piece]
-    figures = {}
-    for part in arguments.parts or piece.PARTS:
-        start = time.perf_counter()
-        figures[part] = piece.PARTS[part]()
-        print(f"{part} ({time.perf_counter() - start:.0f} s): {figures[part]}", flush=True)
-    found = piece.violations(figures)
-    print("\n".join(found) or "within its bounds")
+    parts = [(arguments.piece, part) for part in arguments.parts or PIECES[arguments.piece].PARTS]
+    return _measured(parts)
+
+
+def _measured(parts: list[tuple[str, str]], seconds: float = float("inf")) -> int:
+    """Run parts of pieces until the time is over; 1 where a piece is violated."""
+    began = time.perf_counter()
+    figures: dict[str, dict[str, Any]] = {}
+    for name, part in parts:
+        if (start := time.perf_counter()) > began + seconds:
+            break
+        figures.setdefault(name, {})[part] = PIECES[name].PARTS[part]()
+        print(f"{name}, {part} ({time.perf_counter() - start:.0f} s): {figures[name][part]}", flush=True)
+    found = [fault for name, of_parts in figures.items() for fault in PIECES[name].violations(of_parts)]
+    print("\n".join(found) or "within their bounds")
     return 1 if found else 0
+
+
+def _chosen(text: str) -> list[tuple[str, str]]:
+    """All parts of all pieces, in an order that follows from the text."""
+    parts = [(name, part) for name, piece in PIECES.items() for part in piece.PARTS]
+    random.Random(text).shuffle(parts)
+    return parts
 
 
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("piece", nargs="?", choices=PIECES)
     parser.add_argument("parts", nargs="*", metavar="part")
+    parser.add_argument("--minutes", type=float, help="begin no part after so many minutes, of all pieces")
+    parser.add_argument("--choice", default="", help="a text that the order of the parts follows from")
     return parser
 
 

@@ -191,6 +191,11 @@ def test_inertias_that_float32_cannot_hold_are_refused(device):
     with pytest.warns(ModelWarning, match=r"differ by a factor of .* \(a link without mass\?\)"):
         found = ws.evaluate_indices(robot, q, "all", precision="float64", **fields)
     assert found["dynamic_minimum_singular_value"] > 0
+    spec = robot.spec.model_dump(mode="json", exclude_none=True)
+    job = {"analysis": "indices_at", "robot": spec, "configurations": q.tolist(), "indices": "all"}
+    with pytest.warns(ModelWarning):
+        document = ws.execute({**job, **fields}).document
+    assert [warning["code"] for warning in document["warnings"]] == ["inertia_ratio"]
     assert ws.evaluate_indices(robot, q, "kinematic", precision="float32", **fields)["manipulability"] > 0
     with pytest.raises(
         ws.InputError, match=r'precision: "float32" is not allowed for dynamic indices of .*"float64" is'

@@ -13,6 +13,7 @@ from wsrender_kernels.sweep import Shape
 
 from wsrender.engine.index_code import index_function, index_source
 from wsrender.indices.catalogue import is_dynamic
+from wsrender.notices import Notice
 from wsrender.robots.chain import Chain
 from wsrender.robots.host_chain import HostChain
 
@@ -35,6 +36,7 @@ class Evaluation:
     characteristic_length_m: float = 1.0
     torque_scaling: bool = False
     host_inertia: Callable[[np.ndarray], np.ndarray] | None = None
+    notices: tuple[Notice, ...] = ()  # what to know of the values
 
     @property
     def dynamic(self) -> bool:

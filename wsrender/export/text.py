@@ -187,8 +187,6 @@ def _index_table(indices: dict[str, dict[str, Any]]) -> Iterator[str]:
         low_high = "".join(f"{_number(values.get(column)):>14}" for column in extremes)
         relative = "".join(f"{_number(values.get(column)):>17}" for column in means)
         yield f"  {name:<{width}}{low_high}  {units[name]:<{unit_width}}{relative}".rstrip()
-    if all(values.get("maximum") == 0 for values in indices.values()):
-        yield "  all are 0: the task has a direction in which the arm cannot move; choose others, as in x, y"
     if any(values.get("joint_mean") is not None for values in indices.values()):
         yield "  means are of value / maximum: over the samples, and over the occupied voxels"
 

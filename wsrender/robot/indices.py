@@ -96,10 +96,9 @@ def evaluation_of(
     if isinstance(robot, HostRobot):
         if inertia == "mujoco":
             raise InputError("inertia", f'"mujoco" is not allowed: {robot.name} has no model but its own class')
-        host_inertia = robot.inertia_matrix if dynamic else None
+        host_inertia, notices = robot.inertia_matrix if dynamic else None, ()
     else:
-        if dynamic:
-            _check_inertias(robot, precision)
+        notices = _checked_inertias(robot, precision) if dynamic else ()
         host_inertia = robot.mujoco_inertia if dynamic and inertia == "mujoco" else None
     if (penalty := _penalty(joint_limit_penalty)) is not None:
         need_ranges(chain, "robot.limits")
@@ -112,10 +111,11 @@ def evaluation_of(
         characteristic_length_m=characteristic_length_m,
         torque_scaling=torque_scaling,
         host_inertia=host_inertia,
+        notices=notices,
     )
 
 
-def _check_inertias(robot: Robot, precision: str) -> None:
+def _checked_inertias(robot: Robot, precision: str) -> tuple[Notice, ...]:
     """Whether float32 holds the robot's dynamic indices: J M^-1 with columns too different loses its small values.
 
     Float64 does, but a link without mass, whose acceleration has no bound, is worth a warning.
@@ -126,13 +126,16 @@ def _check_inertias(robot: Robot, precision: str) -> None:
     if ratio > SUSPECT_INERTIA_RATIO and precision == "float64":
         message = f"the inertias about the joints of {robot.name} differ by a factor of {ratio:.1g}"
         remedy = "a link without mass?): dynamic indices tell of the lightest link"
-        warn([Notice("inertia_ratio", f"{message} ({remedy}")], ModelWarning)
-    elif ratio > LARGEST_INERTIA_RATIO and precision == "float32":
+        notice = Notice("inertia_ratio", f"{message} ({remedy}")
+        warn([notice], ModelWarning)
+        return (notice,)
+    if ratio > LARGEST_INERTIA_RATIO and precision == "float32":
         raise InputError(
             "precision",
             f'"float32" is not allowed for dynamic indices of {robot.name}: the inertias about its joints differ by '
             f'a factor of {ratio:.1g}, more than {LARGEST_INERTIA_RATIO:g} (a link without mass?); "float64" is',
         )
+    return ()
 
 
 def _penalty(value: float | bool | None) -> float | None:

@@ -9,6 +9,7 @@ import numpy as np
 from wsrender.engine import Evaluated, Evaluation, evaluate_at
 from wsrender.errors import InputError
 from wsrender.indices.catalogue import unit
+from wsrender.notices import entries
 from wsrender.result import Result
 from wsrender.robot import Robot
 from wsrender.robot.indices import evaluation_of
@@ -63,6 +64,7 @@ class IndicesAtPlan(OneShard):
                 for name, v in values.items()
             },
             "choices": index_choices(self.job, self.evaluation.rows),
+            "warnings": entries(self.evaluation.notices),
             "provenance": provenance(self.job.precision, self.target),
             "timing_s": seconds,
         }

@@ -87,7 +87,7 @@ def workspace_result(
             **_structural_length(robot, measure),
         },
         "convergence": convergence,
-        "warnings": entries(_notices(job, robot, plan, volume, volumes, solid)),
+        "warnings": entries((*_notices(job, robot, plan, volume, volumes, solid), *_index_notices(plan, partial))),
         "provenance": provenance(job.precision, target, sampling_path=plan.sampling_path, seed=plan.sampling.seed),
     }
     result = Result(
@@ -131,6 +131,18 @@ def _notices(
         holes = share_of_holes(robot.chain.held(job.sampling.locked), volume, seed=plan.sampling.seed)
     yield from few_samples(holes, share_unseen(volume))
     yield from occupied_differs(volumes.occupied, solid["value"] if solid else None)
+
+
+def _index_notices(plan: SweepPlan, partial: Partial) -> Iterator[Notice]:
+    """What to know of the values of the indices."""
+    yield from plan.evaluation.notices
+    if not partial.maximum[3 : 3 + len(plan.evaluation.indices)].any():
+        yield Notice(
+            "task_without_motion",
+            "all indices are 0: the task has a direction in which the arm cannot move",
+            "choose other rows, such as x, y",
+            "task",
+        )
 
 
 def _sampling_entry(job: WorkspaceJob, plan: SweepPlan, partial: Partial) -> dict[str, Any]:
