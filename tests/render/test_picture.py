@@ -207,6 +207,25 @@ def test_the_robots_of_one_result_are_drawn_each_with_its_volume(blank):
     np.testing.assert_allclose(lows, [0.0, 0.1], atol=1e-9)
 
 
+def test_determinants_have_zero_in_the_middle_in_every_view(block):
+    volume = block.volume
+    values = np.where(volume.count > 0, -0.5 - np.arange(8.0) / 10, np.nan)
+    signed = replace(
+        block, volume=VolumeData(0.1, volume.first_voxel, volume.count, {"center": {"determinant_A": values}})
+    )
+    with pytest.raises(InputError, match="share of the maximum, and that of Determinant A is -0.5, below 0"):
+        VIEWS["isosurface"]([signed], CHOICE)
+    for view in ("solid", "volume", "slice"):
+        scale = VIEWS[view]([signed], CHOICE).scale
+        assert scale.diverging and scale.limits == pytest.approx((-1.2, 1.2))
+
+
+def test_a_picture_says_that_pale_parts_of_an_arm_are_hidden(blank, planar_result):
+    for view, said in (("solid", True), ("boundary", False)):
+        texts = [text.get_text() for text in planar_result.render(view).texts]
+        assert (composition.SHINING in texts) == said
+
+
 def test_what_two_robots_share_stands_out(blank):
     volumes = {f"robot_{name}": VolumeData(0.1, (k, 0, 0), np.full((3, 3, 3), 9)) for k, name in enumerate("ab")}
     both = trimesh.creation.box((0.2, 0.3, 0.3))

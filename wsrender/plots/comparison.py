@@ -5,8 +5,7 @@ from dataclasses import replace
 import numpy as np
 from matplotlib.figure import Figure
 
-from wsrender.plots.color_scale import color_scale
-from wsrender.plots.planes import draw_plane, new_planes, voxel_field
+from wsrender.plots.planes import draw_plane, new_planes, shared_scale, voxel_field
 from wsrender.plots.style import Heading, paper_style
 from wsrender.volume.registration import registered
 from wsrender.volume.volume_data import VolumeData
@@ -29,7 +28,7 @@ def side_by_side(
     """
     placed = registered(list(volumes.values()))
     fields = [voxel_field(volume, index, statistic) for volume in placed]
-    scale = color_scale(np.concatenate([field.values for field in fields]), fields[0].label)
+    scale = shared_scale(fields)
     reached = np.unique(np.concatenate([volume.voxels.cells[volume.voxels.count > 0] for volume in placed]))
     together = Voxels(placed[0].shape, reached, np.ones_like(reached))
     figure, panels = new_planes(placed[0], scale, title, rows=list(volumes))

@@ -28,11 +28,15 @@ _BAR = (0.22, 0.14, 0.95)  # room before a colour bar, its width, room for its n
 
 @dataclass(frozen=True)
 class Field:
-    """A scalar of each of a volume's ``voxels``, (V,), NaN where empty, with its colours, which span all its values."""
+    """A scalar of each of a volume's ``voxels``, (V,), NaN where empty, with its colours, which span all its values.
+
+    ``signed`` as in `color_scale`.
+    """
 
     voxels: Voxels
     values: np.ndarray
     scale: ColorScale
+    signed: bool = False
 
     @property
     def label(self) -> str:
@@ -145,7 +149,13 @@ def voxel_field(volume: VolumeData, index: str | None, statistic: str | None) ->
         values = np.where(voxels.count > 0, voxels.count, np.nan)
         return Field(voxels, values, color_scale(values, "Samples per voxel"))
     name, values, label = _statistic(volume, index, statistic)
-    return Field(voxels, values, color_scale(values, label, name.startswith(SIGNED)))
+    signed = name.startswith(SIGNED)
+    return Field(voxels, values, color_scale(values, label, signed), signed)
+
+
+def shared_scale(fields: Sequence[Field]) -> ColorScale:
+    """Colours that span the values of several fields of one quantity."""
+    return color_scale(np.concatenate([field.values for field in fields]), fields[0].label, fields[0].signed)
 
 
 def _statistic(volume: VolumeData, index: str | None, statistic: str | None) -> tuple[str, np.ndarray, str]:

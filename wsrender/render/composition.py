@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 _DARK: Color = (0.15, 0.15, 0.17)
 _TIP: Color = (0.784, 0.063, 0.18)
 _SHARED_ALPHA = 0.4
+SHINING = "pale parts of the arm are hidden"
 _ROD = 0.006  # radius of a rod, relative to the longest edge of the picture's box
 
 
@@ -59,6 +60,8 @@ def picture(
     if shared is not None and drawing.scale is None:
         drawing.layers.append(Surface(shared.vertices, shared.faces, SHARED_COLOR, alpha=_SHARED_ALPHA, smooth=True))
         drawing.handles.append(Patch(facecolor=SHARED_COLOR, alpha=_SHARED_ALPHA, label="shared by at least two"))
+    if any(subject.arm is not None for subject in subjects) and any(_is_opaque(layer) for layer in drawing.layers):
+        drawing.notes.append(SHINING)
     space = space_around(_extent(subjects, drawing.layers, environment), PANEL_PIXELS, azimuth_deg, elevation_deg)
     grid, frame = space.panes()
     panes = [Lines(grid, (0.87, 0.87, 0.87), 1.0), Lines(frame, (0.6, 0.6, 0.6), 1.2)]
@@ -77,6 +80,10 @@ def _check(view: str, threshold: float, alpha: float | None, elevation_deg: floa
         raise InputError("alpha", f"is {alpha}; allowed are values above 0 (invisible), up to 1 (opaque)")
     if not -80 <= elevation_deg <= 80:
         raise InputError("elevation_deg", f"is {elevation_deg}; allowed are -80 … 80")
+
+
+def _is_opaque(layer: Layer) -> bool:
+    return isinstance(layer, Surface) and layer.alpha == 1
 
 
 def _extent(subjects: Sequence[Subject], layers: Sequence[Layer], environment: Sequence[Item]) -> np.ndarray:

@@ -12,9 +12,9 @@ from matplotlib.patches import Patch
 from wsrender.boundary.voxel_surface import occupied_surface
 from wsrender.errors import InputError
 from wsrender.plots.cloud import checked_index
-from wsrender.plots.color_scale import ColorScale, color_scale
-from wsrender.plots.planes import Field, layer_at, voxel_field
-from wsrender.plots.style import color_map, quantity
+from wsrender.plots.color_scale import SIGNED, ColorScale, color_scale
+from wsrender.plots.planes import Field, layer_at, shared_scale, voxel_field
+from wsrender.plots.style import quantity
 from wsrender.render.scene import Cloud, Color, Layer, Lines, Plates, Points, Surface
 from wsrender.render.subject import Subject
 from wsrender.volume.volume_data import VolumeData
@@ -81,7 +81,7 @@ def boundary(subjects: Sequence[Subject], choice: Choice) -> Drawing:
         mesh = occupied_surface(volume)
         colors = _vertex_colors(mesh.vertices, volume, shown.dense(), scale)
         drawing.layers.append(Surface(mesh.vertices, mesh.faces, colors=colors, alpha=alpha, smooth=True))
-    drawing.handles.append(Patch(facecolor=color_map()(0.5), alpha=max(alpha, 0.3), label="workspace boundary"))
+    drawing.handles.append(Patch(facecolor=scale.colors(0.5), alpha=max(alpha, 0.3), label="workspace boundary"))
     drawing.notes.append(_lattice_note(volumes))
     if alpha < 1:
         drawing.notes.append(BLENDED)
@@ -101,7 +101,7 @@ def solid(subjects: Sequence[Subject], choice: Choice) -> Drawing:
         mesh = occupied_surface(volume)
         colors = _vertex_colors(mesh.vertices, volume, shown.dense(), scale)
         drawing.layers.append(Surface(mesh.vertices, mesh.faces, colors=colors, smooth=True))
-    drawing.handles.append(Patch(facecolor=color_map()(0.5), label="workspace"))
+    drawing.handles.append(Patch(facecolor=scale.colors(0.5), label="workspace"))
     drawing.notes.append(_lattice_note(volumes))
     return drawing
 
@@ -115,14 +115,14 @@ def scatter(subjects: Sequence[Subject], choice: Choice) -> Drawing:
     for cloud in clouds:
         checked_index(cloud, name)
     values = [cloud.indices[name] for cloud in clouds]
-    scale = color_scale(np.concatenate(values), quantity(name, clouds[0].units.get(name)))
+    scale = color_scale(np.concatenate(values), quantity(name, clouds[0].units.get(name)), name.startswith(SIGNED))
     drawing = Drawing(scale=scale)
     label = "samples"
     for subject, cloud, value in zip(subjects, clouds, values, strict=True):
         kept = ~_towards_eye(cloud.position, subject, choice.azimuth_deg)
         label = label if kept.all() else "samples, cut open"
         drawing.layers.append(Points(cloud.position[kept], _colors(scale, value[kept]), DOT))
-    drawing.handles.append(Line2D([], [], ls="", marker="o", ms=3, color=color_map()(0.5), label=label))
+    drawing.handles.append(Line2D([], [], ls="", marker="o", ms=3, color=scale.colors(0.5), label=label))
     return drawing
 
 
@@ -138,7 +138,7 @@ def volume(subjects: Sequence[Subject], choice: Choice) -> Drawing:
         shares = np.nan_to_num(scale.places(np.nan_to_num(shown.dense())))
         levels = np.where(voxels.occupied, 1 + np.round(254 * shares), 0)
         drawing.layers.append(Cloud(levels.astype(np.uint8), table, voxels.origin_m, voxels.voxel_size_m))
-    drawing.handles.append(Patch(facecolor=color_map()(0.5), alpha=0.6, label="voxels"))
+    drawing.handles.append(Patch(facecolor=scale.colors(0.5), alpha=0.6, label="voxels"))
     drawing.notes += [_lattice_note(volumes), BLENDED]
     return drawing
 
@@ -157,7 +157,7 @@ def slice(subjects: Sequence[Subject], choice: Choice) -> Drawing:
             if abs(at - voxels.centers(axis).mean()) < voxels.shape[axis] * voxels.voxel_size_m / 2:
                 drawing.layers.append(_plates(voxels, shown, axis, layer_at(voxels, axis, at), scale))
     drawing.layers += _shells(subjects, choice.veil)
-    drawing.handles.append(Patch(facecolor=color_map()(0.5), label="slices"))
+    drawing.handles.append(Patch(facecolor=scale.colors(0.5), label="slices"))
     drawing.handles.append(Patch(facecolor=_SHELL_GREY, alpha=0.3, label="workspace boundary"))
     where = ", ".join(f"{name} = {at:.3g}" for name, at in zip("xyz", planes, strict=True))
     drawing.notes.append(f"slices at {where} m")
@@ -170,14 +170,20 @@ def isosurface(subjects: Sequence[Subject], choice: Choice) -> Drawing:
     fields, scale, drawing = _fields(volumes, choice)
     for voxels, shown in zip(volumes, fields, strict=True):
         values = shown.dense()
-        inside = voxels.occupied & (values >= choice.threshold * np.nanmax(values))
+        largest = float(np.nanmax(values))
+        if largest < 0:
+            raise InputError(
+                "index",
+                f"an iso-surface is a share of the maximum, and that of {shown.label} is {largest:.3g}, below 0",
+            )
+        inside = voxels.occupied & (values >= choice.threshold * largest)
         kept = VolumeData(voxels.voxel_size_m, voxels.first_voxel, inside.astype(np.int64))
         mesh = occupied_surface(kept)
         colors = _vertex_colors(mesh.vertices, kept, np.where(inside, values, np.nan), scale)
         drawing.layers.append(Surface(mesh.vertices, mesh.faces, colors=colors, smooth=True))
     drawing.layers += _shells(subjects, choice.veil)
     label = f"at least {choice.threshold:g} of the maximum"
-    drawing.handles.append(Patch(facecolor=color_map()((1 + choice.threshold) / 2), label=label))
+    drawing.handles.append(Patch(facecolor=scale.colors((1 + choice.threshold) / 2), label=label))
     drawing.handles.append(Patch(facecolor=_SHELL_GREY, alpha=0.3, label="workspace boundary"))
     drawing.notes.append(_lattice_note(volumes))
     return drawing
@@ -199,7 +205,7 @@ def _fields(volumes: Sequence[VolumeData], choice: Choice) -> tuple[list[Field],
     if len({field.label for field in fields}) > 1:
         labels = ", ".join(field.label for field in fields)
         raise InputError("index", f"the results show different quantities ({labels}); name an index that all hold")
-    scale = color_scale(np.concatenate([field.values for field in fields]), fields[0].label)
+    scale = shared_scale(fields)
     return fields, scale, Drawing(scale=scale)
 
 
