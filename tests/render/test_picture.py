@@ -213,7 +213,7 @@ def test_determinants_have_zero_in_the_middle_in_every_view(block):
     signed = replace(
         block, volume=VolumeData(0.1, volume.first_voxel, volume.count, {"center": {"determinant_A": values}})
     )
-    with pytest.raises(InputError, match="share of the maximum, and that of Determinant A is -0.5, below 0"):
+    with pytest.raises(InputError, match=r"share of the maximum, and that of Determinant A is -0\.5, below 0"):
         VIEWS["isosurface"]([signed], CHOICE)
     for view in ("solid", "volume", "slice"):
         scale = VIEWS[view]([signed], CHOICE).scale
