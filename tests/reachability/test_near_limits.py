@@ -106,7 +106,7 @@ def test_measured_false_negatives_include_targets_next_to_limits(monkeypatch):
             label = np.where(close.any(axis=1), UNREACHABLE, found.label).astype(np.int8)
             return Solutions(found.q, found.distance_m, found.angle_rad, label, found.proven)
 
-    module = import_module("wsrender.reachability.refined_volume")  # the package has a function of this name
+    module = import_module("wsrender.reachability.reached_set")
     monkeypatch.setattr(module, "InverseSolver", FailsNextToLimits)
     _, found = refined_volume(robot.chain, 0.1, max_points=10_000)
     (tried,) = found.false_negatives

@@ -20,7 +20,7 @@ def test_the_area_of_a_planar_3_rrr_is_that_of_three_annuli(placement, size, tmp
     result = execute({**JOB, "mechanism": three_rrr(placement=placement), "voxel_size_m": size})
     headline = result.document["headline"]
     low, high = headline["ci95"]
-    assert low < exact < high and (headline["quantity"], headline["unit"]) == ("area", "m^2")
+    assert low < exact < high and (headline["quantity"], headline["unit"]) == ("area", "m2")
     flat = result.document["flat"]
     assert flat["occupied"] == pytest.approx(exact, rel=0.02) and flat["refined"]["value"] == headline["value"]
     assert result.document["volume_m3"]["occupied"] == 0 and "empty" not in result.document

@@ -259,7 +259,7 @@ def test_the_headline_is_the_refined_volume_by_default():
     headline = execute(job).document["headline"]
     low, high = headline["ci95"]
     assert low < 0.717344315 < high and (high - low) / 2 <= 0.01 * headline["value"]
-    assert (headline["quantity"], headline["unit"], headline["reason"]) == ("volume", "m^3", None)
+    assert (headline["quantity"], headline["unit"], headline["reason"]) == ("volume", "m3", "")
     off = execute({**job, "refined_volume": None}).document["headline"]
     assert off["value"] is None and off["ci95"] is None and "give refined_volume" in off["reason"]
     exact = execute({**job, "voxel_size_m": None, "method": "exact"}).document["headline"]

@@ -56,6 +56,17 @@ def test_occupied_volumes_are_told_where_they_differ_by_more_than_a_tenth(scale,
     assert not list(occupied_differs(scale, None)) and not list(occupied_differs(scale, 0.0))
 
 
+def test_intervals_wider_than_asked_are_told():
+    """A 3R twisted by 1e-3 rad: a slab of half a millimetre, for which the budget of points is too low."""
+    limits = {"limits_deg": (-150, 150)}
+    rows = [ws.DHRow(a=0.4, alpha_deg=0.06, **limits), ws.DHRow(a=0.3, alpha_deg=-0.06, **limits), ws.DHRow(a=0.1)]
+    robot = ws.load_robot(ws.DHTable(convention="standard", rows=rows))
+    result = ws.analyze(robot, ws.Sobol(10**4), voxel_size_m=0.05, **LINEAR)
+    assert not result.document["volume_m3"]["refined"]["met"] and "tolerance_not_met" in codes(result)
+    box = ws.analyze(gantry(), ws.Sobol(10**4), **LINEAR)
+    assert box.document["volume_m3"]["refined"]["met"] and "tolerance_not_met" not in codes(box)
+
+
 def test_shares_of_holes_and_of_unseen_voxels_that_are_told():
     told = [bool(list(few_samples(*shares))) for shares in ((0.0051, 0), (0.0049, 9), (None, 0.21), (None, 0.19))]
     assert told == [True, False, True, False]

@@ -27,6 +27,14 @@ def test_a_voxel_holds_48_samples_or_is_a_hundredth(positions, measure, dimensio
     assert default_voxel_size(positions, least=0.123) == 0.13
 
 
+def test_voxels_of_thin_sets_are_not_too_many():
+    """A needle of .3 × .4e-3 × .2e-3 m counts as a cube of .075 m, a helix of no volume alike."""
+    assert default_voxel_size(BOX * [1, 1e-3, 1e-3]) == rounded_up(0.25 * 0.3 / 100, 2)
+    turn = np.linspace(0, 20, 1000)
+    helix = np.stack([0.05 * np.cos(turn), 0.05 * np.sin(turn), turn / 20], axis=1)
+    assert 0.0025 <= default_voxel_size(helix) <= 0.004
+
+
 @pytest.mark.parametrize(
     ("value", "up", "nearest"),
     [(0.0221, 0.023, 0.022), (0.022, 0.022, 0.022), (0.0996, 0.1, 0.1), (3.01, 3.1, 3.0), (123.0, 130.0, 120.0)],

@@ -9,6 +9,7 @@ import numpy as np
 from wsrender.notices import Notice
 from wsrender.run.headline import headline, no_headline
 from wsrender.run.parallel_lattice import FlatLattice
+from wsrender.run.volume_notices import tolerance_not_met
 from wsrender.volume.volume_data import VolumeData
 
 if TYPE_CHECKING:
@@ -47,14 +48,8 @@ def notices(plan: "ParallelPlan", partial: "Arrays", volume: VolumeData | None) 
                 "the refined volume may miss what is reached between them",
                 field="refined_volume",
             )
-    if refined is not None and not refined["met"]:
-        yield Notice(
-            "tolerance_not_met",
-            f"the refined {plan.quantity[0]} has a wider interval than asked for: {refined['points']} points were "
-            "decided, the most there may be",
-            "read the interval, or give a larger refined_volume",
-            "refined_volume",
-        )
+    if refined is not None:
+        yield from tolerance_not_met({**refined, "quantity": plan.quantity[0]})
     if plan.search is None and refined is not None and not isinstance(plan.block, FlatLattice):
         yield from _of_voxels(plan, volume, refined)
 

@@ -18,7 +18,7 @@ from wsrender.run.provenance import job_entry, provenance
 from wsrender.run.refined import Progress, by_measure, refined_together
 from wsrender.run.several_result import common_entries, skeletons
 from wsrender.run.several_robots import SeveralPlans, plan_several, progress_after, workspace_job
-from wsrender.run.volume_notices import occupied_differs
+from wsrender.run.volume_notices import occupied_differs, tolerance_not_met
 from wsrender.run.workspace import WorkspacePlan, plan_workspace
 from wsrender.spec import SharedWorkspaceJob
 from wsrender.spec.placement_scan import PlacementScan
@@ -226,3 +226,4 @@ def _notices(occupied: dict[str, float], refined: dict[str, Any] | None) -> Iter
     """Where the occupied voxels are far from the volumes."""
     for name, volume in occupied.items():
         yield from occupied_differs(volume, refined[name]["value"] if refined else None, REACHED[name])
+    yield from tolerance_not_met(refined and refined["shared"])

@@ -1,13 +1,14 @@
 """What to know of volumes made of voxels: where samples were too few, and where voxels are not the volume."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from typing import Any
 
 from wsrender.notices import Notice
 
 MOST_HOLES = 0.005  # of the occupied voxels
 MOST_UNSEEN = 0.2  # of them, where nothing but the samples is known: a rougher measure, as large at thin borders
 MOST_DIFFERENCE = 0.1  # of the refined volume
-_REMEDY = "take more samples or larger voxels, or leave voxel_size_m out"
+_REMEDY = "take more samples, or larger voxels"
 
 
 def few_samples(holes: float | None, unseen: float) -> Iterator[Notice]:
@@ -19,6 +20,19 @@ def few_samples(holes: float | None, unseen: float) -> Iterator[Notice]:
     else:
         return
     yield Notice("few_samples", f"too few samples for voxels of this size: {found}", _REMEDY, "voxel_size_m")
+
+
+def tolerance_not_met(measure: Mapping[str, Any] | None) -> Iterator[Notice]:
+    """That the interval of a refined measure, its entry in a result document, is wider than asked."""
+    if measure and measure["value"] is not None and not measure["met"]:
+        name = measure.get("quantity", "volume")
+        message = f"the refined {name} has a wider interval than asked for: {measure['points']} points were decided"
+        yield Notice(
+            "tolerance_not_met",
+            f"{message}, the most there may be",
+            "read the interval, or give a larger refined_volume",
+            "refined_volume",
+        )
 
 
 def occupied_differs(occupied: float, refined: float | None, reached: str = "reachable") -> Iterator[Notice]:

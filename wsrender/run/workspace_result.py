@@ -27,7 +27,7 @@ from wsrender.robots.host_chain import HostChain
 from wsrender.run.headline import NOT_ASKED, headline_of
 from wsrender.run.provenance import index_choices, job_entry, provenance, robot_entry
 from wsrender.run.refined import Refined, by_measure
-from wsrender.run.volume_notices import few_samples, occupied_differs
+from wsrender.run.volume_notices import few_samples, occupied_differs, tolerance_not_met
 from wsrender.sampling import subsample
 from wsrender.spec import WorkspaceJob
 from wsrender.volume.distribution_map import DistributionMap
@@ -87,7 +87,13 @@ def workspace_result(
             **_structural_length(robot, measure),
         },
         "convergence": convergence,
-        "warnings": entries((*_notices(job, robot, plan, volume, volumes, solid), *_index_notices(plan, partial))),
+        "warnings": entries(
+            (
+                *tolerance_not_met(measure),
+                *_notices(job, robot, plan, volume, volumes, solid),
+                *_index_notices(plan, partial),
+            )
+        ),
         "provenance": provenance(job.precision, target, sampling_path=plan.sampling_path, seed=plan.sampling.seed),
     }
     result = Result(
@@ -110,10 +116,12 @@ def _structural_length(robot: Robot, measure: dict[str, Any] | None) -> dict[str
         reason = "a robot that is defined by a Python class has no lengths of links"
     elif measure is None:
         reason = NOT_ASKED
+    elif measure["value"] is None:
+        reason = measure["reason"]
     elif measure["quantity"] != "volume":
         reason = f"the tip reaches no volume but an {measure['quantity']}".replace("an l", "a l")
-    elif not (index := structural_length_index(robot.chain, measure["value"] or 0.0)):
-        reason = measure["reason"] or "the volume is 0"
+    elif not (index := structural_length_index(robot.chain, measure["value"])):
+        reason = "the volume is 0"
     return {"structural_length_index": index, "structural_length_reason": reason}
 
 

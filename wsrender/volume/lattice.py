@@ -13,6 +13,7 @@ LARGEST_COORDINATE = 2.0**50  # of a voxel: float64 holds its corners
 FAR = 4  # extents of a block away from the world's origin that single precision bears: three of its 24 bits
 # 48 samples a voxel of the convex hull left at most .25 % holes in the workspace of a Panda, 32 .67, 16 up to 1.75 %.
 SAMPLES_PER_VOXEL, MOST_DIVISIONS = 48, 100
+THINNEST = 0.25  # of its extent is a hull at least as large as: voxels of curves and slabs would be too many else
 
 
 @dataclass(frozen=True)
@@ -78,16 +79,17 @@ def default_voxel_size(
 
     The positions (N, 3) [m] span a convex hull of volume V: max(∛(48 V / samples), ∛V / divisions), the former at
     most ∛V, but not below ``least`` [m], rounded up to two significant digits. A planar set uses the square root of
-    its area, a linear one its length. Raises InputError for a single point.
+    its area, a linear one its length; a hull smaller than a cube of a quarter of its extent counts as that cube.
+    Raises InputError for a single point.
     """
-    dimension, measure = _measure(positions)
-    whole = measure ** (1 / dimension)
+    dimension, measure, extent = _measure(positions)
+    whole = max(measure ** (1 / dimension), extent * THINNEST)
     holding = min((SAMPLES_PER_VOXEL / samples) ** (1 / dimension), 1.0) * whole
     return rounded_up(max(holding, whole / divisions, least), 2)
 
 
-def _measure(positions: np.ndarray) -> tuple[int, float]:
-    """Dimension of a set of positions (N, 3), and length, area or volume of its convex hull."""
+def _measure(positions: np.ndarray) -> tuple[int, float, float]:
+    """Dimension of a set of positions (N, 3), length, area or volume of its convex hull, and largest extent [m]."""
     from scipy.spatial import ConvexHull
 
     centered = positions - positions.mean(axis=0)
@@ -96,7 +98,8 @@ def _measure(positions: np.ndarray) -> tuple[int, float]:
     if dimension == 0:
         raise InputError("voxel_size_m", "the end effector does not move; give a voxel size")
     inside = centered @ axes[:dimension].T
-    return dimension, float(np.ptp(inside) if dimension == 1 else ConvexHull(inside).volume)
+    extent = float(np.ptp(inside, axis=0).max())
+    return dimension, extent if dimension == 1 else float(ConvexHull(inside).volume), extent
 
 
 def round_to_digits(value: float, digits: int) -> float:

@@ -105,7 +105,7 @@ def test_demo_leaves_map_volume_and_pictures(tmp_path):
     done = wsrender("demo", "-o", str(tmp_path / "demo"), "--robot", "scara")
     assert done.returncode == 0, done.stderr
     result = ws.Result.load(tmp_path / "demo")
-    assert len(result.map) == result.document["sampling"]["samples"] == 1_000_000
-    assert result.volume.count.sum() == 1_000_000
+    assert len(result.map) == result.document["sampling"]["samples"] == 2**20
+    assert result.volume.count.sum() == 2**20
     assert {"robot.png", "scatter.png", "slices.png"} <= {path.name for path in (tmp_path / "demo/plots").iterdir()}
     assert str(tmp_path / "demo" / "volume.vtkhdf") in done.stdout
