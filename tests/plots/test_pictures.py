@@ -215,6 +215,7 @@ def test_an_index_that_is_constant_has_one_number_below_its_bar(value):
     bar = axes.patches[0].get_data()
     low, high = axes.get_xlim()
     assert bar.values.tolist() == [100] and low < bar.edges[0] < value < bar.edges[1] < high
+    assert max(axes.get_yticks()) == 100
 
 
 def test_robot_is_drawn_through_its_joints():

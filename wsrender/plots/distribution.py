@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import MaxNLocator
+from matplotlib.ticker import FixedLocator, MaxNLocator
 
 from wsrender.errors import InputError
 from wsrender.plots.cloud import checked_index
@@ -64,7 +64,8 @@ def _draw(axes: Axes, values: np.ndarray) -> None:
     axes.set_ylim(bottom=0, top=None if len(share) > 1 else 125)
     if high > low:
         axes.axvline(mean, **_MEAN, zorder=3)
-    axes.yaxis.set_major_locator(MaxNLocator(4))
+    # Above 100 % is room for words alone.
+    axes.yaxis.set_major_locator(MaxNLocator(4) if len(share) > 1 else FixedLocator(range(0, 101, 25)))
     axes.grid(axis="y", zorder=0)
 
 

@@ -119,7 +119,7 @@ def _structural_length(robot: Robot, measure: dict[str, Any] | None) -> dict[str
     elif measure["value"] is None:
         reason = measure["reason"]
     elif measure["quantity"] != "volume":
-        reason = f"the tip reaches no volume but an {measure['quantity']}".replace("an l", "a l")
+        reason = f"the tip reaches no volume; what it reaches is measured by its {measure['quantity']}"
     elif not (index := structural_length_index(robot.chain, measure["value"])):
         reason = "the volume is 0"
     return {"structural_length_index": index, "structural_length_reason": reason}
