@@ -3,8 +3,8 @@
 On the CPU a task is a block of LANES samples: a lane loop with a compile-time trip count, which LLVM turns into SIMD,
 or several where singular values take rotations (`_staged_lanes`), fill one scratch row per output; short loops then
 reduce and scatter them. On CUDA a thread takes one sample after the other from the same device functions. Outputs of a
-sample, in this order: tip position (3), indices (K), largest and smallest singular value of the task (2), then, where
-asked, configuration (n) and tip orientation (w x y z).
+sample, in this order: tip position (3), indices (K), largest and smallest singular value of the task (2; none of a
+sweep without indices, which takes no Jacobian), then, where asked, configuration (n) and tip orientation (w x y z).
 
 The functions that hold most of a kernel are inlined by order: 2 to 5 % less to compile on the CPU, the same code on
 both.
@@ -59,7 +59,7 @@ class Shape:
     method: str  # of sampling
     rows: tuple[int, ...]  # task rows of the Jacobian
     convention: str
-    indices: Callable  # Warp function (kinematic spectrum, dynamic spectrum) -> (K,)
+    indices: Callable | None  # Warp function (kinematic spectrum, dynamic spectrum) -> (K,); None: positions alone
     n_indices: int
     dynamic: bool = False  # whether any index is dynamic
     given_jacobian: bool = False  # tip position and Jacobian are inputs (user-defined robots)
@@ -102,12 +102,22 @@ class Shape:
     @property
     def reduced(self) -> int:
         """Outputs whose extremes are kept: tip position, indices, largest and smallest singular value."""
-        return 5 + self.n_indices
+        return 3 + self.n_indices + self.singular_values
+
+    @property
+    def singular_values(self) -> int:
+        """Outputs that are singular values: two of a sweep with indices."""
+        return 2 if self.n_indices else 0
 
     @property
     def n_rows(self) -> int:
         """Rows of a kept map: all outputs but the singular values."""
-        return self.n_outputs - 2
+        return self.n_outputs - self.singular_values
+
+    @property
+    def interleaved(self) -> bool:
+        """Whether kept rows lie sample by sample, as those who ask for positions alone want them."""
+        return not self.n_indices
 
     @property
     def record_size(self) -> int:
@@ -127,7 +137,7 @@ class Shape:
     @property
     def sums_size(self) -> int:
         """64-bit integers per voxel for its sums, padded likewise; 0 where none are kept."""
-        return _power_of_two(self.n_indices) if self.sums else 0
+        return _power_of_two(self.n_indices) if self.sums and self.n_indices else 0
 
     @property
     def bytes_per_voxel(self) -> int:
@@ -260,8 +270,51 @@ def _around_values(shape: Shape) -> SimpleNamespace:
 
 
 @factory
+def _positions(shape: Shape):
+    """Device function ``(model, space, block, first, lane) -> outputs`` of a sample without indices."""
+    real, n = shape.real, shape.n
+    draw = sampling(real, n, shape.method, shape.shared).draw
+    kin = kinematics(real, n, shape.sources, shape.plain, shape.world_axes)
+    forward, vec3 = kin.forward, kin.vec3
+    Model, Space = model_type(real, n, len(shape.sources)), sample_space(real, n)
+    output_type, to_quaternion = wp.types.vector(shape.n_outputs, real), orientation(real)
+    BASE_LEVELS, GIVEN = shape.base_levels, shape.given_jacobian
+    CONFIGURATION = shape.reduced
+    ORIENTATION = CONFIGURATION + n * shape.keep_configuration
+    KEEP_CONFIGURATION, KEEP_ORIENTATION = shape.keep_configuration, shape.keep_orientation
+
+    @wp.func(inline=True)
+    def positions(model: Model, space: Space, block: Any, first: wp.int64, lane: wp.int32):
+        q = draw(space, block, first, lane)
+        tip = vec3()
+        out = output_type()
+        if wp.static(GIVEN):
+            at = first - space.given_first + wp.int64(lane)
+            for r in range(3):
+                tip[r] = model.position_given[wide(r) * space.given_stride + at]
+        else:
+            tip, x, y, z, frames = forward(model.chain, q)
+            if wp.static(BASE_LEVELS):
+                tip = frames.levers[0]
+            if wp.static(KEEP_ORIENTATION):
+                quat = to_quaternion(wp.matrix_from_cols(x, y, z))
+                for i in range(4):
+                    out[ORIENTATION + i] = quat[i]
+        for r in range(3):
+            out[r] = tip[r]
+        if wp.static(KEEP_CONFIGURATION):
+            for i in range(n):
+                out[CONFIGURATION + i] = q[i]
+        return out
+
+    return positions
+
+
+@factory
 def _evaluation(shape: Shape):
     """Device function ``(model, space, block, first, lane) -> outputs`` of a sample."""
+    if not shape.n_indices:
+        return _positions(shape)
     real, spectra, around = shape.real, _spectra(shape), _around_values(shape)
     matrices, indices_of = around.matrices, around.indices_of
     # Rotations are long: one function that A and B call compiles in little more than half the time.
@@ -366,9 +419,10 @@ def sums_type_of(shape: Shape):
 def outputs_type(shape: Shape):
     """Struct with what a sweep adds to: extremes and totals of all samples, voxel records and sums, rows.
 
-    ``extremes`` (2 R,), R = 5 + K reduced outputs: largest value and largest complement; ``totals`` (TOTAL_SLOTS * K,):
+    ``extremes`` (2 R,) of the R reduced outputs: largest value and largest complement; ``totals`` (TOTAL_SLOTS * K,):
     fixed-point sums of the indices, scaled by ``scales`` (K,), in parts; ``records``, ``sums``: one vector per voxel;
-    ``rows_out`` (n_rows * rows_stride,): row r of the chunk's sample s at [r * rows_stride + s].
+    ``rows_out`` (n_rows * rows_stride,): row r of the chunk's sample s at [r * rows_stride + s], interleaved ones at
+    [s * n_rows + r].
     """
     real, bits = shape.real, bits_type(shape.real)
     record_type, sums_type = record_type_of(shape), sums_type_of(shape)
@@ -406,8 +460,10 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
     moved_base = kinematics(real, shape.n, shape.sources, shape.plain, shape.world_axes).moved_base
     record_type, sums_type = record_type_of(shape), sums_type_of(shape)
     N_OUTPUTS, N_ROWS, REDUCED, RECORD = shape.n_outputs, shape.n_rows, shape.reduced, shape.record_size
+    INTERLEAVED = shape.keep_rows and shape.interleaved
     OUTPUT = _output_of_row(shape)
-    VOXELS, SUMS, ROWS, BASE_LEVELS = shape.voxels, shape.sums, shape.keep_rows, shape.base_levels
+    VOXELS, SUMS, BASE_LEVELS = shape.voxels, shape.sums, shape.base_levels
+    ROWS = shape.keep_rows and not shape.interleaved
     STAGED = shape.many_rows
     LOWEST = bits(lowest(real))
     LOWEST_ROW = REDUCED * LANES
@@ -421,7 +477,7 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
     # known when the kernel is compiled, and the lane loop would be compiled twice, without SIMD the second time.
     values_type = wp.types.vector(N_OUTPUTS * LANES, real)
     keys_type = wp.types.vector((REDUCED + 1) * LANES, bits)
-    quanta_type = wp.types.vector(K * LANES, bits)
+    quanta_type = wp.types.vector(max(K, 1) * LANES, bits)
     cells_type = wp.types.vector(LANES, wp.int32)
     levers_type = wp.types.vector(3 * LANES, real)
 
@@ -542,6 +598,11 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
                             addend[k] = wp.int64(quanta[k * BLOCK + lane])
                         store_sums(to.sums, voxel, load_sums(to.sums, voxel) + addend)
 
+        if wp.static(INTERLEAVED):
+            for lane in range(valid):
+                at_sample = (start - first + wide(lane)) * wide(N_ROWS)
+                for row in range(N_ROWS):
+                    to.rows_out[at_sample + wide(row)] = values[row * BLOCK + lane]
         if wp.static(ROWS):
             for row in range(N_ROWS):
                 r = OUTPUT[row]
@@ -555,13 +616,14 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
 
 def _output_of_row(shape: Shape):
     """Of every kept row its output: the singular values come after the indices."""
-    outputs = [r for r in range(shape.n_outputs) if not shape.reduced - 2 <= r < shape.reduced]
+    values = shape.reduced - shape.singular_values
+    outputs = [r for r in range(shape.n_outputs) if not values <= r < shape.reduced]
     return wp.types.vector(shape.n_rows, wp.int32)(*outputs)
 
 
 def _record_keys(shape: Shape):
     """Of every slot of a record: its row among the ordered values, and what complements it (minima)."""
-    K, lowest_row = shape.n_indices, 5 + shape.n_indices
+    K, lowest_row = shape.n_indices, shape.reduced
     rows, masks = [lowest_row] * shape.count_size, [0] * shape.count_size
     for kept, mask in ((shape.maximum, 0), (shape.minimum, -1)):
         rows += [3 + k for k in range(K) if kept]
@@ -583,9 +645,11 @@ def _cuda_kernel(shape: Shape) -> wp.Kernel:
     vec3, Base, at_level = wp.types.vector(3, real), base_levels(real), grid_level(real)
     moved_base = kinematics(real, shape.n, shape.sources, shape.plain, shape.world_axes).moved_base
     REDUCED, OUTPUT = shape.reduced, _output_of_row(shape)
-    extremes_type, totals_type = wp.types.vector(REDUCED, bits), wp.types.vector(K, wp.int64)
+    extremes_type, totals_type = wp.types.vector(REDUCED, bits), wp.types.vector(max(K, 1), wp.int64)
     N_ROWS, RECORD, SUMS_SIZE = shape.n_rows, shape.record_size, shape.sums_size
-    VOXELS, MAXIMUM, MINIMUM, SUMS, ROWS = shape.voxels, shape.maximum, shape.minimum, shape.sums, shape.keep_rows
+    INTERLEAVED = shape.keep_rows and shape.interleaved
+    VOXELS, MAXIMUM, MINIMUM, SUMS = shape.voxels, shape.maximum, shape.minimum, shape.sums
+    ROWS = shape.keep_rows and not shape.interleaved
     BASE_LEVELS = shape.base_levels
     FIRST_MAXIMUM, FIRST_MINIMUM = shape.count_size, shape.count_size + K * shape.maximum
     LOWEST = bits(lowest(real))
@@ -671,6 +735,9 @@ def _cuda_kernel(shape: Shape) -> wp.Kernel:
                 for row in range(N_ROWS):
                     at_row = row * wp.int32(to.rows_stride) + wp.int32(offset)
                     store_row(to.rows_out, at_row, out[OUTPUT[row]])
+            if wp.static(INTERLEAVED):
+                for row in range(N_ROWS):
+                    store_row(to.rows_out, wp.int32(offset) * N_ROWS + row, out[row])
             offset += threads
         if wp.int64(thread) < count:
             for r in range(REDUCED):

@@ -15,6 +15,7 @@ from wsrender.engine.membership import (
     poses_reached,
 )
 from wsrender.engine.partial import Partial, merge
+from wsrender.engine.positions import positions_at, sampled_positions
 from wsrender.engine.sweep import SweepPlan, sweep
 
 __all__ = [
@@ -37,6 +38,8 @@ __all__ = [
     "joined",
     "merge",
     "poses_reached",
+    "positions_at",
+    "sampled_positions",
     "solve_inverse",
     "sweep",
     "target_of",

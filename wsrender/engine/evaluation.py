@@ -61,14 +61,17 @@ class Evaluation:
     @property
     def mixed_rows(self) -> bool:
         """Whether the task has linear and angular rows."""
-        return min(self.rows) < 3 <= max(self.rows)
+        return bool(self.rows) and min(self.rows) < 3 <= max(self.rows)
 
 
 def shape_of(evaluation: Evaluation, precision: str, method: str, **outputs: bool) -> Shape:
     """Compile-time part of the sweep kernel of an evaluation."""
     real, n = REAL[precision], evaluation.chain.n
-    body = index_source(evaluation.indices, evaluation.rows, n, evaluation.convention)
-    length = spectrum_length(n, evaluation.rows, evaluation.convention)
+    indices = None
+    if evaluation.indices:
+        body = index_source(evaluation.indices, evaluation.rows, n, evaluation.convention)
+        length = spectrum_length(n, evaluation.rows, evaluation.convention)
+        indices = index_function(body, len(evaluation.indices), length, real)
     sources, plain = drive(evaluation.device_chain)
     return Shape(
         real=real,
@@ -78,7 +81,7 @@ def shape_of(evaluation: Evaluation, precision: str, method: str, **outputs: boo
         method="given" if evaluation.on_host else method,
         rows=evaluation.rows,
         convention=evaluation.convention,
-        indices=index_function(body, len(evaluation.indices), length, real),
+        indices=indices,
         n_indices=len(evaluation.indices),
         dynamic=evaluation.dynamic,
         given_jacobian=evaluation.host_chain is not None,

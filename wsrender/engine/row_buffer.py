@@ -10,10 +10,10 @@ class RowBuffer:
     The copy runs in a stream of its own, so that a kernel that writes to another buffer does not wait for it.
     """
 
-    def __init__(self, n_rows: int, chunk: int, real: type, device: wp.Device):
+    def __init__(self, n_rows: int, chunk: int, real: type, device: wp.Device, interleaved: bool = False):
         self.on_device = wp.empty(n_rows * chunk, dtype=real, device=device)
         self._on_host = self.on_device  # a GPU's when it is first needed
-        self._shape = (n_rows, chunk)
+        self._shape, self._interleaved = (n_rows, chunk), interleaved
         self._first, self._count = 0, 0
         self._device = device
         self._stream = wp.Stream(device) if device.is_cuda else None
@@ -35,6 +35,7 @@ class RowBuffer:
             return {}
         if self._copied:
             wp.synchronize_event(self._copied)
-        rows = self._on_host.numpy().reshape(self._shape)[:, : self._count].copy()
-        self._count = 0
-        return {self._first: rows}
+        rows, count, self._count = self._on_host.numpy(), self._count, 0
+        if self._interleaved:
+            return {self._first: rows.reshape(self._shape[::-1])[:count].copy().T}
+        return {self._first: rows.reshape(self._shape)[:, :count].copy()}

@@ -249,7 +249,7 @@ class Accumulator:
         self._records = device_memory(voxels * shape.record_size, bits, device)
         self._sums = device_memory(voxels * shape.sums_size, wp.int64, device)
         buffers = (2 if device.is_cuda else 1) if shape.keep_rows else 0
-        self._row_buffers = [RowBuffer(shape.n_rows, chunk, real, device) for _ in range(buffers)]
+        self._row_buffers = [RowBuffer(shape.n_rows, chunk, real, device, shape.interleaved) for _ in range(buffers)]
         outputs = self._outputs = outputs_type(shape)()
         outputs.scales = device_array(plan.scales, real, device)
         outputs.extremes, outputs.totals = self._extremes, self._totals
@@ -336,7 +336,8 @@ class Accumulator:
         if chain is not None:
             chain = chain.relative_to(self.plan.origin)
             model.position_given = device_array(chain.poses(q)[:, :3, 3].T.ravel(), real, device)
-            model.jacobian_given = device_array(chain.jacobians(q).reshape(count, -1).T.ravel(), real, device)
+            if evaluation.indices:  # they may cost a Python class many times as much as poses
+                model.jacobian_given = device_array(chain.jacobians(q).reshape(count, -1).T.ravel(), real, device)
         if evaluation.dynamic and evaluation.host_inertia is not None:
             inertia = evaluation.host_inertia(q)
             model.inertia_given = device_array(inertia.reshape(count, -1).T.ravel(), real, device)

@@ -9,7 +9,7 @@ from scipy.ndimage import binary_closing, gaussian_filter
 from scipy.spatial import KDTree
 from scipy.special import ndtri
 
-from wsrender.engine import configurations, evaluate_poses
+from wsrender.engine import sampled_positions
 from wsrender.errors import InputError
 from wsrender.reachability.evidence import REACHABLE
 from wsrender.reachability.inverse_solver import InverseSolver
@@ -167,5 +167,4 @@ def _positions(chain: Chain, count: int, seed: int, device: str) -> Iterator[np.
     """World positions (N, 3) of a Sobol set of configurations [m], piece by piece."""
     plan = plan_sampling(chain, Sobol(count, seed=seed))
     for first in range(0, count, CHUNK):
-        rows = configurations(plan, np.arange(first, min(first + CHUNK, count)))
-        yield evaluate_poses(chain, rows, device=device)[:, :3, 3]
+        yield sampled_positions(chain, plan, device=device, first=first, count=min(CHUNK, count - first))

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from wsrender.engine import configurations, evaluate_poses
+from wsrender.engine import sampled_positions
 from wsrender.parallel.mechanism import Mechanism
 from wsrender.parallel.serial_leg import NumericLeg
 from wsrender.sampling import plan_sampling
@@ -74,7 +74,7 @@ def flat_of(mechanism: Mechanism, rotation: np.ndarray) -> Flat | None:
 def _equations(leg: NumericLeg, rotation: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Unit normals (k, 3) and offsets (k,) of what holds the platform's origin in a leg's plane or line, base frame."""
     plan = plan_sampling(leg.chain, Sobol(SAMPLES))
-    tips = evaluate_poses(leg.chain, configurations(plan, np.arange(SAMPLES)), device="cpu")[:, :3, 3]
+    tips = sampled_positions(leg.chain, plan)
     middle = tips.mean(axis=0)
     _, sigma, axes = np.linalg.svd(tips - middle, full_matrices=False)
     thick = sigma > FLAT * max(sigma[0], leg.chain.reach * np.sqrt(SAMPLES) * FLAT)

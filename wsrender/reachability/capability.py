@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from wsrender.engine import evaluate_poses
+from wsrender.engine import positions_at
 from wsrender.reachability.dimension import fills_volume, in_own_voxel
 from wsrender.reachability.evidence import REACHABLE, UNDECIDED
 from wsrender.reachability.inverse_solver import InverseSolver
@@ -106,7 +106,7 @@ def _points(solver: InverseSolver, cells: np.ndarray, voxel_size_m: float) -> tu
     found = solver.solve(centers)
     if fills_volume(solver.whole):
         return centers, found.label == REACHABLE
-    nearest = evaluate_poses(solver.whole, found.q, device="cpu")[:, :3, 3]
+    nearest = positions_at(solver.whole, found.q)
     return nearest, in_own_voxel(nearest, cells, voxel_size_m)
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from wsrender.engine import evaluate_poses
+from wsrender.engine import positions_at
 from wsrender.reachability.evidence import REACHABLE, UNDECIDED
 from wsrender.reachability.inverse_solver import InverseSolver
 from wsrender.reachability.reached_set import tolerance_m
@@ -26,4 +26,4 @@ class ReachedPoints:
     def nearest(self, points: np.ndarray) -> np.ndarray:
         """The reached points (N, 3) nearest to points (N, 3) [m], as far as the solver found them."""
         q = self._solver.solve(points).q
-        return evaluate_poses(self._chain, q, device="cpu")[:, :3, 3]
+        return positions_at(self._chain, q)

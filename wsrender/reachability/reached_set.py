@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from wsrender.engine import configurations, evaluate_poses
+from wsrender.engine import configurations, positions_at
 from wsrender.reachability.cover import covered_cells
 from wsrender.reachability.evidence import UNREACHABLE
 from wsrender.reachability.inverse_solver import InverseSolver
@@ -111,4 +111,4 @@ class ReachedSet:
         q = configurations(plan, np.arange(count))
         q[count // 2 :] = inwards(self.chain, towards_limits(self.chain, q[count // 2 :]), NEXT_TO)
         q = np.random.Generator(np.random.Philox(key=self.seed)).permutation(q)
-        return evaluate_poses(self.chain, q, device="cpu")[:, :3, 3]
+        return positions_at(self.chain, q)

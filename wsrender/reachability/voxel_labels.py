@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from wsrender.engine import evaluate_poses
+from wsrender.engine import positions_at
 from wsrender.reachability.dimension import fills_volume, in_own_voxel
 from wsrender.reachability.evidence import LABELS, REACHABLE
 from wsrender.reachability.inverse_solver import InverseSolver
@@ -48,7 +48,7 @@ def label_voxels(
     reasons = reasons_of(solver, found, points)
     label = found.label
     if not fills_volume(chain):
-        nearest = evaluate_poses(chain, found.q, device="cpu")[:, :3, 3]
+        nearest = positions_at(chain, found.q)
         held = in_own_voxel(nearest, places, volume.voxel_size_m) | (np.pad(volume.count, 1)[outer] > 0)
         label, reasons = np.where(held, REACHABLE, label), np.where(held, "", reasons)
     code = np.select([reasons == name for name in REASONS], list(range(len(REASONS))))

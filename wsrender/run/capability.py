@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from wsrender.engine import configurations, evaluate_poses
+from wsrender.engine import sampled_positions
 from wsrender.reachability.capability import capability, fibonacci_directions
 from wsrender.reachability.targets import check_tolerance
 from wsrender.result import Result
@@ -151,4 +151,4 @@ def plan_capability(job: CapabilityJob, robot: Robot, resolved: dict[str, Any] |
 def _positions(chain: Chain) -> np.ndarray:
     """Positions (N, 3) of the first samples of a Sobol set [m]."""
     plan = plan_sampling(chain, Sobol(FIRST_SAMPLES))
-    return evaluate_poses(chain, configurations(plan, np.arange(FIRST_SAMPLES)), device="cpu")[:, :3, 3]
+    return sampled_positions(chain, plan)

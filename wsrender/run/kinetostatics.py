@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from wsrender.engine import configurations, evaluate_poses
+from wsrender.engine import configurations, sampled_positions
 from wsrender.kinetostatics.characteristic_length import CharacteristicLength
 from wsrender.kinetostatics.force_field import ForceField
 from wsrender.kinetostatics.passivity import LoopWork, largest_loop_work, stiffness_bound, stiffnesses
@@ -207,6 +207,5 @@ def plan_kinetostatic_field(
 
 def _voxel_size(force_field: ForceField, samples: int) -> float:
     chain = force_field.chain
-    q = configurations(plan_sampling(chain, Sobol(FIRST_SAMPLES)), np.arange(FIRST_SAMPLES))
-    positions = evaluate_poses(chain, q, device="cpu")[:, :3, 3]
+    positions = sampled_positions(chain, plan_sampling(chain, Sobol(FIRST_SAMPLES)))
     return default_voxel_size(positions, samples, divisions=DIVISIONS)

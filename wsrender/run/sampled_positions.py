@@ -5,11 +5,9 @@ from typing import Any
 
 import numpy as np
 
-from wsrender.engine import configurations
+from wsrender import engine
 from wsrender.robot import Robot
 from wsrender.sampling import plan_sampling
-
-CHUNK = 1 << 17
 
 
 def sampled_positions(
@@ -25,10 +23,4 @@ def sampled_positions(
     Raises InputError, ResourceError as `plan_sampling` does.
     """
     plan = plan_sampling(robot.chain, sampling, max_samples)
-    positions = np.empty((plan.count, 3))
-    for first in range(0, plan.count, CHUNK):
-        rows = configurations(plan, np.arange(first, min(first + CHUNK, plan.count)))
-        positions[first : first + len(rows)] = robot.forward_kinematics(rows, device=device)[:, :3, 3]
-        if progress:
-            progress(first + len(rows))
-    return positions
+    return engine.sampled_positions(robot.chain, plan, device=device, progress=progress)
