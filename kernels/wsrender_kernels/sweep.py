@@ -462,7 +462,7 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
     N_OUTPUTS, N_ROWS, REDUCED, RECORD = shape.n_outputs, shape.n_rows, shape.reduced, shape.record_size
     INTERLEAVED = shape.keep_rows and shape.interleaved
     OUTPUT = _output_of_row(shape)
-    VOXELS, SUMS, BASE_LEVELS = shape.voxels, shape.sums, shape.base_levels
+    VOXELS, SUMS, BASE_LEVELS = shape.voxels, shape.sums_size > 0, shape.base_levels
     ROWS = shape.keep_rows and not shape.interleaved
     STAGED = shape.many_rows
     LOWEST = bits(lowest(real))
@@ -648,7 +648,7 @@ def _cuda_kernel(shape: Shape) -> wp.Kernel:
     extremes_type, totals_type = wp.types.vector(REDUCED, bits), wp.types.vector(max(K, 1), wp.int64)
     N_ROWS, RECORD, SUMS_SIZE = shape.n_rows, shape.record_size, shape.sums_size
     INTERLEAVED = shape.keep_rows and shape.interleaved
-    VOXELS, MAXIMUM, MINIMUM, SUMS = shape.voxels, shape.maximum, shape.minimum, shape.sums
+    VOXELS, MAXIMUM, MINIMUM, SUMS = shape.voxels, shape.maximum, shape.minimum, shape.sums_size > 0
     ROWS = shape.keep_rows and not shape.interleaved
     BASE_LEVELS = shape.base_levels
     FIRST_MAXIMUM, FIRST_MINIMUM = shape.count_size, shape.count_size + K * shape.maximum

@@ -77,6 +77,7 @@ def test_voxels_count_the_same_samples_without_indices(sampling, precision, devi
     alone, both = found[0], found[2]
     # The compiler may fuse other products with sums: a last bit of a position, and so a sample at a voxel's face.
     dense = [np.bincount(part.cells, part.count, block.size) for part in (alone, both)]
+    assert dense[0].sum() == plan.count
     assert np.abs(dense[0] - dense[1]).sum() <= (0 if precision == "float64" else 4)
     assert alone.samples == plan.count and alone.records.shape[1] == 0 and alone.sums.shape[1] == 0
     np.testing.assert_allclose(alone.maximum, both.maximum[:3], atol=TOLERANCES[precision].position(1.0))
