@@ -165,9 +165,7 @@ def test_failed_save_changes_nothing(tmp_path, monkeypatch):
     result.save(folder)
     before = {name: (folder / name).read_bytes() for name in names_in(folder)}
     listed = result.document["artifacts"]
-    monkeypatch.setattr(
-        "wsrender.export.write_mesh", lambda *_: (_ for _ in ()).throw(OSError("disk full")), raising=False
-    )
+    monkeypatch.setattr("wsrender.export.meshes.write_mesh", lambda *_: (_ for _ in ()).throw(OSError("disk full")))
     changed = Result(result.document, map=random_map(7), volume=result.volume, meshes=meshes)
     for target in (folder, tmp_path / "fresh"):
         with pytest.raises(OSError, match="disk full"):

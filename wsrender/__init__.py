@@ -31,6 +31,7 @@ from wsrender.errors import (
 if TYPE_CHECKING:
     from wsrender import run
     from wsrender.client import Client
+    from wsrender.export.formats import Format, register_format
     from wsrender.indices import Index, math, register_index
     from wsrender.kinetostatics import ForceField, force_field
     from wsrender.parallel.five_bar import FiveBar
@@ -68,6 +69,7 @@ __all__ = [
     "DocumentError",
     "FiveBar",
     "ForceField",
+    "Format",
     "FrameNotFoundError",
     "Grid",
     "Index",
@@ -110,6 +112,7 @@ __all__ = [
     "parallel_workspace",
     "planar_boundary",
     "reachable",
+    "register_format",
     "register_index",
     "robot_comparison",
     "run",
@@ -118,6 +121,7 @@ __all__ = [
 
 _NAMES_OF_MODULE = {
     "wsrender.client": ("Client",),
+    "wsrender.export.formats": ("Format", "register_format"),
     "wsrender.indices": ("Index", "register_index"),
     "wsrender.kinetostatics": ("ForceField", "force_field"),
     "wsrender.parallel.five_bar": ("FiveBar",),

@@ -9,12 +9,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from wsrender import export, plots, render
+from wsrender import plots, render
 from wsrender.errors import InputError, MissingExtraError, RenderError, RenderWarning
 from wsrender.export.artifacts import (
     DOCUMENT,
+    NAMED_PARTS,
+    PARTS,
     Artifact,
-    named_data,
+    named_files,
+    part_file,
     publish,
     read_document,
     verified_artifacts,
@@ -22,8 +25,9 @@ from wsrender.export.artifacts import (
     write_document,
 )
 from wsrender.export.atomic import new_file, staging_folder
-from wsrender.export.cells import cell_names
+from wsrender.export.cells import cell_names, cell_units, vector_names
 from wsrender.export.columns import columns_of
+from wsrender.export.formats import by_ending, check_asked, kept, written
 from wsrender.export.text import sampling_text, summary_text
 from wsrender.report import Picture, report_page
 from wsrender.report.entries import label
@@ -37,9 +41,7 @@ if TYPE_CHECKING:
 
     from wsrender.plots.result_plots import ResultPlots
 
-STANDARD_FORMATS = ("parquet", "vtkhdf", "glb", "ply", "png")
 REPORT_VIEWS = ("boundary", "isosurface")
-EXTRA_FORMATS = ("npz", "csv", "mat", "stl", "svg")
 PLANAR_BOUNDARY = "boundary"  # table of the lines and arcs around what a planar arm reaches
 
 
@@ -105,7 +107,7 @@ class Result:
     ) -> "Figure":
         """A 3-D picture of the workspace with its arm, as a matplotlib Figure.
 
-        It is written to ``path`` (.png, .svg) if given.
+        It is written to ``path`` if given, in the format of its ending.
         ``view``: boundary, solid, scatter, volume, slice or isosurface; ``others``: results drawn in the same box.
         ``robot``, one of the result, adds the bodies of its links, if its model has any, at ``configuration`` [rad or
         m]; given by name or file it stands as in the result.
@@ -125,7 +127,7 @@ class Result:
         shared = self.meshes.get("intersection") if len(results) == 1 and len(subjects) > 1 else None
         figure = render.picture(subjects, view, title=plots.heading(title, warned, "volume"), shared=shared, **options)
         if path is not None:
-            plots.save_figure(figure, path)
+            by_ending("picture", path).write(figure, path)
         return figure
 
     def _robot_entries(self) -> list[dict[str, Any]]:
@@ -186,16 +188,13 @@ class Result:
         Always written, as far as the result holds the data: ``result.json``, ``map.parquet``,
         ``sample.parquet``, ``volume.vtkhdf``, ``skeleton.npy``, ``<name>.parquet`` of each table, ``<name>.vtkhdf``
         of each further volume, ``<name>.ply`` and ``<name>.glb`` (+Y up, as glTF has it) of each mesh, and
-        ``plots/*.png`` with ``plots/histogram.csv``. ``formats`` adds npz, csv, mat, stl and svg. A result
-        that was in the folder before is replaced, other files stay; if writing fails nothing changes.
+        ``plots/*.png`` with ``plots/histogram.csv``. ``formats`` adds others by their suffixes: those of the table
+        in ``wsrender.export.formats`` and of ``register_format``. A result that was in the folder before is replaced,
+        other files stay; if writing fails nothing changes.
 
         Raises InputError for an unknown format or a folder that is a file.
         """
-        formats = tuple(formats)
-        for name in formats:
-            if name not in STANDARD_FORMATS + EXTRA_FORMATS:
-                allowed = ", ".join(EXTRA_FORMATS)
-                raise InputError("formats", f"{name!r} is not a format that can be added; allowed: {allowed}")
+        formats = check_asked(formats)
         with staging_folder(folder) as staging:
             records = write_artifacts(_artifacts(self, formats), staging)
             document = write_document({**self.document, "artifacts": records}, staging / DOCUMENT)
@@ -211,17 +210,10 @@ class Result:
         folder = Path(folder)
         document = read_document(folder)
         files = verified_artifacts(document, folder)
-
-        return cls(
-            document=document,
-            map=_restored(files, "map.parquet", "read_table_parquet"),
-            sample=_restored(files, "sample.parquet", "read_table_parquet"),
-            volume=_restored(files, "volume.vtkhdf", "read_volume_vtkhdf"),
-            skeleton=_restored(files, "skeleton.npy", "read_skeleton"),
-            meshes=_all_restored(files, ".ply", "read_mesh"),
-            tables=_all_restored(files, ".parquet", "read_table_parquet"),
-            volumes=_all_restored(files, ".vtkhdf", "read_volume_vtkhdf"),
-        )
+        parts: dict[str, Any] = {part: _restored(kind, files.get(part_file(part))) for part, kind in PARTS.items()}
+        for part, kind in NAMED_PARTS.items():
+            parts[part] = {name: _restored(kind, files[file]) for name, file in named_files(part, files).items()}
+        return cls(document, **parts)
 
 
 def named_results(results: Iterable[Result]) -> dict[str, Result]:
@@ -235,14 +227,9 @@ def named_results(results: Iterable[Result]) -> dict[str, Result]:
     }
 
 
-def _restored(files: dict[str, Path], name: str, reader: str) -> Any:
-    """What the function ``reader`` of ``wsrender.export`` reads, None where there is no such file."""
-    return getattr(export, reader)(files[name]) if name in files else None
-
-
-def _all_restored(files: dict[str, Path], ending: str, reader: str) -> dict[str, Any]:
-    """What the function ``reader`` of ``wsrender.export`` reads from the named files of an ending, by name."""
-    return {name: _restored(files, file, reader) for name, file in named_data(files, ending).items()}
+def _restored(kind: str, path: Path | None) -> Any:
+    """What the file of a part holds, None where there is none."""
+    return None if path is None else kept(kind).read(path)
 
 
 def _meshes(result: Result) -> "dict[str, trimesh.Trimesh]":
@@ -261,52 +248,49 @@ def _artifacts(result: Result, formats: tuple[str, ...]) -> Iterator[Artifact]:
             yield from _table_files(name, data, formats)
     if result.document.get("analysis") == "planar_boundary" and PLANAR_BOUNDARY in result.tables:
         drawing = result.tables[PLANAR_BOUNDARY]
-        for ending in ("dxf", "svg"):
-            write = partial(getattr(export, f"write_{ending}"), drawing)
-            yield Artifact(f"{PLANAR_BOUNDARY}.{ending}", write, (len(drawing),), {"coordinates": "m"}, "plane")
+        yield from _files("drawing", PLANAR_BOUNDARY, drawing, formats, (len(drawing),), {"coordinates": "m"}, "plane")
     for name, volume in {"volume": result.volume, **result.volumes}.items():
         if volume is not None:
             yield from _volume_files(name, volume, formats)
     for name, mesh in _meshes(result).items():
-        yield from _mesh_files(name, mesh, formats)
+        yield from _files("mesh", name, mesh, formats, mesh.vertices.shape, {"vertices": "m"})
     if result.skeleton is not None:
         skeleton = np.asarray(result.skeleton)
-        write = partial(export.write_skeleton, skeleton)
-        yield Artifact("skeleton.npy", write, skeleton.shape, {"skeleton": "m"})
+        yield from _files("skeleton", "skeleton", skeleton, formats, skeleton.shape, {"skeleton": "m"})
     yield from _picture_files(result, formats)
+
+
+def _files(
+    kind: str,
+    name: str,
+    data: Any,
+    formats: tuple[str, ...],
+    shape: tuple[int, ...] | None = None,
+    units: dict[str, str] | None = None,
+    frame: str | None = "world",
+) -> Iterator[Artifact]:
+    """The files of one thing: in the formats of its kind that are always written, and in those asked for."""
+    for row in written(kind, formats):
+        yield Artifact(row.file(name), partial(row.write, data), shape, units or {}, row.frame or frame)
 
 
 def _table_files(name: str, data: DistributionMap | Table, formats: tuple[str, ...]) -> Iterator[Artifact]:
     units = columns_of(data).column_units()
     frame = "world" if isinstance(data, DistributionMap) else None
-    for ending in ("parquet", *(ending for ending in ("npz", "csv", "mat") if ending in formats)):
-        write = partial(getattr(export, f"write_table_{ending}"), data)
-        yield Artifact(f"{name}.{ending}", write, (len(data), len(units)), units, frame)
+    return _files("table", name, data, formats, (len(data), len(units)), units, frame)
 
 
 def _volume_files(name: str, volume: VolumeData, formats: tuple[str, ...]) -> Iterator[Artifact]:
-    names = cell_names(volume, taken={"count"})
-    units = {"count": "samples"} | {array: volume.units.get(index, "1") for (_, index), array in names.items()}
-    units |= {vector: volume.units.get(vector, "1") for vector in volume.vectors}
-    for ending in ("vtkhdf", *(ending for ending in ("npz", "csv", "mat") if ending in formats)):
-        write = partial(getattr(export, f"write_volume_{ending}"), volume)
-        yield Artifact(f"{name}.{ending}", write, volume.shape, units)
-
-
-def _mesh_files(name: str, mesh: "trimesh.Trimesh", formats: tuple[str, ...]) -> Iterator[Artifact]:
-    for ending in ("glb", "ply", *(["stl"] if "stl" in formats else [])):
-        write = partial(export.write_mesh, mesh)
-        frame = export.GLB_FRAME if ending == "glb" else "world"
-        yield Artifact(f"{name}.{ending}", write, mesh.vertices.shape, {"vertices": "m"}, frame)
+    taken = {"count"}
+    units = cell_units(volume, cell_names(volume, taken), vector_names(volume, taken))
+    return _files("volume", name, volume, formats, volume.shape, units)
 
 
 def _picture_files(result: Result, formats: tuple[str, ...]) -> Iterator[Artifact]:
-    """PNG, and SVG if asked, of each picture that the result has data for."""
+    """Each picture that the result has data for, and the numbers of the histogram."""
     pictures = result._pictures()
     if "histogram" in pictures and result.plot.samples is not None:
         write = partial(plots.write_histogram_csv, result.plot.samples)
         yield Artifact("plots/histogram.csv", write, frame=None)
     for name, draw in pictures.items():
-        figure = draw()
-        for ending in ("png", *(["svg"] if "svg" in formats else [])):
-            yield Artifact(f"plots/{name}.{ending}", partial(plots.save_figure, figure))
+        yield from _files("picture", f"plots/{name}", draw(), formats)

@@ -1,13 +1,13 @@
 """Artifacts in other formats on request, converted in the side process and kept for a while."""
 
 import asyncio
-import hashlib
 import os
 import uuid
 from pathlib import Path
-from typing import Any
 
-from wsrender import __version__, export
+from wsrender import __version__
+from wsrender.export.artifacts import sha256 as sha256_of
+from wsrender.export.formats import Format, of_file, others
 from wsrender_server.jobs.files import DataFolder
 from wsrender_server.jobs.records import ArtifactRecord
 from wsrender_server.problems import HttpProblem
@@ -15,19 +15,6 @@ from wsrender_server.side_process import SideProcess
 
 MOST_KEPT = 64  # converted files
 TIMEOUT_S = 600.0
-
-MEDIA_TYPES = {
-    "csv": "text/csv",
-    "glb": "model/gltf-binary",
-    "mat": "application/x-matlab-data",
-    "npz": "application/x-npz",
-    "ply": "model/ply",
-    "stl": "model/stl",
-    "vti": "application/vnd.vtk.vti",
-}
-# What each kind of file can be converted to, by its ending.
-FORMATS = {".parquet": ("npz", "csv", "mat"), ".vtkhdf": ("npz", "csv", "mat", "vti"), ".glb": ("ply", "stl")}
-FORMATS[".ply"] = ("glb", "stl")
 
 
 class ConvertedFiles:
@@ -47,9 +34,9 @@ class ConvertedFiles:
 
         Raises HttpProblem 404 for a format that it does not have, DiskFull.
         """
-        ending = Path(record.name).suffix
-        allowed = FORMATS.get(ending, ())
-        if format not in allowed:
+        stored = of_file(record.name)
+        allowed = others(stored)
+        if stored is None or format not in allowed:
             choices = ", ".join(allowed) or "none"
             detail = f"{record.name} does not come as {format}; other formats: {choices}"
             raise HttpProblem(404, detail, "format_not_available", errors=[("format", detail)])
@@ -58,7 +45,8 @@ class ConvertedFiles:
             if kept is None:
                 await asyncio.to_thread(self._files.check_space)
                 target = self._folder / f".{uuid.uuid4().hex}.{format}"
-                sha256 = await self._side_process.run(convert, str(source), ending, str(target), timeout_s=TIMEOUT_S)
+                wanted = allowed[format]
+                sha256 = await self._side_process.run(convert, source, stored, target, wanted, timeout_s=TIMEOUT_S)
                 kept = await asyncio.to_thread(self._keep, target, record.sha256, sha256, format)
         return kept
 
@@ -77,26 +65,10 @@ class ConvertedFiles:
         return path, sha256
 
 
-def convert(source: str, ending: str, target: str) -> str:
-    """Write the file ``source``, whose kind is that of ``ending``, in the format of the name ``target``; its SHA-256.
+def convert(source: Path, stored: Format, target: Path, wanted: Format) -> str:
+    """Write the file ``source``, whatever its name, in another format; SHA-256 of the file ``target``.
 
     Raises InputError where the source is damaged.
     """
-    format = Path(target).suffix.removeprefix(".")
-    if ending == ".parquet":
-        getattr(export, f"write_table_{format}")(export.read_table_parquet(source), target)
-    elif ending == ".vtkhdf":
-        volume = export.read_volume_vtkhdf(source)
-        _volume_writer(format)(volume, target)
-    else:
-        export.write_mesh(export.read_mesh(source, ending), target)
-    with Path(target).open("rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()
-
-
-def _volume_writer(format: str) -> Any:
-    if format == "vti":
-        from wsrender_server.vti import write_volume_vti
-
-        return write_volume_vti
-    return getattr(export, f"write_volume_{format}")
+    wanted.write(stored.read(source), target)
+    return sha256_of(target)

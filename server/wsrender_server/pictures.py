@@ -7,16 +7,13 @@ from typing import Any
 import numpy as np
 
 from wsrender.errors import InputError
+from wsrender.export.artifacts import PARTS, part_file
+from wsrender.export.formats import by_ending, kept
 from wsrender.result import Result
 
 AXES = "xyz"
-# Artifacts that a result's pictures are drawn from, and what reads them.
-SOURCES = {
-    "map.parquet": "read_table_parquet",
-    "sample.parquet": "read_table_parquet",
-    "volume.vtkhdf": "read_volume_vtkhdf",
-    "skeleton.npy": "read_skeleton",
-}
+# Files that a result's pictures are drawn from, by what they hold.
+SOURCES = {part: part_file(part) for part in PARTS}
 
 
 def slice_values(
@@ -82,19 +79,12 @@ def _layer(counts: Any, normal: int, at: float | None, size: float, first: int) 
 
 
 def draw(document: dict[str, Any], files: dict[str, str], plot: str, format: str, options: dict[str, Any]) -> bytes:
-    """A picture of a result as PNG or SVG; ``files`` maps names of its artifacts to paths.
+    """A picture of a result in a format of pictures; ``files`` maps names of its artifacts to paths.
 
     ``options``: index, statistic, axis and at, where the plot has them. Raises InputError where the result does not
     hold what the plot shows.
     """
-    from wsrender import export
-    from wsrender.plots import save_figure
-
-    parts = {
-        name.partition(".")[0]: getattr(export, reader)(files[name])
-        for name, reader in SOURCES.items()
-        if name in files and name in _needed(plot, files)
-    }
+    parts = {part: kept(PARTS[part]).read(files[SOURCES[part]]) for part in _needed(plot, files)}
     plots = Result(document, **parts).plot
     if plot == "slice":
         place = {options.get("axis") or "z": options.get("at")}
@@ -105,13 +95,13 @@ def draw(document: dict[str, Any], files: dict[str, str], plot: str, format: str
         figure = getattr(plots, plot)(options.get("index"))
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / f"plot.{format}"
-        save_figure(figure, path)
+        by_ending("picture", path).write(figure, path)
         return path.read_bytes()
 
 
-def _needed(plot: str, files: dict[str, str]) -> set[str]:
-    if plot in ("slice", "slices"):
-        return {"volume.vtkhdf"}
+def _needed(plot: str, files: dict[str, str]) -> list[str]:
+    """The parts of the result that a plot shows, of those whose files are there."""
     # The whole map only where there is no sample of it.
-    samples = "sample.parquet" if "sample.parquet" in files else "map.parquet"
-    return {samples, "skeleton.npy"}
+    samples = "sample" if SOURCES["sample"] in files else "map"
+    needed = ["volume"] if plot in ("slice", "slices") else [samples, "skeleton"]
+    return [part for part in needed if SOURCES[part] in files]

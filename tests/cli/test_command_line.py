@@ -143,7 +143,8 @@ def test_outputs_that_cannot_be_saved_are_refused_before_the_run(wsrender, execu
     code, _, err = wsrender("run", "ur5e", "-o", str(occupied))
     assert (code, err) == (2, f"error: --output: must be a folder, not the file {occupied}\n")
     code, _, err = wsrender("run", "ur5e", "-o", str(tmp_path), "--format", "pickle")
-    assert (code, err) == (2, 'error: --format: must be one of npz, csv, mat, stl, svg, not "pickle"\n')
+    allowed = "allowed: npz, csv, mat, vti, stl, svg"
+    assert (code, err) == (2, f"error: --format: 'pickle' is not a format that can be added; {allowed}\n")
 
 
 @pytest.mark.parametrize("command", ["serve", "worker", "keys", "database", "demo"])

@@ -10,9 +10,9 @@ import scipy.io
 from tests.export.sample_data import assert_same_volume, random_volume
 from wsrender.errors import InputError
 from wsrender.export import (
+    cells,
     read_volume_npz,
     read_volume_vtkhdf,
-    vtkhdf,
     write_volume_csv,
     write_volume_mat,
     write_volume_npz,
@@ -84,7 +84,7 @@ def test_vtk_reads_dimensions_place_and_values(tmp_path, shape):
 
 
 def test_large_volume_is_written_in_several_chunks(tmp_path, monkeypatch):
-    monkeypatch.setattr(vtkhdf, "_CHUNK_BYTES", 5 * 4 * 8 * 2)
+    monkeypatch.setattr(cells, "CHUNK_BYTES", 5 * 4 * 8 * 2)
     volume = random_volume((5, 4, 7))
     write_volume_vtkhdf(volume, tmp_path / "volume.vtkhdf")
     with h5py.File(tmp_path / "volume.vtkhdf") as file:

@@ -7,13 +7,15 @@ import typer
 
 from wsrender.cli.faults import one_line_faults
 from wsrender.errors import InputError
+from wsrender.export.formats import by_ending, one_of, rows, suffixes
 
 _SURROUNDINGS = "Surroundings"
+_ENDINGS = one_of(f".{suffix}" for suffix in suffixes(rows("picture", own=True)))
 
 
 def render(
     folder: Annotated[Path, typer.Argument(metavar="FOLDER", help="Folder of a saved result.")],
-    output: Annotated[Path, typer.Option("--output", "-o", help="Picture to write, .png or .svg.")] = Path("view.png"),
+    output: Annotated[Path, typer.Option("--output", "-o", help=f"Picture to write, {_ENDINGS}.")] = Path("view.png"),
     view: Annotated[str, typer.Option(help="boundary, solid, scatter, volume, slice or isosurface.")] = "boundary",
     other: Annotated[
         list[Path] | None, typer.Option("--with", help="Folder of a result to draw in the same box; repeatable.")
@@ -69,8 +71,7 @@ def render(
 
 def _check_output(output: Path) -> None:
     """Refuse before the picture is drawn what writing it would refuse after."""
-    if output.suffix.lower() not in (".png", ".svg"):
-        raise InputError("--output", f'must end in .png or .svg, not "{output.name}"')
+    by_ending("picture", output, "--output")
     if not output.absolute().parent.is_dir():
         raise InputError("--output", f"the folder {output.parent} does not exist")
 

@@ -7,21 +7,19 @@ import typer
 from rich.console import Console
 
 from wsrender.errors import InputError
+from wsrender.export.formats import asked, check_asked, one_of
 
+# Formats of other packages are not listed here: that would load them for every command.
 Formats = Annotated[
-    list[str] | None, typer.Option("--format", help="Also write npz, csv, mat, stl or svg; repeatable.")
+    list[str] | None, typer.Option("--format", help=f"Also write {one_of(asked(own=True))}; repeatable.")
 ]
 
 
 def check_output(output: Path, formats: list[str] | None) -> None:
     """Refuse before a long run what saving would refuse after it; raises InputError."""
-    from wsrender.result import EXTRA_FORMATS, STANDARD_FORMATS
-
     if output.exists() and not output.is_dir():
         raise InputError("--output", f"must be a folder, not the file {output}")
-    for name in formats or ():
-        if name not in STANDARD_FORMATS + EXTRA_FORMATS:
-            raise InputError("--format", f'must be one of {", ".join(EXTRA_FORMATS)}, not "{name}"')
+    check_asked(formats or (), "--format")
 
 
 def save_and_report(result: Any, output: Path, formats: list[str] | None) -> None:

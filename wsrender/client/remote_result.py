@@ -5,18 +5,17 @@ import tempfile
 import weakref
 from collections.abc import Iterable
 from functools import cached_property
-from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
 
 import numpy as np
 
-from wsrender import export
 from wsrender.client.connection import Connection
 from wsrender.client.downloads import download
-from wsrender.export.artifacts import DOCUMENT, artifact_records, named_data, publish, write_document
+from wsrender.export.artifacts import DOCUMENT, artifact_records, named_files, part_file, publish, write_document
 from wsrender.export.atomic import staging_folder
+from wsrender.export.formats import check_asked, of_file, readable
 from wsrender.result import Result
 from wsrender.volume.distribution_map import DistributionMap
 from wsrender.volume.table import Table
@@ -54,13 +53,21 @@ class RemoteFiles:
             self._downloaded[key] = self.fetch(name, target, format)
         return self._downloaded[key]
 
-    def read(self, name: str, kind: str, package: str) -> Any:
-        """What the artifact holds, read from npz where ``package`` is missing; None where there is no such file."""
-        if name not in self.records:
+    def read(self, name: str) -> Any:
+        """What the artifact holds, converted by the server where a package is missing here; None where it is not."""
+        stored = of_file(name)
+        if name not in self.records or stored is None:
             return None
-        if find_spec(package) is None:
-            return getattr(export, f"read_{kind}_npz")(self.local(name, "npz"))
-        return getattr(export, f"read_{kind}_{name.rpartition('.')[2]}")(self.local(name))
+        here = readable(stored)
+        return here.read(self.local(name, None if here is stored else here.suffix))
+
+    def part(self, part: str) -> Any:
+        """What the file of a part holds, such as the map; None where there is none."""
+        return self.read(part_file(part))
+
+    def named(self, part: str) -> dict[str, Any]:
+        """What the files of a part of several hold, such as the tables, by name."""
+        return {name: self.read(file) for name, file in named_files(part, self.records).items()}
 
 
 class RemoteResult(Result):
@@ -76,49 +83,45 @@ class RemoteResult(Result):
     @cached_property
     def map(self) -> DistributionMap | None:  # type: ignore[override]
         """One row per sample, where it was kept."""
-        return self._files.read("map.parquet", "table", "pyarrow")
+        return self._files.part("map")
 
     @cached_property
     def sample(self) -> DistributionMap | None:  # type: ignore[override]
         """The fixed subsample that pictures use."""
-        return self._files.read("sample.parquet", "table", "pyarrow")
+        return self._files.part("sample")
 
     @cached_property
     def volume(self) -> VolumeData | None:  # type: ignore[override]
         """Statistics by voxel."""
-        return self._files.read("volume.vtkhdf", "volume", "h5py")
+        return self._files.part("volume")
 
     @cached_property
     def skeleton(self) -> np.ndarray | None:  # type: ignore[override]
         """World positions [m] of base, joint origins and tip, (K, L+2, 3)."""
-        name = "skeleton.npy"
-        return export.read_skeleton(self._files.local(name)) if name in self._files.records else None
+        return self._files.part("skeleton")
 
     @cached_property
     def meshes(self) -> "dict[str, trimesh.Trimesh]":  # type: ignore[override]
         """Meshes by name [m, world frame]; they need the extra [engine]."""
-        files = named_data(self._files.records, ".ply")
-        return {name: export.read_mesh(self._files.local(file)) for name, file in files.items()}
+        return self._files.named("meshes")
 
     @cached_property
     def tables(self) -> dict[str, Table]:  # type: ignore[override]
         """Tables by name."""
-        files = named_data(self._files.records, ".parquet")
-        return {name: self._files.read(file, "table", "pyarrow") for name, file in files.items()}
+        return self._files.named("tables")
 
     @cached_property
     def volumes(self) -> dict[str, VolumeData]:  # type: ignore[override]
         """Further volumes by name."""
-        files = named_data(self._files.records, ".vtkhdf")
-        return {name: self._files.read(file, "volume", "h5py") for name, file in files.items()}
+        return self._files.named("volumes")
 
     def save(self, folder: str | Path, formats: Iterable[str] = ()) -> None:
         """Download every file of the result to a folder, as a local run would have written it.
 
-        With ``formats`` (npz, csv, mat, stl, svg) all files are written here, which needs the extra [engine]. If
+        With ``formats`` all files are written here, which needs the extra [engine]. If
         anything fails, nothing changes. Raises InputError, ServerConnectionError, ServerError.
         """
-        formats = tuple(formats)
+        formats = check_asked(formats)
         if formats:
             super().save(folder, formats)
             return

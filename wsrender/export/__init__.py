@@ -17,29 +17,8 @@ if TYPE_CHECKING:
     from wsrender.export.npz import read_table_npz, read_volume_npz, write_table_npz, write_volume_npz
     from wsrender.export.parquet import read_table_parquet, write_table_parquet
     from wsrender.export.skeleton import read_skeleton, write_skeleton
+    from wsrender.export.vti import write_volume_vti
     from wsrender.export.vtkhdf import read_volume_vtkhdf, write_volume_vtkhdf
-
-_MODULES = {
-    "GLB_FRAME": "meshes",
-    "read_mesh": "meshes",
-    "read_table_npz": "npz",
-    "read_table_parquet": "parquet",
-    "read_skeleton": "skeleton",
-    "read_volume_npz": "npz",
-    "read_volume_vtkhdf": "vtkhdf",
-    "write_table_csv": "csv",
-    "write_table_mat": "mat",
-    "write_table_npz": "npz",
-    "write_table_parquet": "parquet",
-    "write_dxf": "drawings",
-    "write_mesh": "meshes",
-    "write_skeleton": "skeleton",
-    "write_svg": "drawings",
-    "write_volume_csv": "csv",
-    "write_volume_mat": "mat",
-    "write_volume_npz": "npz",
-    "write_volume_vtkhdf": "vtkhdf",
-}
 
 __all__ = [
     "GLB_FRAME",
@@ -60,15 +39,26 @@ __all__ = [
     "write_volume_csv",
     "write_volume_mat",
     "write_volume_npz",
+    "write_volume_vti",
     "write_volume_vtkhdf",
 ]
 
 
+_MODULES = {"GLB_FRAME": "formats", "read_mesh": "meshes"}
+
+
 def __getattr__(name: str):
-    if name not in _MODULES:
+    module = _MODULES.get(name) or _module_of_format(name)
+    if module is None:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     try:
-        module = import_module(f"{__name__}.{_MODULES[name]}")
+        return getattr(import_module(f"{__name__}.{module}"), name)
     except ModuleNotFoundError as error:
         raise MissingExtraError(error.name or name, "engine") from error
-    return getattr(module, name)
+
+
+def _module_of_format(function: str) -> str | None:
+    """Where the table of formats has a function of this package from."""
+    from wsrender.export.formats import own_functions
+
+    return own_functions().get(function)

@@ -10,25 +10,12 @@ from typing import Any
 import numpy as np
 
 from wsrender.errors import InputError
+from wsrender.export.formats import kept, media_type
 
 DOCUMENT = "result.json"
-UNNAMED = ("map.parquet", "sample.parquet", "volume.vtkhdf")
-
-MEDIA_TYPES = {
-    ".csv": "text/csv",
-    ".glb": "model/gltf-binary",
-    ".dxf": "image/vnd.dxf",
-    ".json": "application/json",
-    ".mat": "application/x-matlab-data",
-    ".npy": "application/x-npy",
-    ".npz": "application/x-npz",
-    ".parquet": "application/vnd.apache.parquet",
-    ".ply": "model/ply",
-    ".png": "image/png",
-    ".stl": "model/stl",
-    ".svg": "image/svg+xml",
-    ".vtkhdf": "application/x-hdf5",
-}
+# Parts of a result and what they hold, each in a file of its name; and those of which there may be several, by name.
+PARTS = {"map": "table", "sample": "table", "volume": "volume", "skeleton": "skeleton"}
+NAMED_PARTS = {"meshes": "mesh", "tables": "table", "volumes": "volume"}
 
 
 @dataclass(frozen=True)
@@ -53,7 +40,7 @@ def _written(artifact: Artifact, folder: Path) -> dict[str, Any]:
     artifact.write(path)
     return {
         "name": artifact.name,
-        "media_type": MEDIA_TYPES[path.suffix],
+        "media_type": media_type(artifact.name),
         "bytes": path.stat().st_size,
         "sha256": sha256(path),
         "shape": None if artifact.shape is None else list(artifact.shape),
@@ -129,12 +116,18 @@ def artifact_records(document: dict[str, Any]) -> Iterator[tuple[str, dict[str, 
         yield name, record
 
 
-def named_data(names: Iterable[str], ending: str) -> dict[str, str]:
-    """Artifact by name, such as ``scan`` → ``scan.parquet``, of those of an ending that hold a named part of a result.
+def part_file(part: str) -> str:
+    """Name of the file that holds a part of ``PARTS``."""
+    return kept(PARTS[part]).file(part)
+
+
+def named_files(part: str, names: Iterable[str]) -> dict[str, str]:
+    """By name, such as ``scan`` → ``scan.parquet``, the files that hold a part of ``NAMED_PARTS``.
 
     The map, its sample and the volume are parts of their own; folders hold pictures.
     """
-    named = (name for name in names if name.endswith(ending) and "/" not in name and name not in UNNAMED)
+    ending, own = kept(NAMED_PARTS[part]).file(""), {part_file(each) for each in PARTS}
+    named = (name for name in names if name.endswith(ending) and "/" not in name and name not in own)
     return {name.removesuffix(ending): name for name in named}
 
 

@@ -10,6 +10,7 @@ from wsrender.export.atomic import new_file
 from wsrender.export.cells import cell_names
 from wsrender.export.column_type import column_type
 from wsrender.export.columns import arrays_by_column, columns_of
+from wsrender.export.names import unique_names
 from wsrender.volume.distribution_map import DistributionMap
 from wsrender.volume.table import Table
 from wsrender.volume.volume_data import VolumeData
@@ -35,11 +36,11 @@ def write_volume_csv(volume: VolumeData, path: str | Path) -> None:
     and ``<statistic>_<index>``; vectors as ``<name>_x``, ``<name>_y``, ``<name>_z``.
     """
     lattice = ("i", "j", "k", "x", "y", "z", "count")
-    names = cell_names(volume, taken=set(lattice))
+    taken: set[str] = set(lattice)
+    names = cell_names(volume, taken)
     voxels = volume.voxels.among(volume.voxels.count > 0)
-    components = {
-        f"{name}_{axis}": vector[:, k] for name, vector in voxels.vectors.items() for k, axis in enumerate("xyz")
-    }
+    parts = {f"{name}_{axis}": vector[:, k] for name, vector in voxels.vectors.items() for k, axis in enumerate("xyz")}
+    components = {name: parts[part] for part, name in unique_names(parts, "array", taken).items()}
     values = [voxels.statistics[statistic][index] for statistic, index in names]
     arrays = [voxels.count, *values, *components.values()]
     types = [pa.int64()] * 3 + [pa.float64()] * 3 + [pa.from_numpy_dtype(array.dtype) for array in arrays]

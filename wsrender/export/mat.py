@@ -8,7 +8,7 @@ import numpy as np
 from scipy.io import savemat
 
 from wsrender.export.atomic import new_file
-from wsrender.export.cells import cell_arrays, cell_names, vector_names
+from wsrender.export.cells import cell_arrays, cell_names, cell_units, vector_names
 from wsrender.export.columns import arrays_by_column, columns_of
 from wsrender.volume.distribution_map import DistributionMap
 from wsrender.volume.table import Table
@@ -30,8 +30,7 @@ def write_volume_mat(volume: VolumeData, path: str | Path) -> None:
     names, vectors = cell_names(volume, taken), vector_names(volume, taken)
     arrays = dict(cell_arrays(volume, names, vectors))
     arrays |= {"origin_m": volume.origin_m, "voxel_size_m": np.array(volume.voxel_size_m)}
-    units = {name: volume.units.get(index, "1") for (_, index), name in names.items()}
-    _write(path, arrays, units | {name: volume.units.get(vector, "1") for vector, name in vectors.items()})
+    _write(path, arrays, cell_units(volume, names, vectors))
 
 
 def _write(path: str | Path, arrays: dict[str, np.ndarray], units: dict[str, str]) -> None:

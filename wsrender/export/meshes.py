@@ -10,6 +10,7 @@ holds double precision and GLB moves a node; STL cannot.
 import io
 import json
 import struct
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -18,9 +19,10 @@ import trimesh
 
 from wsrender.errors import InputError
 from wsrender.export.atomic import new_file
+from wsrender.export.formats import GLB_FRAME as GLB_FRAME
+from wsrender.export.formats import by_ending
 from wsrender.volume.lattice import FAR
 
-GLB_FRAME = "world, +Y up"
 # What the file itself says of its frame, in the glTF member ``asset.extras``.
 GLB_EXTRAS = {"up": "+Y", "unit": "m", "frame": "world frame (z up) turned by -90 degrees about x: (x, z, -y)"}
 _T_GLTF_WORLD = np.array([[1.0, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
@@ -32,9 +34,7 @@ def write_mesh(mesh: trimesh.Trimesh, path: str | Path) -> None:
     Raises InputError for another name, and for .stl of a mesh that is far from the world's origin.
     """
     path = Path(path)
-    file_type = path.suffix.removeprefix(".").lower()
-    if file_type not in ("ply", "glb", "stl"):
-        raise InputError("path", f"{path.name} must end in .ply, .glb or .stl")
+    file_type = by_ending("mesh", path, own=True).suffix
     origin = _origin(mesh)
     if file_type == "stl" and origin.any():
         raise InputError(
@@ -75,6 +75,9 @@ def read_mesh(path: str | Path, ending: str | None = None) -> trimesh.Trimesh:
     if isinstance(raw, np.ndarray) and raw.dtype.names is not None and len(raw) == len(mesh.faces):
         mesh.face_attributes |= {name: raw[name] for name in raw.dtype.names if raw[name].dtype.names is None}
     return mesh
+
+
+read_glb, read_ply, read_stl = (partial(read_mesh, ending=ending) for ending in ("glb", "ply", "stl"))
 
 
 def _origin(mesh: trimesh.Trimesh) -> np.ndarray:

@@ -16,11 +16,10 @@ import numpy as np
 
 from wsrender.errors import InputError
 from wsrender.export.atomic import new_file
-from wsrender.export.cells import cell_names, vector_names
+from wsrender.export.cells import Layers, cell_names, cell_units, vector_names
 from wsrender.volume.volume_data import VolumeData
-from wsrender.volume.voxels import Voxels, empty_array
+from wsrender.volume.voxels import Voxels
 
-_CHUNK_BYTES = 1 << 21
 _COMPRESSION_LEVEL = 1  # voxel values are mostly noise in their low bits: higher levels gain little
 
 
@@ -28,7 +27,8 @@ def write_volume_vtkhdf(volume: VolumeData, path: str | Path) -> None:
     """Write volume data as one ImageData with cell arrays."""
     taken = {"count"}
     names, vectors = cell_names(volume, taken), vector_names(volume, taken)
-    layers = _Layers(volume.voxels)
+    units = cell_units(volume, names, vectors)
+    layers = Layers(volume.voxels)
     with new_file(path) as temporary, h5py.File(temporary, "w") as file:
         root = file.create_group("VTKHDF")
         root.attrs.create("Version", np.array([1, 0], np.int64))
@@ -42,40 +42,16 @@ def write_volume_vtkhdf(volume: VolumeData, path: str | Path) -> None:
         root.attrs["frame"] = "world"
         root.attrs["units"] = json.dumps(volume.units)
         cells = root.create_group("CellData", track_order=True)
-        _write_array(cells, "count", layers, volume.voxels.count).attrs["unit"] = "samples"
+        _write_array(cells, "count", layers, volume.voxels.count).attrs["unit"] = units["count"]
         for (statistic, index), name in names.items():
             dataset = _write_array(cells, name, layers, volume.voxels.statistics[statistic][index])
-            unit = volume.units.get(index, "1")
-            dataset.attrs.update({"statistic": statistic, "index": index, "unit": unit})
+            dataset.attrs.update({"statistic": statistic, "index": index, "unit": units[name]})
         for vector, name in vectors.items():
             dataset = _write_array(cells, name, layers, volume.voxels.vectors[vector])
-            dataset.attrs.update({"vector": vector, "unit": volume.units.get(vector, "1")})
+            dataset.attrs.update({"vector": vector, "unit": units[name]})
 
 
-class _Layers:
-    """The voxels of a block in the order of the file, x fastest, and dense arrays of some layers of constant z."""
-
-    def __init__(self, voxels: Voxels):
-        x, y, z = voxels.at
-        nx, ny, nz = voxels.shape
-        self.shape = nz, ny, nx
-        # The same for all arrays, so that a reader needs no chunk twice.
-        self.thickness = int(np.clip(_CHUNK_BYTES // max(8 * ny * nx, 1), 1, max(nz, 1)))
-        cells = (z * ny + y) * nx + x
-        self._order = np.argsort(cells)
-        self._cells = cells[self._order]
-
-    def chunk(self, values: np.ndarray, start: int) -> np.ndarray:
-        """Values (V,) or (V, 3) in ``thickness`` layers from ``start`` on; layers past the last are empty."""
-        _nz, ny, nx = self.shape
-        below, size = start * ny * nx, self.thickness * ny * nx
-        first, last = np.searchsorted(self._cells, [below, below + size])
-        dense = empty_array((size, *values.shape[1:]), values.dtype)
-        dense[self._cells[first:last] - below] = values[self._order[first:last]]
-        return dense
-
-
-def _write_array(group: h5py.Group, name: str, layers: _Layers, values: np.ndarray) -> h5py.Dataset:
+def _write_array(group: h5py.Group, name: str, layers: Layers, values: np.ndarray) -> h5py.Dataset:
     """Write the array of values (V,) or (V, 3) in slabs of constant z, compressed in parallel."""
     shape = (*layers.shape, *values.shape[1:])
     if 0 in shape:

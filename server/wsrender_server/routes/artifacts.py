@@ -13,9 +13,10 @@ from fastapi import Path as PathParameter
 from pydantic import ConfigDict
 from starlette.concurrency import run_in_threadpool
 
+from wsrender.export import formats
 from wsrender.notices import entries
 from wsrender_server.auth import Reader
-from wsrender_server.conversions import MEDIA_TYPES
+from wsrender_server.formats import OneOf
 from wsrender_server.jobs.records import ArtifactRecord, JobRecord
 from wsrender_server.jobs.states import ENDED, JobState
 from wsrender_server.jobs.versions import notices_of
@@ -39,6 +40,11 @@ _VOLUME = Query(max_length=256, description="Which volume, where the result has 
 _STATISTIC = Query(description="Statistic per voxel; the maximum by default, if it was kept.")
 _AT = Query(allow_inf_nan=False, description="Coordinate of the plane [m]; the plane with most voxels by default.")
 Statistic = Literal["count", "maximum", "mean", "minimum"]
+NPY, RAW, PICTURE = "application/x-npy", "application/octet-stream", formats.rows("picture", own=True)[0]
+
+
+def _picture_suffixes() -> list[str]:
+    return formats.suffixes(formats.rows("picture"))
 
 
 class ArtifactView(View):
@@ -144,8 +150,8 @@ async def get_artifact(
     request: Request,
     name: Annotated[str, PathParameter(description="Name of the file.", examples=["plots/robot.png"])],
     format: Annotated[
-        Literal["csv", "glb", "mat", "npz", "ply", "stl", "vti"] | None,
-        Query(description="Another format: npz, csv, mat of maps and volumes, vti of volumes, meshes as each other."),
+        Annotated[str, OneOf(formats.convertible)] | None,
+        Query(description="Another format of what the file holds, by its ending."),
     ] = None,
 ) -> Response:
     """With Range, If-Range and If-None-Match; the entity tag is the SHA-256 of the content. `format` converts."""
@@ -154,7 +160,8 @@ async def get_artifact(
     with _not_found_if_gone(name, path):
         if format is not None and not name.endswith(f".{format}"):
             path, sha256 = await server.converted.get(path, record, format)
-            own_name, media_type = f"{name.rpartition('.')[0]}.{format}", MEDIA_TYPES[format]
+            own_name = f"{name.rpartition('.')[0]}.{format}"
+            media_type = formats.media_type(own_name)
         return await run_in_threadpool(file_response, request, path, sha256, media_type, own_name)
 
 
@@ -168,7 +175,7 @@ router.add_api_route("/jobs/{job_id:id}/artifacts/{name:path}", get_artifact, me
     responses={
         200: {
             "description": "The plane",
-            "content": dict.fromkeys(("application/x-npy", "application/octet-stream", "image/png"), _BINARY),
+            "content": dict.fromkeys((NPY, RAW, PICTURE.media_type), _BINARY),
         },
         **problem_responses(401, 403, 404, 406, 409, 422, 429),
     },
@@ -189,12 +196,13 @@ async def get_slice(
     corner of its first voxel), X-Voxel-Size-M, X-At-M (centre of the plane) and X-Array say where it is. 404 where the
     volume does not hold what was asked for.
     """
-    kind = _best(accept, ("application/x-npy", "application/octet-stream", "image/png"))
-    _, path = await run_in_threadpool(_artifact, server, job, f"{volume}.vtkhdf")
-    if kind == "image/png":
+    kind = _best(accept, (NPY, RAW, PICTURE.media_type))
+    file = formats.kept("volume").file(volume)
+    _, path = await run_in_threadpool(_artifact, server, job, file)
+    if kind == PICTURE.media_type:
         options = {"axis": axis, "at": at, "index": index, "statistic": statistic}
-        return await _drawn(server, job, "slice", "png", options, {"volume.vtkhdf": str(path)})
-    with _not_found_if_gone(f"{volume}.vtkhdf", path):
+        return await _drawn(server, job, "slice", PICTURE.suffix, options, {SOURCES["volume"]: str(path)})
+    with _not_found_if_gone(file, path):
         plane = await _or_404(server.side_process.run(slice_values, str(path), axis, at, index, statistic))
     values: np.ndarray = plane["values"]
     headers = {
@@ -204,7 +212,7 @@ async def get_slice(
         "X-At-M": repr(plane["at_m"]),
         "X-Array": plane["name"],
     }
-    content = values.astype("<f4").tobytes() if kind == "application/octet-stream" else _npy(values)
+    content = values.astype("<f4").tobytes() if kind == RAW else _npy(values)
     return Response(content, headers=headers, media_type=kind)
 
 
@@ -213,7 +221,7 @@ async def get_slice(
     summary="Draw a plot",
     response_class=Response,
     responses={
-        200: {"description": "The plot", "content": {"image/png": _BINARY, "image/svg+xml": _BINARY}},
+        200: {"description": "The plot", "content": {row.media_type: _BINARY for row in formats.rows("picture")}},
         **problem_responses(401, 403, 404, 409, 422, 429),
     },
 )
@@ -221,7 +229,7 @@ async def get_plot(
     server: Server,
     job: Finished,
     plot: Literal["robot", "scatter", "slices", "slice", "histogram"],
-    format: Annotated[Literal["png", "svg"], Query(description="Format of the picture.")] = "png",
+    format: Annotated[str, OneOf(_picture_suffixes), Query(description="Format of the picture.")] = PICTURE.suffix,
     index: Annotated[str | None, _INDEX] = None,
     statistic: Annotated[Statistic | None, _STATISTIC] = None,
     axis: Annotated[Literal["x", "y", "z"] | None, Query(description="Normal of the plane of `slice`.")] = None,
@@ -248,15 +256,14 @@ async def _drawn(
     files |= instead
     with _not_found_if_gone(", ".join(files), *map(Path, files.values())):
         content = await _or_404(server.side_process.run(draw, document, files, plot, format, options))
-    media_type = "image/png" if format == "png" else "image/svg+xml"
-    return Response(content, media_type=media_type)
+    return Response(content, media_type=formats.media_type(f"{plot}.{format}"))
 
 
 def _sources(server: Parts, job: JobRecord) -> tuple[dict[str, Any], dict[str, str]]:
     document = server.store.result_document(job.owner, job.id)
     if document is None:
         raise _gone("result.json")
-    paths = {name: server.store.artifact_path(job.owner, job.id, name) for name in SOURCES}
+    paths = {name: server.store.artifact_path(job.owner, job.id, name) for name in SOURCES.values()}
     return document, {name: str(path) for name, path in paths.items() if path is not None}
 
 

@@ -8,7 +8,8 @@ from wsrender_server.jobs.records import ArtifactRecord, Progress, WorkerRecord
 from wsrender_server.jobs.store import JobStore
 from wsrender_server.jobs.tables import Computation, Job
 
-from wsrender.export.artifacts import MEDIA_TYPES, sha256
+from wsrender.export.artifacts import sha256
+from wsrender.export.formats import media_type
 
 HOST = "http://127.0.0.1"
 DOCUMENT = {
@@ -67,9 +68,8 @@ class IdleJobs:
         target = self.store.files.artifact(computation, digest)
         target.parent.mkdir(parents=True, exist_ok=True)
         target.write_bytes(path.read_bytes())
-        return ArtifactRecord(
-            path.relative_to(folder).as_posix(), MEDIA_TYPES[path.suffix], path.stat().st_size, digest
-        )
+        name = path.relative_to(folder).as_posix()
+        return ArtifactRecord(name, media_type(name), path.stat().st_size, digest)
 
 
 def _files(folder: Path) -> list[Path]:
