@@ -8,7 +8,7 @@ import numpy as np
 
 from wsrender.errors import InputError
 from wsrender.export.artifacts import PARTS, part_file
-from wsrender.export.formats import by_ending, kept
+from wsrender.export.formats import Format, kept
 from wsrender.result import Result
 
 AXES = "xyz"
@@ -78,7 +78,7 @@ def _layer(counts: Any, normal: int, at: float | None, size: float, first: int) 
     return min(max(int(np.floor(cells + 1e-9)), 0), layers - 1)
 
 
-def draw(document: dict[str, Any], files: dict[str, str], plot: str, format: str, options: dict[str, Any]) -> bytes:
+def draw(document: dict[str, Any], files: dict[str, str], plot: str, format: Format, options: dict[str, Any]) -> bytes:
     """A picture of a result in a format of pictures; ``files`` maps names of its artifacts to paths.
 
     ``options``: index, statistic, axis and at, where the plot has them. Raises InputError where the result does not
@@ -94,8 +94,8 @@ def draw(document: dict[str, Any], files: dict[str, str], plot: str, format: str
     else:
         figure = getattr(plots, plot)(options.get("index"))
     with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / f"plot.{format}"
-        by_ending("picture", path).write(figure, path)
+        path = Path(folder) / format.file(plot)
+        format.write(figure, path)
         return path.read_bytes()
 
 

@@ -21,7 +21,7 @@ def random_map(rows=1000, kind=np.float32, names=ODD_NAMES) -> DistributionMap:
     )
 
 
-def random_volume(shape, kind=np.float32, statistics=("maximum", "mean"), names=ODD_NAMES) -> VolumeData:
+def random_volume(shape, kind=np.float32, statistics=("maximum", "mean"), names=ODD_NAMES, vectors=()) -> VolumeData:
     """A volume with about half its voxels occupied, not symmetric in any axis."""
     rng = np.random.default_rng(2)
     count = rng.integers(0, 3, shape)
@@ -35,7 +35,8 @@ def random_volume(shape, kind=np.float32, statistics=("maximum", "mean"), names=
         first_voxel=(-7, 3, 11),
         count=count,
         statistics={statistic: {name: values() for name in names} for statistic in statistics},
-        units={"manipulability": "m³", "x": "1"},
+        units={"manipulability": "m³", "x": "1"} | dict.fromkeys(vectors, "N"),
+        vectors={name: np.stack([values(), values(), values()], axis=3) for name in vectors},
     )
 
 
@@ -61,3 +62,7 @@ def assert_same_volume(a: VolumeData, b: VolumeData) -> None:
         for name, values in by_index.items():
             assert values.dtype == b.statistics[statistic][name].dtype
             np.testing.assert_array_equal(values, b.statistics[statistic][name])
+    assert list(a.vectors) == list(b.vectors)
+    for name, values in a.vectors.items():
+        assert values.dtype == b.vectors[name].dtype
+        np.testing.assert_array_equal(values, b.vectors[name])

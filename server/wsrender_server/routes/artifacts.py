@@ -201,7 +201,7 @@ async def get_slice(
     _, path = await run_in_threadpool(_artifact, server, job, file)
     if kind == PICTURE.media_type:
         options = {"axis": axis, "at": at, "index": index, "statistic": statistic}
-        return await _drawn(server, job, "slice", PICTURE.suffix, options, {SOURCES["volume"]: str(path)})
+        return await _drawn(server, job, "slice", PICTURE, options, {SOURCES["volume"]: str(path)})
     with _not_found_if_gone(file, path):
         plane = await _or_404(server.side_process.run(slice_values, str(path), axis, at, index, statistic))
     values: np.ndarray = plane["values"]
@@ -240,14 +240,14 @@ async def get_plot(
     404 where the result has no data for it. All pictures of a result are among its files too, as `plots/<name>.png`.
     """
     options = {"axis": axis, "at": at, "index": index, "statistic": statistic}
-    return await _drawn(server, job, plot, format, options)
+    return await _drawn(server, job, plot, formats.by_ending("picture", f"{plot}.{format}"), options)
 
 
 async def _drawn(
     server: Parts,
     job: JobRecord,
     plot: str,
-    format: str,
+    format: formats.Format,
     options: dict[str, Any],
     instead: Mapping[str, str] = MappingProxyType({}),
 ) -> Response:
@@ -256,7 +256,7 @@ async def _drawn(
     files |= instead
     with _not_found_if_gone(", ".join(files), *map(Path, files.values())):
         content = await _or_404(server.side_process.run(draw, document, files, plot, format, options))
-    return Response(content, media_type=formats.media_type(f"{plot}.{format}"))
+    return Response(content, media_type=format.media_type)
 
 
 def _sources(server: Parts, job: JobRecord) -> tuple[dict[str, Any], dict[str, str]]:
