@@ -6,8 +6,10 @@ import io
 import numpy as np
 import pytest
 
+from tests.export.sample_data import random_volume
 from tests.server.http.idle_server import problem_of
 from wsrender import export
+from wsrender.result import Result
 
 
 @pytest.fixture
@@ -129,6 +131,26 @@ def test_vti_is_what_vtk_reads(client, finished, volume, tmp_path):
     np.testing.assert_array_equal(vtk_to_numpy(cells.GetArray("count")).reshape(shape).T, volume.count)
     values = vtk_to_numpy(cells.GetArray("maximum_manipulability")).reshape(shape).T
     np.testing.assert_array_equal(values, volume.statistics["maximum"]["manipulability"])
+
+
+def test_vti_has_the_vectors_of_a_field(client, submit, jobs, tmp_path):
+    pytest.importorskip("vtk")
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+    from vtkmodules.vtkIOXML import vtkXMLImageDataReader
+
+    volume = random_volume((5, 4, 3), vectors=("force",))
+    document = {"analysis": "workspace", "warnings": []}
+    Result(document, volume=volume).save(tmp_path / "out")
+    job = submit()["id"]
+    jobs.complete(job, tmp_path / "out")
+    response = client.get(f"/v1/jobs/{job}/artifacts/volume.vtkhdf", params={"format": "vti"})
+    assert response.headers["content-type"] == "application/vnd.vtk.vti"
+    (tmp_path / "volume.vti").write_bytes(response.content)
+    reader = vtkXMLImageDataReader()
+    reader.SetFileName(str(tmp_path / "volume.vti"))
+    reader.Update()
+    force = vtk_to_numpy(reader.GetOutput().GetCellData().GetArray("force")).reshape(3, 4, 5, 3)
+    np.testing.assert_array_equal(force.transpose(2, 1, 0, 3), volume.vectors["force"])
 
 
 @pytest.mark.parametrize("axis", "xyz")
