@@ -5,9 +5,11 @@ import pytest
 
 import wsrender as ws
 from tests.run.simple_robots import PlanarClass, gantry, planar_arm
+from wsrender.reachability.holes import share_of_holes
 from wsrender.result import Result
 from wsrender.run import finish, plan, run_shard
 from wsrender.run.partial_files import load_partial, save_partial
+from wsrender.run.volume_notices import MOST_HOLES
 
 OPTIONS = {"indices": ["manipulability"], "device": "cpu", "voxel_size_m": 0.01, "refined_volume": None}
 REFINED = {**OPTIONS, "refined_volume": 0.02}
@@ -147,12 +149,42 @@ def test_two_arms_of_one_model():
     assert ws.execute(document["job"]).document["volume_m3"] == document["volume_m3"]
 
 
-def test_the_smallest_voxel_size_is_that_of_all():
-    options = {"indices": ["manipulability"], "device": "cpu"}
+def size_of_all(robots, sampling, analysis="robot_comparison"):
+    """Default edge of the voxels of several robots, as planned."""
+    arms = [{"robot": robot.spec, "sampling": sampling} for robot in robots]
+    planned = plan({"analysis": analysis, "robots": arms, "indices": ["manipulability"], "device": "cpu"})
+    (size,) = {each.voxel_size_m for each in planned.several.plans}
+    return size
+
+
+def size_of_one(robot, sampling):
+    return plan({"analysis": "workspace", "robot": robot.spec, "sampling": sampling, "device": "cpu"}).voxel_size_m
+
+
+@pytest.mark.parametrize("analysis", ["robot_comparison", "shared_workspace"])
+def test_the_smallest_voxel_size_is_that_of_all_unless_it_leaves_holes(analysis):
+    """Samples decide at 10⁴ and on coarse grids: the largest robot's size; at 10⁹ the workspace: the smallest's."""
     small = gantry(x=(0.005, 0.225), y=(0.005, 0.295), z=(0.005, 0.145))
-    sizes = [ws.analyze(robot, ws.Grid(2), **options).document["voxel_size_m"] for robot in (gantry(), small)]
-    document = ws.shared_workspace([gantry(), small], ws.Grid(2), **options).document
-    assert document["voxel_size_m"] == min(sizes) < max(sizes)
+    for sampling, chosen in (
+        ({"method": "sobol", "count": 10**4}, max),
+        ({"method": "grid", "per_joint": 2}, max),
+        ({"method": "sobol", "count": 10**9}, min),
+    ):
+        sizes = [size_of_one(robot, sampling) for robot in (gantry(), small)]
+        assert size_of_all([gantry(), small], sampling, analysis) == chosen(sizes) and min(sizes) < max(sizes)
+        assert size_of_all([small, small], sampling, analysis) == min(sizes)
+
+
+def test_robots_far_apart_in_size_share_voxels_without_holes():
+    """A phantom_omni's own voxels would leave a UR5e's samples dust, at 10⁸ too."""
+    robots = [ws.load_robot(name) for name in ("ur5e", "phantom_omni")]
+    for sampling in ({"method": "sobol", "count": 2**20}, {"method": "sobol", "count": 10**8}):
+        big, small = (size_of_one(robot, sampling) for robot in robots)
+        assert small < size_of_all(robots, sampling) <= big
+    result = ws.robot_comparison(robots, indices=["manipulability"], device="cpu", refined_volume=None)
+    assert "few_samples" not in [warning["code"] for warning in result.document["warnings"]]
+    for robot, volume in zip(robots, result.volumes.values(), strict=True):
+        assert share_of_holes(robot.chain, volume, seed=7) < MOST_HOLES
 
 
 def test_saved_shards_and_files_hold_everything(tmp_path):

@@ -11,7 +11,7 @@ from wsrender.robots.reachable_box import reachable_box
 from wsrender.sampling import SamplingPlan, plan_sampling
 from wsrender.spec.sampling import Sobol
 from wsrender.tolerances import FLAT
-from wsrender.volume.lattice import LatticeBlock, block_around, default_voxel_size
+from wsrender.volume.lattice import MOST_DIVISIONS, LatticeBlock, block_around, default_voxel_size
 
 SAMPLES = 2**16
 STEP_SAMPLES = 2**10
@@ -37,21 +37,25 @@ class FirstPass:
     def _coarse(self) -> SamplingPlan:
         return plan_sampling(self.evaluation.chain, Sobol(count=SAMPLES, seed=0, locked=self.locked))
 
-    def voxel_size(self, sampling: SamplingPlan | None) -> float:
-        """Default voxel edge [m] for the samples of a plan; None: for as many as it takes.
+    def voxel_size(self, sampling: SamplingPlan | None, divisions: float = MOST_DIVISIONS) -> float:
+        """Default voxel edge [m] for the samples of a plan, at most so many in the size; None: for any number of them.
 
         Of a grid count its distinct positions, and voxels are no smaller than the longest step that one level of one
         joint makes, in the median over configurations.
         """
         positions = self.evaluated.position
         if sampling is None:
-            return default_voxel_size(positions)
+            return default_voxel_size(positions, divisions=divisions)
         if sampling.method != "grid":
-            return default_voxel_size(positions, sampling.count)
+            return default_voxel_size(positions, sampling.count, divisions=divisions)
         steps = self._steps(sampling)
         moving = steps.max(axis=0) > FLAT * np.ptp(positions, axis=0).max()
         distinct = np.prod(sampling.levels[moving], dtype=float)
-        return default_voxel_size(positions, distinct, least=float(np.median(steps.max(axis=1))))
+        return default_voxel_size(positions, distinct, least=float(np.median(steps.max(axis=1))), divisions=divisions)
+
+    def least_voxel_size(self, sampling: SamplingPlan | None) -> float:
+        """The voxel edge [m] below which the samples of a plan leave holes; 0 for any number of them."""
+        return 0.0 if sampling is None else self.voxel_size(sampling, np.inf)
 
     def _steps(self, grid: SamplingPlan) -> np.ndarray:
         """How far one level of each joint moves the end effector, (N, n) [m], at some of the coarse samples."""

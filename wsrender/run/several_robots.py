@@ -1,7 +1,7 @@
 """Several robots on one lattice: a workspace plan for each, swept one after the other."""
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import count
 from typing import Any
@@ -73,16 +73,21 @@ class SeveralPlans:
 
 
 def plan_several(job: Any, robots: tuple[Robot, ...], resolved: dict[str, Any] | None) -> SeveralPlans:
-    """Workspace plans of a job's robots at its voxel size, or at the smallest that one of them would have."""
+    """Workspace plans of a job's robots at its voxel size, or at the one that they share by default."""
     settled = resolved["robots"] if resolved else [None] * len(robots)
     names = robot_names(job.robots, robots)
     jobs = [workspace_job(job, arm) for arm in job.robots]
     plans = [_planned(k, *each) for k, each in enumerate(zip(jobs, robots, settled, strict=True))]
-    size = min(plan.voxel_size_m for plan in plans)
     if resolved is None and job.voxel_size_m is None:
+        size = shared_voxel_size(plans)
         jobs = [each.model_copy(update={"voxel_size_m": size}) for each in jobs]
         plans = [_planned(k, *each, None) for k, each in enumerate(zip(jobs, robots, strict=True))]
     return SeveralPlans(names, plans)
+
+
+def shared_voxel_size(plans: Sequence[WorkspacePlan]) -> float:
+    """Edge of the voxels [m] of several robots: the smallest of their own with which no robot's samples leave holes."""
+    return max(min(plan.voxel_size_m for plan in plans), *(plan.least_voxel_size_m for plan in plans))
 
 
 def workspace_job(job: Any, arm: PlacedRobot) -> WorkspaceJob:

@@ -56,6 +56,11 @@ class WorkspacePlan:
         assert self.sweep.block is not None
         return self.sweep.block.voxel_size_m
 
+    @property
+    def least_voxel_size_m(self) -> float:
+        """Edge of a voxel [m] below which the samples leave holes."""
+        return self.first_pass.least_voxel_size(None if self._iterates else self.sweep.sampling)
+
     def resolved(self) -> dict[str, Any]:
         """What is settled once: the device of "auto", target, lattice block, bounds, scales, sampling path, shards."""
         block = self.sweep.block

@@ -27,7 +27,8 @@ class _SeveralRobotsJob(IndexChoices):
     robots: Annotated[tuple[PlacedRobot, ...], Field(min_length=2, max_length=MOST_ROBOTS), BeforeValidator(sequence)]
     """The robots and where they stand; the arms of one model are the same robot with other base and tip."""
     voxel_size_m: VoxelSize | None = None
-    """Edge of a voxel [m]; null: the smallest of those that the robots would have by themselves."""
+    """Edge of a voxel [m]; null: the smallest of those that the robots would have by themselves,
+    but not so small that one of them is left with holes."""
     max_samples: Count = 10_000_000_000
     """Largest number of samples that each robot may take."""
 
