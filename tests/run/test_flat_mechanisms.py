@@ -32,7 +32,7 @@ def test_the_area_of_a_planar_3_rrr_is_that_of_three_annuli(placement, size, tmp
     assert result.volume.voxels.count.sum() * size**2 == pytest.approx(flat["occupied"])
     result.save(tmp_path / "out")
     assert Result.load(tmp_path / "out").document["headline"] == headline
-    assert result.skeleton is not None and f"{headline['value']:.4g} m²" in result.summary()
+    assert result.skeleton is not None and result.summary().count(f"{headline['value']:.3g}") == 1
 
 
 def test_a_default_voxel_of_a_plane_is_a_hundredth_of_the_root_of_its_area():

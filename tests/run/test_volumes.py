@@ -199,11 +199,10 @@ def test_rows_of_the_map_are_the_samples_in_order(planar_result):
     assert samples.joint_names == ("joint1", "joint2")
 
 
-def test_a_tip_that_does_not_move_needs_a_voxel_size():
+def test_a_tip_that_does_not_move_needs_no_voxel_size():
     locked = {"joint1": 0.1, "joint2": 0.1, "joint3": 0.1}
-    with pytest.raises(ws.InputError, match=r"voxel_size_m: .*does not move; give a voxel size"):
-        ws.analyze(gantry(), ws.Grid(3, locked=locked), **LINEAR)
-    document = ws.analyze(gantry(), ws.Grid(3, locked=locked), voxel_size_m=0.1, **LINEAR).document
+    document = ws.analyze(gantry(), ws.Grid(3, locked=locked), **LINEAR).document
+    assert document["voxel_size_m"] == 0.01
     assert document["sampling"] == {
         "method": "grid",
         "samples": 1,
@@ -211,4 +210,4 @@ def test_a_tip_that_does_not_move_needs_a_voxel_size():
         "per_joint": [1, 1, 1],
         "locked": locked,
     }
-    assert document["volume_m3"]["occupied"] == pytest.approx(1e-3)
+    assert document["volume_m3"]["occupied"] == pytest.approx(1e-6)

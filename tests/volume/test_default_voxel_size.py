@@ -35,6 +35,12 @@ def test_voxels_of_thin_sets_are_not_too_many():
     assert 0.0025 <= default_voxel_size(helix) <= 0.004
 
 
+def test_a_point_counts_as_a_metre_and_has_no_holes():
+    point = np.full((100, 3), 0.3)
+    assert [default_voxel_size(point, samples) for samples in (10, 1e12)] == [0.01, 0.01]
+    assert default_voxel_size(point, 10, divisions=np.inf) == 0.0
+
+
 @pytest.mark.parametrize(
     ("value", "up", "nearest"),
     [(0.0221, 0.023, 0.022), (0.022, 0.022, 0.022), (0.0996, 0.1, 0.1), (3.01, 3.1, 3.0), (123.0, 130.0, 120.0)],

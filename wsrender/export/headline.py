@@ -32,7 +32,7 @@ def headline_text(headline: Mapping[str, Any], whose: str = "reachable") -> str:
         return f"no {quantity}: {headline['reason']}"
     unit, reason = _UNITS[headline["unit"]], f"; {headline['reason']}" if headline.get("reason") else ""
     if not interval or not interval[1] > interval[0]:
-        return f"{whose} {quantity} {value:.6g} {unit}{reason}"
+        return f"{whose} {quantity} {value:.6g} {unit}{' (exact)' if interval else ''}{reason}"
     decimals = math.ceil(-math.log10((interval[1] - interval[0]) / 2))
     decimals = max(decimals, 2 - math.floor(math.log10(abs(value)))) if value else decimals
     low, high = (_rounded(end, decimals) for end in interval)

@@ -6,6 +6,7 @@ from typing import Any
 
 from wsrender.export.headline import head_lines
 from wsrender.indices.units import pretty_unit
+from wsrender.volume.measure import TABLE_UNITS, UNITS
 
 METHOD_LETTERS = {"grid": "A", "grid_by_subsystem": "B", "exact": "C", "solids": "D"}
 
@@ -31,11 +32,11 @@ def summary_text(document: dict[str, Any]) -> str:
 
 
 def _facts(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
-    volumes = document.get("volume_m3") or {}
+    headline = document.get("headline") or {}
     if flat := document.get("flat"):
-        yield from _flat(flat)
+        yield from _flat(flat, headline)
     else:
-        yield from _volumes(volumes)
+        yield from _measured(document, headline)
     if "shared_ratio" in document:
         yield "shared / any", f"{document['shared_ratio']:.4g}"
     mapping = document.get("mapping") or {}
@@ -151,26 +152,37 @@ def _patches(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
         yield "patches", f"{kinds}; {len(document['edges'])} edges, {len(document['corners'])} corners"
 
 
-def _flat(flat: dict[str, Any]) -> Iterator[tuple[str, str]]:
+def _flat(flat: dict[str, Any], headline: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     """Area or length of what a platform reaches that stays in a plane or on a line."""
-    unit = {"m^2": "m²"}.get(flat["unit"], flat["unit"])
-    yield f"occupied {flat['quantity']}", f"{flat['occupied']:.4g} {unit}"
-    if refined := flat["refined"]:
-        low, high = refined["ci95"]
-        yield f"refined {flat['quantity']}", f"{refined['value']:.4g} {unit} (95 %: {low:.4g} … {high:.4g})"
+    measured = {name: flat[name] for name in ("occupied", "refined")}
+    yield from _measures(measured, flat["quantity"], headline)
 
 
-def _volumes(volumes: dict[str, Any], prefix: str = "") -> Iterator[tuple[str, str]]:
-    """Numbers, and values with their interval, at any depth."""
-    for name, value in volumes.items():
+def _measured(document: dict[str, Any], headline: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    """What is known of the volume, area or length; voxels beside an area or a length make none, and are counted."""
+    quantity = headline.get("quantity", "volume")
+    yield from _measures(document.get(f"{quantity}_{UNITS[quantity]}") or {}, quantity, headline)
+    occupied, size = (document.get("volume_m3") or {}).get("occupied"), document.get("voxel_size_m")
+    if quantity != "volume" and occupied and size:
+        yield "occupied voxels", f"{round(occupied / size**3):,} of {size:g} m"
+
+
+def _measures(
+    values: Mapping[str, Any], quantity: str, headline: Mapping[str, Any], prefix: str = ""
+) -> Iterator[tuple[str, str]]:
+    """Numbers, and values with their interval, at any depth; not the headline once more."""
+    unit, said = pretty_unit(TABLE_UNITS[UNITS[quantity]]), (headline.get("value"), headline.get("ci95"))
+    for name, value in values.items():
         words = prefix + name.replace("_", " ")
         if isinstance(value, int | float):
-            yield f"{words} volume", f"{value:.4g} m³"
+            if (value, [value, value]) != said:
+                yield f"{words} {quantity}", f"{value:.4g} {unit}"
         elif isinstance(value, dict) and "ci95" in value:
             low, high = value["ci95"]
-            yield f"{words} volume", f"{value['value']:.4g} m³ (95 %: {low:.4g} … {high:.4g})"
+            if (value["value"], [low, high]) != said:
+                yield f"{words} {quantity}", f"{value['value']:.4g} {unit} (95 %: {low:.4g} … {high:.4g})"
         elif isinstance(value, dict):
-            yield from _volumes(value, f"{words} ")
+            yield from _measures(value, quantity, headline, f"{words} ")
 
 
 def _index_table(indices: dict[str, dict[str, Any]]) -> Iterator[str]:

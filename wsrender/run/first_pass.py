@@ -38,7 +38,7 @@ class FirstPass:
         return plan_sampling(self.evaluation.chain, Sobol(count=SAMPLES, seed=0, locked=self.locked))
 
     def voxel_size(self, sampling: SamplingPlan | None, divisions: float = MOST_DIVISIONS) -> float:
-        """Default voxel edge [m] for the samples of a plan, at most so many in the size; None: for any number of them.
+        """Default voxel edge [m] for the samples of a plan, at most so many in the size; None: for as many as it takes.
 
         Of a grid count its distinct positions, and voxels are no smaller than the longest step that one level of one
         joint makes, in the median over configurations.
@@ -54,8 +54,8 @@ class FirstPass:
         return default_voxel_size(positions, distinct, least=float(np.median(steps.max(axis=1))), divisions=divisions)
 
     def least_voxel_size(self, sampling: SamplingPlan | None) -> float:
-        """The voxel edge [m] below which the samples of a plan leave holes; 0 for any number of them."""
-        return 0.0 if sampling is None else self.voxel_size(sampling, np.inf)
+        """The voxel edge [m] below which the samples of a plan leave holes; 0 for as many as it takes."""
+        return self.voxel_size(sampling, np.inf)
 
     def _steps(self, grid: SamplingPlan) -> np.ndarray:
         """How far one level of each joint moves the end effector, (N, n) [m], at some of the coarse samples."""

@@ -13,6 +13,7 @@ LARGEST_COORDINATE = 2.0**50  # of a voxel: float64 holds its corners
 FAR = 4  # extents of a block away from the world's origin that single precision bears: three of its 24 bits
 # 48 samples a voxel of the convex hull left at most .25 % holes in the workspace of a Panda, 32 .67, 16 up to 1.75 %.
 SAMPLES_PER_VOXEL, MOST_DIVISIONS = 48, 100
+POINT_M = 1.0  # counts as the size of a single point, which has none
 THINNEST = 0.25  # of its extent is a hull at least as large as: voxels of curves and slabs would be too many else
 
 
@@ -79,13 +80,16 @@ def default_voxel_size(
 
     The positions (N, 3) [m] span a convex hull of volume V: max(∛(48 V / samples), ∛V / divisions), the former at
     most ∛V, but not below ``least`` [m], rounded up to two significant digits. A planar set uses the square root of
-    its area, a linear one its length; a hull smaller than a cube of a quarter of its extent counts as that cube.
-    Raises InputError for a single point.
+    its area, a linear one its length; a hull smaller than a cube of a quarter of its extent counts as that cube. A
+    single point has no holes, and counts as a metre. 0 where nothing bounds the edge from below.
     """
     dimension, measure, extent = _measure(positions)
-    whole = max(measure ** (1 / dimension), extent * THINNEST)
-    holding = min((SAMPLES_PER_VOXEL / samples) ** (1 / dimension), 1.0) * whole
-    return rounded_up(max(holding, whole / divisions, least), 2)
+    whole, holding = POINT_M, 0.0
+    if dimension:
+        whole = max(measure ** (1 / dimension), extent * THINNEST)
+        holding = min((SAMPLES_PER_VOXEL / samples) ** (1 / dimension), 1.0) * whole
+    edge = max(holding, whole / divisions, least)
+    return rounded_up(edge, 2) if edge else 0.0
 
 
 def _measure(positions: np.ndarray) -> tuple[int, float, float]:
@@ -96,7 +100,7 @@ def _measure(positions: np.ndarray) -> tuple[int, float, float]:
     _, sizes, axes = np.linalg.svd(centered, full_matrices=False)
     dimension = int((sizes > FLAT * sizes[0]).sum()) if sizes[0] > 1e-9 * np.sqrt(len(positions)) else 0
     if dimension == 0:
-        raise InputError("voxel_size_m", "the end effector does not move; give a voxel size")
+        return 0, 0.0, 0.0
     inside = centered @ axes[:dimension].T
     extent = float(np.ptp(inside, axis=0).max())
     return dimension, extent if dimension == 1 else float(ConvexHull(inside).volume), extent
