@@ -1,6 +1,8 @@
 """What one chain reaches of a space of one, two or three dimensions: points decided one by one, and strata of cells."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from math import ceil
 
 import numpy as np
 
@@ -10,6 +12,7 @@ from wsrender.reachability.evidence import UNREACHABLE
 from wsrender.reachability.inverse_solver import InverseSolver
 from wsrender.reachability.occupied_cells import occupied_cells
 from wsrender.reachability.starts import inwards, towards_limits
+from wsrender.reachability.volume_estimate import QUANTILE, wilson
 from wsrender.robots.chain import Chain
 from wsrender.robots.reachable_box import reachable_box
 from wsrender.sampling import plan_sampling
@@ -22,7 +25,9 @@ SAMPLES_PER_CELL = 4
 # Cells along the box's mean edge: as many as make the border's share fit a tolerance of 0.5 %; finer tolerances cut
 # the border further (`estimate_volumes`).
 CELLS = 64
-TESTS, TEST_SAMPLES = 4096, 1 << 16  # targets of the measured false-negative rate, chosen from so many samples
+# Targets of the measured false-negative rate: so many, or more, that none missed among them may hide no more than this
+# share of the tolerance; chosen each from so many samples.
+TESTS, HIDDEN_SHARE, SAMPLES_PER_TEST = 4096, 0.1, 16
 NEXT_TO = 1e-3  # half of these have half their coordinates so near a limit, as a share of the range
 
 
@@ -37,6 +42,27 @@ class FalseNegatives:
     def rate(self) -> float:
         """Missed targets over all."""
         return self.missed / self.tested if self.tested else 0.0
+
+
+def hidden_share(found: Sequence[FalseNegatives]) -> float:
+    """Upper end of the 95 % interval of how much of a volume solvers miss together, over what they find.
+
+    Sums of rare events are as rare as those of one solver: of all misses together (Wilson 1927). None missed among n
+    hide up to 3.84 / n.
+    """
+    tested = min((each.tested for each in found if each.tested), default=0)
+    if not tested:
+        return 0.0
+    missed = sum(tested * each.missed / each.tested for each in found if each.tested)
+    if missed >= tested:
+        return np.inf
+    most = float(wilson(np.array(missed), np.array(tested))[1])
+    return most / (1 - most)
+
+
+def tests_of(tolerance: float) -> int:
+    """How many targets show whether the solver's misses matter to a relative tolerance."""
+    return max(TESTS, ceil(QUANTILE**2 / (HIDDEN_SHARE * tolerance)))
 
 
 def tolerance_m(chain: Chain) -> float:
@@ -93,15 +119,15 @@ class ReachedSet:
         rest = covered_cells(self.chain, block, self.dimension).astype(np.int64)
         return np.where(number > 0, border, rest)
 
-    def false_negatives(self, block: LatticeBlock) -> FalseNegatives:
-        """The solver tried on positions of samples that are none of its starts, one per cell."""
+    def false_negatives(self, block: LatticeBlock, tests: int = TESTS) -> FalseNegatives:
+        """The solver tried on positions of samples that are none of its starts, from as many cells as there are."""
         if not self.solid:
             return FalseNegatives(0, 0)
-        positions = self._positions(TEST_SAMPLES)[:, : self.dimension]
+        positions = self._positions(SAMPLES_PER_TEST * tests)[:, : self.dimension]
         cells = np.floor(positions / block.voxel_size_m).astype(np.int64) - block.first_voxel[: self.dimension]
         numbers = np.ravel_multi_index(tuple(cells.T), block.shape[: self.dimension])
-        _, chosen = np.unique(numbers, return_index=True)
-        chosen = np.random.Generator(np.random.Philox(key=self.seed)).permutation(chosen)[:TESTS]
+        random = np.random.Generator(np.random.Philox(key=self.seed))
+        chosen = np.lexsort((random.random(len(positions)), _times_before(np.asarray(numbers))))[:tests]
         labels, _ = self.decided(positions[chosen])
         return FalseNegatives(len(chosen), int((labels == UNREACHABLE).sum()))
 
@@ -112,3 +138,12 @@ class ReachedSet:
         q[count // 2 :] = inwards(self.chain, towards_limits(self.chain, q[count // 2 :]), NEXT_TO)
         q = np.random.Generator(np.random.Philox(key=self.seed)).permutation(q)
         return positions_at(self.chain, q)
+
+
+def _times_before(numbers: np.ndarray) -> np.ndarray:
+    """How often each number (N,) has come before, (N,)."""
+    order = np.argsort(numbers, kind="stable")
+    starts = np.flatnonzero(np.diff(numbers[order], prepend=-1))
+    times = np.empty(numbers.size, np.int64)
+    times[order] = np.arange(numbers.size) - np.repeat(starts, np.diff(starts, append=numbers.size))
+    return times

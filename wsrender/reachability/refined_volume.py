@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from wsrender.reachability.dimension import TipSet, tip_set
-from wsrender.reachability.reached_set import CELLS, FalseNegatives, ReachedSet
+from wsrender.reachability.reached_set import CELLS, FalseNegatives, ReachedSet, hidden_share, tests_of
 from wsrender.reachability.volume_estimate import Event, VolumeEstimate, estimate_volumes
 from wsrender.robots.chain import Chain
 from wsrender.volume.lattice import LatticeBlock, block_around
@@ -114,8 +114,8 @@ def decided_volumes(
     block = _block(solid)
     levels = LEVELS.get(len(solid), 1)
     classes = [each.classes(block, levels) for each in solid]
-    misses = [each.false_negatives(block) for each in reached]
-    hidden = sum(miss.rate / (1 - miss.rate) if miss.rate < 1 else np.inf for miss in misses)
+    misses = [each.false_negatives(block, tests_of(tolerance)) for each in reached]
+    hidden = hidden_share(misses)
 
     def membership(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         cells = np.floor(points / block.voxel_size_m).astype(np.int64) - block.first_voxel[:dimension]

@@ -155,7 +155,7 @@ class _Estimation:
         """Points of every stratum for one event: Neyman's, and enough where all points agree."""
         if volume.met or not list(self.events.values())[event].precise:
             return np.zeros(len(self.strata))
-        half = SAFETY * self.tolerance * volume.value - volume.undecided
+        half = SAFETY * self.tolerance * volume.value - volume.undecided - self.missed(volume.value) / 2
         half = max(half, 0.1 * self.tolerance * volume.value) or self.tolerance * sum(s.volume for s in self.strata)
         share = np.array([(s.surely[event] + s.possibly[event]) / (2 * s.count) for s in self.strata])
         size = np.array([s.volume for s in self.strata])
