@@ -57,7 +57,11 @@ class InputError(WsrenderError, ValueError):
 
     def within(self, path: str) -> "InputError":
         """The same error, its field below ``path`` of the job document."""
-        self.field = f"{path}.{self.field}" if path else self.field
+        return self.at(f"{path}.{self.field}" if path else self.field)
+
+    def at(self, field: str) -> "InputError":
+        """The same error, of another field."""
+        self.field = field
         self.args = (f"{self.field}: {self.message}",)
         return self
 

@@ -122,12 +122,43 @@ def test_a_range_given_or_a_joint_locked_is_enough():
     assert (given.robot.lower_limits[0], given.robot.upper_limits[0], given.notices) == (-0.5, 0.5, ())
     in_degrees = plan(workspace(ENDLESS, **GIVEN, limits_deg={"a": [-45, 90]})).robot
     np.testing.assert_allclose([in_degrees.lower_limits[1], in_degrees.upper_limits[1]], np.radians([-45, 90]))
-    locked = quietly(ws.execute, workspace(ENDLESS, GRID | {"locked": {"rail": 0.25}}))
+    locked = ws.execute(workspace(ENDLESS, GRID | {"locked": {"rail": 0.25}}))  # no warning: the job needs no range
     assert locked.document["robot"]["lower_limits"][0] == locked.document["robot"]["upper_limits"][0] == 0.25
     assert [entry["code"] for entry in locked.document["warnings"] if entry["code"] == "no_usable_limits"] == []
     held = plan(workspace(arm(rail='range="0 1"'), GRID | {"locked": {"rail": 0.25}}))
     assert locked.volume.count.sum() == 9
     assert held.robot.upper_limits[0] == 1
+
+
+def test_of_joints_without_limits_only_those_are_warned_of_that_the_job_does_not_hold():
+    two = arm().replace('name="a" axis="0 0 1" range="-2 2"', 'name="a" type="slide" axis="1 0 0"')
+    with pytest.warns(ws.robots.ModelWarning, match="joint a has no usable limits"), pytest.raises(InputError):
+        plan(workspace(two, GRID | {"locked": {"rail": 0.25}}))
+
+
+@pytest.mark.parametrize(
+    ("robot", "fields", "at"),
+    [
+        ({"library": "nobody"}, {}, "robot.library"),
+        ({"path": "/nowhere/arm.urdf"}, {}, "robot.path"),
+        ({"mjcf": "<mujoco>"}, {}, "robot.mjcf"),
+        ({"library": "scara", "limits": {"what": [0, 1]}}, {}, "robot.limits.what"),
+        ({"library": "scara"}, {"tip": "what"}, "tip"),
+    ],
+    ids=["library", "path", "mjcf", "limits", "tip"],
+)
+def test_refusals_of_models_name_where_in_the_document_they_are(robot, fields, at):
+    arms = {"robot": robot, **fields}
+    leg = {"type": "serial", **arms, "attachment": {"position_m": [0.1, 0, 0]}}
+    pus = {"type": "UPS", "base_m": [1, 0, 0], "platform_m": [0.2, 0, 0], "length_m": [0.5, 1]}
+    for document, path in (
+        ({"analysis": "workspace", **arms}, ""),
+        ({"analysis": "robot_comparison", "robots": [{"robot": "scara"}, arms]}, "robots.1."),
+        ({"analysis": "parallel_workspace", "mechanism": {"legs": [pus, pus, leg]}}, "mechanism.legs.2."),
+    ):
+        with pytest.raises(InputError) as found:
+            plan(document)
+        assert found.value.field == path + at and str(found.value).startswith(f"{path}{at}: ")
 
 
 def test_configurations_that_are_given_need_no_ranges():

@@ -1,6 +1,6 @@
 """A robot compiled by MuJoCo."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -234,9 +234,15 @@ def load_robot(
     return Robot(loaded, spec, name, base, tip)
 
 
-def robot_of_spec(spec: RobotSpec, base: str | None = None, tip: str | None = None) -> Robot:
-    """The robot of a job document. Raises ModelError; InputError for a model that only a server has."""
+def robot_of_spec(
+    spec: RobotSpec, base: str | None = None, tip: str | None = None, held: Collection[str] = ()
+) -> Robot:
+    """The robot of a job document; that joints have no limits which the job holds is not warned of.
+
+    Raises ModelError; InputError for a model that only a server has. Fields are those of an arm in a document.
+    """
     options = {
+        "held": held,
         "base": base,
         "tip": tip,
         "placement": spec.placement.matrix() if spec.placement else None,
@@ -254,8 +260,15 @@ def robot_of_spec(spec: RobotSpec, base: str | None = None, tip: str | None = No
     try:
         loaded = loaders[spec.source](getattr(spec, spec.source), **options)
     except InputError as error:
-        raise (error.within("robot") if error.field.startswith("limits") else error) from None
+        raise error.at(_field_of_arm(error.field, spec)) from None
     return Robot(loaded, spec, base=base, tip=tip)
+
+
+def _field_of_arm(field: str, spec: RobotSpec) -> str:
+    """Where in an arm of a document stands what a loader calls so: its ``model`` is the robot's source."""
+    if field in ("base", "tip") or field.startswith("robot."):
+        return field
+    return f"robot.{spec.source if field == 'model' else field}"
 
 
 def _corrections(spec: RobotSpec) -> dict[str, Any]:

@@ -178,8 +178,12 @@ def _loaded(
     limits=None,
     limits_deg=None,
     length_unit_m=None,
+    held=(),
 ) -> "LoadedRobot":
-    """The robot of a model that ``compile_model`` makes of its unit of length; warns of its notices."""
+    """The robot of a model that ``compile_model`` makes of its unit of length; warns of its notices.
+
+    ``held``: joints that need no limits.
+    """
     from wsrender.robots.chain_extraction import extract
     from wsrender.robots.compiled_model import building
 
@@ -190,7 +194,7 @@ def _loaded(
         robot = extract(compiled, base, tip, name or compiled.name or "robot", source_hash, given, _FIELD)
     _check_limits(robot.chain, limits or {}, limits_deg or {})
     chain = robot.chain.placed(_rigid("placement", placement), _rigid("tool", tool))
-    found = (*robot.notices, *doubts(chain, given, length_unit_m is not None))
+    found = (*robot.notices, *doubts(chain, given, length_unit_m is not None, held))
     notices.warn(found, ModelWarning)
     return replace(robot, chain=chain, notices=found)
 

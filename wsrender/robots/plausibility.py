@@ -16,9 +16,11 @@ LARGEST_TURN = 4 * pi  # [rad] from zero
 NO_LENGTH = 1e-9  # [m]
 
 
-def doubts(chain: Chain, confirmed: Collection[str], length_confirmed: bool) -> list[Notice]:
-    """What a user should check of a chain; limits of the joints ``confirmed`` are the user's own."""
-    found = [_endless(chain), _degrees(chain, confirmed), None if length_confirmed else _lengths(chain, confirmed)]
+def doubts(
+    chain: Chain, confirmed: Collection[str], length_confirmed: bool, held: Collection[str] = ()
+) -> list[Notice]:
+    """What a user should check of a chain; limits of the joints ``confirmed`` are the user's own, ``held`` need none."""
+    found = [_endless(chain, held), _degrees(chain, confirmed), None if length_confirmed else _lengths(chain, confirmed)]
     return [notice for notice in found if notice is not None]
 
 
@@ -63,10 +65,10 @@ def too_long(chain: Chain, confirmed: Collection[str] = ()) -> str:
     return f"the reach of {chain.name!r} is {reach:.3g} m ({longest} alone {parts[longest]:.3g} m)"
 
 
-def _endless(chain: Chain) -> Notice | None:
-    if not chain.endless:
+def _endless(chain: Chain, held: Collection[str]) -> Notice | None:
+    if not (endless := [name for name in chain.endless if name not in held]):
         return None
-    message = f"{_joints(chain.endless)} no usable limits: the workspace has no end"
+    message = f"{_joints(endless)} no usable limits: the workspace has no end"
     remedy = "give a range (limits), hold the joint (locked), or name a base beyond it"
     return Notice(NO_LIMITS, message, remedy, "robot.limits")
 

@@ -150,7 +150,7 @@ def _robot(path: ArmPath, arm: Arm, given: Any) -> Robot:
     if given is not None:
         return as_robot(given)
     try:
-        return robot_of_spec(arm.robot, arm.base, arm.tip)
+        return robot_of_spec(arm.robot, arm.base, arm.tip, arm.held_joints)
     except InputError as error:
         raise error.within(dotted(path)) from None
 
