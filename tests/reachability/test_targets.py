@@ -172,6 +172,22 @@ def test_coupled_joints():
     assert (ws.reachable(robot, points + np.array([0, 0, 0.01]), device="cpu").labels != "reachable").all()
 
 
+@pytest.mark.parametrize("name", ["ur5e", "franka_panda"])
+def test_what_float32_calls_reachable_is_so_in_float64(name):
+    """Of 3,000 targets rounding once put one or two just beyond the tolerance, and moved all residuals by 1e-7 m."""
+    robot = ws.load_robot(name)
+    limits = robot.lower_limits, robot.upper_limits
+    T = robot.forward_kinematics(np.random.default_rng(0).uniform(*limits, (3000, robot.chain.n)), device="cpu")
+    quat = Rotation.from_matrix(T[:, :3, :3]).as_quat(scalar_first=True)
+    for orientations in (None, quat):
+        accuracy = {"position_tolerance_m": 1e-5, "angle_tolerance_rad": 1e-4, "precision": "float32"}
+        found = ws.reachable(robot, T[:, :3, 3], orientations=orientations, device="cpu", **accuracy)
+        at = robot.forward_kinematics(found.configurations, device="cpu")
+        distance = np.linalg.norm(at[:, :3, 3] - T[:, :3, 3], axis=1)
+        assert (np.array(found.labels) == "reachable").all() and distance.max() <= 1e-5 * (1 + 1e-9)
+        np.testing.assert_allclose(found.residual_m, distance, atol=1e-12)
+
+
 @pytest.mark.parametrize("name", ["ur5e", "franka_panda", "puma560", "spherical", "slave_5r"])
 def test_joints_that_do_not_move_the_point_are_left_out(name):
     robot = ws.load_robot(name)

@@ -1,6 +1,6 @@
 """Tries of inverse kinematics: what is asked of them, and where they ended."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 
@@ -38,6 +38,13 @@ class Tries:
     angle: np.ndarray
     reached: np.ndarray
     stationary: np.ndarray
+
+    def replaced(self, at: np.ndarray, others: "Tries") -> "Tries":
+        """These, but for those ``at`` places (M,)."""
+        columns = {each.name: getattr(self, each.name).copy() for each in fields(self)}
+        for name, column in columns.items():
+            column[at] = getattr(others, name)
+        return Tries(**columns)
 
 
 def angle_of(rotation_2: np.ndarray) -> np.ndarray:

@@ -126,8 +126,14 @@ class InverseSolver:
     def _tries(
         self, targets: np.ndarray, starts: np.ndarray, *, without_limits: bool = False, flatness: float = 1.0
     ) -> Tries:
+        """A try from each start; what single precision takes for reached is taken on in double, for it must be so."""
         accuracy = replace(self.accuracy, flatness=flatness)
-        return solve_inverse(self.chain, targets, starts, accuracy, without_limits=without_limits, **self._execution)
+        options = {"without_limits": without_limits, **self._execution}
+        tries = solve_inverse(self.chain, targets, starts, accuracy, **options)
+        if options["precision"] == "float64":
+            return tries
+        options["precision"], at = "float64", np.flatnonzero(tries.reached)
+        return tries.replaced(at, solve_inverse(self.chain, targets[at], tries.q[at], accuracy, **options))
 
     def _groups(self, targets: np.ndarray, search: Evidence) -> Iterator[np.ndarray]:
         """Starts (P, g, m) of the targets that are pending when each group's turn comes."""

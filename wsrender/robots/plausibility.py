@@ -19,8 +19,9 @@ NO_LENGTH = 1e-9  # [m]
 def doubts(
     chain: Chain, confirmed: Collection[str], length_confirmed: bool, held: Collection[str] = ()
 ) -> list[Notice]:
-    """What a user should check of a chain; limits of the joints ``confirmed`` are the user's own, ``held`` need none."""
-    found = [_endless(chain, held), _degrees(chain, confirmed), None if length_confirmed else _lengths(chain, confirmed)]
+    """What a user should check of a chain; limits of joints ``confirmed`` are the user's own, ``held`` ones need none."""
+    lengths_doubted = None if length_confirmed else _lengths(chain, confirmed)
+    found = (_endless(chain, held), _degrees(chain, confirmed), lengths_doubted)
     return [notice for notice in found if notice is not None]
 
 
