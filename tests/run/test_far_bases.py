@@ -99,6 +99,16 @@ def test_kinematics_in_any_precision(precision):
     np.testing.assert_array_equal(found.jacobian, right.jacobian)
 
 
+@pytest.mark.parametrize("offset", OFFSETS)
+def test_positions_in_float32_keep_every_bit(offset):
+    """Counted from elsewhere than the base, those of a Panda moved by 1e-7 m, and a sample in a million its voxel."""
+    near = ws.load_robot("franka_panda")
+    options = {"indices": ["manipulability"], "keep_map": True}
+    found, right = (analyzed(robot, **options) for robot in (near.placed(at(offset)), near))
+    np.testing.assert_allclose(found.map.position - offset, right.map.position, rtol=0, atol=ROUNDING)
+    np.testing.assert_array_equal(found.volume.count, right.volume.count)
+
+
 def test_robots_near_the_origin_are_not_touched():
     """Every bit of theirs stays: the device counts from the world's origin."""
     near = ws.load_robot("ur5e").placed(at((2.0, -1.0, 0.5)))
@@ -107,7 +117,10 @@ def test_robots_near_the_origin_are_not_touched():
     far = ws.load_robot("ur5e").placed(at((20.0, 0.0, 0.0)))
     np.testing.assert_array_equal(far.chain.origin, far.chain.center)
     assert block_around(np.array([3.0, 0, 0]), np.array([4.0, 1, 1]), 0.01).origin_voxel == (0, 0, 0)
-    assert block_around(np.array([6.0, 0, 0]), np.array([7.0, 1, 1]), 0.01).origin_voxel == (650, 50, 50)
+    low, high = np.array([6.0, 0, 0]), np.array([7.0, 1, 1])
+    assert block_around(low, high, 0.01).origin_voxel == (650, 50, 50)
+    assert block_around(low, high, 0.01, about=np.array([6.2, 0.5, 0])).origin_voxel == (620, 50, 0)
+    assert block_around(low, high, 0.01, about=np.array([0.2, 0.5, 0])).origin_voxel == (650, 50, 50)
 
 
 def test_targets_and_the_refined_volume():

@@ -53,6 +53,11 @@ class HostChain(Chain):
         far = placement.any() and np.linalg.norm(placement) > FAR * self.reach
         return placement if far else np.zeros(3)
 
+    @property
+    def foot(self) -> np.ndarray:
+        """As a chain's: its base frame, (3,) [m]."""
+        return self.T_world_base[:3, 3]
+
     def relative_to(self, origin: np.ndarray) -> Self:
         """The same in a world whose origin stands at ``origin`` (3,) [m]."""
         T = self.T_world_base.copy()

@@ -19,7 +19,7 @@ NO_LENGTH = 1e-9  # [m]
 def doubts(
     chain: Chain, confirmed: Collection[str], length_confirmed: bool, held: Collection[str] = ()
 ) -> list[Notice]:
-    """What a user should check of a chain; limits of joints ``confirmed`` are the user's own, ``held`` ones need none."""
+    """What a user should check of a chain; limits of joints ``confirmed`` are the user's, those ``held`` need none."""
     lengths_doubted = None if length_confirmed else _lengths(chain, confirmed)
     found = (_endless(chain, held), _degrees(chain, confirmed), lengths_doubted)
     return [notice for notice in found if notice is not None]

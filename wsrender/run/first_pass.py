@@ -71,7 +71,8 @@ class FirstPass:
         held = whole.held(self.locked)
         low, high = reachable_box(held, held.lower_limits, held.upper_limits)
         reach = whole.reach
-        return block_around(np.maximum(low, whole.center - reach), np.minimum(high, whole.center + reach), voxel_size_m)
+        low, high = np.maximum(low, whole.center - reach), np.minimum(high, whole.center + reach)
+        return block_around(low, high, voxel_size_m, whole.foot)
 
     def sum_scales(self, samples: int, precision: str) -> tuple[np.ndarray, np.ndarray]:
         """Scales and bounds (K,) of the fixed-point sums: from the reach, else from the coarse maximum."""

@@ -23,7 +23,7 @@ from wsrender.sampling import SamplingPlan, plan_sampling
 from wsrender.spec import WorkspaceJob
 from wsrender.spec.sampling import Converge, Grid
 from wsrender.spec.surfaces import IsoSurface
-from wsrender.volume.lattice import LatticeBlock
+from wsrender.volume.lattice import LatticeBlock, voxel_of
 from wsrender.volume.volume_data import VolumeData
 
 
@@ -199,7 +199,7 @@ def plan_workspace(job: WorkspaceJob, robot: Robot, resolved: dict[str, Any] | N
         block = first_pass.block(job.voxel_size_m or first_pass.voxel_size(settled))
         scales, bounds = first_pass.sum_scales(sampling.count, job.precision)
     else:
-        block = _settled_block(resolved)
+        block = _settled_block(resolved, robot)
         first_pass.known_bounds = bounds = np.array(resolved["bounds"], np.float64)
         scales = np.array(resolved["scales"], np.float64)
     plan = SweepPlan(
@@ -250,9 +250,10 @@ def _check_surfaces(job: WorkspaceJob, indices: tuple[str, ...]) -> None:
             raise InputError("surfaces", "an iso-surface needs the voxel statistic maximum or mean")
 
 
-def _settled_block(resolved: dict[str, Any]) -> LatticeBlock:
+def _settled_block(resolved: dict[str, Any], robot: Robot) -> LatticeBlock:
     first, shape = ((x, y, z) for x, y, z in (resolved["first_voxel"], resolved["shape"]))
-    return LatticeBlock(resolved["voxel_size_m"], first, shape)
+    size = resolved["voxel_size_m"]
+    return LatticeBlock(size, first, shape, voxel_of(robot.chain.foot, size))
 
 
 def _first_sampling(job: WorkspaceJob, robot: Robot) -> SamplingPlan:

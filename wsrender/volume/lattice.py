@@ -19,11 +19,15 @@ THINNEST = 0.25  # of its extent is a hull at least as large as: voxels of curve
 
 @dataclass(frozen=True)
 class LatticeBlock:
-    """A dense block of the lattice: voxel edge [m], first voxel and shape (x, y, z)."""
+    """A dense block of the lattice: voxel edge [m], first voxel and shape (x, y, z).
+
+    ``about``: the voxel that positions on a device are counted from if the block lies far away; None: its middle.
+    """
 
     voxel_size_m: float
     first_voxel: tuple[int, int, int]
     shape: tuple[int, int, int]
+    about: tuple[int, int, int] | None = None
 
     @property
     def size(self) -> int:
@@ -35,11 +39,14 @@ class LatticeBlock:
     def origin_voxel(self) -> tuple[int, int, int]:
         """The voxel whose lower corner is the origin of positions on a device.
 
-        That of the world; of a block that lies far away, its middle.
+        That of the world; of a block that lies far away, ``about``, if that is near, else its middle. An arm whose base
+        stands there has the same bits as by the world's origin.
         """
         middle = [first + size // 2 for first, size in zip(self.first_voxel, self.shape, strict=True)]
-        far = max(map(abs, middle)) > FAR * max(self.shape)
-        x, y, z = middle if far else (0, 0, 0)
+        for place in ((0, 0, 0), self.about):
+            if place and max(abs(at - own) for at, own in zip(middle, place, strict=True)) <= FAR * max(self.shape):
+                return place
+        x, y, z = middle
         return x, y, z
 
     @property
@@ -59,8 +66,19 @@ class LatticeBlock:
         return (at + self.first_voxel + 0.5) * self.voxel_size_m
 
 
-def block_around(lower: np.ndarray, upper: np.ndarray, voxel_size_m: float) -> LatticeBlock:
-    """The block that contains the box lower … upper [m], with one voxel to spare for rounding."""
+def voxel_of(position: np.ndarray, voxel_size_m: float) -> tuple[int, int, int]:
+    """The voxel (x, y, z) whose lower corner is nearest to a position (3,) [m]."""
+    x, y, z = (int(v) for v in np.rint(position / voxel_size_m))
+    return x, y, z
+
+
+def block_around(
+    lower: np.ndarray, upper: np.ndarray, voxel_size_m: float, about: np.ndarray | None = None
+) -> LatticeBlock:
+    """The block that contains the box lower … upper [m], with one voxel to spare for rounding.
+
+    ``about`` (3,) [m]: where positions on a device are counted from, if the box lies far away.
+    """
     extent, farthest = float(np.max(upper - lower)), float(np.abs([lower, upper]).max())
     if extent >= LARGEST_BLOCK * voxel_size_m:
         raise InputError("voxel_size_m", f"{voxel_size_m} is too small for a workspace of {extent:.3g} m")
@@ -70,7 +88,8 @@ def block_around(lower: np.ndarray, upper: np.ndarray, voxel_size_m: float) -> L
     last = np.floor(np.asarray(upper) / voxel_size_m).astype(np.int64) + 1
     x, y, z = (int(v) for v in first)
     nx, ny, nz = (int(v) for v in last - first + 1)
-    return LatticeBlock(float(voxel_size_m), (x, y, z), (nx, ny, nz))
+    near = None if about is None else voxel_of(about, voxel_size_m)
+    return LatticeBlock(float(voxel_size_m), (x, y, z), (nx, ny, nz), near)
 
 
 def default_voxel_size(
