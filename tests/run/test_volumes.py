@@ -199,6 +199,17 @@ def test_rows_of_the_map_are_the_samples_in_order(planar_result):
     assert samples.joint_names == ("joint1", "joint2")
 
 
+def test_a_snake_is_told_that_its_samples_crowd_in_the_middle():
+    """No voxel size mends that: the warning stays, and says that the headline is none of the voxels'."""
+    rows = tuple(ws.DHRow(a=0.1, alpha_deg=90 * (-1) ** k) for k in range(12))
+    snake = ws.load_robot(ws.DHTable(convention="standard", rows=rows))
+    document = ws.analyze(snake, ws.Sobol(1 << 18), ["manipulability"], device="cpu", refined_volume=0.05).document
+    (warning,) = (entry for entry in document["warnings"] if entry["code"] == "few_samples")
+    assert "many joints" in warning["remedy"] and warning["field"] == "voxel_size_m"
+    low, high = document["headline"]["ci95"]
+    assert document["volume_m3"]["occupied"] < 0.6 * low and low <= 4 / 3 * np.pi * 1.2**3 <= high
+
+
 def test_a_tip_that_does_not_move_needs_no_voxel_size():
     locked = {"joint1": 0.1, "joint2": 0.1, "joint3": 0.1}
     document = ws.analyze(gantry(), ws.Grid(3, locked=locked), **LINEAR).document
