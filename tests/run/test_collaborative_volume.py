@@ -93,7 +93,7 @@ def test_mirrored_arms_do_not_draw_mirrored_configurations():
         ({**OUTWARD, "cells": [1, 2]}, "cells: must be a list of 3 whole numbers"),
         ({**OUTWARD, "neighbours": 5}, "neighbours: must be 4 or 6"),
         ({**OUTWARD, "max_samples": 1000}, "samples: makes 4e\\+06 configurations, above max_samples"),
-        ({**OUTWARD, "left": {"robot": "nobody"}}, 'left.library: has no robot "nobody"'),
+        ({**OUTWARD, "left": {"robot": "nobody"}}, 'left.robot.library: has no robot "nobody"'),
     ],
 )
 def test_malformed_jobs(fields, message):

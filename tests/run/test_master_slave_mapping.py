@@ -202,7 +202,7 @@ def test_the_slave_of_the_project_in_a_haptic_device(tmp_path):
         ({"slave": {"points": [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]]}}, "points: are 4 points in a plane"),
         ({"slave": {"robot": "scara", "sampling": {"method": "converge"}}}, 'slave.sampling: must not be "converge"'),
         ({"slave": {"robot": "scara", "sampling": {"method": "sobol", "count": 2e6}}}, "slave: has 2e.06 points"),
-        ({"slave": {"robot": "nobody"}}, 'slave.library: has no robot "nobody"'),
+        ({"slave": {"robot": "nobody"}}, 'slave.robot.library: has no robot "nobody"'),
     ],
 )
 def test_malformed_jobs(fields, message):

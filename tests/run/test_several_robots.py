@@ -263,7 +263,7 @@ def test_a_comparison_lists_values_and_differences(tmp_path):
     ("fields", "message"),
     [
         ({"robots": [{"robot": "scara"}]}, "robots: must have at least 2 items"),
-        ({"robots": [{"robot": "scara"}, {"robot": "nobody"}]}, r'robots.1.library: has no robot "nobody"'),
+        ({"robots": [{"robot": "scara"}, {"robot": "nobody"}]}, r'robots.1.robot.library: has no robot "nobody"'),
         ({"robots": [{"robot": "scara", "name": "../a"}] * 2}, "robots.0.name: must have 1 to 64 letters"),
         ({"robots": [{"robot": "scara", "name": "a"}] * 2}, "robots: must not give two robots the same name: a, a"),
         ({"scan": {"robot": 2, "values": [1]}}, r"scan: must name a robot by its place, 0 … 1, not 2"),
