@@ -79,7 +79,7 @@ def test_robots_side_by_side_are_cut_where_most_voxels_are_occupied():
     label[:, :, 4] = 0.0
     volume = VolumeData(0.1, (0, 0, 0), count, {"maximum": {"x": label}})
     figure = plots.side_by_side({"a": volume, "b": volume}, index="x")
-    shown = np.ma.filled(figure.axes[2].images[0].get_array(), np.nan)
+    shown = np.ma.filled(figure.axes[0].images[0].get_array(), np.nan)
     np.testing.assert_array_equal(shown, label[:, :, 1].T)
 
 

@@ -63,8 +63,17 @@ def test_pictures_carry_the_warnings_that_concern_them():
         assert figure.bbox.x0 <= note.x0 and note.x1 <= figure.bbox.x1
     assert plots.heading("arm", WARNINGS, "surface").warnings == (LONG,)
     assert plots.heading("arm", WARNINGS[:1], "boundary").warnings == ()
-    three = plots.heading("arm", [*WARNINGS, WARNINGS[1]], "volume").warnings
+    three = plots.heading("arm", [*WARNINGS, WARNINGS[1] | {"message": "other"}], "volume").warnings
     assert len(three) == 2 and three[1].endswith("(and 1 more in the result's warnings)")
+
+
+def test_no_warning_is_said_twice_and_different_ones_come_first():
+    again = [WARNINGS[0] | {"message": "b: too few samples"}, *WARNINGS]
+    assert plots.heading("arm", again[:1] + again, "volume").warnings == (
+        "b: too few samples",
+        f"{LONG} (and 1 more in the result's warnings)",
+    )
+    assert plots.heading("arm", WARNINGS[:1] * 2, "volume").warnings == ("too few samples",)
 
 
 def test_long_titles_are_not_cut():

@@ -11,6 +11,14 @@ from wsrender.volume.measure import TABLE_UNITS, UNITS
 METHOD_LETTERS = {"grid": "A", "grid_by_subsystem": "B", "exact": "C", "solids": "D"}
 
 
+_METHODS = {
+    "boundary": "near the joint limits",
+    "given": "as given",
+    "grid_by_subsystem": "grid, by subsystem",
+    "lattices": "on lattices of positions and of joint angles",
+}
+
+
 def sampling_text(document: dict[str, Any]) -> str:
     """Robot and sampling of a result in one line, such as ``ur5e · 1,000,000 samples (sobol)``."""
     robot = document.get("robot") or document.get("mechanism") or {}
@@ -18,9 +26,14 @@ def sampling_text(document: dict[str, Any]) -> str:
     names = [str(each.get("name")) for each in document.get("robots", ())] or [str(robot.get("name", "robot"))]
     parts = [" + ".join(names)]
     if "samples" in sampling:
-        method = f" ({sampling['method']})" if "method" in sampling else ""
+        method = f" ({method_text(sampling['method'])})" if "method" in sampling else ""
         parts.append(f"{sampling['samples']:,} samples{method}")
     return " · ".join(parts)
+
+
+def method_text(method: Any) -> str:
+    """How samples are spread, in words: names of methods are those of fields."""
+    return _METHODS.get(str(method), str(method).replace("_", " "))
 
 
 def summary_text(document: dict[str, Any]) -> str:

@@ -18,9 +18,10 @@ from wsrender.volume.voxels import Voxels
 NAMES = "xyz"
 ACROSS = ((1, 2), (0, 2), (0, 1))  # horizontal and vertical axis of the plane normal to x, y, z
 _PLAIN = ("center", "value")  # statistics that are the index itself
-_SPARSE = 0.25  # least share of the voxels of the fullest plane that the plane at 0 is shown with
+SPARSE = 0.25  # least share of the voxels of the fullest plane that the plane at 0 is shown with
 _THINNEST = 0.25  # least extent of a drawn plane, relative to its longest: planar sets keep a legible panel
 _LARGEST = (9.6, 4.0)  # width of all planes of a row together, and height of one [in]
+_HIGHEST = 6.6  # height of the planes of all rows together [in]
 _LEFT, _BELOW, _ABOVE = 0.68, 0.5, 0.3  # room for numbers and names of the axes, and for the title of a plane [in]
 _TITLE = 1.75  # least width of a plane with the room beside it: that of its title [in]
 _BAR = (0.22, 0.14, 0.95)  # room before a colour bar, its width, room for its numbers and label [in]
@@ -94,12 +95,27 @@ def slices(
     title: Heading | str = "",
     frame: str = "world",
 ) -> Figure:
-    """Three panels: the planes normal to x, y and z at the coordinates ``at`` [m]; see ``slice_plane``."""
+    """Panels of the planes normal to x, y and z at the coordinates ``at`` [m]; see ``slice_plane``.
+
+    Voxels that lie in one plane, or on one line, have one panel: others would show them edge-on.
+    """
     field = voxel_field(volume, index, statistic)
-    figure, panels = new_planes(volume, field.scale, title)
-    for axis, (axes, coordinate) in enumerate(zip(panels[0], at, strict=True)):
-        draw_plane(axes, volume, field, axis, layer_at(volume, axis, coordinate, field), frame)
+    normals = plane_normals([volume], at)
+    figure, panels = new_planes(volume, field.scale, title, axes=normals)
+    for axes, axis in zip(panels[0], normals, strict=True):
+        draw_plane(axes, volume, field, axis, layer_at(volume, axis, at[axis], field), frame)
     return figure
+
+
+def plane_normals(volumes: Sequence[VolumeData], at: Sequence[float | None] = (None, None, None)) -> list[int]:
+    """Normals of the planes that show voxels: all three, or the one of a set in a plane, or of a line.
+
+    Volumes have one block. Planes at a coordinate ``at`` that is given are shown in any case.
+    """
+    shown = [volume.voxels.at[:, volume.voxels.count > 0] for volume in volumes]
+    flat = np.ptp(np.concatenate(shown, axis=1), axis=1) == 0
+    one = int(np.argmax(flat)) if flat.any() else None
+    return [axis for axis in range(3) if one in (None, axis) or at[axis] is not None]
 
 
 def new_planes(
@@ -116,7 +132,9 @@ def new_planes(
     """
     extents = [plane_extents(volume, axis) for axis in axes]
     widths, heights = np.transpose(extents)
-    unit = min(_LARGEST[0] / 3 * len(axes) / widths.sum(), _LARGEST[1] / heights.max())  # inches of a metre
+    across = _LARGEST[0] if len(axes) > 1 else 0.6 * _LARGEST[0]
+    high = min(_LARGEST[1], _HIGHEST / len(rows))
+    unit = min(across / widths.sum(), high / heights.max())  # inches of a metre
     widths, heights = widths * unit, heights * unit
     steps = np.maximum(_LEFT + widths, _TITLE)
     left = 0.35 if any(rows) else 0.0
@@ -140,6 +158,8 @@ def new_planes(
 def voxel_field(volume: VolumeData, index: str | None, statistic: str | None) -> Field:
     """A statistic of an index per voxel: by default the maximum of the first, or the count of samples.
 
+    Where the maximum is known of fewer indices than another statistic, that one is the default.
+
     Raises InputError for an unknown index or statistic, or a volume without occupied voxels.
     """
     if not volume.n_occupied:
@@ -161,7 +181,9 @@ def shared_scale(fields: Sequence[Field]) -> ColorScale:
 def _statistic(volume: VolumeData, index: str | None, statistic: str | None) -> tuple[str, np.ndarray, str]:
     """Name of the index, its values (V,) and their label."""
     if statistic is None:
-        statistic = next(iter(sorted(volume.statistics, key=lambda name: name != "maximum")), "maximum")
+        # That of most indices: a field of forces has the maximum of the force alone, which is the device's peak.
+        ranked = sorted(volume.statistics, key=lambda name: (-len(volume.statistics[name]), name != "maximum"))
+        statistic = next(iter(ranked), "maximum")
     if statistic not in volume.statistics:
         raise InputError("statistic", f"the volume has no {statistic!r}; it holds {_listed(volume.statistics)}")
     by_index = volume.voxels.statistics[statistic]
@@ -189,7 +211,7 @@ def layer_at(volume: VolumeData, axis: int, at: float | None, field: Field | Non
         shown = volume.voxels.count > 0 if field is None else ~np.isnan(field.values)
         occupied = np.bincount(volume.voxels.at[axis][shown], minlength=layers)
         zero = -first
-        return zero if 0 <= zero < layers and occupied[zero] >= _SPARSE * occupied.max() else int(occupied.argmax())
+        return zero if 0 <= zero < layers and occupied[zero] >= SPARSE * occupied.max() else int(occupied.argmax())
     cells = at / size - first
     if not -1e-9 <= cells <= layers + 1e-9:
         name, low, high = NAMES[axis], first * size, (first + layers) * size
@@ -233,12 +255,22 @@ def draw_plane(axes: Axes, volume: VolumeData, field: Field, axis: int, layer: i
     axes.set_axisbelow(True)
     axes.set_xlabel(f"{NAMES[horizontal]} [m]")
     axes.set_ylabel(f"{NAMES[vertical]} [m]")
-    at = _told(volume.centers(axis)[layer], volume.voxel_size_m)
-    axes.set_title(f"{NAMES[axis]} = {at} m ({frame})".replace("-", "−"))
+    axes.set_title(f"{NAMES[axis]} = {_layer_text(volume, axis, layer)} m ({frame})".replace("-", "−"))
+
+
+def _layer_text(volume: VolumeData, axis: int, layer: int) -> str:
+    """The coordinate of the middle of a layer; of the only one its ends: where in it the voxels' samples lie is open."""
+    size = volume.voxel_size_m
+    middle = float(volume.centers(axis)[layer])
+    if volume.shape[axis] > 1:
+        return _told(middle, size)
+    return " … ".join(_told(middle + half, size) for half in (-size / 2, size / 2))
 
 
 def _told(coordinate: float, voxel_size_m: float) -> str:
     """A coordinate with three digits, or as many as tell voxels apart far from the origin."""
+    if abs(coordinate) < 1e-9 * voxel_size_m:
+        return "0"
     return f"{coordinate:.{max(3, int(np.log10(abs(coordinate) / voxel_size_m)) + 1)}g}"
 
 

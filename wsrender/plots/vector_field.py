@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from wsrender.errors import InputError
 from wsrender.plots.color_scale import color_scale
-from wsrender.plots.planes import ACROSS, Field, draw_plane, layer_at, new_planes
+from wsrender.plots.planes import ACROSS, Field, draw_plane, layer_at, new_planes, plane_normals
 from wsrender.plots.style import INK, Heading, paper_style, quantity
 from wsrender.volume.volume_data import VolumeData
 
@@ -27,7 +27,7 @@ def vector_planes(
     title: Heading | str = "",
     frame: str = "world",
 ) -> Figure:
-    """Three planes, normal to x, y and z at ``at`` [m] (by default those with most voxels): stream lines of a vector.
+    """Planes as of `slices`, normal to x, y and z at ``at`` [m] (default: with most voxels): stream lines of a vector.
 
     Lines follow the vector's part in the plane, colours are its whole size. Raises InputError for a volume without
     vectors, without the one asked or without occupied voxels, and a plane outside.
@@ -44,10 +44,11 @@ def vector_planes(
     largest = float(np.nanmax(size))
     label = quantity(f"mean {name}", volume.units.get(name))
     field = Field(volume.voxels, size, color_scale(size, label))
-    figure, panels = new_planes(volume, field.scale, title)
-    for axis, (axes, coordinate) in enumerate(zip(panels[0], at, strict=True)):
+    normals = plane_normals([volume], at)
+    figure, panels = new_planes(volume, field.scale, title, axes=normals)
+    for axes, axis in zip(panels[0], normals, strict=True):
         fullest = volume.centers(axis)[np.bincount(volume.voxels.at[axis][volume.voxels.count > 0]).argmax()]
-        layer = layer_at(volume, axis, float(fullest) if coordinate is None else coordinate)
+        layer = layer_at(volume, axis, float(fullest) if at[axis] is None else at[axis])
         draw_plane(axes, volume, field, axis, layer, frame)
         plane = volume.voxels.plane(vectors, axis, layer)
         _draw_lines(axes, volume, plane, axis, largest)

@@ -17,8 +17,13 @@ _MOST = 2  # warnings written out on a picture
 
 
 def heading(title: str, warnings: Iterable[Mapping[str, Any]], kind: Kind) -> Heading:
-    """A title with the messages of the warnings of a result document that concern a kind of pictures."""
-    found = [str(entry["message"]) for entry in warnings if kind in _CONCERNED.get(str(entry["code"]), {kind})]
+    """A title with the messages of the warnings of a result document that concern a kind of pictures.
+
+    None is said twice, as of one robot that stands in two places; those of different codes come first.
+    """
+    concerned = [entry for entry in warnings if kind in _CONCERNED.get(str(entry["code"]), {kind})]
+    first = {str(entry["code"]): str(entry["message"]) for entry in reversed(concerned)}
+    found = list(dict.fromkeys([*reversed(first.values()), *(str(entry["message"]) for entry in concerned)]))
     more = len(found) - _MOST
     if more > 0:
         found[_MOST - 1] += f" (and {more} more in the result's warnings)"

@@ -13,7 +13,7 @@ from wsrender.boundary.voxel_surface import occupied_surface
 from wsrender.errors import InputError
 from wsrender.plots.cloud import checked_index
 from wsrender.plots.color_scale import SIGNED, ColorScale, color_scale
-from wsrender.plots.planes import Field, layer_at, shared_scale, voxel_field
+from wsrender.plots.planes import NAMES, Field, layer_at, plane_normals, shared_scale, voxel_field
 from wsrender.plots.style import quantity
 from wsrender.render.scene import Cloud, Color, Layer, Lines, Plates, Points, Surface
 from wsrender.render.subject import Subject
@@ -144,22 +144,23 @@ def volume(subjects: Sequence[Subject], choice: Choice) -> Drawing:
 
 
 def slice(subjects: Sequence[Subject], choice: Choice) -> Drawing:
-    """Three planes of voxels in the translucent boundary, coloured by an index; all robots share the planes.
+    """Planes of voxels in the translucent boundary, coloured by an index; all robots share them.
 
     Where a plane is not given it is the one at 0, or the fullest of the first robot if that misses its workspace.
     """
     volumes = [subject.voxels() for subject in subjects]
     fields, scale, drawing = _fields(volumes, choice)
-    layers = [layer_at(volumes[0], axis, at) for axis, at in enumerate(choice.at)]
-    planes = [float(volumes[0].centers(axis)[layer]) for axis, layer in enumerate(layers)]
+    normals = plane_normals(volumes[:1], choice.at)
+    layers = {axis: layer_at(volumes[0], axis, choice.at[axis]) for axis in normals}
+    planes = {axis: float(volumes[0].centers(axis)[layer]) for axis, layer in layers.items()}
     for voxels, shown in zip(volumes, fields, strict=True):
-        for axis, at in enumerate(planes):
+        for axis, at in planes.items():
             if abs(at - voxels.centers(axis).mean()) < voxels.shape[axis] * voxels.voxel_size_m / 2:
                 drawing.layers.append(_plates(voxels, shown, axis, layer_at(voxels, axis, at), scale))
     drawing.layers += _shells(subjects, choice.veil)
     drawing.handles.append(Patch(facecolor=scale.colors(0.5), label="slices"))
     drawing.handles.append(Patch(facecolor=_SHELL_GREY, alpha=0.3, label="workspace boundary"))
-    where = ", ".join(f"{name} = {at:.3g}" for name, at in zip("xyz", planes, strict=True))
+    where = ", ".join(f"{NAMES[axis]} = {at:.3g}" for axis, at in planes.items())
     drawing.notes.append(f"slices at {where} m")
     return drawing
 
