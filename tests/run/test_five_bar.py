@@ -126,7 +126,7 @@ def test_a_saved_result_draws_the_same_pictures(result, tmp_path):
     )
     joint = again.plot.conditioning("j", "joint")
     assert [axes.get_xlabel() for axes in joint.axes[4:8]] == ["θ1 [rad]"] * 4
-    assert again.plot.aspects().axes[0].get_legend().texts[0].get_text() == "assembly +: 159.89 m²"
+    _check_aspects(again)
     for arguments in (("c", "cartesian"), ("a", "plane")):
         with pytest.raises(ws.InputError, match="is not allowed"):
             again.plot.conditioning(*arguments)
@@ -161,3 +161,21 @@ def test_progress_ends_at_all_cells():
     execute(CB, progress=lambda *call: calls.append(call))
     totals = {total for _, total, message in calls if message == "samples"}
     assert len(totals) == 1 and calls[-1][:2] == (totals.pop(),) * 2
+
+
+def _check_aspects(result):
+    """A colour is one assembly mode in every panel, named once, below all; panels list areas."""
+    figure = result.plot.aspects()
+    (legend,) = figure.legends
+    named = {text.get_text(): patch.get_facecolor() for text, patch in zip(legend.texts, legend.get_patches())}
+    assert set(named) == {"assembly mode +", "assembly mode −"} and len(set(named.values())) == 2
+    outlines = result.tables["aspect_outlines"]
+    for mode, axes in zip(("++", "+-", "-+", "--"), figure.axes, strict=True):
+        own = outlines["working_mode"] == mode
+        numbers, first = np.unique(outlines["aspect"][own], return_index=True)
+        signs = outlines["assembly_mode"][own][first]
+        expected = [named[f"assembly mode {'+' if sign == '+' else '−'}"] for sign in signs]
+        assert [patch.get_facecolor() for patch in axes.patches] == expected
+        listed = axes.get_legend()
+        assert [text.get_text() for text in listed.texts] == [f"{a:.5g} m²" for a in outlines["area"][own][first]]
+        assert [patch.get_facecolor() for patch in listed.get_patches()] == expected

@@ -1,14 +1,16 @@
 """Conditioning, loci and aspects of a five-bar, one panel for each working mode (after figures 15 and 16 of [CB])."""
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.patches import PathPatch
+from matplotlib.patches import Patch, PathPatch
 from matplotlib.path import Path
 from matplotlib.ticker import MaxNLocator, MultipleLocator
 
@@ -31,6 +33,7 @@ _STYLES = {  # of loci: colour, width, dashes, label
     "isotropic_b": (_BLUE, 1.4, (0, (5, 2)), "κ(B) = 1"),
     "isotropic_j": (_BLUE, 0.0, "", "κ(J) = 1"),
 }
+_ASSEMBLY = {"+": "#a6cee3", "-": "#fdcf8b"}  # of assembly modes
 _DRAWN = {"a": ("least_kappa_a",), "b": ("isotropic_b",), "j": ("isotropic_j",)}
 _EVERYWHERE = ("type_1", "joint_limit", "type_2")
 
@@ -74,35 +77,29 @@ def conditioning_maps(
 
 @paper_style()
 def aspect_maps(tables: Mapping[str, Table], *, title: Heading | str = "") -> Figure:
-    """The aspects of each working mode, coloured one by one, with their areas; loci and mechanism as in the maps."""
+    """The aspects of each working mode in the colours of their assembly modes, with their areas; loci and mechanism."""
     modes = list(tables["drawn_postures"]["working_mode"])
-    figure, panels = _cartesian_panels(tables, modes, title, beside=1.7)
+    figure, panels = _cartesian_panels(tables, modes, title, beside=1.2)
     outlines = tables["aspect_outlines"]
     for mode, axes in zip(modes, panels, strict=True):
-        handles = []
-        for k, number in enumerate(np.unique(outlines["aspect"][outlines["working_mode"] == mode])):
+        areas = []
+        for number in np.unique(outlines["aspect"][outlines["working_mode"] == mode]):
             rows = np.flatnonzero(outlines["aspect"] == number)
-            color = _color_of(k)
-            axes.add_patch(PathPatch(_path(outlines, rows), facecolor=color, linewidth=0, alpha=0.75, zorder=2))
-            sign, area = str(outlines["assembly_mode"][rows[0]]), outlines["area"][rows[0]]
-            handles.append(
-                Line2D([], [], ls="", marker="s", ms=7, color=color, label=f"assembly {_signs(sign)}: {area:.5g} m²")
-            )
+            color = _ASSEMBLY[str(outlines["assembly_mode"][rows[0]])]
+            axes.add_patch(PathPatch(_path(outlines, rows), facecolor=color, linewidth=0, zorder=2))
+            areas.append(Patch(facecolor=color, label=f"{outlines['area'][rows[0]]:.5g} m²"))
         _draw_loci(axes, tables["loci"], mode, _EVERYWHERE, "position")
         _draw_mechanism(axes, tables["drawn_postures"], mode)
-        legend = axes.legend(
-            handles=handles[:8], fontsize=7, frameon=False, loc="upper left", bbox_to_anchor=(1.0, 1.0), handlelength=1
-        )
-        legend.set_zorder(9)
-    _add_legend(figure, tables["loci"], _EVERYWHERE, np.empty(0))
+        place: dict[str, Any] = {"loc": "upper left", "bbox_to_anchor": (1.0, 1.0)}
+        axes.legend(handles=areas[:8], title="areas", fontsize=7, frameon=False, handlelength=1, **place).set_zorder(9)
+    present = set(outlines["assembly_mode"].tolist())
+    modes_of_assembly = [
+        Patch(facecolor=color, label=f"assembly mode {_signs(sign)}")
+        for sign, color in _ASSEMBLY.items()
+        if sign in present
+    ]
+    _add_legend(figure, tables["loci"], _EVERYWHERE, np.empty(0), modes_of_assembly)
     return figure
-
-
-def _color_of(k: int) -> tuple[float, float, float]:
-    colors = ("#8dd3c7", "#fdb462", "#bebada", "#fb8072", "#b3de69", "#fccde5", "#80b1d3", "#d9d9d9")
-    hexadecimal = colors[k % len(colors)].lstrip("#")
-    red, green, blue = (int(hexadecimal[i : i + 2], 16) / 255 for i in (0, 2, 4))
-    return red, green, blue
 
 
 def _path(outlines: Table, rows: np.ndarray) -> Path:
@@ -297,9 +294,11 @@ def _add_bar(figure: Figure, axes: list[Axes], matrix: str) -> None:
     bar.outline.set_visible(False)
 
 
-def _add_legend(figure: Figure, loci: Table, kinds: Sequence[str], levels: np.ndarray) -> None:
+def _add_legend(
+    figure: Figure, loci: Table, kinds: Sequence[str], levels: np.ndarray, first: Sequence[Artist] = ()
+) -> None:
     present = set(loci["kind"])
-    handles = []
+    handles = list(first)
     for kind in (kind for kind in kinds if kind in present):
         color, width, dashes, label = _STYLES[kind]
         if kind == "isotropic_j":
@@ -309,4 +308,4 @@ def _add_legend(figure: Figure, loci: Table, kinds: Sequence[str], levels: np.nd
     if len(levels):
         label = f"κ = {', '.join(f'{float(level):g}' for level in levels)}"
         handles.append(Line2D([], [], color="#bbbbbb", lw=1.0, label=label))
-    figure.legend(handles=handles, loc="outside lower center", ncols=min(len(handles), 3), frameon=False, fontsize=8)
+    figure.legend(handles=handles, loc="outside lower center", ncols=min(len(handles), 4), frameon=False, fontsize=8)

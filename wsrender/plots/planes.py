@@ -259,7 +259,7 @@ def draw_plane(axes: Axes, volume: VolumeData, field: Field, axis: int, layer: i
 
 
 def _layer_text(volume: VolumeData, axis: int, layer: int) -> str:
-    """The coordinate of the middle of a layer; of the only one its ends: where in it the voxels' samples lie is open."""
+    """The coordinate of the middle of a layer; of the only one its ends: where in it samples lie is not known."""
     size = volume.voxel_size_m
     middle = float(volume.centers(axis)[layer])
     if volume.shape[axis] > 1:

@@ -1,5 +1,6 @@
 """The result of a ``design_optimization``: best design, front, tables, and the best design's exact workspace."""
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,6 +20,8 @@ if TYPE_CHECKING:
     from wsrender.run.design import DesignPlan
 
 AT_BOUND = 1e-6  # of a parameter's range
+_DH_UNITS = {"a": "m", "d": "m", "alpha": "rad", "theta": "rad"}
+_ENDINGS = {"m": "m", "rad": "rad", "deg": "°", "s": "s"}  # units by the endings of fields
 
 
 def best_headline(plan: "DesignPlan", best: dict[str, Any] | None) -> dict[str, Any]:
@@ -94,6 +97,7 @@ def tables_of(plan: "DesignPlan", designs: np.ndarray, values: np.ndarray, score
     """``evaluations`` in order, ``convergence`` of the best, and ``sweep`` or ``pareto``."""
     objectives, names = plan.job.objectives, [parameter.name for parameter in plan.job.parameters]
     units = {o.name: o.unit for o in objectives if o.unit}
+    units |= {p.name: unit for p in plan.job.parameters if (unit := unit_of(p.pointers))}
     columns = dict(zip(names, designs.T, strict=True)) | {o.name: v for o, v in zip(objectives, values.T, strict=True)}
     tables = {"evaluations": Table(columns, units)}
     if isinstance(plan.job.search, GridSweep):
@@ -104,6 +108,13 @@ def tables_of(plan: "DesignPlan", designs: np.ndarray, values: np.ndarray, score
     else:
         tables["convergence"] = _convergence(plan, designs, score, units)
     return tables
+
+
+def unit_of(pointers: Sequence[str]) -> str:
+    """Unit of a parameter by the fields that it stands in, such as "m" of "/mechanism/link_m"; "": none, or several."""
+    fields = [next((part for part in reversed(each.split("/")) if not part.isdigit()), "") for each in pointers]
+    units = {_DH_UNITS.get(field) or _ENDINGS.get(field.rpartition("_")[2], "") for field in fields}
+    return units.pop() if len(units) == 1 else ""
 
 
 def _convergence(plan: "DesignPlan", designs: np.ndarray, score: np.ndarray, units: dict[str, str]) -> Table:
