@@ -80,9 +80,10 @@ class Result:
     @property
     def plot(self) -> "ResultPlots":
         """Pictures as matplotlib Figures, such as ``plot.slice(z=0.3)`` or ``plot.scatter(index)``."""
-        arms = len(self.document.get("robots") or []) or self._legs
+        robots = [str(each.get("name")) for each in self.document.get("robots") or ()]
         title, data = sampling_text(self.document), self._drawable()
-        return plots.ResultPlots(title, *data, self.tables, self.volumes, self.meshes, arms, self._warnings)
+        held = (self.tables, self.volumes, self.meshes, len(robots) or self._legs)
+        return plots.ResultPlots(title, *data, *held, self._warnings, robots)
 
     @property
     def _warnings(self) -> list[dict[str, Any]]:

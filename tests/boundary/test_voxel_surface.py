@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 
 from tests.export.sample_data import random_volume
 from wsrender.boundary import voxel_surface
-from wsrender.boundary.voxel_surface import occupied_surface
+from wsrender.boundary.voxel_surface import level_surface, occupied_surface
 from wsrender.errors import InputError
 from wsrender.export import read_mesh, write_mesh
 from wsrender.volume.volume_data import VolumeData
@@ -89,3 +89,30 @@ def test_errors_name_the_fault(tmp_path):
         occupied_surface(volume_of(np.zeros((2, 2, 2))))
     with pytest.raises(InputError, match=r"must end in \.glb, \.ply or \.stl"):
         write_mesh(occupied_surface(volume), tmp_path / "mesh.obj")
+
+
+def ball_of_values(size=0.1, half=8):
+    centers = (np.arange(-half, half) + 0.5) * size
+    x, y, z = np.meshgrid(centers, centers, centers, indexing="ij")
+    values = 1 - np.sqrt(x**2 + y**2 + z**2)
+    return VolumeData(size, (-half,) * 3, np.ones(values.shape, int)), values
+
+
+def test_a_level_lies_where_values_have_it_not_on_the_steps_of_voxels():
+    volume, values = ball_of_values()
+    mesh = level_surface(volume, values, 0.5)
+    assert mesh.is_watertight and mesh.volume > 0
+    assert np.abs(np.linalg.norm(mesh.vertices, axis=1) - 0.5).max() < 0.08 * volume.voxel_size_m
+
+
+def test_a_level_ends_on_the_faces_of_voxels_beside_empty_ones():
+    volume, values = ball_of_values()
+    values[8:] = np.nan  # cut at x = 0
+    mesh = level_surface(volume, values, 0.5)
+    assert mesh.is_watertight and mesh.bounds[1, 0] == pytest.approx(0, abs=1e-12)
+    alone = np.full((3, 3, 3), 0.1)
+    alone[1, 1, 1] = 1.0
+    (extent,) = {round(each, 9) for each in level_surface(VolumeData(0.1, (0, 0, 0), alone > 0), alone, 1.0).extents}
+    assert extent > 0.1 * 0.02  # the largest value is in sight
+    with pytest.raises(InputError, match="level: is 2, above every value"):
+        level_surface(volume, values, 2.0)

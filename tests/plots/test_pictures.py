@@ -9,6 +9,7 @@ import pytest
 from matplotlib.collections import PathCollection
 from PIL import Image
 
+import wsrender as ws
 from tests.export.sample_data import ODD_NAMES, random_map, random_volume
 from wsrender import plots
 from wsrender.errors import InputError
@@ -216,6 +217,31 @@ def test_an_index_that_is_constant_has_one_number_below_its_bar(value):
     low, high = axes.get_xlim()
     assert bar.values.tolist() == [100] and low < bar.edges[0] < value < bar.edges[1] < high
     assert max(axes.get_yticks()) == 100
+
+
+def test_arms_of_several_robots_have_a_colour_and_a_name_each():
+    document = {"robots": [{"name": "left"}, {"name": "right"}]}
+    figure = ws.Result(document, skeleton=SKELETON[:2]).plot.robot()
+    entries = figure.axes[0].get_legend()
+    named = {text.get_text(): line.get_color() for text, line in zip(entries.texts, entries.get_lines(), strict=True)}
+    assert list(named)[:2] == ["left", "right"] and named["left"] != named["right"]
+    thick = [line.get_color() for line in figure.axes[0].lines if line.get_linewidth() == 3.2]
+    assert set(thick) == {named["left"], named["right"]}
+
+
+@pytest.mark.parametrize("held", ["volume", "volumes"])
+def test_an_arm_without_samples_is_drawn_in_the_surface_of_its_voxels(held):
+    volume = VolumeData(0.1, (0, 0, 0), np.ones((6, 5, 4), int))
+    data = {"volume": volume} if held == "volume" else {"volumes": {"only": volume}}
+    figure = ws.Result({"robot": {"name": "arm"}}, skeleton=SKELETON[:1], **data).plot.robot()
+    (image,) = figure.axes[0].images
+    assert np.count_nonzero(np.asarray(image.get_array())[..., 3]) > 1000
+
+
+def test_voxels_that_are_reached_once_have_no_scale_of_samples():
+    count = np.ones((4, 4, 4), int)
+    assert plots.slices(VolumeData(0.1, (0, 0, 0), count)).axes[-1].get_ylabel() == "Reached voxels"
+    assert plots.slices(VolumeData(0.1, (0, 0, 0), 2 * count)).axes[-1].get_ylabel() == "Samples per voxel"
 
 
 def test_robot_is_drawn_through_its_joints():

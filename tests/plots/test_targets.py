@@ -9,6 +9,7 @@ import wsrender as ws
 from tests.export.sample_data import random_map, random_volume
 from wsrender import plots
 from wsrender.errors import InputError
+from wsrender.export.text import sampling_text
 from wsrender.run import execute
 from wsrender.volume.table import Table
 
@@ -83,3 +84,17 @@ def test_long_titles_are_not_cut():
     box = figure._suptitle.get_window_extent()
     assert figure.bbox.x0 <= box.x0 and box.x1 <= figure.bbox.x1
     assert figure.get_suptitle().replace("\n", " ") == title
+
+
+def test_titles_say_in_words_how_samples_are_spread_and_how_a_voxel_is_approached():
+    for method, words in (
+        ("grid_by_subsystem", "grid, by subsystem"),
+        ("lattices", "on lattices of positions and of joint angles"),
+        ("boundary", "near the joint limits"),
+        ("sobol", "sobol"),
+    ):
+        sampling = {"samples": 1200, "method": method}
+        assert sampling_text({"robot": {"name": "arm"}, "sampling": sampling}) == f"arm · 1,200 samples ({words})"
+    capability = {"directions": 50, "approach_axis": "-x"}
+    title = sampling_text({"robot": {"name": "arm"}, "capability": capability})
+    assert title == "arm · 50 directions of approach by the tip's -x axis"

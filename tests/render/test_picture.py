@@ -76,7 +76,7 @@ def test_things_appear_where_the_camera_says():
     [
         ("boundary", (-0.6, -0.5, 0.2), (0.6, 0.5, 1.0)),
         ("volume", (-0.6, -0.5, 0.2), (0.6, 0.5, 1.0)),
-        ("isosurface", (-0.6, -0.5, 0.6), (0.6, 0.5, 1.0)),  # values from 5 of 8 up
+        ("isosurface", (-0.6, -0.5, 0.63), (0.6, 0.5, 1.0)),  # 4.8 between the centres of voxels of 4 and 5
     ],
 )
 def test_a_block_covers_the_area_of_its_outline(block, view, lower, upper):

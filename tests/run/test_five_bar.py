@@ -167,12 +167,14 @@ def _check_aspects(result):
     """A colour is one assembly mode in every panel, named once, below all; panels list areas."""
     figure = result.plot.aspects()
     (legend,) = figure.legends
-    named = {text.get_text(): patch.get_facecolor() for text, patch in zip(legend.texts, legend.get_patches())}
+    named = {
+        text.get_text(): patch.get_facecolor() for text, patch in zip(legend.texts, legend.get_patches(), strict=False)
+    }
     assert set(named) == {"assembly mode +", "assembly mode −"} and len(set(named.values())) == 2
     outlines = result.tables["aspect_outlines"]
     for mode, axes in zip(("++", "+-", "-+", "--"), figure.axes, strict=True):
         own = outlines["working_mode"] == mode
-        numbers, first = np.unique(outlines["aspect"][own], return_index=True)
+        _, first = np.unique(outlines["aspect"][own], return_index=True)
         signs = outlines["assembly_mode"][own][first]
         expected = [named[f"assembly mode {'+' if sign == '+' else '−'}"] for sign in signs]
         assert [patch.get_facecolor() for patch in axes.patches] == expected

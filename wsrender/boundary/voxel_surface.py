@@ -1,7 +1,10 @@
 """Surface of the occupied voxels, or of those above a share of an index's maximum, as a mesh."""
 
+from typing import Any
+
 import numpy as np
 import trimesh
+from scipy.ndimage import distance_transform_edt
 from skimage.measure import block_reduce, marching_cubes
 
 from wsrender.errors import InputError
@@ -10,6 +13,7 @@ from wsrender.volume.volume_data import VolumeData
 # A cloud sampled too thinly for its voxels has millions of one-voxel islands; a mesh of them fills the
 # memory and shows nothing.
 MAX_VOXEL_FACES = 4_000_000
+_PEAK = 0.02  # of the level: least height above it of what is on it
 
 
 def occupied_surface(
@@ -40,6 +44,25 @@ def occupied_surface(
     vertices_world = (first + (vertices.astype(np.float64) - 0.5)) * size
     metadata = {"frame": "world", "unit": "m", "up": "z", "voxel_size_m": size}
     return trimesh.Trimesh(vertices_world, faces, process=False, metadata=metadata)
+
+
+def level_surface(volume: VolumeData, values: np.ndarray, level: float) -> trimesh.Trimesh:
+    """Closed surface of where ``values`` (nx, ny, nz), NaN where empty, are at least ``level``, metres, world frame.
+
+    Marching cubes (Lorensen and Cline 1987) of the values, linear between the centres of voxels; towards empty voxels
+    it lies on the faces of the others. A voxel above all its neighbours keeps a size that is seen. Raises InputError
+    where no value reaches the level.
+    """
+    above = np.pad(values, 1, constant_values=np.nan) - level
+    known = np.isfinite(above)
+    if not (above[known] >= 0).any():
+        raise InputError("level", f"is {level:g}, above every value: there is no surface")
+    peak = _PEAK * max(float(above[known].max()), abs(level), 1e-300)
+    above = np.where(above >= 0, np.maximum(above, peak), above)
+    nearest: Any = distance_transform_edt(~known, return_distances=False, return_indices=True)
+    field = np.where(known, above, -np.abs(above[tuple(nearest)]))
+    vertices, faces, _, _ = marching_cubes(field, 0.0, method="lorensen", gradient_direction="ascent")
+    return trimesh.Trimesh((np.array(volume.first_voxel) + vertices - 0.5) * volume.voxel_size_m, faces, process=False)
 
 
 def _above(volume: VolumeData, index: str, statistic: str, fraction: float) -> np.ndarray:

@@ -28,6 +28,8 @@ def sampling_text(document: dict[str, Any]) -> str:
     if "samples" in sampling:
         method = f" ({method_text(sampling['method'])})" if "method" in sampling else ""
         parts.append(f"{sampling['samples']:,} samples{method}")
+    if found := document.get("capability"):
+        parts.append(f"{found['directions']} directions of approach by the tip's {found['approach_axis']} axis")
     return " · ".join(parts)
 
 

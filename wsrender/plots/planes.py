@@ -167,7 +167,8 @@ def voxel_field(volume: VolumeData, index: str | None, statistic: str | None) ->
     voxels = volume.voxels
     if statistic == "count" or not (volume.statistics or statistic or index):
         values = np.where(voxels.count > 0, voxels.count, np.nan)
-        return Field(voxels, values, color_scale(values, "Samples per voxel"))
+        once = np.nanmax(values) == 1  # as on a lattice of their centres
+        return Field(voxels, values, color_scale(values, "Reached voxels" if once else "Samples per voxel"))
     name, values, label = _statistic(volume, index, statistic)
     signed = name.startswith(SIGNED)
     return Field(voxels, values, color_scale(values, label, signed), signed)

@@ -12,7 +12,7 @@ from wsrender.plots.arm_plane import planar_boundary
 from wsrender.plots.comparison import side_by_side
 from wsrender.plots.designs import sweep_surface, trade_off
 from wsrender.plots.distribution import histogram
-from wsrender.plots.faces import faces_of
+from wsrender.plots.faces import Faces, faces_of
 from wsrender.plots.five_bar import MODE_VOLUMES, aspect_maps, conditioning_maps
 from wsrender.plots.master_slave import mapped_points
 from wsrender.plots.method_comparison import errors_by_size
@@ -49,6 +49,7 @@ class ResultPlots:
     meshes: "Mapping[str, trimesh.Trimesh]" = field(default_factory=dict)
     arms: int = 1  # robots whose skeletons stand one after the other
     warnings: Sequence[Mapping[str, Any]] = ()  # of the result document
+    robots: Sequence[str] = ()  # names of several robots
 
     def curves(self, table: str) -> Figure:
         """A table as curves over its first column."""
@@ -164,15 +165,26 @@ class ResultPlots:
         return limits_and_ellipsoids(self.tables["posture"], self.tables["ellipsoids"], title=self._heading("other"))
 
     def robot(self, index: str | None = None) -> Figure:
-        """The arm as a stick figure in its workspace, coloured by an index (by default the first)."""
+        """The arm as a stick figure in its workspace, coloured by an index (by default the first).
+
+        Without samples the workspace is drawn as a surface; arms of several robots have a colour and name each.
+        """
         if self.skeleton is None:
             raise InputError("skeleton", "the result holds no configurations of the arm to draw")
-        surface = None
-        if self.samples is None and self.meshes:
-            surface = faces_of(next(iter(self.meshes.values())), None)
-        return robot(
-            self.skeleton, self.samples, index, surface=surface, arms=self.arms, title=self._heading("samples")
-        )
+        surface = None if self.samples is not None else self._workspace()
+        kept = {"surface": surface, "arms": self.arms, "names": self.robots}
+        return robot(self.skeleton, self.samples, index, **kept, title=self._heading("samples"))
+
+    def _workspace(self) -> Faces | None:
+        """What the arm is drawn in where there are no samples: a mesh, or the surface of the voxels."""
+        if self.meshes:
+            return faces_of(next(iter(self.meshes.values())), None)
+        volumes = [volume for volume in (self.volume, *self.volumes.values()) if volume is not None]
+        if len(volumes) != 1 or not volumes[0].n_occupied:
+            return None
+        from wsrender.boundary.voxel_surface import occupied_surface
+
+        return faces_of(occupied_surface(volumes[0]), None)
 
     def _heading(self, kind: Kind) -> Heading:
         return heading(self.title, self.warnings, kind)

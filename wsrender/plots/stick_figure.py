@@ -1,5 +1,7 @@
 """The arm as a stick figure in the cloud of its samples."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.figure import Figure
@@ -14,6 +16,7 @@ from wsrender.plots.view import BAR, View, inches, new_view
 from wsrender.volume.distribution_map import DistributionMap
 
 _ACCENT = "#c8102e"
+_ROBOTS = ("#0072b2", "#d55e00", "#cc79a7", "#e69f00", "#56b4e9")  # Okabe and Ito 2008
 _CLOUD_POINTS = 12_000
 _VEIL = 0.5  # opacity of a surface before the arm
 
@@ -26,13 +29,15 @@ def robot(
     *,
     surface: Faces | None = None,
     arms: int = 1,
+    names: Sequence[str] = (),
     title: Heading | str = "",
     frame: str = "world",
 ) -> Figure:
     """Stick figures of the arm in representative configurations, before the far half of its workspace.
 
     ``skeleton`` (K, L+2, 3) holds world positions [m] of base, joint origins and tip; the first ``arms`` of the K are
-    drawn in full, the others, configurations of the first, pale. The cloud is coloured by ``index`` (by default the
+    drawn in full, the others, configurations of the first, pale; ``names`` are those of arms of several robots, which
+    have a colour each. The cloud is coloured by ``index`` (by default the
     map's first); without samples ``surface`` is drawn. Raises InputError for another shape or an unknown index.
     """
     skeleton = np.asarray(skeleton, np.float64)
@@ -57,17 +62,19 @@ def robot(
         view.add_line(arm, color="white", lw=4.0, alpha=0.8, solid_capstyle="round", zorder=3.1)
         view.add_line(arm, color=GREY, lw=2.0, solid_capstyle="round", zorder=4)
         view.add_marks(arm, color=GREY, marker="o", ms=3, zorder=4)
-    for arm in skeleton[:arms]:
-        draw_arm(view, arm)
-    view.axes.legend(handles=arm_handles(), loc="upper left", frameon=False, fontsize=8)
+    colors = [_ROBOTS[k % len(_ROBOTS)] if names else INK for k in range(arms)]
+    for arm, color in zip(skeleton[:arms], colors, strict=False):
+        draw_arm(view, arm, color)
+    robots = [Line2D([], [], color=color, lw=3.2, label=name) for name, color in zip(names, colors, strict=False)]
+    view.axes.legend(handles=[*robots, *arm_handles()], loc="upper left", frameon=False, fontsize=8)
     return figure
 
 
-def draw_arm(view: View, arm: np.ndarray) -> None:
+def draw_arm(view: View, arm: np.ndarray, color: str = INK) -> None:
     """An arm through base, joints and tip (L+2, 3) [m]."""
     view.add_line(arm, color="white", lw=5.5, solid_capstyle="round", zorder=5)
-    view.add_line(arm, color=INK, lw=3.2, solid_capstyle="round", zorder=6)
-    view.add_marks(arm[1:-1], marker="o", ms=6, mfc="white", mec=INK, mew=1.4, zorder=7)
+    view.add_line(arm, color=color, lw=3.2, solid_capstyle="round", zorder=6)
+    view.add_marks(arm[1:-1], marker="o", ms=6, mfc="white", mec=color, mew=1.4, zorder=7)
     view.add_marks(arm[:1], marker="s", ms=8, mfc=INK, mec="white", zorder=8)
     view.add_marks(arm[-1:], marker="*", ms=13, mfc=_ACCENT, mec="white", mew=0.7, zorder=9)
 

@@ -43,6 +43,7 @@ def surface_faces(faces: Faces, *, title: Heading | str = "", frame: str = "worl
     for k, (name, azimuth, elevation) in enumerate(_VIEWS):
         view = add_view(figure, faces.vertices, (k * width, _LOW, width, height), azimuth, elevation)
         view.add_surface(*shaded(faces, view.space.camera, _LIGHT * np.sign(elevation)))
+        view.add_outline(colors=[INK], linewidths=_EDGE["linewidth"], zorder=2.9)
         _draw_borders(view, faces, sides, corners)
         note(figure, (k + 0.5) * width, 0.1, name, ha="center", fontsize=9)
     handles = [Patch(facecolor=faces.colors[k], label=label) for k, label in faces.labels.items()]

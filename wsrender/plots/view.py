@@ -46,6 +46,16 @@ class View:
         self.axes.imshow(image, extent=(-wide, wide, -1, 1), interpolation="none", zorder=_SURFACE, aspect="auto")
         self._set_limits()
 
+    def add_outline(self, **style: Any) -> None:
+        """The outline of the surface added last, as it is seen: whole, whether an edge or a smooth side lies there."""
+        covered = (self.buffers[-1].nearest >= 0).astype(float)
+        height, width = covered.shape
+        padded = np.pad(covered, 1)  # a surface at the border of the picture ends there
+        x = (np.arange(-1, width + 1) + 0.5) / height * 2 - width / height
+        y = 1 - (np.arange(-1, height + 1) + 0.5) / height * 2
+        self.axes.contour(x, y, _rounded(padded), levels=[0.5], **style)
+        self._set_limits()
+
     def add_dots(self, points: np.ndarray, colors: Any, size: float, **style: Any) -> None:
         """Points (N, 3) [m] as discs of ``size`` [pt²], the nearest last; one colour, or (N, 4) of them."""
         order = np.argsort(self.space.camera.nearness(points), kind="stable")
@@ -137,6 +147,13 @@ def note(figure: Figure, x: float, y: float, text: str, **style: Any) -> None:
     """A small grey text at x, y [in] from the lower left of a figure."""
     across, up = figure.get_size_inches()
     figure.text(x / across, y / up, text, **{"fontsize": 8, "color": GREY, **style})
+
+
+def _rounded(covered: np.ndarray) -> np.ndarray:
+    """A mask without the steps of its pixels."""
+    from scipy.ndimage import gaussian_filter
+
+    return gaussian_filter(covered, 1.5)
 
 
 def _pieces(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

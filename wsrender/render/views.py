@@ -9,7 +9,7 @@ from matplotlib.artist import Artist
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from wsrender.boundary.voxel_surface import occupied_surface
+from wsrender.boundary.voxel_surface import level_surface, occupied_surface
 from wsrender.errors import InputError
 from wsrender.plots.cloud import checked_index
 from wsrender.plots.color_scale import SIGNED, ColorScale, color_scale
@@ -166,7 +166,7 @@ def slice(subjects: Sequence[Subject], choice: Choice) -> Drawing:
 
 
 def isosurface(subjects: Sequence[Subject], choice: Choice) -> Drawing:
-    """Surface around the voxels whose value is at least a share of the maximum, in the translucent boundary."""
+    """Surface of where the values are at least a share of the maximum, in the translucent boundary."""
     volumes = [subject.dense_voxels() for subject in subjects]
     fields, scale, drawing = _fields(volumes, choice)
     for voxels, shown in zip(volumes, fields, strict=True):
@@ -177,10 +177,10 @@ def isosurface(subjects: Sequence[Subject], choice: Choice) -> Drawing:
                 "index",
                 f"an iso-surface is a share of the maximum, and that of {shown.label} is {largest:.3g}, below 0",
             )
-        inside = voxels.occupied & (values >= choice.threshold * largest)
-        kept = VolumeData(voxels.voxel_size_m, voxels.first_voxel, inside.astype(np.int64))
-        mesh = occupied_surface(kept)
-        colors = _vertex_colors(mesh.vertices, kept, np.where(inside, values, np.nan), scale)
+        level = choice.threshold * largest
+        values = np.where(voxels.occupied, values, np.nan)
+        mesh = level_surface(voxels, values, level)
+        colors = _vertex_colors(mesh.vertices, voxels, np.where(values >= level, values, np.nan), scale)
         drawing.layers.append(Surface(mesh.vertices, mesh.faces, colors=colors, smooth=True))
     drawing.layers += _shells(subjects, choice.veil)
     label = f"at least {choice.threshold:g} of the maximum"
