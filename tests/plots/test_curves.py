@@ -43,5 +43,7 @@ def test_points_inside_are_green_and_points_outside_red():
     assert green.get_facecolor()[0][1] > green.get_facecolor()[0][0]
     assert red.get_facecolor()[0][0] > red.get_facecolor()[0][1]
     assert [text.get_text() for text in figure.axes[0].get_legend().get_texts()][2] == "slave, outside (3)"
+    master, green, red = (dots.get_zorder() for dots in figure.axes[0].collections[-3:])
+    assert master > red > green  # a slave around its master does not hide it
     with pytest.raises(InputError, match="position, slave and inside are needed"):
         mapped_points(Table({"a": np.zeros(3)}))

@@ -201,6 +201,12 @@ def test_histogram_csv_holds_what_is_drawn(tmp_path):
     assert sum(float(row.split(",")[4]) for row in rows) == pytest.approx(1)
 
 
+@pytest.mark.parametrize(("samples", "bars"), [(20, 5), (120, 12), (500, 50), (10_000, 50)])
+def test_few_samples_have_few_bars(samples, bars):
+    _, share = histogram_data(np.linspace(0.0, 1.0, samples))
+    assert len(share) == bars and share.sum() == pytest.approx(1)
+
+
 @pytest.mark.parametrize("noise", [0.0, 2.0**-52, 1e-12])
 def test_an_index_that_is_constant_but_for_rounding_is_one_bar(noise):
     values = 1.0 + noise * np.arange(-3.0, 4.0)

@@ -16,6 +16,7 @@ from wsrender.plots.style import GREY, INK, Heading, color_map, new_figure, pape
 from wsrender.volume.distribution_map import DistributionMap
 
 BINS = 50
+FEWEST_BINS, PER_BIN = 5, 10  # bins of few samples, and samples for each of which there is one more
 _MEAN: dict[str, Any] = {"color": INK, "lw": 0.9, "ls": (0, (4, 2))}
 WIDTH = 36  # characters of a label below a panel
 ROUNDING = 1e-9  # of the values: a spread below it is that of their computation, and too small for 50 intervals
@@ -87,12 +88,13 @@ def write_histogram_csv(samples: DistributionMap, path: str | Path) -> None:
 
 
 def histogram_data(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Edges (51,) in the unit of the index and share of the values (50,) in each interval.
+    """Edges (51,) in the unit of the index and share of the values (50,) in each interval; fewer of few values.
 
     Values that are the same but for rounding are one interval, from the least to the largest: (2,) and (1,).
     """
     low, high = float(values.min()), float(values.max())
     if high - low <= ROUNDING * max(abs(low), abs(high)):
         return np.array([low, high]), np.ones(1)
-    counts, edges = np.histogram(values.astype(np.float64), BINS, (low, high))
+    bins = min(max(len(values) // PER_BIN, FEWEST_BINS), BINS)
+    counts, edges = np.histogram(values.astype(np.float64), bins, (low, high))
     return edges, counts / len(values)

@@ -25,17 +25,18 @@ def mapped_points(table: Table, *, title: Heading | str = "", frame: str = "worl
     position, slave, inside = (table[name] for name in ("position", "slave", "inside"))
     figure, view = new_view(position, title, frame)
     failing = int(np.count_nonzero(slave & ~inside))
+    # What fails lies over what does not, and the master over both: a slave may surround it.
     kinds = [
-        ("master", ~slave, GREY, 0.12, 2.0),
-        ("slave, inside", slave & inside, INSIDE, 0.5, 4.0),
-        (f"slave, outside ({failing:,})", slave & ~inside, OUTSIDE, 0.9, 7.0),
+        ("master", ~slave, GREY, {"size": 2.0, "alpha": 0.3, "zorder": 3.2}),
+        (f"slave, inside ({np.count_nonzero(slave & inside):,})", slave & inside, INSIDE, {"size": 4.0, "alpha": 0.5}),
+        (f"slave, outside ({failing:,})", slave & ~inside, OUTSIDE, {"size": 5.0, "alpha": 0.6, "zorder": 3.1}),
     ]
     handles = []
-    for label, rows, color, alpha, size in kinds:
+    for label, rows, color, style in kinds:
         at = np.flatnonzero(rows)
         if len(at) == 0:
             continue
-        view.add_dots(position[at[thinned(len(at), _POINTS)]], color, size, alpha=alpha)
+        view.add_dots(position[at[thinned(len(at), _POINTS)]], color, **style)
         handles.append(Line2D([], [], ls="", marker="o", ms=5, color=color, label=label))
     view.axes.legend(handles=handles, loc="upper left", frameon=False, fontsize=8)
     return figure
