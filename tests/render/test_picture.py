@@ -17,7 +17,7 @@ from wsrender.plots.box import space_around
 from wsrender.render import VIEWS, Box, Floor, Subject, composition, picture
 from wsrender.render.environment import surfaces
 from wsrender.render.process import drawn
-from wsrender.render.scene import Points, Rods, Scene, Surface
+from wsrender.render.scene import Plates, Points, Rods, Scene, Surface
 from wsrender.render.views import Choice
 from wsrender.volume.volume_data import VolumeData
 
@@ -362,3 +362,14 @@ def test_a_workspace_known_by_its_surface_is_drawn_face_by_face_with_all_legs(bl
     assert sum(isinstance(layer, Rods) for layer in scene.layers) == 6
     labels = labels_of(figure)
     assert "six_pus" in labels and "leg 4 at its upper limit" in labels
+
+
+def test_slices_of_a_set_in_a_plane_are_that_plane_alone():
+    flat = Subject("flat", volume=VolumeData(0.1, (0, 0, 2), np.ones((6, 5, 1), int)))
+    for subject, count, said in (
+        (flat, 1, "slices at z = 0.25 m"),
+        (replace(flat, volume=VolumeData(0.1, (0, 0, 0), np.ones((6, 5, 4), int))), 3, "slices at x = "),
+    ):
+        drawing = VIEWS["slice"]([subject], CHOICE)
+        assert len([layer for layer in drawing.layers if isinstance(layer, Plates)]) == count
+        assert drawing.notes[-1].startswith(said)
