@@ -111,7 +111,7 @@ def test_pictures_are_in_the_page(page):
     pictures = [base64.b64decode(image["src"].partition(",")[2]) for image in page.named("img")]
     assert len(pictures) == 4
     assert all(Image.open(io.BytesIO(picture)).size > (300, 300) for picture in pictures)
-    assert [image["alt"] for image in page.named("img")][2] == "Voxels in three planes"
+    assert [image["alt"] for image in page.named("img")][2] == "Voxels in planes"
 
 
 def test_equal_results_give_equal_pages(result, tmp_path):

@@ -149,7 +149,7 @@ class ResultPlots:
         index: str | None = None,
         statistic: str | None = None,
     ) -> Figure:
-        """Three planes, normal to x, y and z at the coordinates ``at`` [m]."""
+        """Planes normal to x, y and z at the coordinates ``at`` [m]; of voxels in a plane that one alone."""
         return slices(self._volume(), at=at, index=index, statistic=statistic, title=self._heading("volume"))
 
     def vectors(

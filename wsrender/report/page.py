@@ -31,7 +31,7 @@ _CAPTIONS = {
     "methods": "Errors of the methods by the size of their voxels and triangles",
     "robot": "The arm in its workspace",
     "scatter": "Samples",
-    "slices": "Voxels in three planes",
+    "slices": "Voxels in planes",
     "histogram": "Distribution of the indices over the samples",
     "boundary": "Boundary of the workspace",
     "isosurface": "Voxels of at least 0.9 of the maximum",
