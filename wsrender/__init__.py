@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from wsrender import run
     from wsrender.client import Client
     from wsrender.export.formats import Format, register_format
-    from wsrender.indices import Index, math, register_index
+    from wsrender.indices import Index, Option, math, register_index
     from wsrender.kinetostatics import ForceField, force_field
     from wsrender.parallel.five_bar import FiveBar
     from wsrender.reachability import Reachability, reachable
@@ -81,6 +81,7 @@ __all__ = [
     "NotConvergedError",
     "NotFoundError",
     "NumericalError",
+    "Option",
     "QuotaError",
     "Random",
     "Reachability",
@@ -122,7 +123,7 @@ __all__ = [
 _NAMES_OF_MODULE = {
     "wsrender.client": ("Client",),
     "wsrender.export.formats": ("Format", "register_format"),
-    "wsrender.indices": ("Index", "register_index"),
+    "wsrender.indices": ("Index", "Option", "register_index"),
     "wsrender.kinetostatics": ("ForceField", "force_field"),
     "wsrender.parallel.five_bar": ("FiveBar",),
     "wsrender.reachability": ("Reachability", "reachable"),

@@ -8,7 +8,7 @@ from itertools import repeat
 from typing import Any
 
 from wsrender.errors import DocumentError, InputError, ModelError, ResourceError
-from wsrender.indices.catalogue import find
+from wsrender.indices.catalogue import find, option_values, resolve
 from wsrender.robots import library
 from wsrender.spec import IndicesAtJob, canonical_json, parse_job
 from wsrender.spec.arm import ArmPath, dotted, local_paths
@@ -138,3 +138,8 @@ def _check_indices(part: Document, path: ArmPath) -> None:
             break
     if problems:
         raise DocumentError(problems)
+    if given := getattr(part, "index_options", None):
+        try:
+            option_values(given, resolve(indices, has_inertia=True))
+        except InputError as error:
+            raise DocumentError([(dotted(path, error.field), error.message)]) from None

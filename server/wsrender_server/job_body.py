@@ -13,7 +13,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, StringConstr
 
 from wsrender.errors import DocumentError, InputError
 from wsrender.indices import catalogue
-from wsrender.indices.catalogue import DYNAMIC_PREFIX
+from wsrender.indices.catalogue import names_of
 from wsrender.robots import library
 from wsrender.spec import job_schema
 from wsrender.spec.json_text import read_json
@@ -220,6 +220,8 @@ def _tighten(part: dict[str, Any]) -> None:
         if schema.get("$ref") == ROBOT:
             robots = [_ref("RobotSpec"), {"enum": library.names()}]
             properties[name] = {"anyOf": robots, "description": schema["description"]}
+        if name == "index_options":
+            schema |= {"properties": _index_options(), "additionalProperties": False}
         for choice in [schema, *schema.get("anyOf", [])] if name in LISTS else []:
             if "items" in choice:
                 choice |= {"uniqueItems": True} | LISTS[name]
@@ -238,5 +240,14 @@ def _tighten(part: dict[str, Any]) -> None:
 
 def _index_names() -> list[str]:
     """Names and aliases of all indices, of their dynamic forms too."""
-    plain = [name for index in catalogue().values() for name in (index.name, *index.aliases)]
-    return sorted({*plain, *(DYNAMIC_PREFIX + name for name in plain)})
+    return sorted({name for index in catalogue().values() for name in names_of(index)})
+
+
+def _index_options() -> dict[str, Any]:
+    """Schemas of the options of every index that has some, by each of its names."""
+    schemas = {}
+    for index in catalogue().values():
+        options = {option.name: option.schema() for option in index.options}
+        schema = {"type": "object", "additionalProperties": False, "properties": options}
+        schemas |= {name: schema for name in names_of(index) if options}
+    return schemas

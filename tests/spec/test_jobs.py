@@ -41,7 +41,7 @@ def test_defaults():
     assert (job.base, job.tip, job.indices, job.task) == (None, None, "kinematic", "linear")
     assert (job.sampling, job.convention, job.joint_limit_penalty) == (Sobol(2**24), "standard", None)
     assert (job.torque_scaling, job.inertia, job.characteristic_length_m) == (False, "kernel", 1.0)
-    assert (job.voxel_size_m, job.voxel_statistics, job.refined_volume) == (None, ("count", "maximum"), 0.01)
+    assert (job.voxel_size_m, job.voxel_statistics, job.refined_volume) == (None, None, 0.01)
     assert job.voxel_labels is False
     assert (job.keep_map, job.map_columns, job.max_samples) == (False, (), 10**10)
     assert (job.precision, job.device) == ("float32", "auto")

@@ -4,6 +4,7 @@ from wsrender.engine.at_configurations import Evaluated, evaluate_at
 from wsrender.engine.configurations import configurations
 from wsrender.engine.devices import devices_of, target_of, thread_count
 from wsrender.engine.evaluation import Evaluation
+from wsrender.engine.index_units import units_of
 from wsrender.engine.inverse import Accuracy, Tries, solve_inverse
 from wsrender.engine.kinematics import Kinematics, evaluate_kinematics, evaluate_poses
 from wsrender.engine.membership import (
@@ -44,4 +45,5 @@ __all__ = [
     "sweep",
     "target_of",
     "thread_count",
+    "units_of",
 ]

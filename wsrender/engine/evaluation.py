@@ -1,7 +1,8 @@
 """What is evaluated at every sample, and its form on a device."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 import warp as wp
@@ -25,7 +26,7 @@ class Evaluation:
     """The indices to evaluate and how (the fields of the job document, resolved).
 
     ``rows`` are 0…5 for x y z rx ry rz; ``penalty`` is K or None. ``host_inertia(q: (N, n)) -> (N, n, n)`` replaces the
-    chain's inertia matrix.
+    chain's inertia matrix. ``options``: all values of the indices that have any, by index and option.
     """
 
     chain: Chain
@@ -36,6 +37,7 @@ class Evaluation:
     characteristic_length_m: float = 1.0
     torque_scaling: bool = False
     host_inertia: Callable[[np.ndarray], np.ndarray] | None = None
+    options: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     notices: tuple[Notice, ...] = ()  # what to know of the values
 
     @property
@@ -69,7 +71,7 @@ def shape_of(evaluation: Evaluation, precision: str, method: str, **outputs: boo
     real, n = REAL[precision], evaluation.chain.n
     indices = None
     if evaluation.indices:
-        body = index_source(evaluation.indices, evaluation.rows, n, evaluation.convention)
+        body = index_source(evaluation.indices, evaluation.rows, n, evaluation.convention, evaluation.options)
         length = spectrum_length(n, evaluation.rows, evaluation.convention)
         indices = index_function(body, len(evaluation.indices), length, real)
     sources, plain = drive(evaluation.device_chain)

@@ -4,10 +4,11 @@ Samples that differ only in joints whose effect is known are not evaluated; dete
 
 - Base joint: turning or sliding the whole arm changes neither the singular values of whole triads of Jacobian rows nor
   the inertia matrix. One evaluation serves all levels of the first joint; only the end effector's position is moved.
-  Not so with joint-limit penalisation, with single rows in base axes, or under ``wsrender_code``, whose tables keep
-  the rounding noise of singular postures.
+  Not so with joint-limit penalisation, with single rows in base axes, for an index that does not survive it, or under
+  ``wsrender_code``, whose tables keep the rounding noise of singular postures.
 - Trailing joints whose axes pass through the end effector: they change neither its position nor the linear rows. One
-  evaluation stands for all their levels. Not so for angular rows or dynamic indices.
+  evaluation stands for all their levels. Not so for angular rows, or for indices that do not survive them, as dynamic
+  ones. What an index survives is said by its entry in the catalogue.
 
 Of the others, what depends on the leading joints alone (their sines, the first frames) is computed once for all samples
 of a block, on the CPU: they change least often, and blocks end where they do. Positions keep every bit; of an index
@@ -22,6 +23,8 @@ from wsrender_kernels.sampling import LANES, base_levels
 from wsrender_kernels.spectrum import LINEAR, in_base_axes
 
 from wsrender.engine.evaluation import Evaluation
+from wsrender.indices.catalogue import find, is_dynamic
+from wsrender.indices.entry import BASE_JOINT, TRAILING_JOINTS
 from wsrender.robots.chain import Chain
 from wsrender.sampling import SamplingPlan
 
@@ -50,7 +53,8 @@ def structure_of(evaluation: Evaluation, sampling: SamplingPlan) -> GridStructur
     own = np.array_equal(chain.joint_source, np.arange(chain.n))
     if sampling.method != "grid" or evaluation.on_host or evaluation.convention == "wsrender_code" or not own:
         return GridStructure(sampling)
-    free = chain.n - _trailing(chain) if _linear_kinematic(evaluation) else chain.n
+    still = set(evaluation.rows) <= set(LINEAR) and _survive(evaluation, TRAILING_JOINTS)
+    free = chain.n - _trailing(chain) if still else chain.n
     weight = prod(int(level) for level in levels[free:])
     levels[free:] = 1
     base = 1
@@ -86,11 +90,13 @@ def _fill(run: int) -> float:
 
 
 def _invariant(evaluation: Evaluation) -> bool:
-    return evaluation.penalty is None and not in_base_axes(evaluation.rows)
+    axes_matter = evaluation.penalty is not None or in_base_axes(evaluation.rows)
+    return not axes_matter and _survive(evaluation, BASE_JOINT)
 
 
-def _linear_kinematic(evaluation: Evaluation) -> bool:
-    return not evaluation.dynamic and set(evaluation.rows) <= set(LINEAR)
+def _survive(evaluation: Evaluation, structure: str) -> bool:
+    """Whether all indices of an evaluation survive a structure."""
+    return all(structure in find(name).surviving(is_dynamic(name)) for name in evaluation.indices)
 
 
 def _trailing(chain: Chain) -> int:

@@ -2,6 +2,7 @@
 
 import hashlib
 import linecache
+from collections.abc import Mapping
 from typing import Any
 
 import warp as wp
@@ -65,13 +66,19 @@ def _code(value: Expression, operands: list[str]) -> str:
     return f"{_CALLS[operation]}({', '.join(operands)})"
 
 
-def index_source(names: tuple[str, ...], rows: tuple[int, ...], n: int, convention: str) -> str:
-    """Body of the device function of these indices, as text: equal texts share a kernel."""
+def index_source(
+    names: tuple[str, ...],
+    rows: tuple[int, ...],
+    n: int,
+    convention: str,
+    options: Mapping[str, Mapping[str, Any]],
+) -> str:
+    """Body of the device function of these indices, as text: equal texts share a kernel; options are literals in it."""
     length = spectrum_length(n, rows, convention)
     writer = _Writer()
     results = []
     for name in names:
-        expression = trace(find(name).function_for(convention), length, len(rows), n)
+        expression = trace(find(name).function_for(convention, options.get(name)), length, len(rows), n)
         results.append(writer.operand(expression, "dynamic" if is_dynamic(name) else "kinematic"))
     body = [*writer.lines, f"return result_type({', '.join(results)})"]
     return "\n".join("    " + line for line in body)

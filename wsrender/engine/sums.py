@@ -4,6 +4,7 @@ import numpy as np
 from wsrender_kernels.voxels import QUANTUM_BITS
 
 from wsrender.engine.evaluation import REAL, Evaluation
+from wsrender.errors import InputError
 from wsrender.indices.catalogue import find, is_dynamic
 from wsrender.robots.chain import Chain
 
@@ -16,19 +17,29 @@ def scales_for(bounds: np.ndarray, samples: int, precision: str) -> np.ndarray:
     return 2.0 ** np.floor(bits - np.log2(bounds))
 
 
-def bound_from_reach(evaluation: Evaluation, name: str) -> float:
-    """Upper bound of a kinematic index of the standard convention from the chain's reach; NaN for any other.
+def has_own_bound(evaluation: Evaluation, name: str) -> bool:
+    """Whether an index's own bound holds: a number does everywhere, a function of the norm where that is known."""
+    bound = find(name).bound
+    if not callable(bound):
+        return bound is not None
+    return evaluation.convention == "standard" and not is_dynamic(name) and evaluation.host_chain is None
 
-    Each of the six is largest, for a given Frobenius norm of the Jacobian, where all m singular values are equal.
+
+def own_bound(evaluation: Evaluation, name: str) -> float:
+    """Upper bound of an index by its own entry, from the chain's reach if it is a function; NaN where it has none.
+
+    Raises InputError where the function gives no bound.
     """
     index = find(name)
-    if index.user_defined or is_dynamic(name) or evaluation.convention != "standard" or evaluation.host_chain:
+    if not has_own_bound(evaluation, name):
         return float("nan")
-    m, n = len(evaluation.rows), evaluation.chain.n
-    sigma = _largest_norm(evaluation) / np.sqrt(m)
-    if sigma == 0:
-        return 1.0
-    return MARGIN * float(index.function([np.float64(sigma)] * m, m, n))
+    if not callable(index.bound):
+        return MARGIN * float(index.bound or np.nan)
+    norm, options = np.float64(_largest_norm(evaluation)), evaluation.options.get(name, {})
+    bound = float(index.bound(norm, len(evaluation.rows), evaluation.chain.n, **options))
+    if not 0 <= bound < np.inf:
+        raise InputError("indices", f"the bound of {name} is {bound:g}; its entry must give a finite one, 0 or more")
+    return MARGIN * bound or 1.0
 
 
 def _largest_norm(evaluation: Evaluation) -> float:

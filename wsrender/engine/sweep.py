@@ -29,6 +29,7 @@ from wsrender.engine.memory import as_type, device_memory, fetched
 from wsrender.engine.partial import Partial, joined, merge
 from wsrender.engine.row_buffer import RowBuffer
 from wsrender.engine.slabs import fitted
+from wsrender.engine.sums import has_own_bound
 from wsrender.errors import NumericalError
 from wsrender.sampling import SamplingPlan
 from wsrender.volume.lattice import LatticeBlock
@@ -417,10 +418,7 @@ def _check_values(plan: SweepPlan, partial: Partial) -> None:
         if not np.isfinite([high[3 + k], low[3 + k]]).all():
             raise NumericalError(f"index {name} has a value that is not finite (largest {high[3 + k]})")
         if largest > plan.bounds[k]:
-            raise NumericalError(
-                f"index {name} reaches {largest:.6g}, beyond {plan.bounds[k]:.6g}, twice its maximum over the first "
-                "pass: its sums would overflow; give another seed or bound the index with wsrender.math.minimum"
-            )
+            raise NumericalError(_beyond(plan, name, largest, plan.bounds[k]))
     if plan.block is not None:
         edge, first, shape = plan.block.voxel_size_m, plan.block.first_from_origin, plan.block.shape
         for axis in range(3):
@@ -431,3 +429,17 @@ def _check_values(plan: SweepPlan, partial: Partial) -> None:
                     f"the end effector reaches {'xyz'[axis]} = {low[axis]:.6g} … {high[axis]:.6g} m from "
                     f"{plan.origin[axis]:.9g} m, outside the lattice block planned for it"
                 )
+
+
+def _beyond(plan: SweepPlan, name: str, largest: float, bound: float) -> str:
+    """What to do about an index beyond its bound."""
+    told = f"index {name} reaches {largest:.6g}, beyond {bound:.6g}"
+    if has_own_bound(plan.evaluation, name):
+        return (
+            f"{told}, the bound of its entry and one per cent: its sums would overflow; give the entry a larger bound, "
+            "or None for twice its maximum over a first pass"
+        )
+    return (
+        f"{told}, what its values over the first pass allow: its sums would overflow; register the index with a bound, "
+        "bound its values with wsrender.math.minimum, or give another seed"
+    )

@@ -1,154 +1,196 @@
-"""The catalogue of local indices: the one place that knows their names, units and functions."""
+"""The catalogue of local indices: the one place that knows their names, units, bounds and functions."""
 
 import difflib
-import re
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping, Sequence
+from fractions import Fraction
+from functools import cache
+from importlib.metadata import EntryPoint, entry_points
+from math import inf, sqrt
 from typing import Any
 
 from wsrender.errors import InputError, MissingInertiaError
 from wsrender.indices import functions as f
-from wsrender.indices.expression import trace
+from wsrender.indices.dimensions import TaskMatrix
+from wsrender.indices.entry import DYNAMIC_PREFIX, Bound, Index, checked
+from wsrender.indices.option import Option, Value, values
+from wsrender.indices.units import UnitRule, unit_text
+from wsrender.spec.options import STATISTICS
+from wsrender.spec.problems import path_text
 
 CONVENTIONS = ("standard", "table_1", "wsrender_code")
-DYNAMIC_PREFIX = "dynamic_"
+EXTENSIONS = "wsrender.indices"  # entry points of other packages: each an Index, or a list of them
 
 
-@dataclass(frozen=True)
-class Index:
-    """A local index: a named function ``(sigma, m, n) -> value`` of the singular values and nothing else.
-
-    ``conventions`` holds the function where another convention than the standard defines it differently;
-    ``sigma_power`` gives the unit: [unit of sigma]^power, m being the number of task rows ("m" stands for it).
-    ``unit`` overrides it. ``exact_root`` is the power that removes the root of the last step, for comparisons.
-    """
-
-    name: str
-    symbol: str
-    function: Callable[..., Any]
-    source: str
-    range: tuple[float, float] = (0.0, float("inf"))
-    sigma_power: int | str = 0
-    unit: str | None = None
-    aliases: tuple[str, ...] = ()
-    conventions: dict[str, Callable[..., Any]] = field(default_factory=dict)
-    user_defined: bool = False
-
-    def function_for(self, convention: str) -> Callable[..., Any]:
-        """The function in a convention."""
-        return self.conventions.get(convention, self.function)
+def at_equal_values(function: Callable[..., Any]) -> Callable[..., float]:
+    """The bound of an index that is largest, of all matrices of one Frobenius norm, where all m σ are equal."""
+    return lambda norm, m, n: float(function([norm / sqrt(m)] * m, m, n))
 
 
-_CATALOGUE: dict[str, Index] = {
-    index.name: index
-    for index in (
-        Index(
-            "manipulability", "μ", f.manipulability, "Yoshikawa 1985",
-            sigma_power="m", aliases=("yoshikawa",),
-            conventions={"wsrender_code": f.code_manipulability},
-        ),
-        Index(
-            "inverse_condition_number", "1/κ", f.inverse_condition_number, "Salisbury & Craig 1982",
-            range=(0.0, 1.0), aliases=("inverse-condition", "invcondition"),
-            conventions={
-                "table_1": f.table_1_inverse_condition_number,
-                "wsrender_code": f.code_inverse_condition_number,
-            },
-        ),
-        Index(
-            "minimum_singular_value", "σ_min", f.minimum_singular_value, "Klema & Laub 1980",
-            sigma_power=1, aliases=("minsingular",),
-            conventions={
-                "table_1": f.table_1_minimum_singular_value,
-                "wsrender_code": f.code_minimum_singular_value,
-            },
-        ),
-        Index(
-            "order_independent_manipulability", "μ_o", f.order_independent_manipulability, "Kim & Khosla 1991",
-            sigma_power=2,
-            conventions={
-                "table_1": f.table_1_order_independent_manipulability,
-                "wsrender_code": f.code_order_independent_manipulability,
-            },
-        ),
-        Index(
-            "harmonic_mean_manipulability", "μ_h", f.harmonic_mean_manipulability, "Kim & Khosla 1991",
-            sigma_power=1,
-            conventions={"wsrender_code": f.code_harmonic_mean_manipulability},
-        ),
-        Index(
-            "isotropy", "Δ", f.isotropy, "Kim & Khosla 1991",
-            range=(0.0, 1.0),
-            conventions={"table_1": f.table_1_isotropy, "wsrender_code": f.code_isotropy},
-        ),
-    )
-}  # fmt: skip
-
-KINEMATIC = tuple(_CATALOGUE)
+SIX = (
+    Index(
+        "manipulability", "μ", f.manipulability, "Yoshikawa 1985",
+        unit=lambda A: A.volume, bound=at_equal_values(f.manipulability), aliases=("yoshikawa",),
+        conventions={"wsrender_code": f.code_manipulability},
+    ),
+    Index(
+        "inverse_condition_number", "1/κ", f.inverse_condition_number, "Salisbury & Craig 1982",
+        range=(0.0, 1.0), unit=lambda A: A.value**0, bound=at_equal_values(f.inverse_condition_number),
+        aliases=("inverse-condition", "invcondition"),
+        conventions={
+            "table_1": f.table_1_inverse_condition_number,
+            "wsrender_code": f.code_inverse_condition_number,
+        },
+    ),
+    Index(
+        "minimum_singular_value", "σ_min", f.minimum_singular_value, "Klema & Laub 1980",
+        unit=lambda A: A.value, bound=at_equal_values(f.minimum_singular_value), aliases=("minsingular",),
+        conventions={
+            "table_1": f.table_1_minimum_singular_value,
+            "wsrender_code": f.code_minimum_singular_value,
+        },
+        convention_units={"table_1": lambda A: A.value**2},
+    ),
+    Index(
+        "order_independent_manipulability", "μ_o", f.order_independent_manipulability, "Kim & Khosla 1991",
+        unit=lambda A: A.volume ** Fraction(2, A.m), bound=at_equal_values(f.order_independent_manipulability),
+        conventions={
+            "table_1": f.table_1_order_independent_manipulability,
+            "wsrender_code": f.code_order_independent_manipulability,
+        },
+        convention_units={
+            "table_1": lambda A: A.volume ** Fraction(2, A.n),
+            "wsrender_code": lambda A: A.volume ** Fraction(1, A.n),
+        },
+    ),
+    Index(
+        "harmonic_mean_manipulability", "μ_h", f.harmonic_mean_manipulability, "Kim & Khosla 1991",
+        unit=lambda A: A.value, bound=at_equal_values(f.harmonic_mean_manipulability),
+        conventions={"wsrender_code": f.code_harmonic_mean_manipulability},
+    ),
+    Index(
+        "isotropy", "Δ", f.isotropy, "Kim & Khosla 1991",
+        range=(0.0, 1.0), unit=lambda A: A.volume ** Fraction(2, A.m) / A.value**2, bound=at_equal_values(f.isotropy),
+        conventions={"table_1": f.table_1_isotropy, "wsrender_code": f.code_isotropy},
+        convention_units={
+            "table_1": lambda A: A.volume ** Fraction(2, A.n) / A.value**2,
+            "wsrender_code": lambda A: A.volume ** Fraction(1, A.n) / A.value,
+        },
+    ),
+)  # fmt: skip
+KINEMATIC = tuple(index.name for index in SIX)
 DYNAMIC = tuple(DYNAMIC_PREFIX + name for name in KINEMATIC)
+_SHIPPED: dict[str, Index] = {index.name: index for index in SIX}
+_ADDED: dict[str, Index] = {}  # by the user
 
 
 def register_index(
-    name: str, function: Callable[..., Any], *, symbol: str = "", unit: str = "", source: str = "user"
+    name: str,
+    function: Callable[..., Any],
+    *,
+    symbol: str = "",
+    unit: str | UnitRule = "",
+    source: str = "user",
+    range: tuple[float, float] = (-inf, inf),
+    needs: tuple[str, ...] = ("sigma",),
+    bound: Bound | None = None,
+    options: Sequence[Option] = (),
+    voxel_statistics: Sequence[str] = ("count", "maximum"),
+    survives: frozenset[str] | None = None,
 ) -> Index:
     """Add an index to the catalogue; it then works in maps, volumes, plots and on the command line.
 
     ``function(sigma, m, n)`` gets the m singular values of the task matrix, descending, each a number or array, and
-    may use arithmetic, Python's ``sum`` and ``wsrender.math``. The dynamic variant is ``dynamic_<name>``. Raises
-    InputError where the name is not an identifier or taken, or the function uses anything else.
+    its options by name; it may use arithmetic, Python's ``sum`` and ``wsrender.math``. The dynamic variant is
+    ``dynamic_<name>``. The other arguments are those of `Index`. Registered so, an index is known to this process;
+    the entry-point group ``wsrender.indices`` adds those of an installed package to all. Raises InputError where the
+    name is not an identifier or taken, the function uses anything else, or another field is not allowed.
     """
-    if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]{0,63}", name) or name.startswith(DYNAMIC_PREFIX):
-        raise InputError("name", f"{name!r} is not allowed; an identifier not starting with {DYNAMIC_PREFIX!r} is")
-    existing = _CATALOGUE.get(name) or _by_alias().get(name)
-    if existing is not None and not existing.user_defined:
+    index = Index(
+        name, symbol or name, function, source, range, unit, tuple(needs), bound, tuple(options),
+        tuple(voxel_statistics), survives,
+    )  # fmt: skip
+    if (existing := _known(name)) is not None and existing.name not in _ADDED:
         raise InputError("name", f"{name!r} is taken by the catalogue ({existing.source})")
-    try:
-        for m in (3, 6):
-            trace(function, m, m, 6)
-    except Exception as error:
-        raise InputError("function", f"{name} cannot be compiled: {error}") from error
-    index = Index(name, symbol or name, function, source, (float("-inf"), float("inf")), unit=unit, user_defined=True)
-    _CATALOGUE[name] = index
+    _ADDED[name] = checked(index)
     return index
 
 
-def _by_alias() -> dict[str, Index]:
-    return {alias: index for index in _CATALOGUE.values() for alias in index.aliases}
+@cache
+def _extensions() -> dict[str, Index]:
+    """The indices of other packages; InputError names the entry point that cannot be used."""
+    found: dict[str, Index] = {}
+    for point in entry_points(group=EXTENSIONS):
+        for index in _loaded(point):
+            if index.name in _SHIPPED or index.name in found:
+                raise InputError(_origin(point), f"name: {index.name!r} is taken; remove one of the packages")
+            found[index.name] = index
+    return found
+
+
+def _loaded(point: EntryPoint) -> list[Index]:
+    try:
+        found = point.load()
+        return [checked(index) for index in ([found] if isinstance(found, Index) else found)]
+    except Exception as error:
+        raise InputError(_origin(point), f"cannot be used: {error}; mend or remove the package") from error
+
+
+def _origin(point: EntryPoint) -> str:
+    return f"entry point {point.name} = {point.value} of {EXTENSIONS}"
 
 
 def catalogue() -> dict[str, Index]:
     """All indices by name, without the dynamic variants."""
-    return dict(_CATALOGUE)
+    return _SHIPPED | _extensions() | _ADDED
+
+
+def _known(name: str) -> Index | None:
+    """The index of a name or alias; those of other packages are looked for where it is neither shipped nor added."""
+    here = _SHIPPED | _ADDED
+    return here.get(name) or _by_alias(here).get(name) or _extensions().get(name) or _by_alias(_extensions()).get(name)
+
+
+def _by_alias(indices: Mapping[str, Index]) -> dict[str, Index]:
+    return {alias: index for index in indices.values() for alias in index.aliases}
 
 
 def is_dynamic(name: str) -> bool:
-    """Whether a name is that of a dynamic variant."""
-    return name.startswith(DYNAMIC_PREFIX)
+    """Whether a name is that of a dynamic variant, or of an index of J M⁻¹ alone."""
+    return name.startswith(DYNAMIC_PREFIX) or find(name).dynamic
 
 
 def find(name: str) -> Index:
     """The index of a name, alias or dynamic variant; InputError lists the names otherwise."""
     plain = name.removeprefix(DYNAMIC_PREFIX)
-    index = _CATALOGUE.get(plain) or _by_alias().get(plain)
+    index = _known(plain)
     if index is None:
-        near = difflib.get_close_matches(plain, _CATALOGUE, 1)
+        known = catalogue()
+        near = difflib.get_close_matches(plain, known, 1)
         hint = f" (did you mean {near[0]!r}?)" if near else ""
-        names = ", ".join(_CATALOGUE)
+        names = ", ".join(known)
         raise InputError("indices", f"unknown index {name!r}{hint}; allowed: {names}, each also as dynamic_<name>")
+    if index.dynamic and plain != name:
+        raise InputError("indices", f"unknown index {name!r}; {plain!r} is of the accelerations already")
     return index
+
+
+def names_of(index: Index) -> tuple[str, ...]:
+    """Every name by which a job may ask for an index: its own, aliases, and those of its dynamic variant."""
+    plain = (index.name, *index.aliases)
+    return plain if index.dynamic else (*plain, *(DYNAMIC_PREFIX + name for name in plain))
 
 
 def resolve(request: str | Sequence[str], has_inertia: bool) -> tuple[str, ...]:
     """Canonical names of a request: "kinematic", "dynamic", "all" or names and aliases, each once.
 
-    "all" means the kinematic six for a robot without inertias; asking it for a dynamic index raises
-    MissingInertiaError.
+    The groups are the six and their dynamic variants, whatever is added. "all" means the kinematic six for a robot
+    without inertias; asking it for a dynamic index raises MissingInertiaError.
     """
     if request == "all":
         return KINEMATIC + (DYNAMIC if has_inertia else ())
     if isinstance(request, str):
         request = {"kinematic": KINEMATIC, "dynamic": DYNAMIC}.get(request, (request,))
-    names = tuple(dict.fromkeys((DYNAMIC_PREFIX if is_dynamic(name) else "") + find(name).name for name in request))
+    names = tuple(dict.fromkeys(_canonical(name) for name in request))
     dynamic = [name for name in names if is_dynamic(name)]
     if dynamic and not has_inertia:
         raise MissingInertiaError(
@@ -157,27 +199,38 @@ def resolve(request: str | Sequence[str], has_inertia: bool) -> tuple[str, ...]:
     return names
 
 
-def unit(name: str, rows: Sequence[int], convention: str) -> str:
-    """Unit of an index for task rows (0…5: x y z rx ry rz), radians left out: "m^3", "1/(kg m)", "1"."""
-    index = find(name)
-    if index.unit is not None:
-        return index.unit
-    power = len(rows) if index.sigma_power == "m" else int(index.sigma_power)
-    linear, angular = any(r < 3 for r in rows), any(r >= 3 for r in rows)
-    mixed = linear and angular
-    if convention == "table_1" and index.name == "minimum_singular_value":
-        power = 2
-    if convention != "standard" and index.name in ("order_independent_manipulability", "isotropy"):
-        return ""  # a root of a product of other units: none that means anything
-    if convention == "wsrender_code":
-        mixed = index.name != "manipulability" or is_dynamic(name)
-        power = 3 if index.name == "manipulability" else power
-        linear = True
-    if power == 0:
-        return "1"
-    if mixed:
-        return "" if convention == "wsrender_code" else ("1" if not is_dynamic(name) else "")
-    base = ("1/(kg m)" if linear else "1/(kg m^2)") if is_dynamic(name) else ("m" if linear else "1")
-    if power == 1 or base == "1":
-        return base
-    return f"{base}^{power}" if base == "m" else f"({base})^{power}"
+def _canonical(name: str) -> str:
+    return (DYNAMIC_PREFIX if name.startswith(DYNAMIC_PREFIX) else "") + find(name).name
+
+
+def unit(name: str, matrix: TaskMatrix, convention: str = "standard") -> str:
+    """Unit of an index for the task matrix that it, or its dynamic variant, is a function of: see `unit_text`."""
+    return unit_text(find(name).unit_for(convention), matrix)
+
+
+def default_statistics(names: Sequence[str]) -> tuple[str, ...]:
+    """The voxel statistics that mean something for one of these indices, count first."""
+    asked = {"count"}.union(*(find(name).voxel_statistics for name in names))
+    return tuple(statistic for statistic in STATISTICS if statistic in asked)
+
+
+def option_values(given: Mapping[str, Mapping[str, Any]], names: Sequence[str]) -> dict[str, dict[str, Value]]:
+    """The options of those of the indices ``names`` that have any, from a job's ``index_options``.
+
+    Raises InputError, naming the option, for one that is unknown or not allowed, or of an index that is not asked for.
+    """
+    by_name = {}
+    for key, options in given.items():
+        try:
+            name = _canonical(key)
+        except InputError as error:
+            raise InputError(path_text("index_options", key), error.message) from None
+        if name not in names:
+            raise InputError(path_text("index_options", key), f"is not among the job's indices: {', '.join(names)}")
+        if name in by_name:
+            raise InputError(path_text("index_options", key), f"gives options of {name} twice")
+        try:
+            by_name[name] = values(find(name).options, options)
+        except InputError as error:
+            raise error.within(path_text("index_options", key)) from None
+    return {name: by_name.get(name) or values(find(name).options, {}) for name in names if find(name).options}

@@ -42,6 +42,12 @@ class Variant:
         """
         return fixed if self.mechanism.translational else self.turned_base.T @ fixed
 
+    @property
+    def revolute(self) -> tuple[bool, ...]:
+        """Whether each joint turns, or slides: before, actuated and after, as in the Jacobian that `composed` gives."""
+        before, after = (tuple(j.type == "revolute" for j in joints) for joints in (self.before, self.after))
+        return before + self.mechanism.revolute + after
+
     def composed(self, J: np.ndarray, poses: np.ndarray) -> np.ndarray:
         """Jacobian (N, 6, k) of all joints, before, actuated and after, in axes of the fixed base.
 

@@ -1,6 +1,6 @@
 """Local indices of a mechanism at poses, from its Jacobian ẋ = A⁻¹ B q̇."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -24,6 +24,7 @@ def pose_indices(
     rows: Sequence[int],
     characteristic_length_m: float = 1.0,
     composition: Composition | None = None,
+    options: Mapping[str, Mapping[str, Any]] | None = None,
 ) -> dict[str, np.ndarray]:
     """Indices (N,) by name at reached poses (N, 4, 4), base frame, for task rows 0…5 (x y z rx ry rz).
 
@@ -31,12 +32,14 @@ def pose_indices(
     A is singular to rounding (type 2) the legs do not hold the platform, and the six and 1/κ(J) are 0. Raises
     InputError for a mechanism whose legs do not hold the platform as often as it has degrees of freedom.
 
-    ``composition`` gives J of a hybrid. There are no determinants of hybrids and of mechanisms with legs that are
+    ``options``: of indices that have any, by index and option; defaults where none are given. ``composition`` gives J
+    of a hybrid. There are no determinants of hybrids and of mechanisms with legs that are
     solved numerically: a place belongs to several postures, each with a sign of its own.
     """
     check_square(mechanism)
+    functions = {name: find(name).function_for("standard", (options or {}).get(name)) for name in names}
     batches = [poses[first : first + BATCH] for first in range(0, len(poses), BATCH)]
-    parts = [_batch(mechanism, batch, names, rows, characteristic_length_m, composition) for batch in batches]
+    parts = [_batch(mechanism, batch, functions, rows, characteristic_length_m, composition) for batch in batches]
     all_names = (*names, *CONDITION_NUMBERS)
     if composition is None and not mechanism.numeric:
         all_names = (*all_names, *DETERMINANTS)
@@ -44,7 +47,7 @@ def pose_indices(
 
 
 def _batch(
-    mechanism: Mechanism, poses: np.ndarray, names, rows, length_m: float, composition: Composition | None
+    mechanism: Mechanism, poses: np.ndarray, functions, rows, length_m: float, composition: Composition | None
 ) -> dict[str, np.ndarray]:
     J = jacobians(mechanism, inverse_kinematics(mechanism, poses), poses, length_m)
     A = J.A / np.where(np.arange(J.A.shape[2]) < 3, 1.0, length_m)  # per metre: angular columns by the length
@@ -55,7 +58,8 @@ def _batch(
         whole = np.where(regular[:, None, None], composition(whole, poses), 0.0)
     sigma = _singular_values(whole, rows, length_m)
     columns: list[Any] = list(sigma.T)
-    values = {name: np.asarray(find(name).function(columns, len(rows), whole.shape[2])) for name in names}
+    m, n = len(rows), whole.shape[2]
+    values = {name: _values(function(columns, m, n), len(poses)) for name, function in functions.items()}
     sigma_J = _singular_values(whole, range(mechanism.degrees_of_freedom), length_m)
     values |= {
         "inverse_condition_number_A": np.where(regular, sigma_A[:, -1] / sigma_A[:, 0], 0.0),
@@ -69,6 +73,11 @@ def _batch(
         "determinant_A": np.where(regular, np.linalg.det(A), 0.0),
         "determinant_B": diagonal.prod(axis=1),
     }
+
+
+def _values(found: Any, poses: int) -> np.ndarray:
+    """Values (N,) of an index, which may be one for all poses."""
+    return np.array(np.broadcast_to(found, poses))
 
 
 def _singular_values(J: np.ndarray, rows: Sequence[int], length_m: float) -> np.ndarray:

@@ -62,6 +62,12 @@ class Mechanism:
         """Whether a leg may stand on either of two branches."""
         return bool(self.branches.all(axis=1).any())
 
+    @property
+    def revolute(self) -> tuple[bool, ...]:
+        """Whether each actuated joint turns, or slides: those of legs in closed form, then of the others."""
+        closed = tuple(kind not in ("UPS", "PUS") for kind in self.kinds)
+        return closed + tuple(bool(turns) for leg in self.numeric for turns in leg.chain.revolute[leg.actuated])
+
     def on_each_branch(self) -> "list[Mechanism]":
         """The mechanism with every leg on one branch, once for each combination; the first prefers "plus"."""
         choices = [[k for k in (1, 0) if allowed[k]] for allowed in self.branches]

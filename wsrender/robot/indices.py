@@ -1,17 +1,18 @@
 """Local indices of a robot: from the words of a job document to an evaluation of the engine."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from wsrender.errors import InputError, MissingInertiaError
-from wsrender.indices.catalogue import CONVENTIONS, is_dynamic, resolve
+from wsrender.indices.catalogue import CONVENTIONS, is_dynamic, option_values, resolve
 from wsrender.notices import Notice, warn
 from wsrender.robot.model_robot import Robot, configuration_rows
 from wsrender.robot.user_robot import HostRobot, as_robot
 from wsrender.robots.model_warning import ModelWarning
 from wsrender.robots.plausibility import need_ranges
+from wsrender.spec.index_choices import IndexChoices
 from wsrender.spec.options import DEFAULT_PENALTY, LARGEST_PENALTY, NAMED_TASKS, SMALLEST_PENALTY, TASK_ROWS
 from wsrender.spec.quantities import argument, positive, real, sequence
 
@@ -34,6 +35,7 @@ def evaluate_indices(
     joint_limit_penalty: float | bool | None = None,
     characteristic_length_m: float = 1.0,
     torque_scaling: bool = False,
+    index_options: Mapping[str, Mapping[str, Any]] | None = None,
     inertia: str = "kernel",
     precision: str = "float64",
     device: str = "auto",
@@ -54,12 +56,18 @@ def evaluate_indices(
         joint_limit_penalty=joint_limit_penalty,
         characteristic_length_m=characteristic_length_m,
         torque_scaling=torque_scaling,
+        index_options=index_options or {},
         inertia=inertia,
         precision=precision,
     )
     rows = configuration_rows(q, robot.chain.n)
     values = evaluate_at(evaluation, rows, precision, device).values
     return dict(zip(evaluation.indices, values, strict=True))
+
+
+def evaluation_of_job(job: IndexChoices, robot: Robot) -> "Evaluation":
+    """The engine's evaluation of a job's choices for a robot, each checked."""
+    return evaluation_of(robot, **{name: getattr(job, name) for name in IndexChoices.model_fields if name != "device"})
 
 
 def evaluation_of(
@@ -71,6 +79,7 @@ def evaluation_of(
     joint_limit_penalty: float | bool | None,
     characteristic_length_m: float,
     torque_scaling: bool,
+    index_options: Mapping[str, Mapping[str, Any]],
     inertia: str,
     precision: str,
 ) -> "Evaluation":
@@ -111,6 +120,7 @@ def evaluation_of(
         characteristic_length_m=characteristic_length_m,
         torque_scaling=torque_scaling,
         host_inertia=host_inertia,
+        options=option_values(index_options, names),
         notices=notices,
     )
 

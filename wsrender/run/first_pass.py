@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from wsrender.engine import Evaluated, Evaluation, configurations, evaluate_at, evaluate_kinematics
-from wsrender.engine.sums import bound_from_reach, scales_for
+from wsrender.engine.sums import own_bound, scales_for
 from wsrender.robots.reachable_box import reachable_box
 from wsrender.sampling import SamplingPlan, plan_sampling
 from wsrender.spec.sampling import Sobol
@@ -15,7 +15,7 @@ from wsrender.volume.lattice import MOST_DIVISIONS, LatticeBlock, block_around, 
 
 SAMPLES = 2**16
 STEP_SAMPLES = 2**10
-# An index without a bound from the reach may take this many times its coarse maximum. The pseudo-inverse of
+# An index without a bound of its own may take this many times its coarse maximum. The pseudo-inverse of
 # the original program jumps up in exactly singular postures, which grids hit and the first pass does not.
 HEADROOM, HEADROOM_CODE = 2.0, 1024.0
 
@@ -75,14 +75,14 @@ class FirstPass:
         return block_around(low, high, voxel_size_m, whole.foot)
 
     def sum_scales(self, samples: int, precision: str) -> tuple[np.ndarray, np.ndarray]:
-        """Scales and bounds (K,) of the fixed-point sums: from the reach, else from the coarse maximum."""
+        """Scales and bounds (K,) of the fixed-point sums: the indices' own, else from the coarse maximum."""
         return scales_for(self._bounds, samples, precision), self._bounds
 
     @cached_property
     def _bounds(self) -> np.ndarray:
         if self.known_bounds is not None:
             return self.known_bounds
-        bounds = np.array([bound_from_reach(self.evaluation, name) for name in self.evaluation.indices])
+        bounds = np.array([own_bound(self.evaluation, name) for name in self.evaluation.indices])
         unknown = np.isnan(bounds)
         if unknown.any():
             headroom = HEADROOM_CODE if self.evaluation.convention == "wsrender_code" else HEADROOM

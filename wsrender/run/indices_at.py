@@ -6,13 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from wsrender.engine import Evaluated, Evaluation, evaluate_at
+from wsrender.engine import Evaluated, Evaluation, evaluate_at, units_of
 from wsrender.errors import InputError
-from wsrender.indices.catalogue import unit
 from wsrender.notices import entries
 from wsrender.result import Result
 from wsrender.robot import Robot
-from wsrender.robot.indices import evaluation_of
+from wsrender.robot.indices import evaluation_of_job
 from wsrender.robot.model_robot import configuration_rows
 from wsrender.run.one_shard import OneShard
 from wsrender.run.provenance import index_choices, job_entry, provenance, robot_entry
@@ -48,7 +47,7 @@ class IndicesAtPlan(OneShard):
     def finish(self, partial: Evaluated, seconds: dict[str, float]) -> Result:
         """The map, one row per configuration in the order asked, and the extremes of each index."""
         names = self.evaluation.indices
-        units = {name: unit(name, self.evaluation.rows, self.evaluation.convention) for name in names}
+        units = units_of(self.evaluation)
         values = dict(zip(names, partial.values, strict=True))
         document = {
             "analysis": "indices_at",
@@ -63,7 +62,7 @@ class IndicesAtPlan(OneShard):
                 }
                 for name, v in values.items()
             },
-            "choices": index_choices(self.job, self.evaluation.rows),
+            "choices": index_choices(self.job, self.evaluation),
             "warnings": entries(self.evaluation.notices),
             "provenance": provenance(self.job.precision, self.target),
             "timing_s": seconds,
@@ -81,15 +80,5 @@ def plan_indices_at(job: IndicesAtJob, robot: Robot, resolved: dict[str, Any] | 
     if not job.configurations:
         raise InputError("configurations", f"must be given: rows of {n} joint values, {', '.join(robot.joint_names)}")
     q = configuration_rows(np.array(job.configurations, np.float64), n, "configurations")
-    evaluation = evaluation_of(
-        robot,
-        indices=job.indices,
-        task=job.task,
-        convention=job.convention,
-        joint_limit_penalty=job.joint_limit_penalty,
-        characteristic_length_m=job.characteristic_length_m,
-        torque_scaling=job.torque_scaling,
-        inertia=job.inertia,
-        precision=job.precision,
-    )
+    evaluation = evaluation_of_job(job, robot)
     return IndicesAtPlan(job, robot, evaluation, q, *settled_device(job.device, resolved), [(0, len(q))])

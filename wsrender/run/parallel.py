@@ -10,7 +10,7 @@ import numpy as np
 from wsrender.engine import OrientationCounts, thread_count
 from wsrender.engine.membership import LANES
 from wsrender.errors import InputError, ResourceError
-from wsrender.indices.catalogue import is_dynamic, resolve
+from wsrender.indices.catalogue import is_dynamic, option_values, resolve
 from wsrender.parallel.hybrid import Variant, added, count_union, middle, variants
 from wsrender.parallel.inverse_kinematics import inverse_kinematics
 from wsrender.parallel.jacobians import check_square
@@ -57,6 +57,7 @@ class ParallelPlan:
     target: str
     shards: list[tuple[int, int]]
     estimate: dict[str, float] = field(default_factory=dict)
+    options: dict[str, dict[str, Any]] = field(default_factory=dict)
     search: SerialSearch | None = None
     unmeasured: str = ""  # why what is reached has neither a volume nor an area or a length
 
@@ -86,6 +87,11 @@ class ParallelPlan:
         """What is kept at voxels' centres beside the indices; determinants where a place has one posture."""
         single = self.has_determinants and not self.mechanism.branched
         return (*CONDITION_NUMBERS, *DETERMINANTS) if single else CONDITION_NUMBERS
+
+    @property
+    def revolute(self) -> tuple[bool, ...]:
+        """Whether each joint turns, or slides, whose columns the Jacobian of the indices has."""
+        return self.variants[0].revolute if len(self.variants) > 1 else self.mechanism.revolute
 
     @property
     def quantity(self) -> tuple[str, str]:
@@ -188,7 +194,7 @@ class ParallelPlan:
                 rows = np.flatnonzero(inverse_kinematics(mechanism, poses).feasible)
             hybrid = variant.composed if len(self.variants) > 1 else None
             length = self.job.characteristic_length_m
-            yield rows, pose_indices(mechanism, poses[rows], self.names, self.rows, length, hybrid)
+            yield rows, pose_indices(mechanism, poses[rows], self.names, self.rows, length, hybrid, self.options)
 
     def _poses(self, variant: Variant, cells: np.ndarray) -> np.ndarray:
         """Platform poses (V, 4, 4) at the centres of voxels, base frame, at the first orientation."""
@@ -265,6 +271,7 @@ def plan_parallel(job: ParallelWorkspaceJob, *robots: Robot, resolved: dict[str,
     _check_combination(job, found)
     orientations = _orientations(job)
     names = resolve(job.indices, has_inertia=True) if job.indices else ()
+    options = option_values(job.index_options, names)
     rows = task_rows(job.task or ("linear" if mechanism.translational else "full"))
     _check_indices(mechanism, names, rows, hybrid=len(found) > 1)
     device, target = settled_device(job.device, resolved)
@@ -289,7 +296,7 @@ def plan_parallel(job: ParallelWorkspaceJob, *robots: Robot, resolved: dict[str,
     _, unmeasured = common_flat(found, orientations)
     serial = serial_search(job.mechanism, robots) if len(found) > 1 else None
     return ParallelPlan(
-        job, found, orientations, block, rows, names, device, target, shards, estimate, serial, unmeasured
+        job, found, orientations, block, rows, names, device, target, shards, estimate, options, serial, unmeasured
     )
 
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from wsrender.global_indices import voxel_volumes, workspace_mean
 from wsrender.indices.catalogue import unit
+from wsrender.indices.dimensions import task_matrix
 from wsrender.parallel.hybrid import Variant, from_middle, middle
 from wsrender.parallel.inverse_kinematics import inverse_kinematics
 from wsrender.parallel.local_indices import DETERMINANTS
@@ -168,8 +169,9 @@ def _volume(plan: "ParallelPlan", partial: "Arrays", found: np.ndarray) -> Volum
         values = {name: kept(partial[f"index_{name}"]) for name in (*plan.names, *plan.center_names)}
         statistics["maximum"] = {name: values[name] for name in plan.names}
         statistics["center"] = {name: values[name] for name in plan.center_names}
-        units = {n: unit(n, plan.rows, "standard") for n in plan.names} | dict.fromkeys(plan.center_names, "1")
-        cranks = sum(kind not in ("UPS", "PUS") for kind in plan.mechanism.kinds)
+        matrix = task_matrix(plan.rows, plan.revolute)
+        units = {n: unit(n, matrix) for n in plan.names} | dict.fromkeys(plan.center_names, "1")
+        cranks = sum(plan.mechanism.revolute)
         if DETERMINANTS[1] in units and cranks:
             units[DETERMINANTS[1]] = f"m^{cranks}"  # a row of A has no unit, one of B that of its joint
     if plan.job.kind == "dexterous":
@@ -223,6 +225,7 @@ def _index_entries(plan: "ParallelPlan", volume: VolumeData) -> dict[str, Any]:
             "workspace_mean": workspace_mean(volume, name),
             "unit": volume.units[name],
             "task": [TASK_ROWS[r] for r in plan.rows],
+            **({"options": plan.options[name]} if name in plan.options else {}),
         }
         for name in plan.names
     }

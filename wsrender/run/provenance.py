@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from wsrender import __version__
+from wsrender.engine import Evaluation
 from wsrender.robot import Robot
 from wsrender.robot.user_robot import HostRobot
 from wsrender.spec.arm import at_path
@@ -47,15 +48,16 @@ def job_entry(job: Any, *robots: Robot) -> dict[str, Any]:
     return entry
 
 
-def index_choices(job: Any, rows: tuple[int, ...]) -> dict[str, Any]:
+def index_choices(job: Any, evaluation: Evaluation) -> dict[str, Any]:
     """The choices that make an index's values unambiguous."""
     return {
-        "task": [TASK_ROWS[r] for r in rows],
+        "task": [TASK_ROWS[r] for r in evaluation.rows],
         "convention": job.convention,
         "characteristic_length_m": job.characteristic_length_m,
         "joint_limit_penalty": job.joint_limit_penalty,
         "torque_scaling": job.torque_scaling,
         "inertia": job.inertia,
+        "index_options": {name: dict(options) for name, options in evaluation.options.items()},
     }
 
 

@@ -93,6 +93,7 @@ def shared_voxel_size(plans: Sequence[WorkspacePlan]) -> float:
 def workspace_job(job: Any, arm: PlacedRobot) -> WorkspaceJob:
     """The workspace job of one robot of a job of several: with its own refined volume where robots are compared."""
     choices = {name: getattr(job, name) for name in (*IndexChoices.model_fields, "voxel_size_m", "max_samples")}
+    choices["voxel_statistics"] = ("count", "maximum")  # what robots are compared by
     choices["refined_volume"] = job.refined_volume if isinstance(job, RobotComparisonJob) else None
     own = {"robot": arm.robot, "base": arm.base, "tip": arm.tip, "sampling": arm.sampling}
     return WorkspaceJob(**choices, **own)

@@ -10,10 +10,11 @@ from wsrender.engine import Partial, SweepPlan, devices_of, merge, sweep
 from wsrender.engine.voxel_data import volume_data
 from wsrender.errors import InputError, NotConvergedError, ResourceError
 from wsrender.global_indices import joint_means, workspace_mean
+from wsrender.indices.catalogue import default_statistics, resolve
 from wsrender.memory import SHARE, available_bytes
 from wsrender.result import Result
 from wsrender.robot import Robot
-from wsrender.robot.indices import evaluation_of
+from wsrender.robot.indices import evaluation_of_job
 from wsrender.run.estimate import estimate, map_bytes
 from wsrender.run.first_pass import FirstPass
 from wsrender.run.refined import Progress, Refined, labelled, refined
@@ -181,17 +182,10 @@ def plan_workspace(job: WorkspaceJob, robot: Robot, resolved: dict[str, Any] | N
     """
     device, target = settled_device(job.device, resolved)
     devices = devices_of(device)
-    evaluation = evaluation_of(
-        robot,
-        indices=job.indices,
-        task=job.task,
-        convention=job.convention,
-        joint_limit_penalty=job.joint_limit_penalty,
-        characteristic_length_m=job.characteristic_length_m,
-        torque_scaling=job.torque_scaling,
-        inertia=job.inertia,
-        precision=job.precision,
-    )
+    evaluation = evaluation_of_job(job, robot)
+    if job.voxel_statistics is None:
+        job = job.model_copy(update={"voxel_statistics": default_statistics(evaluation.indices)})
+    statistics = frozenset(job.voxel_statistics or ())
     sampling = _first_sampling(job, robot)
     first_pass = FirstPass(evaluation, dict(job.sampling.locked))
     if resolved is None:
@@ -206,7 +200,7 @@ def plan_workspace(job: WorkspaceJob, robot: Robot, resolved: dict[str, Any] | N
         evaluation,
         sampling,
         block,
-        frozenset(job.voxel_statistics),
+        statistics,
         scales,
         bounds,
         job.precision,
@@ -219,9 +213,9 @@ def plan_workspace(job: WorkspaceJob, robot: Robot, resolved: dict[str, Any] | N
         raise InputError("map_columns", "orientation is not kept for a user-defined robot")
     if isinstance(job.sampling, Converge):
         _converging_index(plan, job.sampling)
-        if job.sampling.by == "workspace_mean" and not {"maximum", "mean"} & set(job.voxel_statistics):
+        if job.sampling.by == "workspace_mean" and not {"maximum", "mean"} & statistics:
             raise InputError("sampling.by", "workspace_mean needs the voxel statistic maximum or mean")
-    _check_surfaces(job, evaluation.indices)
+    _check_surfaces(job, plan)
     _check_map(plan)
     shards = [(0, sampling.count)] if resolved is None else [(first, count) for first, count in resolved["shards"]]
     return WorkspacePlan(job, robot, plan, first_pass, device, target, shards, estimate(plan, devices))
@@ -238,15 +232,15 @@ def _check_map(plan: SweepPlan) -> None:
         )
 
 
-def _check_surfaces(job: WorkspaceJob, indices: tuple[str, ...]) -> None:
+def _check_surfaces(job: WorkspaceJob, plan: SweepPlan) -> None:
     """Whether the volume will hold what iso-surfaces are made of; raises InputError."""
     for surface in job.surfaces:
         if not isinstance(surface, IsoSurface):
             continue
-        if surface.iso_surface not in indices:
-            choices = ", ".join(indices)
+        if surface.iso_surface not in plan.evaluation.indices:
+            choices = ", ".join(plan.evaluation.indices)
             raise InputError("surfaces", f"{surface.iso_surface!r} is not among the job's indices: {choices}")
-        if not {"maximum", "mean"} & set(job.voxel_statistics):
+        if not {"maximum", "mean"} & plan.statistics:
             raise InputError("surfaces", "an iso-surface needs the voxel statistic maximum or mean")
 
 
@@ -264,8 +258,6 @@ def _first_sampling(job: WorkspaceJob, robot: Robot) -> SamplingPlan:
 
 
 def _converging_index(plan: SweepPlan, sampling: Converge) -> str:
-    from wsrender.indices.catalogue import resolve
-
     (name,) = resolve((sampling.index,), plan.evaluation.chain.has_inertia)
     if name not in plan.evaluation.indices:
         raise InputError("sampling.index", f"{sampling.index!r} is not among the job's indices")

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from wsrender.engine import Partial, SweepPlan, configurations, evaluate_at
+from wsrender.engine import Partial, SweepPlan, configurations, evaluate_at, units_of
 from wsrender.engine.sweep import from_origin
 from wsrender.engine.voxel_data import volume_data
 from wsrender.global_indices import (
@@ -17,7 +17,6 @@ from wsrender.global_indices import (
     voxel_volumes,
     workspace_mean,
 )
-from wsrender.indices.catalogue import unit
 from wsrender.notices import Notice, entries
 from wsrender.reachability.holes import share_of_holes, share_unseen
 from wsrender.reachability.voxel_labels import counts
@@ -51,7 +50,7 @@ def workspace_result(
 
     started = time.perf_counter()
     evaluation = plan.evaluation
-    units = {name: unit(name, evaluation.rows, evaluation.convention) for name in evaluation.indices}
+    units = units_of(evaluation)
     volume = volume_data(plan, partial, units)
     volumes = voxel_volumes(volume)
     sample = _picture_sample(plan, robot, units)
@@ -66,7 +65,7 @@ def workspace_result(
         "robot": robot_entry(robot),
         "sampling": _sampling_entry(job, plan, partial),
         "indices": _index_entries(plan, partial, volume, units),
-        "choices": index_choices(job, evaluation.rows),
+        "choices": index_choices(job, evaluation),
         "voxel_size_m": plan.block.voxel_size_m if plan.block else None,
         **measures,
         "volume_m3": {

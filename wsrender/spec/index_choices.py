@@ -3,10 +3,10 @@
 from collections.abc import Iterator
 from typing import Literal
 
-from pydantic import StrictBool
+from pydantic import Field, StrictBool
 
 from wsrender.spec.document import Document
-from wsrender.spec.options import Device, Indices, Penalty, Task
+from wsrender.spec.options import Device, IndexOptions, Indices, Penalty, Task
 from wsrender.spec.quantities import PositiveNumber
 
 
@@ -15,6 +15,8 @@ class IndexChoices(Document):
 
     indices: Indices = "kinematic"
     """Local indices: "kinematic", "dynamic", "all", or a list of names."""
+    index_options: IndexOptions = Field(default={})
+    """Options of the indices that have any: {index: {option: value}}."""
     task: Task = "linear"
     """Rows of the Jacobian, in base axes: "linear", "angular", "full", or a list from x y z rx ry rz."""
     characteristic_length_m: PositiveNumber = 1.0

@@ -16,7 +16,7 @@ from wsrender.spec.index_choices import IndexChoices
 from wsrender.spec.kinetostatics import KinetostaticFieldJob
 from wsrender.spec.mapping import MasterSlaveMappingJob
 from wsrender.spec.method_comparison import MethodComparisonJob
-from wsrender.spec.options import Configurations, MapColumns, Statistics
+from wsrender.spec.options import Configurations, MapColumns, StatisticsOrNone
 from wsrender.spec.parallel_workspace import ParallelWorkspaceJob
 from wsrender.spec.planar_boundary import PlanarBoundaryJob
 from wsrender.spec.problems import tagged
@@ -37,8 +37,9 @@ class WorkspaceJob(IndexChoices, Arm):
     voxel_size_m: VoxelSize | None = None
     """Edge of a voxel [m]; null: what holds 48 samples on average, at least a hundredth of the cube root of the
     workspace's convex-hull volume."""
-    voxel_statistics: Statistics = ("count", "maximum")
-    """What is kept per voxel, from count, maximum, mean, minimum; count always is."""
+    voxel_statistics: StatisticsOrNone = None
+    """What is kept per voxel, from count, maximum, mean, minimum; count always is. null: what means something for the
+    indices, count and maximum of the six."""
     refined_volume: RelativeTolerance | None = 0.01
     """Half width of the headline's 95 % interval, relative to it [1]: of the volume that inverse kinematics finds
     reachable, of a planar workspace the area, of a line the length; null: none is computed."""

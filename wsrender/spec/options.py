@@ -1,11 +1,13 @@
 """The choices of a job document: task rows, indices, statistics, penalisation, device."""
 
 import re
+from collections.abc import Mapping
+from numbers import Integral
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, WithJsonSchema
 
-from wsrender.spec.quantities import Name, Number, distinct, quoted, real, sequence
+from wsrender.spec.quantities import Name, Number, distinct, integer, quoted, real, sequence
 
 TASK_ROWS = ("x", "y", "z", "rx", "ry", "rz")
 NAMED_TASKS = {"linear": TASK_ROWS[:3], "angular": TASK_ROWS[3:], "full": TASK_ROWS}
@@ -39,9 +41,32 @@ def _indices_or_none(value: Any) -> str | tuple[str, ...]:
     return () if isinstance(value, list | tuple) and not value else _indices(value)
 
 
+def _option_value(value: Any) -> bool | int | float | tuple[float, ...]:
+    if isinstance(value, bool):
+        return value
+    if hasattr(value, "tolist"):
+        value = value.tolist()
+    if isinstance(value, list | tuple):
+        return tuple(real(item) for item in value)
+    try:
+        return integer(value) if isinstance(value, Integral) else real(value)
+    except ValueError:
+        raise ValueError("must be a number, true, false or a list of numbers") from None
+
+
+def _options(value: Any) -> dict[str, Any]:
+    if not isinstance(value, Mapping):
+        raise ValueError("must be an object")
+    return dict(value)
+
+
 def _statistics(value: Any) -> tuple[str, ...]:
     asked = sequence(value)
     return _ordered(asked if "count" in asked else ["count", *asked], STATISTICS)
+
+
+def _statistics_or_none(value: Any) -> tuple[str, ...] | None:
+    return None if value is None else _statistics(value)
 
 
 def _columns(value: Any) -> tuple[str, ...]:
@@ -96,6 +121,10 @@ IndicesOrNone = Annotated[
     Literal["kinematic", "dynamic", "all"] | tuple[Name, ...],
     BeforeValidator(_indices_or_none),
 ]
+_OptionValue = Annotated[bool | int | float | tuple[Number, ...], BeforeValidator(_option_value)]
+IndexOptions = Annotated[
+    dict[Name, Annotated[dict[Name, _OptionValue], BeforeValidator(_options)]], BeforeValidator(_options)
+]
 Penalty = Annotated[
     float | None,
     BeforeValidator(_penalty),
@@ -109,7 +138,9 @@ Penalty = Annotated[
         }
     ),
 ]
-Statistics = Annotated[tuple[Literal["count", "maximum", "mean", "minimum"], ...], BeforeValidator(_statistics)]
+StatisticsOrNone = Annotated[
+    tuple[Literal["count", "maximum", "mean", "minimum"], ...] | None, BeforeValidator(_statistics_or_none)
+]
 MapColumns = Annotated[tuple[Literal["configuration", "orientation"], ...], BeforeValidator(_columns)]
 Device = Annotated[str, BeforeValidator(_device), Field(json_schema_extra={"pattern": f"^({_DEVICE.pattern})$"})]
 Configurations = Annotated[tuple[tuple[Number, ...], ...] | None, BeforeValidator(_configurations)]

@@ -8,7 +8,7 @@ from pydantic import BeforeValidator, Field, model_validator
 from wsrender.spec.arm import Arm, ArmPath
 from wsrender.spec.document import Document
 from wsrender.spec.mechanism import MechanismSpec
-from wsrender.spec.options import Device, IndicesOrNone, Task
+from wsrender.spec.options import Device, IndexOptions, IndicesOrNone, Task
 from wsrender.spec.orientations import MOST_ORIENTATIONS, Orientations
 from wsrender.spec.quantities import Count, PositiveNumber, RelativeTolerance, Seed, VoxelSize, real
 from wsrender.spec.robot import Transform, Vector
@@ -45,6 +45,8 @@ class ParallelWorkspaceJob(Document):
     indices: IndicesOrNone = ()
     """Local indices at the voxels' centres: "kinematic" or a list of names; []: none. Of constant_orientation. With
     serial joints the largest over their values, from the Jacobian of all joints."""
+    index_options: IndexOptions = Field(default={})
+    """Options of the indices that have any: {index: {option: value}}."""
     task: Task | None = None
     """Rows of the Jacobian, in base axes: "linear", "angular", "full" or a list; null: "full", "linear" of a delta."""
     characteristic_length_m: PositiveNumber = 1.0
