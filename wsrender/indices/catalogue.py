@@ -34,7 +34,7 @@ SIX = (
     ),
     Index(
         "inverse_condition_number", "1/κ", f.inverse_condition_number, "Salisbury & Craig 1982",
-        range=(0.0, 1.0), unit=lambda A: A.value**0, bound=at_equal_values(f.inverse_condition_number),
+        range=(0.0, 1.0), unit=lambda A: A.ratio, bound=at_equal_values(f.inverse_condition_number),
         aliases=("inverse-condition", "invcondition"),
         conventions={
             "table_1": f.table_1_inverse_condition_number,
@@ -69,7 +69,7 @@ SIX = (
     ),
     Index(
         "isotropy", "Δ", f.isotropy, "Kim & Khosla 1991",
-        range=(0.0, 1.0), unit=lambda A: A.volume ** Fraction(2, A.m) / A.value**2, bound=at_equal_values(f.isotropy),
+        range=(0.0, 1.0), unit=lambda A: A.ratio, bound=at_equal_values(f.isotropy),
         conventions={"table_1": f.table_1_isotropy, "wsrender_code": f.code_isotropy},
         convention_units={
             "table_1": lambda A: A.volume ** Fraction(2, A.n) / A.value**2,

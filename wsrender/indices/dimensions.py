@@ -79,6 +79,11 @@ class TaskMatrix:
         return next(iter(self.entries))
 
     @property
+    def ratio(self) -> Dimension:
+        """Unit of a quotient of two singular values; raises MixedUnitsError. A single one has no other."""
+        return ONE if self.m == 1 else self.value**0
+
+    @property
     def volume(self) -> Dimension:
         """Unit of √det H, the product of the singular values; raises MixedUnitsError.
 
@@ -123,9 +128,9 @@ def _code_matrix(joints: list[Dimension], dynamic: bool, nonzero: np.ndarray | N
         whole = _matrix(units, [ONE / q for q in joints], _held(nonzero, ALL_ROWS, n))
         linear = _matrix(units[:3], [ONE / q for q in joints], _held(nonzero, LINEAR_ROWS, n))
         return replace(whole, rows=linear.rows, columns=linear.columns)
-    added = joints if len(set(joints)) > 1 else joints[:1]  # to one entry of J M, of any unit
-    inertias = [KILOGRAM * METRE**2 / (i**2 * j) for j in joints for i in added]
-    return replace(_matrix(units, inertias, _held(None, ALL_ROWS, len(inertias))), n=n)
+    entries = {row * KILOGRAM * METRE**2 / (i**2 * j) for row in units for i in joints for j in joints}
+    volume = _matrix(units, [KILOGRAM * METRE**2 / q**3 for q in joints], _held(None, ALL_ROWS, n))
+    return replace(volume, entries=frozenset(entries))
 
 
 def _held(nonzero: np.ndarray | None, rows: Sequence[int], n: int) -> np.ndarray:
