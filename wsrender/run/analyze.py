@@ -25,10 +25,11 @@ def analyze(
     ``robot`` is a Robot, a user-defined robot or what `load_robot` takes; ``sampling`` one of Grid, Random, Sobol,
     BoundaryBiased, Converge (default Sobol(2**24), with ``keep_map`` Sobol(2**20), of a user-defined robot
     Sobol(2**16)) or its part of a job document; ``fields`` are the other fields of the job document ``workspace``:
-    refined_volume, voxel_labels, convention, joint_limit_penalty, characteristic_length_m, torque_scaling, inertia,
-    voxel_size_m, voxel_statistics, keep_map, map_columns, max_samples, precision, device. ``progress``: True shows a
-    bar on work of more than a second; or a function (done, total, message). ``threads`` and ``chunk_size`` change no
-    bit of the result. Raises DocumentError, InputError, ModelError, ResourceError, NumericalError, NotConvergedError.
+    refined_volume, voxel_labels, index_options, convention, joint_limit_penalty, characteristic_length_m,
+    torque_scaling, inertia, voxel_size_m, voxel_statistics, keep_map, map_columns, max_samples, precision, device.
+    ``progress``: True shows a bar on work of more than a second; or a function (done, total, message). ``threads`` and
+    ``chunk_size`` change no bit of the result. Raises DocumentError, InputError, ModelError, ResourceError,
+    NumericalError, NotConvergedError.
     """
     subject = as_robot(robot)
     document = {
