@@ -1,4 +1,4 @@
-"""What a golden file says of a result: its document without what differs from run to run, and its data in short.
+"""What golden files say of results: their documents without what differs from run to run, and their data in short.
 
 Numbers are compared to a tolerance, for other processors round otherwise; everything else must be the same.
 """
@@ -18,17 +18,19 @@ NEARLY_ZERO = 1e-12  # what is left where numbers of about one cancel
 TURN = 97  # weights of a sum that notices when values change places
 OF_THE_RUN = frozenset({"timing_s", "artifacts"})
 OF_THE_HOST = frozenset({"wsrender", "warp-lang", "mujoco", "numpy", "target", "host"})
-NOISE = ("residual", "seconds")  # names of numbers that are noise below a tolerance, or times
+TIMES = ("seconds",)  # how names of times begin
+NOISE = ("residual", *TIMES)  # and of numbers that are noise below a tolerance
 
 
-def facts_of(result: Any) -> dict[str, Any]:
-    """Document, data and pictures of a result, as plain JSON values."""
+def facts_of(result: Any, estimate: Mapping[str, float]) -> dict[str, Any]:
+    """Estimate, document, data and pictures of a result, as plain JSON values."""
     facts = {
+        "estimate": estimate,
         "document": _lasting(result.document),
-        "data": dict(_data(result)),
+        "data": {name: _array(array, unit, name.rpartition("/")[2]) for name, array, unit in arrays_of(result)},
         "pictures": sorted(result._pictures()),
     }
-    return json.loads(json.dumps(facts, allow_nan=False, default=lambda value: value.tolist()))
+    return json.loads(json.dumps(facts, allow_nan=False, default=np.ndarray.tolist))
 
 
 def _lasting(document: Mapping[str, Any]) -> dict[str, Any]:
@@ -38,39 +40,55 @@ def _lasting(document: Mapping[str, Any]) -> dict[str, Any]:
     return kept | {"provenance": {name: value for name, value in origin.items() if name not in OF_THE_HOST}}
 
 
-def _data(result: Any) -> Iterator[tuple[str, dict[str, Any]]]:
-    """Every array of a result by a name that says where it stands."""
+def arrays_of(result: Any) -> Iterator[tuple[str, np.ndarray, str]]:
+    """Every array of a result: a name that says where it stands, the array, its unit."""
     for name, rows in {"map": result.map, "sample": result.sample, **result.tables}.items():
         if rows is not None:
             columns = columns_of(rows)
             units = columns.column_units()
             for column, array in columns.arrays(rows).items():
-                yield f"{name}/{column}", _array(array, units[column], column)
+                yield f"{name}/{column}", array, units[column]
     for name, volume in {"volume": result.volume, **result.volumes}.items():
         if volume is not None:
             yield from _of_volume(name, volume)
     for name, mesh in result.meshes.items():
-        yield f"{name}/vertices", _array(np.asarray(mesh.vertices), "m")
-        yield f"{name}/faces", _array(np.asarray(mesh.faces), "1")
+        yield f"{name}/vertices", np.asarray(mesh.vertices), "m"
+        yield f"{name}/faces", np.asarray(mesh.faces), "1"
     if result.skeleton is not None:
-        yield "skeleton", _array(np.asarray(result.skeleton), "m")
+        yield "skeleton", np.asarray(result.skeleton), "m"
 
 
-def _of_volume(name: str, volume: Any) -> Iterator[tuple[str, dict[str, Any]]]:
-    yield f"{name}/lattice", _array(np.array([volume.voxel_size_m, *volume.first_voxel]), "m")
-    yield f"{name}/count", _array(volume.count, "samples")
+def _of_volume(name: str, volume: Any) -> Iterator[tuple[str, np.ndarray, str]]:
+    yield f"{name}/lattice", np.array([volume.voxel_size_m, *volume.first_voxel]), "m"
+    yield f"{name}/count", volume.count, "samples"
     for statistic, by_index in volume.statistics.items():
         for index, values in by_index.items():
-            yield f"{name}/{statistic}/{index}", _array(values, volume.units.get(index, "1"))
+            yield f"{name}/{statistic}/{index}", values, volume.units.get(index, "1")
     for vector, values in volume.vectors.items():
-        yield f"{name}/{vector}", _array(values, volume.units.get(vector, "1"))
+        yield f"{name}/{vector}", values, volume.units.get(vector, "1")
 
 
-def _array(values: np.ndarray, unit: str, name: str = "") -> dict[str, Any]:
+def bits_of(result: Any) -> dict[str, Any]:
+    """Document, and a hash of each array: the same for two results whose every bit is the same, times apart."""
+    hashes = {}
+    for name, array, unit in arrays_of(result):
+        content = _text_of(array) if array.dtype.kind not in "biuf" else np.ascontiguousarray(array).tobytes()
+        if not name.rpartition("/")[2].startswith(TIMES):
+            hashes[name] = [list(array.shape), _dtype(array), unit, sha256(content).hexdigest()]
+    return json.loads(json.dumps({"document": _untimed(_lasting(result.document)), "arrays": hashes}))
+
+
+def _untimed(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {name: _untimed(each) for name, each in value.items() if not name.startswith(TIMES)}
+    return [_untimed(each) for each in value] if isinstance(value, list | tuple) else value
+
+
+def _array(values: np.ndarray, unit: str, name: str) -> dict[str, Any]:
     """Shape, dtype and unit of an array, and its sums, or of text its hash."""
     entry = {"shape": list(values.shape), "dtype": _dtype(values), "unit": unit}
     if values.dtype.kind not in "biuf":
-        return entry | {"sha256": sha256("\n".join(map(str, values.ravel().tolist())).encode()).hexdigest()}
+        return entry | {"sha256": sha256(_text_of(values)).hexdigest()}
     if name.startswith(NOISE):
         return entry
     numbers = values.astype(np.float64).ravel()
@@ -81,6 +99,10 @@ def _array(values: np.ndarray, unit: str, name: str = "") -> dict[str, Any]:
     return entry | {name: float(value) for name, value in sums.items()} | {"not_finite": int((~finite).sum())}
 
 
+def _text_of(values: np.ndarray) -> bytes:
+    return "\n".join(map(str, values.ravel().tolist())).encode()
+
+
 def _dtype(values: np.ndarray) -> str:
     return "text" if values.dtype.kind in "UO" else values.dtype.name
 
@@ -89,7 +111,7 @@ def differences(found: dict[str, Any], golden: dict[str, Any]) -> list[str]:
     """What differs beyond the tolerance of the result's precision, each with its place."""
     precision = golden["document"]["provenance"].get("precision", "float64")
     relative = RELATIVE[precision]
-    parts = [_differing(name, found[name], golden[name], relative) for name in ("document", "pictures")]
+    parts = [_differing(name, found[name], golden[name], relative) for name in ("estimate", "document", "pictures")]
     return [line for part in parts for line in part] + list(_differing_data(found["data"], golden["data"], relative))
 
 

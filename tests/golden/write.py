@@ -4,18 +4,39 @@ Each keeps its job; for a new one write a file that holds ``{"job": …}``. What
 """
 
 import json
+import os
 import sys
 
 import wsrender as ws
 from tests.golden.facts import facts_of
 from tests.golden.files import DOCUMENTS, golden_names, job_of
+from wsrender.run import plan
+
+THREADS = "WSRENDER_THREADS"
 
 
 def write(name: str) -> None:
-    """Run a golden job and write what its result is."""
+    """Run a golden job and write what its estimate and its result are."""
     job = job_of(name)
-    entry = {"job": job, **facts_of(ws.execute(job))}
+    entry = {"job": job, **run(job)}
     (DOCUMENTS / f"{name}.json").write_text(_text(entry), encoding="utf-8")
+
+
+def run(job: dict) -> dict:
+    """What a golden file says of a job."""
+    return facts_of(ws.execute(job), estimate_in_one_thread(job))
+
+
+def estimate_in_one_thread(job: dict) -> dict:
+    """Samples, bytes and seconds, whatever the machine."""
+    before = os.environ.get(THREADS)
+    os.environ[THREADS] = "1"
+    try:
+        return plan(job).estimate
+    finally:
+        os.environ.pop(THREADS)
+        if before is not None:
+            os.environ[THREADS] = before
 
 
 def _text(entry: dict) -> str:
