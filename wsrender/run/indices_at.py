@@ -13,6 +13,7 @@ from wsrender.result import Result
 from wsrender.robot import Robot
 from wsrender.robot.indices import evaluation_of_job
 from wsrender.robot.model_robot import configuration_rows
+from wsrender.run.estimate import RATE_CPU_CORE, RATE_HOST, SLOWER
 from wsrender.run.one_shard import OneShard
 from wsrender.run.provenance import index_choices, job_entry, provenance, robot_entry
 from wsrender.run.settled_device import settled_device
@@ -31,11 +32,19 @@ class IndicesAtPlan(OneShard):
     device: str
     target: str
     shards: list[tuple[int, int]] = field(default_factory=list)
-    estimate: dict[str, float] = field(default_factory=dict)
+
+    @property
+    def estimate(self) -> dict[str, float]:
+        """Samples, bytes of the map's rows in float64, and seconds of one CPU core."""
+        (samples, n), position, quaternion = self.q.shape, 3, 4
+        rate = RATE_HOST if self.evaluation.on_host else RATE_CPU_CORE
+        rate /= SLOWER ** (self.evaluation.dynamic + (self.job.precision == "float64"))
+        columns = n + position + quaternion + len(self.evaluation.indices)
+        return {"samples": float(samples), "bytes": 8.0 * samples * columns, "seconds": samples / rate}
 
     def run_shard(self, shard: int, progress: Callable[[int], None] | None, **execution: Any) -> Evaluated:
         """Positions and values of all rows."""
-        return evaluate_at(
+        rows = evaluate_at(
             self.evaluation,
             self.q,
             self.job.precision,
@@ -43,6 +52,9 @@ class IndicesAtPlan(OneShard):
             with_orientation=self.evaluation.host_chain is None,
             threads=execution.get("threads"),
         )
+        if progress:
+            progress(len(self.q))
+        return rows
 
     def finish(self, partial: Evaluated, seconds: dict[str, float]) -> Result:
         """The map, one row per configuration in the order asked, and the extremes of each index."""
