@@ -1,6 +1,9 @@
 """Drawings of boundaries, read back by another program: DXF by ezdxf, SVG arcs by their endpoint formula."""
 
+import os
 import re
+import subprocess
+import sys
 from xml.etree import ElementTree
 
 import ezdxf
@@ -77,3 +80,21 @@ def test_svg_encloses_the_area(name, tmp_path):
     assert left < points[:, 0].min() and points[:, 0].max() < left + width
     assert top < -points[:, 1].max() and -points[:, 1].min() < top + height
     assert width < 1.2 * np.ptp(points[:, 0])
+
+
+WRITER = """
+import sys
+from tests.export.test_drawings import ARMS, boundary, segment_table, write_dxf
+write_dxf(segment_table(boundary(*ARMS["notch"]).segments), sys.argv[1])
+"""
+
+
+def test_every_process_writes_the_same_dxf(tmp_path):
+    """Whatever the order of its sets, which Python draws anew in each process."""
+    contents = set()
+    for seed in range(1, 5):
+        path, environment = tmp_path / f"{seed}.dxf", {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+        command = [sys.executable, "-c", WRITER, str(path)]
+        subprocess.run(command, check=True, env={**environment, "PYTHONHASHSEED": str(seed)})
+        contents.add(path.read_bytes())
+    assert len(contents) == 1

@@ -35,6 +35,8 @@ def write_dxf(table: Table, path: Path) -> None:
         for row in range(len(table)):
             layer = {"layer": "outer" if table["loop"][row] == 0 else "holes"}
             _add(space, {name: column[row] for name, column in table.columns.items()}, layer)
+        for name in sorted(document.entitydb.dxf_types_in_use()):  # a set's order is each process's own
+            document.classes.add_class(name)
         with new_file(path) as temporary:
             document.saveas(temporary)
     finally:
