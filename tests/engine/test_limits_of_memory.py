@@ -3,6 +3,7 @@
 import importlib
 import resource
 import sys
+from contextlib import nullcontext
 from dataclasses import replace
 
 import numpy as np
@@ -11,6 +12,7 @@ import warp as wp
 
 import wsrender as ws
 from tests.engine.test_voxels import executed, job
+from tests.run.simple_robots import planar_arm_with_masses
 from wsrender import run
 from wsrender.engine import devices_of
 from wsrender.engine.memory import CACHE_LINE, device_memory
@@ -116,6 +118,29 @@ def test_a_value_beyond_its_bound_fails_the_job():
     plan.sweep = replace(plan.sweep, bounds=np.array([1e-6, 1.0]))
     with pytest.raises(NumericalError, match=r"index manipulability reaches 0\.\d+, beyond 1e-06.*bound the index"):
         run.run_shard(plan, 0)
+
+
+def test_a_value_may_be_as_large_as_its_bound_and_no_larger():
+    plan = run.plan(job("float32", 5000))
+    largest = run.run_shard(plan, 0).sweep.maximum.astype(np.float64)[3]
+    for bound, allowed in ((largest, True), (np.nextafter(largest, 0), False)):
+        plan.sweep = replace(plan.sweep, bounds=np.array([bound, 1.0]))
+        with nullcontext() if allowed else pytest.raises(NumericalError, match="index manipulability reaches"):
+            run.run_shard(plan, 0)
+
+
+def test_bounds_are_no_larger_than_they_have_to_be():
+    """A planar arm of .5 and .4 m: its Jacobian's columns are at most .9 and .4 m long, so σ₁σ₂ ≤ (.9² + .4²) / 2.
+
+    A dynamic index may take twice the maximum of the first pass. Looser bounds would take digits from the sums.
+    """
+    names = ["manipulability", "inverse_condition_number", "dynamic_manipulability"]
+    options = {"task": ["x", "y"], "indices": names, "voxel_size_m": 0.1, "device": "cpu", "refined_volume": None}
+    robot = planar_arm_with_masses()
+    result = ws.analyze(robot, ws.Sobol(2**16), **options)
+    bounds = run.plan(result.document["job"], robot).sweep.bounds
+    assert bounds[:2] == pytest.approx([1.01 * (0.9**2 + 0.4**2) / 2, 1.01])
+    assert bounds[2] == pytest.approx(2 * result.document["indices"][names[2]]["maximum"], rel=1e-3)
 
 
 @pytest.mark.parametrize("chunk_size", [1, 2**20, 2**31, 2**40])

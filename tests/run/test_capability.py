@@ -101,6 +101,17 @@ def test_document_and_volume_say_the_same(result, tmp_path):
     assert "dexterous volume" in restored.summary()
 
 
+def test_a_voxel_at_the_threshold_is_dexterous():
+    """A wrist without limits approaches from everywhere: the index is exactly 1, the threshold that is the default."""
+    dh = dh_table("spherical").model_dump(mode="json")
+    rows = [{**row, "limits": None} if k > 2 else row for k, row in enumerate(dh["rows"])]
+    document = {**JOB, "robot": {"dh": {**dh, "rows": rows}}, "voxel_size_m": 0.2, "directions": 5}
+    del document["dexterous_threshold"]
+    entry = execute(document).document["capability"]
+    assert (entry["dexterous_threshold"], entry["mean_index"]) == (1.0, 1.0)
+    assert entry["dexterous_volume_m3"] == entry["reachable_volume_m3"] > 0
+
+
 def index_of(volume):
     return volume.statistics["fraction"]["approach_directions"]
 

@@ -74,10 +74,35 @@ def test_points_in_documents_and_files(tmp_path):
     assert expected[0] == pytest.approx(LENS, rel=0.5)
 
 
-def test_mirrored_arms_do_not_draw_mirrored_configurations():
-    """The same robot twice in one place shares its whole volume, but not its points."""
-    result = ws.collaborative_volume("gao_6r", ws.load_robot("gao_6r"), seeds=1, samples=20_000, device="cpu")
-    assert 0 < result.document["volume_m3"]["body_elemental"] < 0.403721
+def drawn_points(monkeypatch, **document):
+    """The points (N, 3) of left and right, by run, that the body elements of a job are made of."""
+    runs = []
+
+    def kept(left, right, *choices):
+        runs.append((left, right))
+        return body_elements(left, right, *choices)
+
+    monkeypatch.setattr("wsrender.run.collaborative.body_elements", kept)
+    ws.execute(job(cells=[4, 4, 4], refined_volume=None, **document))
+    return runs
+
+
+def test_mirrored_arms_do_not_draw_mirrored_configurations(monkeypatch):
+    """The same robot twice in one place, and turned by 180°: no point of one is a point, or mirror image, of the other.
+
+    With one seed for both, each would be, and the common volume of two equal arms all of theirs.
+    """
+    for right, mirror in (({"robot": "gao_6r"}, [1, 1, 1]), (OUTWARD["right"], [-1, -1, 1])):
+        for left, other in drawn_points(monkeypatch, left={"robot": "gao_6r"}, right=right, samples=500, seeds=2):
+            assert left.shape == other.shape == (500, 3)
+            assert np.linalg.norm(left - other * mirror, axis=1).min() > 1e-6
+
+
+def test_every_run_draws_its_own_configurations(monkeypatch):
+    (first, _), (second, _) = drawn_points(monkeypatch, **OUTWARD, samples=500, seeds=2)
+    assert np.linalg.norm(first - second, axis=1).min() > 1e-6
+    ((again, _),) = drawn_points(monkeypatch, **OUTWARD, samples=500, seeds=1, seed=1)
+    np.testing.assert_array_equal(again, second)
 
 
 @pytest.mark.parametrize(

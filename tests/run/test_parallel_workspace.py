@@ -121,6 +121,20 @@ def test_indices_and_singularities_of_the_stewart_platform():
     np.testing.assert_array_equal(changes, table["position"][table["type"] == 2])
 
 
+def test_a_voxel_at_the_threshold_is_dexterous():
+    """The threshold is a share that voxels have."""
+    job = {**STEWART, "kind": "dexterous", "orientations": TILTS}
+    shares = execute(job).volume.statistics["fraction"]["orientations"]
+    shares = shares[np.isfinite(shares)]
+    threshold = float(np.median(shares[shares < 1]))
+    at = np.count_nonzero(shares == threshold)
+    assert at > 0
+    result = execute({**job, "dexterous_threshold": threshold})
+    assert result.document["volume_m3"]["dexterous"] == pytest.approx(
+        np.count_nonzero(shares >= threshold) * result.volume.voxel_size_m**3
+    )
+
+
 def test_the_dexterous_workspace_lies_in_that_of_each_orientation():
     result = execute({**STEWART, "kind": "dexterous", "orientations": TILTS})
     volume = result.volume

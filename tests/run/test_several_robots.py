@@ -77,6 +77,15 @@ def test_scan_of_an_offset():
     assert table.units == {"x": "m", "occupied_any": "m^3", "occupied_shared": "m^3"}
 
 
+@pytest.mark.parametrize(("robot", "shared"), [(0, 0.3), (1, 0.1)])
+def test_the_scan_moves_the_robot_that_it_names(robot, shared):
+    """Of two boxes .3 m long at x = 0 and .2, one is put at .2: on the other, or where it is; by voxels and refined."""
+    scan, robots = {"robot": robot, "axis": "x", "values": [0.2]}, [gantry(), moved(0.2, 0, 0)]
+    table = ws.shared_workspace(robots, FULL, scan=scan, **REFINED).tables["scan"]
+    assert table["occupied_shared"] == pytest.approx(shared * 0.4 * 0.2)
+    assert table["shared"] == pytest.approx((shared - 0.01) * 0.39 * 0.19, rel=0.02)
+
+
 def test_scan_of_an_angle():
     """Turned by 90° about z, .3 × .4 m lies beside itself; by 180° too, on the other side."""
     scan = {"robot": 0, "axis": "yaw", "values": [0, 90, 180]}
