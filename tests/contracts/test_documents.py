@@ -6,6 +6,7 @@ import pytest
 
 import wsrender as ws
 from tests.golden.files import analyses, golden_names, job_of
+from wsrender.engine import devices_of, target_of
 from wsrender.errors import DocumentError
 from wsrender.run import plan
 from wsrender.spec import ANALYSES, parse_job
@@ -72,7 +73,7 @@ def elsewhere(value):
 def test_a_plan_for_another_target_is_refused(analysis, planned):
     """Partial results of two targets would not have the same bits."""
     resolved = planned(analysis).resolved()
-    assert resolved["target"] == planned(analysis).target
+    assert resolved["target"] == planned(analysis).target == target_of(devices_of("cpu"))
     with pytest.raises(ws.InputError, match="the job was planned for cuda:sm_00, this machine has cpu:"):
         plan(job_of(analysis), resolved=elsewhere(resolved))
 

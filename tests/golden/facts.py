@@ -16,6 +16,7 @@ from wsrender.export.columns import columns_of
 RELATIVE = {"float64": 1e-9, "float32": 1e-5}
 NEARLY_ZERO = 1e-12  # what is left where numbers of about one cancel
 TURN = 97  # weights of a sum that notices when values change places
+ESTIMATE = "estimate"  # its seconds are no time of a run
 OF_THE_RUN = frozenset({"timing_s", "artifacts"})
 OF_THE_HOST = frozenset({"wsrender", "warp-lang", "mujoco", "numpy", "target", "host"})
 TIMES = ("seconds",)  # how names of times begin
@@ -25,7 +26,7 @@ NOISE = ("residual", *TIMES)  # and of numbers that are noise below a tolerance
 def facts_of(result: Any, estimate: Mapping[str, float]) -> dict[str, Any]:
     """Estimate, document, data and pictures of a result, as plain JSON values."""
     facts = {
-        "estimate": estimate,
+        ESTIMATE: estimate,
         "document": _lasting(result.document),
         "data": {name: _array(array, unit, name.rpartition("/")[2]) for name, array, unit in arrays_of(result)},
         "pictures": sorted(result._pictures()),
@@ -111,7 +112,7 @@ def differences(found: dict[str, Any], golden: dict[str, Any]) -> list[str]:
     """What differs beyond the tolerance of the result's precision, each with its place."""
     precision = golden["document"]["provenance"].get("precision", "float64")
     relative = RELATIVE[precision]
-    parts = [_differing(name, found[name], golden[name], relative) for name in ("estimate", "document", "pictures")]
+    parts = [_differing(name, found[name], golden[name], relative) for name in (ESTIMATE, "document", "pictures")]
     return [line for part in parts for line in part] + list(_differing_data(found["data"], golden["data"], relative))
 
 
@@ -133,7 +134,7 @@ def _differing(place: str, found: Any, golden: Any, relative: float) -> Iterator
         for name in sorted(found.keys() | golden.keys()):
             if name not in found or name not in golden:
                 yield f"{place}.{name}: {'missing' if name in golden else 'new'}"
-            elif not name.startswith(NOISE):
+            elif place == ESTIMATE or not name.startswith(NOISE):
                 yield from _differing(f"{place}.{name}", found[name], golden[name], relative)
     elif isinstance(found, list) and isinstance(golden, list) and len(found) == len(golden):
         for k, (ours, theirs) in enumerate(zip(found, golden, strict=True)):

@@ -49,6 +49,7 @@ def test_changes_are_found():
         (lambda found: found["data"][count].update(turned_sum=0.0), f"data.{count}.turned_sum:"),
         (lambda found: found["data"][count].update(not_finite=1), f"data.{count}.not_finite:"),
         (lambda found: found["estimate"].update(bytes=found["estimate"]["bytes"] / 2), "estimate.bytes:"),
+        (lambda found: found["estimate"].update(seconds=found["estimate"]["seconds"] * 3), "estimate.seconds:"),
         (lambda found: found["pictures"].append("other"), "pictures:"),
     ):
         (line,) = changed(change)

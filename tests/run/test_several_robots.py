@@ -77,11 +77,12 @@ def test_scan_of_an_offset():
     assert table.units == {"x": "m", "occupied_any": "m^3", "occupied_shared": "m^3"}
 
 
-@pytest.mark.parametrize(("robot", "shared"), [(0, 0.3), (1, 0.1)])
+@pytest.mark.parametrize(("robot", "shared"), [(0, 0.1), (1, 0.05)])
 def test_the_scan_moves_the_robot_that_it_names(robot, shared):
-    """Of two boxes .3 m long at x = 0 and .2, one is put at .2: on the other, or where it is; by voxels and refined."""
-    scan, robots = {"robot": robot, "axis": "x", "values": [0.2]}, [gantry(), moved(0.2, 0, 0)]
-    table = ws.shared_workspace(robots, FULL, scan=scan, **REFINED).tables["scan"]
+    """Of boxes at x = 0 … .3 and .1 … .25 one is put at -.1: at -.1 … .2, or -.1 … .05; by voxels and refined."""
+    short = gantry(x=(0.005, 0.145), placement=ws.Transform(position_m=(0.1, 0, 0)))
+    scan = {"robot": robot, "axis": "x", "values": [-0.1]}
+    table = ws.shared_workspace([gantry(), short], FULL, scan=scan, **REFINED).tables["scan"]
     assert table["occupied_shared"] == pytest.approx(shared * 0.4 * 0.2)
     assert table["shared"] == pytest.approx((shared - 0.01) * 0.39 * 0.19, rel=0.02)
 
