@@ -11,6 +11,7 @@ from tests.reference.mujoco_library import MujocoRobot
 from tests.reference.postures import random_postures
 from tests.reference.published_robots import NAMES
 from wsrender.engine import evaluate_kinematics
+from wsrender.engine.kinematics import LEAST_SHARE
 from wsrender.robots import library
 from wsrender.tolerances import TOLERANCES
 
@@ -95,3 +96,14 @@ def test_the_jacobian_is_the_derivative_of_the_pose():
         # Central differences: rounding eps / h, truncation h².
         assert np.abs(J[:, :3, i] - dT[:, :3, 3]).max() < 1e-9
         assert np.abs(J[:, 3:, i] - np.stack([spin[:, 2, 1], spin[:, 0, 2], spin[:, 1, 0]], 1)).max() < 1e-9
+
+
+@pytest.mark.parametrize("threads", [2, 5])
+def test_threads_change_no_bit_of_kinematics(threads):
+    robot = ws.load_robot("scara")
+    lower, upper = robot.chain.lower_limits, robot.chain.upper_limits
+    q = lower + np.random.default_rng(0).random((3 * LEAST_SHARE + 7, robot.chain.n)) * (upper - lower)
+    one = evaluate_kinematics(robot.chain, q, True, device="cpu", threads=1)
+    several = evaluate_kinematics(robot.chain, q, True, device="cpu", threads=threads)
+    for name in ("pose", "jacobian", "inertia"):
+        assert getattr(one, name).tobytes() == getattr(several, name).tobytes()

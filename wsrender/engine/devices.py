@@ -70,15 +70,20 @@ def _vector_extension() -> str:
 def thread_count(requested: int | None = None) -> int:
     """CPU threads: the argument, else WSRENDER_THREADS, else the cores this process may use. Raises InputError."""
     if requested is not None:
-        if not isinstance(requested, Integral) or isinstance(requested, bool) or requested < 1:
-            raise InputError("threads", f"{requested!r} is not allowed; a positive whole number is")
-        return int(requested)
+        return whole_number("threads", requested)
     text = os.environ.get(THREADS_VARIABLE, "")
     if not text:
         return _usable_cores()
     if re.fullmatch("0*[1-9][0-9]{0,8}", text) is None:
         raise InputError(THREADS_VARIABLE, f"{text!r} is not allowed; a positive whole number is")
     return int(text)
+
+
+def whole_number(field: str, requested: int) -> int:
+    """A number that counts something of a field; raises InputError unless it is a whole one above 0."""
+    if not isinstance(requested, Integral) or isinstance(requested, bool) or requested < 1:
+        raise InputError(field, f"{requested!r} is not allowed; a positive whole number is")
+    return int(requested)
 
 
 def _usable_cores() -> int:

@@ -1,18 +1,20 @@
 """Batched forward kinematics, Jacobian and inertia matrix of a chain."""
 
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
 import warp as wp
 from wsrender_kernels.pointwise import kinematics_kernel
 
-from wsrender.engine.devices import devices_of
+from wsrender.engine.devices import devices_of, thread_count
 from wsrender.engine.evaluation import REAL, chain_model, device_array, drive
 from wsrender.engine.kernel_cache import launch, loaded
 from wsrender.robots.chain import Chain
 from wsrender.robots.host_chain import HostChain
 
 BATCH = 1 << 20
+LEAST_SHARE = 1 << 14  # configurations that are worth a thread
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,18 +30,32 @@ class Kinematics:
 
 
 def evaluate_kinematics(
-    chain: Chain, q: np.ndarray, with_inertia: bool = False, precision: str = "float64", device: str = "auto"
+    chain: Chain,
+    q: np.ndarray,
+    with_inertia: bool = False,
+    precision: str = "float64",
+    device: str = "auto",
+    *,
+    threads: int | None = None,
 ) -> Kinematics:
-    """Kinematics at configurations ``q`` (N, n) [rad or m], in batches of bounded memory.
+    """Kinematics at configurations ``q`` (N, n) [rad or m], in batches of bounded memory on so many CPU threads.
 
     Those of a robot that is defined by a Python class are its own, in float64, without inertia.
     """
     if isinstance(chain, HostChain):
         return Kinematics(chain.poses(q), chain.jacobians(q), None)
     target = devices_of(device)[0]
-    parts = [
-        _evaluate(chain, q[i : i + BATCH], with_inertia, precision, target) for i in range(0, max(len(q), 1), BATCH)
-    ]
+    workers = 1 if target.is_cuda else thread_count(threads)
+    size = min(BATCH, max(LEAST_SHARE, -(-len(q) // workers)))
+    batches = [q[first : first + size] for first in range(0, max(len(q), 1), size)]
+
+    def evaluate(batch: np.ndarray) -> Kinematics:
+        return _evaluate(chain, batch, with_inertia, precision, target)
+
+    if len(batches) == 1:
+        return evaluate(q)
+    with ThreadPoolExecutor(workers) as pool:
+        parts = list(pool.map(evaluate, batches))
     return Kinematics(
         np.concatenate([p.pose for p in parts]),
         np.concatenate([p.jacobian for p in parts]),
@@ -47,11 +63,13 @@ def evaluate_kinematics(
     )
 
 
-def evaluate_poses(chain: Chain, q: np.ndarray, precision: str = "float64", device: str = "auto") -> np.ndarray:
+def evaluate_poses(
+    chain: Chain, q: np.ndarray, precision: str = "float64", device: str = "auto", *, threads: int | None = None
+) -> np.ndarray:
     """Poses (N, 4, 4) alone: the Jacobians of a robot that is defined by a Python class may cost many times as much."""
     if isinstance(chain, HostChain):
         return chain.poses(q)
-    return evaluate_kinematics(chain, q, False, precision, device).pose
+    return evaluate_kinematics(chain, q, False, precision, device, threads=threads).pose
 
 
 def _evaluate(chain: Chain, q: np.ndarray, with_inertia: bool, precision: str, device: wp.Device) -> Kinematics:

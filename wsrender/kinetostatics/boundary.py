@@ -73,21 +73,23 @@ _SPLINE = np.array([
 ]) / 6  # fmt: skip
 
 
-def boundary_distance(chain: Chain, choice: BoundaryForce, device: str = "cpu") -> BoundaryDistance:
+def boundary_distance(
+    chain: Chain, choice: BoundaryForce, device: str = "cpu", threads: int | None = None
+) -> BoundaryDistance:
     """The distance to the boundary of all positions that a chain reaches within its joint limits.
 
     Raises InputError for an end effector that does not move.
     """
-    positions = next(_positions(chain, FIRST, choice.seed, device))
+    positions = next(_positions(chain, FIRST, choice.seed, device, threads))
     axes = _spanning_axes(positions)
     low, high = (positions @ axes.T).min(axis=0), (positions @ axes.T).max(axis=0)
     cell = float(np.prod(high - low) ** (1 / len(axes))) / choice.cells
     origin = low - (EDGE + 0.5) * cell
     shape = np.ceil((high - low) / cell).astype(int) + 2 * EDGE + 2
     inside = np.zeros(shape, bool)
-    _fill(inside, chain, axes, origin, cell, choice, device)
+    _fill(inside, chain, axes, origin, cell, choice, device, threads)
     if choice.refined:
-        _decide(inside, chain, axes, origin, cell, choice, device)
+        _decide(inside, chain, axes, origin, cell, choice, device, threads)
     # A cell counts where a sample falls into any part of it: on average half a cell too far out.
     values = (_signed_distance(inside) - (0.0 if choice.refined else 0.5)) * cell
     return BoundaryDistance(values, axes, origin, cell)
@@ -101,10 +103,11 @@ def _fill(
     cell: float,
     choice: BoundaryForce,
     device: str,
+    threads: int | None,
 ) -> None:
     """Mark the cells that samples reach; gaps of one cell between samples are closed."""
     last = np.array(inside.shape) - 1
-    for positions in _positions(chain, SAMPLES_PER_CELL * inside.size, choice.seed, device):
+    for positions in _positions(chain, SAMPLES_PER_CELL * inside.size, choice.seed, device, threads):
         at = np.round((positions @ axes.T - origin) / cell).astype(np.int64)
         inside[tuple(np.clip(at, 0, last).T)] = True
     inside |= binary_closing(inside)
@@ -118,12 +121,13 @@ def _decide(
     cell: float,
     choice: BoundaryForce,
     device: str,
+    threads: int | None,
 ) -> None:
     """Decide the cells at the boundary by inverse kinematics of their centres."""
     near = np.argwhere(np.abs(_signed_distance(inside)) < DECIDED)
-    plane = (np.eye(3) - axes.T @ axes) @ next(_positions(chain, 1, choice.seed, device))[0]
+    plane = (np.eye(3) - axes.T @ axes) @ next(_positions(chain, 1, choice.seed, device, threads))[0]
     centers = (origin + near * cell) @ axes + plane
-    solver = InverseSolver(chain, position_m=POSITION_M, seed=choice.seed, device=device)
+    solver = InverseSolver(chain, position_m=POSITION_M, seed=choice.seed, device=device, threads=threads)
     inside[tuple(near.T)] = solver.solve(centers).label == REACHABLE
 
 
@@ -163,8 +167,10 @@ def _spanning_axes(positions: np.ndarray) -> np.ndarray:
     return np.eye(3) if dimensions == 3 else axes[:dimensions]
 
 
-def _positions(chain: Chain, count: int, seed: int, device: str) -> Iterator[np.ndarray]:
+def _positions(chain: Chain, count: int, seed: int, device: str, threads: int | None) -> Iterator[np.ndarray]:
     """World positions (N, 3) of a Sobol set of configurations [m], piece by piece."""
     plan = plan_sampling(chain, Sobol(count, seed=seed))
     for first in range(0, count, CHUNK):
-        yield sampled_positions(chain, plan, device=device, first=first, count=min(CHUNK, count - first))
+        yield sampled_positions(
+            chain, plan, device=device, threads=threads, first=first, count=min(CHUNK, count - first)
+        )

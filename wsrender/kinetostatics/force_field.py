@@ -77,7 +77,7 @@ class ForceField:
     ``length`` is the characteristic length with its method. Not for several threads at once.
     """
 
-    def __init__(self, robot: Robot, choice: ForceFieldChoice, device: str = "auto"):
+    def __init__(self, robot: Robot, choice: ForceFieldChoice, device: str = "auto", *, threads: int | None = None):
         self.robot, self.choice, self.device = robot, choice, choice.haptic_device
         self.kinematics = Kinematics(robot)
         self.chain = chain = self.kinematics.chain
@@ -91,7 +91,7 @@ class ForceField:
         self._ramp = ConditioningRamp(choice.conditioning, peak, length) if choice.conditioning else None
         self._boundary = self._obstacles = None
         if wall := choice.boundary:
-            distance = boundary_distance(chain, wall, device)
+            distance = boundary_distance(chain, wall, device, threads)
             self._boundary = SurfaceRamp(distance, wall.margin_m, wall.stiffness_n_per_m, peak)
         if things := choice.obstacles:
             self._obstacles = SurfaceRamp(ObstacleDistance(things), things.margin_m, things.stiffness_n_per_m, peak)
@@ -235,15 +235,15 @@ def _bounded(vector: np.ndarray, most: float) -> np.ndarray:
     return vector * (most / size) if size > most else vector
 
 
-def force_field(robot: Any, *, device: str = "auto", **choices: Any) -> ForceField:
+def force_field(robot: Any, *, device: str = "auto", threads: int | None = None, **choices: Any) -> ForceField:
     """The force field of a robot: a Robot, or a library name, file or DH table as `load_robot` takes.
 
     ``choices`` are the fields of ``field`` in the job document ``kinetostatic_field``: form, haptic_device, task,
     characteristic_length, joint_limits, conditioning, boundary, obstacles, as dicts or documents. ``device`` is where
-    the workspace's boundary is sampled.
+    the workspace's boundary is sampled, on so many CPU ``threads``.
 
     The form "normalised" does net work on closed paths. "potential" does none as long as its force is below the
     device's peak, no singular posture is near, and the joints of a redundant arm come back without moving by
     themselves; else at most peak × length of the path. Raises DocumentError, InputError, ModelError.
     """
-    return ForceField(as_robot(robot), ForceFieldChoice(**choices), device)
+    return ForceField(as_robot(robot), ForceFieldChoice(**choices), device, threads=threads)

@@ -116,14 +116,19 @@ def reachable_box_of(found: Sequence[Variant], rotations: np.ndarray) -> Box | N
 
 
 def reached_by_any(
-    found: Sequence[Variant], positions: np.ndarray, rotations: np.ndarray, *, device: str = "auto"
+    found: Sequence[Variant],
+    positions: np.ndarray,
+    rotations: np.ndarray,
+    *,
+    device: str = "auto",
+    threads: int | None = None,
 ) -> np.ndarray:
     """Whether positions (N, 3), world, are reached at any of the orientations (M, 3, 3) by any variant, (N,) bool."""
     inside = np.zeros(len(positions), bool)
     for variant in found:
         mechanism, left = variant.mechanism, np.flatnonzero(~inside)
         there = in_base_frame(mechanism, positions[left])
-        counts = count_at(mechanism, there, variant.rotations(rotations), device=device)
+        counts = count_at(mechanism, there, variant.rotations(rotations), device=device, threads=threads)
         inside[left[counts.cells[counts.reached > 0]]] = True
     return inside
 

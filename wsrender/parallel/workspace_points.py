@@ -11,7 +11,9 @@ BATCH = 1 << 14
 MOST_BATCHES = 512  # eight million positions tried
 
 
-def workspace_points(spec: MechanismSpec, count: int, *, device: str = "auto") -> np.ndarray:
+def workspace_points(
+    spec: MechanismSpec, count: int, *, device: str = "auto", threads: int | None = None
+) -> np.ndarray:
     """The first ``count`` points of a Sobol set that the platform reaches without being turned, (N, 3) [m], world.
 
     Fewer where eight million points of the box around the workspace hold fewer; InputError where they hold none.
@@ -23,7 +25,8 @@ def workspace_points(spec: MechanismSpec, count: int, *, device: str = "auto") -
         if box is None or len(points) >= count:
             break
         tried = box.lower + sobol.random(BATCH) * (box.upper - box.lower)
-        points = np.concatenate([points, tried[reached_by_any(found, tried, level, device=device)]])
+        reached = reached_by_any(found, tried, level, device=device, threads=threads)
+        points = np.concatenate([points, tried[reached]])
     if not len(points):
         raise InputError("mechanism", "reaches no position without being turned")
     return points[:count]

@@ -82,7 +82,9 @@ def capability(
     execution = {"seed": seed, "precision": precision, "device": device, "threads": threads}
     accuracy = {"position_m": position_m, "angle_rad": angle_rad}
     cells = _candidates(chain, voxel_size_m, seed, device, threads)
-    points, reached = _points(InverseSolver(chain, kind="position", **accuracy, **execution), cells, voxel_size_m)
+    points, reached = _points(
+        InverseSolver(chain, kind="position", **accuracy, **execution), cells, voxel_size_m, threads
+    )
     cells, points = cells[reached], points[reached]
 
     turned = np.eye(4)
@@ -100,13 +102,15 @@ def capability(
     return Capability(cells, labels == REACHABLE, (labels == UNDECIDED).sum(axis=1))
 
 
-def _points(solver: InverseSolver, cells: np.ndarray, voxel_size_m: float) -> tuple[np.ndarray, np.ndarray]:
+def _points(
+    solver: InverseSolver, cells: np.ndarray, voxel_size_m: float, threads: int | None
+) -> tuple[np.ndarray, np.ndarray]:
     """The point (V, 3) [m] that stands for each cell, and whether it is reached (V,)."""
     centers = (cells + 0.5) * voxel_size_m
     found = solver.solve(centers)
-    if fills_volume(solver.whole):
+    if fills_volume(solver.whole, threads):
         return centers, found.label == REACHABLE
-    nearest = positions_at(solver.whole, found.q)
+    nearest = positions_at(solver.whole, found.q, threads=threads)
     return nearest, in_own_voxel(nearest, cells, voxel_size_m)
 
 

@@ -44,14 +44,14 @@ class TipSet:
         return float(np.linalg.norm(self.positions - self.T_world_own[:3, 3], axis=1).max())
 
 
-def tip_set(chain: Chain) -> TipSet:
+def tip_set(chain: Chain, threads: int | None = None) -> TipSet:
     """What the positions of a chain fill, from samples.
 
     The dimension is the largest rank of the linear Jacobian (Sard 1942: where it is below 3 everywhere, the positions
     have no volume), whose columns are multiplied by the joints' ranges.
     """
     q = configurations(plan_sampling(chain, Sobol(SAMPLES)), np.arange(SAMPLES))
-    found = evaluate_kinematics(chain, q, device="cpu")
+    found = evaluate_kinematics(chain, q, device="cpu", threads=threads)
     ranges = chain.upper_limits - chain.lower_limits
     sigma = np.zeros(3)
     sigma[: min(3, chain.n)] = np.linalg.svd(found.jacobian[:, :3] * ranges, compute_uv=False).max(axis=0)
@@ -67,9 +67,9 @@ def tip_set(chain: Chain) -> TipSet:
     return TipSet(dimension, span, T, positions)
 
 
-def fills_volume(chain: Chain) -> bool:
+def fills_volume(chain: Chain, threads: int | None = None) -> bool:
     """Whether the positions of a chain fill a volume."""
-    return chain.n >= 3 and tip_set(chain).dimension == 3
+    return chain.n >= 3 and tip_set(chain, threads).dimension == 3
 
 
 def in_own_voxel(points: np.ndarray, cells: np.ndarray, voxel_size_m: float) -> np.ndarray:

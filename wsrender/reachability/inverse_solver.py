@@ -161,7 +161,7 @@ class InverseSolver:
         return Starts(self.chain, self._features_at, count=SAMPLES[self.kind], seed=self.seed, workers=self._workers)
 
     def _features_at(self, q: np.ndarray) -> np.ndarray:
-        pose = evaluate_poses(self.chain, q, device="cpu")
+        pose = evaluate_poses(self.chain, q, device="cpu", threads=self._workers)
         orientation = {"position": None, "axis": pose[:, :3, 2], "pose": pose[:, :3, :3]}[self.kind]
         return self._features(_targets(pose[:, :3, 3], orientation))
 

@@ -12,9 +12,9 @@ from wsrender.robots.chain import Chain
 class ReachedPoints:
     """Decides positions in the world; ``undecided`` counts those of `reaches` that it could not decide."""
 
-    def __init__(self, chain: Chain, device: str = "cpu"):
-        self._solver = InverseSolver(chain, position_m=tolerance_m(chain), device=device)
-        self._chain = chain
+    def __init__(self, chain: Chain, device: str = "cpu", threads: int | None = None):
+        self._solver = InverseSolver(chain, position_m=tolerance_m(chain), device=device, threads=threads)
+        self._chain, self._threads = chain, threads
         self.undecided = 0
 
     def reaches(self, points: np.ndarray) -> np.ndarray:
@@ -26,4 +26,4 @@ class ReachedPoints:
     def nearest(self, points: np.ndarray) -> np.ndarray:
         """The reached points (N, 3) nearest to points (N, 3) [m], as far as the solver found them."""
         q = self._solver.solve(points).q
-        return positions_at(self._chain, q)
+        return positions_at(self._chain, q, threads=self._threads)

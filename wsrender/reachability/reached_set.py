@@ -137,7 +137,7 @@ class ReachedSet:
         q = configurations(plan, np.arange(count))
         q[count // 2 :] = inwards(self.chain, towards_limits(self.chain, q[count // 2 :]), NEXT_TO)
         q = np.random.Generator(np.random.Philox(key=self.seed)).permutation(q)
-        return positions_at(self.chain, q)
+        return positions_at(self.chain, q, threads=self.threads)
 
 
 def _times_before(numbers: np.ndarray) -> np.ndarray:

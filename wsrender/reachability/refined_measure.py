@@ -76,7 +76,7 @@ def refined_measures(
     will be.
     """
     chains = by_the_origin(chains)
-    sets = [tip_set(chain) for chain in chains]
+    sets = [tip_set(chain, threads) for chain in chains]
     highest = max(filled.dimension for filled in sets)
     filling = [k for k, filled in enumerate(sets) if filled.dimension == highest]
     quantity = QUANTITIES[max(max(sets[k].span for k in filling), 1)]

@@ -62,7 +62,9 @@ def refined_volumes(
     """
     options = {"seed": seed, "max_points": max_points, "device": device, "threads": threads, "progress": progress}
     chains = by_the_origin(chains)
-    return decided_volumes(chains, [tip_set(chain) for chain in chains], np.eye(4), 3, events, tolerance, **options)
+    return decided_volumes(
+        chains, [tip_set(chain, threads) for chain in chains], np.eye(4), 3, events, tolerance, **options
+    )
 
 
 def by_the_origin(chains: Sequence[Chain]) -> list[Chain]:

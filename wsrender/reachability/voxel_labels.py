@@ -47,8 +47,8 @@ def label_voxels(
     found = solver.solve(points, progress=progress and (lambda done: progress(done, len(points))))
     reasons = reasons_of(solver, found, points)
     label = found.label
-    if not fills_volume(chain):
-        nearest = positions_at(chain, found.q)
+    if not fills_volume(chain, threads):
+        nearest = positions_at(chain, found.q, threads=threads)
         held = in_own_voxel(nearest, places, volume.voxel_size_m) | (np.pad(volume.count, 1)[outer] > 0)
         label, reasons = np.where(held, REACHABLE, label), np.where(held, "", reasons)
     code = np.select([reasons == name for name in REASONS], list(range(len(REASONS))))

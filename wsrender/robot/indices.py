@@ -39,11 +39,12 @@ def evaluate_indices(
     inertia: str = "kernel",
     precision: str = "float64",
     device: str = "auto",
+    threads: int | None = None,
 ) -> dict[str, np.ndarray]:
     """Local indices at configurations ``q`` (n,) or (N, n) [rad or m]: a dict of arrays (N,).
 
     ``robot`` is a Robot, a user-defined robot or what `load_robot` takes. The other arguments are those of the job
-    document ``indices_at``. Raises InputError, ModelError, MissingInertiaError.
+    document ``indices_at``; ``threads`` change no bit. Raises InputError, ModelError, MissingInertiaError.
     """
     from wsrender.engine import evaluate_at
 
@@ -61,7 +62,7 @@ def evaluate_indices(
         precision=precision,
     )
     rows = configuration_rows(q, robot.chain.n)
-    values = evaluate_at(evaluation, rows, precision, device).values
+    values = evaluate_at(evaluation, rows, precision, device, threads=threads).values
     return dict(zip(evaluation.indices, values, strict=True))
 
 

@@ -40,20 +40,27 @@ def analyze(
         "task": task if isinstance(task, str) else list(task),
         **plain(fields),
     }
-    return execute_here(document, subject, progress, threads=threads, chunk_size=chunk_size)
+    return execute_here(document, subject, progress, threads, chunk_size)
 
 
 def kinetostatic_field(
-    robot: Any, sampling: Any = None, *, progress: Progress | bool | None = None, **fields: Any
+    robot: Any,
+    sampling: Any = None,
+    *,
+    progress: Progress | bool | None = None,
+    threads: int | None = None,
+    chunk_size: int | None = None,
+    **fields: Any,
 ) -> Result:
     """The force field of a robot's limits and conditioning over its workspace, as a volume of vectors.
 
     ``robot`` is as in `analyze`; ``sampling`` one of Grid, Random, Sobol, BoundaryBiased (default Sobol(100000));
     ``fields`` are the other fields of the job document ``kinetostatic_field``: field (which forces act), voxel_size_m,
-    device. `force_field` gives the forces of single configurations.
+    device. ``threads`` and ``chunk_size`` change no bit of the result. `force_field` gives the forces of single
+    configurations.
 
     Raises DocumentError, InputError, ModelError, ResourceError.
     """
     subject = as_robot(robot)
     document = {"analysis": "kinetostatic_field", **arm_entry(subject), **sampling_entry(sampling), **plain(fields)}
-    return execute_here(document, subject, progress)
+    return execute_here(document, subject, progress, threads, chunk_size)

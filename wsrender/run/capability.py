@@ -12,6 +12,7 @@ from wsrender.reachability.targets import check_tolerance
 from wsrender.result import Result
 from wsrender.robot import Robot
 from wsrender.robots.chain import Chain
+from wsrender.run.execution import Execution
 from wsrender.run.provenance import job_entry, provenance, robot_entry
 from wsrender.run.settled_device import settled_device
 from wsrender.sampling import plan_sampling
@@ -47,7 +48,9 @@ class CapabilityPlan:
             "shards": [list(shard) for shard in self.shards],
         }
 
-    def run_shard(self, shard: int, progress: Callable[[int], None] | None, **execution: Any) -> dict[str, np.ndarray]:
+    def run_shard(
+        self, shard: int, progress: Callable[[int], None] | None, execution: Execution
+    ) -> dict[str, np.ndarray]:
         """Cells (V, 3), from which directions they are reached (V, bytes, a bit each), undecided directions (V,)."""
         job = self.job
         found = capability(
@@ -60,7 +63,7 @@ class CapabilityPlan:
             seed=job.seed,
             precision=job.precision,
             device=self.device,
-            threads=execution.get("threads"),
+            threads=execution.threads,
             progress=progress,
         )
         return {"cells": found.cells, "bits": np.packbits(found.reached, axis=1), "undecided": found.undecided}
@@ -69,7 +72,7 @@ class CapabilityPlan:
         """There is one shard: nothing to merge."""
         raise ValueError("capability has one shard")
 
-    def finish(self, partial: dict[str, np.ndarray], seconds: dict[str, float]) -> Result:
+    def finish(self, partial: dict[str, np.ndarray], seconds: dict[str, float], execution: Execution) -> Result:
         """Volume data, the table ``capability`` of reached voxels, the table ``directions``, and the document."""
         job, cells = self.job, partial["cells"]
         reached = np.unpackbits(partial["bits"], axis=1, count=job.directions).astype(bool)

@@ -11,6 +11,7 @@ from wsrender.multi.body_elements import body_elements
 from wsrender.reachability import Event
 from wsrender.result import Result
 from wsrender.robot import Robot
+from wsrender.run.execution import Execution
 from wsrender.run.headline import headline_of, no_headline
 from wsrender.run.one_shard import OneShard
 from wsrender.run.provenance import job_entry, provenance, robot_entry
@@ -47,7 +48,9 @@ class CollaborativePlan(OneShard):
         samples = float(self.job.samples * self.job.seeds * len(self.robots))
         return {"samples": samples, "bytes": 48.0 * self.job.samples, "seconds": samples / POSITIONS_PER_S}
 
-    def run_shard(self, shard: int, progress: Callable[[int], None] | None, **execution: Any) -> dict[str, np.ndarray]:
+    def run_shard(
+        self, shard: int, progress: Callable[[int], None] | None, execution: Execution
+    ) -> dict[str, np.ndarray]:
         """V₀ … V_d of every seed."""
         job, done, rows, cells = self.job, 0, [], []
         for seed in range(job.seed, job.seed + job.seeds):
@@ -56,7 +59,7 @@ class CollaborativePlan(OneShard):
             for side, source in enumerate(self.sources):
                 if isinstance(source, Robot):
                     sampling = Random(job.samples, seed=(2 * seed + side) % 2**63)
-                    source = sampled_positions(source, sampling, self.device)
+                    source = sampled_positions(source, sampling, self.device, threads=execution.threads)
                     done += job.samples
                 points.append(source)
                 if progress:
@@ -68,15 +71,18 @@ class CollaborativePlan(OneShard):
         arrays = {"volumes": np.array(rows), "cells": np.array(cells)}
         return arrays
 
-    def refine(self, partial: dict[str, np.ndarray], progress: Progress | None) -> dict[str, np.ndarray]:
+    def refine(
+        self, partial: dict[str, np.ndarray], progress: Progress | None, execution: Execution
+    ) -> dict[str, np.ndarray]:
         """With the true volume, if asked."""
         if self.job.refined_volume is None:
             return partial
         chains = [robot.chain for robot in self.robots]
-        true = refined_together(chains, {"true": Event(2, 2)}, self.job.refined_volume, self.device, progress)
+        events, tolerance = {"true": Event(2, 2)}, self.job.refined_volume
+        true = refined_together(chains, events, tolerance, self.device, progress, execution.threads)
         return partial | {"refined": np.array(json.dumps(true))}
 
-    def finish(self, partial: dict[str, np.ndarray], seconds: dict[str, float]) -> Result:
+    def finish(self, partial: dict[str, np.ndarray], seconds: dict[str, float], execution: Execution) -> Result:
         """Means and variances over the seeds, and the bias where the true volume is known."""
         volumes, job = partial["volumes"], self.job
         mean, variance = volumes.mean(axis=0), _variance(volumes)

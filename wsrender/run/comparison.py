@@ -8,6 +8,7 @@ import numpy as np
 
 from wsrender.result import Result
 from wsrender.robot import Robot
+from wsrender.run.execution import Execution
 from wsrender.run.headline import no_headline
 from wsrender.run.one_shard import OneShard
 from wsrender.run.provenance import job_entry, provenance
@@ -46,17 +47,21 @@ class RobotComparisonPlan(OneShard):
         """What is settled once, for every robot."""
         return self.several.resolved()
 
-    def run_shard(self, shard: int, progress: Callable[[int], None] | None, **execution: Any) -> dict[str, np.ndarray]:
+    def run_shard(
+        self, shard: int, progress: Callable[[int], None] | None, execution: Execution
+    ) -> dict[str, np.ndarray]:
         """Partial results of the robots."""
-        return self.several.run(progress, **execution)
+        return self.several.run(progress, execution)
 
-    def refine(self, partial: dict[str, np.ndarray], progress: Progress | None) -> dict[str, np.ndarray]:
+    def refine(
+        self, partial: dict[str, np.ndarray], progress: Progress | None, execution: Execution
+    ) -> dict[str, np.ndarray]:
         """With the refined measure of every robot, if asked."""
-        return self.several.refine(partial, progress)
+        return self.several.refine(partial, progress, execution)
 
-    def finish(self, partial: dict[str, np.ndarray], seconds: dict[str, float]) -> Result:
+    def finish(self, partial: dict[str, np.ndarray], seconds: dict[str, float], execution: Execution) -> Result:
         """Every robot's volume, and the table of values and differences from the first robot."""
-        results = self.several.results(partial)
+        results = self.several.results(partial, execution)
         names = self.several.names
         common = common_entries(self.job, self.several, results)
         rows = _rows(common["robots"])

@@ -19,6 +19,7 @@ from wsrender.robot import Robot
 from wsrender.run.design_notices import design_notices, fault_entries
 from wsrender.run.design_result import best_entries, best_headline, exact_best, objective_entries, tables_of
 from wsrender.run.design_values import FAULTS, Evaluator
+from wsrender.run.execution import Execution
 from wsrender.run.one_shard import OneShard
 from wsrender.run.parallel_exact import region_of
 from wsrender.run.provenance import job_entry, provenance, robot_entry
@@ -92,14 +93,14 @@ class DesignPlan(OneShard):
         """A search that was stopped takes the designs that it has evaluated from its checkpoint."""
         return True
 
-    def run_shard(self, shard: int, progress: Callable[[int], None] | None, **execution: Any) -> Arrays:
+    def run_shard(self, shard: int, progress: Callable[[int], None] | None, execution: Execution) -> Arrays:
         """All designs (E, n) in the order of the search, their values (E, k), and what the search says."""
         given, width = self.job.evaluations, len(self._columns)
         own = EvaluationFile(given.path, self._columns) if isinstance(given, EvaluationsInFile) else None
         known = own.rows() if own else np.array(given, np.float64).reshape(-1, width)
-        kept = EvaluationFile(execution["checkpoint"], self._columns) if "checkpoint" in execution else None
+        kept = EvaluationFile(execution.checkpoint, self._columns) if execution.checkpoint else None
         before = _with_values(kept.rows()) if kept else np.empty((0, width))
-        evaluator = Evaluator(self, {name: execution[name] for name in ("threads",) if name in execution})
+        evaluator = Evaluator(self, execution)
         evaluator.count = len(before)
 
         def keep(designs: np.ndarray, values: np.ndarray) -> None:
@@ -123,7 +124,7 @@ class DesignPlan(OneShard):
         about = {"ended": ended, "evaluated": evaluator.count, "faults": fault_entries(evaluator)}
         return {"designs": designs, "values": values, "about": np.array(json.dumps(about))}
 
-    def finish(self, partial: Arrays, seconds: dict[str, float]) -> Result:
+    def finish(self, partial: Arrays, seconds: dict[str, float], execution: Execution) -> Result:
         """The best design, all designs, how the search went, and the best design's mesh where it is exact."""
         designs, values, about = partial["designs"], partial["values"], json.loads(str(partial["about"]))
         score = scores(values, self.weights)

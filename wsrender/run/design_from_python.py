@@ -18,6 +18,8 @@ def design_optimization(
     *,
     resume: Result | None = None,
     progress: Progress | bool | None = None,
+    threads: int | None = None,
+    chunk_size: int | None = None,
     **fields: Any,
 ) -> Result:
     """Find parameters at which the result of another analysis is best.
@@ -27,7 +29,7 @@ def design_optimization(
     "exact_inscribed_sphere" | "exact_inscribed_cube" | "inscribed_sphere" | "inscribed_cube" | "/volume_m3/occupied" …,
     "goal": "maximize" | "minimize", "weight": …}. ``fields`` are the other fields of the job document
     ``design_optimization``: constraints, search, evaluations. ``resume`` is an earlier result, whose designs are not
-    evaluated again.
+    evaluated again. ``threads`` and ``chunk_size`` are those of `analyze`, for the runs of the designs.
 
     Raises DocumentError, InputError, NotConvergedError, and MissingExtraError for a Pareto search without pymoo.
     """
@@ -42,7 +44,7 @@ def design_optimization(
         if "evaluations" in fields:
             raise InputError("evaluations", "must not be given together with resume: one of the two")
         document["evaluations"] = _rows(resume)
-    return execute_here(document, None, progress)
+    return execute_here(document, None, progress, threads, chunk_size)
 
 
 def _rows(earlier: Result) -> list[list[float | None]]:

@@ -11,6 +11,7 @@ from wsrender.design.inscribed import inscribed_cube_edge, inscribed_sphere_radi
 from wsrender.errors import InputError, NotConvergedError, NumericalError, ResourceError, WsrenderError
 from wsrender.parallel.ball_region import BallRegion
 from wsrender.result import Result
+from wsrender.run.execution import Execution
 from wsrender.spec import parse_job
 from wsrender.spec.design import CUBE, EXACT, EXACT_CUBE, EXACT_SPHERE, EXACT_VOLUME, SPHERE, Objective
 from wsrender.spec.json_pointer import found_at
@@ -40,7 +41,7 @@ class Evaluator:
     ``count`` is the number of designs evaluated.
     """
 
-    def __init__(self, plan: "DesignPlan", execution: dict[str, Any]):
+    def __init__(self, plan: "DesignPlan", execution: Execution):
         self.plan, self.execution = plan, execution
         self.faults: dict[tuple[str, str], Fault] = {}
         self.count = 0
@@ -92,7 +93,7 @@ class Evaluator:
     def _run(self, job: Any) -> Result:
         from wsrender.run.steps import execute  # which knows this analysis too
 
-        return execute(job, **self.execution)
+        return execute(job, threads=self.execution.threads, chunk_size=self.execution.chunk_size)
 
     def _exact(self, designs: np.ndarray) -> np.ndarray:
         placed, rows = [], []

@@ -34,6 +34,7 @@ from wsrender.parallel.five_bar.tables import (
 )
 from wsrender.plots.five_bar import MODE_VOLUMES
 from wsrender.result import Result
+from wsrender.run.execution import Execution
 from wsrender.run.headline import headline, no_headline
 from wsrender.run.one_shard import OneShard
 from wsrender.run.partial_tables import arrays_of_tables, tables_of_arrays
@@ -80,7 +81,9 @@ class FiveBarPlan(OneShard):
         cells = float(self._cells + self._joint_cells)
         return {"samples": cells, "bytes": 200.0 * cells, "seconds": cells / CELLS_PER_S}
 
-    def run_shard(self, shard: int, progress: Callable[[int], None] | None, **execution: Any) -> dict[str, np.ndarray]:
+    def run_shard(
+        self, shard: int, progress: Callable[[int], None] | None, execution: Execution
+    ) -> dict[str, np.ndarray]:
         """Boundary, loci, aspects, maps and iso-curves of every working mode."""
         five_bar, modes = self.five_bar, self.job.working_modes
         regions = {mode: workspace(five_bar, mode) for mode in modes}
@@ -113,7 +116,7 @@ class FiveBarPlan(OneShard):
         arrays = {"about": np.array(json.dumps(about, allow_nan=False)), **arrays_of_tables(tables)}
         return arrays | {f"map {m} {name}": array for m, values in maps.items() for name, array in values.items()}
 
-    def finish(self, partial: dict[str, np.ndarray], seconds: dict[str, float]) -> Result:
+    def finish(self, partial: dict[str, np.ndarray], seconds: dict[str, float], execution: Execution) -> Result:
         """Areas, aspects, least condition numbers, and the tables and maps behind the pictures."""
         about = json.loads(str(partial["about"]))
         tables = tables_of_arrays(partial)

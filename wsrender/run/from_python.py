@@ -47,10 +47,16 @@ def plain(fields: dict[str, Any]) -> dict[str, Any]:
     return {name: list(value) if isinstance(value, tuple | set) else value for name, value in fields.items()}
 
 
-def execute_here(document: Any, robots: Any, progress: Progress | bool | None, **execution: Any) -> Result:
+def execute_here(
+    document: Any,
+    robots: Any,
+    progress: Progress | bool | None,
+    threads: int | None,
+    chunk_size: int | None,
+) -> Result:
     """Run a job here; ``progress`` True shows a bar."""
     job = parse_job(document)
     if progress is True:
         with RunProgress() as bar:
-            return execute(job, bar, robot=robots, **execution)
-    return execute(job, progress or None, robot=robots, **execution)
+            return execute(job, bar, robots, threads=threads, chunk_size=chunk_size)
+    return execute(job, progress or None, robots, threads=threads, chunk_size=chunk_size)

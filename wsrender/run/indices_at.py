@@ -14,6 +14,7 @@ from wsrender.robot import Robot
 from wsrender.robot.indices import evaluation_of_job
 from wsrender.robot.model_robot import configuration_rows
 from wsrender.run.estimate import RATE_CPU_CORE, RATE_HOST, SLOWER
+from wsrender.run.execution import Execution
 from wsrender.run.one_shard import OneShard
 from wsrender.run.provenance import index_choices, job_entry, provenance, robot_entry
 from wsrender.run.settled_device import settled_device
@@ -42,7 +43,7 @@ class IndicesAtPlan(OneShard):
         columns = n + position + quaternion + len(self.evaluation.indices)
         return {"samples": float(samples), "bytes": 8.0 * samples * columns, "seconds": samples / rate}
 
-    def run_shard(self, shard: int, progress: Callable[[int], None] | None, **execution: Any) -> Evaluated:
+    def run_shard(self, shard: int, progress: Callable[[int], None] | None, execution: Execution) -> Evaluated:
         """Positions and values of all rows."""
         rows = evaluate_at(
             self.evaluation,
@@ -50,13 +51,13 @@ class IndicesAtPlan(OneShard):
             self.job.precision,
             self.device,
             with_orientation=self.evaluation.host_chain is None,
-            threads=execution.get("threads"),
+            threads=execution.threads,
         )
         if progress:
             progress(len(self.q))
         return rows
 
-    def finish(self, partial: Evaluated, seconds: dict[str, float]) -> Result:
+    def finish(self, partial: Evaluated, seconds: dict[str, float], execution: Execution) -> Result:
         """The map, one row per configuration in the order asked, and the extremes of each index."""
         names = self.evaluation.indices
         units = units_of(self.evaluation)

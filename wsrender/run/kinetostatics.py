@@ -14,6 +14,7 @@ from wsrender.kinetostatics.posture_data import posture_tables
 from wsrender.notices import Notice, entries
 from wsrender.result import Result
 from wsrender.robot import Robot
+from wsrender.run.execution import Execution
 from wsrender.run.headline import no_headline
 from wsrender.run.one_shard import OneShard
 from wsrender.run.provenance import job_entry, provenance, robot_entry
@@ -59,13 +60,15 @@ class KinetostaticFieldPlan(OneShard):
         """What is settled once: the device that "auto" means, target, voxel size, shards."""
         return super().resolved() | {"voxel_size_m": self.voxel_size_m}
 
-    def run_shard(self, shard: int, progress: Callable[[int], None] | None, **execution: Any) -> dict[str, np.ndarray]:
+    def run_shard(
+        self, shard: int, progress: Callable[[int], None] | None, execution: Execution
+    ) -> dict[str, np.ndarray]:
         """Of every voxel: cell (V, 3), number of configurations (V,), sums (V, 6 + scalars), greatest force (V,).
 
         ``stiffness`` (P,) [N/m] at random postures; ``loop`` (5,): most work of closed paths [J], length [m], how many,
         bound of the work [J], share of paths on which the force is clipped.
         """
-        force_field = ForceField(self.robot, self.job.field, self.device)
+        force_field = ForceField(self.robot, self.job.field, self.device, threads=execution.threads)
         sampling = plan_sampling(self.robot.chain, self.job.sampling, MOST_SAMPLES)
         cells, rows = np.empty((sampling.count, 3), np.int64), np.empty((sampling.count, 6 + len(SCALARS)))
         shown = None
@@ -90,7 +93,7 @@ class KinetostaticFieldPlan(OneShard):
         about = np.array([loop.work_j, loop.length_m, loop.paths, loop.bound_j, loop.clipped])
         return arrays | {"stiffness": stiffnesses(force_field), "loop": about}
 
-    def finish(self, partial: dict[str, np.ndarray], seconds: dict[str, float]) -> Result:
+    def finish(self, partial: dict[str, np.ndarray], seconds: dict[str, float], execution: Execution) -> Result:
         """Volume data with the vector "force" (and "torque") per voxel, and the document."""
         job, count = self.job, partial["count"]
         means = partial["sums"] / count[:, None]

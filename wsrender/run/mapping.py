@@ -17,6 +17,7 @@ from wsrender.notices import Notice, entries
 from wsrender.parallel.workspace_points import workspace_points
 from wsrender.result import Result
 from wsrender.robot import Robot
+from wsrender.run.execution import Execution
 from wsrender.run.headline import no_headline
 from wsrender.run.one_shard import OneShard
 from wsrender.run.provenance import job_entry, provenance, robot_entry
@@ -56,9 +57,11 @@ class MappingPlan(OneShard):
         points = float(self.samples)
         return {"samples": points, "bytes": 1000.0 * points, "seconds": points / POINTS_PER_S}
 
-    def run_shard(self, shard: int, progress: Callable[[int], None] | None, **execution: Any) -> dict[str, np.ndarray]:
+    def run_shard(
+        self, shard: int, progress: Callable[[int], None] | None, execution: Execution
+    ) -> dict[str, np.ndarray]:
         """Points of both robots, the mapping of each offset, and the curve of the best."""
-        master, slave = (self._points(source, side) for side, source in enumerate(self.sources))
+        master, slave = (self._points(source, side, execution.threads) for side, source in enumerate(self.sources))
         space, own = (_space(points, self.job.containment) for points in (master, slave))
         given = [self._given(np.array(offset)) for offset in self.job.offsets_m]
         found = [self._found(space, master, slave, each) for each in given]
@@ -76,7 +79,7 @@ class MappingPlan(OneShard):
             progress(self.samples)
         return {**arrays, "about": np.array(json.dumps(about))}
 
-    def finish(self, partial: dict[str, np.ndarray], seconds: dict[str, float]) -> Result:
+    def finish(self, partial: dict[str, np.ndarray], seconds: dict[str, float], execution: Execution) -> Result:
         """The best mapping, the others beside it, the points that fail, and the shapes."""
         about, master = json.loads(str(partial["about"])), partial["master"]
         best = about["offsets"][about["best"]]
@@ -115,12 +118,13 @@ class MappingPlan(OneShard):
             tables["scales"] = _curve_table(partial, about["slave_m3"])
         return Result(document, tables=tables, meshes=meshes)
 
-    def _points(self, source: Source, side: int) -> np.ndarray:
+    def _points(self, source: Source, side: int, threads: int | None) -> np.ndarray:
         if isinstance(source, np.ndarray):
             return source
         if isinstance(source, MappedMechanism):
-            return workspace_points(source.mechanism, source.count, device=self.device)
-        return sampled_positions(source, _sampling(self.job, side), self.device, max_samples=MOST_POINTS)
+            return workspace_points(source.mechanism, source.count, device=self.device, threads=threads)
+        sampling = _sampling(self.job, side)
+        return sampled_positions(source, sampling, self.device, max_samples=MOST_POINTS, threads=threads)
 
     def _rotation(self) -> np.ndarray:
         return self.job.rotation.matrix()[:3, :3] if self.job.rotation else np.eye(3)

@@ -12,6 +12,7 @@ from wsrender.parallel.exact import ExactWorkspace
 from wsrender.parallel.mechanism import mechanism_of
 from wsrender.parallel.solids import solid_workspace
 from wsrender.result import Result
+from wsrender.run.execution import Execution
 from wsrender.run.headline import headline
 from wsrender.run.one_shard import OneShard
 from wsrender.run.parallel import plan_parallel
@@ -61,10 +62,10 @@ class MethodComparisonPlan(OneShard):
         """What is settled once: device, target, sizes of voxels, shards."""
         return super().resolved() | {"sizes": list(self.sizes)}
 
-    def run_shard(self, shard: int, progress: Callable[[int], None] | None, **execution: Any) -> Arrays:
+    def run_shard(self, shard: int, progress: Callable[[int], None] | None, execution: Execution) -> Arrays:
         """Method, edge of its voxels or triangles, volume and seconds of every run."""
         rows = []
-        for row in self._runs(execution.get("threads")):
+        for row in self._runs(execution):
             rows.append(row)
             if progress:
                 progress(len(rows))
@@ -73,7 +74,7 @@ class MethodComparisonPlan(OneShard):
             "numbers": np.array([row[1:] for row in rows], np.float64),
         }
 
-    def finish(self, partial: Arrays, seconds: dict[str, float]) -> Result:
+    def finish(self, partial: Arrays, seconds: dict[str, float], execution: Execution) -> Result:
         """The table of all runs, with errors from the exact volume; their times are in ``timing_s``."""
         method, (size, volume, took) = partial["method"], partial["numbers"].T
         exact = ExactWorkspace.of(self.region)
@@ -100,7 +101,7 @@ class MethodComparisonPlan(OneShard):
         }
         return Result(document, tables={"methods": Table(columns, UNITS)})
 
-    def _runs(self, threads: int | None) -> Iterator[tuple[str, float, float, float]]:
+    def _runs(self, execution: Execution) -> Iterator[tuple[str, float, float, float]]:
         """(method, edge, volume, seconds); every first run of a kernel is repeated, so that no compilation is timed."""
         for repeated in (False, True):
             started = time.perf_counter()
@@ -111,9 +112,9 @@ class MethodComparisonPlan(OneShard):
         for method in GRIDS:
             for number, size in enumerate(self.sizes):
                 if number == 0:
-                    self._counted(method, size, threads)
+                    self._counted(method, size, execution)
                 started = time.perf_counter()
-                volume = self._counted(method, size, threads)
+                volume = self._counted(method, size, execution)
                 yield method, size, volume, time.perf_counter() - started
         largest = float(np.max(self.region.inside_radii, initial=0.0))
         for subdivisions in self.job.ball_subdivisions:
@@ -123,7 +124,7 @@ class MethodComparisonPlan(OneShard):
             edge = ICOSAHEDRON_EDGE * largest / 2**subdivisions
             yield SOLIDS, edge, volume, time.perf_counter() - started
 
-    def _counted(self, method: Any, size: float, threads: int | None) -> float:
+    def _counted(self, method: Any, size: float, execution: Execution) -> float:
         """Volume of the voxels that a grid method finds [m³]."""
         job = ParallelWorkspaceJob(
             mechanism=self.job.mechanism,
@@ -132,7 +133,7 @@ class MethodComparisonPlan(OneShard):
             voxel_size_m=size,
             device=self.device,
         )
-        partial = plan_parallel(job).run_shard(0, None, **({"threads": threads} if threads else {}))
+        partial = plan_parallel(job).run_shard(0, None, execution)
         return len(partial["cells"]) * size**3
 
 

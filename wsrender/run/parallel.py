@@ -24,6 +24,7 @@ from wsrender.reachability.volume_estimate import wilson
 from wsrender.result import Result
 from wsrender.robot import Robot
 from wsrender.robot.indices import task_rows
+from wsrender.run.execution import Execution
 from wsrender.run.parallel_exact import boundary_partial, boundary_result, region_of
 from wsrender.run.parallel_lattice import common_flat, described, lattice_of, quantity, settled_lattice
 from wsrender.run.parallel_refined import labels_at_poses, refined_entry
@@ -109,10 +110,10 @@ class ParallelPlan:
             return partial["orientations"] == len(self.orientations.rotations)
         return np.ones(len(partial["cells"]), bool)
 
-    def run_shard(self, shard: int, progress: Callable[[int], None] | None, **execution: Any) -> Arrays:
+    def run_shard(self, shard: int, progress: Callable[[int], None] | None, execution: Execution) -> Arrays:
         """Of the shard's voxels that are reached: flat number in the block, orientations, weights, indices."""
         if self.job.kind == "orientation":
-            return self._at_point(progress, **execution)
+            return self._at_point(progress, execution)
         if self.job.method in BY_BOUNDARY:
             return boundary_partial(self)
         if self.block is None:
@@ -133,7 +134,8 @@ class ParallelPlan:
                 precision=self.job.precision,
                 device=self.device,
                 progress=report,
-                **execution,
+                threads=execution.threads,
+                chunk_size=execution.chunk_size,
             )
             return replace(found, cells=found.cells - first)
 
@@ -205,9 +207,8 @@ class ParallelPlan:
         poses[:, :3, :3] = variant.rotations(self.orientations.rotations[:1])[0]
         return poses
 
-    def _at_point(self, progress: Callable[[int], None] | None, **execution: Any) -> Arrays:
-        execution.pop("chunk_size", None)
-        options = {"precision": self.job.precision, "device": self.device, **execution}
+    def _at_point(self, progress: Callable[[int], None] | None, execution: Execution) -> Arrays:
+        options = {"precision": self.job.precision, "device": self.device, "threads": execution.threads}
         options["by_subsystem"] = self.job.method == "grid_by_subsystem"
         rotations = self.orientations.rotations
         labels = np.full(len(rotations), UNREACHABLE, np.int8)
@@ -217,15 +218,19 @@ class ParallelPlan:
             labels = np.where(labels == REACHABLE, labels, np.where(found == UNREACHABLE, labels, found))
             if progress:
                 progress(number * len(rotations))
-        return {"reached": labels == REACHABLE, "undecided": labels == UNDECIDED, "share": self._share_at_point()}
+        return {
+            "reached": labels == REACHABLE,
+            "undecided": labels == UNDECIDED,
+            "share": self._share_at_point(execution.threads),
+        }
 
-    def _share_at_point(self) -> np.ndarray:
+    def _share_at_point(self, threads: int | None) -> np.ndarray:
         """Value and 95 % interval (3,) of the share of the orientations' ranges, from random ones, not from levels."""
         assert self.job.orientations is not None and self.job.position_m is not None
         numeric, searched = self.mechanism.numeric, self.search is not None
         count = 1000 if numeric else 4000 if searched else 100_000
         rotations = random_orientations(self.job.orientations, count, self.job.seed)
-        labels = labels_at_poses(self, np.tile(self.job.position_m, (count, 1)), rotations)
+        labels = labels_at_poses(self, np.tile(self.job.position_m, (count, 1)), rotations, threads)
         surely, possibly = int((labels == REACHABLE).sum()), int((labels != UNREACHABLE).sum())
         low, high = wilson(np.array(surely), np.array(count))[0], wilson(np.array(possibly), np.array(count))[1]
         return np.array([(surely + possibly) / (2 * count), low, high])
@@ -237,7 +242,7 @@ class ParallelPlan:
         asked = merged.pop("asked").reshape(2, -1).sum(axis=0)
         return {"asked": asked, **{name: values[order] for name, values in merged.items()}}
 
-    def refine(self, partial: Arrays, progress: Callable[[int, int, str], None] | None) -> Arrays:
+    def refine(self, partial: Arrays, progress: Callable[[int, int, str], None] | None, execution: Execution) -> Arrays:
         """The merged partial result, with the refined volume if asked."""
         if self.job.refined_volume is None or self.unmeasured:
             return partial
@@ -246,9 +251,9 @@ class ParallelPlan:
             if progress:
                 progress(done, max(total, done), "refining the volume")
 
-        return {**partial, "refined": np.array(json.dumps(refined_entry(self, partial, report)))}
+        return {**partial, "refined": np.array(json.dumps(refined_entry(self, partial, report, execution.threads)))}
 
-    def finish(self, partial: Arrays, seconds: dict[str, float]) -> Result:
+    def finish(self, partial: Arrays, seconds: dict[str, float], execution: Execution) -> Result:
         """Volume data or mesh, document, tables and the legs in a typical pose."""
         if self.job.method in BY_BOUNDARY:
             return boundary_result(self, partial, seconds)

@@ -36,7 +36,9 @@ Labelled = Callable[[np.ndarray], np.ndarray]
 """Points (N, 3), world → labels (N, K) int8, as of `estimate_volumes`."""
 
 
-def refined_entry(plan: "ParallelPlan", partial: "Arrays", progress: Callable[[int, int], None]) -> dict[str, Any]:
+def refined_entry(
+    plan: "ParallelPlan", partial: "Arrays", progress: Callable[[int, int], None], threads: int | None
+) -> dict[str, Any]:
     """What is measured with its 95 % interval, from uniform points that inverse kinematics decides.
 
     The strata are inner cells, the border and the rest of a coarse lattice around what can be reached. ``progress``:
@@ -50,7 +52,7 @@ def refined_entry(plan: "ParallelPlan", partial: "Arrays", progress: Callable[[i
     cells = _cells(plan)
     flat = cells.flat if isinstance(cells, FlatLattice) else None
     sets = _sets(plan)
-    labelled = _labelled(plan, sets)
+    labelled = _labelled(plan, sets, threads)
 
     def membership(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         labels = labelled(points if flat is None else flat.in_world(points))
@@ -59,7 +61,7 @@ def refined_entry(plan: "ParallelPlan", partial: "Arrays", progress: Callable[[i
     events = {"all": Event(len(sets), len(sets)), "any": Event(1, len(sets), precise=False)}
     found = estimate_volumes(
         membership,
-        _strata(plan, partial, cells),
+        _strata(plan, partial, cells, threads),
         cells.voxel_size_m,
         events if len(sets) > 1 else {"all": events["all"]},
         tolerance,
@@ -118,30 +120,30 @@ def _doubled(levels: int) -> int:
     return (levels + 1) // 2 if levels > 2 else levels
 
 
-def _labelled(plan: "ParallelPlan", sets: list[OrientationSet]) -> Labelled:
+def _labelled(plan: "ParallelPlan", sets: list[OrientationSet], threads: int | None) -> Labelled:
     if plan.job.kind == "constant_orientation":
         rotations = plan.orientations.rotations[0]
-        return lambda points: labels_at_poses(plan, points, rotations)[:, None]
-    return lambda points: np.stack([_of_set(plan, points, each) for each in sets], axis=1)
+        return lambda points: labels_at_poses(plan, points, rotations, threads)[:, None]
+    return lambda points: np.stack([_of_set(plan, points, each, threads) for each in sets], axis=1)
 
 
-def labels_at_poses(plan: "ParallelPlan", points: np.ndarray, rotations: np.ndarray) -> np.ndarray:
+def labels_at_poses(plan: "ParallelPlan", points: np.ndarray, rotations: np.ndarray, threads: int | None) -> np.ndarray:
     """Labels (N,) int8 of points (N, 3), world, at orientations (3, 3) or (N, 3, 3) against the fixed base."""
     if plan.search is not None:
-        return plan.search.labels(points, rotations, device=plan.device)
+        return plan.search.labels(points, rotations, device=plan.device, threads=threads)
     mechanism = plan.mechanism
     there = in_base_frame(mechanism, points)
     if mechanism.numeric or rotations.ndim == 3:
         poses = np.broadcast_to(np.eye(4), (len(points), 4, 4)).copy()
         poses[:, :3, :3], poses[:, :3, 3] = rotations, there
-        return poses_labelled(mechanism, poses, device=plan.device)[0]
-    counts = count_at(mechanism, there, rotations[None], device=plan.device)
+        return poses_labelled(mechanism, poses, device=plan.device, threads=threads)[0]
+    counts = count_at(mechanism, there, rotations[None], device=plan.device, threads=threads)
     labels = np.zeros(len(points), np.int8)
     labels[counts.cells[counts.reached > 0]] = REACHABLE
     return labels
 
 
-def _of_set(plan: "ParallelPlan", points: np.ndarray, orientations: OrientationSet) -> np.ndarray:
+def _of_set(plan: "ParallelPlan", points: np.ndarray, orientations: OrientationSet, threads: int | None) -> np.ndarray:
     """Whether enough of a set's orientations are reached, labels (N,)."""
     weights = orientations.whole_weights.astype(np.int64)
     least = (
@@ -154,6 +156,7 @@ def _of_set(plan: "ParallelPlan", points: np.ndarray, orientations: OrientationS
             orientations.rotations,
             weights=weights.astype(np.int32),
             device=plan.device,
+            threads=threads,
         )
         labels = np.zeros(len(points), np.int8)
         labels[found.cells[found.weights >= least]] = REACHABLE
@@ -161,7 +164,7 @@ def _of_set(plan: "ParallelPlan", points: np.ndarray, orientations: OrientationS
     surely, lost = np.zeros(len(points), np.int64), np.zeros(len(points), np.int64)
     for rotation, weight in zip(orientations.rotations, weights, strict=True):
         open_points = np.flatnonzero(weights.sum() - lost >= least)  # others can have too few only
-        labels = labels_at_poses(plan, points[open_points], rotation)
+        labels = labels_at_poses(plan, points[open_points], rotation, threads)
         surely[open_points[labels == REACHABLE]] += weight
         lost[open_points[(labels != REACHABLE) & (labels != UNDECIDED)]] += weight
     may = weights.sum() - lost >= least
@@ -209,11 +212,11 @@ def _between_levels(plan: "ParallelPlan", lower: np.ndarray, upper: np.ndarray) 
     return np.maximum(lower - most, origin - search.reach_m), np.minimum(upper + most, origin + search.reach_m)
 
 
-def _strata(plan: "ParallelPlan", partial: "Arrays", cells: LatticeBlock) -> list[np.ndarray]:
+def _strata(plan: "ParallelPlan", partial: "Arrays", cells: LatticeBlock, threads: int | None) -> list[np.ndarray]:
     """Inner cells, the border and the rest: cells (M, 3) in which voxels were reached, and their neighbours."""
     assert plan.block is not None
     searched = plan.search is not None and plan.job.kind == "constant_orientation"
-    labels = _labels_of_cells(plan, cells) if searched else np.full(cells.shape, UNDECIDED)
+    labels = _labels_of_cells(plan, cells, threads) if searched else np.full(cells.shape, UNDECIDED)
     found = plan.counted(partial)
     centers = plan.block.centers(partial["cells"][found])
     if isinstance(cells, FlatLattice):
@@ -228,11 +231,12 @@ def _strata(plan: "ParallelPlan", partial: "Arrays", cells: LatticeBlock) -> lis
     return [np.argwhere((classes == code) & kept) + cells.first_voxel for code in np.unique(classes)]
 
 
-def _labels_of_cells(plan: "ParallelPlan", cells: LatticeBlock) -> np.ndarray:
+def _labels_of_cells(plan: "ParallelPlan", cells: LatticeBlock, threads: int | None) -> np.ndarray:
     """Labels (nx, ny, nz) of cells: reachable where their middle is, unreachable where nothing in them is, by proof."""
     assert plan.search is not None
     flat = cells.flat if isinstance(cells, FlatLattice) else None
     centers = cells.centers(np.arange(cells.size))
     around = cells.voxel_size_m / 2 * np.sqrt(3 if flat is None else flat.dimension)
     rotation = plan.orientations.rotations[0]
-    return plan.search.labels(centers, rotation, around_m=around, device=plan.device).reshape(cells.shape)
+    how = {"around_m": around, "device": plan.device, "threads": threads}
+    return plan.search.labels(centers, rotation, **how).reshape(cells.shape)

@@ -17,6 +17,7 @@ from wsrender.errors import NumericalError
 from wsrender.notices import Notice, entries
 from wsrender.result import Result
 from wsrender.robot import Robot, robot_with_model
+from wsrender.run.execution import Execution
 from wsrender.run.headline import headline, no_headline
 from wsrender.run.one_shard import OneShard
 from wsrender.run.partial_tables import arrays_of_tables, tables_of_arrays
@@ -54,11 +55,14 @@ class PlanarBoundaryPlan(OneShard):
         count = float(self.samples)
         return {"samples": count, "bytes": 64.0 * count, "seconds": SWEEP_S + count / POSITIONS_PER_S}
 
-    def run_shard(self, shard: int, progress: Callable[[int], None] | None, **execution: Any) -> dict[str, np.ndarray]:
+    def run_shard(
+        self, shard: int, progress: Callable[[int], None] | None, execution: Execution
+    ) -> dict[str, np.ndarray]:
         """Both boundaries, the samples of the picture, and the answers about points."""
         job = self.job
         exact = ExactBoundary(self.chain)
-        positions = sampled_positions(self.robot, job.sampling, self.device, progress=progress)
+        how = {"threads": execution.threads, "progress": progress}
+        positions = sampled_positions(self.robot, job.sampling, self.device, **how)
         points = self.chain.plane.coordinates(positions)
         estimated = monte_carlo_boundary(self.chain, points, job.cells, job.line_tolerance_m2, job.arc_tolerance_m4)
         about = {"exact": _exact_entry(exact), "monte_carlo": _estimated_entry(estimated, exact)}
@@ -72,7 +76,7 @@ class PlanarBoundaryPlan(OneShard):
             tables["points"] = _point_table(exact, np.array(job.points_m))
         return {"about": np.array(json.dumps(about)), **arrays_of_tables(tables)}
 
-    def finish(self, partial: dict[str, np.ndarray], seconds: dict[str, float]) -> Result:
+    def finish(self, partial: dict[str, np.ndarray], seconds: dict[str, float], execution: Execution) -> Result:
         """Tables ``boundary`` and ``monte_carlo``, one row per segment, ``points`` and ``samples``; areas and loops."""
         job, plane = self.job, self.chain.plane
         document = {

@@ -9,6 +9,7 @@ import numpy as np
 from wsrender.reachability.targets import check_tolerance, reachable
 from wsrender.result import Result
 from wsrender.robot import Robot
+from wsrender.run.execution import Execution
 from wsrender.run.one_shard import OneShard
 from wsrender.run.provenance import job_entry, provenance, robot_entry
 from wsrender.run.settled_device import settled_device
@@ -30,7 +31,9 @@ class ReachabilityPlan(OneShard):
     shards: list[tuple[int, int]]
     estimate: dict[str, float] = field(default_factory=dict)
 
-    def run_shard(self, shard: int, progress: Callable[[int], None] | None, **execution: Any) -> dict[str, np.ndarray]:
+    def run_shard(
+        self, shard: int, progress: Callable[[int], None] | None, execution: Execution
+    ) -> dict[str, np.ndarray]:
         """All targets decided: arrays of `Reachability` by name."""
         job = self.job
         found = reachable(
@@ -43,12 +46,12 @@ class ReachabilityPlan(OneShard):
             seed=job.seed,
             precision=job.precision,
             device=self.device,
-            threads=execution.get("threads"),
+            threads=execution.threads,
             progress=progress,
         )
         return vars(found)
 
-    def finish(self, partial: dict[str, np.ndarray], seconds: dict[str, float]) -> Result:
+    def finish(self, partial: dict[str, np.ndarray], seconds: dict[str, float], execution: Execution) -> Result:
         """The table ``targets``, one row per target in the order asked, and how many have which label."""
         labels, reasons = partial["labels"], partial["reasons"]
         reached = labels == "reachable"

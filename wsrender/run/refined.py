@@ -26,22 +26,35 @@ class Refined:
     voxels: VolumeData | None
 
 
-def refined(chain: Chain, tolerance: float, seed: int, device: str, progress: Progress | None) -> dict[str, Any]:
+def refined(
+    chain: Chain, tolerance: float, seed: int, device: str, progress: Progress | None, threads: int | None
+) -> dict[str, Any]:
     """The entry of the refined volume, area or length of a chain."""
-    found = refined_measure(chain, tolerance, seed=seed, device=device, progress=_named(progress, VOLUME))
+    found = refined_measure(
+        chain, tolerance, seed=seed, device=device, threads=threads, progress=_named(progress, VOLUME)
+    )
     return measure_entry(found, tolerance)
 
 
-def labelled(chain: Chain, volume: VolumeData, seed: int, device: str, progress: Progress | None) -> VolumeData:
+def labelled(
+    chain: Chain, volume: VolumeData, seed: int, device: str, progress: Progress | None, threads: int | None
+) -> VolumeData:
     """The labels of a workspace's ``volume``."""
-    return label_voxels(chain, volume, seed=seed, device=device, progress=_named(progress, VOXELS))
+    return label_voxels(chain, volume, seed=seed, device=device, threads=threads, progress=_named(progress, VOXELS))
 
 
 def refined_together(
-    chains: Sequence[Chain], events: Mapping[str, Event], tolerance: float, device: str, progress: Progress | None
+    chains: Sequence[Chain],
+    events: Mapping[str, Event],
+    tolerance: float,
+    device: str,
+    progress: Progress | None,
+    threads: int | None,
 ) -> dict[str, dict[str, Any]]:
     """Entries of what so many of several placed chains reach, by event."""
-    found = refined_measures(chains, events, tolerance, device=device, progress=_named(progress, VOLUME))
+    found = refined_measures(
+        chains, events, tolerance, device=device, threads=threads, progress=_named(progress, VOLUME)
+    )
     return {name: measure_entry(measure, tolerance) for name, measure in found.items()}
 
 

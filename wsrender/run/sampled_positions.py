@@ -16,6 +16,7 @@ def sampled_positions(
     device: str,
     *,
     max_samples: int | None = None,
+    threads: int | None = None,
     progress: Callable[[int], None] | None = None,
 ) -> np.ndarray:
     """World positions (N, 3) float64 [m] at the N samples of a sampling of the job document, in their order.
@@ -23,4 +24,4 @@ def sampled_positions(
     Raises InputError, ResourceError as `plan_sampling` does.
     """
     plan = plan_sampling(robot.chain, sampling, max_samples)
-    return engine.sampled_positions(robot.chain, plan, device=device, progress=progress)
+    return engine.sampled_positions(robot.chain, plan, device=device, threads=threads, progress=progress)

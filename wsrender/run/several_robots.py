@@ -11,6 +11,7 @@ import numpy as np
 from wsrender.errors import InputError
 from wsrender.result import Result
 from wsrender.robot import Robot
+from wsrender.run.execution import Execution
 from wsrender.run.partial_arrays import partial_of_arrays, partial_to_arrays
 from wsrender.run.refined import Progress, Refined
 from wsrender.run.workspace import WorkspacePlan, plan_workspace
@@ -47,28 +48,30 @@ class SeveralPlans:
         robots = [plan.resolved() for plan in self.plans]
         return {"device": first.device, "target": first.target, "shards": [[0, self.samples]], "robots": robots}
 
-    def run(self, progress: Callable[[int], None] | None, **execution: Any) -> dict[str, np.ndarray]:
+    def run(self, progress: Callable[[int], None] | None, execution: Execution) -> dict[str, np.ndarray]:
         """Sweep every robot; the partial results as arrays, their names led by the robot's number."""
         arrays, done = {}, 0
         for k, plan in enumerate(self.plans):
-            partial = plan.run_shard(0, progress_after(done, progress), **execution)
+            partial = plan.run_shard(0, progress_after(done, progress), execution)
             arrays |= {f"{k}_{name}": array for name, array in partial_to_arrays(partial).items()}
             done += plan.shards[0][1]
         return arrays
 
-    def refine(self, arrays: dict[str, np.ndarray], progress: Progress | None) -> dict[str, np.ndarray]:
+    def refine(
+        self, arrays: dict[str, np.ndarray], progress: Progress | None, execution: Execution
+    ) -> dict[str, np.ndarray]:
         """With the refined measure of every robot whose plan asks for it."""
-        measures = {f"{k}_{MEASURE}": plan.measured(progress) for k, plan in enumerate(self.plans)}
+        measures = {f"{k}_{MEASURE}": plan.measured(progress, execution) for k, plan in enumerate(self.plans)}
         return arrays | {name: np.array(json.dumps(entry)) for name, entry in measures.items() if entry}
 
-    def results(self, arrays: dict[str, np.ndarray]) -> list[Result]:
+    def results(self, arrays: dict[str, np.ndarray], execution: Execution) -> list[Result]:
         """The workspace result of every robot."""
         found = []
         for k, plan in enumerate(self.plans):
             own = {name.partition("_")[2]: array for name, array in arrays.items() if name.startswith(f"{k}_")}
             entry = json.loads(str(own.pop(MEASURE))) if MEASURE in own else None
             partial = replace(partial_of_arrays(own, plan), refined=entry and Refined(entry, None))
-            found.append(plan.finish(partial, {}))
+            found.append(plan.finish(partial, {}, execution))
         return found
 
 

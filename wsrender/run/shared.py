@@ -12,6 +12,7 @@ from wsrender.notices import Notice, entries
 from wsrender.reachability import Event
 from wsrender.result import Result
 from wsrender.robot import Robot
+from wsrender.run.execution import Execution
 from wsrender.run.headline import headline_of
 from wsrender.run.one_shard import OneShard
 from wsrender.run.provenance import job_entry, provenance
@@ -61,14 +62,18 @@ class SharedWorkspacePlan(OneShard):
         """What is settled once, for every robot."""
         return self.several.resolved() | {"shards": [list(shard) for shard in self.shards]}
 
-    def run_shard(self, shard: int, progress: Callable[[int], None] | None, **execution: Any) -> dict[str, np.ndarray]:
+    def run_shard(
+        self, shard: int, progress: Callable[[int], None] | None, execution: Execution
+    ) -> dict[str, np.ndarray]:
         """Partial results of the robots, and the volumes of every step of the scan."""
-        arrays = self.several.run(progress, **execution)
+        arrays = self.several.run(progress, execution)
         if self.job.scan is not None:
-            arrays["scan"] = self._scan(self.job.scan, arrays, progress, **execution)
+            arrays["scan"] = self._scan(self.job.scan, arrays, progress, execution)
         return arrays
 
-    def refine(self, partial: dict[str, np.ndarray], progress: Progress | None) -> dict[str, np.ndarray]:
+    def refine(
+        self, partial: dict[str, np.ndarray], progress: Progress | None, execution: Execution
+    ) -> dict[str, np.ndarray]:
         """With the refined volumes, if asked."""
         tolerance, scan = self.job.refined_volume, self.job.scan
         if tolerance is None:
@@ -76,21 +81,21 @@ class SharedWorkspacePlan(OneShard):
         robots = zip(self.robots, self.job.robots, strict=True)
         chains = [robot.chain.held(arm.sampling.locked) for robot, arm in robots]
         events = {"any": Event(1, len(chains)), "shared": Event(2, len(chains))}
-        execution = {"tolerance": tolerance, "device": self.several.plans[0].device, "progress": progress}
-        together = refined_together(chains, events, **execution)
+        how = {"device": self.several.plans[0].device, "progress": progress, "threads": execution.threads}
+        together = refined_together(chains, events, tolerance, **how)
         found = partial | {"refined": np.array(json.dumps(together))}
         if scan is None or together["shared"]["value"] is None:
             return found
         rows = []
         for T_world_base in self._scanned_bases():
             chains[scan.robot] = chains[scan.robot].placed(T_world_base)
-            volumes = refined_together(chains, events, **execution)
+            volumes = refined_together(chains, events, tolerance, **how)
             rows.append([_with_interval(volumes[name]) for name in events])
         return found | {"scan_refined": np.array(rows)}
 
-    def finish(self, partial: dict[str, np.ndarray], seconds: dict[str, float]) -> Result:
+    def finish(self, partial: dict[str, np.ndarray], seconds: dict[str, float], execution: Execution) -> Result:
         """Number of robots by voxel, product of their normalised indices, union and intersection."""
-        results = self.several.results(partial)
+        results = self.several.results(partial, execution)
         volumes = {f"robot_{name}": r.volume for name, r in zip(self.several.names, results, strict=True) if r.volume}
         shared = shared_volume(list(volumes.values()))
         by_number = volume_by_number(shared, len(volumes))
@@ -138,14 +143,14 @@ class SharedWorkspacePlan(OneShard):
         scan: PlacementScan,
         arrays: dict[str, np.ndarray],
         progress: Callable[[int], None] | None,
-        **execution: Any,
+        execution: Execution,
     ) -> np.ndarray:
         """Volumes (values, K) [m³] reached by at least 1 … K robots at each value."""
-        volumes = [result.volume for result in self.several.results(arrays)]
+        volumes = [result.volume for result in self.several.results(arrays, execution)]
         before, rows = self.several.samples, []
         for plan in self.scanned:
             moved = SeveralPlans([""], [plan])
-            (result,) = moved.results(moved.run(progress_after(before, progress), **execution))
+            (result,) = moved.results(moved.run(progress_after(before, progress), execution), execution)
             volumes[scan.robot] = result.volume
             by_number = volume_by_number(shared_volume([v for v in volumes if v is not None]), len(volumes))
             rows.append(np.cumsum(by_number[:0:-1])[::-1])

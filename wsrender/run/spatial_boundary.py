@@ -28,6 +28,7 @@ from wsrender.reachability.refined_measure import refined_measure
 from wsrender.result import Result
 from wsrender.robot import Robot, robot_with_model
 from wsrender.robots.chain import Chain
+from wsrender.run.execution import Execution
 from wsrender.run.headline import headline
 from wsrender.run.one_shard import OneShard
 from wsrender.run.provenance import job_entry, provenance, robot_entry
@@ -73,7 +74,9 @@ class BoundaryPatchesPlan(OneShard):
         held = BYTES_PER_CORNER * cells**3 + BYTES_PER_CELL * 6 * cells**2
         return {"samples": points, "bytes": held, "seconds": points / POINTS_PER_S}
 
-    def run_shard(self, shard: int, progress: Callable[[int], None] | None, **execution: Any) -> dict[str, np.ndarray]:
+    def run_shard(
+        self, shard: int, progress: Callable[[int], None] | None, execution: Execution
+    ) -> dict[str, np.ndarray]:
         """Patches, edges and corners as JSON, and the mesh."""
         tested = 0
 
@@ -83,7 +86,7 @@ class BoundaryPatchesPlan(OneShard):
             if progress:
                 progress(min(tested, self._points))
 
-        found, about = self._found(report)
+        found, about = self._found(report, execution.threads)
         edges = [np.full(len(edge.points), k) for k, edge in enumerate(found.edges)]
         return {
             "about": np.array(json.dumps(_about(found) | about)),
@@ -94,12 +97,12 @@ class BoundaryPatchesPlan(OneShard):
             "edge_points": np.concatenate([*(edge.points for edge in found.edges), np.empty((0, 3))]),
         }
 
-    def _found(self, report: Callable[[int], None]) -> tuple[SpatialBoundary, dict[str, Any]]:
+    def _found(self, report: Callable[[int], None], threads: int | None) -> tuple[SpatialBoundary, dict[str, Any]]:
         """The boundary by critical sets, of arms of more joints by fits, and what the document says of either."""
         if self.arm.n == JOINTS:
             exact = spatial_boundary(self.arm, self.job.cells, report)
             return exact, _integrated(exact)
-        reached = ReachedPoints(self.chain, self.device)
+        reached = ReachedPoints(self.chain, self.device, threads)
         fitted = fitted_boundary(self.arm, reached, self.job.cells, report)
         decided = 0
 
@@ -108,7 +111,9 @@ class BoundaryPatchesPlan(OneShard):
             report(max(done - decided, 0))
             decided = max(done, decided)
 
-        measure = refined_measure(self.chain, VOLUME_TOLERANCE, device=self.device, progress=volume_progress)
+        measure = refined_measure(
+            self.chain, VOLUME_TOLERANCE, device=self.device, threads=threads, progress=volume_progress
+        )
         refined = volume_entry(measure_entry(measure, VOLUME_TOLERANCE))
         volumes = {"enclosed": fitted.measures.volume, "refined": refined}
         return fitted, {
@@ -117,7 +122,7 @@ class BoundaryPatchesPlan(OneShard):
             "undecided": reached.undecided,
         }
 
-    def finish(self, partial: dict[str, np.ndarray], seconds: dict[str, float]) -> Result:
+    def finish(self, partial: dict[str, np.ndarray], seconds: dict[str, float], execution: Execution) -> Result:
         """Tables ``patches``, ``edges``, ``corners`` and ``edge_points``; the mesh ``patches``, a colour each."""
         about = json.loads(str(partial["about"]))
         meshes = {}

@@ -10,6 +10,7 @@ from wsrender.errors import InputError
 from wsrender.notices import Notice, entries
 from wsrender.result import Result
 from wsrender.robot import Robot, as_robot, robot_of_spec
+from wsrender.run.execution import Execution
 from wsrender.run.headline import no_headline
 from wsrender.run.usable_robots import usable
 from wsrender.spec import (
@@ -85,7 +86,7 @@ class Plan(Protocol):
         """
         ...
 
-    def run_shard(self, shard: int, progress: Callable[[int], None] | None, **execution: Any) -> Any:
+    def run_shard(self, shard: int, progress: Callable[[int], None] | None, execution: Execution) -> Any:
         """The partial result of a shard."""
         ...
 
@@ -93,7 +94,7 @@ class Plan(Protocol):
         """The partial result of two; associative."""
         ...
 
-    def finish(self, partial: Any, seconds: dict[str, float]) -> Result:
+    def finish(self, partial: Any, seconds: dict[str, float], execution: Execution) -> Result:
         """The result of the merged partial."""
         ...
 
@@ -102,7 +103,7 @@ class Plan(Protocol):
 class Refining(Protocol):
     """A plan with work between the last merge and the result, such as a refined volume: it reports how far that is."""
 
-    def refine(self, partial: Any, progress: Progress | None) -> Any:
+    def refine(self, partial: Any, progress: Progress | None, execution: Execution) -> Any:
         """The merged partial result with what was asked beside the samples."""
         ...
 
@@ -160,19 +161,16 @@ def run_shard(
     shard: int,
     progress: Callable[[int], None] | None = None,
     *,
+    threads: int | None = None,
+    chunk_size: int | None = None,
     checkpoint: str | Path | None = None,
-    **execution: Any,
 ) -> Any:
     """The partial result of one shard; a plan that can go on where it was stopped does so from the file ``checkpoint``.
 
-    ``execution`` may give ``threads`` and ``chunk_size`` (samples), which change no bit; InputError below 1.
+    ``threads`` and ``chunk_size`` (samples) change no bit; see `Execution`. Raises InputError where they are below 1.
     """
-    chunk_size = execution.get("chunk_size")
-    if chunk_size is not None and (not isinstance(chunk_size, int) or chunk_size < 1):
-        raise InputError("chunk_size", f"{chunk_size!r} is not allowed; a positive whole number is")
-    if checkpoint is not None and isinstance(plan, Resuming):
-        execution["checkpoint"] = checkpoint
-    return plan.run_shard(shard, progress, **execution)
+    kept = Path(checkpoint) if checkpoint is not None and isinstance(plan, Resuming) else None
+    return plan.run_shard(shard, progress, Execution(threads, chunk_size, kept))
 
 
 def merge(plan: Plan, a: Any, b: Any) -> Any:
@@ -181,30 +179,42 @@ def merge(plan: Plan, a: Any, b: Any) -> Any:
 
 
 def finish(
-    plan: Plan, partial: Any, seconds: dict[str, float] | None = None, progress: Progress | None = None
+    plan: Plan,
+    partial: Any,
+    seconds: dict[str, float] | None = None,
+    progress: Progress | None = None,
+    *,
+    threads: int | None = None,
 ) -> Result:
-    """The result of the merged partial results; ``seconds`` goes into ``timing_s``.
+    """The result of the merged partial results; ``seconds`` goes into ``timing_s``, ``threads`` change no bit.
 
     ``progress(done, total, message)`` is called while a plan refines, with points and about how many there will be,
     and with all samples once the rest begins.
     """
-    seconds = dict(seconds or {})
+    seconds, execution = dict(seconds or {}), Execution(threads)
     if isinstance(plan, Refining):
         started, merged = time.perf_counter(), partial
-        partial = plan.refine(merged, progress)
+        partial = plan.refine(merged, progress, execution)
         if partial is not merged:
             seconds["refine"] = time.perf_counter() - started
     if progress:
         total = sum(count for _, count in plan.shards)
         progress(total, total, "finishing")
-    result = plan.finish(partial, seconds)
+    result = plan.finish(partial, seconds, execution)
     document = result.document
     document.setdefault("headline", no_headline(f"the analysis {plan.job.analysis} measures none"))
     document["warnings"] = entries(plan.notices) + document.get("warnings", [])
     return result
 
 
-def execute(document: Any, progress: Progress | None = None, robot: Any = None, **execution: Any) -> Result:
+def execute(
+    document: Any,
+    progress: Progress | None = None,
+    robot: Any = None,
+    *,
+    threads: int | None = None,
+    chunk_size: int | None = None,
+) -> Result:
     """Run a job here, from document to result.
 
     ``progress(done, total, message)`` is called in this thread a few times a second. ``threads`` (default:
@@ -221,6 +231,7 @@ def execute(document: Any, progress: Progress | None = None, robot: Any = None, 
         if progress:
             progress(done, max(total, done), "samples")  # converging jobs exceed it
 
-    partial = run_shard(planned, 0, report, **execution)
+    partial = run_shard(planned, 0, report, threads=threads, chunk_size=chunk_size)
     swept_at = time.perf_counter()
-    return finish(planned, partial, {"plan": planned_at - started, "sweep": swept_at - planned_at}, progress)
+    seconds = {"plan": planned_at - started, "sweep": swept_at - planned_at}
+    return finish(planned, partial, seconds, progress, threads=threads)

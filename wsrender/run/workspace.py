@@ -16,6 +16,7 @@ from wsrender.result import Result
 from wsrender.robot import Robot
 from wsrender.robot.indices import evaluation_of_job
 from wsrender.run.estimate import estimate, map_bytes
+from wsrender.run.execution import Execution
 from wsrender.run.first_pass import FirstPass
 from wsrender.run.refined import Progress, Refined, labelled, refined
 from wsrender.run.settled_device import settled_device
@@ -84,40 +85,44 @@ class WorkspacePlan:
     def _iterates(self) -> bool:
         return isinstance(self.job.sampling, Converge)
 
-    def run_shard(self, shard: int, progress: Callable[[int], None] | None, **execution: Any) -> WorkspacePartial:
+    def run_shard(self, shard: int, progress: Callable[[int], None] | None, execution: Execution) -> WorkspacePartial:
         """Sweep the shard's samples; a converging job has one shard, its sequence of grids."""
         devices = devices_of(self.device)
         if isinstance(self.job.sampling, Converge):
-            return self._converge(self.job.sampling, progress, **execution)
+            return self._converge(self.job.sampling, progress, execution)
         first, count = self.shards[shard]
-        return WorkspacePartial(sweep(self.sweep, first, count, devices, progress=progress, **execution), self.sweep)
+        how = {"threads": execution.threads, "chunk_size": execution.chunk_size}
+        return WorkspacePartial(sweep(self.sweep, first, count, devices, progress=progress, **how), self.sweep)
 
     def merge(self, a: WorkspacePartial, b: WorkspacePartial) -> WorkspacePartial:
         """The partial result of both; bit for bit the same in any order."""
         return WorkspacePartial(merge(a.sweep, b.sweep), self.sweep)
 
-    def measured(self, progress: Progress | None) -> dict[str, Any] | None:
+    def measured(self, progress: Progress | None, execution: Execution) -> dict[str, Any] | None:
         """The entry of the refined volume, area or length, if asked."""
         if self.job.refined_volume is None:
             return None
         chain, seed = self.robot.chain.held(self.job.sampling.locked), self.sweep.sampling.seed
-        return refined(chain, self.job.refined_volume, seed, self.device, progress)
+        return refined(chain, self.job.refined_volume, seed, self.device, progress, execution.threads)
 
-    def refine(self, partial: WorkspacePartial, progress: Progress | None) -> WorkspacePartial:
+    def refine(self, partial: WorkspacePartial, progress: Progress | None, execution: Execution) -> WorkspacePartial:
         """With the refined volume, area or length and the labels of the voxels, each if asked."""
         if self.job.refined_volume is None and not self.job.voxel_labels:
             return partial
-        return replace(partial, refined=Refined(self.measured(progress), self._labelled(partial, progress)))
+        measure, labels = self.measured(progress, execution), self._labelled(partial, progress, execution)
+        return replace(partial, refined=Refined(measure, labels))
 
-    def _labelled(self, partial: WorkspacePartial, progress: Progress | None) -> VolumeData | None:
+    def _labelled(
+        self, partial: WorkspacePartial, progress: Progress | None, execution: Execution
+    ) -> VolumeData | None:
         """The labels of the voxels, if asked."""
         if not self.job.voxel_labels:
             return None
         counts = volume_data(replace(partial.plan, statistics=frozenset()), partial.sweep, {})
         chain = self.robot.chain.held(self.job.sampling.locked)
-        return labelled(chain, counts, partial.plan.sampling.seed, self.device, progress)
+        return labelled(chain, counts, partial.plan.sampling.seed, self.device, progress, execution.threads)
 
-    def finish(self, partial: WorkspacePartial, seconds: dict[str, float]) -> Result:
+    def finish(self, partial: WorkspacePartial, seconds: dict[str, float], execution: Execution) -> Result:
         """Map, volume, global values and the result document."""
         return workspace_result(
             self.job,
@@ -128,10 +133,11 @@ class WorkspacePlan:
             partial.refined,
             self.target,
             seconds,
+            execution.threads,
         )
 
     def _converge(
-        self, sampling: Converge, progress: Callable[[int], None] | None, **execution: Any
+        self, sampling: Converge, progress: Callable[[int], None] | None, execution: Execution
     ) -> WorkspacePartial:
         """[WSR] Algorithm 1: finer grids until an index's global value changes by at most the tolerance."""
         position = self.sweep.evaluation.indices.index(_converging_index(self.sweep, sampling))
@@ -152,7 +158,8 @@ class WorkspacePlan:
                 if progress:
                     progress(before + done)
 
-            partial = sweep(plan, 0, count, devices_of(self.device), progress=report, **execution)
+            how = {"threads": execution.threads, "chunk_size": execution.chunk_size}
+            partial = sweep(plan, 0, count, devices_of(self.device), progress=report, **how)
             value = self._global_value(plan, partial, position, sampling.by)
             sequence.append({"per_joint": levels, "samples": count, "value": value})
             if len(sequence) > 1 and abs(value - sequence[-2]["value"]) <= sampling.tolerance:

@@ -44,6 +44,7 @@ def workspace_result(
     refined: Refined | None,
     target: str,
     seconds: dict[str, float],
+    threads: int | None,
 ) -> Result:
     """Map, picture sample, volume data, skeleton, surface and result document."""
     from wsrender.boundary.surfaces import surfaces
@@ -53,7 +54,7 @@ def workspace_result(
     units = units_of(evaluation)
     volume = volume_data(plan, partial, units)
     volumes = voxel_volumes(volume)
-    sample = _picture_sample(plan, robot, units)
+    sample = _picture_sample(plan, robot, units, threads)
     measure = refined.measure if refined else None
     labels = refined.voxels if refined else None
     measures = by_measure(measure, measure)
@@ -89,7 +90,7 @@ def workspace_result(
         "warnings": entries(
             (
                 *tolerance_not_met(measure),
-                *_notices(job, robot, plan, volume, volumes, solid),
+                *_notices(job, robot, plan, volume, volumes, solid, threads),
                 *_index_notices(plan, partial),
             )
         ),
@@ -131,11 +132,13 @@ def _notices(
     volume: VolumeData,
     volumes: VoxelVolumes,
     solid: dict[str, Any] | None,
+    threads: int | None,
 ) -> Iterator[Notice]:
     """What to know of the volume: too few samples, or voxels that are far from what is reachable."""
     holes = None
     if solid and not isinstance(robot.chain, HostChain):
-        holes = share_of_holes(robot.chain.held(job.sampling.locked), volume, seed=plan.sampling.seed)
+        held = robot.chain.held(job.sampling.locked)
+        holes = share_of_holes(held, volume, seed=plan.sampling.seed, threads=threads)
     yield from few_samples(holes, share_unseen(volume))
     yield from occupied_differs(volumes.occupied, solid["value"] if solid else None)
 
@@ -192,10 +195,10 @@ def _kept_map(plan: SweepPlan, partial: Partial, robot: Robot, units: dict[str, 
     )
 
 
-def _picture_sample(plan: SweepPlan, robot: Robot, units: dict[str, str]) -> DistributionMap:
+def _picture_sample(plan: SweepPlan, robot: Robot, units: dict[str, str], threads: int | None) -> DistributionMap:
     """A fixed subsample of the samples, evaluated anew in float64 on the CPU."""
     q = configurations(plan.sampling, subsample(plan.sampling.count, PICTURE_SAMPLES))
-    evaluated = evaluate_at(plan.evaluation, q)
+    evaluated = evaluate_at(plan.evaluation, q, threads=threads)
     values = dict(zip(plan.evaluation.indices, evaluated.values, strict=True))
     return DistributionMap(evaluated.position, values, units, q, robot.joint_names)
 

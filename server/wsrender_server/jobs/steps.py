@@ -36,7 +36,8 @@ def start(settings: Settings, threads: int, gauges: "ctypes.Array[ctypes.c_int64
         os.nice(BEHIND)
     files = DataFolder(settings.data_dir)
     os.environ.update({"WSRENDER_THREADS": str(threads), MODELS_VARIABLE: str(files.models)})
-    _state.update(files=files, shard_samples=settings.shard_samples, max_samples=settings.max_samples, gauges=gauges)
+    _state.update(files=files, threads=threads, gauges=gauges)
+    _state.update(shard_samples=settings.shard_samples, max_samples=settings.max_samples)
     gauges[1] = gauges[2] = 0
     gauges[0] = os.getpid()
 
@@ -94,7 +95,8 @@ def _shard(task: Task) -> None:
     if path.exists():  # kept by a process that was lost before it could say so
         return
     path.parent.mkdir(exist_ok=True)
-    partial = run_shard(_planned(task), task.shard, report, checkpoint=path.with_suffix(".checkpoint"))
+    kept = path.with_suffix(".checkpoint")
+    partial = run_shard(_planned(task), task.shard, report, threads=_state["threads"], checkpoint=kept)
     save_partial(partial, path)
 
 
@@ -110,7 +112,7 @@ def _finish(task: Task) -> list[dict[str, Any]]:
     def report(done: int, total: int, message: str) -> None:
         gauges[1], gauges[2] = done, total
 
-    result = finish(plan, partial, task.seconds, report)
+    result = finish(plan, partial, task.seconds, report, threads=_state["threads"])
     scratch = _files().root / "scratch"
     for left in scratch.glob(f"{task.computation}.*"):  # by a process that was lost at this step
         shutil.rmtree(left, ignore_errors=True)

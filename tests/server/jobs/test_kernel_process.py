@@ -2,14 +2,19 @@
 
 import threading
 import time
+from types import SimpleNamespace
 
+import pytest
 from wsrender_server.jobs import steps
+from wsrender_server.jobs.files import DataFolder
 from wsrender_server.jobs.kernel_process import KernelProcess
 from wsrender_server.jobs.task import Step, Task, Verdict
 from wsrender_server.settings import Settings
 
 from tests.server.jobs.waiting import wait_until
+from wsrender import run
 
+THREADS = 3
 TASK = Task(Step.SHARD, "computation", "computation-1", {})
 
 
@@ -34,3 +39,25 @@ def test_a_process_that_is_closed_gives_up_its_task(tmp_path, monkeypatch):
     assert outcomes[0].verdict == Verdict.LOST
     assert process.run(TASK, print).verdict == Verdict.LOST  # and starts none any more
     assert process.pid is None
+
+
+def test_the_steps_run_on_the_threads_of_the_process(tmp_path, monkeypatch):
+    asked = {}
+
+    def kept(step):
+        def called(*args, threads=None, **_):
+            asked[step] = threads
+            raise InterruptedError
+
+        return called
+
+    files = DataFolder(tmp_path)
+    monkeypatch.setattr(steps, "_state", {"files": files, "threads": THREADS, "gauges": [0, 0, 0]})
+    monkeypatch.setattr(steps, "_planned", lambda task: SimpleNamespace(shards=[(0, 1)]))
+    monkeypatch.setattr(steps, "_load", lambda *args: None)
+    for name in ("run_shard", "finish"):
+        monkeypatch.setattr(run, name, kept(name))
+    for step in (Step.SHARD, Step.FINISH):
+        with pytest.raises(InterruptedError):
+            steps.run(Task(step, "c0ffee", "c0ffee-1", {}, seconds={}))
+    assert asked == {"run_shard": THREADS, "finish": THREADS}
