@@ -27,6 +27,7 @@ from wsrender.engine.grid_structure import (
 from wsrender.engine.kernel_cache import launch, loaded
 from wsrender.engine.memory import as_type, device_memory, fetched
 from wsrender.engine.partial import Partial, joined, merge
+from wsrender.engine.ranges import check_range
 from wsrender.engine.row_buffer import RowBuffer
 from wsrender.engine.slabs import fitted
 from wsrender.engine.sums import has_own_bound
@@ -110,13 +111,14 @@ def sweep(
     chunk_size: int | None = None,
     progress: Callable[[int], None] | None = None,
 ) -> Partial:
-    """Evaluate samples first … first + count - 1; ``first`` is a multiple of the plan's ``division``.
+    """Evaluate samples first … first + count - 1, from a multiple of the plan's ``division`` to another or the end.
 
     ``chunk_size`` is rounded up to a multiple of that; neither it nor ``threads`` changes a bit of the result.
     ``progress`` is called in this thread with the number of samples done. Where the voxel records do not fit in memory
-    the samples are swept once for every slab of the lattice block. Raises ResourceError where that would take too
-    many, NumericalError for a value that is not finite or beyond its bound.
+    the samples are swept once for every slab of the lattice block. Raises InputError for another range, ResourceError
+    where that would take too many slabs, NumericalError for a value that is not finite or beyond its bound.
     """
+    check_range(first, count, plan.sampling.count, plan.division)
     shape, each = plan.shape, plan.structure.multiplicity
     first, count, chunk_size = first // each, count // each, chunk_size and -(-chunk_size // each)
     workers = devices

@@ -9,6 +9,7 @@ import numpy as np
 
 from wsrender.engine import OrientationCounts, thread_count
 from wsrender.engine.membership import LANES
+from wsrender.engine.ranges import check_range
 from wsrender.errors import InputError, ResourceError
 from wsrender.indices.catalogue import is_dynamic, option_values, resolve
 from wsrender.parallel.hybrid import Variant, added, count_union, middle, variants
@@ -119,7 +120,9 @@ class ParallelPlan:
         if self.block is None:
             none = np.zeros(0, np.int64)
             return self._partial(OrientationCounts(none, none, none, 0), [])
-        block, (first, voxels) = self.block, (number // self._count for number in self.shards[shard])
+        block = self.block
+        check_range(*self.shards[shard], block.size * self._count, LANES * self._count)
+        first, voxels = (number // self._count for number in self.shards[shard])
         rotations, weights = self.orientations.rotations, self.orientations.whole_weights
 
         def count(variant: Variant, turned: np.ndarray, weights: np.ndarray, report=None) -> OrientationCounts:
