@@ -6,7 +6,13 @@ SCARAS = [
     {"robot": {"library": "scara"}, "sampling": GRID},
     {"robot": {"library": "scara", "placement": {"position_m": [0.3, 0, 0]}}, "sampling": GRID},
 ]
-SEVERAL = {"robots": SCARAS, "indices": ["manipulability"], "voxel_size_m": 0.05, "device": "cpu"}
+SEVERAL = {
+    "robots": SCARAS,
+    "indices": ["manipulability"],
+    "voxel_size_m": 0.05,
+    "precision": "float64",
+    "device": "cpu",
+}
 THIN = {  # four joints, so that its boundary is found by inverse kinematics
     "convention": "standard",
     "name": "thin",
@@ -27,6 +33,7 @@ SMALL_JOBS = {
         "voxel_size_m": 0.1,
         "refined_volume": 0.2,
         "voxel_labels": True,
+        "precision": "float64",
         "device": "cpu",
     },
     "indices_at": {
@@ -34,6 +41,7 @@ SMALL_JOBS = {
         "robot": "scara",
         "configurations": [[0, 0, 0, 0]],
         "indices": ["manipulability"],
+        "precision": "float32",
         "device": "cpu",
     },
     "reachability": {
@@ -41,6 +49,9 @@ SMALL_JOBS = {
         "robot": "scara",
         "points_m": [[0.2, 0.1, 0.0], [9.0, 0.0, 0.0]],
         "seed": 3,
+        "position_tolerance_m": 1e-3,
+        "angle_tolerance_rad": 1e-2,
+        "precision": "float32",
         "device": "cpu",
     },
     "capability": {
@@ -49,7 +60,9 @@ SMALL_JOBS = {
         "voxel_size_m": 0.2,
         "directions": 5,
         "angle_tolerance_rad": 0.5,
+        "position_tolerance_m": 1e-3,
         "seed": 4,
+        "precision": "float32",
         "device": "cpu",
     },
     "shared_workspace": {
@@ -80,7 +93,7 @@ SMALL_JOBS = {
         "analysis": "kinetostatic_field",
         "robot": "scara",
         "field": {"task": ["x", "y"], "boundary": {"cells": 16, "refined": True}},
-        "sampling": {"method": "sobol", "count": 64},
+        "sampling": {"method": "sobol", "count": 64, "seed": 8},
         "voxel_size_m": 0.1,
         "device": "cpu",
     },
@@ -90,6 +103,7 @@ SMALL_JOBS = {
         "voxel_size_m": 0.2,
         "refined_volume": 0.2,
         "seed": 6,
+        "precision": "float32",
         "device": "cpu",
     },
     "method_comparison": {

@@ -95,7 +95,7 @@ class CapabilityPlan:
                 "dexterous_threshold": job.dexterous_threshold,
                 "dexterous_volume_m3": int((index >= job.dexterous_threshold).sum()) * voxel,
             },
-            "provenance": provenance(job.precision, self.target, seed=job.seed),
+            "provenance": provenance(job, self.target),
             "timing_s": seconds,
         }
         tables = {

@@ -108,7 +108,7 @@ class CollaborativePlan(OneShard):
             },
             "volume_m3": {"body_elemental": float(mean[-1]), "true": true},
             "headline": no_headline(BIASED) if measure is None else headline_of(measure),
-            "provenance": provenance("float64", self.target, seed=job.seed),
+            "provenance": provenance(job, self.target),
             "timing_s": seconds,
         }
         tables = {"refinements": _curve(mean, variance, true), "seeds": _seeds(job.seed, volumes)}

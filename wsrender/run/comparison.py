@@ -13,7 +13,7 @@ from wsrender.run.headline import no_headline
 from wsrender.run.one_shard import OneShard
 from wsrender.run.provenance import job_entry, provenance
 from wsrender.run.refined import Progress
-from wsrender.run.several_result import common_entries, skeletons
+from wsrender.run.several_result import common_entries, sampling_path, skeletons
 from wsrender.run.several_robots import SeveralPlans, plan_several
 from wsrender.spec import RobotComparisonJob
 from wsrender.volume.measure import TABLE_UNITS
@@ -71,7 +71,7 @@ class RobotComparisonPlan(OneShard):
             **common,
             "headline": no_headline("a comparison has a headline for each robot: robots[].headline"),
             "comparison": rows,
-            "provenance": provenance(self.job.precision, self.target, sampling_path="direct"),
+            "provenance": provenance(self.job, self.target, sampling_path=sampling_path(results)),
             "timing_s": seconds,
         }
         volumes = {f"robot_{name}": r.volume for name, r in zip(names, results, strict=True) if r.volume is not None}

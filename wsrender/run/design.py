@@ -74,6 +74,11 @@ class DesignPlan(OneShard):
         return all(objective.value in EXACT for objective in self.job.objectives)
 
     @property
+    def precision(self) -> str:
+        """That of the jobs that are run; exact values are float64."""
+        return "float64" if self.is_exact else getattr(self.job.design, "precision", "float64")
+
+    @property
     def space(self) -> Space:
         """Bounds and constraints of the designs."""
         names, constraints = [p.name for p in self.job.parameters], self.job.constraints
@@ -146,7 +151,7 @@ class DesignPlan(OneShard):
             },
             **best,
             "headline": best_headline(self, best["best"]),
-            "provenance": provenance("float64", self.target),
+            "provenance": provenance(self.job, self.target, precision=self.precision),
             "timing_s": seconds,
             "warnings": entries(design_notices(self, designs, values, about["faults"])),
         }

@@ -135,7 +135,7 @@ class FiveBarPlan(OneShard):
             "voxel_size_m": self.lattice.cell_m,
             **about,
             "headline": _headline([each["area_m2"] for each in about["workspaces"]]),
-            "provenance": provenance("float64", self.target),
+            "provenance": provenance(self.job, self.target),
             "timing_s": seconds,
         }
         volumes = {MODE_VOLUMES[mode]: self._volume(partial, mode) for mode in job.working_modes if self._cells}

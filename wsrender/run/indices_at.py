@@ -77,7 +77,7 @@ class IndicesAtPlan(OneShard):
             },
             "choices": index_choices(self.job, self.evaluation),
             "warnings": entries(self.evaluation.notices),
-            "provenance": provenance(self.job.precision, self.target),
+            "provenance": provenance(self.job, self.target),
             "timing_s": seconds,
         }
         rows = DistributionMap(partial.position, values, units, self.q, self.robot.joint_names, partial.quat_wxyz)

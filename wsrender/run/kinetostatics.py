@@ -116,7 +116,7 @@ class KinetostaticFieldPlan(OneShard):
                 "mean_force_n": float(partial["sums"][:, 6].sum() / count.sum()),
                 "passivity": self._passivity(partial["stiffness"], loop),
             },
-            "provenance": provenance("float64", self.target),
+            "provenance": provenance(job, self.target),
             "timing_s": seconds,
             "headline": no_headline("a field of forces measures no workspace"),
             "warnings": entries(_notices(job.field.form, loop)),

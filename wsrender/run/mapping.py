@@ -100,7 +100,7 @@ class MappingPlan(OneShard):
             "volume_m3": {"master": about["master_m3"], "slave": about["slave_m3"], "mapped": best["volume_m3"]},
             "headline": no_headline("the volumes are of shapes around points, estimates without an interval"),
             "surfaces": {name: surface_entry(name, mesh) for name, mesh in meshes.items()},
-            "provenance": provenance("float64", self.target),
+            "provenance": provenance(self.job, self.target),
             "timing_s": seconds,
         }
         if "scales" in partial:

@@ -96,7 +96,7 @@ class MethodComparisonPlan(OneShard):
                 for name, edge, found, wrong in zip(method, size.tolist(), volume.tolist(), error.tolist(), strict=True)
             ],
             "headline": headline("volume", exact.volume_m3, (exact.volume_m3, exact.volume_m3)),
-            "provenance": provenance("float64", self.target),
+            "provenance": provenance(self.job, self.target),
             "timing_s": {**seconds, **dict(zip(map(_label, method, size), took.tolist(), strict=True))},
         }
         return Result(document, tables={"methods": Table(columns, UNITS)})

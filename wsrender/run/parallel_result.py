@@ -113,7 +113,7 @@ def mechanism_document(plan: "ParallelPlan") -> dict[str, Any]:
         "kind": plan.job.kind,
         "orientations": len(plan.orientations.rotations),
         "serial_configurations": len(plan.variants),
-        "provenance": provenance(plan.job.precision, plan.target, seed=plan.job.seed),
+        "provenance": provenance(plan.job, plan.target),
     }
 
 

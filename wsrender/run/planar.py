@@ -91,7 +91,7 @@ class PlanarBoundaryPlan(OneShard):
             },
             "sampling": {"method": job.sampling.method, "samples": self.samples},
             **json.loads(str(partial["about"])),
-            "provenance": provenance("float64", self.target, seed=getattr(job.sampling, "seed", None)),
+            "provenance": provenance(job, self.target),
             "timing_s": seconds,
         }
         document["headline"] = _headline(document["exact"])

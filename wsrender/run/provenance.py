@@ -61,17 +61,28 @@ def index_choices(job: Any, evaluation: Evaluation) -> dict[str, Any]:
     }
 
 
-def provenance(precision: str, target: str, **more: Any) -> dict[str, Any]:
-    """Versions, precision, target and host."""
+def provenance(job: Any, target: str, **more: Any) -> dict[str, Any]:
+    """Versions, host, and what planning settled: precision, target, seed, and what else the plan has to say.
+
+    A job without a choice of ``precision`` is computed in float64. The ``seed`` is the job's, else that of its sampling
+    or of its search; without any there is none.
+    """
     packages = ("warp-lang", "mujoco", "numpy")
     return {
         "wsrender": __version__,
         **{name: _version(name) for name in packages},
-        "precision": precision,
+        "precision": getattr(job, "precision", "float64"),
         "target": target,
+        **_seed(job),
         **more,
         "host": {"python": platform.python_version(), "system": platform.platform(), "name": platform.node()},
     }
+
+
+def _seed(job: Any) -> dict[str, int]:
+    """The seed of a job under its name; nothing of one that draws nothing, or of several robots, each with its own."""
+    drawing = (job, getattr(job, "sampling", None), getattr(job, "search", None))
+    return next(({"seed": each.seed} for each in drawing if hasattr(each, "seed")), {})
 
 
 def _version(package: str) -> str:

@@ -66,7 +66,7 @@ class ReachabilityPlan(OneShard):
                 "largest_residual_of_reachable_m": float(partial["residual_m"][reached].max(initial=0.0)),
                 "largest_residual_of_reachable_rad": float(partial["residual_rad"][reached].max(initial=0.0)),
             },
-            "provenance": provenance(self.job.precision, self.target, seed=self.job.seed),
+            "provenance": provenance(self.job, self.target),
             "timing_s": seconds,
         }
         q = partial["configurations"][reached][:DRAWN]

@@ -34,3 +34,9 @@ def skeletons(results: list[Result]) -> np.ndarray:
     arms = [result.skeleton[1] for result in results if result.skeleton is not None]
     length = max(map(len, arms))
     return np.stack([np.concatenate([arm, np.repeat(arm[-1:], length - len(arm), axis=0)]) for arm in arms])
+
+
+def sampling_path(results: list[Result]) -> str:
+    """How the samples of the robots were evaluated; where that differs, of each in turn: "collapsed, direct"."""
+    paths = [result.document["provenance"]["sampling_path"] for result in results]
+    return paths[0] if len(set(paths)) == 1 else ", ".join(paths)

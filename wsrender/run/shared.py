@@ -17,7 +17,7 @@ from wsrender.run.headline import headline_of
 from wsrender.run.one_shard import OneShard
 from wsrender.run.provenance import job_entry, provenance
 from wsrender.run.refined import Progress, by_measure, refined_together
-from wsrender.run.several_result import common_entries, skeletons
+from wsrender.run.several_result import common_entries, sampling_path, skeletons
 from wsrender.run.several_robots import SeveralPlans, plan_several, progress_after, workspace_job
 from wsrender.run.volume_notices import occupied_differs, tolerance_not_met
 from wsrender.run.workspace import WorkspacePlan, plan_workspace
@@ -124,7 +124,7 @@ class SharedWorkspacePlan(OneShard):
             "warnings": common["warnings"] + entries(_notices({"any": any_m3, "shared": shared_m3}, refined)),
             "quality": _quality(shared),
             "surfaces": surfaces,
-            "provenance": provenance(self.job.precision, self.target, sampling_path="direct"),
+            "provenance": provenance(self.job, self.target, sampling_path=sampling_path(results)),
             "timing_s": seconds,
         }
         scan = self.job.scan

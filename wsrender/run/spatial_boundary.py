@@ -140,7 +140,7 @@ class BoundaryPatchesPlan(OneShard):
             "robot": robot_entry(self.robot),
             **about,
             "headline": _headline(about),
-            "provenance": provenance("float64", self.target),
+            "provenance": provenance(self.job, self.target),
             "timing_s": seconds,
             "warnings": entries(_notices(about)),
         }

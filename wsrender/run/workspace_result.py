@@ -94,7 +94,7 @@ def workspace_result(
                 *_index_notices(plan, partial),
             )
         ),
-        "provenance": provenance(job.precision, target, sampling_path=plan.sampling_path, seed=plan.sampling.seed),
+        "provenance": provenance(job, target, sampling_path=plan.sampling_path, seed=plan.sampling.seed),
     }
     result = Result(
         document,
