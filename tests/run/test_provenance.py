@@ -3,7 +3,7 @@
 import pytest
 
 from tests.run.small_jobs import SAMPLING, SCARAS, SMALL_JOBS
-from wsrender.run import execute, finish, plan, run_shard
+from wsrender.run import execute, finish, plan, provenance, run_shard
 
 TARGET = "cpu:a machine of its own"
 # Workspaces of float32 are settled in float64 here, the others the other way round, so that no default passes.
@@ -77,3 +77,21 @@ def test_exact_designs_are_float64_and_have_the_seed_of_their_search():
     }
     found = execute(document).document["provenance"]
     assert (found["precision"], found["seed"]) == ("float64", 12)
+
+
+def test_versions_are_looked_up_once(monkeypatch):
+    looked_up = []
+
+    def version(package):
+        looked_up.append(package)
+        return "1.0"
+
+    monkeypatch.setattr(provenance, "version", version)
+    provenance._version.cache_clear()
+    try:
+        for _ in range(3):
+            found = execute(SMALL_JOBS["indices_at"]).document["provenance"]
+            assert {found[name] for name in ("warp-lang", "mujoco", "numpy")} == {"1.0"}
+        assert sorted(looked_up) == ["mujoco", "numpy", "warp-lang"]
+    finally:
+        provenance._version.cache_clear()
