@@ -5,6 +5,7 @@ import pytest
 
 import wsrender as ws
 from tests.reference import closed_form_inverse as closed_form
+from tests.run.simple_robots import PlanarClass
 from wsrender.reachability.voxel_labels import REASONS
 from wsrender.robots.dh import structural_length
 
@@ -130,3 +131,31 @@ def test_volume_and_labels_are_made_when_each_is_asked_for(asked, made):
     assert (document["headline"]["value"] is not None) == made[0]
     assert (document["global"]["structural_length_index"] is not None) == made[0]
     assert made[0] or "refined_volume is null" in document["headline"]["reason"]
+
+
+def test_the_structural_length_index_is_that_of_the_refined_volume():
+    """Σ(|a| + |d|) of the table, .1 + .3 + .25 + .05 m, over the cube root of the refined volume, not the voxels'."""
+    rows = [
+        ws.DHRow(d=0.1, alpha_deg=90),
+        ws.DHRow(a=0.3, limits_deg=(0, 120)),
+        ws.DHRow(a=-0.25, d=0.05, limits_deg=(10, 140)),
+    ]
+    robot = ws.load_robot(ws.DHTable(convention="standard", rows=rows))
+    options = {"indices": ["manipulability"], "voxel_size_m": 0.05, "device": "cpu"}
+    document = ws.analyze(robot, ws.Sobol(4_000), refined_volume=0.05, **options).document
+    refined, occupied = document["volume_m3"]["refined"]["value"], document["volume_m3"]["occupied"]
+    assert abs(occupied / refined - 1) > 0.1
+    index = document["global"]
+    assert index["structural_length_index"] == pytest.approx(0.7 / refined ** (1 / 3), rel=1e-9)
+    assert index["structural_length_reason"] == ""
+    without = ws.analyze(robot, ws.Sobol(4_000), refined_volume=None, **options).document["global"]
+    assert without["structural_length_index"] is None
+    assert without["structural_length_reason"] == "refined_volume is null: none was asked for"
+
+
+def test_a_python_class_has_no_structural_length():
+    found = ws.analyze(PlanarClass(), ws.Sobol(500), device="cpu", task=["x", "y"], refined_volume=0.1).document[
+        "global"
+    ]
+    assert found["structural_length_index"] is None
+    assert found["structural_length_reason"] == "a robot that is defined by a Python class has no lengths of links"

@@ -82,8 +82,10 @@ def provenance(job: Any, target: str, **more: Any) -> dict[str, Any]:
 
 def _seed(job: Any) -> dict[str, int]:
     """The seed of a job under its name; nothing of one that draws nothing, or of several robots, each with its own."""
-    drawing = (job, getattr(job, "sampling", None), getattr(job, "search", None))
-    return next(({"seed": each.seed} for each in drawing if hasattr(each, "seed")), {})
+    for drawing in (job, getattr(job, "sampling", None), getattr(job, "search", None)):
+        if (seed := getattr(drawing, "seed", None)) is not None:
+            return {"seed": seed}
+    return {}
 
 
 @cache
