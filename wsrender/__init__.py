@@ -27,6 +27,7 @@ from wsrender.errors import (
     WaitTimeoutError,
     WsrenderError,
 )
+from wsrender.version import __version__
 
 if TYPE_CHECKING:
     from wsrender import run
@@ -56,8 +57,6 @@ if TYPE_CHECKING:
     )
     from wsrender.spec.robot import DHRow, DHTable, Transform
     from wsrender.spec.sampling import BoundaryBiased, Converge, Grid, Random, Sobol
-
-__version__ = "0.2.0"
 
 __all__ = [
     "AccessError",

@@ -25,6 +25,8 @@
 from collections.abc import Iterable
 from typing import Any
 
+from wsrender.version import __version__
+
 
 class WsrenderError(Exception):
     """Base of all errors raised on purpose; ``code`` is stable and machine-readable."""
@@ -142,8 +144,6 @@ class MissingExtraError(WsrenderError, ImportError):
     code = "missing_extra"
 
     def __init__(self, package: str, extra: str):
-        from wsrender import __version__
-
         wheel = f"wsrender-{__version__}-py3-none-any.whl"
         super().__init__(
             f'{package} is not installed; in the clone of wsrender run: pip install ".[{extra}]", or beside its wheel: '

@@ -20,12 +20,12 @@ if TYPE_CHECKING:
     from wsrender.plots.master_slave import mapped_points
     from wsrender.plots.method_comparison import errors_by_size
     from wsrender.plots.orientation_map import orientations
+    from wsrender.plots.paper import png, save_figure
     from wsrender.plots.planes import slice_plane, slices
     from wsrender.plots.point_cloud import scatter
     from wsrender.plots.posture import limits_and_ellipsoids
     from wsrender.plots.result_plots import ResultPlots
     from wsrender.plots.stick_figure import robot
-    from wsrender.plots.style import png, save_figure
     from wsrender.plots.surface_faces import surface_faces
     from wsrender.plots.table_curves import curves
     from wsrender.plots.targets import labelled_targets

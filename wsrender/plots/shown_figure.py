@@ -12,6 +12,7 @@ from pathlib import Path
 from matplotlib.figure import Figure
 
 from wsrender.notebook import display, in_notebook
+from wsrender.plots.paper import png
 
 
 class ShownFigure(Figure):
@@ -21,8 +22,6 @@ class ShownFigure(Figure):
     """
 
     def _repr_png_(self) -> bytes:
-        from wsrender.plots.style import png
-
         return png(self)
 
     def show(self, warn: bool = True) -> None:

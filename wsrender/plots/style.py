@@ -1,12 +1,7 @@
-"""The look that all pictures share, and how they are written."""
+"""The figures that all pictures are drawn into, their headings and their words."""
 
 import textwrap
-import threading
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
-from io import BytesIO
-from pathlib import Path
 from typing import Any, Literal
 
 import matplotlib as mpl
@@ -16,51 +11,18 @@ from matplotlib.colors import Colormap
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-from wsrender.errors import InputError
 from wsrender.indices.units import pretty_unit
+from wsrender.plots.paper import DPI as DPI
+from wsrender.plots.paper import INK as INK
+from wsrender.plots.paper import paper_style as paper_style
 from wsrender.plots.shown_figure import ShownFigure
 
 COLOR_MAP = "viridis"
-INK = "#222222"
 GREY = "#6b6b6b"
-DPI = 200
 WARNING = "#a33b00"
 # Height of a line and width of a letter [in].
 _TITLE, _NOTE = (0.2, 0.094), (0.135, 0.063)
 _BORDER = 0.09  # above a title, above its warnings [in]
-
-_PARAMETERS = {
-    "font.family": "sans-serif",
-    "font.sans-serif": ["DejaVu Sans"],
-    "font.size": 9,
-    "axes.labelsize": 9,
-    "axes.titlesize": 10,
-    "axes.edgecolor": "#888888",
-    "axes.labelcolor": INK,
-    "axes.linewidth": 0.6,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "xtick.labelsize": 8,
-    "ytick.labelsize": 8,
-    "xtick.color": INK,
-    "ytick.color": INK,
-    "xtick.major.width": 0.6,
-    "ytick.major.width": 0.6,
-    "text.color": INK,
-    "text.parse_math": False,  # an index or robot may have any name, dollar signs included
-    "grid.color": "#dddddd",
-    "grid.linewidth": 0.5,
-    "savefig.dpi": DPI,
-    "svg.hashsalt": "wsrender",  # otherwise SVG identifiers are random
-}
-_LOCK = threading.RLock()
-
-
-@contextmanager
-def paper_style() -> Iterator[None]:
-    """Matplotlib with the parameters of these pictures, whatever the user's own; also a decorator."""
-    with _LOCK, matplotlib.style.context(["default", _PARAMETERS]):
-        yield
 
 
 @dataclass(frozen=True)
@@ -112,21 +74,3 @@ def quantity(name: str, unit: str | None) -> str:
     text = name.replace("_", " ").strip()
     text = text[:1].upper() + text[1:]
     return text if unit in (None, "", "1", "-") else f"{text} [{pretty_unit(unit)}]"
-
-
-def png(figure: Figure) -> bytes:
-    """A figure as a PNG file; equal figures give equal bytes."""
-    file = BytesIO()
-    with paper_style():
-        figure.savefig(file, format="png", metadata={"Software": None})
-    return file.getvalue()
-
-
-def save_figure(figure: Figure, path: str | Path) -> None:
-    """Write PNG or SVG, by the name; equal figures give equal bytes. InputError for another ending."""
-    path = Path(path)
-    metadata = {".png": {"Software": None}, ".svg": {"Date": None, "Creator": None}}.get(path.suffix.lower())
-    if metadata is None:
-        raise InputError("path", f"{path.name} must end in .png or .svg")
-    with paper_style():
-        figure.savefig(path, metadata=metadata)

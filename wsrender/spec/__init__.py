@@ -1,11 +1,12 @@
 """Job documents (pydantic), shared by Python, the command line and the server."""
 
+from wsrender.spec.analysed_jobs import IndicesAtJob, WorkspaceJob
 from wsrender.spec.boundary_patches import BoundaryPatchesJob
 from wsrender.spec.capability import CapabilityJob
 from wsrender.spec.collaborative import CollaborativeVolumeJob
 from wsrender.spec.design import DesignOptimizationJob
 from wsrender.spec.five_bar import FiveBarJob
-from wsrender.spec.jobs import ANALYSES, IndicesAtJob, Job, WorkspaceJob
+from wsrender.spec.jobs import ANALYSES, Job
 from wsrender.spec.kinetostatics import KinetostaticFieldJob
 from wsrender.spec.mapping import MasterSlaveMappingJob
 from wsrender.spec.method_comparison import MethodComparisonJob

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Iterator, Mapping
 from copy import deepcopy
+from functools import cache
 from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import (
@@ -13,6 +14,7 @@ from pydantic import (
     SerializeAsAny,
     SerializerFunctionWrapHandler,
     StrictBool,
+    TypeAdapter,
     ValidationError,
     WithJsonSchema,
     field_serializer,
@@ -21,11 +23,13 @@ from pydantic import (
 from pydantic.functional_validators import ModelWrapValidatorHandler
 
 from wsrender.errors import DocumentError
+from wsrender.spec.analysed_jobs import AnalysedJob
 from wsrender.spec.arm import Arm, ArmPath
 from wsrender.spec.document import Document
 from wsrender.spec.json_pointer import in_words_of, numbers_at, steps_of
 from wsrender.spec.problems import located, path_text, tagged
 from wsrender.spec.quantities import FileName, Name, Number, PositiveNumber, Seed, integer, quoted, real, sequence
+from wsrender.spec.reading import read_document
 
 MOST_PARAMETERS, MOST_OBJECTIVES = 50, 6
 MOST_EVALUATIONS = 1_000_000
@@ -37,17 +41,20 @@ _UNITS = {"_m3": "m^3", "_m2": "m^2", "_m": "m"}
 
 def _design(value: Any) -> Any:
     """The parsed job that is optimised."""
-    from wsrender.spec.parsing import parse_job  # which knows this job too
-
     if isinstance(value, Document):
         return value
     if isinstance(value, Mapping) and value.get("analysis") == "design_optimization":
         raise ValueError("must be another analysis than design_optimization")
     try:
-        return parse_job(value)
+        return read_document(value, _analysed())
     except DocumentError as error:
         problems = [located(tuple(field.split(".")), message) for field, message in error.problems]
         raise ValidationError.from_exception_data("design", problems) from None
+
+
+@cache
+def _analysed() -> TypeAdapter[Any]:
+    return TypeAdapter(AnalysedJob)
 
 
 def _pointers(value: Any) -> tuple[str, ...]:
@@ -221,7 +228,7 @@ class EvaluationsInFile(Document):
 _AnySearch = DifferentialEvolution | GridSweep | ParetoSearch
 SEARCHES = ("differential_evolution", "sweep", "pareto")
 Search = Annotated[_AnySearch, Discriminator("method"), BeforeValidator(tagged("method", SEARCHES))]
-AnalysedJob = Annotated[
+AnalysedDocument = Annotated[
     SerializeAsAny[Document],
     BeforeValidator(_design),
     WithJsonSchema({"type": "object", "properties": {"analysis": {"type": "string"}}, "required": ["analysis"]}),
@@ -235,7 +242,7 @@ class DesignOptimizationJob(Document):
 
     analysis: Literal["design_optimization"] = "design_optimization"
     """Name of the analysis."""
-    design: AnalysedJob
+    design: AnalysedDocument
     """The document of another analysis, of which some numbers vary."""
     parameters: Annotated[tuple[DesignParameter, ...], Field(min_length=1, max_length=MOST_PARAMETERS)]
     """The numbers that vary."""

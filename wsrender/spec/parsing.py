@@ -5,14 +5,13 @@ from collections.abc import Mapping
 from functools import cache
 from typing import Any
 
-from pydantic import TypeAdapter, ValidationError
+from pydantic import TypeAdapter
 
-from wsrender.errors import DocumentError, InputError
+from wsrender.errors import InputError
 from wsrender.spec.document import Document
 from wsrender.spec.jobs import ANALYSES, Job
-from wsrender.spec.json_text import check_depth, read_json
-from wsrender.spec.problems import listed
 from wsrender.spec.quantities import quoted
+from wsrender.spec.reading import read_document
 
 
 def parse_job(document: Mapping[str, Any] | str | bytes | Document) -> Any:
@@ -22,15 +21,7 @@ def parse_job(document: Mapping[str, Any] | str | bytes | Document) -> Any:
     """
     if isinstance(document, tuple(ANALYSES.values())):
         return document
-    value = read_json(document) if isinstance(document, str | bytes) else document
-    if not isinstance(value, Mapping):
-        raise DocumentError([("document", f"must be an object, not {type(value).__name__}")])
-    value = dict(value)
-    check_depth(value)
-    try:
-        return _adapter().validate_python(value)
-    except ValidationError as error:
-        raise DocumentError(listed(error, value)) from None
+    return read_document(document, _adapter())
 
 
 def canonical_json(job: Document) -> str:

@@ -1,0 +1,26 @@
+"""A document of one of several kinds, read and validated."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from pydantic import TypeAdapter, ValidationError
+
+from wsrender.errors import DocumentError
+from wsrender.spec.json_text import check_depth, read_json
+from wsrender.spec.problems import listed
+
+
+def read_document(document: Mapping[str, Any] | str | bytes, kinds: TypeAdapter[Any]) -> Any:
+    """What a dict or JSON text holds, of the kinds of a union.
+
+    Raises DocumentError listing every problem as (dotted path, what is allowed and what was found).
+    """
+    value = read_json(document) if isinstance(document, str | bytes) else document
+    if not isinstance(value, Mapping):
+        raise DocumentError([("document", f"must be an object, not {type(value).__name__}")])
+    value = dict(value)
+    check_depth(value)
+    try:
+        return kinds.validate_python(value)
+    except ValidationError as error:
+        raise DocumentError(listed(error, value)) from None
