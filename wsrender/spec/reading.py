@@ -10,8 +10,8 @@ from wsrender.spec.json_text import check_depth, read_json
 from wsrender.spec.problems import listed
 
 
-def read_document(document: Mapping[str, Any] | str | bytes, kinds: TypeAdapter[Any]) -> Any:
-    """What a dict or JSON text holds, of the kinds of a union.
+def read_document(document: Any, kinds: TypeAdapter[Any]) -> Any:
+    """What a dict or JSON text holds, of the kinds of a union; DocumentError for anything else.
 
     Raises DocumentError listing every problem as (dotted path, what is allowed and what was found).
     """
