@@ -24,7 +24,7 @@ from wsrender_kernels.pointwise import configuration_kernel
 import wsrender as ws
 from wsrender.engine import devices_of
 from wsrender.engine.kernel_cache import loaded
-from wsrender.engine.sweep import Accumulator
+from wsrender.engine.sweep_plan import Accumulator
 
 WORKS: dict[str, dict] = {
     "6 kinematic": {},

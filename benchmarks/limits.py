@@ -20,7 +20,7 @@ from throughput import machine, peaks, plan_of
 
 import wsrender as ws
 from wsrender.engine import SweepPlan, devices_of
-from wsrender.engine.sweep import Accumulator
+from wsrender.engine.sweep_plan import Accumulator
 
 PRECISIONS = ("float32", "float64")
 CHUNK_CPU, CHUNK_CUDA = 1 << 20, 1 << 26  # samples of a launch; on a GPU, whose rows it holds

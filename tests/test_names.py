@@ -1,7 +1,6 @@
 """A name means one thing: no module hides a function, and no two classes are called alike."""
 
 import ast
-from collections import defaultdict
 
 from tests.test_import_cycles import modules
 

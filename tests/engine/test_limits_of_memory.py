@@ -104,7 +104,7 @@ def test_slabs_of_the_lattice_change_no_bit(method, precision, device, monkeypat
         monkeypatch.setattr(slabs, "SHARE_SLAB", free * slabs.SHARE_SLAB / devices_of(device)[0].free_memory)
     monkeypatch.setattr(slabs, "available_bytes", lambda: free)
     assert len(slabs.fitted(plan.sweep.block, shape, devices_of(device)[:1], 20_000)[1]) in (4, 5)
-    monkeypatch.setattr(importlib.import_module("wsrender.engine.sweep"), "VOXELS_FETCHED", 777)  # in many parts too
+    monkeypatch.setattr(importlib.import_module("wsrender.engine.sweep_plan"), "VOXELS_FETCHED", 777)  # many parts
     found = run.run_shard(plan, 0, done.append, threads=1).sweep
     for name in ("extremes", "totals", "cells", "count", "records", "sums"):
         assert getattr(found, name).tobytes() == getattr(expected, name).tobytes(), name
@@ -145,7 +145,7 @@ def test_bounds_are_no_larger_than_they_have_to_be():
 
 @pytest.mark.parametrize("chunk_size", [1, 2**20, 2**31, 2**40])
 def test_no_chunk_overflows_32_bit_counts(chunk_size):
-    module = importlib.import_module("wsrender.engine.sweep")
+    module = importlib.import_module("wsrender.engine.sweep_plan")
     plan = run.plan(job("float32", keep_map=False)).sweep
     assert 256 <= module._chunk_size(plan, chunk_size) <= module.FOLD_AFTER < 2**31
 

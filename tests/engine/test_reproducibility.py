@@ -67,7 +67,7 @@ def test_documents_of_equal_jobs_are_equal(precision):
 
 def test_folding_32_bit_counts_changes_nothing(precision, monkeypatch):
     _, expected, _ = executed(job(precision, COUNT))
-    monkeypatch.setattr(import_module("wsrender.engine.sweep"), "FOLD_AFTER", 3000)
+    monkeypatch.setattr(import_module("wsrender.engine.sweep_plan"), "FOLD_AFTER", 3000)
     _, found, _ = executed(job(precision, COUNT), threads=2, chunk_size=1024)
     assert_same_bits(found, expected)
 

@@ -17,7 +17,7 @@ from wsrender.engine.membership import (
 )
 from wsrender.engine.partial import Partial, merge
 from wsrender.engine.positions import positions_at, sampled_positions
-from wsrender.engine.sweep import SweepPlan, sweep
+from wsrender.engine.sweep_plan import SweepPlan, sweep
 
 __all__ = [
     "Accuracy",

@@ -6,7 +6,7 @@ import numpy as np
 
 from wsrender.engine.devices import devices_of
 from wsrender.engine.evaluation import Evaluation
-from wsrender.engine.sweep import SweepPlan, from_origin, sweep
+from wsrender.engine.sweep_plan import SweepPlan, from_origin, sweep
 from wsrender.sampling import given_sampling
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from wsrender.engine.devices import devices_of
 from wsrender.engine.evaluation import Evaluation
-from wsrender.engine.sweep import SweepPlan, sweep
+from wsrender.engine.sweep_plan import SweepPlan, sweep
 from wsrender.robots.chain import Chain
 from wsrender.sampling import SamplingPlan, given_sampling
 

@@ -4,7 +4,7 @@ import numpy as np
 from wsrender_kernels.voxels import decode_extreme
 
 from wsrender.engine.partial import Partial
-from wsrender.engine.sweep import SweepPlan
+from wsrender.engine.sweep_plan import SweepPlan
 from wsrender.volume.volume_data import VolumeData
 from wsrender.volume.voxels import Voxels
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from wsrender.engine import Partial, SweepPlan, configurations, evaluate_at, units_of
-from wsrender.engine.sweep import from_origin
+from wsrender.engine.sweep_plan import from_origin
 from wsrender.engine.voxel_data import volume_data
 from wsrender.global_indices import (
     VoxelVolumes,
