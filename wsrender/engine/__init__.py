@@ -1,8 +1,8 @@
 """The only host code that talks to Warp: devices, packing, chunking, launches and partial results."""
 
 from wsrender.engine.at_configurations import Evaluated, evaluate_at
-from wsrender.engine.configurations import configurations
 from wsrender.engine.devices import devices_of, target_of, thread_count
+from wsrender.engine.drawn_configurations import configurations
 from wsrender.engine.evaluation import Evaluation
 from wsrender.engine.index_units import units_of
 from wsrender.engine.inverse import Accuracy, Tries, solve_inverse

@@ -13,8 +13,8 @@ from wsrender_kernels.sampling import LANES
 from wsrender_kernels.sweep import TOTAL_SLOTS, Shape, outputs_type, record_type_of, sums_type_of, sweep_kernel
 from wsrender_kernels.voxels import lattice, lowest
 
-from wsrender.engine.configurations import configurations, device_space, given_space
 from wsrender.engine.devices import thread_count
+from wsrender.engine.drawn_configurations import configurations, device_space, given_space
 from wsrender.engine.evaluation import Evaluation, device_array, evaluation_model, shape_of
 from wsrender.engine.grid_structure import (
     GridStructure,
