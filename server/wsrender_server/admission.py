@@ -8,7 +8,7 @@ from itertools import repeat
 from typing import Any
 
 from wsrender.errors import DocumentError, InputError, ModelError, ResourceError
-from wsrender.indices.catalogue import find, option_values, resolve
+from wsrender.indices.index_catalogue import find, option_values, resolve
 from wsrender.robots import library
 from wsrender.spec import IndicesAtJob, canonical_json, parse_job
 from wsrender.spec.arm import ArmPath, dotted, local_paths

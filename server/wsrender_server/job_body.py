@@ -13,7 +13,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, StringConstr
 
 from wsrender.errors import DocumentError, InputError
 from wsrender.indices import catalogue
-from wsrender.indices.catalogue import names_of
+from wsrender.indices.index_catalogue import names_of
 from wsrender.robots import library
 from wsrender.spec import job_schema
 from wsrender.spec.json_text import read_json

@@ -17,7 +17,7 @@ import wsrender as ws
 from tests.indices.added import ANISOTROPY, twins
 from wsrender.errors import DocumentError, InputError
 from wsrender.indices import catalogue as listed
-from wsrender.indices.catalogue import EXTENSIONS, KINEMATIC, _extensions, resolve
+from wsrender.indices.index_catalogue import EXTENSIONS, KINEMATIC, _extensions, resolve
 
 JOB = {
     "analysis": "workspace",
@@ -127,7 +127,7 @@ def test_a_package_that_cannot_be_used_is_named(found, message, monkeypatch):
         return found
 
     monkeypatch.setattr(EntryPoint, "load", load)
-    module = import_module("wsrender.indices.catalogue")
+    module = import_module("wsrender.indices.index_catalogue")
     monkeypatch.setattr(module, "entry_points", lambda group: [EntryPoint("lab", "lab:X", group)])
     _extensions.cache_clear()
     try:

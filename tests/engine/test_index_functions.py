@@ -11,8 +11,8 @@ from tests.engine.test_indices_standard import robot_and_references, task_matrix
 from tests.reference import local_indices
 from wsrender.errors import InputError, NumericalError
 from wsrender.indices import math
-from wsrender.indices.catalogue import find, is_dynamic, resolve, unit
 from wsrender.indices.dimensions import task_matrix as task_matrix_units
+from wsrender.indices.index_catalogue import find, is_dynamic, resolve, unit
 
 USER_INDICES = {
     "of_sqrt": lambda s, m, n: math.sqrt(s[0] + s[-1]),
@@ -35,7 +35,7 @@ USER_INDICES = {
 @pytest.fixture
 def empty_catalogue(monkeypatch):
     """The catalogue without what a test registers."""
-    module = import_module("wsrender.indices.catalogue")
+    module = import_module("wsrender.indices.index_catalogue")
     monkeypatch.setattr(module, "_ADDED", {})
 
 

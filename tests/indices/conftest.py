@@ -1,6 +1,6 @@
 import pytest
 
-from wsrender.indices.catalogue import _ADDED
+from wsrender.indices.index_catalogue import _ADDED
 
 
 @pytest.fixture

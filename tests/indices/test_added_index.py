@@ -10,7 +10,15 @@ from tests.reference.voxel_accumulation import accumulated
 from tests.run.simple_robots import PlanarClass, planar_arm
 from wsrender import run
 from wsrender.errors import InputError, NumericalError
-from wsrender.indices.catalogue import DYNAMIC, KINEMATIC, catalogue, default_statistics, find, is_dynamic, resolve
+from wsrender.indices.index_catalogue import (
+    DYNAMIC,
+    KINEMATIC,
+    catalogue,
+    default_statistics,
+    find,
+    is_dynamic,
+    resolve,
+)
 from wsrender.robot import as_robot
 from wsrender.robot.indices import evaluation_of_job
 from wsrender.spec import parse_job

@@ -10,7 +10,7 @@ from tests.reference.exact_volumes import articulated, spherical_pair
 from wsrender import cli
 from wsrender.cli.reproduce import NAMES
 from wsrender.errors import InputError
-from wsrender.indices.catalogue import DYNAMIC, KINEMATIC
+from wsrender.indices.index_catalogue import DYNAMIC, KINEMATIC
 from wsrender.reproduce import CASES, Row, cases, gao, reproduce, wsrender_tables
 from wsrender.spec import parse_job
 from wsrender.volume.volume_data import VolumeData

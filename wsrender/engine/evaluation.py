@@ -13,7 +13,7 @@ from wsrender_kernels.spectrum import spectrum_length
 from wsrender_kernels.sweep import Shape
 
 from wsrender.engine.index_code import index_function, index_source
-from wsrender.indices.catalogue import is_dynamic
+from wsrender.indices.index_catalogue import is_dynamic
 from wsrender.notices import Notice
 from wsrender.robots.chain import Chain
 from wsrender.robots.host_chain import HostChain

@@ -23,8 +23,8 @@ from wsrender_kernels.sampling import LANES, base_levels
 from wsrender_kernels.spectrum import LINEAR, in_base_axes
 
 from wsrender.engine.evaluation import Evaluation
-from wsrender.indices.catalogue import find, is_dynamic
 from wsrender.indices.entry import BASE_JOINT, TRAILING_JOINTS
+from wsrender.indices.index_catalogue import find, is_dynamic
 from wsrender.robots.chain import Chain
 from wsrender.sampling import SamplingPlan
 

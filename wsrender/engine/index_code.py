@@ -10,8 +10,8 @@ from wsrender_kernels.elementary import elementary
 from wsrender_kernels.factories import factory
 from wsrender_kernels.spectrum import spectrum_length
 
-from wsrender.indices.catalogue import find, is_dynamic
 from wsrender.indices.expression import Expression, trace
+from wsrender.indices.index_catalogue import find, is_dynamic
 
 _INFIX = {"add": "+", "subtract": "-", "multiply": "*", "divide": "/", "less": "<"}
 _CALLS = {

@@ -3,8 +3,8 @@
 import numpy as np
 
 from wsrender.engine.evaluation import Evaluation
-from wsrender.indices.catalogue import is_dynamic, unit
 from wsrender.indices.dimensions import task_matrix
+from wsrender.indices.index_catalogue import is_dynamic, unit
 from wsrender.robots.chain import Chain
 from wsrender.robots.host_chain import HostChain
 from wsrender.tolerances import FLAT

@@ -5,7 +5,7 @@ from wsrender_kernels.voxels import QUANTUM_BITS
 
 from wsrender.engine.evaluation import REAL, Evaluation
 from wsrender.errors import InputError
-from wsrender.indices.catalogue import find, is_dynamic
+from wsrender.indices.index_catalogue import find, is_dynamic
 from wsrender.robots.chain import Chain
 
 MARGIN = 1.01  # for rounding at the bound

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from wsrender.indices.catalogue import find
+from wsrender.indices.index_catalogue import find
 from wsrender.parallel.inverse_kinematics import inverse_kinematics
 from wsrender.parallel.jacobians import check_square, jacobians, platform_jacobian
 from wsrender.parallel.mechanism import Mechanism

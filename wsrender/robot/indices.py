@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from wsrender.errors import InputError, MissingInertiaError
-from wsrender.indices.catalogue import CONVENTIONS, is_dynamic, option_values, resolve
+from wsrender.indices.index_catalogue import CONVENTIONS, is_dynamic, option_values, resolve
 from wsrender.notices import Notice, warn
 from wsrender.robot.model_robot import Robot, configuration_rows
 from wsrender.robot.user_robot import HostRobot, as_robot

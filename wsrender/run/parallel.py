@@ -11,7 +11,7 @@ from wsrender.engine import OrientationCounts, thread_count
 from wsrender.engine.membership import LANES
 from wsrender.engine.ranges import check_range
 from wsrender.errors import InputError, ResourceError
-from wsrender.indices.catalogue import is_dynamic, option_values, resolve
+from wsrender.indices.index_catalogue import is_dynamic, option_values, resolve
 from wsrender.parallel.hybrid import Variant, added, count_union, middle, variants
 from wsrender.parallel.inverse_kinematics import inverse_kinematics
 from wsrender.parallel.jacobians import check_square

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from wsrender.global_indices import voxel_volumes, workspace_mean
-from wsrender.indices.catalogue import unit
 from wsrender.indices.dimensions import task_matrix
+from wsrender.indices.index_catalogue import unit
 from wsrender.parallel.hybrid import Variant, from_middle, middle
 from wsrender.parallel.inverse_kinematics import inverse_kinematics
 from wsrender.parallel.local_indices import DETERMINANTS

@@ -10,7 +10,7 @@ from wsrender.engine import Partial, SweepPlan, devices_of, merge, sweep
 from wsrender.engine.voxel_data import volume_data
 from wsrender.errors import InputError, NotConvergedError, ResourceError
 from wsrender.global_indices import joint_means, workspace_mean
-from wsrender.indices.catalogue import default_statistics, resolve
+from wsrender.indices.index_catalogue import default_statistics, resolve
 from wsrender.memory import SHARE, available_bytes
 from wsrender.result import Result
 from wsrender.robot import Robot
