@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from wsrender.kinetostatics.force_field import ForceField
+from wsrender.kinetostatics.force_fields import ForceField
 from wsrender.spec.kinetostatics import HapticDevice
 
 POSTURES, LOOPS, STEPS = 256, 48, 60

@@ -5,7 +5,7 @@ import math
 import mujoco
 import numpy as np
 
-from wsrender.kinetostatics.force_field import ForceField
+from wsrender.kinetostatics.force_fields import ForceField
 from wsrender.kinetostatics.kinematics import Posture
 
 STEPS = 4  # Newton steps of a tick

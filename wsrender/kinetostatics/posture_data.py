@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from wsrender.kinetostatics.force_field import ForceField
+from wsrender.kinetostatics.force_fields import ForceField
 from wsrender.volume.table import Table
 
 CUT = 10.0  # longest axis of a force ellipsoid over its shortest: at singular postures it is endless

@@ -7,7 +7,7 @@ import mujoco
 import numpy as np
 
 from wsrender.kinetostatics.energy_control import EnergyControl
-from wsrender.kinetostatics.force_field import FieldState, ForceField
+from wsrender.kinetostatics.force_fields import FieldState, ForceField
 from wsrender.kinetostatics.pose_tracking import PoseTracking, rotation_vector
 from wsrender.kinetostatics.thermal_limit import ThermalLimit
 from wsrender.spec.kinetostatic_stream import CueValues, Sample, Scale, State, StreamOpen, StreamWarning

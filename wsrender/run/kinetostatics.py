@@ -8,7 +8,7 @@ import numpy as np
 
 from wsrender.engine import configurations, sampled_positions
 from wsrender.kinetostatics.characteristic_length import CharacteristicLength
-from wsrender.kinetostatics.force_field import ForceField
+from wsrender.kinetostatics.force_fields import ForceField
 from wsrender.kinetostatics.passivity import LoopWork, largest_loop_work, stiffness_bound, stiffnesses
 from wsrender.kinetostatics.posture_data import posture_tables
 from wsrender.notices import Notice, entries

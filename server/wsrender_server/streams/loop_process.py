@@ -18,7 +18,7 @@ import numpy as np
 from pydantic import Discriminator, TypeAdapter, ValidationError
 
 from wsrender.errors import WsrenderError
-from wsrender.kinetostatics.force_field import ForceField
+from wsrender.kinetostatics.force_fields import ForceField
 from wsrender.kinetostatics.passivity import largest_loop_work, stiffness_bound
 from wsrender.kinetostatics.rendering import Rendered, Rendering
 from wsrender.robot import robot_of_spec
