@@ -9,7 +9,7 @@ import numpy as np
 
 from wsrender.parallel.five_bar import ASSEMBLY_MODES, FiveBar
 from wsrender.parallel.five_bar.aspects import Aspect, aspects
-from wsrender.parallel.five_bar.conditioning import conditioning
+from wsrender.parallel.five_bar.condition_numbers import conditioning
 from wsrender.parallel.five_bar.isotropy import isotropic_points
 from wsrender.parallel.five_bar.loci import Piece, end_point, pieces, postures, type_2_curves
 from wsrender.parallel.five_bar.maps import (

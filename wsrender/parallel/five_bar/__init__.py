@@ -1,6 +1,6 @@
 """The five-bar: kinematics in all modes, workspace, singularities, aspects and conditioning ([CB])."""
 
-from wsrender.parallel.five_bar.conditioning import (
+from wsrender.parallel.five_bar.condition_numbers import (
     Conditioning,
     conditioning,
     jacobian,

@@ -9,7 +9,7 @@ import numpy as np
 from wsrender.boundary.romberg import extrapolated
 from wsrender.errors import NumericalError
 from wsrender.parallel.five_bar.arcs import Arc
-from wsrender.parallel.five_bar.conditioning import conditioning
+from wsrender.parallel.five_bar.condition_numbers import conditioning
 from wsrender.parallel.five_bar.loci import BESIDE, Event, Piece, end_point
 from wsrender.parallel.five_bar.mechanism import FiveBar
 from wsrender.parallel.five_bar.region import Region

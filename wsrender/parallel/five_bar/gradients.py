@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from wsrender.parallel.five_bar.conditioning import conditioning
+from wsrender.parallel.five_bar.condition_numbers import conditioning
 from wsrender.parallel.five_bar.mechanism import FiveBar, rows_of
 
 

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from skimage.measure import find_contours
 
-from wsrender.parallel.five_bar.conditioning import conditioning
+from wsrender.parallel.five_bar.condition_numbers import conditioning
 from wsrender.parallel.five_bar.maps import PlaneLattice
 from wsrender.parallel.five_bar.mechanism import FiveBar
 

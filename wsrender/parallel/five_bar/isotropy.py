@@ -6,7 +6,7 @@ from itertools import pairwise
 import numpy as np
 from scipy.optimize import root_scalar
 
-from wsrender.parallel.five_bar.conditioning import conditioning
+from wsrender.parallel.five_bar.condition_numbers import conditioning
 from wsrender.parallel.five_bar.loci import least_kappa_a_curves, pieces
 from wsrender.parallel.five_bar.mechanism import FiveBar
 

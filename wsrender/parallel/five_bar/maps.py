@@ -5,7 +5,7 @@ from math import ceil, floor
 
 import numpy as np
 
-from wsrender.parallel.five_bar.conditioning import Conditioning, conditioning
+from wsrender.parallel.five_bar.condition_numbers import Conditioning, conditioning
 from wsrender.parallel.five_bar.loci import postures
 from wsrender.parallel.five_bar.mechanism import ASSEMBLY_MODES, WORKING_MODES, FiveBar
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from wsrender.parallel.five_bar.arcs import Arc
 from wsrender.parallel.five_bar.aspects import Aspect
-from wsrender.parallel.five_bar.conditioning import conditioning
+from wsrender.parallel.five_bar.condition_numbers import conditioning
 from wsrender.parallel.five_bar.iso_curves import iso_curves
 from wsrender.parallel.five_bar.isotropy import isotropic_b, isotropic_points
 from wsrender.parallel.five_bar.loci import Piece, end_point, least_kappa_a_curves, pieces
