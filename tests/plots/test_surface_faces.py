@@ -14,8 +14,8 @@ from wsrender.parallel.exact import ExactWorkspace
 from wsrender.plots.camera import Camera
 from wsrender.plots.depth import DepthBuffer
 from wsrender.plots.faces import faces_of, leg_numbers
+from wsrender.plots.faces_of_surface import in_sight, shaded, surface_faces
 from wsrender.plots.patches import faces_of_patches
-from wsrender.plots.surface_faces import in_sight, shaded, surface_faces
 from wsrender.volume.table import Table
 
 LENS = region([(0, 0, 0, 1), (1, 0, 0, 1)])  # two unit balls: two caps that share one circle

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from wsrender.plots.designs import sweep_surface, trade_off
     from wsrender.plots.distribution import histogram, write_histogram_csv
     from wsrender.plots.faces import Faces, faces_of
+    from wsrender.plots.faces_of_surface import surface_faces
     from wsrender.plots.five_bar import aspect_maps, conditioning_maps
     from wsrender.plots.listing import pictures_of
     from wsrender.plots.master_slave import mapped_points
@@ -26,7 +27,6 @@ if TYPE_CHECKING:
     from wsrender.plots.posture import limits_and_ellipsoids
     from wsrender.plots.result_plots import ResultPlots
     from wsrender.plots.stick_figure import robot
-    from wsrender.plots.surface_faces import surface_faces
     from wsrender.plots.table_curves import curves
     from wsrender.plots.targets import labelled_targets
     from wsrender.plots.vector_field import vector_planes
@@ -56,7 +56,7 @@ _MODULES = {
     "side_by_side": "comparison",
     "slice_plane": "planes",
     "slices": "planes",
-    "surface_faces": "surface_faces",
+    "surface_faces": "faces_of_surface",
     "sweep_surface": "designs",
     "trade_off": "designs",
     "vector_planes": "vector_field",

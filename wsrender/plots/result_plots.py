@@ -13,6 +13,7 @@ from wsrender.plots.comparison import side_by_side
 from wsrender.plots.designs import sweep_surface, trade_off
 from wsrender.plots.distribution import histogram
 from wsrender.plots.faces import Faces, faces_of
+from wsrender.plots.faces_of_surface import surface_faces
 from wsrender.plots.five_bar import MODE_VOLUMES, aspect_maps, conditioning_maps
 from wsrender.plots.master_slave import mapped_points
 from wsrender.plots.method_comparison import errors_by_size
@@ -23,7 +24,6 @@ from wsrender.plots.point_cloud import scatter
 from wsrender.plots.posture import limits_and_ellipsoids
 from wsrender.plots.stick_figure import robot
 from wsrender.plots.style import Heading
-from wsrender.plots.surface_faces import surface_faces
 from wsrender.plots.table_curves import curves
 from wsrender.plots.targets import labelled_targets
 from wsrender.plots.vector_field import vector_planes

@@ -10,8 +10,8 @@ from matplotlib.lines import Line2D
 from wsrender.errors import InputError
 from wsrender.plots.cloud import far_half, scale_of, thinned
 from wsrender.plots.faces import Faces
+from wsrender.plots.faces_of_surface import shaded
 from wsrender.plots.style import GREY, INK, Heading, color_map, paper_style
-from wsrender.plots.surface_faces import shaded
 from wsrender.plots.view import BAR, View, inches, new_view
 from wsrender.volume.distribution_map import DistributionMap
 
