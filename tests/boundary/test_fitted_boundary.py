@@ -14,7 +14,7 @@ from wsrender.boundary.spatial.fitted_boundary import TOLERANCE, fitted_boundary
 from wsrender.boundary.spatial.grown_patches import best_refined_fit, grown_patches
 from wsrender.reachability.moving_joints import moving_joints
 from wsrender.reachability.reached_points import ReachedPoints
-from wsrender.reachability.refined_volume import refined_volume
+from wsrender.reachability.volume_refinement import refined_volume
 
 PI = np.pi
 

@@ -10,8 +10,8 @@ import numpy as np
 
 from wsrender.reachability.dimension import FLAT, TipSet, tip_set
 from wsrender.reachability.reached_set import FalseNegatives, tolerance_m
-from wsrender.reachability.refined_volume import by_the_origin, decided_volumes
 from wsrender.reachability.volume_estimate import Event, VolumeEstimate
+from wsrender.reachability.volume_refinement import by_the_origin, decided_volumes
 from wsrender.robots.chain import Chain
 from wsrender.volume.measure import QUANTITIES, UNITS
 
