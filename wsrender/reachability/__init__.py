@@ -15,7 +15,7 @@ line too, and says why where a set has no measure; `refined_measures` is the sam
 """
 
 from wsrender.reachability.inverse_solver import InverseSolver, Solutions
-from wsrender.reachability.refined_measure import RefinedMeasure, refined_measure, refined_measures
+from wsrender.reachability.measure_refinement import RefinedMeasure, refined_measure, refined_measures
 from wsrender.reachability.targets import Reachability, reachable
 from wsrender.reachability.volume_estimate import Event, VolumeEstimate, estimate_volumes
 from wsrender.reachability.volume_refinement import RefinedVolumes, refined_volume, refined_volumes

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from wsrender.reachability.refined_measure import RefinedMeasure, refined_measure, refined_measures
+from wsrender.reachability.measure_refinement import RefinedMeasure, refined_measure, refined_measures
 from wsrender.reachability.volume_estimate import Event
 from wsrender.reachability.voxel_labels import label_voxels
 from wsrender.robots.chain import Chain

@@ -22,9 +22,9 @@ from wsrender.boundary.spatial.spatial_boundary import (
     spatial_boundary,
 )
 from wsrender.notices import Notice, entries
+from wsrender.reachability.measure_refinement import refined_measure
 from wsrender.reachability.moving_joints import moving_joints
 from wsrender.reachability.reached_points import ReachedPoints
-from wsrender.reachability.refined_measure import refined_measure
 from wsrender.result import Result
 from wsrender.robot import Robot, robot_with_model
 from wsrender.robots.chain import Chain
