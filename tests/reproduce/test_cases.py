@@ -8,7 +8,7 @@ import pytest
 
 from tests.reference.exact_volumes import articulated, spherical_pair
 from wsrender import cli
-from wsrender.cli.reproduce import NAMES
+from wsrender.cli.reproduce_command import NAMES
 from wsrender.errors import InputError
 from wsrender.indices.index_catalogue import DYNAMIC, KINEMATIC
 from wsrender.reproduce import CASES, Row, cases, gao, reproduce, wsrender_tables

@@ -8,13 +8,13 @@ from typing import Annotated
 import typer
 
 from wsrender.cli.faults import one_line_faults
-from wsrender.cli.jobs import jobs
+from wsrender.cli.jobs_command import jobs
 from wsrender.cli.listing import robots, schema
-from wsrender.cli.render import render
-from wsrender.cli.report import report
-from wsrender.cli.reproduce import reproduce
-from wsrender.cli.run import run
-from wsrender.cli.submit import submit
+from wsrender.cli.render_command import render
+from wsrender.cli.report_command import report
+from wsrender.cli.reproduce_command import reproduce
+from wsrender.cli.run_command import run
+from wsrender.cli.submit_command import submit
 from wsrender.errors import MissingExtraError
 
 COMMANDS = {
