@@ -9,7 +9,7 @@ from tests.reference import mujoco_kinematics as by_mujoco
 from wsrender import robots
 from wsrender.engine.grid_structure import structure_of
 from wsrender.errors import ModelError
-from wsrender.kinetostatics.kinematics import Kinematics
+from wsrender.kinetostatics.kinematics import PostureKinematics
 from wsrender.robot import evaluate_indices, link_shapes, robot_of_spec
 from wsrender.robot.indices import evaluation_of
 from wsrender.robots.model_warning import ModelWarning
@@ -275,7 +275,7 @@ def test_followers_that_leave_their_leader_nothing_are_named():
 def test_postures_and_pictures_follow_leaders_on_another_branch():
     robot = robot_of_spec(RobotSpec(mjcf=HAND), tip="pad")
     q = np.array([0.3, -0.4, 0.2])
-    posture = Kinematics(robot).at(q)
+    posture = PostureKinematics(robot).at(q)
     np.testing.assert_allclose(posture.position, robot.forward_kinematics(q, device="cpu")[0, :3, 3], atol=1e-12)
     np.testing.assert_allclose(posture.J, robot.jacobian(q, device="cpu")[0], atol=1e-12)
     np.testing.assert_allclose(robot.skeleton(q)[0, -1], posture.position, atol=1e-12)

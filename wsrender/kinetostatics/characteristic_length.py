@@ -16,7 +16,7 @@ import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
 from wsrender.errors import InputError
-from wsrender.kinetostatics.kinematics import Kinematics
+from wsrender.kinetostatics.kinematics import PostureKinematics
 from wsrender.spec.kinetostatics import CharacteristicLengthChoice
 
 ALL_ROWS = (0, 1, 2, 3, 4, 5)
@@ -98,7 +98,7 @@ METHODS = {"rms": rms_length, "conditioning": conditioning_length, "least_condit
 
 
 def characteristic_length(
-    kinematics: Kinematics, choice: CharacteristicLengthChoice, rows: tuple[int, ...]
+    kinematics: PostureKinematics, choice: CharacteristicLengthChoice, rows: tuple[int, ...]
 ) -> CharacteristicLength:
     """The length that a document chooses, for the rows of its task (all six where the task does not mix kinds).
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from wsrender.kinetostatics.kinematics import Kinematics, Posture
+from wsrender.kinetostatics.kinematics import Posture, PostureKinematics
 from wsrender.kinetostatics.singular_values import decomposed
 from wsrender.spec.kinetostatics import ConditioningForce
 
@@ -10,7 +10,7 @@ from wsrender.spec.kinetostatics import ConditioningForce
 class Conditioning:
     """i = σ_m/σ_1 of the rows of a task, linear ones divided by the characteristic length [m]."""
 
-    def __init__(self, kinematics: Kinematics, rows: tuple[int, ...], length: float):
+    def __init__(self, kinematics: PostureKinematics, rows: tuple[int, ...], length: float):
         scale = [1 / length if row < 3 and max(rows) >= 3 else 1.0 for row in rows]
         self._select = np.zeros((len(rows), 6))  # rows of the task, scaled
         self._select[range(len(rows)), rows] = scale

@@ -22,7 +22,7 @@ from wsrender.kinetostatics.boundary import boundary_distance
 from wsrender.kinetostatics.characteristic_length import characteristic_length
 from wsrender.kinetostatics.conditioning import Condition, Conditioning, ConditioningRamp
 from wsrender.kinetostatics.joint_limits import JointLimits
-from wsrender.kinetostatics.kinematics import Kinematics, Posture
+from wsrender.kinetostatics.kinematics import Posture, PostureKinematics
 from wsrender.kinetostatics.obstacles import ObstacleDistance
 from wsrender.kinetostatics.singular_values import damped_factor, damped_inverse, decomposed
 from wsrender.kinetostatics.surfaces import SurfaceRamp
@@ -79,7 +79,7 @@ class ForceField:
 
     def __init__(self, robot: Robot, choice: ForceFieldChoice, device: str = "auto", *, threads: int | None = None):
         self.robot, self.choice, self.device = robot, choice, choice.haptic_device
-        self.kinematics = Kinematics(robot)
+        self.kinematics = PostureKinematics(robot)
         self.chain = chain = self.kinematics.chain
         rows = task_rows(choice.task)
         self.length = characteristic_length(self.kinematics, choice.characteristic_length, rows)

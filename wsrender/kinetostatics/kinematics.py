@@ -29,7 +29,7 @@ class Posture:
     columns: np.ndarray
 
 
-class Kinematics:
+class PostureKinematics:
     """Float64 kinematics of a robot's model, one posture at a time.
 
     Raises InputError for a user-defined robot, and for one whose joints have no usable limits.
