@@ -7,7 +7,7 @@ from wsrender.kinetostatics.singular_values import decomposed
 from wsrender.spec.kinetostatics import ConditioningForce
 
 
-class Conditioning:
+class TaskConditioning:
     """i = σ_m/σ_1 of the rows of a task, linear ones divided by the characteristic length [m]."""
 
     def __init__(self, kinematics: PostureKinematics, rows: tuple[int, ...], length: float):

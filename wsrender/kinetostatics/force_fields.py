@@ -20,7 +20,7 @@ import numpy as np
 from wsrender.errors import InputError
 from wsrender.kinetostatics.boundary import boundary_distance
 from wsrender.kinetostatics.characteristic_length import characteristic_length
-from wsrender.kinetostatics.conditioning import Condition, Conditioning, ConditioningRamp
+from wsrender.kinetostatics.conditioning import Condition, ConditioningRamp, TaskConditioning
 from wsrender.kinetostatics.joint_limits import JointLimits
 from wsrender.kinetostatics.kinematics import Posture, PostureKinematics
 from wsrender.kinetostatics.obstacles import ObstacleDistance
@@ -84,7 +84,7 @@ class ForceField:
         rows = task_rows(choice.task)
         self.length = characteristic_length(self.kinematics, choice.characteristic_length, rows)
         peak, length = self.device.peak_force_n, self.length.length_m
-        self.conditioning = Conditioning(self.kinematics, rows, length)
+        self.conditioning = TaskConditioning(self.kinematics, rows, length)
         limits = choice.joint_limits
         self.joint_limits = JointLimits(chain, limits or JointLimitForce(), peak, length)
         self._has_limits = limits is not None
