@@ -10,7 +10,7 @@ from wsrender.boundary.romberg import extrapolated
 from wsrender.errors import NumericalError
 from wsrender.parallel.five_bar.arcs import Arc
 from wsrender.parallel.five_bar.condition_numbers import conditioning
-from wsrender.parallel.five_bar.loci import BESIDE, Event, Piece, end_point
+from wsrender.parallel.five_bar.loci import BESIDE, BoundaryMeeting, Piece, end_point
 from wsrender.parallel.five_bar.mechanism import FiveBar
 from wsrender.parallel.five_bar.region import Region
 
@@ -61,7 +61,7 @@ def aspects(five_bar: FiveBar, working_mode: str, region: Region, pieces: Iterab
     return _faces(five_bar, working_mode, loops)
 
 
-def _meets(event: Event, bounding: set[str]) -> bool:
+def _meets(event: BoundaryMeeting, bounding: set[str]) -> bool:
     return any(name in bounding for name, _ in event.arcs)
 
 

@@ -35,7 +35,7 @@ class Curve:
 
 
 @dataclass(frozen=True)
-class Event:
+class BoundaryMeeting:
     """Where a curve meets the boundary of a working mode: parameter t, and the arcs that meet there.
 
     ``arcs`` holds (name, joint angle along it) of each; in flat postures both legs have one, not all of them bound the
@@ -54,8 +54,8 @@ class Piece:
     working_mode: str
     low: float
     high: float
-    start: Event | None = None
-    stop: Event | None = None
+    start: BoundaryMeeting | None = None
+    stop: BoundaryMeeting | None = None
 
     @property
     def closed(self) -> bool:
@@ -218,7 +218,7 @@ def _cuts(curve: Curve) -> list[tuple[float, float]]:
     return cuts
 
 
-def _event(curve: Curve, t: float) -> Event:
+def _event(curve: Curve, t: float) -> BoundaryMeeting:
     """The arcs on which a posture lies: of flat ones both legs', not only that of the leg that cuts the curve."""
     angles, arcs = curve.angles(np.array([t])), []
     for leg, side in enumerate(LEGS):
@@ -229,7 +229,7 @@ def _event(curve: Curve, t: float) -> Event:
         if limits is not None and abs(_beyond_limit(curve.five_bar, angles, leg)[0]) < ON_ARC:
             high = wrapped(angles[:, leg] - sum(limits) / 2)[0] > 0
             arcs.append((f"{side} {'high' if high else 'low'}", abs(elbow)))
-    return Event(t, tuple(arcs))
+    return BoundaryMeeting(t, tuple(arcs))
 
 
 def _elbow_sine(five_bar: FiveBar, angles: np.ndarray, leg: int) -> np.ndarray:
