@@ -6,7 +6,7 @@ from typing import Protocol
 import numpy as np
 
 
-class Space(Protocol):
+class MeasuredSet(Protocol):
     """A workspace that knows its volume and what lies in it: an alpha shape or a voxel set."""
 
     @property
@@ -45,6 +45,6 @@ class LinearMapping:
         moved = 0.0 if about is None else (self.scale - scale) * (self.rotation @ about)
         return replace(self, scale=scale, offset=self.offset + moved)
 
-    def succeeds(self, master: Space, points: np.ndarray) -> bool:
+    def succeeds(self, master: MeasuredSet, points: np.ndarray) -> bool:
         """Whether every slave point (N, 3) lies in the master's space."""
         return bool(master.contains(self.apply(points)).all())

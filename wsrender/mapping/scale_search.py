@@ -7,7 +7,7 @@ import numpy as np
 from scipy.ndimage import distance_transform_edt, map_coordinates
 from scipy.optimize import differential_evolution
 
-from wsrender.mapping.linear_mapping import LinearMapping, Space
+from wsrender.mapping.linear_mapping import LinearMapping, MeasuredSet
 
 BISECTIONS = 30
 TOUCH = 1e-7  # of a length; points nearer to a boundary lie on either side by rounding
@@ -27,7 +27,11 @@ class ScaleCurve:
 
 
 def scale_curve(
-    master: Space, points: np.ndarray, mapping: LinearMapping, factors: np.ndarray, about: np.ndarray | None = None
+    master: MeasuredSet,
+    points: np.ndarray,
+    mapping: LinearMapping,
+    factors: np.ndarray,
+    about: np.ndarray | None = None,
 ) -> ScaleCurve:
     """Share of points (N, 3) inside the master at each factor (M,) on the mapping's scales."""
     inside = [master.contains(mapping.scaled(factor, about).apply(points)).mean() for factor in factors]
@@ -35,7 +39,7 @@ def scale_curve(
 
 
 def largest_factor(
-    master: Space, points: np.ndarray, mapping: LinearMapping, curve: ScaleCurve, about: np.ndarray | None = None
+    master: MeasuredSet, points: np.ndarray, mapping: LinearMapping, curve: ScaleCurve, about: np.ndarray | None = None
 ) -> float | None:
     """The largest factor at which every point is inside, to a millionth, near the last success of the curve.
 
@@ -52,7 +56,7 @@ def largest_factor(
 
 
 def best_mapping(
-    master: Space,
+    master: MeasuredSet,
     box: tuple[np.ndarray, np.ndarray],
     points: np.ndarray,
     start: LinearMapping,
@@ -113,7 +117,7 @@ def _rough_optimum(master, box, points, start, scale_bounds, uniform, offset_bou
 
 
 def _moved(
-    master: Space,
+    master: MeasuredSet,
     points: np.ndarray,
     mapping: LinearMapping,
     most: np.ndarray,
@@ -136,7 +140,7 @@ def _moved(
 
 
 def _largest_growth(
-    master: Space, points: np.ndarray, mapping: LinearMapping, most: np.ndarray, about: np.ndarray
+    master: MeasuredSet, points: np.ndarray, mapping: LinearMapping, most: np.ndarray, about: np.ndarray
 ) -> float:
     """The largest factor on the scales of a mapping that succeeds, near 1."""
     high = min(OUTWARD, float((most / mapping.scale).min()))
@@ -152,7 +156,7 @@ def _violation(offset: np.ndarray, bounds: Sequence[tuple[float, float]] | None)
 
 
 def _grown(
-    master: Space, points: np.ndarray, mapping: LinearMapping, most: np.ndarray, about: np.ndarray | None
+    master: MeasuredSet, points: np.ndarray, mapping: LinearMapping, most: np.ndarray, about: np.ndarray | None
 ) -> LinearMapping:
     """The mapping with each scale by itself, one after the other, grown as far as all points stay inside."""
     for axis in range(3):
@@ -178,7 +182,7 @@ def _bisected(succeeds: Callable[[float], bool], low: float, high: float, bisect
 class _DistanceField:
     """Signed distance to the boundary of a space, positive inside, interpolated between cells [m]."""
 
-    def __init__(self, space: Space, box: tuple[np.ndarray, np.ndarray]):
+    def __init__(self, space: MeasuredSet, box: tuple[np.ndarray, np.ndarray]):
         lower, upper = box
         self.edge = float(np.cbrt(np.prod(np.maximum(upper - lower, 1e-9)))) / FIELD_CELLS
         margin = 4

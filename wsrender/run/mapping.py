@@ -10,7 +10,7 @@ import numpy as np
 from wsrender.boundary.alpha_shape import AlphaShape
 from wsrender.boundary.surfaces import surface_entry
 from wsrender.errors import ResourceError
-from wsrender.mapping.linear_mapping import LinearMapping, Space
+from wsrender.mapping.linear_mapping import LinearMapping, MeasuredSet
 from wsrender.mapping.scale_search import best_mapping, largest_factor, scale_curve
 from wsrender.mapping.voxel_set import VoxelSet
 from wsrender.notices import Notice, entries
@@ -132,7 +132,9 @@ class MappingPlan(OneShard):
     def _given(self, offset: np.ndarray) -> LinearMapping:
         return LinearMapping(np.array(self.job.scale), self._rotation(), offset)
 
-    def _found(self, space: Space, master: np.ndarray, slave: np.ndarray, given: LinearMapping) -> LinearMapping | None:
+    def _found(
+        self, space: MeasuredSet, master: np.ndarray, slave: np.ndarray, given: LinearMapping
+    ) -> LinearMapping | None:
         """The largest mapping of the search; None where it finds none, or the job has none."""
         search = self.job.search
         if search is None:
@@ -187,14 +189,14 @@ def _count(job: MasterSlaveMappingJob, side: int, source: Source) -> int:
     return plan_sampling(source.chain, _sampling(job, side)).count
 
 
-def _space(points: np.ndarray, containment: Containment) -> Space:
+def _space(points: np.ndarray, containment: Containment) -> MeasuredSet:
     if containment.kind == "voxels":
         assert containment.voxel_size_m is not None
         return VoxelSet.of(points, containment.voxel_size_m)
     return AlphaShape.of(points, containment.alpha_m)
 
 
-def _entry(mapping: LinearMapping, space: Space, own: Space, slave: np.ndarray) -> dict[str, Any]:
+def _entry(mapping: LinearMapping, space: MeasuredSet, own: MeasuredSet, slave: np.ndarray) -> dict[str, Any]:
     """What the result document says of one mapping.
 
     ``efficiency`` is the mapping efficiency of [WSR] III.D: volume of the mapped slave over that of the master.
