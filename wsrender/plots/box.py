@@ -41,7 +41,7 @@ class Label:
 
 
 @dataclass(frozen=True, eq=False)
-class Space:
+class SeenBox:
     """A box lower … upper (3,) [m] seen by a camera; ``inch`` is one of the printed picture, in half heights of it.
 
     Other quantities than lengths are drawn multiplied by ``stretch`` (3,), with ``names`` of their own.
@@ -176,7 +176,7 @@ def box(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 def space_around(
     points: np.ndarray, size: tuple[int, int], azimuth_deg: float, elevation_deg: float, **axes_of: Any
-) -> Space:
+) -> SeenBox:
     """The box of points (N, 3) [m] in a picture of ``size`` pixels, seen from a direction [deg].
 
     The picture holds its numbers and names too. ``axes_of``: ``stretch`` and ``names`` of a `Space`.
@@ -193,7 +193,7 @@ def space_around(
     wide, inch = size[0] / size[1], 2 * DPI / size[1]
     margin = min(_MARGIN[0] * inch, _MOST_MARGIN * wide), min(_MARGIN[1] * inch, _MOST_MARGIN)
     half_height = max(half[0] / (wide - margin[0]), half[1] / (1 - margin[1]))
-    space = Space(lower, upper, Camera(middle, forward, up, float(half_height)), inch, **axes_of)
+    space = SeenBox(lower, upper, Camera(middle, forward, up, float(half_height)), inch, **axes_of)
     for _ in range(_SHRINKINGS):
         ends = np.array([np.abs([label.x, label.y]) + label.half for label in space.labels()])
         if (ends <= [wide, 1.0]).all():

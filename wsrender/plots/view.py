@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
-from wsrender.plots.box import AZIMUTH_DEG, ELEVATION_DEG, NAME_SIZE, NUMBER_SIZE, Space, space_around
+from wsrender.plots.box import AZIMUTH_DEG, ELEVATION_DEG, NAME_SIZE, NUMBER_SIZE, SeenBox, space_around
 from wsrender.plots.depth import DepthBuffer
 from wsrender.plots.style import DPI, GREY, Heading, new_figure
 
@@ -27,7 +27,7 @@ class View:
     """Axes in half heights of the picture, in which a ``space`` is drawn; ``size`` in pixels."""
 
     axes: Axes
-    space: Space
+    space: SeenBox
     size: tuple[int, int]
     buffers: list[DepthBuffer] = field(default_factory=list)
 
@@ -128,7 +128,7 @@ def add_view(
     return view
 
 
-def write_labels(axes: Axes, space: Space) -> None:
+def write_labels(axes: Axes, space: SeenBox) -> None:
     """The numbers of the box and the names of its axes, in axes in half heights of the picture."""
     for label in space.labels():
         size = NAME_SIZE if label.text in space.names else NUMBER_SIZE

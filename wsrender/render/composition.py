@@ -10,7 +10,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from wsrender.errors import InputError
-from wsrender.plots.box import AZIMUTH_DEG, ELEVATION_DEG, Space, space_around
+from wsrender.plots.box import AZIMUTH_DEG, ELEVATION_DEG, SeenBox, space_around
 from wsrender.plots.style import INK, Heading
 from wsrender.render import environment as surroundings
 from wsrender.render.environment import Floor, Item
@@ -111,11 +111,11 @@ def _layer_points(layer: Layer) -> np.ndarray:
     return np.empty((0, 3))
 
 
-def _around(environment: Sequence[Item], space: Space) -> list[Surface]:
+def _around(environment: Sequence[Item], space: SeenBox) -> list[Surface]:
     return [part for item in environment for part in surroundings.surfaces(item, space.lower, space.upper)]
 
 
-def _robots(subjects: Sequence[Subject], space: Space) -> list[Layer]:
+def _robots(subjects: Sequence[Subject], space: SeenBox) -> list[Layer]:
     """The arms as rods, thin where the bodies of their links are known."""
     radius = _ROD * float((space.upper - space.lower).max())
     layers: list[Layer] = []

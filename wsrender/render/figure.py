@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.figure import Figure
 
-from wsrender.plots.box import Space
+from wsrender.plots.box import SeenBox
 from wsrender.plots.color_scale import ColorScale
 from wsrender.plots.style import DPI, Heading, new_figure, paper_style
 from wsrender.plots.view import inches, note, write_labels
@@ -23,7 +23,7 @@ POINT = DPI / 72  # pixels
 @paper_style()
 def figure_of(
     picture: np.ndarray,
-    space: Space,
+    space: SeenBox,
     *,
     title: Heading | str,
     notes: Sequence[str],
