@@ -25,7 +25,7 @@ _STEPS = [1, 2, 2.5, 5, 10]
 
 
 @dataclass(frozen=True)
-class Label:
+class PlacedText:
     """A text at a place of the picture, with half its width and height, all in half heights of the picture."""
 
     text: str
@@ -34,7 +34,7 @@ class Label:
     half: tuple[float, float]
     upright: bool = False  # to be read from the right
 
-    def overlaps(self, other: "Label", gap: float = 0.0) -> bool:
+    def overlaps(self, other: "PlacedText", gap: float = 0.0) -> bool:
         """Whether the texts would be written over each other, or nearer to each other than ``gap``."""
         apart = abs(self.x - other.x), abs(self.y - other.y)
         return all(apart[k] < self.half[k] + other.half[k] + gap for k in (0, 1))
@@ -70,9 +70,9 @@ class SeenBox:
                 break
         return values
 
-    def labels(self) -> list[Label]:
+    def labels(self) -> list[PlacedText]:
         """The numbers of the three axes and their names, none over another; a number without room is left out."""
-        found: list[Label] = []
+        found: list[PlacedText] = []
         rows = [self._numbers(axis) for axis in range(3)]
         for row in rows:
             others = list(found)
@@ -92,7 +92,7 @@ class SeenBox:
             for a, b in pairwise(numbers)
         )
 
-    def _numbers(self, axis: int, values: np.ndarray | None = None) -> list[Label]:
+    def _numbers(self, axis: int, values: np.ndarray | None = None) -> list[PlacedText]:
         """The coordinates of an axis beside its edge, outside the box."""
         values = self.ticks(axis) if values is None else values
         start, end = self.edge(axis)
@@ -105,10 +105,10 @@ class SeenBox:
             text = f"{value + 0.0:.{digits}f}".replace("-", "−")  # + 0.0: no −0
             half = self._half(text, NUMBER_SIZE)
             off = _GAP[0] * self.inch + np.abs(away) @ half
-            labels.append(Label(text, float(x + off * away[0]), float(y + off * away[1]), half))
+            labels.append(PlacedText(text, float(x + off * away[0]), float(y + off * away[1]), half))
         return labels
 
-    def _name(self, axis: int, numbers: list[Label], taken: list[Label]) -> Label:
+    def _name(self, axis: int, numbers: list[PlacedText], taken: list[PlacedText]) -> PlacedText:
         """The name of an axis beyond its numbers, further out where something else stands."""
         start, end = self.edge(axis)
         away = _outward(*self.camera.to_picture(np.stack([start, end])))
@@ -118,7 +118,7 @@ class SeenBox:
         widest = max((float(2 * np.abs(away) @ number.half) for number in numbers), default=0.0)
         off = sum(_GAP) * self.inch + widest + float(np.abs(away) @ half)
         steps = (off + _FURTHER * self.inch * step for step in range(_MOST_STEPS))
-        places = [Label(text, float(x + at * away[0]), float(y + at * away[1]), half, axis == 2) for at in steps]
+        places = [PlacedText(text, float(x + at * away[0]), float(y + at * away[1]), half, axis == 2) for at in steps]
         return next((label for label in places if not any(label.overlaps(other) for other in taken)), places[-1])
 
     def _half(self, text: str, size: float) -> tuple[float, float]:
