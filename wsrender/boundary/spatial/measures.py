@@ -37,7 +37,7 @@ class Triangles:
 
 
 @dataclass(frozen=True, eq=False)
-class Measures:
+class PatchMeasures:
     """Volume [m³] and its last change by the extrapolation, area of each patch (P,) [m²]."""
 
     volume: float
@@ -45,7 +45,7 @@ class Measures:
     areas: np.ndarray
 
 
-def measures(triangles: Triangles, patches: list[Patch]) -> Measures:
+def measures(triangles: Triangles, patches: list[Patch]) -> PatchMeasures:
     """Measure what the triangles enclose."""
     nodes, normals = _nodes(triangles, patches)
     center = nodes.reshape(-1, 3).mean(axis=0) if len(nodes) else np.zeros(3)
@@ -58,7 +58,7 @@ def measures(triangles: Triangles, patches: list[Patch]) -> Measures:
         area = (np.linalg.norm(cross, axis=2) * outward).sum(axis=1) / 2
         areas.append(np.bincount(triangles.patch, area, len(patches)))
     volume, volume_error = extrapolated(volumes)
-    return Measures(float(volume), float(volume_error), extrapolated(areas)[0])
+    return PatchMeasures(float(volume), float(volume_error), extrapolated(areas)[0])
 
 
 def _nodes(triangles: Triangles, patches: list[Patch]) -> tuple[np.ndarray, np.ndarray]:

@@ -11,7 +11,7 @@ from wsrender.boundary.spatial.crossed_surfaces import crossed_surfaces
 from wsrender.boundary.spatial.edges import Corner, Edge, edges_and_corners
 from wsrender.boundary.spatial.inverse import ThreeJointInverse
 from wsrender.boundary.spatial.joint_volume import joint_volume
-from wsrender.boundary.spatial.measures import Measures, measures
+from wsrender.boundary.spatial.measures import PatchMeasures, measures
 from wsrender.boundary.spatial.patch_mesh import PatchMesh, patch_mesh
 from wsrender.boundary.spatial.patches import Patch, boundary_patches
 from wsrender.boundary.spatial.spatial_arm import SpatialArm, spatial_arm
@@ -34,7 +34,7 @@ class SpatialBoundary:
 
     arm: SpatialArm
     patches: list[Patch]
-    measures: Measures
+    measures: PatchMeasures
     edges: list[Edge]
     corners: list[Corner]
     mesh: PatchMesh
