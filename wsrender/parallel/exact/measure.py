@@ -23,7 +23,7 @@ UNCERTAIN = 1e-6  # of a volume: a region so thin that less of it is sure has no
 
 
 @dataclass(frozen=True, eq=False)
-class Measures:
+class RegionMeasures:
     """Of M regions, in metres: ``volume`` (M,), ``area`` (M, K) and vector area ``facing`` (M, K, 3) by surface.
 
     The vector area is the integral of the normal that points away from the centre, or out of a half space.
@@ -112,7 +112,7 @@ def _triangle(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray:
     return 2 * np.arctan2(dot(a, cross(b, c)), 1 + dot(a, b) + dot(b, c) + dot(c, a))
 
 
-def measures(arcs: Arcs, edges: HalfEdges) -> Measures:
+def measures(arcs: Arcs, edges: HalfEdges) -> RegionMeasures:
     """Volume, areas and vector areas of every region.
 
     The surfaces stand a hair inside the region (`Surfaces.moved_apart`): the volume is that where they were, to first
@@ -139,7 +139,7 @@ def measures(arcs: Arcs, edges: HalfEdges) -> Measures:
     uncertain = rounding + moved**2 / np.maximum(np.abs(volume), np.finfo(float).tiny)
     scale = surfaces.scale
     lengths = scale[:, None] ** 2
-    return Measures(volume * scale**3, uncertain * scale**3, area * lengths, facing * lengths[..., None])
+    return RegionMeasures(volume * scale**3, uncertain * scale**3, area * lengths, facing * lengths[..., None])
 
 
 def solid_angles(angle: np.ndarray, touched: np.ndarray, probed: np.ndarray) -> np.ndarray:

@@ -13,7 +13,7 @@ from wsrender.parallel.exact.arcs import Arcs, arcs
 from wsrender.parallel.exact.borders import Borders, borders
 from wsrender.parallel.exact.bounds import bounds
 from wsrender.parallel.exact.faces import Face, Patch, faces, patches
-from wsrender.parallel.exact.measure import HalfEdges, Measures, half_edges, measures, probes_inside
+from wsrender.parallel.exact.measure import HalfEdges, RegionMeasures, half_edges, measures, probes_inside
 from wsrender.parallel.exact.mesh import region_mesh
 from wsrender.parallel.exact.surfaces import make_up, surfaces_of
 from wsrender.parallel.exact.topology import Topology, topology
@@ -35,7 +35,7 @@ class ExactWorkspace:
 
     arcs: Arcs
     half_edges: HalfEdges
-    measures: Measures
+    measures: RegionMeasures
 
     @classmethod
     def of(cls, region: BallRegion) -> "ExactWorkspace":
