@@ -40,7 +40,7 @@ class Chart:
 
 
 @dataclass(frozen=True, eq=False)
-class Patch:
+class FacesOnSurface:
     """All faces on one surface: places ``flat`` (n, 2) in the chart of the points ``ids`` (n,) along the borders.
 
     ``triangles`` (t, 3) of them cover the faces; ``face_of_loop`` numbers the face of each of the surface's loops.
@@ -64,12 +64,12 @@ class Face:
     facing: np.ndarray
 
 
-def patches(borders: Borders) -> list[Patch]:
+def patches(borders: Borders) -> list[FacesOnSurface]:
     """The triangulated faces of every surface that has borders."""
     return [_patch(borders, surface) for surface, loops in enumerate(borders.loops) if loops]
 
 
-def _patch(borders: Borders, surface: int) -> Patch:
+def _patch(borders: Borders, surface: int) -> FacesOnSurface:
     chart = _chart(borders, surface)
     polygons = [borders.polygon(loop) for loop in borders.loops[surface]]
     flat = [chart.flat(borders.points[polygon]) for polygon in polygons]
@@ -77,7 +77,7 @@ def _patch(borders: Borders, surface: int) -> Patch:
     number = components(sum(map(len, polygons)), *triangles[:, [0, 1, 0, 2]].reshape(-1, 2).T)
     first_points = np.cumsum([0, *(len(polygon) for polygon in polygons[:-1])])
     face_of_loop = np.unique(number[first_points], return_inverse=True)[1]
-    return Patch(surface, chart, np.concatenate(polygons), np.concatenate(flat), triangles, face_of_loop)
+    return FacesOnSurface(surface, chart, np.concatenate(polygons), np.concatenate(flat), triangles, face_of_loop)
 
 
 def _chart(borders: Borders, surface: int) -> Chart:
@@ -104,7 +104,7 @@ def _frame(away: np.ndarray, turn: int) -> np.ndarray:
     return np.array([across, turn * cross(away, across), away])
 
 
-def faces(borders: Borders, surface_patches: list[Patch], probed: np.ndarray) -> list[Face]:
+def faces(borders: Borders, surface_patches: list[FacesOnSurface], probed: np.ndarray) -> list[Face]:
     """All faces, whole spheres included; ``probed`` (S, 3) as in `solid_angles`."""
     found, half_edges = [], borders.half_edges
     for patch in surface_patches:

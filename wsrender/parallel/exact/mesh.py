@@ -6,13 +6,13 @@ import numpy as np
 import trimesh
 
 from wsrender.parallel.exact.borders import LARGEST_ANGLE, Borders, steps_of
-from wsrender.parallel.exact.faces import Chart, Face, Patch
+from wsrender.parallel.exact.faces import Chart, Face, FacesOnSurface
 from wsrender.parallel.exact.triangulation import refined
 
 LONGER = 1.3  # edges inside faces than those along borders, without which halving near a border does not end
 
 
-def region_mesh(borders: Borders, patches: list[Patch], faces: list[Face], step: float) -> trimesh.Trimesh:
+def region_mesh(borders: Borders, patches: list[FacesOnSurface], faces: list[Face], step: float) -> trimesh.Trimesh:
     """Closed mesh [m], normals out of the region, its edges inside faces at most about ``step`` (scaled) long.
 
     The attribute ``surface`` of its triangles numbers the surface on which each lies.
@@ -49,7 +49,9 @@ def _subdivisions(step: float) -> int:
     return int(np.clip(np.ceil(np.log2(1.05 / step)), 1, 7))
 
 
-def _covered(patches: list[Patch], steps: np.ndarray, first: int) -> tuple[np.ndarray, list[tuple[Patch, np.ndarray]]]:
+def _covered(
+    patches: list[FacesOnSurface], steps: np.ndarray, first: int
+) -> tuple[np.ndarray, list[tuple[FacesOnSurface, np.ndarray]]]:
     """Points (n, 3) inside faces, to be numbered from ``first``, and the triangles (t, 3) of every patch."""
     counts = [len(patch.ids) for patch in patches]
     before = np.cumsum([0, *counts[:-1]])

@@ -12,7 +12,7 @@ from wsrender.parallel.ball_region import BallRegion
 from wsrender.parallel.exact.arcs import Arcs, arcs
 from wsrender.parallel.exact.borders import Borders, borders
 from wsrender.parallel.exact.bounds import bounds
-from wsrender.parallel.exact.faces import Face, Patch, faces, patches
+from wsrender.parallel.exact.faces import Face, FacesOnSurface, faces, patches
 from wsrender.parallel.exact.measure import HalfEdges, RegionMeasures, half_edges, measures, probes_inside
 from wsrender.parallel.exact.mesh import region_mesh
 from wsrender.parallel.exact.surfaces import make_up, surfaces_of
@@ -84,7 +84,7 @@ class ExactWorkspace:
         return borders(self.arcs, self.half_edges, self._step)
 
     @cached_property
-    def patches(self) -> list[Patch]:
+    def patches(self) -> list[FacesOnSurface]:
         """Triangulated faces by surface."""
         return patches(self.borders)
 
