@@ -22,7 +22,7 @@ from wsrender.parallel.five_bar.maps import (
     plane_lattice,
 )
 from wsrender.parallel.five_bar.mechanism import wrapped
-from wsrender.parallel.five_bar.region import Region, workspace
+from wsrender.parallel.five_bar.region import ArcRegion, workspace
 from wsrender.parallel.five_bar.tables import (
     INDICES,
     boundary_table,
@@ -225,7 +225,7 @@ def _parts(partial: dict[str, np.ndarray], prefix: str) -> dict[str, np.ndarray]
     return {name.removeprefix(prefix): array for name, array in partial.items() if name.startswith(prefix)}
 
 
-def _workspace_entry(mode: str, region: Region) -> dict[str, Any]:
+def _workspace_entry(mode: str, region: ArcRegion) -> dict[str, Any]:
     return {
         "working_mode": mode,
         "area_m2": region.area_m2,

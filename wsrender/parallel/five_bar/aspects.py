@@ -12,7 +12,7 @@ from wsrender.parallel.five_bar.arcs import Arc
 from wsrender.parallel.five_bar.condition_numbers import conditioning
 from wsrender.parallel.five_bar.loci import BESIDE, BoundaryMeeting, Piece, end_point
 from wsrender.parallel.five_bar.mechanism import FiveBar
-from wsrender.parallel.five_bar.region import Region
+from wsrender.parallel.five_bar.region import ArcRegion
 
 SEGMENTS = 4096  # of a piece of a locus; its area is extrapolated from this many and fewer
 DRAWN = 512  # segments of a piece in an outline
@@ -45,7 +45,7 @@ class _Edge:
     error: float = 0.0
 
 
-def aspects(five_bar: FiveBar, working_mode: str, region: Region, pieces: Iterable[Piece]) -> list[Aspect]:
+def aspects(five_bar: FiveBar, working_mode: str, region: ArcRegion, pieces: Iterable[Piece]) -> list[Aspect]:
     """The aspects of a working mode, the largest first; ``pieces`` are those of the type-2 loci in that mode.
 
     Within a working mode a posture belongs to each point, so the loci do not cross: faces follow from the order in
@@ -81,7 +81,7 @@ def _polygon_area(points: np.ndarray) -> float:
     return 0.5 * float(np.sum(x * y1 - x1 * y))
 
 
-def _boundary_loops(five_bar: FiveBar, region: Region, pieces: list[Piece]) -> list[list[_Edge]]:
+def _boundary_loops(five_bar: FiveBar, region: ArcRegion, pieces: list[Piece]) -> list[list[_Edge]]:
     """Loops around the faces that the pieces cut from the region.
 
     Around a face, the boundary is followed up to the next end of a piece, then that piece to its other end.
@@ -133,7 +133,7 @@ def _arc_edge(arc: Arc) -> _Edge:
 
 
 def _placed_ends(
-    five_bar: FiveBar, region: Region, pieces: list[Piece]
+    five_bar: FiveBar, region: ArcRegion, pieces: list[Piece]
 ) -> dict[tuple[int, int], list[tuple[float, int, bool]]]:
     """(share, piece, whether its start) of the ends on each arc (loop, position), in the order along it."""
     found: dict[tuple[int, int], list[tuple[float, float, int, bool]]] = {}
@@ -147,7 +147,7 @@ def _placed_ends(
     return {arc: [entry[2:] for entry in sorted(entries)] for arc, entries in found.items()}  # type: ignore[misc]
 
 
-def _place(five_bar: FiveBar, region: Region, piece: Piece, from_start: bool) -> tuple[int, int, float]:
+def _place(five_bar: FiveBar, region: ArcRegion, piece: Piece, from_start: bool) -> tuple[int, int, float]:
     """Loop, position in it and share of the arc on which an end of a piece lies.
 
     Where the boundary touches itself several ends of arcs lie there: the one is taken whose loop has the piece on its
@@ -173,7 +173,7 @@ def _place(five_bar: FiveBar, region: Region, piece: Piece, from_start: bool) ->
 
 def _unfit(
     five_bar: FiveBar,
-    region: Region,
+    region: ArcRegion,
     piece: Piece,
     from_start: bool,
     middle: np.ndarray,

@@ -14,7 +14,7 @@ LEGS = ("left", "right")
 
 
 @dataclass(frozen=True)
-class Region:
+class ArcRegion:
     """Closed loops of arcs with the interior on their left: outlines run anticlockwise, holes clockwise.
 
     A leg with equal links folds onto its base point, which then is a hole of radius 0: θ1 is free there.
@@ -33,7 +33,7 @@ class Region:
         return float(sum(arc.length for loop in self.loops for arc in loop))
 
 
-def workspace(five_bar: FiveBar, working_mode: str) -> Region:
+def workspace(five_bar: FiveBar, working_mode: str) -> ArcRegion:
     """What P reaches in a working mode, within the limits; without loops where it reaches nothing.
 
     Without limits it is the intersection of two annuli, whatever the mode. Raises InputError for another mode.
@@ -43,7 +43,7 @@ def workspace(five_bar: FiveBar, working_mode: str) -> Region:
     left, right = (leg_loops(five_bar, leg, sign) for leg, sign in enumerate(signs))
     kept = _inside(left, right, five_bar, 1, signs[1], slack, shared=True)
     kept += _inside(right, left, five_bar, 0, signs[0], slack, shared=False)
-    return Region(tuple(_chained(kept, 1e3 * slack)))
+    return ArcRegion(tuple(_chained(kept, 1e3 * slack)))
 
 
 def leg_loops(five_bar: FiveBar, leg: int, sign: int) -> list[list[Arc]]:

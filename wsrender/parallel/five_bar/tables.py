@@ -13,7 +13,7 @@ from wsrender.parallel.five_bar.isotropy import isotropic_b, isotropic_points
 from wsrender.parallel.five_bar.loci import Piece, end_point, least_kappa_a_curves, pieces
 from wsrender.parallel.five_bar.maps import JointMap, PlaneLattice
 from wsrender.parallel.five_bar.mechanism import FiveBar, wrapped
-from wsrender.parallel.five_bar.region import LEGS, Region
+from wsrender.parallel.five_bar.region import LEGS, ArcRegion
 from wsrender.volume.table import Table
 
 POSTURE = {"position": "m", "theta": "rad"}
@@ -24,7 +24,7 @@ ON_BORDER = 1e-9  # sine of the angle between distal links that are in line
 _ENDS = 1e-9  # share of an arc left out at its ends, where rounding may put a corner out of reach
 
 
-def boundary_table(regions: dict[str, Region]) -> Table:
+def boundary_table(regions: dict[str, ArcRegion]) -> Table:
     """The arcs of every working mode's workspace, loop by loop with the interior on the left."""
     rows = [
         (mode, loop, arc.name, arc.center, arc.radius, arc.start, arc.sweep)
@@ -41,7 +41,7 @@ def boundary_table(regions: dict[str, Region]) -> Table:
     return Table(columns, {"center": "m", "radius": "m", "start": "rad", "sweep": "rad"})
 
 
-def loci_table(five_bar: FiveBar, regions: dict[str, Region], type_2: Iterable[Piece]) -> Table:
+def loci_table(five_bar: FiveBar, regions: dict[str, ArcRegion], type_2: Iterable[Piece]) -> Table:
     """Vertices of the loci in every working mode, curve by curve, each vertex on its locus.
 
     ``kind``: type_1 (det B = 0: the boundary but for limits), joint_limit, type_2 (det A = 0), least_kappa_a (the
