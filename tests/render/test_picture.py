@@ -17,7 +17,7 @@ from wsrender.plots.box import space_around
 from wsrender.render import VIEWS, Box, Floor, Subject, composition, picture
 from wsrender.render.environment import surfaces
 from wsrender.render.process import drawn
-from wsrender.render.scene import Plates, Points, Rods, Scene, Surface
+from wsrender.render.scene import DrawnSurface, Plates, Points, Rods, Scene
 from wsrender.render.views import Choice
 from wsrender.volume.volume_data import VolumeData
 
@@ -188,7 +188,7 @@ def test_every_picture_has_axes_colour_bar_legend_and_robot(blank, planar_result
 def test_several_results_share_one_box_and_tell_robots_apart(blank, planar_result):
     figure = planar_result.render(others=[planar_result], alpha=0.3)
     assert {"planar & <2R> 1", "planar & <2R> 2"} <= labels_of(figure)
-    bodies = [layer for layer in blank[0].layers if isinstance(layer, Surface)]
+    bodies = [layer for layer in blank[0].layers if isinstance(layer, DrawnSurface)]
     assert len({body.color for body in bodies}) == 2
     assert {body.alpha for body in bodies} == {0.3}
     shared = planar_result.render(others=[planar_result], index="manipulability")
@@ -203,7 +203,7 @@ def test_the_robots_of_one_result_are_drawn_each_with_its_volume(blank):
     assert {"a", "b", "boundary of a", "boundary of b"} <= set(labels)
     rods = [layer.points for layer in blank[0].layers if isinstance(layer, Rods)]
     np.testing.assert_array_equal(rods, arms)
-    lows = [layer.vertices[:, 0].min() for layer in blank[0].layers if isinstance(layer, Surface)]
+    lows = [layer.vertices[:, 0].min() for layer in blank[0].layers if isinstance(layer, DrawnSurface)]
     np.testing.assert_allclose(lows, [0.0, 0.1], atol=1e-9)
 
 
@@ -231,7 +231,7 @@ def test_what_two_robots_share_stands_out(blank):
     both = trimesh.creation.box((0.2, 0.3, 0.3))
     result = ws.Result({"robots": [{"name": "a"}, {"name": "b"}]}, volumes=volumes, meshes={"intersection": both})
     figure = result.render()
-    *_, surface = [layer for layer in blank[0].layers if isinstance(layer, Surface)]
+    *_, surface = [layer for layer in blank[0].layers if isinstance(layer, DrawnSurface)]
     np.testing.assert_array_equal(surface.vertices, both.vertices)
     assert "shared by at least two" in labels_of(figure)
 
@@ -267,7 +267,7 @@ def test_links_are_drawn_with_the_bodies_of_the_model(blank, arm):
     path, result = arm
     result.render(robot=str(path), configuration=[0.3, 0.4])
     scene = blank[0]
-    links = [layer for layer in scene.layers if isinstance(layer, Surface) and layer.alpha == 1]
+    links = [layer for layer in scene.layers if isinstance(layer, DrawnSurface) and layer.alpha == 1]
     assert len(links) == 2 and links[0].vertices[:, 2].mean() == pytest.approx(1)
     (rods,) = [layer for layer in scene.layers if isinstance(layer, Rods)]
     tip = [0.5 * np.cos(0.3) + 0.5 * np.cos(0.7), 0.5 * np.sin(0.3) + 0.5 * np.sin(0.7), 1]
@@ -356,7 +356,7 @@ def test_a_workspace_known_by_its_surface_is_drawn_face_by_face_with_all_legs(bl
     result = ws.parallel_workspace("six_pus", method="exact", device="cpu")
     figure = result.render(view)
     (scene,) = blank
-    faces = [layer for layer in scene.layers if isinstance(layer, Surface)]
+    faces = [layer for layer in scene.layers if isinstance(layer, DrawnSurface)]
     assert len(faces) == 11 and {layer.alpha for layer in faces} == {0.1 if view == "boundary" else 1.0}
     assert sum(len(layer.faces) for layer in faces) == len(result.meshes["workspace"].faces)
     assert sum(isinstance(layer, Rods) for layer in scene.layers) == 6

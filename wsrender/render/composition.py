@@ -16,7 +16,7 @@ from wsrender.render import environment as surroundings
 from wsrender.render.environment import Floor, Item
 from wsrender.render.figure import PANEL_PIXELS, figure_of
 from wsrender.render.process import drawn
-from wsrender.render.scene import Cloud, Color, Layer, Lines, Plates, Points, Rods, Scene, Surface
+from wsrender.render.scene import Cloud, Color, DrawnSurface, Layer, Lines, Plates, Points, Rods, Scene
 from wsrender.render.subject import Subject
 from wsrender.render.views import ROBOT_COLORS, SHARED_COLOR, VIEWS, Choice
 
@@ -58,7 +58,9 @@ def picture(
     choice = Choice(index, statistic, threshold, alpha, at, azimuth_deg)
     drawing = VIEWS[view](subjects, choice)
     if shared is not None and drawing.scale is None:
-        drawing.layers.append(Surface(shared.vertices, shared.faces, SHARED_COLOR, alpha=_SHARED_ALPHA, smooth=True))
+        drawing.layers.append(
+            DrawnSurface(shared.vertices, shared.faces, SHARED_COLOR, alpha=_SHARED_ALPHA, smooth=True)
+        )
         drawing.handles.append(Patch(facecolor=SHARED_COLOR, alpha=_SHARED_ALPHA, label="shared by at least two"))
     if any(subject.arm is not None for subject in subjects) and any(_is_opaque(layer) for layer in drawing.layers):
         drawing.notes.append(SHINING)
@@ -83,7 +85,7 @@ def _check(view: str, threshold: float, alpha: float | None, elevation_deg: floa
 
 
 def _is_opaque(layer: Layer) -> bool:
-    return isinstance(layer, Surface) and layer.alpha == 1
+    return isinstance(layer, DrawnSurface) and layer.alpha == 1
 
 
 def _extent(subjects: Sequence[Subject], layers: Sequence[Layer], environment: Sequence[Item]) -> np.ndarray:
@@ -100,7 +102,7 @@ def _extent(subjects: Sequence[Subject], layers: Sequence[Layer], environment: S
 
 def _layer_points(layer: Layer) -> np.ndarray:
     match layer:
-        case Surface():
+        case DrawnSurface():
             return layer.vertices
         case Plates():
             return layer.corners.reshape(-1, 3)
@@ -111,7 +113,7 @@ def _layer_points(layer: Layer) -> np.ndarray:
     return np.empty((0, 3))
 
 
-def _around(environment: Sequence[Item], space: SeenBox) -> list[Surface]:
+def _around(environment: Sequence[Item], space: SeenBox) -> list[DrawnSurface]:
     return [part for item in environment for part in surroundings.surfaces(item, space.lower, space.upper)]
 
 

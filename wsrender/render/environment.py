@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from wsrender.errors import InputError
-from wsrender.render.scene import Color, Surface
+from wsrender.render.scene import Color, DrawnSurface
 
 # Faces of a box whose corners are numbered by the bits x y z, outward.
 _FACES = [
@@ -71,7 +71,7 @@ def corners(item: Item) -> np.ndarray:
     return np.concatenate([_ends(center, size) for center, size in _boxes(item)])
 
 
-def surfaces(item: Item, lower: np.ndarray, upper: np.ndarray) -> list[Surface]:
+def surfaces(item: Item, lower: np.ndarray, upper: np.ndarray) -> list[DrawnSurface]:
     """The item in a picture of the box lower … upper [m]; a floor covers it."""
     if isinstance(item, Floor):
         middle, size = (lower + upper) / 2, upper - lower
@@ -100,9 +100,9 @@ def _ends(center: np.ndarray, size: np.ndarray) -> np.ndarray:
     return np.stack([center - size / 2, center + size / 2])
 
 
-def _box(center: np.ndarray, size: np.ndarray, color: Color) -> Surface:
+def _box(center: np.ndarray, size: np.ndarray, color: Color) -> DrawnSurface:
     bits = np.array([[k >> 2 & 1, k >> 1 & 1, k & 1] for k in range(8)])
-    return Surface(center + (bits - 0.5) * size, np.array(_FACES), color)
+    return DrawnSurface(center + (bits - 0.5) * size, np.array(_FACES), color)
 
 
 def _check(field: str, values: tuple[float, ...], count: int, positive: bool = False) -> None:

@@ -10,7 +10,7 @@ import pyvista as pv
 from vtkmodules.vtkCommonDataModel import vtkPiecewiseFunction
 from vtkmodules.vtkRenderingCore import vtkColorTransferFunction
 
-from wsrender.render.scene import Camera, Cloud, Lines, Plates, Points, Rods, Scene, Surface
+from wsrender.render.scene import Camera, Cloud, DrawnSurface, Lines, Plates, Points, Rods, Scene
 
 OVERSAMPLING = 2  # pixels drawn per pixel of the picture, each way: edges without steps
 PEELS = 6  # translucent layers sorted per pixel; more change little at the usual transparency
@@ -32,7 +32,7 @@ def draw(scene: Scene) -> np.ndarray:
     )
     plotter.set_background("white")
     plotter.render_window.SetMultiSamples(0)  # with samples, sorted translucent layers stay empty
-    if any(isinstance(layer, Surface) and layer.alpha < 1 for layer in scene.layers):
+    if any(isinstance(layer, DrawnSurface) and layer.alpha < 1 for layer in scene.layers):
         plotter.enable_depth_peeling(PEELS)  # only where needed: it leaves clouds out
     for layer in scene.layers:
         _PAINTERS[type(layer)](plotter, layer)
@@ -76,7 +76,7 @@ def _depth(scene: Scene) -> float:
     return 1.2 * float(np.linalg.norm(corners - scene.camera.center, axis=1).max()) + scene.camera.half_height
 
 
-def _surface(plotter: Any, surface: Surface) -> None:
+def _surface(plotter: Any, surface: DrawnSurface) -> None:
     mesh: Any = pv.PolyData.from_regular_faces(surface.vertices, surface.faces)
     if surface.smooth:
         mesh = mesh.smooth_taubin(**SMOOTHING)
@@ -141,4 +141,4 @@ def _rods(plotter: Any, rods: Rods) -> None:
     plotter.add_mesh(pv.Sphere(2.6 * rods.radius, rods.points[-1]), color=rods.tip_color, **metal)
 
 
-_PAINTERS = {Surface: _surface, Plates: _plates, Points: _points, Cloud: _cloud, Lines: _lines, Rods: _rods}
+_PAINTERS = {DrawnSurface: _surface, Plates: _plates, Points: _points, Cloud: _cloud, Lines: _lines, Rods: _rods}

@@ -11,7 +11,7 @@ Color = tuple[float, float, float]
 
 
 @dataclass(frozen=True, eq=False)
-class Surface:
+class DrawnSurface:
     """Triangles: ``vertices`` (V, 3) [m], ``faces`` (F, 3), one colour or uint8 ``colors`` (V, 3) per vertex.
 
     ``smooth`` rounds off the steps of voxels, in the picture only.
@@ -75,7 +75,7 @@ class Rods:
     tip_color: Color = (0.784, 0.063, 0.18)
 
 
-Layer = Surface | Plates | Points | Cloud | Lines | Rods
+Layer = DrawnSurface | Plates | Points | Cloud | Lines | Rods
 
 
 @dataclass(frozen=True, eq=False)

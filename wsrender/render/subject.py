@@ -8,7 +8,7 @@ import numpy as np
 
 from wsrender.errors import InputError
 from wsrender.plots.faces import Faces
-from wsrender.render.scene import Surface
+from wsrender.render.scene import DrawnSurface
 from wsrender.robot import as_robot, link_shapes
 from wsrender.volume.coarser import coarser
 from wsrender.volume.distribution_map import DistributionMap
@@ -31,7 +31,7 @@ class Subject:
     samples: DistributionMap | None = None
     volume: VolumeData | None = None
     skeleton: np.ndarray | None = None
-    body: list[Surface] = field(default_factory=list)
+    body: list[DrawnSurface] = field(default_factory=list)
     faces: Faces | None = None
     legs: int = 1
 
@@ -46,7 +46,7 @@ class Subject:
             configuration = robot.chain.within(0.25)
             for name, value in (sampling.get("locked") or {}).items():
                 configuration[list(robot.joint_names).index(name)] = value
-        body = [Surface(shape.vertices, shape.faces, shape.color) for shape in link_shapes(robot, configuration)]
+        body = [DrawnSurface(shape.vertices, shape.faces, shape.color) for shape in link_shapes(robot, configuration)]
         return replace(self, skeleton=robot.skeleton(configuration), body=body, legs=1)
 
     @property

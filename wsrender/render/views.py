@@ -15,7 +15,7 @@ from wsrender.plots.cloud import checked_index
 from wsrender.plots.color_scale import SIGNED, ColorScale, color_scale
 from wsrender.plots.planes import NAMES, Field, layer_at, plane_normals, shared_scale, voxel_field
 from wsrender.plots.style import quantity
-from wsrender.render.scene import Cloud, Color, Layer, Lines, Plates, Points, Surface
+from wsrender.render.scene import Cloud, Color, DrawnSurface, Layer, Lines, Plates, Points
 from wsrender.render.subject import Subject
 from wsrender.volume.volume_data import VolumeData
 
@@ -80,7 +80,7 @@ def boundary(subjects: Sequence[Subject], choice: Choice) -> Drawing:
     for volume, shown in zip(volumes, fields, strict=True):
         mesh = occupied_surface(volume)
         colors = _vertex_colors(mesh.vertices, volume, shown.dense(), scale)
-        drawing.layers.append(Surface(mesh.vertices, mesh.faces, colors=colors, alpha=alpha, smooth=True))
+        drawing.layers.append(DrawnSurface(mesh.vertices, mesh.faces, colors=colors, alpha=alpha, smooth=True))
     drawing.handles.append(Patch(facecolor=scale.colors(0.5), alpha=max(alpha, 0.3), label="workspace boundary"))
     drawing.notes.append(_lattice_note(volumes))
     if alpha < 1:
@@ -100,7 +100,7 @@ def solid(subjects: Sequence[Subject], choice: Choice) -> Drawing:
     for volume, shown in zip(volumes, fields, strict=True):
         mesh = occupied_surface(volume)
         colors = _vertex_colors(mesh.vertices, volume, shown.dense(), scale)
-        drawing.layers.append(Surface(mesh.vertices, mesh.faces, colors=colors, smooth=True))
+        drawing.layers.append(DrawnSurface(mesh.vertices, mesh.faces, colors=colors, smooth=True))
     drawing.handles.append(Patch(facecolor=scale.colors(0.5), label="workspace"))
     drawing.notes.append(_lattice_note(volumes))
     return drawing
@@ -181,7 +181,7 @@ def isosurface(subjects: Sequence[Subject], choice: Choice) -> Drawing:
         values = np.where(voxels.occupied, values, np.nan)
         mesh = level_surface(voxels, values, level)
         colors = _vertex_colors(mesh.vertices, voxels, np.where(values >= level, values, np.nan), scale)
-        drawing.layers.append(Surface(mesh.vertices, mesh.faces, colors=colors, smooth=True))
+        drawing.layers.append(DrawnSurface(mesh.vertices, mesh.faces, colors=colors, smooth=True))
     drawing.layers += _shells(subjects, choice.veil)
     label = f"at least {choice.threshold:g} of the maximum"
     drawing.handles.append(Patch(facecolor=scale.colors((1 + choice.threshold) / 2), label=label))
@@ -215,7 +215,7 @@ def _plain_boundaries(subjects: Sequence[Subject], volumes: Sequence[VolumeData]
     for k, (subject, voxels) in enumerate(zip(subjects, volumes, strict=True)):
         color = ROBOT_COLORS[k % len(ROBOT_COLORS)]
         mesh = occupied_surface(voxels)
-        drawing.layers.append(Surface(mesh.vertices, mesh.faces, color, alpha=alpha, smooth=True))
+        drawing.layers.append(DrawnSurface(mesh.vertices, mesh.faces, color, alpha=alpha, smooth=True))
         drawing.handles.append(Patch(facecolor=color, alpha=max(alpha, 0.3), label=f"boundary of {subject.name}"))
     return drawing
 
@@ -225,7 +225,9 @@ def _faces(subjects: Sequence[Subject], alpha: float) -> Drawing:
     drawing = Drawing()
     for faces in (subject.faces for subject in subjects if subject.faces):
         for number, color in faces.colors.items():
-            drawing.layers.append(Surface(faces.vertices, faces.triangles[faces.number == number], color, alpha=alpha))
+            drawing.layers.append(
+                DrawnSurface(faces.vertices, faces.triangles[faces.number == number], color, alpha=alpha)
+            )
         sides, _ = faces.borders()
         if len(sides):
             drawing.layers.append(Lines(faces.vertices[sides], _EDGE_COLOR, _EDGE_WIDTH))
@@ -239,7 +241,7 @@ def _faces(subjects: Sequence[Subject], alpha: float) -> Drawing:
 
 def _shells(subjects: Sequence[Subject], alpha: float) -> list[Layer]:
     meshes = [occupied_surface(subject.dense_voxels()) for subject in subjects]
-    return [Surface(mesh.vertices, mesh.faces, _SHELL_GREY, alpha=alpha, smooth=True) for mesh in meshes]
+    return [DrawnSurface(mesh.vertices, mesh.faces, _SHELL_GREY, alpha=alpha, smooth=True) for mesh in meshes]
 
 
 def _vertex_colors(vertices: np.ndarray, volume: VolumeData, values: np.ndarray, scale: ColorScale) -> np.ndarray:
