@@ -12,7 +12,7 @@ from scipy.spatial.transform import Rotation
 
 from wsrender.engine import OrientationCounts
 from wsrender.parallel.mechanism import Mechanism, mechanism_of
-from wsrender.parallel.membership import Box, count_at, in_base_frame, placed_box, reachable_box
+from wsrender.parallel.membership import AxisBox, count_at, in_base_frame, placed_box, reachable_box
 from wsrender.robot import Robot
 from wsrender.spec.mechanism import MechanismSpec
 from wsrender.spec.serial_joints import SerialJoint
@@ -106,13 +106,13 @@ def middle(found: Sequence[Variant]) -> Variant:
     return from_middle(found)[0]
 
 
-def reachable_box_of(found: Sequence[Variant], rotations: np.ndarray) -> Box | None:
+def reachable_box_of(found: Sequence[Variant], rotations: np.ndarray) -> AxisBox | None:
     """A box, world, that holds every position reached by any variant; None where their legs' reaches do not meet."""
     boxes = [(v.mechanism, reachable_box(v.mechanism, v.rotations(rotations))) for v in found]
     placed = [placed_box(mechanism, box) for mechanism, box in boxes if not box.empty]
     if not placed:
         return None
-    return Box(np.min([box.lower for box in placed], axis=0), np.max([box.upper for box in placed], axis=0))
+    return AxisBox(np.min([box.lower for box in placed], axis=0), np.max([box.upper for box in placed], axis=0))
 
 
 def reached_by_any(

@@ -48,7 +48,7 @@ def _joint_branches(mechanism: Mechanism) -> bool:
 
 
 @dataclass(frozen=True, eq=False)
-class Box:
+class AxisBox:
     """An axis-aligned box [m]; empty where a lower side is not below the upper one."""
 
     lower: np.ndarray
@@ -65,7 +65,7 @@ class Box:
         return 0.0 if self.empty else float(np.prod(self.upper - self.lower))
 
 
-def reachable_box(mechanism: Mechanism, rotations: np.ndarray) -> Box:
+def reachable_box(mechanism: Mechanism, rotations: np.ndarray) -> AxisBox:
     """A box, base frame, that holds every position reached at any of the orientations (N, 3, 3).
 
     Each leg keeps its platform joint in a ball (UPS, cranks), in a capsule around its rail (PUS), or in a box.
@@ -83,14 +83,14 @@ def reachable_box(mechanism: Mechanism, rotations: np.ndarray) -> Box:
     shift = np.einsum("nij,lj->nli", rotations, joints)
     lower = np.maximum((low - shift).max(axis=1).min(axis=0), mechanism.region_lower)
     upper = np.minimum((high - shift).min(axis=1).max(axis=0), mechanism.region_upper)
-    return Box(lower, upper)
+    return AxisBox(lower, upper)
 
 
-def placed_box(mechanism: Mechanism, box: Box) -> Box:
+def placed_box(mechanism: Mechanism, box: AxisBox) -> AxisBox:
     """The smallest box in the world that holds a box of the base frame."""
     corners = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)])
     world = in_world(mechanism, box.lower + corners * (box.upper - box.lower))
-    return Box(world.min(axis=0), world.max(axis=0))
+    return AxisBox(world.min(axis=0), world.max(axis=0))
 
 
 def in_base_frame(mechanism: Mechanism, positions_world: np.ndarray) -> np.ndarray:

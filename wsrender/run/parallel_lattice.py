@@ -12,7 +12,7 @@ from wsrender.memory import SHARE, available_bytes
 from wsrender.parallel.flat import MEASURES, Flat, flat_of
 from wsrender.parallel.hybrid import Variant, reachable_box_of, reached_by_any
 from wsrender.parallel.inverse_kinematics import SAME_ORIENTATION
-from wsrender.parallel.membership import Box, placed_box, reachable_box
+from wsrender.parallel.membership import AxisBox, placed_box, reachable_box
 from wsrender.parallel.orientations import OrientationSet
 from wsrender.spec.parallel_workspace import ParallelWorkspaceJob
 from wsrender.volume.lattice import LatticeBlock, block_around, round_to_digits
@@ -122,7 +122,7 @@ def _in_flat(job, flat: Flat, found, orientations) -> LatticeBlock | None:
     return FlatLattice(block.voxel_size_m, (x, y, z), (nx, ny, nz), *place)
 
 
-def _local_box(flat: Flat, found: Sequence[Variant], orientations: OrientationSet) -> Box:
+def _local_box(flat: Flat, found: Sequence[Variant], orientations: OrientationSet) -> AxisBox:
     """A box in the axes of a flat that holds all that any variant reaches."""
     corners = []
     for variant in found:
@@ -131,16 +131,16 @@ def _local_box(flat: Flat, found: Sequence[Variant], orientations: OrientationSe
         low, high = np.minimum(box.lower, box.upper), np.maximum(box.lower, box.upper)
         if np.any(box.lower > box.upper + FLAT_AREA * np.abs(high - low).max()):
             continue
-        placed = placed_box(variant.mechanism, Box(low, high))
+        placed = placed_box(variant.mechanism, AxisBox(low, high))
         grid = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)])
         corners.append(flat.local(placed.lower + grid * (placed.upper - placed.lower)))
     if not corners:
-        return Box(np.zeros(3), np.zeros(3))
+        return AxisBox(np.zeros(3), np.zeros(3))
     points = np.concatenate(corners)
-    return Box(points.min(axis=0), points.max(axis=0))
+    return AxisBox(points.min(axis=0), points.max(axis=0))
 
 
-def _voxel_size(found, orientations: OrientationSet, box: Box, flat: Flat | None, device: str) -> float:
+def _voxel_size(found, orientations: OrientationSet, box: AxisBox, flat: Flat | None, device: str) -> float:
     """A hundredth of the cube root of the volume reached at any orientation, estimated, to two significant digits.
 
     In a plane of the square root of its area, on a line of its length.
@@ -154,7 +154,7 @@ def _voxel_size(found, orientations: OrientationSet, box: Box, flat: Flat | None
     return round_to_digits(float(size ** (1 / dimension)) / 100.0, 2)
 
 
-def _share(found, orientations: OrientationSet, box: Box, flat: Flat | None, points: int, device: str) -> float:
+def _share(found, orientations: OrientationSet, box: AxisBox, flat: Flat | None, points: int, device: str) -> float:
     """The share of a box that is reached at any orientation, from a Sobol set."""
     from scipy.stats.qmc import Sobol
 
@@ -171,7 +171,7 @@ def _check_memory(block: LatticeBlock, columns: int, found, orientations, device
     if block.size * each <= free:
         return
     low = np.array(block.first_voxel) * block.voxel_size_m
-    box = Box(low, low + np.array(block.shape) * block.voxel_size_m)
+    box = AxisBox(low, low + np.array(block.shape) * block.voxel_size_m)
     flat = block.flat if isinstance(block, FlatLattice) else None
     needed = block.size * each * _share(found, orientations, box, flat, SHARE_POINTS, device)
     if needed > free:
