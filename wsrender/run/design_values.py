@@ -26,7 +26,7 @@ FEW_SAMPLES, FEW_LEVELS = 256, 3  # of a run that shows what a result holds
 
 
 @dataclass
-class Fault:
+class DesignFault:
     """Why designs have no value: the first error of its kind, the design that raised it, and how many did."""
 
     error: WsrenderError
@@ -43,7 +43,7 @@ class Evaluator:
 
     def __init__(self, plan: "DesignPlan", execution: Execution):
         self.plan, self.execution = plan, execution
-        self.faults: dict[tuple[str, str], Fault] = {}
+        self.faults: dict[tuple[str, str], DesignFault] = {}
         self.count = 0
         self._pointers_hold = plan.is_exact
 
@@ -142,7 +142,7 @@ class Evaluator:
             error = error.within("design")
         assert isinstance(error, WsrenderError)
         kind = error.code, getattr(error, "field", "")
-        self.faults.setdefault(kind, Fault(error, design.tolist())).designs += 1
+        self.faults.setdefault(kind, DesignFault(error, design.tolist())).designs += 1
 
     def _inner_job(self, design: np.ndarray) -> Any:
         """The job of a design; volumes are refined only where an objective reads them."""
