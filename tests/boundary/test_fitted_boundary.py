@@ -8,7 +8,7 @@ from scipy.optimize import minimize
 
 import wsrender as ws
 from tests.boundary.spatial_arms import BOX, SCARA, SPHERICAL, arm_of, boundary_of, robot, scara, sliding, turning
-from wsrender.boundary.spatial.cells import Lattice
+from wsrender.boundary.spatial.cells import CellLattice
 from wsrender.boundary.spatial.crossed_surfaces import NONE, CrossedSurfaces
 from wsrender.boundary.spatial.fitted_boundary import TOLERANCE, fitted_boundary
 from wsrender.boundary.spatial.grown_patches import best_refined_fit, grown_patches
@@ -114,7 +114,7 @@ def test_points_with_errors_are_fitted_by_least_squares():
 
 def crossed(reaches, gradient, box):
     """The crossings of a surface with a lattice of 16 cells, its normals, the loops of its cells and their width."""
-    lattice = Lattice.around(-box, box, 16, reaches, lambda points: None)
+    lattice = CellLattice.around(-box, box, 16, reaches, lambda points: None)
     found = lattice.crossings(reaches, lambda points: None)
     points = (found.inside + found.outside) / 2
     normals = gradient(points)

@@ -58,7 +58,7 @@ class CellLoops:
 
 
 @dataclass(frozen=True, eq=False)
-class Lattice:
+class CellLattice:
     """Cells of equal ``width`` [m] from the corner ``origin`` (3,) [m]; ``inside`` (…): which corners the set holds."""
 
     origin: np.ndarray
@@ -66,7 +66,9 @@ class Lattice:
     inside: np.ndarray
 
     @classmethod
-    def around(cls, low: np.ndarray, high: np.ndarray, cells: int, reaches: Membership, report: Report) -> "Lattice":
+    def around(
+        cls, low: np.ndarray, high: np.ndarray, cells: int, reaches: Membership, report: Report
+    ) -> "CellLattice":
         """Cubes, ``cells`` along the longest edge of the box low … high and one around; ``report(corners)``."""
         width = float((high - low).max()) / cells
         # Not where the faces of an arm's workspace like to be.

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import trimesh
 
-from wsrender.boundary.spatial.cells import Lattice, Membership, Report
+from wsrender.boundary.spatial.cells import CellLattice, Membership, Report
 from wsrender.boundary.spatial.critical_sets import critical_sets
 from wsrender.boundary.spatial.crossed_surfaces import crossed_surfaces
 from wsrender.boundary.spatial.edges import Corner, Edge, edges_and_corners
@@ -93,13 +93,13 @@ def coloured(vertices: np.ndarray, faces: np.ndarray, patch: np.ndarray) -> trim
     return mesh
 
 
-def lattice_around(arm: SpatialArm, reaches: Membership, cells: int, report: Report) -> Lattice:
+def lattice_around(arm: SpatialArm, reaches: Membership, cells: int, report: Report) -> CellLattice:
     """Cells around everything that is reached: around samples, and more until none at the border is reached."""
     points = arm.position(_samples(arm, _SAMPLES))
     low, high = points.min(axis=0), points.max(axis=0)
     margin = 0.01 * float((high - low).max())
     while True:
-        lattice = Lattice.around(low - margin, high + margin, cells, reaches, report)
+        lattice = CellLattice.around(low - margin, high + margin, cells, reaches, report)
         if lattice.closed:
             return lattice
         margin *= 3
