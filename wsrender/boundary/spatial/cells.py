@@ -43,7 +43,7 @@ class Crossings:
 
 
 @dataclass(frozen=True, eq=False)
-class CellLoops:
+class SpatialCellLoops:
     """Where the boundary passes through cells: in each, one or more loops of crossed edges.
 
     Pairs (``loop``, ``crossing``), sorted by loop; ``center`` (number of loops, 3) [m]: of the loops' cells;
@@ -107,7 +107,7 @@ class CellLattice:
             report(len(middle))
         return Crossings(at, axis, starts_inside, inside, outside)
 
-    def loops(self, crossings: Crossings) -> CellLoops:
+    def loops(self, crossings: Crossings) -> SpatialCellLoops:
         """The loops of crossed edges in every cell (dual marching cubes, Nielson 2004)."""
         corners = np.stack([self.inside[_shifted(self.inside.shape, c)] for c in CORNERS], axis=-1)
         case = (corners * (1 << np.arange(8))).sum(axis=-1)
@@ -127,7 +127,7 @@ class CellLattice:
         table = np.concatenate(rows) if rows else np.empty((0, 3), int)
         table = table[np.argsort(table[:, 0], kind="stable")]
         center = self.origin + (np.concatenate(cells) + 0.5 if cells else np.empty((0, 3))) * self.width
-        return CellLoops(table[:, 0], table[:, 1], center, _quads(table, crossings))
+        return SpatialCellLoops(table[:, 0], table[:, 1], center, _quads(table, crossings))
 
 
 def _thick_parts(inside: np.ndarray) -> np.ndarray:

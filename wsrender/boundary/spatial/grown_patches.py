@@ -13,7 +13,7 @@ from scipy.optimize import least_squares
 from scipy.sparse import csr_array
 
 from wsrender.boundary.components import components
-from wsrender.boundary.spatial.cells import CellLoops
+from wsrender.boundary.spatial.cells import SpatialCellLoops
 from wsrender.boundary.spatial.crossed_surfaces import CrossedSurfaces
 from wsrender.boundary.spatial.patches import FRAGMENT, Patch, in_order, neighbours, rows_of, smooth
 from wsrender.boundary.spatial.primitives import Fit, Primitive, candidates, fit_of, nearest
@@ -40,7 +40,7 @@ _NUMBERS = {
 
 
 def grown_patches(
-    crossed: CrossedSurfaces, loops: CellLoops, tolerance: float, width: float
+    crossed: CrossedSurfaces, loops: SpatialCellLoops, tolerance: float, width: float
 ) -> tuple[list[Patch], np.ndarray, CrossedSurfaces]:
     """The patches, those with most crossings first; the patch (C,) of each crossing; the crossings.
 

@@ -6,7 +6,7 @@ from itertools import product
 import numpy as np
 from scipy.spatial import KDTree
 
-from wsrender.boundary.spatial.cells import CellLoops
+from wsrender.boundary.spatial.cells import SpatialCellLoops
 from wsrender.boundary.spatial.critical_sets import CommonCurve
 from wsrender.boundary.spatial.crossed_surfaces import CrossedSurfaces
 from wsrender.boundary.spatial.measures import INNER, Triangles
@@ -45,7 +45,7 @@ class PatchMesh:
 
 
 def patch_mesh(
-    loops: CellLoops, crossed: CrossedSurfaces, patches: list[Patch], patch_of: np.ndarray, width: float
+    loops: SpatialCellLoops, crossed: CrossedSurfaces, patches: list[Patch], patch_of: np.ndarray, width: float
 ) -> PatchMesh:
     """A closed mesh with one vertex for each loop of crossed edges (dual contouring, Ju et al. 2002)."""
     sheets, sheet_of, middle = sheets_of_loops(loops, crossed, patch_of)

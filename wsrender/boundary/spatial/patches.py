@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from wsrender.boundary.components import components
-from wsrender.boundary.spatial.cells import CellLoops
+from wsrender.boundary.spatial.cells import SpatialCellLoops
 from wsrender.boundary.spatial.critical_sets import CriticalSet
 from wsrender.boundary.spatial.crossed_surfaces import NONE, CrossedSurfaces
 from wsrender.boundary.spatial.primitives import Fit, best_fit
@@ -49,7 +49,7 @@ class Patch:
 
 
 def boundary_patches(
-    sets: list[CriticalSet], crossed: CrossedSurfaces, loops: CellLoops, size: float
+    sets: list[CriticalSet], crossed: CrossedSurfaces, loops: SpatialCellLoops, size: float
 ) -> tuple[list[Patch], np.ndarray]:
     """The patches, those with most crossings first, and the patch (C,) of each crossing."""
     a, b = (loops.crossing[pairs] for pairs in neighbours(loops))
@@ -74,7 +74,7 @@ def in_order(patches: list[Patch], crossings: int) -> tuple[list[Patch], np.ndar
     return patches, patch_of
 
 
-def neighbours(loops: CellLoops) -> tuple[np.ndarray, np.ndarray]:
+def neighbours(loops: SpatialCellLoops) -> tuple[np.ndarray, np.ndarray]:
     """Every two pairs (loop, crossing) of one loop."""
     starts = np.flatnonzero(np.diff(loops.loop, prepend=-1))
     counts = np.diff(starts, append=len(loops.loop))

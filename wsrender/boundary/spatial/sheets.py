@@ -5,7 +5,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from wsrender.boundary.components import components
-from wsrender.boundary.spatial.cells import CellLoops
+from wsrender.boundary.spatial.cells import SpatialCellLoops
 from wsrender.boundary.spatial.crossed_surfaces import CrossedSurfaces
 from wsrender.boundary.spatial.patches import Patch, neighbours, smooth
 
@@ -94,7 +94,7 @@ def _places(point: np.ndarray) -> np.ndarray:
 
 
 def sheets_of_loops(
-    loops: CellLoops, crossed: CrossedSurfaces, patch_of: np.ndarray
+    loops: SpatialCellLoops, crossed: CrossedSurfaces, patch_of: np.ndarray
 ) -> tuple[Sheets, np.ndarray, np.ndarray]:
     """The sheets in each loop; the sheet of each pair; the middle (V, 3) of each loop's crossings."""
     a, b = neighbours(loops)
