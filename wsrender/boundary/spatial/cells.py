@@ -19,7 +19,7 @@ _BISECTIONS = 26  # leaves 1e-8 of a cell
 
 
 @dataclass(frozen=True, eq=False)
-class Crossings:
+class LatticeCrossings:
     """Edges of the lattice with one end in the set: the last points ``inside`` and first ones ``outside`` it found.
 
     ``at`` (C, 3): corner of the lattice at which the edge starts, along ``axis`` (C,); ``starts_inside`` (C,) bool:
@@ -87,7 +87,7 @@ class CellLattice:
         """Whether the set ends within the lattice."""
         return not any(np.take(self.inside, end, axis).any() for axis in range(3) for end in (0, -1))
 
-    def crossings(self, reaches: Membership, report: Report, bisections: int = _BISECTIONS) -> Crossings:
+    def crossings(self, reaches: Membership, report: Report, bisections: int = _BISECTIONS) -> LatticeCrossings:
         """The crossed edges, by so many ``bisections``; ``report(points tested)``."""
         starts, axes = [], []
         for axis in range(3):
@@ -105,9 +105,9 @@ class CellLattice:
             held = reaches(middle)[:, None]
             inside, outside = np.where(held, middle, inside), np.where(held, outside, middle)
             report(len(middle))
-        return Crossings(at, axis, starts_inside, inside, outside)
+        return LatticeCrossings(at, axis, starts_inside, inside, outside)
 
-    def loops(self, crossings: Crossings) -> SpatialCellLoops:
+    def loops(self, crossings: LatticeCrossings) -> SpatialCellLoops:
         """The loops of crossed edges in every cell (dual marching cubes, Nielson 2004)."""
         corners = np.stack([self.inside[_shifted(self.inside.shape, c)] for c in CORNERS], axis=-1)
         case = (corners * (1 << np.arange(8))).sum(axis=-1)
@@ -144,7 +144,7 @@ def _shifted(shape: tuple[int, ...], corner: np.ndarray) -> tuple[slice, ...]:
     return tuple(slice(c, c + size - 1) for c, size in zip(corner.tolist(), shape, strict=True))
 
 
-def _quads(table: np.ndarray, crossings: Crossings) -> np.ndarray:
+def _quads(table: np.ndarray, crossings: LatticeCrossings) -> np.ndarray:
     """The pairs of each crossing; local edge 4 axis + k is the k-th of its axis, seen from the cell."""
     quads = np.full((len(crossings), 4), -1)
     quads[table[:, 1], table[:, 2] % 4] = np.arange(len(table))

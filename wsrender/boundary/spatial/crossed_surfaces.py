@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from wsrender.boundary.spatial.cells import Crossings
+from wsrender.boundary.spatial.cells import LatticeCrossings
 from wsrender.boundary.spatial.critical_sets import CriticalSet
 from wsrender.boundary.spatial.inverse import ThreeJointInverse
 
@@ -29,7 +29,7 @@ class CrossedSurfaces:
 
 
 def crossed_surfaces(
-    sets: list[CriticalSet], inverse: ThreeJointInverse, crossings: Crossings, width: float
+    sets: list[CriticalSet], inverse: ThreeJointInverse, crossings: LatticeCrossings, width: float
 ) -> CrossedSurfaces:
     """Find them, from all configurations that reach the last points inside."""
     arm = inverse.arm

@@ -9,7 +9,7 @@ from typing import Protocol
 
 import numpy as np
 
-from wsrender.boundary.spatial.cells import Crossings, Report
+from wsrender.boundary.spatial.cells import LatticeCrossings, Report
 from wsrender.boundary.spatial.crossed_surfaces import NONE, CrossedSurfaces
 from wsrender.boundary.spatial.edges import edges_and_corners
 from wsrender.boundary.spatial.grown_patches import grown_patches
@@ -50,7 +50,7 @@ def fitted_boundary(arm: SpatialArm, reached: Reached, cells: int, report: Repor
     return SpatialBoundary(arm, patches, measures(mesh.curved, patches), edges, corners, mesh, lattice.width)
 
 
-def _crossed(arm: SpatialArm, crossings: Crossings, reached: Reached) -> CrossedSurfaces:
+def _crossed(arm: SpatialArm, crossings: LatticeCrossings, reached: Reached) -> CrossedSurfaces:
     """Points and normals of the crossings, from the nearest reached points to points a little outside."""
     middle, outward = (crossings.inside + crossings.outside) / 2, crossings.outward
     off, left = _OUTSIDE * arm.size, _UNDECIDED * arm.size
