@@ -1,5 +1,7 @@
 """Planar arms found from their chain: from DH tables, MJCF and URDF; errors name the joint that leaves the plane."""
 
+import json
+
 import numpy as np
 import pytest
 
@@ -87,6 +89,16 @@ def test_locked_joints_make_an_arm_planar():
     assert (nearest.inside | (nearest.distance < 1e-9)).all()
 
 
+@pytest.mark.parametrize(("name", "dimension"), [("puma560", 1), ("ur5e", 2), ("articulated", 1)])
+def test_the_joints_to_hold_are_a_remedy(name, dimension):
+    """``articulated`` holds a joint at its limit: 0 is beyond it."""
+    with pytest.raises(ws.ModelError) as raised:
+        ws.exact_boundary(name)
+    held = json.loads(str(raised.value).split("locked=")[1])
+    assert "joint1" not in held and len(held) >= 2
+    assert ws.exact_boundary(name, locked=held).dimension == dimension
+
+
 def test_slides_out_of_the_plane_are_named():
     rows = [ws.DHRow(a=1, limits_deg=(0, 90)), ws.DHRow(joint="prismatic", limits=(0, 1), name="lift")]
     lift = ws.DHTable(convention="standard", rows=rows, name="lift")
@@ -108,8 +120,8 @@ def test_a_joint_that_others_follow_is_named(boundary, tmp_path):
 
 
 def test_the_scara_of_the_library():
-    with pytest.raises(ws.ModelError, match="joint 'joint4' turns about"):
-        ws.exact_boundary("scara")
+    with pytest.raises(ws.ModelError, match=r"joint 'joint4' turns about .*; .* locked=\{\"joint4\": 0.0\}$"):
+        ws.planar_boundary("scara")
     assert ws.exact_boundary("scara", locked={"joint4": 0.0}).dimension == 2
 
 

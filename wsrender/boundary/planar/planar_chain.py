@@ -61,10 +61,9 @@ def planar_chain(chain: Chain) -> PlanarChain:
     """The planar chain of an arm; joints whose limits are equal are held there.
 
     Raises ModelError, naming the joint, where a joint turns about another axis than the first or slides out of the
-    plane, and for coupled joints.
+    plane, with joints to hold so that the others stay in one, and for coupled joints.
     """
-    moving, T, from_last = reference_frames(chain)
-    frames = np.array(list(accumulate(T, np.matmul))).reshape(-1, 4, 4)  # in the world
+    moving, frames, from_last = _frames(chain)
     tip = frames[-1, :3, :3] @ from_last + frames[-1, :3, 3] if len(moving) else from_last
     plane_axes = _plane_axes(frames, chain.joint_is_revolute[moving])
     normal = np.cross(*plane_axes)
@@ -73,6 +72,12 @@ def planar_chain(chain: Chain) -> PlanarChain:
     joints = tuple(_joint(chain, *joint, base, plane_axes) for joint in zip(moving.tolist(), frames, strict=True))
     plane = Plane((tip @ normal) * normal, plane_axes)
     return PlanarChain(joints, plane_axes @ (tip - base), plane, plane_axes @ base)
+
+
+def _frames(chain: Chain) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The joints that move (K,), their frames in the world (K, 4, 4), and the tip in the last of them (3,) [m]."""
+    moving, T, from_last = reference_frames(chain)
+    return moving, np.array(list(accumulate(T, np.matmul))).reshape(-1, 4, 4), from_last
 
 
 def _plane_axes(frames: np.ndarray, revolute: np.ndarray) -> np.ndarray:
@@ -102,16 +107,36 @@ def _normal(frames: np.ndarray, revolute: np.ndarray) -> np.ndarray:
 
 
 def _check(chain: Chain, frames: np.ndarray, moving: np.ndarray, normal: np.ndarray) -> None:
-    for i, axis in zip(moving, frames[:, :3, 2], strict=True):
-        name = chain.joint_names[chain.joint_source[i]]
-        if chain.joint_is_revolute[i] and np.linalg.norm(np.cross(axis, normal)) > _ALIGNED:
-            how = "turns about"
-        elif not chain.joint_is_revolute[i] and abs(axis @ normal) > _ALIGNED:
-            how = "slides along"
-        else:
-            continue
-        what = f"joint {name!r} {how} {_shown(axis)}, out of the plane with normal {_shown(normal)}"
-        raise ModelError("robot", f"the arm is not planar: {what}; hold such joints with 'locked'")
+    leaving = _leaving(chain, frames, moving, normal)
+    if not leaving.any():
+        return
+    i, axis = moving[leaving][0], frames[leaving][0, :3, 2]
+    how = "turns about" if chain.joint_is_revolute[i] else "slides along"
+    what = f"joint {chain.joint_names[chain.joint_source[i]]!r} {how} {_shown(axis)}"
+    held = ", ".join(f'"{name}": {value!r}' for name, value in _planar_when_held(chain).items())
+    plane = f"out of the plane with normal {_shown(normal)}"
+    raise ModelError(
+        "robot", f"the arm is not planar: {what}, {plane}; hold what leaves a plane, such as with locked={{{held}}}"
+    )
+
+
+def _leaving(chain: Chain, frames: np.ndarray, moving: np.ndarray, normal: np.ndarray) -> np.ndarray:
+    """Which of the moving joints (K,) turn about another axis than the normal, or slide along it."""
+    axes, revolute = frames[:, :3, 2], chain.joint_is_revolute[moving]
+    return np.where(revolute, np.linalg.norm(np.cross(axes, normal), axis=1), np.abs(axes @ normal)) > _ALIGNED
+
+
+def _planar_when_held(chain: Chain) -> dict[str, float]:
+    """Joints to hold, by name, and values within their limits at which the others move the tip in a plane."""
+    held: dict[str, float] = {}
+    while True:
+        moving, frames, _ = _frames(chain.held(held))
+        leaving = _leaving(chain, frames, moving, np.cross(*_plane_axes(frames, chain.joint_is_revolute[moving])))
+        if not leaving.any():
+            return held
+        for k in chain.joint_source[moving[leaving]]:
+            low, high = chain.lower_limits[k], chain.upper_limits[k]
+            held[chain.joint_names[k]] = float(np.clip(0.0, low, high))
 
 
 def _shown(vector: np.ndarray) -> str:
