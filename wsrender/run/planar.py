@@ -174,8 +174,8 @@ def _estimated_entry(estimated: MonteCarloBoundary, exact: ExactBoundary) -> dic
     return {
         "cell_width_m": width,
         "boundary_cells": len(centroids),
-        "line_tolerance_m2": estimated.line_tolerance_m2,
-        "arc_tolerance_m4": estimated.arc_tolerance_m4,
+        "line_tolerance_m2": estimated.tolerances.line_m2,
+        "arc_tolerance_m4": estimated.tolerances.arc_m4,
         "area_m2": float(sum(map(signed_area, loops))),
         "mean_distance_to_exact_m": inward,
         "mean_distance_to_exact_cells": inward / width if inward is not None else None,

@@ -1,17 +1,24 @@
 """Whether a boundary found from samples is the exact one, but for what its method takes off."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
 from wsrender.boundary.planar.cell_loops import MOST_SINGLE
+from wsrender.boundary.planar.curves import Curves
+from wsrender.boundary.planar.distances import point_distances
 from wsrender.boundary.planar.exact_boundary import ExactBoundary
 from wsrender.boundary.planar.monte_carlo import MonteCarloBoundary
+from wsrender.boundary.planar.segments import Segment
 
 # Centroids lie 0.24–0.33 cell widths inside an outer loop (Alciatore & Ng 1994), less inside a hole or where samples
 # crowd at the boundary; the rest is scatter. Twice that is what too few samples near the boundary do.
 INWARD = (0.1, 0.4)
+USUALLY_INWARD = (0.24, 0.33)
 LARGEST_ERROR = 0.1  # of the area: cells that are as large beside the workspace tell little of it
+DRAWN_ERROR = 0.01  # of the area between lines and arcs, but for what cells that lie inside take off
+FARTHEST_APART = 1.25  # cell widths, of segments from cells and from the exact boundary: a third inside, cut corners
+_STEP = 0.25  # of a cell, between points at which the boundaries are compared
 
 
 def disagreements(estimated: MonteCarloBoundary, exact: ExactBoundary) -> Iterator[str]:
@@ -32,9 +39,48 @@ def disagreements(estimated: MonteCarloBoundary, exact: ExactBoundary) -> Iterat
     error = float(areas.sum() / exact.area - 1)
     inward = -error * exact.area / (exact.perimeter * width)
     if not INWARD[0] <= inward <= INWARD[1]:
-        yield f"its area is {100 * error:+.1f} % off: it lies {inward:.2f} cell widths inside, 0.24–0.33 are usual"
+        usual = "–".join(map(str, USUALLY_INWARD))
+        yield f"its area is {100 * error:+.1f} % off: it lies {inward:.2f} cell widths inside, {usual} are usual"
     elif abs(error) > LARGEST_ERROR:
         yield f"its area is {100 * error:+.1f} % off: its cells, {width:.3g} m wide, are large beside the workspace"
+    yield from _of_segments(estimated, exact)
+
+
+def _of_segments(estimated: MonteCarloBoundary, exact: ExactBoundary) -> Iterator[str]:
+    """What shows that lines and arcs are neither the cells' border nor the exact one."""
+    width, segments = estimated.cell_width_m, [segment for loop in estimated.segments for segment in loop]
+    if not segments:
+        yield "it has no segments"
+        return
+    farthest = max(segment.farthest for segment in segments) / width
+    if farthest > FARTHEST_APART:
+        yield (
+            f"a line or arc runs {farthest:.2f} cell widths beside cells it stands for; at most {FARTHEST_APART:g} "
+            "should"
+        )
+    apart = _apart(segments, [segment for loop in exact.segments for segment in loop], width)
+    if apart > FARTHEST_APART:
+        yield (
+            f"its lines and arcs are up to {apart:.2f} cell widths from the exact boundary, at most "
+            f"{FARTHEST_APART:g} should be"
+        )
+    error = sum(segment.area for segment in segments) / exact.area - 1
+    explained = -USUALLY_INWARD[1] * exact.perimeter * width / exact.area
+    if not explained - DRAWN_ERROR <= error <= DRAWN_ERROR:
+        yield (
+            f"the area within its lines and arcs is {100 * error:+.1f} % off; that cells lie inside explains up to "
+            f"{100 * explained:.1f} %"
+        )
+
+
+def _apart(one: Sequence[Segment], other: Sequence[Segment], width: float) -> float:
+    """Largest distance of points of either boundary from the other [cell widths] (Hausdorff)."""
+    distances = []
+    for these, those in ((one, other), (other, one)):
+        points = np.concatenate([segment.along(_STEP * width) for segment in these])
+        curves = Curves.joined([segment.curve for segment in those])
+        distances.append(point_distances(points, curves).min(axis=1).max())
+    return float(max(distances) / width)
 
 
 def signed_area(loop: np.ndarray) -> float:

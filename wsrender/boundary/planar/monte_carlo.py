@@ -12,10 +12,9 @@ from itertools import pairwise, product
 
 import numpy as np
 
-from wsrender.boundary.fits import fit_circle, fit_line
 from wsrender.boundary.planar.cell_loops import CellLoops, cell_loops
+from wsrender.boundary.planar.fitted_segments import FittedSegment, FitTolerances, fitted_segments, joined_segments
 from wsrender.boundary.planar.planar_chain import PlanarChain
-from wsrender.boundary.planar.segments import Segment
 
 SCATTER = 0.3  # of centroids about the boundary, in cell widths: what the tolerances allow by default
 CELLS = tuple(int(2500 / 2 ** (k / 2)) for k in range(10))  # as published, or as few as the samples fill: 110
@@ -29,13 +28,12 @@ class MonteCarloBoundary:
     cells, those next to ``critical`` (C, 2) replaced: points with all joints at limits that lie on the boundary [m].
     """
 
-    segments: list[list[Segment]]
+    segments: list[list[FittedSegment]]
     cells: CellLoops
     loops: list[np.ndarray]
     critical: np.ndarray
     cell_width_m: float
-    line_tolerance_m2: float
-    arc_tolerance_m4: float
+    tolerances: FitTolerances
 
 
 def monte_carlo_boundary(
@@ -50,13 +48,12 @@ def monte_carlo_boundary(
     ``cells`` is N_g; None: 2500, or the most down to 110 that the points fill. The tolerances are TOLL and TOLA:
     largest mean squared perpendicular distance from a line, and mean of (r² − R²)² of an arc. By default both allow a
     scatter of 0.3 cell widths, the latter of arcs with a radius of half the workspace's width; smaller ones, which a
-    tolerance in m⁴ would allow more, fit by the same scatter.
+    tolerance in m⁴ would allow more, fit by the same scatter. Then no centroid is farther than a cell width from its
+    segment, and what bends is an arc.
     """
     found = _filled(points, CELLS if cells is None else (cells,))
-    scatter = SCATTER * found.width_m
-    farthest = scatter if arc_tolerance_m4 is None else np.inf
-    toll = scatter**2 if line_tolerance_m2 is None else line_tolerance_m2
-    tola = (scatter * np.ptp(points, axis=0).max()) ** 2 if arc_tolerance_m4 is None else arc_tolerance_m4
+    extent = float(np.ptp(points, axis=0).max())
+    tolerances = FitTolerances.of(line_tolerance_m2, arc_tolerance_m4, SCATTER * found.width_m, found.width_m, extent)
     limits = _at_limits(chain)
     loops, critical, segments = [], [], []
     for loop in found.loops:
@@ -65,9 +62,9 @@ def monte_carlo_boundary(
         loop[places] = corners
         critical.append(corners)
         loops.append(loop)
-        segments.append(_segments(loop, np.sort(places), toll, tola, farthest))
+        segments.append(_segments(loop, np.sort(places), tolerances, found.width_m))
     places = np.concatenate(critical or [np.empty((0, 2))])
-    return MonteCarloBoundary(segments, found, loops, places, found.width_m, float(toll), float(tola))
+    return MonteCarloBoundary(segments, found, loops, places, found.width_m, tolerances)
 
 
 def _filled(points: np.ndarray, counts: Sequence[int]) -> CellLoops:
@@ -99,47 +96,13 @@ def _critical(loop: np.ndarray, limits: np.ndarray, width: float) -> tuple[np.nd
     return limits[chosen], at_place[chosen]
 
 
-def _segments(loop: np.ndarray, critical: np.ndarray, toll: float, tola: float, farthest: float) -> list[Segment]:
-    """Lines and arcs along a closed loop, split at its critical points."""
+def _segments(loop: np.ndarray, critical: np.ndarray, tolerances: FitTolerances, width_m: float) -> list[FittedSegment]:
+    """Lines and arcs along a closed loop, split at its critical points, each from where it meets its neighbours."""
     first = int(critical[0]) if len(critical) else 0
     closed = np.roll(loop, -first, axis=0)
     closed = np.concatenate([closed, closed[:1]])
     splits = [*(critical - first).tolist(), len(loop)] if len(critical) else [0, len(loop)]
     out = []
     for begin, end in pairwise(splits):
-        out += _run(closed[begin : end + 1], toll, tola, farthest)
-    return out
-
-
-def _run(points: np.ndarray, toll: float, tola: float, farthest: float) -> list[Segment]:
-    """Lines and arcs, each as long as it fits; the length is found by bisection."""
-    out, at, last = [], 0, len(points) - 1
-    while at < last:
-        fits, fails = at + 1, last + 1
-        end = last
-        while fails - fits > 1:
-            if _fitted(points[at : end + 1], toll, tola, farthest) is None:
-                fails = end
-            else:
-                fits = end
-            end = (fits + fails) // 2
-        out.append(_fitted(points[at : fits + 1], toll, tola, farthest))
-        at = fits
-    return out
-
-
-def _fitted(points: np.ndarray, toll: float, tola: float, farthest: float) -> Segment | None:
-    """The line through points if it fits, else the arc; None where neither does. Two points always have a line.
-
-    An arc fits if the mean of (r² − R²)² is at most ``tola`` and the points lie about ``farthest`` [m] off: a mean of
-    (r² − R²)² ≈ 4 R² (r − R)².
-    """
-    if len(points) == 2 or fit_line(points) <= toll:
-        return Segment(points[0], points[-1], None, None, None)
-    circle = fit_circle(points)
-    if circle.error > min(tola, (2 * circle.radius * farthest) ** 2):
-        return None
-    offset = points - circle.center
-    angle = np.arctan2(offset[:, 1], offset[:, 0])
-    sweep = float((np.mod(np.diff(angle) + np.pi, 2 * np.pi) - np.pi).sum())
-    return Segment(points[0], points[-1], circle.center, circle.radius, sweep)
+        out += fitted_segments(closed[begin : end + 1], tolerances)
+    return joined_segments(out, width_m)

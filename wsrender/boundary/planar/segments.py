@@ -5,6 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from wsrender.boundary.planar.curves import Curves, cross
+from wsrender.boundary.planar.distances import point_distances
 from wsrender.volume.table import Table
 
 GEOMETRY = ("x_s", "y_s", "x_e", "y_e", "x_o", "y_o", "R", "sweep")
@@ -28,6 +30,38 @@ class Segment:
     def kind(self) -> str:
         """``line`` or ``arc``."""
         return "line" if self.center is None else "arc"
+
+    @property
+    def curve(self) -> Curves:
+        """The segment as a curve, an arc from the end at which its angle is less."""
+        if self.center is None or self.radius is None or self.sweep is None:
+            along = self.end - self.start
+            length = np.linalg.norm(along)
+            direction = along / max(float(length), 1e-300)
+            return Curves.of_lines(self.start[None], direction[None], np.zeros(1), np.array([length]))
+        begin = self.start if self.sweep > 0 else self.end
+        angle = np.arctan2(*(begin - self.center)[::-1])
+        return Curves.of_arcs(
+            self.center[None], np.array([self.radius]), np.array([angle]), np.array([angle + abs(self.sweep)])
+        )
+
+    @property
+    def area(self) -> float:
+        """What it adds to the area of a loop [m²]: of the triangle with the origin, and between arc and chord."""
+        triangle = cross(self.start, self.end) / 2
+        if self.radius is None or self.sweep is None:
+            return float(triangle)
+        return float(triangle + self.radius**2 / 2 * (self.sweep - np.sin(self.sweep)))
+
+    def distances(self, points: np.ndarray) -> np.ndarray:
+        """Distance of points (K, 2) from the segment, (K,) [m]."""
+        return point_distances(points, self.curve)[:, 0]
+
+    def along(self, step_m: float) -> np.ndarray:
+        """Points (K, 2) [m] from one end to the other, at most a step apart."""
+        curve = self.curve
+        count = 2 + int(curve.length[0] / step_m)
+        return np.concatenate([curve.at(t) for t in np.linspace(curve.low, curve.high, count)])
 
 
 @dataclass(frozen=True, eq=False)
