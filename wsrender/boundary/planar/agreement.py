@@ -17,7 +17,7 @@ INWARD = (0.1, 0.4)
 USUALLY_INWARD = (0.24, 0.33)
 LARGEST_ERROR = 0.1  # of the area: cells that are as large beside the workspace tell little of it
 DRAWN_ERROR = 0.01  # of the area between lines and arcs, but for what cells that lie inside take off
-FARTHEST_APART = 1.25  # cell widths, of segments from cells and from the exact boundary: a third inside, cut corners
+FARTHEST_APART = 1.0  # cell widths, of segments from cells and from the exact boundary: a third inside, cut corners
 _STEP = 0.25  # of a cell, between points at which the boundaries are compared
 
 

@@ -29,6 +29,11 @@ class FittedSegment(Segment):
         """Largest distance of the points from the segment [m]."""
         return float(self.distances(self.points).max())
 
+    @property
+    def squares(self) -> float:
+        """Sum of the points' squared distances from the segment [m²]."""
+        return float((self.distances(self.points) ** 2).sum())
+
 
 @dataclass(frozen=True)
 class FitTolerances:
@@ -72,7 +77,7 @@ class FitTolerances:
 
 
 def fitted_segments(points: np.ndarray, tolerances: FitTolerances) -> list[FittedSegment]:
-    """Segments along points (K, 2) [m], each as long as it fits; the length is found by bisection."""
+    """Segments along points (K, 2) [m], each as long as it fits, by bisection, then with the best common ends."""
     out, at, last = [], 0, len(points) - 1
     while at < last:
         fits, fails = at + 1, last + 1
@@ -85,7 +90,21 @@ def fitted_segments(points: np.ndarray, tolerances: FitTolerances) -> list[Fitte
             end = (fits + fails) // 2
         out.append(_fitted(points[at : fits + 1], tolerances) or _chord(points[at : fits + 1]))
         at = fits
+    for k in range(len(out) - 1):
+        out[k : k + 2] = _best_pair(out[k], out[k + 1], tolerances)
     return out
+
+
+def _best_pair(one: FittedSegment, other: FittedSegment, tolerances: FitTolerances) -> list[FittedSegment]:
+    """Two neighbours with the least squared distances from their points: as long as it fits may go round a corner."""
+    points = np.concatenate([one.points, other.points[1:]])
+    best, least = [one, other], one.squares + other.squares
+    for at in range(_LEAST - 1, len(points) - _LEAST + 1):
+        pair = [_fitted(part, tolerances) for part in (points[: at + 1], points[at:])]
+        found = [each for each in pair if each is not None]
+        if len(found) == 2 and (squares := sum(each.squares for each in found)) < least:
+            best, least = found, squares
+    return best
 
 
 def _fitted(points: np.ndarray, tolerances: FitTolerances) -> FittedSegment | None:
