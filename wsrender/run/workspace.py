@@ -254,7 +254,7 @@ def _check_surfaces(job: WorkspaceJob, plan: SweepPlan) -> None:
 def _settled_block(resolved: dict[str, Any], robot: Robot) -> LatticeBlock:
     first, shape = ((x, y, z) for x, y, z in (resolved["first_voxel"], resolved["shape"]))
     size = resolved["voxel_size_m"]
-    return LatticeBlock(size, first, shape, voxel_of(robot.chain.foot, size))
+    return LatticeBlock(size, first, shape, about=voxel_of(robot.chain.foot, size))
 
 
 def _first_sampling(job: WorkspaceJob, robot: Robot) -> SamplingPlan:

@@ -1,6 +1,6 @@
 """The world lattice: voxels of one edge, anchored at the world origin ([WSR] II.C.2)."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import ceil, floor, log10
 
 import numpy as np
@@ -27,7 +27,7 @@ class LatticeBlock:
     voxel_size_m: float
     first_voxel: tuple[int, int, int]
     shape: tuple[int, int, int]
-    about: tuple[int, int, int] | None = None
+    about: tuple[int, int, int] | None = field(default=None, kw_only=True)
 
     @property
     def size(self) -> int:
@@ -89,7 +89,7 @@ def block_around(
     x, y, z = (int(v) for v in first)
     nx, ny, nz = (int(v) for v in last - first + 1)
     near = None if about is None else voxel_of(about, voxel_size_m)
-    return LatticeBlock(float(voxel_size_m), (x, y, z), (nx, ny, nz), near)
+    return LatticeBlock(float(voxel_size_m), (x, y, z), (nx, ny, nz), about=near)
 
 
 def default_voxel_size(
