@@ -17,6 +17,7 @@ from wsrender.engine.membership import (
 )
 from wsrender.engine.partial import Partial, merge
 from wsrender.engine.positions import positions_at, sampled_positions
+from wsrender.engine.slabs import fitted
 from wsrender.engine.sweep_plan import SweepPlan, sweep
 
 __all__ = [
@@ -36,6 +37,7 @@ __all__ = [
     "evaluate_at",
     "evaluate_kinematics",
     "evaluate_poses",
+    "fitted",
     "joined",
     "merge",
     "poses_reached",

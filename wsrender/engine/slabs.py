@@ -7,7 +7,7 @@ from wsrender_kernels.sweep import Shape
 
 from wsrender.errors import ResourceError
 from wsrender.memory import SHARE, available_bytes
-from wsrender.volume.lattice import LatticeBlock
+from wsrender.volume.lattice import LatticeBlock, rounded_up
 
 SHARE_SLAB = 0.4  # of the free memory, for a slab: what it held is kept beside the next
 LARGEST_ARRAY = 2**31 - 1  # elements of a Warp array along one axis
@@ -36,11 +36,12 @@ def fitted(
     }
     count = min(reversed(counts), key=times.__getitem__)
     if times[count] == inf:
+        fits = block.voxel_size_m * (block.size * shape.bytes_per_voxel / (MOST_SLABS * SHARE_SLAB * free)) ** (1 / 3)
         raise ResourceError(
             "voxel_size_m",
             f"{block.voxel_size_m} gives {nx} x {ny} x {nz} voxels, {block.size * shape.bytes_per_voxel / 2**30:.1f} "
             f"GiB of records; {free / 2**30:.1f} GiB are free on {device.alias}, too little for {MOST_SLABS} parts: "
-            "choose larger voxels or fewer statistics or indices",
+            f"choose larger voxels or fewer statistics or indices; {rounded_up(fits, 2):g} fits",
         )
     x, y, z = block.first_voxel
     width = widths[count]

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from wsrender.errors import ResourceError
-from wsrender.volume.lattice import LatticeBlock, block_around
+from wsrender.volume.lattice import LatticeBlock, block_around, check_voxels
 
 MOST_VOXELS = 2**30  # one byte each
 
@@ -23,6 +23,7 @@ class VoxelSet:
         block = block_around(points.min(axis=0), points.max(axis=0), voxel_size_m)
         if block.size > MOST_VOXELS:
             raise ResourceError("voxel_size_m", f"{voxel_size_m} makes {block.size:.3g} voxels; 2^30 are allowed")
+        check_voxels(block, 1)
         occupied = np.zeros(block.shape, bool)
         occupied[tuple(_cells(points, block).T)] = True
         return cls(block, occupied)

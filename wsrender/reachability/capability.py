@@ -16,10 +16,11 @@ from wsrender.reachability.inverse_solver import InverseSolver
 from wsrender.reachability.occupied_cells import occupied_cells
 from wsrender.robots.chain import Chain
 from wsrender.robots.reachable_box import reachable_box
-from wsrender.volume.lattice import block_around
+from wsrender.volume.lattice import LatticeBlock, block_around, check_voxels
 from wsrender.volume.neighbours import inner_and_outer
 
 SAMPLES_PER_CELL, LEAST_SAMPLES = 16, 1 << 20
+SEARCHED_BYTES = 5  # of a voxel: whether it is occupied, inner, outer, and copies of them
 BATCH = 1 << 16  # pairs decided at a time
 # Columns: the tip frame turned so that its z is the axis that approaches.
 AXES = {
@@ -102,6 +103,13 @@ def capability(
     return Capability(cells, labels == REACHABLE, (labels == UNDECIDED).sum(axis=1))
 
 
+def searched_block(chain: Chain, voxel_size_m: float) -> LatticeBlock:
+    """The voxels among which those that are reached are looked for; ResourceError where they do not fit in memory."""
+    block = block_around(*reachable_box(chain, chain.lower_limits, chain.upper_limits), voxel_size_m)
+    check_voxels(block, SEARCHED_BYTES)
+    return block
+
+
 def _points(
     solver: InverseSolver, cells: np.ndarray, voxel_size_m: float, threads: int | None
 ) -> tuple[np.ndarray, np.ndarray]:
@@ -116,7 +124,7 @@ def _points(
 
 def _candidates(chain: Chain, voxel_size_m: float, seed: int, device: str, threads: int | None) -> np.ndarray:
     """Cells (V, 3) that samples of the chain reach, and their neighbours."""
-    block = block_around(*reachable_box(chain, chain.lower_limits, chain.upper_limits), voxel_size_m)
+    block = searched_block(chain, voxel_size_m)
     count = max(LEAST_SAMPLES, SAMPLES_PER_CELL * block.size)
     _, outer = inner_and_outer(occupied_cells(chain, block, count, seed, device, threads))
     return np.argwhere(outer) + block.first_voxel - 1

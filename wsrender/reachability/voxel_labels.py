@@ -13,6 +13,7 @@ from wsrender.reachability.targets import INCONCLUSIVE, JOINT_LIMITS, OUT_OF_REA
 from wsrender.robots.chain import Chain
 from wsrender.volume.neighbours import inner_and_outer
 from wsrender.volume.volume_data import VolumeData
+from wsrender.volume.voxels import Voxels
 
 REASONS = ("", JOINT_LIMITS, OUT_OF_REACH, TOO_CLOSE, INCONCLUSIVE)  # by the code in the volume
 UNITS = {
@@ -52,11 +53,9 @@ def label_voxels(
         held = in_own_voxel(nearest, places, volume.voxel_size_m) | (np.pad(volume.count, 1)[outer] > 0)
         label, reasons = np.where(held, REACHABLE, label), np.where(held, "", reasons)
     code = np.select([reasons == name for name in REASONS], list(range(len(REASONS))))
-    arrays = {}
-    for name, values in {"label": label, "reason": code}.items():
-        arrays[name] = np.full(outer.shape, np.nan, np.float32)
-        arrays[name][outer] = values
-    return VolumeData(volume.voxel_size_m, (x, y, z), np.pad(volume.count, 1), {"center": arrays}, dict(UNITS))
+    arrays = {"label": label.astype(np.float32), "reason": code.astype(np.float32)}
+    voxels = Voxels(outer.shape, np.flatnonzero(outer), np.pad(volume.count, 1)[outer], {"center": arrays})
+    return VolumeData.of_voxels(volume.voxel_size_m, (x, y, z), voxels, dict(UNITS))
 
 
 def counts(labelled: VolumeData) -> dict[str, dict[str, int]]:

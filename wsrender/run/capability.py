@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from wsrender.engine import sampled_positions
-from wsrender.reachability.capability import capability, fibonacci_directions
+from wsrender.reachability.capability import capability, fibonacci_directions, searched_block
 from wsrender.reachability.targets import check_tolerance
 from wsrender.result import Result
 from wsrender.robot import Robot
@@ -18,13 +18,15 @@ from wsrender.run.settled_device import settled_device
 from wsrender.sampling import plan_sampling
 from wsrender.spec.capability import CapabilityJob
 from wsrender.spec.sampling import Sobol
-from wsrender.volume.lattice import default_voxel_size
+from wsrender.volume.lattice import check_voxels, default_voxel_size, expected_voxels
 from wsrender.volume.table import Table
 from wsrender.volume.volume_data import VolumeData
+from wsrender.volume.voxels import Voxels
 
 RATE = 2e4  # pairs of voxel and direction per second of one core, rounded down from benchmarks/inverse.py
 DIVISIONS = 20  # of the size of a workspace: every voxel has many directions
 FIRST_SAMPLES = 1 << 16
+PAIR_BYTES = 2.25  # of a voxel and a direction: its label, whether it is reached, as byte and bit, twice
 
 
 @dataclass(eq=False)
@@ -120,15 +122,9 @@ class CapabilityPlan:
         """``count``: directions reached; "fraction" of "approach_directions": the index; None: nothing is reached."""
         if not len(cells):
             return None
-        first = cells.min(axis=0)
-        at = tuple((cells - first).T)
-        count = np.zeros(cells.max(axis=0) - first + 1, np.int64)
-        count[at] = reached.sum(axis=1)
-        index = np.full(count.shape, np.nan, np.float32)
-        index[at] = reached.mean(axis=1)
-        x, y, z = (int(v) for v in first)
-        statistics = {"fraction": {"approach_directions": index}}
-        return VolumeData(self.voxel_size_m, (x, y, z), count, statistics, {"approach_directions": "1"})
+        statistics = {"fraction": {"approach_directions": reached.mean(axis=1).astype(np.float32)}}
+        first, voxels = Voxels.at_places(cells, reached.sum(axis=1), statistics)
+        return VolumeData.of_voxels(self.voxel_size_m, first, voxels, {"approach_directions": "1"})
 
 
 def plan_capability(job: CapabilityJob, robot: Robot, resolved: dict[str, Any] | None = None) -> CapabilityPlan:
@@ -142,8 +138,10 @@ def plan_capability(job: CapabilityJob, robot: Robot, resolved: dict[str, Any] |
     if resolved is None:
         positions = _positions(chain)
         size = job.voxel_size_m or default_voxel_size(positions, divisions=DIVISIONS)
-        voxels = len(np.unique(np.floor(positions / size), axis=0))
-        shards = [(0, voxels * job.directions)]
+        block = searched_block(chain, size)
+        voxels = expected_voxels(positions, size)
+        check_voxels(block, PAIR_BYTES * job.directions, share=voxels / block.size)
+        shards = [(0, round(voxels * job.directions))]
     else:
         size, shards = resolved["voxel_size_m"], [(first, count) for first, count in resolved["shards"]]
     pairs = float(shards[0][1])

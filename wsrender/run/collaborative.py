@@ -1,6 +1,7 @@
 """The analysis ``collaborative_volume``: the body-elemental algorithm over seeds, and the true volume beside it."""
 
 import json
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -11,6 +12,7 @@ from wsrender.multi.body_elements import body_elements
 from wsrender.reachability import Event
 from wsrender.result import Result
 from wsrender.robot import Robot
+from wsrender.run.cost import check_memory
 from wsrender.run.execution import Execution
 from wsrender.run.headline import headline_of, no_headline
 from wsrender.run.one_shard import OneShard
@@ -23,6 +25,7 @@ from wsrender.spec.point_sets import PointSet
 from wsrender.spec.sampling import Random
 from wsrender.volume.table import Table
 
+POINT_BYTES = 100.0  # of two arms: positions, places in the box, cells
 POSITIONS_PER_S = 2e6  # of one CPU core
 BIASED = 'the body-elemental volume is biased; "refined_volume" gives the true one of two robots'
 
@@ -126,7 +129,14 @@ def plan_collaborative(
     left, right = (
         source.array() if isinstance(source, PointSet) else left_to_place.pop(0) for source in (job.left, job.right)
     )
+    check_memory(POINT_BYTES * job.samples, "samples", f"{job.samples:.4g} points of each arm", "take fewer")
+    check_memory(_cell_bytes(job), "refinements", f"{job.refinements} of them", "take fewer, or fewer cells")
     return CollaborativePlan(job, robots, (left, right), *settled_device(job.device, resolved))
+
+
+def _cell_bytes(job: CollaborativeVolumeJob) -> float:
+    """Bytes of the finest division: the cells of each arm, and those of both."""
+    return 3.0 * math.prod(job.cells) * (job.refinements + 1) ** 3
 
 
 def _variance(volumes: np.ndarray) -> np.ndarray | None:

@@ -14,6 +14,7 @@ from wsrender.kinetostatics.posture_data import posture_tables
 from wsrender.notices import Notice, entries
 from wsrender.result import Result
 from wsrender.robot import Robot
+from wsrender.robots.reachable_box import reachable_box
 from wsrender.run.execution import Execution
 from wsrender.run.headline import no_headline
 from wsrender.run.one_shard import OneShard
@@ -22,8 +23,9 @@ from wsrender.run.settled_device import settled_device
 from wsrender.sampling import plan_sampling
 from wsrender.spec.kinetostatics import KinetostaticFieldJob
 from wsrender.spec.sampling import Sobol
-from wsrender.volume.lattice import default_voxel_size
+from wsrender.volume.lattice import block_around, check_voxels, default_voxel_size
 from wsrender.volume.volume_data import VolumeData
+from wsrender.volume.voxels import Voxels
 
 RATE = 1e4  # configurations per second of one core, rounded down
 DIVISIONS = 25  # of the size of a workspace: a mean needs several configurations
@@ -148,26 +150,17 @@ class KinetostaticFieldPlan(OneShard):
     def _volume(
         self, cells: np.ndarray, count: np.ndarray, means: np.ndarray, partial: dict[str, np.ndarray]
     ) -> VolumeData:
-        first = cells.min(axis=0)
-        shape, at = tuple(cells.max(axis=0) - first + 1), tuple((cells - first).T)
-
-        def dense(values: np.ndarray) -> np.ndarray:
-            array = np.full((*shape, *values.shape[1:]), np.nan, np.float32)
-            array[at] = values
-            return array
-
-        counts = np.zeros(shape, np.int64)
-        counts[at] = count
-        x, y, z = (int(v) for v in first)
+        means = means.astype(np.float32)
         statistics = {
-            "maximum": {"force": dense(partial["greatest"])},
-            "mean": {name: dense(values) for name, values in zip(SCALARS, means[:, 6:].T, strict=True)},
+            "maximum": {"force": partial["greatest"].astype(np.float32)},
+            "mean": dict(zip(SCALARS, means[:, 6:].T, strict=True)),
         }
-        vectors = {"force": dense(means[:, :3])}
+        vectors = {"force": means[:, :3]}
         if self.job.field.haptic_device.kind == "wrench":
-            vectors["torque"] = dense(means[:, 3:6])
+            vectors["torque"] = means[:, 3:6]
         units = {name: unit for name, unit in UNITS.items() if name in vectors or name in SCALARS}
-        return VolumeData(self.voxel_size_m, (x, y, z), counts, statistics, units, vectors)
+        first, voxels = Voxels.at_places(cells, count, statistics, vectors)
+        return VolumeData.of_voxels(self.voxel_size_m, first, voxels, units)
 
 
 def _notices(form: str, loop: LoopWork) -> Iterator[Notice]:
@@ -204,8 +197,16 @@ def plan_kinetostatic_field(
     device, target = settled_device(job.device, resolved)
     count = plan_sampling(robot.chain, job.sampling, MOST_SAMPLES).count
     size = resolved["voxel_size_m"] if resolved else job.voxel_size_m or _voxel_size(force_field, count)
+    chain = robot.chain
+    check_voxels(block_around(*reachable_box(chain, chain.lower_limits, chain.upper_limits), size), _voxel_bytes(job))
     estimate = {"samples": float(count), "bytes": 100.0 * count, "seconds": count / RATE}
     return KinetostaticFieldPlan(job, robot, size, device, target, [(0, count)], estimate)
+
+
+def _voxel_bytes(job: KinetostaticFieldJob) -> int:
+    """Bytes of a voxel in arrays: its count, scalars with the largest force, and one or two vectors."""
+    vectors = 2 if job.field.haptic_device.kind == "wrench" else 1
+    return 8 + 4 * (1 + len(SCALARS) + 3 * vectors)
 
 
 def _voxel_size(force_field: ForceField, samples: int) -> float:

@@ -9,7 +9,7 @@ import numpy as np
 
 from wsrender.boundary.alpha_shape import AlphaShape
 from wsrender.boundary.surfaces import surface_entry
-from wsrender.errors import ResourceError
+from wsrender.errors import InputError, ResourceError
 from wsrender.mapping.linear_mapping import LinearMapping, MeasuredSet
 from wsrender.mapping.scale_search import best_mapping, largest_factor, scale_curve
 from wsrender.mapping.voxel_set import VoxelSet
@@ -17,6 +17,7 @@ from wsrender.notices import Notice, entries
 from wsrender.parallel.workspace_points import workspace_points
 from wsrender.result import Result
 from wsrender.robot import Robot
+from wsrender.robots.reachable_box import reachable_box
 from wsrender.run.execution import Execution
 from wsrender.run.headline import no_headline
 from wsrender.run.one_shard import OneShard
@@ -27,6 +28,7 @@ from wsrender.sampling import plan_sampling
 from wsrender.spec import MasterSlaveMappingJob
 from wsrender.spec.mapping import MOST_POINTS, Containment, MappedMechanism, MappedRobot, MappingSearch
 from wsrender.spec.point_sets import PointSet
+from wsrender.volume.lattice import block_around, check_voxels
 from wsrender.volume.table import Table
 
 POSITIONS = {"position": "m", "slave_position": "m"}
@@ -172,7 +174,27 @@ def plan_mapping(job: MasterSlaveMappingJob, *robots: Robot, resolved: dict[str,
     for name, count in zip(("master", "slave"), counts, strict=True):
         if count > MOST_POINTS:
             raise ResourceError(name, f"has {count:.4g} points; at most {MOST_POINTS:.4g} are mapped")
+    for name, source in (("master", master), ("slave", slave)):
+        _check_voxels(job.containment, name, source)
     return MappingPlan(job, robots, (master, slave), *settled_device(job.device, resolved), sum(counts))
+
+
+def _check_voxels(containment: Containment, name: str, source: Source) -> None:
+    """Whether the voxels of a workspace fit in memory; raises InputError, ResourceError.
+
+    Those of a mechanism are counted when its points are known.
+    """
+    size = containment.voxel_size_m
+    if size is None or isinstance(source, MappedMechanism):
+        return
+    if isinstance(source, np.ndarray):
+        box = source.min(axis=0), source.max(axis=0)
+    else:
+        box = reachable_box(source.chain, source.chain.lower_limits, source.chain.upper_limits)
+    try:
+        check_voxels(block_around(*box, size), 1)
+    except InputError as error:
+        raise type(error)("containment.voxel_size_m", f"{error.message} (for the {name})") from None
 
 
 def _sampling(job: MasterSlaveMappingJob, side: int) -> Any:

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from wsrender.errors import InputError
 from wsrender.parallel.ball_region import BallRegion
 from wsrender.parallel.exact import ExactWorkspace
 from wsrender.parallel.mechanism import mechanism_of
@@ -124,16 +125,19 @@ class MethodComparisonPlan(OneShard):
             edge = ICOSAHEDRON_EDGE * largest / 2**subdivisions
             yield SOLIDS, edge, volume, time.perf_counter() - started
 
-    def _counted(self, method: Any, size: float, execution: Execution) -> float:
-        """Volume of the voxels that a grid method finds [m³]."""
-        job = ParallelWorkspaceJob(
+    def grid_job(self, method: Any, size: float) -> ParallelWorkspaceJob:
+        """The job of one grid method with voxels of a size [m]."""
+        return ParallelWorkspaceJob(
             mechanism=self.job.mechanism,
             orientation=self.job.orientation,
             method=method,
             voxel_size_m=size,
             device=self.device,
         )
-        partial = plan_parallel(job).run_shard(0, None, execution)
+
+    def _counted(self, method: Any, size: float, execution: Execution) -> float:
+        """Volume of the voxels that a grid method finds [m³]."""
+        partial = plan_parallel(self.grid_job(method, size)).run_shard(0, None, execution)
         return len(partial["cells"]) * size**3
 
 
@@ -154,4 +158,11 @@ def plan_method_comparison(job: MethodComparisonJob, resolved: dict[str, Any] | 
         volume = ExactWorkspace.of(region).volume_m3
         edge = np.cbrt(volume if volume > 0 else float(np.max(region.inside_radii, initial=1.0)) ** 3)
         sizes = tuple(round_to_digits(float(edge) / parts, 2) for parts in PARTS)
-    return MethodComparisonPlan(job, region, sizes, device, target)
+    plan = MethodComparisonPlan(job, region, sizes, device, target)
+    try:
+        plan_parallel(plan.grid_job(GRIDS[0], min(sizes)))
+    except InputError as error:
+        if error.field not in ("voxel_size_m", "max_poses"):
+            raise
+        raise type(error)("voxel_sizes_m", f"{min(sizes):g} is too small: {error.message}") from None
+    return plan

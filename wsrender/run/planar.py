@@ -17,6 +17,7 @@ from wsrender.errors import NumericalError
 from wsrender.notices import Notice, entries
 from wsrender.result import Result
 from wsrender.robot import Robot, robot_with_model
+from wsrender.run.cost import check_memory
 from wsrender.run.execution import Execution
 from wsrender.run.headline import headline, no_headline
 from wsrender.run.one_shard import OneShard
@@ -30,6 +31,7 @@ from wsrender.volume.table import Table
 
 POSITIONS_PER_S = 2e6  # of one CPU core
 SWEEP_S = 0.1  # of a six-joint arm
+SAMPLE_BYTES = 64.0  # its position, in space and in the plane, and its cell
 DRAWN = 20_000  # samples kept for the picture
 
 
@@ -53,7 +55,7 @@ class PlanarBoundaryPlan(OneShard):
     def estimate(self) -> dict[str, float]:
         """Samples, bytes of their positions, seconds."""
         count = float(self.samples)
-        return {"samples": count, "bytes": 64.0 * count, "seconds": SWEEP_S + count / POSITIONS_PER_S}
+        return {"samples": count, "bytes": SAMPLE_BYTES * count, "seconds": SWEEP_S + count / POSITIONS_PER_S}
 
     def run_shard(
         self, shard: int, progress: Callable[[int], None] | None, execution: Execution
@@ -109,6 +111,7 @@ def plan_planar_boundary(
     """
     chain = robot_with_model(robot).chain
     samples = plan_sampling(chain, job.sampling).count
+    check_memory(SAMPLE_BYTES * samples, "sampling", f"{samples:.4g} positions", "take fewer samples")
     planar = planar_chain(chain.held(job.sampling.locked))
     return PlanarBoundaryPlan(job, robot, planar, *settled_device(job.device, resolved), samples)
 

@@ -120,6 +120,8 @@ def _planned(number: int, job: WorkspaceJob, robot: Robot, resolved: dict[str, A
     try:
         return plan_workspace(job, robot, resolved)
     except InputError as error:
+        if error.field == "voxel_size_m":  # the job's, not the robot's
+            raise
         raise error.within(dotted(("robots", number))) from None
 
 

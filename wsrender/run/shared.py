@@ -23,6 +23,7 @@ from wsrender.run.volume_notices import occupied_differs, tolerance_not_met
 from wsrender.run.workspace import WorkspacePlan, plan_workspace
 from wsrender.spec import SharedWorkspaceJob
 from wsrender.spec.placement_scan import PlacementScan
+from wsrender.volume.lattice import block_of_all, check_voxels
 from wsrender.volume.measure import TABLE_UNITS
 from wsrender.volume.table import Table
 from wsrender.volume.volume_data import VolumeData
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
     import trimesh
 
 
+VOLUME_BYTES = 9  # of a voxel of each robot's volume: samples, and whether there are any
 REACHED = {"any": "jointly reachable", "shared": "shared"}  # of which volume
 
 
@@ -166,6 +168,7 @@ def plan_shared_workspace(
     Raises InputError, MissingInertiaError, ResourceError.
     """
     several = plan_several(job, robots, resolved)
+    _check_volume(several)
     scanned = []
     if job.scan is not None:
         arm, robot = job.robots[job.scan.robot], robots[job.scan.robot]
@@ -174,6 +177,14 @@ def plan_shared_workspace(
         placements = job.scan.placements(arm.robot.placement)
         scanned = [plan_workspace(at, robot.placed(placement)) for placement in placements]
     return SharedWorkspacePlan(job, robots, several, scanned)
+
+
+def _check_volume(several: SeveralPlans) -> None:
+    """Whether the arrays of what robots share fit in memory, however far apart they stand; raises ResourceError."""
+    plans = [plan.sweep for plan in several.plans]
+    products = len(plans[0].evaluation.indices) if "maximum" in plans[0].statistics else 0
+    blocks = [plan.block for plan in plans if plan.block is not None]
+    check_voxels(block_of_all(blocks), len(plans) * VOLUME_BYTES + 4 * (1 + products))
 
 
 def _meshes(shared: VolumeData) -> "tuple[dict[str, trimesh.Trimesh], dict[str, Any]]":

@@ -28,6 +28,7 @@ from wsrender.reachability.reached_points import ReachedPoints
 from wsrender.result import Result
 from wsrender.robot import Robot, robot_with_model
 from wsrender.robots.chain import Chain
+from wsrender.run.cost import check_memory
 from wsrender.run.execution import Execution
 from wsrender.run.headline import headline
 from wsrender.run.one_shard import OneShard
@@ -162,7 +163,9 @@ def plan_boundary_patches(
     model, unknown joints to lock or values beyond their limits.
     """
     chain = moving_joints(held_chain(robot_with_model(robot).chain, job.locked))[0]
-    return BoundaryPatchesPlan(job, robot, chain, solid_arm(chain), *settled_device("cpu", resolved))
+    plan = BoundaryPatchesPlan(job, robot, chain, solid_arm(chain), *settled_device("cpu", resolved))
+    check_memory(plan.estimate["bytes"], "cells", f"{job.cells} cells across", "take fewer")
+    return plan
 
 
 def _about(found: SpatialBoundary) -> dict[str, Any]:

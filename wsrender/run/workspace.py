@@ -6,15 +6,15 @@ from typing import Any
 
 import numpy as np
 
-from wsrender.engine import Partial, SweepPlan, devices_of, merge, sweep
+from wsrender.engine import Partial, SweepPlan, devices_of, fitted, merge, sweep
 from wsrender.engine.voxel_data import volume_data
-from wsrender.errors import InputError, NotConvergedError, ResourceError
+from wsrender.errors import InputError, NotConvergedError
 from wsrender.global_indices import joint_means, workspace_mean
 from wsrender.indices.index_catalogue import default_statistics, resolve
-from wsrender.memory import SHARE, available_bytes
 from wsrender.result import Result
 from wsrender.robot import Robot
 from wsrender.robot.indices import evaluation_of_job
+from wsrender.run.cost import check_memory
 from wsrender.run.estimate import estimate, map_bytes
 from wsrender.run.execution import Execution
 from wsrender.run.first_pass import FirstPass
@@ -25,8 +25,10 @@ from wsrender.sampling import SamplingPlan, plan_sampling
 from wsrender.spec import WorkspaceJob
 from wsrender.spec.sampling import Converge, Grid
 from wsrender.spec.surfaces import IsoSurface
-from wsrender.volume.lattice import LatticeBlock, voxel_of
+from wsrender.volume.lattice import LatticeBlock, check_voxels, voxel_of
 from wsrender.volume.volume_data import VolumeData
+
+LABEL_BYTES = 24  # of a voxel of the block: which are near, samples, and what makes them
 
 
 @dataclass(frozen=True, eq=False)
@@ -224,19 +226,17 @@ def plan_workspace(job: WorkspaceJob, robot: Robot, resolved: dict[str, Any] | N
             raise InputError("sampling.by", "workspace_mean needs the voxel statistic maximum or mean")
     _check_surfaces(job, plan)
     _check_map(plan)
+    fitted(block, plan.shape, devices, sampling.count)  # raises where a sweep would
+    if job.voxel_labels:
+        check_voxels(block, LABEL_BYTES)
     shards = [(0, sampling.count)] if resolved is None else [(first, count) for first, count in resolved["shards"]]
     return WorkspacePlan(job, robot, plan, first_pass, device, target, shards, estimate(plan, devices))
 
 
 def _check_map(plan: SweepPlan) -> None:
     """Whether a map that is kept fits in memory, its rows and what they are joined to; raises ResourceError."""
-    needed, free = 2 * map_bytes(plan), available_bytes()
-    if needed > SHARE * free:
-        raise ResourceError(
-            "keep_map",
-            f"{plan.sampling.count:.4g} rows of {plan.shape.n_rows} values need {needed / 2**30:.1f} GiB; "
-            f"{free / 2**30:.1f} GiB are free: take fewer samples or columns, or keep no map",
-        )
+    rows = f"{plan.sampling.count:.4g} rows of {plan.shape.n_rows} values"
+    check_memory(2 * map_bytes(plan), "keep_map", rows, "take fewer samples or columns, or keep no map")
 
 
 def _check_surfaces(job: WorkspaceJob, plan: SweepPlan) -> None:

@@ -6,7 +6,7 @@ from pydantic import BeforeValidator, Field
 
 from wsrender.spec.arm import Arm
 from wsrender.spec.options import Device
-from wsrender.spec.quantities import PositiveNumber, Seed, integer, real
+from wsrender.spec.quantities import PositiveNumber, Seed, VoxelSize, integer, real
 
 LARGEST_SET = 10_000
 
@@ -19,7 +19,7 @@ class CapabilityJob(Arm):
 
     analysis: Literal["capability"] = "capability"
     """Name of the analysis."""
-    voxel_size_m: PositiveNumber | None = None
+    voxel_size_m: VoxelSize | None = None
     """Edge of a voxel [m]; null: a twentieth of the cube root of the workspace's convex-hull volume."""
     directions: Annotated[int, Field(ge=1, le=LARGEST_SET), BeforeValidator(integer)] = 100
     """Number of approach directions, spread evenly over the sphere."""

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field
 
 from wsrender.spec.document import Document
-from wsrender.spec.quantities import PositiveNumber, distinct, integer, quoted, real, sequence
+from wsrender.spec.quantities import PositiveNumber, VoxelSize, distinct, integer, quoted, real, sequence
 
 WORKING_MODES = ("++", "+-", "-+", "--")
 """Signs of sin(θ3 − θ1) and sin(θ4 − θ2): the sides to which the left and the right elbow bend."""
@@ -89,7 +89,7 @@ class FiveBarJob(Document):
     """Limits [low, high] of θ1 and θ2 [rad]; null: the joint turns freely."""
     working_modes: Annotated[tuple[Literal["++", "+-", "-+", "--"], ...], BeforeValidator(_modes)] = WORKING_MODES
     """Signs of sin(θ3 − θ1) and sin(θ4 − θ2)."""
-    voxel_size_m: PositiveNumber | None = None
+    voxel_size_m: VoxelSize | None = None
     """Edge of the cells of the Cartesian maps [m]; null: a 250th of the workspace's box."""
     joint_steps: Annotated[int, Field(ge=8, le=1000), BeforeValidator(integer)] = 180
     """Cells of the joint-space maps in a turn of an actuated joint."""

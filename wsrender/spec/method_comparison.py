@@ -9,18 +9,18 @@ from wsrender.spec.arm import Arm, ArmPath
 from wsrender.spec.document import Document
 from wsrender.spec.mechanism import MechanismSpec
 from wsrender.spec.options import Device
-from wsrender.spec.quantities import distinct, integer, real, sequence
+from wsrender.spec.quantities import VoxelSize, distinct, integer, sequence
 from wsrender.spec.robot import Transform
 
 MOST_SIZES, FINEST_BALL = 12, 7
 
 
-def _sizes(value: Any) -> tuple[float, ...] | None:
+def _sizes(value: Any) -> tuple[Any, ...] | None:
     if value is None:
         return None
-    sizes = distinct(real(size) for size in sequence(value))
-    if len(sizes) > MOST_SIZES or not min(sizes) > 0:
-        raise ValueError(f"must be a list of 1 … {MOST_SIZES} numbers above 0, or null")
+    sizes = distinct(sequence(value))
+    if len(sizes) > MOST_SIZES:
+        raise ValueError(f"must be a list of 1 … {MOST_SIZES} numbers, or null")
     return sizes
 
 
@@ -40,7 +40,7 @@ class MethodComparisonJob(Document):
     """A mechanism whose workspace only spheres bound: UPS legs, pairs of PUS legs."""
     orientation: Transform | None = None
     """Orientation of the platform in the base frame, without position_m; null: none."""
-    voxel_sizes_m: Annotated[tuple[float, ...] | None, BeforeValidator(_sizes)] = None
+    voxel_sizes_m: Annotated[tuple[VoxelSize, ...] | None, BeforeValidator(_sizes)] = None
     """Edges of the voxels of methods A and B [m]; null: a 5th, 10th, 20th and 40th of the volume's cube root."""
     ball_subdivisions: Annotated[tuple[int, ...], Field(), BeforeValidator(_subdivisions)] = (2, 3, 4, 5)
     """How often the edges of the icosahedra that stand for balls in method D are halved."""

@@ -11,6 +11,7 @@ from pydantic import BeforeValidator, Field, StrictStr
 from wsrender.errors import InputError
 
 LARGEST_COUNT = 10**15
+SMALLEST_VOXEL_M, LARGEST_VOXEL_M = 1e-10, 1e6
 LARGEST_SEED = 2**63 - 1
 LONGEST_NAME = 4096  # characters
 _FILE_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
@@ -99,7 +100,9 @@ def quoted(names: Iterable[str]) -> str:
 
 Number = Annotated[float, BeforeValidator(real)]
 PositiveNumber = Annotated[float, Field(gt=0), BeforeValidator(real)]
-VoxelSize = Annotated[float, Field(gt=0, le=1_000_000), BeforeValidator(real)]  # beyond any robot, far from overflow
+# Edge of a voxel [m]: from below the parts of any robot to beyond any, far from overflow. What a robot's size allows
+# within that, `wsrender.volume.lattice` says.
+VoxelSize = Annotated[float, Field(ge=SMALLEST_VOXEL_M, le=LARGEST_VOXEL_M), BeforeValidator(real)]
 RelativeTolerance = Annotated[float, Field(ge=1e-4, le=0.5), BeforeValidator(real)]
 Count = Annotated[int, Field(ge=1, le=LARGEST_COUNT), BeforeValidator(integer)]
 Seed = Annotated[int, Field(ge=0, le=LARGEST_SEED), BeforeValidator(integer)]

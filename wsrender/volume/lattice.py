@@ -1,11 +1,13 @@
 """The world lattice: voxels of one edge, anchored at the world origin ([WSR] II.C.2)."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from math import ceil, floor, log10
 
 import numpy as np
 
-from wsrender.errors import InputError
+from wsrender.errors import InputError, ResourceError
+from wsrender.memory import SHARE, available_bytes
 from wsrender.tolerances import FLAT
 
 LARGEST_BLOCK = 2.0**30  # voxels along an axis: the kernels hold 32-bit integers
@@ -81,15 +83,49 @@ def block_around(
     """
     extent, farthest = float(np.max(upper - lower)), float(np.abs([lower, upper]).max())
     if extent >= LARGEST_BLOCK * voxel_size_m:
-        raise InputError("voxel_size_m", f"{voxel_size_m} is too small for a workspace of {extent:.3g} m")
+        raise InputError(
+            "voxel_size_m",
+            f"{voxel_size_m} is too small for a workspace of {extent:.3g} m: {_least(extent / LARGEST_BLOCK)}",
+        )
     if farthest >= LARGEST_COORDINATE * voxel_size_m:
-        raise InputError("voxel_size_m", f"{voxel_size_m} is too small {farthest:.3g} m from the world's origin")
+        least = _least(farthest / LARGEST_COORDINATE)
+        raise InputError(
+            "voxel_size_m", f"{voxel_size_m} is too small {farthest:.3g} m from the world's origin: {least}"
+        )
     first = np.floor(np.asarray(lower) / voxel_size_m).astype(np.int64) - 1
     last = np.floor(np.asarray(upper) / voxel_size_m).astype(np.int64) + 1
     x, y, z = (int(v) for v in first)
     nx, ny, nz = (int(v) for v in last - first + 1)
     near = None if about is None else voxel_of(about, voxel_size_m)
     return LatticeBlock(float(voxel_size_m), (x, y, z), (nx, ny, nz), about=near)
+
+
+def block_of_all(blocks: Sequence[LatticeBlock]) -> LatticeBlock:
+    """The least block that contains all of some with one voxel size."""
+    first = np.min([block.first_voxel for block in blocks], axis=0)
+    end = np.max([np.add(block.first_voxel, block.shape) for block in blocks], axis=0)
+    (x, y, z), (nx, ny, nz) = first.tolist(), (end - first).tolist()
+    return LatticeBlock(blocks[0].voxel_size_m, (x, y, z), (nx, ny, nz))
+
+
+def _least(size: float) -> str:
+    return f"at least {rounded_up(size * (1 + 1e-9), 2):g} is allowed"
+
+
+def check_voxels(block: LatticeBlock, bytes_each: float, *, field: str = "voxel_size_m", share: float = 1.0) -> None:
+    """Whether so many bytes for each voxel of a ``share`` of a block fit in memory.
+
+    Raises ResourceError, with the smallest voxel that does, for the ``field`` that holds the voxel's edge.
+    """
+    needed, free = float(block.size) * share * bytes_each, available_bytes()
+    if needed <= SHARE * free:
+        return
+    smallest = rounded_up(block.voxel_size_m * (needed / max(SHARE * free, 1.0)) ** (1 / 3), 2)
+    raise ResourceError(
+        field,
+        f"{block.voxel_size_m:g} gives {' x '.join(map(str, block.shape))} voxels, which need "
+        f"{needed / 2**30:.3g} GiB; {free / 2**30:.1f} GiB are free: choose {smallest:g} or more",
+    )
 
 
 def default_voxel_size(
@@ -109,6 +145,22 @@ def default_voxel_size(
         holding = min((SAMPLES_PER_VOXEL / samples) ** (1 / dimension), 1.0) * whole
     edge = max(holding, whole / divisions, least)
     return rounded_up(edge, 2) if edge else 0.0
+
+
+def expected_voxels(positions: np.ndarray, voxel_size_m: float) -> float:
+    """How many voxels a workspace has of which samples (N, 3) [m] are known, however small the voxels are.
+
+    The volume (area, length) is measured with voxels so large that the samples leave next to no holes: half of those
+    at its boundary belong to it. Its share per voxel is the answer, at least 1.
+    """
+    dimension, _, _ = _measure(positions)
+    size = default_voxel_size(positions, len(positions))
+    cells = np.floor(positions / size).astype(np.int64)
+    held = set(map(tuple, cells.tolist()))
+    beside = [tuple(step) for step in np.concatenate([np.eye(3, dtype=int), -np.eye(3, dtype=int)])]
+    around = [sum((x + i, y + j, z + k) in held for i, j, k in beside) for x, y, z in held]
+    inner = sum(number >= 2 * dimension for number in around)
+    return max((inner + len(held)) / 2 * (size / voxel_size_m) ** dimension, 1.0)
 
 
 def _measure(positions: np.ndarray) -> tuple[int, float, float]:

@@ -91,6 +91,25 @@ class Voxels:
         array[self.cells] = values
         return array.reshape(*self.shape, *values.shape[1:])
 
+    @classmethod
+    def at_places(
+        cls,
+        places: np.ndarray,
+        count: np.ndarray,
+        statistics: Mapping[str, Values] | None = None,
+        vectors: Values | None = None,
+    ) -> "tuple[tuple[int, int, int], Voxels]":
+        """The voxels at places (V, 3) int64 of the lattice, no two alike, in the least block that holds them.
+
+        And that block's first voxel. ``count`` (V,), ``statistics`` and ``vectors`` are in the order of the places.
+        """
+        first = places.min(axis=0)
+        (x, y, z), (nx, ny, nz) = first.tolist(), (places.max(axis=0) - first + 1).tolist()
+        i, j, k = (places - first).T
+        cells = (i * ny + j) * nz + k
+        kept = cls((nx, ny, nz), cells, count.astype(np.int64), statistics or {}, vectors or {})
+        return (x, y, z), kept.among(np.argsort(cells, kind="stable"))
+
     def plane(self, values: np.ndarray, axis: int, layer: int) -> np.ndarray:
         """One layer of what ``dense`` gives."""
         at = self.at
