@@ -221,7 +221,7 @@ MALFORMED = [
     ),
     # methods
     (methods(voxel_sizes_m=[]), "voxel_sizes_m", "must not be empty"),
-    (methods(voxel_sizes_m=[0.1, 0]), "voxel_sizes_m", "numbers above 0, or null"),
+    (methods(voxel_sizes_m=[0.1, 0]), "voxel_sizes_m.1", "must be greater than 0"),
     (methods(ball_subdivisions=[9]), "ball_subdivisions", "must be a list of whole numbers 1 … 7"),
     (methods(ball_subdivisions=[3, 3]), "ball_subdivisions", 'must not repeat "3"'),
     (methods(orientation={"position_m": [0, 0, 1]}), "orientation", "must not shift"),

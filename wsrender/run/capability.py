@@ -1,17 +1,24 @@
 """The analysis ``capability``: reachability index per voxel, dexterous workspace."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from wsrender.engine import sampled_positions
-from wsrender.reachability.capability import capability, fibonacci_directions, searched_block
+from wsrender.reachability.capability import (
+    SAMPLES_PER_CELL,
+    SEARCHED_BYTES,
+    capability,
+    fibonacci_directions,
+    searched_block,
+)
 from wsrender.reachability.targets import check_tolerance
 from wsrender.result import Result
 from wsrender.robot import Robot
 from wsrender.robots.chain import Chain
+from wsrender.run.cost import DOCUMENT_BYTES, NOTHING, Cost, Costed, pictures_cost, surface_bytes
 from wsrender.run.execution import Execution
 from wsrender.run.provenance import job_entry, provenance, robot_entry
 from wsrender.run.settled_device import settled_device
@@ -24,13 +31,16 @@ from wsrender.volume.volume_data import VolumeData
 from wsrender.volume.voxels import Voxels
 
 RATE = 2e4  # pairs of voxel and direction per second of one core, rounded down from benchmarks/inverse.py
+TABLE_BYTES, VOXEL_BYTES = 58, 12  # of a voxel in the table, and in the volume
+FILLED = 0.5  # of the voxels searched, the block of those that are reached
+POSITIONS_PER_S = 2e6  # of one CPU core
 DIVISIONS = 20  # of the size of a workspace: every voxel has many directions
 FIRST_SAMPLES = 1 << 16
 PAIR_BYTES = 2.25  # of a voxel and a direction: its label, whether it is reached, as byte and bit, twice
 
 
 @dataclass(eq=False)
-class CapabilityPlan:
+class CapabilityPlan(Costed):
     """A resolved ``capability`` job: one shard."""
 
     job: CapabilityJob
@@ -39,7 +49,7 @@ class CapabilityPlan:
     device: str
     target: str
     shards: list[tuple[int, int]]
-    estimate: dict[str, float] = field(default_factory=dict)
+    cost: Cost = NOTHING
 
     def resolved(self) -> dict[str, Any]:
         """What is settled once: the device that "auto" means, target, voxel size, shards."""
@@ -145,8 +155,17 @@ def plan_capability(job: CapabilityJob, robot: Robot, resolved: dict[str, Any] |
     else:
         size, shards = resolved["voxel_size_m"], [(first, count) for first, count in resolved["shards"]]
     pairs = float(shards[0][1])
-    estimate = {"samples": pairs, "bytes": pairs, "seconds": pairs / RATE}
-    return CapabilityPlan(job, robot, size, device, target, shards, estimate)
+    return CapabilityPlan(job, robot, size, device, target, shards, _cost(job, chain, size, pairs))
+
+
+def _cost(job: CapabilityJob, chain: Chain, size: float, pairs: float) -> Cost:
+    """Of so many pairs of a voxel and a direction: their labels, and of every voxel searched, what is known of it."""
+    voxels, searched = pairs / job.directions, searched_block(chain, size).size
+    drawn, seconds = pictures_cost("slices", "arm")
+    kept = TABLE_BYTES * voxels + VOXEL_BYTES * FILLED * searched + surface_bytes(voxels)
+    memory = PAIR_BYTES * pairs + SEARCHED_BYTES * searched
+    found = SAMPLES_PER_CELL * searched / POSITIONS_PER_S
+    return Cost(pairs, memory, DOCUMENT_BYTES + drawn + kept, pairs / RATE + found + seconds)
 
 
 def _positions(chain: Chain) -> np.ndarray:

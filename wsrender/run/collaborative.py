@@ -12,7 +12,7 @@ from wsrender.multi.body_elements import body_elements
 from wsrender.reachability import Event
 from wsrender.result import Result
 from wsrender.robot import Robot
-from wsrender.run.cost import check_memory
+from wsrender.run.cost import DOCUMENT_BYTES, Cost, check_memory, pictures_cost, refined_seconds
 from wsrender.run.execution import Execution
 from wsrender.run.headline import headline_of, no_headline
 from wsrender.run.one_shard import OneShard
@@ -46,10 +46,13 @@ class CollaborativePlan(OneShard):
         return [(0, max(self.job.samples * self.job.seeds * len(self.robots), 1))]
 
     @property
-    def estimate(self) -> dict[str, float]:
-        """Samples, bytes of the points of one run, and seconds without the true volume."""
+    def cost(self) -> Cost:
+        """Samples, the points of one run with its cells, and the true volume where it is asked for."""
         samples = float(self.job.samples * self.job.seeds * len(self.robots))
-        return {"samples": samples, "bytes": 48.0 * self.job.samples, "seconds": samples / POSITIONS_PER_S}
+        drawn, seconds = pictures_cost("refinements")
+        seconds += samples / POSITIONS_PER_S + refined_seconds(self.job.refined_volume) * bool(len(self.robots) == 2)
+        memory = POINT_BYTES * self.job.samples + _cell_bytes(self.job)
+        return Cost(samples, memory, DOCUMENT_BYTES + drawn, seconds)
 
     def run_shard(
         self, shard: int, progress: Callable[[int], None] | None, execution: Execution

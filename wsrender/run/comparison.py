@@ -8,6 +8,7 @@ import numpy as np
 
 from wsrender.result import Result
 from wsrender.robot import Robot
+from wsrender.run.cost import Cost
 from wsrender.run.execution import Execution
 from wsrender.run.headline import no_headline
 from wsrender.run.one_shard import OneShard
@@ -39,9 +40,9 @@ class RobotComparisonPlan(OneShard):
         return [(0, self.several.samples)]
 
     @property
-    def estimate(self) -> dict[str, float]:
+    def cost(self) -> Cost:
         """Samples, bytes and seconds."""
-        return self.several.estimate
+        return self.several.cost
 
     def resolved(self) -> dict[str, Any]:
         """What is settled once, for every robot."""

@@ -16,6 +16,7 @@ from wsrender.parallel.ball_region import BallRegion
 from wsrender.parallel.mechanism import mechanism_of
 from wsrender.result import Result
 from wsrender.robot import Robot
+from wsrender.run.cost import DOCUMENT_BYTES, Cost, pictures_cost
 from wsrender.run.design_notices import design_notices, fault_entries
 from wsrender.run.design_result import best_entries, best_headline, exact_best, objective_entries, tables_of
 from wsrender.run.design_values import FAULTS, Evaluator
@@ -58,15 +59,13 @@ class DesignPlan(OneShard):
         return [(0, self.job.most_evaluations)]
 
     @property
-    def estimate(self) -> dict[str, float]:
+    def cost(self) -> Cost:
         """Designs, their bytes, and seconds; of designs that are not exact a guess."""
         designs = float(self.job.most_evaluations)
         columns = len(self.job.parameters) + len(self.job.objectives)
-        return {
-            "samples": designs,
-            "bytes": 24.0 * columns * designs,
-            "seconds": designs / (EXACT_PER_S if self.is_exact else OTHERS_PER_S),
-        }
+        drawn, seconds = pictures_cost("other", "other")
+        seconds += designs / (EXACT_PER_S if self.is_exact else OTHERS_PER_S)
+        return Cost(designs, 24.0 * columns * designs, DOCUMENT_BYTES + drawn + 8.0 * columns * designs, seconds)
 
     @property
     def is_exact(self) -> bool:

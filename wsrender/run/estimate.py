@@ -1,8 +1,9 @@
-"""What a job will take, before it runs."""
+"""What a sweep will take, before it runs."""
 
 from typing import Any
 
 from wsrender.engine import SweepPlan, thread_count
+from wsrender.run.cost import Cost
 
 # Samples per second of one CPU core and one GPU for six kinematic indices in float32 with voxels, rounded
 # down from the project's benchmarks on an AVX-512 core and an H200; dynamic indices and float64 each take about
@@ -12,8 +13,8 @@ SLOWER = 3.0
 RATE_HOST = 2e4  # where the host computes a part of every sample
 
 
-def estimate(plan: SweepPlan, devices: list[Any]) -> dict[str, float]:
-    """Samples, bytes of voxel records and map, and seconds: an order of magnitude, not a promise."""
+def sweep_cost(plan: SweepPlan, devices: list[Any]) -> Cost:
+    """Of the sweep alone: voxel records of every worker, the map as memory and file, and seconds."""
     on_gpu = devices[0].is_cuda
     workers = len(devices) if on_gpu else thread_count()
     rate = (RATE_GPU if on_gpu else RATE_CPU_CORE) * workers
@@ -27,7 +28,7 @@ def estimate(plan: SweepPlan, devices: list[Any]) -> dict[str, float]:
     voxels = plan.block.size if plan.block else 0
     records = voxels * plan.shape.bytes_per_voxel
     seconds = samples / plan.structure.weight / rate
-    return {"samples": float(samples), "bytes": float(records * workers + map_bytes(plan)), "seconds": seconds}
+    return Cost(samples, records * workers + map_bytes(plan), map_bytes(plan), seconds)
 
 
 def map_bytes(plan: SweepPlan) -> int:

@@ -34,6 +34,7 @@ from wsrender.parallel.five_bar.tables import (
 )
 from wsrender.plots.five_bar import MODE_VOLUMES
 from wsrender.result import Result
+from wsrender.run.cost import DOCUMENT_BYTES, Cost, pictures_cost
 from wsrender.run.execution import Execution
 from wsrender.run.headline import headline, no_headline
 from wsrender.run.one_shard import OneShard
@@ -76,10 +77,11 @@ class FiveBarPlan(OneShard):
         return 2 * first * second
 
     @property
-    def estimate(self) -> dict[str, float]:
+    def cost(self) -> Cost:
         """Cells of the maps, their bytes, and seconds."""
         cells = float(self._cells + self._joint_cells)
-        return {"samples": cells, "bytes": 200.0 * cells, "seconds": cells / CELLS_PER_S}
+        drawn, seconds = pictures_cost(*["other"] * 4)
+        return Cost(cells, 200.0 * cells, DOCUMENT_BYTES + drawn + 100.0 * cells, cells / CELLS_PER_S + seconds)
 
     def run_shard(
         self, shard: int, progress: Callable[[int], None] | None, execution: Execution

@@ -13,13 +13,15 @@ from wsrender.result import Result
 from wsrender.robot import Robot
 from wsrender.robot.indices import evaluation_of_job
 from wsrender.robot.model_robot import configuration_rows
-from wsrender.run.estimate import RATE_CPU_CORE, RATE_HOST, SLOWER
+from wsrender.run.cost import DOCUMENT_BYTES, NOTHING, Cost
 from wsrender.run.execution import Execution
 from wsrender.run.one_shard import OneShard
 from wsrender.run.provenance import index_choices, job_entry, provenance, robot_entry
 from wsrender.run.settled_device import settled_device
 from wsrender.spec import IndicesAtJob
 from wsrender.volume.distribution_map import DistributionMap
+
+ROWS_PER_S = 1e6  # of one CPU core, with their files
 
 
 @dataclass(eq=False)
@@ -33,15 +35,7 @@ class IndicesAtPlan(OneShard):
     device: str
     target: str
     shards: list[tuple[int, int]] = field(default_factory=list)
-
-    @property
-    def estimate(self) -> dict[str, float]:
-        """Samples, bytes of the map's rows in float64, and seconds of one CPU core."""
-        (samples, n), position, quaternion = self.q.shape, 3, 4
-        rate = RATE_HOST if self.evaluation.on_host else RATE_CPU_CORE
-        rate /= SLOWER ** (self.evaluation.dynamic + (self.job.precision == "float64"))
-        columns = n + position + quaternion + len(self.evaluation.indices)
-        return {"samples": float(samples), "bytes": 8.0 * samples * columns, "seconds": samples / rate}
+    cost: Cost = NOTHING
 
     def run_shard(self, shard: int, progress: Callable[[int], None] | None, execution: Execution) -> Evaluated:
         """Positions and values of all rows."""
@@ -94,4 +88,7 @@ def plan_indices_at(job: IndicesAtJob, robot: Robot, resolved: dict[str, Any] | 
         raise InputError("configurations", f"must be given: rows of {n} joint values, {', '.join(robot.joint_names)}")
     q = configuration_rows(np.array(job.configurations, np.float64), n, "configurations")
     evaluation = evaluation_of_job(job, robot)
-    return IndicesAtPlan(job, robot, evaluation, q, *settled_device(job.device, resolved), [(0, len(q))])
+    width = 4 if job.precision == "float32" else 8
+    held = float(len(q) * (3 + 6 + len(evaluation.indices)) * width)
+    cost = Cost(len(q), q.nbytes + held, DOCUMENT_BYTES + q.nbytes + held, len(q) / ROWS_PER_S)
+    return IndicesAtPlan(job, robot, evaluation, q, *settled_device(job.device, resolved), [(0, len(q))], cost)

@@ -1,7 +1,7 @@
 """The analysis ``kinetostatic_field``: forces of limits and conditioning over the workspace."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -15,6 +15,7 @@ from wsrender.notices import Notice, entries
 from wsrender.result import Result
 from wsrender.robot import Robot
 from wsrender.robots.reachable_box import reachable_box
+from wsrender.run.cost import DOCUMENT_BYTES, NOTHING, Cost, pictures_cost, surface_bytes
 from wsrender.run.execution import Execution
 from wsrender.run.headline import no_headline
 from wsrender.run.one_shard import OneShard
@@ -27,7 +28,11 @@ from wsrender.volume.lattice import block_around, check_voxels, default_voxel_si
 from wsrender.volume.volume_data import VolumeData
 from wsrender.volume.voxels import Voxels
 
-RATE = 1e4  # configurations per second of one core, rounded down
+SAMPLE_BYTES = 24 + 8 * 9 + 8  # of a configuration: its voxel, six components with three numbers, its voxel again
+ARROW_BYTES, LARGEST_FIELD_BYTES = 4e3, 4e5  # of a voxel in the picture of the field, and of the picture
+OCCUPIED = 0.13  # of the block that holds every reach, the voxels that do
+FILLED = 0.3  # of the block that holds every reach, the block of the voxels reached
+RATE = 4e3  # configurations per second of one core, rounded down
 DIVISIONS = 25  # of the size of a workspace: a mean needs several configurations
 FIRST_SAMPLES, DRAWN = 1 << 14, 3
 MOST_SAMPLES = 100_000_000
@@ -56,7 +61,7 @@ class KinetostaticFieldPlan(OneShard):
     device: str
     target: str
     shards: list[tuple[int, int]]
-    estimate: dict[str, float] = field(default_factory=dict)
+    cost: Cost = NOTHING
 
     def resolved(self) -> dict[str, Any]:
         """What is settled once: the device that "auto" means, target, voxel size, shards."""
@@ -198,9 +203,14 @@ def plan_kinetostatic_field(
     count = plan_sampling(robot.chain, job.sampling, MOST_SAMPLES).count
     size = resolved["voxel_size_m"] if resolved else job.voxel_size_m or _voxel_size(force_field, count)
     chain = robot.chain
-    check_voxels(block_around(*reachable_box(chain, chain.lower_limits, chain.upper_limits), size), _voxel_bytes(job))
-    estimate = {"samples": float(count), "bytes": 100.0 * count, "seconds": count / RATE}
-    return KinetostaticFieldPlan(job, robot, size, device, target, [(0, count)], estimate)
+    block = block_around(*reachable_box(chain, chain.lower_limits, chain.upper_limits), size)
+    check_voxels(block, _voxel_bytes(job))
+    voxels = min(OCCUPIED * block.size, count)
+    field = min(ARROW_BYTES * voxels, LARGEST_FIELD_BYTES)
+    kept = field + _voxel_bytes(job) * FILLED * block.size + surface_bytes(voxels)
+    drawn, seconds = pictures_cost("slices", "arm", "posture")
+    cost = Cost(count, SAMPLE_BYTES * count, DOCUMENT_BYTES + drawn + kept, count / RATE + seconds)
+    return KinetostaticFieldPlan(job, robot, size, device, target, [(0, count)], cost)
 
 
 def _voxel_bytes(job: KinetostaticFieldJob) -> int:

@@ -18,6 +18,7 @@ from wsrender.parallel.workspace_points import workspace_points
 from wsrender.result import Result
 from wsrender.robot import Robot
 from wsrender.robots.reachable_box import reachable_box
+from wsrender.run.cost import DOCUMENT_BYTES, Cost, pictures_cost
 from wsrender.run.execution import Execution
 from wsrender.run.headline import no_headline
 from wsrender.run.one_shard import OneShard
@@ -54,10 +55,11 @@ class MappingPlan(OneShard):
         return [(0, self.samples)]
 
     @property
-    def estimate(self) -> dict[str, float]:
+    def cost(self) -> Cost:
         """Points, their bytes with those of the shapes, and seconds without the search."""
         points = float(self.samples)
-        return {"samples": points, "bytes": 1000.0 * points, "seconds": points / POINTS_PER_S}
+        drawn, seconds = pictures_cost("other", "robot")
+        return Cost(points, 1000.0 * points, DOCUMENT_BYTES + drawn + 60.0 * points, points / POINTS_PER_S + seconds)
 
     def run_shard(
         self, shard: int, progress: Callable[[int], None] | None, execution: Execution

@@ -13,6 +13,7 @@ from wsrender.parallel.exact import ExactWorkspace
 from wsrender.parallel.mechanism import mechanism_of
 from wsrender.parallel.solids import solid_workspace
 from wsrender.result import Result
+from wsrender.run.cost import DOCUMENT_BYTES, Cost, pictures_cost
 from wsrender.run.execution import Execution
 from wsrender.run.headline import headline
 from wsrender.run.one_shard import OneShard
@@ -50,14 +51,15 @@ class MethodComparisonPlan(OneShard):
         return [(0, 1 + len(GRIDS) * len(self.sizes) + len(self.job.ball_subdivisions))]
 
     @property
-    def estimate(self) -> dict[str, float]:
+    def cost(self) -> Cost:
         """Runs, bytes of the largest ball's meshes, and seconds of them."""
         triangles = (
             20.0
             * 4 ** max(self.job.ball_subdivisions)
             * (len(self.region.inside_radii) + len(self.region.outside_radii))
         )
-        return {"samples": float(self.shards[0][1]), "bytes": 500 * triangles, "seconds": triangles / 2e5}
+        drawn, seconds = pictures_cost("other")
+        return Cost(self.shards[0][1], 500 * triangles, DOCUMENT_BYTES + drawn, triangles / 2e5 + seconds)
 
     def resolved(self) -> dict[str, Any]:
         """What is settled once: device, target, sizes of voxels, shards."""

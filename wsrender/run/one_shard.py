@@ -2,8 +2,10 @@
 
 from typing import Any
 
+from wsrender.run.cost import Costed
 
-class OneShard:
+
+class OneShard(Costed):
     """A plan of one shard. What planning settled are its device and target; a plan that settles more adds to that."""
 
     job: Any

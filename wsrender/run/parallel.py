@@ -25,6 +25,7 @@ from wsrender.reachability.volume_estimate import wilson
 from wsrender.result import Result
 from wsrender.robot import Robot
 from wsrender.robot.indices import task_rows
+from wsrender.run.cost import DOCUMENT_BYTES, NOTHING, Cost, Costed, pictures_cost, surface_bytes
 from wsrender.run.execution import Execution
 from wsrender.run.parallel_exact import boundary_partial, boundary_result, region_of
 from wsrender.run.parallel_lattice import common_flat, described, lattice_of, quantity, settled_lattice
@@ -42,7 +43,7 @@ RATE_NUMERIC_CORE = 5e4  # poses of a numeric leg per second, from benchmarks/in
 
 
 @dataclass(eq=False)
-class ParallelPlan:
+class ParallelPlan(Costed):
     """A resolved ``parallel_workspace`` job; ``block`` is None where no lattice is tested.
 
     ``variants``: the mechanism at every combination of values of its serial joints, one where it has none; ``search``:
@@ -58,7 +59,7 @@ class ParallelPlan:
     device: str
     target: str
     shards: list[tuple[int, int]]
-    estimate: dict[str, float] = field(default_factory=dict)
+    cost: Cost = NOTHING
     options: dict[str, dict[str, Any]] = field(default_factory=dict)
     search: SerialSearch | None = None
     unmeasured: str = ""  # why what is reached has neither a volume nor an area or a length
@@ -300,11 +301,15 @@ def plan_parallel(job: ParallelWorkspaceJob, *robots: Robot, resolved: dict[str,
     poses = float(sum(count for _, count in shards))
     rate = RATE_GPU if target.startswith("cuda") else RATE_CPU_CORE * thread_count()
     seconds = poses / rate + poses * len(mechanism.numeric) / (RATE_NUMERIC_CORE * thread_count())
-    estimate = {"samples": poses, "bytes": 8 * poses / len(orientations.rotations), "seconds": seconds}
+    voxels = block.size if block else 0
+    drawn, drawing = pictures_cost("slices", "robot")
+    kept = (8 + 4 * len(names)) * voxels + surface_bytes(voxels)
+    memory = 8 * poses / len(orientations.rotations)
+    cost = Cost(poses, memory, DOCUMENT_BYTES + drawn + kept, seconds + drawing)
     _, unmeasured = common_flat(found, orientations)
     serial = serial_search(job.mechanism, robots) if len(found) > 1 else None
     return ParallelPlan(
-        job, found, orientations, block, rows, names, device, target, shards, estimate, options, serial, unmeasured
+        job, found, orientations, block, rows, names, device, target, shards, cost, options, serial, unmeasured
     )
 
 

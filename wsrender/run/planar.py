@@ -17,7 +17,7 @@ from wsrender.errors import NumericalError
 from wsrender.notices import Notice, entries
 from wsrender.result import Result
 from wsrender.robot import Robot, robot_with_model
-from wsrender.run.cost import check_memory
+from wsrender.run.cost import DOCUMENT_BYTES, Cost, check_memory, pictures_cost
 from wsrender.run.execution import Execution
 from wsrender.run.headline import headline, no_headline
 from wsrender.run.one_shard import OneShard
@@ -52,10 +52,14 @@ class PlanarBoundaryPlan(OneShard):
         return [(0, self.samples)]
 
     @property
-    def estimate(self) -> dict[str, float]:
+    def cost(self) -> Cost:
         """Samples, bytes of their positions, seconds."""
         count = float(self.samples)
-        return {"samples": count, "bytes": SAMPLE_BYTES * count, "seconds": SWEEP_S + count / POSITIONS_PER_S}
+        drawn, seconds = pictures_cost("other", "robot")
+        kept = 24.0 * min(count, DRAWN)
+        return Cost(
+            count, SAMPLE_BYTES * count, DOCUMENT_BYTES + drawn + kept, SWEEP_S + count / POSITIONS_PER_S + seconds
+        )
 
     def run_shard(
         self, shard: int, progress: Callable[[int], None] | None, execution: Execution

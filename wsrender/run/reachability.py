@@ -1,7 +1,7 @@
 """The analysis ``reachability``: labels, configurations and residuals of given targets."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -9,6 +9,7 @@ import numpy as np
 from wsrender.reachability.targets import check_tolerance, reachable
 from wsrender.result import Result
 from wsrender.robot import Robot
+from wsrender.run.cost import DOCUMENT_BYTES, NOTHING, Cost, pictures_cost
 from wsrender.run.execution import Execution
 from wsrender.run.one_shard import OneShard
 from wsrender.run.provenance import job_entry, provenance, robot_entry
@@ -17,6 +18,7 @@ from wsrender.spec.reachability import ReachabilityJob
 from wsrender.volume.table import Table
 
 RATE = 2e4  # targets per second, rounded down from benchmarks/inverse.py: many unreachable poses on one core
+TABLE_BYTES, LISTED_BYTES = 120, 60  # of a target in the table, and in the job that the document keeps
 DRAWN = 3  # configurations in the picture of the robot
 
 
@@ -29,7 +31,7 @@ class ReachabilityPlan(OneShard):
     device: str
     target: str
     shards: list[tuple[int, int]]
-    estimate: dict[str, float] = field(default_factory=dict)
+    cost: Cost = NOTHING
 
     def run_shard(
         self, shard: int, progress: Callable[[int], None] | None, execution: Execution
@@ -97,5 +99,8 @@ def plan_reachability(job: ReachabilityJob, robot: Robot, resolved: dict[str, An
     chain = robot.chain
     check_tolerance(chain, job.position_tolerance_m, job.precision)
     count = len(job.points_m)
-    estimate = {"samples": float(count), "bytes": float(count * (chain.n + 8) * 8), "seconds": count / RATE}
-    return ReachabilityPlan(job, robot, *settled_device(job.device, resolved), [(0, count)], estimate)
+    held = float(count * (chain.n + 8) * 8)
+    drawn, seconds = pictures_cost("targets")
+    listed = (TABLE_BYTES + LISTED_BYTES) * count
+    cost = Cost(count, held, DOCUMENT_BYTES + drawn + listed, count / RATE + seconds)
+    return ReachabilityPlan(job, robot, *settled_device(job.device, resolved), [(0, count)], cost)

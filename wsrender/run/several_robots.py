@@ -11,6 +11,7 @@ import numpy as np
 from wsrender.errors import InputError
 from wsrender.result import Result
 from wsrender.robot import Robot
+from wsrender.run.cost import DOCUMENT_BYTES, Cost, in_turn, pictures_cost, refined_seconds
 from wsrender.run.execution import Execution
 from wsrender.run.partial_arrays import partial_of_arrays, partial_to_arrays
 from wsrender.run.refined import Progress, Refined
@@ -36,11 +37,13 @@ class SeveralPlans:
         return sum(plan.shards[0][1] for plan in self.plans)
 
     @property
-    def estimate(self) -> dict[str, float]:
-        """Samples and seconds of all, bytes of the largest: they are swept one after the other."""
-        estimates = [plan.estimate for plan in self.plans]
-        totals = {name: sum(each[name] for each in estimates) for name in ("samples", "seconds")}
-        return totals | {"bytes": max(each["bytes"] for each in estimates)}
+    def cost(self) -> Cost:
+        """Of all robots: they are swept one after the other, and their volumes kept."""
+        swept = in_turn(plan.swept_cost for plan in self.plans)
+        drawn, seconds = pictures_cost("comparison", "arm")
+        seconds += sum(refined_seconds(plan.job.refined_volume) for plan in self.plans)
+        files = DOCUMENT_BYTES * len(self.plans) + drawn + sum(plan.volume_bytes for plan in self.plans)
+        return Cost(swept.samples, swept.memory_bytes, files, swept.seconds + seconds)
 
     def resolved(self) -> dict[str, Any]:
         """What is settled once: device, target, the shard, and what each robot's plan says."""

@@ -12,6 +12,7 @@ from wsrender.notices import Notice, entries
 from wsrender.reachability import Event
 from wsrender.result import Result
 from wsrender.robot import Robot
+from wsrender.run.cost import DOCUMENT_BYTES, Cost, in_turn, pictures_cost, refined_seconds
 from wsrender.run.execution import Execution
 from wsrender.run.headline import headline_of
 from wsrender.run.one_shard import OneShard
@@ -56,9 +57,13 @@ class SharedWorkspacePlan(OneShard):
         return [(0, self.several.samples + sum(plan.shards[0][1] for plan in self.scanned))]
 
     @property
-    def estimate(self) -> dict[str, float]:
+    def cost(self) -> Cost:
         """Samples, bytes and seconds."""
-        return SeveralPlans([], [*self.several.plans, *self.scanned]).estimate
+        swept = in_turn(plan.swept_cost for plan in [*self.several.plans, *self.scanned])
+        drawn, seconds = pictures_cost("slices", "product", "robot")
+        seconds += refined_seconds(self.job.refined_volume) * (1 + len(self.scanned))
+        files = DOCUMENT_BYTES + drawn + sum(plan.volume_bytes for plan in self.several.plans) * 1.5
+        return Cost(swept.samples, swept.memory_bytes, files, swept.seconds + seconds)
 
     def resolved(self) -> dict[str, Any]:
         """What is settled once, for every robot."""

@@ -28,7 +28,7 @@ from wsrender.reachability.reached_points import ReachedPoints
 from wsrender.result import Result
 from wsrender.robot import Robot, robot_with_model
 from wsrender.robots.chain import Chain
-from wsrender.run.cost import check_memory
+from wsrender.run.cost import DOCUMENT_BYTES, Cost, check_memory, pictures_cost
 from wsrender.run.execution import Execution
 from wsrender.run.headline import headline
 from wsrender.run.one_shard import OneShard
@@ -45,6 +45,8 @@ INTEGRATED = 1e5  # points of the volume's integral, or of its estimate, about
 VOLUME_TOLERANCE = 0.005  # of the volume that is estimated beside a fitted boundary
 ENCLOSED_ERROR = 1e-3  # of the volume: the patches of arms without thin parts were off by 1e-9 … 7e-4
 BYTES_PER_CORNER, BYTES_PER_CELL = 40.0, 1e4  # of the lattice; of the surface, with its triangles
+
+MESH_BYTES = 100.0  # of a cell of the surface in ply and glb
 
 
 @dataclass(eq=False)
@@ -69,11 +71,13 @@ class BoundaryPatchesPlan(OneShard):
         return int(cells**3 + POINTS_PER_CELL * 6 * cells**2 + INTEGRATED)
 
     @property
-    def estimate(self) -> dict[str, float]:
+    def cost(self) -> Cost:
         """Points to be tested, bytes of lattice and mesh, seconds."""
         points, cells = float(self._points), self.job.cells
         held = BYTES_PER_CORNER * cells**3 + BYTES_PER_CELL * 6 * cells**2
-        return {"samples": points, "bytes": held, "seconds": points / POINTS_PER_S}
+        drawn, seconds = pictures_cost("other", "robot")
+        surface = MESH_BYTES * 6 * cells**2
+        return Cost(points, held, DOCUMENT_BYTES + drawn + surface, points / POINTS_PER_S + seconds)
 
     def run_shard(
         self, shard: int, progress: Callable[[int], None] | None, execution: Execution
@@ -164,7 +168,7 @@ def plan_boundary_patches(
     """
     chain = moving_joints(held_chain(robot_with_model(robot).chain, job.locked))[0]
     plan = BoundaryPatchesPlan(job, robot, chain, solid_arm(chain), *settled_device("cpu", resolved))
-    check_memory(plan.estimate["bytes"], "cells", f"{job.cells} cells across", "take fewer")
+    check_memory(plan.cost.memory_bytes, "cells", f"{job.cells} cells across", "take fewer")
     return plan
 
 

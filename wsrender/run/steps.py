@@ -10,6 +10,7 @@ from wsrender.errors import InputError
 from wsrender.notices import Notice, entries
 from wsrender.result import Result
 from wsrender.robot import Robot, as_robot, robot_of_spec
+from wsrender.run.cost import Cost
 from wsrender.run.execution import Execution
 from wsrender.run.headline import no_headline
 from wsrender.run.usable_robots import usable
@@ -73,8 +74,13 @@ class Plan(Protocol):
         ...
 
     @property
+    def cost(self) -> Cost:
+        """What it takes."""
+        ...
+
+    @property
     def estimate(self) -> dict[str, float]:
-        """Samples, bytes and seconds."""
+        """The cost by name: ``samples``, ``memory_bytes``, ``file_bytes``, ``seconds``, and ``bytes``, of memory."""
         ...
 
     def resolved(self) -> dict[str, Any]:

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -14,18 +15,27 @@ from wsrender.indices.index_catalogue import default_statistics, resolve
 from wsrender.result import Result
 from wsrender.robot import Robot
 from wsrender.robot.indices import evaluation_of_job
-from wsrender.run.cost import check_memory
-from wsrender.run.estimate import estimate, map_bytes
+from wsrender.run.cost import (
+    DECIDED_PER_S,
+    DOCUMENT_BYTES,
+    Cost,
+    Costed,
+    check_memory,
+    pictures_cost,
+    refined_seconds,
+    surface_bytes,
+)
+from wsrender.run.estimate import map_bytes, sweep_cost
 from wsrender.run.execution import Execution
 from wsrender.run.first_pass import FirstPass
 from wsrender.run.refined import Progress, Refined, labelled, refined
 from wsrender.run.settled_device import settled_device
-from wsrender.run.workspace_result import workspace_result
+from wsrender.run.workspace_result import PICTURE_SAMPLES, workspace_result
 from wsrender.sampling import SamplingPlan, plan_sampling
 from wsrender.spec import WorkspaceJob
 from wsrender.spec.sampling import Converge, Grid
 from wsrender.spec.surfaces import IsoSurface
-from wsrender.volume.lattice import LatticeBlock, check_voxels, voxel_of
+from wsrender.volume.lattice import LatticeBlock, check_voxels, expected_voxels, voxel_of
 from wsrender.volume.volume_data import VolumeData
 
 LABEL_BYTES = 24  # of a voxel of the block: which are near, samples, and what makes them
@@ -42,7 +52,7 @@ class WorkspacePartial:
 
 
 @dataclass(eq=False)
-class WorkspacePlan:
+class WorkspacePlan(Costed):
     """A resolved ``workspace`` job."""
 
     job: WorkspaceJob
@@ -52,7 +62,38 @@ class WorkspacePlan:
     device: str
     target: str
     shards: list[tuple[int, int]]
-    estimate: dict[str, float]
+    swept_cost: Cost
+
+    @property
+    def cost(self) -> Cost:
+        """Of the sweep, and of the refined measure, labels, files and pictures."""
+        job, swept, (voxels, block) = self.job, self.swept_cost, self._expected
+        drawn, seconds = pictures_cost("slices", "scatter", "histogram", "robot")
+        rows = min(swept.samples, PICTURE_SAMPLES)
+        columns = 3 + self.sweep.evaluation.chain.n + len(self.sweep.evaluation.indices)
+        files = (
+            swept.file_bytes + 8.0 * columns * rows + drawn + DOCUMENT_BYTES + surface_bytes(voxels) + self.volume_bytes
+        )
+        memory = swept.memory_bytes + LABEL_BYTES * block * job.voxel_labels
+        seconds += swept.seconds + refined_seconds(job.refined_volume)
+        if job.voxel_labels:
+            near = (np.cbrt(voxels) + 2) ** 3
+            files, seconds = files + 16.0 * (np.cbrt(block) + 2) ** 3, seconds + near / DECIDED_PER_S
+        return Cost(swept.samples, memory, float(files), float(seconds))
+
+    @property
+    def volume_bytes(self) -> float:
+        """Bytes of the volume's arrays as a file: counts, and a number of each statistic and index."""
+        statistics = len(self.sweep.statistics - {"count"}) * len(self.sweep.evaluation.indices)
+        width = 4 if self.job.precision == "float32" else 8
+        return self._expected[1] * (8.0 + width * statistics)
+
+    @cached_property
+    def _expected(self) -> tuple[float, float]:
+        """Voxels that hold a sample, and those of the block around them, from the coarse samples' positions."""
+        positions, size = self.first_pass.evaluated.position, self.voxel_size_m
+        cells = np.floor(positions / size)
+        return expected_voxels(positions, size), float(np.prod(np.ptp(cells, axis=0) + 1))
 
     @property
     def voxel_size_m(self) -> float:
@@ -230,7 +271,7 @@ def plan_workspace(job: WorkspaceJob, robot: Robot, resolved: dict[str, Any] | N
     if job.voxel_labels:
         check_voxels(block, LABEL_BYTES)
     shards = [(0, sampling.count)] if resolved is None else [(first, count) for first, count in resolved["shards"]]
-    return WorkspacePlan(job, robot, plan, first_pass, device, target, shards, estimate(plan, devices))
+    return WorkspacePlan(job, robot, plan, first_pass, device, target, shards, sweep_cost(plan, devices))
 
 
 def _check_map(plan: SweepPlan) -> None:

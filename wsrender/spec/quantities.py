@@ -102,7 +102,7 @@ Number = Annotated[float, BeforeValidator(real)]
 PositiveNumber = Annotated[float, Field(gt=0), BeforeValidator(real)]
 # Edge of a voxel [m]: from below the parts of any robot to beyond any, far from overflow. What a robot's size allows
 # within that, `wsrender.volume.lattice` says.
-VoxelSize = Annotated[float, Field(ge=SMALLEST_VOXEL_M, le=LARGEST_VOXEL_M), BeforeValidator(real)]
+VoxelSize = Annotated[float, Field(ge=SMALLEST_VOXEL_M, le=LARGEST_VOXEL_M), BeforeValidator(positive)]
 RelativeTolerance = Annotated[float, Field(ge=1e-4, le=0.5), BeforeValidator(real)]
 Count = Annotated[int, Field(ge=1, le=LARGEST_COUNT), BeforeValidator(integer)]
 Seed = Annotated[int, Field(ge=0, le=LARGEST_SEED), BeforeValidator(integer)]

@@ -124,7 +124,7 @@ def check_voxels(block: LatticeBlock, bytes_each: float, *, field: str = "voxel_
     raise ResourceError(
         field,
         f"{block.voxel_size_m:g} gives {' x '.join(map(str, block.shape))} voxels, which need "
-        f"{needed / 2**30:.3g} GiB; {free / 2**30:.1f} GiB are free: choose {smallest:g} or more",
+        f"{needed / 2**30:.1f} GiB; {free / 2**30:.1f} GiB are free: choose {smallest:g} or more",
     )
 
 

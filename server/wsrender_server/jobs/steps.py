@@ -66,13 +66,14 @@ def _plan(task: Task) -> dict[str, Any]:
     started = time.perf_counter()
     plan = _planned(task)
     resolved = plan.resolved()
-    samples = sum(count for _, count in resolved["shards"])
+    shard_samples = sum(count for _, count in resolved["shards"])
+    samples = max(plan.cost.samples, shard_samples)
     if samples > _state["max_samples"]:
         allowed = _state["max_samples"]
         raise ResourceError("sampling", f"has {samples:.4g} samples; this server allows {allowed:.4g}")
     if unit := resolved.get("shard_unit"):
         faster = GPU_FACTOR if plan.target.startswith("cuda:") else 1
-        resolved["shards"] = _divided(samples, faster * _state["shard_samples"], unit)
+        resolved["shards"] = _divided(shard_samples, faster * _state["shard_samples"], unit)
     return {
         "resolved": resolved,
         "target": plan.target,

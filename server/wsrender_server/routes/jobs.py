@@ -37,7 +37,11 @@ class Estimate(View):
     samples: float
     """Samples."""
     bytes: float | None
-    """Memory [bytes]; null: little."""
+    """Memory [bytes], the same as memory_bytes; null: little."""
+    memory_bytes: float | None = None
+    """Largest arrays that are held at a time [bytes]."""
+    file_bytes: float | None = None
+    """Result files [bytes]; of compressed ones as they are before."""
     seconds: float | None
     """Time on this server [s]; null: little."""
 
