@@ -13,7 +13,7 @@ from wsrender.result import Result
 from wsrender.robot import Robot
 from wsrender.robot.indices import evaluation_of_job
 from wsrender.robot.model_robot import configuration_rows
-from wsrender.run.cost import DOCUMENT_BYTES, NOTHING, Cost
+from wsrender.run.cost import Cost, DOCUMENT_BYTES, NOTHING, pictures_cost
 from wsrender.run.execution import Execution
 from wsrender.run.one_shard import OneShard
 from wsrender.run.provenance import index_choices, job_entry, provenance, robot_entry
@@ -90,5 +90,7 @@ def plan_indices_at(job: IndicesAtJob, robot: Robot, resolved: dict[str, Any] | 
     evaluation = evaluation_of_job(job, robot)
     width = 4 if job.precision == "float32" else 8
     held = float(len(q) * (3 + 6 + len(evaluation.indices)) * width)
-    cost = Cost(len(q), q.nbytes + held, DOCUMENT_BYTES + q.nbytes + held, len(q) / ROWS_PER_S)
+    drawn, seconds = pictures_cost("histogram", "robot")
+    files = DOCUMENT_BYTES + drawn + q.nbytes + held
+    cost = Cost(len(q), q.nbytes + held, files, len(q) / ROWS_PER_S + seconds)
     return IndicesAtPlan(job, robot, evaluation, q, *settled_device(job.device, resolved), [(0, len(q))], cost)
