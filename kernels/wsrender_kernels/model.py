@@ -8,8 +8,10 @@ from wsrender_kernels.kinematics import chain_type
 
 
 @factory
-def model_type(real, n: int, joints: int):
+def model_type(real, n: int, joints: int, limits: int = 0):
     """Struct with the numbers of a robot of n coordinates; what a kernel's shape does not use is empty or 0.
+
+    Of a sweep with constraints also ``limits``, their numbers.
 
     Vectors in the struct, not arrays: on the CPU the compiler then sees that nothing written in the lane loop changes
     them, on CUDA they are read from constant memory.
@@ -17,7 +19,6 @@ def model_type(real, n: int, joints: int):
     vec_n = wp.types.vector(n, real)
     bodies_type = wp.types.vector(joints * BODY_STRIDE, real)
 
-    @wp.struct
     class Model:
         base_axes: wp.types.matrix((3, 3), real)  # rows: axes of the base in the world, for tasks given row by row
         chain: chain_type(real, joints)  # kinematics.pack_kinematics
@@ -32,4 +33,6 @@ def model_type(real, n: int, joints: int):
         jacobian_given: wp.array(dtype=real)  # (6 n * stride,)
         inertia_given: wp.array(dtype=real)  # (n n * stride,)
 
-    return Model
+    if limits:
+        Model.__annotations__["limits"] = wp.types.vector(limits, real)
+    return wp.struct(Model)

@@ -75,6 +75,8 @@ class Shape:
     keep_rows: bool = False
     keep_configuration: bool = False
     keep_orientation: bool = False
+    constraints: tuple[Callable, ...] = ()  # Warp functions (limits, q, tip, axes) -> 0 admitted | 1 violated | 2 open
+    limits: int = 0  # numbers of all constraints
 
     @property
     def world_axes(self) -> bool:
@@ -82,7 +84,8 @@ class Shape:
 
         ``wsrender_code`` reproduces the rounding of the program's determinant, in its axes.
         """
-        return self.keep_orientation or in_base_axes(self.rows) or self.convention == "wsrender_code"
+        tip_axes = self.keep_orientation or bool(self.constraints)
+        return tip_axes or in_base_axes(self.rows) or self.convention == "wsrender_code"
 
     @property
     def many_rows(self) -> bool:
@@ -96,8 +99,9 @@ class Shape:
 
     @property
     def n_outputs(self) -> int:
-        """Values that a sample is evaluated to."""
-        return self.reduced + self.n * self.keep_configuration + 4 * self.keep_orientation
+        """Values that a sample is evaluated to; with constraints the last is the number of what rejects it, or 0."""
+        kept = self.n * self.keep_configuration + 4 * self.keep_orientation
+        return self.reduced + kept + bool(self.constraints)
 
     @property
     def reduced(self) -> int:
@@ -160,7 +164,7 @@ def _state(shape: Shape) -> SimpleNamespace:
     forward, jacobian, jacobian_type = kin.forward, kin.jacobian, kin.jacobian_type
     dyn = inertia(real, n, shape.sources, shape.plain)
     inertia_matrix, inertia_type = dyn.inertia_matrix, dyn.joint_inertia_type
-    Model = model_type(real, n, len(shape.sources))
+    Model = model_type(real, n, len(shape.sources), shape.limits)
     vec3, vec_n, mat33 = kin.vec3, kin.vec_n, wp.types.matrix((3, 3), real)
     BASE_LEVELS = shape.base_levels
 
@@ -229,10 +233,10 @@ def _around_values(shape: Shape) -> SimpleNamespace:
         wp.types.vector(rows, real) for rows, _columns in (spectra.kinematic_shape, spectra.dynamic_shape)
     )
     indices = shape.indices
-    Model, Space = model_type(real, n, len(shape.sources)), sample_space(real, n)
+    Model, Space = model_type(real, n, len(shape.sources), shape.limits), sample_space(real, n)
     output_type, found_type = wp.types.vector(shape.n_outputs, real), wp.types.vector(shape.n_indices + 2, real)
     to_quaternion = orientation(real)
-    K = shape.n_indices
+    K, rejection, CONSTRAINED, REASON = shape.n_indices, _rejection(shape), bool(shape.constraints), shape.n_outputs - 1
     LARGEST = 1 if shape.convention == "wsrender_code" else 0
     CONFIGURATION = shape.reduced
     ORIENTATION = CONFIGURATION + n * shape.keep_configuration
@@ -252,6 +256,8 @@ def _around_values(shape: Shape) -> SimpleNamespace:
             quat = to_quaternion(axes)
             for i in range(4):
                 out[ORIENTATION + i] = quat[i]
+        if wp.static(CONSTRAINED):
+            out[REASON] = real(rejection(model, q, tip, axes))
         J = penalized(model, q, J)
         return out, kinematic_matrix(model, J), dynamic_matrix(model, J, M), volume_of(J)
 
@@ -270,15 +276,44 @@ def _around_values(shape: Shape) -> SimpleNamespace:
 
 
 @factory
+def _rejection(shape: Shape):
+    """Device function ``(model, q, tip, axes) -> number`` of the first constraint that is violated, from 1; else 0."""
+    real, n = shape.real, shape.n
+    vec3, mat33, vec_n = wp.types.vector(3, real), wp.types.matrix((3, 3), real), wp.types.vector(n, real)
+
+    @wp.func
+    def none(model: Any, q: vec_n, tip: vec3, axes: mat33):
+        return wp.int32(0)
+
+    rejection = none
+    for number, constraint in reversed(list(enumerate(shape.constraints, 1))):
+        rejection = _first_of(constraint, number, rejection, vec_n, vec3, mat33)
+    return rejection
+
+
+def _first_of(constraint: Any, number: int, following: Any, vec_n: Any, vec3: Any, mat33: Any):
+    """Device function as `_rejection`, of one constraint before others."""
+
+    @wp.func
+    def first_of(model: Any, q: vec_n, tip: vec3, axes: mat33):
+        rejected = following(model, q, tip, axes)
+        return wp.where(constraint(model.limits, q, tip, axes) == 0, rejected, number)
+
+    return first_of
+
+
+@factory
 def _positions(shape: Shape):
     """Device function ``(model, space, block, first, lane) -> outputs`` of a sample without indices."""
     real, n = shape.real, shape.n
     draw = sampling(real, n, shape.method, shape.shared).draw
     kin = kinematics(real, n, shape.sources, shape.plain, shape.world_axes)
     forward, vec3 = kin.forward, kin.vec3
-    Model, Space = model_type(real, n, len(shape.sources)), sample_space(real, n)
+    Model, Space = model_type(real, n, len(shape.sources), shape.limits), sample_space(real, n)
     output_type, to_quaternion = wp.types.vector(shape.n_outputs, real), orientation(real)
+    mat33 = wp.types.matrix((3, 3), real)
     BASE_LEVELS, GIVEN = shape.base_levels, shape.given_jacobian
+    rejection, CONSTRAINED, REASON = _rejection(shape), bool(shape.constraints), shape.n_outputs - 1
     CONFIGURATION = shape.reduced
     ORIENTATION = CONFIGURATION + n * shape.keep_configuration
     KEEP_CONFIGURATION, KEEP_ORIENTATION = shape.keep_configuration, shape.keep_orientation
@@ -287,6 +322,7 @@ def _positions(shape: Shape):
     def positions(model: Model, space: Space, block: Any, first: wp.int64, lane: wp.int32):
         q = draw(space, block, first, lane)
         tip = vec3()
+        axes = mat33()
         out = output_type()
         if wp.static(GIVEN):
             at = first - space.given_first + wp.int64(lane)
@@ -296,10 +332,13 @@ def _positions(shape: Shape):
             tip, x, y, z, frames = forward(model.chain, q)
             if wp.static(BASE_LEVELS):
                 tip = frames.levers[0]
-            if wp.static(KEEP_ORIENTATION):
-                quat = to_quaternion(wp.matrix_from_cols(x, y, z))
-                for i in range(4):
-                    out[ORIENTATION + i] = quat[i]
+            axes = wp.matrix_from_cols(x, y, z)
+        if wp.static(KEEP_ORIENTATION):
+            quat = to_quaternion(axes)
+            for i in range(4):
+                out[ORIENTATION + i] = quat[i]
+        if wp.static(CONSTRAINED):
+            out[REASON] = real(rejection(model, q, tip, axes))
         for r in range(3):
             out[r] = tip[r]
         if wp.static(KEEP_CONFIGURATION):
@@ -321,7 +360,7 @@ def _evaluation(shape: Shape):
     CALLED = shape.many_rows and shape.dynamic
     kinematic_values = singular_values(real, *spectra.kinematic_shape, shape.penalty or CALLED, not CALLED)
     dynamic_values = singular_values(real, *spectra.dynamic_shape, True, not CALLED)
-    Model, Space = model_type(real, shape.n, len(shape.sources)), sample_space(real, shape.n)
+    Model, Space = model_type(real, shape.n, len(shape.sources), shape.limits), sample_space(real, shape.n)
     FOUND = shape.n_indices + 2
 
     @wp.func(inline=True)
@@ -354,7 +393,7 @@ def _staged_lanes(shape: Shape):
     DYNAMIC = ROWS_B == ROWS_A
     SIDE_BY_SIDE = PART_LANES * (2 if DYNAMIC else 1)
     values_of_lanes = singular_values_of_lanes(real, ROWS_A, COLUMNS, shape.penalty or DYNAMIC, SIDE_BY_SIDE)
-    Model, Space = model_type(real, shape.n, len(shape.sources)), sample_space(real, shape.n)
+    Model, Space = model_type(real, shape.n, len(shape.sources), shape.limits), sample_space(real, shape.n)
     values_type, numbers_type = wp.types.vector(shape.n_outputs * LANES, real), wp.types.vector(PART_LANES, real)
     lanes_type = wp.types.vector(ROWS_A * COLUMNS * SIDE_BY_SIDE, real)
     sigma_a_type, sigma_b_type = wp.types.vector(ROWS_A, real), wp.types.vector(ROWS_B, real)
@@ -419,8 +458,9 @@ def sums_type_of(shape: Shape):
 def outputs_type(shape: Shape):
     """Struct with what a sweep adds to: extremes and totals of all samples, voxel records and sums, rows.
 
-    ``extremes`` (2 R,) of the R reduced outputs: largest value and largest complement; ``totals`` (TOTAL_SLOTS * K,):
-    fixed-point sums of the indices, scaled by ``scales`` (K,), in parts; ``records``, ``sums``: one vector per voxel;
+    ``extremes`` (2 R,) of the R reduced outputs: largest value and largest complement; ``totals`` (TOTAL_SLOTS * (K +
+    C),): fixed-point sums of the indices, scaled by ``scales`` (K,), and how many samples each of the C constraints
+    rejects, in parts; ``records``, ``sums``: one vector per voxel;
     ``rows_out`` (n_rows * rows_stride,): row r of the chunk's sample s at [r * rows_stride + s], interleaved ones at
     [s * n_rows + r].
     """
@@ -454,7 +494,7 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
     block_of = blocks(real, shape.n, shape.shared)
     ordered = elementary(real).ordered
     cell, quantized = voxels(real).cell, voxels(real).quantized
-    Model, Space = model_type(real, shape.n, len(shape.sources)), sample_space(real, shape.n)
+    Model, Space = model_type(real, shape.n, len(shape.sources), shape.limits), sample_space(real, shape.n)
     Lattice, Outputs, bits = lattice(real), outputs_type(shape), bits_type(real)
     vec3, Base, at_level = wp.types.vector(3, real), base_levels(real), grid_level(real)
     moved_base = kinematics(real, shape.n, shape.sources, shape.plain, shape.world_axes).moved_base
@@ -465,6 +505,9 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
     VOXELS, SUMS, BASE_LEVELS = shape.voxels, shape.sums_size > 0, shape.base_levels
     ROWS = shape.keep_rows and not shape.interleaved
     STAGED = shape.many_rows
+    CONSTRAINTS, CONSTRAINED = len(shape.constraints), bool(shape.constraints)
+    REASON = (shape.n_outputs - 1) * LANES
+    ADMITTED = real(0.0)
     LOWEST = bits(lowest(real))
     LOWEST_ROW = REDUCED * LANES
     LEAST_SUM = wp.int64(-(2**62) - 2**61)
@@ -532,6 +575,8 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
             if wp.static(VOXELS):
                 for lane in range(BLOCK):
                     cells[lane] = cell(grid, vec3(values[lane], values[BLOCK + lane], values[2 * BLOCK + lane]))
+                    if wp.static(CONSTRAINED):
+                        cells[lane] = wp.where(values[REASON + lane] == ADMITTED, cells[lane], grid.spare)
 
             # While, or Warp would write the loops over outputs out, and their lane loops as often.
             r = wp.int32(0)
@@ -542,8 +587,13 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
                 for lane in range(BLOCK):
                     key = ordered(values[row + lane])
                     keys[row + lane] = key
-                    largest = wp.max(largest, key)
-                    smallest = wp.min(smallest, key)
+                    if wp.static(CONSTRAINED):
+                        admitted = values[REASON + lane] == ADMITTED
+                        largest = wp.max(largest, wp.where(admitted, key, LOWEST))
+                        smallest = wp.min(smallest, wp.where(admitted, key, ~LOWEST))
+                    else:
+                        largest = wp.max(largest, key)
+                        smallest = wp.min(smallest, key)
                 to.extremes[2 * r] = wp.max(to.extremes[2 * r], largest)
                 to.extremes[2 * r + 1] = wp.max(to.extremes[2 * r + 1], ~smallest)
                 r += 1
@@ -558,6 +608,8 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
                 target = k * BLOCK
                 for lane in range(BLOCK):
                     quantum = quantized(values[row + lane], scale)
+                    if wp.static(CONSTRAINED):
+                        quantum = wp.where(values[REASON + lane] == ADMITTED, quantum, bits(0))
                     quanta[target + lane] = quantum
                     if wp.static(NARROW):
                         upper += quantum >> HALF
@@ -565,8 +617,18 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
                     else:
                         lower += quantum
                 repeated = wide(BLOCK - valid) * wp.int64(quantized(values[row + valid - 1], scale))
+                if wp.static(CONSTRAINED):
+                    repeated = wide(BLOCK - valid) * wp.int64(quanta[target + valid - 1])
                 to.totals[k] = to.totals[k] + wp.int64(upper) * FROM_UPPER + wp.int64(lower) - repeated
                 k += 1
+
+            if wp.static(CONSTRAINED):
+                for c in range(CONSTRAINTS):
+                    rejected = wp.int32(0)
+                    for lane in range(BLOCK):
+                        of_this = values[REASON + lane] == real(c + 1) and lane < valid
+                        rejected += wp.where(of_this, 1, 0)
+                    to.totals[K + c] = to.totals[K + c] + wp.int64(rejected)
 
             if wp.static(VOXELS):
                 # Touch all target records first: their cache misses then overlap, which halves the time.
@@ -640,12 +702,15 @@ def _cuda_kernel(shape: Shape) -> wp.Kernel:
     prepare, evaluate = sampling(real, shape.n, shape.method).prepare, _evaluation(shape)
     ordered = elementary(real).ordered
     cell, quantized = voxels(real).cell, voxels(real).quantized
-    Model, Space = model_type(real, shape.n, len(shape.sources)), sample_space(real, shape.n)
+    Model, Space = model_type(real, shape.n, len(shape.sources), shape.limits), sample_space(real, shape.n)
     Lattice, Outputs, bits = lattice(real), outputs_type(shape), bits_type(real)
     vec3, Base, at_level = wp.types.vector(3, real), base_levels(real), grid_level(real)
     moved_base = kinematics(real, shape.n, shape.sources, shape.plain, shape.world_axes).moved_base
     REDUCED, OUTPUT = shape.reduced, _output_of_row(shape)
-    extremes_type, totals_type = wp.types.vector(REDUCED, bits), wp.types.vector(max(K, 1), wp.int64)
+    CONSTRAINTS, CONSTRAINED, REASON = len(shape.constraints), bool(shape.constraints), shape.n_outputs - 1
+    TOTALS = K + CONSTRAINTS
+    ADMITTED = real(0.0)
+    extremes_type, totals_type = wp.types.vector(REDUCED, bits), wp.types.vector(max(TOTALS, 1), wp.int64)
     N_ROWS, RECORD, SUMS_SIZE = shape.n_rows, shape.record_size, shape.sums_size
     INTERLEAVED = shape.keep_rows and shape.interleaved
     VOXELS, MAXIMUM, MINIMUM, SUMS = shape.voxels, shape.maximum, shape.minimum, shape.sums_size > 0
@@ -707,14 +772,27 @@ def _cuda_kernel(shape: Shape) -> wp.Kernel:
                     tip = moved_base(model.chain, angle, lever)
                     for r in range(3):
                         out[r] = tip[r]
+                if wp.static(CONSTRAINED):
+                    admitted = out[REASON] == ADMITTED
+                    for c in range(CONSTRAINTS):
+                        total[K + c] += wp.where(out[REASON] == real(c + 1), wp.int64(1), wp.int64(0))
                 for r in range(REDUCED):
                     key = ordered(out[r])
-                    largest[r] = wp.max(largest[r], key)
-                    smallest[r] = wp.min(smallest[r], key)
+                    if wp.static(CONSTRAINED):
+                        largest[r] = wp.max(largest[r], wp.where(admitted, key, LOWEST))
+                        smallest[r] = wp.min(smallest[r], wp.where(admitted, key, ~LOWEST))
+                    else:
+                        largest[r] = wp.max(largest[r], key)
+                        smallest[r] = wp.min(smallest[r], key)
                 for k in range(K):
-                    total[k] += wp.int64(quantized(out[3 + k], to.scales[k]))
+                    quantum = wp.int64(quantized(out[3 + k], to.scales[k]))
+                    if wp.static(CONSTRAINED):
+                        quantum = wp.where(admitted, quantum, wp.int64(0))
+                    total[k] += quantum
                 if wp.static(VOXELS):
                     voxel = cell(grid, vec3(out[0], out[1], out[2]))
+                    if wp.static(CONSTRAINED):
+                        voxel = wp.where(admitted, voxel, grid.spare)
                     if voxel != grid.spare:
                         at = voxel * RECORD
                         add(counts, voxel * COUNT, wp.int64(1))
@@ -745,8 +823,8 @@ def _cuda_kernel(shape: Shape) -> wp.Kernel:
                     wp.atomic_max(to.extremes, 2 * r, largest[r])
                 if ~smallest[r] > to.extremes[2 * r + 1]:
                     wp.atomic_max(to.extremes, 2 * r + 1, ~smallest[r])
-            slot = (thread % TOTAL_SLOTS) * K
-            for k in range(K):
+            slot = (thread % TOTAL_SLOTS) * TOTALS
+            for k in range(TOTALS):
                 wp.atomic_add(to.totals, slot + k, total[k])
 
     return sweep_cuda

@@ -1,6 +1,6 @@
 """What is evaluated at every sample, and its form on a device."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -12,9 +12,11 @@ from wsrender_kernels.model import model_type
 from wsrender_kernels.spectrum import spectrum_length
 from wsrender_kernels.sweep import Shape
 
-from wsrender.engine.index_code import index_function, index_source
+from wsrender.engine.constraint_code import packed_constraints
+from wsrender.engine.index_code import function_of_source, index_source
 from wsrender.indices.index_catalogue import is_dynamic
 from wsrender.notices import Notice
+from wsrender.pipeline.constraints.constraint import Constraint
 from wsrender.robots.chain import Chain
 from wsrender.robots.host_chain import HostChain
 
@@ -73,7 +75,7 @@ def shape_of(evaluation: Evaluation, precision: str, method: str, **outputs: boo
     if evaluation.indices:
         body = index_source(evaluation.indices, evaluation.rows, n, evaluation.convention, evaluation.options)
         length = spectrum_length(n, evaluation.rows, evaluation.convention)
-        indices = index_function(body, len(evaluation.indices), length, real)
+        indices = function_of_source(body, len(evaluation.indices), length, real)
     sources, plain = drive(evaluation.device_chain)
     return Shape(
         real=real,
@@ -100,10 +102,15 @@ def drive(chain: Chain) -> tuple[tuple[int, ...], bool]:
     return tuple(int(s) for s in chain.joint_source), bool(own and np.all(chain.joint_is_revolute))
 
 
-def evaluation_model(evaluation: Evaluation, precision: str, origin: np.ndarray):
+def evaluation_model(
+    evaluation: Evaluation, precision: str, origin: np.ndarray, constraints: Sequence[Constraint] = ()
+):
     """The Model struct of an evaluation, without what the host computes; positions are relative to ``origin`` (3,)."""
     chain, real = evaluation.chain, REAL[precision]
-    model = chain_model(evaluation.device_chain.relative_to(origin), precision)
+    limits = packed_constraints(constraints, chain, origin)
+    model = chain_model(evaluation.device_chain.relative_to(origin), precision, len(limits))
+    if len(limits):
+        model.limits = vector_of(limits, real)
     model.lower, model.upper = vector_of(chain.lower_limits, real), vector_of(chain.upper_limits, real)
     limited = ~chain.periodic & (chain.upper_limits > chain.lower_limits)
     model.limited = vector_of(limited, real)
@@ -115,10 +122,10 @@ def evaluation_model(evaluation: Evaluation, precision: str, origin: np.ndarray)
     return model
 
 
-def chain_model(chain: Chain, precision: str):
-    """The Model struct with a chain's kinematics and inertias alone."""
+def chain_model(chain: Chain, precision: str, limits: int = 0):
+    """The Model struct with a chain's kinematics and inertias alone, and room for so many numbers of constraints."""
     real = REAL[precision]
-    model = model_type(real, chain.n, len(chain.joint_source))()
+    model = model_type(real, chain.n, len(chain.joint_source), limits)()
     kinematics = pack_kinematics(
         chain.T_world_base,
         chain.T_joint,

@@ -25,6 +25,7 @@ from wsrender_kernels.spectrum import LINEAR, in_base_axes
 from wsrender.engine.evaluation import Evaluation
 from wsrender.indices.entry import BASE_JOINT, TRAILING_JOINTS
 from wsrender.indices.index_catalogue import find, is_dynamic
+from wsrender.pipeline.constraints.constraint import STRUCTURES, Structure
 from wsrender.robots.chain import Chain
 from wsrender.sampling import SamplingPlan
 
@@ -47,18 +48,23 @@ class GridStructure:
         return self.base_levels * self.weight
 
 
-def structure_of(evaluation: Evaluation, sampling: SamplingPlan) -> GridStructure:
-    """The structure that a sampling has under an evaluation; mostly none: every sample is evaluated."""
+def structure_of(
+    evaluation: Evaluation, sampling: SamplingPlan, kept: frozenset[Structure] = frozenset(STRUCTURES)
+) -> GridStructure:
+    """The structure that a sampling has under an evaluation, as far as constraints have ``kept`` it.
+
+    Mostly none: every sample is evaluated.
+    """
     chain, levels = evaluation.device_chain, sampling.levels.copy()
     own = np.array_equal(chain.joint_source, np.arange(chain.n))
     if sampling.method != "grid" or evaluation.on_host or evaluation.convention == "wsrender_code" or not own:
         return GridStructure(sampling)
-    still = set(evaluation.rows) <= set(LINEAR) and _survive(evaluation, TRAILING_JOINTS)
+    still = TRAILING_JOINTS in kept and set(evaluation.rows) <= set(LINEAR) and _survive(evaluation, TRAILING_JOINTS)
     free = chain.n - _trailing(chain) if still else chain.n
     weight = prod(int(level) for level in levels[free:])
     levels[free:] = 1
     base = 1
-    if _invariant(evaluation) and free > 0 and levels[0] <= MOST_BASE_LEVELS:
+    if _invariant(evaluation) and BASE_JOINT in kept and free > 0 and levels[0] <= MOST_BASE_LEVELS:
         base, levels[0] = int(levels[0]), 1
     # A coordinate of one level takes its upper value.
     upper = np.where(levels < sampling.levels, sampling.lower, sampling.upper)

@@ -2,7 +2,7 @@
 
 import hashlib
 import linecache
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import warp as wp
@@ -75,18 +75,21 @@ def index_source(
 ) -> str:
     """Body of the device function of these indices, as text: equal texts share a kernel; options are literals in it."""
     length = spectrum_length(n, rows, convention)
+    expressions = [trace(find(name).function_for(convention, options.get(name)), length, len(rows), n) for name in names]
+    return source_of(expressions, ["dynamic" if is_dynamic(name) else "kinematic" for name in names])
+
+
+def source_of(expressions: Sequence[Expression | float], inputs: Sequence[str] = ("kinematic",)) -> str:
+    """Body of the device function of expressions, each of the named one of its two inputs."""
     writer = _Writer()
-    results = []
-    for name in names:
-        expression = trace(find(name).function_for(convention, options.get(name)), length, len(rows), n)
-        results.append(writer.operand(expression, "dynamic" if is_dynamic(name) else "kinematic"))
+    results = [writer.operand(expression, of) for expression, of in zip(expressions, inputs, strict=True)]
     body = [*writer.lines, f"return result_type({', '.join(results)})"]
     return "\n".join("    " + line for line in body)
 
 
 @factory
-def index_function(body: str, n_indices: int, length: int, real) -> wp.Function:
-    """Warp function (kinematic spectrum, dynamic spectrum), (length,) each -> values (n_indices,)."""
+def function_of_source(body: str, n_results: int, length: int, real) -> wp.Function:
+    """Warp function (kinematic, dynamic), (length,) each -> results (n_results,), of a `source_of`."""
     source = f"def indices(kinematic: spectrum_type, dynamic: spectrum_type):\n{body}\n"
     filename = f"<wsrender indices {hashlib.sha256(source.encode()).hexdigest()[:16]}>"
     # Warp reads the source of a function through linecache; an entry without a time stamp is kept.
@@ -96,7 +99,7 @@ def index_function(body: str, n_indices: int, length: int, real) -> wp.Function:
         "wp": wp,
         "real": real,
         "spectrum_type": wp.types.vector(length, real),
-        "result_type": wp.types.vector(n_indices, real),
+        "result_type": wp.types.vector(n_results, real),
         "exp2": functions.exp2,
         "log2": functions.log2,
         "power": functions.power,

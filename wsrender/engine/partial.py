@@ -1,6 +1,6 @@
 """Partial results of a sweep: integers that merge associatively, so the order of the parts does not matter."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from wsrender_kernels.voxels import decode_extreme
@@ -13,7 +13,8 @@ class Partial:
     ``extremes`` (2 R,): largest value and largest complement of each of the R = 5 + K outputs in ordered-integer
     form; ``totals`` (K,) int64: fixed-point sums. Of the occupied voxels, sorted by ``cells`` (V,) int64 (flat index
     in the lattice block): ``count`` (V,) int64, ``records`` (V, E) ordered integers, ``sums`` (V, K) int64.
-    ``rows`` maps the first sample index of a chunk to its outputs (n_rows, samples).
+    ``rows`` maps the first sample index of a chunk to its outputs (n_rows, samples). ``rejected`` (C,): samples by the
+    first of the plan's constraints that they violate; they count in nothing else but ``samples``, and stay in the rows.
     """
 
     samples: int
@@ -24,6 +25,7 @@ class Partial:
     records: np.ndarray
     sums: np.ndarray
     rows: dict[int, np.ndarray]
+    rejected: np.ndarray = field(default_factory=lambda: np.zeros(0, np.int64))
 
     @property
     def maximum(self) -> np.ndarray:
@@ -58,6 +60,7 @@ def merge(a: Partial, b: Partial) -> Partial:
         records,
         sums,
         {**a.rows, **b.rows},
+        a.rejected + b.rejected,
     )
 
 

@@ -13,9 +13,10 @@ from wsrender_kernels.sampling import LANES
 from wsrender_kernels.sweep import TOTAL_SLOTS, Shape, outputs_type, record_type_of, sums_type_of, sweep_kernel
 from wsrender_kernels.voxels import lattice, lowest
 
+from wsrender.engine.constraint_code import device_constraints
 from wsrender.engine.devices import thread_count
 from wsrender.engine.drawn_configurations import configurations, device_space, given_space
-from wsrender.engine.evaluation import Evaluation, device_array, evaluation_model, shape_of
+from wsrender.engine.evaluation import REAL, Evaluation, device_array, evaluation_model, shape_of
 from wsrender.engine.grid_structure import (
     GridStructure,
     block_count,
@@ -32,6 +33,7 @@ from wsrender.engine.row_buffer import RowBuffer
 from wsrender.engine.slabs import fitted
 from wsrender.engine.sums import has_own_bound
 from wsrender.errors import NumericalError
+from wsrender.pipeline.constraints.constraint import STRUCTURES, Constraint, Structure
 from wsrender.sampling import SamplingPlan
 from wsrender.volume.lattice import LatticeBlock
 
@@ -61,12 +63,15 @@ class SweepPlan:
     keep_configuration: bool = False
     keep_orientation: bool = False
     collapse: bool = True
+    constraints: tuple[Constraint, ...] = ()
 
     @cached_property
     def structure(self) -> GridStructure:
         """The samples that are evaluated, and those that each of them stands for."""
-        direct = self.keep_rows or not self.collapse
-        return GridStructure(self.sampling) if direct else structure_of(self.evaluation, self.sampling)
+        if self.keep_rows or not self.collapse:
+            return GridStructure(self.sampling)
+        kept = frozenset[Structure](STRUCTURES).intersection(*(each.keeps for each in self.constraints))
+        return structure_of(self.evaluation, self.sampling, kept)
 
     @property
     def origin(self) -> np.ndarray:
@@ -98,6 +103,7 @@ class SweepPlan:
             keep_rows=self.keep_rows,
             keep_configuration=self.keep_configuration,
             keep_orientation=self.keep_orientation,
+            **device_constraints(self.constraints, self.evaluation.chain, REAL[self.precision]),
         )
 
 
@@ -239,7 +245,7 @@ class Accumulator:
         self._size = slab.size if slab else 0
         voxels = self._size + 1 if slab else 0  # one to spare for positions outside
         self._kernel = loaded(sweep_kernel(shape, device.is_cuda), device)
-        self._model = evaluation_model(plan.evaluation, plan.precision, plan.origin)
+        self._model = evaluation_model(plan.evaluation, plan.precision, plan.origin, plan.constraints)
         given = shape.method == "given"
         evaluated = plan.structure.evaluated
         self._run = run_length(evaluated, shape.shared)
@@ -248,7 +254,7 @@ class Accumulator:
         self._lattice = _device_lattice(slab, plan.block, real)
         reduced = shape.reduced
         self._extremes = device_memory(2 * reduced, bits, device)
-        self._totals = device_memory(TOTAL_SLOTS * shape.n_indices, wp.int64, device)
+        self._totals = device_memory(TOTAL_SLOTS * (shape.n_indices + len(shape.constraints)), wp.int64, device)
         self._records = device_memory(voxels * shape.record_size, bits, device)
         self._sums = device_memory(voxels * shape.sums_size, wp.int64, device)
         buffers = (2 if device.is_cuda else 1) if shape.keep_rows else 0
@@ -372,15 +378,17 @@ class Accumulator:
         """Add what the device holds to the 64-bit host arrays."""
         cells, count, extremes, sums = self._occupied()
         weight = self.plan.structure.weight
+        totals = self._totals.numpy().reshape(TOTAL_SLOTS, -1).sum(axis=0) * weight
         held = Partial(
             self._counted * weight,
             self._extremes.numpy().copy(),
-            self._totals.numpy().reshape(TOTAL_SLOTS, -1).sum(axis=0) * weight,
+            totals[: self.shape.n_indices],
             cells,
             count * weight,
             extremes,
             sums * weight,
             self._rows,
+            totals[self.shape.n_indices :],
         )
         self._folded = held if self._folded is None else merge(self._folded, held)
 

@@ -13,7 +13,7 @@ from wsrender.result import Result
 from wsrender.robot import Robot
 from wsrender.robot.indices import evaluation_of_job
 from wsrender.robot.model_robot import configuration_rows
-from wsrender.run.cost import Cost, DOCUMENT_BYTES, NOTHING, pictures_cost
+from wsrender.run.cost import DOCUMENT_BYTES, NOTHING, Cost, pictures_cost
 from wsrender.run.execution import Execution
 from wsrender.run.one_shard import OneShard
 from wsrender.run.provenance import index_choices, job_entry, provenance, robot_entry

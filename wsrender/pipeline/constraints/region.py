@@ -1,0 +1,47 @@
+"""The tip stays in a region: a box, a ball and a half-space, as far as each is given."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from wsrender.pipeline.constraints.constraint import Structure
+from wsrender.robots.chain import Chain
+
+Point = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Region:
+    """``box``: lower and upper corner [m]; ``ball``: centre and radius [m]; ``half_space``: a point, and the normal
+    that points into it; all in the world.
+    """
+
+    box: tuple[Point, Point] | None = None
+    ball: tuple[Point, float] | None = None
+    half_space: tuple[Point, Point] | None = None
+    name: str = "region"
+    keeps: frozenset[Structure] = frozenset({"trailing_joints"})
+    device: str = "region"
+
+    def pack(self, chain: Chain, origin: np.ndarray) -> np.ndarray:
+        """Corners (6,), centre and squared radius (4,), unit normal and offset (4,), seen from ``origin``."""
+        infinite = np.full(3, np.inf)
+        lower, upper = (np.array(corner) - origin for corner in self.box) if self.box else (-infinite, infinite)
+        center, radius = (np.array(self.ball[0]) - origin, self.ball[1]) if self.ball else (np.zeros(3), np.inf)
+        normal, offset = np.zeros(3), -np.inf
+        if self.half_space:
+            point, normal = np.array(self.half_space[0]) - origin, np.array(self.half_space[1])
+            normal = normal / np.linalg.norm(normal)
+            offset = float(normal @ point)
+        return np.concatenate([lower, upper, center, [radius**2], normal, [offset]])
+
+    def holds(self, points: np.ndarray) -> np.ndarray:
+        """Whether points (N, 3) [m] in the world lie in the region, (N,) bool; its border belongs to it."""
+        numbers = self.pack(None, np.zeros(3))  # type: ignore[arg-type]
+        inside = ((points >= numbers[:3]) & (points <= numbers[3:6])).all(axis=1)
+        inside &= ((points - numbers[6:9]) ** 2).sum(axis=1) <= numbers[9]
+        return inside & (points @ numbers[10:13] >= numbers[13])
+
+    def host(self, q: np.ndarray, poses: np.ndarray) -> np.ndarray:
+        """See `Constraint.host`."""
+        return (~self.holds(poses[:, :3, 3])).astype(np.int8)
