@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from wsrender.indices import Index, Option, math, register_index
     from wsrender.kinetostatics import ForceField, force_field
     from wsrender.parallel.five_bar import FiveBar
+    from wsrender.pipeline.constraints.registry import register_constraint
     from wsrender.reachability import Reachability, reachable
     from wsrender.result import Result
     from wsrender.robot import Robot, evaluate_indices, load_robot
@@ -112,6 +113,7 @@ __all__ = [
     "parallel_workspace",
     "planar_boundary",
     "reachable",
+    "register_constraint",
     "register_format",
     "register_index",
     "robot_comparison",
@@ -125,6 +127,7 @@ _NAMES_OF_MODULE = {
     "wsrender.indices": ("Index", "Option", "register_index"),
     "wsrender.kinetostatics": ("ForceField", "force_field"),
     "wsrender.parallel.five_bar": ("FiveBar",),
+    "wsrender.pipeline.constraints.registry": ("register_constraint",),
     "wsrender.reachability": ("Reachability", "reachable"),
     "wsrender.result": ("Result",),
     "wsrender.robot": ("Robot", "evaluate_indices", "load_robot"),

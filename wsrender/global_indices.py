@@ -12,8 +12,8 @@ from wsrender.volume.volume_data import VolumeData
 
 
 def joint_means(plan: SweepPlan, partial: Partial) -> np.ndarray:
-    """Mean over samples of index / maximum, (K,); 0 where the maximum is 0."""
-    mean = partial.totals / plan.scales / max(partial.samples, 1)
+    """Mean over admitted samples of index / maximum, (K,); 0 where the maximum is 0."""
+    mean = partial.totals / plan.scales / max(partial.admitted, 1)
     return _divided(mean, partial.maximum[3 : 3 + len(mean)].astype(np.float64))
 
 

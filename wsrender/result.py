@@ -152,7 +152,8 @@ class Result:
         ]
 
     def _drawable(self) -> tuple[DistributionMap | None, VolumeData | None, np.ndarray | None]:
-        return self.sample if self.sample is not None else self.map, self.volume, self.skeleton
+        samples = self.sample if self.sample is not None else self.map
+        return samples if samples is not None and len(samples) else None, self.volume, self.skeleton
 
     def _pictures(self) -> "dict[str, Callable[[], Figure]]":
         """What draws each picture that the result has data for, by its name."""

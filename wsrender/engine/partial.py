@@ -28,6 +28,11 @@ class Partial:
     rejected: np.ndarray = field(default_factory=lambda: np.zeros(0, np.int64))
 
     @property
+    def admitted(self) -> int:
+        """Samples that no constraint rejects."""
+        return self.samples - int(self.rejected.sum())
+
+    @property
     def maximum(self) -> np.ndarray:
         """Largest value of each output, (R,)."""
         return decode_extreme(self.extremes[0::2], minimum=False)

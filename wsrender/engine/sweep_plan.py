@@ -420,7 +420,7 @@ def _device_lattice(block: LatticeBlock | None, whole: LatticeBlock | None, real
 
 
 def _check_values(plan: SweepPlan, partial: Partial) -> None:
-    if not partial.samples:
+    if not partial.admitted:
         return
     high, low = partial.maximum.astype(np.float64), partial.minimum.astype(np.float64)
     for k, name in enumerate(plan.evaluation.indices):

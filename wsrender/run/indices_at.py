@@ -9,8 +9,10 @@ import numpy as np
 from wsrender.engine import Evaluated, Evaluation, evaluate_at, units_of
 from wsrender.errors import InputError
 from wsrender.notices import entries
+from wsrender.pipeline.constraints.constraint import Constraint
 from wsrender.result import Result
 from wsrender.robot import Robot
+from wsrender.robot.constraints import constraints_for, samples_entry
 from wsrender.robot.indices import evaluation_of_job
 from wsrender.robot.model_robot import configuration_rows
 from wsrender.run.cost import DOCUMENT_BYTES, NOTHING, Cost, pictures_cost
@@ -20,6 +22,7 @@ from wsrender.run.provenance import index_choices, job_entry, provenance, robot_
 from wsrender.run.settled_device import settled_device
 from wsrender.spec import IndicesAtJob
 from wsrender.volume.distribution_map import DistributionMap
+from wsrender.volume.table import Table
 
 ROWS_PER_S = 1e6  # of one CPU core, with their files
 
@@ -31,6 +34,7 @@ class IndicesAtPlan(OneShard):
     job: IndicesAtJob
     robot: Robot
     evaluation: Evaluation
+    constraints: tuple[Constraint, ...]
     q: np.ndarray
     device: str
     target: str
@@ -46,25 +50,32 @@ class IndicesAtPlan(OneShard):
             self.device,
             with_orientation=self.evaluation.host_chain is None,
             threads=execution.threads,
+            constraints=self.constraints,
         )
         if progress:
             progress(len(self.q))
         return rows
 
     def finish(self, partial: Evaluated, seconds: dict[str, float], execution: Execution) -> Result:
-        """The map, one row per configuration in the order asked, and the extremes of each index."""
+        """The map, one row per configuration in the order asked, and the extremes of each index.
+
+        With constraints the table ``admission`` says of every row why it is rejected, "" where it is not; values of
+        rejected ones are NaN, and count in no extreme.
+        """
         names = self.evaluation.indices
+        admitted, about, tables = self._admission(partial.rejected)
         units = units_of(self.evaluation)
-        values = dict(zip(names, partial.values, strict=True))
+        values = dict(zip(names, np.where(admitted, partial.values, np.nan), strict=True))
         document = {
             "analysis": "indices_at",
             "job": job_entry(self.job, self.robot),
             "robot": robot_entry(self.robot),
             "sampling": {"method": "given", "samples": len(self.q)},
+            **about,
             "indices": {
                 name: {
-                    "maximum": float(v.max()),
-                    "minimum": float(v.min()),
+                    "maximum": float(v[admitted].max()) if admitted.any() else None,
+                    "minimum": float(v[admitted].min()) if admitted.any() else None,
                     "unit": units[name],
                 }
                 for name, v in values.items()
@@ -75,7 +86,16 @@ class IndicesAtPlan(OneShard):
             "timing_s": seconds,
         }
         rows = DistributionMap(partial.position, values, units, self.q, self.robot.joint_names, partial.quat_wxyz)
-        return Result(document, map=rows)
+        return Result(document, map=rows, sample=rows.only(admitted) if tables else None, tables=tables)
+
+    def _admission(self, rejected: np.ndarray | None) -> tuple[np.ndarray, dict[str, Any], dict[str, Table]]:
+        """Which rows are admitted (N,) bool, what the document says of it, and the table of reasons."""
+        if rejected is None:
+            return np.ones(len(self.q), bool), {}, {}
+        reasons = np.array(["", *(each.name for each in self.constraints)])
+        counts = np.bincount(rejected, minlength=len(reasons))[1:]
+        about = samples_entry(self.constraints, len(self.q), counts)
+        return rejected == 0, about, {"admission": Table({"reason": reasons[rejected]})}
 
 
 def plan_indices_at(job: IndicesAtJob, robot: Robot, resolved: dict[str, Any] | None = None) -> IndicesAtPlan:
@@ -93,4 +113,5 @@ def plan_indices_at(job: IndicesAtJob, robot: Robot, resolved: dict[str, Any] | 
     drawn, seconds = pictures_cost("histogram", "robot")
     files = DOCUMENT_BYTES + drawn + q.nbytes + held
     cost = Cost(len(q), q.nbytes + held, files, len(q) / ROWS_PER_S + seconds)
-    return IndicesAtPlan(job, robot, evaluation, q, *settled_device(job.device, resolved), [(0, len(q))], cost)
+    constraints, device = constraints_for(robot, job.constraints), settled_device(job.device, resolved)
+    return IndicesAtPlan(job, robot, evaluation, constraints, q, *device, [(0, len(q))], cost)

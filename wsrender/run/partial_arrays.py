@@ -14,8 +14,8 @@ Arrays = dict[str, np.ndarray]
 Partials = WorkspacePartial | Evaluated | Arrays
 """Partial results: of the analyses without a type of their own, arrays by name."""
 
-SWEEP = ("extremes", "totals", "cells", "count", "records", "sums")
-EVALUATED = ("position", "values", "quat_wxyz")
+SWEEP = ("extremes", "totals", "cells", "count", "records", "sums", "rejected")
+EVALUATED = ("position", "values", "quat_wxyz", "rejected")
 ROWS = "rows_"
 
 

@@ -14,6 +14,7 @@ from wsrender.global_indices import joint_means, workspace_mean
 from wsrender.indices.index_catalogue import default_statistics, resolve
 from wsrender.result import Result
 from wsrender.robot import Robot
+from wsrender.robot.constraints import constraints_for
 from wsrender.robot.indices import evaluation_of_job
 from wsrender.run.cost import (
     DECIDED_PER_S,
@@ -258,6 +259,7 @@ def plan_workspace(job: WorkspaceJob, robot: Robot, resolved: dict[str, Any] | N
         keep_configuration="configuration" in job.map_columns,
         keep_orientation="orientation" in job.map_columns,
         collapse=resolved is None or resolved["sampling_path"] == "collapsed",
+        constraints=constraints_for(robot, job.constraints),
     )
     if job.keep_map and "orientation" in job.map_columns and evaluation.host_chain is not None:
         raise InputError("map_columns", "orientation is not kept for a user-defined robot")

@@ -22,6 +22,7 @@ from wsrender.reachability.holes import share_of_holes, share_unseen
 from wsrender.reachability.voxel_labels import counts
 from wsrender.result import Result
 from wsrender.robot import Robot
+from wsrender.robot.constraints import check_admitted, samples_entry
 from wsrender.robots.host_chain import HostChain
 from wsrender.run.headline import NOT_ASKED, headline_of
 from wsrender.run.provenance import index_choices, job_entry, provenance, robot_entry
@@ -50,6 +51,8 @@ def workspace_result(
     from wsrender.boundary.surfaces import surfaces
 
     started = time.perf_counter()
+    samples = samples_entry(plan.constraints, partial.samples, partial.rejected)
+    check_admitted(samples)
     evaluation = plan.evaluation
     units = units_of(evaluation)
     volume = volume_data(plan, partial, units)
@@ -65,6 +68,7 @@ def workspace_result(
         "job": job_entry(job, robot),
         "robot": robot_entry(robot),
         "sampling": _sampling_entry(job, plan, partial),
+        **samples,
         "indices": _index_entries(plan, partial, volume, units),
         "choices": index_choices(job, evaluation),
         "voxel_size_m": plan.block.voxel_size_m if plan.block else None,
@@ -181,6 +185,8 @@ def _index_entries(plan: SweepPlan, partial: Partial, volume: VolumeData, units:
 def _kept_map(plan: SweepPlan, partial: Partial, robot: Robot, units: dict[str, str]) -> DistributionMap:
     K, n = len(plan.evaluation.indices), robot.chain.n
     rows = np.concatenate([partial.rows[first] for first in sorted(partial.rows)], axis=1)
+    if plan.constraints:
+        rows = rows[:, rows[-1] == 0]
     after = 3 + K
     q = rows[after : after + n].T if plan.keep_configuration else None
     after += n * plan.keep_configuration
@@ -198,9 +204,10 @@ def _kept_map(plan: SweepPlan, partial: Partial, robot: Robot, units: dict[str, 
 def _picture_sample(plan: SweepPlan, robot: Robot, units: dict[str, str], threads: int | None) -> DistributionMap:
     """A fixed subsample of the samples, evaluated anew in float64 on the CPU."""
     q = configurations(plan.sampling, subsample(plan.sampling.count, PICTURE_SAMPLES))
-    evaluated = evaluate_at(plan.evaluation, q, threads=threads)
-    values = dict(zip(plan.evaluation.indices, evaluated.values, strict=True))
-    return DistributionMap(evaluated.position, values, units, q, robot.joint_names)
+    evaluated = evaluate_at(plan.evaluation, q, threads=threads, constraints=plan.constraints)
+    admitted = slice(None) if evaluated.rejected is None else evaluated.rejected == 0
+    values = dict(zip(plan.evaluation.indices, evaluated.values[:, admitted], strict=True))
+    return DistributionMap(evaluated.position[admitted], values, units, q[admitted], robot.joint_names)
 
 
 def _middle(plan: SweepPlan) -> np.ndarray:

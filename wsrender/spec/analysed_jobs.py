@@ -9,6 +9,7 @@ from wsrender.spec.arm import Arm
 from wsrender.spec.boundary_patches import BoundaryPatchesJob
 from wsrender.spec.capability import CapabilityJob
 from wsrender.spec.collaborative import CollaborativeVolumeJob
+from wsrender.spec.constraints import Constrained
 from wsrender.spec.document import Document
 from wsrender.spec.five_bar import FiveBarJob
 from wsrender.spec.index_choices import IndexChoices
@@ -26,7 +27,7 @@ from wsrender.spec.several_robots import RobotComparisonJob, SharedWorkspaceJob
 from wsrender.spec.surfaces import Surfaces
 
 
-class WorkspaceJob(IndexChoices, Arm):
+class WorkspaceJob(IndexChoices, Constrained, Arm):
     """Sample the joint space of a robot: distribution map, volume data and global indices."""
 
     analysis: Literal["workspace"] = "workspace"
@@ -70,7 +71,7 @@ class WorkspaceJob(IndexChoices, Arm):
             yield "map_columns", 'must be empty unless "keep_map" is true'
 
 
-class IndicesAtJob(IndexChoices, Arm):
+class IndicesAtJob(IndexChoices, Constrained, Arm):
     """Local indices at given configurations."""
 
     long_fields: ClassVar[tuple[str, ...]] = ("configurations",)

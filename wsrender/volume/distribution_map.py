@@ -1,6 +1,6 @@
 """Distribution map: one row per sample ([WSR] II.C.2)."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -22,3 +22,13 @@ class DistributionMap:
 
     def __len__(self) -> int:
         return len(self.position)
+
+    def only(self, rows: np.ndarray) -> "DistributionMap":
+        """The map of some rows (N,) bool."""
+        return replace(
+            self,
+            position=self.position[rows],
+            indices={name: values[rows] for name, values in self.indices.items()},
+            configuration=None if self.configuration is None else self.configuration[rows],
+            quat_wxyz=None if self.quat_wxyz is None else self.quat_wxyz[rows],
+        )

@@ -52,10 +52,10 @@ class Expressed(Protocol):
     """A function of arithmetic and `wsrender.math` alone: a configuration is admitted where it is 0 or more.
 
     ``q``: joint values [rad or m]; ``position``: x, y, z of the tip in the world [m]; ``axes``: its three axes in the
-    world, three numbers each.
+    world, three numbers each; ``options``: numbers with defaults.
     """
 
-    def __call__(self, q, position, axes):
+    def __call__(self, q, position, axes, **options):
         """The margin: negative where the configuration is violated."""
         ...
 

@@ -12,8 +12,10 @@ Point = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Region:
-    """``box``: lower and upper corner [m]; ``ball``: centre and radius [m]; ``half_space``: a point, and the normal
-    that points into it; all in the world.
+    """What is admitted is in each of the shapes that are given, in the world.
+
+    ``box``: lower and upper corner [m]; ``ball``: centre and radius [m]; ``half_space``: a point [m], and the normal
+    that points into it.
     """
 
     box: tuple[Point, Point] | None = None

@@ -1,0 +1,243 @@
+"""Constraints in the sweep against their float64 twins, closed forms and a filter of the unconstrained samples."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import wsrender as ws
+from wsrender.engine import Evaluation, SweepPlan, configurations, devices_of, evaluate_poses, merge, sweep
+from wsrender.errors import DocumentError, InputError
+from wsrender.pipeline.constraints import registry
+from wsrender.pipeline.constraints.region import Region
+from wsrender.pipeline.constraints.registry import constraints_of
+from wsrender.run import execute, finish, plan, run_shard
+from wsrender.run.partial_arrays import partial_of_arrays, partial_to_arrays
+from wsrender.sampling import plan_sampling
+from wsrender.spec.constraints import Constraints
+from wsrender.volume.lattice import LatticeBlock
+
+SHAPES = {
+    "box": {"lower_m": [-0.5, -0.6, 0.0], "upper_m": [0.8, 0.9, 1.0]},
+    "sphere": {"center_m": [0.1, 0.0, 0.2], "radius_m": 0.7},
+    "half_space": {"point_m": [0, 0, 0.1], "normal": [0.2, 0, 2]},
+}
+BLOCK = LatticeBlock(0.1, (-20, -20, -20), (40, 40, 40))
+COUNT = 1 << 14
+
+
+@pytest.fixture
+def added(monkeypatch):
+    """Constraints that the test adds, and forgets."""
+    monkeypatch.setattr(registry, "_ADDED", {})
+    ws.register_constraint("elbow_up", lambda q, position, axes, least=0.0: q[2] + position[0] / 2 - least)
+    ws.register_constraint("pointing_down", lambda q, position, axes, cosine=0.5: -axes[2][2] - cosine)
+
+
+def swept(robot, names, constraints, sampling, precision, device, **options):
+    K = len(names)
+    each = SweepPlan(
+        Evaluation(robot.chain, names, (0, 1, 2) if names else ()),
+        plan_sampling(robot.chain, sampling),
+        BLOCK,
+        frozenset({"maximum", "mean"}),
+        np.full(K, 1e6),
+        np.full(K, np.inf),
+        precision,
+        constraints=constraints,
+        **options,
+    )
+    return each, sweep(each, 0, each.sampling.count, devices_of(device))
+
+
+@pytest.mark.parametrize("shapes", (["box"], ["sphere"], ["half_space"], [*SHAPES]), ids="+".join)
+@pytest.mark.parametrize("names", ((), ("manipulability", "isotropy")), ids=len)
+def test_a_sweep_counts_what_the_twins_admit(shapes, names, precision, device, added):
+    robot = ws.load_robot("ur5e", placement=ws.Transform(position_m=(0.2, 0.1, 0.0), rpy_deg=(0, 0, 30)))
+    choice = {"region": {shape: SHAPES[shape] for shape in shapes}, "elbow_up": {"least": 0.2}, "pointing_down": True}
+    constraints = constraints_of(Constraints(**choice))
+    assert [each.name for each in constraints] == ["region", "elbow_up", "pointing_down"]
+    each, found = swept(robot, names, constraints, ws.Sobol(COUNT), precision, device)
+    q = configurations(each.sampling, np.arange(COUNT), precision)
+    poses = evaluate_poses(robot.chain, q, device="cpu")
+    violated = np.array([constraint.host(q, poses) for constraint in constraints])
+    first = np.where(violated.any(axis=0), violated.argmax(axis=0) + 1, 0)
+    expected = np.bincount(first, minlength=4)
+    near = 0 if precision == "float64" else 3  # samples at a border, which rounding decides
+    assert np.abs(found.rejected - expected[1:]).max() <= near and 0 < found.admitted < COUNT
+    assert abs(found.count.sum() - expected[0]) <= near and found.samples == COUNT
+    admitted = poses[first == 0, :3, 3]
+    np.testing.assert_allclose(found.maximum[:3] + each.origin, admitted.max(axis=0), atol=1e-4)
+    np.testing.assert_allclose(found.minimum[:3] + each.origin, admitted.min(axis=0), atol=1e-4)
+
+
+def test_values_are_those_of_admitted_samples_alone(device):
+    robot = ws.load_robot("ur5e")
+    region = Region(half_space=((0, 0, 0.3), (0, 0, 1)))
+    names = ("manipulability",)
+    each, found = swept(robot, names, (region,), ws.Sobol(COUNT), "float64", device)
+    rows = replace(each, keep_rows=True)
+    partial = sweep(rows, 0, COUNT, devices_of(device))
+    table = np.concatenate([partial.rows[first] for first in sorted(partial.rows)], axis=1)
+    admitted = table[-1] == 0
+    np.testing.assert_array_equal(admitted, table[2] + each.origin[2] >= 0.3)
+    values = table[3, admitted]
+    assert found.maximum[3] == values.max() and found.minimum[3] == values.min()
+    assert found.totals[0] == np.round(values * 1e6).astype(np.int64).sum() == found.sums.sum()
+
+
+@pytest.mark.parametrize("constraint", ("region", "elbow_up", "trailing"))
+def test_a_grid_gives_the_same_with_and_without_its_structure(constraint, precision, device, added):
+    robot = ws.load_robot("articulated")
+    ws.register_constraint("trailing", lambda q, position, axes: q[1] - 0.1, keeps=frozenset({"base_joint"}))
+    choice = {"region": {"sphere": {"radius_m": 0.3}}} if constraint == "region" else {constraint: True}
+    constraints = constraints_of(Constraints(**choice))
+    found = [
+        swept(robot, ("manipulability",), constraints, ws.Grid(4), precision, device, collapse=collapse)
+        for collapse in (True, False)
+    ]
+    (collapsed, a), (_direct, b) = found
+    assert (collapsed.structure.base_levels > 1) == (constraint == "trailing")
+    assert (collapsed.structure.weight > 1) == (constraint == "region")
+    np.testing.assert_array_equal(a.rejected, b.rejected)
+    np.testing.assert_array_equal(a.cells, b.cells)
+    np.testing.assert_array_equal(a.count, b.count)
+    assert 0 < a.admitted < a.samples == 4**6
+
+
+def test_shards_and_files_keep_who_was_rejected():
+    document = {
+        "analysis": "workspace",
+        "robot": "ur5e",
+        "sampling": {"method": "sobol", "count": 4096},
+        "constraints": {"region": {"box": SHAPES["box"]}},
+        "refined_volume": None,
+        "device": "cpu",
+    }
+    whole = plan(document)
+    settled = whole.resolved()
+    unit = settled["shard_unit"]
+    settled["shards"] = [[0, 4 * unit], [4 * unit, 4096 - 4 * unit]]
+    divided = plan(document, resolved=settled)
+    parts = [partial_of_arrays(partial_to_arrays(run_shard(divided, k)), divided) for k in (1, 0)]
+    assert merge(parts[0].sweep, parts[1].sweep).rejected.sum() > 0
+    one = finish(whole, run_shard(whole, 0)).document
+    two = finish(divided, divided.merge(*parts)).document
+    assert one["samples"] == two["samples"] and one["indices"] == two["indices"]
+    assert one["samples"]["admitted"] + one["samples"]["rejected"]["region"] == one["samples"]["drawn"] == 4096
+
+
+def test_means_maps_and_pictures_hold_admitted_samples_alone():
+    region = {"half_space": {"point_m": [0, 0, 0.2], "normal": [0, 0, 1]}}
+    result = ws.analyze(
+        "ur5e",
+        ws.Sobol(1 << 14),
+        constraints={"region": region},
+        keep_map=True,
+        refined_volume=None,
+        precision="float64",
+    )
+    every = ws.analyze("ur5e", ws.Sobol(1 << 14), keep_map=True, refined_volume=None, precision="float64")
+    above = every.map.position[:, 2] >= 0.2
+    assert result.document["samples"]["admitted"] == len(result.map) == above.sum() == result.volume.count.sum()
+    np.testing.assert_array_equal(result.map.position, every.map.position[above])
+    assert result.sample.position[:, 2].min() >= 0.2
+    values = every.map.indices["manipulability"][above]
+    entry = result.document["indices"]["manipulability"]
+    assert entry["joint_mean"] == pytest.approx(values.mean() / values.max(), rel=1e-6)
+    assert entry["minimum"] == pytest.approx(values.min(), rel=1e-12)
+
+
+def test_configurations_are_told_why_they_are_rejected(tmp_path, added):
+    robot = ws.load_robot("ur5e")
+    q = np.random.default_rng(0).uniform(-2, 2, (200, 6))
+    document = {"analysis": "indices_at", "robot": "ur5e", "configurations": q.tolist(), "indices": ["isotropy"]}
+    choice = {"region": {"half_space": {"point_m": [0, 0, 0.2]}}, "elbow_up": True}
+    result = execute(document | {"constraints": choice})
+    poses = robot.forward_kinematics(q)
+    low, folded = poses[:, 2, 3] < 0.2, q[:, 2] + poses[:, 0, 3] / 2 < 0
+    expected = np.where(low, "region", np.where(folded, "elbow_up", ""))
+    np.testing.assert_array_equal(result.tables["admission"].columns["reason"], expected)
+    values = result.map.indices["isotropy"]
+    np.testing.assert_array_equal(np.isnan(values), expected != "")
+    entry = result.document["indices"]["isotropy"]
+    assert entry["maximum"] == np.nanmax(values) and entry["minimum"] == np.nanmin(values)
+    result.save(tmp_path / "out")
+    assert ws.Result.load(tmp_path / "out").tables["admission"].columns["reason"].tolist() == expected.tolist()
+    nowhere = {"region": {"sphere": {"center_m": [5, 5, 5], "radius_m": 0.1}}}
+    none = execute(document | {"constraints": nowhere})
+    assert none.document["indices"]["isotropy"]["maximum"] is None and none.document["samples"]["admitted"] == 0
+    none.save(tmp_path / "none")
+
+
+def test_options_are_numbers_of_the_kernel_and_compile_nothing(added):
+    robot = ws.load_robot("ur5e")
+    shapes = []
+    for least in (0.1, 0.9):
+        constraints = constraints_of(Constraints(elbow_up={"least": least}))
+        each, found = swept(robot, (), constraints, ws.Sobol(1024), "float32", "cpu")
+        shapes.append((each.shape, found.admitted))
+    assert shapes[0][0] == shapes[1][0] and shapes[0][1] > shapes[1][1] > 0
+    assert each.shape != replace(each, constraints=()).shape
+    assert replace(each, constraints=()).shape.constraints == () and replace(each, constraints=()).shape.limits == 0
+
+
+@pytest.mark.parametrize(
+    "choice, message",
+    [
+        ({"elbows": True}, "constraints.elbows: unknown constraint; allowed: region, elbow_up, pointing_down"),
+        ({"elbow_up": {"x": 1}}, "constraints.elbow_up.x: unknown option; allowed: least"),
+        ({"region": {"sphere": {"center_m": [5, 5, 5], "radius_m": 0.1}}}, "admit none of 256 samples"),
+    ],
+)
+def test_what_cannot_be_is_refused_when_a_job_is_planned(choice, message, added):
+    with pytest.raises(InputError, match=message):
+        ws.analyze("ur5e", ws.Sobol(256), constraints=choice, refined_volume=None)
+
+
+@pytest.mark.parametrize(
+    "choice, message",
+    [
+        ({"region": {}}, "constraints.region.box: must be given, or a sphere or a half_space"),
+        ({"region": {"box": {"lower_m": [0, 0, 0], "upper_m": [0, 1, 1]}}}, "upper_m: must be above lower_m"),
+        ({"region": {"half_space": {"normal": [0, 0, 0]}}}, "normal: must not have length 0"),
+        ({"mine": "yes"}, "constraints.mine: must be true, false or numbers by option"),
+    ],
+)
+def test_malformed_constraints(choice, message):
+    with pytest.raises(DocumentError, match=message):
+        ws.analyze("ur5e", constraints=choice)
+
+
+@pytest.mark.parametrize(
+    "name, function, message",
+    [
+        ("region", lambda q, p, a: q[0], "an identifier other than"),
+        ("a b", lambda q, p, a: q[0], "an identifier other than"),
+        ("odd", lambda q, p, a: np.sin(q[0]), "cannot be compiled"),
+        ("odd", lambda q, p, a, text="x": q[0], "must have numbers as defaults"),
+    ],
+)
+def test_what_cannot_be_added(name, function, message, added):
+    with pytest.raises(InputError, match=message):
+        ws.register_constraint(name, function)
+
+
+class Crank:
+    """A planar joint with a link of 0.5 m."""
+
+    limits = ((-1.0, 2.0),)
+
+    def forward_kinematics(self, q):
+        T = np.tile(np.eye(4), (len(q), 1, 1))
+        T[:, 0, 3], T[:, 1, 3] = 0.5 * np.cos(q[:, 0]), 0.5 * np.sin(q[:, 0])
+        return T
+
+
+def test_a_robot_of_a_class_stays_in_a_region_and_knows_no_expression(added):
+    region = {"region": {"half_space": {"normal": [0, 1, 0]}}}
+    options = {"task": ["x"], "refined_volume": None, "voxel_size_m": 0.01}
+    result = ws.analyze(Crank(), ws.Grid(302), constraints=region, **options)
+    assert result.document["samples"] == {"drawn": 302, "admitted": 201, "rejected": {"region": 101}}
+    with pytest.raises(InputError, match=r"constraints\.elbow_up: is not available"):
+        ws.analyze(Crank(), ws.Grid(301), constraints={"elbow_up": True}, **options)

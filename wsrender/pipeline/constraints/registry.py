@@ -1,0 +1,79 @@
+"""The constraints that there are: those of job documents, and those that users and other packages add."""
+
+import inspect
+import re
+from functools import cache
+from importlib.metadata import entry_points
+
+from wsrender.errors import InputError
+from wsrender.indices.expression import Expression
+from wsrender.pipeline.constraints.constraint import ORDER, Constraint, Expressed, Structure, in_order
+from wsrender.pipeline.constraints.expression import ExpressionConstraint
+from wsrender.pipeline.constraints.region import Region
+from wsrender.spec.constraints import Constraints, RegionChoice
+
+EXTENSIONS = "wsrender.constraints"  # entry points: functions that call `register_constraint`
+_ADDED: dict[str, ExpressionConstraint] = {}
+
+
+def register_constraint(name: str, function: Expressed, *, keeps: frozenset[Structure] = frozenset()) -> None:
+    """Add a constraint on configurations; jobs then take it by its name among their ``constraints``.
+
+    ``function(q, position, axes, **options)`` is 0 or more where a configuration is admitted: ``q``, the joint values
+    [rad or m]; ``position``, x, y, z of the tip in the world [m]; ``axes``, its three axes in the world, three numbers
+    each; ``options``, numbers with defaults, which a job may give. It may use arithmetic and ``wsrender.math``.
+    ``keeps``: see `Constraint`. Raises InputError where the name is not an identifier or taken, or the function uses
+    anything else.
+    """
+    if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]{0,63}", name) or name in (*ORDER, "expression"):
+        raise InputError("name", f"{name!r} is not allowed; an identifier other than {', '.join(ORDER)} is")
+    options = _options_of(name, function)
+    inputs = [tuple(Expression("input", (float(9 * part + i),)) for i in range(9)) for part in range(3)]
+    try:
+        function(inputs[0], inputs[1][:3], [inputs[2][3 * k : 3 * k + 3] for k in range(3)], **options)
+    except Exception as error:
+        raise InputError("function", f"{name} cannot be compiled: {error}") from error
+    _ADDED[name] = ExpressionConstraint(name, function, tuple(options.items()), frozenset(keeps))
+
+
+def constraints_of(choice: Constraints | None) -> tuple[Constraint, ...]:
+    """The constraints of a job in the order in which they are asked. Raises InputError for a name or option unknown."""
+    if choice is None:
+        return ()
+    _load_extensions()
+    found: list[Constraint] = [] if choice.region is None else [_region(choice.region)]
+    for name, options in choice.added.items():
+        if name not in _ADDED:
+            raise InputError(f"constraints.{name}", f"unknown constraint; allowed: {', '.join(('region', *_ADDED))}")
+        known = dict(_ADDED[name].options)
+        for option in options:
+            if option not in known:
+                allowed = ", ".join(known) or "none"
+                raise InputError(f"constraints.{name}.{option}", f"unknown option; allowed: {allowed}")
+        added = _ADDED[name]
+        found.append(ExpressionConstraint(name, added.device, tuple((known | options).items()), added.keeps))
+    return in_order(tuple(found))
+
+
+def _region(choice: RegionChoice) -> Region:
+    box, ball, half = choice.box, choice.sphere, choice.half_space
+    return Region(
+        box and (box.lower_m, box.upper_m),
+        ball and (ball.center_m, ball.radius_m),
+        half and (half.point_m, half.normal),
+    )
+
+
+def _options_of(name: str, function: Expressed) -> dict[str, float]:
+    """The options of a constraint's function with their defaults."""
+    parameters = list(inspect.signature(function).parameters.values())[3:]
+    without = [each.name for each in parameters if not isinstance(each.default, int | float)]
+    if without:
+        raise InputError("function", f"the options of {name} must have numbers as defaults: {', '.join(without)}")
+    return {each.name: float(each.default) for each in parameters}
+
+
+@cache
+def _load_extensions() -> None:
+    for extension in entry_points(group=EXTENSIONS):
+        extension.load()()

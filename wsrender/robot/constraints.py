@@ -1,0 +1,39 @@
+"""Constraints of a robot: from the words of a job document to the pipeline's, and what results say of them."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from wsrender.errors import InputError
+from wsrender.pipeline.constraints.constraint import Constraint
+from wsrender.pipeline.constraints.expression import ExpressionConstraint
+from wsrender.pipeline.constraints.registry import constraints_of
+from wsrender.robot.model_robot import Robot
+from wsrender.robot.user_robot import HostRobot
+from wsrender.spec.constraints import Constraints
+
+
+def constraints_for(robot: Robot, choice: Constraints | None) -> tuple[Constraint, ...]:
+    """The constraints of a job for its robot. Raises InputError for one that is unknown, or not for such a robot."""
+    constraints = constraints_of(choice)
+    for each in constraints if isinstance(robot, HostRobot) else ():
+        if isinstance(each, ExpressionConstraint):
+            raise InputError(f"constraints.{each.name}", "is not available for a robot that is defined by a class")
+    return constraints
+
+
+def samples_entry(constraints: Sequence[Constraint], drawn: int, rejected: np.ndarray) -> dict[str, Any]:
+    """The entry ``samples`` of a constrained run: drawn, admitted, and by reason rejected; none of any other."""
+    if not constraints:
+        return {}
+    reasons = {each.name: int(number) for each, number in zip(constraints, rejected, strict=True)}
+    return {"samples": {"drawn": drawn, "admitted": drawn - sum(reasons.values()), "rejected": reasons}}
+
+
+def check_admitted(samples: dict[str, Any]) -> None:
+    """Raises InputError where the constraints of a `samples_entry` admit nothing."""
+    if samples and not samples["samples"]["admitted"]:
+        entry = samples["samples"]
+        by = ", ".join(f"{name} {number}" for name, number in entry["rejected"].items() if number)
+        raise InputError("constraints", f"admit none of {entry['drawn']} samples (rejected by {by}): widen them")
