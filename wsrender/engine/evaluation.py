@@ -68,7 +68,7 @@ class Evaluation:
         return bool(self.rows) and min(self.rows) < 3 <= max(self.rows)
 
 
-def shape_of(evaluation: Evaluation, precision: str, method: str, **outputs: bool) -> Shape:
+def shape_of(evaluation: Evaluation, precision: str, method: str, **outputs: Any) -> Shape:
     """Compile-time part of the sweep kernel of an evaluation."""
     real, n = REAL[precision], evaluation.chain.n
     indices = None

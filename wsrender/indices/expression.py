@@ -137,7 +137,7 @@ class Expression:
         raise TypeError("an index function may use arithmetic and wsrender.math only (not the math module)")
 
 
-def trace(function, length: int, *arguments: int) -> Expression | float:
+def trace(function, length: int, *arguments: Any) -> Expression | float:
     """Expression of ``function(sigma, *arguments)`` for a spectrum of ``length`` values.
 
     Raises InputError where the function takes more values than there are, TypeError for what cannot be traced.

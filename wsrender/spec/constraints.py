@@ -83,7 +83,7 @@ class Constraints(Document):
     """
 
     model_config = ConfigDict(extra="allow")
-    __pydantic_extra__: dict[str, Options]
+    __pydantic_extra__: dict[str, Options]  # type: ignore[assignment]
 
     region: RegionChoice | None = None
     """Where the tip may be; null: anywhere."""

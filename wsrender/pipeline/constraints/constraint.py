@@ -1,6 +1,8 @@
 """What a constraint is: a name, a device function or an expression, and a float64 twin of it."""
 
-from typing import Literal, Protocol, runtime_checkable
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Literal, Protocol, runtime_checkable
 
 import numpy as np
 
@@ -47,17 +49,17 @@ class Constraint(Protocol):
         ...
 
 
-@runtime_checkable
-class Expressed(Protocol):
+@dataclass(frozen=True)
+class Expressed:
     """A function of arithmetic and `wsrender.math` alone: a configuration is admitted where it is 0 or more.
 
-    ``q``: joint values [rad or m]; ``position``: x, y, z of the tip in the world [m]; ``axes``: its three axes in the
-    world, three numbers each; ``options``: numbers with defaults.
+    ``function(q, position, axes, **options)``: ``q``, joint values [rad or m]; ``position``, x, y, z of the tip in the
+    world [m]; ``axes``, its three axes in the world, three numbers each; the named ``options``, whose values are the
+    last numbers of `Constraint.pack`, after the origin.
     """
 
-    def __call__(self, q, position, axes, **options):
-        """The margin: negative where the configuration is violated."""
-        ...
+    function: Callable[..., Any]
+    options: tuple[str, ...] = ()
 
 
 def in_order(constraints: "tuple[Constraint, ...]") -> "tuple[Constraint, ...]":

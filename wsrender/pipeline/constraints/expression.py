@@ -1,6 +1,8 @@
 """Constraints of users: an expression of the configuration and the tip's pose, traced by the engine."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -13,9 +15,14 @@ class ExpressionConstraint:
     """Admits configurations where a function of them is 0 or more; see `Expressed`. ``options``: names and values."""
 
     name: str
-    device: Expressed
+    function: Callable[..., Any]
     options: tuple[tuple[str, float], ...] = ()
     keeps: frozenset[Structure] = frozenset()
+
+    @property
+    def device(self) -> Expressed:
+        """The function that the engine traces."""
+        return Expressed(self.function, tuple(name for name, _ in self.options))
 
     def pack(self, chain: Chain, origin: np.ndarray) -> np.ndarray:
         """Where positions are counted from, for the function is given those in the world; and the options."""
@@ -24,5 +31,5 @@ class ExpressionConstraint:
     def host(self, q: np.ndarray, poses: np.ndarray) -> np.ndarray:
         """See `Constraint.host`; NumPy evaluates the function itself."""
         axes = [[poses[:, row, k] for row in range(3)] for k in range(3)]
-        margin = self.device(list(q.T), [poses[:, row, 3] for row in range(3)], axes, **dict(self.options))
+        margin = self.function(list(q.T), [poses[:, row, 3] for row in range(3)], axes, **dict(self.options))
         return np.where(np.broadcast_to(margin, len(q)) >= 0, 0, 1).astype(np.int8)

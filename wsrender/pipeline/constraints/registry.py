@@ -2,12 +2,14 @@
 
 import inspect
 import re
+from collections.abc import Callable
 from functools import cache
 from importlib.metadata import entry_points
+from typing import Any
 
 from wsrender.errors import InputError
 from wsrender.indices.expression import Expression
-from wsrender.pipeline.constraints.constraint import ORDER, Constraint, Expressed, Structure, in_order
+from wsrender.pipeline.constraints.constraint import ORDER, Constraint, Structure, in_order
 from wsrender.pipeline.constraints.expression import ExpressionConstraint
 from wsrender.pipeline.constraints.region import Region
 from wsrender.spec.constraints import Constraints, RegionChoice
@@ -16,7 +18,7 @@ EXTENSIONS = "wsrender.constraints"  # entry points: functions that call `regist
 _ADDED: dict[str, ExpressionConstraint] = {}
 
 
-def register_constraint(name: str, function: Expressed, *, keeps: frozenset[Structure] = frozenset()) -> None:
+def register_constraint(name: str, function: Callable[..., Any], *, keeps: frozenset[Structure] = frozenset()) -> None:
     """Add a constraint on configurations; jobs then take it by its name among their ``constraints``.
 
     ``function(q, position, axes, **options)`` is 0 or more where a configuration is admitted: ``q``, the joint values
@@ -51,7 +53,7 @@ def constraints_of(choice: Constraints | None) -> tuple[Constraint, ...]:
                 allowed = ", ".join(known) or "none"
                 raise InputError(f"constraints.{name}.{option}", f"unknown option; allowed: {allowed}")
         added = _ADDED[name]
-        found.append(ExpressionConstraint(name, added.device, tuple((known | options).items()), added.keeps))
+        found.append(ExpressionConstraint(name, added.function, tuple((known | options).items()), added.keeps))
     return in_order(tuple(found))
 
 
@@ -64,7 +66,7 @@ def _region(choice: RegionChoice) -> Region:
     )
 
 
-def _options_of(name: str, function: Expressed) -> dict[str, float]:
+def _options_of(name: str, function: Callable[..., Any]) -> dict[str, float]:
     """The options of a constraint's function with their defaults."""
     parameters = list(inspect.signature(function).parameters.values())[3:]
     without = [each.name for each in parameters if not isinstance(each.default, int | float)]
