@@ -13,12 +13,12 @@ import numpy as np
 from pydantic import TypeAdapter
 
 from wsrender.design.exact_inscribed import largest_ball, largest_cube
-from wsrender.parallel.ball_region import ball_region
-from wsrender.parallel.exact import ExactWorkspace, exact_volumes
-from wsrender.parallel.mechanism import mechanism_of
-from wsrender.parallel.solids import solid_workspace
+from wsrender.documents.mechanism import MechanismSpec
+from wsrender.mechanisms.ball_region import ball_region
+from wsrender.mechanisms.exact import ExactWorkspace, exact_volumes
+from wsrender.mechanisms.mechanism import mechanism_of
+from wsrender.mechanisms.solids import solid_workspace
 from wsrender.run import plan, run_shard
-from wsrender.spec.mechanism import MechanismSpec
 
 KNOWN_M3 = 0.717344315
 SPEC = TypeAdapter(MechanismSpec)

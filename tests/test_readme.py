@@ -4,7 +4,7 @@ import re
 from pathlib import Path
 
 import wsrender as ws
-from wsrender.spec import ANALYSES, parse_job
+from wsrender.documents import ANALYSES, parse_job
 
 README = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8")
 

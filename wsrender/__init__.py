@@ -32,13 +32,15 @@ from wsrender.version import __version__
 if TYPE_CHECKING:
     from wsrender import run
     from wsrender.client import Client
-    from wsrender.export.formats import Format, register_format
+    from wsrender.documents.robot import DHRow, DHTable, Transform
+    from wsrender.documents.sampling import BoundaryBiased, Converge, Grid, Random, Sobol
     from wsrender.indices import Index, Option, math, register_index
     from wsrender.kinetostatics import ForceField, force_field
-    from wsrender.parallel.five_bar import FiveBar
+    from wsrender.mechanisms.five_bar import FiveBar
     from wsrender.pipeline.constraints.registry import register_constraint
     from wsrender.reachability import Reachability, reachable
-    from wsrender.result import Result
+    from wsrender.results.export.formats import Format, register_format
+    from wsrender.results.result import Result
     from wsrender.robot import Robot, evaluate_indices, load_robot
     from wsrender.run import (
         analyze,
@@ -56,8 +58,6 @@ if TYPE_CHECKING:
         robot_comparison,
         shared_workspace,
     )
-    from wsrender.spec.robot import DHRow, DHTable, Transform
-    from wsrender.spec.sampling import BoundaryBiased, Converge, Grid, Random, Sobol
 
 __all__ = [
     "AccessError",
@@ -123,13 +123,13 @@ __all__ = [
 
 _NAMES_OF_MODULE = {
     "wsrender.client": ("Client",),
-    "wsrender.export.formats": ("Format", "register_format"),
+    "wsrender.results.export.formats": ("Format", "register_format"),
     "wsrender.indices": ("Index", "Option", "register_index"),
     "wsrender.kinetostatics": ("ForceField", "force_field"),
-    "wsrender.parallel.five_bar": ("FiveBar",),
+    "wsrender.mechanisms.five_bar": ("FiveBar",),
     "wsrender.pipeline.constraints.registry": ("register_constraint",),
     "wsrender.reachability": ("Reachability", "reachable"),
-    "wsrender.result": ("Result",),
+    "wsrender.results.result": ("Result",),
     "wsrender.robot": ("Robot", "evaluate_indices", "load_robot"),
     "wsrender.run": (
         "analyze",
@@ -147,8 +147,8 @@ _NAMES_OF_MODULE = {
         "robot_comparison",
         "shared_workspace",
     ),
-    "wsrender.spec.robot": ("DHRow", "DHTable", "Transform"),
-    "wsrender.spec.sampling": ("BoundaryBiased", "Converge", "Grid", "Random", "Sobol"),
+    "wsrender.documents.robot": ("DHRow", "DHTable", "Transform"),
+    "wsrender.documents.sampling": ("BoundaryBiased", "Converge", "Grid", "Random", "Sobol"),
 }
 _MODULE_OF_NAME = {name: module for module, names in _NAMES_OF_MODULE.items() for name in names}
 _MODULES = {"math": "wsrender.indices.math", "run": "wsrender.run"}

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from wsrender.documents.quantities import argument, real
+from wsrender.documents.sampling import BoundaryBiased, Converge, Grid, Random, Sobol
 from wsrender.errors import InputError, ResourceError
 from wsrender.robots.chain import Chain
 from wsrender.robots.plausibility import need_ranges
-from wsrender.spec.quantities import argument, real
-from wsrender.spec.sampling import BoundaryBiased, Converge, Grid, Random, Sobol
 
 SOBOL_BITS = 52
 LARGEST_LEVELS = 2**31 - 256  # the kernel adds the place within a block of 256 in 32-bit integers

@@ -1,6 +1,6 @@
 """Legs of parallel mechanisms: whether each has a solution within its limits for a place of its platform joint.
 
-The closed forms are those of `wsrender.parallel.inverse_kinematics`, without the angle itself: a crank angle lies in
+The closed forms are those of `wsrender.mechanisms.inverse_kinematics`, without the angle itself: a crank angle lies in
 its range where the cosine of its distance from the middle is large enough.
 """
 
@@ -23,7 +23,7 @@ PLATFORM, PLATFORM_CONE = _AT["platform"], _AT["platform_cone"]
 
 
 def pack_legs(legs) -> np.ndarray:
-    """The numbers of legs (fields as of `wsrender.parallel.mechanism.Mechanism`) for the kernels, (L, LEG_STRIDE)."""
+    """The numbers of legs (fields as of `wsrender.mechanisms.mechanism.Mechanism`) for the kernels, (L, LEG_STRIDE)."""
     rows = np.zeros((len(legs.kinds), LEG_STRIDE))
     vectors = {
         "base": legs.base,

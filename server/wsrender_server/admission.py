@@ -7,15 +7,15 @@ from functools import cache
 from itertools import repeat
 from typing import Any
 
+from wsrender.documents import IndicesAtJob, canonical_json, parse_job
+from wsrender.documents.arm import ArmPath, dotted, local_paths
+from wsrender.documents.document import Document
+from wsrender.documents.problems import MOST_PROBLEMS
+from wsrender.documents.robot import RobotSpec
+from wsrender.documents.sampling import Converge, Grid
 from wsrender.errors import DocumentError, InputError, ModelError, ResourceError
 from wsrender.indices.index_catalogue import find, option_values, resolve
 from wsrender.robots import library
-from wsrender.spec import IndicesAtJob, canonical_json, parse_job
-from wsrender.spec.arm import ArmPath, dotted, local_paths
-from wsrender.spec.document import Document
-from wsrender.spec.problems import MOST_PROBLEMS
-from wsrender.spec.robot import RobotSpec
-from wsrender.spec.sampling import Converge, Grid
 from wsrender_server.jobs.store import JobStore
 from wsrender_server.model_text import check_model
 from wsrender_server.problems import HttpProblem, pointer

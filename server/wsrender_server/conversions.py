@@ -6,8 +6,8 @@ import uuid
 from pathlib import Path
 
 from wsrender import __version__
-from wsrender.export.artifacts import sha256 as sha256_of
-from wsrender.export.formats import Format, of_file, others
+from wsrender.results.export.artifacts import sha256 as sha256_of
+from wsrender.results.export.formats import Format, of_file, others
 from wsrender_server.jobs.files import DataFolder
 from wsrender_server.jobs.records import ArtifactRecord
 from wsrender_server.problems import HttpProblem

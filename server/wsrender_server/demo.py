@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from wsrender.client import Client
-from wsrender.result import Result
+from wsrender.results.result import Result
 from wsrender_server.local_server import LocalServer
 
 

@@ -6,7 +6,7 @@ from typing import Any
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
-from wsrender.export.formats import one_of
+from wsrender.results.export.formats import one_of
 
 
 class OneOf:

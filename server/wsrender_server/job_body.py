@@ -11,14 +11,14 @@ from typing import Annotated, Any
 from fastapi import Request
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, StringConstraints, ValidationError
 
+from wsrender.documents import job_schema
+from wsrender.documents.json_text import read_json
+from wsrender.documents.problems import MOST_PROBLEMS, listed, path_text, worded
+from wsrender.documents.quantities import integer, real
 from wsrender.errors import DocumentError, InputError
 from wsrender.indices import catalogue
 from wsrender.indices.index_catalogue import names_of
 from wsrender.robots import library
-from wsrender.spec import job_schema
-from wsrender.spec.json_text import read_json
-from wsrender.spec.problems import MOST_PROBLEMS, listed, path_text, worded
-from wsrender.spec.quantities import integer, real
 from wsrender_server.jobs.store import HIGHEST_PRIORITY, LONGEST_TEXT, MOST_LABELS
 from wsrender_server.problems import HttpProblem, pointer, problem_of_error, refusal
 

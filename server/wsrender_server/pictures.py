@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 
 from wsrender.errors import InputError
-from wsrender.export.artifacts import PARTS, part_file
-from wsrender.export.formats import Format, kept
-from wsrender.result import Result
+from wsrender.results.export.artifacts import PARTS, part_file
+from wsrender.results.export.formats import Format, kept
+from wsrender.results.result import Result
 
 AXES = "xyz"
 # Files that a result's pictures are drawn from, by what they hold.

@@ -13,10 +13,10 @@ import typer
 
 import wsrender as ws
 from wsrender import cli
+from wsrender.documents import ANALYSES
+from wsrender.documents.quantities import quoted
 from wsrender.errors import InputError, MissingExtraError, ModelError, NumericalError
 from wsrender.progress import LINE_EVERY_S, RunProgress
-from wsrender.spec import ANALYSES
-from wsrender.spec.quantities import quoted
 
 
 @pytest.fixture

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import wsrender as ws
-from tests.export.sample_data import random_map, random_volume
+from tests.results.export.sample_data import random_map, random_volume
 from wsrender import cli
-from wsrender.render import Box, Floor, Table, composition
+from wsrender.results.render import Box, Floor, Table, composition
 
 
 @pytest.fixture

@@ -5,7 +5,7 @@ import json
 import pytest
 
 from wsrender.cli import main
-from wsrender.spec import parse_job
+from wsrender.documents import parse_job
 
 
 @pytest.fixture

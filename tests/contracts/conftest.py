@@ -6,7 +6,7 @@ import pytest
 
 import wsrender as ws
 from tests.golden.files import job_of
-from wsrender.result import EXTRA_FORMATS
+from wsrender.results.result import EXTRA_FORMATS
 from wsrender.run import plan
 
 

@@ -6,10 +6,10 @@ import pytest
 
 import wsrender as ws
 from tests.golden.files import analyses, golden_names, job_of
+from wsrender.documents import ANALYSES, parse_job
 from wsrender.engine import devices_of, target_of
 from wsrender.errors import DocumentError
 from wsrender.run import plan
-from wsrender.spec import ANALYSES, parse_job
 
 NOWHERE = {"no such field": [None]}  # no value of any field
 

@@ -11,7 +11,7 @@ from tests.golden.facts import bits_of
 from tests.golden.files import analyses, job_of
 from tests.run.journeys import from_the_command_line
 from tests.server.end_to_end.acceptance import PATIENCE_S
-from wsrender.export.headline import headline_lines
+from wsrender.results.export.headline import headline_lines
 
 ANALYSES = pytest.mark.parametrize("analysis", analyses())
 STANDARD = (".parquet", ".vtkhdf", ".glb", ".ply", ".png", ".npy", ".dxf", ".json")

@@ -13,8 +13,8 @@ from matplotlib.image import imread
 import wsrender as ws
 from tests.golden.facts import bits_of
 from tests.golden.files import analyses, golden, saved_folder
-from wsrender.export import read_mesh, read_table_npz, read_volume_npz
-from wsrender.export.columns import columns_of
+from wsrender.results.export import read_mesh, read_table_npz, read_volume_npz
+from wsrender.results.export.columns import columns_of
 from wsrender.volume.volume_data import VolumeData
 
 MESH = ("/vertices", "/faces")

@@ -1,10 +1,10 @@
 import numpy as np
 import pytest
 
-from tests.parallel.ball_regions import moved, random_region, region, six_pus
+from tests.mechanisms.ball_regions import moved, random_region, region, six_pus
 from wsrender.design.exact_inscribed import largest_ball, largest_cube
 from wsrender.design.inscribed import CUBE_ERROR, SPHERE_ERROR, inscribed_cube_edge, inscribed_sphere_radius
-from wsrender.spec.robot import Transform
+from wsrender.documents.robot import Transform
 from wsrender.volume.volume_data import VolumeData
 
 HERE = np.eye(4)

@@ -5,11 +5,11 @@ import pytest
 import warp as wp
 from scipy.spatial.transform import Rotation
 
-from tests.parallel.mechanisms import known_ups, mechanism, poses_of
+from tests.mechanisms.mechanisms import known_ups, mechanism, poses_of
 from wsrender.engine import count_orientations, count_orientations_at, poses_reached
 from wsrender.engine.membership import survivors
-from wsrender.parallel.inverse_kinematics import inverse_kinematics
-from wsrender.parallel.membership import leg_test, placed_box, reachable_box
+from wsrender.mechanisms.inverse_kinematics import inverse_kinematics
+from wsrender.mechanisms.membership import leg_test, placed_box, reachable_box
 from wsrender.volume.lattice import block_around
 
 CONE = {"axis": [0, 0, 1], "half_angle_deg": 50}

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from tests.server.http.conftest import client, finished, jobs, result, result_folder, settings, submit  # noqa: F401
-from wsrender.export import formats
+from wsrender.results.export import formats
 
 HERE = Path(__file__).parent
 

@@ -7,10 +7,10 @@ import sys
 import pytest
 
 import wsrender as ws
-from tests.export.sample_data import assert_same_volume, random_volume
+from tests.results.export.sample_data import assert_same_volume, random_volume
 from tests.server.http.idle_server import DOCUMENT, problem_of
 from wsrender import cli
-from wsrender.export import formats
+from wsrender.results.export import formats
 
 UNCHANGED = ["npz", "csv", "mat", "vti", "stl", "svg"]
 
@@ -80,9 +80,9 @@ def test_packages_are_loaded_when_the_table_is_read(package):
     script = f"""
 import sys
 sys.path[:0] = {sys.path!r}
-import wsrender.result, wsrender.cli
+import wsrender.results.result, wsrender.cli
 assert "voxel_list" not in sys.modules
-from wsrender.export import formats
+from wsrender.results.export import formats
 assert "voxels" in formats.asked() and "voxel_list" in sys.modules
 """
     subprocess.run([sys.executable, "-c", script], check=True)

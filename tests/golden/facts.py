@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from wsrender.export.columns import columns_of
+from wsrender.results.export.columns import columns_of
 
 RELATIVE = {"float64": 1e-9, "float32": 1e-5}
 NEARLY_ZERO = 1e-12  # what is left where numbers of about one cancel

@@ -10,7 +10,7 @@ import zipfile
 from pathlib import Path
 from typing import Any
 
-from wsrender.spec import ANALYSES
+from wsrender.documents import ANALYSES
 
 DOCUMENTS = Path(__file__).parent / "documents"
 FOLDERS = Path(__file__).parent / "folders"

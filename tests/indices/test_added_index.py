@@ -9,6 +9,7 @@ from tests.reference import local_indices
 from tests.reference.voxel_accumulation import accumulated
 from tests.run.simple_robots import PlanarClass, planar_arm
 from wsrender import run
+from wsrender.documents import parse_job
 from wsrender.errors import InputError, NumericalError
 from wsrender.indices.index_catalogue import (
     DYNAMIC,
@@ -21,7 +22,6 @@ from wsrender.indices.index_catalogue import (
 )
 from wsrender.robot import as_robot
 from wsrender.robot.indices import evaluation_of_job
-from wsrender.spec import parse_job
 
 pytestmark = pytest.mark.usefixtures("catalogue_as_shipped")
 NAMES = ["anisotropy", "weighted"]

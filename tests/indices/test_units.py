@@ -13,13 +13,13 @@ from matplotlib.text import Text
 import wsrender as ws
 from tests.reference import local_indices, mujoco_kinematics
 from tests.run.simple_robots import PLANAR, planar_arm
+from wsrender.documents.parallel_workspace import ParallelWorkspaceJob
 from wsrender.engine import units_of
 from wsrender.indices.dimensions import task_matrix
 from wsrender.indices.index_catalogue import find, unit
 from wsrender.indices.units import pretty_unit
-from wsrender.parallel.hybrid import variants
+from wsrender.mechanisms.hybrid import variants
 from wsrender.robot.indices import evaluation_of
-from wsrender.spec.parallel_workspace import ParallelWorkspaceJob
 
 SAMPLES = 6
 SCALES = {"m": 2.0, "kg": 3.0, "s": 5.0}

@@ -5,6 +5,7 @@ import pytest
 
 import wsrender as ws
 from tests.kinetostatics.test_force_field import OBSTACLES, SOFT, STRONG, arm
+from wsrender.documents.kinetostatics import HapticDevice
 from wsrender.kinetostatics.passivity import (
     largest_loop_work,
     loop_path,
@@ -13,7 +14,6 @@ from wsrender.kinetostatics.passivity import (
     stiffness_bound,
     stiffnesses,
 )
-from wsrender.spec.kinetostatics import HapticDevice
 
 MASS, DAMPING, PERIOD, SUBSTEPS = 0.05, 0.5, 1e-3, 10
 BOUND = 2 * DAMPING / PERIOD

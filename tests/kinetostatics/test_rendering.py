@@ -6,9 +6,9 @@ from scipy.spatial.transform import Rotation
 
 import wsrender as ws
 from tests.kinetostatics.test_passivity import DAMPING, MASS, PERIOD, SUBSTEPS, gantry
+from wsrender.documents.kinetostatic_stream import Sample, StreamOpen
 from wsrender.kinetostatics.passivity import loop_work, random_postures
 from wsrender.kinetostatics.rendering import Rendering
-from wsrender.spec.kinetostatic_stream import Sample, StreamOpen
 
 STIFF = 25 * 2 * DAMPING / PERIOD  # far beyond what the device renders
 LIMITS = {"margin_m": 0.05}

@@ -5,10 +5,10 @@ import pytest
 from scipy.ndimage import map_coordinates
 
 import wsrender as ws
+from wsrender.documents.kinetostatics import BoundaryForce, ObstacleForce
+from wsrender.documents.robot import Transform
 from wsrender.kinetostatics.boundary import BoundaryDistance, boundary_distance
 from wsrender.kinetostatics.obstacles import ObstacleDistance
-from wsrender.spec.kinetostatics import BoundaryForce, ObstacleForce
-from wsrender.spec.robot import Transform
 
 POSE = Transform(position_m=(0.1, -0.2, 0.3), rpy_deg=(10, 20, 30))
 SIZE = np.array([0.2, 0.4, 0.1])

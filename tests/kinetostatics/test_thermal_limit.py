@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from wsrender.documents.kinetostatics import HapticDevice
 from wsrender.kinetostatics.thermal_limit import ThermalLimit
-from wsrender.spec.kinetostatics import HapticDevice
 
 DEVICE = HapticDevice()
 PUSH = np.array([0.0, 0.0, 6.4])

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tests.export.sample_data import random_volume
+from tests.results.export.sample_data import random_volume
 from wsrender.errors import InputError
 from wsrender.multi.shared_volume import reached_by, shared_volume, volume_by_number
 from wsrender.volume.registration import registered

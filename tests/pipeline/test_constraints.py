@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import wsrender as ws
+from wsrender.documents.constraints import Constraints
 from wsrender.engine import Evaluation, SweepPlan, configurations, devices_of, evaluate_poses, merge, sweep
 from wsrender.errors import DocumentError, InputError
 from wsrender.pipeline.constraints import registry
@@ -14,7 +15,6 @@ from wsrender.pipeline.constraints.registry import constraints_of
 from wsrender.run import execute, finish, plan, run_shard
 from wsrender.run.partial_arrays import partial_of_arrays, partial_to_arrays
 from wsrender.sampling import plan_sampling
-from wsrender.spec.constraints import Constraints
 from wsrender.volume.lattice import LatticeBlock
 
 SHAPES = {

@@ -157,8 +157,8 @@ def test_coupled_joints():
       <geom size="0.01" mass="1"/><body pos="0.4 0 0"><joint name="b" axis="0 0 1" range="-3 3"/>
       <geom size="0.01" mass="1"/><site name="tool" pos="0.3 0 0"/></body></body></worldbody>
       <equality><joint joint1="b" joint2="a" polycoef="0.2 2 0 0 0"/></equality></mujoco>"""
+    from wsrender.documents.robot import RobotSpec
     from wsrender.robot import robot_of_spec
-    from wsrender.spec.robot import RobotSpec
 
     robot = robot_of_spec(RobotSpec(mjcf=text))
     assert robot.chain.n == 1

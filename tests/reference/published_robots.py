@@ -2,7 +2,7 @@
 
 import math
 
-from wsrender.spec.robot import DHTable
+from wsrender.documents.robot import DHTable
 
 WRIST_LIMITS = [(-180, 180), (20, 160), (-70, 70)]
 WRIST = [(0, 0, 0, "v"), (0, -90, 0, "v"), (0, 90, 0, "v")]

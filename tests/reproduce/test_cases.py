@@ -9,10 +9,10 @@ import pytest
 from tests.reference.exact_volumes import articulated, spherical_pair
 from wsrender import cli
 from wsrender.cli.reproduce_command import NAMES
+from wsrender.documents import parse_job
 from wsrender.errors import InputError
 from wsrender.indices.index_catalogue import DYNAMIC, KINEMATIC
 from wsrender.reproduce import CASES, Row, cases, gao, reproduce, wsrender_tables
-from wsrender.spec import parse_job
 from wsrender.volume.volume_data import VolumeData
 
 NUMBER = np.repeat([1.0, 2.0], [1, 3])[:, None, None] * np.ones((4, 4, 4))

@@ -5,9 +5,9 @@ from types import SimpleNamespace
 import numpy as np
 
 from tests.reference.chain_kinematics import forward_kinematics
+from wsrender.documents import parse_job
 from wsrender.reproduce import reproduce, wsrender_mapping
 from wsrender.robots import library, load_path
-from wsrender.spec import parse_job
 
 
 def test_rows_hold_what_the_jobs_found(monkeypatch):

@@ -7,6 +7,8 @@ import pytest
 from tests.reference import chain_kinematics as reference
 from tests.reference import mujoco_kinematics as by_mujoco
 from wsrender import robots
+from wsrender.documents.robot import RobotSpec
+from wsrender.documents.sampling import Grid
 from wsrender.engine.grid_structure import structure_of
 from wsrender.errors import ModelError
 from wsrender.kinetostatics.kinematics import PostureKinematics
@@ -14,8 +16,6 @@ from wsrender.robot import evaluate_indices, link_shapes, robot_of_spec
 from wsrender.robot.indices import evaluation_of
 from wsrender.robots.model_warning import ModelWarning
 from wsrender.sampling import plan_sampling
-from wsrender.spec.robot import RobotSpec
-from wsrender.spec.sampling import Grid
 
 
 def arm(equality, extra=""):

@@ -10,9 +10,9 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from tests.reference import chain_kinematics, dh_product
+from wsrender.documents.robot import DHTable
 from wsrender.robots import load_dh, load_mjcf, load_urdf
 from wsrender.robots.dh import modified_dh, structural_length, to_mjcf
-from wsrender.spec.robot import DHTable
 
 QUARTERS = st.sampled_from([0.0, math.pi / 2, -math.pi / 2, math.pi])
 ANGLES = st.one_of(QUARTERS, st.floats(-3.1, 3.1))

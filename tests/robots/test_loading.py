@@ -14,8 +14,8 @@ import pytest
 
 import wsrender as ws
 from wsrender import robots
+from wsrender.documents.robot import DHTable
 from wsrender.errors import ModelError
-from wsrender.spec.robot import DHTable
 
 INERTIAL = '<inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>'
 MJCF = f"""<mujoco model="arm"><worldbody><body name="link"><joint name="j" axis="0 0 1"/>{INERTIAL}

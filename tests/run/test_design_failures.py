@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 import wsrender as ws
+from wsrender.documents import parse_job
+from wsrender.documents.parsing import canonical_json
 from wsrender.errors import NotConvergedError, NumericalError
 from wsrender.run import design_values, steps
-from wsrender.spec import parse_job
-from wsrender.spec.parsing import canonical_json
 
 VOLUME = [{"value": "exact_volume"}]
 AREA = [{"value": "/exact/area_m2"}]

@@ -7,11 +7,11 @@ import pytest
 
 import wsrender as ws
 from tests.run.small_jobs import SMALL_JOBS
+from wsrender.documents import ANALYSES
 from wsrender.engine import thread_count
 from wsrender.errors import InputError
 from wsrender.run import execute
 from wsrender.run.execution import Execution
-from wsrender.spec import ANALYSES
 
 ASKED = 3
 ON_ONE_CORE = {"five_bar"}  # closed forms in NumPy

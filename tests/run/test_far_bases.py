@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import wsrender as ws
-from tests.parallel.mechanisms import known_ups
+from tests.mechanisms.mechanisms import known_ups
 from tests.reference.class_robots import SphericalClass
 from tests.robots.test_cases import FOLDER
 from wsrender.engine import evaluate_kinematics

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from tests.parallel.planar import annuli_area, three_rrr
-from wsrender.result import Result
+from tests.mechanisms.planar import annuli_area, three_rrr
+from wsrender.results.result import Result
 from wsrender.run import execute, finish, plan, run_shard
 
 JOB = {"analysis": "parallel_workspace", "device": "cpu", "refined_volume": 0.03}

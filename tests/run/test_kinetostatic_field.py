@@ -97,7 +97,7 @@ def test_vectors_in_files(result, tmp_path):
     assert '"force_x","force_y","force_z"' in header
     for name in ("field", "posture"):
         assert (tmp_path / "plots" / f"{name}.png").stat().st_size > 10_000
-    from wsrender.export import read_volume_npz
+    from wsrender.results.export import read_volume_npz
 
     np.testing.assert_array_equal(
         read_volume_npz(tmp_path / "volume.npz").vectors["force"], result.volume.vectors["force"]

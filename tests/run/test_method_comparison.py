@@ -5,7 +5,7 @@ import pytest
 
 import wsrender as ws
 from wsrender.errors import InputError
-from wsrender.export.text import method_rows
+from wsrender.results.export.text import method_rows
 
 
 def test_the_four_methods_agree_on_the_published_six_pus(tmp_path):

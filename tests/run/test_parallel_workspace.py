@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 import wsrender as ws
-from tests.parallel.mechanisms import known_ups, mechanism, poses_of, ups
-from wsrender.parallel.ball_region import ball_region
-from wsrender.parallel.exact import ExactWorkspace
-from wsrender.parallel.inverse_kinematics import inverse_kinematics
-from wsrender.parallel.singularities import sign_changes
-from wsrender.result import Result
+from tests.mechanisms.mechanisms import known_ups, mechanism, poses_of, ups
+from wsrender.mechanisms.ball_region import ball_region
+from wsrender.mechanisms.exact import ExactWorkspace
+from wsrender.mechanisms.inverse_kinematics import inverse_kinematics
+from wsrender.mechanisms.singularities import sign_changes
+from wsrender.results.result import Result
 from wsrender.run import execute, finish, merge, plan, run_shard
 from wsrender.run.partial_files import load_partial, save_partial
 

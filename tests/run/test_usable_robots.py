@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import wsrender as ws
+from wsrender.documents import ANALYSES, parse_job
 from wsrender.errors import InputError, ResourceError
 from wsrender.run import steps
-from wsrender.spec import ANALYSES, parse_job
 
 LINK = '<inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>'
 

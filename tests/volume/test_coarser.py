@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from tests.export.sample_data import random_volume
+from tests.results.export.sample_data import random_volume
 from wsrender.volume.coarser import coarser
 
 

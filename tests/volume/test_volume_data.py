@@ -3,7 +3,7 @@ import pickle
 import numpy as np
 import pytest
 
-from tests.export.sample_data import assert_same_volume, random_volume
+from tests.results.export.sample_data import assert_same_volume, random_volume
 from wsrender.volume import volume_data
 from wsrender.volume.registration import registered
 from wsrender.volume.volume_data import VolumeData

@@ -87,7 +87,7 @@ def _document(
     keep_map: Annotated[bool, typer.Option("--keep-map", help="Keep one row per sample (map.parquet).")] = False,
 ) -> dict[str, Any]:
     """The job document that JOB and the options say; options override the fields of a document."""
-    from wsrender.spec.sampling import DEFAULT_COUNT, SEVERAL_COUNT
+    from wsrender.documents.sampling import DEFAULT_COUNT, SEVERAL_COUNT
 
     document = job_document(job)
     count = SEVERAL_COUNT if keep_map else DEFAULT_COUNT
@@ -117,6 +117,6 @@ def _switches(
 
 
 def _print_job(document: dict[str, Any]) -> None:
-    from wsrender.spec import canonical_json, parse_job
+    from wsrender.documents import canonical_json, parse_job
 
     typer.echo(json.dumps(json.loads(canonical_json(parse_job(document))), indent=2))

@@ -7,7 +7,7 @@ import typer
 
 from wsrender.cli.faults import one_line_faults
 from wsrender.errors import InputError
-from wsrender.export.formats import by_ending, one_of, rows, suffixes
+from wsrender.results.export.formats import by_ending, one_of, rows, suffixes
 
 _SURROUNDINGS = "Surroundings"
 _ENDINGS = one_of(f".{suffix}" for suffix in suffixes(rows("picture", own=True)))
@@ -43,8 +43,8 @@ def render(
 ) -> None:
     """Draw the workspace of a saved result in three dimensions (needs the extra "render")."""
     with one_line_faults(traceback):
-        from wsrender.render import Box, Floor, Table
-        from wsrender.result import Result
+        from wsrender.results.render import Box, Floor, Table
+        from wsrender.results.result import Result
 
         environment: list[Any] = [] if floor is None else [Floor(floor)]
         for cx, cy, cz, dx, dy in (_numbers("--table", text, 5) for text in table or []):

@@ -22,8 +22,8 @@ def report(
 ) -> None:
     """Write one HTML page about a saved result: pictures, tables, provenance and job document."""
     with one_line_faults(traceback):
-        from wsrender.export.headline import head_lines
-        from wsrender.result import REPORT_VIEWS, Result
+        from wsrender.results.export.headline import head_lines
+        from wsrender.results.result import REPORT_VIEWS, Result
 
         path = output or folder / "report.html"
         result = Result.load(folder)

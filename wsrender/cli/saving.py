@@ -7,7 +7,7 @@ import typer
 from rich.console import Console
 
 from wsrender.errors import InputError
-from wsrender.export.formats import asked, check_asked, one_of
+from wsrender.results.export.formats import asked, check_asked, one_of
 
 # Formats of other packages are not listed here: that would load them for every command.
 Formats = Annotated[

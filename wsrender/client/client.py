@@ -13,9 +13,9 @@ import httpx2
 from wsrender.client.connection import Connection
 from wsrender.client.job import Job
 from wsrender.client.kinetostatic_stream import KinetostaticStream
+from wsrender.documents.arm import dotted, robots_in
+from wsrender.documents.problems import path_text
 from wsrender.errors import DocumentError, InputError
-from wsrender.spec.arm import dotted, robots_in
-from wsrender.spec.problems import path_text
 
 PAGE = 100  # jobs in one answer
 

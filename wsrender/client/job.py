@@ -14,7 +14,7 @@ from wsrender.client.problems import error_of_problem
 from wsrender.client.remote_result import RemoteFiles, RemoteResult
 from wsrender.errors import JobFailedError, WaitTimeoutError
 from wsrender.progress import RunProgress
-from wsrender.result import Result
+from wsrender.results.result import Result
 
 FINISHED = ("succeeded", "failed", "canceled", "timed_out")
 LONG_POLL_S = 5.0  # between two reports of progress at the latest

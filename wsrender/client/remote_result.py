@@ -13,10 +13,17 @@ import numpy as np
 
 from wsrender.client.connection import Connection
 from wsrender.client.downloads import download
-from wsrender.export.artifacts import DOCUMENT, artifact_records, named_files, part_file, publish, write_document
-from wsrender.export.atomic import staging_folder
-from wsrender.export.formats import check_asked, of_file, readable
-from wsrender.result import Result
+from wsrender.results.export.artifacts import (
+    DOCUMENT,
+    artifact_records,
+    named_files,
+    part_file,
+    publish,
+    write_document,
+)
+from wsrender.results.export.atomic import staging_folder
+from wsrender.results.export.formats import check_asked, of_file, readable
+from wsrender.results.result import Result
 from wsrender.volume.distribution_map import DistributionMap
 from wsrender.volume.table import Table
 from wsrender.volume.volume_data import VolumeData

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import optimize
 
-from wsrender.parallel.ball_region import BallRegion
+from wsrender.mechanisms.ball_region import BallRegion
 from wsrender.volume.lattice import round_to_digits
 
 FIRST_CELLS = 12  # along the longest side of the box

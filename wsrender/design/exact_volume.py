@@ -4,9 +4,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-from wsrender.parallel.ball_region import BallRegion
-from wsrender.parallel.exact import exact_volumes
-from wsrender.parallel.exact.surfaces import make_up
+from wsrender.mechanisms.ball_region import BallRegion
+from wsrender.mechanisms.exact import exact_volumes
+from wsrender.mechanisms.exact.surfaces import make_up
 
 STEP = 1e-6  # of a parameter's range, for differences of centres and radii, which are smooth in the parameters
 

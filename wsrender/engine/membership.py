@@ -33,7 +33,7 @@ CHUNKS_PER_THREAD = 8
 class LegTest:
     """Legs, and what is asked of them.
 
-    ``legs`` has the fields of `wsrender.parallel.mechanism.Mechanism`, which stands above the engine. ``ends`` (L,)
+    ``legs`` has the fields of `wsrender.mechanisms.mechanism.Mechanism`, which stands above the engine. ``ends`` (L,)
     bool: whether a leg is the last of its subsystem; ``pairs``: legs whose distance counts.
     """
 

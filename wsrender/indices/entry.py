@@ -7,11 +7,11 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import Any, Literal
 
+from wsrender.documents.options import STATISTICS
 from wsrender.errors import InputError
 from wsrender.indices.expression import trace
 from wsrender.indices.option import Option
 from wsrender.indices.units import UnitRule
-from wsrender.spec.options import STATISTICS
 
 DYNAMIC_PREFIX = "dynamic_"
 BASE_JOINT, TRAILING_JOINTS = "base_joint", "trailing_joints"

@@ -8,14 +8,14 @@ from importlib.metadata import EntryPoint, entry_points
 from math import inf, sqrt
 from typing import Any
 
+from wsrender.documents.options import STATISTICS
+from wsrender.documents.problems import path_text
 from wsrender.errors import InputError, MissingInertiaError
 from wsrender.indices import functions as f
 from wsrender.indices.dimensions import TaskMatrix
 from wsrender.indices.entry import DYNAMIC_PREFIX, Bound, Index, checked
 from wsrender.indices.option import Option, Value, values
 from wsrender.indices.units import UnitRule, unit_text
-from wsrender.spec.options import STATISTICS
-from wsrender.spec.problems import path_text
 
 CONVENTIONS = ("standard", "table_1", "wsrender_code")
 EXTENSIONS = "wsrender.indices"  # entry points of other packages: each an Index, or a list of them

@@ -5,9 +5,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
+from wsrender.documents.problems import shown
+from wsrender.documents.quantities import integer, real, sequence
 from wsrender.errors import InputError
-from wsrender.spec.problems import shown
-from wsrender.spec.quantities import integer, real, sequence
 
 Value = bool | int | float | tuple[float, ...]
 _SCHEMAS: dict[str, dict[str, Any]] = {

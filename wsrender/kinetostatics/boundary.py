@@ -9,14 +9,14 @@ from scipy.ndimage import binary_closing, gaussian_filter
 from scipy.spatial import KDTree
 from scipy.special import ndtri
 
+from wsrender.documents.kinetostatics import BoundaryForce
+from wsrender.documents.sampling import Sobol
 from wsrender.engine import sampled_positions
 from wsrender.errors import InputError
 from wsrender.reachability.evidence import REACHABLE
 from wsrender.reachability.inverse_solver import InverseSolver
 from wsrender.robots.chain import Chain
 from wsrender.sampling import plan_sampling
-from wsrender.spec.kinetostatics import BoundaryForce
-from wsrender.spec.sampling import Sobol
 
 SAMPLES_PER_CELL = 8
 POSITION_M = 1e-6  # residual that counts as reached, far below any cell

@@ -15,9 +15,9 @@ from typing import Any
 import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
+from wsrender.documents.kinetostatics import CharacteristicLengthChoice
 from wsrender.errors import InputError
 from wsrender.kinetostatics.kinematics import PostureKinematics
-from wsrender.spec.kinetostatics import CharacteristicLengthChoice
 
 ALL_ROWS = (0, 1, 2, 3, 4, 5)
 _DECADES, _STEPS = 4.0, 161  # of lengths searched around the root mean square

@@ -2,9 +2,9 @@
 
 import numpy as np
 
+from wsrender.documents.kinetostatics import ConditioningForce
 from wsrender.kinetostatics.kinematics import Posture, PostureKinematics
 from wsrender.kinetostatics.singular_values import decomposed
-from wsrender.spec.kinetostatics import ConditioningForce
 
 
 class TaskConditioning:

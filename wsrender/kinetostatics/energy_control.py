@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 
+from wsrender.documents.kinetostatics import HapticDevice
 from wsrender.kinetostatics.passivity import stiffness_bound
-from wsrender.spec.kinetostatics import HapticDevice
 
 SHARE = 0.9  # of the stiffness bound that is rendered
 VIRTUAL_SHARE = 0.5  # of the device's damping, which viscosity and injected damping may add together

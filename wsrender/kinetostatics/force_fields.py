@@ -17,6 +17,7 @@ from typing import Any
 
 import numpy as np
 
+from wsrender.documents.kinetostatics import ForceFieldChoice, JointLimitForce
 from wsrender.errors import InputError
 from wsrender.kinetostatics.boundary import boundary_distance
 from wsrender.kinetostatics.characteristic_length import characteristic_length
@@ -29,7 +30,6 @@ from wsrender.kinetostatics.surfaces import SurfaceRamp
 from wsrender.robot import Robot, as_robot
 from wsrender.robot.indices import task_rows
 from wsrender.robot.model_robot import configuration_rows
-from wsrender.spec.kinetostatics import ForceFieldChoice, JointLimitForce
 
 FELT = 1e-6  # least norm of a limit's direction that can be felt, relative to the largest
 _ONES = np.ones(6)

@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from wsrender.documents.kinetostatics import JointLimitForce
 from wsrender.robots.chain import Chain
-from wsrender.spec.kinetostatics import JointLimitForce
 
 
 class JointLimits:

@@ -6,10 +6,10 @@ import mujoco
 import numpy as np
 from scipy.spatial import ConvexHull, QhullError
 
+from wsrender.documents.kinetostatics import BoxObstacle, MeshObstacle, Obstacle, ObstacleForce, SphereObstacle
+from wsrender.documents.robot import Transform
 from wsrender.errors import InputError
 from wsrender.robots.compiled_model import MUJOCO_ERRORS, quiet
-from wsrender.spec.kinetostatics import BoxObstacle, MeshObstacle, Obstacle, ObstacleForce, SphereObstacle
-from wsrender.spec.robot import Transform
 
 FAR = 1e3  # [m] beyond which MuJoCo need not look
 POINT = 1e-6  # radius of the ball that stands for a point [m]: MuJoCo has none without

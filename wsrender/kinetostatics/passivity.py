@@ -9,8 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from wsrender.documents.kinetostatics import HapticDevice
 from wsrender.kinetostatics.force_fields import ForceField
-from wsrender.spec.kinetostatics import HapticDevice
 
 POSTURES, LOOPS, STEPS = 256, 48, 60
 STRAY = 0.01  # of the path's size, beyond which the tip does not follow it

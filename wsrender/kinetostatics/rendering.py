@@ -6,11 +6,11 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
+from wsrender.documents.kinetostatic_stream import CueValues, Sample, Scale, State, StreamOpen, StreamWarning
 from wsrender.kinetostatics.energy_control import EnergyControl
 from wsrender.kinetostatics.force_fields import FieldState, ForceField
 from wsrender.kinetostatics.pose_tracking import PoseTracking, rotation_vector
 from wsrender.kinetostatics.thermal_limit import ThermalLimit
-from wsrender.spec.kinetostatic_stream import CueValues, Sample, Scale, State, StreamOpen, StreamWarning
 
 VELOCITY_TIME_S = 0.005  # over which velocities are smoothed
 LOST_M = 1e-3  # distance of the tip to its goal beyond which it does not follow

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from wsrender.spec.kinetostatics import HapticDevice
+from wsrender.documents.kinetostatics import HapticDevice
 
 FADE = 0.2  # of the bearable heat, before its end, over which the limit sinks from the peak to the continuous force
 

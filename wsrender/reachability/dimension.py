@@ -4,10 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from wsrender.documents.sampling import Sobol
 from wsrender.engine import configurations, evaluate_kinematics
 from wsrender.robots.chain import Chain
 from wsrender.sampling import plan_sampling
-from wsrender.spec.sampling import Sobol
 from wsrender.tolerances import FLAT
 
 SAMPLES = 1 << 10

@@ -2,10 +2,10 @@
 
 import numpy as np
 
+from wsrender.documents.sampling import Sobol
 from wsrender.engine import Evaluation, SweepPlan, devices_of, sweep
 from wsrender.robots.chain import Chain
 from wsrender.sampling import plan_sampling
-from wsrender.spec.sampling import Sobol
 from wsrender.volume.lattice import LatticeBlock
 
 

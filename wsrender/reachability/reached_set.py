@@ -6,6 +6,7 @@ from math import ceil
 
 import numpy as np
 
+from wsrender.documents.sampling import Sobol
 from wsrender.engine import configurations, positions_at
 from wsrender.reachability.cover import covered_cells
 from wsrender.reachability.evidence import UNREACHABLE
@@ -16,7 +17,6 @@ from wsrender.reachability.volume_estimate import QUANTILE, wilson
 from wsrender.robots.chain import Chain
 from wsrender.robots.reachable_box import reachable_box
 from wsrender.sampling import plan_sampling
-from wsrender.spec.sampling import Sobol
 from wsrender.volume.lattice import LatticeBlock
 from wsrender.volume.neighbours import neighbours_and_itself
 

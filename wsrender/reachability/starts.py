@@ -6,10 +6,10 @@ from functools import cached_property
 import numpy as np
 from scipy.spatial import KDTree
 
+from wsrender.documents.sampling import Sobol
 from wsrender.engine import configurations
 from wsrender.robots.chain import Chain
 from wsrender.sampling import plan_sampling
-from wsrender.spec.sampling import Sobol
 
 NEAR, NEAR_LIMITS, FURTHER = "near", "near limits", "further"
 EPS = 1.0  # neighbours may be farther by this share: exact ones of far targets cost more than the tries

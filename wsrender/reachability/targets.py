@@ -7,12 +7,12 @@ from typing import Any
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from wsrender.documents.quantities import argument, positive
 from wsrender.errors import InputError
 from wsrender.reachability.evidence import CLEARLY, LABELS, UNDECIDED, UNREACHABLE
 from wsrender.reachability.inverse_solver import InverseSolver, Solutions
 from wsrender.robot import as_robot
 from wsrender.robots.chain import Chain
-from wsrender.spec.quantities import argument, positive
 from wsrender.tolerances import TOLERANCES
 
 POSITION_TOLERANCE_M, ANGLE_TOLERANCE_RAD = 1e-5, 1e-5

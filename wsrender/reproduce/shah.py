@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from wsrender.parallel.ball_region import BallRegion, ball_region
-from wsrender.parallel.exact import exact_volumes
-from wsrender.parallel.mechanism import mechanism_of
+from wsrender.documents import parse_job
+from wsrender.mechanisms.ball_region import BallRegion, ball_region
+from wsrender.mechanisms.exact import exact_volumes
+from wsrender.mechanisms.mechanism import mechanism_of
 from wsrender.reproduce.row import Row
 from wsrender.run import execute
 from wsrender.run.steps import Progress
-from wsrender.spec import parse_job
 
 DESIGN: dict[str, Any] = {"library": "six_pus", "platform_m": 1.5, "link_m": [2.5, 2.7, 2.6]}
 TILT_DEG = [30.0, 20.0, 0.0]

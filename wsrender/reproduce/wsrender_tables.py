@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from wsrender.boundary.alpha_shape import AlphaShape
+from wsrender.geometry.alpha_shape import AlphaShape
 from wsrender.indices.index_catalogue import DYNAMIC, KINEMATIC
 from wsrender.multi.shared_volume import reached_by
 from wsrender.reproduce.row import Row

@@ -5,13 +5,13 @@ from typing import Any
 
 import numpy as np
 
+from wsrender.documents.constraints import Constraints
 from wsrender.errors import InputError
 from wsrender.pipeline.constraints.constraint import Constraint
 from wsrender.pipeline.constraints.expression import ExpressionConstraint
 from wsrender.pipeline.constraints.registry import constraints_of
 from wsrender.robot.model_robot import Robot
 from wsrender.robot.user_robot import HostRobot
-from wsrender.spec.constraints import Constraints
 
 
 def constraints_for(robot: Robot, choice: Constraints | None) -> tuple[Constraint, ...]:

@@ -5,6 +5,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from wsrender.documents.index_choices import IndexChoices
+from wsrender.documents.options import DEFAULT_PENALTY, LARGEST_PENALTY, NAMED_TASKS, SMALLEST_PENALTY, TASK_ROWS
+from wsrender.documents.quantities import argument, positive, real, sequence
 from wsrender.errors import InputError, MissingInertiaError
 from wsrender.indices.index_catalogue import CONVENTIONS, is_dynamic, option_values, resolve
 from wsrender.notices import Notice, warn
@@ -12,9 +15,6 @@ from wsrender.robot.model_robot import Robot, configuration_rows
 from wsrender.robot.user_robot import HostRobot, as_robot
 from wsrender.robots.model_warning import ModelWarning
 from wsrender.robots.plausibility import need_ranges
-from wsrender.spec.index_choices import IndexChoices
-from wsrender.spec.options import DEFAULT_PENALTY, LARGEST_PENALTY, NAMED_TASKS, SMALLEST_PENALTY, TASK_ROWS
-from wsrender.spec.quantities import argument, positive, real, sequence
 
 if TYPE_CHECKING:
     from wsrender.engine import Evaluation

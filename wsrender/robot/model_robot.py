@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from wsrender.documents.robot import RobotSpec, Transform
 from wsrender.errors import InputError, MissingInertiaError
 from wsrender.notices import Notice
 from wsrender.robots import described, load, load_dh, load_library, load_mjcf, load_path, load_uploaded, load_urdf
 from wsrender.robots.chain import Chain
 from wsrender.robots.plausibility import NO_LIMITS
-from wsrender.spec.robot import RobotSpec, Transform
 
 if TYPE_CHECKING:
     import mujoco

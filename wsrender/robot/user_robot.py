@@ -7,12 +7,12 @@ from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 
+from wsrender.documents.robot import DHTable, Transform
 from wsrender.errors import InputError, ModelError
 from wsrender.notices import Notice
 from wsrender.robot.model_robot import Robot, configuration_rows, load_robot
 from wsrender.robots import of_mujoco
 from wsrender.robots.host_chain import HostChain
-from wsrender.spec.robot import DHTable, Transform
 
 HASHED_POSES = 16
 TURNING = 1e-6  # rad per unit of a joint: less is rounding of finite differences

@@ -6,8 +6,8 @@ from xml.etree import ElementTree
 
 import numpy as np
 
+from wsrender.documents.robot import DHRow, DHTable
 from wsrender.robots.chain import Chain
-from wsrender.spec.robot import DHRow, DHTable
 
 # MuJoCo refuses a moving body without mass: this much stands for "not published".
 NEGLIGIBLE = "1e-12"  # kg, kg m²

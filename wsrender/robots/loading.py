@@ -22,11 +22,11 @@ if TYPE_CHECKING:
 
     import mujoco
 
+    from wsrender.documents.robot import DHTable
     from wsrender.robots.chain import Chain
     from wsrender.robots.compiled_model import CompiledModel
     from wsrender.robots.loaded_robot import LoadedRobot
     from wsrender.robots.mjcf_model import ReadMesh
-    from wsrender.spec.robot import DHTable
 
     Limits = Mapping[str, tuple[float, float]]
     Source = str | Path | DHTable | mujoco.MjSpec | mujoco.MjModel
@@ -68,7 +68,7 @@ def described(source: "Source") -> tuple[str, Any]:
 
     Raises InputError for what is no source, ModelError for text that is no model.
     """
-    from wsrender.spec.robot import DHTable
+    from wsrender.documents.robot import DHTable
 
     if of_mujoco(source):
         return "mjcf", _mjcf_model().text_of(source, _FIELD)

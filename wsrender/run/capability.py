@@ -6,6 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from wsrender.documents.capability import CapabilityJob
+from wsrender.documents.sampling import Sobol
 from wsrender.engine import sampled_positions
 from wsrender.reachability.capability import (
     SAMPLES_PER_CELL,
@@ -15,7 +17,7 @@ from wsrender.reachability.capability import (
     searched_block,
 )
 from wsrender.reachability.targets import check_tolerance
-from wsrender.result import Result
+from wsrender.results.result import Result
 from wsrender.robot import Robot
 from wsrender.robots.chain import Chain
 from wsrender.run.cost import DOCUMENT_BYTES, NOTHING, Cost, Costed, pictures_cost, surface_bytes
@@ -23,8 +25,6 @@ from wsrender.run.execution import Execution
 from wsrender.run.provenance import job_entry, provenance, robot_entry
 from wsrender.run.settled_device import settled_device
 from wsrender.sampling import plan_sampling
-from wsrender.spec.capability import CapabilityJob
-from wsrender.spec.sampling import Sobol
 from wsrender.volume.lattice import check_voxels, default_voxel_size, expected_voxels
 from wsrender.volume.table import Table
 from wsrender.volume.volume_data import VolumeData

@@ -6,7 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from wsrender.result import Result
+from wsrender.documents import RobotComparisonJob
+from wsrender.results.result import Result
 from wsrender.robot import Robot
 from wsrender.run.cost import Cost
 from wsrender.run.execution import Execution
@@ -16,7 +17,6 @@ from wsrender.run.provenance import job_entry, provenance
 from wsrender.run.refined import Progress
 from wsrender.run.several_result import common_entries, sampling_path, skeletons
 from wsrender.run.several_robots import SeveralPlans, plan_several
-from wsrender.spec import RobotComparisonJob
 from wsrender.volume.measure import TABLE_UNITS
 from wsrender.volume.table import Table
 

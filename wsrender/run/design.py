@@ -10,11 +10,23 @@ import numpy as np
 from wsrender.design.evaluation_file import EvaluationFile
 from wsrender.design.evaluations import Evaluations, feasible, scores
 from wsrender.design.search import Space, evolve, grid, pareto, refine
+from wsrender.documents import parse_job
+from wsrender.documents.design import (
+    EXACT,
+    EXACT_VOLUME,
+    DesignOptimizationJob,
+    DifferentialEvolution,
+    EvaluationsInFile,
+    GridSweep,
+    ParetoSearch,
+)
+from wsrender.documents.json_pointer import changed
+from wsrender.documents.robot import Transform
 from wsrender.errors import InputError, NotConvergedError
+from wsrender.mechanisms.ball_region import BallRegion
+from wsrender.mechanisms.mechanism import mechanism_of
 from wsrender.notices import entries
-from wsrender.parallel.ball_region import BallRegion
-from wsrender.parallel.mechanism import mechanism_of
-from wsrender.result import Result
+from wsrender.results.result import Result
 from wsrender.robot import Robot
 from wsrender.run.cost import DOCUMENT_BYTES, Cost, pictures_cost
 from wsrender.run.design_notices import design_notices, fault_entries
@@ -25,18 +37,6 @@ from wsrender.run.one_shard import OneShard
 from wsrender.run.parallel_exact import region_of
 from wsrender.run.provenance import job_entry, provenance, robot_entry
 from wsrender.run.settled_device import settled_device
-from wsrender.spec import parse_job
-from wsrender.spec.design import (
-    EXACT,
-    EXACT_VOLUME,
-    DesignOptimizationJob,
-    DifferentialEvolution,
-    EvaluationsInFile,
-    GridSweep,
-    ParetoSearch,
-)
-from wsrender.spec.json_pointer import changed
-from wsrender.spec.robot import Transform
 
 Arrays = dict[str, np.ndarray]
 

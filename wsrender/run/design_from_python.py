@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from wsrender.errors import InputError
-from wsrender.result import Result
+from wsrender.results.result import Result
 from wsrender.run.from_python import execute_here, plain
 from wsrender.run.steps import Progress
 

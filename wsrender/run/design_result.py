@@ -8,10 +8,19 @@ import numpy as np
 from wsrender.design.exact_inscribed import largest_ball, largest_cube
 from wsrender.design.inscribed import CUBE_ERROR, SPHERE_ERROR
 from wsrender.design.search import front
-from wsrender.parallel.ball_surfaces import surface_table
-from wsrender.parallel.exact import ExactWorkspace
+from wsrender.documents.design import (
+    CUBE,
+    EXACT,
+    EXACT_CUBE,
+    EXACT_SPHERE,
+    EXACT_VOLUME,
+    SPHERE,
+    GridSweep,
+    ParetoSearch,
+)
+from wsrender.mechanisms.ball_surfaces import surface_table
+from wsrender.mechanisms.exact import ExactWorkspace
 from wsrender.run.headline import headline, no_headline
-from wsrender.spec.design import CUBE, EXACT, EXACT_CUBE, EXACT_SPHERE, EXACT_VOLUME, SPHERE, GridSweep, ParetoSearch
 from wsrender.volume.table import Table
 
 if TYPE_CHECKING:

@@ -8,13 +8,13 @@ import numpy as np
 from wsrender.design.exact_inscribed import largest_ball, largest_cube
 from wsrender.design.exact_volume import volume_gradient, volumes_of
 from wsrender.design.inscribed import inscribed_cube_edge, inscribed_sphere_radius
+from wsrender.documents import parse_job
+from wsrender.documents.design import CUBE, EXACT, EXACT_CUBE, EXACT_SPHERE, EXACT_VOLUME, SPHERE, Objective
+from wsrender.documents.json_pointer import found_at
 from wsrender.errors import InputError, NotConvergedError, NumericalError, ResourceError, WsrenderError
-from wsrender.parallel.ball_region import BallRegion
-from wsrender.result import Result
+from wsrender.mechanisms.ball_region import BallRegion
+from wsrender.results.result import Result
 from wsrender.run.execution import Execution
-from wsrender.spec import parse_job
-from wsrender.spec.design import CUBE, EXACT, EXACT_CUBE, EXACT_SPHERE, EXACT_VOLUME, SPHERE, Objective
-from wsrender.spec.json_pointer import found_at
 
 if TYPE_CHECKING:
     from wsrender.run.design import DesignPlan

@@ -7,12 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from wsrender.parallel.five_bar import ASSEMBLY_MODES, FiveBar
-from wsrender.parallel.five_bar.aspects import Aspect, aspects
-from wsrender.parallel.five_bar.condition_numbers import conditioning
-from wsrender.parallel.five_bar.isotropy import isotropic_points
-from wsrender.parallel.five_bar.loci import Piece, end_point, pieces, postures, type_2_curves
-from wsrender.parallel.five_bar.maps import (
+from wsrender.documents import FiveBarJob
+from wsrender.mechanisms.five_bar import ASSEMBLY_MODES, FiveBar
+from wsrender.mechanisms.five_bar.aspects import Aspect, aspects
+from wsrender.mechanisms.five_bar.condition_numbers import conditioning
+from wsrender.mechanisms.five_bar.isotropy import isotropic_points
+from wsrender.mechanisms.five_bar.loci import Piece, end_point, pieces, postures, type_2_curves
+from wsrender.mechanisms.five_bar.maps import (
     QUANTITIES,
     PlaneLattice,
     cartesian_map,
@@ -21,9 +22,9 @@ from wsrender.parallel.five_bar.maps import (
     plane_bounds,
     plane_lattice,
 )
-from wsrender.parallel.five_bar.mechanism import wrapped
-from wsrender.parallel.five_bar.region import ArcRegion, workspace
-from wsrender.parallel.five_bar.tables import (
+from wsrender.mechanisms.five_bar.mechanism import wrapped
+from wsrender.mechanisms.five_bar.region import ArcRegion, workspace
+from wsrender.mechanisms.five_bar.tables import (
     INDICES,
     boundary_table,
     iso_table,
@@ -32,8 +33,8 @@ from wsrender.parallel.five_bar.tables import (
     outlines_table,
     postures_table,
 )
-from wsrender.plots.five_bar import MODE_VOLUMES
-from wsrender.result import Result
+from wsrender.results.drawing.five_bar import MODE_VOLUMES
+from wsrender.results.result import Result
 from wsrender.run.cost import DOCUMENT_BYTES, Cost, pictures_cost
 from wsrender.run.execution import Execution
 from wsrender.run.headline import headline, no_headline
@@ -41,7 +42,6 @@ from wsrender.run.one_shard import OneShard
 from wsrender.run.partial_tables import arrays_of_tables, tables_of_arrays
 from wsrender.run.provenance import job_entry, provenance
 from wsrender.run.settled_device import settled_device
-from wsrender.spec import FiveBarJob
 from wsrender.volume.lattice import round_to_digits
 from wsrender.volume.table import Table
 from wsrender.volume.volume_data import VolumeData

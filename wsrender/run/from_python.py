@@ -4,15 +4,15 @@ from typing import Any
 
 import numpy as np
 
+from wsrender.documents import parse_job
+from wsrender.documents.document import Document
+from wsrender.documents.robot import RobotSpec
+from wsrender.documents.sampling import PYTHON_COUNT, Sobol
 from wsrender.progress import RunProgress
-from wsrender.result import Result
+from wsrender.results.result import Result
 from wsrender.robot import Robot, as_robot
 from wsrender.robot.user_robot import HostRobot
 from wsrender.run.steps import Progress, execute
-from wsrender.spec import parse_job
-from wsrender.spec.document import Document
-from wsrender.spec.robot import RobotSpec
-from wsrender.spec.sampling import PYTHON_COUNT, Sobol
 
 
 def as_source(source: Any) -> Robot | np.ndarray | dict[str, Any]:

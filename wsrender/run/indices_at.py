@@ -6,11 +6,12 @@ from typing import Any
 
 import numpy as np
 
+from wsrender.documents import IndicesAtJob
 from wsrender.engine import Evaluated, Evaluation, evaluate_at, units_of
 from wsrender.errors import InputError
 from wsrender.notices import entries
 from wsrender.pipeline.constraints.constraint import Constraint
-from wsrender.result import Result
+from wsrender.results.result import Result
 from wsrender.robot import Robot
 from wsrender.robot.constraints import constraints_for, samples_entry
 from wsrender.robot.indices import evaluation_of_job
@@ -20,7 +21,6 @@ from wsrender.run.execution import Execution
 from wsrender.run.one_shard import OneShard
 from wsrender.run.provenance import index_choices, job_entry, provenance, robot_entry
 from wsrender.run.settled_device import settled_device
-from wsrender.spec import IndicesAtJob
 from wsrender.volume.distribution_map import DistributionMap
 from wsrender.volume.table import Table
 

@@ -6,13 +6,15 @@ from typing import Any
 
 import numpy as np
 
+from wsrender.documents.kinetostatics import KinetostaticFieldJob
+from wsrender.documents.sampling import Sobol
 from wsrender.engine import configurations, sampled_positions
 from wsrender.kinetostatics.characteristic_length import CharacteristicLength
 from wsrender.kinetostatics.force_fields import ForceField
 from wsrender.kinetostatics.passivity import LoopWork, largest_loop_work, stiffness_bound, stiffnesses
 from wsrender.kinetostatics.posture_data import posture_tables
 from wsrender.notices import Notice, entries
-from wsrender.result import Result
+from wsrender.results.result import Result
 from wsrender.robot import Robot
 from wsrender.robots.reachable_box import reachable_box
 from wsrender.run.cost import DOCUMENT_BYTES, NOTHING, Cost, pictures_cost, surface_bytes
@@ -22,8 +24,6 @@ from wsrender.run.one_shard import OneShard
 from wsrender.run.provenance import job_entry, provenance, robot_entry
 from wsrender.run.settled_device import settled_device
 from wsrender.sampling import plan_sampling
-from wsrender.spec.kinetostatics import KinetostaticFieldJob
-from wsrender.spec.sampling import Sobol
 from wsrender.volume.lattice import block_around, check_voxels, default_voxel_size
 from wsrender.volume.volume_data import VolumeData
 from wsrender.volume.voxels import Voxels

@@ -7,15 +7,18 @@ from typing import Any
 
 import numpy as np
 
-from wsrender.boundary.alpha_shape import AlphaShape
-from wsrender.boundary.surfaces import surface_entry
+from wsrender.documents import MasterSlaveMappingJob
+from wsrender.documents.mapping import MOST_POINTS, Containment, MappedMechanism, MappedRobot, MappingSearch
+from wsrender.documents.point_sets import PointSet
 from wsrender.errors import InputError, ResourceError
+from wsrender.geometry.alpha_shape import AlphaShape
+from wsrender.geometry.surfaces import surface_entry
 from wsrender.mapping.linear_mapping import LinearMapping, MeasuredSet
 from wsrender.mapping.scale_search import best_mapping, largest_factor, scale_curve
 from wsrender.mapping.voxel_set import VoxelSet
+from wsrender.mechanisms.workspace_points import workspace_points
 from wsrender.notices import Notice, entries
-from wsrender.parallel.workspace_points import workspace_points
-from wsrender.result import Result
+from wsrender.results.result import Result
 from wsrender.robot import Robot
 from wsrender.robots.reachable_box import reachable_box
 from wsrender.run.cost import DOCUMENT_BYTES, Cost, pictures_cost
@@ -26,9 +29,6 @@ from wsrender.run.provenance import job_entry, provenance, robot_entry
 from wsrender.run.sampled_positions import sampled_positions
 from wsrender.run.settled_device import settled_device
 from wsrender.sampling import plan_sampling
-from wsrender.spec import MasterSlaveMappingJob
-from wsrender.spec.mapping import MOST_POINTS, Containment, MappedMechanism, MappedRobot, MappingSearch
-from wsrender.spec.point_sets import PointSet
 from wsrender.volume.lattice import block_around, check_voxels
 from wsrender.volume.table import Table
 

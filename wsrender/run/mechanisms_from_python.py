@@ -2,8 +2,8 @@
 
 from typing import Any
 
-from wsrender.parallel.five_bar import FiveBar
-from wsrender.result import Result
+from wsrender.mechanisms.five_bar import FiveBar
+from wsrender.results.result import Result
 from wsrender.run.from_python import execute_here, plain
 from wsrender.run.steps import Progress
 

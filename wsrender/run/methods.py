@@ -7,12 +7,15 @@ from typing import Any
 
 import numpy as np
 
+from wsrender.documents.method_comparison import MethodComparisonJob
+from wsrender.documents.parallel_workspace import ParallelWorkspaceJob
+from wsrender.documents.robot import Transform
 from wsrender.errors import InputError
-from wsrender.parallel.ball_region import BallRegion
-from wsrender.parallel.exact import ExactWorkspace
-from wsrender.parallel.mechanism import mechanism_of
-from wsrender.parallel.solids import solid_workspace
-from wsrender.result import Result
+from wsrender.mechanisms.ball_region import BallRegion
+from wsrender.mechanisms.exact import ExactWorkspace
+from wsrender.mechanisms.mechanism import mechanism_of
+from wsrender.mechanisms.solids import solid_workspace
+from wsrender.results.result import Result
 from wsrender.run.cost import DOCUMENT_BYTES, Cost, pictures_cost
 from wsrender.run.execution import Execution
 from wsrender.run.headline import headline
@@ -21,9 +24,6 @@ from wsrender.run.parallel import plan_parallel
 from wsrender.run.parallel_exact import region_of
 from wsrender.run.provenance import job_entry, provenance
 from wsrender.run.settled_device import settled_device
-from wsrender.spec.method_comparison import MethodComparisonJob
-from wsrender.spec.parallel_workspace import ParallelWorkspaceJob
-from wsrender.spec.robot import Transform
 from wsrender.volume.lattice import round_to_digits
 from wsrender.volume.table import Table
 

@@ -7,22 +7,24 @@ from typing import Any
 
 import numpy as np
 
+from wsrender.documents.parallel_workspace import BY_BOUNDARY, ParallelWorkspaceJob
+from wsrender.documents.robot import Transform
 from wsrender.engine import OrientationCounts, thread_count
 from wsrender.engine.membership import LANES
 from wsrender.engine.ranges import check_range
 from wsrender.errors import InputError, ResourceError
 from wsrender.indices.index_catalogue import is_dynamic, option_values, resolve
-from wsrender.parallel.hybrid import Variant, added, count_union, middle, variants
-from wsrender.parallel.inverse_kinematics import inverse_kinematics
-from wsrender.parallel.jacobians import check_square
-from wsrender.parallel.local_indices import CONDITION_NUMBERS, DETERMINANTS, pose_indices
-from wsrender.parallel.mechanism import Mechanism
-from wsrender.parallel.membership import count_lattice, fault_at, in_base_frame, orientations_labelled
-from wsrender.parallel.orientations import OrientationSet, orientation_set, random_orientations
-from wsrender.parallel.serial_search import SerialSearch, serial_search
+from wsrender.mechanisms.hybrid import Variant, added, count_union, middle, variants
+from wsrender.mechanisms.inverse_kinematics import inverse_kinematics
+from wsrender.mechanisms.jacobians import check_square
+from wsrender.mechanisms.local_indices import CONDITION_NUMBERS, DETERMINANTS, pose_indices
+from wsrender.mechanisms.mechanism import Mechanism
+from wsrender.mechanisms.membership import count_lattice, fault_at, in_base_frame, orientations_labelled
+from wsrender.mechanisms.orientations import OrientationSet, orientation_set, random_orientations
+from wsrender.mechanisms.serial_search import SerialSearch, serial_search
 from wsrender.reachability.evidence import REACHABLE, UNDECIDED, UNREACHABLE
 from wsrender.reachability.volume_estimate import wilson
-from wsrender.result import Result
+from wsrender.results.result import Result
 from wsrender.robot import Robot
 from wsrender.robot.indices import task_rows
 from wsrender.run.cost import DOCUMENT_BYTES, NOTHING, Cost, Costed, pictures_cost, surface_bytes
@@ -32,8 +34,6 @@ from wsrender.run.parallel_lattice import common_flat, described, lattice_of, qu
 from wsrender.run.parallel_refined import labels_at_poses, refined_entry
 from wsrender.run.parallel_result import orientation_result, positions_result
 from wsrender.run.settled_device import settled_device
-from wsrender.spec.parallel_workspace import BY_BOUNDARY, ParallelWorkspaceJob
-from wsrender.spec.robot import Transform
 from wsrender.volume.lattice import LatticeBlock
 
 Arrays = dict[str, np.ndarray]

@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import trimesh
 
-from wsrender.boundary.surfaces import surface_entry
 from wsrender.errors import InputError
+from wsrender.geometry.surfaces import surface_entry
+from wsrender.mechanisms.ball_region import BallRegion, ball_region
+from wsrender.mechanisms.ball_surfaces import surface_table
+from wsrender.mechanisms.exact import ExactWorkspace
+from wsrender.mechanisms.mechanism import Mechanism
+from wsrender.mechanisms.solids import solid_workspace
 from wsrender.notices import Notice
-from wsrender.parallel.ball_region import BallRegion, ball_region
-from wsrender.parallel.ball_surfaces import surface_table
-from wsrender.parallel.exact import ExactWorkspace
-from wsrender.parallel.mechanism import Mechanism
-from wsrender.parallel.solids import solid_workspace
-from wsrender.result import Result
+from wsrender.results.result import Result
 from wsrender.run.headline import headline
 from wsrender.run.parallel_result import mechanism_document, skeleton_at
 from wsrender.volume.table import Table

@@ -7,14 +7,14 @@ from typing import Any
 
 import numpy as np
 
+from wsrender.documents.parallel_workspace import ParallelWorkspaceJob
 from wsrender.errors import InputError, ResourceError
+from wsrender.mechanisms.flat import MEASURES, Flat, flat_of
+from wsrender.mechanisms.hybrid import Variant, reachable_box_of, reached_by_any
+from wsrender.mechanisms.inverse_kinematics import SAME_ORIENTATION
+from wsrender.mechanisms.membership import AxisBox, placed_box, reachable_box
+from wsrender.mechanisms.orientations import OrientationSet
 from wsrender.memory import SHARE, available_bytes
-from wsrender.parallel.flat import MEASURES, Flat, flat_of
-from wsrender.parallel.hybrid import Variant, reachable_box_of, reached_by_any
-from wsrender.parallel.inverse_kinematics import SAME_ORIENTATION
-from wsrender.parallel.membership import AxisBox, placed_box, reachable_box
-from wsrender.parallel.orientations import OrientationSet
-from wsrender.spec.parallel_workspace import ParallelWorkspaceJob
 from wsrender.volume.lattice import LatticeBlock, block_around, round_to_digits
 
 FIRST_POINTS, FEWEST_POINTS = 1 << 16, 1 << 10  # of the estimate that the default voxel size is made of

@@ -1,6 +1,6 @@
 """The refined volume (area, length) of a ``parallel_workspace``: its 95 % interval covers what is sampled by levels.
 
-Serial joints are searched, not sampled (`wsrender.parallel.serial_search`). Sets of orientations stand for ranges:
+Serial joints are searched, not sampled (`wsrender.mechanisms.serial_search`). Sets of orientations stand for ranges:
 points are decided by the set and by one of half the steps, and what the two differ in widens the interval.
 """
 
@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from wsrender.engine import OrientationCounts
-from wsrender.parallel.flat import Flat
-from wsrender.parallel.membership import count_at, in_base_frame, poses_labelled
-from wsrender.parallel.orientations import OrientationSet, finer, orientation_set
-from wsrender.parallel.serial_search import MOST_NUMERIC
+from wsrender.mechanisms.flat import Flat
+from wsrender.mechanisms.membership import count_at, in_base_frame, poses_labelled
+from wsrender.mechanisms.orientations import OrientationSet, finer, orientation_set
+from wsrender.mechanisms.serial_search import MOST_NUMERIC
 from wsrender.reachability import Event, estimate_volumes
 from wsrender.reachability.evidence import REACHABLE, UNDECIDED, UNREACHABLE
 from wsrender.reachability.volume_estimate import VolumeEstimates

@@ -5,21 +5,21 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from wsrender.documents.options import TASK_ROWS
 from wsrender.global_indices import voxel_volumes, workspace_mean
 from wsrender.indices.dimensions import task_matrix
 from wsrender.indices.index_catalogue import unit
-from wsrender.parallel.hybrid import Variant, from_middle, middle
-from wsrender.parallel.inverse_kinematics import inverse_kinematics
-from wsrender.parallel.local_indices import DETERMINANTS
-from wsrender.parallel.mechanism import Mechanism
-from wsrender.parallel.membership import fault_at, in_base_frame, in_world
-from wsrender.result import Result
+from wsrender.mechanisms.hybrid import Variant, from_middle, middle
+from wsrender.mechanisms.inverse_kinematics import inverse_kinematics
+from wsrender.mechanisms.local_indices import DETERMINANTS
+from wsrender.mechanisms.mechanism import Mechanism
+from wsrender.mechanisms.membership import fault_at, in_base_frame, in_world
+from wsrender.results.result import Result
 from wsrender.run.parallel_headline import notices, refined_of, workspace_headline
 from wsrender.run.parallel_lattice import FlatLattice, quantity
 from wsrender.run.parallel_singularities import singularities
 from wsrender.run.provenance import job_entry, provenance, robot_entry
 from wsrender.sampling import subsample
-from wsrender.spec.options import TASK_ROWS
 from wsrender.volume.distribution_map import DistributionMap
 from wsrender.volume.lattice import LatticeBlock
 from wsrender.volume.table import Table

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from wsrender.parallel.singularities import TYPES, zeros
+from wsrender.mechanisms.singularities import TYPES, zeros
 from wsrender.volume.table import Table
 from wsrender.volume.volume_data import VolumeData
 

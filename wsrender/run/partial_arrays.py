@@ -5,10 +5,10 @@ from typing import Any
 
 import numpy as np
 
+from wsrender.documents.sampling import Converge
 from wsrender.engine import Evaluated, Partial
 from wsrender.run.indices_at import IndicesAtPlan
 from wsrender.run.workspace import WorkspacePartial, WorkspacePlan
-from wsrender.spec.sampling import Converge
 
 Arrays = dict[str, np.ndarray]
 Partials = WorkspacePartial | Evaluated | Arrays

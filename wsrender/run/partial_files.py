@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from wsrender.errors import InputError
-from wsrender.export.atomic import new_file
+from wsrender.results.export.atomic import new_file
 from wsrender.run.partial_arrays import Partials, partial_of_arrays, partial_to_arrays
 
 

@@ -7,15 +7,16 @@ from typing import Any
 
 import numpy as np
 
-from wsrender.boundary.planar.agreement import disagreements, signed_area
-from wsrender.boundary.planar.exact_boundary import ExactBoundary
-from wsrender.boundary.planar.inverse_solutions import NumberRegions
-from wsrender.boundary.planar.monte_carlo import MonteCarloBoundary, monte_carlo_boundary
-from wsrender.boundary.planar.planar_chain import PlanarChain, planar_chain
-from wsrender.boundary.planar.segments import segment_entry, segment_table
+from wsrender.documents import PlanarBoundaryJob
 from wsrender.errors import NumericalError
+from wsrender.geometry.planar.agreement import disagreements, signed_area
+from wsrender.geometry.planar.exact_boundary import ExactBoundary
+from wsrender.geometry.planar.inverse_solutions import NumberRegions
+from wsrender.geometry.planar.monte_carlo import MonteCarloBoundary, monte_carlo_boundary
+from wsrender.geometry.planar.planar_chain import PlanarChain, planar_chain
+from wsrender.geometry.planar.segments import segment_entry, segment_table
 from wsrender.notices import Notice, entries
-from wsrender.result import Result
+from wsrender.results.result import Result
 from wsrender.robot import Robot, robot_with_model
 from wsrender.run.cost import DOCUMENT_BYTES, Cost, check_memory, pictures_cost
 from wsrender.run.execution import Execution
@@ -26,7 +27,6 @@ from wsrender.run.provenance import job_entry, provenance, robot_entry
 from wsrender.run.sampled_positions import sampled_positions
 from wsrender.run.settled_device import settled_device
 from wsrender.sampling import plan_sampling
-from wsrender.spec import PlanarBoundaryJob
 from wsrender.volume.table import Table
 
 POSITIONS_PER_S = 2e6  # of one CPU core

@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 from typing import Any
 
-from wsrender.boundary.planar.exact_boundary import ExactBoundary
-from wsrender.result import Result
+from wsrender.geometry.planar.exact_boundary import ExactBoundary
+from wsrender.results.result import Result
 from wsrender.robot import as_robot, robot_with_model
 from wsrender.run.from_python import arm_entry, execute_here, plain, sampling_entry
 from wsrender.run.steps import Progress

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 
 from wsrender import __version__
+from wsrender.documents.arm import at_path
+from wsrender.documents.options import TASK_ROWS
 from wsrender.engine import Evaluation
 from wsrender.robot import Robot
 from wsrender.robot.user_robot import HostRobot
-from wsrender.spec.arm import at_path
-from wsrender.spec.options import TASK_ROWS
 
 
 def robot_entry(robot: Robot) -> dict[str, Any]:

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import Any
 
-from wsrender.result import Result
+from wsrender.results.result import Result
 from wsrender.robot import as_robot
 from wsrender.run.from_python import arm_entry, execute_here, plain, sampling_entry
 from wsrender.run.steps import Progress

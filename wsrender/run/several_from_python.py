@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from wsrender.errors import InputError
-from wsrender.result import Result
+from wsrender.results.result import Result
 from wsrender.robot import Robot, as_robot
 from wsrender.run.from_python import (
     arm_entry,

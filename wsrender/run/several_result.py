@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from wsrender.result import Result
+from wsrender.results.result import Result
 from wsrender.run.several_robots import SeveralPlans
 
 OF_EACH = ("robot", "sampling", "indices", "volume_m3", "headline", "bounds_m", "global", "convergence")

@@ -7,10 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from wsrender.documents import SharedWorkspaceJob
+from wsrender.documents.placement_scan import PlacementScan
 from wsrender.multi.shared_volume import NUMBER, PRODUCT, reached_by, shared_volume, volume_by_number
 from wsrender.notices import Notice, entries
 from wsrender.reachability import Event
-from wsrender.result import Result
+from wsrender.results.result import Result
 from wsrender.robot import Robot
 from wsrender.run.cost import DOCUMENT_BYTES, Cost, in_turn, pictures_cost, refined_seconds
 from wsrender.run.execution import Execution
@@ -22,8 +24,6 @@ from wsrender.run.several_result import common_entries, sampling_path, skeletons
 from wsrender.run.several_robots import SeveralPlans, plan_several, progress_after, workspace_job
 from wsrender.run.volume_notices import occupied_differs, tolerance_not_met
 from wsrender.run.workspace import WorkspacePlan, plan_workspace
-from wsrender.spec import SharedWorkspaceJob
-from wsrender.spec.placement_scan import PlacementScan
 from wsrender.volume.lattice import block_of_all, check_voxels
 from wsrender.volume.measure import TABLE_UNITS
 from wsrender.volume.table import Table
@@ -194,8 +194,8 @@ def _check_volume(several: SeveralPlans) -> None:
 
 def _meshes(shared: VolumeData) -> "tuple[dict[str, trimesh.Trimesh], dict[str, Any]]":
     """Surfaces of the union and, where there is one, of the intersection, with their entries."""
-    from wsrender.boundary.surfaces import surface_entry
-    from wsrender.boundary.voxel_surface import occupied_surface
+    from wsrender.geometry.surfaces import surface_entry
+    from wsrender.geometry.voxel_surface import occupied_surface
 
     meshes = {"union": occupied_surface(shared)}
     both = reached_by(shared, 2)

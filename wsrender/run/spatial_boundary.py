@@ -7,13 +7,14 @@ from typing import Any
 
 import numpy as np
 
-from wsrender.boundary.spatial.critical_sets import CriticalSet
-from wsrender.boundary.spatial.edges import Corner, Edge
-from wsrender.boundary.spatial.fitted_boundary import TOLERANCE, fitted_boundary
-from wsrender.boundary.spatial.patches import Patch
-from wsrender.boundary.spatial.primitives import Primitive
-from wsrender.boundary.spatial.spatial_arm import SpatialArm
-from wsrender.boundary.spatial.spatial_boundary import (
+from wsrender.documents import BoundaryPatchesJob
+from wsrender.geometry.spatial.critical_sets import CriticalSet
+from wsrender.geometry.spatial.edges import Corner, Edge
+from wsrender.geometry.spatial.fitted_boundary import TOLERANCE, fitted_boundary
+from wsrender.geometry.spatial.patches import Patch
+from wsrender.geometry.spatial.primitives import Primitive
+from wsrender.geometry.spatial.spatial_arm import SpatialArm
+from wsrender.geometry.spatial.spatial_boundary import (
     JOINTS,
     CriticalBoundary,
     SpatialBoundary,
@@ -25,7 +26,7 @@ from wsrender.notices import Notice, entries
 from wsrender.reachability.measure_refinement import refined_measure
 from wsrender.reachability.moving_joints import moving_joints
 from wsrender.reachability.reached_points import ReachedPoints
-from wsrender.result import Result
+from wsrender.results.result import Result
 from wsrender.robot import Robot, robot_with_model
 from wsrender.robots.chain import Chain
 from wsrender.run.cost import DOCUMENT_BYTES, Cost, check_memory, pictures_cost
@@ -36,7 +37,6 @@ from wsrender.run.provenance import job_entry, provenance, robot_entry
 from wsrender.run.refined import measure_entry, volume_entry
 from wsrender.run.settled_device import settled_device
 from wsrender.sampling import held_chain
-from wsrender.spec import BoundaryPatchesJob
 from wsrender.volume.table import Table
 
 POINTS_PER_S = 1e5  # inverse kinematics on one CPU core

@@ -6,15 +6,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any, Protocol, runtime_checkable
 
-from wsrender.errors import InputError
-from wsrender.notices import Notice, entries
-from wsrender.result import Result
-from wsrender.robot import Robot, as_robot, robot_of_spec
-from wsrender.run.cost import Cost
-from wsrender.run.execution import Execution
-from wsrender.run.headline import no_headline
-from wsrender.run.usable_robots import usable
-from wsrender.spec import (
+from wsrender.documents import (
     BoundaryPatchesJob,
     CapabilityJob,
     CollaborativeVolumeJob,
@@ -32,7 +24,15 @@ from wsrender.spec import (
     WorkspaceJob,
     parse_job,
 )
-from wsrender.spec.arm import Arm, ArmPath, dotted
+from wsrender.documents.arm import Arm, ArmPath, dotted
+from wsrender.errors import InputError
+from wsrender.notices import Notice, entries
+from wsrender.results.result import Result
+from wsrender.robot import Robot, as_robot, robot_of_spec
+from wsrender.run.cost import Cost
+from wsrender.run.execution import Execution
+from wsrender.run.headline import no_headline
+from wsrender.run.usable_robots import usable
 
 Progress = Callable[[int, int, str], None]
 

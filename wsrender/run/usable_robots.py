@@ -4,11 +4,11 @@ from typing import Any
 
 import numpy as np
 
+from wsrender.documents.arm import Arm, ArmPath, dotted
 from wsrender.errors import ResourceError
 from wsrender.robot import Robot
 from wsrender.robots.plausibility import LENGTH, need_ranges, too_long
 from wsrender.robots.reachable_box import reachable_box
-from wsrender.spec.arm import Arm, ArmPath, dotted
 
 VOXEL_M, BYTES = 0.02, 8  # a usual voxel [m], and the least that one takes
 

@@ -7,12 +7,15 @@ from typing import Any
 
 import numpy as np
 
+from wsrender.documents import WorkspaceJob
+from wsrender.documents.sampling import Converge, Grid
+from wsrender.documents.surfaces import IsoSurface
 from wsrender.engine import Partial, SweepPlan, devices_of, fitted, merge, sweep
 from wsrender.engine.voxel_data import volume_data
 from wsrender.errors import InputError, NotConvergedError
 from wsrender.global_indices import joint_means, workspace_mean
 from wsrender.indices.index_catalogue import default_statistics, resolve
-from wsrender.result import Result
+from wsrender.results.result import Result
 from wsrender.robot import Robot
 from wsrender.robot.constraints import constraints_for
 from wsrender.robot.indices import evaluation_of_job
@@ -33,9 +36,6 @@ from wsrender.run.refined import Progress, Refined, labelled, refined
 from wsrender.run.settled_device import settled_device
 from wsrender.run.workspace_result import PICTURE_SAMPLES, workspace_result
 from wsrender.sampling import SamplingPlan, plan_sampling
-from wsrender.spec import WorkspaceJob
-from wsrender.spec.sampling import Converge, Grid
-from wsrender.spec.surfaces import IsoSurface
 from wsrender.volume.lattice import LatticeBlock, check_voxels, expected_voxels, voxel_of
 from wsrender.volume.volume_data import VolumeData
 

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from wsrender.documents import WorkspaceJob
 from wsrender.engine import Partial, SweepPlan, configurations, evaluate_at, units_of
 from wsrender.engine.sweep_plan import from_origin
 from wsrender.engine.voxel_data import volume_data
@@ -20,7 +21,7 @@ from wsrender.global_indices import (
 from wsrender.notices import Notice, entries
 from wsrender.reachability.holes import share_of_holes, share_unseen
 from wsrender.reachability.voxel_labels import counts
-from wsrender.result import Result
+from wsrender.results.result import Result
 from wsrender.robot import Robot
 from wsrender.robot.constraints import check_admitted, samples_entry
 from wsrender.robots.host_chain import HostChain
@@ -29,7 +30,6 @@ from wsrender.run.provenance import index_choices, job_entry, provenance, robot_
 from wsrender.run.refined import Refined, by_measure
 from wsrender.run.volume_notices import few_samples, occupied_differs, tolerance_not_met
 from wsrender.sampling import subsample
-from wsrender.spec import WorkspaceJob
 from wsrender.volume.distribution_map import DistributionMap
 from wsrender.volume.volume_data import VolumeData
 
@@ -48,7 +48,7 @@ def workspace_result(
     threads: int | None,
 ) -> Result:
     """Map, picture sample, volume data, skeleton, surface and result document."""
-    from wsrender.boundary.surfaces import surfaces
+    from wsrender.geometry.surfaces import surfaces
 
     started = time.perf_counter()
     samples = samples_entry(plan.constraints, partial.samples, partial.rejected)

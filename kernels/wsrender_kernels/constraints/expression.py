@@ -12,7 +12,8 @@ def expression(margin: Any, real, n: int, options: int, size: int, offset: int):
     """Device function of the constraint; see the package.
 
     ``margin(inputs, inputs) -> (1,)`` of ``inputs``: q (n,), the tip's position in the world (3,), its axes, three
-    numbers each (9,), and options. The numbers from ``offset`` on: where positions are counted from (3,), and the options.
+    numbers each (9,), and options. The numbers from ``offset`` on: where positions are counted from (3,), and the
+    options.
     """
     limits_type, vec_n = wp.types.vector(size, real), wp.types.vector(n, real)
     vec3, mat33 = wp.types.vector(3, real), wp.types.matrix((3, 3), real)

@@ -18,7 +18,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from wsrender.export.atomic import new_file
+from wsrender.results.export.atomic import new_file
 from wsrender_server.jobs.faults import DiskFull
 
 FULL = (errno.ENOSPC, errno.EDQUOT)

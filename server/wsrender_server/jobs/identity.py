@@ -7,9 +7,9 @@ from functools import cache
 from typing import Any
 
 from wsrender import __version__
+from wsrender.documents.arm import dotted, local_paths, robots_in
 from wsrender.errors import InputError
 from wsrender.robots.library import find
-from wsrender.spec.arm import dotted, local_paths, robots_in
 
 
 class Identity:

@@ -128,8 +128,8 @@ def _finish(task: Task) -> list[dict[str, Any]]:
 
 def _publish(document: dict[str, Any], staging: Path, computation: str) -> list[dict[str, Any]]:
     """Move the artifacts to where their hashes say, the document first in the list."""
-    from wsrender.export.artifacts import DOCUMENT, sha256
-    from wsrender.export.formats import media_type
+    from wsrender.results.export.artifacts import DOCUMENT, sha256
+    from wsrender.results.export.formats import media_type
 
     path = staging / DOCUMENT
     own = {

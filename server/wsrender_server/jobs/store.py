@@ -12,8 +12,8 @@ from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
 from wsrender import __version__
+from wsrender.documents.arm import dotted, robots_in
 from wsrender.errors import InputError
-from wsrender.spec.arm import dotted, robots_in
 from wsrender_server.jobs.changes import Changes
 from wsrender_server.jobs.computations import ComputationStore
 from wsrender_server.jobs.cursor import cursor_after, place_of

@@ -13,8 +13,8 @@ from fastapi import Path as PathParameter
 from pydantic import ConfigDict
 from starlette.concurrency import run_in_threadpool
 
-from wsrender.export import formats
 from wsrender.notices import entries
+from wsrender.results.export import formats
 from wsrender_server.auth import Reader
 from wsrender_server.formats import OneOf
 from wsrender_server.jobs.records import ArtifactRecord, JobRecord

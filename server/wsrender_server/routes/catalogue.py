@@ -6,8 +6,8 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Depends, Path, Request, Response
 from pydantic import Field
 
+from wsrender.documents import ANALYSES, job_schema
 from wsrender.robots import library
-from wsrender.spec import ANALYSES, job_schema
 from wsrender_server.auth import Reader, Submitter
 from wsrender_server.model_text import check_model, decoded_model
 from wsrender_server.parts import Server

@@ -11,8 +11,8 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Depends, Query, Request, Response
 from starlette.concurrency import run_in_threadpool
 
+from wsrender.documents import ANALYSES
 from wsrender.errors import DocumentError, InputError
-from wsrender.spec import ANALYSES
 from wsrender_server.admission import Admission
 from wsrender_server.auth import Principal, Reader, Submitter
 from wsrender_server.job_body import JobBody, json_body, read_body, refused

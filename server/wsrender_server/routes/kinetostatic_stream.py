@@ -15,10 +15,10 @@ from starlette.concurrency import run_in_threadpool
 from starlette.websockets import WebSocketDisconnect
 
 from wsrender import __version__
+from wsrender.documents.arm import local_paths
+from wsrender.documents.json_text import read_json
+from wsrender.documents.kinetostatic_stream import FROM_CLIENT, FROM_SERVER, LARGEST_SAMPLE, StreamOpen
 from wsrender.errors import DocumentError, WsrenderError
-from wsrender.spec.arm import local_paths
-from wsrender.spec.json_text import read_json
-from wsrender.spec.kinetostatic_stream import FROM_CLIENT, FROM_SERVER, LARGEST_SAMPLE, StreamOpen
 from wsrender_server.admission import Admission
 from wsrender_server.auth import Principal, entitled
 from wsrender_server.parts import Parts
@@ -51,7 +51,7 @@ async def describe_stream() -> JSONResponse:
 
 @router.websocket(PATH)
 async def kinetostatic_stream(websocket: WebSocket) -> None:
-    """A session: ``open`` → ``opened``, then samples → forces (`wsrender.spec.kinetostatic_stream`)."""
+    """A session: ``open`` → ``opened``, then samples → forces (`wsrender.documents.kinetostatic_stream`)."""
     offered = websocket.scope.get("subprotocols", [])
     try:
         principal = await run_in_threadpool(_entitled, websocket, offered)

@@ -17,13 +17,13 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import Discriminator, TypeAdapter, ValidationError
 
+from wsrender.documents.kinetostatic_stream import Ask, Fault, Opened, Sample, Statistics, StreamOpen
 from wsrender.errors import WsrenderError
 from wsrender.kinetostatics.force_fields import ForceField
 from wsrender.kinetostatics.passivity import largest_loop_work, stiffness_bound
 from wsrender.kinetostatics.rendering import Rendered, Rendering
 from wsrender.robot import robot_of_spec
 from wsrender.robots.uploaded import MODELS_VARIABLE
-from wsrender.spec.kinetostatic_stream import Ask, Fault, Opened, Sample, Statistics, StreamOpen
 from wsrender_server.jobs.child_process import settle_in
 from wsrender_server.problems import problem_of_error
 from wsrender_server.streams.scheduling import hurry

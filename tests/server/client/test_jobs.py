@@ -6,10 +6,10 @@ import pytest
 import trimesh
 
 import wsrender as ws
-from tests.export.sample_data import assert_same_map, assert_same_volume, random_map, random_volume
+from tests.results.export.sample_data import assert_same_map, assert_same_volume, random_map, random_volume
 from tests.server.client.recorded_server import Lost, refuses, says, serves
-from wsrender import export
-from wsrender.result import Result
+from wsrender.results import export
+from wsrender.results.result import Result
 from wsrender.volume.table import Table
 
 LOST = httpx2.ReadError("connection reset by peer")
@@ -154,7 +154,7 @@ def test_without_h5py_and_pyarrow_npz_is_asked(finished, client, local, tmp_path
     export.write_table_npz(expected.sample, tmp_path / "sample.npz")
     finished.answer("GET", "/v1/jobs/j1/artifacts/volume.vtkhdf", serves(tmp_path / "volume.npz"))
     finished.answer("GET", "/v1/jobs/j1/artifacts/sample.parquet", serves(tmp_path / "sample.npz"))
-    monkeypatch.setattr("wsrender.export.formats.find_spec", lambda package: None)
+    monkeypatch.setattr("wsrender.results.export.formats.find_spec", lambda package: None)
     result = client.job("j1").result()
     assert_same_volume(result.volume, expected.volume)
     assert_same_map(result.sample, expected.sample)

@@ -4,7 +4,7 @@ import json
 from pathlib import Path
 
 import wsrender as ws
-from wsrender.export.artifacts import sha256
+from wsrender.results.export.artifacts import sha256
 
 QUICK = {
     "analysis": "workspace",

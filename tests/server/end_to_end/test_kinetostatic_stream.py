@@ -16,7 +16,7 @@ from wsrender_server.local_server import LocalServer
 from wsrender_server.streams.message_rate import MessageRate
 
 import wsrender as ws
-from wsrender.spec.kinetostatic_stream import Force, Opened, Statistics
+from wsrender.documents.kinetostatic_stream import Force, Opened, Statistics
 
 ROBOT = "phantom_omni"
 PATH = "/v1/kinetostatic-stream"

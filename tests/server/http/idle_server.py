@@ -8,8 +8,8 @@ from wsrender_server.jobs.records import ArtifactRecord, Progress, WorkerRecord
 from wsrender_server.jobs.store import JobStore
 from wsrender_server.jobs.tables import Computation, Job
 
-from wsrender.export.artifacts import sha256
-from wsrender.export.formats import media_type
+from wsrender.results.export.artifacts import sha256
+from wsrender.results.export.formats import media_type
 
 HOST = "http://127.0.0.1"
 DOCUMENT = {

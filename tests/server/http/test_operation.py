@@ -11,8 +11,8 @@ from wsrender_server.jobs.faults import DiskFull, StoreUnavailable
 
 from tests.server.http.idle_server import DOCUMENT, problem_of
 from wsrender import __version__
+from wsrender.documents import ANALYSES, job_schema
 from wsrender.robots import library
-from wsrender.spec import ANALYSES, job_schema
 
 MODEL = {"content": "<mujoco/>", "headers": {"Content-Type": "application/xml"}}
 

@@ -6,10 +6,10 @@ import io
 import numpy as np
 import pytest
 
-from tests.export.sample_data import random_volume
+from tests.results.export.sample_data import random_volume
 from tests.server.http.idle_server import problem_of
-from wsrender import export
-from wsrender.result import Result
+from wsrender.results import export
+from wsrender.results.result import Result
 
 
 @pytest.fixture

@@ -5,8 +5,8 @@ import json
 import pytest
 
 from tests.server.http.idle_server import DOCUMENT, problem_of
+from wsrender.documents import canonical_json, parse_job
 from wsrender.errors import InputError
-from wsrender.spec import canonical_json, parse_job
 
 BOMB = '<!DOCTYPE m [<!ENTITY a "aaaaaaaaaa"><!ENTITY b "&a;&a;">]><mujoco>&b;</mujoco>'
 OUTSIDE = '<!DOCTYPE m [<!ENTITY a SYSTEM "file:///etc/passwd">]><mujoco>&a;</mujoco>'

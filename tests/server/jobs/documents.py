@@ -2,7 +2,7 @@
 
 import json
 
-from wsrender.spec import canonical_json, parse_job
+from wsrender.documents import canonical_json, parse_job
 
 
 def canonical(**fields):

@@ -7,12 +7,12 @@ from functools import cache
 from importlib.metadata import entry_points
 from typing import Any
 
+from wsrender.documents.constraints import Constraints, RegionChoice
 from wsrender.errors import InputError
 from wsrender.indices.expression import Expression
 from wsrender.pipeline.constraints.constraint import ORDER, Constraint, Structure, in_order
 from wsrender.pipeline.constraints.expression import ExpressionConstraint
 from wsrender.pipeline.constraints.region import Region
-from wsrender.spec.constraints import Constraints, RegionChoice
 
 EXTENSIONS = "wsrender.constraints"  # entry points: functions that call `register_constraint`
 _ADDED: dict[str, ExpressionConstraint] = {}

@@ -1,0 +1,22 @@
+"""Points in a document: numbers only."""
+
+import math
+
+import numpy as np
+import pytest
+
+from wsrender.documents.point_sets import PointSet
+from wsrender.errors import DocumentError
+
+
+@pytest.mark.parametrize(
+    "points", [[[0, 0, False]], [["0", "0", "0"]], [[0, 0]], [], [[0, 0, math.nan]], "abc", 3, [1, 2, 3]], ids=str
+)
+def test_what_is_no_list_of_points_is_refused(points):
+    with pytest.raises(DocumentError, match=r"list of points \[x, y, z\], finite numbers"):
+        PointSet(points=points)
+
+
+def test_points_from_arrays_and_lists_are_equal():
+    rows = [[1, 2, 3.5], [0, -1, 1e-3]]
+    assert PointSet(points=rows).points == PointSet(points=np.array(rows)).points == tuple(map(tuple, rows))

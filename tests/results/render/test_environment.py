@@ -1,0 +1,52 @@
+import numpy as np
+import pytest
+import trimesh
+
+from wsrender.errors import InputError
+from wsrender.results.render import Box, Floor, Table
+from wsrender.results.render.environment import corners, surfaces
+
+LOWER, UPPER = np.array([-1.0, -2.0, 0.0]), np.array([1.0, 2.0, 3.0])
+
+
+def solids(item):
+    return [trimesh.Trimesh(part.vertices, part.faces, process=False) for part in surfaces(item, LOWER, UPPER)]
+
+
+def test_a_box_is_where_it_was_put():
+    (box,) = solids(Box((0.1, 0.2, 0.3), (0.4, 0.6, 0.8)))
+    assert box.is_watertight
+    assert box.volume == pytest.approx(0.4 * 0.6 * 0.8)  # positive: faces outward
+    np.testing.assert_allclose(box.bounds, [[-0.1, -0.1, -0.1], [0.3, 0.5, 0.7]])
+
+
+def test_a_table_stands_on_its_floor():
+    table = Table((0.5, 0.0, 0.75), (1.2, 0.8), floor_m=-0.1)
+    parts = solids(table)
+    assert all(part.is_watertight and part.volume > 0 for part in parts)
+    low, high = np.min([p.bounds[0] for p in parts], axis=0), np.max([p.bounds[1] for p in parts], axis=0)
+    np.testing.assert_allclose([low, high], [[-0.1, -0.4, -0.1], [1.1, 0.4, 0.75]])
+    np.testing.assert_allclose([corners(table).min(axis=0), corners(table).max(axis=0)], [low, high])
+
+
+def test_a_floor_covers_the_picture_and_its_top_is_the_height():
+    (floor,) = solids(Floor(0.25))
+    np.testing.assert_allclose(floor.bounds[:, :2], [LOWER[:2], UPPER[:2]])
+    assert floor.bounds[1, 2] == pytest.approx(0.25)
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: Box((0, 0), (1, 1, 1)), r"box\.center_m: must be 3 finite numbers"),
+        (lambda: Box((0, 0, 0), (1, 0, 1)), r"box\.size_m: must be 3 finite positive numbers"),
+        (lambda: Floor(float("nan")), r"floor\.height_m"),
+        (
+            lambda: Table((0, 0, 0), (1, 1)),
+            r"its top, z = 0 m, must be more than its thickness, 0.04 m, above the floor, z = 0 m",
+        ),
+    ],
+)
+def test_errors_name_the_field(make, message):
+    with pytest.raises(InputError, match=message):
+        make()

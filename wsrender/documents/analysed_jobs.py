@@ -1,0 +1,110 @@
+"""Job documents of all analyses but the one whose subject is another job."""
+
+from collections.abc import Iterator, Mapping
+from typing import Annotated, Any, ClassVar, Literal, get_args
+
+from pydantic import BeforeValidator, Discriminator, StrictBool, model_validator
+
+from wsrender.documents.arm import Arm
+from wsrender.documents.boundary_patches import BoundaryPatchesJob
+from wsrender.documents.capability import CapabilityJob
+from wsrender.documents.collaborative import CollaborativeVolumeJob
+from wsrender.documents.constraints import Constrained
+from wsrender.documents.document import Document
+from wsrender.documents.five_bar import FiveBarJob
+from wsrender.documents.index_choices import IndexChoices
+from wsrender.documents.kinetostatics import KinetostaticFieldJob
+from wsrender.documents.mapping import MasterSlaveMappingJob
+from wsrender.documents.method_comparison import MethodComparisonJob
+from wsrender.documents.options import Configurations, MapColumns, StatisticsOrNone
+from wsrender.documents.parallel_workspace import ParallelWorkspaceJob
+from wsrender.documents.planar_boundary import PlanarBoundaryJob
+from wsrender.documents.problems import tagged
+from wsrender.documents.quantities import Count, RelativeTolerance, VoxelSize
+from wsrender.documents.reachability import ReachabilityJob
+from wsrender.documents.sampling import DEFAULT_COUNT, SEVERAL_COUNT, Sampling, Sobol
+from wsrender.documents.several_robots import RobotComparisonJob, SharedWorkspaceJob
+from wsrender.documents.surfaces import Surfaces
+
+
+class WorkspaceJob(IndexChoices, Constrained, Arm):
+    """Sample the joint space of a robot: distribution map, volume data and global indices."""
+
+    analysis: Literal["workspace"] = "workspace"
+    """Name of the analysis."""
+    sampling: Sampling = Sobol(DEFAULT_COUNT)
+    """How the joint space is sampled; by default 2^24 Sobol samples, with a map 2^20."""
+    voxel_size_m: VoxelSize | None = None
+    """Edge of a voxel [m]; null: what holds 48 samples on average, at least a hundredth of the cube root of the
+    workspace's convex-hull volume."""
+    voxel_statistics: StatisticsOrNone = None
+    """What is kept per voxel, from count, maximum, mean, minimum; count always is. null: what means something for the
+    indices, count and maximum of the six."""
+    refined_volume: RelativeTolerance | None = 0.01
+    """Half width of the headline's 95 % interval, relative to it [1]: of the volume that inverse kinematics finds
+    reachable, of a planar workspace the area, of a line the length; null: none is computed."""
+    voxel_labels: StrictBool = False
+    """Whether every voxel is labelled reachable, unreachable or undecided by inverse kinematics."""
+    surfaces: Surfaces = ()
+    """Meshes of the workspace, each with its volume: "marching_cubes" of the voxels, "convex_hull" and {"alpha_shape":
+    α in metres} of the picture's subsample, {"iso_surface": index, "fraction": μ} of the voxels. Where none is asked
+    for, that of the voxels is among the files all the same."""
+    keep_map: StrictBool = False
+    """Whether the distribution map, one row per sample, is kept."""
+    map_columns: MapColumns = ()
+    """More columns of the map: "configuration" [rad or m] and "orientation" (quat_wxyz)."""
+    max_samples: Count = 10_000_000_000
+    """Largest number of samples that the job may take."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _fewer_rows(cls, data: Any) -> Any:
+        """Fewer samples by default where a row is kept for each."""
+        if isinstance(data, Mapping) and "sampling" not in data and data.get("keep_map") is True:
+            return {**data, "sampling": Sobol(SEVERAL_COUNT)}
+        return data
+
+    def conflicts(self) -> Iterator[tuple[str, str]]:
+        """(field, message) of every pair of fields that do not go together."""
+        yield from super().conflicts()
+        if self.map_columns and not self.keep_map:
+            yield "map_columns", 'must be empty unless "keep_map" is true'
+
+
+class IndicesAtJob(IndexChoices, Constrained, Arm):
+    """Local indices at given configurations."""
+
+    long_fields: ClassVar[tuple[str, ...]] = ("configurations",)
+
+    analysis: Literal["indices_at"] = "indices_at"
+    """Name of the analysis."""
+    configurations: Configurations = None
+    """Rows of joint values [rad or m], one per joint from base to tip; null where Python passes an array."""
+    precision: Literal["float32", "float64"] = "float64"
+    """Floating-point type of the kernels."""
+
+    @property
+    def needs_ranges(self) -> bool:
+        """No: the configurations are given. Where the ends of ranges are penalised, the evaluation asks for them."""
+        return False
+
+
+AnyAnalysedJob = (
+    WorkspaceJob
+    | IndicesAtJob
+    | ReachabilityJob
+    | CapabilityJob
+    | SharedWorkspaceJob
+    | RobotComparisonJob
+    | CollaborativeVolumeJob
+    | MasterSlaveMappingJob
+    | KinetostaticFieldJob
+    | ParallelWorkspaceJob
+    | FiveBarJob
+    | PlanarBoundaryJob
+    | BoundaryPatchesJob
+    | MethodComparisonJob
+)
+ANALYSED: dict[str, type[Document]] = {job.model_fields["analysis"].default: job for job in get_args(AnyAnalysedJob)}
+
+AnalysedJob = Annotated[AnyAnalysedJob, Discriminator("analysis"), BeforeValidator(tagged("analysis", ANALYSED))]

@@ -1,0 +1,78 @@
+"""A robot with the frames between which its chain runs, and every robot of a document."""
+
+from collections.abc import Iterator, Mapping
+from typing import Annotated, Any
+
+from pydantic import BeforeValidator
+
+from wsrender.documents.document import Document
+from wsrender.documents.quantities import Name
+from wsrender.documents.robot import RobotSpec
+
+ArmPath = tuple[str | int, ...]
+"""Keys from a job document to an arm in it; empty: the job itself is one."""
+
+
+def _robot(value: Any) -> Any:
+    return {"library": value} if isinstance(value, str) else value
+
+
+class Arm(Document):
+    """A robot and the frames between which its chain runs."""
+
+    robot: Annotated[RobotSpec, BeforeValidator(_robot)]
+    """The robot and where it stands; a string is the name of a library robot."""
+    base: Name | None = None
+    """Body, link or site at which the chain starts; null: the world."""
+    tip: Name | None = None
+    """Site, body or link at the end of the chain; null: the site "tool", or else the only end there is."""
+
+    @property
+    def held_joints(self) -> Mapping[str, float]:
+        """Joints that the job holds at a value, by name [rad or m]."""
+        return getattr(getattr(self, "sampling", self), "locked", {})
+
+    @property
+    def needs_ranges(self) -> bool:
+        """Whether every other joint must have limits."""
+        return True
+
+    def arms(self) -> "dict[ArmPath, Arm]":
+        """Every arm of a job by its path, in the order of its robots; a job of one robot is an arm itself."""
+        return {(): self}
+
+    def sweeps(self) -> list[Any]:
+        """The arms whose joint spaces a job samples, each as often as it does."""
+        return [arm for arm in self.arms().values() if hasattr(arm, "sampling")]
+
+
+def robots_in(document: Any, path: ArmPath = ()) -> Iterator[tuple[ArmPath, dict[str, Any]]]:
+    """(path, robot) of every robot of a canonical document."""
+    items = document.items() if isinstance(document, dict) else enumerate(document)
+    for key, value in items:
+        if key == "robot" and isinstance(value, dict):
+            yield (*path, key), value
+        elif isinstance(value, dict | list):
+            yield from robots_in(value, (*path, key))
+
+
+def local_paths(document: Any, path: ArmPath = ()) -> Iterator[ArmPath]:
+    """Where a canonical document names a file of the machine that runs it."""
+    items = document.items() if isinstance(document, dict) else enumerate(document)
+    for key, value in items:
+        if key == "path" and isinstance(value, str):
+            yield (*path, key)
+        elif isinstance(value, dict | list):
+            yield from local_paths(value, (*path, key))
+
+
+def at_path(document: Any, path: ArmPath) -> Any:
+    """What a document holds at a path."""
+    for key in path:
+        document = document[key]
+    return document
+
+
+def dotted(path: ArmPath, *fields: str) -> str:
+    """A path as errors write it, with fields below it: ``robots.0.robot.path``."""
+    return ".".join(map(str, (*path, *fields)))

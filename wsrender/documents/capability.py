@@ -1,0 +1,39 @@
+"""The job ``capability``: from which directions the end effector can approach each voxel."""
+
+from typing import Annotated, Literal
+
+from pydantic import BeforeValidator, Field
+
+from wsrender.documents.arm import Arm
+from wsrender.documents.options import Device
+from wsrender.documents.quantities import PositiveNumber, Seed, VoxelSize, integer, real
+
+LARGEST_SET = 10_000
+
+
+class CapabilityJob(Arm):
+    """Per voxel, the share of approach directions from which its centre is reached, by inverse kinematics.
+
+    Where the arm's positions fill no volume, as in a plane, the reachable point nearest to the centre stands for it.
+    """
+
+    analysis: Literal["capability"] = "capability"
+    """Name of the analysis."""
+    voxel_size_m: VoxelSize | None = None
+    """Edge of a voxel [m]; null: a twentieth of the cube root of the workspace's convex-hull volume."""
+    directions: Annotated[int, Field(ge=1, le=LARGEST_SET), BeforeValidator(integer)] = 100
+    """Number of approach directions, spread evenly over the sphere."""
+    approach_axis: Literal["x", "y", "z", "-x", "-y", "-z"] = "z"
+    """Axis of the tip frame that points along the direction; the turn about it is free."""
+    dexterous_threshold: Annotated[float, Field(gt=0, le=1), BeforeValidator(real)] = 1.0
+    """Least reachability index of the dexterous workspace [1]."""
+    position_tolerance_m: PositiveNumber = 1e-5
+    """Largest distance to a voxel's centre that counts as reached [m]."""
+    angle_tolerance_rad: Annotated[float, Field(gt=0, le=3.14), BeforeValidator(real)] = 1e-3
+    """Largest angle to a direction that counts as reached [rad]."""
+    seed: Seed = 0
+    """Seed of the samples and starts."""
+    precision: Literal["float32", "float64"] = "float64"
+    """Floating-point type of the kernels."""
+    device: Device = "auto"
+    """Where the kernels run: "auto" (a GPU if there is one), "cpu", "cuda" or "cuda:N"."""

@@ -1,0 +1,69 @@
+"""What all parts of a job document share: strict, frozen, and with problems told in plain words."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any, ClassVar, Self
+
+from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
+from pydantic.functional_validators import ModelWrapValidatorHandler
+from pydantic_core import InitErrorDetails
+
+from wsrender.documents.problems import listed, located, worded
+from wsrender.errors import DocumentError
+
+MOST_ITEMS = 20_000  # of a list or an object: to tell what is wrong with each takes time and memory
+
+
+class Document(BaseModel):
+    """A part of a job document. Unknown fields, NaN, infinities and numbers in strings are refused."""
+
+    model_config = ConfigDict(
+        extra="forbid",
+        frozen=True,
+        validate_default=False,
+        use_attribute_docstrings=True,
+        protected_namespaces=(),
+    )
+
+    long_fields: ClassVar[tuple[str, ...]] = ()
+    """Fields whose lists may be longer than MOST_ITEMS."""
+
+    def __init__(self, /, **values: Any):
+        """Build from keyword arguments; raises DocumentError listing every problem."""
+        try:
+            super().__init__(**values)
+        except ValidationError as error:
+            raise DocumentError(listed(error, values)) from None
+
+    # Marks the constructor as one that pydantic need not call when it validates nested documents.
+    __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
+
+    def conflicts(self) -> Iterator[tuple[str, str]]:
+        """(field, message) of every pair of fields that do not go together."""
+        yield from ()
+
+    @classmethod
+    def _excess(cls, data: Any) -> Iterator[InitErrorDetails]:
+        """What has too many items even to look at."""
+        if not isinstance(data, Mapping):
+            return
+        if len(data) > MOST_ITEMS:
+            yield located((), f"must have at most {MOST_ITEMS} fields, not {len(data)}")
+            return
+        for field, value in data.items():
+            many = isinstance(value, list | tuple | Mapping) and len(value) > MOST_ITEMS
+            if many and field not in cls.long_fields:
+                yield located((str(field),), f"must have at most {MOST_ITEMS} items, not {len(value)}")
+
+    @model_validator(mode="wrap")
+    @classmethod
+    def _in_plain_words(cls, data: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
+        if excess := [*cls._excess(data)]:
+            raise ValidationError.from_exception_data(cls.__name__, excess)
+        try:
+            document = handler(data)
+        except ValidationError as error:
+            raise worded(error, cls) from None
+        problems = [located(field, message) for field, message in document.conflicts()]
+        if problems:
+            raise ValidationError.from_exception_data(cls.__name__, problems)
+        return document

@@ -1,0 +1,216 @@
+"""Force fields of a kinetostatic (haptic) rendering, and the job ``kinetostatic_field``."""
+
+import math
+from collections.abc import Iterator
+from typing import Annotated, Any, Literal
+
+from pydantic import BeforeValidator, Discriminator, Field, StrictBool
+
+from wsrender.documents.arm import Arm
+from wsrender.documents.document import Document
+from wsrender.documents.options import Device, Task
+from wsrender.documents.problems import tagged
+from wsrender.documents.quantities import Number, PositiveNumber, Seed, VoxelSize, integer, real, sequence
+from wsrender.documents.robot import Transform, Vector
+from wsrender.documents.sampling import BoundaryBiased, Grid, Random, Sampling, Sobol
+
+MOST_OBSTACLES = 100
+MOST_VERTICES = 10_000
+
+
+def _posture(value: Any) -> tuple[float, ...] | None:
+    return None if value is None else tuple(real(number) for number in sequence(value))
+
+
+def _points(value: Any) -> tuple[tuple[float, ...], ...]:
+    points = tuple(tuple(real(number) for number in sequence(point)) for point in sequence(value))
+    if not 4 <= len(points) <= MOST_VERTICES or any(len(point) != 3 for point in points):
+        raise ValueError(f"must be a list of 4 … {MOST_VERTICES} points [x, y, z]")
+    return points
+
+
+def _share(value: Any) -> float:
+    number = real(value)
+    if not 0 < number <= 1:
+        raise ValueError("must be above 0, up to 1")
+    return number
+
+
+class CharacteristicLengthChoice(Document):
+    """The length that divides the linear rows of a Jacobian, so that its entries have one unit."""
+
+    method: Literal["given", "rms", "conditioning", "least_condition"] = "rms"
+    """ "given"; "rms": root mean square of the joints' lever arms at a posture; "conditioning": least distance of the
+    Jacobian to the isotropic matrices at the posture; "least_condition": least condition number there."""
+    length_m: PositiveNumber | None = None
+    """The length of the method "given" [m]."""
+    posture: Annotated[tuple[Number, ...] | None, BeforeValidator(_posture)] = None
+    """Joint values of the posture [rad or m]; null: the middle of every joint's range."""
+
+    def conflicts(self) -> Iterator[tuple[str, str]]:
+        """(field, message) of every pair of fields that do not go together."""
+        if (self.method == "given") != (self.length_m is not None):
+            yield "length_m", 'must be given with the method "given", and with no other'
+        if self.method == "given" and self.posture is not None:
+            yield "posture", 'must be null with the method "given"'
+
+
+class HapticDevice(Document):
+    """The device that is held in the hand; the defaults are a small desktop device."""
+
+    kind: Literal["force", "wrench"] = "force"
+    """Whether it renders a force (3 degrees of freedom) or force and torque (6)."""
+    peak_force_n: PositiveNumber = 6.4
+    """Largest force [N]; of a wrench, of √(force² + (torque / characteristic length)²)."""
+    continuous_force_n: PositiveNumber = 1.4
+    """Largest force that it can hold for ever [N]."""
+    thermal_time_s: PositiveNumber = 10.0
+    """Time constant with which its motors warm up [s]."""
+    damping_n_s_per_m: PositiveNumber = 0.5
+    """Viscous damping of its own mechanics [N s/m], which bounds the stiffness that it can render."""
+    period_s: Annotated[float, Field(ge=5e-4, le=0.1), BeforeValidator(real)] = 0.001
+    """Period of its loop [s]."""
+
+    def conflicts(self) -> Iterator[tuple[str, str]]:
+        """(field, message) of every pair of fields that do not go together."""
+        if self.continuous_force_n > self.peak_force_n:
+            yield "continuous_force_n", f"must be at most peak_force_n, {self.peak_force_n:g}"
+
+
+class JointLimitForce(Document):
+    """A ramp before every joint limit."""
+
+    margin_rad: PositiveNumber = math.radians(10)
+    """Width of the ramp of a revolute joint [rad]."""
+    margin_m: PositiveNumber = 0.01
+    """Width of the ramp of a prismatic joint [m]."""
+    stiffness_n_m_per_rad: PositiveNumber | None = None
+    """Stiffness of a revolute joint's potential [N m/rad]; null: peak force × characteristic length / margin."""
+    stiffness_n_per_m: PositiveNumber | None = None
+    """Stiffness of a prismatic joint's potential [N/m]; null: peak force / margin."""
+
+
+class ConditioningForce(Document):
+    """A force away from ill-conditioned postures, towards a larger inverse condition number."""
+
+    inverse_condition_on: Annotated[float, Field(gt=0, le=1), BeforeValidator(_share)] = 0.2
+    """Inverse condition number below which the force acts [1]."""
+    condition_threshold: Annotated[float, Field(gt=1), BeforeValidator(real)] = 20.0
+    """Condition number at which it has its full strength [1]."""
+    stiffness_n_m: PositiveNumber | None = None
+    """Stiffness of the potential [N m]; null: peak force × characteristic length / (width of the ramp)."""
+
+    def conflicts(self) -> Iterator[tuple[str, str]]:
+        """(field, message) of every pair of fields that do not go together."""
+        if not self.inverse_condition_on * self.condition_threshold > 1:
+            yield "condition_threshold", f"must be above 1 / inverse_condition_on, {1 / self.inverse_condition_on:g}"
+
+
+class BoundaryForce(Document):
+    """A force from the boundary of the workspace inwards."""
+
+    margin_m: PositiveNumber = 0.02
+    """Distance from the boundary at which the force begins [m]."""
+    stiffness_n_per_m: PositiveNumber | None = None
+    """Stiffness of the potential [N/m]; null: peak force / margin."""
+    cells: Annotated[int, Field(ge=16, le=256), BeforeValidator(integer)] = 48
+    """Cells along the mean edge of the workspace's box; the boundary is known to about half a cell."""
+    refined: StrictBool = False
+    """Whether cells at the boundary are decided by inverse kinematics (slower), or by samples alone."""
+    seed: Seed = 0
+    """Seed of the samples."""
+
+
+class SphereObstacle(Document):
+    """A ball."""
+
+    shape: Literal["sphere"] = "sphere"
+    """sphere."""
+    center_m: Vector
+    """Its centre in the world [m]."""
+    radius_m: PositiveNumber
+    """Its radius [m]."""
+
+
+class BoxObstacle(Document):
+    """A box."""
+
+    shape: Literal["box"] = "box"
+    """box."""
+    pose: Transform = Transform()
+    """Its centre and axes in the world."""
+    size_m: Annotated[tuple[PositiveNumber, PositiveNumber, PositiveNumber], Field()]
+    """Edge lengths along its own x, y, z [m]."""
+
+
+class MeshObstacle(Document):
+    """The convex hull of points, such as the vertices of a mesh."""
+
+    shape: Literal["mesh"] = "mesh"
+    """mesh."""
+    pose: Transform = Transform()
+    """Where the frame of its vertices is in the world."""
+    vertices_m: Annotated[tuple[tuple[float, float, float], ...], BeforeValidator(_points)]
+    """Points [x, y, z] in that frame [m]; they must not lie in a plane."""
+
+
+_SHAPES = ("sphere", "box", "mesh")
+Obstacle = Annotated[
+    SphereObstacle | BoxObstacle | MeshObstacle, Discriminator("shape"), BeforeValidator(tagged("shape", _SHAPES))
+]
+
+
+class ObstacleForce(Document):
+    """A force away from obstacles, on a ball around the end effector."""
+
+    items: Annotated[tuple[Obstacle, ...], Field(min_length=1, max_length=MOST_OBSTACLES)]
+    """The obstacles."""
+    tip_radius_m: PositiveNumber = 0.005
+    """Radius of the ball around the end effector [m]."""
+    margin_m: PositiveNumber = 0.02
+    """Distance at which the force begins [m]."""
+    stiffness_n_per_m: PositiveNumber | None = None
+    """Stiffness of the potential [N/m]; null: peak force / margin."""
+
+
+class ForceFieldChoice(Document):
+    """The forces by which a person feels the limits and the conditioning of a robot."""
+
+    form: Literal["normalised", "potential"] = "potential"
+    """ "normalised": ramps along unit directions, which do net work on closed paths; "potential": minus the gradient of
+    a potential energy, conservative where it is not clipped at the device's peak, no singular posture is near and the
+    joints of a redundant arm come back."""
+    haptic_device: HapticDevice = HapticDevice()
+    """The device that renders them."""
+    task: Task = "linear"
+    """Rows of the Jacobian whose condition number counts: "linear", "angular", "full", or a list."""
+    characteristic_length: CharacteristicLengthChoice = CharacteristicLengthChoice()
+    """The length that makes linear and angular rows comparable."""
+    joint_limits: JointLimitForce | None = JointLimitForce()
+    """Force of the joint limits; null: none."""
+    conditioning: ConditioningForce | None = ConditioningForce()
+    """Force of the conditioning; null: none."""
+    boundary: BoundaryForce | None = None
+    """Force of the workspace's boundary; null: none."""
+    obstacles: ObstacleForce | None = None
+    """Force of obstacles; null: none."""
+
+
+class KinetostaticFieldJob(Arm):
+    """The force field of a robot's limits and conditioning over its workspace, as a volume of vectors."""
+
+    analysis: Literal["kinetostatic_field"] = "kinetostatic_field"
+    """Name of the analysis."""
+    field: ForceFieldChoice = ForceFieldChoice()
+    """Which forces act."""
+    sampling: Sampling = Sobol(100_000)
+    """Configurations at which the field is evaluated; a voxel holds the mean over those that reach it."""
+    voxel_size_m: VoxelSize | None = None
+    """Edge of a voxel [m]; null: a twenty-fifth of the cube root of the workspace's convex-hull volume."""
+    device: Device = "auto"
+    """Where kernels run that find the workspace's boundary: "auto", "cpu", "cuda" or "cuda:N"."""
+
+    def conflicts(self) -> Iterator[tuple[str, str]]:
+        """(field, message) of every pair of fields that do not go together."""
+        if not isinstance(self.sampling, Grid | Random | Sobol | BoundaryBiased):
+            yield "sampling", 'must not be "converge": the field is evaluated on one sampling'

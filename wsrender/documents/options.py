@@ -1,0 +1,146 @@
+"""The choices of a job document: task rows, indices, statistics, penalisation, device."""
+
+import re
+from collections.abc import Mapping
+from numbers import Integral
+from typing import Annotated, Any, Literal
+
+from pydantic import BeforeValidator, Field, WithJsonSchema
+
+from wsrender.documents.quantities import Name, Number, distinct, integer, quoted, real, sequence
+
+TASK_ROWS = ("x", "y", "z", "rx", "ry", "rz")
+NAMED_TASKS = {"linear": TASK_ROWS[:3], "angular": TASK_ROWS[3:], "full": TASK_ROWS}
+INDEX_GROUPS = ("kinematic", "dynamic", "all")
+STATISTICS = ("count", "maximum", "mean", "minimum")
+MAP_COLUMNS = ("configuration", "orientation")
+DEFAULT_PENALTY = 10.0  # K of [WSR] eq. 3 when the penalisation is on
+SMALLEST_PENALTY, LARGEST_PENALTY = 1e-3, 1e6  # beyond them float32 cannot tell the penalisation from a constant
+_DEVICE = re.compile(r"auto|cpu|cuda(:\d{1,3})?")
+
+
+def _task(value: Any) -> str | tuple[str, ...]:
+    if isinstance(value, str) and value in NAMED_TASKS:
+        return value
+    if isinstance(value, str) or value is None or any(row not in TASK_ROWS for row in sequence(value)):
+        raise ValueError(f"must be {quoted(NAMED_TASKS)} or a list of rows from {' '.join(TASK_ROWS)}")
+    rows = _ordered(value, TASK_ROWS)
+    return next((name for name, named in NAMED_TASKS.items() if rows == named), rows)
+
+
+def _indices(value: Any) -> str | tuple[str, ...]:
+    if isinstance(value, str) and value in INDEX_GROUPS:
+        return value
+    names = () if isinstance(value, str) or value is None else distinct(sequence(value))
+    if not names or not all(isinstance(name, str) and name for name in names):
+        raise ValueError(f"must be {quoted(INDEX_GROUPS)} or a list of index names")
+    return names
+
+
+def _indices_or_none(value: Any) -> str | tuple[str, ...]:
+    return () if isinstance(value, list | tuple) and not value else _indices(value)
+
+
+def _option_value(value: Any) -> bool | int | float | tuple[float, ...]:
+    if isinstance(value, bool):
+        return value
+    if hasattr(value, "tolist"):
+        value = value.tolist()
+    if isinstance(value, list | tuple):
+        return tuple(real(item) for item in value)
+    try:
+        return integer(value) if isinstance(value, Integral) else real(value)
+    except ValueError:
+        raise ValueError("must be a number, true, false or a list of numbers") from None
+
+
+def _options(value: Any) -> dict[str, Any]:
+    if not isinstance(value, Mapping):
+        raise ValueError("must be an object")
+    return dict(value)
+
+
+def _statistics(value: Any) -> tuple[str, ...]:
+    asked = sequence(value)
+    return _ordered(asked if "count" in asked else ["count", *asked], STATISTICS)
+
+
+def _statistics_or_none(value: Any) -> tuple[str, ...] | None:
+    return None if value is None else _statistics(value)
+
+
+def _columns(value: Any) -> tuple[str, ...]:
+    columns = sequence(value)
+    return _ordered(columns, MAP_COLUMNS) if columns else ()
+
+
+def _penalty(value: Any) -> float | None:
+    if value is True:
+        return DEFAULT_PENALTY
+    if value is None or value is False:
+        return None
+    number = real(value)
+    if not SMALLEST_PENALTY <= number <= LARGEST_PENALTY:
+        raise ValueError("must be 0.001 … 1e6 (the K of the penalisation), true (10) or null (off)")
+    return number
+
+
+def _device(value: Any) -> str:
+    if not isinstance(value, str) or not _DEVICE.fullmatch(value):
+        raise ValueError('must be "auto", "cpu", "cuda" or "cuda:N"')
+    return value
+
+
+def _configurations(value: Any) -> tuple[tuple[float, ...], ...] | None:
+    if value is None:
+        return None
+    rows = tuple(tuple(real(q) for q in sequence(row)) for row in sequence(value))
+    if len({len(row) for row in rows}) > 1:
+        raise ValueError("must hold rows of one length, one joint value per joint")
+    return rows
+
+
+def _ordered(value: Any, allowed: tuple[str, ...]) -> tuple[str, ...]:
+    """The distinct items of a list in the order of ``allowed``, so that equal jobs have equal documents."""
+    items = distinct(sequence(value))
+    unknown = [item for item in items if item not in allowed]
+    if unknown:
+        raise ValueError(f"must be a list of items from {' '.join(allowed)}")
+    return tuple(name for name in allowed if name in items)
+
+
+Task = Annotated[
+    Literal["linear", "angular", "full"] | tuple[Literal["x", "y", "z", "rx", "ry", "rz"], ...],
+    BeforeValidator(_task),
+]
+Indices = Annotated[
+    Literal["kinematic", "dynamic", "all"] | tuple[Name, ...],
+    BeforeValidator(_indices),
+]
+IndicesOrNone = Annotated[
+    Literal["kinematic", "dynamic", "all"] | tuple[Name, ...],
+    BeforeValidator(_indices_or_none),
+]
+_OptionValue = Annotated[bool | int | float | tuple[Number, ...], BeforeValidator(_option_value)]
+IndexOptions = Annotated[
+    dict[Name, Annotated[dict[Name, _OptionValue], BeforeValidator(_options)]], BeforeValidator(_options)
+]
+Penalty = Annotated[
+    float | None,
+    BeforeValidator(_penalty),
+    WithJsonSchema(
+        {
+            "anyOf": [
+                {"type": "number", "minimum": SMALLEST_PENALTY, "maximum": LARGEST_PENALTY},
+                {"type": "boolean"},
+                {"type": "null"},
+            ]
+        }
+    ),
+]
+StatisticsOrNone = Annotated[
+    tuple[Literal["count", "maximum", "mean", "minimum"], ...] | None, BeforeValidator(_statistics_or_none)
+]
+MapColumns = Annotated[tuple[Literal["configuration", "orientation"], ...], BeforeValidator(_columns)]
+Device = Annotated[str, BeforeValidator(_device), Field(json_schema_extra={"pattern": f"^({_DEVICE.pattern})$"})]
+Configurations = Annotated[tuple[tuple[Number, ...], ...] | None, BeforeValidator(_configurations)]

@@ -1,0 +1,291 @@
+"""The robot of a job document: where its model comes from, where it stands, what it carries."""
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import BeforeValidator, Field, StrictStr, model_validator
+
+from wsrender.documents.document import Document
+from wsrender.documents.quantities import Name, Number, PositiveNumber, quoted, real, sequence
+
+SOURCES = ("library", "dh", "mjcf", "urdf", "model", "path")
+LARGEST = 1e6  # m or rad: beyond any robot, far from overflow
+_IN_DEGREES = ("alpha", "theta", "limits")
+
+
+def _numbers(*counts: int) -> BeforeValidator:
+    """A validator of lists of finite numbers, of any of the given lengths."""
+    allowed = " or ".join(str(count) for count in counts)
+
+    def validate(value: Any) -> tuple[float, ...]:
+        try:
+            numbers = tuple(real(number) for number in sequence(value))
+        except ValueError:
+            numbers = ()
+        if len(numbers) not in counts:
+            raise ValueError(f"must be a list of {allowed} finite numbers")
+        return numbers
+
+    return BeforeValidator(validate)
+
+
+def _interval(value: Any) -> tuple[float, ...] | None:
+    if value is None:
+        return None
+    try:
+        numbers = tuple(real(number) for number in sequence(value))
+    except ValueError:
+        numbers = ()
+    if len(numbers) != 2:
+        raise ValueError("must be [lower, upper], two finite numbers, or null")
+    if not numbers[0] < numbers[1]:
+        raise ValueError("must have the lower limit below the upper one")
+    if max(abs(number) for number in numbers) > LARGEST:
+        raise ValueError(f"must lie within ±{LARGEST:g}")
+    return numbers
+
+
+def _rows(value: Any) -> list:
+    rows = sequence(value)
+    if not rows:
+        raise ValueError("must have at least one row")
+    return rows
+
+
+def _joint_name(value: Any) -> Any:
+    if isinstance(value, str) and not value.isprintable():
+        raise ValueError("must hold printable characters only")
+    return value
+
+
+def _range(value: Any) -> tuple[float, ...]:
+    if (limits := _interval(value)) is None:
+        raise ValueError("must be [lower, upper], two finite numbers")
+    return limits
+
+
+Vector = Annotated[tuple[float, float, float], _numbers(3)]
+Quaternion = Annotated[tuple[float, float, float, float], _numbers(4)]
+Inertia = Annotated[tuple[float, ...], Field(min_length=3, max_length=6), _numbers(3, 6)]
+Limits = Annotated[tuple[float, float] | None, BeforeValidator(_interval)]
+Range = Annotated[tuple[float, float], BeforeValidator(_range)]
+LengthUnit = Annotated[float, Field(ge=1e-9, le=LARGEST), BeforeValidator(real)]
+Length = Annotated[float, Field(ge=-LARGEST, le=LARGEST), BeforeValidator(real)]
+NotNegative = Annotated[float, Field(ge=0), BeforeValidator(real)]
+
+
+class Transform(Document):
+    """A position and at most one of three ways to say an orientation (none: no rotation)."""
+
+    position_m: Vector = (0.0, 0.0, 0.0)
+    """Origin of the transformed frame [m]."""
+    quat_wxyz: Quaternion | None = None
+    """Quaternion, scalar first; any length but zero, it is normalised."""
+    rpy_deg: Vector | None = None
+    """Roll, pitch, yaw about fixed x, y, z as in URDF: R = Rz(yaw) Ry(pitch) Rx(roll) [°]."""
+    euler_xyz_deg: Vector | None = None
+    """Angles about the moving x, y, z: R = Rx Ry Rz [°]."""
+
+    def conflicts(self) -> Iterator[tuple[str, str]]:
+        """(field, message) of every pair of fields that do not go together."""
+        names = ("quat_wxyz", "rpy_deg", "euler_xyz_deg")
+        given = [name for name in names if getattr(self, name) is not None]
+        if len(given) > 1:
+            yield given[1], f"must not be given together with {quoted(given[:1])}: one orientation is enough"
+        if self.quat_wxyz is not None and not 1e-6 < math.hypot(*self.quat_wxyz) < 1e6:
+            yield "quat_wxyz", f"must not have length {math.hypot(*self.quat_wxyz):g}: it says no rotation"
+
+    def matrix(self) -> np.ndarray:
+        """The homogeneous transform, shape (4, 4) float64: parent ← frame, translation in metres."""
+        T = np.eye(4)
+        T[:3, 3] = self.position_m
+        if self.quat_wxyz is not None:
+            T[:3, :3] = _rotation_of_quaternion(np.array(self.quat_wxyz))
+        elif self.rpy_deg is not None:
+            x, y, z = (_turn(axis, angle) for axis, angle in enumerate(self.rpy_deg))
+            T[:3, :3] = z @ y @ x
+        elif self.euler_xyz_deg is not None:
+            x, y, z = (_turn(axis, angle) for axis, angle in enumerate(self.euler_xyz_deg))
+            T[:3, :3] = x @ y @ z
+        return T
+
+
+class DHRow(Document):
+    """One joint of a Denavit–Hartenberg table, with its limits and, optionally, the inertia of its link.
+
+    The joint variable is added to ``theta`` (revolute) or to ``d`` (prismatic). Angles may be given in
+    degrees (``alpha_deg``, ``theta_deg``, ``limits_deg``); they are kept in radians.
+    """
+
+    joint: Literal["revolute", "prismatic"] = "revolute"
+    """Kind of joint."""
+    a: Length = 0.0
+    """Length of the common normal [m]."""
+    alpha: Number = 0.0
+    """Twist about the common normal [rad]."""
+    d: Length = 0.0
+    """Offset along the joint axis, without the joint variable [m]."""
+    theta: Number = 0.0
+    """Angle about the joint axis, without the joint variable [rad]."""
+    limits: Limits = None
+    """[lower, upper] of the joint variable [rad or m]; null: a revolute joint that turns for ever."""
+    alpha_deg: Number | None = None
+    """Twist about the common normal [°], instead of alpha."""
+    theta_deg: Number | None = None
+    """Angle about the joint axis [°], instead of theta."""
+    limits_deg: Limits = None
+    """[lower, upper] of a revolute joint [°], instead of limits."""
+    name: Annotated[Name, BeforeValidator(_joint_name)] | None = None
+    """Name of the joint; null: joint1, joint2, … by its place in the table."""
+    mass: NotNegative | None = None
+    """Mass of the link [kg]; null: not published."""
+    center_of_mass: Vector = (0.0, 0.0, 0.0)
+    """Centre of mass of the link in its DH frame [m]."""
+    inertia: Inertia = (0.0, 0.0, 0.0)
+    """About the centre of mass, axes of the DH frame: [ixx, iyy, izz] or these and ixy, ixz, iyz [kg m²]."""
+    armature: NotNegative = 0.0
+    """Inertia of the rotor as seen by the joint: gear ratio² × rotor inertia [kg m² or kg]."""
+    effort_limit: PositiveNumber | None = None
+    """Largest torque or force of the joint [N m or N]; null: not published."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _degrees_to_radians(cls, data: Any) -> Any:
+        if not isinstance(data, Mapping):
+            return data
+        row = dict(data)
+        for field in _IN_DEGREES:
+            degrees = row.get(f"{field}_deg")
+            lengths = field == "limits" and row.get("joint") == "prismatic"
+            if degrees is None or row.get(field) is not None or lengths:
+                continue  # nothing to convert, or a conflict
+            try:
+                row[field] = _radians(field, degrees)
+            except ValueError:
+                continue  # the field's own validator says what is wrong
+            del row[f"{field}_deg"]
+        return row
+
+    def conflicts(self) -> Iterator[tuple[str, str]]:
+        """(field, message) of every pair of fields that do not go together."""
+        prismatic = self.joint == "prismatic"
+        for field in _IN_DEGREES:
+            if getattr(self, f"{field}_deg") is None:
+                continue
+            if prismatic and field == "limits":
+                yield "limits_deg", 'must not be given for a prismatic joint: use "limits", in metres'
+            else:
+                yield f"{field}_deg", f'must not be given together with "{field}": one of the two is enough'
+        if prismatic and self.limits is None and self.limits_deg is None:
+            yield "limits", "must be given for a prismatic joint: [lower, upper] in metres"
+        if self.mass is None and (any(self.inertia) or any(self.center_of_mass)):
+            yield "mass", 'must be given together with "inertia" and "center_of_mass"'
+        moments = np.linalg.eigvalsh(self.inertia_matrix())
+        if moments[0] < -1e-9 * np.abs(moments).max():
+            yield "inertia", f"must not have a negative principal moment, here {moments[0]:g} kg m²"
+
+    def inertia_matrix(self) -> np.ndarray:
+        """Inertia of the link about its centre of mass, axes of the DH frame [kg m²], shape (3, 3)."""
+        ixx, iyy, izz, ixy, ixz, iyz = (*self.inertia, 0.0, 0.0, 0.0)[:6]
+        return np.array([[ixx, ixy, ixz], [ixy, iyy, iyz], [ixz, iyz, izz]])
+
+
+class DHTable(Document):
+    """A serial robot as a table of Denavit–Hartenberg parameters, one row per joint from base to tip.
+
+    ``modified`` (Craig 1986): T_i = Rx(α_{i−1}) Tx(a_{i−1}) Rz(θ_i) Tz(d_i), row i holding a_{i−1}, α_{i−1}.
+    ``standard`` (Denavit & Hartenberg 1955; Paul 1981): T_i = Rz(θ_i) Tz(d_i) Tx(a_i) Rx(α_i).
+    """
+
+    convention: Literal["modified", "standard"]
+    """Which of the two conventions the rows follow."""
+    rows: Annotated[tuple[DHRow, ...], BeforeValidator(_rows)]
+    """One row per joint, from the base to the tip."""
+    name: Annotated[Name, BeforeValidator(_joint_name)] = "dh"
+    """Name of the robot."""
+
+    def joint_names(self) -> tuple[str, ...]:
+        """Names of the joints, joint1, joint2, … where a row gives none."""
+        return tuple(row.name or f"joint{k}" for k, row in enumerate(self.rows, start=1))
+
+    def conflicts(self) -> Iterator[tuple[str, str]]:
+        """(field, message) of every pair of fields that do not go together."""
+        names = self.joint_names()
+        for k, name in enumerate(names):
+            if name in names[:k]:
+                yield "rows", f'must not give two joints the name "{name}"'
+                return
+
+
+class RobotSpec(Document):
+    """A robot: exactly one source of its model, and optionally where it stands, its tool, and what the model lacks."""
+
+    library: Name | None = None
+    """Name of a robot of the library."""
+    dh: DHTable | None = None
+    """Denavit–Hartenberg table."""
+    mjcf: Annotated[StrictStr, Field(min_length=1)] | None = None
+    """Text of an MJCF model."""
+    urdf: Annotated[StrictStr, Field(min_length=1)] | None = None
+    """Text of a URDF model."""
+    model: Annotated[StrictStr, Field(pattern=r"^[0-9a-f]{64}$")] | None = None
+    """SHA-256 of a model uploaded to a server, 64 hexadecimal digits."""
+    path: Name | None = None
+    """An .xml (MJCF) or .urdf file; local runs only."""
+    placement: Transform | None = None
+    """The robot's base frame in the world; null: they coincide."""
+    tool: Transform | None = None
+    """The tool point in the frame of the tip; null: they coincide."""
+    limits: dict[Name, Range] = Field(default={})
+    """[lower, upper] of joints of the chain, by name [rad or m], instead of the model's."""
+    limits_deg: dict[Name, Range] = Field(default={})
+    """[lower, upper] of hinges of the chain, by name [°], instead of the model's."""
+    length_unit_m: LengthUnit | None = None
+    """The model's unit of length [m]: 0.001 for millimetres; 1 confirms metres. The model's positions, sizes, slides
+    and centres of mass are multiplied by it, its inertias [kg unit²] by its square. null: metres, and a job is refused
+    where they are beyond any arm."""
+
+    def conflicts(self) -> Iterator[tuple[str, str]]:
+        """(field, message) of every pair of fields that do not go together."""
+        given = [name for name in SOURCES if getattr(self, name) is not None]
+        if not given:
+            yield SOURCES[0], f"is required, or another source of the robot: one of {quoted(SOURCES)}"
+        for name in given[1:]:
+            yield name, f'must not be given together with "{given[0]}": a robot has one source'
+        for joint in sorted(self.limits.keys() & self.limits_deg.keys()):
+            yield f"limits_deg.{joint}", 'must not be given together with "limits": one of the two is enough'
+
+    @property
+    def source(self) -> str:
+        """Which of the sources is given: library, dh, mjcf, urdf, model or path."""
+        return next(name for name in SOURCES if getattr(self, name) is not None)
+
+
+def _radians(field: str, degrees: Any) -> float | list[float]:
+    if field == "limits":
+        return [math.radians(angle) for angle in _interval(degrees) or ()]
+    return math.radians(real(degrees))
+
+
+def _turn(axis: int, angle_deg: float) -> np.ndarray:
+    """Rotation about x, y or z (axis 0, 1, 2); quarter turns are exact. Shape (3, 3)."""
+    angle = math.radians(math.remainder(angle_deg, 360.0))
+    c, s = (value if abs(value) > 1e-15 else 0.0 for value in (math.cos(angle), math.sin(angle)))
+    j, k = (axis + 1) % 3, (axis + 2) % 3
+    R = np.eye(3)
+    R[j, j], R[j, k], R[k, j], R[k, k] = c, -s, s, c
+    return R
+
+
+def _rotation_of_quaternion(quat_wxyz: np.ndarray) -> np.ndarray:
+    """Rotation matrix of a quaternion of any length (Shuster 1993, eq. 117), shape (3, 3)."""
+    w, x, y, z = quat_wxyz / np.linalg.norm(quat_wxyz)
+    return np.array(
+        [
+            [w * w + x * x - y * y - z * z, 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), w * w - x * x + y * y - z * z, 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), w * w - x * x - y * y + z * z],
+        ]
+    )

@@ -1,6 +1,0 @@
-"""Exact workspaces bounded by spheres and planes: method C of Shah, Narayanan and Krovi (2010)."""
-
-from wsrender.parallel.exact.topology import Topology
-from wsrender.parallel.exact.workspace import ExactVolumes, ExactWorkspace, exact_volumes
-
-__all__ = ["ExactVolumes", "ExactWorkspace", "Topology", "exact_volumes"]

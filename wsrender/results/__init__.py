@@ -1,0 +1,1 @@
+"""Results: the result document with its data, files, pictures and pages."""

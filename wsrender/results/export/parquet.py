@@ -1,0 +1,91 @@
+"""Distribution maps and tables ↔ Parquet: plain columns, no dictionary, zstd, byte-stream-split.
+
+Columns of a map are ``x``, ``y``, ``z`` [m, world frame], the joint values by joint name, ``qw``, ``qx``, ``qy``,
+``qz`` and one per index. Units and roles stand in the schema metadata under ``wsrender``, as JSON.
+"""
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from wsrender.errors import InputError
+from wsrender.results.export.atomic import new_file
+from wsrender.results.export.column_type import column_type
+from wsrender.results.export.columns import DESCRIPTION, arrays_by_column, columns_from_json, columns_of
+from wsrender.volume.distribution_map import DistributionMap
+from wsrender.volume.table import Table
+
+ROWS_PER_GROUP = 1 << 18
+_METADATA_KEY = DESCRIPTION.encode()
+
+
+def write_table_parquet(data: DistributionMap | Table, path: str | Path) -> None:
+    """Write a map or table; each row group holds 2¹⁸ rows, so memory does not grow with their number."""
+    columns = columns_of(data)
+    arrays = arrays_by_column(data, columns)
+    schema = _schema(columns, arrays)
+    with (
+        new_file(path) as temporary,
+        pq.ParquetWriter(
+            temporary, schema, compression="zstd", use_dictionary=False, use_byte_stream_split=_split(schema)
+        ) as writer,
+    ):
+        for start in range(0, len(data), ROWS_PER_GROUP):
+            rows = slice(start, start + ROWS_PER_GROUP)
+            batch = [pa.array(np.ascontiguousarray(arrays[name][rows])) for name in schema.names]
+            writer.write_batch(pa.RecordBatch.from_arrays(batch, schema=schema))
+
+
+def _split(schema: pa.Schema) -> Any:  # the type stubs know truth values only
+    """The columns that byte-stream-split is for: numbers."""
+    return [f.name for f in schema if pa.types.is_integer(f.type) or pa.types.is_floating(f.type)]
+
+
+def _schema(columns: Any, arrays: dict[str, np.ndarray]) -> pa.Schema:
+    units = columns.column_units()
+    types = {name: column_type(arrays[name]) for name in columns.names()}
+    fields = [pa.field(name, kind, nullable=False, metadata={"unit": units[name]}) for name, kind in types.items()]
+    return pa.schema(fields, metadata={_METADATA_KEY: columns.to_json()})
+
+
+def read_table_parquet(path: str | Path) -> DistributionMap | Table:
+    """Read the map or table that ``write_table_parquet`` wrote, row group by row group.
+
+    Raises InputError where the file is not Parquet, not of wsrender or damaged.
+    """
+    path = Path(path)
+    try:
+        with pq.ParquetFile(path) as file:
+            return _read(file, path.name)
+    except (pa.ArrowException, OSError) as error:
+        raise InputError(path.name, f"cannot be read as a table: {error}") from error
+
+
+def _read(file: pq.ParquetFile, source: str) -> DistributionMap | Table:
+    schema = file.schema_arrow
+    metadata = schema.metadata or {}
+    if _METADATA_KEY not in metadata:
+        raise InputError(source, "is a Parquet file, but not a map or table written by wsrender")
+    columns = columns_from_json(metadata[_METADATA_KEY], source)
+    missing = set(columns.names()) - set(schema.names)
+    if missing:
+        raise InputError(source, f"lacks the columns {', '.join(sorted(missing))}")
+    return columns.restored(lambda names: _block(file, list(names)))
+
+
+def _block(file: pq.ParquetFile, names: Iterable[str]) -> np.ndarray:
+    """Columns of one dtype as an array (N, c)."""
+    names = list(names)
+    dtype = file.schema_arrow.field(names[0]).type.to_pandas_dtype()
+    block = np.empty((file.metadata.num_rows, len(names)), dtype)
+    start = 0
+    for batch in file.iter_batches(ROWS_PER_GROUP, columns=names):
+        stop = start + batch.num_rows
+        for k, name in enumerate(names):
+            block[start:stop, k] = batch.column(name).to_numpy(zero_copy_only=False)
+        start = stop
+    return block

@@ -1,0 +1,150 @@
+"""A 3-D picture of one or several robots in their workspaces."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from wsrender.errors import InputError
+from wsrender.results.drawing.box import AZIMUTH_DEG, ELEVATION_DEG, SeenBox, space_around
+from wsrender.results.drawing.style import INK, Heading
+from wsrender.results.render import environment as surroundings
+from wsrender.results.render.environment import Floor, Item
+from wsrender.results.render.figure import PANEL_PIXELS, figure_of
+from wsrender.results.render.process import drawn
+from wsrender.results.render.scene import Cloud, Color, DrawnSurface, Layer, Lines, Plates, Points, Rods, Scene
+from wsrender.results.render.subject import Subject
+from wsrender.results.render.views import ROBOT_COLORS, SHARED_COLOR, VIEWS, Choice
+
+if TYPE_CHECKING:
+    import trimesh
+
+_DARK: Color = (0.15, 0.15, 0.17)
+_TIP: Color = (0.784, 0.063, 0.18)
+_SHARED_ALPHA = 0.4
+SHINING = "pale parts of the arm are hidden"
+_ROD = 0.006  # radius of a rod, relative to the longest edge of the picture's box
+
+
+def picture(
+    subjects: Sequence[Subject],
+    view: str = "boundary",
+    *,
+    index: str | None = None,
+    statistic: str | None = None,
+    threshold: float = 0.9,
+    alpha: float | None = None,
+    at: tuple[float | None, float | None, float | None] = (None, None, None),
+    environment: Sequence[Item] = (),
+    shared: "trimesh.Trimesh | None" = None,
+    azimuth_deg: float = AZIMUTH_DEG,
+    elevation_deg: float = ELEVATION_DEG,
+    title: Heading | str = "",
+) -> Figure:
+    """Draw subjects in one box, with axes in metres, legend and colour bar; the defaults are those of [WSR] Table II.
+
+    ``shared`` is the surface of what several subjects reach together, drawn where they differ by colour.
+
+    Raises InputError for a view, index or number that is not allowed; MissingExtraError without PyVista; RenderError
+    where it cannot draw.
+    """
+    _check(view, threshold, alpha, elevation_deg)
+    if len(at) != 3:
+        raise InputError("at", f"must be the three planes x, y, z, each a number [m] or None, not {at}")
+    choice = Choice(index, statistic, threshold, alpha, at, azimuth_deg)
+    drawing = VIEWS[view](subjects, choice)
+    if shared is not None and drawing.scale is None:
+        drawing.layers.append(
+            DrawnSurface(shared.vertices, shared.faces, SHARED_COLOR, alpha=_SHARED_ALPHA, smooth=True)
+        )
+        drawing.handles.append(Patch(facecolor=SHARED_COLOR, alpha=_SHARED_ALPHA, label="shared by at least two"))
+    if any(subject.arm is not None for subject in subjects) and any(_is_opaque(layer) for layer in drawing.layers):
+        drawing.notes.append(SHINING)
+    space = space_around(_extent(subjects, drawing.layers, environment), PANEL_PIXELS, azimuth_deg, elevation_deg)
+    grid, frame = space.panes()
+    panes = [Lines(grid, (0.87, 0.87, 0.87), 1.0), Lines(frame, (0.6, 0.6, 0.6), 1.2)]
+    layers = [*panes, *_around(environment, space), *_robots(subjects, space), *drawing.layers]
+    image = drawn(Scene(space.camera, PANEL_PIXELS, layers))
+    handles = [*_robot_handles(subjects), *drawing.handles, *_environment_handles(environment)]
+    return figure_of(image, space, title=title, notes=drawing.notes, handles=handles, scale=drawing.scale)
+
+
+def _check(view: str, threshold: float, alpha: float | None, elevation_deg: float) -> None:
+    if view not in VIEWS:
+        raise InputError("view", f"{view!r} is not a view; allowed: {', '.join(VIEWS)}")
+    if not 0 < threshold <= 1:
+        raise InputError("threshold", f"is {threshold}; allowed are values above 0, up to 1")
+    if alpha is not None and not 0 < alpha <= 1:
+        raise InputError("alpha", f"is {alpha}; allowed are values above 0 (invisible), up to 1 (opaque)")
+    if not -80 <= elevation_deg <= 80:
+        raise InputError("elevation_deg", f"is {elevation_deg}; allowed are -80 … 80")
+
+
+def _is_opaque(layer: Layer) -> bool:
+    return isinstance(layer, DrawnSurface) and layer.alpha == 1
+
+
+def _extent(subjects: Sequence[Subject], layers: Sequence[Layer], environment: Sequence[Item]) -> np.ndarray:
+    """Points (N, 3) [m] that the picture must hold."""
+    points = [_layer_points(layer) for layer in layers]
+    points += [arm for subject in subjects for arm in subject.arms]
+    points += [link.vertices for subject in subjects for link in subject.body]
+    points += [surroundings.corners(item) for item in environment]
+    ends = np.concatenate([np.stack([p.min(axis=0), p.max(axis=0)]) for p in points if len(p)])
+    heights = [item.height_m for item in environment if isinstance(item, Floor)]
+    middle = ends.mean(axis=0)
+    return np.concatenate([ends, *[[[*middle[:2], height]] for height in heights]])
+
+
+def _layer_points(layer: Layer) -> np.ndarray:
+    match layer:
+        case DrawnSurface():
+            return layer.vertices
+        case Plates():
+            return layer.corners.reshape(-1, 3)
+        case Points():
+            return layer.positions
+        case Cloud():
+            return np.stack([layer.origin, layer.origin + np.array(layer.levels.shape) * layer.voxel_size])
+    return np.empty((0, 3))
+
+
+def _around(environment: Sequence[Item], space: SeenBox) -> list[DrawnSurface]:
+    return [part for item in environment for part in surroundings.surfaces(item, space.lower, space.upper)]
+
+
+def _robots(subjects: Sequence[Subject], space: SeenBox) -> list[Layer]:
+    """The arms as rods, thin where the bodies of their links are known."""
+    radius = _ROD * float((space.upper - space.lower).max())
+    layers: list[Layer] = []
+    for k, subject in enumerate(subjects):
+        layers += subject.body
+        for arm in subject.arms:
+            layers.append(Rods(arm, radius * (0.5 if subject.body else 1.0), _color(k, subjects)))
+    return layers
+
+
+def _color(k: int, subjects: Sequence[Subject]) -> Color:
+    return ROBOT_COLORS[k % len(ROBOT_COLORS)] if len(subjects) > 1 else _DARK
+
+
+def _robot_handles(subjects: Sequence[Subject]) -> list[Artist]:
+    arms = [(k, subject) for k, subject in enumerate(subjects) if subject.arm is not None]
+    if not arms:
+        return []
+    handles: list[Artist] = [
+        Line2D([], [], color=_color(k, subjects), lw=2.5, marker="s", markevery=[0], ms=6, label=subject.name)
+        for k, subject in arms
+    ]
+    handles.append(Line2D([], [], ls="", marker="o", ms=5, mfc="white", mec=INK, mew=1.0, label="joint"))
+    handles.append(Line2D([], [], ls="", marker="o", ms=6, mfc=_TIP, mec=_TIP, label="tip"))
+    return handles
+
+
+def _environment_handles(environment: Sequence[Item]) -> list[Artist]:
+    kinds = dict.fromkeys(type(item) for item in environment)
+    return [Patch(facecolor=surroundings.COLORS[kind], label=surroundings.LABELS[kind]) for kind in kinds]
