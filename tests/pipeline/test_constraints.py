@@ -241,3 +241,52 @@ def test_a_robot_of_a_class_stays_in_a_region_and_knows_no_expression(added):
     assert result.document["samples"] == {"drawn": 302, "admitted": 201, "rejected": {"region": 101}}
     with pytest.raises(InputError, match=r"constraints\.elbow_up: is not available"):
         ws.analyze(Crank(), ws.Grid(301), constraints={"elbow_up": True}, **options)
+
+
+FULL = np.pi / 2 * np.sqrt(2) * (0.4**3 - 0.2**3) / 3  # of the library's spherical arm, symmetric about z = 0 and y = 0
+PLACED = ws.Transform(position_m=(1.0, 2.0, 3.0), rpy_deg=(0, 0, 90))
+
+
+@pytest.mark.parametrize(
+    "region, expected",
+    [
+        ({"sphere": {"center_m": [1, 2, 3], "radius_m": 0.3}}, FULL * (0.3**3 - 0.2**3) / (0.4**3 - 0.2**3)),
+        ({"half_space": {"point_m": [1, 2, 3], "normal": [1, 0, 1]}}, FULL / 2),
+        ({"box": {"lower_m": [1, -9, -9], "upper_m": [9, 9, 9]}, "half_space": {"point_m": [1, 2, 3]}}, FULL / 4),
+    ],
+    ids=("sphere", "half_space", "box and half_space"),
+)
+def test_the_headline_is_what_is_reached_in_the_region(region, expected):
+    robot = ws.load_robot("spherical", placement=PLACED)  # symmetric about the world's planes x = 1 and z = 3
+    result = ws.analyze(robot, ws.Sobol(1 << 18), constraints={"region": region}, refined_volume=0.02)
+    headline = result.document["headline"]
+    low, high = headline["ci95"]
+    assert low <= expected <= high and headline["value"] == pytest.approx(expected, rel=0.02)
+    assert result.document["global"]["structural_length_index"] is None
+    assert [each["code"] for each in result.document["warnings"]] in ([], ["occupied_differs"])
+    assert not any(each["code"] == "few_samples" for each in result.document["warnings"])
+
+
+def test_nothing_is_reached_in_a_region_out_of_reach():
+    from wsrender.reachability.measure_refinement import refined_measure
+
+    found = refined_measure(ws.load_robot("spherical").chain, 0.05, region=Region(ball=((9, 9, 9), 0.1)))
+    assert (found.value, found.ci95) == (0.0, (0.0, 0.0))
+
+
+def test_what_inverse_kinematics_does_not_know_has_no_headline(added):
+    result = ws.analyze("ur5e", ws.Sobol(1 << 12), constraints={"elbow_up": True})
+    headline = result.document["headline"]
+    assert headline["value"] is None and "does not know the constraint elbow_up" in headline["reason"]
+    with pytest.raises(InputError, match="voxel_labels: must be false with constraints"):
+        ws.analyze("ur5e", ws.Sobol(1 << 12), constraints={"elbow_up": True}, voxel_labels=True)
+
+
+@pytest.mark.parametrize("shapes", (["box"], ["sphere"], ["half_space"], [*SHAPES]), ids="+".join)
+def test_distances_to_a_region_are_no_larger_than_those_to_points_in_it(shapes):
+    (region,) = constraints_of(Constraints(region={shape: SHAPES[shape] for shape in shapes}))
+    points = np.random.default_rng(0).uniform(-1.5, 1.5, (4000, 3))
+    inside, distance = region.holds(points), region.distance(points)
+    np.testing.assert_array_equal(distance == 0, inside)
+    apart = np.linalg.norm(points[:, None] - points[inside][None, :500], axis=-1).min(axis=1)
+    assert (distance <= apart + 1e-12).all() and distance.max() > 0.5

@@ -4,6 +4,7 @@ from itertools import product
 
 import numpy as np
 
+from wsrender.pipeline.constraints.region import Region
 from wsrender.reachability.evidence import REACHABLE
 from wsrender.reachability.inverse_solver import InverseSolver
 from wsrender.reachability.reached_set import tolerance_m
@@ -16,7 +17,13 @@ CORNERS = np.array(list(product((0, 1), repeat=3)))
 
 
 def share_of_holes(
-    chain: Chain, volume: VolumeData, *, seed: int = 0, device: str = "cpu", threads: int | None = None
+    chain: Chain,
+    volume: VolumeData,
+    *,
+    seed: int = 0,
+    device: str = "cpu",
+    threads: int | None = None,
+    region: Region | None = None,
 ) -> float:
     """How many holes there are to each occupied voxel, estimated: empty voxels whose centre and corners are reachable.
 
@@ -30,6 +37,8 @@ def share_of_holes(
     for places in (np.full((1, 3), 0.5), CORNERS):
         points = (cells[:, None] + places + volume.first_voxel) * volume.voxel_size_m
         reached = solver.solve(points.reshape(-1, 3)).label.reshape(points.shape[:2]) == REACHABLE
+        if region is not None:
+            reached &= region.holds(points.reshape(-1, 3)).reshape(points.shape[:2])
         cells, times = cells[reached.all(axis=1)], times[reached.all(axis=1)]
     beside = occupied.holds(cells[:, None] + NEIGHBOURS).sum(axis=1)
     return float(len(NEIGHBOURS) / DRAWS * (times / np.maximum(beside, 1)).sum())

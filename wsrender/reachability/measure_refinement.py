@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from wsrender.pipeline.constraints.region import Region
 from wsrender.reachability.dimension import FLAT, TipSet, tip_set
 from wsrender.reachability.reached_set import FalseNegatives, tolerance_m
 from wsrender.reachability.volume_estimate import Event, VolumeEstimate
@@ -52,9 +53,10 @@ def refined_measure(
     device: str = "cpu",
     threads: int | None = None,
     progress: Callable[[int, int], None] | None = None,
+    region: Region | None = None,
 ) -> RefinedMeasure:
     """What the end effector of one chain reaches, to a relative ``tolerance``; as in `refined_measures`."""
-    options = {"seed": seed, "device": device, "threads": threads, "progress": progress}
+    options = {"seed": seed, "device": device, "threads": threads, "progress": progress, "region": region}
     return refined_measures([chain], {"reachable": Event(1, 1)}, tolerance, **options)["reachable"]
 
 
@@ -67,14 +69,16 @@ def refined_measures(
     device: str = "cpu",
     threads: int | None = None,
     progress: Callable[[int, int], None] | None = None,
+    region: Region | None = None,
 ) -> dict[str, RefinedMeasure]:
     """By event, what so many of the placed ``chains`` reach, to a relative ``tolerance`` (half the 95 % interval).
 
     In the measure of the chains whose positions have the most dimensions: an arm that moves in a plane adds nothing to
     a volume. A number of points that depends on the tolerance alone bounds the work; where it is not enough, ``met`` is
     False and the interval as wide as it must be. ``progress``: called with the points decided and about how many there
-    will be.
+    will be. ``region``: positions elsewhere in the world do not count.
     """
+    bases = [chain.T_world_base for chain in chains]
     chains = by_the_origin(chains)
     sets = [tip_set(chain, threads) for chain in chains]
     highest = max(filled.dimension for filled in sets)
@@ -96,6 +100,8 @@ def refined_measures(
         device=device,
         threads=threads,
         progress=progress,
+        region=region,
+        bases=[bases[k] for k in filling],
     )
     tried = dict(zip(filling, found.false_negatives, strict=True))
     misses = tuple(tried.get(k, FalseNegatives(0, 0)) for k in range(len(chains)))
@@ -124,6 +130,11 @@ def _without_measure(sets: list[TipSet], T_world_own: np.ndarray) -> str:
     beside = [filled.thickness_m(T_world_own, dimension) for filled in sets]
     own = [filled.thickness_m(filled.T_world_own, dimension) for filled in sets]
     return APART[dimension] if (np.array(beside) > np.array(own) + slack).any() else ""
+
+
+def unmeasured(chain: Chain, reason: str) -> RefinedMeasure:
+    """No volume of what a chain reaches, for a reason."""
+    return _without("volume", reason, tolerance_m(chain), 1)
 
 
 def _without(quantity: str, reason: str, position_m: float, chains: int) -> RefinedMeasure:

@@ -2,12 +2,14 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import product
 from math import ceil
 
 import numpy as np
 
 from wsrender.documents.sampling import Sobol
 from wsrender.engine import configurations, positions_at
+from wsrender.pipeline.constraints.region import Region
 from wsrender.reachability.cover import covered_cells
 from wsrender.reachability.evidence import UNREACHABLE
 from wsrender.reachability.inverse_solver import InverseSolver
@@ -74,7 +76,7 @@ class ReachedSet:
     """The positions of a chain in the space of the world's first ``dimension`` axes, in which they all lie.
 
     ``solid``: whether they fill a part of it; what does not adds nothing to any volume. ``thickness_m``: how far beside
-    that space they may lie.
+    that space they may lie. ``region``, with the frame (4, 4) of the chain's base in its world: where positions count.
     """
 
     def __init__(
@@ -87,6 +89,8 @@ class ReachedSet:
         seed: int,
         device: str,
         threads: int | None,
+        region: Region | None = None,
+        T_region_base: np.ndarray | None = None,
     ):
         self.dimension, self.solid = dimension, solid
         self.position_m = max(tolerance_m(chain), thickness_m)
@@ -94,11 +98,27 @@ class ReachedSet:
         self.chain, self.seed, self.device, self.threads = self.solver.chain, seed, device, threads
         low, high = reachable_box(self.chain, self.chain.lower_limits, self.chain.upper_limits)
         self.low, self.high = low[:dimension], high[:dimension]
+        self.region = region
+        base = np.eye(4) if T_region_base is None else T_region_base
+        self._T_region_own = base @ np.linalg.inv(chain.T_world_base)
 
     def decided(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Labels (N,) int8 of points (N, d), and distances (N,) [m] to the nearest reachable point that was found."""
-        found = self.solver.solve(np.pad(points, ((0, 0), (0, 3 - self.dimension))))
-        return found.label, found.distance_m
+        """Labels (N,) int8 of points (N, d), and distances (N,) [m] to the nearest reachable point that was found.
+
+        Of points outside the region those to the region: what is reached in it is no nearer.
+        """
+        label, far = np.full(len(points), UNREACHABLE, np.int8), self._outside(points)
+        inside = far == 0
+        found = self.solver.solve(np.pad(points[inside], ((0, 0), (0, 3 - self.dimension))))
+        label[inside], far[inside] = found.label, found.distance_m
+        return label, far
+
+    def _outside(self, points: np.ndarray) -> np.ndarray:
+        """How far points (N, d) are from the region [m], (N,)."""
+        if self.region is None:
+            return np.zeros(len(points))
+        own = np.pad(points, ((0, 0), (0, 3 - self.dimension)))
+        return self.region.distance(own @ self._T_region_own[:3, :3].T + self._T_region_own[:3, 3])
 
     def decided_among(self, points: np.ndarray, possible: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The same of points in cells of which some are ``possible`` (N,) bool; near the others nothing is reached."""
@@ -117,13 +137,29 @@ class ReachedSet:
         number = neighbours_and_itself(np.asarray(sampled.any(axis=beside)))
         border = 2 + (number.astype(np.int64) - 1) * levels // (3**self.dimension - 1)
         rest = covered_cells(self.chain, block, self.dimension).astype(np.int64)
-        return np.where(number > 0, border, rest)
+        return self._in_region(block, np.where(number > 0, border, rest), 2 + levels // 2)
+
+    def _in_region(self, block: LatticeBlock, classes: np.ndarray, border: int) -> np.ndarray:
+        """The classes without cells outside the region; ``border`` where its border passes through inner ones."""
+        if self.region is None:
+            return classes
+        at = np.argwhere(classes > 0)
+        centers = (at + block.first_voxel[: self.dimension] + 0.5) * block.voxel_size_m
+        half = 0.5 * block.voxel_size_m * np.sqrt(self.dimension)
+        corners = np.array(list(product((-0.5, 0.5), repeat=self.dimension))) * block.voxel_size_m
+        within = np.all([self._outside(centers + corner) == 0 for corner in corners], axis=0)
+        cut = self._outside(centers) <= half
+        own = classes[tuple(at.T)]
+        # A shape that lies within one cell holds none of its corners, and its centre is near.
+        classes[tuple(at.T)] = np.where(within, own, np.where(cut, np.minimum(own, border), 0))
+        return classes
 
     def false_negatives(self, block: LatticeBlock, tests: int = TESTS) -> FalseNegatives:
         """The solver tried on positions of samples that are none of its starts, from as many cells as there are."""
         if not self.solid:
             return FalseNegatives(0, 0)
         positions = self._positions(SAMPLES_PER_TEST * tests)[:, : self.dimension]
+        positions = positions[self._outside(positions) == 0]
         cells = np.floor(positions / block.voxel_size_m).astype(np.int64) - block.first_voxel[: self.dimension]
         numbers = np.ravel_multi_index(tuple(cells.T), block.shape[: self.dimension])
         random = np.random.Generator(np.random.Philox(key=self.seed))

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from wsrender.pipeline.constraints.region import Region
 from wsrender.reachability.dimension import TipSet, tip_set
 from wsrender.reachability.reached_set import CELLS, FalseNegatives, ReachedSet, hidden_share, tests_of
 from wsrender.reachability.volume_estimate import Event, VolumeEstimate, estimate_volumes
@@ -90,10 +91,13 @@ def decided_volumes(
     device: str,
     threads: int | None,
     progress: Callable[[int, int], None] | None,
+    region: Region | None = None,
+    bases: Sequence[np.ndarray] | None = None,
 ) -> RefinedVolumes:
     """`refined_volumes` in the space of the first ``dimension`` axes of a frame, in which all of ``chains`` move.
 
-    ``sets``: what their positions fill; those of a smaller dimension add nothing.
+    ``sets``: what their positions fill; those of a smaller dimension add nothing. ``region``: where positions count, in
+    a world in which the chains stand on ``bases``, (4, 4) each.
     """
     into = np.linalg.inv(T_world_own)
     reached = [
@@ -105,8 +109,10 @@ def decided_volumes(
             seed=seed,
             device=device,
             threads=threads,
+            region=region,
+            T_region_base=base,
         )
-        for chain, filled in zip(chains, sets, strict=True)
+        for chain, filled, base in zip(chains, sets, bases or [np.eye(4)] * len(chains), strict=True)
     ]
     position_m = max(each.position_m for each in reached)
     solid = [each for each in reached if each.solid]

@@ -4,7 +4,9 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from wsrender.reachability.measure_refinement import RefinedMeasure, refined_measure, refined_measures
+from wsrender.pipeline.constraints.constraint import Constraint
+from wsrender.pipeline.constraints.region import Region
+from wsrender.reachability.measure_refinement import RefinedMeasure, refined_measure, refined_measures, unmeasured
 from wsrender.reachability.volume_estimate import Event
 from wsrender.reachability.voxel_labels import label_voxels
 from wsrender.robots.chain import Chain
@@ -27,13 +29,21 @@ class Refined:
 
 
 def refined(
-    chain: Chain, tolerance: float, seed: int, device: str, progress: Progress | None, threads: int | None
+    chain: Chain,
+    tolerance: float,
+    seed: int,
+    device: str,
+    progress: Progress | None,
+    threads: int | None,
+    constraints: Sequence[Constraint] = (),
 ) -> dict[str, Any]:
-    """The entry of the refined volume, area or length of a chain."""
-    found = refined_measure(
-        chain, tolerance, seed=seed, device=device, threads=threads, progress=_named(progress, VOLUME)
-    )
-    return measure_entry(found, tolerance)
+    """The entry of the refined volume, area or length of a chain, under constraints that inverse kinematics knows."""
+    region = next((each for each in constraints if isinstance(each, Region)), None)
+    if unknown := ", ".join(each.name for each in constraints if each is not region):
+        reason = f"inverse kinematics does not know the constraint {unknown}: only what was sampled is known"
+        return measure_entry(unmeasured(chain, reason), tolerance)
+    options = {"seed": seed, "device": device, "threads": threads, "progress": _named(progress, VOLUME)}
+    return measure_entry(refined_measure(chain, tolerance, region=region, **options), tolerance)
 
 
 def labelled(

@@ -147,7 +147,8 @@ class WorkspacePlan(Costed):
         if self.job.refined_volume is None:
             return None
         chain, seed = self.robot.chain.held(self.job.sampling.locked), self.sweep.sampling.seed
-        return refined(chain, self.job.refined_volume, seed, self.device, progress, execution.threads)
+        constraints = self.sweep.constraints
+        return refined(chain, self.job.refined_volume, seed, self.device, progress, execution.threads, constraints)
 
     def refine(self, partial: WorkspacePartial, progress: Progress | None, execution: Execution) -> WorkspacePartial:
         """With the refined volume, area or length and the labels of the voxels, each if asked."""
@@ -270,6 +271,8 @@ def plan_workspace(job: WorkspaceJob, robot: Robot, resolved: dict[str, Any] | N
     _check_surfaces(job, plan)
     _check_map(plan)
     fitted(block, plan.shape, devices, sampling.count)  # raises where a sweep would
+    if job.voxel_labels and plan.constraints:
+        raise InputError("voxel_labels", "must be false with constraints: labels say what is reached without them")
     if job.voxel_labels:
         check_voxels(block, LABEL_BYTES)
     shards = [(0, sampling.count)] if resolved is None else [(first, count) for first, count in resolved["shards"]]

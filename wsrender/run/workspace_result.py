@@ -19,6 +19,7 @@ from wsrender.global_indices import (
     workspace_mean,
 )
 from wsrender.notices import Notice, entries
+from wsrender.pipeline.constraints.region import Region
 from wsrender.reachability.holes import share_of_holes, share_unseen
 from wsrender.reachability.voxel_labels import counts
 from wsrender.results.result import Result
@@ -88,7 +89,7 @@ def workspace_result(
         },
         "global": {
             "global_isotropy": global_isotropy(partial),
-            **_structural_length(robot, measure),
+            **_structural_length(robot, measure, constrained=bool(plan.constraints)),
         },
         "convergence": convergence,
         "warnings": entries(
@@ -113,11 +114,13 @@ def workspace_result(
     return result
 
 
-def _structural_length(robot: Robot, measure: dict[str, Any] | None) -> dict[str, Any]:
+def _structural_length(robot: Robot, measure: dict[str, Any] | None, *, constrained: bool) -> dict[str, Any]:
     """The index, of the refined volume alone; else None, with the reason."""
     index, reason = None, ""
     if isinstance(robot.chain, HostChain):
         reason = "a robot that is defined by a Python class has no lengths of links"
+    elif constrained:
+        reason = "it says what the links are worth, not what constraints leave of the workspace"
     elif measure is None:
         reason = NOT_ASKED
     elif measure["value"] is None:
@@ -142,7 +145,8 @@ def _notices(
     holes = None
     if solid and not isinstance(robot.chain, HostChain):
         held = robot.chain.held(job.sampling.locked)
-        holes = share_of_holes(held, volume, seed=plan.sampling.seed, threads=threads)
+        region = next((each for each in plan.constraints if isinstance(each, Region)), None)
+        holes = share_of_holes(held, volume, seed=plan.sampling.seed, threads=threads, region=region)
     yield from few_samples(holes, share_unseen(volume))
     yield from occupied_differs(volumes.occupied, solid["value"] if solid else None)
 

@@ -44,6 +44,14 @@ class Region:
         inside &= ((points - numbers[6:9]) ** 2).sum(axis=1) <= numbers[9]
         return inside & (points @ numbers[10:13] >= numbers[13])
 
+    def distance(self, points: np.ndarray) -> np.ndarray:
+        """How far points (N, 3) [m] in the world are from the region at least, (N,) [m]; 0 inside."""
+        numbers = self.pack(None, np.zeros(3))  # type: ignore[arg-type]
+        beside = np.maximum(np.maximum(numbers[:3] - points, points - numbers[3:6]), 0.0)
+        outside = np.linalg.norm(points - numbers[6:9], axis=1) - np.sqrt(numbers[9])
+        below = numbers[13] - points @ numbers[10:13]
+        return np.maximum.reduce([np.linalg.norm(beside, axis=1), outside, below, np.zeros(len(points))])
+
     def host(self, q: np.ndarray, poses: np.ndarray) -> np.ndarray:
         """See `Constraint.host`."""
         return (~self.holds(poses[:, :3, 3])).astype(np.int8)
