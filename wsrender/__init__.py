@@ -32,6 +32,7 @@ from wsrender.version import __version__
 if TYPE_CHECKING:
     from wsrender import run
     from wsrender.client import Client
+    from wsrender.documents.environment import Box, Capsule, Cylinder, Environment, HalfSpace, Mesh, Sphere
     from wsrender.documents.robot import DHRow, DHTable, Transform
     from wsrender.documents.sampling import BoundaryBiased, Converge, Grid, Random, Sobol
     from wsrender.indices import Index, Option, math, register_index
@@ -62,19 +63,25 @@ if TYPE_CHECKING:
 __all__ = [
     "AccessError",
     "BoundaryBiased",
+    "Box",
+    "Capsule",
     "Client",
     "Converge",
+    "Cylinder",
     "DHRow",
     "DHTable",
     "DocumentError",
+    "Environment",
     "FiveBar",
     "ForceField",
     "Format",
     "FrameNotFoundError",
     "Grid",
+    "HalfSpace",
     "Index",
     "InputError",
     "JobFailedError",
+    "Mesh",
     "MissingExtraError",
     "MissingInertiaError",
     "ModelError",
@@ -92,6 +99,7 @@ __all__ = [
     "ServerConnectionError",
     "ServerError",
     "Sobol",
+    "Sphere",
     "Transform",
     "WaitTimeoutError",
     "WsrenderError",
@@ -147,6 +155,7 @@ _NAMES_OF_MODULE = {
         "robot_comparison",
         "shared_workspace",
     ),
+    "wsrender.documents.environment": ("Box", "Capsule", "Cylinder", "Environment", "HalfSpace", "Mesh", "Sphere"),
     "wsrender.documents.robot": ("DHRow", "DHTable", "Transform"),
     "wsrender.documents.sampling": ("BoundaryBiased", "Converge", "Grid", "Random", "Sobol"),
 }

@@ -20,6 +20,7 @@ from wsrender_server.jobs.store import JobStore
 from wsrender_server.model_text import check_model
 from wsrender_server.problems import HttpProblem, pointer
 
+LOCAL_ONLY = "is for local runs only; upload the model, or send text or points"
 BEYOND_LIMITS = 10**18  # samples
 
 
@@ -43,7 +44,7 @@ class Admission:
         if isinstance(job, IndicesAtJob) and not job.configurations:
             raise DocumentError([("configurations", "must be given: rows of joint values")])
         for path in local_paths(job.model_dump(mode="json")):
-            raise DocumentError([(dotted(path), "is for local runs only; upload the model, or send text or points")])
+            raise DocumentError([(dotted(path), LOCAL_ONLY)])
         arms = job.arms()
         for path, arm in arms.items():
             self.check_robot(arm.robot, (*path, "robot"))

@@ -136,7 +136,8 @@ def body_schemas() -> dict[str, Any]:
     parts: dict[str, Any] = schema.pop("$defs")
     _tighten_robot(parts["RobotSpec"])
     analyses = {name: ref.rpartition("/")[2] for name, ref in schema["discriminator"]["mapping"].items()}
-    _tighten_points(parts["PointSet"])
+    _tighten_points(parts["PointSet"], "points", 1)
+    _tighten_points(parts["Mesh"], "vertices_m", 4)
     options = SubmissionOptions.model_json_schema()["properties"]
     for part in parts.values():
         _tighten(part)
@@ -205,12 +206,12 @@ def _tighten_robot(part: dict[str, Any]) -> None:
     part["oneOf"] = [{"required": [source]} for source in ("library", "dh", "mjcf", "urdf", "model")]
 
 
-def _tighten_points(part: dict[str, Any]) -> None:
-    """Points in the document: a server reads no files."""
+def _tighten_points(part: dict[str, Any], name: str, least: int) -> None:
+    """Points in the document, so many at least: a server reads no files."""
     del part["properties"]["path"]
-    points = part["properties"]["points"]
-    part["properties"]["points"] = points["anyOf"][0] | {"minItems": 1, "description": points["description"]}
-    part["required"] = ["points"]
+    points = part["properties"][name]
+    part["properties"][name] = points["anyOf"][0] | {"minItems": least, "description": points["description"]}
+    part["required"] = [name]
 
 
 def _tighten(part: dict[str, Any]) -> None:

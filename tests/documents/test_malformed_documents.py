@@ -123,7 +123,7 @@ MALFORMED = [
     (job(robot=""), "robot.library", "must not be empty"),
     # unknown and wrong fields
     (job(tipp="tool"), "tipp", "is not a known field; did you mean tip?"),
-    (at(voxel_size_m=0.1), "voxel_size_m", "is not a known field; allowed: robot"),
+    (at(voxel_size_m=0.1), "voxel_size_m", "is not a known field; allowed: format, robot"),
     (at(sampling={"method": "grid"}), "sampling", "is not a known field"),
     (job(base=""), "base", "must not be empty"),
     (job(tip=3), "tip", "must be a string, not 3"),
@@ -207,7 +207,11 @@ MALFORMED = [
         "must be above 1 / inverse_condition_on, 5",
     ),
     (felt(boundary={"cells": 2}), "field.boundary.cells", "must be at least 16, not 2"),
-    (felt(obstacles={"items": [{"shape": "cone"}]}), "field.obstacles.items.0.shape", 'must be one of "sphere", "box"'),
+    (
+        felt(obstacles={"items": [{"shape": "cone"}]}),
+        "field.obstacles.items.0.shape",
+        'must be one of "half_space", "box", "sphere"',
+    ),
     (felt(obstacles={"items": []}), "field.obstacles.items", "must have at least 1 items"),
     (
         felt(obstacles={"items": [{"shape": "mesh", "vertices_m": [[0, 0, 0]]}]}),

@@ -63,6 +63,18 @@ def test_a_flat_mesh_is_refused():
         )
 
 
+def test_a_floor_pushes_upwards():
+    robot = ws.load_robot("ur5e")
+    q = [0.3, -0.4, 0.9, 0.2, 0.5, 0.0]
+    height = robot.forward_kinematics([q])[0, 2, 3]
+    floor = ws.HalfSpace(name="floor", point_m=(5, 5, height - 0.015))
+    field = ws.force_field(robot, joint_limits=None, conditioning=None, obstacles=ws.Environment([floor]))
+    state = field.evaluate(q)
+    assert state.obstacle_m == pytest.approx(0.015 - 0.005)
+    stiffness = 6.4 / 0.02  # peak force / margin
+    assert state.force == pytest.approx([0, 0, stiffness * (0.02 - 0.01)], abs=1e-6)
+
+
 def shell():
     """Waist, elevation, slide: a thick spherical shell, 0.3 … 0.7 m, all round below 60° of elevation."""
     rows = [

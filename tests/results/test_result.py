@@ -65,7 +65,7 @@ def test_load_restores_what_save_wrote(tmp_path, result):
     result.save(tmp_path / "new" / "out")
     loaded = Result.load(tmp_path / "new" / "out")
     assert loaded.document == result.document
-    assert {**loaded.document, "artifacts": []} == document()
+    assert {**loaded.document, "artifacts": []} == {"format": 2, **document()}
     assert_same_map(loaded.map, result.map)
     assert_same_map(loaded.sample, result.sample)
     assert_same_volume(loaded.volume, result.volume)

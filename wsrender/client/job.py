@@ -14,6 +14,7 @@ from wsrender.client.problems import error_of_problem
 from wsrender.client.remote_result import RemoteFiles, RemoteResult
 from wsrender.errors import JobFailedError, WaitTimeoutError
 from wsrender.progress import RunProgress
+from wsrender.results.export.result_format import current_document
 from wsrender.results.result import Result
 
 FINISHED = ("succeeded", "failed", "canceled", "timed_out")
@@ -89,7 +90,7 @@ class Job:
         self.wait()
         if self.state != "succeeded":
             raise error_of_problem(self._problem(), JobFailedError)
-        document = self._connection.request("GET", f"{self._path}/result").json()
+        document = current_document(self._connection.request("GET", f"{self._path}/result").json())
         return RemoteResult(document, RemoteFiles(self._connection, self.id, document))
 
     def cancel(self) -> Self:

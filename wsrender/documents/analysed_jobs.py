@@ -12,6 +12,7 @@ from wsrender.documents.collaborative import CollaborativeVolumeJob
 from wsrender.documents.constraints import Constrained
 from wsrender.documents.document import Document
 from wsrender.documents.five_bar import FiveBarJob
+from wsrender.documents.format import JobDocument
 from wsrender.documents.index_choices import IndexChoices
 from wsrender.documents.kinetostatics import KinetostaticFieldJob
 from wsrender.documents.mapping import MasterSlaveMappingJob
@@ -27,7 +28,7 @@ from wsrender.documents.several_robots import RobotComparisonJob, SharedWorkspac
 from wsrender.documents.surfaces import Surfaces
 
 
-class WorkspaceJob(IndexChoices, Constrained, Arm):
+class WorkspaceJob(IndexChoices, Constrained, Arm, JobDocument):
     """Sample the joint space of a robot: distribution map, volume data and global indices."""
 
     analysis: Literal["workspace"] = "workspace"
@@ -71,7 +72,7 @@ class WorkspaceJob(IndexChoices, Constrained, Arm):
             yield "map_columns", 'must be empty unless "keep_map" is true'
 
 
-class IndicesAtJob(IndexChoices, Constrained, Arm):
+class IndicesAtJob(IndexChoices, Constrained, Arm, JobDocument):
     """Local indices at given configurations."""
 
     long_fields: ClassVar[tuple[str, ...]] = ("configurations",)

@@ -5,12 +5,13 @@ from typing import Annotated, Literal
 from pydantic import BeforeValidator, Field
 
 from wsrender.documents.arm import Arm
+from wsrender.documents.format import JobDocument
 from wsrender.documents.quantities import Name, Number, integer
 
 FEWEST_CELLS, MOST_CELLS = 8, 256
 
 
-class BoundaryPatchesJob(Arm):
+class BoundaryPatchesJob(Arm, JobDocument):
     """The boundary surface of the positions that a spatial arm reaches, segmented in patches, with edges and corners.
 
     At least three joints must move the end effector's position; others, such as those of a wrist, may follow that do

@@ -5,13 +5,14 @@ from typing import Annotated, Literal
 from pydantic import BeforeValidator, Field
 
 from wsrender.documents.arm import Arm
+from wsrender.documents.format import JobDocument
 from wsrender.documents.options import Device
 from wsrender.documents.quantities import PositiveNumber, Seed, VoxelSize, integer, real
 
 LARGEST_SET = 10_000
 
 
-class CapabilityJob(Arm):
+class CapabilityJob(Arm, JobDocument):
     """Per voxel, the share of approach directions from which its centre is reached, by inverse kinematics.
 
     Where the arm's positions fill no volume, as in a plane, the reachable point nearest to the centre stands for it.

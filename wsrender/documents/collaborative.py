@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field, model_validator
 
 from wsrender.documents.arm import Arm, ArmPath
-from wsrender.documents.document import Document
+from wsrender.documents.format import JobDocument
 from wsrender.documents.options import Device
 from wsrender.documents.point_sets import PointSet, is_point_set
 from wsrender.documents.quantities import Count, RelativeTolerance, Seed, integer, sequence
@@ -31,7 +31,7 @@ ArmOrPoints = Annotated[Arm | PointSet, BeforeValidator(_source)]
 Cells = Annotated[tuple[int, int, int], BeforeValidator(_cells)]
 
 
-class CollaborativeVolumeJob(Document):
+class CollaborativeVolumeJob(JobDocument):
     """Volume that two arms reach together, by the body-elemental algorithm, and its true value beside it."""
 
     analysis: Literal["collaborative_volume"] = "collaborative_volume"

@@ -1,57 +1,19 @@
 """Constraints on configurations in a job document: each by its name."""
 
-import math
 from collections.abc import Iterator, Mapping
 from typing import Annotated, Any
 
 from pydantic import BeforeValidator, ConfigDict, StrictBool
 
 from wsrender.documents.document import Document
-from wsrender.documents.quantities import Number, PositiveNumber, real
-from wsrender.documents.robot import Vector
-
-
-class Box(Document):
-    """A box along the world's axes."""
-
-    lower_m: Vector
-    """Its lower corner [m]."""
-    upper_m: Vector
-    """Its upper corner [m]."""
-
-    def conflicts(self) -> Iterator[tuple[str, str]]:
-        """(field, message) of every pair of fields that do not go together."""
-        if not all(low < high for low, high in zip(self.lower_m, self.upper_m, strict=True)):
-            yield "upper_m", f"must be above lower_m, {list(self.lower_m)}, in x, y and z"
-
-
-class Sphere(Document):
-    """A ball."""
-
-    center_m: Vector = (0.0, 0.0, 0.0)
-    """Its centre in the world [m]."""
-    radius_m: PositiveNumber
-    """Its radius [m]."""
-
-
-class HalfSpace(Document):
-    """All on one side of a plane."""
-
-    point_m: Vector = (0.0, 0.0, 0.0)
-    """A point of the plane, in the world [m]."""
-    normal: Vector = (0.0, 0.0, 1.0)
-    """The plane's normal, pointing into what is allowed; any length but zero."""
-
-    def conflicts(self) -> Iterator[tuple[str, str]]:
-        """(field, message) of every pair of fields that do not go together."""
-        if not 1e-6 < math.hypot(*self.normal) < 1e6:
-            yield "normal", f"must not have length {math.hypot(*self.normal):g}: it says no direction"
+from wsrender.documents.environment import Bounds, HalfSpace, Sphere
+from wsrender.documents.quantities import Number, real
 
 
 class RegionChoice(Document):
     """Where the tip may be: in all of the shapes that are given."""
 
-    box: Box | None = None
+    box: Bounds | None = None
     """A box along the world's axes; null: none."""
     sphere: Sphere | None = None
     """A ball; null: none."""

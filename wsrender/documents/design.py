@@ -25,6 +25,7 @@ from pydantic.functional_validators import ModelWrapValidatorHandler
 from wsrender.documents.analysed_jobs import AnalysedJob
 from wsrender.documents.arm import Arm, ArmPath
 from wsrender.documents.document import Document
+from wsrender.documents.format import JobDocument
 from wsrender.documents.json_pointer import in_words_of, numbers_at, steps_of
 from wsrender.documents.problems import located, path_text, tagged
 from wsrender.documents.quantities import FileName, Name, Number, PositiveNumber, Seed, integer, quoted, real, sequence
@@ -235,7 +236,7 @@ AnalysedDocument = Annotated[
 ]
 
 
-class DesignOptimizationJob(Document):
+class DesignOptimizationJob(JobDocument):
     """Find parameters of a robot or mechanism at which the result of another analysis is best."""
 
     long_fields: ClassVar[tuple[str, ...]] = ("evaluations",)

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field
 
-from wsrender.documents.document import Document
+from wsrender.documents.format import JobDocument
 from wsrender.documents.quantities import PositiveNumber, VoxelSize, distinct, integer, quoted, real, sequence
 
 WORKING_MODES = ("++", "+-", "-+", "--")
@@ -71,7 +71,7 @@ Pair = Annotated[tuple[float, float], BeforeValidator(_pair)]
 PlaneRows = Annotated[tuple[tuple[float, float], ...], BeforeValidator(_plane_rows)]
 
 
-class FiveBarJob(Document):
+class FiveBarJob(JobDocument):
     """Workspace, conditioning, singularities and aspects of a planar five-bar with two actuated base joints."""
 
     analysis: Literal["five_bar"] = "five_bar"

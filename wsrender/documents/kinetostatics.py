@@ -4,29 +4,24 @@ import math
 from collections.abc import Iterator
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Discriminator, Field, StrictBool
+from pydantic import BeforeValidator, Field, StrictBool
 
 from wsrender.documents.arm import Arm
 from wsrender.documents.document import Document
+from wsrender.documents.environment import MOST_SHAPES, Environment, Shape
+from wsrender.documents.format import JobDocument
 from wsrender.documents.options import Device, Task
-from wsrender.documents.problems import tagged
 from wsrender.documents.quantities import Number, PositiveNumber, Seed, VoxelSize, integer, real, sequence
-from wsrender.documents.robot import Transform, Vector
 from wsrender.documents.sampling import BoundaryBiased, Grid, Random, Sampling, Sobol
-
-MOST_OBSTACLES = 100
-MOST_VERTICES = 10_000
 
 
 def _posture(value: Any) -> tuple[float, ...] | None:
     return None if value is None else tuple(real(number) for number in sequence(value))
 
 
-def _points(value: Any) -> tuple[tuple[float, ...], ...]:
-    points = tuple(tuple(real(number) for number in sequence(point)) for point in sequence(value))
-    if not 4 <= len(points) <= MOST_VERTICES or any(len(point) != 3 for point in points):
-        raise ValueError(f"must be a list of 4 … {MOST_VERTICES} points [x, y, z]")
-    return points
+def _obstacles(value: Any) -> Any:
+    """An environment, such as `ws.Environment` makes, is one of obstacles."""
+    return {"items": value.items} if type(value) is Environment else value
 
 
 def _share(value: Any) -> float:
@@ -121,50 +116,11 @@ class BoundaryForce(Document):
     """Seed of the samples."""
 
 
-class SphereObstacle(Document):
-    """A ball."""
+class ObstacleForce(Environment):
+    """A force away from what stands around, on a ball around the end effector."""
 
-    shape: Literal["sphere"] = "sphere"
-    """sphere."""
-    center_m: Vector
-    """Its centre in the world [m]."""
-    radius_m: PositiveNumber
-    """Its radius [m]."""
-
-
-class BoxObstacle(Document):
-    """A box."""
-
-    shape: Literal["box"] = "box"
-    """box."""
-    pose: Transform = Transform()
-    """Its centre and axes in the world."""
-    size_m: Annotated[tuple[PositiveNumber, PositiveNumber, PositiveNumber], Field()]
-    """Edge lengths along its own x, y, z [m]."""
-
-
-class MeshObstacle(Document):
-    """The convex hull of points, such as the vertices of a mesh."""
-
-    shape: Literal["mesh"] = "mesh"
-    """mesh."""
-    pose: Transform = Transform()
-    """Where the frame of its vertices is in the world."""
-    vertices_m: Annotated[tuple[tuple[float, float, float], ...], BeforeValidator(_points)]
-    """Points [x, y, z] in that frame [m]; they must not lie in a plane."""
-
-
-_SHAPES = ("sphere", "box", "mesh")
-Obstacle = Annotated[
-    SphereObstacle | BoxObstacle | MeshObstacle, Discriminator("shape"), BeforeValidator(tagged("shape", _SHAPES))
-]
-
-
-class ObstacleForce(Document):
-    """A force away from obstacles, on a ball around the end effector."""
-
-    items: Annotated[tuple[Obstacle, ...], Field(min_length=1, max_length=MOST_OBSTACLES)]
-    """The obstacles."""
+    items: Annotated[tuple[Shape, ...], Field(min_length=1, max_length=MOST_SHAPES)]
+    """The obstacles; names are unique."""
     tip_radius_m: PositiveNumber = 0.005
     """Radius of the ball around the end effector [m]."""
     margin_m: PositiveNumber = 0.02
@@ -192,11 +148,11 @@ class ForceFieldChoice(Document):
     """Force of the conditioning; null: none."""
     boundary: BoundaryForce | None = None
     """Force of the workspace's boundary; null: none."""
-    obstacles: ObstacleForce | None = None
-    """Force of obstacles; null: none."""
+    obstacles: Annotated[ObstacleForce | None, BeforeValidator(_obstacles)] = None
+    """Force of obstacles, an environment with or without the choices of the force; null: none."""
 
 
-class KinetostaticFieldJob(Arm):
+class KinetostaticFieldJob(Arm, JobDocument):
     """The force field of a robot's limits and conditioning over its workspace, as a volume of vectors."""
 
     analysis: Literal["kinetostatic_field"] = "kinetostatic_field"

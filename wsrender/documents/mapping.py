@@ -7,6 +7,7 @@ from pydantic import BeforeValidator, Field, StrictBool
 
 from wsrender.documents.arm import Arm, ArmPath
 from wsrender.documents.document import Document
+from wsrender.documents.format import JobDocument
 from wsrender.documents.mechanism import MechanismSpec
 from wsrender.documents.options import Device
 from wsrender.documents.point_sets import PointSet, is_point_set
@@ -124,7 +125,7 @@ class MappingSearch(Document):
     """Seed of the search over more than one number."""
 
 
-class MasterSlaveMappingJob(Document):
+class MasterSlaveMappingJob(JobDocument):
     """Whether a slave's workspace, scaled, turned and shifted, lies in its master's, and the largest that does."""
 
     analysis: Literal["master_slave_mapping"] = "master_slave_mapping"

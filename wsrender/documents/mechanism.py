@@ -7,6 +7,7 @@ from pydantic import BeforeValidator, Field
 
 from wsrender.documents.arm import Arm, ArmPath
 from wsrender.documents.document import Document
+from wsrender.documents.environment import Bounds
 from wsrender.documents.legs import Interval, Leg, Lengths, Link, SerialLeg
 from wsrender.documents.problems import shown
 from wsrender.documents.quantities import Name, PositiveNumber, quoted, real, sequence
@@ -14,16 +15,6 @@ from wsrender.documents.robot import Transform, Vector
 from wsrender.documents.serial_joints import SerialJoint, SerialJoints
 
 MOST_LEGS = 12
-
-
-def _sides(value: Any) -> tuple[float | None, ...]:
-    try:
-        sides = tuple(None if side is None else real(side) for side in sequence(value))
-    except ValueError:
-        sides = ()
-    if len(sides) != 3:
-        raise ValueError("must be a list of 3 finite numbers or null")
-    return sides
 
 
 def _three(value: Any) -> tuple[float, ...]:
@@ -45,24 +36,12 @@ def _six_points(value: Any) -> tuple[tuple[float, ...], ...] | None:
     return points
 
 
-Sides = Annotated[tuple[float | None, float | None, float | None], BeforeValidator(_sides)]
 Three = Annotated[tuple[float, float, float], BeforeValidator(_three)]
 SixPoints = Annotated[tuple[Vector, Vector, Vector, Vector, Vector, Vector] | None, BeforeValidator(_six_points)]
 
 
-class Region(Document):
+class Region(Bounds):
     """A box in the base frame that the origin of the platform does not leave; null: no side there [m]."""
-
-    lower_m: Sides = (None, None, None)
-    """Least x, y, z."""
-    upper_m: Sides = (None, None, None)
-    """Largest x, y, z."""
-
-    def conflicts(self) -> Iterator[tuple[str, str]]:
-        """(field, message) of every pair of fields that do not go together."""
-        for axis, low, high in zip("xyz", self.lower_m, self.upper_m, strict=True):
-            if low is not None and high is not None and not low < high:
-                yield "upper_m", f"must be above lower_m; along {axis} it is {high:g}, not above {low:g}"
 
 
 class _Mechanism(Document):

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field
 
 from wsrender.documents.arm import Arm, ArmPath
-from wsrender.documents.document import Document
+from wsrender.documents.format import JobDocument
 from wsrender.documents.mechanism import MechanismSpec
 from wsrender.documents.options import Device
 from wsrender.documents.quantities import VoxelSize, distinct, integer, sequence
@@ -31,7 +31,7 @@ def _subdivisions(value: Any) -> tuple[int, ...]:
     return counts
 
 
-class MethodComparisonJob(Document):
+class MethodComparisonJob(JobDocument):
     """Volume, error and time of the four methods of Shah, Narayanan and Krovi (2010), over voxel and mesh sizes."""
 
     analysis: Literal["method_comparison"] = "method_comparison"

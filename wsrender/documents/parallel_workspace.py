@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field, model_validator
 
 from wsrender.documents.arm import Arm, ArmPath
-from wsrender.documents.document import Document
+from wsrender.documents.format import JobDocument
 from wsrender.documents.mechanism import MechanismSpec
 from wsrender.documents.options import Device, IndexOptions, IndicesOrNone, Task
 from wsrender.documents.orientations import MOST_ORIENTATIONS, Orientations
@@ -16,7 +16,7 @@ from wsrender.documents.robot import Transform, Vector
 BY_BOUNDARY = ("exact", "solids")
 
 
-class ParallelWorkspaceJob(Document):
+class ParallelWorkspaceJob(JobDocument):
     """Workspace of a parallel mechanism: the poses for which every leg has a solution within its limits.
 
     ``constant_orientation``: positions at one orientation; ``orientation``: orientations at one position;

@@ -6,6 +6,7 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import BeforeValidator, Field
 
 from wsrender.documents.arm import Arm
+from wsrender.documents.format import JobDocument
 from wsrender.documents.options import Device
 from wsrender.documents.quantities import Number, PositiveNumber, integer, rows_of
 from wsrender.documents.sampling import Converge, Random, Sampling
@@ -13,7 +14,7 @@ from wsrender.documents.sampling import Converge, Random, Sampling
 MOST_CELLS = 1_000_000
 
 
-class PlanarBoundaryJob(Arm):
+class PlanarBoundaryJob(Arm, JobDocument):
     """The boundary of the positions that a planar arm reaches: exact, as lines and arcs, and estimated from samples.
 
     The arm's end effector must stay in a plane: joints turn about its normal or slide within it, or are locked.

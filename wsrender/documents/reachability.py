@@ -6,6 +6,7 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import BeforeValidator, Field
 
 from wsrender.documents.arm import Arm
+from wsrender.documents.format import JobDocument
 from wsrender.documents.options import Device
 from wsrender.documents.quantities import Number, PositiveNumber, Seed, real, rows_of
 
@@ -16,7 +17,7 @@ Points = Annotated[tuple[tuple[Number, Number, Number], ...], Field(min_length=1
 Quaternions = Annotated[tuple[tuple[Number, Number, Number, Number], ...], Field(min_length=1), rows_of(4)]
 
 
-class ReachabilityJob(Arm):
+class ReachabilityJob(Arm, JobDocument):
     """Which of given targets a robot reaches within its joint limits, by inverse kinematics from many starts."""
 
     long_fields: ClassVar[tuple[str, ...]] = ("points_m", "quats_wxyz")

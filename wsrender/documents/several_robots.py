@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 from pydantic import BeforeValidator, Field
 
 from wsrender.documents.arm import Arm, ArmPath
+from wsrender.documents.format import JobDocument
 from wsrender.documents.index_choices import IndexChoices
 from wsrender.documents.placement_scan import PlacementScan
 from wsrender.documents.quantities import Count, FileName, RelativeTolerance, VoxelSize, sequence
@@ -23,7 +24,7 @@ class PlacedRobot(Arm):
     """How its joint space is sampled; by default 2^20 Sobol samples."""
 
 
-class _SeveralRobotsJob(IndexChoices):
+class _SeveralRobotsJob(IndexChoices, JobDocument):
     robots: Annotated[tuple[PlacedRobot, ...], Field(min_length=2, max_length=MOST_ROBOTS), BeforeValidator(sequence)]
     """The robots and where they stand; the arms of one model are the same robot with other base and tip."""
     voxel_size_m: VoxelSize | None = None

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from wsrender.documents.format import FORMAT
 from wsrender.errors import InputError, MissingExtraError, RenderError, RenderWarning
 from wsrender.results import drawing, render
 from wsrender.results.export.artifacts import (
@@ -28,6 +29,7 @@ from wsrender.results.export.atomic import new_file, staging_folder
 from wsrender.results.export.cells import cell_names, cell_units, vector_names
 from wsrender.results.export.columns import columns_of
 from wsrender.results.export.formats import by_ending, check_asked, kept, written
+from wsrender.results.export.result_format import current_document
 from wsrender.results.export.text import sampling_text, summary_text
 from wsrender.results.report import Picture, report_page
 from wsrender.results.report.entries import label
@@ -113,9 +115,9 @@ class Result:
         ``robot``, one of the result, adds the bodies of its links, if its model has any, at ``configuration`` [rad or
         m]; given by name or file it stands as in the result.
         ``options``: index, statistic, threshold (of the iso-surface, share of the maximum), alpha, at (x, y, z of the
-        slices [m]), environment (a list of ``wsrender.results.render`` Floor, Table, Box), azimuth_deg and
-        elevation_deg of the eye. Needs the extra ``render``. Raises InputError, MissingExtraError; RenderError where
-        VTK cannot draw.
+        slices [m]), environment (an `Environment`, or a list of its shapes and of ``wsrender.results.render`` Floor,
+        Table, Box), azimuth_deg and elevation_deg of the eye. Needs the extra ``render``. Raises InputError,
+        MissingExtraError; RenderError where VTK cannot draw.
         """
         results = [self, *others]
         subjects = [each for name, result in named_results(results).items() for each in result._subjects(name)]
@@ -202,18 +204,19 @@ class Result:
         formats = check_asked(formats)
         with staging_folder(folder) as staging:
             records = write_artifacts(_artifacts(self, formats), staging)
-            document = write_document({**self.document, "artifacts": records}, staging / DOCUMENT)
+            document = write_document({"format": FORMAT, **self.document, "artifacts": records}, staging / DOCUMENT)
             publish(staging, Path(folder).absolute())
         self.document = document
 
     @classmethod
     def load(cls, folder: str | Path) -> "Result":
-        """Restore what ``save`` wrote.
+        """Restore what ``save`` wrote, this version's or an earlier one's.
 
-        Raises InputError, naming the file, where one that the document lists is missing or has changed.
+        Raises InputError, naming the file, where one that the document lists is missing or has changed; and for a
+        ``format`` of the document that this version does not know.
         """
         folder = Path(folder)
-        document = read_document(folder)
+        document = current_document(read_document(folder))
         files = verified_artifacts(document, folder)
         parts: dict[str, Any] = {part: _restored(kind, files.get(part_file(part))) for part, kind in PARTS.items()}
         for part, kind in NAMED_PARTS.items():

@@ -25,6 +25,7 @@ from wsrender.documents import (
     parse_job,
 )
 from wsrender.documents.arm import Arm, ArmPath, dotted
+from wsrender.documents.format import FORMAT
 from wsrender.errors import InputError
 from wsrender.notices import Notice, entries
 from wsrender.results.result import Result
@@ -207,7 +208,7 @@ def finish(
         total = sum(count for _, count in plan.shards)
         progress(total, total, "finishing")
     result = plan.finish(partial, seconds, execution)
-    document = result.document
+    result.document = document = {"format": FORMAT, **result.document}
     document.setdefault("headline", no_headline(f"the analysis {plan.job.analysis} measures none"))
     document["warnings"] = entries(plan.notices) + document.get("warnings", [])
     return result

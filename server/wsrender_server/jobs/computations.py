@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from datetime import UTC, datetime
 from typing import Any
 
@@ -9,6 +10,8 @@ from sqlalchemy import delete, func, select, update
 from sqlalchemy.orm import Session
 
 from wsrender import __version__
+from wsrender.documents import canonical_json, parse_job
+from wsrender.errors import DocumentError
 from wsrender_server.jobs.changes import Changes
 from wsrender_server.jobs.database import Transactions
 from wsrender_server.jobs.files import DataFolder
@@ -195,8 +198,10 @@ class ComputationStore:
             session.execute(select(1))
 
     def _renewed(self, session: Session, row: Computation) -> str:
-        """Let a computation without a result be one of this version; its id."""
+        """Let a computation without a result be one of this version, its document in this version's form; its id."""
         row.version, row.resolved, row.target = __version__, None, None
+        with suppress(DocumentError):  # which its plan will meet again, and its jobs fail with
+            row.document = canonical_json(parse_job(json.loads(row.document)))
         row.attempt += row.state == ComputationState.WAITING
         target = self._target(session, device_of(document := json.loads(row.document)))
         key = self.identity.key(row.owner, document, target)

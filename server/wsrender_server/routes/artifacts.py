@@ -10,11 +10,13 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from fastapi import APIRouter, Depends, Header, Query, Request, Response
 from fastapi import Path as PathParameter
-from pydantic import ConfigDict
+from pydantic import ConfigDict, Field
 from starlette.concurrency import run_in_threadpool
 
+from wsrender.documents.format import FORMAT
 from wsrender.notices import entries
 from wsrender.results.export import formats
+from wsrender.results.export.result_format import current_document
 from wsrender_server.auth import Reader
 from wsrender_server.formats import OneOf
 from wsrender_server.jobs.records import ArtifactRecord, JobRecord
@@ -88,8 +90,10 @@ class ResultDocument(View):
 
     model_config = ConfigDict(use_attribute_docstrings=True, extra="allow")
 
-    headline: HeadlineView | None = None
-    """The number that the analysis is about; missing in results of 0.1."""
+    format: int = Field(json_schema_extra={"const": FORMAT})
+    """Format of the document; results of earlier versions are answered in this one."""
+    headline: HeadlineView
+    """The number that the analysis is about."""
     warnings: list[WarningView]
     """What should be known of the model and the numbers."""
 
@@ -118,10 +122,8 @@ def get_result(server: Server, job: Finished) -> Response:
     `headline` is the number that the analysis is about, `warnings` what should be known of it: each has code, message,
     remedy and field; `other_version` says that another version of wsrender has computed it.
     """
-    document = server.store.result_document(job.owner, job.id)
-    if document is None:
-        raise _gone("result.json")
-    document["warnings"] = [*document.get("warnings", ()), *entries(notices_of(job.version))]
+    document = _result_document(server, job)
+    document["warnings"] = [*document["warnings"], *entries(notices_of(job.version))]
     return Response(json.dumps(document, ensure_ascii=False), media_type="application/json")
 
 
@@ -259,10 +261,16 @@ async def _drawn(
     return Response(content, media_type=format.media_type)
 
 
-def _sources(server: Parts, job: JobRecord) -> tuple[dict[str, Any], dict[str, str]]:
+def _result_document(server: Parts, job: JobRecord) -> dict[str, Any]:
+    """The result document of a finished job in today's form, whatever version has computed it."""
     document = server.store.result_document(job.owner, job.id)
     if document is None:
         raise _gone("result.json")
+    return current_document(document)
+
+
+def _sources(server: Parts, job: JobRecord) -> tuple[dict[str, Any], dict[str, str]]:
+    document = _result_document(server, job)
     paths = {name: server.store.artifact_path(job.owner, job.id, name) for name in SOURCES.values()}
     return document, {name: str(path) for name, path in paths.items() if path is not None}
 

@@ -2,9 +2,10 @@ import numpy as np
 import pytest
 import trimesh
 
+import wsrender as ws
 from wsrender.errors import InputError
 from wsrender.results.render import Box, Floor, Table
-from wsrender.results.render.environment import corners, surfaces
+from wsrender.results.render.environment import color, corners, items_of, label, planes, surfaces
 
 LOWER, UPPER = np.array([-1.0, -2.0, 0.0]), np.array([1.0, 2.0, 3.0])
 
@@ -50,3 +51,31 @@ def test_a_floor_covers_the_picture_and_its_top_is_the_height():
 def test_errors_name_the_field(make, message):
     with pytest.raises(InputError, match=message):
         make()
+
+
+def test_short_names_are_shapes_of_the_world():
+    assert Box((0.1, 0.2, 0.3), (0.4, 0.6, 0.8)).shapes() == [
+        ws.Box(position_m=(0.1, 0.2, 0.3), size_m=(0.4, 0.6, 0.8))
+    ]
+    assert Floor(0.25).shapes() == [ws.HalfSpace(point_m=(0, 0, 0.25))]
+    assert [shape.shape for shape in Table((0, 0, 1), (1, 1)).shapes()] == ["box"] * 5
+
+
+def test_shapes_of_an_environment_are_drawn():
+    ball = ws.Sphere(position_m=(0, 0, 1), radius_m=0.2)
+    items = items_of(ws.Environment([ws.HalfSpace(), ball]))
+    assert [label(item) for item in [*items, Floor(), Box((0, 0, 0), (1, 1, 1))]] == [
+        "half space", "sphere", "floor", "box",
+    ]  # fmt: skip
+    assert color(items[0]) == color(Floor()) != color(items[1])
+    assert planes([*items, Floor()]) == [ws.HalfSpace()] * 2
+    assert len(corners(items[0])) == 0
+    np.testing.assert_allclose(np.ptp(corners(ball), axis=0), 0.4, rtol=0.01)
+    ((floor,), (drawn,)) = (solids(item) for item in items)
+    np.testing.assert_allclose(floor.bounds, solids(Floor())[0].bounds)
+    assert drawn.volume == pytest.approx(4 / 3 * np.pi * 0.2**3, rel=0.02)
+
+
+def test_what_is_no_item_is_refused():
+    with pytest.raises(InputError, match=r"environment\.1: must be a wsrender Environment's shape, .*, not 'table'"):
+        items_of([Floor(), "table"])

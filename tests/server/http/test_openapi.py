@@ -38,6 +38,7 @@ def test_a_result_keeps_to_its_schema(client, finished, document):
     assert [warning["code"] for warning in result["warnings"]] == ["task_without_motion"]  # a planar arm, rows x, y, z
     assert not validator.is_valid(result | {"warnings": [{"code": "odd"}]})
     assert not validator.is_valid(result | {"headline": {"value": 1.0}})
+    assert result["format"] == 2 and not validator.is_valid(result | {"format": 3})
 
 
 def test_every_reference_is_there(document):

@@ -2,6 +2,7 @@
 
 import hashlib
 import io
+import json
 
 import numpy as np
 import pytest
@@ -209,3 +210,30 @@ def test_a_result_without_a_volume(client, jobs, tmp_path):
     jobs.complete(job["id"], tmp_path / "out")
     problem_of(client.get(f"/v1/jobs/{job['id']}/volume/slice"), 404, "artifact_not_found")
     problem_of(client.get(f"/v1/jobs/{job['id']}/plots/robot"), 404, "invalid_input")
+
+
+def stored_document(jobs, finished, change):
+    """Change the result document of a finished job in the data folder, as an earlier version may have written it."""
+    job = finished.rpartition("/")[2]
+    path = jobs.store.artifact_path("local", job, "result.json")
+    document = json.loads(path.read_text())
+    change(document)
+    path.write_text(json.dumps(document))
+
+
+def test_results_of_0_1_are_answered_in_todays_form(client, jobs, finished):
+    def of_0_1(document):
+        del document["format"], document["headline"], document["warnings"]
+        document["provenance"]["wsrender"] = "0.1.0"
+
+    stored_document(jobs, finished, of_0_1)
+    document = client.get(f"{finished}/result").json()
+    assert (document["format"], document["headline"]["value"], document["warnings"]) == (2, None, [])
+    assert client.get(f"{finished}/plots/robot").status_code == 200
+
+
+def test_a_result_of_another_format_is_a_problem(client, jobs, finished):
+    stored_document(jobs, finished, lambda document: document.update(format=3))
+    for path in ("result", "plots/robot"):
+        problem = problem_of(client.get(f"{finished}/{path}"), 422, "invalid_input")
+        assert "must be 2 or missing" in problem["detail"]

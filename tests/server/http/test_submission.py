@@ -3,10 +3,11 @@
 import json
 
 import pytest
+from wsrender_server.routes.kinetostatic_stream import _admitted
 
 from tests.server.http.idle_server import DOCUMENT, problem_of
 from wsrender.documents import canonical_json, parse_job
-from wsrender.errors import InputError
+from wsrender.errors import DocumentError, InputError
 
 BOMB = '<!DOCTYPE m [<!ENTITY a "aaaaaaaaaa"><!ENTITY b "&a;&a;">]><mujoco>&b;</mujoco>'
 OUTSIDE = '<!DOCTYPE m [<!ENTITY a SYSTEM "file:///etc/passwd">]><mujoco>&a;</mujoco>'
@@ -243,3 +244,30 @@ def test_configurations_must_be_there(client):
     body = {"analysis": "indices_at", "robot": "scara", "configurations": []}
     problem = problem_of(client.post("/v1/jobs", json=body), 422, "invalid_document")
     assert problem["errors"][0]["pointer"] == "#/configurations"
+
+
+SPHERE = {"shape": "sphere", "radius_m": 0.1}
+
+
+def felt(*items):
+    """A job of a force field with obstacles."""
+    return {"analysis": "kinetostatic_field", "robot": "scara", "field": {"obstacles": {"items": items}}}
+
+
+def test_meshes_in_files_are_not_opened(client):
+    job = felt({"shape": "mesh", "path": "/etc/part.stl"})
+    problem = problem_of(client.post("/v1/jobs", json=job), 422, "invalid_document")
+    (error,) = problem["errors"]
+    assert error["pointer"] == "#/field/obstacles/items/0/path" and "is for local runs only" in error["detail"]
+    with pytest.raises(DocumentError, match=r"field\.obstacles\.items\.0\.path: is for local runs only"):
+        _admitted(None, None, json.dumps({"robot": "scara", "field": job["field"]}))  # type: ignore[arg-type]
+
+
+def test_obstacles_of_earlier_documents_are_the_same_job(client):
+    jobs = [felt(SPHERE | {name: [0.3, 0, 0]}) for name in ("center_m", "position_m")]
+    jobs.append(jobs[1] | {"format": 2})
+    for key, job in enumerate(jobs):
+        headers = {"Idempotency-Key": "k"}  # the same body, so the same job
+        assert client.post("/v1/jobs", json=job, headers=headers).status_code == (200 if key else 202)
+    problem = problem_of(client.post("/v1/jobs", json=jobs[2] | {"format": 3}), 422, "invalid_document")
+    assert [error["pointer"] for error in problem["errors"]] == ["#/format"]

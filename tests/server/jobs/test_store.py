@@ -555,3 +555,17 @@ def test_parts_of_two_versions_do_not_mix(store, document, another_version):
     assert (record.resolved, record.target, record.attempt) == (None, None, before + 1)
     assert store.get("ann", job).version == store.retry("ann", failed).version == "0.1.0"
     assert not store.submit("ann", document).cached and len(store.unfinished()) == 2  # the twin joins it
+
+
+@pytest.mark.parametrize("known", [True, False])
+def test_waiting_jobs_of_an_earlier_version_take_todays_form(store, document, another_version, known):
+    """A document that this version does not know stays: its plan says what is wrong, and the job fails with that."""
+    earlier = {name: value for name, value in document.items() if name != "format"} | ({} if known else {"gone": 1})
+    another_version("0.1.0")
+    _, computation = running(store, earlier)
+    another_version("0.2.0")
+    store.recover()
+    found = store.computation(computation).document
+    assert found == (document if known else earlier)
+    store.submit("ann", document)
+    assert len(store.unfinished()) == (1 if known else 2)  # an equal job joins it

@@ -5,6 +5,7 @@ import re
 from collections.abc import Callable
 from functools import cache
 from importlib.metadata import entry_points
+from math import inf
 from typing import Any
 
 from wsrender.documents.constraints import Constraints, RegionChoice
@@ -12,7 +13,7 @@ from wsrender.errors import InputError
 from wsrender.indices.expression import Expression
 from wsrender.pipeline.constraints.constraint import ORDER, Constraint, Structure, in_order
 from wsrender.pipeline.constraints.expression import ExpressionConstraint
-from wsrender.pipeline.constraints.region import Region
+from wsrender.pipeline.constraints.region import Point, Region
 
 EXTENSIONS = "wsrender.constraints"  # entry points: functions that call `register_constraint`
 _ADDED: dict[str, ExpressionConstraint] = {}
@@ -58,12 +59,18 @@ def constraints_of(choice: Constraints | None) -> tuple[Constraint, ...]:
 
 
 def _region(choice: RegionChoice) -> Region:
-    box, ball, half = choice.box, choice.sphere, choice.half_space
+    bounds, ball, half = choice.box, choice.sphere, choice.half_space
     return Region(
-        box and (box.lower_m, box.upper_m),
-        ball and (ball.center_m, ball.radius_m),
+        bounds and (_corner(bounds.lower_m, -inf), _corner(bounds.upper_m, inf)),
+        ball and (ball.position_m, ball.radius_m),
         half and (half.point_m, half.normal),
     )
+
+
+def _corner(sides: tuple[float | None, float | None, float | None], open_side: float) -> Point:
+    """A corner of bounds, infinitely far where they have no side."""
+    x, y, z = (open_side if side is None else side for side in sides)
+    return x, y, z
 
 
 def _options_of(name: str, function: Callable[..., Any]) -> dict[str, float]:

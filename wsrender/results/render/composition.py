@@ -1,6 +1,6 @@
 """A 3-D picture of one or several robots in their workspaces."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -9,16 +9,18 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from wsrender.documents.environment import Environment
 from wsrender.errors import InputError
 from wsrender.results.drawing.box import AZIMUTH_DEG, ELEVATION_DEG, SeenBox, space_around
 from wsrender.results.drawing.style import INK, Heading
 from wsrender.results.render import environment as surroundings
-from wsrender.results.render.environment import Floor, Item
+from wsrender.results.render.environment import Item
 from wsrender.results.render.figure import PANEL_PIXELS, figure_of
 from wsrender.results.render.process import drawn
 from wsrender.results.render.scene import Cloud, Color, DrawnSurface, Layer, Lines, Plates, Points, Rods, Scene
 from wsrender.results.render.subject import Subject
 from wsrender.results.render.views import ROBOT_COLORS, SHARED_COLOR, VIEWS, Choice
+from wsrender.world.triangles import foot
 
 if TYPE_CHECKING:
     import trimesh
@@ -39,7 +41,7 @@ def picture(
     threshold: float = 0.9,
     alpha: float | None = None,
     at: tuple[float | None, float | None, float | None] = (None, None, None),
-    environment: Sequence[Item] = (),
+    environment: Iterable[Item] | Environment = (),
     shared: "trimesh.Trimesh | None" = None,
     azimuth_deg: float = AZIMUTH_DEG,
     elevation_deg: float = ELEVATION_DEG,
@@ -55,6 +57,7 @@ def picture(
     _check(view, threshold, alpha, elevation_deg)
     if len(at) != 3:
         raise InputError("at", f"must be the three planes x, y, z, each a number [m] or None, not {at}")
+    items = surroundings.items_of(environment)
     choice = Choice(index, statistic, threshold, alpha, at, azimuth_deg)
     drawing = VIEWS[view](subjects, choice)
     if shared is not None and drawing.scale is None:
@@ -64,12 +67,12 @@ def picture(
         drawing.handles.append(Patch(facecolor=SHARED_COLOR, alpha=_SHARED_ALPHA, label="shared by at least two"))
     if any(subject.arm is not None for subject in subjects) and any(_is_opaque(layer) for layer in drawing.layers):
         drawing.notes.append(SHINING)
-    space = space_around(_extent(subjects, drawing.layers, environment), PANEL_PIXELS, azimuth_deg, elevation_deg)
+    space = space_around(_extent(subjects, drawing.layers, items), PANEL_PIXELS, azimuth_deg, elevation_deg)
     grid, frame = space.panes()
     panes = [Lines(grid, (0.87, 0.87, 0.87), 1.0), Lines(frame, (0.6, 0.6, 0.6), 1.2)]
-    layers = [*panes, *_around(environment, space), *_robots(subjects, space), *drawing.layers]
+    layers = [*panes, *_around(items, space), *_robots(subjects, space), *drawing.layers]
     image = drawn(Scene(space.camera, PANEL_PIXELS, layers))
-    handles = [*_robot_handles(subjects), *drawing.handles, *_environment_handles(environment)]
+    handles = [*_robot_handles(subjects), *drawing.handles, *_environment_handles(items)]
     return figure_of(image, space, title=title, notes=drawing.notes, handles=handles, scale=drawing.scale)
 
 
@@ -95,9 +98,8 @@ def _extent(subjects: Sequence[Subject], layers: Sequence[Layer], environment: S
     points += [link.vertices for subject in subjects for link in subject.body]
     points += [surroundings.corners(item) for item in environment]
     ends = np.concatenate([np.stack([p.min(axis=0), p.max(axis=0)]) for p in points if len(p)])
-    heights = [item.height_m for item in environment if isinstance(item, Floor)]
     middle = ends.mean(axis=0)
-    return np.concatenate([ends, *[[[*middle[:2], height]] for height in heights]])
+    return np.concatenate([ends, *[foot(plane, middle)[None] for plane in surroundings.planes(environment)]])
 
 
 def _layer_points(layer: Layer) -> np.ndarray:
@@ -146,5 +148,5 @@ def _robot_handles(subjects: Sequence[Subject]) -> list[Artist]:
 
 
 def _environment_handles(environment: Sequence[Item]) -> list[Artist]:
-    kinds = dict.fromkeys(type(item) for item in environment)
-    return [Patch(facecolor=surroundings.COLORS[kind], label=surroundings.LABELS[kind]) for kind in kinds]
+    kinds = dict.fromkeys((surroundings.color(item), surroundings.label(item)) for item in environment)
+    return [Patch(facecolor=color, label=label) for color, label in kinds]

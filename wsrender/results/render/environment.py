@@ -1,17 +1,15 @@
-"""What stands around a robot: floor, tables, boxes."""
+"""What stands around a robot in a picture: shapes of the world, and short names of floor, table and box."""
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from wsrender.documents import environment as world
 from wsrender.errors import InputError
 from wsrender.results.render.scene import Color, DrawnSurface
+from wsrender.world.triangles import plate, triangles
 
-# Faces of a box whose corners are numbered by the bits x y z, outward.
-_FACES = [
-    [0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1],
-    [2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4], [1, 5, 7], [1, 7, 3],
-]  # fmt: skip
 TABLE_TOP = 0.04  # thickness of a table's top and legs [m]
 
 
@@ -25,6 +23,10 @@ class Box:
     def __post_init__(self):
         _check("box.center_m", self.center_m, 3)
         _check("box.size_m", self.size_m, 3, positive=True)
+
+    def shapes(self) -> list[world.Box]:
+        """The box in the world."""
+        return [world.Box(position_m=self.center_m, size_m=self.size_m)]
 
 
 @dataclass(frozen=True)
@@ -48,6 +50,16 @@ class Table:
                 f"floor, z = {self.floor_m:g} m",
             )
 
+    def shapes(self) -> list[world.Box]:
+        """Its top and four legs in the world."""
+        center, size, t = np.array(self.center_m, float), np.array(self.size_m, float), TABLE_TOP
+        height = center[2] - t - self.floor_m
+        boxes = [world.Box(position_m=(*center[:2], center[2] - t / 2), size_m=(*size, t))]
+        for sign in ((-1, -1), (-1, 1), (1, -1), (1, 1)):
+            foot = center[:2] + np.array(sign) * (size - t) / 2
+            boxes.append(world.Box(position_m=(*foot, self.floor_m + height / 2), size_m=(t, t, height)))
+        return boxes
+
 
 @dataclass(frozen=True)
 class Floor:
@@ -58,51 +70,56 @@ class Floor:
     def __post_init__(self):
         _check("floor.height_m", (self.height_m,), 1)
 
+    def shapes(self) -> list[world.HalfSpace]:
+        """The half-space below it."""
+        return [world.HalfSpace(point_m=(0.0, 0.0, self.height_m))]
 
-Item = Box | Table | Floor
-COLORS: dict[type, Color] = {Box: (0.72, 0.62, 0.5), Table: (0.62, 0.66, 0.7), Floor: (0.86, 0.86, 0.84)}
-LABELS: dict[type, str] = {Box: "box", Table: "table", Floor: "floor"}
+
+Item = Box | Table | Floor | world.Shape
+_WOOD: Color = (0.72, 0.62, 0.5)
+COLORS: dict[type, Color] = {Table: (0.62, 0.66, 0.7), Floor: (0.86, 0.86, 0.84), world.HalfSpace: (0.86, 0.86, 0.84)}
+
+
+def color(item: Item) -> Color:
+    """Colour of an item in pictures."""
+    return COLORS.get(type(item), _WOOD)
+
+
+def label(item: Item) -> str:
+    """What a legend calls an item: its kind."""
+    return type(item).__name__.lower() if isinstance(item, Box | Table | Floor) else item.shape.replace("_", " ")
+
+
+def items_of(environment: "Iterable[Item] | world.Environment") -> list[Item]:
+    """The items of an environment. Raises InputError for what is none."""
+    items = list(environment.items if isinstance(environment, world.Environment) else environment)
+    for k, item in enumerate(items):
+        if not isinstance(item, (Box, Table, Floor, *world.SHAPES.values())):
+            allowed = "a wsrender Environment's shape, or a wsrender.results.render Floor, Table or Box"
+            raise InputError(f"environment.{k}", f"must be {allowed}, not {item!r}")
+    return items
+
+
+def planes(items: Iterable[Item]) -> list[world.HalfSpace]:
+    """The half-spaces of items: no picture holds them whole."""
+    return [shape for item in items for shape in _shapes(item) if isinstance(shape, world.HalfSpace)]
 
 
 def corners(item: Item) -> np.ndarray:
-    """Points (N, 3) [m] that a picture of the item must hold; none for a floor but its height decides."""
-    if isinstance(item, Floor):
-        return np.empty((0, 3))
-    return np.concatenate([_ends(center, size) for center, size in _boxes(item)])
+    """Points (N, 3) [m] that a picture of the item must hold; none for a half-space but where it is decides."""
+    solids = [shape for shape in _shapes(item) if not isinstance(shape, world.HalfSpace)]
+    return np.concatenate([np.empty((0, 3)), *(triangles(shape)[0] for shape in solids)])
 
 
 def surfaces(item: Item, lower: np.ndarray, upper: np.ndarray) -> list[DrawnSurface]:
-    """The item in a picture of the box lower … upper [m]; a floor covers it."""
-    if isinstance(item, Floor):
-        middle, size = (lower + upper) / 2, upper - lower
-        thickness = 0.004 * size.max()
-        boxes = [(np.array([*middle[:2], item.height_m - thickness / 2]), np.array([*size[:2], thickness]))]
-    else:
-        boxes = _boxes(item)
-    return [_box(center, size, COLORS[type(item)]) for center, size in boxes]
+    """The item in a picture of the box lower … upper [m]; a half-space covers it."""
+    flat = world.HalfSpace
+    meshes = [plate(each, lower, upper) if isinstance(each, flat) else triangles(each) for each in _shapes(item)]
+    return [DrawnSurface(*mesh, color(item)) for mesh in meshes]
 
 
-def _boxes(item: Box | Table) -> list[tuple[np.ndarray, np.ndarray]]:
-    """(centre, size) of the boxes that make an item [m]."""
-    center, size = np.array(item.center_m, float), np.array(item.size_m, float)
-    if isinstance(item, Box):
-        return [(center, size)]
-    t = TABLE_TOP
-    height = center[2] - t - item.floor_m
-    boxes = [(center - [0, 0, t / 2], np.array([*size, t]))]
-    for sign in ((-1, -1), (-1, 1), (1, -1), (1, 1)):
-        foot = center[:2] + np.array(sign) * (size - t) / 2
-        boxes.append((np.array([*foot, item.floor_m + height / 2]), np.array([t, t, height])))
-    return boxes
-
-
-def _ends(center: np.ndarray, size: np.ndarray) -> np.ndarray:
-    return np.stack([center - size / 2, center + size / 2])
-
-
-def _box(center: np.ndarray, size: np.ndarray, color: Color) -> DrawnSurface:
-    bits = np.array([[k >> 2 & 1, k >> 1 & 1, k & 1] for k in range(8)])
-    return DrawnSurface(center + (bits - 0.5) * size, np.array(_FACES), color)
+def _shapes(item: Item) -> "Sequence[world.Shape]":
+    return item.shapes() if isinstance(item, Box | Table | Floor) else [item]
 
 
 def _check(field: str, values: tuple[float, ...], count: int, positive: bool = False) -> None:

@@ -1,0 +1,100 @@
+"""Distance of a point to shapes: to half-spaces in closed form, to all others by MuJoCo's geometry."""
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import mujoco
+import numpy as np
+
+from wsrender.documents.environment import Box, Capsule, Cylinder, HalfSpace, Mesh, Shape, Sphere
+from wsrender.documents.robot import Transform
+from wsrender.errors import InputError
+from wsrender.robots.compiled_model import MUJOCO_ERRORS, quiet
+from wsrender.world.meshes import hull_vertices
+
+FAR = 1e3  # [m] beyond which MuJoCo need not look
+POINT = 1e-6  # radius of the ball that stands for a point [m]: MuJoCo has none without
+CLOSE = 1e-12  # [m] from the surface within which its side has no direction
+
+
+class NearestShape:
+    """Signed distance of a point to the nearest of shapes; meshes count as their convex hulls.
+
+    Raises InputError for a mesh that encloses no volume, its field below ``items``.
+    """
+
+    def __init__(self, shapes: Sequence[Shape]):
+        planes = [shape for shape in shapes if isinstance(shape, HalfSpace)]
+        normals = np.array([shape.normal for shape in planes]).reshape(-1, 3)
+        self._normals = normals / np.linalg.norm(normals, axis=1, keepdims=True)
+        self._offsets = np.einsum("ij,ij->i", self._normals, np.array([s.point_m for s in planes]).reshape(-1, 3))
+        self._model = _compiled(shapes)
+        self._model.opt.ccd_tolerance, self._model.opt.ccd_iterations = 1e-10, 200
+        self._data = mujoco.MjData(self._model)
+        mujoco.mj_kinematics(self._model, self._data)
+        self._ends = np.zeros(6)
+
+    def at(self, position: np.ndarray) -> tuple[float, np.ndarray]:
+        """(distance [m] of ``position`` (3,), its gradient (3,)); negative inside, `FAR` and zeros far from all."""
+        distance, gradient = self._to_solids(position)
+        if len(self._normals):
+            heights = self._normals @ position - self._offsets
+            lowest = int(heights.argmin())
+            if heights[lowest] < distance:
+                return float(heights[lowest]), self._normals[lowest].copy()
+        return distance, gradient
+
+    def _to_solids(self, position: np.ndarray) -> tuple[float, np.ndarray]:
+        self._data.geom_xpos[0] = position
+        nearest, foot, ends = FAR, position, self._ends
+        for geom in range(1, self._model.ngeom):
+            distance = mujoco.mj_geomDistance(self._model, self._data, 0, geom, nearest, ends)
+            if distance < nearest:
+                nearest, foot = distance, ends[3:].copy()
+        if nearest >= FAR:
+            return FAR, np.zeros(3)
+        away = position - foot
+        size = math.sqrt(away.dot(away))
+        distance = nearest + POINT
+        gradient = away * ((1 if distance > 0 else -1) / size) if size > CLOSE else np.zeros(3)
+        return distance, gradient
+
+
+def _compiled(shapes: Sequence[Shape]) -> mujoco.MjModel:
+    """A model whose first geom is the point, and the others all shapes but half-spaces."""
+    spec = mujoco.MjSpec()
+    spec.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_SPHERE, size=[POINT, 0, 0])
+    for number, shape in enumerate(shapes):
+        try:
+            _add(spec, shape, number)
+        except InputError as error:
+            raise error.within(f"items.{number}") from None
+    try:
+        with quiet():
+            return spec.compile()
+    except MUJOCO_ERRORS as error:
+        raise InputError("items", f"are refused by MuJoCo: {error}") from error
+
+
+def _add(spec: Any, shape: Shape, number: int) -> None:
+    add, kinds = spec.worldbody.add_geom, mujoco.mjtGeom
+    match shape:
+        case Sphere():
+            add(type=kinds.mjGEOM_SPHERE, size=[shape.radius_m, 0, 0], pos=shape.position_m)
+        case Box():
+            add(type=kinds.mjGEOM_BOX, size=[edge / 2 for edge in shape.size_m], **_place(shape))
+        case Cylinder():
+            add(type=kinds.mjGEOM_CYLINDER, size=[shape.radius_m, shape.length_m / 2, 0], **_place(shape))
+        case Capsule():
+            add(type=kinds.mjGEOM_CAPSULE, size=[shape.radius_m, shape.length_m / 2, 0], **_place(shape))
+        case Mesh():
+            mesh = spec.add_mesh(name=f"shape{number}")
+            mesh.uservert = hull_vertices(shape).ravel().tolist()
+            add(type=kinds.mjGEOM_MESH, meshname=mesh.name, **_place(shape))
+
+
+def _place(pose: Transform) -> dict[str, list[float]]:
+    T, quat_wxyz = pose.matrix(), np.empty(4)
+    mujoco.mju_mat2Quat(quat_wxyz, T[:3, :3].ravel())
+    return {"pos": T[:3, 3].tolist(), "quat": quat_wxyz.tolist()}
