@@ -6,7 +6,7 @@ import pytest
 
 import wsrender as ws
 from tests.golden.files import job_of
-from wsrender.results.result import EXTRA_FORMATS
+from wsrender.results.export.formats import asked
 from wsrender.run import plan
 
 
@@ -42,7 +42,7 @@ def saved(tmp_path_factory):
     @cache
     def folder(analysis):
         result = ws.execute(job_of(analysis))
-        result.save(root / analysis, EXTRA_FORMATS)
+        result.save(root / analysis, asked(own=True))
         return root / analysis
 
     return folder

@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
-from wsrender.reachability.refined_measure import refined_measure
 
 import wsrender as ws
 from tests.reference.exact_volumes import CASES, articulated, spherical_pair
 from wsrender.reachability import Event, refined_volume, refined_volumes
+from wsrender.reachability.measure_refinement import refined_measure
 from wsrender.reachability.reached_set import FalseNegatives, hidden_share
 
 SPHERICAL = CASES["spherical"].volume

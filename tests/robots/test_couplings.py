@@ -230,7 +230,7 @@ def test_grids_of_leaders_on_other_branches_take_no_short_cut_that_is_wrong():
     for index in ("manipulability", "dynamic_manipulability"):
         evaluation = evaluation_of(
             robot, indices=[index], task="linear", convention="standard", joint_limit_penalty=None,
-            characteristic_length_m=1.0, torque_scaling=False, inertia="kernel", precision="float64",
+            characteristic_length_m=1.0, torque_scaling=False, inertia="kernel", precision="float64", index_options={},
         )  # fmt: skip
         structures[index] = structure_of(evaluation, plan_sampling(robot.chain, Grid(3)))
     assert structures["manipulability"].base_levels == 3

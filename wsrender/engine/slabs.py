@@ -45,7 +45,8 @@ def fitted(
         )
     x, y, z = block.first_voxel
     width = widths[count]
-    slabs = [LatticeBlock(block.voxel_size_m, (x + i, y, z), (min(width, nx - i), ny, nz)) for i in range(0, nx, width)]
+    parts = [((x + i, y, z), (min(width, nx - i), ny, nz)) for i in range(0, nx, width)]
+    slabs = [LatticeBlock(block.voxel_size_m, *part, about=block.about) for part in parts]
     return workers if device.is_cuda else workers[:count], slabs
 
 
