@@ -116,7 +116,8 @@ def test_a_value_beyond_its_bound_fails_the_job():
     document = job("float32", 5000)
     plan = run.plan(document)
     plan.sweep = replace(plan.sweep, bounds=np.array([1e-6, 1.0]))
-    with pytest.raises(NumericalError, match=r"index manipulability reaches 0\.\d+, beyond 1e-06, the bound of its entry"):
+    message = r"index manipulability reaches 0\.\d+, beyond 1e-06, the bound of its entry"
+    with pytest.raises(NumericalError, match=message):
         run.run_shard(plan, 0)
 
 
