@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 import wsrender as ws
+from wsrender.analyses import registry
 
 HEAVY = (
     "mujoco",
@@ -76,12 +77,11 @@ def test_public_modules_stay_modules():
     assert ws.execute is wsrender.run.execute
 
 
-def test_planners_hide_no_public_function():
+def test_analyses_hide_no_public_function():
     """A module becomes an attribute of its package when it is imported."""
-    from wsrender.run.steps import PLANNERS
-
-    for planner in PLANNERS.values():
-        import_module(f"wsrender.run.{planner.partition(':')[0]}")
+    for entry in registry._table().values():
+        for text in (entry.job, entry.run):
+            import_module(text.partition(":")[0])
     assert all(callable(getattr(ws.run, name)) for name in ws.run.__all__)
 
 

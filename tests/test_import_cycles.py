@@ -44,7 +44,7 @@ def graph_of(paths):
 
 def test_no_module_needs_one_that_needs_it():
     graph = graph_of(modules())
-    assert "wsrender.engine.devices" in graph["wsrender.run.execution"]
+    assert "wsrender.engine.devices" in graph["wsrender.analyses.execution"]
     assert "wsrender.run.steps" in graph["wsrender.run.design_values"]  # in a function
     assert "wsrender.run.parallel" not in graph["wsrender.run.parallel_refined"]  # for type checkers
     assert len(graph) > 400

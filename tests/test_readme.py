@@ -4,7 +4,8 @@ import re
 from pathlib import Path
 
 import wsrender as ws
-from wsrender.documents import ANALYSES, parse_job
+from wsrender.analyses.jobs import parse_job
+from wsrender.analyses.registry import job_classes
 
 README = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8")
 
@@ -33,7 +34,7 @@ def test_job_document():
 
 def test_every_analysis_is_listed_with_its_function():
     listed = dict(re.findall(r"^\| `(\w+)` \| `ws\.(\w+)`", README, flags=re.MULTILINE))
-    assert listed.keys() == ANALYSES.keys()
+    assert listed.keys() == job_classes().keys()
     assert set(listed.values()) <= set(ws.__all__)
 
 

@@ -7,7 +7,8 @@ from functools import cache
 from itertools import repeat
 from typing import Any
 
-from wsrender.documents import IndicesAtJob, canonical_json, parse_job
+from wsrender.analyses.indices_at.job import IndicesAtJob
+from wsrender.analyses.jobs import canonical_json, parse_job
 from wsrender.documents.arm import ArmPath, dotted, local_paths
 from wsrender.documents.document import Document
 from wsrender.documents.problems import MOST_PROBLEMS

@@ -11,7 +11,7 @@ from typing import Annotated, Any
 from fastapi import Request
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, StringConstraints, ValidationError
 
-from wsrender.documents import job_schema
+from wsrender.analyses.jobs import job_schema
 from wsrender.documents.json_text import read_json
 from wsrender.documents.problems import MOST_PROBLEMS, listed, path_text, worded
 from wsrender.documents.quantities import integer, real

@@ -13,7 +13,7 @@ import typer
 
 import wsrender as ws
 from wsrender import cli
-from wsrender.documents import ANALYSES
+from wsrender.analyses.registry import job_classes
 from wsrender.documents.quantities import quoted
 from wsrender.errors import InputError, MissingExtraError, ModelError, NumericalError
 from wsrender.progress import LINE_EVERY_S, RunProgress
@@ -64,7 +64,7 @@ def test_schema(wsrender):
     assert (code, json.loads(out)["title"]) == (0, "IndicesAtJob")
     assert json.loads(wsrender("schema")[1])["discriminator"]["propertyName"] == "analysis"
     code, _, err = wsrender("schema", "--analysis", "nope")
-    assert (code, err) == (2, f'error: analysis: must be one of {quoted(ANALYSES)}, not "nope"\n')
+    assert (code, err) == (2, f'error: analysis: must be one of {quoted(job_classes())}, not "nope"\n')
 
 
 def test_robots(wsrender):

@@ -4,8 +4,8 @@ import json
 
 import pytest
 
+from wsrender.analyses.jobs import parse_job
 from wsrender.cli import main
-from wsrender.documents import parse_job
 
 
 @pytest.fixture

@@ -6,7 +6,8 @@ import pytest
 
 import wsrender as ws
 from tests.golden.files import analyses, golden_names, job_of
-from wsrender.documents import ANALYSES, parse_job
+from wsrender.analyses.jobs import parse_job
+from wsrender.analyses.registry import job_classes
 from wsrender.engine import devices_of, target_of
 from wsrender.errors import DocumentError
 from wsrender.run import plan
@@ -16,7 +17,7 @@ NOWHERE = {"no such field": [None]}  # no value of any field
 
 def fields():
     """(analysis, field) of every field of every job."""
-    return [(analysis, field) for analysis in analyses() for field in ANALYSES[analysis].model_fields]
+    return [(analysis, field) for analysis in analyses() for field in job_classes()[analysis].model_fields]
 
 
 def refused(document):
@@ -40,7 +41,7 @@ def test_a_field_of_the_wrong_kind_is_named(analysis, field):
 
 @pytest.mark.parametrize("analysis", analyses())
 def test_what_is_required_is_named(analysis):
-    fields = ANALYSES[analysis].model_fields
+    fields = job_classes()[analysis].model_fields
     for required in (name for name, field in fields.items() if field.is_required()):
         document = {name: value for name, value in job_of(analysis).items() if name != required}
         assert refused(document)[0] == required
@@ -49,7 +50,7 @@ def test_what_is_required_is_named(analysis):
 @pytest.mark.parametrize("name", golden_names())
 def test_a_job_is_estimated(name, planned):
     estimate = planned(name).estimate
-    assert set(estimate) == {"samples", "bytes", "seconds"}
+    assert set(estimate) == {"samples", "bytes", "memory_bytes", "file_bytes", "seconds"}
     assert all(math.isfinite(value) and value > 0 for value in estimate.values()), estimate
 
 

@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from wsrender.documents import canonical_json, parse_job
+from wsrender.analyses.jobs import canonical_json, parse_job
 from wsrender.documents.arm import at_path, dotted, robots_in
 from wsrender.errors import DocumentError
 

@@ -3,7 +3,9 @@
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from wsrender.documents import IndicesAtJob, WorkspaceJob, canonical_json, parse_job
+from wsrender.analyses.indices_at.job import IndicesAtJob
+from wsrender.analyses.jobs import canonical_json, parse_job
+from wsrender.analyses.workspace.job import WorkspaceJob
 from wsrender.errors import DocumentError
 
 FIELDS = sorted({*WorkspaceJob.model_fields, *IndicesAtJob.model_fields})

@@ -8,7 +8,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from wsrender.documents import ANALYSES, IndicesAtJob, WorkspaceJob, canonical_json, job_schema, parse_job
+from wsrender.analyses.indices_at.job import IndicesAtJob
+from wsrender.analyses.jobs import canonical_json, job_schema, parse_job
+from wsrender.analyses.registry import job_classes
+from wsrender.analyses.workspace.job import WorkspaceJob
 from wsrender.documents.sampling import METHODS, BoundaryBiased, Converge, Grid, Random, Sobol
 from wsrender.errors import DocumentError, InputError
 
@@ -175,8 +178,8 @@ def test_fewer_samples_by_default_where_rows_are_kept_or_robots_are_several():
 
 def test_schema_covers_the_union_and_each_analysis():
     union = job_schema()
-    assert set(union["discriminator"]["mapping"]) == set(ANALYSES)
-    assert {"workspace", "indices_at", "shared_workspace"} < set(ANALYSES)
+    assert set(union["discriminator"]["mapping"]) == set(job_classes())
+    assert {"workspace", "indices_at", "shared_workspace"} < set(job_classes())
     assert METHODS == ("grid", "random", "sobol", "boundary", "converge")
     assert job_schema("indices_at")["title"] == "IndicesAtJob"
     with pytest.raises(InputError, match=r'must be one of "workspace", .*, not "nope"'):

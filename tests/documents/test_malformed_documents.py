@@ -4,7 +4,8 @@ import json
 
 import pytest
 
-from wsrender.documents import ANALYSES, parse_job
+from wsrender.analyses.jobs import parse_job
+from wsrender.analyses.registry import job_classes
 from wsrender.documents.json_text import LARGEST_DOCUMENT
 from wsrender.documents.quantities import quoted
 from wsrender.errors import DocumentError
@@ -111,8 +112,8 @@ MALFORMED = [
     ('{"a": ' + "1" * 5000 + "}", "document", "is not JSON: Exceeds the limit"),
     (42, "document", "must be an object, not int"),
     # the analysis
-    ({}, "analysis", f"must be one of {quoted(ANALYSES)}; it is required"),
-    ({"analysis": "worksapce"}, "analysis", f'must be one of {quoted(ANALYSES)}, not "worksapce"'),
+    ({}, "analysis", f"must be one of {quoted(job_classes())}; it is required"),
+    ({"analysis": "worksapce"}, "analysis", f'must be one of {quoted(job_classes())}, not "worksapce"'),
     ({"analysis": ["workspace"]}, "analysis", 'not ["workspace"]'),
     # the robot
     ({"analysis": "workspace"}, "robot", "is required"),

@@ -10,7 +10,7 @@ import zipfile
 from pathlib import Path
 from typing import Any
 
-from wsrender.documents import ANALYSES
+from wsrender.analyses.registry import job_classes
 
 DOCUMENTS = Path(__file__).parent / "documents"
 FOLDERS = Path(__file__).parent / "folders"
@@ -18,7 +18,7 @@ FOLDERS = Path(__file__).parent / "folders"
 
 def analyses() -> list[str]:
     """Names of all analyses."""
-    return list(ANALYSES)
+    return list(job_classes())
 
 
 def golden_names() -> list[str]:

@@ -7,7 +7,7 @@ import pytest
 
 import wsrender as ws
 from tests.golden.files import FOLDERS, analyses, saved_folder, saved_versions
-from wsrender.documents import parse_job
+from wsrender.analyses.jobs import parse_job
 
 SAVED = [(path.parent.name, path.stem) for path in sorted(FOLDERS.glob("*/*.zip"))]
 

@@ -9,7 +9,7 @@ from tests.reference import local_indices
 from tests.reference.voxel_accumulation import accumulated
 from tests.run.simple_robots import PlanarClass, planar_arm
 from wsrender import run
-from wsrender.documents import parse_job
+from wsrender.analyses.jobs import parse_job
 from wsrender.errors import InputError, NumericalError
 from wsrender.indices.index_catalogue import (
     DYNAMIC,

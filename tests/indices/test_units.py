@@ -13,7 +13,7 @@ from matplotlib.text import Text
 import wsrender as ws
 from tests.reference import local_indices, mujoco_kinematics
 from tests.run.simple_robots import PLANAR, planar_arm
-from wsrender.documents.parallel_workspace import ParallelWorkspaceJob
+from wsrender.analyses.parallel_workspace.job import ParallelWorkspaceJob
 from wsrender.engine import units_of
 from wsrender.indices.dimensions import task_matrix
 from wsrender.indices.index_catalogue import find, unit

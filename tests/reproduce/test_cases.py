@@ -8,8 +8,8 @@ import pytest
 
 from tests.reference.exact_volumes import articulated, spherical_pair
 from wsrender import cli
+from wsrender.analyses.jobs import parse_job
 from wsrender.cli.reproduce_command import NAMES
-from wsrender.documents import parse_job
 from wsrender.errors import InputError
 from wsrender.indices.index_catalogue import DYNAMIC, KINEMATIC
 from wsrender.reproduce import CASES, Row, cases, gao, reproduce, wsrender_tables

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 
 from tests.reference.chain_kinematics import forward_kinematics
-from wsrender.documents import parse_job
+from wsrender.analyses.jobs import parse_job
 from wsrender.reproduce import reproduce, wsrender_mapping
 from wsrender.robots import library, load_path
 

@@ -5,7 +5,7 @@ from dataclasses import fields
 import pytest
 
 from wsrender import run
-from wsrender.run.cost import Cost, in_turn
+from wsrender.analyses.cost import Cost, in_turn
 
 SAMPLING = {"method": "random", "count": 4096, "seed": 1}
 ARM = {"robot": "phantom_omni", "sampling": SAMPLING}

@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
+from wsrender.documents.parsing import canonical_json
 
 import wsrender as ws
-from wsrender.documents import parse_job
-from wsrender.documents.parsing import canonical_json
+from wsrender.analyses.jobs import parse_job
 from wsrender.errors import NotConvergedError, NumericalError
 from wsrender.run import design_values, steps
 

@@ -7,11 +7,11 @@ import pytest
 
 import wsrender as ws
 from tests.run.small_jobs import SMALL_JOBS
-from wsrender.documents import ANALYSES
+from wsrender.analyses.execution import Execution
+from wsrender.analyses.registry import job_classes
 from wsrender.engine import thread_count
 from wsrender.errors import InputError
 from wsrender.run import execute
-from wsrender.run.execution import Execution
 
 ASKED = 3
 ON_ONE_CORE = {"five_bar"}  # closed forms in NumPy
@@ -62,7 +62,7 @@ def settled(document):
 
 
 def test_there_is_a_job_of_every_analysis():
-    assert set(SMALL_JOBS) == set(ANALYSES)
+    assert set(SMALL_JOBS) == set(job_classes())
 
 
 @pytest.mark.parametrize("analysis", SMALL_JOBS)

@@ -5,11 +5,11 @@ import pytest
 
 import wsrender as ws
 from tests.run.simple_robots import PlanarClass, gantry, planar_arm
+from wsrender.analyses.volume_notices import MOST_HOLES
 from wsrender.reachability.holes import share_of_holes
 from wsrender.results.result import Result
 from wsrender.run import finish, plan, run_shard
 from wsrender.run.partial_files import load_partial, save_partial
-from wsrender.run.volume_notices import MOST_HOLES
 
 OPTIONS = {"indices": ["manipulability"], "device": "cpu", "voxel_size_m": 0.01, "refined_volume": None}
 REFINED = {**OPTIONS, "refined_volume": 0.02}

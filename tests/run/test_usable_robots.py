@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 import wsrender as ws
-from wsrender.documents import ANALYSES, parse_job
+from wsrender.analyses.jobs import parse_job
+from wsrender.analyses.registry import job_classes
 from wsrender.errors import InputError, ResourceError
 from wsrender.run import steps
 
@@ -63,7 +64,7 @@ PATHS = {
     "shared_workspace": "robots.1.", "robot_comparison": "robots.1.", "collaborative_volume": "right.",
     "master_slave_mapping": "slave.", "parallel_workspace": "mechanism.legs.2.", "design_optimization": "design.",
 }  # fmt: skip
-TAKE_ARMS = [name for name in ANALYSES if name not in ("five_bar", "method_comparison")]
+TAKE_ARMS = [name for name in job_classes() if name not in ("five_bar", "method_comparison")]
 
 
 plan: Any = steps.plan  # what it returns has more than a Plan

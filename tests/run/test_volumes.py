@@ -6,7 +6,7 @@ from scipy import ndimage
 
 import wsrender as ws
 from tests.run.simple_robots import PLANAR, gantry, planar_arm
-from wsrender.run.volume_notices import few_samples, occupied_differs
+from wsrender.analyses.volume_notices import few_samples, occupied_differs
 
 LINEAR = {"indices": ["manipulability", "inverse_condition_number"], "device": "cpu"}
 UNREFINED = {**LINEAR, "refined_volume": None}

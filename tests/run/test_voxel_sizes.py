@@ -86,7 +86,7 @@ def test_robots_far_apart_share_a_volume_too_large():
 
 
 def test_collaborative_cells_and_points_are_checked(monkeypatch):
-    monkeypatch.setattr(importlib.import_module("wsrender.run.cost"), "available_bytes", lambda: 50_000_000)
+    monkeypatch.setattr(importlib.import_module("wsrender.analyses.cost"), "available_bytes", lambda: 50_000_000)
     job = {"analysis": "collaborative_volume", "left": ARM["robot"], "right": ARM["robot"], "refined_volume": None}
     sides = {name: {"robot": "phantom_omni"} for name in ("left", "right")}
     for fields, field in (({"samples": 10**7}, "samples"), ({"cells": [200, 200, 200]}, "refinements")):

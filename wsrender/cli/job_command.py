@@ -117,6 +117,6 @@ def _switches(
 
 
 def _print_job(document: dict[str, Any]) -> None:
-    from wsrender.documents import canonical_json, parse_job
+    from wsrender.analyses.jobs import canonical_json, parse_job
 
     typer.echo(json.dumps(json.loads(canonical_json(parse_job(document))), indent=2))

@@ -32,6 +32,6 @@ def schema(
 ) -> None:
     """Print the JSON Schema of job documents, with every default."""
     with one_line_faults():
-        from wsrender.documents import job_schema
+        from wsrender.analyses.jobs import job_schema
 
         typer.echo(json.dumps(job_schema(analysis), indent=2))

@@ -6,13 +6,10 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, StrictBool
 
-from wsrender.documents.arm import Arm
 from wsrender.documents.document import Document
 from wsrender.documents.environment import MOST_SHAPES, Environment, Shape
-from wsrender.documents.format import JobDocument
-from wsrender.documents.options import Device, Task
-from wsrender.documents.quantities import Number, PositiveNumber, Seed, VoxelSize, integer, real, sequence
-from wsrender.documents.sampling import BoundaryBiased, Grid, Random, Sampling, Sobol
+from wsrender.documents.options import Task
+from wsrender.documents.quantities import Number, PositiveNumber, Seed, integer, real, sequence
 
 
 def _posture(value: Any) -> tuple[float, ...] | None:
@@ -150,23 +147,3 @@ class ForceFieldChoice(Document):
     """Force of the workspace's boundary; null: none."""
     obstacles: Annotated[ObstacleForce | None, BeforeValidator(_obstacles)] = None
     """Force of obstacles, an environment with or without the choices of the force; null: none."""
-
-
-class KinetostaticFieldJob(Arm, JobDocument):
-    """The force field of a robot's limits and conditioning over its workspace, as a volume of vectors."""
-
-    analysis: Literal["kinetostatic_field"] = "kinetostatic_field"
-    """Name of the analysis."""
-    field: ForceFieldChoice = ForceFieldChoice()
-    """Which forces act."""
-    sampling: Sampling = Sobol(100_000)
-    """Configurations at which the field is evaluated; a voxel holds the mean over those that reach it."""
-    voxel_size_m: VoxelSize | None = None
-    """Edge of a voxel [m]; null: a twenty-fifth of the cube root of the workspace's convex-hull volume."""
-    device: Device = "auto"
-    """Where kernels run that find the workspace's boundary: "auto", "cpu", "cuda" or "cuda:N"."""
-
-    def conflicts(self) -> Iterator[tuple[str, str]]:
-        """(field, message) of every pair of fields that do not go together."""
-        if not isinstance(self.sampling, Grid | Random | Sobol | BoundaryBiased):
-            yield "sampling", 'must not be "converge": the field is evaluated on one sampling'

@@ -1,15 +1,14 @@
 """Jobs of several robots on one lattice."""
 
 from collections.abc import Iterator
-from typing import Annotated, Literal
+from typing import Annotated
 
 from pydantic import BeforeValidator, Field
 
 from wsrender.documents.arm import Arm, ArmPath
 from wsrender.documents.format import JobDocument
 from wsrender.documents.index_choices import IndexChoices
-from wsrender.documents.placement_scan import PlacementScan
-from wsrender.documents.quantities import Count, FileName, RelativeTolerance, VoxelSize, sequence
+from wsrender.documents.quantities import Count, FileName, VoxelSize, sequence
 from wsrender.documents.sampling import SEVERAL_COUNT, Sampling, Sobol
 
 MOST_ROBOTS = 64
@@ -24,7 +23,9 @@ class PlacedRobot(Arm):
     """How its joint space is sampled; by default 2^20 Sobol samples."""
 
 
-class _SeveralRobotsJob(IndexChoices, JobDocument):
+class SeveralRobotsJob(IndexChoices, JobDocument):
+    """A job of several robots that are swept on one lattice."""
+
     robots: Annotated[tuple[PlacedRobot, ...], Field(min_length=2, max_length=MOST_ROBOTS), BeforeValidator(sequence)]
     """The robots and where they stand; the arms of one model are the same robot with other base and tip."""
     voxel_size_m: VoxelSize | None = None
@@ -47,36 +48,3 @@ class _SeveralRobotsJob(IndexChoices, JobDocument):
         given = [robot.name for robot in self.robots if robot.name]
         if len(set(given)) < len(given):
             yield "robots", f"must not give two robots the same name: {', '.join(given)}"
-
-
-class SharedWorkspaceJob(_SeveralRobotsJob):
-    """What several robots reach together: union, shared volume, volume by number of robots, shared quality."""
-
-    analysis: Literal["shared_workspace"] = "shared_workspace"
-    """Name of the analysis."""
-    refined_volume: RelativeTolerance | None = 0.01
-    """Relative tolerance of the refined volumes that any and that at least two robots reach [1], at every value of a
-    scan too: by inverse kinematics, each with a 95 % interval. null: none."""
-    scan: PlacementScan | None = None
-    """A coordinate of a robot's placement to vary; gives shared volume against it. null: none."""
-
-    def sweeps(self) -> list[PlacedRobot]:
-        """The robots, and the one that is scanned once more for each value."""
-        moved = [] if self.scan is None else [self.robots[self.scan.robot]] * len(self.scan.values)
-        return [*self.robots, *moved]
-
-    def conflicts(self) -> Iterator[tuple[str, str]]:
-        """(field, message) of every pair of fields that do not go together."""
-        yield from super().conflicts()
-        if self.scan is not None:
-            yield from self.scan.conflicts_with([robot.robot for robot in self.robots])
-
-
-class RobotComparisonJob(_SeveralRobotsJob):
-    """Several robots, or placements of one, side by side: same lattice, same scales, a table of differences."""
-
-    analysis: Literal["robot_comparison"] = "robot_comparison"
-    """Name of the analysis."""
-    refined_volume: RelativeTolerance | None = 0.01
-    """Half width of the 95 % interval of each robot's volume, area or length by inverse kinematics, relative to it [1];
-    null: none is computed."""

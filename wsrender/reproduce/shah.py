@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from wsrender.documents import parse_job
+from wsrender.analyses.jobs import parse_job
 from wsrender.mechanisms.ball_region import BallRegion, ball_region
 from wsrender.mechanisms.exact import exact_volumes
 from wsrender.mechanisms.mechanism import mechanism_of

@@ -6,7 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from wsrender.documents.capability import CapabilityJob
+from wsrender.analyses.capability.job import CapabilityJob
+from wsrender.analyses.cost import DOCUMENT_BYTES, NOTHING, Cost, Costed, pictures_cost, surface_bytes
+from wsrender.analyses.execution import Execution
+from wsrender.analyses.provenance import job_entry, provenance, robot_entry
+from wsrender.analyses.settled_device import settled_device
 from wsrender.documents.sampling import Sobol
 from wsrender.engine import sampled_positions
 from wsrender.reachability.capability import (
@@ -20,10 +24,6 @@ from wsrender.reachability.targets import check_tolerance
 from wsrender.results.result import Result
 from wsrender.robot import Robot
 from wsrender.robots.chain import Chain
-from wsrender.run.cost import DOCUMENT_BYTES, NOTHING, Cost, Costed, pictures_cost, surface_bytes
-from wsrender.run.execution import Execution
-from wsrender.run.provenance import job_entry, provenance, robot_entry
-from wsrender.run.settled_device import settled_device
 from wsrender.sampling import plan_sampling
 from wsrender.volume.lattice import check_voxels, default_voxel_size, expected_voxels
 from wsrender.volume.table import Table

@@ -8,21 +8,21 @@ from typing import Any
 
 import numpy as np
 
-from wsrender.documents import CollaborativeVolumeJob
+from wsrender.analyses.collaborative_volume.job import CollaborativeVolumeJob
+from wsrender.analyses.cost import DOCUMENT_BYTES, Cost, check_memory, pictures_cost, refined_seconds
+from wsrender.analyses.execution import Execution
+from wsrender.analyses.headline import headline_of, no_headline
+from wsrender.analyses.provenance import job_entry, provenance, robot_entry
+from wsrender.analyses.refined import Progress, refined_together, volume_entry
+from wsrender.analyses.sampled_positions import sampled_positions
+from wsrender.analyses.settled_device import settled_device
 from wsrender.documents.point_sets import PointSet
 from wsrender.documents.sampling import Random
 from wsrender.multi.body_elements import body_elements
 from wsrender.reachability import Event
 from wsrender.results.result import Result
 from wsrender.robot import Robot
-from wsrender.run.cost import DOCUMENT_BYTES, Cost, check_memory, pictures_cost, refined_seconds
-from wsrender.run.execution import Execution
-from wsrender.run.headline import headline_of, no_headline
 from wsrender.run.one_shard import OneShard
-from wsrender.run.provenance import job_entry, provenance, robot_entry
-from wsrender.run.refined import Progress, refined_together, volume_entry
-from wsrender.run.sampled_positions import sampled_positions
-from wsrender.run.settled_device import settled_device
 from wsrender.volume.table import Table
 
 POINT_BYTES = 100.0  # of two arms: positions, places in the box, cells

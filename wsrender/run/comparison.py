@@ -6,15 +6,15 @@ from typing import Any
 
 import numpy as np
 
-from wsrender.documents import RobotComparisonJob
+from wsrender.analyses.cost import Cost
+from wsrender.analyses.execution import Execution
+from wsrender.analyses.headline import no_headline
+from wsrender.analyses.provenance import job_entry, provenance
+from wsrender.analyses.refined import Progress
+from wsrender.analyses.robot_comparison.job import RobotComparisonJob
 from wsrender.results.result import Result
 from wsrender.robot import Robot
-from wsrender.run.cost import Cost
-from wsrender.run.execution import Execution
-from wsrender.run.headline import no_headline
 from wsrender.run.one_shard import OneShard
-from wsrender.run.provenance import job_entry, provenance
-from wsrender.run.refined import Progress
 from wsrender.run.several_result import common_entries, sampling_path, skeletons
 from wsrender.run.several_robots import SeveralPlans, plan_several
 from wsrender.volume.measure import TABLE_UNITS

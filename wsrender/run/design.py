@@ -7,11 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from wsrender.design.evaluation_file import EvaluationFile
-from wsrender.design.evaluations import Evaluations, feasible, scores
-from wsrender.design.search import Space, evolve, grid, pareto, refine
-from wsrender.documents import parse_job
-from wsrender.documents.design import (
+from wsrender.analyses.cost import DOCUMENT_BYTES, Cost, pictures_cost
+from wsrender.analyses.design_optimization.job import (
     EXACT,
     EXACT_VOLUME,
     DesignOptimizationJob,
@@ -20,6 +17,13 @@ from wsrender.documents.design import (
     GridSweep,
     ParetoSearch,
 )
+from wsrender.analyses.execution import Execution
+from wsrender.analyses.jobs import parse_job
+from wsrender.analyses.provenance import job_entry, provenance, robot_entry
+from wsrender.analyses.settled_device import settled_device
+from wsrender.design.evaluation_file import EvaluationFile
+from wsrender.design.evaluations import Evaluations, feasible, scores
+from wsrender.design.search import Space, evolve, grid, pareto, refine
 from wsrender.documents.json_pointer import changed
 from wsrender.documents.robot import Transform
 from wsrender.errors import InputError, NotConvergedError
@@ -28,15 +32,11 @@ from wsrender.mechanisms.mechanism import mechanism_of
 from wsrender.notices import entries
 from wsrender.results.result import Result
 from wsrender.robot import Robot
-from wsrender.run.cost import DOCUMENT_BYTES, Cost, pictures_cost
 from wsrender.run.design_notices import design_notices, fault_entries
 from wsrender.run.design_result import best_entries, best_headline, exact_best, objective_entries, tables_of
 from wsrender.run.design_values import FAULTS, Evaluator
-from wsrender.run.execution import Execution
 from wsrender.run.one_shard import OneShard
 from wsrender.run.parallel_exact import region_of
-from wsrender.run.provenance import job_entry, provenance, robot_entry
-from wsrender.run.settled_device import settled_device
 
 Arrays = dict[str, np.ndarray]
 

@@ -5,10 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from wsrender.design.exact_inscribed import largest_ball, largest_cube
-from wsrender.design.inscribed import CUBE_ERROR, SPHERE_ERROR
-from wsrender.design.search import front
-from wsrender.documents.design import (
+from wsrender.analyses.design_optimization.job import (
     CUBE,
     EXACT,
     EXACT_CUBE,
@@ -18,9 +15,12 @@ from wsrender.documents.design import (
     GridSweep,
     ParetoSearch,
 )
+from wsrender.analyses.headline import headline, no_headline
+from wsrender.design.exact_inscribed import largest_ball, largest_cube
+from wsrender.design.inscribed import CUBE_ERROR, SPHERE_ERROR
+from wsrender.design.search import front
 from wsrender.mechanisms.ball_surfaces import surface_table
 from wsrender.mechanisms.exact import ExactWorkspace
-from wsrender.run.headline import headline, no_headline
 from wsrender.volume.table import Table
 
 if TYPE_CHECKING:

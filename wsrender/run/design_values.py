@@ -5,16 +5,24 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from wsrender.analyses.design_optimization.job import (
+    CUBE,
+    EXACT,
+    EXACT_CUBE,
+    EXACT_SPHERE,
+    EXACT_VOLUME,
+    SPHERE,
+    Objective,
+)
+from wsrender.analyses.execution import Execution
+from wsrender.analyses.jobs import parse_job
 from wsrender.design.exact_inscribed import largest_ball, largest_cube
 from wsrender.design.exact_volume import volume_gradient, volumes_of
 from wsrender.design.inscribed import inscribed_cube_edge, inscribed_sphere_radius
-from wsrender.documents import parse_job
-from wsrender.documents.design import CUBE, EXACT, EXACT_CUBE, EXACT_SPHERE, EXACT_VOLUME, SPHERE, Objective
 from wsrender.documents.json_pointer import found_at
 from wsrender.errors import InputError, NotConvergedError, NumericalError, ResourceError, WsrenderError
 from wsrender.mechanisms.ball_region import BallRegion
 from wsrender.results.result import Result
-from wsrender.run.execution import Execution
 
 if TYPE_CHECKING:
     from wsrender.run.design import DesignPlan

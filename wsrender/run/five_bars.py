@@ -7,7 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from wsrender.documents import FiveBarJob
+from wsrender.analyses.cost import DOCUMENT_BYTES, Cost, pictures_cost
+from wsrender.analyses.execution import Execution
+from wsrender.analyses.five_bar.job import FiveBarJob
+from wsrender.analyses.headline import headline, no_headline
+from wsrender.analyses.provenance import job_entry, provenance
+from wsrender.analyses.settled_device import settled_device
 from wsrender.mechanisms.five_bar import ASSEMBLY_MODES, FiveBar
 from wsrender.mechanisms.five_bar.aspects import Aspect, aspects
 from wsrender.mechanisms.five_bar.condition_numbers import conditioning
@@ -35,13 +40,8 @@ from wsrender.mechanisms.five_bar.tables import (
 )
 from wsrender.results.drawing.five_bar import MODE_VOLUMES
 from wsrender.results.result import Result
-from wsrender.run.cost import DOCUMENT_BYTES, Cost, pictures_cost
-from wsrender.run.execution import Execution
-from wsrender.run.headline import headline, no_headline
 from wsrender.run.one_shard import OneShard
 from wsrender.run.partial_tables import arrays_of_tables, tables_of_arrays
-from wsrender.run.provenance import job_entry, provenance
-from wsrender.run.settled_device import settled_device
 from wsrender.volume.lattice import round_to_digits
 from wsrender.volume.table import Table
 from wsrender.volume.volume_data import VolumeData

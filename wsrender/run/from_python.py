@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from wsrender.documents import parse_job
+from wsrender.analyses.jobs import parse_job
 from wsrender.documents.document import Document
 from wsrender.documents.robot import RobotSpec
 from wsrender.documents.sampling import PYTHON_COUNT, Sobol

@@ -6,7 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from wsrender.documents import IndicesAtJob
+from wsrender.analyses.cost import DOCUMENT_BYTES, NOTHING, Cost, pictures_cost
+from wsrender.analyses.execution import Execution
+from wsrender.analyses.indices_at.job import IndicesAtJob
+from wsrender.analyses.provenance import index_choices, job_entry, provenance, robot_entry
+from wsrender.analyses.settled_device import settled_device
 from wsrender.engine import Evaluated, Evaluation, evaluate_at, units_of
 from wsrender.errors import InputError
 from wsrender.notices import entries
@@ -16,11 +20,7 @@ from wsrender.robot import Robot
 from wsrender.robot.constraints import constraints_for, samples_entry
 from wsrender.robot.indices import evaluation_of_job
 from wsrender.robot.model_robot import configuration_rows
-from wsrender.run.cost import DOCUMENT_BYTES, NOTHING, Cost, pictures_cost
-from wsrender.run.execution import Execution
 from wsrender.run.one_shard import OneShard
-from wsrender.run.provenance import index_choices, job_entry, provenance, robot_entry
-from wsrender.run.settled_device import settled_device
 from wsrender.volume.distribution_map import DistributionMap
 from wsrender.volume.table import Table
 

@@ -6,7 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from wsrender.documents.kinetostatics import KinetostaticFieldJob
+from wsrender.analyses.cost import DOCUMENT_BYTES, NOTHING, Cost, pictures_cost, surface_bytes
+from wsrender.analyses.execution import Execution
+from wsrender.analyses.headline import no_headline
+from wsrender.analyses.kinetostatic_field.job import KinetostaticFieldJob
+from wsrender.analyses.provenance import job_entry, provenance, robot_entry
+from wsrender.analyses.settled_device import settled_device
 from wsrender.documents.sampling import Sobol
 from wsrender.engine import configurations, sampled_positions
 from wsrender.kinetostatics.characteristic_length import CharacteristicLength
@@ -17,12 +22,7 @@ from wsrender.notices import Notice, entries
 from wsrender.results.result import Result
 from wsrender.robot import Robot
 from wsrender.robots.reachable_box import reachable_box
-from wsrender.run.cost import DOCUMENT_BYTES, NOTHING, Cost, pictures_cost, surface_bytes
-from wsrender.run.execution import Execution
-from wsrender.run.headline import no_headline
 from wsrender.run.one_shard import OneShard
-from wsrender.run.provenance import job_entry, provenance, robot_entry
-from wsrender.run.settled_device import settled_device
 from wsrender.sampling import plan_sampling
 from wsrender.volume.lattice import block_around, check_voxels, default_voxel_size
 from wsrender.volume.volume_data import VolumeData

@@ -7,8 +7,20 @@ from typing import Any
 
 import numpy as np
 
-from wsrender.documents import MasterSlaveMappingJob
-from wsrender.documents.mapping import MOST_POINTS, Containment, MappedMechanism, MappedRobot, MappingSearch
+from wsrender.analyses.cost import DOCUMENT_BYTES, Cost, pictures_cost
+from wsrender.analyses.execution import Execution
+from wsrender.analyses.headline import no_headline
+from wsrender.analyses.master_slave_mapping.job import (
+    MOST_POINTS,
+    Containment,
+    MappedMechanism,
+    MappedRobot,
+    MappingSearch,
+    MasterSlaveMappingJob,
+)
+from wsrender.analyses.provenance import job_entry, provenance, robot_entry
+from wsrender.analyses.sampled_positions import sampled_positions
+from wsrender.analyses.settled_device import settled_device
 from wsrender.documents.point_sets import PointSet
 from wsrender.errors import InputError, ResourceError
 from wsrender.geometry.alpha_shape import AlphaShape
@@ -21,13 +33,7 @@ from wsrender.notices import Notice, entries
 from wsrender.results.result import Result
 from wsrender.robot import Robot
 from wsrender.robots.reachable_box import reachable_box
-from wsrender.run.cost import DOCUMENT_BYTES, Cost, pictures_cost
-from wsrender.run.execution import Execution
-from wsrender.run.headline import no_headline
 from wsrender.run.one_shard import OneShard
-from wsrender.run.provenance import job_entry, provenance, robot_entry
-from wsrender.run.sampled_positions import sampled_positions
-from wsrender.run.settled_device import settled_device
 from wsrender.sampling import plan_sampling
 from wsrender.volume.lattice import block_around, check_voxels
 from wsrender.volume.table import Table

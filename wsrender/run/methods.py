@@ -7,8 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from wsrender.documents.method_comparison import MethodComparisonJob
-from wsrender.documents.parallel_workspace import ParallelWorkspaceJob
+from wsrender.analyses.cost import DOCUMENT_BYTES, Cost, pictures_cost
+from wsrender.analyses.execution import Execution
+from wsrender.analyses.headline import headline
+from wsrender.analyses.method_comparison.job import MethodComparisonJob
+from wsrender.analyses.parallel_workspace.job import ParallelWorkspaceJob
+from wsrender.analyses.provenance import job_entry, provenance
+from wsrender.analyses.settled_device import settled_device
 from wsrender.documents.robot import Transform
 from wsrender.errors import InputError
 from wsrender.mechanisms.ball_region import BallRegion
@@ -16,14 +21,9 @@ from wsrender.mechanisms.exact import ExactWorkspace
 from wsrender.mechanisms.mechanism import mechanism_of
 from wsrender.mechanisms.solids import solid_workspace
 from wsrender.results.result import Result
-from wsrender.run.cost import DOCUMENT_BYTES, Cost, pictures_cost
-from wsrender.run.execution import Execution
-from wsrender.run.headline import headline
 from wsrender.run.one_shard import OneShard
 from wsrender.run.parallel import plan_parallel
 from wsrender.run.parallel_exact import region_of
-from wsrender.run.provenance import job_entry, provenance
-from wsrender.run.settled_device import settled_device
 from wsrender.volume.lattice import round_to_digits
 from wsrender.volume.table import Table
 

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from wsrender.run.cost import Costed
+from wsrender.analyses.cost import Costed
 
 
 class OneShard(Costed):

@@ -7,7 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from wsrender.documents.parallel_workspace import BY_BOUNDARY, ParallelWorkspaceJob
+from wsrender.analyses.cost import DOCUMENT_BYTES, NOTHING, Cost, Costed, pictures_cost, surface_bytes
+from wsrender.analyses.execution import Execution
+from wsrender.analyses.parallel_workspace.job import BY_BOUNDARY, ParallelWorkspaceJob
+from wsrender.analyses.settled_device import settled_device
 from wsrender.documents.robot import Transform
 from wsrender.engine import OrientationCounts, thread_count
 from wsrender.engine.membership import LANES
@@ -27,13 +30,10 @@ from wsrender.reachability.volume_estimate import wilson
 from wsrender.results.result import Result
 from wsrender.robot import Robot
 from wsrender.robot.indices import task_rows
-from wsrender.run.cost import DOCUMENT_BYTES, NOTHING, Cost, Costed, pictures_cost, surface_bytes
-from wsrender.run.execution import Execution
 from wsrender.run.parallel_exact import boundary_partial, boundary_result, region_of
 from wsrender.run.parallel_lattice import common_flat, described, lattice_of, quantity, settled_lattice
 from wsrender.run.parallel_refined import labels_at_poses, refined_entry
 from wsrender.run.parallel_result import orientation_result, positions_result
-from wsrender.run.settled_device import settled_device
 from wsrender.volume.lattice import LatticeBlock
 
 Arrays = dict[str, np.ndarray]

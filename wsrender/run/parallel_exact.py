@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import trimesh
 
+from wsrender.analyses.headline import headline
 from wsrender.errors import InputError
 from wsrender.geometry.surfaces import surface_entry
 from wsrender.mechanisms.ball_region import BallRegion, ball_region
@@ -18,7 +19,6 @@ from wsrender.mechanisms.mechanism import Mechanism
 from wsrender.mechanisms.solids import solid_workspace
 from wsrender.notices import Notice
 from wsrender.results.result import Result
-from wsrender.run.headline import headline
 from wsrender.run.parallel_result import mechanism_document, skeleton_at
 from wsrender.volume.table import Table
 

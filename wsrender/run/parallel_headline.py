@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from wsrender.analyses.headline import headline, no_headline
+from wsrender.analyses.volume_notices import tolerance_not_met
 from wsrender.notices import Notice
-from wsrender.run.headline import headline, no_headline
 from wsrender.run.parallel_lattice import FlatLattice
-from wsrender.run.volume_notices import tolerance_not_met
 from wsrender.volume.volume_data import VolumeData
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from wsrender.documents.parallel_workspace import ParallelWorkspaceJob
+from wsrender.analyses.parallel_workspace.job import ParallelWorkspaceJob
 from wsrender.errors import InputError, ResourceError
 from wsrender.mechanisms.flat import MEASURES, Flat, flat_of
 from wsrender.mechanisms.hybrid import Variant, reachable_box_of, reached_by_any

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from wsrender.analyses.provenance import job_entry, provenance, robot_entry
 from wsrender.documents.options import TASK_ROWS
 from wsrender.global_indices import voxel_volumes, workspace_mean
 from wsrender.indices.dimensions import task_matrix
@@ -18,7 +19,6 @@ from wsrender.results.result import Result
 from wsrender.run.parallel_headline import notices, refined_of, workspace_headline
 from wsrender.run.parallel_lattice import FlatLattice, quantity
 from wsrender.run.parallel_singularities import singularities
-from wsrender.run.provenance import job_entry, provenance, robot_entry
 from wsrender.sampling import subsample
 from wsrender.volume.distribution_map import DistributionMap
 from wsrender.volume.lattice import LatticeBlock

@@ -7,7 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from wsrender.documents import PlanarBoundaryJob
+from wsrender.analyses.cost import DOCUMENT_BYTES, Cost, check_memory, pictures_cost
+from wsrender.analyses.execution import Execution
+from wsrender.analyses.headline import headline, no_headline
+from wsrender.analyses.planar_boundary.job import PlanarBoundaryJob
+from wsrender.analyses.provenance import job_entry, provenance, robot_entry
+from wsrender.analyses.sampled_positions import sampled_positions
+from wsrender.analyses.settled_device import settled_device
 from wsrender.errors import NumericalError
 from wsrender.geometry.planar.agreement import disagreements, signed_area
 from wsrender.geometry.planar.exact_boundary import ExactBoundary
@@ -18,14 +24,8 @@ from wsrender.geometry.planar.segments import segment_entry, segment_table
 from wsrender.notices import Notice, entries
 from wsrender.results.result import Result
 from wsrender.robot import Robot, robot_with_model
-from wsrender.run.cost import DOCUMENT_BYTES, Cost, check_memory, pictures_cost
-from wsrender.run.execution import Execution
-from wsrender.run.headline import headline, no_headline
 from wsrender.run.one_shard import OneShard
 from wsrender.run.partial_tables import arrays_of_tables, tables_of_arrays
-from wsrender.run.provenance import job_entry, provenance, robot_entry
-from wsrender.run.sampled_positions import sampled_positions
-from wsrender.run.settled_device import settled_device
 from wsrender.sampling import plan_sampling
 from wsrender.volume.table import Table
 

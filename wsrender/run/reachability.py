@@ -6,15 +6,15 @@ from typing import Any
 
 import numpy as np
 
-from wsrender.documents.reachability import ReachabilityJob
+from wsrender.analyses.cost import DOCUMENT_BYTES, NOTHING, Cost, pictures_cost
+from wsrender.analyses.execution import Execution
+from wsrender.analyses.provenance import job_entry, provenance, robot_entry
+from wsrender.analyses.reachability.job import ReachabilityJob
+from wsrender.analyses.settled_device import settled_device
 from wsrender.reachability.targets import check_tolerance, reachable
 from wsrender.results.result import Result
 from wsrender.robot import Robot
-from wsrender.run.cost import DOCUMENT_BYTES, NOTHING, Cost, pictures_cost
-from wsrender.run.execution import Execution
 from wsrender.run.one_shard import OneShard
-from wsrender.run.provenance import job_entry, provenance, robot_entry
-from wsrender.run.settled_device import settled_device
 from wsrender.volume.table import Table
 
 RATE = 2e4  # targets per second, rounded down from benchmarks/inverse.py: many unreachable poses on one core

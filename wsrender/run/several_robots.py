@@ -8,17 +8,18 @@ from typing import Any
 
 import numpy as np
 
-from wsrender.documents import WorkspaceJob
+from wsrender.analyses.cost import DOCUMENT_BYTES, Cost, in_turn, pictures_cost, refined_seconds
+from wsrender.analyses.execution import Execution
+from wsrender.analyses.refined import Progress, Refined
+from wsrender.analyses.robot_comparison.job import RobotComparisonJob
+from wsrender.analyses.workspace.job import WorkspaceJob
 from wsrender.documents.arm import dotted
 from wsrender.documents.index_choices import IndexChoices
-from wsrender.documents.several_robots import PlacedRobot, RobotComparisonJob
+from wsrender.documents.several_robots import PlacedRobot
 from wsrender.errors import InputError
 from wsrender.results.result import Result
 from wsrender.robot import Robot
-from wsrender.run.cost import DOCUMENT_BYTES, Cost, in_turn, pictures_cost, refined_seconds
-from wsrender.run.execution import Execution
 from wsrender.run.partial_arrays import partial_of_arrays, partial_to_arrays
-from wsrender.run.refined import Progress, Refined
 from wsrender.run.workspace import WorkspacePlan, plan_workspace
 
 MEASURE = "measure"  # array of a robot's refined measure

@@ -7,22 +7,22 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from wsrender.documents import SharedWorkspaceJob
+from wsrender.analyses.cost import DOCUMENT_BYTES, Cost, in_turn, pictures_cost, refined_seconds
+from wsrender.analyses.execution import Execution
+from wsrender.analyses.headline import headline_of
+from wsrender.analyses.provenance import job_entry, provenance
+from wsrender.analyses.refined import Progress, by_measure, refined_together
+from wsrender.analyses.shared_workspace.job import SharedWorkspaceJob
+from wsrender.analyses.volume_notices import occupied_differs, tolerance_not_met
 from wsrender.documents.placement_scan import PlacementScan
 from wsrender.multi.shared_volume import NUMBER, PRODUCT, reached_by, shared_volume, volume_by_number
 from wsrender.notices import Notice, entries
 from wsrender.reachability import Event
 from wsrender.results.result import Result
 from wsrender.robot import Robot
-from wsrender.run.cost import DOCUMENT_BYTES, Cost, in_turn, pictures_cost, refined_seconds
-from wsrender.run.execution import Execution
-from wsrender.run.headline import headline_of
 from wsrender.run.one_shard import OneShard
-from wsrender.run.provenance import job_entry, provenance
-from wsrender.run.refined import Progress, by_measure, refined_together
 from wsrender.run.several_result import common_entries, sampling_path, skeletons
 from wsrender.run.several_robots import SeveralPlans, plan_several, progress_after, workspace_job
-from wsrender.run.volume_notices import occupied_differs, tolerance_not_met
 from wsrender.run.workspace import WorkspacePlan, plan_workspace
 from wsrender.volume.lattice import block_of_all, check_voxels
 from wsrender.volume.measure import TABLE_UNITS

@@ -7,7 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from wsrender.documents import BoundaryPatchesJob
+from wsrender.analyses.boundary_patches.job import BoundaryPatchesJob
+from wsrender.analyses.cost import DOCUMENT_BYTES, Cost, check_memory, pictures_cost
+from wsrender.analyses.execution import Execution
+from wsrender.analyses.headline import headline
+from wsrender.analyses.provenance import job_entry, provenance, robot_entry
+from wsrender.analyses.refined import measure_entry, volume_entry
+from wsrender.analyses.settled_device import settled_device
 from wsrender.geometry.spatial.critical_sets import CriticalSet
 from wsrender.geometry.spatial.edges import Corner, Edge
 from wsrender.geometry.spatial.fitted_boundary import TOLERANCE, fitted_boundary
@@ -29,13 +35,7 @@ from wsrender.reachability.reached_points import ReachedPoints
 from wsrender.results.result import Result
 from wsrender.robot import Robot, robot_with_model
 from wsrender.robots.chain import Chain
-from wsrender.run.cost import DOCUMENT_BYTES, Cost, check_memory, pictures_cost
-from wsrender.run.execution import Execution
-from wsrender.run.headline import headline
 from wsrender.run.one_shard import OneShard
-from wsrender.run.provenance import job_entry, provenance, robot_entry
-from wsrender.run.refined import measure_entry, volume_entry
-from wsrender.run.settled_device import settled_device
 from wsrender.sampling import held_chain
 from wsrender.volume.table import Table
 

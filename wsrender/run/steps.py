@@ -2,60 +2,23 @@
 
 import time
 from collections.abc import Callable
-from importlib import import_module
 from pathlib import Path
 from typing import Any, Protocol, runtime_checkable
 
-from wsrender.documents import (
-    BoundaryPatchesJob,
-    CapabilityJob,
-    CollaborativeVolumeJob,
-    DesignOptimizationJob,
-    FiveBarJob,
-    IndicesAtJob,
-    KinetostaticFieldJob,
-    MasterSlaveMappingJob,
-    MethodComparisonJob,
-    ParallelWorkspaceJob,
-    PlanarBoundaryJob,
-    ReachabilityJob,
-    RobotComparisonJob,
-    SharedWorkspaceJob,
-    WorkspaceJob,
-    parse_job,
-)
+from wsrender.analyses.cost import Cost
+from wsrender.analyses.execution import Execution
+from wsrender.analyses.headline import no_headline
+from wsrender.analyses.jobs import parse_job
+from wsrender.analyses.registry import planned
 from wsrender.documents.arm import Arm, ArmPath, dotted
 from wsrender.documents.format import FORMAT
 from wsrender.errors import InputError
 from wsrender.notices import Notice, entries
 from wsrender.results.result import Result
 from wsrender.robot import Robot, as_robot, robot_of_spec
-from wsrender.run.cost import Cost
-from wsrender.run.execution import Execution
-from wsrender.run.headline import no_headline
 from wsrender.run.usable_robots import usable
 
 Progress = Callable[[int, int, str], None]
-
-# Module of wsrender.run and its planner: a run imports only what its own analysis needs. No module is called like a
-# public function: importing it would hide the function.
-PLANNERS: dict[type, str] = {
-    WorkspaceJob: "workspace:plan_workspace",
-    IndicesAtJob: "indices_at:plan_indices_at",
-    ReachabilityJob: "reachability:plan_reachability",
-    CapabilityJob: "capability:plan_capability",
-    SharedWorkspaceJob: "shared:plan_shared_workspace",
-    RobotComparisonJob: "comparison:plan_robot_comparison",
-    CollaborativeVolumeJob: "collaborative:plan_collaborative",
-    MasterSlaveMappingJob: "mapping:plan_mapping",
-    KinetostaticFieldJob: "kinetostatics:plan_kinetostatic_field",
-    ParallelWorkspaceJob: "parallel:plan_parallel",
-    FiveBarJob: "five_bars:plan_five_bar",
-    DesignOptimizationJob: "design:plan_design",
-    BoundaryPatchesJob: "spatial_boundary:plan_boundary_patches",
-    PlanarBoundaryJob: "planar:plan_planar_boundary",
-    MethodComparisonJob: "methods:plan_method_comparison",
-}
 
 
 class Plan(Protocol):
@@ -139,18 +102,15 @@ def plan(document: Any, robot: Any = None, *, resolved: dict[str, Any] | None = 
 
     Raises DocumentError, InputError, ModelError, ResourceError; nothing has run then.
     """
-    job = document if isinstance(document, tuple(PLANNERS)) else parse_job(document)
+    job = parse_job(document)
     arms = job.arms()
     given = robot if isinstance(robot, list) else [robot] * len(arms)
     robots = [
         usable(_robot(path, arm, one), arm, path, job) for (path, arm), one in zip(arms.items(), given, strict=True)
     ]
-    module, _, planner = PLANNERS[type(job)].partition(":")
-    planned = getattr(import_module(f"wsrender.run.{module}"), planner)(job, *robots, resolved=resolved)
-    planned.notices = tuple(
-        n.within(dotted(path)) for path, each in zip(arms, robots, strict=True) for n in each.notices
-    )
-    return planned
+    found = planned(job, *robots, resolved=resolved)
+    found.notices = tuple(n.within(dotted(path)) for path, each in zip(arms, robots, strict=True) for n in each.notices)
+    return found
 
 
 def _robot(path: ArmPath, arm: Arm, given: Any) -> Robot:
@@ -230,15 +190,15 @@ def execute(
     started = time.perf_counter()
     if progress:
         progress(0, 1, "planning")
-    planned = plan(document, robot)
-    total = sum(count for _, count in planned.shards)
+    settled = plan(document, robot)
+    total = sum(count for _, count in settled.shards)
     planned_at = time.perf_counter()
 
     def report(done: int) -> None:
         if progress:
             progress(done, max(total, done), "samples")  # converging jobs exceed it
 
-    partial = run_shard(planned, 0, report, threads=threads, chunk_size=chunk_size)
+    partial = run_shard(settled, 0, report, threads=threads, chunk_size=chunk_size)
     swept_at = time.perf_counter()
     seconds = {"plan": planned_at - started, "sweep": swept_at - planned_at}
-    return finish(planned, partial, seconds, progress, threads=threads)
+    return finish(settled, partial, seconds, progress, threads=threads)

@@ -7,7 +7,21 @@ from typing import Any
 
 import numpy as np
 
-from wsrender.documents import WorkspaceJob
+from wsrender.analyses.cost import (
+    DECIDED_PER_S,
+    DOCUMENT_BYTES,
+    Cost,
+    Costed,
+    check_memory,
+    pictures_cost,
+    refined_seconds,
+    surface_bytes,
+)
+from wsrender.analyses.estimate import map_bytes, sweep_cost
+from wsrender.analyses.execution import Execution
+from wsrender.analyses.refined import Progress, Refined, labelled, refined
+from wsrender.analyses.settled_device import settled_device
+from wsrender.analyses.workspace.job import WorkspaceJob
 from wsrender.documents.sampling import Converge, Grid
 from wsrender.documents.surfaces import IsoSurface
 from wsrender.engine import Partial, SweepPlan, devices_of, fitted, merge, sweep
@@ -19,21 +33,7 @@ from wsrender.results.result import Result
 from wsrender.robot import Robot
 from wsrender.robot.constraints import constraints_for
 from wsrender.robot.indices import evaluation_of_job
-from wsrender.run.cost import (
-    DECIDED_PER_S,
-    DOCUMENT_BYTES,
-    Cost,
-    Costed,
-    check_memory,
-    pictures_cost,
-    refined_seconds,
-    surface_bytes,
-)
-from wsrender.run.estimate import map_bytes, sweep_cost
-from wsrender.run.execution import Execution
 from wsrender.run.first_pass import FirstPass
-from wsrender.run.refined import Progress, Refined, labelled, refined
-from wsrender.run.settled_device import settled_device
 from wsrender.run.workspace_result import PICTURE_SAMPLES, workspace_result
 from wsrender.sampling import SamplingPlan, plan_sampling
 from wsrender.volume.lattice import LatticeBlock, check_voxels, expected_voxels, voxel_of

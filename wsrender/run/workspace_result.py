@@ -6,7 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from wsrender.documents import WorkspaceJob
+from wsrender.analyses.headline import NOT_ASKED, headline_of
+from wsrender.analyses.provenance import index_choices, job_entry, provenance, robot_entry
+from wsrender.analyses.refined import Refined, by_measure
+from wsrender.analyses.volume_notices import few_samples, occupied_differs, tolerance_not_met
+from wsrender.analyses.workspace.job import WorkspaceJob
 from wsrender.engine import Partial, SweepPlan, configurations, evaluate_at, units_of
 from wsrender.engine.sweep_plan import from_origin
 from wsrender.engine.voxel_data import volume_data
@@ -26,10 +30,6 @@ from wsrender.results.result import Result
 from wsrender.robot import Robot
 from wsrender.robot.constraints import check_admitted, samples_entry
 from wsrender.robots.host_chain import HostChain
-from wsrender.run.headline import NOT_ASKED, headline_of
-from wsrender.run.provenance import index_choices, job_entry, provenance, robot_entry
-from wsrender.run.refined import Refined, by_measure
-from wsrender.run.volume_notices import few_samples, occupied_differs, tolerance_not_met
 from wsrender.sampling import subsample
 from wsrender.volume.distribution_map import DistributionMap
 from wsrender.volume.volume_data import VolumeData

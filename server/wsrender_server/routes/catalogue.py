@@ -6,7 +6,8 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Depends, Path, Request, Response
 from pydantic import Field
 
-from wsrender.documents import ANALYSES, job_schema
+from wsrender.analyses.jobs import job_schema
+from wsrender.analyses.registry import job_classes
 from wsrender.robots import library
 from wsrender_server.auth import Reader, Submitter
 from wsrender_server.model_text import check_model, decoded_model
@@ -66,7 +67,7 @@ class ModelView(View):
 )
 def list_analyses(principal: Reader) -> Page[AnalysisView]:
     """Every analysis, with the JSON Schema of its documents; all in one page."""
-    return Page(items=[_analysis(name) for name in ANALYSES])
+    return Page(items=[_analysis(name) for name in job_classes()])
 
 
 @router.get(
@@ -80,8 +81,8 @@ def get_analysis(
     principal: Reader, analysis: Annotated[str, Path(description="Its name.", examples=["workspace"])]
 ) -> AnalysisView:
     """One analysis, with the JSON Schema of its documents."""
-    if analysis not in ANALYSES:
-        raise HttpProblem(404, f"there is no analysis {analysis!r}; there are: {', '.join(ANALYSES)}")
+    if analysis not in job_classes():
+        raise HttpProblem(404, f"there is no analysis {analysis!r}; there are: {', '.join(job_classes())}")
     return _analysis(analysis)
 
 

@@ -11,7 +11,7 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Depends, Query, Request, Response
 from starlette.concurrency import run_in_threadpool
 
-from wsrender.documents import ANALYSES
+from wsrender.analyses.registry import job_classes
 from wsrender.errors import DocumentError, InputError
 from wsrender_server.admission import Admission
 from wsrender_server.auth import Principal, Reader, Submitter
@@ -140,7 +140,7 @@ def list_jobs(
     principal: Reader,
     state: Annotated[JobState | None, Query(description="Only jobs in this state.")] = None,
     analysis: Annotated[
-        str | None, Query(description="Only jobs of this analysis.", json_schema_extra={"enum": [*ANALYSES]})
+        str | None, Query(description="Only jobs of this analysis.", json_schema_extra={"enum": [*job_classes()]})
     ] = None,
     label: Annotated[
         str | None,
@@ -152,8 +152,8 @@ def list_jobs(
     ] = None,
 ) -> Page[JobView]:
     """Filters are combined. Follow `next_cursor` until it is null."""
-    if analysis is not None and analysis not in ANALYSES:
-        raise InputError("analysis", f"must be one of {', '.join(ANALYSES)}")
+    if analysis is not None and analysis not in job_classes():
+        raise InputError("analysis", f"must be one of {', '.join(job_classes())}")
     key_value = None if label is None else (label.partition("=")[0], label.partition("=")[2])
     try:
         jobs, following = server.store.list(

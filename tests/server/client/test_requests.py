@@ -26,7 +26,7 @@ def test_submit_sends_document_options_and_key(server, client):
 
 
 def test_submit_takes_typed_jobs(server, client):
-    from wsrender.documents import parse_job
+    from wsrender.analyses.jobs import parse_job
 
     server.answer("POST", "/v1/jobs", says(JOB, 202))
     job = parse_job({**DOCUMENT, "sampling": {"method": "grid", "per_joint": 3}})

@@ -6,7 +6,7 @@ import pytest
 from wsrender_server.job_body import EXAMPLES, body_schemas
 
 from tests.server.http.idle_server import DOCUMENT
-from wsrender.documents import parse_job
+from wsrender.analyses.jobs import parse_job
 from wsrender.errors import DocumentError
 
 

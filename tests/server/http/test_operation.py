@@ -11,7 +11,8 @@ from wsrender_server.jobs.faults import DiskFull, StoreUnavailable
 
 from tests.server.http.idle_server import DOCUMENT, problem_of
 from wsrender import __version__
-from wsrender.documents import ANALYSES, job_schema
+from wsrender.analyses.jobs import job_schema
+from wsrender.analyses.registry import job_classes
 from wsrender.robots import library
 
 MODEL = {"content": "<mujoco/>", "headers": {"Content-Type": "application/xml"}}
@@ -150,7 +151,7 @@ def test_documentation_needs_no_internet(client):
 
 def test_analyses_carry_their_schema(client):
     items = {item["id"]: item for item in client.get("/v1/analyses").json()["items"]}
-    assert set(items) == set(ANALYSES)
+    assert set(items) == set(job_classes())
     for name, item in items.items():
         assert item["schema"] == job_schema(name) and item["description"]
         assert client.get(f"/v1/analyses/{name}").json() == item

@@ -6,7 +6,7 @@ import pytest
 from wsrender_server.routes.kinetostatic_stream import _admitted
 
 from tests.server.http.idle_server import DOCUMENT, problem_of
-from wsrender.documents import canonical_json, parse_job
+from wsrender.analyses.jobs import canonical_json, parse_job
 from wsrender.errors import DocumentError, InputError
 
 BOMB = '<!DOCTYPE m [<!ENTITY a "aaaaaaaaaa"><!ENTITY b "&a;&a;">]><mujoco>&b;</mujoco>'

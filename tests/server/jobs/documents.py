@@ -2,7 +2,7 @@
 
 import json
 
-from wsrender.documents import canonical_json, parse_job
+from wsrender.analyses.jobs import canonical_json, parse_job
 
 
 def canonical(**fields):

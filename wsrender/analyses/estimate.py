@@ -2,8 +2,8 @@
 
 from typing import Any
 
+from wsrender.analyses.cost import Cost
 from wsrender.engine import SweepPlan, thread_count
-from wsrender.run.cost import Cost
 
 # Samples per second of one CPU core and one GPU for six kinematic indices in float32 with voxels, rounded
 # down from the project's benchmarks on an AVX-512 core and an H200; dynamic indices and float64 each take about

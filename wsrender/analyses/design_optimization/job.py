@@ -3,7 +3,6 @@
 import re
 from collections.abc import Iterator, Mapping
 from copy import deepcopy
-from functools import cache
 from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import (
@@ -14,7 +13,6 @@ from pydantic import (
     SerializeAsAny,
     SerializerFunctionWrapHandler,
     StrictBool,
-    TypeAdapter,
     ValidationError,
     WithJsonSchema,
     field_serializer,
@@ -22,14 +20,13 @@ from pydantic import (
 )
 from pydantic.functional_validators import ModelWrapValidatorHandler
 
-from wsrender.documents.analysed_jobs import AnalysedJob
+from wsrender.analyses.jobs import parse_job
 from wsrender.documents.arm import Arm, ArmPath
 from wsrender.documents.document import Document
 from wsrender.documents.format import JobDocument
 from wsrender.documents.json_pointer import in_words_of, numbers_at, steps_of
 from wsrender.documents.problems import located, path_text, tagged
 from wsrender.documents.quantities import FileName, Name, Number, PositiveNumber, Seed, integer, quoted, real, sequence
-from wsrender.documents.reading import read_document
 from wsrender.errors import DocumentError
 
 MOST_PARAMETERS, MOST_OBJECTIVES = 50, 6
@@ -47,15 +44,10 @@ def _design(value: Any) -> Any:
     if isinstance(value, Mapping) and value.get("analysis") == "design_optimization":
         raise ValueError("must be another analysis than design_optimization")
     try:
-        return read_document(value, _analysed())
+        return parse_job(value, without=("design_optimization",))
     except DocumentError as error:
         problems = [located(tuple(field.split(".")), message) for field, message in error.problems]
         raise ValidationError.from_exception_data("design", problems) from None
-
-
-@cache
-def _analysed() -> TypeAdapter[Any]:
-    return TypeAdapter(AnalysedJob)
 
 
 def _pointers(value: Any) -> tuple[str, ...]:

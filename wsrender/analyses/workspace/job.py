@@ -1,30 +1,17 @@
-"""Job documents of all analyses but the one whose subject is another job."""
+"""The job ``workspace``: a sampled joint space, as map, volume and global indices."""
 
 from collections.abc import Iterator, Mapping
-from typing import Annotated, Any, ClassVar, Literal, get_args
+from typing import Any, Literal
 
-from pydantic import BeforeValidator, Discriminator, StrictBool, model_validator
+from pydantic import StrictBool, model_validator
 
 from wsrender.documents.arm import Arm
-from wsrender.documents.boundary_patches import BoundaryPatchesJob
-from wsrender.documents.capability import CapabilityJob
-from wsrender.documents.collaborative import CollaborativeVolumeJob
 from wsrender.documents.constraints import Constrained
-from wsrender.documents.document import Document
-from wsrender.documents.five_bar import FiveBarJob
 from wsrender.documents.format import JobDocument
 from wsrender.documents.index_choices import IndexChoices
-from wsrender.documents.kinetostatics import KinetostaticFieldJob
-from wsrender.documents.mapping import MasterSlaveMappingJob
-from wsrender.documents.method_comparison import MethodComparisonJob
-from wsrender.documents.options import Configurations, MapColumns, StatisticsOrNone
-from wsrender.documents.parallel_workspace import ParallelWorkspaceJob
-from wsrender.documents.planar_boundary import PlanarBoundaryJob
-from wsrender.documents.problems import tagged
+from wsrender.documents.options import MapColumns, StatisticsOrNone
 from wsrender.documents.quantities import Count, RelativeTolerance, VoxelSize
-from wsrender.documents.reachability import ReachabilityJob
 from wsrender.documents.sampling import DEFAULT_COUNT, SEVERAL_COUNT, Sampling, Sobol
-from wsrender.documents.several_robots import RobotComparisonJob, SharedWorkspaceJob
 from wsrender.documents.surfaces import Surfaces
 
 
@@ -70,42 +57,3 @@ class WorkspaceJob(IndexChoices, Constrained, Arm, JobDocument):
         yield from super().conflicts()
         if self.map_columns and not self.keep_map:
             yield "map_columns", 'must be empty unless "keep_map" is true'
-
-
-class IndicesAtJob(IndexChoices, Constrained, Arm, JobDocument):
-    """Local indices at given configurations."""
-
-    long_fields: ClassVar[tuple[str, ...]] = ("configurations",)
-
-    analysis: Literal["indices_at"] = "indices_at"
-    """Name of the analysis."""
-    configurations: Configurations = None
-    """Rows of joint values [rad or m], one per joint from base to tip; null where Python passes an array."""
-    precision: Literal["float32", "float64"] = "float64"
-    """Floating-point type of the kernels."""
-
-    @property
-    def needs_ranges(self) -> bool:
-        """No: the configurations are given. Where the ends of ranges are penalised, the evaluation asks for them."""
-        return False
-
-
-AnyAnalysedJob = (
-    WorkspaceJob
-    | IndicesAtJob
-    | ReachabilityJob
-    | CapabilityJob
-    | SharedWorkspaceJob
-    | RobotComparisonJob
-    | CollaborativeVolumeJob
-    | MasterSlaveMappingJob
-    | KinetostaticFieldJob
-    | ParallelWorkspaceJob
-    | FiveBarJob
-    | PlanarBoundaryJob
-    | BoundaryPatchesJob
-    | MethodComparisonJob
-)
-ANALYSED: dict[str, type[Document]] = {job.model_fields["analysis"].default: job for job in get_args(AnyAnalysedJob)}
-
-AnalysedJob = Annotated[AnyAnalysedJob, Discriminator("analysis"), BeforeValidator(tagged("analysis", ANALYSED))]

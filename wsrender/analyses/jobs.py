@@ -1,27 +1,29 @@
 """Job documents in and out: parsed, written canonically, described by a schema."""
 
 import json
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from functools import cache
-from typing import Any
+from typing import Annotated, Any, Union
 
-from pydantic import TypeAdapter
+from pydantic import BeforeValidator, Discriminator, TypeAdapter
 
+from wsrender.analyses.registry import job_classes
 from wsrender.documents.document import Document
-from wsrender.documents.jobs import ANALYSES, Job
+from wsrender.documents.problems import tagged
 from wsrender.documents.quantities import quoted
 from wsrender.documents.reading import read_document
 from wsrender.errors import InputError
 
 
-def parse_job(document: Mapping[str, Any] | str | bytes | Document) -> Any:
+def parse_job(document: Mapping[str, Any] | str | bytes | Document, without: Collection[str] = ()) -> Any:
     """The job of a document: a dict, JSON text, or a job already parsed (returned as it is).
 
-    Raises DocumentError listing every problem as (dotted path, what is allowed and what was found).
+    ``without``: names of analyses that are not meant. Raises DocumentError listing every problem as (dotted path, what
+    is allowed and what was found).
     """
-    if isinstance(document, tuple(ANALYSES.values())):
+    if isinstance(document, tuple(job_classes().values())):
         return document
-    return read_document(document, _adapter())
+    return read_document(document, _adapter(frozenset(without)))
 
 
 def canonical_json(job: Document) -> str:
@@ -37,14 +39,17 @@ def job_schema(analysis: str | None = None) -> dict[str, Any]:
     """
     if analysis is None:
         return _adapter().json_schema()
-    if analysis not in ANALYSES:
-        raise InputError("analysis", f'must be one of {quoted(ANALYSES)}, not "{analysis}"')
-    return ANALYSES[analysis].model_json_schema()
+    if (job := job_classes().get(analysis)) is None:
+        raise InputError("analysis", f'must be one of {quoted(job_classes())}, not "{analysis}"')
+    return job.model_json_schema()
 
 
 @cache
-def _adapter() -> TypeAdapter[Any]:
-    return TypeAdapter(Job)
+def _adapter(without: frozenset[str] = frozenset()) -> TypeAdapter[Any]:
+    """One discriminated union on ``analysis``."""
+    jobs = {name: job for name, job in job_classes().items() if name not in without}
+    union = Union[tuple(jobs.values())]  # noqa: UP007 - of as many as there are
+    return TypeAdapter(Annotated[union, Discriminator("analysis"), BeforeValidator(tagged("analysis", jobs))])
 
 
 def _positive_zeros(value: Any) -> Any:

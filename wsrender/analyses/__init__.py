@@ -1,0 +1,1 @@
+"""What can be asked of robots and mechanisms: one folder an analysis."""

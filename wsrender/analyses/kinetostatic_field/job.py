@@ -1,0 +1,31 @@
+"""The job ``kinetostatic_field``: a force field over the workspace."""
+
+from collections.abc import Iterator
+from typing import Literal
+
+from wsrender.documents.arm import Arm
+from wsrender.documents.format import JobDocument
+from wsrender.documents.kinetostatics import ForceFieldChoice
+from wsrender.documents.options import Device
+from wsrender.documents.quantities import VoxelSize
+from wsrender.documents.sampling import BoundaryBiased, Grid, Random, Sampling, Sobol
+
+
+class KinetostaticFieldJob(Arm, JobDocument):
+    """The force field of a robot's limits and conditioning over its workspace, as a volume of vectors."""
+
+    analysis: Literal["kinetostatic_field"] = "kinetostatic_field"
+    """Name of the analysis."""
+    field: ForceFieldChoice = ForceFieldChoice()
+    """Which forces act."""
+    sampling: Sampling = Sobol(100_000)
+    """Configurations at which the field is evaluated; a voxel holds the mean over those that reach it."""
+    voxel_size_m: VoxelSize | None = None
+    """Edge of a voxel [m]; null: a twenty-fifth of the cube root of the workspace's convex-hull volume."""
+    device: Device = "auto"
+    """Where kernels run that find the workspace's boundary: "auto", "cpu", "cuda" or "cuda:N"."""
+
+    def conflicts(self) -> Iterator[tuple[str, str]]:
+        """(field, message) of every pair of fields that do not go together."""
+        if not isinstance(self.sampling, Grid | Random | Sobol | BoundaryBiased):
+            yield "sampling", 'must not be "converge": the field is evaluated on one sampling'

@@ -1,0 +1,114 @@
+"""The table of analyses: the job of each, and what plans it.
+
+Library, command line and server read this table; none of them names an analysis. Another package adds a row through the
+entry-point group ``wsrender.analyses``: the entry's name is that of the analysis, its object an ``Entry``.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache
+from importlib import import_module
+from importlib.metadata import entry_points
+from typing import Any
+
+from wsrender.documents.document import Document
+from wsrender.errors import InputError
+from wsrender.notices import Notice, warn
+
+EXTENSIONS = "wsrender.analyses"  # entry points, loaded when the table is first read
+
+
+@dataclass(frozen=True)
+class Entry:
+    """An analysis: the class of its job, and what plans it, an ``Analysis`` (see `wsrender.analyses.contract`).
+
+    Either may be ``"module:name"``: jobs are imported when the table is first read, what plans one when it is planned.
+    """
+
+    job: str | type[Document]
+    run: str | Callable[..., Any]
+
+
+def _own(name: str, job: str, run: str) -> Entry:
+    """An analysis of this package, in a folder of its name."""
+    folder = f"{__name__.rpartition('.')[0]}.{name}"
+    return Entry(f"{folder}.job:{job}", run if ":" in run else f"{folder}.run:{run}")
+
+
+_ROWS = {
+    "workspace": _own("workspace", "WorkspaceJob", "wsrender.run.workspace:plan_workspace"),
+    "indices_at": _own("indices_at", "IndicesAtJob", "wsrender.run.indices_at:plan_indices_at"),
+    "reachability": _own("reachability", "ReachabilityJob", "wsrender.run.reachability:plan_reachability"),
+    "capability": _own("capability", "CapabilityJob", "wsrender.run.capability:plan_capability"),
+    "shared_workspace": _own("shared_workspace", "SharedWorkspaceJob", "wsrender.run.shared:plan_shared_workspace"),
+    "robot_comparison": _own("robot_comparison", "RobotComparisonJob", "wsrender.run.comparison:plan_robot_comparison"),
+    "collaborative_volume": _own(
+        "collaborative_volume", "CollaborativeVolumeJob", "wsrender.run.collaborative:plan_collaborative"
+    ),
+    "master_slave_mapping": _own("master_slave_mapping", "MasterSlaveMappingJob", "wsrender.run.mapping:plan_mapping"),
+    "kinetostatic_field": _own(
+        "kinetostatic_field", "KinetostaticFieldJob", "wsrender.run.kinetostatics:plan_kinetostatic_field"
+    ),
+    "parallel_workspace": _own("parallel_workspace", "ParallelWorkspaceJob", "wsrender.run.parallel:plan_parallel"),
+    "five_bar": _own("five_bar", "FiveBarJob", "wsrender.run.five_bars:plan_five_bar"),
+    "planar_boundary": _own("planar_boundary", "PlanarBoundaryJob", "wsrender.run.planar:plan_planar_boundary"),
+    "boundary_patches": _own(
+        "boundary_patches", "BoundaryPatchesJob", "wsrender.run.spatial_boundary:plan_boundary_patches"
+    ),
+    "method_comparison": _own(
+        "method_comparison", "MethodComparisonJob", "wsrender.run.methods:plan_method_comparison"
+    ),
+    "design_optimization": _own("design_optimization", "DesignOptimizationJob", "wsrender.run.design:plan_design"),
+}
+
+
+@cache
+def job_classes() -> dict[str, type[Document]]:
+    """The class of the jobs of every analysis, by its name."""
+    return {name: _loaded(entry.job) for name, entry in _table().items()}
+
+
+def planned(job: Any, *robots: Any, resolved: dict[str, Any] | None = None) -> Any:
+    """The plan of a job with its robots; ``resolved``: what an earlier plan of it settled."""
+    return _loaded(_table()[job.analysis].run)(job, *robots, resolved=resolved)
+
+
+def _loaded(named: Any) -> Any:
+    if not isinstance(named, str):
+        return named
+    module, _, name = named.partition(":")
+    return getattr(import_module(module), name)
+
+
+@cache
+def _table() -> dict[str, Entry]:
+    """All analyses; a package's that is broken is left out, with a warning that names it."""
+    found = dict(_ROWS)
+    for point in entry_points(group=EXTENSIONS):
+        try:
+            entry = point.load()
+            _check(point.name, entry, found)
+        except Exception as error:  # whatever a stranger's module raises
+            package = point.dist.name if point.dist is not None else point.value
+            text = f"the analysis {point.name!r} of the package {package} is left out: {error}"
+            warn([Notice("analysis_left_out", text, f"repair or uninstall {package}")], UserWarning)
+        else:
+            found[point.name] = entry
+    return found
+
+
+def _check(name: str, entry: Any, found: dict[str, Entry]) -> None:
+    """Whether an entry can be a row; raises InputError."""
+    if not isinstance(entry, Entry):
+        raise InputError("entry", f"must be an Entry, not {type(entry).__name__}")
+    if name in found:
+        raise InputError("name", f"there is an analysis {name!r} already")
+    job = _loaded(entry.job)
+    if not (isinstance(job, type) and issubclass(job, Document)):
+        raise InputError("job", f"must be a class of documents, not {job!r}")
+    field = job.model_fields.get("analysis")
+    if field is None or field.default != name:
+        raise InputError("job", f'{job.__name__} must have the field analysis: Literal["{name}"] = "{name}"')
+    for needed in ("arms", "sweeps"):
+        if not callable(getattr(job, needed, None)):
+            raise InputError("job", f"{job.__name__} must have the method {needed}(), as Arm has it")

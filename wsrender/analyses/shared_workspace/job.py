@@ -1,0 +1,31 @@
+"""The job ``shared_workspace``: what several robots reach together."""
+
+from collections.abc import Iterator
+from typing import Literal
+
+from wsrender.documents.placement_scan import PlacementScan
+from wsrender.documents.quantities import RelativeTolerance
+from wsrender.documents.several_robots import PlacedRobot, SeveralRobotsJob
+
+
+class SharedWorkspaceJob(SeveralRobotsJob):
+    """What several robots reach together: union, shared volume, volume by number of robots, shared quality."""
+
+    analysis: Literal["shared_workspace"] = "shared_workspace"
+    """Name of the analysis."""
+    refined_volume: RelativeTolerance | None = 0.01
+    """Relative tolerance of the refined volumes that any and that at least two robots reach [1], at every value of a
+    scan too: by inverse kinematics, each with a 95 % interval. null: none."""
+    scan: PlacementScan | None = None
+    """A coordinate of a robot's placement to vary; gives shared volume against it. null: none."""
+
+    def sweeps(self) -> list[PlacedRobot]:
+        """The robots, and the one that is scanned once more for each value."""
+        moved = [] if self.scan is None else [self.robots[self.scan.robot]] * len(self.scan.values)
+        return [*self.robots, *moved]
+
+    def conflicts(self) -> Iterator[tuple[str, str]]:
+        """(field, message) of every pair of fields that do not go together."""
+        yield from super().conflicts()
+        if self.scan is not None:
+            yield from self.scan.conflicts_with([robot.robot for robot in self.robots])
