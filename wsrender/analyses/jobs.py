@@ -48,8 +48,9 @@ def job_schema(analysis: str | None = None) -> dict[str, Any]:
 def _adapter(without: frozenset[str] = frozenset()) -> TypeAdapter[Any]:
     """One discriminated union on ``analysis``."""
     jobs = {name: job for name, job in job_classes().items() if name not in without}
-    union = Union[tuple(jobs.values())]  # noqa: UP007 - of as many as there are
-    return TypeAdapter(Annotated[union, Discriminator("analysis"), BeforeValidator(tagged("analysis", jobs))])
+    union = Union[tuple(jobs.values())]  # noqa: UP007
+    kinds: Any = Annotated[union, Discriminator("analysis"), BeforeValidator(tagged("analysis", jobs))]  # type: ignore[valid-type]
+    return TypeAdapter(kinds)
 
 
 def _positive_zeros(value: Any) -> Any:

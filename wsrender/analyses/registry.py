@@ -37,9 +37,9 @@ def _own(name: str, job: str, run: str) -> Entry:
 
 _ROWS = {
     "workspace": _own("workspace", "WorkspaceJob", "wsrender.run.workspace:plan_workspace"),
-    "indices_at": _own("indices_at", "IndicesAtJob", "wsrender.run.indices_at:plan_indices_at"),
-    "reachability": _own("reachability", "ReachabilityJob", "wsrender.run.reachability:plan_reachability"),
-    "capability": _own("capability", "CapabilityJob", "wsrender.run.capability:plan_capability"),
+    "indices_at": _own("indices_at", "IndicesAtJob", "IndicesAtAnalysis"),
+    "reachability": _own("reachability", "ReachabilityJob", "ReachabilityAnalysis"),
+    "capability": _own("capability", "CapabilityJob", "CapabilityAnalysis"),
     "shared_workspace": _own("shared_workspace", "SharedWorkspaceJob", "wsrender.run.shared:plan_shared_workspace"),
     "robot_comparison": _own("robot_comparison", "RobotComparisonJob", "wsrender.run.comparison:plan_robot_comparison"),
     "collaborative_volume": _own(

@@ -1,31 +1,37 @@
-"""Partial results ↔ plain arrays by name, so that they can be kept in files and in partial results of others."""
+"""Partial results ↔ what can be kept in files and in partial results of others."""
 
 import json
 from typing import Any
 
 import numpy as np
 
+from wsrender.analyses.contract import Analysis
+from wsrender.analyses.partial_result import PartialResult
 from wsrender.documents.sampling import Converge
-from wsrender.engine import Evaluated, Partial
-from wsrender.run.indices_at import IndicesAtPlan
+from wsrender.engine import Partial
 from wsrender.run.workspace import WorkspacePartial, WorkspacePlan
 
 Arrays = dict[str, np.ndarray]
-Partials = WorkspacePartial | Evaluated | Arrays
-"""Partial results: of the analyses without a type of their own, arrays by name."""
 
 SWEEP = ("extremes", "totals", "cells", "count", "records", "sums", "rejected")
-EVALUATED = ("position", "values", "quat_wxyz", "rejected")
 ROWS = "rows_"
 
 
-def partial_to_arrays(partial: Partials) -> Arrays:
+def packed(partial: Any) -> PartialResult:
+    """Arrays and facts of a partial result."""
+    return PartialResult(partial_to_arrays(partial)) if not hasattr(partial, "packed") else partial.packed()
+
+
+def unpacked(parts: PartialResult, plan: Any) -> Any:
+    """The partial result of a plan's shard."""
+    return plan.unpacked(parts) if isinstance(plan, Analysis) else partial_of_arrays(dict(parts.arrays), plan)
+
+
+def partial_to_arrays(partial: Any) -> Arrays:
     """The arrays of a partial result."""
     match partial:
         case WorkspacePartial():
             return _workspace_arrays(partial)
-        case Evaluated():
-            return {name: value for name in EVALUATED if (value := getattr(partial, name)) is not None}
         case _:
             return partial
 
@@ -35,8 +41,6 @@ def partial_of_arrays(arrays: Arrays, plan: Any) -> Any:
     match plan:
         case WorkspacePlan():
             return _workspace_partial(arrays, plan)
-        case IndicesAtPlan():
-            return Evaluated(**{name: arrays[name] for name in EVALUATED if name in arrays})
         case _:
             return arrays
 

@@ -5,6 +5,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Protocol, runtime_checkable
 
+from wsrender.analyses.contract import Analysis
 from wsrender.analyses.cost import Cost
 from wsrender.analyses.execution import Execution
 from wsrender.analyses.headline import no_headline
@@ -168,9 +169,11 @@ def finish(
         total = sum(count for _, count in plan.shards)
         progress(total, total, "finishing")
     result = plan.finish(partial, seconds, execution)
-    result.document = document = {"format": FORMAT, **result.document}
-    document.setdefault("headline", no_headline(f"the analysis {plan.job.analysis} measures none"))
-    document["warnings"] = entries(plan.notices) + document.get("warnings", [])
+    if not isinstance(plan, Analysis):
+        document = result.document
+        document.setdefault("headline", no_headline(f"the analysis {plan.job.analysis} measures none"))
+        document["warnings"] = entries(plan.notices) + document.get("warnings", [])
+    result.document = {"format": FORMAT, **result.document}
     return result
 
 

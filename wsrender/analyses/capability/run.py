@@ -1,0 +1,138 @@
+"""The analysis ``capability``: reachability index per voxel, dexterous workspace."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from wsrender.analyses.capability.job import CapabilityJob
+from wsrender.analyses.contract import Analysis, Draft, Settled, Tell
+from wsrender.analyses.cost import DOCUMENT_BYTES, Cost, pictures_cost, surface_bytes
+from wsrender.analyses.execution import Execution
+from wsrender.analyses.partial_result import PartialResult
+from wsrender.documents.sampling import Sobol
+from wsrender.engine import sampled_positions
+from wsrender.reachability.capability import (
+    SAMPLES_PER_CELL,
+    SEARCHED_BYTES,
+    capability,
+    fibonacci_directions,
+    searched_block,
+)
+from wsrender.reachability.targets import check_tolerance
+from wsrender.robots.chain import Chain
+from wsrender.sampling import plan_sampling
+from wsrender.volume.lattice import check_voxels, default_voxel_size, expected_voxels
+from wsrender.volume.table import Table
+from wsrender.volume.volume_data import VolumeData
+from wsrender.volume.voxels import Voxels
+
+RATE = 2e4  # pairs of voxel and direction per second of one core, rounded down from benchmarks/inverse.py
+TABLE_BYTES, VOXEL_BYTES = 58, 12  # of a voxel in the table, and in the volume
+FILLED = 0.5  # of the voxels searched, the block of those that are reached
+POSITIONS_PER_S = 2e6  # of one CPU core
+DIVISIONS = 20  # of the size of a workspace: every voxel has many directions
+FIRST_SAMPLES = 1 << 16
+PAIR_BYTES = 2.25  # of a voxel and a direction: its label, whether it is reached, as byte and bit, twice
+
+
+@dataclass(frozen=True, kw_only=True)
+class CapabilitySettled(Settled):
+    """With the edge of a voxel [m]."""
+
+    voxel_size_m: float
+
+
+class CapabilityAnalysis(Analysis):
+    """A planned ``capability`` job: one shard of the pairs of a voxel and a direction, about."""
+
+    settles = CapabilitySettled
+    job: CapabilityJob
+    settled: CapabilitySettled
+
+    def prepare(self, device: str, target: str) -> CapabilitySettled:
+        """Raises InputError for a tolerance below what is computed, ResourceError for too many voxels."""
+        job, chain = self.job, self.robot.chain
+        check_tolerance(chain, job.position_tolerance_m, job.precision)
+        positions = _positions(chain)
+        size = job.voxel_size_m or default_voxel_size(positions, divisions=DIVISIONS)
+        block = searched_block(chain, size)
+        voxels = expected_voxels(positions, size)
+        check_voxels(block, PAIR_BYTES * job.directions, share=voxels / block.size)
+        return CapabilitySettled(device, target, ((0, round(voxels * job.directions)),), voxel_size_m=size)
+
+    @property
+    def cost(self) -> Cost:
+        """Of the pairs their labels, and of every voxel searched what is known of it."""
+        pairs = float(self.shards[0][1])
+        voxels = pairs / self.job.directions
+        searched = searched_block(self.robot.chain, self.settled.voxel_size_m).size
+        drawn, seconds = pictures_cost("slices", "arm")
+        kept = TABLE_BYTES * voxels + VOXEL_BYTES * FILLED * searched + surface_bytes(voxels)
+        memory = PAIR_BYTES * pairs + SEARCHED_BYTES * searched
+        found = SAMPLES_PER_CELL * searched / POSITIONS_PER_S
+        return Cost(pairs, memory, DOCUMENT_BYTES + drawn + kept, pairs / RATE + found + seconds)
+
+    def compute(self, shard: int, execution: Execution, tell: Tell) -> PartialResult:
+        """Cells (V, 3), from which directions they are reached (V, bytes, a bit each), undecided directions (V,)."""
+        job = self.job
+        found = capability(
+            self.robot.chain,
+            self.settled.voxel_size_m,
+            fibonacci_directions(job.directions),
+            approach_axis=job.approach_axis,
+            position_m=job.position_tolerance_m,
+            angle_rad=job.angle_tolerance_rad,
+            seed=job.seed,
+            precision=job.precision,
+            device=self.device,
+            threads=execution.threads,
+            progress=tell,
+        )
+        bits = np.packbits(found.reached, axis=1)
+        return PartialResult({"cells": found.cells, "bits": bits, "undecided": found.undecided})
+
+    def result(self, partial: PartialResult, execution: Execution) -> Draft:
+        """Volume data, the table ``capability`` of reached voxels, the table ``directions``, and the document."""
+        job, cells, edge = self.job, partial["cells"], self.settled.voxel_size_m
+        reached = np.unpackbits(partial["bits"], axis=1, count=job.directions).astype(bool)
+        index = reached.mean(axis=1)
+        entry = {
+            "method": "inverse kinematics at the centres of voxels",
+            "directions": job.directions,
+            "approach_axis": job.approach_axis,
+            "voxels": len(cells),
+            "mean_index": float(index.mean()) if len(cells) else 0.0,
+            "maximum_index": float(index.max(initial=0.0)),
+            "undecided_pairs": int(partial["undecided"].sum()),
+            "reachable_volume_m3": len(cells) * edge**3,
+            "dexterous_threshold": job.dexterous_threshold,
+            "dexterous_volume_m3": int((index >= job.dexterous_threshold).sum()) * edge**3,
+        }
+        columns = {
+            "position": (cells + 0.5) * edge,
+            "reachability_index": index,
+            "undecided": partial["undecided"],
+            "direction_bits": partial["bits"],
+        }
+        directions = {"direction": fibonacci_directions(job.directions), "voxels": reached.sum(axis=0)}
+        chain = self.robot.chain
+        return Draft(
+            {"voxel_size_m": edge, "capability": entry},
+            volume=self._volume(cells, reached),
+            tables={"capability": Table(columns, {"position": "m"}), "directions": Table(directions)},
+            skeleton=self.robot.skeleton((chain.lower_limits + chain.upper_limits) / 2),
+        )
+
+    def _volume(self, cells: np.ndarray, reached: np.ndarray) -> VolumeData | None:
+        """``count``: directions reached; "fraction" of "approach_directions": the index; None: nothing is reached."""
+        if not len(cells):
+            return None
+        statistics = {"fraction": {"approach_directions": reached.mean(axis=1).astype(np.float32)}}
+        first, voxels = Voxels.at_places(cells, reached.sum(axis=1), statistics)
+        return VolumeData.of_voxels(self.settled.voxel_size_m, first, voxels, {"approach_directions": "1"})
+
+
+def _positions(chain: Chain) -> np.ndarray:
+    """Positions (N, 3) of the first samples of a Sobol set [m]."""
+    plan = plan_sampling(chain, Sobol(FIRST_SAMPLES))
+    return sampled_positions(chain, plan)

@@ -1,0 +1,182 @@
+"""The contract of analyses: what each of them says of a job, and what is the same for all."""
+
+import time
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import asdict, dataclass, field
+from typing import TYPE_CHECKING, Any, ClassVar, Self
+
+import numpy as np
+from pydantic import TypeAdapter
+
+from wsrender.analyses.cost import Cost, Costed
+from wsrender.analyses.execution import Execution
+from wsrender.analyses.headline import no_headline
+from wsrender.analyses.partial_result import PartialResult
+from wsrender.analyses.provenance import job_entry, provenance, robot_entry
+from wsrender.analyses.settled_device import settled_device
+from wsrender.notices import Notice, entries
+from wsrender.results.result import Result
+from wsrender.robot import Robot
+from wsrender.volume.distribution_map import DistributionMap
+from wsrender.volume.table import Table
+from wsrender.volume.volume_data import VolumeData
+
+if TYPE_CHECKING:
+    import trimesh
+
+Tell = Callable[[int], None]
+"""Called with the samples done so far."""
+Progress = Callable[[int, int, str], None]
+"""Called with what is done, about how much there will be, and what is going on."""
+
+
+@dataclass(frozen=True)
+class Settled:
+    """What planning settles once, in plain values: every process that takes part in a job computes with the same.
+
+    ``device``: what "auto" means; ``target``: of its kernels; ``shards``: (first sample, number) of each;
+    ``shard_unit``: at whose multiples the samples may be divided into shards, None: not at all; ``iterates``: whether
+    nobody knows beforehand how many samples it takes. An analysis that settles more adds fields.
+    """
+
+    device: str
+    target: str
+    shards: tuple[tuple[int, int], ...]
+    shard_unit: int | None = None
+    iterates: bool = False
+
+    def entry(self) -> dict[str, Any]:
+        """As JSON values by field."""
+        return TypeAdapter(dict[str, Any]).dump_python(asdict(self), mode="json")
+
+    @classmethod
+    def of(cls, entry: Mapping[str, Any]) -> Self:
+        """What an `entry` says, tuples and numbers as the fields have them."""
+        return TypeAdapter(cls).validate_python(dict(entry))
+
+
+@dataclass(frozen=True, eq=False)
+class Draft:
+    """What a result holds of the analysis itself; the contract adds what every result document has.
+
+    ``entries``: of the document; ``headline``: None where it measures no workspace; ``provenance``: what is said beside
+    versions, target and seed. The others are those of `Result`.
+    """
+
+    entries: dict[str, Any]
+    headline: dict[str, Any] | None = None
+    notices: Iterable[Notice] = ()
+    provenance: dict[str, Any] = field(default_factory=dict)
+    map: DistributionMap | None = None
+    sample: DistributionMap | None = None
+    volume: VolumeData | None = None
+    skeleton: np.ndarray | None = None
+    meshes: "dict[str, trimesh.Trimesh]" = field(default_factory=dict)
+    tables: dict[str, Table] = field(default_factory=dict)
+    volumes: dict[str, VolumeData] = field(default_factory=dict)
+
+
+class Analysis(Costed, ABC):
+    """A planned job with its robots. Those who run plans use it as the `Plan` of `wsrender.run.steps`.
+
+    An analysis says what is `settled` once, what it costs, how a shard is computed, and what the result is; one that
+    can be divided merges partial results too. Whatever follows from job, robots and settled values is a cached
+    property: other processes have it without settling anything again.
+    """
+
+    settles: ClassVar[type[Settled]] = Settled
+    job: Any
+    settled: Any  # of the class `settles`
+    notices: tuple[Notice, ...] = ()  # of the robots, where `wsrender.run.steps` has loaded them
+
+    def __init__(self, job: Any, *robots: Robot, resolved: Mapping[str, Any] | None = None):
+        """Plan a job, or take what `resolved` of an earlier plan of it says.
+
+        Raises what `prepare` raises, and InputError where the device of the earlier plan is not here.
+        """
+        self.job, self.robots = job, robots
+        device = settled_device(getattr(job, "device", "cpu"), resolved)
+        self.settled = self.prepare(*device) if resolved is None else self.settles.of(resolved)
+
+    @abstractmethod
+    def prepare(self, device: str, target: str) -> Settled:
+        """Check what cannot be computed, and settle what is settled once; nothing has run or been allocated then."""
+
+    @property
+    @abstractmethod
+    def cost(self) -> Cost:
+        """Samples, memory, bytes of files and seconds, from plan to result."""
+
+    @abstractmethod
+    def compute(self, shard: int, execution: Execution, tell: Tell) -> Any:
+        """The partial result of a shard, a `PartialResult` or what has its method ``packed``."""
+
+    def merge(self, a: Any, b: Any) -> Any:
+        """The partial result of both, the same bits in any order; an analysis of one shard has nothing to merge."""
+        raise ValueError(f"{self.job.analysis} has one shard")
+
+    def refine(self, partial: Any, progress: Progress | None, execution: Execution) -> Any:
+        """The merged partial result with what was asked beside the samples; the same object: nothing was."""
+        return partial
+
+    @abstractmethod
+    def result(self, partial: Any, execution: Execution) -> Draft:
+        """What the merged and refined partial result says."""
+
+    def unpacked(self, partial: PartialResult) -> Any:
+        """The partial result that was ``packed``; raises KeyError, TypeError or ValueError where it is of another."""
+        return partial
+
+    def about_robots(self) -> dict[str, Any]:
+        """The document's ``robot`` of a job that is an arm itself, or else ``robots``."""
+        if () in self.job.arms():
+            return {"robot": robot_entry(self.robots[0])}
+        robots = [{"name": robot.name, "robot": robot_entry(robot)} for robot in self.robots]
+        return {"robots": robots} if robots else {}
+
+    @property
+    def robot(self) -> Robot:
+        """The robot of a job of one."""
+        (robot,) = self.robots
+        return robot
+
+    @property
+    def device(self) -> str:
+        """Where the kernels run."""
+        return self.settled.device
+
+    @property
+    def target(self) -> str:
+        """Target of the kernels."""
+        return self.settled.target
+
+    @property
+    def shards(self) -> list[tuple[int, int]]:
+        """(first sample, number of samples) of every shard."""
+        return list(self.settled.shards)
+
+    def resolved(self) -> dict[str, Any]:
+        """What is settled, as JSON values: with it another process plans the same."""
+        return self.settled.entry()
+
+    def run_shard(self, shard: int, progress: Tell | None, execution: Execution) -> Any:
+        """The partial result of a shard."""
+        return self.compute(shard, execution, progress or (lambda done: None))
+
+    def finish(self, partial: Any, seconds: Mapping[str, float], execution: Execution) -> Result:
+        """The result: what the analysis has found, and around it what every result document has."""
+        started = time.perf_counter()
+        job, draft = self.job, self.result(partial, execution)
+        document = {
+            "analysis": job.analysis,
+            "job": job_entry(job, *self.robots),
+            **self.about_robots(),
+            **draft.entries,
+            "headline": draft.headline or no_headline(f"the analysis {job.analysis} measures none"),
+            "warnings": entries((*self.notices, *draft.notices)),
+            "provenance": provenance(job, self.target, **draft.provenance),
+            "timing_s": {**seconds, "finish": time.perf_counter() - started},
+        }
+        data = (draft.map, draft.sample, draft.volume, draft.skeleton, draft.meshes, draft.tables, draft.volumes)
+        return Result(document, *data)

@@ -1,0 +1,112 @@
+"""The analysis ``indices_at``: local indices at given configurations."""
+
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from wsrender.analyses.contract import Analysis, Draft, Settled, Tell
+from wsrender.analyses.cost import DOCUMENT_BYTES, Cost, pictures_cost
+from wsrender.analyses.execution import Execution
+from wsrender.analyses.indices_at.job import IndicesAtJob
+from wsrender.analyses.partial_result import PartialResult
+from wsrender.analyses.provenance import index_choices
+from wsrender.engine import Evaluated, Evaluation, evaluate_at, units_of
+from wsrender.errors import InputError
+from wsrender.pipeline.constraints.constraint import Constraint
+from wsrender.robot.constraints import constraints_for, samples_entry
+from wsrender.robot.indices import evaluation_of_job
+from wsrender.robot.model_robot import configuration_rows
+from wsrender.volume.distribution_map import DistributionMap
+from wsrender.volume.table import Table
+
+ROWS_PER_S = 1e6  # of one CPU core, with their files
+
+
+class IndicesAtAnalysis(Analysis):
+    """A planned ``indices_at`` job: one shard of all rows."""
+
+    job: IndicesAtJob
+
+    def prepare(self, device: str, target: str) -> Settled:
+        """Raises InputError for configurations that are missing or of the wrong length."""
+        _ = self.evaluation, self.constraints
+        return Settled(device, target, ((0, len(self.q)),))
+
+    @cached_property
+    def q(self) -> np.ndarray:
+        """The rows (N, n) [rad or m]; raises InputError."""
+        names = self.robot.joint_names
+        if not self.job.configurations:
+            needed = f"must be given: rows of {len(names)} joint values, {', '.join(names)}"
+            raise InputError("configurations", needed)
+        return configuration_rows(np.array(self.job.configurations, np.float64), len(names), "configurations")
+
+    @cached_property
+    def evaluation(self) -> Evaluation:
+        """Which indices, and how they are computed."""
+        return evaluation_of_job(self.job, self.robot)
+
+    @cached_property
+    def constraints(self) -> tuple[Constraint, ...]:
+        """Which rows are admitted."""
+        return constraints_for(self.robot, self.job.constraints)
+
+    @property
+    def cost(self) -> Cost:
+        """Rows, their numbers and the pictures."""
+        width = 4 if self.job.precision == "float32" else 8
+        held = float(len(self.q) * (3 + 6 + len(self.evaluation.indices)) * width)
+        drawn, seconds = pictures_cost("histogram", "robot")
+        files = DOCUMENT_BYTES + drawn + self.q.nbytes + held
+        return Cost(len(self.q), self.q.nbytes + held, files, len(self.q) / ROWS_PER_S + seconds)
+
+    def compute(self, shard: int, execution: Execution, tell: Tell) -> PartialResult:
+        """Positions and values of all rows: arrays of `Evaluated` by name."""
+        rows = evaluate_at(
+            self.evaluation,
+            self.q,
+            self.job.precision,
+            self.device,
+            with_orientation=self.evaluation.host_chain is None,
+            threads=execution.threads,
+            constraints=self.constraints,
+        )
+        tell(len(self.q))
+        return PartialResult({name: value for name, value in vars(rows).items() if value is not None})
+
+    def result(self, partial: PartialResult, execution: Execution) -> Draft:
+        """The map, one row per configuration in the order asked, and the extremes of each index.
+
+        With constraints the table ``admission`` says of every row why it is rejected, "" where it is not; values of
+        rejected ones are NaN, and count in no extreme.
+        """
+        rows, names = Evaluated(**partial.arrays), self.evaluation.indices
+        admitted, about, tables = self._admission(rows.rejected)
+        units = units_of(self.evaluation)
+        values = dict(zip(names, np.where(admitted, rows.values, np.nan), strict=True))
+        entries = {
+            "sampling": {"method": "given", "samples": len(self.q)},
+            **about,
+            "indices": {
+                name: {
+                    "maximum": float(v[admitted].max()) if admitted.any() else None,
+                    "minimum": float(v[admitted].min()) if admitted.any() else None,
+                    "unit": units[name],
+                }
+                for name, v in values.items()
+            },
+            "choices": index_choices(self.job, self.evaluation),
+        }
+        found = DistributionMap(rows.position, values, units, self.q, self.robot.joint_names, rows.quat_wxyz)
+        sample = found.only(admitted) if tables else None
+        return Draft(entries, notices=self.evaluation.notices, map=found, sample=sample, tables=tables)
+
+    def _admission(self, rejected: np.ndarray | None) -> tuple[np.ndarray, dict[str, Any], dict[str, Table]]:
+        """Which rows are admitted (N,) bool, what the document says of it, and the table of reasons."""
+        if rejected is None:
+            return np.ones(len(self.q), bool), {}, {}
+        reasons = np.array(["", *(each.name for each in self.constraints)])
+        counts = np.bincount(rejected, minlength=len(reasons))[1:]
+        about = samples_entry(self.constraints, len(self.q), counts)
+        return rejected == 0, about, {"admission": Table({"reason": reasons[rejected]})}
