@@ -82,7 +82,7 @@ def drawn_points(monkeypatch, **document):
         runs.append((left, right))
         return body_elements(left, right, *choices)
 
-    monkeypatch.setattr("wsrender.run.collaborative.body_elements", kept)
+    monkeypatch.setattr("wsrender.analyses.collaborative_volume.run.body_elements", kept)
     ws.execute(job(cells=[4, 4, 4], refined_volume=None, **document))
     return runs
 

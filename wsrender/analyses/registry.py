@@ -42,19 +42,13 @@ _ROWS = {
     "capability": _own("capability", "CapabilityJob", "CapabilityAnalysis"),
     "shared_workspace": _own("shared_workspace", "SharedWorkspaceJob", "wsrender.run.shared:plan_shared_workspace"),
     "robot_comparison": _own("robot_comparison", "RobotComparisonJob", "wsrender.run.comparison:plan_robot_comparison"),
-    "collaborative_volume": _own(
-        "collaborative_volume", "CollaborativeVolumeJob", "wsrender.run.collaborative:plan_collaborative"
-    ),
-    "master_slave_mapping": _own("master_slave_mapping", "MasterSlaveMappingJob", "wsrender.run.mapping:plan_mapping"),
-    "kinetostatic_field": _own(
-        "kinetostatic_field", "KinetostaticFieldJob", "wsrender.run.kinetostatics:plan_kinetostatic_field"
-    ),
+    "collaborative_volume": _own("collaborative_volume", "CollaborativeVolumeJob", "CollaborativeVolumeAnalysis"),
+    "master_slave_mapping": _own("master_slave_mapping", "MasterSlaveMappingJob", "MasterSlaveMappingAnalysis"),
+    "kinetostatic_field": _own("kinetostatic_field", "KinetostaticFieldJob", "KinetostaticFieldAnalysis"),
     "parallel_workspace": _own("parallel_workspace", "ParallelWorkspaceJob", "wsrender.run.parallel:plan_parallel"),
-    "five_bar": _own("five_bar", "FiveBarJob", "wsrender.run.five_bars:plan_five_bar"),
-    "planar_boundary": _own("planar_boundary", "PlanarBoundaryJob", "wsrender.run.planar:plan_planar_boundary"),
-    "boundary_patches": _own(
-        "boundary_patches", "BoundaryPatchesJob", "wsrender.run.spatial_boundary:plan_boundary_patches"
-    ),
+    "five_bar": _own("five_bar", "FiveBarJob", "FiveBarAnalysis"),
+    "planar_boundary": _own("planar_boundary", "PlanarBoundaryJob", "PlanarBoundaryAnalysis"),
+    "boundary_patches": _own("boundary_patches", "BoundaryPatchesJob", "BoundaryPatchesAnalysis"),
     "method_comparison": _own(
         "method_comparison", "MethodComparisonJob", "wsrender.run.methods:plan_method_comparison"
     ),

@@ -1,18 +1,18 @@
 """The analysis ``five_bar``: workspace, conditioning, singularities and aspects of a planar five-bar ([CB])."""
 
-import json
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
+from wsrender.analyses.contract import Analysis, Draft, Settled, Tell
 from wsrender.analyses.cost import DOCUMENT_BYTES, Cost, pictures_cost
 from wsrender.analyses.execution import Execution
 from wsrender.analyses.five_bar.job import FiveBarJob
 from wsrender.analyses.headline import headline, no_headline
-from wsrender.analyses.provenance import job_entry, provenance
-from wsrender.analyses.settled_device import settled_device
+from wsrender.analyses.partial_result import PartialResult
+from wsrender.analyses.partial_tables import tables_of, with_tables
 from wsrender.mechanisms.five_bar import ASSEMBLY_MODES, FiveBar
 from wsrender.mechanisms.five_bar.aspects import Aspect, aspects
 from wsrender.mechanisms.five_bar.condition_numbers import conditioning
@@ -39,9 +39,6 @@ from wsrender.mechanisms.five_bar.tables import (
     postures_table,
 )
 from wsrender.results.drawing.five_bar import MODE_VOLUMES
-from wsrender.results.result import Result
-from wsrender.run.one_shard import OneShard
-from wsrender.run.partial_tables import arrays_of_tables, tables_of_arrays
 from wsrender.volume.lattice import round_to_digits
 from wsrender.volume.table import Table
 from wsrender.volume.volume_data import VolumeData
@@ -52,20 +49,26 @@ UNITS = {"det_a": "m^2", "det_b": "m^4"}
 SAME_AREA = 1e-9  # of areas: rounding
 
 
-@dataclass(eq=False)
-class FiveBarPlan(OneShard):
-    """A resolved ``five_bar`` job: one shard."""
+class FiveBarAnalysis(Analysis):
+    """A planned ``five_bar`` job: one shard of all cells of the maps."""
 
     job: FiveBarJob
-    five_bar: FiveBar
-    lattice: PlaneLattice
-    device: str
-    target: str
 
-    @property
-    def shards(self) -> list[tuple[int, int]]:
-        """One shard of all cells of the maps."""
-        return [(0, self._cells + self._joint_cells)]
+    def prepare(self, device: str, target: str) -> Settled:
+        """Settles the cells of the maps."""
+        return Settled(device, target, ((0, self._cells + self._joint_cells),))
+
+    @cached_property
+    def five_bar(self) -> FiveBar:
+        """The mechanism."""
+        return FiveBar(self.job.base_m, self.job.proximal_m, self.job.distal_m, self.job.limits_rad)
+
+    @cached_property
+    def lattice(self) -> PlaneLattice:
+        """Of the Cartesian maps."""
+        lower, upper = plane_bounds(self.five_bar)
+        cell = self.job.voxel_size_m or round_to_digits(float((upper - lower).max()) / CELLS_ACROSS, 2)
+        return plane_lattice(self.five_bar, cell)
 
     @property
     def _cells(self) -> int:
@@ -83,9 +86,7 @@ class FiveBarPlan(OneShard):
         drawn, seconds = pictures_cost(*["other"] * 4)
         return Cost(cells, 200.0 * cells, DOCUMENT_BYTES + drawn + 100.0 * cells, cells / CELLS_PER_S + seconds)
 
-    def run_shard(
-        self, shard: int, progress: Callable[[int], None] | None, execution: Execution
-    ) -> dict[str, np.ndarray]:
+    def compute(self, shard: int, execution: Execution, tell: Tell) -> PartialResult:
         """Boundary, loci, aspects, maps and iso-curves of every working mode."""
         five_bar, modes = self.five_bar, self.job.working_modes
         regions = {mode: workspace(five_bar, mode) for mode in modes}
@@ -95,8 +96,7 @@ class FiveBarPlan(OneShard):
         for done, mode in enumerate(modes, 1):
             values = cartesian_map(five_bar, mode, self.lattice)
             maps[mode] = {name: getattr(values, name).reshape(self.lattice.shape) for name in QUANTITIES}
-            if progress:
-                progress(done * self._cells // len(modes))
+            tell(done * self._cells // len(modes))
         tables = {
             "boundary_arcs": boundary_table(regions),
             "loci": loci_table(five_bar, regions, type_2),
@@ -105,8 +105,7 @@ class FiveBarPlan(OneShard):
             "drawn_postures": self._drawn_postures(maps),
             "joint_space": joint_table(joint_map(five_bar, self.job.joint_steps)),
         }
-        if progress:
-            progress(self._cells + self._joint_cells)
+        tell(self._cells + self._joint_cells)
         about = {
             "workspaces": [_workspace_entry(mode, region) for mode, region in regions.items()],
             "aspects": [_aspect_entry(each) for each in found],
@@ -115,17 +114,13 @@ class FiveBarPlan(OneShard):
             "points": [entry for point in self.job.points_m for entry in self._point_entries(point)],
             "assemblies": [entry for theta in self.job.joint_angles_rad for entry in self._assembly_entries(theta)],
         }
-        arrays = {"about": np.array(json.dumps(about, allow_nan=False)), **arrays_of_tables(tables)}
-        return arrays | {f"map {m} {name}": array for m, values in maps.items() for name, array in values.items()}
+        arrays = {f"map {m} {name}": array for m, values in maps.items() for name, array in values.items()}
+        return with_tables(PartialResult(arrays, {"about": about}), tables)
 
-    def finish(self, partial: dict[str, np.ndarray], seconds: dict[str, float], execution: Execution) -> Result:
+    def result(self, partial: PartialResult, execution: Execution) -> Draft:
         """Areas, aspects, least condition numbers, and the tables and maps behind the pictures."""
-        about = json.loads(str(partial["about"]))
-        tables = tables_of_arrays(partial)
-        job = self.job
+        about, job = partial.facts["about"], self.job
         document = {
-            "analysis": "five_bar",
-            "job": job_entry(job),
             "robot": {
                 "name": _name(job),
                 "base_m": job.base_m,
@@ -136,14 +131,12 @@ class FiveBarPlan(OneShard):
             "sampling": {"samples": self._cells + self._joint_cells, "method": "lattices"},
             "voxel_size_m": self.lattice.cell_m,
             **about,
-            "headline": _headline([each["area_m2"] for each in about["workspaces"]]),
-            "provenance": provenance(self.job, self.target),
-            "timing_s": seconds,
         }
         volumes = {MODE_VOLUMES[mode]: self._volume(partial, mode) for mode in job.working_modes if self._cells}
-        return Result(document, tables=tables, volumes=volumes)
+        headline = _headline([each["area_m2"] for each in about["workspaces"]])
+        return Draft(document, headline, tables=tables_of(partial), volumes=volumes)
 
-    def _volume(self, partial: dict[str, np.ndarray], mode: str) -> VolumeData:
+    def _volume(self, partial: PartialResult, mode: str) -> VolumeData:
         """The maps of a working mode as one layer of the lattice; "value" is that at the centre of a voxel."""
         values = {name: array[:, :, None] for name, array in _parts(partial, f"map {mode} ").items()}
         count = (~np.isnan(values["inverse_kappa_a"])).astype(np.int64)
@@ -197,15 +190,6 @@ class FiveBarPlan(OneShard):
         return entry | {"manipulability_m2": manipulability}
 
 
-def plan_five_bar(job: FiveBarJob, resolved: dict[str, Any] | None = None) -> FiveBarPlan:
-    """Resolve the job, or take what `FiveBarPlan.resolved` of an earlier plan of it says."""
-    five_bar = FiveBar(job.base_m, job.proximal_m, job.distal_m, job.limits_rad)
-    lower, upper = plane_bounds(five_bar)
-    extent = float((upper - lower).max())
-    cell = job.voxel_size_m or round_to_digits(extent / CELLS_ACROSS, 2)
-    return FiveBarPlan(job, five_bar, plane_lattice(five_bar, cell), *settled_device("cpu", resolved))
-
-
 def _headline(areas: list[float]) -> dict[str, Any]:
     """The exact area, where it is that of every working mode."""
     if not areas or np.ptp(areas) > SAME_AREA * max(areas):
@@ -223,8 +207,8 @@ def _of_mode(found: Sequence[Piece], mode: str) -> list[Piece]:
     return [piece for piece in found if piece.working_mode == mode]
 
 
-def _parts(partial: dict[str, np.ndarray], prefix: str) -> dict[str, np.ndarray]:
-    return {name.removeprefix(prefix): array for name, array in partial.items() if name.startswith(prefix)}
+def _parts(partial: PartialResult, prefix: str) -> dict[str, np.ndarray]:
+    return {name.removeprefix(prefix): array for name, array in partial.arrays.items() if name.startswith(prefix)}
 
 
 def _workspace_entry(mode: str, region: ArcRegion) -> dict[str, Any]:

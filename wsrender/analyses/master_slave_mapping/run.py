@@ -1,12 +1,13 @@
 """The analysis ``master_slave_mapping``: a slave's workspace in its master's ([WSR] III.D)."""
 
-import json
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
+from wsrender.analyses.contract import Analysis, Draft, Settled, Tell
 from wsrender.analyses.cost import DOCUMENT_BYTES, Cost, pictures_cost
 from wsrender.analyses.execution import Execution
 from wsrender.analyses.headline import no_headline
@@ -18,9 +19,8 @@ from wsrender.analyses.master_slave_mapping.job import (
     MappingSearch,
     MasterSlaveMappingJob,
 )
-from wsrender.analyses.provenance import job_entry, provenance, robot_entry
+from wsrender.analyses.partial_result import PartialResult
 from wsrender.analyses.sampled_positions import sampled_positions
-from wsrender.analyses.settled_device import settled_device
 from wsrender.documents.point_sets import PointSet
 from wsrender.errors import InputError, ResourceError
 from wsrender.geometry.alpha_shape import AlphaShape
@@ -29,11 +29,9 @@ from wsrender.mapping.linear_mapping import LinearMapping, MeasuredSet
 from wsrender.mapping.scale_search import best_mapping, largest_factor, scale_curve
 from wsrender.mapping.voxel_set import VoxelSet
 from wsrender.mechanisms.workspace_points import workspace_points
-from wsrender.notices import Notice, entries
-from wsrender.results.result import Result
+from wsrender.notices import Notice
 from wsrender.robot import Robot
 from wsrender.robots.reachable_box import reachable_box
-from wsrender.run.one_shard import OneShard
 from wsrender.sampling import plan_sampling
 from wsrender.volume.lattice import block_around, check_voxels
 from wsrender.volume.table import Table
@@ -44,21 +42,37 @@ POINTS_PER_S = 2e4  # from the configuration to the end of an alpha shape, one C
 Source = Robot | MappedMechanism | np.ndarray
 
 
-@dataclass(eq=False)
-class MappingPlan(OneShard):
-    """A resolved ``master_slave_mapping`` job: one shard."""
+class MasterSlaveMappingAnalysis(Analysis):
+    """A planned ``master_slave_mapping`` job: one shard of all points."""
 
     job: MasterSlaveMappingJob
-    robots: tuple[Robot, ...]
-    sources: tuple[Source, Source]  # of the master's and the slave's points
-    device: str
-    target: str
-    samples: int
+
+    def prepare(self, device: str, target: str) -> Settled:
+        """Raises InputError for points that cannot be read, ResourceError for more points than shapes are made of."""
+        counts = [_count(self.job, side, source) for side, source in enumerate(self.sources)]
+        for name, count in zip(("master", "slave"), counts, strict=True):
+            if count > MOST_POINTS:
+                raise ResourceError(name, f"has {count:.4g} points; at most {MOST_POINTS:.4g} are mapped")
+        for name, source in zip(("master", "slave"), self.sources, strict=True):
+            _check_voxels(self.job.containment, name, source)
+        return Settled(device, target, ((0, sum(counts)),))
+
+    @cached_property
+    def sources(self) -> tuple[Source, Source]:
+        """Of the master's and the slave's points."""
+        robots = iter(self.robots)
+
+        def source(of: MappedRobot | MappedMechanism | PointSet) -> Source:
+            if isinstance(of, PointSet):
+                return of.array()
+            return of if isinstance(of, MappedMechanism) else next(robots)
+
+        return source(self.job.master), source(self.job.slave)
 
     @property
-    def shards(self) -> list[tuple[int, int]]:
-        """One shard of all points."""
-        return [(0, self.samples)]
+    def samples(self) -> int:
+        """Points of both."""
+        return self.shards[0][1]
 
     @property
     def cost(self) -> Cost:
@@ -67,9 +81,7 @@ class MappingPlan(OneShard):
         drawn, seconds = pictures_cost("other", "robot")
         return Cost(points, 1000.0 * points, DOCUMENT_BYTES + drawn + 60.0 * points, points / POINTS_PER_S + seconds)
 
-    def run_shard(
-        self, shard: int, progress: Callable[[int], None] | None, execution: Execution
-    ) -> dict[str, np.ndarray]:
+    def compute(self, shard: int, execution: Execution, tell: Tell) -> PartialResult:
         """Points of both robots, the mapping of each offset, and the curve of the best."""
         master, slave = (self._points(source, side, execution.threads) for side, source in enumerate(self.sources))
         space, own = (_space(points, self.job.containment) for points in (master, slave))
@@ -85,13 +97,12 @@ class MappingPlan(OneShard):
             curve = scale_curve(space, slave, _of_scale_one(mappings[best]), _scales(self.job.search))
             arrays |= {"scales": curve.factors, "inside": curve.inside}
             about["found"] = found[best] is not None
-        if progress:
-            progress(self.samples)
-        return {**arrays, "about": np.array(json.dumps(about))}
+        tell(self.samples)
+        return PartialResult(arrays, about)
 
-    def finish(self, partial: dict[str, np.ndarray], seconds: dict[str, float], execution: Execution) -> Result:
+    def result(self, partial: PartialResult, execution: Execution) -> Draft:
         """The best mapping, the others beside it, the points that fail, and the shapes."""
-        about, master = json.loads(str(partial["about"])), partial["master"]
+        about, master = partial.facts, partial["master"]
         best = about["offsets"][about["best"]]
         mapping = LinearMapping(np.array(best["scale"]), self._rotation(), np.array(best["offset_m"]))
         mapped = mapping.apply(partial["slave"])
@@ -101,19 +112,15 @@ class MappingPlan(OneShard):
             "slave": AlphaShape.of(mapped).mesh(),
         }
         document = {
-            "analysis": "master_slave_mapping",
-            "job": job_entry(self.job, *self.robots),
-            "robots": [{"name": robot.name, "robot": robot_entry(robot)} for robot in self.robots],
+            "robots": [],
+            **self.about_robots(),
             "sampling": {"samples": self.samples},
             "mapping": best,
             "offsets": about["offsets"],
             "volume_m3": {"master": about["master_m3"], "slave": about["slave_m3"], "mapped": best["volume_m3"]},
-            "headline": no_headline("the volumes are of shapes around points, estimates without an interval"),
             "surfaces": {name: surface_entry(name, mesh) for name, mesh in meshes.items()},
-            "provenance": provenance(self.job, self.target),
-            "timing_s": seconds,
         }
-        if "scales" in partial:
+        if "scales" in partial.arrays:
             most = int(np.argmax(partial["inside"]))
             document["search"] = {
                 "found": about["found"],
@@ -121,12 +128,17 @@ class MappingPlan(OneShard):
                 "most_inside": float(partial["inside"][most]),
                 "at_scale": float(partial["scales"][most]),
             }
-            document["warnings"] = entries(_search_notices(self.job, about["found"]))
         failing = {"position": mapped[~inside], "slave_position": partial["slave"][~inside]}
         tables = {"failing": Table(failing, POSITIONS), "mapping": _points_table(master, mapped, inside)}
-        if "scales" in partial:
+        if "scales" in partial.arrays:
             tables["scales"] = _curve_table(partial, about["slave_m3"])
-        return Result(document, tables=tables, meshes=meshes)
+        return Draft(
+            document,
+            no_headline("the volumes are of shapes around points, estimates without an interval"),
+            _search_notices(self.job, about["found"]) if "scales" in partial.arrays else (),
+            tables=tables,
+            meshes=meshes,
+        )
 
     def _points(self, source: Source, side: int, threads: int | None) -> np.ndarray:
         if isinstance(source, np.ndarray):
@@ -163,28 +175,6 @@ class MappingPlan(OneShard):
             offset_bounds=search.offset_m,
             seed=search.seed,
         )
-
-
-def plan_mapping(job: MasterSlaveMappingJob, *robots: Robot, resolved: dict[str, Any] | None = None) -> MappingPlan:
-    """Resolve the job, or take what `MappingPlan.resolved` of an earlier plan of it says.
-
-    Raises InputError for points that cannot be read, ResourceError for more points than shapes are made of.
-    """
-    to_place = list(robots)
-
-    def placed(source: MappedRobot | MappedMechanism | PointSet) -> Source:
-        if isinstance(source, PointSet):
-            return source.array()
-        return source if isinstance(source, MappedMechanism) else to_place.pop(0)
-
-    master, slave = placed(job.master), placed(job.slave)
-    counts = [_count(job, side, source) for side, source in enumerate((master, slave))]
-    for name, count in zip(("master", "slave"), counts, strict=True):
-        if count > MOST_POINTS:
-            raise ResourceError(name, f"has {count:.4g} points; at most {MOST_POINTS:.4g} are mapped")
-    for name, source in (("master", master), ("slave", slave)):
-        _check_voxels(job.containment, name, source)
-    return MappingPlan(job, robots, (master, slave), *settled_device(job.device, resolved), sum(counts))
 
 
 def _check_voxels(containment: Containment, name: str, source: Source) -> None:
@@ -287,7 +277,7 @@ def _points_table(master: np.ndarray, mapped: np.ndarray, inside: np.ndarray) ->
     return Table(columns, POSITIONS)
 
 
-def _curve_table(partial: dict[str, np.ndarray], slave_m3: float) -> Table:
+def _curve_table(partial: PartialResult, slave_m3: float) -> Table:
     """Volume of the mapped slave against its scale (of three, the geometric mean), and where it is all inside."""
     scales, inside = partial["scales"], partial["inside"]
     volume = slave_m3 * scales**3

@@ -1,19 +1,18 @@
 """The analysis ``boundary_patches``: the boundary of a spatial arm in patches, with edges, corners and a mesh."""
 
-import json
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from wsrender.analyses.boundary_patches.job import BoundaryPatchesJob
+from wsrender.analyses.contract import Analysis, Draft, Settled, Tell
 from wsrender.analyses.cost import DOCUMENT_BYTES, Cost, check_memory, pictures_cost
 from wsrender.analyses.execution import Execution
 from wsrender.analyses.headline import headline
-from wsrender.analyses.provenance import job_entry, provenance, robot_entry
+from wsrender.analyses.partial_result import PartialResult
 from wsrender.analyses.refined import measure_entry, volume_entry
-from wsrender.analyses.settled_device import settled_device
 from wsrender.geometry.spatial.critical_sets import CriticalSet
 from wsrender.geometry.spatial.edges import Corner, Edge
 from wsrender.geometry.spatial.fitted_boundary import TOLERANCE, fitted_boundary
@@ -28,14 +27,12 @@ from wsrender.geometry.spatial.spatial_boundary import (
     solid_arm,
     spatial_boundary,
 )
-from wsrender.notices import Notice, entries
+from wsrender.notices import Notice
 from wsrender.reachability.measure_refinement import refined_measure
 from wsrender.reachability.moving_joints import moving_joints
 from wsrender.reachability.reached_points import ReachedPoints
-from wsrender.results.result import Result
-from wsrender.robot import Robot, robot_with_model
+from wsrender.robot import robot_with_model
 from wsrender.robots.chain import Chain
-from wsrender.run.one_shard import OneShard
 from wsrender.sampling import held_chain
 from wsrender.volume.table import Table
 
@@ -49,21 +46,29 @@ BYTES_PER_CORNER, BYTES_PER_CELL = 40.0, 1e4  # of the lattice; of the surface, 
 MESH_BYTES = 100.0  # of a cell of the surface in ply and glb
 
 
-@dataclass(eq=False)
-class BoundaryPatchesPlan(OneShard):
-    """A resolved ``boundary_patches`` job: one shard."""
+class BoundaryPatchesAnalysis(Analysis):
+    """A planned ``boundary_patches`` job: one shard of about as many points as will be tested."""
 
     job: BoundaryPatchesJob
-    robot: Robot
-    chain: Chain
-    arm: SpatialArm
-    device: str
-    target: str
 
-    @property
-    def shards(self) -> list[tuple[int, int]]:
-        """One shard of about as many points as will be tested."""
-        return [(0, self._points)]
+    def prepare(self, device: str, target: str) -> Settled:
+        """Raises ModelError where the joints do not move the end effector through a volume.
+
+        InputError for a robot without a model, unknown joints to lock or values beyond their limits; ResourceError.
+        """
+        _ = self.arm
+        check_memory(self.cost.memory_bytes, "cells", f"{self.job.cells} cells across", "take fewer")
+        return Settled(device, target, ((0, self._points),))
+
+    @cached_property
+    def chain(self) -> Chain:
+        """Of the joints that move the end point."""
+        return moving_joints(held_chain(robot_with_model(self.robot).chain, self.job.locked))[0]
+
+    @cached_property
+    def arm(self) -> SpatialArm:
+        """Its geometry."""
+        return solid_arm(self.chain)
 
     @property
     def _points(self) -> int:
@@ -79,28 +84,25 @@ class BoundaryPatchesPlan(OneShard):
         surface = MESH_BYTES * 6 * cells**2
         return Cost(points, held, DOCUMENT_BYTES + drawn + surface, points / POINTS_PER_S + seconds)
 
-    def run_shard(
-        self, shard: int, progress: Callable[[int], None] | None, execution: Execution
-    ) -> dict[str, np.ndarray]:
-        """Patches, edges and corners as JSON, and the mesh."""
+    def compute(self, shard: int, execution: Execution, tell: Tell) -> PartialResult:
+        """Patches, edges and corners, and the mesh."""
         tested = 0
 
         def report(points: int) -> None:
             nonlocal tested
             tested += points
-            if progress:
-                progress(min(tested, self._points))
+            tell(min(tested, self._points))
 
         found, about = self._found(report, execution.threads)
         edges = [np.full(len(edge.points), k) for k, edge in enumerate(found.edges)]
-        return {
-            "about": np.array(json.dumps(_about(found) | about)),
+        arrays = {
             "vertices": found.mesh.vertices,
             "faces": found.mesh.faces,
             "patch": found.mesh.patch,
             "edge": np.concatenate([*edges, np.empty(0, int)]).astype(np.int64),
             "edge_points": np.concatenate([*(edge.points for edge in found.edges), np.empty((0, 3))]),
         }
+        return PartialResult(arrays, _about(found) | about)
 
     def _found(self, report: Callable[[int], None], threads: int | None) -> tuple[SpatialBoundary, dict[str, Any]]:
         """The boundary by critical sets, of arms of more joints by fits, and what the document says of either."""
@@ -127,9 +129,9 @@ class BoundaryPatchesPlan(OneShard):
             "undecided": reached.undecided,
         }
 
-    def finish(self, partial: dict[str, np.ndarray], seconds: dict[str, float], execution: Execution) -> Result:
+    def result(self, partial: PartialResult, execution: Execution) -> Draft:
         """Tables ``patches``, ``edges``, ``corners`` and ``edge_points``; the mesh ``patches``, a colour each."""
-        about = json.loads(str(partial["about"]))
+        about = dict(partial.facts)
         meshes = {}
         if len(partial["faces"]):  # none where all that is reached is thinner than a cell
             mesh = meshes["patches"] = coloured(partial["vertices"], partial["faces"], partial["patch"])
@@ -139,37 +141,14 @@ class BoundaryPatchesPlan(OneShard):
                 "volume_m3": float(mesh.volume),
                 "watertight": bool(mesh.is_watertight),
             }
-        document = {
-            "analysis": "boundary_patches",
-            "job": job_entry(self.job, self.robot),
-            "robot": robot_entry(self.robot),
-            **about,
-            "headline": _headline(about),
-            "provenance": provenance(self.job, self.target),
-            "timing_s": seconds,
-            "warnings": entries(_notices(about)),
-        }
         tables = {
             "patches": _patch_table(about["patches"]),
             "edges": _edge_table(about["edges"]),
             "corners": _corner_table(about["corners"]),
             "edge_points": Table({"edge": partial["edge"], "position": partial["edge_points"]}, {"position": "m"}),
         }
-        return Result(document, meshes=meshes, tables={name: table for name, table in tables.items() if len(table)})
-
-
-def plan_boundary_patches(
-    job: BoundaryPatchesJob, robot: Robot, resolved: dict[str, Any] | None = None
-) -> BoundaryPatchesPlan:
-    """Resolve the job, or take what `BoundaryPatchesPlan.resolved` of an earlier plan of it says.
-
-    Raises ModelError where the joints do not move the end effector through a volume; InputError for a robot without a
-    model, unknown joints to lock or values beyond their limits.
-    """
-    chain = moving_joints(held_chain(robot_with_model(robot).chain, job.locked))[0]
-    plan = BoundaryPatchesPlan(job, robot, chain, solid_arm(chain), *settled_device("cpu", resolved))
-    check_memory(plan.cost.memory_bytes, "cells", f"{job.cells} cells across", "take fewer")
-    return plan
+        tables = {name: table for name, table in tables.items() if len(table)}
+        return Draft(about, _headline(about), _notices(about), meshes=meshes, tables=tables)
 
 
 def _about(found: SpatialBoundary) -> dict[str, Any]:

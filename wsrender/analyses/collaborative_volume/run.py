@@ -1,28 +1,24 @@
 """The analysis ``collaborative_volume``: the body-elemental algorithm over seeds, and the true volume beside it."""
 
-import json
 import math
-from collections.abc import Callable
-from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from wsrender.analyses.collaborative_volume.job import CollaborativeVolumeJob
+from wsrender.analyses.contract import Analysis, Draft, Settled, Tell
 from wsrender.analyses.cost import DOCUMENT_BYTES, Cost, check_memory, pictures_cost, refined_seconds
 from wsrender.analyses.execution import Execution
 from wsrender.analyses.headline import headline_of, no_headline
-from wsrender.analyses.provenance import job_entry, provenance, robot_entry
+from wsrender.analyses.partial_result import PartialResult
 from wsrender.analyses.refined import Progress, refined_together, volume_entry
 from wsrender.analyses.sampled_positions import sampled_positions
-from wsrender.analyses.settled_device import settled_device
 from wsrender.documents.point_sets import PointSet
 from wsrender.documents.sampling import Random
 from wsrender.multi.body_elements import body_elements
 from wsrender.reachability import Event
-from wsrender.results.result import Result
 from wsrender.robot import Robot
-from wsrender.run.one_shard import OneShard
 from wsrender.volume.table import Table
 
 POINT_BYTES = 100.0  # of two arms: positions, places in the box, cells
@@ -30,33 +26,41 @@ POSITIONS_PER_S = 2e6  # of one CPU core
 BIASED = 'the body-elemental volume is biased; "refined_volume" gives the true one of two robots'
 
 
-@dataclass(eq=False)
-class CollaborativePlan(OneShard):
-    """A resolved ``collaborative_volume`` job: one shard."""
+class CollaborativeVolumeAnalysis(Analysis):
+    """A planned ``collaborative_volume`` job: one shard of all samples."""
 
     job: CollaborativeVolumeJob
-    robots: tuple[Robot, ...]
-    sources: tuple[Robot | np.ndarray, Robot | np.ndarray]  # of the left and right points
-    device: str
-    target: str
+
+    def prepare(self, device: str, target: str) -> Settled:
+        """Raises InputError for points that cannot be read, ResourceError for too many of them or of cells."""
+        job = self.job
+        _ = self.sources
+        check_memory(POINT_BYTES * job.samples, "samples", f"{job.samples:.4g} points of each arm", "take fewer")
+        check_memory(_cell_bytes(job), "refinements", f"{job.refinements} of them", "take fewer, or fewer cells")
+        return Settled(device, target, ((0, max(self._samples, 1)),))
+
+    @cached_property
+    def sources(self) -> tuple[Robot | np.ndarray, Robot | np.ndarray]:
+        """Of the left and right points: a robot, or they themselves."""
+        robots, (left, right) = iter(self.robots), (self.job.left, self.job.right)
+        left_points = left.array() if isinstance(left, PointSet) else next(robots)
+        return left_points, right.array() if isinstance(right, PointSet) else next(robots)
 
     @property
-    def shards(self) -> list[tuple[int, int]]:
-        """One shard of all samples."""
-        return [(0, max(self.job.samples * self.job.seeds * len(self.robots), 1))]
+    def _samples(self) -> int:
+        """Of all runs and robots."""
+        return self.job.samples * self.job.seeds * len(self.robots)
 
     @property
     def cost(self) -> Cost:
         """Samples, the points of one run with its cells, and the true volume where it is asked for."""
-        samples = float(self.job.samples * self.job.seeds * len(self.robots))
+        samples = float(self._samples)
         drawn, seconds = pictures_cost("refinements")
         seconds += samples / POSITIONS_PER_S + refined_seconds(self.job.refined_volume) * bool(len(self.robots) == 2)
         memory = POINT_BYTES * self.job.samples + _cell_bytes(self.job)
         return Cost(samples, memory, DOCUMENT_BYTES + drawn, seconds)
 
-    def run_shard(
-        self, shard: int, progress: Callable[[int], None] | None, execution: Execution
-    ) -> dict[str, np.ndarray]:
+    def compute(self, shard: int, execution: Execution, tell: Tell) -> PartialResult:
         """V₀ … V_d of every seed."""
         job, done, rows, cells = self.job, 0, [], []
         for seed in range(job.seed, job.seed + job.seeds):
@@ -68,37 +72,32 @@ class CollaborativePlan(OneShard):
                     source = sampled_positions(source, sampling, self.device, threads=execution.threads)
                     done += job.samples
                 points.append(source)
-                if progress:
-                    progress(done)
+                tell(done)
             left, right = points
             found = body_elements(left, right, job.cells, job.refinements, job.neighbours)
             rows.append(found.volumes_m3)
             cells.append([np.count_nonzero(found.collaborative), np.count_nonzero(found.boundary)])
-        arrays = {"volumes": np.array(rows), "cells": np.array(cells)}
-        return arrays
+        return PartialResult({"volumes": np.array(rows), "cells": np.array(cells)})
 
-    def refine(
-        self, partial: dict[str, np.ndarray], progress: Progress | None, execution: Execution
-    ) -> dict[str, np.ndarray]:
+    def refine(self, partial: PartialResult, progress: Progress | None, execution: Execution) -> PartialResult:
         """With the true volume, if asked."""
         if self.job.refined_volume is None:
             return partial
         chains = [robot.chain for robot in self.robots]
         events, tolerance = {"true": Event(2, 2)}, self.job.refined_volume
         true = refined_together(chains, events, tolerance, self.device, progress, execution.threads)
-        return partial | {"refined": np.array(json.dumps(true))}
+        return PartialResult(partial.arrays, {"refined": true["true"]})
 
-    def finish(self, partial: dict[str, np.ndarray], seconds: dict[str, float], execution: Execution) -> Result:
+    def result(self, partial: PartialResult, execution: Execution) -> Draft:
         """Means and variances over the seeds, and the bias where the true volume is known."""
         volumes, job = partial["volumes"], self.job
         mean, variance = volumes.mean(axis=0), _variance(volumes)
-        measure = json.loads(str(partial["refined"]))["true"] if "refined" in partial else None
+        measure = partial.facts.get("refined")
         true = None if measure is None else volume_entry(measure)
-        document = {
-            "analysis": "collaborative_volume",
-            "job": job_entry(job, *self.robots),
-            "robots": [{"name": robot.name, "robot": robot_entry(robot)} for robot in self.robots],
-            "sampling": {"method": "random", "samples": job.samples * job.seeds * len(self.robots), "seed": job.seed},
+        about = {
+            "robots": [],
+            **self.about_robots(),
+            "sampling": {"method": "random", "samples": self._samples, "seed": job.seed},
             "refinements": [
                 {
                     "refinement": i,
@@ -113,28 +112,9 @@ class CollaborativePlan(OneShard):
                 "boundary": float(partial["cells"][:, 1].mean()),
             },
             "volume_m3": {"body_elemental": float(mean[-1]), "true": true},
-            "headline": no_headline(BIASED) if measure is None else headline_of(measure),
-            "provenance": provenance(job, self.target),
-            "timing_s": seconds,
         }
         tables = {"refinements": _curve(mean, variance, true), "seeds": _seeds(job.seed, volumes)}
-        return Result(document, tables=tables)
-
-
-def plan_collaborative(
-    job: CollaborativeVolumeJob, *robots: Robot, resolved: dict[str, Any] | None = None
-) -> CollaborativePlan:
-    """Resolve the job, or take what `CollaborativePlan.resolved` of an earlier plan of it says.
-
-    Raises InputError for points that cannot be read.
-    """
-    left_to_place = list(robots)
-    left, right = (
-        source.array() if isinstance(source, PointSet) else left_to_place.pop(0) for source in (job.left, job.right)
-    )
-    check_memory(POINT_BYTES * job.samples, "samples", f"{job.samples:.4g} points of each arm", "take fewer")
-    check_memory(_cell_bytes(job), "refinements", f"{job.refinements} of them", "take fewer, or fewer cells")
-    return CollaborativePlan(job, robots, (left, right), *settled_device(job.device, resolved))
+        return Draft(about, no_headline(BIASED) if measure is None else headline_of(measure), tables=tables)
 
 
 def _cell_bytes(job: CollaborativeVolumeJob) -> float:

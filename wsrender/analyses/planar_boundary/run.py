@@ -1,19 +1,19 @@
 """The analysis ``planar_boundary``: the exact boundary of a planar arm, and the Monte Carlo one beside it."""
 
-import json
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
+from wsrender.analyses.contract import Analysis, Draft, Settled, Tell
 from wsrender.analyses.cost import DOCUMENT_BYTES, Cost, check_memory, pictures_cost
 from wsrender.analyses.execution import Execution
 from wsrender.analyses.headline import headline, no_headline
+from wsrender.analyses.partial_result import PartialResult
+from wsrender.analyses.partial_tables import tables_of, with_tables
 from wsrender.analyses.planar_boundary.job import PlanarBoundaryJob
-from wsrender.analyses.provenance import job_entry, provenance, robot_entry
 from wsrender.analyses.sampled_positions import sampled_positions
-from wsrender.analyses.settled_device import settled_device
 from wsrender.errors import NumericalError
 from wsrender.geometry.planar.agreement import disagreements, signed_area
 from wsrender.geometry.planar.exact_boundary import ExactBoundary
@@ -21,11 +21,8 @@ from wsrender.geometry.planar.inverse_solutions import NumberRegions
 from wsrender.geometry.planar.monte_carlo import MonteCarloBoundary, monte_carlo_boundary
 from wsrender.geometry.planar.planar_chain import PlanarChain, planar_chain
 from wsrender.geometry.planar.segments import segment_entry, segment_table
-from wsrender.notices import Notice, entries
-from wsrender.results.result import Result
-from wsrender.robot import Robot, robot_with_model
-from wsrender.run.one_shard import OneShard
-from wsrender.run.partial_tables import arrays_of_tables, tables_of_arrays
+from wsrender.notices import Notice
+from wsrender.robot import robot_with_model
 from wsrender.sampling import plan_sampling
 from wsrender.volume.table import Table
 
@@ -35,39 +32,38 @@ SAMPLE_BYTES = 64.0  # its position, in space and in the plane, and its cell
 DRAWN = 20_000  # samples kept for the picture
 
 
-@dataclass(eq=False)
-class PlanarBoundaryPlan(OneShard):
-    """A resolved ``planar_boundary`` job: one shard."""
+class PlanarBoundaryAnalysis(Analysis):
+    """A planned ``planar_boundary`` job: one shard of all samples."""
 
     job: PlanarBoundaryJob
-    robot: Robot
-    chain: PlanarChain
-    device: str
-    target: str
-    samples: int
 
-    @property
-    def shards(self) -> list[tuple[int, int]]:
-        """One shard of all samples."""
-        return [(0, self.samples)]
+    def prepare(self, device: str, target: str) -> Settled:
+        """Raises ModelError, naming the joint, for an arm that is not planar; InputError for one without a model."""
+        samples = plan_sampling(robot_with_model(self.robot).chain, self.job.sampling).count
+        check_memory(SAMPLE_BYTES * samples, "sampling", f"{samples:.4g} positions", "take fewer samples")
+        _ = self.chain
+        return Settled(device, target, ((0, samples),))
+
+    @cached_property
+    def chain(self) -> PlanarChain:
+        """The arm in its plane."""
+        return planar_chain(robot_with_model(self.robot).chain.held(self.job.sampling.locked))
 
     @property
     def cost(self) -> Cost:
         """Samples, bytes of their positions, seconds."""
-        count = float(self.samples)
+        count = float(self.shards[0][1])
         drawn, seconds = pictures_cost("other", "robot")
         kept = 24.0 * min(count, DRAWN)
         return Cost(
             count, SAMPLE_BYTES * count, DOCUMENT_BYTES + drawn + kept, SWEEP_S + count / POSITIONS_PER_S + seconds
         )
 
-    def run_shard(
-        self, shard: int, progress: Callable[[int], None] | None, execution: Execution
-    ) -> dict[str, np.ndarray]:
+    def compute(self, shard: int, execution: Execution, tell: Tell) -> PartialResult:
         """Both boundaries, the samples of the picture, and the answers about points."""
         job = self.job
         exact = ExactBoundary(self.chain)
-        how = {"threads": execution.threads, "progress": progress}
+        how = {"threads": execution.threads, "progress": tell}
         positions = sampled_positions(self.robot, job.sampling, self.device, **how)
         points = self.chain.plane.coordinates(positions)
         estimated = monte_carlo_boundary(self.chain, points, job.cells, job.line_tolerance_m2, job.arc_tolerance_m4)
@@ -80,44 +76,24 @@ class PlanarBoundaryPlan(OneShard):
         }
         if job.points_m:
             tables["points"] = _point_table(exact, np.array(job.points_m))
-        return {"about": np.array(json.dumps(about)), **arrays_of_tables(tables)}
+        return with_tables(PartialResult({}, {"about": about}), tables)
 
-    def finish(self, partial: dict[str, np.ndarray], seconds: dict[str, float], execution: Execution) -> Result:
+    def result(self, partial: PartialResult, execution: Execution) -> Draft:
         """Tables ``boundary`` and ``monte_carlo``, one row per segment, ``points`` and ``samples``; areas and loops."""
         job, plane = self.job, self.chain.plane
+        about = partial.facts["about"]
         document = {
-            "analysis": "planar_boundary",
-            "job": job_entry(job, self.robot),
-            "robot": robot_entry(self.robot),
             "plane": {
                 "origin_m": plane.origin.tolist(),
                 "x_axis": plane.axes[0].tolist(),
                 "y_axis": plane.axes[1].tolist(),
                 "normal": plane.normal.tolist(),
             },
-            "sampling": {"method": job.sampling.method, "samples": self.samples},
-            **json.loads(str(partial["about"])),
-            "provenance": provenance(job, self.target),
-            "timing_s": seconds,
+            "sampling": {"method": job.sampling.method, "samples": self.shards[0][1]},
+            **about,
         }
-        document["headline"] = _headline(document["exact"])
-        document["warnings"] = entries(_notices(document["monte_carlo"]))
-        tables = {name: table for name, table in tables_of_arrays(partial).items() if len(table)}
-        return Result(document, tables=tables)
-
-
-def plan_planar_boundary(
-    job: PlanarBoundaryJob, robot: Robot, resolved: dict[str, Any] | None = None
-) -> PlanarBoundaryPlan:
-    """Resolve the job, or take what `PlanarBoundaryPlan.resolved` of an earlier plan of it says.
-
-    Raises ModelError, naming the joint, for an arm that is not planar; InputError for a robot without a model.
-    """
-    chain = robot_with_model(robot).chain
-    samples = plan_sampling(chain, job.sampling).count
-    check_memory(SAMPLE_BYTES * samples, "sampling", f"{samples:.4g} positions", "take fewer samples")
-    planar = planar_chain(chain.held(job.sampling.locked))
-    return PlanarBoundaryPlan(job, robot, planar, *settled_device(job.device, resolved), samples)
+        tables = {name: table for name, table in tables_of(partial).items() if len(table)}
+        return Draft(document, _headline(about["exact"]), _notices(about["monte_carlo"]), tables=tables)
 
 
 def _headline(exact: dict[str, Any]) -> dict[str, Any]:

@@ -1,30 +1,28 @@
 """The analysis ``kinetostatic_field``: forces of limits and conditioning over the workspace."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from wsrender.analyses.cost import DOCUMENT_BYTES, NOTHING, Cost, pictures_cost, surface_bytes
+from wsrender.analyses.contract import Analysis, Draft, Settled, Tell
+from wsrender.analyses.cost import DOCUMENT_BYTES, Cost, pictures_cost, surface_bytes
 from wsrender.analyses.execution import Execution
 from wsrender.analyses.headline import no_headline
 from wsrender.analyses.kinetostatic_field.job import KinetostaticFieldJob
-from wsrender.analyses.provenance import job_entry, provenance, robot_entry
-from wsrender.analyses.settled_device import settled_device
+from wsrender.analyses.partial_result import PartialResult
 from wsrender.documents.sampling import Sobol
 from wsrender.engine import configurations, sampled_positions
 from wsrender.kinetostatics.characteristic_length import CharacteristicLength
 from wsrender.kinetostatics.force_fields import ForceField
 from wsrender.kinetostatics.passivity import LoopWork, largest_loop_work, stiffness_bound, stiffnesses
 from wsrender.kinetostatics.posture_data import posture_tables
-from wsrender.notices import Notice, entries
-from wsrender.results.result import Result
-from wsrender.robot import Robot
+from wsrender.notices import Notice
+from wsrender.robots.chain import Chain
 from wsrender.robots.reachable_box import reachable_box
-from wsrender.run.one_shard import OneShard
 from wsrender.sampling import plan_sampling
-from wsrender.volume.lattice import block_around, check_voxels, default_voxel_size
+from wsrender.volume.lattice import LatticeBlock, block_around, check_voxels, default_voxel_size
 from wsrender.volume.volume_data import VolumeData
 from wsrender.volume.voxels import Voxels
 
@@ -51,25 +49,41 @@ CONSERVATIVE = {
 }
 
 
-@dataclass(eq=False)
-class KinetostaticFieldPlan(OneShard):
-    """A resolved ``kinetostatic_field`` job: one shard."""
+@dataclass(frozen=True, kw_only=True)
+class KinetostaticFieldSettled(Settled):
+    """With the edge of a voxel [m]."""
 
-    job: KinetostaticFieldJob
-    robot: Robot
     voxel_size_m: float
-    device: str
-    target: str
-    shards: list[tuple[int, int]]
-    cost: Cost = NOTHING
 
-    def resolved(self) -> dict[str, Any]:
-        """What is settled once: the device that "auto" means, target, voxel size, shards."""
-        return super().resolved() | {"voxel_size_m": self.voxel_size_m}
 
-    def run_shard(
-        self, shard: int, progress: Callable[[int], None] | None, execution: Execution
-    ) -> dict[str, np.ndarray]:
+class KinetostaticFieldAnalysis(Analysis):
+    """A planned ``kinetostatic_field`` job: one shard of all configurations."""
+
+    settles = KinetostaticFieldSettled
+    job: KinetostaticFieldJob
+    settled: KinetostaticFieldSettled
+
+    def prepare(self, device: str, target: str) -> KinetostaticFieldSettled:
+        """Raises InputError for a robot without a model, and a posture or obstacle that cannot be; ResourceError."""
+        job, chain = self.job, self.robot.chain
+        checked = job.field.model_copy(update={"boundary": None})  # whose samples are slow
+        force_field = ForceField(self.robot, checked)
+        count = plan_sampling(chain, job.sampling, MOST_SAMPLES).count
+        size = job.voxel_size_m or _voxel_size(force_field, count)
+        check_voxels(_block(chain, size), _voxel_bytes(job))
+        return KinetostaticFieldSettled(device, target, ((0, count),), voxel_size_m=size)
+
+    @property
+    def cost(self) -> Cost:
+        """Configurations with what is known of each, and the volume of forces."""
+        count, block = self.shards[0][1], _block(self.robot.chain, self.settled.voxel_size_m)
+        voxels = min(OCCUPIED * block.size, count)
+        field = min(ARROW_BYTES * voxels, LARGEST_FIELD_BYTES)
+        kept = field + _voxel_bytes(self.job) * FILLED * block.size + surface_bytes(voxels)
+        drawn, seconds = pictures_cost("slices", "arm", "posture")
+        return Cost(count, SAMPLE_BYTES * count, DOCUMENT_BYTES + drawn + kept, count / RATE + seconds)
+
+    def compute(self, shard: int, execution: Execution, tell: Tell) -> PartialResult:
         """Of every voxel: cell (V, 3), number of configurations (V,), sums (V, 6 + scalars), greatest force (V,).
 
         ``stiffness`` (P,) [N/m] at random postures; ``loop`` (5,): most work of closed paths [J], length [m], how many,
@@ -83,13 +97,12 @@ class KinetostaticFieldPlan(OneShard):
             numbers = np.arange(first, min(first + CHUNK, sampling.count))
             for k, q in zip(numbers, configurations(sampling, numbers), strict=True):
                 state = force_field.evaluate(q)
-                cells[k] = np.floor(state.posture.position / self.voxel_size_m + ON_FACE)
+                cells[k] = np.floor(state.posture.position / self.settled.voxel_size_m + ON_FACE)
                 size = np.sqrt(state.force @ state.force)
                 if shown is None and SHOWN[0] < state.nearness < SHOWN[1]:
                     shown = q
                 rows[k] = *state.force, *state.torque, size, state.inverse_condition, state.nearness
-            if progress:
-                progress(int(numbers[-1]) + 1)
+            tell(int(numbers[-1]) + 1)
         found, voxel, count = np.unique(cells, axis=0, return_inverse=True, return_counts=True)
         sums = np.stack([np.bincount(voxel.ravel(), column, len(found)) for column in rows.T], axis=1)
         greatest = np.zeros(len(found))
@@ -98,9 +111,9 @@ class KinetostaticFieldPlan(OneShard):
         shown = configurations(sampling, np.zeros(1, np.int64))[0] if shown is None else shown
         arrays = {"shown": shown, "cells": found, "count": count, "sums": sums, "greatest": greatest}
         about = np.array([loop.work_j, loop.length_m, loop.paths, loop.bound_j, loop.clipped])
-        return arrays | {"stiffness": stiffnesses(force_field), "loop": about}
+        return PartialResult(arrays | {"stiffness": stiffnesses(force_field), "loop": about})
 
-    def finish(self, partial: dict[str, np.ndarray], seconds: dict[str, float], execution: Execution) -> Result:
+    def result(self, partial: PartialResult, execution: Execution) -> Draft:
         """Volume data with the vector "force" (and "torque") per voxel, and the document."""
         job, count = self.job, partial["count"]
         means = partial["sums"] / count[:, None]
@@ -108,12 +121,9 @@ class KinetostaticFieldPlan(OneShard):
         plain = job.field.model_copy(update={"boundary": None, "obstacles": None})
         plain_field = ForceField(self.robot, plain, self.device)
         loop = LoopWork(*partial["loop"].tolist())
-        document = {
-            "analysis": "kinetostatic_field",
-            "job": job_entry(job, self.robot),
-            "robot": robot_entry(self.robot),
+        about = {
             "sampling": {"method": job.sampling.method, "samples": int(count.sum())},
-            "voxel_size_m": self.voxel_size_m,
+            "voxel_size_m": self.settled.voxel_size_m,
             "kinetostatic_field": {
                 "form": job.field.form,
                 "characteristic_length": _length_entry(plain_field.length),
@@ -123,17 +133,20 @@ class KinetostaticFieldPlan(OneShard):
                 "mean_force_n": float(partial["sums"][:, 6].sum() / count.sum()),
                 "passivity": self._passivity(partial["stiffness"], loop),
             },
-            "provenance": provenance(job, self.target),
-            "timing_s": seconds,
-            "headline": no_headline("a field of forces measures no workspace"),
-            "warnings": entries(_notices(job.field.form, loop)),
         }
         chain = self.robot.chain
         spread = np.linspace(0.25, 0.75, DRAWN)[:, None]
         skeleton = self.robot.skeleton(chain.lower_limits + spread * (chain.upper_limits - chain.lower_limits))
         volume = self._volume(partial["cells"], count, means, partial)
         tables = posture_tables(plain_field, partial["shown"])
-        return Result(document, volume=volume, skeleton=skeleton, tables=tables)
+        return Draft(
+            about,
+            no_headline("a field of forces measures no workspace"),
+            _notices(job.field.form, loop),
+            volume=volume,
+            skeleton=skeleton,
+            tables=tables,
+        )
 
     def _passivity(self, stiffness: np.ndarray, loop: LoopWork) -> dict[str, Any]:
         """Stiffness beside what the device renders, and the work of closed paths beside what would dissipate it."""
@@ -152,9 +165,7 @@ class KinetostaticFieldPlan(OneShard):
             "at_speed_m_per_s": loop.speed_m_per_s,
         }
 
-    def _volume(
-        self, cells: np.ndarray, count: np.ndarray, means: np.ndarray, partial: dict[str, np.ndarray]
-    ) -> VolumeData:
+    def _volume(self, cells: np.ndarray, count: np.ndarray, means: np.ndarray, partial: PartialResult) -> VolumeData:
         means = means.astype(np.float32)
         statistics = {
             "maximum": {"force": partial["greatest"].astype(np.float32)},
@@ -165,7 +176,7 @@ class KinetostaticFieldPlan(OneShard):
             vectors["torque"] = means[:, 3:6]
         units = {name: unit for name, unit in UNITS.items() if name in vectors or name in SCALARS}
         first, voxels = Voxels.at_places(cells, count, statistics, vectors)
-        return VolumeData.of_voxels(self.voxel_size_m, first, voxels, units)
+        return VolumeData.of_voxels(self.settled.voxel_size_m, first, voxels, units)
 
 
 def _notices(form: str, loop: LoopWork) -> Iterator[Notice]:
@@ -190,27 +201,9 @@ def _length_entry(length: CharacteristicLength) -> dict[str, Any]:
     }
 
 
-def plan_kinetostatic_field(
-    job: KinetostaticFieldJob, robot: Robot, resolved: dict[str, Any] | None = None
-) -> KinetostaticFieldPlan:
-    """Resolve the job, or take what `KinetostaticFieldPlan.resolved` of an earlier plan of it says.
-
-    Raises InputError for a robot without a model, and a posture or obstacle that cannot be.
-    """
-    checked = job.field.model_copy(update={"boundary": None})  # whose samples are slow
-    force_field = ForceField(robot, checked)
-    device, target = settled_device(job.device, resolved)
-    count = plan_sampling(robot.chain, job.sampling, MOST_SAMPLES).count
-    size = resolved["voxel_size_m"] if resolved else job.voxel_size_m or _voxel_size(force_field, count)
-    chain = robot.chain
-    block = block_around(*reachable_box(chain, chain.lower_limits, chain.upper_limits), size)
-    check_voxels(block, _voxel_bytes(job))
-    voxels = min(OCCUPIED * block.size, count)
-    field = min(ARROW_BYTES * voxels, LARGEST_FIELD_BYTES)
-    kept = field + _voxel_bytes(job) * FILLED * block.size + surface_bytes(voxels)
-    drawn, seconds = pictures_cost("slices", "arm", "posture")
-    cost = Cost(count, SAMPLE_BYTES * count, DOCUMENT_BYTES + drawn + kept, count / RATE + seconds)
-    return KinetostaticFieldPlan(job, robot, size, device, target, [(0, count)], cost)
+def _block(chain: Chain, size: float) -> LatticeBlock:
+    """Around all that is reached."""
+    return block_around(*reachable_box(chain, chain.lower_limits, chain.upper_limits), size)
 
 
 def _voxel_bytes(job: KinetostaticFieldJob) -> int:
