@@ -13,7 +13,6 @@ from wsrender.pipeline.constraints import registry
 from wsrender.pipeline.constraints.region import Region
 from wsrender.pipeline.constraints.registry import constraints_of
 from wsrender.run import execute, finish, plan, run_shard
-from wsrender.run.partial_arrays import partial_of_arrays, partial_to_arrays
 from wsrender.sampling import plan_sampling
 from wsrender.volume.lattice import LatticeBlock
 
@@ -119,7 +118,7 @@ def test_shards_and_files_keep_who_was_rejected():
     unit = settled["shard_unit"]
     settled["shards"] = [[0, 4 * unit], [4 * unit, 4096 - 4 * unit]]
     divided = plan(document, resolved=settled)
-    parts = [partial_of_arrays(partial_to_arrays(run_shard(divided, k)), divided) for k in (1, 0)]
+    parts = [divided.unpacked(run_shard(divided, k).packed()) for k in (1, 0)]
     assert merge(parts[0].sweep, parts[1].sweep).rejected.sum() > 0
     one = finish(whole, run_shard(whole, 0)).document
     two = finish(divided, divided.merge(*parts)).document

@@ -1,9 +1,12 @@
 """What a result says of its origin is what the plan settled, in every analysis."""
 
+from dataclasses import replace
+
 import pytest
 
 from tests.run.small_jobs import SAMPLING, SCARAS, SMALL_JOBS
-from wsrender.run import execute, finish, plan, provenance, run_shard
+from wsrender.analyses import provenance
+from wsrender.run import execute, finish, plan, run_shard
 
 TARGET = "cpu:a machine of its own"
 # Workspaces of float32 are settled in float64 here, the others the other way round, so that no default passes.
@@ -31,8 +34,11 @@ PATHS = {"workspace", "shared_workspace", "robot_comparison"}
 
 def targeted(planned):
     """The plan, made for another target."""
-    for each in planned.several.plans if hasattr(planned, "several") else [planned]:
-        each.target = TARGET
+    for each in [planned, *(planned.several.plans if hasattr(planned, "several") else [])]:
+        if hasattr(each, "settled"):
+            each.settled = replace(each.settled, target=TARGET)
+        else:
+            each.target = TARGET
     return planned
 
 

@@ -36,12 +36,12 @@ def _own(name: str, job: str, run: str) -> Entry:
 
 
 _ROWS = {
-    "workspace": _own("workspace", "WorkspaceJob", "wsrender.run.workspace:plan_workspace"),
+    "workspace": _own("workspace", "WorkspaceJob", "WorkspaceAnalysis"),
     "indices_at": _own("indices_at", "IndicesAtJob", "IndicesAtAnalysis"),
     "reachability": _own("reachability", "ReachabilityJob", "ReachabilityAnalysis"),
     "capability": _own("capability", "CapabilityJob", "CapabilityAnalysis"),
-    "shared_workspace": _own("shared_workspace", "SharedWorkspaceJob", "wsrender.run.shared:plan_shared_workspace"),
-    "robot_comparison": _own("robot_comparison", "RobotComparisonJob", "wsrender.run.comparison:plan_robot_comparison"),
+    "shared_workspace": _own("shared_workspace", "SharedWorkspaceJob", "SharedWorkspaceAnalysis"),
+    "robot_comparison": _own("robot_comparison", "RobotComparisonJob", "RobotComparisonAnalysis"),
     "collaborative_volume": _own("collaborative_volume", "CollaborativeVolumeJob", "CollaborativeVolumeAnalysis"),
     "master_slave_mapping": _own("master_slave_mapping", "MasterSlaveMappingJob", "MasterSlaveMappingAnalysis"),
     "kinetostatic_field": _own("kinetostatic_field", "KinetostaticFieldJob", "KinetostaticFieldAnalysis"),

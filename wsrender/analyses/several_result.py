@@ -4,13 +4,14 @@ from typing import Any
 
 import numpy as np
 
+from wsrender.analyses.several_robots import SeveralPlans
+from wsrender.notices import Notice
 from wsrender.results.result import Result
-from wsrender.run.several_robots import SeveralPlans
 
 OF_EACH = ("robot", "sampling", "indices", "volume_m3", "headline", "bounds_m", "global", "convergence")
 
 
-def common_entries(job: Any, several: SeveralPlans, results: list[Result]) -> dict[str, Any]:
+def common_entries(several: SeveralPlans, results: list[Result]) -> dict[str, Any]:
     """Robots with the values of each alone, the choices they share and the voxel size."""
     documents = [result.document for result in results]
     robots = [
@@ -21,12 +22,16 @@ def common_entries(job: Any, several: SeveralPlans, results: list[Result]) -> di
         "robots": robots,
         "choices": documents[0]["choices"],
         "voxel_size_m": several.plans[0].voxel_size_m,
-        "warnings": [
-            {**warning, "message": f"{name}: {warning['message']}"}
-            for name, document in zip(several.names, documents, strict=True)
-            for warning in document["warnings"]
-        ],
     }
+
+
+def notices_of_each(names: list[str], results: list[Result]) -> list[Notice]:
+    """What is known of each robot's numbers, led by its name."""
+    return [
+        Notice(**{**warning, "message": f"{name}: {warning['message']}"})
+        for name, result in zip(names, results, strict=True)
+        for warning in result.document["warnings"]
+    ]
 
 
 def skeletons(results: list[Result]) -> np.ndarray:

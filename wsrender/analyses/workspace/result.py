@@ -1,16 +1,17 @@
 """The result of a ``workspace`` job from its merged partial result."""
 
-import time
 from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 
+from wsrender.analyses.contract import Draft
 from wsrender.analyses.headline import NOT_ASKED, headline_of
-from wsrender.analyses.provenance import index_choices, job_entry, provenance, robot_entry
-from wsrender.analyses.refined import Refined, by_measure
+from wsrender.analyses.provenance import index_choices
+from wsrender.analyses.refined import by_measure
 from wsrender.analyses.volume_notices import few_samples, occupied_differs, tolerance_not_met
 from wsrender.analyses.workspace.job import WorkspaceJob
+from wsrender.analyses.workspace.partial import WorkspacePartial
 from wsrender.engine import Partial, SweepPlan, configurations, evaluate_at, units_of
 from wsrender.engine.sweep_plan import from_origin
 from wsrender.engine.voxel_data import volume_data
@@ -22,11 +23,10 @@ from wsrender.global_indices import (
     voxel_volumes,
     workspace_mean,
 )
-from wsrender.notices import Notice, entries
+from wsrender.notices import Notice
 from wsrender.pipeline.constraints.region import Region
 from wsrender.reachability.holes import share_of_holes, share_unseen
 from wsrender.reachability.voxel_labels import counts
-from wsrender.results.result import Result
 from wsrender.robot import Robot
 from wsrender.robot.constraints import check_admitted, samples_entry
 from wsrender.robots.host_chain import HostChain
@@ -37,21 +37,11 @@ from wsrender.volume.volume_data import VolumeData
 PICTURE_SAMPLES = 100_000
 
 
-def workspace_result(
-    job: WorkspaceJob,
-    robot: Robot,
-    plan: SweepPlan,
-    partial: Partial,
-    convergence: list[dict[str, float]] | None,
-    refined: Refined | None,
-    target: str,
-    seconds: dict[str, float],
-    threads: int | None,
-) -> Result:
-    """Map, picture sample, volume data, skeleton, surface and result document."""
+def workspace_draft(job: WorkspaceJob, robot: Robot, found: WorkspacePartial, threads: int | None) -> Draft:
+    """Map, picture sample, volume data, skeleton, surface and the entries of the document."""
     from wsrender.geometry.surfaces import surfaces
 
-    started = time.perf_counter()
+    plan, partial, refined = found.plan, found.sweep, found.refined
     samples = samples_entry(plan.constraints, partial.samples, partial.rejected)
     check_admitted(samples)
     evaluation = plan.evaluation
@@ -65,9 +55,6 @@ def workspace_result(
     solid = measures["volume_m3"]["refined"]
     meshes, surface_entries = surfaces(job.surfaces, volume, sample.position)
     document: dict[str, Any] = {
-        "analysis": "workspace",
-        "job": job_entry(job, robot),
-        "robot": robot_entry(robot),
         "sampling": _sampling_entry(job, plan, partial),
         **samples,
         "indices": _index_entries(plan, partial, volume, units),
@@ -80,7 +67,6 @@ def workspace_result(
             "outer": volumes.outer,
             "refined": solid,
         },
-        "headline": headline_of(measure),
         "voxel_labels": counts(labels) if labels else None,
         "surfaces": surface_entries,
         "bounds_m": {
@@ -91,18 +77,17 @@ def workspace_result(
             "global_isotropy": global_isotropy(partial),
             **_structural_length(robot, measure, constrained=bool(plan.constraints)),
         },
-        "convergence": convergence,
-        "warnings": entries(
-            (
-                *tolerance_not_met(measure),
-                *_notices(job, robot, plan, volume, volumes, solid, threads),
-                *_index_notices(plan, partial),
-            )
-        ),
-        "provenance": provenance(job, target, sampling_path=plan.sampling_path, seed=plan.sampling.seed),
+        "convergence": found.convergence,
     }
-    result = Result(
+    return Draft(
         document,
+        headline_of(measure),
+        (
+            *tolerance_not_met(measure),
+            *_notices(job, robot, plan, volume, volumes, solid, threads),
+            *_index_notices(plan, partial),
+        ),
+        {"sampling_path": plan.sampling_path, "seed": plan.sampling.seed},
         map=_kept_map(plan, partial, robot, units) if plan.keep_rows else None,
         sample=sample,
         volume=volume,
@@ -110,8 +95,6 @@ def workspace_result(
         meshes=meshes,
         volumes={"reachability": labels} if labels else {},
     )
-    document["timing_s"] = {**seconds, "finish": time.perf_counter() - started}
-    return result
 
 
 def _structural_length(robot: Robot, measure: dict[str, Any] | None, *, constrained: bool) -> dict[str, Any]:

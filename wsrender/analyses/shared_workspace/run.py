@@ -1,29 +1,26 @@
 """The analysis ``shared_workspace``: what several robots reach together."""
 
-import json
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from wsrender.analyses.contract import Analysis, Draft, Progress, Tell
 from wsrender.analyses.cost import DOCUMENT_BYTES, Cost, in_turn, pictures_cost, refined_seconds
 from wsrender.analyses.execution import Execution
 from wsrender.analyses.headline import headline_of
-from wsrender.analyses.provenance import job_entry, provenance
-from wsrender.analyses.refined import Progress, by_measure, refined_together
+from wsrender.analyses.partial_result import PartialResult
+from wsrender.analyses.refined import by_measure, refined_together
+from wsrender.analyses.registry import planned
+from wsrender.analyses.several_result import common_entries, notices_of_each, sampling_path, skeletons
+from wsrender.analyses.several_robots import SeveralPlans, SeveralSettled, plan_several, progress_after, workspace_job
 from wsrender.analyses.shared_workspace.job import SharedWorkspaceJob
 from wsrender.analyses.volume_notices import occupied_differs, tolerance_not_met
 from wsrender.documents.placement_scan import PlacementScan
 from wsrender.multi.shared_volume import NUMBER, PRODUCT, reached_by, shared_volume, volume_by_number
-from wsrender.notices import Notice, entries
+from wsrender.notices import Notice
 from wsrender.reachability import Event
-from wsrender.results.result import Result
-from wsrender.robot import Robot
-from wsrender.run.one_shard import OneShard
-from wsrender.run.several_result import common_entries, sampling_path, skeletons
-from wsrender.run.several_robots import SeveralPlans, plan_several, progress_after, workspace_job
-from wsrender.run.workspace import WorkspacePlan, plan_workspace
 from wsrender.volume.lattice import block_of_all, check_voxels
 from wsrender.volume.measure import TABLE_UNITS
 from wsrender.volume.table import Table
@@ -37,24 +34,36 @@ VOLUME_BYTES = 9  # of a voxel of each robot's volume: samples, and whether ther
 REACHED = {"any": "jointly reachable", "shared": "shared"}  # of which volume
 
 
-@dataclass(eq=False)
-class SharedWorkspacePlan(OneShard):
-    """A resolved ``shared_workspace`` job: one shard, in which the robots are swept one after the other."""
+class SharedWorkspaceAnalysis(Analysis):
+    """A planned ``shared_workspace`` job: one shard, in which the robots are swept one after the other."""
 
+    settles = SeveralSettled
     job: SharedWorkspaceJob
-    robots: tuple[Robot, ...]
-    several: SeveralPlans
-    scanned: list[WorkspacePlan]  # of the moved robot, one for each value of the scan
+    settled: SeveralSettled
 
-    @property
-    def target(self) -> str:
-        """Target of the kernels."""
-        return self.several.plans[0].target
+    def prepare(self, device: str, target: str) -> SeveralSettled:
+        """Raises InputError, MissingInertiaError, ResourceError."""
+        several = self.several = plan_several(self.job, self.robots)
+        _check_volume(several)
+        samples = several.samples + sum(plan.shards[0][1] for plan in self.scanned)
+        return several.settled(((0, samples),))
 
-    @property
-    def shards(self) -> list[tuple[int, int]]:
-        """One shard of all samples."""
-        return [(0, self.several.samples + sum(plan.shards[0][1] for plan in self.scanned))]
+    @cached_property
+    def several(self) -> SeveralPlans:
+        """The plans of the robots."""
+        return plan_several(self.job, self.robots, self.settled)
+
+    @cached_property
+    def scanned(self) -> list[Any]:
+        """Plans of the moved robot, one for each value of the scan."""
+        if self.job.scan is None:
+            return []
+        arm, robot = self.job.robots[self.job.scan.robot], self.robots[self.job.scan.robot]
+        first = self.several.plans[0]
+        at = workspace_job(self.job, arm).model_copy(
+            update={"voxel_size_m": first.voxel_size_m, "device": first.device}
+        )
+        return [planned(at, robot.placed(each)) for each in self.job.scan.placements(arm.robot.placement)]
 
     @property
     def cost(self) -> Cost:
@@ -65,22 +74,15 @@ class SharedWorkspacePlan(OneShard):
         files = DOCUMENT_BYTES + drawn + sum(plan.volume_bytes for plan in self.several.plans) * 1.5
         return Cost(swept.samples, swept.memory_bytes, files, swept.seconds + seconds)
 
-    def resolved(self) -> dict[str, Any]:
-        """What is settled once, for every robot."""
-        return self.several.resolved() | {"shards": [list(shard) for shard in self.shards]}
-
-    def run_shard(
-        self, shard: int, progress: Callable[[int], None] | None, execution: Execution
-    ) -> dict[str, np.ndarray]:
+    def compute(self, shard: int, execution: Execution, tell: Tell) -> PartialResult:
         """Partial results of the robots, and the volumes of every step of the scan."""
-        arrays = self.several.run(progress, execution)
-        if self.job.scan is not None:
-            arrays["scan"] = self._scan(self.job.scan, arrays, progress, execution)
-        return arrays
+        partial = self.several.run(execution, tell)
+        if self.job.scan is None:
+            return partial
+        scan = self._scan(self.job.scan, partial, execution, tell)
+        return PartialResult({**partial.arrays, "scan": scan}, partial.facts)
 
-    def refine(
-        self, partial: dict[str, np.ndarray], progress: Progress | None, execution: Execution
-    ) -> dict[str, np.ndarray]:
+    def refine(self, partial: PartialResult, progress: Progress | None, execution: Execution) -> PartialResult:
         """With the refined volumes, if asked."""
         tolerance, scan = self.job.refined_volume, self.job.scan
         if tolerance is None:
@@ -90,34 +92,31 @@ class SharedWorkspacePlan(OneShard):
         events = {"any": Event(1, len(chains)), "shared": Event(2, len(chains))}
         how = {"device": self.several.plans[0].device, "progress": progress, "threads": execution.threads}
         together = refined_together(chains, events, tolerance, **how)
-        found = partial | {"refined": np.array(json.dumps(together))}
+        facts = {**partial.facts, "refined": together}
         if scan is None or together["shared"]["value"] is None:
-            return found
+            return PartialResult(partial.arrays, facts)
         rows = []
         for T_world_base in self._scanned_bases():
             chains[scan.robot] = chains[scan.robot].placed(T_world_base)
             volumes = refined_together(chains, events, tolerance, **how)
             rows.append([_with_interval(volumes[name]) for name in events])
-        return found | {"scan_refined": np.array(rows)}
+        return PartialResult({**partial.arrays, "scan_refined": np.array(rows)}, facts)
 
-    def finish(self, partial: dict[str, np.ndarray], seconds: dict[str, float], execution: Execution) -> Result:
+    def result(self, partial: PartialResult, execution: Execution) -> Draft:
         """Number of robots by voxel, product of their normalised indices, union and intersection."""
         results = self.several.results(partial, execution)
         volumes = {f"robot_{name}": r.volume for name, r in zip(self.several.names, results, strict=True) if r.volume}
         shared = shared_volume(list(volumes.values()))
         by_number = volume_by_number(shared, len(volumes))
         meshes, surfaces = _meshes(shared)
-        common = common_entries(self.job, self.several, results)
         any_m3, shared_m3 = float(by_number.sum()), float(by_number[2:].sum())
-        found = json.loads(str(partial["refined"])) if "refined" in partial else None
+        found = partial.facts.get("refined")
         shared_measure = found and found["shared"]
         measures = by_measure(shared_measure, found)
         refined = measures["volume_m3"]["refined"]
         known = found if shared_measure and shared_measure["value"] is not None else None
         document = {
-            "analysis": "shared_workspace",
-            "job": job_entry(self.job, *self.robots),
-            **common,
+            **common_entries(self.several, results),
             **measures,
             "volume_m3": {
                 "any": any_m3,
@@ -125,63 +124,43 @@ class SharedWorkspacePlan(OneShard):
                 "exactly": {str(k): float(by_number[k]) for k in range(1, len(by_number))},
                 "refined": refined,
             },
-            "headline": headline_of(shared_measure),
             "shared_ratio": _ratio(known) if known else shared_m3 / any_m3,
             "shared_ratio_volume": "refined" if known else "occupied",
-            "warnings": common["warnings"] + entries(_notices({"any": any_m3, "shared": shared_m3}, refined)),
             "quality": _quality(shared),
             "surfaces": surfaces,
-            "provenance": provenance(self.job, self.target, sampling_path=sampling_path(results)),
-            "timing_s": seconds,
         }
         scan = self.job.scan
-        scanned = partial.get("scan_refined")
+        scanned = partial.arrays.get("scan_refined")
         tables = {"scan": _scan_table(scan, partial["scan"], scanned, shared_measure)} if scan else {}
-        return Result(
-            document, volume=shared, skeleton=skeletons(results), meshes=meshes, tables=tables, volumes=volumes
+        own = _notices({"any": any_m3, "shared": shared_m3}, refined)
+        return Draft(
+            document,
+            headline_of(shared_measure),
+            (*notices_of_each(self.several.names, results), *own),
+            {"sampling_path": sampling_path(results)},
+            volume=shared,
+            skeleton=skeletons(results),
+            meshes=meshes,
+            tables=tables,
+            volumes=volumes,
         )
 
     def _scanned_bases(self) -> list[np.ndarray]:
         """Where the base of the moved robot stands at each value, (4, 4) each."""
         return [plan.robot.chain.T_world_base for plan in self.scanned]
 
-    def _scan(
-        self,
-        scan: PlacementScan,
-        arrays: dict[str, np.ndarray],
-        progress: Callable[[int], None] | None,
-        execution: Execution,
-    ) -> np.ndarray:
+    def _scan(self, scan: PlacementScan, partial: PartialResult, execution: Execution, tell: Tell) -> np.ndarray:
         """Volumes (values, K) [m³] reached by at least 1 … K robots at each value."""
-        volumes = [result.volume for result in self.several.results(arrays, execution)]
+        volumes = [result.volume for result in self.several.results(partial, execution)]
         before, rows = self.several.samples, []
         for plan in self.scanned:
             moved = SeveralPlans([""], [plan])
-            (result,) = moved.results(moved.run(progress_after(before, progress), execution), execution)
+            (result,) = moved.results(moved.run(execution, progress_after(before, tell)), execution)
             volumes[scan.robot] = result.volume
             by_number = volume_by_number(shared_volume([v for v in volumes if v is not None]), len(volumes))
             rows.append(np.cumsum(by_number[:0:-1])[::-1])
             before += plan.shards[0][1]
         return np.array(rows)
-
-
-def plan_shared_workspace(
-    job: SharedWorkspaceJob, *robots: Robot, resolved: dict[str, Any] | None = None
-) -> SharedWorkspacePlan:
-    """Resolve the job, or take what `SharedWorkspacePlan.resolved` of an earlier plan of it says.
-
-    Raises InputError, MissingInertiaError, ResourceError.
-    """
-    several = plan_several(job, robots, resolved)
-    _check_volume(several)
-    scanned = []
-    if job.scan is not None:
-        arm, robot = job.robots[job.scan.robot], robots[job.scan.robot]
-        settled = {"voxel_size_m": several.plans[0].voxel_size_m, "device": several.plans[0].device}
-        at = workspace_job(job, arm).model_copy(update=settled)
-        placements = job.scan.placements(arm.robot.placement)
-        scanned = [plan_workspace(at, robot.placed(placement)) for placement in placements]
-    return SharedWorkspacePlan(job, robots, several, scanned)
 
 
 def _check_volume(several: SeveralPlans) -> None:

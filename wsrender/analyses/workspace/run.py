@@ -1,17 +1,17 @@
-"""The analysis ``workspace``: plan, shards, merge."""
+"""The analysis ``workspace``: what is settled, swept, merged and refined."""
 
-from collections.abc import Callable
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
+from wsrender.analyses.contract import Analysis, Draft, Progress, Settled, Tell
 from wsrender.analyses.cost import (
     DECIDED_PER_S,
     DOCUMENT_BYTES,
     Cost,
-    Costed,
     check_memory,
     pictures_cost,
     refined_seconds,
@@ -19,22 +19,23 @@ from wsrender.analyses.cost import (
 )
 from wsrender.analyses.estimate import map_bytes, sweep_cost
 from wsrender.analyses.execution import Execution
-from wsrender.analyses.refined import Progress, Refined, labelled, refined
-from wsrender.analyses.settled_device import settled_device
+from wsrender.analyses.partial_result import PartialResult
+from wsrender.analyses.refined import MEASURE, Refined, labelled, refined
+from wsrender.analyses.workspace.first_pass import FirstPass
 from wsrender.analyses.workspace.job import WorkspaceJob
+from wsrender.analyses.workspace.partial import WorkspacePartial, sweep_of
+from wsrender.analyses.workspace.result import PICTURE_SAMPLES, workspace_draft
 from wsrender.documents.sampling import Converge, Grid
 from wsrender.documents.surfaces import IsoSurface
 from wsrender.engine import Partial, SweepPlan, devices_of, fitted, merge, sweep
+from wsrender.engine.sums import scales_for
 from wsrender.engine.voxel_data import volume_data
 from wsrender.errors import InputError, NotConvergedError
 from wsrender.global_indices import joint_means, workspace_mean
 from wsrender.indices.index_catalogue import default_statistics, resolve
-from wsrender.results.result import Result
 from wsrender.robot import Robot
 from wsrender.robot.constraints import constraints_for
 from wsrender.robot.indices import evaluation_of_job
-from wsrender.run.first_pass import FirstPass
-from wsrender.run.workspace_result import PICTURE_SAMPLES, workspace_result
 from wsrender.sampling import SamplingPlan, plan_sampling
 from wsrender.volume.lattice import LatticeBlock, check_voxels, expected_voxels, voxel_of
 from wsrender.volume.volume_data import VolumeData
@@ -42,28 +43,113 @@ from wsrender.volume.volume_data import VolumeData
 LABEL_BYTES = 24  # of a voxel of the block: which are near, samples, and what makes them
 
 
-@dataclass(frozen=True, eq=False)
-class WorkspacePartial:
-    """A partial result, and for a converging job the whole sequence of global values."""
+@dataclass(frozen=True, kw_only=True)
+class WorkspaceSettled(Settled):
+    """With the block of voxels, bounds and scales (K,) of the indices' sums, and how samples are evaluated."""
 
-    sweep: Partial
-    plan: SweepPlan
-    convergence: list[dict[str, float]] | None = None
-    refined: Refined | None = None
+    voxel_size_m: float
+    first_voxel: tuple[int, int, int]
+    shape: tuple[int, int, int]
+    bounds: tuple[float, ...]
+    scales: tuple[float, ...]
+    sampling_path: str
 
 
-@dataclass(eq=False)
-class WorkspacePlan(Costed):
-    """A resolved ``workspace`` job."""
+class WorkspaceAnalysis(Analysis):
+    """A planned ``workspace`` job."""
 
+    settles = WorkspaceSettled
     job: WorkspaceJob
-    robot: Robot
-    sweep: SweepPlan
-    first_pass: FirstPass
-    device: str
-    target: str
-    shards: list[tuple[int, int]]
-    swept_cost: Cost
+    settled: WorkspaceSettled
+
+    def __init__(self, job: WorkspaceJob, robot: Robot, *, resolved: Mapping[str, Any] | None = None):
+        self.evaluation = evaluation_of_job(job, robot)
+        if job.voxel_statistics is None:
+            job = job.model_copy(update={"voxel_statistics": default_statistics(self.evaluation.indices)})
+        super().__init__(job, robot, resolved=resolved)
+
+    def prepare(self, device: str, target: str) -> WorkspaceSettled:
+        """Raises InputError, MissingInertiaError, ResourceError."""
+        job, sampling = self.job, self.first_sampling
+        size = job.voxel_size_m or self.first_pass.voxel_size(None if self._iterates else sampling)
+        block = self.first_pass.block(size)
+        scales, bounds = self.first_pass.sum_scales(sampling.count, job.precision)
+        plan = self.sweep = self._sweep(block, scales, bounds)
+        self._check(plan)
+        fitted(block, plan.shape, devices_of(device), sampling.count)  # raises where a sweep would
+        if job.voxel_labels and job.constraints is not None:
+            raise InputError("voxel_labels", "must be false with constraints: labels say what is reached without them")
+        if job.voxel_labels:
+            check_voxels(block, LABEL_BYTES)
+        return WorkspaceSettled(
+            device,
+            target,
+            ((0, sampling.count),),
+            None if self._iterates else plan.division,
+            self._iterates,
+            voxel_size_m=block.voxel_size_m,
+            first_voxel=block.first_voxel,
+            shape=block.shape,
+            bounds=tuple(bounds.tolist()),
+            scales=tuple(scales.tolist()),
+            sampling_path=plan.sampling_path,
+        )
+
+    @cached_property
+    def first_sampling(self) -> SamplingPlan:
+        """The samples; of a converging job those of its first grid."""
+        sampling = self.job.sampling
+        if isinstance(sampling, Converge):  # its own limit ends the sequence: see _converge
+            return plan_sampling(self.robot.chain, Grid(sampling.start, locked=sampling.locked))
+        return plan_sampling(self.robot.chain, sampling, self.job.max_samples)
+
+    @cached_property
+    def first_pass(self) -> FirstPass:
+        """What is known from coarse samples."""
+        return FirstPass(self.evaluation, dict(self.job.sampling.locked))
+
+    @cached_property
+    def sweep(self) -> SweepPlan:
+        """Everything a range of samples needs, as it is settled."""
+        settled, size = self.settled, self.settled.voxel_size_m
+        about = voxel_of(self.robot.chain.foot, size)
+        block = LatticeBlock(size, settled.first_voxel, settled.shape, about=about)
+        collapse = settled.sampling_path == "collapsed"
+        return self._sweep(block, np.array(settled.scales), np.array(settled.bounds), collapse)
+
+    def _sweep(self, block: LatticeBlock, scales: np.ndarray, bounds: np.ndarray, collapse: bool = True) -> SweepPlan:
+        job = self.job
+        return SweepPlan(
+            self.evaluation,
+            self.first_sampling,
+            block,
+            frozenset(job.voxel_statistics or ()),
+            scales,
+            bounds,
+            job.precision,
+            keep_rows=job.keep_map,
+            keep_configuration="configuration" in job.map_columns,
+            keep_orientation="orientation" in job.map_columns,
+            collapse=collapse,
+            constraints=constraints_for(self.robot, job.constraints),
+        )
+
+    def _check(self, plan: SweepPlan) -> None:
+        """Whether the parts of the job go together; raises InputError, ResourceError."""
+        job = self.job
+        if job.keep_map and "orientation" in job.map_columns and self.evaluation.host_chain is not None:
+            raise InputError("map_columns", "orientation is not kept for a user-defined robot")
+        if isinstance(job.sampling, Converge):
+            _converging_index(plan, job.sampling)
+            if job.sampling.by == "workspace_mean" and not {"maximum", "mean"} & plan.statistics:
+                raise InputError("sampling.by", "workspace_mean needs the voxel statistic maximum or mean")
+        _check_surfaces(job, plan)
+        _check_map(plan)
+
+    @property
+    def swept_cost(self) -> Cost:
+        """Of the sweep alone."""
+        return sweep_cost(self.sweep, devices_of(self.device))
 
     @property
     def cost(self) -> Cost:
@@ -99,44 +185,25 @@ class WorkspacePlan(Costed):
     @property
     def voxel_size_m(self) -> float:
         """Edge of a voxel [m]."""
-        assert self.sweep.block is not None
-        return self.sweep.block.voxel_size_m
+        return self.settled.voxel_size_m
 
     @property
     def least_voxel_size_m(self) -> float:
         """Edge of a voxel [m] below which the samples leave holes."""
         return self.first_pass.least_voxel_size(None if self._iterates else self.sweep.sampling)
 
-    def resolved(self) -> dict[str, Any]:
-        """What is settled once: the device of "auto", target, lattice block, bounds, scales, sampling path, shards."""
-        block = self.sweep.block
-        assert block is not None
-        return {
-            "device": self.device,
-            "target": self.target,
-            "voxel_size_m": block.voxel_size_m,
-            "first_voxel": list(block.first_voxel),
-            "shape": list(block.shape),
-            "bounds": self.sweep.bounds.tolist(),
-            "scales": self.sweep.scales.tolist(),
-            "sampling_path": self.sweep.sampling_path,
-            "shards": [list(shard) for shard in self.shards],
-            "shard_unit": None if self._iterates else self.sweep.division,
-            "iterates": self._iterates,
-        }
-
     @property
     def _iterates(self) -> bool:
         return isinstance(self.job.sampling, Converge)
 
-    def run_shard(self, shard: int, progress: Callable[[int], None] | None, execution: Execution) -> WorkspacePartial:
+    def compute(self, shard: int, execution: Execution, tell: Tell) -> WorkspacePartial:
         """Sweep the shard's samples; a converging job has one shard, its sequence of grids."""
         devices = devices_of(self.device)
         if isinstance(self.job.sampling, Converge):
-            return self._converge(self.job.sampling, progress, execution)
+            return self._converge(self.job.sampling, execution, tell)
         first, count = self.shards[shard]
         how = {"threads": execution.threads, "chunk_size": execution.chunk_size}
-        return WorkspacePartial(sweep(self.sweep, first, count, devices, progress=progress, **how), self.sweep)
+        return WorkspacePartial(sweep(self.sweep, first, count, devices, progress=tell, **how), self.sweep)
 
     def merge(self, a: WorkspacePartial, b: WorkspacePartial) -> WorkspacePartial:
         """The partial result of both; bit for bit the same in any order."""
@@ -167,23 +234,20 @@ class WorkspacePlan(Costed):
         chain = self.robot.chain.held(self.job.sampling.locked)
         return labelled(chain, counts, partial.plan.sampling.seed, self.device, progress, execution.threads)
 
-    def finish(self, partial: WorkspacePartial, seconds: dict[str, float], execution: Execution) -> Result:
-        """Map, volume, global values and the result document."""
-        return workspace_result(
-            self.job,
-            self.robot,
-            partial.plan,
-            partial.sweep,
-            partial.convergence,
-            partial.refined,
-            self.target,
-            seconds,
-            execution.threads,
-        )
+    def result(self, partial: WorkspacePartial, execution: Execution) -> Draft:
+        """Map, volume, global values and the entries of the document."""
+        return workspace_draft(self.job, self.robot, partial, execution.threads)
 
-    def _converge(
-        self, sampling: Converge, progress: Callable[[int], None] | None, execution: Execution
-    ) -> WorkspacePartial:
+    def unpacked(self, partial: PartialResult) -> WorkspacePartial:
+        """The sweep; of a converging job with the plan of its last grid."""
+        sequence, sampling = partial.facts["convergence"], self.job.sampling
+        plan = self.sweep
+        if sequence is not None and isinstance(sampling, Converge):
+            plan = self.with_grid(sequence[-1]["per_joint"], sampling)
+        measure = partial.facts.get(MEASURE)
+        return WorkspacePartial(sweep_of(partial), plan, sequence, measure and Refined(measure, None))
+
+    def _converge(self, sampling: Converge, execution: Execution, tell: Tell) -> WorkspacePartial:
         """[WSR] Algorithm 1: finer grids until an index's global value changes by at most the tolerance."""
         position = self.sweep.evaluation.indices.index(_converging_index(self.sweep, sampling))
         sequence: list[dict[str, float]] = []
@@ -200,8 +264,7 @@ class WorkspacePlan(Costed):
                 )
 
             def report(done: int, before: int = before) -> None:
-                if progress:
-                    progress(before + done)
+                tell(before + done)
 
             how = {"threads": execution.threads, "chunk_size": execution.chunk_size}
             partial = sweep(plan, 0, count, devices_of(self.device), progress=report, **how)
@@ -214,8 +277,8 @@ class WorkspacePlan(Costed):
     def with_grid(self, levels: int, sampling: Converge) -> SweepPlan:
         """The plan of one grid; the voxel size is that of the job for all of them."""
         grid = plan_sampling(self.robot.chain, Grid(levels, locked=sampling.locked))
-        scales, bounds = self.first_pass.sum_scales(grid.count, self.job.precision)
-        plan = replace(self.sweep, sampling=grid, scales=scales, bounds=bounds)
+        scales = scales_for(self.sweep.bounds, grid.count, self.job.precision)
+        plan = replace(self.sweep, sampling=grid, scales=scales)
         _check_map(plan)
         return plan
 
@@ -225,58 +288,6 @@ class WorkspacePlan(Costed):
         value = workspace_mean(volume_data(plan, partial, {}), plan.evaluation.indices[position])
         assert value is not None
         return value
-
-
-def plan_workspace(job: WorkspaceJob, robot: Robot, resolved: dict[str, Any] | None = None) -> WorkspacePlan:
-    """Resolve the job, or take what `WorkspacePlan.resolved` of an earlier plan of it says.
-
-    Raises InputError, MissingInertiaError, ResourceError.
-    """
-    device, target = settled_device(job.device, resolved)
-    devices = devices_of(device)
-    evaluation = evaluation_of_job(job, robot)
-    if job.voxel_statistics is None:
-        job = job.model_copy(update={"voxel_statistics": default_statistics(evaluation.indices)})
-    statistics = frozenset(job.voxel_statistics or ())
-    sampling = _first_sampling(job, robot)
-    first_pass = FirstPass(evaluation, dict(job.sampling.locked))
-    if resolved is None:
-        settled = None if isinstance(job.sampling, Converge) else sampling
-        block = first_pass.block(job.voxel_size_m or first_pass.voxel_size(settled))
-        scales, bounds = first_pass.sum_scales(sampling.count, job.precision)
-    else:
-        block = _settled_block(resolved, robot)
-        first_pass.known_bounds = bounds = np.array(resolved["bounds"], np.float64)
-        scales = np.array(resolved["scales"], np.float64)
-    plan = SweepPlan(
-        evaluation,
-        sampling,
-        block,
-        statistics,
-        scales,
-        bounds,
-        job.precision,
-        keep_rows=job.keep_map,
-        keep_configuration="configuration" in job.map_columns,
-        keep_orientation="orientation" in job.map_columns,
-        collapse=resolved is None or resolved["sampling_path"] == "collapsed",
-        constraints=constraints_for(robot, job.constraints),
-    )
-    if job.keep_map and "orientation" in job.map_columns and evaluation.host_chain is not None:
-        raise InputError("map_columns", "orientation is not kept for a user-defined robot")
-    if isinstance(job.sampling, Converge):
-        _converging_index(plan, job.sampling)
-        if job.sampling.by == "workspace_mean" and not {"maximum", "mean"} & statistics:
-            raise InputError("sampling.by", "workspace_mean needs the voxel statistic maximum or mean")
-    _check_surfaces(job, plan)
-    _check_map(plan)
-    fitted(block, plan.shape, devices, sampling.count)  # raises where a sweep would
-    if job.voxel_labels and plan.constraints:
-        raise InputError("voxel_labels", "must be false with constraints: labels say what is reached without them")
-    if job.voxel_labels:
-        check_voxels(block, LABEL_BYTES)
-    shards = [(0, sampling.count)] if resolved is None else [(first, count) for first, count in resolved["shards"]]
-    return WorkspacePlan(job, robot, plan, first_pass, device, target, shards, sweep_cost(plan, devices))
 
 
 def _check_map(plan: SweepPlan) -> None:
@@ -295,19 +306,6 @@ def _check_surfaces(job: WorkspaceJob, plan: SweepPlan) -> None:
             raise InputError("surfaces", f"{surface.iso_surface!r} is not among the job's indices: {choices}")
         if not {"maximum", "mean"} & plan.statistics:
             raise InputError("surfaces", "an iso-surface needs the voxel statistic maximum or mean")
-
-
-def _settled_block(resolved: dict[str, Any], robot: Robot) -> LatticeBlock:
-    first, shape = ((x, y, z) for x, y, z in (resolved["first_voxel"], resolved["shape"]))
-    size = resolved["voxel_size_m"]
-    return LatticeBlock(size, first, shape, about=voxel_of(robot.chain.foot, size))
-
-
-def _first_sampling(job: WorkspaceJob, robot: Robot) -> SamplingPlan:
-    if isinstance(job.sampling, Converge):
-        # Its own limit ends the sequence: see WorkspacePlan._converge.
-        return plan_sampling(robot.chain, Grid(job.sampling.start, locked=job.sampling.locked))
-    return plan_sampling(robot.chain, job.sampling, job.max_samples)
 
 
 def _converging_index(plan: SweepPlan, sampling: Converge) -> str:

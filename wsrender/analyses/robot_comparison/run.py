@@ -1,93 +1,70 @@
 """The analysis ``robot_comparison``: several robots side by side, and a table of their differences."""
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
+from wsrender.analyses.contract import Analysis, Draft, Progress, Tell
 from wsrender.analyses.cost import Cost
 from wsrender.analyses.execution import Execution
 from wsrender.analyses.headline import no_headline
-from wsrender.analyses.provenance import job_entry, provenance
-from wsrender.analyses.refined import Progress
+from wsrender.analyses.partial_result import PartialResult
 from wsrender.analyses.robot_comparison.job import RobotComparisonJob
-from wsrender.results.result import Result
-from wsrender.robot import Robot
-from wsrender.run.one_shard import OneShard
-from wsrender.run.several_result import common_entries, sampling_path, skeletons
-from wsrender.run.several_robots import SeveralPlans, plan_several
+from wsrender.analyses.several_result import common_entries, notices_of_each, sampling_path, skeletons
+from wsrender.analyses.several_robots import SeveralPlans, SeveralSettled, plan_several
 from wsrender.volume.measure import TABLE_UNITS
 from wsrender.volume.table import Table
 
 
-@dataclass(eq=False)
-class RobotComparisonPlan(OneShard):
-    """A resolved ``robot_comparison`` job: one shard, in which the robots are swept one after the other."""
+class RobotComparisonAnalysis(Analysis):
+    """A planned ``robot_comparison`` job: one shard, in which the robots are swept one after the other."""
 
+    settles = SeveralSettled
     job: RobotComparisonJob
-    robots: tuple[Robot, ...]
-    several: SeveralPlans
+    settled: SeveralSettled
 
-    @property
-    def target(self) -> str:
-        """Target of the kernels."""
-        return self.several.plans[0].target
+    def prepare(self, device: str, target: str) -> SeveralSettled:
+        """Raises InputError, MissingInertiaError, ResourceError."""
+        self.several = plan_several(self.job, self.robots, None, self.job.refined_volume)
+        return self.several.settled(((0, self.several.samples),))
 
-    @property
-    def shards(self) -> list[tuple[int, int]]:
-        """One shard of all samples."""
-        return [(0, self.several.samples)]
+    @cached_property
+    def several(self) -> SeveralPlans:
+        """The plans of the robots."""
+        return plan_several(self.job, self.robots, self.settled, self.job.refined_volume)
 
     @property
     def cost(self) -> Cost:
         """Samples, bytes and seconds."""
         return self.several.cost
 
-    def resolved(self) -> dict[str, Any]:
-        """What is settled once, for every robot."""
-        return self.several.resolved()
-
-    def run_shard(
-        self, shard: int, progress: Callable[[int], None] | None, execution: Execution
-    ) -> dict[str, np.ndarray]:
+    def compute(self, shard: int, execution: Execution, tell: Tell) -> PartialResult:
         """Partial results of the robots."""
-        return self.several.run(progress, execution)
+        return self.several.run(execution, tell)
 
-    def refine(
-        self, partial: dict[str, np.ndarray], progress: Progress | None, execution: Execution
-    ) -> dict[str, np.ndarray]:
+    def refine(self, partial: PartialResult, progress: Progress | None, execution: Execution) -> PartialResult:
         """With the refined measure of every robot, if asked."""
         return self.several.refine(partial, progress, execution)
 
-    def finish(self, partial: dict[str, np.ndarray], seconds: dict[str, float], execution: Execution) -> Result:
+    def result(self, partial: PartialResult, execution: Execution) -> Draft:
         """Every robot's volume, and the table of values and differences from the first robot."""
         results = self.several.results(partial, execution)
         names = self.several.names
-        common = common_entries(self.job, self.several, results)
+        common = common_entries(self.several, results)
         rows = _rows(common["robots"])
-        document = {
-            "analysis": "robot_comparison",
-            "job": job_entry(self.job, *self.robots),
-            **common,
-            "headline": no_headline("a comparison has a headline for each robot: robots[].headline"),
-            "comparison": rows,
-            "provenance": provenance(self.job, self.target, sampling_path=sampling_path(results)),
-            "timing_s": seconds,
-        }
         volumes = {f"robot_{name}": r.volume for name, r in zip(names, results, strict=True) if r.volume is not None}
         tables = {"comparison": _table(names, rows)}
-        return Result(document, skeleton=skeletons(results), tables=tables, volumes=volumes)
-
-
-def plan_robot_comparison(
-    job: RobotComparisonJob, *robots: Robot, resolved: dict[str, Any] | None = None
-) -> RobotComparisonPlan:
-    """Resolve the job, or take what `RobotComparisonPlan.resolved` of an earlier plan of it says.
-
-    Raises InputError, MissingInertiaError, ResourceError.
-    """
-    return RobotComparisonPlan(job, robots, plan_several(job, robots, resolved))
+        return Draft(
+            {**common, "comparison": rows},
+            no_headline("a comparison has a headline for each robot: robots[].headline"),
+            notices_of_each(names, results),
+            {"sampling_path": sampling_path(results)},
+            skeleton=skeletons(results),
+            tables=tables,
+            volumes=volumes,
+        )
 
 
 def _rows(robots: list[dict[str, Any]]) -> list[dict[str, Any]]:

@@ -26,7 +26,6 @@ class FirstPass:
 
     evaluation: Evaluation
     locked: dict[str, float]
-    known_bounds: np.ndarray | None = None  # settled by an earlier plan of the same job
 
     @cached_property
     def evaluated(self) -> Evaluated:
@@ -80,8 +79,6 @@ class FirstPass:
 
     @cached_property
     def _bounds(self) -> np.ndarray:
-        if self.known_bounds is not None:
-            return self.known_bounds
         bounds = np.array([own_bound(self.evaluation, name) for name in self.evaluation.indices])
         unknown = np.isnan(bounds)
         if unknown.any():

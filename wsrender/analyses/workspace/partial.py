@@ -1,0 +1,34 @@
+"""The partial result of a ``workspace`` job."""
+
+from dataclasses import dataclass
+from typing import Any
+
+from wsrender.analyses.partial_result import PartialResult
+from wsrender.analyses.refined import Refined
+from wsrender.engine import Partial, SweepPlan
+
+SWEEP = ("extremes", "totals", "cells", "count", "records", "sums", "rejected")
+ROWS = "rows_"
+
+
+@dataclass(frozen=True, eq=False)
+class WorkspacePartial:
+    """What a sweep has found, and for a converging job the whole sequence of global values."""
+
+    sweep: Partial
+    plan: SweepPlan
+    convergence: list[dict[str, Any]] | None = None
+    refined: Refined | None = None
+
+    def packed(self) -> PartialResult:
+        """Arrays of the sweep and, as facts, the rest; labels of voxels are found after the last merge, and stay."""
+        rows = {f"{ROWS}{first}": block for first, block in self.sweep.rows.items()}
+        arrays = {name: getattr(self.sweep, name) for name in SWEEP}
+        facts = {"samples": self.sweep.samples, "convergence": self.convergence}
+        return PartialResult(arrays | rows, facts)
+
+
+def sweep_of(partial: PartialResult) -> Partial:
+    """The sweep's part of what was packed."""
+    rows = {int(name.removeprefix(ROWS)): array for name, array in partial.arrays.items() if name.startswith(ROWS)}
+    return Partial(partial.facts["samples"], **{name: partial[name] for name in SWEEP}, rows=rows)
