@@ -294,7 +294,7 @@ def test_voxels_far_from_the_refined_volume_are_warned_of():
 
 
 def test_a_tolerance_that_is_not_met_is_said(monkeypatch):
-    monkeypatch.setattr("wsrender.run.parallel_refined.MOST_POINTS", 5000)
+    monkeypatch.setattr("wsrender.analyses.parallel_workspace.refined.MOST_POINTS", 5000)
     document = execute({**SIX_PUS, "refined_volume": 0.001}).document
     low, high = document["headline"]["ci95"]
     assert low < 0.717344315 < high and not document["volume_m3"]["refined"]["met"]
@@ -303,7 +303,7 @@ def test_a_tolerance_that_is_not_met_is_said(monkeypatch):
 
 def test_voxels_that_do_not_fit_in_memory_are_refused_while_planning(monkeypatch):
     """1.5e9 voxels were accepted, and ended in an ArrayMemoryError of 33 GiB in the refined volume."""
-    from wsrender.run import parallel_lattice
+    from wsrender.analyses.parallel_workspace import lattice as parallel_lattice
 
     monkeypatch.setattr(parallel_lattice, "available_bytes", lambda: 2**30)
     plan({**STEWART, "voxel_size_m": 0.004})
@@ -314,7 +314,7 @@ def test_voxels_that_do_not_fit_in_memory_are_refused_while_planning(monkeypatch
 
 def test_strata_of_fine_voxels_stay_coarse(monkeypatch):
     """However many voxels there are, the refined volume holds no more than 64³ cells or so."""
-    from wsrender.run import parallel_refined
+    from wsrender.analyses.parallel_workspace import refined as parallel_refined
 
     seen = []
     strata = parallel_refined._strata

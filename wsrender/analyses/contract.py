@@ -61,13 +61,14 @@ class Draft:
     """What a result holds of the analysis itself; the contract adds what every result document has.
 
     ``entries``: of the document; ``headline``: None where it measures no workspace; ``provenance``: what is said beside
-    versions, target and seed. The others are those of `Result`.
+    versions, target and seed; ``timing_s``: of parts. The others are those of `Result`.
     """
 
     entries: dict[str, Any]
     headline: dict[str, Any] | None = None
     notices: Iterable[Notice] = ()
     provenance: dict[str, Any] = field(default_factory=dict)
+    timing_s: Mapping[str, float] = field(default_factory=dict)
     map: DistributionMap | None = None
     sample: DistributionMap | None = None
     volume: VolumeData | None = None
@@ -176,7 +177,7 @@ class Analysis(Costed, ABC):
             "headline": draft.headline or no_headline(f"the analysis {job.analysis} measures none"),
             "warnings": entries((*self.notices, *draft.notices)),
             "provenance": provenance(job, self.target, **draft.provenance),
-            "timing_s": {**seconds, "finish": time.perf_counter() - started},
+            "timing_s": {**seconds, **draft.timing_s, "finish": time.perf_counter() - started},
         }
         data = (draft.map, draft.sample, draft.volume, draft.skeleton, draft.meshes, draft.tables, draft.volumes)
         return Result(document, *data)

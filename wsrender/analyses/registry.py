@@ -45,13 +45,11 @@ _ROWS = {
     "collaborative_volume": _own("collaborative_volume", "CollaborativeVolumeJob", "CollaborativeVolumeAnalysis"),
     "master_slave_mapping": _own("master_slave_mapping", "MasterSlaveMappingJob", "MasterSlaveMappingAnalysis"),
     "kinetostatic_field": _own("kinetostatic_field", "KinetostaticFieldJob", "KinetostaticFieldAnalysis"),
-    "parallel_workspace": _own("parallel_workspace", "ParallelWorkspaceJob", "wsrender.run.parallel:plan_parallel"),
+    "parallel_workspace": _own("parallel_workspace", "ParallelWorkspaceJob", "ParallelWorkspaceAnalysis"),
     "five_bar": _own("five_bar", "FiveBarJob", "FiveBarAnalysis"),
     "planar_boundary": _own("planar_boundary", "PlanarBoundaryJob", "PlanarBoundaryAnalysis"),
     "boundary_patches": _own("boundary_patches", "BoundaryPatchesJob", "BoundaryPatchesAnalysis"),
-    "method_comparison": _own(
-        "method_comparison", "MethodComparisonJob", "wsrender.run.methods:plan_method_comparison"
-    ),
+    "method_comparison": _own("method_comparison", "MethodComparisonJob", "MethodComparisonAnalysis"),
     "design_optimization": _own("design_optimization", "DesignOptimizationJob", "wsrender.run.design:plan_design"),
 }
 

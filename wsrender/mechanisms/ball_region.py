@@ -119,3 +119,11 @@ def _are_pair(mechanism: Mechanism, a: int, b: int) -> bool:
     minus, plus = (a, b) if mechanism.branches[a, 0] else (b, a)
     apart = mechanism.branches[minus, 0] and mechanism.branches[plus, 1]
     return bool(same and one_each and apart and mechanism.upper[minus] <= mechanism.lower[plus])
+
+
+def region_of(mechanism: Mechanism, rotation: np.ndarray) -> BallRegion:
+    """The ball region of a job's mechanism; InputError where other surfaces bound the workspace."""
+    try:
+        return ball_region(mechanism, rotation)
+    except InputError as error:
+        raise error.within("mechanism") from None

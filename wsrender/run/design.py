@@ -27,7 +27,7 @@ from wsrender.design.search import Space, evolve, grid, pareto, refine
 from wsrender.documents.json_pointer import changed
 from wsrender.documents.robot import Transform
 from wsrender.errors import InputError, NotConvergedError
-from wsrender.mechanisms.ball_region import BallRegion
+from wsrender.mechanisms.ball_region import BallRegion, region_of
 from wsrender.mechanisms.mechanism import mechanism_of
 from wsrender.notices import entries
 from wsrender.results.result import Result
@@ -36,7 +36,6 @@ from wsrender.run.design_notices import design_notices, fault_entries
 from wsrender.run.design_result import best_entries, best_headline, exact_best, objective_entries, tables_of
 from wsrender.run.design_values import FAULTS, Evaluator
 from wsrender.run.one_shard import OneShard
-from wsrender.run.parallel_exact import region_of
 
 Arrays = dict[str, np.ndarray]
 

@@ -1,33 +1,28 @@
 """The analysis ``method_comparison``: the four methods of [SNK], their Table 4 and Fig. 10."""
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
+from wsrender.analyses.contract import Analysis, Draft, Settled, Tell
 from wsrender.analyses.cost import DOCUMENT_BYTES, Cost, pictures_cost
 from wsrender.analyses.execution import Execution
 from wsrender.analyses.headline import headline
 from wsrender.analyses.method_comparison.job import MethodComparisonJob
-from wsrender.analyses.parallel_workspace.job import ParallelWorkspaceJob
-from wsrender.analyses.provenance import job_entry, provenance
-from wsrender.analyses.settled_device import settled_device
+from wsrender.analyses.partial_result import PartialResult
+from wsrender.analyses.registry import job_classes, planned
 from wsrender.documents.robot import Transform
 from wsrender.errors import InputError
-from wsrender.mechanisms.ball_region import BallRegion
+from wsrender.mechanisms.ball_region import BallRegion, region_of
 from wsrender.mechanisms.exact import ExactWorkspace
 from wsrender.mechanisms.mechanism import mechanism_of
 from wsrender.mechanisms.solids import solid_workspace
-from wsrender.results.result import Result
-from wsrender.run.one_shard import OneShard
-from wsrender.run.parallel import plan_parallel
-from wsrender.run.parallel_exact import region_of
 from wsrender.volume.lattice import round_to_digits
 from wsrender.volume.table import Table
-
-Arrays = dict[str, np.ndarray]
 
 GRIDS, EXACT, SOLIDS = ("grid", "grid_by_subsystem"), "exact", "solids"
 PARTS = (5, 10, 20, 40)  # of the volume's cube root
@@ -35,20 +30,42 @@ ICOSAHEDRON_EDGE = 1.0515  # of the radius of the sphere around it
 UNITS = {"size": "m", "volume": "m^3"}
 
 
-@dataclass(eq=False)
-class MethodComparisonPlan(OneShard):
-    """A resolved ``method_comparison`` job: one shard, its samples the runs of the methods."""
+@dataclass(frozen=True, kw_only=True)
+class MethodComparisonSettled(Settled):
+    """With the edges of the voxels of the grids [m]."""
 
-    job: MethodComparisonJob
-    region: BallRegion
     sizes: tuple[float, ...]
-    device: str
-    target: str
 
-    @property
-    def shards(self) -> list[tuple[int, int]]:
-        """One shard of all runs."""
-        return [(0, 1 + len(GRIDS) * len(self.sizes) + len(self.job.ball_subdivisions))]
+
+class MethodComparisonAnalysis(Analysis):
+    """A planned ``method_comparison`` job: one shard, its samples the runs of the methods."""
+
+    settles = MethodComparisonSettled
+    job: MethodComparisonJob
+    settled: MethodComparisonSettled
+
+    def prepare(self, device: str, target: str) -> MethodComparisonSettled:
+        """Raises InputError for a mechanism whose workspace other surfaces bound, and voxels that are too small."""
+        sizes = self.job.voxel_sizes_m or self._default_sizes()
+        try:
+            planned(self.grid_job(GRIDS[0], min(sizes), device))
+        except InputError as error:
+            if error.field not in ("voxel_size_m", "max_poses"):
+                raise
+            raise type(error)("voxel_sizes_m", f"{min(sizes):g} is too small: {error.message}") from None
+        runs = 1 + len(GRIDS) * len(sizes) + len(self.job.ball_subdivisions)
+        return MethodComparisonSettled(device, target, ((0, runs),), sizes=sizes)
+
+    def _default_sizes(self) -> tuple[float, ...]:
+        volume = ExactWorkspace.of(self.region).volume_m3
+        edge = np.cbrt(volume if volume > 0 else float(np.max(self.region.inside_radii, initial=1.0)) ** 3)
+        return tuple(round_to_digits(float(edge) / parts, 2) for parts in PARTS)
+
+    @cached_property
+    def region(self) -> BallRegion:
+        """The workspace's; raises InputError where other surfaces bound it."""
+        rotation = (self.job.orientation or Transform()).matrix()[:3, :3]
+        return region_of(mechanism_of(self.job.mechanism), rotation)
 
     @property
     def cost(self) -> Cost:
@@ -61,23 +78,16 @@ class MethodComparisonPlan(OneShard):
         drawn, seconds = pictures_cost("other")
         return Cost(self.shards[0][1], 500 * triangles, DOCUMENT_BYTES + drawn, triangles / 2e5 + seconds)
 
-    def resolved(self) -> dict[str, Any]:
-        """What is settled once: device, target, sizes of voxels, shards."""
-        return super().resolved() | {"sizes": list(self.sizes)}
-
-    def run_shard(self, shard: int, progress: Callable[[int], None] | None, execution: Execution) -> Arrays:
+    def compute(self, shard: int, execution: Execution, tell: Tell) -> PartialResult:
         """Method, edge of its voxels or triangles, volume and seconds of every run."""
         rows = []
         for row in self._runs(execution):
             rows.append(row)
-            if progress:
-                progress(len(rows))
-        return {
-            "method": np.array([row[0] for row in rows]),
-            "numbers": np.array([row[1:] for row in rows], np.float64),
-        }
+            tell(len(rows))
+        numbers = np.array([row[1:] for row in rows], np.float64)
+        return PartialResult({"method": np.array([row[0] for row in rows]), "numbers": numbers})
 
-    def finish(self, partial: Arrays, seconds: dict[str, float], execution: Execution) -> Result:
+    def result(self, partial: PartialResult, execution: Execution) -> Draft:
         """The table of all runs, with errors from the exact volume; their times are in ``timing_s``."""
         method, (size, volume, took) = partial["method"], partial["numbers"].T
         exact = ExactWorkspace.of(self.region)
@@ -85,8 +95,6 @@ class MethodComparisonPlan(OneShard):
             error = np.where(exact.volume_m3 > 0, volume / exact.volume_m3 - 1, np.nan)
         columns = {"method": method, "size": size, "volume": volume, "relative_error": error}
         document = {
-            "analysis": "method_comparison",
-            "job": job_entry(self.job),
             "mechanism": {"name": mechanism_of(self.job.mechanism).name},
             "volume_m3": {"exact": exact.volume_m3},
             "methods": [
@@ -98,11 +106,13 @@ class MethodComparisonPlan(OneShard):
                 }
                 for name, edge, found, wrong in zip(method, size.tolist(), volume.tolist(), error.tolist(), strict=True)
             ],
-            "headline": headline("volume", exact.volume_m3, (exact.volume_m3, exact.volume_m3)),
-            "provenance": provenance(self.job, self.target),
-            "timing_s": {**seconds, **dict(zip(map(_label, method, size), took.tolist(), strict=True))},
         }
-        return Result(document, tables={"methods": Table(columns, UNITS)})
+        return Draft(
+            document,
+            headline("volume", exact.volume_m3, (exact.volume_m3, exact.volume_m3)),
+            timing_s=dict(zip(map(_label, method, size), took.tolist(), strict=True)),
+            tables={"methods": Table(columns, UNITS)},
+        )
 
     def _runs(self, execution: Execution) -> Iterator[tuple[str, float, float, float]]:
         """(method, edge, volume, seconds); every first run of a kernel is repeated, so that no compilation is timed."""
@@ -113,7 +123,7 @@ class MethodComparisonPlan(OneShard):
             if repeated:
                 yield EXACT, np.nan, volume, time.perf_counter() - started
         for method in GRIDS:
-            for number, size in enumerate(self.sizes):
+            for number, size in enumerate(self.settled.sizes):
                 if number == 0:
                     self._counted(method, size, execution)
                 started = time.perf_counter()
@@ -127,44 +137,22 @@ class MethodComparisonPlan(OneShard):
             edge = ICOSAHEDRON_EDGE * largest / 2**subdivisions
             yield SOLIDS, edge, volume, time.perf_counter() - started
 
-    def grid_job(self, method: Any, size: float) -> ParallelWorkspaceJob:
+    def grid_job(self, method: Any, size: float, device: str) -> Any:
         """The job of one grid method with voxels of a size [m]."""
-        return ParallelWorkspaceJob(
+        return job_classes()["parallel_workspace"](
             mechanism=self.job.mechanism,
             orientation=self.job.orientation,
             method=method,
             voxel_size_m=size,
-            device=self.device,
+            device=device,
         )
 
     def _counted(self, method: Any, size: float, execution: Execution) -> float:
         """Volume of the voxels that a grid method finds [m³]."""
-        partial = plan_parallel(self.grid_job(method, size)).run_shard(0, None, execution)
+        partial = planned(self.grid_job(method, size, self.device)).run_shard(0, None, execution)
         return len(partial["cells"]) * size**3
 
 
 def _label(method: str, size: float) -> str:
     """Name of a run's time."""
     return str(method) if np.isnan(size) else f"{method} {size:.3g} m"
-
-
-def plan_method_comparison(job: MethodComparisonJob, resolved: dict[str, Any] | None = None) -> MethodComparisonPlan:
-    """Resolve the job, or take what `MethodComparisonPlan.resolved` of an earlier plan of it says.
-
-    Raises InputError for a mechanism whose workspace other surfaces bound.
-    """
-    region = region_of(mechanism_of(job.mechanism), (job.orientation or Transform()).matrix()[:3, :3])
-    device, target = settled_device(job.device, resolved)
-    sizes = tuple(resolved["sizes"]) if resolved else job.voxel_sizes_m
-    if sizes is None:
-        volume = ExactWorkspace.of(region).volume_m3
-        edge = np.cbrt(volume if volume > 0 else float(np.max(region.inside_radii, initial=1.0)) ** 3)
-        sizes = tuple(round_to_digits(float(edge) / parts, 2) for parts in PARTS)
-    plan = MethodComparisonPlan(job, region, sizes, device, target)
-    try:
-        plan_parallel(plan.grid_job(GRIDS[0], min(sizes)))
-    except InputError as error:
-        if error.field not in ("voxel_size_m", "max_poses"):
-            raise
-        raise type(error)("voxel_sizes_m", f"{min(sizes):g} is too small: {error.message}") from None
-    return plan

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from wsrender.analyses.parallel_workspace.lattice import FlatLattice
+from wsrender.analyses.partial_result import PartialResult
 from wsrender.engine import OrientationCounts
 from wsrender.mechanisms.flat import Flat
 from wsrender.mechanisms.membership import count_at, in_base_frame, poses_labelled
@@ -17,12 +19,11 @@ from wsrender.mechanisms.serial_search import MOST_NUMERIC
 from wsrender.reachability import Event, estimate_volumes
 from wsrender.reachability.evidence import REACHABLE, UNDECIDED, UNREACHABLE
 from wsrender.reachability.volume_estimate import VolumeEstimates
-from wsrender.run.parallel_lattice import FlatLattice
 from wsrender.volume.lattice import LatticeBlock, block_around
 from wsrender.volume.neighbours import inner_and_outer
 
 if TYPE_CHECKING:
-    from wsrender.run.parallel import Arrays, ParallelPlan
+    from wsrender.analyses.parallel_workspace.run import ParallelWorkspaceAnalysis
 
 EVENTS = {"constant_orientation": "reached", "total_orientation": "all orientations", "dexterous": "dexterous"}
 # Along the mean edge of the box that holds everything; fewer where each cell's middle is searched.
@@ -37,7 +38,7 @@ Labelled = Callable[[np.ndarray], np.ndarray]
 
 
 def refined_entry(
-    plan: "ParallelPlan", partial: "Arrays", progress: Callable[[int, int], None], threads: int | None
+    plan: "ParallelWorkspaceAnalysis", partial: PartialResult, progress: Callable[[int, int], None], threads: int | None
 ) -> dict[str, Any]:
     """What is measured with its 95 % interval, from uniform points that inverse kinematics decides.
 
@@ -94,7 +95,7 @@ def _entry(found: VolumeEstimates, flat: Flat | None, edge: float, nested: bool)
     }
 
 
-def _sets(plan: "ParallelPlan") -> list[OrientationSet]:
+def _sets(plan: "ParallelWorkspaceAnalysis") -> list[OrientationSet]:
     """The orientations asked for, and where they are levels of ranges a set of half the steps, or twice as wide."""
     spec = plan.job.orientations
     if spec is None:
@@ -120,14 +121,16 @@ def _doubled(levels: int) -> int:
     return (levels + 1) // 2 if levels > 2 else levels
 
 
-def _labelled(plan: "ParallelPlan", sets: list[OrientationSet], threads: int | None) -> Labelled:
+def _labelled(plan: "ParallelWorkspaceAnalysis", sets: list[OrientationSet], threads: int | None) -> Labelled:
     if plan.job.kind == "constant_orientation":
         rotations = plan.orientations.rotations[0]
         return lambda points: labels_at_poses(plan, points, rotations, threads)[:, None]
     return lambda points: np.stack([_of_set(plan, points, each, threads) for each in sets], axis=1)
 
 
-def labels_at_poses(plan: "ParallelPlan", points: np.ndarray, rotations: np.ndarray, threads: int | None) -> np.ndarray:
+def labels_at_poses(
+    plan: "ParallelWorkspaceAnalysis", points: np.ndarray, rotations: np.ndarray, threads: int | None
+) -> np.ndarray:
     """Labels (N,) int8 of points (N, 3), world, at orientations (3, 3) or (N, 3, 3) against the fixed base."""
     if plan.search is not None:
         return plan.search.labels(points, rotations, device=plan.device, threads=threads)
@@ -143,7 +146,9 @@ def labels_at_poses(plan: "ParallelPlan", points: np.ndarray, rotations: np.ndar
     return labels
 
 
-def _of_set(plan: "ParallelPlan", points: np.ndarray, orientations: OrientationSet, threads: int | None) -> np.ndarray:
+def _of_set(
+    plan: "ParallelWorkspaceAnalysis", points: np.ndarray, orientations: OrientationSet, threads: int | None
+) -> np.ndarray:
     """Whether enough of a set's orientations are reached, labels (N,)."""
     weights = orientations.whole_weights.astype(np.int64)
     least = (
@@ -171,7 +176,7 @@ def _of_set(plan: "ParallelPlan", points: np.ndarray, orientations: OrientationS
     return np.where(surely >= least, 1, np.where(may, -1, 0)).astype(np.int8)
 
 
-def _most_points(plan: "ParallelPlan", sets: list[OrientationSet]) -> int:
+def _most_points(plan: "ParallelWorkspaceAnalysis", sets: list[OrientationSet]) -> int:
     budget = BUDGET if plan.search is None else BUDGET_SEARCHED
     if plan.mechanism.numeric:
         budget = BUDGET_NUMERIC if plan.search is None else BUDGET_NUMERIC // MOST_NUMERIC
@@ -179,7 +184,7 @@ def _most_points(plan: "ParallelPlan", sets: list[OrientationSet]) -> int:
     return int(np.clip(budget // poses, FEWEST_POINTS, MOST_POINTS))
 
 
-def _cells(plan: "ParallelPlan") -> LatticeBlock:
+def _cells(plan: "ParallelWorkspaceAnalysis") -> LatticeBlock:
     """A coarse lattice around all that can be reached, no finer than the voxels."""
     block = plan.block
     assert block is not None
@@ -200,7 +205,9 @@ def _cells(plan: "ParallelPlan") -> LatticeBlock:
     return block_around(lower, upper, edge)
 
 
-def _between_levels(plan: "ParallelPlan", lower: np.ndarray, upper: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _between_levels(
+    plan: "ParallelWorkspaceAnalysis", lower: np.ndarray, upper: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
     """A box [m] around what is reached between the levels too: each joint moves by half a step at most."""
     search = plan.search
     assert search is not None
@@ -212,7 +219,9 @@ def _between_levels(plan: "ParallelPlan", lower: np.ndarray, upper: np.ndarray) 
     return np.maximum(lower - most, origin - search.reach_m), np.minimum(upper + most, origin + search.reach_m)
 
 
-def _strata(plan: "ParallelPlan", partial: "Arrays", cells: LatticeBlock, threads: int | None) -> list[np.ndarray]:
+def _strata(
+    plan: "ParallelWorkspaceAnalysis", partial: PartialResult, cells: LatticeBlock, threads: int | None
+) -> list[np.ndarray]:
     """Inner cells, the border and the rest: cells (M, 3) in which voxels were reached, and their neighbours."""
     assert plan.block is not None
     searched = plan.search is not None and plan.job.kind == "constant_orientation"
@@ -231,7 +240,7 @@ def _strata(plan: "ParallelPlan", partial: "Arrays", cells: LatticeBlock, thread
     return [np.argwhere((classes == code) & kept) + cells.first_voxel for code in np.unique(classes)]
 
 
-def _labels_of_cells(plan: "ParallelPlan", cells: LatticeBlock, threads: int | None) -> np.ndarray:
+def _labels_of_cells(plan: "ParallelWorkspaceAnalysis", cells: LatticeBlock, threads: int | None) -> np.ndarray:
     """Labels (nx, ny, nz) of cells: reachable where their middle is, unreachable where nothing in them is, by proof."""
     assert plan.search is not None
     flat = cells.flat if isinstance(cells, FlatLattice) else None

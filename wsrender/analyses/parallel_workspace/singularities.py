@@ -4,17 +4,20 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from wsrender.analyses.partial_result import PartialResult
 from wsrender.mechanisms.singularities import TYPES, zeros
 from wsrender.volume.table import Table
 from wsrender.volume.volume_data import VolumeData
 
 if TYPE_CHECKING:
-    from wsrender.run.parallel import Arrays, ParallelPlan
+    from wsrender.analyses.parallel_workspace.run import ParallelWorkspaceAnalysis
 
 SIGNS = "-+"
 
 
-def singularities(plan: "ParallelPlan", partial: "Arrays", volume: VolumeData) -> tuple[dict[str, Any], Table]:
+def singularities(
+    plan: "ParallelWorkspaceAnalysis", partial: PartialResult, volume: VolumeData
+) -> tuple[dict[str, Any], Table]:
     """How often the determinants change sign between neighbouring voxels, and where.
 
     Two postures of one place that stand on different branches are no change of sign: each branch is searched by itself,
@@ -44,12 +47,12 @@ def singularities(plan: "ParallelPlan", partial: "Arrays", volume: VolumeData) -
     return entry, Table(columns, {"position": "m"})
 
 
-def _branches(plan: "ParallelPlan") -> list[str]:
+def _branches(plan: "ParallelWorkspaceAnalysis") -> list[str]:
     """The branch of every leg, in the order of the columns of determinants."""
     return ["".join(SIGNS[int(plus)] for plus in each.branches[:, 1]) for each in plan.mechanism.on_each_branch()]
 
 
-def _values(plan: "ParallelPlan", partial: "Arrays", volume: VolumeData, name: str) -> np.ndarray:
+def _values(plan: "ParallelWorkspaceAnalysis", partial: PartialResult, volume: VolumeData, name: str) -> np.ndarray:
     """A determinant of the volume's voxels on each combination of branches, (V, C); NaN where it does not reach."""
     if plan.mechanism.branched:
         return partial[f"branch_{name}"]

@@ -1,29 +1,29 @@
 """The one number that a ``parallel_workspace`` is asked for, and what a reader should know of it."""
 
-import json
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from wsrender.analyses.headline import headline, no_headline
+from wsrender.analyses.parallel_workspace.lattice import FlatLattice
+from wsrender.analyses.partial_result import PartialResult
 from wsrender.analyses.volume_notices import tolerance_not_met
 from wsrender.notices import Notice
-from wsrender.run.parallel_lattice import FlatLattice
 from wsrender.volume.volume_data import VolumeData
 
 if TYPE_CHECKING:
-    from wsrender.run.parallel import Arrays, ParallelPlan
+    from wsrender.analyses.parallel_workspace.run import ParallelWorkspaceAnalysis
 
 DIFFERS = 0.1  # relative: voxels that differ by more from what is refined mislead
 
 
-def refined_of(partial: "Arrays") -> dict[str, Any] | None:
+def refined_of(partial: PartialResult) -> dict[str, Any] | None:
     """The refined volume, area or length; None where none was asked for."""
-    return json.loads(str(partial["refined"])) if "refined" in partial else None
+    return partial.facts.get("refined")
 
 
-def workspace_headline(plan: "ParallelPlan", partial: "Arrays") -> dict[str, Any]:
+def workspace_headline(plan: "ParallelWorkspaceAnalysis", partial: PartialResult) -> dict[str, Any]:
     """The headline of a result: the refined measure, or why there is none."""
     if plan.job.kind == "orientation":
         return no_headline('only the orientation varies: "orientation_workspace" holds the share that is reached')
@@ -36,7 +36,7 @@ def workspace_headline(plan: "ParallelPlan", partial: "Arrays") -> dict[str, Any
     return headline(name, refined["value"], refined["ci95"])
 
 
-def notices(plan: "ParallelPlan", partial: "Arrays", volume: VolumeData | None) -> Iterator[Notice]:
+def notices(plan: "ParallelWorkspaceAnalysis", partial: PartialResult, volume: VolumeData | None) -> Iterator[Notice]:
     """What a reader of the numbers should know."""
     refined = refined_of(partial)
     if plan.search is not None:
@@ -54,7 +54,9 @@ def notices(plan: "ParallelPlan", partial: "Arrays", volume: VolumeData | None) 
         yield from _of_voxels(plan, volume, refined)
 
 
-def _of_levels(plan: "ParallelPlan", volume: VolumeData | None, refined: dict[str, Any] | None) -> Iterator[Notice]:
+def _of_levels(
+    plan: "ParallelWorkspaceAnalysis", volume: VolumeData | None, refined: dict[str, Any] | None
+) -> Iterator[Notice]:
     levels = " x ".join(str(joint.levels) for joint in plan.search.joints) if plan.search else ""
     remedy = "give the serial joints more levels, or read the refined volume, which searches all their values"
     if refined is None:
@@ -70,7 +72,9 @@ def _of_levels(plan: "ParallelPlan", volume: VolumeData | None, refined: dict[st
         yield Notice("serial_levels", text, remedy, "mechanism")
 
 
-def _of_voxels(plan: "ParallelPlan", volume: VolumeData | None, refined: dict[str, Any]) -> Iterator[Notice]:
+def _of_voxels(
+    plan: "ParallelWorkspaceAnalysis", volume: VolumeData | None, refined: dict[str, Any]
+) -> Iterator[Notice]:
     occupied = _occupied(plan, volume)
     if plan.job.kind == "constant_orientation" and abs(occupied - refined["value"]) > DIFFERS * refined["value"]:
         yield Notice(
@@ -81,6 +85,6 @@ def _of_voxels(plan: "ParallelPlan", volume: VolumeData | None, refined: dict[st
         )
 
 
-def _occupied(plan: "ParallelPlan", volume: VolumeData | None) -> float:
+def _occupied(plan: "ParallelWorkspaceAnalysis", volume: VolumeData | None) -> float:
     """What the occupied voxels hold [m³]."""
     return 0.0 if volume is None else float(np.count_nonzero(volume.voxels.count)) * volume.voxel_size_m**3

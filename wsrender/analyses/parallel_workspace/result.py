@@ -1,11 +1,15 @@
 """The result of a ``parallel_workspace`` job."""
 
-import time
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from wsrender.analyses.provenance import job_entry, provenance, robot_entry
+from wsrender.analyses.contract import Draft
+from wsrender.analyses.parallel_workspace.headline import notices, refined_of, workspace_headline
+from wsrender.analyses.parallel_workspace.lattice import FlatLattice, quantity
+from wsrender.analyses.parallel_workspace.singularities import singularities
+from wsrender.analyses.partial_result import PartialResult
+from wsrender.analyses.provenance import robot_entry
 from wsrender.documents.options import TASK_ROWS
 from wsrender.global_indices import voxel_volumes, workspace_mean
 from wsrender.indices.dimensions import task_matrix
@@ -15,10 +19,6 @@ from wsrender.mechanisms.inverse_kinematics import inverse_kinematics
 from wsrender.mechanisms.local_indices import DETERMINANTS
 from wsrender.mechanisms.mechanism import Mechanism
 from wsrender.mechanisms.membership import fault_at, in_base_frame, in_world
-from wsrender.results.result import Result
-from wsrender.run.parallel_headline import notices, refined_of, workspace_headline
-from wsrender.run.parallel_lattice import FlatLattice, quantity
-from wsrender.run.parallel_singularities import singularities
 from wsrender.sampling import subsample
 from wsrender.volume.distribution_map import DistributionMap
 from wsrender.volume.lattice import LatticeBlock
@@ -27,18 +27,17 @@ from wsrender.volume.volume_data import VolumeData
 from wsrender.volume.voxels import Voxels
 
 if TYPE_CHECKING:
-    from wsrender.run.parallel import Arrays, ParallelPlan
+    from wsrender.analyses.parallel_workspace.run import ParallelWorkspaceAnalysis
 
 PICTURE_SAMPLES = 30_000
 ON_FACE = 1e-9  # of a voxel: a plane on the faces between two layers lies in the upper one
 
 
-def positions_result(plan: "ParallelPlan", partial: "Arrays", seconds: dict[str, float]) -> Result:
+def positions_result(plan: "ParallelWorkspaceAnalysis", partial: PartialResult) -> Draft:
     """Of the kinds whose positions vary."""
-    started = time.perf_counter()
     job, found = plan.job, plan.counted(partial)
     volume = _volume(plan, partial, found)
-    document = mechanism_document(plan) | {
+    document = mechanism_entries(plan) | {
         "sampling": {
             "method": job.method,
             "samples": sum(count for _, count in plan.shards),
@@ -54,19 +53,23 @@ def positions_result(plan: "ParallelPlan", partial: "Arrays", seconds: dict[str,
         document["flat"] = _flat_entry(plan.block, int(found.sum()), refined_of(partial))
     if volume is None:
         document["empty"] = plan.unmeasured or _reason(plan)
-    document["headline"] = workspace_headline(plan, partial)
-    document["warnings"] = [notice.entry() for notice in notices(plan, partial, volume)]
     tables = {}
     if volume and plan.names:
         document["conditioning"] = _conditioning_entry(volume)
     if volume and plan.names and plan.has_determinants:
         document["singularities"], tables["singularities"] = singularities(plan, partial, volume)
-    document["timing_s"] = {**seconds, "finish": time.perf_counter() - started}
-    skeleton = None if volume is None else skeleton_at(plan, _middle(plan, volume))
-    return Result(document, volume=volume, sample=_sample(volume), skeleton=skeleton, tables=tables)
+    return Draft(
+        document,
+        workspace_headline(plan, partial),
+        notices(plan, partial, volume),
+        volume=volume,
+        sample=_sample(volume),
+        skeleton=None if volume is None else skeleton_at(plan, _middle(plan, volume)),
+        tables=tables,
+    )
 
 
-def orientation_result(plan: "ParallelPlan", partial: "Arrays", seconds: dict[str, float]) -> Result:
+def orientation_result(plan: "ParallelWorkspaceAnalysis", partial: PartialResult) -> Draft:
     """Of the orientations at a point."""
     orientations, job, is_reached = plan.orientations, plan.job, partial["reached"]
     share = float(orientations.weights[is_reached].sum())
@@ -75,7 +78,7 @@ def orientation_result(plan: "ParallelPlan", partial: "Arrays", seconds: dict[st
         {**columns, "quat_wxyz": orientations.quat_wxyz, "reached": is_reached},
         dict.fromkeys(orientations.names, "rad"),
     )
-    document = mechanism_document(plan) | {
+    document = mechanism_entries(plan) | {
         "sampling": {
             "method": "grid",
             "samples": len(is_reached) * len(plan.variants),
@@ -91,8 +94,6 @@ def orientation_result(plan: "ParallelPlan", partial: "Arrays", seconds: dict[st
             "share_of_ranges_ci95": partial["share"][1:].tolist(),
             "measure": "invariant measure of rotations over the ranges given",
         },
-        "headline": workspace_headline(plan, partial),
-        "timing_s": seconds,
     }
     if not is_reached.any():
         document["empty"] = _reason(plan)
@@ -101,19 +102,16 @@ def orientation_result(plan: "ParallelPlan", partial: "Arrays", seconds: dict[st
         turns = np.trace(orientations.rotations, axis1=1, axis2=2)
         shown = int(np.where(is_reached, turns, -np.inf).argmax())
         skeleton = skeleton_at(plan, np.array(job.position_m), shown)
-    return Result(document, tables={"orientations": table}, skeleton=skeleton)
+    return Draft(document, workspace_headline(plan, partial), tables={"orientations": table}, skeleton=skeleton)
 
 
-def mechanism_document(plan: "ParallelPlan") -> dict[str, Any]:
-    """What the documents of all kinds and methods begin with."""
+def mechanism_entries(plan: "ParallelWorkspaceAnalysis") -> dict[str, Any]:
+    """What the documents of all kinds and methods say of the mechanism."""
     return {
-        "analysis": "parallel_workspace",
-        "job": job_entry(plan.job, *(leg.robot for leg in plan.mechanism.numeric)),
         "mechanism": mechanism_entry(plan.mechanism),
         "kind": plan.job.kind,
         "orientations": len(plan.orientations.rotations),
         "serial_configurations": len(plan.variants),
-        "provenance": provenance(plan.job, plan.target),
     }
 
 
@@ -141,12 +139,12 @@ def mechanism_entry(mechanism: Mechanism) -> dict[str, Any]:
     }
 
 
-def _shares(plan: "ParallelPlan", partial: "Arrays") -> np.ndarray:
+def _shares(plan: "ParallelWorkspaceAnalysis", partial: PartialResult) -> np.ndarray:
     """The share of the orientations reached per voxel, by their measure; exactly 1 where all are."""
     return partial["weights"] / plan.orientations.whole_weights.sum(dtype=np.int64)
 
 
-def _volume(plan: "ParallelPlan", partial: "Arrays", found: np.ndarray) -> VolumeData | None:
+def _volume(plan: "ParallelWorkspaceAnalysis", partial: PartialResult, found: np.ndarray) -> VolumeData | None:
     """``count``: poses reached (orientations, or serial configurations); None where nothing is reached.
 
     Cells of a plane or line that lie in one voxel are one: poses are added, the best values taken.
@@ -190,7 +188,7 @@ def _voxels_of(block: LatticeBlock, cells: np.ndarray) -> np.ndarray:
     return np.floor(at + ON_FACE).astype(np.int64)
 
 
-def _volumes(plan: "ParallelPlan", partial: "Arrays", volume: VolumeData | None) -> dict[str, Any]:
+def _volumes(plan: "ParallelWorkspaceAnalysis", partial: PartialResult, volume: VolumeData | None) -> dict[str, Any]:
     """Volumes [m³] by voxels, and the refined one if asked."""
     refined = None if isinstance(plan.block, FlatLattice) else refined_of(partial)
     if volume is None or isinstance(plan.block, FlatLattice):
@@ -217,7 +215,7 @@ def _flat_entry(block: FlatLattice, cells: int, refined: dict[str, Any] | None) 
     }
 
 
-def _index_entries(plan: "ParallelPlan", volume: VolumeData) -> dict[str, Any]:
+def _index_entries(plan: "ParallelWorkspaceAnalysis", volume: VolumeData) -> dict[str, Any]:
     return {
         name: {
             "maximum": float(np.nanmax(volume.voxels.statistics["maximum"][name])),
@@ -252,7 +250,7 @@ def _bounds(volume: VolumeData | None) -> dict[str, list[float]]:
     return {"lower": lower.tolist(), "upper": (lower + np.array(volume.shape) * volume.voxel_size_m).tolist()}
 
 
-def _reason(plan: "ParallelPlan") -> str:
+def _reason(plan: "ParallelWorkspaceAnalysis") -> str:
     """Why nothing is reached."""
     if plan.block is None and plan.job.kind != "orientation":
         return "no position is within the reach of all legs and the region of the platform"
@@ -269,7 +267,9 @@ def _reason(plan: "ParallelPlan") -> str:
     return f"no pose tested is reached; {where} {fault}"
 
 
-def _pose(plan: "ParallelPlan", variant: Variant, position_world: np.ndarray, orientation: int = 0) -> np.ndarray:
+def _pose(
+    plan: "ParallelWorkspaceAnalysis", variant: Variant, position_world: np.ndarray, orientation: int = 0
+) -> np.ndarray:
     """The platform there at one of the orientations, frame of the variant's base, (4, 4)."""
     pose = np.eye(4)
     pose[:3, :3] = variant.rotations(plan.orientations.rotations[[orientation]])[0]
@@ -277,7 +277,7 @@ def _pose(plan: "ParallelPlan", variant: Variant, position_world: np.ndarray, or
     return pose
 
 
-def _middle(plan: "ParallelPlan", volume: VolumeData) -> np.ndarray:
+def _middle(plan: "ParallelWorkspaceAnalysis", volume: VolumeData) -> np.ndarray:
     """The centre of the reached voxel that is nearest to their mean, or what is below it in the plane [m]."""
     cells = volume.voxels.at[:, volume.voxels.count == volume.voxels.count.max()].T
     nearest = cells[((cells - cells.mean(axis=0)) ** 2).sum(axis=1).argmin()]
@@ -289,7 +289,9 @@ def _middle(plan: "ParallelPlan", volume: VolumeData) -> np.ndarray:
     return flat.in_world(cell * volume.voxel_size_m)[0]
 
 
-def skeleton_at(plan: "ParallelPlan", position_world: np.ndarray, orientation: int = 0) -> np.ndarray | None:
+def skeleton_at(
+    plan: "ParallelWorkspaceAnalysis", position_world: np.ndarray, orientation: int = 0
+) -> np.ndarray | None:
     """Every leg from its base over its joints to the middle of the platform, (L, K, 3) [m]; None if not reached.
 
     At the mechanism's home, if it has one, else at the position, world, in one of the orientations; serial joints as
@@ -312,7 +314,7 @@ def _legs_at(mechanism: Mechanism, pose: np.ndarray) -> np.ndarray:
     return np.stack([np.vstack([line, np.tile(pose[:3, 3], (longest - len(line), 1))]) for line in lines])
 
 
-def _undecided(plan: "ParallelPlan", poses: int) -> dict[str, int]:
+def _undecided(plan: "ParallelWorkspaceAnalysis", poses: int) -> dict[str, int]:
     """Poses that count as not reached, for the numerical solution neither found nor excluded one."""
     return {"undecided": poses} if plan.mechanism.numeric else {}
 

@@ -1,44 +1,33 @@
 """The result of a ``parallel_workspace`` job by the methods exact and solids."""
 
-import json
-import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import trimesh
 
+from wsrender.analyses.contract import Draft
 from wsrender.analyses.headline import headline
-from wsrender.errors import InputError
+from wsrender.analyses.parallel_workspace.result import mechanism_entries, skeleton_at
+from wsrender.analyses.partial_result import PartialResult
 from wsrender.geometry.surfaces import surface_entry
-from wsrender.mechanisms.ball_region import BallRegion, ball_region
+from wsrender.mechanisms.ball_region import BallRegion, region_of
 from wsrender.mechanisms.ball_surfaces import surface_table
 from wsrender.mechanisms.exact import ExactWorkspace
-from wsrender.mechanisms.mechanism import Mechanism
 from wsrender.mechanisms.solids import solid_workspace
 from wsrender.notices import Notice
-from wsrender.results.result import Result
-from wsrender.run.parallel_result import mechanism_document, skeleton_at
 from wsrender.volume.table import Table
 
 SAGITTA = 1.5e-4  # of a ball's radius: between the triangles of its mesh and the sphere, of 20,480 triangles
 COARSE = 0.05  # relative error by that which is warned of
 
 if TYPE_CHECKING:
-    from wsrender.run.parallel import Arrays, ParallelPlan
+    from wsrender.analyses.parallel_workspace.run import ParallelWorkspaceAnalysis
 
 
-def region_of(mechanism: Mechanism, rotation: np.ndarray) -> BallRegion:
-    """The ball region of a job's mechanism; InputError where other surfaces bound the workspace."""
-    try:
-        return ball_region(mechanism, rotation)
-    except InputError as error:
-        raise error.within("mechanism") from None
-
-
-def boundary_partial(plan: "ParallelPlan") -> "Arrays":
-    """Mesh in the base frame, vertices of the workspace, and the numbers as JSON."""
+def boundary_partial(plan: "ParallelWorkspaceAnalysis") -> PartialResult:
+    """Mesh in the base frame, vertices of the workspace, and the numbers."""
     region = region_of(plan.mechanism, plan.orientations.rotations[0])
     if plan.job.method == "solids":
         mesh = solid_workspace(region)
@@ -58,14 +47,14 @@ def boundary_partial(plan: "ParallelPlan") -> "Arrays":
             about["bounds_m"] = {
                 name: (side + T[:3, 3]).tolist() for name, side in zip(("lower", "upper"), sides, strict=True)
             }
-    return {
-        "about": np.array(json.dumps(about)),
+    arrays = {
         "vertices": np.asarray(mesh.vertices, np.float64),
         "faces": np.asarray(mesh.faces, np.int64),
         "surface": mesh.face_attributes["surface"],
         "areas": counted,
         "corners": corners,
     }
+    return PartialResult(arrays, about)
 
 
 def _headline(method: str, volume_m3: float) -> dict[str, Any]:
@@ -75,7 +64,7 @@ def _headline(method: str, volume_m3: float) -> dict[str, Any]:
     return headline("volume", volume_m3, None, "balls are meshes of triangles: there is no interval")
 
 
-def _notices(region: BallRegion, about: dict[str, Any], method: str) -> Iterator[Notice]:
+def _notices(region: BallRegion, about: Mapping[str, Any], method: str) -> Iterator[Notice]:
     """What meshes of balls hide: thin workspaces lie within the error of their triangles."""
     error = about["area_m2"] * SAGITTA * max(region.inside_radii, default=0.0)
     if method == "solids" and error > COARSE * about["volume_m3"]:
@@ -93,15 +82,13 @@ def _surfaces(region: BallRegion) -> int:
     return len(region.inside_radii) + len(region.outside_radii) + len(region.sides_of_box()[1])
 
 
-def boundary_result(plan: "ParallelPlan", partial: "Arrays", seconds: dict[str, float]) -> Result:
+def boundary_result(plan: "ParallelWorkspaceAnalysis", partial: PartialResult) -> Draft:
     """Volume, area, topology and mesh of the workspace."""
-    started = time.perf_counter()
-    about, method = json.loads(str(partial["about"])), plan.job.method
-    document = mechanism_document(plan) | {
+    about, method = partial.facts, plan.job.method
+    document = mechanism_entries(plan) | {
         "sampling": {"method": method},
         "volume_m3": {method: about["volume_m3"]},
         "area_m2": about["area_m2"],
-        "headline": _headline(method, about["volume_m3"]),
     }
     region = region_of(plan.mechanism, plan.orientations.rotations[0])
     tables = {"surfaces": surface_table(region, partial["areas"], plan.mechanism.T_world_base)}
@@ -123,10 +110,15 @@ def boundary_result(plan: "ParallelPlan", partial: "Arrays", seconds: dict[str, 
         skeleton = skeleton_at(plan, mesh.center_mass)
     else:
         document["empty"] = "no position is reached: the spheres that bound the workspace enclose none"
-    document["warnings"] = [notice.entry() for notice in _notices(region, about, method)]
     if method == "exact":
         document["topology"] = about["topology"]
         T = plan.mechanism.T_world_base
         tables["vertices"] = Table({"position": partial["corners"] @ T[:3, :3].T + T[:3, 3]}, {"position": "m"})
-    document["timing_s"] = {**seconds, "finish": time.perf_counter() - started}
-    return Result(document, meshes=meshes, tables=tables, skeleton=skeleton)
+    return Draft(
+        document,
+        _headline(method, about["volume_m3"]),
+        _notices(region, about, method),
+        meshes=meshes,
+        tables=tables,
+        skeleton=skeleton,
+    )

@@ -1,22 +1,28 @@
 """The analysis ``parallel_workspace``: plan, shards, merge."""
 
-import json
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from wsrender.analyses.cost import DOCUMENT_BYTES, NOTHING, Cost, Costed, pictures_cost, surface_bytes
+from wsrender.analyses.contract import Analysis, Draft, Progress, Settled, Tell
+from wsrender.analyses.cost import DOCUMENT_BYTES, Cost, pictures_cost, surface_bytes
 from wsrender.analyses.execution import Execution
+from wsrender.analyses.parallel_workspace.exact import boundary_partial, boundary_result
 from wsrender.analyses.parallel_workspace.job import BY_BOUNDARY, ParallelWorkspaceJob
-from wsrender.analyses.settled_device import settled_device
+from wsrender.analyses.parallel_workspace.lattice import common_flat, described, lattice_of, quantity, settled_lattice
+from wsrender.analyses.parallel_workspace.refined import labels_at_poses, refined_entry
+from wsrender.analyses.parallel_workspace.result import orientation_result, positions_result
+from wsrender.analyses.partial_result import PartialResult
 from wsrender.documents.robot import Transform
 from wsrender.engine import OrientationCounts, thread_count
 from wsrender.engine.membership import LANES
 from wsrender.engine.ranges import check_range
 from wsrender.errors import InputError, ResourceError
 from wsrender.indices.index_catalogue import is_dynamic, option_values, resolve
+from wsrender.mechanisms.ball_region import region_of
 from wsrender.mechanisms.hybrid import Variant, added, count_union, middle, variants
 from wsrender.mechanisms.inverse_kinematics import inverse_kinematics
 from wsrender.mechanisms.jacobians import check_square
@@ -27,13 +33,7 @@ from wsrender.mechanisms.orientations import OrientationSet, orientation_set, ra
 from wsrender.mechanisms.serial_search import SerialSearch, serial_search
 from wsrender.reachability.evidence import REACHABLE, UNDECIDED, UNREACHABLE
 from wsrender.reachability.volume_estimate import wilson
-from wsrender.results.result import Result
-from wsrender.robot import Robot
 from wsrender.robot.indices import task_rows
-from wsrender.run.parallel_exact import boundary_partial, boundary_result, region_of
-from wsrender.run.parallel_lattice import common_flat, described, lattice_of, quantity, settled_lattice
-from wsrender.run.parallel_refined import labels_at_poses, refined_entry
-from wsrender.run.parallel_result import orientation_result, positions_result
 from wsrender.volume.lattice import LatticeBlock
 
 Arrays = dict[str, np.ndarray]
@@ -42,38 +42,103 @@ RATE_CPU_CORE, RATE_GPU = 8e7, 4e8  # poses per second, rounded down from benchm
 RATE_NUMERIC_CORE = 5e4  # poses of a numeric leg per second, from benchmarks/inverse.py
 
 
-@dataclass(eq=False)
-class ParallelPlan(Costed):
-    """A resolved ``parallel_workspace`` job; ``block`` is None where no lattice is tested.
+@dataclass(frozen=True, kw_only=True)
+class ParallelWorkspaceSettled(Settled):
+    """With the lattice block as lists and numbers (see `described`); None where none is tested."""
 
-    ``variants``: the mechanism at every combination of values of its serial joints, one where it has none; ``search``:
-    over all their values, None where it has none.
-    """
+    block: list[Any] | None
 
+
+class ParallelWorkspaceAnalysis(Analysis):
+    """A planned ``parallel_workspace`` job; its robots are the mechanism's serial legs."""
+
+    settles = ParallelWorkspaceSettled
     job: ParallelWorkspaceJob
-    variants: list[Variant]
-    orientations: OrientationSet
-    block: LatticeBlock | None
-    rows: tuple[int, ...]
-    names: tuple[str, ...]
-    device: str
-    target: str
-    shards: list[tuple[int, int]]
-    cost: Cost = NOTHING
-    options: dict[str, dict[str, Any]] = field(default_factory=dict)
-    search: SerialSearch | None = None
-    unmeasured: str = ""  # why what is reached has neither a volume nor an area or a length
+    settled: ParallelWorkspaceSettled
 
-    def resolved(self) -> dict[str, Any]:
-        """What is settled once: the device that "auto" means, target, lattice block, shards."""
-        block = self.block
-        return {
-            "device": self.device,
-            "target": self.target,
-            "block": described(block),
-            "shards": [list(shard) for shard in self.shards],
-            "shard_unit": None if block is None else LANES * self._count,
-        }
+    def prepare(self, device: str, target: str) -> ParallelWorkspaceSettled:
+        """Raises InputError for a home that is not reached, indices of a mechanism that has none, or a turned delta.
+
+        ResourceError for more poses than allowed.
+        """
+        job, mechanism = self.job, self.mechanism
+        _check_home(mechanism)
+        _check_combination(job, self.variants)
+        _ = self.options
+        _check_indices(mechanism, self.names, self.rows, hybrid=len(self.variants) > 1)
+        by_boundary = job.method in BY_BOUNDARY
+        if by_boundary:
+            _check_boundary(mechanism, self.orientations)
+        on_lattice = job.kind != "orientation" and not by_boundary
+        block = lattice_of(job, self.variants, self.orientations, self._columns, device) if on_lattice else None
+        poses = self._count * (block.size if block else 1)
+        if poses > job.max_poses:
+            raise ResourceError("max_poses", f"is {job.max_poses:.4g}; the job has {poses:.4g} poses: larger voxels?")
+        unit = None if block is None else LANES * self._count
+        return ParallelWorkspaceSettled(device, target, ((0, poses),), unit, block=described(block))
+
+    @cached_property
+    def variants(self) -> list[Variant]:
+        """The mechanism at every combination of values of its serial joints, one where it has none."""
+        return variants(self.job.mechanism, self.robots)
+
+    @cached_property
+    def search(self) -> SerialSearch | None:
+        """Over all values of the serial joints; None where the mechanism has none."""
+        return serial_search(self.job.mechanism, self.robots) if len(self.variants) > 1 else None
+
+    @cached_property
+    def orientations(self) -> OrientationSet:
+        """The orientations that are tested."""
+        return _orientations(self.job)
+
+    @cached_property
+    def block(self) -> LatticeBlock | None:
+        """The lattice; None where none is tested."""
+        return settled_lattice(self.settled.block)
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """The indices."""
+        return resolve(self.job.indices, has_inertia=True) if self.job.indices else ()
+
+    @cached_property
+    def options(self) -> dict[str, dict[str, Any]]:
+        """Their options by name."""
+        return option_values(self.job.index_options, self.names)
+
+    @cached_property
+    def rows(self) -> tuple[int, ...]:
+        """Rows of the Jacobian of the indices."""
+        return task_rows(self.job.task or ("linear" if self.mechanism.translational else "full"))
+
+    @cached_property
+    def unmeasured(self) -> str:
+        """Why what is reached has neither a volume nor an area or a length; empty where it has."""
+        return common_flat(self.variants, self.orientations)[1]
+
+    @property
+    def cost(self) -> Cost:
+        """Poses, labels of the voxels, files and seconds."""
+        poses, threads = float(sum(count for _, count in self.shards)), thread_count()
+        rate = RATE_GPU if self.target.startswith("cuda") else RATE_CPU_CORE * threads
+        seconds = poses / rate + poses * len(self.mechanism.numeric) / (RATE_NUMERIC_CORE * threads)
+        voxels = self.block.size if self.block else 0
+        drawn, drawing = pictures_cost("slices", "robot")
+        kept = (8 + 4 * len(self.names)) * voxels + surface_bytes(voxels)
+        memory = 8 * poses / len(self.orientations.rotations)
+        return Cost(poses, memory, DOCUMENT_BYTES + drawn + kept, seconds + drawing)
+
+    def about_robots(self) -> dict[str, Any]:
+        """Nothing: the mechanism's legs name them."""
+        return {}
+
+    @property
+    def _columns(self) -> int:
+        """Values that are kept of a voxel with indices."""
+        single = len(self.variants) > 1 or self.mechanism.numeric
+        postures = 1 if single else len(self.mechanism.on_each_branch())
+        return len(self.names) + len(CONDITION_NUMBERS) + 2 * postures if self.names else 0
 
     @property
     def mechanism(self) -> Mechanism:
@@ -106,16 +171,16 @@ class ParallelPlan(Costed):
         """Whether a place has one posture on each combination of the legs' branches."""
         return len(self.variants) == 1 and not self.mechanism.numeric
 
-    def counted(self, partial: Arrays) -> np.ndarray:
+    def counted(self, partial: PartialResult) -> np.ndarray:
         """Which of the partial's voxels belong to the workspace: all but those that miss one of all orientations."""
         if self.job.kind == "total_orientation":
             return partial["orientations"] == len(self.orientations.rotations)
         return np.ones(len(partial["cells"]), bool)
 
-    def run_shard(self, shard: int, progress: Callable[[int], None] | None, execution: Execution) -> Arrays:
+    def compute(self, shard: int, execution: Execution, tell: Tell) -> PartialResult:
         """Of the shard's voxels that are reached: flat number in the block, orientations, weights, indices."""
         if self.job.kind == "orientation":
-            return self._at_point(progress, execution)
+            return self._at_point(execution, tell)
         if self.job.method in BY_BOUNDARY:
             return boundary_partial(self)
         if self.block is None:
@@ -144,7 +209,7 @@ class ParallelPlan(Costed):
             return replace(found, cells=found.cells - first)
 
         def reporting(poses_before: int, poses: int) -> Callable[[int], None]:
-            return lambda done: progress(poses_before + done * poses) if progress else None
+            return lambda done: tell(poses_before + done * poses)
 
         if self.job.kind == "constant_orientation":
             each = [
@@ -160,7 +225,7 @@ class ParallelPlan(Costed):
             each, total = [], count_union(self.variants, count, rotations, weights, voxels, per_orientation)
         return self._partial(replace(total, cells=total.cells + first), [found.cells + first for found in each])
 
-    def _partial(self, found: OrientationCounts, cells_of_variants: list[np.ndarray]) -> Arrays:
+    def _partial(self, found: OrientationCounts, cells_of_variants: list[np.ndarray]) -> PartialResult:
         partial = {
             "cells": found.cells,
             "orientations": found.reached,
@@ -169,7 +234,7 @@ class ParallelPlan(Costed):
         }
         if self.names:
             partial |= self._indices(found.cells, cells_of_variants)
-        return partial
+        return PartialResult(partial)
 
     def _indices(self, cells: np.ndarray, cells_of_variants: list[np.ndarray]) -> Arrays:
         """Indices at voxels: maxima over the serial joints' values, and over the branches on which legs reach them.
@@ -211,7 +276,7 @@ class ParallelPlan(Costed):
         poses[:, :3, :3] = variant.rotations(self.orientations.rotations[:1])[0]
         return poses
 
-    def _at_point(self, progress: Callable[[int], None] | None, execution: Execution) -> Arrays:
+    def _at_point(self, execution: Execution, tell: Tell) -> PartialResult:
         options = {"precision": self.job.precision, "device": self.device, "threads": execution.threads}
         options["by_subsystem"] = self.job.method == "grid_by_subsystem"
         rotations = self.orientations.rotations
@@ -220,13 +285,9 @@ class ParallelPlan(Costed):
             position = in_base_frame(variant.mechanism, np.array(self.job.position_m))
             found = orientations_labelled(variant.mechanism, position, variant.rotations(rotations), **options)
             labels = np.where(labels == REACHABLE, labels, np.where(found == UNREACHABLE, labels, found))
-            if progress:
-                progress(number * len(rotations))
-        return {
-            "reached": labels == REACHABLE,
-            "undecided": labels == UNDECIDED,
-            "share": self._share_at_point(execution.threads),
-        }
+            tell(number * len(rotations))
+        share = self._share_at_point(execution.threads)
+        return PartialResult({"reached": labels == REACHABLE, "undecided": labels == UNDECIDED, "share": share})
 
     def _share_at_point(self, threads: int | None) -> np.ndarray:
         """Value and 95 % interval (3,) of the share of the orientations' ranges, from random ones, not from levels."""
@@ -239,14 +300,14 @@ class ParallelPlan(Costed):
         low, high = wilson(np.array(surely), np.array(count))[0], wilson(np.array(possibly), np.array(count))[1]
         return np.array([(surely + possibly) / (2 * count), low, high])
 
-    def merge(self, a: Arrays, b: Arrays) -> Arrays:
+    def merge(self, a: PartialResult, b: PartialResult) -> PartialResult:
         """The voxels of both ranges, in the order of their numbers."""
-        merged = {name: np.concatenate([a[name], b[name]]) for name in a}
+        merged = {name: np.concatenate([a[name], b[name]]) for name in a.arrays}
         order = np.argsort(merged["cells"], kind="stable")
         asked = merged.pop("asked").reshape(2, -1).sum(axis=0)
-        return {"asked": asked, **{name: values[order] for name, values in merged.items()}}
+        return PartialResult({"asked": asked, **{name: values[order] for name, values in merged.items()}})
 
-    def refine(self, partial: Arrays, progress: Callable[[int, int, str], None] | None, execution: Execution) -> Arrays:
+    def refine(self, partial: PartialResult, progress: Progress | None, execution: Execution) -> PartialResult:
         """The merged partial result, with the refined volume if asked."""
         if self.job.refined_volume is None or self.unmeasured:
             return partial
@@ -255,62 +316,16 @@ class ParallelPlan(Costed):
             if progress:
                 progress(done, max(total, done), "refining the volume")
 
-        return {**partial, "refined": np.array(json.dumps(refined_entry(self, partial, report, execution.threads)))}
+        refined = refined_entry(self, partial, report, execution.threads)
+        return PartialResult(partial.arrays, {**partial.facts, "refined": refined})
 
-    def finish(self, partial: Arrays, seconds: dict[str, float], execution: Execution) -> Result:
-        """Volume data or mesh, document, tables and the legs in a typical pose."""
+    def result(self, partial: PartialResult, execution: Execution) -> Draft:
+        """Volume data or mesh, entries, tables and the legs in a typical pose."""
         if self.job.method in BY_BOUNDARY:
-            return boundary_result(self, partial, seconds)
+            return boundary_result(self, partial)
         if self.job.kind == "orientation":
-            return orientation_result(self, partial, seconds)
-        return positions_result(self, partial, seconds)
-
-
-def plan_parallel(job: ParallelWorkspaceJob, *robots: Robot, resolved: dict[str, Any] | None = None) -> ParallelPlan:
-    """Resolve the job, or take what `ParallelPlan.resolved` of an earlier plan of it says.
-
-    ``robots``: the mechanism's serial legs.
-
-    Raises InputError for a home that is not reached, indices of a mechanism that has none, or a turned delta;
-    ResourceError for more poses than allowed.
-    """
-    found = variants(job.mechanism, robots)
-    mechanism = middle(found).mechanism
-    _check_home(mechanism)
-    _check_combination(job, found)
-    orientations = _orientations(job)
-    names = resolve(job.indices, has_inertia=True) if job.indices else ()
-    options = option_values(job.index_options, names)
-    rows = task_rows(job.task or ("linear" if mechanism.translational else "full"))
-    _check_indices(mechanism, names, rows, hybrid=len(found) > 1)
-    device, target = settled_device(job.device, resolved)
-    if job.method in BY_BOUNDARY:
-        _check_boundary(mechanism, orientations)
-    if resolved is None:
-        postures = 1 if len(found) > 1 or mechanism.numeric else len(mechanism.on_each_branch())
-        columns = len(names) + len(CONDITION_NUMBERS) + 2 * postures if names else 0
-        on_lattice = job.kind != "orientation" and job.method not in BY_BOUNDARY
-        block = lattice_of(job, found, orientations, columns, device) if on_lattice else None
-        poses = len(found) * len(orientations.rotations) * (block.size if block else 1)
-        if poses > job.max_poses:
-            raise ResourceError("max_poses", f"is {job.max_poses:.4g}; the job has {poses:.4g} poses: larger voxels?")
-        shards = [(0, poses)]
-    else:
-        block = settled_lattice(resolved["block"])
-        shards = [(first, count) for first, count in resolved["shards"]]
-    poses = float(sum(count for _, count in shards))
-    rate = RATE_GPU if target.startswith("cuda") else RATE_CPU_CORE * thread_count()
-    seconds = poses / rate + poses * len(mechanism.numeric) / (RATE_NUMERIC_CORE * thread_count())
-    voxels = block.size if block else 0
-    drawn, drawing = pictures_cost("slices", "robot")
-    kept = (8 + 4 * len(names)) * voxels + surface_bytes(voxels)
-    memory = 8 * poses / len(orientations.rotations)
-    cost = Cost(poses, memory, DOCUMENT_BYTES + drawn + kept, seconds + drawing)
-    _, unmeasured = common_flat(found, orientations)
-    serial = serial_search(job.mechanism, robots) if len(found) > 1 else None
-    return ParallelPlan(
-        job, found, orientations, block, rows, names, device, target, shards, cost, options, serial, unmeasured
-    )
+            return orientation_result(self, partial)
+        return positions_result(self, partial)
 
 
 def _check_home(mechanism: Mechanism) -> None:
