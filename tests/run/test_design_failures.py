@@ -5,9 +5,10 @@ import pytest
 from wsrender.documents.parsing import canonical_json
 
 import wsrender as ws
+from wsrender.analyses.design_optimization import values as design_values
 from wsrender.analyses.jobs import parse_job
 from wsrender.errors import NotConvergedError, NumericalError
-from wsrender.run import design_values, steps
+from wsrender.run import steps
 
 VOLUME = [{"value": "exact_volume"}]
 AREA = [{"value": "/exact/area_m2"}]

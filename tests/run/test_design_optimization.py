@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 import wsrender as ws
+from wsrender.analyses.design_optimization import run as design
 from wsrender.errors import DocumentError, InputError
-from wsrender.run import design, plan, run_shard
+from wsrender.run import plan, run_shard
 
 SIX_PUS = {"analysis": "parallel_workspace", "mechanism": {"library": "six_pus"}, "device": "cpu"}
 VOLUME = [{"value": "exact_volume"}]

@@ -3,7 +3,7 @@
 import pytest
 
 import wsrender as ws
-from wsrender.run.design_result import unit_of
+from wsrender.analyses.design_optimization.result import unit_of
 
 
 @pytest.mark.parametrize(

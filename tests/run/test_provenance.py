@@ -35,10 +35,7 @@ PATHS = {"workspace", "shared_workspace", "robot_comparison"}
 def targeted(planned):
     """The plan, made for another target."""
     for each in [planned, *(planned.several.plans if hasattr(planned, "several") else [])]:
-        if hasattr(each, "settled"):
-            each.settled = replace(each.settled, target=TARGET)
-        else:
-            each.target = TARGET
+        each.settled = replace(each.settled, target=TARGET)
     return planned
 
 

@@ -15,6 +15,7 @@ from wsrender.analyses.headline import no_headline
 from wsrender.analyses.partial_result import PartialResult
 from wsrender.analyses.provenance import job_entry, provenance, robot_entry
 from wsrender.analyses.settled_device import settled_device
+from wsrender.documents.format import FORMAT
 from wsrender.notices import Notice, entries
 from wsrender.results.result import Result
 from wsrender.robot import Robot
@@ -79,7 +80,7 @@ class Draft:
 
 
 class Analysis(Costed, ABC):
-    """A planned job with its robots. Those who run plans use it as the `Plan` of `wsrender.run.steps`.
+    """A planned job with its robots, as those who run it see it: the `Plan` of `wsrender.run`.
 
     An analysis says what is `settled` once, what it costs, how a shard is computed, and what the result is; one that
     can be divided merges partial results too. Whatever follows from job, robots and settled values is a cached
@@ -89,6 +90,7 @@ class Analysis(Costed, ABC):
     settles: ClassVar[type[Settled]] = Settled
     job: Any
     settled: Any  # of the class `settles`
+    resumes: ClassVar[bool] = False  # `compute` goes on from the file ``execution.checkpoint``, with the same result
     notices: tuple[Notice, ...] = ()  # of the robots, where `wsrender.run.steps` has loaded them
 
     def __init__(self, job: Any, *robots: Robot, resolved: Mapping[str, Any] | None = None):
@@ -97,7 +99,7 @@ class Analysis(Costed, ABC):
         Raises what `prepare` raises, and InputError where the device of the earlier plan is not here.
         """
         self.job, self.robots = job, robots
-        device = settled_device(getattr(job, "device", "cpu"), resolved)
+        device = settled_device(self.asked_device, resolved)
         self.settled = self.prepare(*device) if resolved is None else self.settles.of(resolved)
 
     @abstractmethod
@@ -137,6 +139,11 @@ class Analysis(Costed, ABC):
         return {"robots": robots} if robots else {}
 
     @property
+    def asked_device(self) -> str:
+        """The device that the job asks for, such as "auto"."""
+        return getattr(self.job, "device", "cpu")
+
+    @property
     def robot(self) -> Robot:
         """The robot of a job of one."""
         (robot,) = self.robots
@@ -170,6 +177,7 @@ class Analysis(Costed, ABC):
         started = time.perf_counter()
         job, draft = self.job, self.result(partial, execution)
         document = {
+            "format": FORMAT,
             "analysis": job.analysis,
             "job": job_entry(job, *self.robots),
             **self.about_robots(),

@@ -32,7 +32,7 @@ class Entry:
 def _own(name: str, job: str, run: str) -> Entry:
     """An analysis of this package, in a folder of its name."""
     folder = f"{__name__.rpartition('.')[0]}.{name}"
-    return Entry(f"{folder}.job:{job}", run if ":" in run else f"{folder}.run:{run}")
+    return Entry(f"{folder}.job:{job}", f"{folder}.run:{run}")
 
 
 _ROWS = {
@@ -50,7 +50,7 @@ _ROWS = {
     "planar_boundary": _own("planar_boundary", "PlanarBoundaryJob", "PlanarBoundaryAnalysis"),
     "boundary_patches": _own("boundary_patches", "BoundaryPatchesJob", "BoundaryPatchesAnalysis"),
     "method_comparison": _own("method_comparison", "MethodComparisonJob", "MethodComparisonAnalysis"),
-    "design_optimization": _own("design_optimization", "DesignOptimizationJob", "wsrender.run.design:plan_design"),
+    "design_optimization": _own("design_optimization", "DesignOptimizationJob", "DesignOptimizationAnalysis"),
 }
 
 

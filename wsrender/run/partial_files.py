@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from wsrender.analyses.contract import Analysis
 from wsrender.analyses.partial_result import PartialResult
 from wsrender.errors import InputError
 from wsrender.results.export.atomic import new_file
@@ -18,7 +17,7 @@ FACTS = "facts.json"  # beside the arrays in the archive
 
 def save_partial(partial: Any, path: str | Path) -> None:
     """Write a partial result; the file appears complete or not at all."""
-    parts = PartialResult(partial) if isinstance(partial, dict) else partial.packed()
+    parts = partial.packed()
     with new_file(path) as temporary, temporary.open("w+b") as file:
         np.savez(file, allow_pickle=False, **parts.arrays)
         with zipfile.ZipFile(file, "a") as archive:
@@ -32,6 +31,6 @@ def load_partial(path: str | Path, plan: Any) -> Any:
         with path.open("rb") as file, np.load(file, allow_pickle=False) as archive:
             facts = json.loads(archive[FACTS])
             arrays = {name: archive[name] for name in archive.files if name != FACTS}
-        return plan.unpacked(PartialResult(arrays, facts)) if isinstance(plan, Analysis) else arrays
+        return plan.unpacked(PartialResult(arrays, facts))
     except (OSError, ValueError, KeyError, TypeError, EOFError, zipfile.BadZipFile, zlib.error) as error:
         raise InputError(path.name, f"cannot be read as a partial result: {error}") from error

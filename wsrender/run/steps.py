@@ -3,93 +3,20 @@
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, Protocol, runtime_checkable
+from typing import Any
 
-from wsrender.analyses.contract import Analysis
-from wsrender.analyses.cost import Cost
+from wsrender.analyses.contract import Analysis, Progress
 from wsrender.analyses.execution import Execution
-from wsrender.analyses.headline import no_headline
 from wsrender.analyses.jobs import parse_job
 from wsrender.analyses.registry import planned
 from wsrender.documents.arm import Arm, ArmPath, dotted
-from wsrender.documents.format import FORMAT
 from wsrender.errors import InputError
-from wsrender.notices import Notice, entries
 from wsrender.results.result import Result
 from wsrender.robot import Robot, as_robot, robot_of_spec
 from wsrender.run.usable_robots import usable
 
-Progress = Callable[[int, int, str], None]
-
-
-class Plan(Protocol):
-    """A job with everything resolved: device target, voxel size, sampling path, shards, estimate."""
-
-    job: Any
-    notices: tuple[Notice, ...]  # of its robots; `plan` sets them
-
-    @property
-    def shards(self) -> list[tuple[int, int]]:
-        """(first sample, number of samples) of every shard."""
-        ...
-
-    @property
-    def target(self) -> str:
-        """Target of the kernels."""
-        ...
-
-    @property
-    def cost(self) -> Cost:
-        """What it takes."""
-        ...
-
-    @property
-    def estimate(self) -> dict[str, float]:
-        """The cost by name: ``samples``, ``memory_bytes``, ``file_bytes``, ``seconds``, and ``bytes``, of memory."""
-        ...
-
-    def resolved(self) -> dict[str, Any]:
-        """What planning settled, as plain JSON values; ``plan(…, resolved=…)`` elsewhere gives the same plan.
-
-        Keys that those who run plans look at: ``device``, ``target``, ``shards``; ``shard_unit``, the number of samples
-        at whose multiples the samples may be divided into shards (absent or null: not at all); ``iterates``, true
-        where nobody knows beforehand how many samples it takes.
-        """
-        ...
-
-    def run_shard(self, shard: int, progress: Callable[[int], None] | None, execution: Execution) -> Any:
-        """The partial result of a shard."""
-        ...
-
-    def merge(self, a: Any, b: Any) -> Any:
-        """The partial result of two; associative."""
-        ...
-
-    def finish(self, partial: Any, seconds: dict[str, float], execution: Execution) -> Result:
-        """The result of the merged partial."""
-        ...
-
-
-@runtime_checkable
-class Refining(Protocol):
-    """A plan with work between the last merge and the result, such as a refined volume: it reports how far that is."""
-
-    def refine(self, partial: Any, progress: Progress | None, execution: Execution) -> Any:
-        """The merged partial result with what was asked beside the samples."""
-        ...
-
-
-@runtime_checkable
-class Resuming(Protocol):
-    """A plan whose ``run_shard`` keeps what it has done in a file ``checkpoint``, and goes on from one that is there.
-
-    What it found before counts as found: the partial result is the same, stopped or not.
-    """
-
-    @property
-    def resumes(self) -> bool:
-        """That it does."""
-        ...
+Plan = Analysis
+"""A job with everything resolved: device target, voxel size, sampling path, shards, cost."""
 
 
 def plan(document: Any, robot: Any = None, *, resolved: dict[str, Any] | None = None) -> Plan:
@@ -97,7 +24,7 @@ def plan(document: Any, robot: Any = None, *, resolved: dict[str, Any] | None = 
 
     ``robot`` replaces the document's; where a job has several, a list with a robot or None for each.
 
-    ``resolved`` is `Plan.resolved` of an earlier plan of the same job: nothing in it is settled again, so that
+    ``resolved`` is `Analysis.resolved` of an earlier plan of the same job: nothing in it is settled again, so that
     partial results of different processes merge. A plan has one shard; ``shards`` of ``resolved`` may divide it, at
     multiples of its ``shard_unit``.
 
@@ -137,8 +64,8 @@ def run_shard(
 
     ``threads`` and ``chunk_size`` (samples) change no bit; see `Execution`. Raises InputError where they are below 1.
     """
-    kept = Path(checkpoint) if checkpoint is not None and isinstance(plan, Resuming) else None
-    return plan.run_shard(shard, progress, Execution(threads, chunk_size, kept))
+    kept = Path(checkpoint) if checkpoint is not None and plan.resumes else None
+    return plan.run_shard(shard, progress, Execution(threads, chunk_size, kept, execute))
 
 
 def merge(plan: Plan, a: Any, b: Any) -> Any:
@@ -160,21 +87,14 @@ def finish(
     and with all samples once the rest begins.
     """
     seconds, execution = dict(seconds or {}), Execution(threads)
-    if isinstance(plan, Refining):
-        started, merged = time.perf_counter(), partial
-        partial = plan.refine(merged, progress, execution)
-        if partial is not merged:
-            seconds["refine"] = time.perf_counter() - started
+    started, merged = time.perf_counter(), partial
+    partial = plan.refine(merged, progress, execution)
+    if partial is not merged:
+        seconds["refine"] = time.perf_counter() - started
     if progress:
         total = sum(count for _, count in plan.shards)
         progress(total, total, "finishing")
-    result = plan.finish(partial, seconds, execution)
-    if not isinstance(plan, Analysis):
-        document = result.document
-        document.setdefault("headline", no_headline(f"the analysis {plan.job.analysis} measures none"))
-        document["warnings"] = entries(plan.notices) + document.get("warnings", [])
-    result.document = {"format": FORMAT, **result.document}
-    return result
+    return plan.finish(partial, seconds, execution)
 
 
 def execute(

@@ -26,14 +26,14 @@ from wsrender.volume.table import Table
 if TYPE_CHECKING:
     import trimesh
 
-    from wsrender.run.design import DesignPlan
+    from wsrender.analyses.design_optimization.run import DesignOptimizationAnalysis
 
 AT_BOUND = 1e-6  # of a parameter's range
 _DH_UNITS = {"a": "m", "d": "m", "alpha": "rad", "theta": "rad"}
 _ENDINGS = {"m": "m", "rad": "rad", "deg": "°", "s": "s"}  # units by the endings of fields
 
 
-def best_headline(plan: "DesignPlan", best: dict[str, Any] | None) -> dict[str, Any]:
+def best_headline(plan: "DesignOptimizationAnalysis", best: dict[str, Any] | None) -> dict[str, Any]:
     """The exact volume of the best design, where that was improved."""
     if best is None:
         return no_headline("no design has a value")
@@ -43,7 +43,7 @@ def best_headline(plan: "DesignPlan", best: dict[str, Any] | None) -> dict[str, 
     return headline("volume", volume, (volume, volume))
 
 
-def objective_entries(plan: "DesignPlan") -> list[dict[str, Any]]:
+def objective_entries(plan: "DesignOptimizationAnalysis") -> list[dict[str, Any]]:
     """Name, goal, weight and unit of every objective; of those measured in voxels how far they may be off."""
     voxel = getattr(plan.job.design, "voxel_size_m", None)
     entries = []
@@ -56,7 +56,9 @@ def objective_entries(plan: "DesignPlan") -> list[dict[str, Any]]:
     return entries
 
 
-def best_entries(plan: "DesignPlan", designs: np.ndarray, values: np.ndarray, score: np.ndarray) -> dict[str, Any]:
+def best_entries(
+    plan: "DesignOptimizationAnalysis", designs: np.ndarray, values: np.ndarray, score: np.ndarray
+) -> dict[str, Any]:
     """The design of the best score, and for a Pareto search all that none beats."""
     allowed = np.where(plan.space.allows(designs), score, -np.inf)
     best = int(allowed.argmax())
@@ -70,12 +72,12 @@ def best_entries(plan: "DesignPlan", designs: np.ndarray, values: np.ndarray, sc
     return entries
 
 
-def _on_front(plan: "DesignPlan", designs: np.ndarray, values: np.ndarray) -> np.ndarray:
+def _on_front(plan: "DesignOptimizationAnalysis", designs: np.ndarray, values: np.ndarray) -> np.ndarray:
     kept = np.flatnonzero(plan.space.allows(designs))
     return kept[front(values[kept], plan.weights)]
 
 
-def _entry(plan: "DesignPlan", design: np.ndarray, values: np.ndarray) -> dict[str, Any]:
+def _entry(plan: "DesignOptimizationAnalysis", design: np.ndarray, values: np.ndarray) -> dict[str, Any]:
     space, names = plan.space, [parameter.name for parameter in plan.job.parameters]
     slack = AT_BOUND * (space.upper - space.lower)
     at_lower, at_upper = design <= space.lower + slack, design >= space.upper - slack
@@ -87,7 +89,7 @@ def _entry(plan: "DesignPlan", design: np.ndarray, values: np.ndarray) -> dict[s
     }
 
 
-def _inscribed_entries(plan: "DesignPlan", design: np.ndarray) -> dict[str, Any]:
+def _inscribed_entries(plan: "DesignOptimizationAnalysis", design: np.ndarray) -> dict[str, Any]:
     """Where the exact inscribed ball and cube of a design lie, world frame, and what no other exceeds."""
     entries: dict[str, Any] = {}
     asked = {o.value for o in plan.job.objectives}
@@ -102,7 +104,9 @@ def _inscribed_entries(plan: "DesignPlan", design: np.ndarray) -> dict[str, Any]
     return entries
 
 
-def tables_of(plan: "DesignPlan", designs: np.ndarray, values: np.ndarray, score: np.ndarray) -> dict[str, Table]:
+def tables_of(
+    plan: "DesignOptimizationAnalysis", designs: np.ndarray, values: np.ndarray, score: np.ndarray
+) -> dict[str, Table]:
     """``evaluations`` in order, ``convergence`` of the best, and ``sweep`` or ``pareto``."""
     objectives, names = plan.job.objectives, [parameter.name for parameter in plan.job.parameters]
     units = {o.name: o.unit for o in objectives if o.unit}
@@ -126,7 +130,9 @@ def unit_of(pointers: Sequence[str]) -> str:
     return units.pop() if len(units) == 1 else ""
 
 
-def _convergence(plan: "DesignPlan", designs: np.ndarray, score: np.ndarray, units: dict[str, str]) -> Table:
+def _convergence(
+    plan: "DesignOptimizationAnalysis", designs: np.ndarray, score: np.ndarray, units: dict[str, str]
+) -> Table:
     """The best so far, after each evaluation that improved it and the last; of one objective the value itself."""
     best = np.maximum.accumulate(np.where(plan.space.allows(designs), score, -np.inf))
     improved = best > np.concatenate([[-np.inf], best[:-1]])
@@ -140,7 +146,7 @@ def _convergence(plan: "DesignPlan", designs: np.ndarray, score: np.ndarray, uni
 
 
 def exact_best(
-    plan: "DesignPlan", best: dict[str, Any] | None
+    plan: "DesignOptimizationAnalysis", best: dict[str, Any] | None
 ) -> "tuple[dict[str, trimesh.Trimesh], dict[str, Table]]":
     """The exact workspace of the best design, in the world, and the table of its surfaces."""
     if best is None or not any(o.value in EXACT for o in plan.job.objectives):

@@ -5,13 +5,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from wsrender.analyses.design_optimization.values import Evaluator
 from wsrender.design.evaluations import feasible
 from wsrender.errors import NotConvergedError, NumericalError, ResourceError
 from wsrender.notices import Notice
-from wsrender.run.design_values import Evaluator
 
 if TYPE_CHECKING:
-    from wsrender.run.design import DesignPlan
+    from wsrender.analyses.design_optimization.run import DesignOptimizationAnalysis
 
 # A design that is refused has no value by its nature; one whose run failed might have had one.
 FAILURES = {error.code for error in (NotConvergedError, NumericalError, ResourceError)}
@@ -32,7 +32,7 @@ def fault_entries(evaluator: Evaluator) -> list[dict[str, Any]]:
 
 
 def design_notices(
-    plan: "DesignPlan", designs: np.ndarray, values: np.ndarray, faults: Sequence[dict[str, Any]]
+    plan: "DesignOptimizationAnalysis", designs: np.ndarray, values: np.ndarray, faults: Sequence[dict[str, Any]]
 ) -> Iterator[Notice]:
     """Designs whose runs failed; a best design that is none, since all (E, n) with values (E, k) were empty."""
     failed = [fault for fault in faults if fault["code"] in FAILURES]

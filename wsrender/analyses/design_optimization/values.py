@@ -25,7 +25,7 @@ from wsrender.mechanisms.ball_region import BallRegion
 from wsrender.results.result import Result
 
 if TYPE_CHECKING:
-    from wsrender.run.design import DesignPlan
+    from wsrender.analyses.design_optimization.run import DesignOptimizationAnalysis
 
 
 FAULTS = (InputError, NotConvergedError, NumericalError, MemoryError)  # of a design: it has no value then
@@ -49,7 +49,7 @@ class Evaluator:
     ``count`` is the number of designs evaluated.
     """
 
-    def __init__(self, plan: "DesignPlan", execution: Execution):
+    def __init__(self, plan: "DesignOptimizationAnalysis", execution: Execution):
         self.plan, self.execution = plan, execution
         self.faults: dict[tuple[str, str], DesignFault] = {}
         self.count = 0
@@ -99,9 +99,7 @@ class Evaluator:
         self._pointers_hold = "empty" not in result.document
 
     def _run(self, job: Any) -> Result:
-        from wsrender.run.steps import execute  # which knows this analysis too
-
-        return execute(job, threads=self.execution.threads, chunk_size=self.execution.chunk_size)
+        return self.execution.run_inside(job)
 
     def _exact(self, designs: np.ndarray) -> np.ndarray:
         placed, rows = [], []

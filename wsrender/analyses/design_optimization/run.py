@@ -1,12 +1,10 @@
 """The analysis ``design_optimization``: parameters of another job, searched for the best values of its result."""
 
-import json
-from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from wsrender.analyses.contract import Analysis, Draft, Settled, Tell
 from wsrender.analyses.cost import DOCUMENT_BYTES, Cost, pictures_cost
 from wsrender.analyses.design_optimization.job import (
     EXACT,
@@ -17,10 +15,18 @@ from wsrender.analyses.design_optimization.job import (
     GridSweep,
     ParetoSearch,
 )
+from wsrender.analyses.design_optimization.notices import design_notices, fault_entries
+from wsrender.analyses.design_optimization.result import (
+    best_entries,
+    best_headline,
+    exact_best,
+    objective_entries,
+    tables_of,
+)
+from wsrender.analyses.design_optimization.values import FAULTS, Evaluator
 from wsrender.analyses.execution import Execution
 from wsrender.analyses.jobs import parse_job
-from wsrender.analyses.provenance import job_entry, provenance, robot_entry
-from wsrender.analyses.settled_device import settled_device
+from wsrender.analyses.partial_result import PartialResult
 from wsrender.design.evaluation_file import EvaluationFile
 from wsrender.design.evaluations import Evaluations, feasible, scores
 from wsrender.design.search import Space, evolve, grid, pareto, refine
@@ -29,33 +35,37 @@ from wsrender.documents.robot import Transform
 from wsrender.errors import InputError, NotConvergedError
 from wsrender.mechanisms.ball_region import BallRegion, region_of
 from wsrender.mechanisms.mechanism import mechanism_of
-from wsrender.notices import entries
-from wsrender.results.result import Result
-from wsrender.robot import Robot
-from wsrender.run.design_notices import design_notices, fault_entries
-from wsrender.run.design_result import best_entries, best_headline, exact_best, objective_entries, tables_of
-from wsrender.run.design_values import FAULTS, Evaluator
-from wsrender.run.one_shard import OneShard
-
-Arrays = dict[str, np.ndarray]
 
 BATCH, SLOW_BATCH = 256, 1  # designs between two reports of progress
 EXACT_PER_S, OTHERS_PER_S = 1e3, 1.0  # designs, rounded down
 
 
-@dataclass(eq=False)
-class DesignPlan(OneShard):
-    """A resolved ``design_optimization`` job: one shard of all its evaluations."""
+class DesignOptimizationAnalysis(Analysis):
+    """A planned ``design_optimization`` job: one shard of as many designs as the search evaluates at most."""
 
+    resumes = True  # a search that was stopped takes the designs that it has evaluated from its checkpoint
     job: DesignOptimizationJob
-    robots: tuple[Robot, ...]
-    device: str
-    target: str
+
+    def prepare(self, device: str, target: str) -> Settled:
+        """Raises InputError for a mechanism that other surfaces than spheres bound, where an exact value is asked."""
+        if exact := [objective.value for objective in self.job.objectives if objective.value in EXACT]:
+            self._check_mechanism(exact[0])
+        return Settled(device, target, ((0, self.job.most_evaluations),))
+
+    def _check_mechanism(self, exact: str) -> None:
+        inner: Any = self.job.design
+        if inner.mechanism.before or inner.mechanism.after:
+            raise InputError("design.mechanism", f'must have no serial joints where "{exact}" is improved')
+        try:
+            region_of(mechanism_of(inner.mechanism), np.eye(3))
+        except InputError as error:
+            message = f'{error.message} ("{exact}" is of workspaces that only spheres bound)'
+            raise InputError(f"design.{error.field}", message) from None
 
     @property
-    def shards(self) -> list[tuple[int, int]]:
-        """One shard; as many samples as the search evaluates designs at most."""
-        return [(0, self.job.most_evaluations)]
+    def asked_device(self) -> str:
+        """That of the job whose parameters vary."""
+        return getattr(self.job.design, "device", "cpu")
 
     @property
     def cost(self) -> Cost:
@@ -91,12 +101,7 @@ class DesignPlan(OneShard):
         """Weights (k,) of the values in the score; negative where small values are good."""
         return np.array([o.weight if o.goal == "maximize" else -o.weight for o in self.job.objectives])
 
-    @property
-    def resumes(self) -> bool:
-        """A search that was stopped takes the designs that it has evaluated from its checkpoint."""
-        return True
-
-    def run_shard(self, shard: int, progress: Callable[[int], None] | None, execution: Execution) -> Arrays:
+    def compute(self, shard: int, execution: Execution, tell: Tell) -> PartialResult:
         """All designs (E, n) in the order of the search, their values (E, k), and what the search says."""
         given, width = self.job.evaluations, len(self._columns)
         own = EvaluationFile(given.path, self._columns) if isinstance(given, EvaluationsInFile) else None
@@ -116,7 +121,7 @@ class DesignPlan(OneShard):
             evaluator,
             self.weights,
             known=[(tuple(row[:count]), tuple(row[count:])) for row in np.concatenate([known, before]).tolist()],
-            report=progress,
+            report=tell,
             keep=keep,
             batch=BATCH if self.is_exact else SLOW_BATCH,
         )
@@ -125,19 +130,16 @@ class DesignPlan(OneShard):
         if not np.isfinite(values).any() and evaluator.fault is not None:
             raise evaluator.fault
         about = {"ended": ended, "evaluated": evaluator.count, "faults": fault_entries(evaluator)}
-        return {"designs": designs, "values": values, "about": np.array(json.dumps(about))}
+        return PartialResult({"designs": designs, "values": values}, about)
 
-    def finish(self, partial: Arrays, seconds: dict[str, float], execution: Execution) -> Result:
+    def result(self, partial: PartialResult, execution: Execution) -> Draft:
         """The best design, all designs, how the search went, and the best design's mesh where it is exact."""
-        designs, values, about = partial["designs"], partial["values"], json.loads(str(partial["about"]))
+        designs, values, about = partial["designs"], partial["values"], partial.facts
         score = scores(values, self.weights)
         best = best_entries(self, designs, values, score)
         document = {
-            "analysis": "design_optimization",
-            "job": job_entry(self.job, *self.robots),
             "parameters": [p.model_dump(mode="json") for p in self.job.parameters],
             "objectives": objective_entries(self),
-            **self._subject(),
             "search": {
                 "method": self.job.search.method,
                 "ended": about["ended"],
@@ -148,13 +150,16 @@ class DesignPlan(OneShard):
                 "faults": about["faults"],
             },
             **best,
-            "headline": best_headline(self, best["best"]),
-            "provenance": provenance(self.job, self.target, precision=self.precision),
-            "timing_s": seconds,
-            "warnings": entries(design_notices(self, designs, values, about["faults"])),
         }
         meshes, tables = exact_best(self, best["best"])
-        return Result(document, tables={**tables_of(self, designs, values, score), **tables}, meshes=meshes)
+        return Draft(
+            document,
+            best_headline(self, best["best"]),
+            design_notices(self, designs, values, about["faults"]),
+            {"precision": self.precision},
+            tables={**tables_of(self, designs, values, score), **tables},
+            meshes=meshes,
+        )
 
     def placed_region(self, design: np.ndarray) -> tuple[BallRegion, np.ndarray]:
         """The ball region of a design (n,) of a mechanism, and the base's place in the world (4, 4)."""
@@ -176,10 +181,10 @@ class DesignPlan(OneShard):
     def _columns(self) -> list[str]:
         return [*(parameter.name for parameter in self.job.parameters), *(o.name for o in self.job.objectives)]
 
-    def _subject(self) -> dict[str, Any]:
+    def about_robots(self) -> dict[str, Any]:
         """The robots or the mechanism whose parameters vary, as they are in the document."""
         if self.robots:
-            return {"robots": [{"name": robot.name, "robot": robot_entry(robot)} for robot in self.robots]}
+            return super().about_robots()
         mechanism = getattr(self.job.design, "mechanism", None)
         return {"mechanism": {"name": mechanism_of(mechanism).name}} if mechanism else {}
 
@@ -225,22 +230,3 @@ def _refined(space: Space, evaluations: Evaluations, start: np.ndarray, evaluato
 def _with_values(rows: np.ndarray) -> np.ndarray:
     """A checkpoint's rows but those of designs without value, which are tried again, so that their fault is known."""
     return np.unique(rows[np.isfinite(rows).all(axis=1)], axis=0)
-
-
-def plan_design(job: DesignOptimizationJob, *robots: Robot, resolved: dict[str, Any] | None = None) -> DesignPlan:
-    """Resolve the job, or take what `DesignPlan.resolved` of an earlier plan of it says.
-
-    Raises InputError for a mechanism that other surfaces than spheres bound, where an exact value is asked.
-    """
-    plan = DesignPlan(job, robots, *settled_device(getattr(job.design, "device", "cpu"), resolved))
-    exact = [objective.value for objective in job.objectives if objective.value in EXACT]
-    if exact:
-        inner: Any = job.design
-        if inner.mechanism.before or inner.mechanism.after:
-            raise InputError("design.mechanism", f'must have no serial joints where "{exact[0]}" is improved')
-        try:
-            region_of(mechanism_of(inner.mechanism), np.eye(3))
-        except InputError as error:
-            message = f'{error.message} ("{exact[0]}" is of workspaces that only spheres bound)'
-            raise InputError(f"design.{error.field}", message) from None
-    return plan
