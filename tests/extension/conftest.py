@@ -6,6 +6,8 @@ from pathlib import Path
 import pytest
 
 from tests.server.http.conftest import client, finished, jobs, result, result_folder, settings, submit  # noqa: F401
+from wsrender.analyses import jobs as jobs_of_documents
+from wsrender.analyses import registry
 from wsrender.results.export import formats
 
 HERE = Path(__file__).parent
@@ -17,14 +19,21 @@ def installed(monkeypatch):
 
     def install(folder):
         monkeypatch.syspath_prepend(HERE / folder)
-        formats._extensions.cache_clear()
+        forget()
 
     before = set(sys.modules)
     yield install
     monkeypatch.undo()
-    formats._extensions.cache_clear()
-    for name in {"voxel_list", "broken_formats"} & (set(sys.modules) - before):
-        del sys.modules[name]
+    forget()
+    for name in set(sys.modules) - before:
+        if name.partition(".")[0] in {"voxel_list", "middle_tip", "broken_formats", "broken_analyses"}:
+            del sys.modules[name]
+
+
+def forget():
+    """What has been read of packages."""
+    for read in (formats._extensions, registry._table, registry.job_classes, jobs_of_documents._adapter):
+        read.cache_clear()
 
 
 @pytest.fixture

@@ -188,7 +188,7 @@ def test_shards_merge_to_the_whole(tmp_path):
     one = merge(parts, merge(parts, partials[0], partials[1]), partials[2])
     other = merge(parts, partials[0], merge(parts, partials[2], partials[1]))
     expected = run_shard(whole, 0)
-    for name, values in expected.items():
+    for name, values in expected.arrays.items():
         np.testing.assert_array_equal(one[name], values)
         np.testing.assert_array_equal(other[name], values)
     assert finish(parts, one).document["volume_m3"] == finish(whole, expected).document["volume_m3"]
