@@ -1,8 +1,8 @@
 """Estimates beside what ran: seconds of one core's time and bytes of files, of ten jobs of different analyses.
 
-``python benchmarks/cost.py`` prints a line for each. The constants of ``wsrender/analyses/cost.py`` and the rates beside
-each plan were read off such runs; times are of this process on one thread, so that a busy machine changes them little.
-Parquet and VTKHDF count as they are before they are compressed.
+``python benchmarks/cost.py`` prints a line for each. The constants of ``wsrender/analyses/cost.py`` and the rates
+beside each analysis were read off such runs; times are of this process on one thread, so that a busy machine changes
+them little. Parquet and VTKHDF count as they are before they are compressed.
 """
 
 import os

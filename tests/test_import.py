@@ -57,6 +57,27 @@ print(*sys.modules.keys() & {"mujoco", "matplotlib", "trimesh", "skimage", "scip
     assert run.stdout.split("\n") == ["", "", ""]
 
 
+def test_a_run_imports_its_own_analysis_alone():
+    """But for the jobs of all, which are read to tell them apart."""
+    script = """
+import sys
+import wsrender as ws
+ws.execute({"analysis": "indices_at", "robot": "scara", "configurations": [[0, 0, 0, 0]]})
+print(*sorted(name for name in sys.modules if name.startswith("wsrender.analyses.") and name.endswith(".run")))
+"""
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(folder for folder in sys.path if folder)}
+    run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True, env=environment)
+    assert run.stdout.split() == ["wsrender.analyses.indices_at.run"]
+
+
+@pytest.mark.parametrize("analysis", registry._ROWS)
+def test_an_analysis_is_a_folder_of_its_name(analysis):
+    entry, folder = registry._ROWS[analysis], f"wsrender.analyses.{analysis}"
+    assert (entry.job.partition(":")[0], entry.run.partition(":")[0]) == (f"{folder}.job", f"{folder}.run")
+    readme = CHECKOUT / "wsrender" / "analyses" / analysis / "README.md"
+    assert readme.read_text().startswith(f"# {analysis}\n")
+
+
 @pytest.mark.parametrize("name", ws.__all__)
 def test_public_name_is_importable(name):
     assert getattr(ws, name) is not None

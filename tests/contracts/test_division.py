@@ -26,7 +26,16 @@ def test_a_partial_result_travels(analysis, local, planned, tmp_path):
     here = planned(analysis)
     save_partial(run_shard(here, 0), tmp_path / "0.npz")
     there = plan(job_of(analysis), resolved=json.loads(json.dumps(here.resolved())))
+    assert there.settled == here.settled and there.resolved() == here.resolved()
     assert bits_of(finish(there, load_partial(tmp_path / "0.npz", there))) == bits_of(local(analysis))
+
+
+@pytest.mark.parametrize("analysis", analyses())
+def test_facts_are_no_arrays(analysis, planned):
+    """What is said in JSON stands beside the arrays: none is a text."""
+    partial = run_shard(planned(analysis), 0).packed()
+    assert json.loads(json.dumps(partial.facts)) == partial.facts
+    assert all(array.ndim > 0 and array.dtype != object for array in partial.arrays.values())
 
 
 def divisible(planned):
