@@ -5,14 +5,17 @@ The kernels evaluate the plan; it knows the chain's limits and the sampling of a
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 
 from wsrender.documents.quantities import argument, real
 from wsrender.documents.sampling import BoundaryBiased, Converge, Grid, Random, Sobol
 from wsrender.errors import InputError, ResourceError
-from wsrender.robots.chain import Chain
+from wsrender.robots.joint_space import JointSpace
 from wsrender.robots.plausibility import need_ranges
+
+Joints = TypeVar("Joints", bound=JointSpace)
 
 SOBOL_BITS = 52
 LARGEST_LEVELS = 2**31 - 256  # the kernel adds the place within a block of 256 in 32-bit integers
@@ -64,7 +67,7 @@ class SamplingPlan:
         return width / np.maximum(self.levels - 1, 1) if self.method == "grid" else width
 
 
-def plan_sampling(chain: Chain, sampling, max_samples: int | None = None) -> SamplingPlan:
+def plan_sampling(chain: JointSpace, sampling, max_samples: int | None = None) -> SamplingPlan:
     """Resolve a sampling of the job document for a chain.
 
     Raises InputError for unknown or out-of-range locked joints and wrong numbers of levels, ResourceError where a
@@ -90,13 +93,13 @@ def plan_sampling(chain: Chain, sampling, max_samples: int | None = None) -> Sam
     return SamplingPlan(method, count, sampling.seed, lower, upper, levels)
 
 
-def given_sampling(chain: Chain, q: np.ndarray) -> SamplingPlan:
+def given_sampling(chain: JointSpace, q: np.ndarray) -> SamplingPlan:
     """The plan whose samples are the configurations ``q`` (N, n) [rad or m]."""
     levels = np.ones(chain.n, np.int64)
     return SamplingPlan("given", len(q), 0, chain.lower_limits, chain.upper_limits, levels, given=q)
 
 
-def held_chain(chain: Chain, locked: Mapping[str, float]) -> Chain:
+def held_chain(chain: Joints, locked: Mapping[str, float]) -> Joints:
     """The chain with joints held, by name, at a value [rad or m].
 
     Raises InputError, naming ``locked``, for an unknown joint or a value beyond its limits; naming ``robot.limits`` for
@@ -108,7 +111,7 @@ def held_chain(chain: Chain, locked: Mapping[str, float]) -> Chain:
     return held
 
 
-def _locked_values(chain: Chain, locked: Mapping[str, float], field: str) -> np.ndarray:
+def _locked_values(chain: JointSpace, locked: Mapping[str, float], field: str) -> np.ndarray:
     """The value of each coordinate (n,) that is locked, NaN of the others; InputError names the ``field``."""
     values = np.full(chain.n, np.nan)
     if not isinstance(locked, Mapping):
@@ -126,7 +129,7 @@ def _locked_values(chain: Chain, locked: Mapping[str, float], field: str) -> np.
     return values
 
 
-def _grid(chain: Chain, sampling: Grid, lower, upper, free, max_samples) -> SamplingPlan:
+def _grid(chain: JointSpace, sampling: Grid, lower, upper, free, max_samples) -> SamplingPlan:
     per_joint = sampling.per_joint
     if isinstance(per_joint, int):
         levels = np.full(chain.n, per_joint, np.int64)

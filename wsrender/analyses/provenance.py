@@ -12,7 +12,6 @@ from wsrender.documents.arm import at_path
 from wsrender.documents.options import TASK_ROWS
 from wsrender.engine import Evaluation
 from wsrender.robot import Robot
-from wsrender.robot.user_robot import HostRobot
 
 
 def robot_entry(robot: Robot) -> dict[str, Any]:
@@ -20,7 +19,7 @@ def robot_entry(robot: Robot) -> dict[str, Any]:
     chain = robot.chain
     return {
         "name": robot.name,
-        "user_defined": isinstance(robot, HostRobot),
+        "user_defined": robot.definition is not None,
         "model_hash": robot.model_hash,
         "chain_hash": chain.content_hash,
         "base_frame": chain.base_frame,
@@ -43,9 +42,8 @@ def job_entry(job: Any, *robots: Robot) -> dict[str, Any]:
     """The job document that gave a result; a robot that is a Python class has no form that could be run again."""
     entry = job.model_dump(mode="json")
     for path, robot in zip(job.arms(), robots, strict=True):
-        if isinstance(robot, HostRobot):
-            cls = type(robot.user)
-            at_path(entry, path)["robot"] = {"user_defined": f"{cls.__module__}.{cls.__qualname__}"}
+        if robot.definition:
+            at_path(entry, path)["robot"] = {"user_defined": robot.definition}
     return entry
 
 

@@ -9,7 +9,7 @@ from wsrender.pipeline.constraints.region import Region
 from wsrender.reachability.measure_refinement import RefinedMeasure, refined_measure, refined_measures, unmeasured
 from wsrender.reachability.volume_estimate import Event
 from wsrender.reachability.voxel_labels import label_voxels
-from wsrender.robots.chain import Chain
+from wsrender.robots.kinematics import Kinematics
 from wsrender.volume.measure import UNITS
 from wsrender.volume.volume_data import VolumeData
 
@@ -30,7 +30,7 @@ class Refined:
 
 
 def refined(
-    chain: Chain,
+    chain: Kinematics,
     tolerance: float,
     seed: int,
     device: str,
@@ -48,14 +48,14 @@ def refined(
 
 
 def labelled(
-    chain: Chain, volume: VolumeData, seed: int, device: str, progress: Progress | None, threads: int | None
+    chain: Kinematics, volume: VolumeData, seed: int, device: str, progress: Progress | None, threads: int | None
 ) -> VolumeData:
     """The labels of a workspace's ``volume``."""
     return label_voxels(chain, volume, seed=seed, device=device, threads=threads, progress=_named(progress, VOXELS))
 
 
 def refined_together(
-    chains: Sequence[Chain],
+    chains: Sequence[Kinematics],
     events: Mapping[str, Event],
     tolerance: float,
     device: str,

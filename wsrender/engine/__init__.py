@@ -6,7 +6,7 @@ from wsrender.engine.drawn_configurations import configurations
 from wsrender.engine.evaluation import Evaluation
 from wsrender.engine.index_units import units_of
 from wsrender.engine.inverse import Accuracy, Tries, solve_inverse
-from wsrender.engine.kinematics import Kinematics, evaluate_kinematics, evaluate_poses
+from wsrender.engine.kinematics import EvaluatedKinematics, evaluate_kinematics, evaluate_poses
 from wsrender.engine.membership import (
     LegTest,
     OrientationCounts,
@@ -23,8 +23,8 @@ from wsrender.engine.sweep_plan import SweepPlan, sweep
 __all__ = [
     "Accuracy",
     "Evaluated",
+    "EvaluatedKinematics",
     "Evaluation",
-    "Kinematics",
     "LegTest",
     "OrientationCounts",
     "Partial",

@@ -11,15 +11,15 @@ from wsrender_kernels.constraints.expression import expression
 from wsrender.engine.index_code import function_of_source, source_of
 from wsrender.indices.expression import trace
 from wsrender.pipeline.constraints.constraint import Constraint
-from wsrender.robots.chain import Chain
+from wsrender.robots.kinematics import Kinematics
 
 
-def packed_constraints(constraints: Sequence[Constraint], chain: Chain, origin: np.ndarray) -> np.ndarray:
+def packed_constraints(constraints: Sequence[Constraint], chain: Kinematics, origin: np.ndarray) -> np.ndarray:
     """The numbers of all constraints, one after the other, (D,) float64."""
     return np.concatenate([np.zeros(0), *(each.pack(chain, origin) for each in constraints)])
 
 
-def device_constraints(constraints: Sequence[Constraint], chain: Chain, real: Any) -> dict[str, Any]:
+def device_constraints(constraints: Sequence[Constraint], chain: Kinematics, real: Any) -> dict[str, Any]:
     """Fields ``constraints`` and ``limits`` of a sweep's shape."""
     sizes = [len(each.pack(chain, np.zeros(3))) for each in constraints]
     total, functions = sum(sizes), []

@@ -18,7 +18,7 @@ from wsrender.indices.index_catalogue import is_dynamic
 from wsrender.notices import Notice
 from wsrender.pipeline.constraints.constraint import Constraint
 from wsrender.robots.chain import Chain
-from wsrender.robots.host_chain import HostChain
+from wsrender.robots.kinematics import Kinematics
 
 REAL = {"float32": wp.float32, "float64": wp.float64}
 
@@ -31,7 +31,7 @@ class Evaluation:
     chain's inertia matrix. ``options``: all values of the indices that have any, by index and option.
     """
 
-    chain: Chain
+    chain: Kinematics
     indices: tuple[str, ...]
     rows: tuple[int, ...] = (0, 1, 2)
     convention: str = "standard"
@@ -48,19 +48,20 @@ class Evaluation:
         return any(is_dynamic(name) for name in self.indices)
 
     @property
-    def device_chain(self) -> Chain:
-        """The chain that the kernels evaluate."""
-        return self.chain.dynamic if self.dynamic and self.host_inertia is None else self.chain
+    def device_chain(self) -> Chain | None:
+        """The chain that the kernels evaluate; None where the host computes all kinematics."""
+        chain = self.chain.geometry
+        return chain.dynamic if chain and self.dynamic and self.host_inertia is None else chain
 
     @property
-    def host_chain(self) -> HostChain | None:
-        """The chain of a robot that is defined by a Python class: the host computes its kinematics."""
-        return self.chain if isinstance(self.chain, HostChain) else None
+    def given_kinematics(self) -> bool:
+        """Whether the host computes positions and Jacobians: there is no geometry that a kernel could evaluate."""
+        return self.chain.geometry is None
 
     @property
     def on_host(self) -> bool:
         """Whether the host computes a part of every sample."""
-        return self.host_chain is not None or (self.dynamic and self.host_inertia is not None)
+        return self.given_kinematics or (self.dynamic and self.host_inertia is not None)
 
     @property
     def mixed_rows(self) -> bool:
@@ -76,7 +77,8 @@ def shape_of(evaluation: Evaluation, precision: str, method: str, **outputs: Any
         body = index_source(evaluation.indices, evaluation.rows, n, evaluation.convention, evaluation.options)
         length = spectrum_length(n, evaluation.rows, evaluation.convention)
         indices = function_of_source(body, len(evaluation.indices), length, real)
-    sources, plain = drive(evaluation.device_chain)
+    chain = evaluation.device_chain
+    sources, plain = drive(chain) if chain else (tuple(range(n)), True)
     return Shape(
         real=real,
         n=n,
@@ -88,7 +90,7 @@ def shape_of(evaluation: Evaluation, precision: str, method: str, **outputs: Any
         indices=indices,
         n_indices=len(evaluation.indices),
         dynamic=evaluation.dynamic,
-        given_jacobian=evaluation.host_chain is not None,
+        given_jacobian=evaluation.given_kinematics,
         given_inertia=evaluation.dynamic and evaluation.host_inertia is not None,
         penalty=evaluation.penalty is not None,
         torque_scaling=evaluation.torque_scaling and evaluation.dynamic,
@@ -108,7 +110,10 @@ def evaluation_model(
     """The Model struct of an evaluation, without what the host computes; positions are relative to ``origin`` (3,)."""
     chain, real = evaluation.chain, REAL[precision]
     limits = packed_constraints(constraints, chain, origin)
-    model = chain_model(evaluation.device_chain.relative_to(origin), precision, len(limits))
+    if device_chain := evaluation.device_chain:
+        model = chain_model(device_chain.relative_to(origin), precision, len(limits))
+    else:
+        model = _placed_model(chain, chain.n, precision, len(limits))
     if len(limits):
         model.limits = vector_of(limits, real)
     model.lower, model.upper = vector_of(chain.lower_limits, real), vector_of(chain.upper_limits, real)
@@ -124,8 +129,7 @@ def evaluation_model(
 
 def chain_model(chain: Chain, precision: str, limits: int = 0):
     """The Model struct with a chain's kinematics and inertias alone, and room for so many numbers of constraints."""
-    real = REAL[precision]
-    model = model_type(real, chain.n, len(chain.joint_source), limits)()
+    real, model = REAL[precision], _placed_model(chain, len(chain.joint_source), precision, limits)
     kinematics = pack_kinematics(
         chain.T_world_base,
         chain.T_joint,
@@ -136,6 +140,13 @@ def chain_model(chain: Chain, precision: str, limits: int = 0):
     )
     bodies = pack_inertia(chain.T_joint, chain.mass, chain.center_of_mass, chain.inertia, chain.armature)
     model.chain, model.bodies = vector_of(kinematics, real), vector_of(bodies, real)
+    return model
+
+
+def _placed_model(chain: Kinematics, joints: int, precision: str, limits: int):
+    """A Model struct for so many joints that says how the base stands, and nothing of what it carries."""
+    real = REAL[precision]
+    model = model_type(real, chain.n, joints, limits)()
     model.base_axes = wp.types.matrix((3, 3), real)(*chain.T_world_base[:3, :3].T.ravel().tolist())
     model.linear_scale = 1.0
     return model

@@ -56,8 +56,9 @@ def structure_of(
     Mostly none: every sample is evaluated.
     """
     chain, levels = evaluation.device_chain, sampling.levels.copy()
-    own = np.array_equal(chain.joint_source, np.arange(chain.n))
-    if sampling.method != "grid" or evaluation.on_host or evaluation.convention == "wsrender_code" or not own:
+    if sampling.method != "grid" or chain is None or evaluation.on_host or evaluation.convention == "wsrender_code":
+        return GridStructure(sampling)
+    if not np.array_equal(chain.joint_source, np.arange(chain.n)):
         return GridStructure(sampling)
     still = TRAILING_JOINTS in kept and set(evaluation.rows) <= set(LINEAR) and _survive(evaluation, TRAILING_JOINTS)
     free = chain.n - _trailing(chain) if still else chain.n

@@ -22,13 +22,13 @@ from wsrender_kernels.inverse import (
 )
 
 from wsrender.engine.tries import Accuracy, Tries, angle_of, step_bounds
-from wsrender.robots.host_chain import HostChain
+from wsrender.robots.kinematics import Kinematics
 
 BATCH = 1 << 13  # tries that are advanced together: their Jacobians stay in the cache
 
 
 def host_tries(
-    chain: HostChain, targets: np.ndarray, starts: np.ndarray, accuracy: Accuracy, without_limits: bool, steps: int
+    chain: Kinematics, targets: np.ndarray, starts: np.ndarray, accuracy: Accuracy, without_limits: bool, steps: int
 ) -> Tries:
     """As `solve_inverse`. Where a configuration beyond the limits has no pose, it is no nearer to any target."""
     parts = []
@@ -45,7 +45,7 @@ def host_tries(
 class _HostTries:
     """T tries on their way; names and shapes as in the kernel's `step`, with a leading axis for the tries."""
 
-    def __init__(self, chain: HostChain, targets: np.ndarray, starts: np.ndarray, accuracy: Accuracy, unlimited: bool):
+    def __init__(self, chain: Kinematics, targets: np.ndarray, starts: np.ndarray, accuracy: Accuracy, unlimited: bool):
         self.chain, self.targets, self.accuracy = chain, targets, accuracy
         self.lower, self.upper, self.scale = step_bounds(chain, accuracy, unlimited)
         self.weight = accuracy.length**2 / 4

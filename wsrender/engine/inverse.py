@@ -12,7 +12,7 @@ from wsrender.engine.host_inverse import host_tries
 from wsrender.engine.kernel_cache import launch, loaded
 from wsrender.engine.tries import Accuracy, Tries, angle_of, step_bounds
 from wsrender.robots.chain import Chain
-from wsrender.robots.host_chain import HostChain
+from wsrender.robots.kinematics import Kinematics
 
 KINDS = {size: kind for kind, size in TARGET_SIZES.items()}
 BATCH = 1 << 17  # tries of a launch
@@ -21,7 +21,7 @@ STEPS = 300  # of a try: ten suffice where the target is reached, slow ones come
 
 
 def solve_inverse(
-    chain: Chain,
+    chain: Kinematics,
     targets: np.ndarray,
     starts: np.ndarray,
     accuracy: Accuracy,
@@ -41,14 +41,14 @@ def solve_inverse(
     if (origin := chain.origin).any():
         chain, targets = chain.relative_to(origin), targets.copy()
         targets[:, :3] -= origin
-    if isinstance(chain, HostChain):
+    if (geometry := chain.geometry) is None:
         return host_tries(chain, targets, starts, accuracy, without_limits, steps)
     devices = devices_of(device)
     workers = devices if devices[0].is_cuda else devices * thread_count(threads)
     size = min(BATCH, max(LEAST_SHARE, -(-len(targets) // len(workers))))
-    model = _model(chain, accuracy, without_limits, precision)
+    model = _model(geometry, accuracy, without_limits, precision)
     kind = KINDS[targets.shape[1]]
-    kernel = loaded(inverse_kernel(REAL[precision], chain.n, *drive(chain), kind, devices[0].is_cuda), *devices)
+    kernel = loaded(inverse_kernel(REAL[precision], chain.n, *drive(geometry), kind, devices[0].is_cuda), *devices)
     batches = [slice(first, first + size) for first in range(0, max(len(targets), 1), size)]
 
     def run(numbered: tuple[int, slice]) -> list[np.ndarray]:

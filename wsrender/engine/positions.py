@@ -7,12 +7,12 @@ import numpy as np
 from wsrender.engine.devices import devices_of
 from wsrender.engine.evaluation import Evaluation
 from wsrender.engine.sweep_plan import SweepPlan, sweep
-from wsrender.robots.chain import Chain
+from wsrender.robots.kinematics import Kinematics
 from wsrender.sampling import SamplingPlan, given_sampling
 
 
 def sampled_positions(
-    chain: Chain,
+    chain: Kinematics,
     sampling: SamplingPlan,
     precision: str = "float64",
     device: str = "cpu",
@@ -46,7 +46,7 @@ def sampled_positions(
 
 
 def positions_at(
-    chain: Chain, q: np.ndarray, precision: str = "float64", device: str = "cpu", *, threads: int | None = None
+    chain: Kinematics, q: np.ndarray, precision: str = "float64", device: str = "cpu", *, threads: int | None = None
 ) -> np.ndarray:
     """World positions (N, 3) float64 [m] of the tip at configurations ``q`` (N, n) [rad or m]."""
     return sampled_positions(chain, given_sampling(chain, q), precision, device, threads=threads)

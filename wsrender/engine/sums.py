@@ -22,7 +22,7 @@ def has_own_bound(evaluation: Evaluation, name: str) -> bool:
     bound = find(name).bound
     if not callable(bound):
         return bound is not None
-    return evaluation.convention == "standard" and not is_dynamic(name) and evaluation.host_chain is None
+    return evaluation.convention == "standard" and not is_dynamic(name) and not evaluation.given_kinematics
 
 
 def own_bound(evaluation: Evaluation, name: str) -> float:
@@ -44,7 +44,8 @@ def own_bound(evaluation: Evaluation, name: str) -> float:
 
 def _largest_norm(evaluation: Evaluation) -> float:
     """Upper bound of the task matrix's Frobenius norm."""
-    chain = evaluation.chain
+    chain = evaluation.chain.geometry
+    assert chain is not None  # see `has_own_bound`
     length = evaluation.characteristic_length_m if evaluation.mixed_rows else 1.0
     columns_linear, columns_angular = np.zeros(chain.n), np.zeros(chain.n)
     lever = _levers(chain)

@@ -341,9 +341,8 @@ class Accumulator:
         else:
             q = given[first : first + count]
         real, device, model = self.shape.real, self.device, self._model
-        chain = evaluation.host_chain
-        if chain is not None:
-            chain = chain.relative_to(self.plan.origin)
+        if evaluation.given_kinematics:
+            chain = evaluation.chain.relative_to(self.plan.origin)
             model.position_given = device_array(chain.poses(q)[:, :3, 3].T.ravel(), real, device)
             if evaluation.indices:  # they may cost a Python class many times as much as poses
                 model.jacobian_given = device_array(chain.jacobians(q).reshape(count, -1).T.ravel(), real, device)

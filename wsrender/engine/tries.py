@@ -4,7 +4,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from wsrender.robots.chain import Chain
+from wsrender.robots.kinematics import Kinematics
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,9 @@ def angle_of(rotation_2: np.ndarray) -> np.ndarray:
     return 2 * np.arcsin(np.minimum(np.sqrt(rotation_2 / 8), 1.0))
 
 
-def step_bounds(chain: Chain, accuracy: Accuracy, without_limits: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def step_bounds(
+    chain: Kinematics, accuracy: Accuracy, without_limits: bool
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Lower and upper limits (n,), infinite where a coordinate has none, and its scale in a step."""
     endless = chain.periodic | (chain.revolute & without_limits)
     lower = np.where(endless, -np.inf, chain.lower_limits)

@@ -15,7 +15,7 @@ from wsrender.reachability.evidence import UNREACHABLE
 from wsrender.reachability.reached_set import tolerance_m
 from wsrender.reachability.targets import reasons_of
 from wsrender.robot import Robot, robot_of_spec
-from wsrender.robots.chain import Chain
+from wsrender.robots.kinematics import Kinematics
 
 ANGLE_RAD = 1e-7  # residual that counts as reached
 
@@ -35,7 +35,7 @@ class NumericLeg:
     actuated: np.ndarray
 
     @property
-    def chain(self) -> Chain:
+    def chain(self) -> Kinematics:
         """The leg's chain, its world the mechanism's base frame."""
         return self.robot.chain
 
@@ -89,7 +89,7 @@ class NumericLeg:
 
 
 @lru_cache(maxsize=64)
-def _solver(chain: Chain, whole_pose: bool, device: str, threads: int | None) -> InverseSolver:
+def _solver(chain: Kinematics, whole_pose: bool, device: str, threads: int | None) -> InverseSolver:
     """The solver of a leg; what it keeps serves all its poses, wherever serial joints carry the mechanism."""
     kind = "pose" if whole_pose else "position"
     return InverseSolver(

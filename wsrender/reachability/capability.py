@@ -14,7 +14,7 @@ from wsrender.reachability.dimension import fills_volume, in_own_voxel
 from wsrender.reachability.evidence import REACHABLE, UNDECIDED
 from wsrender.reachability.inverse_solver import InverseSolver
 from wsrender.reachability.occupied_cells import occupied_cells
-from wsrender.robots.chain import Chain
+from wsrender.robots.kinematics import Kinematics
 from wsrender.robots.reachable_box import reachable_box
 from wsrender.volume.lattice import LatticeBlock, block_around, check_voxels
 from wsrender.volume.neighbours import inner_and_outer
@@ -60,7 +60,7 @@ def fibonacci_directions(count: int) -> np.ndarray:
 
 
 def capability(
-    chain: Chain,
+    chain: Kinematics,
     voxel_size_m: float,
     directions: np.ndarray,
     *,
@@ -103,7 +103,7 @@ def capability(
     return Capability(cells, labels == REACHABLE, (labels == UNDECIDED).sum(axis=1))
 
 
-def searched_block(chain: Chain, voxel_size_m: float) -> LatticeBlock:
+def searched_block(chain: Kinematics, voxel_size_m: float) -> LatticeBlock:
     """The voxels among which those that are reached are looked for; ResourceError where they do not fit in memory."""
     block = block_around(*reachable_box(chain, chain.lower_limits, chain.upper_limits), voxel_size_m)
     check_voxels(block, SEARCHED_BYTES)
@@ -122,7 +122,7 @@ def _points(
     return nearest, in_own_voxel(nearest, cells, voxel_size_m)
 
 
-def _candidates(chain: Chain, voxel_size_m: float, seed: int, device: str, threads: int | None) -> np.ndarray:
+def _candidates(chain: Kinematics, voxel_size_m: float, seed: int, device: str, threads: int | None) -> np.ndarray:
     """Cells (V, 3) that samples of the chain reach, and their neighbours."""
     block = searched_block(chain, voxel_size_m)
     count = max(LEAST_SAMPLES, SAMPLES_PER_CELL * block.size)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from wsrender.robots.chain import Chain
-from wsrender.robots.host_chain import HostChain
+from wsrender.robots.kinematics import Kinematics
 from wsrender.robots.reachable_box import reachable_boxes
 from wsrender.volume.lattice import LatticeBlock
 
@@ -11,13 +11,13 @@ HALVINGS = 12  # of the joint box: a cover of 4096 boxes, found in some ten mill
 MARGIN = 1e-9  # of the reach, for rounding
 
 
-def covered_cells(chain: Chain, block: LatticeBlock, dimension: int) -> np.ndarray:
+def covered_cells(kinematics: Kinematics, block: LatticeBlock, dimension: int) -> np.ndarray:
     """Whether a cell may hold a position, bool, of the block's first ``dimension`` axes.
 
     Every cell may of a robot that is defined by a Python class: nothing is known to hold its reach.
     """
     shape = block.shape[:dimension]
-    if isinstance(chain, HostChain):
+    if (chain := kinematics.geometry) is None:
         return np.ones(shape, bool)
     low, high = (corner[:, :dimension] for corner in reachable_boxes(chain, *_parts(chain)))
     margin = MARGIN * (chain.reach or 1.0)

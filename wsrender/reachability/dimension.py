@@ -6,7 +6,7 @@ import numpy as np
 
 from wsrender.documents.sampling import Sobol
 from wsrender.engine import configurations, evaluate_kinematics
-from wsrender.robots.chain import Chain
+from wsrender.robots.kinematics import Kinematics
 from wsrender.sampling import plan_sampling
 from wsrender.tolerances import FLAT
 
@@ -44,7 +44,7 @@ class TipSet:
         return float(np.linalg.norm(self.positions - self.T_world_own[:3, 3], axis=1).max())
 
 
-def tip_set(chain: Chain, threads: int | None = None) -> TipSet:
+def tip_set(chain: Kinematics, threads: int | None = None) -> TipSet:
     """What the positions of a chain fill, from samples.
 
     The dimension is the largest rank of the linear Jacobian (Sard 1942: where it is below 3 everywhere, the positions
@@ -67,7 +67,7 @@ def tip_set(chain: Chain, threads: int | None = None) -> TipSet:
     return TipSet(dimension, span, T, positions)
 
 
-def fills_volume(chain: Chain, threads: int | None = None) -> bool:
+def fills_volume(chain: Kinematics, threads: int | None = None) -> bool:
     """Whether the positions of a chain fill a volume."""
     return chain.n >= 3 and tip_set(chain, threads).dimension == 3
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from wsrender.engine import Accuracy, Tries
-from wsrender.robots.chain import Chain
+from wsrender.robots.kinematics import Kinematics
 
 REACHABLE, UNREACHABLE, UNDECIDED = 1, 0, -1
 LABELS = {REACHABLE: "reachable", UNREACHABLE: "unreachable", UNDECIDED: "undecided"}
@@ -35,7 +35,7 @@ class Evidence:
     ``proven`` (N,) bool: targets known to be out of reach.
     """
 
-    def __init__(self, chain: Chain, kind: str, accuracy: Accuracy, proven: np.ndarray):
+    def __init__(self, chain: Kinematics, kind: str, accuracy: Accuracy, proven: np.ndarray):
         self.accuracy, self.proven = accuracy, proven
         count = len(proven)
         self.q = np.zeros((count, chain.n))

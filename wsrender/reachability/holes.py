@@ -8,7 +8,7 @@ from wsrender.pipeline.constraints.region import Region
 from wsrender.reachability.evidence import REACHABLE
 from wsrender.reachability.inverse_solver import InverseSolver
 from wsrender.reachability.reached_set import tolerance_m
-from wsrender.robots.chain import Chain
+from wsrender.robots.kinematics import Kinematics
 from wsrender.volume.volume_data import VolumeData
 
 DRAWS = 4096  # a share of .5 % is found to a quarter of it
@@ -17,7 +17,7 @@ CORNERS = np.array(list(product((0, 1), repeat=3)))
 
 
 def share_of_holes(
-    chain: Chain,
+    chain: Kinematics,
     volume: VolumeData,
     *,
     seed: int = 0,

@@ -10,8 +10,7 @@ from wsrender.engine import Accuracy, Tries, evaluate_poses, solve_inverse, thre
 from wsrender.reachability.evidence import FLATTER, Evidence
 from wsrender.reachability.moving_joints import moving_joints
 from wsrender.reachability.starts import FURTHER, NEAR, NEAR_LIMITS, Starts, inwards
-from wsrender.robots.chain import Chain
-from wsrender.robots.host_chain import HostChain
+from wsrender.robots.kinematics import Kinematics
 from wsrender.robots.reachable_box import reachable_box
 
 BATCH = 1 << 15  # targets that are solved together: their starts are held in memory
@@ -52,7 +51,7 @@ class InverseSolver:
 
     def __init__(
         self,
-        chain: Chain,
+        chain: Kinematics,
         *,
         kind: str = "position",
         position_m: float = 1e-6,
@@ -64,8 +63,9 @@ class InverseSolver:
         threads: int | None = None,
     ):
         self.whole, self.kind, self.seed = chain, kind, seed
-        whole = chain, np.arange(chain.n)
-        self.chain, self._kept = whole if kind == "pose" else moving_joints(chain, axis=kind == "axis")
+        self.chain, self._kept = chain, np.arange(chain.n)
+        if kind != "pose" and chain.geometry:  # where axes are, functions do not say
+            self.chain, self._kept = moving_joints(chain.geometry, axis=kind == "axis")
         self.accuracy = Accuracy(position_m, angle_rad, length_m or chain.reach / 2 or 1.0)
         self._workers = thread_count(threads)
         self._execution = {"precision": precision, "device": device, "threads": threads}
@@ -150,7 +150,7 @@ class InverseSolver:
         None of a robot that is defined by a Python class: nothing is known to hold that.
         """
         chain, slack = self.chain, self.accuracy.position_m
-        if isinstance(chain, HostChain):
+        if chain.geometry is None:
             return np.zeros(len(position), bool)
         far = np.linalg.norm(position - chain.center, axis=1) > chain.reach + slack
         low, high = reachable_box(chain, chain.lower_limits, chain.upper_limits)

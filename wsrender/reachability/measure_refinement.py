@@ -13,7 +13,7 @@ from wsrender.reachability.dimension import FLAT, TipSet, tip_set
 from wsrender.reachability.reached_set import FalseNegatives, tolerance_m
 from wsrender.reachability.volume_estimate import Event, VolumeEstimate
 from wsrender.reachability.volume_refinement import by_the_origin, decided_volumes
-from wsrender.robots.chain import Chain
+from wsrender.robots.kinematics import Kinematics
 from wsrender.volume.measure import QUANTITIES, UNITS
 
 CURVED = {0: "the tip does not move", 1: "the tip stays on a curve", 2: "the tip stays on a surface"}
@@ -46,7 +46,7 @@ class RefinedMeasure:
 
 
 def refined_measure(
-    chain: Chain,
+    chain: Kinematics,
     tolerance: float,
     *,
     seed: int = 0,
@@ -61,7 +61,7 @@ def refined_measure(
 
 
 def refined_measures(
-    chains: Sequence[Chain],
+    chains: Sequence[Kinematics],
     events: Mapping[str, Event],
     tolerance: float,
     *,
@@ -111,7 +111,7 @@ def refined_measures(
     }
 
 
-def _own_frame(chains: list[Chain], first: TipSet) -> np.ndarray:
+def _own_frame(chains: list[Kinematics], first: TipSet) -> np.ndarray:
     """The frame (4, 4) whose first axes hold the positions of all chains, if any does.
 
     That of a volume is the base frame of a single chain, where the box that holds the reach is smallest.
@@ -132,7 +132,7 @@ def _without_measure(sets: list[TipSet], T_world_own: np.ndarray) -> str:
     return APART[dimension] if (np.array(beside) > np.array(own) + slack).any() else ""
 
 
-def unmeasured(chain: Chain, reason: str) -> RefinedMeasure:
+def unmeasured(chain: Kinematics, reason: str) -> RefinedMeasure:
     """No volume of what a chain reaches, for a reason."""
     return _without("volume", reason, tolerance_m(chain), 1)
 

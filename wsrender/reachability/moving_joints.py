@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 
 from wsrender.robots.chain import Chain
-from wsrender.robots.host_chain import HostChain
 
 ON_AXIS = 1e-12  # distance of a point from an axis that counts as none, relative to the reach
 
@@ -15,11 +14,7 @@ def moving_joints(chain: Chain, axis: bool = False) -> tuple[Chain, np.ndarray]:
 
     With ``axis``: without those that leave the direction of the tip's z alone too. What is left has the same positions
     (and directions of z) as the whole chain; its orientations mean nothing more. At least one joint stays.
-
-    All joints of a robot that is defined by a Python class stay: where its axes are, it does not say.
     """
-    if isinstance(chain, HostChain):
-        return chain, np.arange(chain.n)
     T = chain.T_tip @ chain.T_tip_tool
     joints = len(chain.T_joint)
     nothing = ON_AXIS * max(chain.reach, 1.0)

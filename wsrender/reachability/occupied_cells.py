@@ -4,13 +4,13 @@ import numpy as np
 
 from wsrender.documents.sampling import Sobol
 from wsrender.engine import Evaluation, SweepPlan, devices_of, sweep
-from wsrender.robots.chain import Chain
+from wsrender.robots.kinematics import Kinematics
 from wsrender.sampling import plan_sampling
 from wsrender.volume.lattice import LatticeBlock
 
 
 def occupied_cells(
-    chain: Chain, block: LatticeBlock, count: int, seed: int, device: str, threads: int | None
+    chain: Kinematics, block: LatticeBlock, count: int, seed: int, device: str, threads: int | None
 ) -> np.ndarray:
     """Whether one of ``count`` Sobol samples falls into a cell of a block that holds the reach, (nx, ny, nz) bool.
 

@@ -6,13 +6,13 @@ from wsrender.engine import positions_at
 from wsrender.reachability.evidence import REACHABLE, UNDECIDED
 from wsrender.reachability.inverse_solver import InverseSolver
 from wsrender.reachability.reached_set import tolerance_m
-from wsrender.robots.chain import Chain
+from wsrender.robots.kinematics import Kinematics
 
 
 class ReachedPoints:
     """Decides positions in the world; ``undecided`` counts those of `reaches` that it could not decide."""
 
-    def __init__(self, chain: Chain, device: str = "cpu", threads: int | None = None):
+    def __init__(self, chain: Kinematics, device: str = "cpu", threads: int | None = None):
         self._solver = InverseSolver(chain, position_m=tolerance_m(chain), device=device, threads=threads)
         self._chain, self._threads = chain, threads
         self.undecided = 0

@@ -16,7 +16,7 @@ from wsrender.reachability.inverse_solver import InverseSolver
 from wsrender.reachability.occupied_cells import occupied_cells
 from wsrender.reachability.starts import inwards, towards_limits
 from wsrender.reachability.volume_estimate import QUANTILE, wilson
-from wsrender.robots.chain import Chain
+from wsrender.robots.kinematics import Kinematics
 from wsrender.robots.reachable_box import reachable_box
 from wsrender.sampling import plan_sampling
 from wsrender.volume.lattice import LatticeBlock
@@ -67,7 +67,7 @@ def tests_of(tolerance: float) -> int:
     return max(TESTS, ceil(QUANTILE**2 / (HIDDEN_SHARE * tolerance)))
 
 
-def tolerance_m(chain: Chain) -> float:
+def tolerance_m(chain: Kinematics) -> float:
     """Residual that counts as reached [m]: a shell so thin adds nothing to any volume that is not flat."""
     return POSITION * (chain.reach or 1.0)
 
@@ -81,7 +81,7 @@ class ReachedSet:
 
     def __init__(
         self,
-        chain: Chain,
+        chain: Kinematics,
         dimension: int,
         *,
         solid: bool,

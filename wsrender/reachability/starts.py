@@ -8,7 +8,7 @@ from scipy.spatial import KDTree
 
 from wsrender.documents.sampling import Sobol
 from wsrender.engine import configurations
-from wsrender.robots.chain import Chain
+from wsrender.robots.kinematics import Kinematics
 from wsrender.sampling import plan_sampling
 
 NEAR, NEAR_LIMITS, FURTHER = "near", "near limits", "further"
@@ -28,7 +28,7 @@ class Starts:
     """
 
     def __init__(
-        self, chain: Chain, features: Callable[[np.ndarray], np.ndarray], *, count: int, seed: int, workers: int
+        self, chain: Kinematics, features: Callable[[np.ndarray], np.ndarray], *, count: int, seed: int, workers: int
     ):
         self._chain, self._seed, self._count = chain, seed, count
         self._features, self._workers = features, workers
@@ -72,7 +72,7 @@ class Starts:
         return np.stack([anywhere, towards_limits(self._chain, limits)], axis=1).reshape(-1, self._chain.n)
 
 
-def towards_limits(chain: Chain, q: np.ndarray) -> np.ndarray:
+def towards_limits(chain: Kinematics, q: np.ndarray) -> np.ndarray:
     """Uniform samples (N, n) spread so that a share ON_LIMITS of the values stands on limits, the others between.
 
     Hinges without limits keep theirs.
@@ -82,7 +82,7 @@ def towards_limits(chain: Chain, q: np.ndarray) -> np.ndarray:
     return np.where(chain.periodic, q, np.clip(spread, chain.lower_limits, chain.upper_limits))
 
 
-def corners(chain: Chain) -> np.ndarray:
+def corners(chain: Kinematics) -> np.ndarray:
     """Configurations (C, n) with every coordinate at one of its limits: all, or so many drawn at random."""
     if 1 << chain.n <= MOST_CORNERS:
         upper = np.arange(1 << chain.n)[:, None] >> np.arange(chain.n) & 1
@@ -91,7 +91,7 @@ def corners(chain: Chain) -> np.ndarray:
     return np.where(upper, chain.upper_limits, chain.lower_limits)
 
 
-def inwards(chain: Chain, q: np.ndarray, share: float) -> np.ndarray:
+def inwards(chain: Kinematics, q: np.ndarray, share: float) -> np.ndarray:
     """Configurations (N, n) moved so that every coordinate is at least so much of its range off its limits."""
     margin = share * (chain.upper_limits - chain.lower_limits)
     return np.where(chain.periodic, q, np.clip(q, chain.lower_limits + margin, chain.upper_limits - margin))

@@ -12,7 +12,7 @@ from wsrender.errors import InputError
 from wsrender.reachability.evidence import CLEARLY, LABELS, UNDECIDED, UNREACHABLE
 from wsrender.reachability.inverse_solver import InverseSolver, Solutions
 from wsrender.robot import as_robot
-from wsrender.robots.chain import Chain
+from wsrender.robots.kinematics import Kinematics
 from wsrender.tolerances import TOLERANCES
 
 POSITION_TOLERANCE_M, ANGLE_TOLERANCE_RAD = 1e-5, 1e-5
@@ -86,7 +86,7 @@ def reachable(
     return Reachability(found.q, found.distance_m, found.angle_rad, labels, reasons)
 
 
-def check_tolerance(chain: Chain, position_tolerance_m: float, precision: str) -> None:
+def check_tolerance(chain: Kinematics, position_tolerance_m: float, precision: str) -> None:
     """InputError where a distance is below what a precision can tell."""
     least = 2 * TOLERANCES[precision].position(chain.reach)
     if not position_tolerance_m >= least:

@@ -15,7 +15,7 @@ from wsrender.pipeline.constraints.region import Region
 from wsrender.reachability.dimension import TipSet, tip_set
 from wsrender.reachability.reached_set import CELLS, FalseNegatives, ReachedSet, hidden_share, tests_of
 from wsrender.reachability.volume_estimate import Event, VolumeEstimate, estimate_volumes
-from wsrender.robots.chain import Chain
+from wsrender.robots.kinematics import Kinematics
 from wsrender.volume.lattice import LatticeBlock, block_around
 
 LEVELS = {1: 9, 2: 6, 3: 3}  # of the border, by the number of robots whose classes are combined; of more robots one
@@ -34,7 +34,7 @@ class RefinedVolumes:
     position_m: float
 
 
-def refined_volume(chain: Chain, tolerance: float, **options) -> tuple[VolumeEstimate, RefinedVolumes]:
+def refined_volume(chain: Kinematics, tolerance: float, **options) -> tuple[VolumeEstimate, RefinedVolumes]:
     """The volume that the end effector of one chain reaches; options of `refined_volumes`.
 
     In the base frame, where the box that holds the reach is smallest, and near the base: no volume depends on a
@@ -45,7 +45,7 @@ def refined_volume(chain: Chain, tolerance: float, **options) -> tuple[VolumeEst
 
 
 def refined_volumes(
-    chains: Sequence[Chain],
+    chains: Sequence[Kinematics],
     events: Mapping[str, Event],
     tolerance: float,
     *,
@@ -68,7 +68,7 @@ def refined_volumes(
     )
 
 
-def by_the_origin(chains: Sequence[Chain]) -> list[Chain]:
+def by_the_origin(chains: Sequence[Kinematics]) -> list[Kinematics]:
     """The chains in a world where their measures are the same and their positions have all their digits.
 
     One chain stands with its base at the origin; of several that are far away, the first.
@@ -79,7 +79,7 @@ def by_the_origin(chains: Sequence[Chain]) -> list[Chain]:
 
 
 def decided_volumes(
-    chains: Sequence[Chain],
+    chains: Sequence[Kinematics],
     sets: Sequence[TipSet],
     T_world_own: np.ndarray,
     dimension: int,

@@ -10,7 +10,7 @@ from wsrender.reachability.evidence import LABELS, REACHABLE
 from wsrender.reachability.inverse_solver import InverseSolver
 from wsrender.reachability.reached_set import tolerance_m
 from wsrender.reachability.targets import INCONCLUSIVE, JOINT_LIMITS, OUT_OF_REACH, TOO_CLOSE, reasons_of
-from wsrender.robots.chain import Chain
+from wsrender.robots.kinematics import Kinematics
 from wsrender.volume.neighbours import inner_and_outer
 from wsrender.volume.volume_data import VolumeData
 from wsrender.volume.voxels import Voxels
@@ -23,7 +23,7 @@ UNITS = {
 
 
 def label_voxels(
-    chain: Chain,
+    chain: Kinematics,
     volume: VolumeData,
     *,
     seed: int = 0,

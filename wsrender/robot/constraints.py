@@ -11,13 +11,12 @@ from wsrender.pipeline.constraints.constraint import Constraint
 from wsrender.pipeline.constraints.expression import ExpressionConstraint
 from wsrender.pipeline.constraints.registry import constraints_of
 from wsrender.robot.model_robot import Robot
-from wsrender.robot.user_robot import HostRobot
 
 
 def constraints_for(robot: Robot, choice: Constraints | None) -> tuple[Constraint, ...]:
     """The constraints of a job for its robot. Raises InputError for one that is unknown, or not for such a robot."""
     constraints = constraints_of(choice)
-    for each in constraints if isinstance(robot, HostRobot) else ():
+    for each in constraints if robot.definition else ():
         if isinstance(each, ExpressionConstraint):
             raise InputError(f"constraints.{each.name}", "is not available for a robot that is defined by a class")
     return constraints

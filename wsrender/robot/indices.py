@@ -12,7 +12,7 @@ from wsrender.errors import InputError, MissingInertiaError
 from wsrender.indices.index_catalogue import CONVENTIONS, is_dynamic, option_values, resolve
 from wsrender.notices import Notice, warn
 from wsrender.robot.model_robot import Robot, configuration_rows
-from wsrender.robot.user_robot import HostRobot, as_robot
+from wsrender.robot.user_robot import as_robot
 from wsrender.robots.model_warning import ModelWarning
 from wsrender.robots.plausibility import need_ranges
 
@@ -103,13 +103,8 @@ def evaluation_of(
     if torque_scaling and chain.effort_limits is None:
         raise MissingInertiaError("torque_scaling", f"the model of {robot.name} lacks effort limits for some joint")
     characteristic_length_m = argument("characteristic_length_m", positive, characteristic_length_m)
-    if isinstance(robot, HostRobot):
-        if inertia == "mujoco":
-            raise InputError("inertia", f'"mujoco" is not allowed: {robot.name} has no model but its own class')
-        host_inertia, notices = robot.inertia_matrix if dynamic else None, ()
-    else:
-        notices = _checked_inertias(robot, precision) if dynamic else ()
-        host_inertia = robot.mujoco_inertia if dynamic and inertia == "mujoco" else None
+    host_inertia = robot.given_inertia(inertia)
+    notices = _checked_inertias(robot, precision) if dynamic and not robot.definition else ()
     if (penalty := _penalty(joint_limit_penalty)) is not None:
         need_ranges(chain, "robot.limits")
     return Evaluation(
@@ -120,7 +115,7 @@ def evaluation_of(
         penalty=penalty,
         characteristic_length_m=characteristic_length_m,
         torque_scaling=torque_scaling,
-        host_inertia=host_inertia,
+        host_inertia=host_inertia if dynamic else None,
         options=option_values(index_options, names),
         notices=notices,
     )

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from wsrender.robot.model_robot import Robot, configuration_rows
-from wsrender.robot.user_robot import HostRobot
 
 if TYPE_CHECKING:
     import mujoco
@@ -30,7 +29,7 @@ def link_shapes(robot: Robot, q: Any) -> list[LinkShape]:
     Geometries in groups above 2 (collision shapes, by custom) are left out where the model has others; planes and
     height fields always are.
     """
-    if isinstance(robot, HostRobot):
+    if robot.definition:
         return []
     import mujoco
 

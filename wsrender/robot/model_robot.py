@@ -1,6 +1,6 @@
 """A robot compiled by MuJoCo."""
 
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -11,7 +11,7 @@ from wsrender.documents.robot import RobotSpec, Transform
 from wsrender.errors import InputError, MissingInertiaError
 from wsrender.notices import Notice
 from wsrender.robots import described, load, load_dh, load_library, load_mjcf, load_path, load_uploaded, load_urdf
-from wsrender.robots.chain import Chain
+from wsrender.robots.kinematics import Kinematics
 from wsrender.robots.plausibility import NO_LIMITS
 
 if TYPE_CHECKING:
@@ -42,14 +42,19 @@ class Robot:
         self.name = name or loaded.chain.name
 
     @property
-    def chain(self) -> Chain:
-        """The kinematic chain."""
+    def chain(self) -> Kinematics:
+        """Joint names and limits, and how the joints move the end effector; its ``geometry`` is a model's Chain."""
         return self._loaded.chain
 
     @property
     def model(self) -> "mujoco.MjModel":
         """The compiled MuJoCo model."""
         return self._loaded.model
+
+    @property
+    def definition(self) -> str | None:
+        """The Python class that defines the robot, ``module.Class``; None where a model does."""
+        return None
 
     @property
     def model_hash(self) -> str:
@@ -136,15 +141,19 @@ class Robot:
             out[i] = coupling.T @ full[dofs] @ coupling
         return out
 
+    def given_inertia(self, inertia: str) -> Callable[[np.ndarray], np.ndarray] | None:
+        """What the host computes inertia matrices with, for the field ``inertia`` of a job; None: kernels do."""
+        return self.mujoco_inertia if inertia == "mujoco" else None
+
     def placed(self, placement: Transform) -> "Robot":
         """The same robot with its base frame elsewhere in the world."""
-        loaded = replace(self._loaded, chain=self.chain.placed(placement.matrix()))
+        loaded = replace(self._loaded, chain=self._loaded.chain.placed(placement.matrix()))
         spec = self.spec and self.spec.model_copy(update={"placement": placement})
         return Robot(loaded, spec, self.name, self.base, self.tip)
 
     def held(self, values: Mapping[str, float]) -> "Robot":
         """The same robot with joints, by name, held at a value [rad or m]."""
-        chain = self.chain.held(values)
+        chain = self._loaded.chain.held(values)
         kept = tuple(notice for notice in self.notices if notice.code != NO_LIMITS or chain.endless)
         return Robot(replace(self._loaded, chain=chain, notices=kept), self.spec, self.name, self.base, self.tip)
 
@@ -153,24 +162,9 @@ class Robot:
 
         The base stands at the first joint where its frame is many reaches away, as that of a map may be.
         """
-        chain = self.chain
-        out = []
-        for row in configuration_rows(q, chain.n):
-            T = chain.T_world_base.copy()
-            points = [chain.foot.copy()]
-            moved = chain.joint_scale * row[chain.joint_source] + chain.joint_offset
-            for T_joint, revolute, value in zip(chain.T_joint, chain.joint_is_revolute, moved, strict=True):
-                T = T @ T_joint
-                motion = np.eye(4)
-                if revolute:
-                    motion[:2, :2] = [[np.cos(value), -np.sin(value)], [np.sin(value), np.cos(value)]]
-                else:
-                    motion[2, 3] = value
-                T = T @ motion
-                points.append(T[:3, 3].copy())
-            points.append((T @ chain.T_tip @ chain.T_tip_tool)[:3, 3])
-            out.append(points)
-        return np.array(out)
+        chain, rows = self._loaded.chain, configuration_rows(q, self.chain.n)
+        foot = np.broadcast_to(chain.foot, (len(rows), 1, 3))
+        return np.concatenate([foot, chain.frames(rows)[..., :3, 3]], axis=1)
 
     def _kinematics(self, q, precision, device, with_inertia=False):
         from wsrender.engine import evaluate_kinematics

@@ -1,6 +1,7 @@
 """A robot defined by a Python class with its own kinematics (local runs only)."""
 
 import hashlib
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Protocol, runtime_checkable
@@ -12,7 +13,8 @@ from wsrender.errors import InputError, ModelError
 from wsrender.notices import Notice
 from wsrender.robot.model_robot import Robot, configuration_rows, load_robot
 from wsrender.robots import of_mujoco
-from wsrender.robots.host_chain import HostChain
+from wsrender.robots.chain import Chain
+from wsrender.robots.host_kinematics import HostKinematics
 
 HASHED_POSES = 16
 TURNING = 1e-6  # rad per unit of a joint: less is rounding of finite differences
@@ -50,13 +52,18 @@ class HostRobot(Robot):
             raise ModelError("joint_names", f"{len(names)} names for {n} rows of limits")
         if len(set(names)) < n:
             raise ModelError("joint_names", f"{', '.join(names)} are not distinct")
-        chain = _chain(self.name, names, limits, _Kinematics(user, limits), hasattr(user, "inertia_matrix"))
+        chain = _kinematics(self.name, names, limits, _Checked(user, limits), hasattr(user, "inertia_matrix"))
         self._chain = chain.placed(T_world_base)
 
     @property
-    def chain(self) -> HostChain:
+    def chain(self) -> HostKinematics:
         """Names, kinds and limits of the joints, and the user's kinematics."""
         return self._chain
+
+    @property
+    def definition(self) -> str:
+        """The class, ``module.Class``."""
+        return f"{type(self.user).__module__}.{type(self.user).__qualname__}"
 
     @property
     def notices(self) -> tuple[Notice, ...]:
@@ -89,6 +96,12 @@ class HostRobot(Robot):
         values = self.user.inertia_matrix(rows)  # type: ignore[attr-defined]
         return _finite("inertia_matrix", _shaped("inertia_matrix", values, (len(rows), n, n)))
 
+    def given_inertia(self, inertia: str) -> Callable[[np.ndarray], np.ndarray]:
+        """The user's own. Raises InputError for those of a model."""
+        if inertia == "mujoco":
+            raise InputError("inertia", f'"mujoco" is not allowed: {self.name} has no model but its own class')
+        return self.inertia_matrix
+
     def placed(self, placement: Transform) -> Robot:
         """The same robot with its base frame, in which the class gives its poses, elsewhere in the world."""
         return HostRobot(self.user, placement.matrix())
@@ -100,7 +113,7 @@ class HostRobot(Robot):
 
 
 @dataclass(frozen=True, eq=False)
-class _Kinematics:
+class _Checked:
     """The class's poses and Jacobians, checked: finite numbers of the right shape at least within the limits."""
 
     user: UserRobot
@@ -161,9 +174,14 @@ def as_robot(robot: Any) -> Robot:
 def robot_with_model(robot: Any) -> Robot:
     """The robot, if it has a model; InputError for one that is defined by a Python class."""
     subject = as_robot(robot)
-    if isinstance(subject, HostRobot):
+    if subject.definition:
         raise InputError("robot", f"{subject.name} is defined by a Python class; a model or a DH table is needed")
     return subject
+
+
+def model_chain(robot: Any) -> Chain:
+    """The chain of a robot that has a model; InputError as `robot_with_model` raises it."""
+    return robot_with_model(robot)._loaded.chain
 
 
 def _limits(user: UserRobot) -> np.ndarray:
@@ -199,32 +217,22 @@ def _finite(name: str, array: np.ndarray) -> np.ndarray:
     return array
 
 
-def _chain(
-    name: str, joint_names: tuple[str, ...], limits: np.ndarray, kinematics: _Kinematics, has_inertia: bool
-) -> HostChain:
-    n = len(limits)
+def _kinematics(
+    name: str, joint_names: tuple[str, ...], limits: np.ndarray, checked: _Checked, has_inertia: bool
+) -> HostKinematics:
     # A joint that turns nothing is a slide.
-    turning = np.abs(kinematics.jacobian(_between(*limits.T))[:, 3:]).max(axis=(0, 1)) > TURNING
-    return HostChain(
+    turning = np.abs(checked.jacobian(_between(*limits.T))[:, 3:]).max(axis=(0, 1)) > TURNING
+    return HostKinematics(
         name=name,
         base_frame="base",
         tip_frame="tip",
         joint_names=joint_names,
         lower_limits=limits[:, 0],
         upper_limits=limits[:, 1],
-        periodic=np.zeros(n, bool),
+        periodic=np.zeros(len(limits), bool),
         effort_limits=None,
-        joint_is_revolute=turning,
-        joint_source=np.arange(n),
-        joint_scale=np.ones(n),
-        joint_offset=np.zeros(n),
-        T_joint=np.tile(np.eye(4), (n, 1, 1)),
-        T_tip=np.eye(4),
-        mass=np.zeros(n),
-        center_of_mass=np.zeros((n, 3)),
-        inertia=np.zeros((n, 3, 3)),
-        armature=np.zeros(n),
+        turning=turning,
         has_inertia=has_inertia,
-        base_pose=kinematics.pose,
-        base_jacobian=kinematics.jacobian,
+        base_pose=checked.pose,
+        base_jacobian=checked.jacobian,
     )

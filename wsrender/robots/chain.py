@@ -1,14 +1,13 @@
 """The kinematic chain from a base to an end effector, taken from a compiled MuJoCo model."""
 
-import hashlib
-from collections.abc import Mapping
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Self
 
 import numpy as np
 
-FAR = 8  # reaches away from the world's origin that single precision bears: three of its 24 bits
+from wsrender.robots.kinematics import FAR, Kinematics
+from wsrender.robots.reachable_box import reachable_boxes
 
 
 def _identity() -> np.ndarray:
@@ -21,8 +20,19 @@ def _first_moved(T_joint: np.ndarray, by: np.ndarray) -> np.ndarray:
     return T_joint
 
 
+def _motions(turns: bool, by: np.ndarray) -> np.ndarray:
+    """Turns about z by angles (N,), or slides along it, (N, 4, 4)."""
+    T = np.tile(np.eye(4), (len(by), 1, 1))
+    if turns:
+        c, s = np.cos(by), np.sin(by)
+        T[:, 0, 0], T[:, 0, 1], T[:, 1, 0], T[:, 1, 1] = c, -s, s, c
+    else:
+        T[:, 2, 3] = by
+    return T
+
+
 @dataclass(frozen=True, eq=False)
-class Chain:
+class Chain(Kinematics):
     """Joints in order from base to end effector, with everything the kernels need, as float64 arrays.
 
     A chain has ``L`` joints driven by ``n`` coordinates (the configuration ``q``); ``L > n`` only where
@@ -36,14 +46,6 @@ class Chain:
     frame for ``i = 0``); the joint then rotates about, or translates along, its z.
     """
 
-    name: str
-    base_frame: str
-    tip_frame: str
-    joint_names: tuple[str, ...]  # of the n coordinates
-    lower_limits: np.ndarray  # (n,) [rad or m]; -pi where periodic, -inf where endless
-    upper_limits: np.ndarray  # (n,) [rad or m]; +pi where periodic, inf where endless
-    periodic: np.ndarray  # (n,) bool: a hinge without limits
-    effort_limits: np.ndarray | None  # (n,) [N m or N], None where the model has none for some joint
     joint_is_revolute: np.ndarray  # (L,) bool
     joint_source: np.ndarray  # (L,) int
     joint_scale: np.ndarray  # (L,)
@@ -60,18 +62,10 @@ class Chain:
     leader_is_revolute: np.ndarray | None = None  # (n,) bool; None: as the first joint that each coordinate moves
     with_branches: "Chain | None" = None  # where bodies on other branches move too: see `dynamic`
 
-    def __post_init__(self):
-        for f in fields(self):
-            value = getattr(self, f.name)
-            if isinstance(value, np.ndarray):
-                value = np.array(value, order="C")
-                value.setflags(write=False)
-                object.__setattr__(self, f.name, value)
-
     @property
-    def n(self) -> int:
-        """Number of coordinates: the length of a configuration."""
-        return len(self.joint_names)
+    def geometry(self) -> "Chain":
+        """Itself."""
+        return self
 
     @property
     def revolute(self) -> np.ndarray:
@@ -79,21 +73,6 @@ class Chain:
         if self.leader_is_revolute is not None:
             return self.leader_is_revolute
         return np.array([bool(self.joint_is_revolute[self.joint_source == k][0]) for k in range(self.n)])
-
-    @cached_property
-    def content_hash(self) -> str:
-        """SHA-256 of every number and name of the chain, hexadecimal."""
-        digest = hashlib.sha256()
-        for f in fields(Chain):
-            value = getattr(self, f.name)
-            digest.update(f.name.encode())
-            if isinstance(value, np.ndarray):
-                digest.update(f"{value.dtype.str}{value.shape}".encode() + value.tobytes())
-            elif isinstance(value, Chain):
-                digest.update(value.content_hash.encode())
-            else:
-                digest.update(repr(value).encode())
-        return digest.hexdigest()
 
     @property
     def dynamic(self) -> "Chain":
@@ -107,33 +86,37 @@ class Chain:
         names = ("lower_limits", "upper_limits", "periodic", "T_world_base", "T_tip_tool")
         return replace(self.with_branches, **{name: getattr(self, name) for name in names})
 
-    def placed(self, T_world_base: np.ndarray | None = None, T_tip_tool: np.ndarray | None = None) -> Self:
-        """The same chain with its base placed in the world and a tool added at its tip ((4, 4) each)."""
-        changes = {"T_world_base": T_world_base, "T_tip_tool": T_tip_tool}
-        return replace(self, **{name: value for name, value in changes.items() if value is not None})
-
-    def held(self, values: Mapping[str, float]) -> Self:
-        """The same chain with joints, by name, held at a value [rad or m]."""
-        held = np.array([name in values for name in self.joint_names])
-        value = np.array([values.get(name, 0.0) for name in self.joint_names])
-        return replace(
-            self,
-            lower_limits=np.where(held, value, self.lower_limits),
-            upper_limits=np.where(held, value, self.upper_limits),
-            periodic=self.periodic & ~held,
-        )
-
     @property
-    def endless(self) -> tuple[str, ...]:
-        """Names of the coordinates without usable limits: slides without any, hinges that whole turns do not suit."""
-        bounded = np.isfinite(self.lower_limits) & np.isfinite(self.upper_limits)
-        return tuple(name for name, ends in zip(self.joint_names, bounded, strict=True) if not ends)
+    def coupling(self) -> np.ndarray:
+        """(L, n) derivative of the joints' displacements by the configuration."""
+        matrix = np.zeros((len(self.joint_source), self.n))
+        matrix[np.arange(len(matrix)), self.joint_source] = self.joint_scale
+        return matrix
 
-    def within(self, share: float) -> np.ndarray:
-        """The configuration (n,) at a share 0 … 1 of every range [rad or m]; 0 where a coordinate is endless."""
-        ends = np.stack([self.lower_limits, self.upper_limits])
-        lower, upper = np.where(np.isfinite(ends).all(axis=0), ends, 0.0)
-        return lower + share * (upper - lower)
+    def frames(self, q: np.ndarray) -> np.ndarray:
+        """Frames of the joints after their motion, then of the tool point, in the world, (N, L + 1, 4, 4) float64."""
+        moved = self.joint_scale * q[:, self.joint_source] + self.joint_offset
+        T, frames = self.T_world_base, []
+        for T_joint, turns, by in zip(self.T_joint, self.joint_is_revolute, moved.T, strict=True):
+            T = T @ T_joint @ _motions(turns, by)
+            frames.append(T)
+        return np.stack([*frames, T @ self.T_tip @ self.T_tip_tool], axis=1)
+
+    def poses(self, q: np.ndarray) -> np.ndarray:
+        """Poses (N, 4, 4) of the tool point in the world at ``q`` (N, n), by the host in float64."""
+        return self.frames(q)[:, -1]
+
+    def jacobians(self, q: np.ndarray) -> np.ndarray:
+        """Jacobians (N, 6, n), linear then angular rows, at the tool point in world axes; by the host in float64."""
+        T = self.frames(q)
+        axes, arms = T[:, :-1, :3, 2], T[:, -1:, :3, 3] - T[:, :-1, :3, 3]
+        turns = self.joint_is_revolute[:, None]
+        columns = np.where(turns, np.cross(axes, arms), axes), np.where(turns, axes, 0.0)
+        return np.concatenate(columns, axis=2).transpose(0, 2, 1) @ self.coupling
+
+    def boxes(self, lower: np.ndarray, upper: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Corners (N, 3) [m] of boxes around all positions with q in lower … upper (N, n), never too small."""
+        return reachable_boxes(self, lower, upper)
 
     @cached_property
     def reach(self) -> float:

@@ -11,12 +11,13 @@ import numpy as np
 from wsrender.errors import ModelError
 from wsrender.notices import Notice
 from wsrender.robots import branches, frames
-from wsrender.robots.chain import FAR, Chain
+from wsrender.robots.chain import Chain
 from wsrender.robots.compiled_model import CompiledModel
 from wsrender.robots.couplings import Couplings, refuse_loops
 from wsrender.robots.frames import Frame, joints_of, transform
 from wsrender.robots.gripper_tip import gripper_notices
 from wsrender.robots.inertials import MASSLESS
+from wsrender.robots.kinematics import FAR
 from wsrender.robots.limits import Drive, coordinate_limits, effort_limits, joint_name
 from wsrender.robots.loaded_robot import LoadedRobot
 

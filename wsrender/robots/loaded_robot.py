@@ -31,10 +31,7 @@ class LoadedRobot:
     @property
     def coupling(self) -> np.ndarray:
         """(L, n) derivative of the displacements of the chain's joints by the configuration."""
-        chain = self.chain
-        matrix = np.zeros((len(chain.joint_source), chain.n))
-        matrix[np.arange(len(matrix)), chain.joint_source] = chain.joint_scale
-        return matrix
+        return self.chain.coupling
 
     @property
     def moving(self) -> tuple[np.ndarray, np.ndarray]:

@@ -8,6 +8,7 @@ import numpy as np
 from wsrender.errors import InputError
 from wsrender.notices import Notice
 from wsrender.robots.chain import Chain
+from wsrender.robots.joint_space import JointSpace
 
 NO_LIMITS, LENGTH, ANGLE = "no_usable_limits", "units_length", "units_angle"
 
@@ -25,7 +26,7 @@ def doubts(
     return [notice for notice in found if notice is not None]
 
 
-def need_ranges(chain: Chain, field: str) -> None:
+def need_ranges(chain: JointSpace, field: str) -> None:
     """Raises InputError, naming ``field``, where a joint has no usable limits."""
     if not chain.endless:
         return

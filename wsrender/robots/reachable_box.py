@@ -1,26 +1,27 @@
 """Boxes that hold every position of an end effector, by interval arithmetic along the chain."""
 
 from math import pi
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsrender.robots.chain import Chain
-from wsrender.robots.host_chain import HostChain
+from wsrender.robots.kinematics import Kinematics
+
+if TYPE_CHECKING:
+    from wsrender.robots.chain import Chain
 
 
-def reachable_box(chain: Chain, lower: np.ndarray, upper: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def reachable_box(kinematics: Kinematics, lower: np.ndarray, upper: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Lower and upper corner (3,) [m] in the world of a box around all positions with q in lower … upper (n,).
 
     Never too small, and thin where the workspace is planar or linear. Of a robot that is defined by a Python class it
-    is `HostChain.box`.
+    is drawn around samples, with a margin: no proof (see `HostKinematics.boxes`).
     """
-    if isinstance(chain, HostChain):
-        return chain.box(lower, upper)
-    low, high = reachable_boxes(chain, lower[None], upper[None])
+    low, high = kinematics.boxes(lower[None], upper[None])
     return low[0], high[0]
 
 
-def reachable_boxes(chain: Chain, lower: np.ndarray, upper: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def reachable_boxes(chain: "Chain", lower: np.ndarray, upper: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Corners (N, 3) [m] of boxes around all positions with q in lower … upper (N, n), each of a model's chain.
 
     From the tip to the base, the box that holds the tip in one joint's frame gives the box that holds it in the

@@ -11,7 +11,6 @@ from wsrender.documents.sampling import PYTHON_COUNT, Sobol
 from wsrender.progress import RunProgress
 from wsrender.results.result import Result
 from wsrender.robot import Robot, as_robot
-from wsrender.robot.user_robot import HostRobot
 from wsrender.run.steps import Progress, execute
 
 
@@ -35,7 +34,7 @@ def arm_entry(robot: Robot) -> dict[str, Any]:
 
 def sampling_entry(sampling: Any, robot: Robot | None = None) -> dict[str, Any]:
     """The field ``sampling`` of a job document, if one is given; of a robot that is a Python class always."""
-    if sampling is None and isinstance(robot, HostRobot):
+    if sampling is None and robot and robot.definition:
         sampling = Sobol(PYTHON_COUNT)
     if sampling is None:
         return {}

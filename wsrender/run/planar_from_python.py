@@ -5,7 +5,7 @@ from typing import Any
 
 from wsrender.geometry.planar.exact_boundary import ExactBoundary
 from wsrender.results.result import Result
-from wsrender.robot import as_robot, robot_with_model
+from wsrender.robot import as_robot, model_chain
 from wsrender.run.from_python import arm_entry, execute_here, plain, sampling_entry
 from wsrender.run.steps import Progress
 from wsrender.sampling import held_chain
@@ -39,4 +39,4 @@ def exact_boundary(robot: Any, *, locked: Mapping[str, float] | None = None) -> 
     ``locked`` holds joints, by name, at a value [rad or m]. Raises ModelError, naming the joint, for an arm that is not
     planar; InputError for an unknown joint or a value beyond its limits.
     """
-    return ExactBoundary.of(held_chain(robot_with_model(robot).chain, locked or {}))
+    return ExactBoundary.of(held_chain(model_chain(robot), locked or {}))

@@ -23,7 +23,8 @@ def usable(robot: Robot, arm: Arm, path: ArmPath, job: Any) -> Robot:
     robot = robot.held(held) if held else robot
     if arm.needs_ranges:
         need_ranges(robot.chain, dotted(path, "robot", "limits"))
-    if any(notice.code == LENGTH for notice in robot.notices) and (long := too_long(robot.chain)):
+    chain = robot.chain.geometry
+    if chain and any(notice.code == LENGTH for notice in robot.notices) and (long := too_long(chain)):
         raise ResourceError(dotted(path, "robot", "length_unit_m"), _too_large(robot, job, long))
     return robot
 

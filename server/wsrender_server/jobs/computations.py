@@ -10,7 +10,7 @@ from sqlalchemy import delete, func, select, update
 from sqlalchemy.orm import Session
 
 from wsrender import __version__
-from wsrender.documents import canonical_json, parse_job
+from wsrender.analyses.jobs import canonical_json, parse_job
 from wsrender.errors import DocumentError
 from wsrender_server.jobs.changes import Changes
 from wsrender_server.jobs.database import Transactions

@@ -31,7 +31,6 @@ from wsrender.notices import Notice
 from wsrender.reachability.measure_refinement import refined_measure
 from wsrender.reachability.moving_joints import moving_joints
 from wsrender.reachability.reached_points import ReachedPoints
-from wsrender.robot import robot_with_model
 from wsrender.robots.chain import Chain
 from wsrender.sampling import held_chain
 from wsrender.volume.table import Table
@@ -63,7 +62,7 @@ class BoundaryPatchesAnalysis(Analysis):
     @cached_property
     def chain(self) -> Chain:
         """Of the joints that move the end point."""
-        return moving_joints(held_chain(robot_with_model(self.robot).chain, self.job.locked))[0]
+        return moving_joints(held_chain(model_chain(self.robot), self.job.locked))[0]
 
     @cached_property
     def arm(self) -> SpatialArm:

@@ -68,7 +68,7 @@ class IndicesAtAnalysis(Analysis):
             self.q,
             self.job.precision,
             self.device,
-            with_orientation=self.evaluation.host_chain is None,
+            with_orientation=not self.evaluation.given_kinematics,
             threads=execution.threads,
             constraints=self.constraints,
         )

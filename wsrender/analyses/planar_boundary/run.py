@@ -22,7 +22,6 @@ from wsrender.geometry.planar.monte_carlo import MonteCarloBoundary, monte_carlo
 from wsrender.geometry.planar.planar_chain import PlanarChain, planar_chain
 from wsrender.geometry.planar.segments import segment_entry, segment_table
 from wsrender.notices import Notice
-from wsrender.robot import robot_with_model
 from wsrender.sampling import plan_sampling
 from wsrender.volume.table import Table
 
@@ -39,7 +38,7 @@ class PlanarBoundaryAnalysis(Analysis):
 
     def prepare(self, device: str, target: str) -> Settled:
         """Raises ModelError, naming the joint, for an arm that is not planar; InputError for one without a model."""
-        samples = plan_sampling(robot_with_model(self.robot).chain, self.job.sampling).count
+        samples = plan_sampling(model_chain(self.robot), self.job.sampling).count
         check_memory(SAMPLE_BYTES * samples, "sampling", f"{samples:.4g} positions", "take fewer samples")
         _ = self.chain
         return Settled(device, target, ((0, samples),))
@@ -47,7 +46,7 @@ class PlanarBoundaryAnalysis(Analysis):
     @cached_property
     def chain(self) -> PlanarChain:
         """The arm in its plane."""
-        return planar_chain(robot_with_model(self.robot).chain.held(self.job.sampling.locked))
+        return planar_chain(model_chain(self.robot).held(self.job.sampling.locked))
 
     @property
     def cost(self) -> Cost:

@@ -29,7 +29,6 @@ from wsrender.reachability.holes import share_of_holes, share_unseen
 from wsrender.reachability.voxel_labels import counts
 from wsrender.robot import Robot
 from wsrender.robot.constraints import check_admitted, samples_entry
-from wsrender.robots.host_chain import HostChain
 from wsrender.sampling import subsample
 from wsrender.volume.distribution_map import DistributionMap
 from wsrender.volume.volume_data import VolumeData
@@ -100,7 +99,7 @@ def workspace_draft(job: WorkspaceJob, robot: Robot, found: WorkspacePartial, th
 def _structural_length(robot: Robot, measure: dict[str, Any] | None, *, constrained: bool) -> dict[str, Any]:
     """The index, of the refined volume alone; else None, with the reason."""
     index, reason = None, ""
-    if isinstance(robot.chain, HostChain):
+    if (chain := robot.chain.geometry) is None:
         reason = "a robot that is defined by a Python class has no lengths of links"
     elif constrained:
         reason = "it says what the links are worth, not what constraints leave of the workspace"
@@ -110,7 +109,7 @@ def _structural_length(robot: Robot, measure: dict[str, Any] | None, *, constrai
         reason = measure["reason"]
     elif measure["quantity"] != "volume":
         reason = f"the tip reaches no volume; what it reaches is measured by its {measure['quantity']}"
-    elif not (index := structural_length_index(robot.chain, measure["value"])):
+    elif not (index := structural_length_index(chain, measure["value"])):
         reason = "the volume is 0"
     return {"structural_length_index": index, "structural_length_reason": reason}
 
@@ -126,7 +125,7 @@ def _notices(
 ) -> Iterator[Notice]:
     """What to know of the volume: too few samples, or voxels that are far from what is reachable."""
     holes = None
-    if solid and not isinstance(robot.chain, HostChain):
+    if solid and robot.chain.geometry:
         held = robot.chain.held(job.sampling.locked)
         region = next((each for each in plan.constraints if isinstance(each, Region)), None)
         holes = share_of_holes(held, volume, seed=plan.sampling.seed, threads=threads, region=region)

@@ -137,7 +137,7 @@ class WorkspaceAnalysis(Analysis):
     def _check(self, plan: SweepPlan) -> None:
         """Whether the parts of the job go together; raises InputError, ResourceError."""
         job = self.job
-        if job.keep_map and "orientation" in job.map_columns and self.evaluation.host_chain is not None:
+        if job.keep_map and "orientation" in job.map_columns and self.evaluation.given_kinematics:
             raise InputError("map_columns", "orientation is not kept for a user-defined robot")
         if isinstance(job.sampling, Converge):
             _converging_index(plan, job.sampling)

@@ -6,7 +6,7 @@ from typing import Any, Literal, Protocol, runtime_checkable
 
 import numpy as np
 
-from wsrender.robots.chain import Chain
+from wsrender.robots.kinematics import Kinematics
 
 Structure = Literal["base_joint", "trailing_joints"]
 """What a grid repeats: every level of the first joint, and of last joints whose axes pass through the tip."""
@@ -35,7 +35,7 @@ class Constraint(Protocol):
         """Structure of a grid that survives it."""
         ...
 
-    def pack(self, chain: Chain, origin: np.ndarray) -> np.ndarray:
+    def pack(self, chain: Kinematics, origin: np.ndarray) -> np.ndarray:
         """Its numbers (D,) float64, of positions counted from ``origin`` (3,) in the world [m]."""
         ...
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from wsrender.pipeline.constraints.constraint import Expressed, Structure
-from wsrender.robots.chain import Chain
+from wsrender.robots.kinematics import Kinematics
 
 
 @dataclass(frozen=True)
@@ -24,7 +24,7 @@ class ExpressionConstraint:
         """The function that the engine traces."""
         return Expressed(self.function, tuple(name for name, _ in self.options))
 
-    def pack(self, chain: Chain, origin: np.ndarray) -> np.ndarray:
+    def pack(self, chain: Kinematics, origin: np.ndarray) -> np.ndarray:
         """Where positions are counted from, for the function is given those in the world; and the options."""
         return np.array([*origin, *(value for _, value in self.options)], np.float64)
 

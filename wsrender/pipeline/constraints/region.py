@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from wsrender.pipeline.constraints.constraint import Structure
-from wsrender.robots.chain import Chain
+from wsrender.robots.kinematics import Kinematics
 
 Point = tuple[float, float, float]
 
@@ -25,7 +25,7 @@ class Region:
     keeps: frozenset[Structure] = frozenset({"trailing_joints"})
     device: str = "region"
 
-    def pack(self, chain: Chain, origin: np.ndarray) -> np.ndarray:
+    def pack(self, chain: Kinematics, origin: np.ndarray) -> np.ndarray:
         """Corners (6,), centre and squared radius (4,), unit normal and offset (4,), seen from ``origin``."""
         infinite = np.full(3, np.inf)
         lower, upper = (np.array(corner) - origin for corner in self.box) if self.box else (-infinite, infinite)

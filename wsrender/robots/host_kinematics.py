@@ -1,4 +1,4 @@
-"""A chain whose kinematics are functions of the host: that of a robot defined by a Python class."""
+"""Kinematics that are functions of the host: those of a robot defined by a Python class."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
@@ -7,22 +7,36 @@ from typing import Self
 
 import numpy as np
 
-from wsrender.robots.chain import FAR, Chain
+from wsrender.robots.kinematics import FAR, Kinematics
 
 SAMPLES = 1 << 14
 MARGIN, FLAT = 0.25, 1e-3  # beyond the samples, of their extent along an axis; where that is nothing, of the diagonal
 
 
 @dataclass(frozen=True, eq=False)
-class HostChain(Chain):
-    """Names, kinds and limits of joints; its geometry is empty, and ``content_hash`` knows nothing of the functions.
+class HostKinematics(Kinematics):
+    """Names, kinds and limits of joints, and functions; ``content_hash`` knows nothing of the functions.
 
     ``base_pose(q: (N, n)) -> (N, 4, 4)`` and ``base_jacobian(q) -> (N, 6, n)`` give the end effector's poses and
     geometric Jacobians in the base frame.
     """
 
-    base_pose: Callable[[np.ndarray], np.ndarray] = field(kw_only=True)
-    base_jacobian: Callable[[np.ndarray], np.ndarray] = field(kw_only=True)
+    turning: np.ndarray  # (n,) bool: whether a coordinate is an angle
+    has_inertia: bool
+    base_pose: Callable[[np.ndarray], np.ndarray]
+    base_jacobian: Callable[[np.ndarray], np.ndarray]
+    T_world_base: np.ndarray = field(default_factory=lambda: np.eye(4))
+    T_tip_tool: np.ndarray = field(default_factory=lambda: np.eye(4))
+
+    @property
+    def geometry(self) -> None:
+        """None: what lies between base and tip, the functions do not say."""
+        return None
+
+    @property
+    def revolute(self) -> np.ndarray:
+        """Whether coordinate k is an angle, shape (n,) bool."""
+        return self.turning
 
     def poses(self, q: np.ndarray) -> np.ndarray:
         """Poses (N, 4, 4) of the tool point in the world."""
@@ -36,11 +50,15 @@ class HostChain(Chain):
             linear = linear + np.cross(angular, (self.base_pose(q)[:, :3, :3] @ offset)[:, :, None], axis=1)
         return np.concatenate([R @ linear, R @ angular], axis=1)
 
-    def box(self, lower: np.ndarray, upper: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Corners (3,) [m] of a box around the positions at samples between ``lower`` and ``upper`` (n,), and a margin.
+    def boxes(self, lower: np.ndarray, upper: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Corners (N, 3) [m] of boxes around positions at samples with q in lower … upper (N, n), with a margin.
 
-        A function says nothing of where it has not been evaluated: unlike that of a model, no proof.
+        A function says nothing of where it has not been evaluated: unlike those of a geometry, no proof.
         """
+        low, high = zip(*(self._box(*part) for part in zip(lower, upper, strict=True)), strict=True)
+        return np.array(low), np.array(high)
+
+    def _box(self, lower: np.ndarray, upper: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         positions = self.poses(lower + _spread(SAMPLES, self.n) * (upper - lower))[:, :3, 3]
         low, high = positions.min(axis=0), positions.max(axis=0)
         margin = MARGIN * (high - low) + FLAT * np.linalg.norm(high - low)
@@ -78,7 +96,7 @@ class HostChain(Chain):
 
     @cached_property
     def _whole_box(self) -> tuple[np.ndarray, np.ndarray]:
-        return self.box(self.lower_limits, self.upper_limits)
+        return self._box(self.lower_limits, self.upper_limits)
 
 
 def _spread(count: int, n: int) -> np.ndarray:

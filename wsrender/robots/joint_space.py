@@ -1,0 +1,76 @@
+"""The joint space of an arm: names, limits and what follows from them, whatever its geometry."""
+
+import hashlib
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, replace
+from functools import cached_property
+from typing import Self
+
+import numpy as np
+
+
+@dataclass(frozen=True, eq=False)
+class JointSpace:
+    """The n coordinates of an arm, in order from base to end effector: what sampling, documents and results need."""
+
+    name: str
+    base_frame: str
+    tip_frame: str
+    joint_names: tuple[str, ...]  # of the n coordinates
+    lower_limits: np.ndarray  # (n,) [rad or m]; -pi where periodic, -inf where endless
+    upper_limits: np.ndarray  # (n,) [rad or m]; +pi where periodic, inf where endless
+    periodic: np.ndarray  # (n,) bool: a hinge without limits
+    effort_limits: np.ndarray | None  # (n,) [N m or N], None where the model has none for some joint
+
+    def __post_init__(self):
+        for f in fields(self):
+            value = getattr(self, f.name)
+            if isinstance(value, np.ndarray):
+                value = np.array(value, order="C")
+                value.setflags(write=False)
+                object.__setattr__(self, f.name, value)
+
+    @property
+    def n(self) -> int:
+        """Number of coordinates: the length of a configuration."""
+        return len(self.joint_names)
+
+    @cached_property
+    def content_hash(self) -> str:
+        """SHA-256 of every number and name, hexadecimal; functions cannot be hashed."""
+        digest = hashlib.sha256()
+        for f in fields(self):
+            value = getattr(self, f.name)
+            if callable(value):
+                continue
+            digest.update(f.name.encode())
+            if isinstance(value, np.ndarray):
+                digest.update(f"{value.dtype.str}{value.shape}".encode() + value.tobytes())
+            elif isinstance(value, JointSpace):
+                digest.update(value.content_hash.encode())
+            else:
+                digest.update(repr(value).encode())
+        return digest.hexdigest()
+
+    def held(self, values: Mapping[str, float]) -> Self:
+        """The same with joints, by name, held at a value [rad or m]."""
+        held = np.array([name in values for name in self.joint_names])
+        value = np.array([values.get(name, 0.0) for name in self.joint_names])
+        return replace(
+            self,
+            lower_limits=np.where(held, value, self.lower_limits),
+            upper_limits=np.where(held, value, self.upper_limits),
+            periodic=self.periodic & ~held,
+        )
+
+    @property
+    def endless(self) -> tuple[str, ...]:
+        """Names of the coordinates without usable limits: slides without any, hinges that whole turns do not suit."""
+        bounded = np.isfinite(self.lower_limits) & np.isfinite(self.upper_limits)
+        return tuple(name for name, ends in zip(self.joint_names, bounded, strict=True) if not ends)
+
+    def within(self, share: float) -> np.ndarray:
+        """The configuration (n,) at a share 0 … 1 of every range [rad or m]; 0 where a coordinate is endless."""
+        ends = np.stack([self.lower_limits, self.upper_limits])
+        lower, upper = np.where(np.isfinite(ends).all(axis=0), ends, 0.0)
+        return lower + share * (upper - lower)
