@@ -54,6 +54,13 @@ def elbow(upper=1.0, lower=0.6):
     return robot(rows, "elbow", "standard")
 
 
+def lipped(beyond_deg):
+    """An RPR arm whose last joint turns so far beyond singular postures: it draws lips 0.3 (1 − cos) m thick."""
+    limits = (-90 - beyond_deg, 90 + beyond_deg)
+    rows = [turning(-120, 120, a=0.3, alpha_deg=90), sliding(0.2, 0.6), turning(*limits, a=0.3)]
+    return robot(rows, "lipped", "standard")
+
+
 def general(limits=(None, None, None)):
     """Offset, skew axes: its boundary is neither of planes nor of tori."""
     rows = [

@@ -4,9 +4,22 @@ from collections import Counter
 
 import numpy as np
 import pytest
+import trimesh
 
 import wsrender as ws
-from tests.geometry.spatial_arms import arm_of, boundary_of, box, elbow, general, robot, scara, spherical, turning
+from tests.geometry.spatial_arms import (
+    arm_of,
+    boundary_of,
+    box,
+    elbow,
+    general,
+    lipped,
+    robot,
+    scara,
+    spherical,
+    turning,
+)
+from wsrender.geometry.spatial.cells import CellLattice
 from wsrender.geometry.spatial.critical_sets import critical_sets
 
 PI = np.pi
@@ -150,6 +163,39 @@ def test_triangles_of_thin_parts_do_not_jump_to_another_sheet():
     ]
     found = boundary_of(robot(rows, "RPR", "standard"), 24)
     assert found.measures.volume == pytest.approx(found.volume, rel=0.1)
+
+
+def test_a_sheet_that_bends_back_does_not_end_in_the_curve_beyond():
+    """The surface of the slide's stop crosses the lip's lower plane twice; its joints stop at one of both curves."""
+    found = boundary_of(lipped(30), 48)
+    assert found.measures.volume == pytest.approx(found.volume, rel=1e-5)
+
+
+def test_planes_more_go_through_lips_thinner_than_a_cell():
+    found = boundary_of(lipped(10), 48)  # 4.6 mm, an eighth of a cell
+    assert found.volume == pytest.approx(0.403129, abs=1e-6) and found.width == pytest.approx(0.0354, abs=1e-4)
+    assert found.measures.volume == pytest.approx(found.volume, rel=1e-4)
+    mesh = trimesh.Trimesh(found.mesh.vertices, found.mesh.faces, process=False)
+    assert mesh.is_watertight and mesh.volume == pytest.approx(found.volume, rel=1e-3)
+    lips = {generator(patch): patch.kind for patch in found.patches if "joint3" in generator(patch)}
+    assert lips == {"joint3 lower": "plane", "joint3 upper": "plane"}
+
+
+def test_planes_more_bring_the_volume_nearer_where_cells_are_wide(monkeypatch):
+    coarse = boundary_of(lipped(10), 12).measures.volume
+    monkeypatch.setattr("wsrender.geometry.spatial.spatial_boundary._DIFFERS", np.inf)
+    assert abs(boundary_of(lipped(10), 12).measures.volume - 0.403129) > 2 * abs(coarse - 0.403129)
+
+
+def test_where_planes_more_make_it_worse_the_lattice_is_kept(monkeypatch):
+    def coarser(lattice, planes, reaches, report):
+        corners = [axis[[0, -1]] for axis in lattice.axes]
+        return CellLattice.around(*np.transpose(corners), 6, reaches, report)
+
+    monkeypatch.setattr(CellLattice, "divided", coarser)
+    kept = boundary_of(lipped(30), 24)
+    monkeypatch.setattr("wsrender.geometry.spatial.spatial_boundary._DIFFERS", np.inf)
+    assert kept.measures.volume == boundary_of(lipped(30), 24).measures.volume
 
 
 def test_crossings_that_no_critical_set_explains_are_kept_as_they_are(monkeypatch):

@@ -46,20 +46,24 @@ def test_document_and_tables(result):
 
 
 def test_parts_thinner_than_a_cell_are_said_to_be_missed():
-    """Turning 10° beyond a singular posture draws a lip 0.3 (1 − sin 100°) = 4.6 mm thick, a sixteenth of a cell."""
+    """Turning 10° beyond a singular posture draws a lip 0.3 (1 − sin 100°) = 4.6 mm thick, a thirtieth of a cell."""
     rows = [
         {"a": 0.3, "alpha_deg": 90, "limits_deg": [-120, 120]},
         {"joint": "prismatic", "limits": [0.2, 0.6]},
         {"a": 0.3, "limits_deg": [-100, 100]},
     ]
-    job = {"analysis": "boundary_patches", "cells": 24}
+    job = {"analysis": "boundary_patches", "cells": 12}
     document = execute({**job, "robot": {"dh": {"convention": "standard", "name": "RPR", "rows": rows}}}).document
     volumes = document["volume_m3"]
     assert volumes["integrated"] == pytest.approx(0.403129, rel=1e-5)
     assert 1e-3 < abs(volumes["enclosed"] / volumes["integrated"] - 1) < 1e-2
     (warning,) = document["warnings"]
     assert (warning["code"], warning["field"]) == ("enclosed_differs", "cells")
-    assert "thinner than a cell, 0.0708 m" in warning["message"]
+    assert "thinner than a cell, 0.142 m" in warning["message"]
+    job["cells"] = 32
+    document = execute({**job, "robot": {"dh": {"convention": "standard", "name": "RPR", "rows": rows}}}).document
+    assert document["volume_m3"]["enclosed"] == pytest.approx(0.403129, rel=3e-4) and document["warnings"] == []
+    job["cells"] = 24
     rows[2]["limits_deg"] = [-60, 60]  # no lip
     document = execute({**job, "robot": {"dh": {"convention": "standard", "name": "RPR", "rows": rows}}}).document
     assert document["volume_m3"]["enclosed"] == pytest.approx(document["volume_m3"]["integrated"], rel=1e-3)

@@ -1,6 +1,6 @@
 """The cells of a lattice that the boundary of a set passes through, and their edges that it crosses."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
@@ -59,9 +59,12 @@ class SpatialCellLoops:
 
 @dataclass(frozen=True, eq=False)
 class CellLattice:
-    """Cells of equal ``width`` [m] from the corner ``origin`` (3,) [m]; ``inside`` (…): which corners the set holds."""
+    """Cells between planes across x, y and z at ``axes`` [m], ``width`` [m] apart and some nearer to each other.
 
-    origin: np.ndarray
+    ``inside`` (…): which corners the set holds.
+    """
+
+    axes: tuple[np.ndarray, ...]
     width: float
     inside: np.ndarray
 
@@ -75,12 +78,27 @@ class CellLattice:
         margin = np.array([1.3591, 1.2718, 1.3142]) * width
         origin = low - margin
         shape = np.ceil((high + margin - origin) / width).astype(int) + 1
-        inside = np.zeros(shape, bool)
-        for i in range(shape[0]):
-            layer = np.stack(np.meshgrid([i], range(shape[1]), range(shape[2]), indexing="ij"), axis=-1).reshape(-1, 3)
-            inside[i] = reaches(origin + layer * width).reshape(shape[1:])
+        axes = tuple(start + np.arange(size) * width for start, size in zip(origin, shape, strict=True))
+        return cls.between(axes, width, reaches, report)
+
+    @classmethod
+    def between(cls, axes: tuple[np.ndarray, ...], width: float, reaches: Membership, report: Report) -> "CellLattice":
+        """Cells between planes, whose corners are tested; ``report(corners)``."""
+        layers = []
+        for x in axes[0]:
+            layer = np.stack(np.meshgrid([x], *axes[1:], indexing="ij"), axis=-1).reshape(-1, 3)
+            layers.append(reaches(layer).reshape(len(axes[1]), len(axes[2])))
             report(len(layer))
-        return cls(origin, width, _thick_parts(inside))
+        return cls(axes, width, _thick_parts(np.array(layers)))
+
+    def divided(self, planes: Sequence[np.ndarray], reaches: Membership, report: Report) -> "CellLattice":
+        """With more ``planes`` [m] across x, y and z."""
+        axes = tuple(np.union1d(axis, more) for axis, more in zip(self.axes, planes, strict=True))
+        return CellLattice.between(axes, self.width, reaches, report)
+
+    def corners(self, at: np.ndarray) -> np.ndarray:
+        """Positions (N, 3) [m] of corners ``at`` (N, 3)."""
+        return np.stack([axis[k] for axis, k in zip(self.axes, at.T, strict=True)], axis=1)
 
     @property
     def closed(self) -> bool:
@@ -96,8 +114,7 @@ class CellLattice:
             axes.append(np.full(len(changes), axis))
         at, axis = np.concatenate(starts), np.concatenate(axes)
         starts_inside = self.inside[tuple(at.T)]
-        begin = self.origin + at * self.width
-        end = begin + np.eye(3)[axis] * self.width
+        begin, end = self.corners(at), self.corners(at + np.eye(3, dtype=int)[axis])
         inside = np.where(starts_inside[:, None], begin, end)
         outside = np.where(starts_inside[:, None], end, begin)
         for _ in range(bisections):
@@ -126,7 +143,8 @@ class CellLattice:
                 rows.append(np.stack([np.repeat(loop, len(edges)), ids.ravel(), np.tile(edges, len(where))], axis=1))
         table = np.concatenate(rows) if rows else np.empty((0, 3), int)
         table = table[np.argsort(table[:, 0], kind="stable")]
-        center = self.origin + (np.concatenate(cells) + 0.5 if cells else np.empty((0, 3))) * self.width
+        at = np.concatenate(cells) if cells else np.empty((0, 3), int)
+        center = (self.corners(at) + self.corners(at + 1)) / 2
         return SpatialCellLoops(table[:, 0], table[:, 1], center, _quads(table, crossings))
 
 

@@ -16,6 +16,7 @@ from wsrender.geometry.spatial.sheets import Sheets, settled, sheets_of_loops
 _FARTHEST = 2.0  # from the middle of a cell's crossings to its vertex, in cells
 _THIN = 20.0  # how far, in cells, the edge of a part that is thinner than a cell may be from the last cells that see it
 _SLANTED = 0.5  # sine of the angle between sheets below which the edge may be far
+_ROUNDING = 1e-9  # of a product of sines
 _PASSES = 2  # a corner at which two sheets touch is found from the curve in which they do
 _SAME = 1e-6  # of a cell: corners of neighbouring cells that are one
 
@@ -107,7 +108,8 @@ def _moved_to(
     """Move the points of two sheets each to the curve, where both sheets meet in it.
 
     A part of the boundary that ends in a curve where its sheets touch is thinner than two cells up to a distance of
-    four over the sine of the angle that they have there; one of flat sheets up to half that.
+    four over the sine of the angle that they have there; one of flat sheets up to half that. Sheets that are inclined
+    the other way there, as one that has bent back, meet in another curve nearer by.
     """
     arm, at = curve.first.arm, sheets.point[first]
     d = arm.nearest_turn(curve.nearest(x[at], sheets.d[first]))
@@ -115,12 +117,22 @@ def _moved_to(
     good = (((d >= arm.low - 1e-9) & (d <= arm.high + 1e-9)) | arm.full).all(axis=1)
     if len(curve.stops) == 1:
         good &= np.linalg.svd(J, compute_uv=False)[:, 2] <= 1e-9 * np.linalg.norm(J, axis=(1, 2))
-    sine = _sine(sheets.normal[first], sheets.normal[second])
-    there = _sine(curve.first.normal(J), curve.second.normal(J))
+    between, at_curve = _axes(curve, J, sheets.normal[first], sheets.normal[second])
+    sine, there = np.linalg.norm(between, axis=1), np.linalg.norm(at_curve, axis=1)
     near = np.minimum(2 * _FARTHEST / np.maximum(sine, 1e-9) + _FARTHEST, _THIN) * width
     good &= (np.linalg.norm(p - x[at], axis=1) <= near) & (there <= 1.2 * sine + 1e-6)
+    good &= (between * at_curve).sum(axis=1) >= -_ROUNDING
     x[at[good]] = p[good]
     sheets.d[first[good]] = sheets.d[second[good]] = d[good]
+
+
+def _axes(curve: CommonCurve, J: np.ndarray, a: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Cross products (N, 3) of the normals a and b of two sheets, and of those that they have in the curve."""
+    there = []
+    for critical_set, normal in ((curve.first, a), (curve.second, b)):
+        n = critical_set.normal(J)
+        there.append(n * np.sign((n * normal).sum(axis=1))[:, None])
+    return np.cross(a, b), np.cross(*there)
 
 
 def _sine(a: np.ndarray, b: np.ndarray) -> np.ndarray:
