@@ -189,8 +189,8 @@ def test_planes_more_bring_the_volume_nearer_where_cells_are_wide(monkeypatch):
 
 def test_where_planes_more_make_it_worse_the_lattice_is_kept(monkeypatch):
     def coarser(lattice, planes, reaches, report):
-        corners = [axis[[0, -1]] for axis in lattice.axes]
-        return CellLattice.around(*np.transpose(corners), 6, reaches, report)
+        low, high = np.transpose([axis[[0, -1]] for axis in lattice.axes])
+        return CellLattice.around(low, high, 6, reaches, report)
 
     monkeypatch.setattr(CellLattice, "divided", coarser)
     kept = boundary_of(lipped(30), 24)
