@@ -114,7 +114,11 @@ class CellLattice:
             axes.append(np.full(len(changes), axis))
         at, axis = np.concatenate(starts), np.concatenate(axes)
         starts_inside = self.inside[tuple(at.T)]
-        begin, end = self.corners(at), self.corners(at + np.eye(3, dtype=int)[axis])
+        begin, along = self.corners(at), np.eye(3, dtype=int)[axis]
+        length = self.corners(at + along) - begin
+        # Differences of coordinates are rounded: edges of whole cells are exactly a width long.
+        whole = np.abs(length - self.width) <= 1e-9 * self.width
+        end = begin + along * np.where(whole, self.width, length)
         inside = np.where(starts_inside[:, None], begin, end)
         outside = np.where(starts_inside[:, None], end, begin)
         for _ in range(bisections):
