@@ -35,22 +35,19 @@ if TYPE_CHECKING:
     from wsrender.documents.environment import Box, Capsule, Cylinder, Environment, HalfSpace, Mesh, Sphere
     from wsrender.documents.robot import DHRow, DHTable, Transform
     from wsrender.documents.sampling import BoundaryBiased, Converge, Grid, Random, Sobol
+    from wsrender.geometry.planar.exact_boundary import exact_boundary
     from wsrender.indices import Index, Option, math, register_index
     from wsrender.kinetostatics import ForceField, force_field
     from wsrender.mechanisms.five_bar import FiveBar
     from wsrender.pipeline.constraints.registry import register_constraint
-    from wsrender.reachability import Reachability, reachable
-    from wsrender.results.export.formats import Format, register_format
-    from wsrender.results.result import Result
-    from wsrender.robot import Robot, evaluate_indices, load_robot
-    from wsrender.run import (
+    from wsrender.python import (
         analyze,
         boundary_patches,
+        capability,
         collaborative_volume,
         design_optimization,
-        exact_boundary,
-        execute,
         five_bar,
+        indices_at,
         kinetostatic_field,
         master_slave_mapping,
         method_comparison,
@@ -58,7 +55,13 @@ if TYPE_CHECKING:
         planar_boundary,
         robot_comparison,
         shared_workspace,
+        workspace,
     )
+    from wsrender.reachability import Reachability, reachable
+    from wsrender.results.export.formats import Format, register_format
+    from wsrender.results.result import Result
+    from wsrender.robot import Robot, evaluate_indices, load_robot
+    from wsrender.run import execute
 
 __all__ = [
     "AccessError",
@@ -106,6 +109,7 @@ __all__ = [
     "__version__",
     "analyze",
     "boundary_patches",
+    "capability",
     "collaborative_volume",
     "design_optimization",
     "evaluate_indices",
@@ -113,6 +117,7 @@ __all__ = [
     "execute",
     "five_bar",
     "force_field",
+    "indices_at",
     "kinetostatic_field",
     "load_robot",
     "master_slave_mapping",
@@ -127,6 +132,7 @@ __all__ = [
     "robot_comparison",
     "run",
     "shared_workspace",
+    "workspace",
 ]
 
 _NAMES_OF_MODULE = {
@@ -135,18 +141,16 @@ _NAMES_OF_MODULE = {
     "wsrender.indices": ("Index", "Option", "register_index"),
     "wsrender.kinetostatics": ("ForceField", "force_field"),
     "wsrender.mechanisms.five_bar": ("FiveBar",),
+    "wsrender.geometry.planar.exact_boundary": ("exact_boundary",),
     "wsrender.pipeline.constraints.registry": ("register_constraint",),
-    "wsrender.reachability": ("Reachability", "reachable"),
-    "wsrender.results.result": ("Result",),
-    "wsrender.robot": ("Robot", "evaluate_indices", "load_robot"),
-    "wsrender.run": (
+    "wsrender.python": (
         "analyze",
         "boundary_patches",
+        "capability",
         "collaborative_volume",
         "design_optimization",
-        "exact_boundary",
-        "execute",
         "five_bar",
+        "indices_at",
         "kinetostatic_field",
         "master_slave_mapping",
         "method_comparison",
@@ -154,7 +158,12 @@ _NAMES_OF_MODULE = {
         "planar_boundary",
         "robot_comparison",
         "shared_workspace",
+        "workspace",
     ),
+    "wsrender.reachability": ("Reachability", "reachable"),
+    "wsrender.results.result": ("Result",),
+    "wsrender.robot": ("Robot", "evaluate_indices", "load_robot"),
+    "wsrender.run": ("execute",),
     "wsrender.documents.environment": ("Box", "Capsule", "Cylinder", "Environment", "HalfSpace", "Mesh", "Sphere"),
     "wsrender.documents.robot": ("DHRow", "DHTable", "Transform"),
     "wsrender.documents.sampling": ("BoundaryBiased", "Converge", "Grid", "Random", "Sobol"),

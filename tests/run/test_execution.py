@@ -18,9 +18,11 @@ ON_ONE_CORE = {"five_bar"}  # closed forms in NumPy
 DOORS = (
     ws.analyze,
     ws.boundary_patches,
+    ws.capability,
     ws.collaborative_volume,
     ws.design_optimization,
     ws.five_bar,
+    ws.indices_at,
     ws.kinetostatic_field,
     ws.master_slave_mapping,
     ws.method_comparison,

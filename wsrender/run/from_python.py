@@ -1,29 +1,166 @@
-"""From Python objects to job documents, and their execution here."""
+"""From the arguments of a Python function to a job document, and its execution here."""
 
-from typing import Any
+from collections.abc import Callable, Mapping
+from difflib import get_close_matches
+from functools import wraps
+from inspect import Signature, signature
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 import numpy as np
 
 from wsrender.analyses.jobs import parse_job
-from wsrender.documents.document import Document
-from wsrender.documents.robot import RobotSpec
-from wsrender.documents.sampling import PYTHON_COUNT, Sobol
+from wsrender.documents.robot import DHTable, RobotSpec
+from wsrender.documents.sampling import PYTHON_COUNT, BoundaryBiased, Converge, Grid, Random, Sobol
+from wsrender.errors import InputError
+from wsrender.mechanisms.five_bar import FiveBar
 from wsrender.progress import RunProgress
 from wsrender.results.result import Result
-from wsrender.robot import Robot, as_robot
+from wsrender.robot import Robot, UserRobot, as_robot, load_robot
+from wsrender.robot.user_robot import HostRobot
+from wsrender.robots import of_mujoco
 from wsrender.run.steps import Progress, execute
 
+if TYPE_CHECKING:
+    from wsrender.robots.loading import Source
 
-def as_source(source: Any) -> Robot | np.ndarray | dict[str, Any]:
-    """Points and documents as they are, anything else as a robot."""
-    return source if isinstance(source, np.ndarray | dict) else as_robot(source)
+    RobotLike = Robot | UserRobot | Source | RobotSpec | Mapping[str, Any]
+    SourceLike = RobotLike | np.ndarray
+
+SamplingLike = Grid | Random | Sobol | BoundaryBiased | Converge | Mapping[str, Any]
+
+Function = TypeVar("Function", bound=Callable[..., Result])
+
+EXECUTION = ("progress", "threads", "chunk_size")
+SOURCES = ("left", "right", "master", "slave")
+_LENGTHS = ("base_m", "proximal_m", "distal_m", "limits_rad")
 
 
-def source_entry(source: Robot | np.ndarray | dict[str, Any]) -> dict[str, Any]:
-    """A robot, points or a document of either in a job document."""
-    if isinstance(source, dict):
-        return source
-    return arm_entry(source) if isinstance(source, Robot) else {"points": source}
+def runs(analysis: str) -> Callable[[Function], Function]:
+    """What makes a function run an analysis: its signature says the parameters, its body is empty.
+
+    Only arguments that are given become fields of the job document: defaults may depend on other fields.
+    """
+
+    def decorate(function: Function) -> Function:
+        parameters = signature(function)
+
+        @wraps(function)
+        def run(*args: Any, **named: Any) -> Result:
+            given = _given(function.__name__, parameters, args, named)
+            if "sampling" in parameters.parameters:
+                given.setdefault("sampling", None)
+            progress, threads, chunk_size = (given.pop(name, None) for name in EXECUTION)
+            document, robots = document_of(analysis, given)
+            return execute_here(document, robots, progress, threads, chunk_size)
+
+        return cast(Function, run)
+
+    return decorate
+
+
+def _given(name: str, parameters: Signature, args: Any, named: dict[str, Any]) -> dict[str, Any]:
+    """Arguments by parameter; TypeError for one that is not known, with the parameter that may be meant."""
+    allowed = list(parameters.parameters)
+    if unknown := next((each for each in named if each not in allowed), None):
+        close = get_close_matches(unknown, allowed, n=1)
+        hint = f"did you mean {close[0]}? " if close else ""
+        raise TypeError(f"{name}() has no parameter {unknown}; {hint}allowed: {', '.join(allowed)}")
+    try:
+        return parameters.bind(*args, **named).arguments
+    except TypeError as error:
+        raise TypeError(f"{name}(): {error}") from None
+
+
+def document_of(analysis: str, given: dict[str, Any]) -> tuple[dict[str, Any], Any]:
+    """The job document of arguments by parameter, and the robots among them, as `execute` takes them.
+
+    ``sampling`` is None, and there, where the analysis takes one that is not given. Raises InputError, and ModelError
+    for a robot that cannot be loaded.
+    """
+    fields, robots = dict(given), None
+    if "robot" in fields:
+        robots, fields = _of_one(fields)
+    elif "robots" in fields:
+        robots, fields = _of_several(fields)
+    elif not fields.keys().isdisjoint(SOURCES):
+        robots, fields = _of_sources(fields)
+    elif isinstance(fields.get("mechanism"), FiveBar):
+        mechanism = fields.pop("mechanism")
+        fields |= {name: getattr(mechanism, name) for name in _LENGTHS}
+    elif fields.get("resume") is not None:
+        fields = _resumed(fields)
+    fields.pop("resume", None)
+    return {"analysis": analysis, **plain(fields)}, robots
+
+
+def _of_one(fields: dict[str, Any]) -> tuple[Robot | None, dict[str, Any]]:
+    """The fields of a job of one robot; its document stays as it is."""
+    robot, base, tip = (fields.pop(name, None) for name in ("robot", "base", "tip"))
+    document = isinstance(robot, Mapping | RobotSpec)
+    subject = None if document else _loaded(robot, base, tip)
+    arm = arm_entry(subject) if subject is not None else {"robot": robot, "base": base, "tip": tip}
+    sampled = sampling_entry(fields.pop("sampling"), subject) if "sampling" in fields else {}
+    return subject, {**arm, **sampled, **fields}
+
+
+def _loaded(robot: Any, base: str | None, tip: str | None) -> Robot:
+    """The robot with the frames asked for; InputError where it has its own."""
+    if base is None and tip is None:
+        return as_robot(robot)
+    if isinstance(robot, str | Path | DHTable) or of_mujoco(robot):
+        return load_robot(robot, base=base, tip=tip)
+    field = "tip" if base is None else "base"
+    raise InputError(field, f"must not be given beside a robot that has its own: load_robot(…, {field}=…)")
+
+
+def _of_several(fields: dict[str, Any]) -> tuple[list[Robot | None], dict[str, Any]]:
+    """The fields of a job of several robots, each with its own name and sampling."""
+    given = fields.pop("robots")
+    sampling, names = fields.pop("sampling", None), fields.pop("names", None) or [None] * len(given)
+    samplings = sampling if isinstance(sampling, list | tuple) else [sampling] * len(given)
+    if not len(given) == len(samplings) == len(names):
+        counts = f"{len(samplings)} samplings and {len(names)} names for {len(given)} robots"
+        raise InputError("robots", f"there are {counts}; one for each is needed")
+    entries = [_entry(*each) for each in zip(given, samplings, names, strict=True)]
+    return [robot for _, robot in entries], {"robots": [entry for entry, _ in entries], **fields}
+
+
+def _entry(given: Any, sampling: Any, name: str | None) -> tuple[Any, Robot | None]:
+    """One of several robots in a job document; what its own document says goes before."""
+    beside = {} if name is None else {"name": name}
+    if isinstance(given, Mapping):
+        return {**sampling_entry(sampling), **beside, **given}, None
+    robot = as_robot(given)
+    return {**arm_entry(robot), **sampling_entry(sampling, robot), **beside}, robot
+
+
+def _of_sources(fields: dict[str, Any]) -> tuple[list[Robot | None], dict[str, Any]]:
+    """The fields of a job of two robots, sets of points or documents of either; ``sampling`` is for both robots."""
+    sampled, robots = sampling_entry(fields.pop("sampling", None)), []
+    for name in [each for each in SOURCES if each in fields]:
+        source = fields[name]
+        if isinstance(source, np.ndarray):
+            fields[name] = {"points": source}
+        elif not isinstance(source, Mapping):
+            robots.append(as_robot(source))
+            fields[name] = {**arm_entry(robots[-1]), **sampled}
+        elif "robot" in source:
+            robots.append(None)
+            fields[name] = {**sampled, **source}
+    return robots, fields
+
+
+def _resumed(fields: dict[str, Any]) -> dict[str, Any]:
+    """The fields of a search, with the designs of an earlier result."""
+    if "evaluations" in fields:
+        raise InputError("evaluations", "must not be given together with resume: one of the two")
+    tables = fields["resume"].tables
+    if "evaluations" not in tables:
+        raise InputError("resume", "must be a result of design_optimization: it has no table of evaluations")
+    rows = np.stack(list(tables["evaluations"].columns.values()), axis=1)
+    known = [[value if np.isfinite(value) else None for value in row] for row in rows.tolist()]
+    return {**fields, "evaluations": known}
 
 
 def arm_entry(robot: Robot) -> dict[str, Any]:
@@ -36,9 +173,7 @@ def sampling_entry(sampling: Any, robot: Robot | None = None) -> dict[str, Any]:
     """The field ``sampling`` of a job document, if one is given; of a robot that is a Python class always."""
     if sampling is None and robot and robot.definition:
         sampling = Sobol(PYTHON_COUNT)
-    if sampling is None:
-        return {}
-    return {"sampling": sampling.model_dump(mode="json") if isinstance(sampling, Document) else sampling}
+    return {} if sampling is None else {"sampling": sampling}
 
 
 def plain(fields: dict[str, Any]) -> dict[str, Any]:

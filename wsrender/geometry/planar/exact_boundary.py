@@ -1,5 +1,6 @@
 """The exact boundary of what a planar arm reaches: segments, loops, area, and answers about points."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -17,7 +18,9 @@ from wsrender.geometry.planar.postures import postures
 from wsrender.geometry.planar.segments import ExactSegment
 from wsrender.geometry.planar.self_motions import self_motion_regions, self_motions
 from wsrender.geometry.planar.sweep import swept_sets
+from wsrender.robot import robot_with_model
 from wsrender.robots.chain import Chain
+from wsrender.sampling import held_chain
 
 # A joint value this near to a limit, relative to its range, is at the limit: far above the rounding of postures.
 _AT_LIMIT = 1e-7
@@ -238,3 +241,12 @@ def plane_points(points: Any) -> np.ndarray:
     if not np.isfinite(rows).all():
         raise InputError("points", "has a value that is not finite")
     return rows
+
+
+def exact_boundary(robot: Any, *, locked: Mapping[str, float] | None = None) -> ExactBoundary:
+    """The exact boundary alone, with ``area``, ``segments``, ``contains(points)`` and ``nearest(points)``.
+
+    ``locked`` holds joints, by name, at a value [rad or m]. Raises ModelError, naming the joint, for an arm that is not
+    planar; InputError for an unknown joint or a value beyond its limits.
+    """
+    return ExactBoundary.of(held_chain(robot_with_model(robot).chain, locked or {}))
