@@ -19,8 +19,8 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 import wsrender as ws
 from tests.reference import closed_form_inverse as closed_form
 from wsrender.engine import Accuracy, solve_inverse
-from wsrender.reachability import InverseSolver, refined_volume
-from wsrender.reachability.evidence import REACHABLE, UNDECIDED, UNREACHABLE
+from wsrender.reach import InverseSolver, refined_volume
+from wsrender.reach.evidence import REACHABLE, UNDECIDED, UNREACHABLE
 from wsrender.robots.reachable_box import reachable_box
 
 ROBOTS = ("ur5e", "franka_panda", "puma560", "spherical")

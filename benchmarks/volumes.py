@@ -14,7 +14,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 
 import wsrender as ws
 from tests.reference.exact_volumes import CASES, articulated, spherical_pair
-from wsrender.reachability import Event, VolumeEstimate, refined_volume, refined_volumes
+from wsrender.reach import Event, VolumeEstimate, refined_volume, refined_volumes
 
 EVENTS = {"any": Event(1, 2), "both": Event(2, 2)}
 

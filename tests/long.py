@@ -14,7 +14,7 @@ from typing import Any
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
-from tests.reachability import near_limits
+from tests.reach import near_limits
 from tests.robots import model_packages
 
 # By name: a module with ``PARTS``, functions by name that return figures, and ``violations(figures by part)``.

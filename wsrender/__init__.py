@@ -53,11 +53,12 @@ if TYPE_CHECKING:
         method_comparison,
         parallel_workspace,
         planar_boundary,
+        reachability,
         robot_comparison,
         shared_workspace,
         workspace,
     )
-    from wsrender.reachability import Reachability, reachable
+    from wsrender.reach import Reachability, reachable
     from wsrender.results.export.formats import Format, register_format
     from wsrender.results.result import Result
     from wsrender.robot import Robot, evaluate_indices, load_robot
@@ -125,6 +126,7 @@ __all__ = [
     "method_comparison",
     "parallel_workspace",
     "planar_boundary",
+    "reachability",
     "reachable",
     "register_constraint",
     "register_format",
@@ -156,11 +158,12 @@ _NAMES_OF_MODULE = {
         "method_comparison",
         "parallel_workspace",
         "planar_boundary",
+        "reachability",
         "robot_comparison",
         "shared_workspace",
         "workspace",
     ),
-    "wsrender.reachability": ("Reachability", "reachable"),
+    "wsrender.reach": ("Reachability", "reachable"),
     "wsrender.results.result": ("Result",),
     "wsrender.robot": ("Robot", "evaluate_indices", "load_robot"),
     "wsrender.run": ("execute",),

@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from wsrender.documents.constraints import Constraints
-from wsrender.documents.design import (
+from wsrender.analyses.design_optimization.job import (
     DesignParameter,
     DifferentialEvolution,
     EvaluationsInFile,
@@ -23,9 +22,10 @@ from wsrender.documents.design import (
     Objective,
     ParetoSearch,
 )
+from wsrender.analyses.master_slave_mapping.job import Containment, MappingSearch
+from wsrender.documents.constraints import Constraints
 from wsrender.documents.document import Document
 from wsrender.documents.kinetostatics import ForceFieldChoice
-from wsrender.documents.mapping import Containment, MappingSearch
 from wsrender.documents.mechanism import Delta, LegsMechanism, Master4DOF, SixPUS, StewartGough
 from wsrender.documents.orientations import EulerRanges, TiltRanges
 from wsrender.documents.placement_scan import PlacementScan

@@ -5,7 +5,7 @@ import json
 import pytest
 
 import wsrender as ws
-from wsrender.documents import canonical_json, parse_job
+from wsrender.analyses.jobs import canonical_json, parse_job
 from wsrender.documents.environment import Bounds
 from wsrender.documents.kinetostatics import ForceFieldChoice, ObstacleForce
 from wsrender.documents.mechanism import Region

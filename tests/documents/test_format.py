@@ -4,7 +4,8 @@ import json
 
 import pytest
 
-from wsrender.documents import ANALYSES, canonical_json, job_schema, parse_job
+from wsrender.analyses.jobs import canonical_json, job_schema, parse_job
+from wsrender.analyses.registry import job_classes
 from wsrender.documents.format import FORMAT
 from wsrender.errors import DocumentError
 
@@ -16,7 +17,7 @@ def test_this_version_writes_format_2():
     assert json.loads(canonical_json(parse_job(UR5E)))["format"] == 2
 
 
-@pytest.mark.parametrize("analysis", ANALYSES)
+@pytest.mark.parametrize("analysis", job_classes())
 @pytest.mark.parametrize("found", [1, 3, 2.5, "2", None, True, [2]])
 def test_another_format_is_all_that_is_told(analysis, found):
     """Fields of another format mean something else: what else is wrong would mislead."""
@@ -28,7 +29,7 @@ def test_another_format_is_all_that_is_told(analysis, found):
     assert message.endswith("a newer wsrender has written it") == (found == 3)
 
 
-@pytest.mark.parametrize("analysis", ANALYSES)
+@pytest.mark.parametrize("analysis", job_classes())
 def test_the_schema_of_every_analysis_says_it(analysis):
     format = job_schema(analysis)["properties"]["format"]
     assert (format["const"], format["default"]) == (2, 2)

@@ -2,7 +2,7 @@
 
 import wsrender as ws
 from wsrender.geometry.spatial.spatial_boundary import solid_arm, spatial_boundary
-from wsrender.reachability.moving_joints import moving_joints
+from wsrender.reach.moving_joints import moving_joints
 
 
 def robot(rows, name, convention="modified", **options):

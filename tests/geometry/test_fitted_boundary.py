@@ -12,9 +12,9 @@ from wsrender.geometry.spatial.cells import CellLattice
 from wsrender.geometry.spatial.crossed_surfaces import NONE, CrossedSurfaces
 from wsrender.geometry.spatial.fitted_boundary import TOLERANCE, fitted_boundary
 from wsrender.geometry.spatial.grown_patches import best_refined_fit, grown_patches
-from wsrender.reachability.moving_joints import moving_joints
-from wsrender.reachability.reached_points import ReachedPoints
-from wsrender.reachability.volume_refinement import refined_volume
+from wsrender.reach.moving_joints import moving_joints
+from wsrender.reach.reached_points import ReachedPoints
+from wsrender.reach.volume_refinement import refined_volume
 
 PI = np.pi
 

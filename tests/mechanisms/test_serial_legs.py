@@ -16,7 +16,7 @@ from wsrender.mechanisms.jacobians import jacobians
 from wsrender.mechanisms.local_indices import CONDITION_NUMBERS, pose_indices
 from wsrender.mechanisms.mechanism import legs_of
 from wsrender.mechanisms.membership import count_lattice, fault_at, placed_box, poses_labelled, reachable_box
-from wsrender.reachability.evidence import REACHABLE, UNDECIDED
+from wsrender.reach.evidence import REACHABLE, UNDECIDED
 from wsrender.run import execute, plan
 from wsrender.volume.lattice import block_around
 

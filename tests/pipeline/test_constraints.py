@@ -267,7 +267,7 @@ def test_the_headline_is_what_is_reached_in_the_region(region, expected):
 
 
 def test_nothing_is_reached_in_a_region_out_of_reach():
-    from wsrender.reachability.measure_refinement import refined_measure
+    from wsrender.reach.measure_refinement import refined_measure
 
     found = refined_measure(ws.load_robot("spherical").chain, 0.05, region=Region(ball=((9, 9, 9), 0.1)))
     assert (found.value, found.ci95) == (0.0, (0.0, 0.0))

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from tests.python_door.types import default_of, type_of
-from wsrender.documents import ANALYSES
+from wsrender.analyses.registry import job_classes
 
 FIRST = {
     "workspace": ("robot", "sampling", "indices", "task"),
@@ -83,7 +83,11 @@ CHUNK_SIZE = Parameter(
 
 def fields_of(analysis: str) -> dict[str, Parameter]:
     """The fields of a job as parameters, but for the name of the analysis."""
-    fields = {name: field for name, field in ANALYSES[analysis].model_fields.items() if name != "analysis"}
+    fields = {
+        name: field
+        for name, field in job_classes()[analysis].model_fields.items()
+        if name not in ("analysis", "format")
+    }
     return {
         name: Parameter(name, _type(name, field.annotation), _default(field), field.description or "")
         for name, field in fields.items()

@@ -8,7 +8,7 @@ from textwrap import fill
 import wsrender
 from tests.python_door.parameters import Parameter, parameters_of
 from tests.python_door.types import documents_in
-from wsrender.documents import ANALYSES
+from wsrender.analyses.registry import job_classes
 from wsrender.documents.document import Document
 
 PATH = Path(wsrender.__file__).parent / "python.py"
@@ -65,7 +65,7 @@ def function_name(analysis: str) -> str:
 
 def module_text() -> str:
     """The whole module."""
-    functions = "".join(f"\n\n{_function(analysis)}" for analysis in ANALYSES)
+    functions = "".join(f"\n\n{_function(analysis)}" for analysis in job_classes())
     return HEAD.format(imports=_imports(functions)) + functions + TAIL
 
 
@@ -102,7 +102,7 @@ def _members(union: str) -> list[str]:
 
 def _docstring(analysis: str) -> str:
     """What the job's class says, what is special in Python, the parameters' meanings, and errors."""
-    own = cleandoc(ANALYSES[analysis].__doc__ or "")
+    own = cleandoc(job_classes()[analysis].__doc__ or "")
     first, *more = _pythonic(own).split("\n\n")
     more += [NOTES[analysis]] if analysis in NOTES else []
     meanings = [_filled(f"``{each.name}``: {_pythonic(each.text)}", "    ") for _, each in parameters_of(analysis)]
@@ -133,7 +133,7 @@ def _import(module: str, names: list[str]) -> str:
 
 
 def _documents() -> set[type[Document]]:
-    fields = [field for job in ANALYSES.values() for field in job.model_fields.values()]
+    fields = [field for job in job_classes().values() for field in job.model_fields.values()]
     return {Document} | {each for field in fields for each in documents_in(field.annotation)}
 
 

@@ -6,7 +6,7 @@ import pytest
 import wsrender as ws
 from tests.reference import closed_form_inverse as closed_form
 from tests.reference.published_robots import dh_table
-from wsrender.reachability.capability import capability, fibonacci_directions
+from wsrender.reach.capability import capability, fibonacci_directions
 from wsrender.run import execute, finish, plan, run_shard
 from wsrender.run.partial_files import load_partial, save_partial
 

@@ -10,8 +10,8 @@ import wsrender as ws
 from tests.reference.exact_volumes import CASES
 from tests.robots.model_packages import folders
 from tests.run.journeys import from_the_command_line
-from wsrender.reachability.holes import share_of_holes
-from wsrender.reachability.measure_refinement import refined_measure
+from wsrender.reach.holes import share_of_holes
+from wsrender.reach.measure_refinement import refined_measure
 from wsrender.robots import library
 
 # Refined to .1 % from other points (seed 1), 1e5 of them decided by inverse kinematics.

@@ -6,7 +6,7 @@ import pytest
 import wsrender as ws
 from tests.reference import closed_form_inverse as closed_form
 from tests.run.simple_robots import PlanarClass
-from wsrender.reachability.voxel_labels import REASONS
+from wsrender.reach.voxel_labels import REASONS
 from wsrender.robots.dh import structural_length
 
 SURFACE = "the tip stays on a surface"

@@ -6,7 +6,7 @@ import pytest
 import wsrender as ws
 from tests.run.simple_robots import PlanarClass, gantry, planar_arm
 from wsrender.analyses.volume_notices import MOST_HOLES
-from wsrender.reachability.holes import share_of_holes
+from wsrender.reach.holes import share_of_holes
 from wsrender.results.result import Result
 from wsrender.run import finish, plan, run_shard
 from wsrender.run.partial_files import load_partial, save_partial

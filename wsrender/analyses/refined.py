@@ -6,9 +6,9 @@ from typing import Any
 
 from wsrender.pipeline.constraints.constraint import Constraint
 from wsrender.pipeline.constraints.region import Region
-from wsrender.reachability.measure_refinement import RefinedMeasure, refined_measure, refined_measures, unmeasured
-from wsrender.reachability.volume_estimate import Event
-from wsrender.reachability.voxel_labels import label_voxels
+from wsrender.reach.measure_refinement import RefinedMeasure, refined_measure, refined_measures, unmeasured
+from wsrender.reach.volume_estimate import Event
+from wsrender.reach.voxel_labels import label_voxels
 from wsrender.robots.kinematics import Kinematics
 from wsrender.volume.measure import UNITS
 from wsrender.volume.volume_data import VolumeData

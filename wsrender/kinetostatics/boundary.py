@@ -13,8 +13,8 @@ from wsrender.documents.kinetostatics import BoundaryForce
 from wsrender.documents.sampling import Sobol
 from wsrender.engine import sampled_positions
 from wsrender.errors import InputError
-from wsrender.reachability.evidence import REACHABLE
-from wsrender.reachability.inverse_solver import InverseSolver
+from wsrender.reach.evidence import REACHABLE
+from wsrender.reach.inverse_solver import InverseSolver
 from wsrender.robots.chain import Chain
 from wsrender.sampling import plan_sampling
 

@@ -22,7 +22,7 @@ from wsrender.engine import (
 from wsrender.mechanisms.inverse_kinematics import fault_text, inverse_kinematics
 from wsrender.mechanisms.leg_distance import leg_pairs
 from wsrender.mechanisms.mechanism import Mechanism
-from wsrender.reachability.evidence import REACHABLE, UNDECIDED, UNREACHABLE
+from wsrender.reach.evidence import REACHABLE, UNDECIDED, UNREACHABLE
 from wsrender.robots.reachable_box import reachable_box as box_of_chain
 from wsrender.volume.lattice import LatticeBlock
 

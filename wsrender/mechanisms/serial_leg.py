@@ -10,10 +10,10 @@ from wsrender.documents.legs import SerialLeg
 from wsrender.documents.quantities import quoted
 from wsrender.engine import evaluate_kinematics
 from wsrender.errors import InputError
-from wsrender.reachability import InverseSolver, Solutions
-from wsrender.reachability.evidence import UNREACHABLE
-from wsrender.reachability.reached_set import tolerance_m
-from wsrender.reachability.targets import reasons_of
+from wsrender.reach import InverseSolver, Solutions
+from wsrender.reach.evidence import UNREACHABLE
+from wsrender.reach.reached_set import tolerance_m
+from wsrender.reach.targets import reasons_of
 from wsrender.robot import Robot, robot_of_spec
 from wsrender.robots.kinematics import Kinematics
 

@@ -17,7 +17,7 @@ from wsrender.documents.serial_joints import SerialJoint
 from wsrender.mechanisms.leg_bounds import proves_all, surely_unreached
 from wsrender.mechanisms.mechanism import Mechanism, mechanism_of
 from wsrender.mechanisms.membership import in_base_frame, poses_labelled
-from wsrender.reachability.evidence import REACHABLE, UNDECIDED, UNREACHABLE
+from wsrender.reach.evidence import REACHABLE, UNDECIDED, UNREACHABLE
 from wsrender.robot import Robot
 from wsrender.robots.reachable_box import reachable_box
 

@@ -17,7 +17,6 @@ from wsrender.mechanisms.five_bar import FiveBar
 from wsrender.progress import RunProgress
 from wsrender.results.result import Result
 from wsrender.robot import Robot, UserRobot, as_robot, load_robot
-from wsrender.robot.user_robot import HostRobot
 from wsrender.robots import of_mujoco
 from wsrender.run.steps import Progress, execute
 

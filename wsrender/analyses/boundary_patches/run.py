@@ -28,9 +28,9 @@ from wsrender.geometry.spatial.spatial_boundary import (
     spatial_boundary,
 )
 from wsrender.notices import Notice
-from wsrender.reachability.measure_refinement import refined_measure
-from wsrender.reachability.moving_joints import moving_joints
-from wsrender.reachability.reached_points import ReachedPoints
+from wsrender.reach.measure_refinement import refined_measure
+from wsrender.reach.moving_joints import moving_joints
+from wsrender.reach.reached_points import ReachedPoints
 from wsrender.robot import model_chain
 from wsrender.robots.chain import Chain
 from wsrender.sampling import held_chain

@@ -11,14 +11,14 @@ from wsrender.analyses.execution import Execution
 from wsrender.analyses.partial_result import PartialResult
 from wsrender.documents.sampling import Sobol
 from wsrender.engine import sampled_positions
-from wsrender.reachability.capability import (
+from wsrender.reach.capability import (
     SAMPLES_PER_CELL,
     SEARCHED_BYTES,
     capability,
     fibonacci_directions,
     searched_block,
 )
-from wsrender.reachability.targets import check_tolerance
+from wsrender.reach.targets import check_tolerance
 from wsrender.robots.chain import Chain
 from wsrender.sampling import plan_sampling
 from wsrender.volume.lattice import check_voxels, default_voxel_size, expected_voxels

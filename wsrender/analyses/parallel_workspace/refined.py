@@ -16,9 +16,9 @@ from wsrender.mechanisms.flat import Flat
 from wsrender.mechanisms.membership import count_at, in_base_frame, poses_labelled
 from wsrender.mechanisms.orientations import OrientationSet, finer, orientation_set
 from wsrender.mechanisms.serial_search import MOST_NUMERIC
-from wsrender.reachability import Event, estimate_volumes
-from wsrender.reachability.evidence import REACHABLE, UNDECIDED, UNREACHABLE
-from wsrender.reachability.volume_estimate import VolumeEstimates
+from wsrender.reach import Event, estimate_volumes
+from wsrender.reach.evidence import REACHABLE, UNDECIDED, UNREACHABLE
+from wsrender.reach.volume_estimate import VolumeEstimates
 from wsrender.volume.lattice import LatticeBlock, block_around
 from wsrender.volume.neighbours import inner_and_outer
 

@@ -31,8 +31,8 @@ from wsrender.mechanisms.mechanism import Mechanism
 from wsrender.mechanisms.membership import count_lattice, fault_at, in_base_frame, orientations_labelled
 from wsrender.mechanisms.orientations import OrientationSet, orientation_set, random_orientations
 from wsrender.mechanisms.serial_search import SerialSearch, serial_search
-from wsrender.reachability.evidence import REACHABLE, UNDECIDED, UNREACHABLE
-from wsrender.reachability.volume_estimate import wilson
+from wsrender.reach.evidence import REACHABLE, UNDECIDED, UNREACHABLE
+from wsrender.reach.volume_estimate import wilson
 from wsrender.robot.indices import task_rows
 from wsrender.volume.lattice import LatticeBlock
 

@@ -7,7 +7,7 @@ from wsrender.analyses.cost import DOCUMENT_BYTES, Cost, pictures_cost
 from wsrender.analyses.execution import Execution
 from wsrender.analyses.partial_result import PartialResult
 from wsrender.analyses.reachability.job import ReachabilityJob
-from wsrender.reachability.targets import check_tolerance, reachable
+from wsrender.reach.targets import check_tolerance, reachable
 from wsrender.volume.table import Table
 
 RATE = 2e4  # targets per second, rounded down from benchmarks/inverse.py: many unreachable poses on one core

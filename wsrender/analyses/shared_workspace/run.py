@@ -20,7 +20,7 @@ from wsrender.analyses.volume_notices import occupied_differs, tolerance_not_met
 from wsrender.documents.placement_scan import PlacementScan
 from wsrender.multi.shared_volume import NUMBER, PRODUCT, reached_by, shared_volume, volume_by_number
 from wsrender.notices import Notice
-from wsrender.reachability import Event
+from wsrender.reach import Event
 from wsrender.volume.lattice import block_of_all, check_voxels
 from wsrender.volume.measure import TABLE_UNITS
 from wsrender.volume.table import Table

@@ -25,8 +25,8 @@ from wsrender.global_indices import (
 )
 from wsrender.notices import Notice
 from wsrender.pipeline.constraints.region import Region
-from wsrender.reachability.holes import share_of_holes, share_unseen
-from wsrender.reachability.voxel_labels import counts
+from wsrender.reach.holes import share_of_holes, share_unseen
+from wsrender.reach.voxel_labels import counts
 from wsrender.robot import Robot
 from wsrender.robot.constraints import check_admitted, samples_entry
 from wsrender.sampling import subsample

@@ -18,7 +18,7 @@ from wsrender.geometry.planar.postures import postures
 from wsrender.geometry.planar.segments import ExactSegment
 from wsrender.geometry.planar.self_motions import self_motion_regions, self_motions
 from wsrender.geometry.planar.sweep import swept_sets
-from wsrender.robot import robot_with_model
+from wsrender.robot import model_chain
 from wsrender.robots.chain import Chain
 from wsrender.sampling import held_chain
 
@@ -249,4 +249,4 @@ def exact_boundary(robot: Any, *, locked: Mapping[str, float] | None = None) -> 
     ``locked`` holds joints, by name, at a value [rad or m]. Raises ModelError, naming the joint, for an arm that is not
     planar; InputError for an unknown joint or a value beyond its limits.
     """
-    return ExactBoundary.of(held_chain(robot_with_model(robot).chain, locked or {}))
+    return ExactBoundary.of(held_chain(model_chain(robot), locked or {}))

@@ -7,9 +7,9 @@ from functools import cached_property
 import numpy as np
 
 from wsrender.engine import Accuracy, Tries, evaluate_poses, solve_inverse, thread_count
-from wsrender.reachability.evidence import FLATTER, Evidence
-from wsrender.reachability.moving_joints import moving_joints
-from wsrender.reachability.starts import FURTHER, NEAR, NEAR_LIMITS, Starts, inwards
+from wsrender.reach.evidence import FLATTER, Evidence
+from wsrender.reach.moving_joints import moving_joints
+from wsrender.reach.starts import FURTHER, NEAR, NEAR_LIMITS, Starts, inwards
 from wsrender.robots.kinematics import Kinematics
 from wsrender.robots.reachable_box import reachable_box
 

@@ -10,12 +10,12 @@ import numpy as np
 from wsrender.documents.sampling import Sobol
 from wsrender.engine import configurations, positions_at
 from wsrender.pipeline.constraints.region import Region
-from wsrender.reachability.cover import covered_cells
-from wsrender.reachability.evidence import UNREACHABLE
-from wsrender.reachability.inverse_solver import InverseSolver
-from wsrender.reachability.occupied_cells import occupied_cells
-from wsrender.reachability.starts import inwards, towards_limits
-from wsrender.reachability.volume_estimate import QUANTILE, wilson
+from wsrender.reach.cover import covered_cells
+from wsrender.reach.evidence import UNREACHABLE
+from wsrender.reach.inverse_solver import InverseSolver
+from wsrender.reach.occupied_cells import occupied_cells
+from wsrender.reach.starts import inwards, towards_limits
+from wsrender.reach.volume_estimate import QUANTILE, wilson
 from wsrender.robots.kinematics import Kinematics
 from wsrender.robots.reachable_box import reachable_box
 from wsrender.sampling import plan_sampling

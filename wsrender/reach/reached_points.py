@@ -3,9 +3,9 @@
 import numpy as np
 
 from wsrender.engine import positions_at
-from wsrender.reachability.evidence import REACHABLE, UNDECIDED
-from wsrender.reachability.inverse_solver import InverseSolver
-from wsrender.reachability.reached_set import tolerance_m
+from wsrender.reach.evidence import REACHABLE, UNDECIDED
+from wsrender.reach.inverse_solver import InverseSolver
+from wsrender.reach.reached_set import tolerance_m
 from wsrender.robots.kinematics import Kinematics
 
 

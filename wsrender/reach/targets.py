@@ -9,8 +9,8 @@ from scipy.spatial.transform import Rotation
 
 from wsrender.documents.quantities import argument, positive
 from wsrender.errors import InputError
-from wsrender.reachability.evidence import CLEARLY, LABELS, UNDECIDED, UNREACHABLE
-from wsrender.reachability.inverse_solver import InverseSolver, Solutions
+from wsrender.reach.evidence import CLEARLY, LABELS, UNDECIDED, UNREACHABLE
+from wsrender.reach.inverse_solver import InverseSolver, Solutions
 from wsrender.robot import as_robot
 from wsrender.robots.kinematics import Kinematics
 from wsrender.tolerances import TOLERANCES

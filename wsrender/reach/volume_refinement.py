@@ -12,9 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from wsrender.pipeline.constraints.region import Region
-from wsrender.reachability.dimension import TipSet, tip_set
-from wsrender.reachability.reached_set import CELLS, FalseNegatives, ReachedSet, hidden_share, tests_of
-from wsrender.reachability.volume_estimate import Event, VolumeEstimate, estimate_volumes
+from wsrender.reach.dimension import TipSet, tip_set
+from wsrender.reach.reached_set import CELLS, FalseNegatives, ReachedSet, hidden_share, tests_of
+from wsrender.reach.volume_estimate import Event, VolumeEstimate, estimate_volumes
 from wsrender.robots.kinematics import Kinematics
 from wsrender.volume.lattice import LatticeBlock, block_around
 

@@ -5,7 +5,7 @@ import pytest
 
 import wsrender as ws
 from tests.reference.exact_volumes import CASES
-from wsrender.reachability.cover import _filled, covered_cells
+from wsrender.reach.cover import _filled, covered_cells
 from wsrender.robots import library
 from wsrender.robots.reachable_box import reachable_box, reachable_boxes
 from wsrender.volume.lattice import block_around

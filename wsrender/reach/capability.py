@@ -10,10 +10,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from wsrender.engine import positions_at
-from wsrender.reachability.dimension import fills_volume, in_own_voxel
-from wsrender.reachability.evidence import REACHABLE, UNDECIDED
-from wsrender.reachability.inverse_solver import InverseSolver
-from wsrender.reachability.occupied_cells import occupied_cells
+from wsrender.reach.dimension import fills_volume, in_own_voxel
+from wsrender.reach.evidence import REACHABLE, UNDECIDED
+from wsrender.reach.inverse_solver import InverseSolver
+from wsrender.reach.occupied_cells import occupied_cells
 from wsrender.robots.kinematics import Kinematics
 from wsrender.robots.reachable_box import reachable_box
 from wsrender.volume.lattice import LatticeBlock, block_around, check_voxels

@@ -5,7 +5,7 @@ from functools import partial
 import numpy as np
 import pytest
 
-from wsrender.reachability.volume_estimate import Event, _Estimation, _Stratum, estimate_volumes, wilson
+from wsrender.reach.volume_estimate import Event, _Estimation, _Stratum, estimate_volumes, wilson
 from wsrender.volume.neighbours import inner_and_outer
 
 EDGE, HALF = 0.1, 1.8

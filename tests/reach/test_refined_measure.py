@@ -5,7 +5,7 @@ import pytest
 
 import wsrender as ws
 from tests.reference.exact_volumes import CASES, dh_arm, slide, tool
-from wsrender.reachability import Event, refined_measure, refined_measures
+from wsrender.reach import Event, refined_measure, refined_measures
 
 TURNED = ws.Transform(position_m=(1, 2, 3), rpy_deg=(20, 30, 40))
 UPRIGHT = ws.Transform(position_m=(0, 0, 1), rpy_deg=(90, 0, 0))

@@ -9,10 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from wsrender.pipeline.constraints.region import Region
-from wsrender.reachability.dimension import FLAT, TipSet, tip_set
-from wsrender.reachability.reached_set import FalseNegatives, tolerance_m
-from wsrender.reachability.volume_estimate import Event, VolumeEstimate
-from wsrender.reachability.volume_refinement import by_the_origin, decided_volumes
+from wsrender.reach.dimension import FLAT, TipSet, tip_set
+from wsrender.reach.reached_set import FalseNegatives, tolerance_m
+from wsrender.reach.volume_estimate import Event, VolumeEstimate
+from wsrender.reach.volume_refinement import by_the_origin, decided_volumes
 from wsrender.robots.kinematics import Kinematics
 from wsrender.volume.measure import QUANTITIES, UNITS
 

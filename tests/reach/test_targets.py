@@ -7,7 +7,7 @@ from scipy.spatial.transform import Rotation
 import wsrender as ws
 from tests.reference import closed_form_inverse as closed_form
 from tests.run.simple_robots import gantry
-from wsrender.reachability.moving_joints import moving_joints
+from wsrender.reach.moving_joints import moving_joints
 from wsrender.robots.reachable_box import reachable_box
 
 RECOVERED = 0.995  # share of targets made by forward kinematics, to 1e-4 m

@@ -6,8 +6,8 @@ from functools import partial
 import numpy as np
 
 import wsrender as ws
-from wsrender.reachability import InverseSolver
-from wsrender.reachability.evidence import UNDECIDED, UNREACHABLE
+from wsrender.reach import InverseSolver
+from wsrender.reach.evidence import UNDECIDED, UNREACHABLE
 
 MARGINS = (0.0, 0.001, 0.01, 0.05, 0.15)  # largest distance of every joint from one of its limits, of its range
 KINDS = ("pose", "axis")

@@ -8,7 +8,7 @@ import wsrender as ws
 from tests.reference.class_robots import DHClass, FourBar, SphericalClass
 from tests.reference.exact_volumes import CASES, spherical_pair
 from wsrender.engine import evaluate_kinematics, evaluate_poses
-from wsrender.reachability.capability import capability, fibonacci_directions
+from wsrender.reach.capability import capability, fibonacci_directions
 from wsrender.robot import as_robot
 from wsrender.robots.reachable_box import reachable_box
 

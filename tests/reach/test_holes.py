@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tests.run.simple_robots import gantry
-from wsrender.reachability.holes import share_of_holes, share_unseen
+from wsrender.reach.holes import share_of_holes, share_unseen
 from wsrender.volume.volume_data import VolumeData
 
 SIZE = 0.01

@@ -5,9 +5,9 @@ from itertools import product
 import numpy as np
 
 from wsrender.pipeline.constraints.region import Region
-from wsrender.reachability.evidence import REACHABLE
-from wsrender.reachability.inverse_solver import InverseSolver
-from wsrender.reachability.reached_set import tolerance_m
+from wsrender.reach.evidence import REACHABLE
+from wsrender.reach.inverse_solver import InverseSolver
+from wsrender.reach.reached_set import tolerance_m
 from wsrender.robots.kinematics import Kinematics
 from wsrender.volume.volume_data import VolumeData
 

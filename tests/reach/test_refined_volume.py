@@ -5,9 +5,9 @@ import pytest
 
 import wsrender as ws
 from tests.reference.exact_volumes import CASES, articulated, spherical_pair
-from wsrender.reachability import Event, refined_volume, refined_volumes
-from wsrender.reachability.measure_refinement import refined_measure
-from wsrender.reachability.reached_set import FalseNegatives, hidden_share
+from wsrender.reach import Event, refined_volume, refined_volumes
+from wsrender.reach.measure_refinement import refined_measure
+from wsrender.reach.reached_set import FalseNegatives, hidden_share
 
 SPHERICAL = CASES["spherical"].volume
 

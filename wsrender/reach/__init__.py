@@ -14,11 +14,11 @@
 line too, and says why where a set has no measure; `refined_measures` is the same of several chains.
 """
 
-from wsrender.reachability.inverse_solver import InverseSolver, Solutions
-from wsrender.reachability.measure_refinement import RefinedMeasure, refined_measure, refined_measures
-from wsrender.reachability.targets import Reachability, reachable
-from wsrender.reachability.volume_estimate import Event, VolumeEstimate, estimate_volumes
-from wsrender.reachability.volume_refinement import RefinedVolumes, refined_volume, refined_volumes
+from wsrender.reach.inverse_solver import InverseSolver, Solutions
+from wsrender.reach.measure_refinement import RefinedMeasure, refined_measure, refined_measures
+from wsrender.reach.targets import Reachability, reachable
+from wsrender.reach.volume_estimate import Event, VolumeEstimate, estimate_volumes
+from wsrender.reach.volume_refinement import RefinedVolumes, refined_volume, refined_volumes
 
 __all__ = [
     "Event",

@@ -7,12 +7,12 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import wsrender as ws
-from tests.reachability.near_limits import ACCURACY, ARMS, MOST_UNDECIDED, offset_chain, tallies, targets_at
+from tests.reach.near_limits import ACCURACY, ARMS, MOST_UNDECIDED, offset_chain, tallies, targets_at
 from tests.run.simple_robots import gantry
 from wsrender.engine import Accuracy, Tries, solve_inverse
-from wsrender.reachability import InverseSolver, Solutions, refined_volume
-from wsrender.reachability.evidence import REACHABLE, UNDECIDED, UNREACHABLE, Evidence
-from wsrender.reachability.starts import MOST_CORNERS, corners, towards_limits
+from wsrender.reach import InverseSolver, Solutions, refined_volume
+from wsrender.reach.evidence import REACHABLE, UNDECIDED, UNREACHABLE, Evidence
+from wsrender.reach.starts import MOST_CORNERS, corners, towards_limits
 from wsrender.robots.reachable_box import reachable_box
 
 COUNT = 100  # targets for each arm, margin and kind; tests/long.py takes 2,000
@@ -77,7 +77,7 @@ def test_poses_out_of_reach_take_few_tries(name, monkeypatch):
     solver = InverseSolver(robot.chain, kind="pose", **ACCURACY)
     found = solver.solve(position, axes)
     searched = (found.label != REACHABLE) & ~found.proven
-    monkeypatch.setattr("wsrender.reachability.inverse_solver.solve_inverse", counted)
+    monkeypatch.setattr("wsrender.reach.inverse_solver.solve_inverse", counted)
     solver.solve(position[searched], axes[searched])
     print("TRIES", name, sum(taken) / searched.sum(), (found.label == UNDECIDED).sum())
     assert sum(taken) <= 6 * 32 * searched.sum()
@@ -106,7 +106,7 @@ def test_measured_false_negatives_include_targets_next_to_limits(monkeypatch):
             label = np.where(close.any(axis=1), UNREACHABLE, found.label).astype(np.int8)
             return Solutions(found.q, found.distance_m, found.angle_rad, label, found.proven)
 
-    module = import_module("wsrender.reachability.reached_set")
+    module = import_module("wsrender.reach.reached_set")
     monkeypatch.setattr(module, "InverseSolver", FailsNextToLimits)
     _, found = refined_volume(robot.chain, 0.1, max_points=10_000)
     (tried,) = found.false_negatives

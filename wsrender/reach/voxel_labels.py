@@ -5,11 +5,11 @@ from collections.abc import Callable
 import numpy as np
 
 from wsrender.engine import positions_at
-from wsrender.reachability.dimension import fills_volume, in_own_voxel
-from wsrender.reachability.evidence import LABELS, REACHABLE
-from wsrender.reachability.inverse_solver import InverseSolver
-from wsrender.reachability.reached_set import tolerance_m
-from wsrender.reachability.targets import INCONCLUSIVE, JOINT_LIMITS, OUT_OF_REACH, TOO_CLOSE, reasons_of
+from wsrender.reach.dimension import fills_volume, in_own_voxel
+from wsrender.reach.evidence import LABELS, REACHABLE
+from wsrender.reach.inverse_solver import InverseSolver
+from wsrender.reach.reached_set import tolerance_m
+from wsrender.reach.targets import INCONCLUSIVE, JOINT_LIMITS, OUT_OF_REACH, TOO_CLOSE, reasons_of
 from wsrender.robots.kinematics import Kinematics
 from wsrender.volume.neighbours import inner_and_outer
 from wsrender.volume.volume_data import VolumeData
