@@ -19,7 +19,7 @@ from wsrender.reach.capability import (
     searched_block,
 )
 from wsrender.reach.targets import check_tolerance
-from wsrender.robots.chain import Chain
+from wsrender.robots.kinematics import Kinematics
 from wsrender.sampling import plan_sampling
 from wsrender.volume.lattice import check_voxels, default_voxel_size, expected_voxels
 from wsrender.volume.table import Table
@@ -132,7 +132,7 @@ class CapabilityAnalysis(Analysis):
         return VolumeData.of_voxels(self.settled.voxel_size_m, first, voxels, {"approach_directions": "1"})
 
 
-def _positions(chain: Chain) -> np.ndarray:
+def _positions(chain: Kinematics) -> np.ndarray:
     """Positions (N, 3) of the first samples of a Sobol set [m]."""
     plan = plan_sampling(chain, Sobol(FIRST_SAMPLES))
     return sampled_positions(chain, plan)

@@ -19,7 +19,7 @@ from wsrender.kinetostatics.force_fields import ForceField
 from wsrender.kinetostatics.passivity import LoopWork, largest_loop_work, stiffness_bound, stiffnesses
 from wsrender.kinetostatics.posture_data import posture_tables
 from wsrender.notices import Notice
-from wsrender.robots.chain import Chain
+from wsrender.robots.kinematics import Kinematics
 from wsrender.robots.reachable_box import reachable_box
 from wsrender.sampling import plan_sampling
 from wsrender.volume.lattice import LatticeBlock, block_around, check_voxels, default_voxel_size
@@ -201,7 +201,7 @@ def _length_entry(length: CharacteristicLength) -> dict[str, Any]:
     }
 
 
-def _block(chain: Chain, size: float) -> LatticeBlock:
+def _block(chain: Kinematics, size: float) -> LatticeBlock:
     """Around all that is reached."""
     return block_around(*reachable_box(chain, chain.lower_limits, chain.upper_limits), size)
 
