@@ -2,11 +2,10 @@
 
 import numpy as np
 import pytest
-from wsrender.documents.parsing import canonical_json
 
 import wsrender as ws
 from wsrender.analyses.design_optimization import values as design_values
-from wsrender.analyses.jobs import parse_job
+from wsrender.analyses.jobs import canonical_json, parse_job
 from wsrender.errors import NotConvergedError, NumericalError
 from wsrender.run import steps
 
