@@ -63,7 +63,7 @@ def test_every_format_is_read_back(analysis, saved):
         elif path.suffix in (".ply", ".glb", ".stl"):
             assert len(trimesh.load_mesh(path).faces) == len(read_mesh(path.with_suffix(".ply")).faces) > 0
         else:
-            assert path.suffix in (".png", ".svg", ".dxf", ".npy", ".csv", ".parquet", ".vtkhdf"), path
+            assert path.suffix in (".png", ".svg", ".dxf", ".npy", ".csv", ".parquet", ".vtkhdf", ".vti"), path
     assert read == 3 * sum(data is not None for data in named.values())
 
 
