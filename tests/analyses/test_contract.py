@@ -114,7 +114,7 @@ def test_the_envelope_is_added_once(monkeypatch):
     plan.notices = (Notice("of_the_robot", "it is odd"),)
     monkeypatch.setattr(Nothing, "said", (Notice("of_numbers", "few"), Notice("of_numbers", "few")))
     document = plan.finish(plan.run_shard(0, None, Execution()), {"sweep": 1.0}, Execution()).document
-    assert list(document) == ["analysis", "job", "edge", "headline", "warnings", "provenance", "timing_s"]
+    assert list(document) == ["format", "analysis", "job", "edge", "headline", "warnings", "provenance", "timing_s"]
     assert document["job"] == {"analysis": "nothing"}
     assert document["headline"]["reason"] == "the analysis nothing measures none"
     assert [each["code"] for each in document["warnings"]] == ["of_the_robot", "of_numbers"]
