@@ -43,8 +43,7 @@ def test_chunks_and_threads_change_no_bit(chunk_size, threads, precision):
 def test_shards_merge_in_any_order(split, precision, device):
     document = job(precision, COUNT, device=device)
     _, expected, _ = executed(document)
-    plan = run.plan(document)
-    plan.shards = split
+    plan = run.plan(document, resolved={**run.plan(document).resolved(), "shards": split})
     partials = [run.run_shard(plan, i, chunk_size=4096) for i in range(len(split))]
     for order in permutations(range(len(split))):
         merged = partials[order[0]]
