@@ -9,9 +9,9 @@ from scipy.optimize import minimize
 import wsrender as ws
 from tests.geometry.spatial_arms import BOX, SCARA, SPHERICAL, arm_of, boundary_of, robot, scara, sliding, turning
 from wsrender.geometry.spatial.cells import CellLattice
-from wsrender.geometry.spatial.crossed_surfaces import NONE, CrossedSurfaces
-from wsrender.geometry.spatial.fitted_boundary import TOLERANCE, fitted_boundary
+from wsrender.geometry.spatial.critical_sets import NONE, CrossedSurfaces
 from wsrender.geometry.spatial.grown_patches import best_refined_fit, grown_patches
+from wsrender.geometry.spatial.spatial_boundary import TOLERANCE, fitted_boundary
 from wsrender.reach.moving_joints import moving_joints
 from wsrender.reach.reached_points import ReachedPoints
 from wsrender.reach.volume_refinement import refined_volume

@@ -11,11 +11,10 @@ from tests.geometry.planar_arms import boundary, revolute_joints, slide_and_turn
 from tests.reference.planar_membership import PlanarArm
 from wsrender.geometry.fits import fit_circle, fit_line
 from wsrender.geometry.planar.agreement import FARTHEST_APART, INWARD, LARGEST_ERROR, disagreements, signed_area
-from wsrender.geometry.planar.cell_loops import cell_loops
 from wsrender.geometry.planar.exact_boundary import ExactBoundary
-from wsrender.geometry.planar.fitted_segments import FARTHEST, FittedSegment, FitTolerances, fitted_segments
 from wsrender.geometry.planar.monte_carlo import CELLS as NUMBERS
-from wsrender.geometry.planar.monte_carlo import monte_carlo_boundary
+from wsrender.geometry.planar.monte_carlo import cell_loops, monte_carlo_boundary
+from wsrender.geometry.planar.segments import FARTHEST, FittedSegment, FitTolerances, fitted_segments
 from wsrender.sampling import held_chain
 
 SAMPLES, CELLS = 100_000, 2500  # as published

@@ -7,8 +7,7 @@ import wsrender as ws
 from tests.geometry.solids import BALL, SHELL, TORUS, in_ball, in_shell, in_torus, uniform_points, voxels_of
 from tests.run.simple_robots import PLANAR, gantry, planar_arm
 from wsrender.documents.surfaces import AlphaShapeSurface
-from wsrender.geometry.surfaces import surfaces
-from wsrender.geometry.voxel_surface import occupied_surface
+from wsrender.geometry.surfaces import occupied_surface, surfaces
 from wsrender.results.result import Result
 
 ALL = ["marching_cubes", {"alpha_shape": 0.1}, "convex_hull", {"iso_surface": "manipulability", "fraction": 0.5}]

@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from tests.geometry.spatial_arms import arm_of, box, elbow, general, scara, spherical
 from wsrender.geometry.spatial.inverse import ThreeJointInverse
-from wsrender.geometry.spatial.joint_volume import joint_volume
+from wsrender.geometry.spatial.measures import joint_volume
 from wsrender.geometry.spatial.spatial_arm import SpatialArm
 
 KINDS = ["".join(kinds) for kinds in itertools.product("RP", repeat=3)]

@@ -5,8 +5,8 @@ from hypothesis import strategies as st
 
 from tests.results.export.sample_data import random_volume
 from wsrender.errors import InputError
-from wsrender.geometry import voxel_surface
-from wsrender.geometry.voxel_surface import level_surface, occupied_surface
+from wsrender.geometry import surfaces
+from wsrender.geometry.surfaces import level_surface, occupied_surface
 from wsrender.results.export import read_mesh, write_mesh
 from wsrender.volume.volume_data import VolumeData
 
@@ -68,7 +68,7 @@ def test_files_are_deterministic_and_in_world_metres(tmp_path, suffix):
 
 
 def test_surface_with_too_many_faces_is_coarsened_around_all_voxels(monkeypatch):
-    monkeypatch.setattr(voxel_surface, "MAX_VOXEL_FACES", 200)
+    monkeypatch.setattr(surfaces, "MAX_VOXEL_FACES", 200)
     volume = random_volume((9, 8, 7))
     mesh = occupied_surface(volume)
     assert mesh.is_watertight

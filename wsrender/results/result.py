@@ -244,7 +244,7 @@ def _meshes(result: Result) -> "dict[str, trimesh.Trimesh]":
     """The result's meshes; where it has none, the surface of its occupied voxels."""
     if result.meshes or result.volume is None or not result.volume.n_occupied:
         return result.meshes
-    from wsrender.geometry.voxel_surface import occupied_surface
+    from wsrender.geometry.surfaces import occupied_surface
 
     return {"surface": occupied_surface(result.volume)}
 

@@ -15,18 +15,19 @@ from wsrender.analyses.partial_result import PartialResult
 from wsrender.analyses.refined import measure_entry, volume_entry
 from wsrender.geometry.spatial.critical_sets import CriticalSet
 from wsrender.geometry.spatial.edges import Corner, Edge
-from wsrender.geometry.spatial.fitted_boundary import TOLERANCE, fitted_boundary
 from wsrender.geometry.spatial.patches import Patch
-from wsrender.geometry.spatial.primitives import Primitive
 from wsrender.geometry.spatial.spatial_arm import SpatialArm
 from wsrender.geometry.spatial.spatial_boundary import (
     JOINTS,
+    TOLERANCE,
     CriticalBoundary,
     SpatialBoundary,
     coloured,
+    fitted_boundary,
     solid_arm,
     spatial_boundary,
 )
+from wsrender.geometry.spatial.surfaces import Primitive
 from wsrender.notices import Notice
 from wsrender.reach.measure_refinement import refined_measure
 from wsrender.reach.moving_joints import moving_joints

@@ -173,8 +173,7 @@ def _check_volume(several: SeveralPlans) -> None:
 
 def _meshes(shared: VolumeData) -> "tuple[dict[str, trimesh.Trimesh], dict[str, Any]]":
     """Surfaces of the union and, where there is one, of the intersection, with their entries."""
-    from wsrender.geometry.surfaces import surface_entry
-    from wsrender.geometry.voxel_surface import occupied_surface
+    from wsrender.geometry.surfaces import occupied_surface, surface_entry
 
     meshes = {"union": occupied_surface(shared)}
     both = reached_by(shared, 2)

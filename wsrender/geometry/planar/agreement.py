@@ -4,11 +4,10 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from wsrender.geometry.planar.cell_loops import MOST_SINGLE
 from wsrender.geometry.planar.curves import Curves
 from wsrender.geometry.planar.distances import point_distances
 from wsrender.geometry.planar.exact_boundary import ExactBoundary
-from wsrender.geometry.planar.monte_carlo import MonteCarloBoundary
+from wsrender.geometry.planar.monte_carlo import MOST_SINGLE, MonteCarloBoundary
 from wsrender.geometry.planar.segments import Segment
 
 # Centroids lie 0.24–0.33 cell widths inside an outer loop (Alciatore & Ng 1994), less inside a hole or where samples

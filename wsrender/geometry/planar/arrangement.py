@@ -1,4 +1,4 @@
-"""Curves split where they meet: pieces that have one and the same surrounding from end to end."""
+"""Curves split where they meet: pieces of one and the same surrounding from end to end, and what is on their sides."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -9,9 +9,8 @@ from scipy.spatial import KDTree
 
 from wsrender.errors import NumericalError
 from wsrender.geometry.components import components
-from wsrender.geometry.planar.curves import TURN, Curves
+from wsrender.geometry.planar.curves import TURN, Curves, crossings
 from wsrender.geometry.planar.distances import point_distances
-from wsrender.geometry.planar.intersections import crossings
 
 # Relative to the size of the set. Each is far above the rounding that a dozen joints collect (1e-15 each), and far
 # below the accuracy that is promised (1e-9).
@@ -25,6 +24,11 @@ COARSER = (1.0, 10.0, 100.0)  # tolerances tried in turn, where curves nearly co
 T = TypeVar("T")
 
 _PLACES = (0.25, 0.5, 0.75)  # along a piece, where it is compared with another
+Classes = Callable[[np.ndarray, np.ndarray], np.ndarray]
+"""Class (K,) of points (K, 2) that keep a distance (K,) [m] from every curve of the arrangement."""
+
+_SIDE_PLACES = np.array([0.5, 0.35, 0.65, 0.2, 0.8, 0.08, 0.92])  # along a piece, where its sides may be looked at
+_NARROWEST = 2e-15  # space beside a piece that can be told from none, relative to the size of the set
 
 
 @dataclass(frozen=True, eq=False)
@@ -207,3 +211,35 @@ def _without_twins(found: Arrangement, tolerance: float) -> Arrangement:
             found.covering[row] = np.concatenate([found.covering[row], *(found.covering[other] for other in twins)])
             dropped.update(twins)
     return found.only(np.array([k for k in range(len(found.pieces)) if k not in dropped], np.int64))
+
+
+def side_classes(arrangement: Arrangement, classes: Classes, size: float) -> np.ndarray:
+    """Classes on the left and right of every piece, (P, 2).
+
+    Both sides are looked at beside the place with most space around it, at half that space: nothing but the piece
+    lies between the two points. Raises NumericalError where there is no space.
+    """
+    t, space = _places(arrangement, size)
+    pieces = arrangement.pieces
+    if len(space) and space.min() < _NARROWEST * size:
+        raise NumericalError(f"boundary curves come as close as {space.min():.1e} m without meeting")
+    middle, step = pieces.at(t), (space / 2)[:, None] * pieces.normal(t)
+    found = classes(np.concatenate([middle + step, middle - step]), np.tile(space / 2, 2))
+    return found.reshape(2, -1).T
+
+
+def _places(arrangement: Arrangement, size: float) -> tuple[np.ndarray, np.ndarray]:
+    """Parameter on each piece, and the distance of its point to every other carrier's curves, (P,) each."""
+    pieces = arrangement.pieces
+    best_t, best = np.zeros(len(pieces)), np.full(len(pieces), -1.0)
+    widest = np.minimum(np.where(pieces.arc, pieces.radius / 2, np.inf), 0.05 * size)
+    own = arrangement.carrier[:, None] == arrangement.carrier_of
+    for k, members in enumerate(arrangement.covering):
+        own[k, members] = True
+    for place in _SIDE_PLACES:
+        t = pieces.low + place * pieces.span
+        distance = np.where(own, np.inf, point_distances(pieces.at(t), arrangement.curves))
+        space = np.minimum(distance.min(axis=1, initial=np.inf), widest)
+        better = space > best
+        best_t, best = np.where(better, t, best_t), np.where(better, space, best)
+    return best_t, best

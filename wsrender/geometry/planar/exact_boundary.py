@@ -10,13 +10,16 @@ import numpy as np
 from wsrender.errors import InputError
 from wsrender.geometry.planar.curves import unit
 from wsrender.geometry.planar.distances import point_distances
-from wsrender.geometry.planar.inverse_solutions import NumberRegions, inverse_solutions, solution_regions
-from wsrender.geometry.planar.loops import Loop, loops_of
+from wsrender.geometry.planar.inverse_solutions import (
+    NumberRegions,
+    inverse_solutions,
+    self_motion_regions,
+    self_motions,
+    solution_regions,
+)
 from wsrender.geometry.planar.planar_chain import PlanarChain, Plane, planar_chain
-from wsrender.geometry.planar.planar_set import PlanarSet
-from wsrender.geometry.planar.postures import postures
+from wsrender.geometry.planar.planar_set import Loop, PlanarSet, loops_of, postures
 from wsrender.geometry.planar.segments import ExactSegment
-from wsrender.geometry.planar.self_motions import self_motion_regions, self_motions
 from wsrender.geometry.planar.sweep import swept_sets
 from wsrender.robot import model_chain
 from wsrender.robots.chain import Chain

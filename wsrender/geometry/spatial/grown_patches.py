@@ -14,10 +14,9 @@ from scipy.sparse import csr_array
 
 from wsrender.geometry.components import components
 from wsrender.geometry.spatial.cells import SpatialCellLoops
-from wsrender.geometry.spatial.crossed_surfaces import CrossedSurfaces
+from wsrender.geometry.spatial.critical_sets import CrossedSurfaces
 from wsrender.geometry.spatial.patches import FRAGMENT, Patch, in_order, neighbours, rows_of, smooth
-from wsrender.geometry.spatial.primitives import Fit, Primitive, candidates, fit_of, nearest
-from wsrender.geometry.spatial.surfaces import FoundPoints, SmoothPoints
+from wsrender.geometry.spatial.surfaces import Fit, FoundPoints, Primitive, SmoothPoints, candidates, fit_of, nearest
 
 _SEED = 40  # crossings, at least, that a primitive is first fitted to
 _FITTED = 1500  # crossings of a region that count in a fit, spread evenly: more change nothing

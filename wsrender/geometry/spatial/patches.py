@@ -6,10 +6,8 @@ import numpy as np
 
 from wsrender.geometry.components import components
 from wsrender.geometry.spatial.cells import SpatialCellLoops
-from wsrender.geometry.spatial.critical_sets import CriticalSet
-from wsrender.geometry.spatial.crossed_surfaces import NONE, CrossedSurfaces
-from wsrender.geometry.spatial.primitives import Fit, best_fit
-from wsrender.geometry.spatial.surfaces import FoundPoints, Surface, surface_of
+from wsrender.geometry.spatial.critical_sets import NONE, CriticalSet, CrossedSurfaces
+from wsrender.geometry.spatial.surfaces import Fit, FoundPoints, Surface, best_fit, surface_of
 
 _SMOOTH = np.cos(np.radians(30.0))  # between neighbouring crossings of one surface
 FRAGMENT = 60  # crossings: with fewer a patch is part of a larger one of the same surface, if there is any

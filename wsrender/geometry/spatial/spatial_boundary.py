@@ -1,18 +1,25 @@
-"""The boundary of the positions that a spatial arm reaches: patches, edges, corners, a mesh, and the volume."""
+"""The boundary of the positions that a spatial arm reaches: patches, edges, corners, a mesh, and the volume.
+
+Where more than three joints move the end point the critical sets are not solved: `fitted_boundary` finds crossings by
+inverse kinematics, and fits surfaces to them. Where the boundary crosses an edge of the lattice is bisected to 1e-6 of
+the arm's size; a point just outside has its nearest reached point on the boundary, and the direction to it is the
+normal.
+"""
 
 from dataclasses import dataclass
+from math import ceil, log2
+from typing import Protocol
 
 import numpy as np
 import trimesh
 
 from wsrender.errors import ModelError
-from wsrender.geometry.spatial.cells import CellLattice, Membership, Report
-from wsrender.geometry.spatial.critical_sets import CriticalSet, critical_sets
-from wsrender.geometry.spatial.crossed_surfaces import crossed_surfaces
+from wsrender.geometry.spatial.cells import CellLattice, LatticeCrossings, Membership, Report
+from wsrender.geometry.spatial.critical_sets import NONE, CriticalSet, CrossedSurfaces, critical_sets, crossed_surfaces
 from wsrender.geometry.spatial.edges import Corner, Edge, edges_and_corners
+from wsrender.geometry.spatial.grown_patches import grown_patches
 from wsrender.geometry.spatial.inverse import ThreeJointInverse
-from wsrender.geometry.spatial.joint_volume import joint_volume
-from wsrender.geometry.spatial.measures import PatchMeasures, measures
+from wsrender.geometry.spatial.measures import PatchMeasures, joint_volume, measures
 from wsrender.geometry.spatial.patch_mesh import PatchMesh, patch_mesh
 from wsrender.geometry.spatial.patches import Patch, boundary_patches
 from wsrender.geometry.spatial.spatial_arm import SpatialArm, spatial_arm
@@ -27,6 +34,10 @@ _DIFFERS = 3e-4  # of the volume: where patches enclose so much more or less, pa
 _MISSED = 5e-5  # of the volume: what may be left in such parts
 _FEWEST, _CELLS_PER_PLANE = 4, 4  # planes of cells more, at most: these, or one for so many cells across
 _FLAT = 1e-9  # volume that the Jacobian spans, relative to that of its columns: rounding
+BISECTED = 1e-6  # of the arm's size: what bisection leaves
+TOLERANCE = 2e-6  # of the arm's size: the error of nearly all crossings, within which they are on a primitive
+_OUTSIDE = 1e-4  # of the arm's size: how far outside the points are that give normals
+_UNDECIDED = 1e-5  # of the arm's size: where no try is sure a crossing may be that much too far inside
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,3 +151,48 @@ def _samples(arm: SpatialArm, count: int) -> np.ndarray:
     count = max(2, round(count ** (JOINTS / arm.n)))
     axes = [np.linspace(low, high, count) for low, high in zip(arm.low, arm.high, strict=True)]
     return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, arm.n)
+
+
+class Reached(Protocol):
+    """What an arm reaches, decided by inverse kinematics."""
+
+    def reaches(self, points: np.ndarray) -> np.ndarray:
+        """Whether points (N, 3) [m] are reached, (N,) bool; those that are undecided count as not."""
+        ...
+
+    def nearest(self, points: np.ndarray) -> np.ndarray:
+        """The reached points (N, 3) that are nearest to points (N, 3) [m]."""
+        ...
+
+
+def fitted_boundary(arm: SpatialArm, reached: Reached, cells: int, report: Report) -> SpatialBoundary:
+    """Find the boundary with so many ``cells`` along its longest edge; ``report(points tested)``."""
+    lattice = lattice_around(arm, reached.reaches, cells, report)
+    bisections = ceil(log2(max(2.0, lattice.width / (BISECTED * arm.size))))
+    crossings = lattice.crossings(reached.reaches, report, bisections)
+    loops = lattice.loops(crossings)
+    crossed = _crossed(arm, crossings, reached)
+    report(len(crossings))
+    patches, patch_of, crossed = grown_patches(crossed, loops, TOLERANCE * arm.size, lattice.width)
+    mesh = patch_mesh(loops, crossed, patches, patch_of, lattice.width)
+    edges, corners = edges_and_corners(mesh, 10 * TOLERANCE)
+    return SpatialBoundary(arm, patches, measures(mesh.curved, patches), edges, corners, mesh, lattice.width)
+
+
+def _crossed(arm: SpatialArm, crossings: LatticeCrossings, reached: Reached) -> CrossedSurfaces:
+    """Points and normals of the crossings, from the nearest reached points to points a little outside."""
+    middle, outward = (crossings.inside + crossings.outside) / 2, crossings.outward
+    off, left = _OUTSIDE * arm.size, _UNDECIDED * arm.size
+    foot = reached.nearest(middle + off * outward)
+    away = middle + off * outward - foot
+    distance = np.linalg.norm(away, axis=1)
+    normal = away / np.maximum(distance, 1e-300)[:, None]
+    slope = (normal * outward).sum(axis=1)
+    # The boundary crosses the edge: nothing farther off is nearest. A plane of no slope has the edge in it.
+    good = (distance <= off + left) & (slope > 1e-3)
+    # The plane that touches there crosses the edge within the square of the way to it, nearer than bisection.
+    along = ((foot - middle) * normal).sum(axis=1) / np.where(good, slope, 1.0)
+    along = np.where(good & (np.abs(along) <= left), along, 0.0)
+    normal = np.where(good[:, None], normal, outward)
+    nowhere = np.zeros((len(crossings), arm.n))
+    return CrossedSurfaces(np.full(len(crossings), NONE), middle + along[:, None] * outward, normal, nowhere)

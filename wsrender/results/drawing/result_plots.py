@@ -182,7 +182,7 @@ class ResultPlots:
         volumes = [volume for volume in (self.volume, *self.volumes.values()) if volume is not None]
         if len(volumes) != 1 or not volumes[0].n_occupied:
             return None
-        from wsrender.geometry.voxel_surface import occupied_surface
+        from wsrender.geometry.surfaces import occupied_surface
 
         return faces_of(occupied_surface(volumes[0]), None)
 

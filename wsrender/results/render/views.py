@@ -10,7 +10,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from wsrender.errors import InputError
-from wsrender.geometry.voxel_surface import level_surface, occupied_surface
+from wsrender.geometry.surfaces import level_surface, occupied_surface
 from wsrender.results.drawing.cloud import checked_index
 from wsrender.results.drawing.color_scale import SIGNED, ColorScale, color_scale
 from wsrender.results.drawing.planes import NAMES, Field, layer_at, plane_normals, shared_scale, voxel_field

@@ -7,8 +7,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from wsrender.geometry.spatial.grown_patches import refined
-from wsrender.geometry.spatial.primitives import Primitive, best_fit
-from wsrender.geometry.spatial.surfaces import PrimitiveSurface
+from wsrender.geometry.spatial.surfaces import Primitive, PrimitiveSurface, best_fit
 
 R, SHIFT = Rotation.from_euler("xyz", [0.3, -1.1, 2.0]).as_matrix(), np.array([0.3, -2.0, 1.0])
 U, V = np.random.default_rng(1).uniform(0, 2, (2, 200))
