@@ -18,7 +18,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from wsrender.documents.mechanism import MechanismSpec
 from wsrender.engine import count_orientations
-from wsrender.mechanisms.local_indices import pose_indices
+from wsrender.mechanisms.jacobians import pose_indices
 from wsrender.mechanisms.mechanism import mechanism_of
 from wsrender.mechanisms.membership import leg_test, reachable_box
 from wsrender.volume.lattice import block_around

@@ -7,8 +7,7 @@ import pytest
 
 import wsrender as ws
 from tests.mechanisms.mechanisms import SPEC, mechanism, poses_of
-from wsrender.mechanisms.inverse_kinematics import inverse_kinematics
-from wsrender.mechanisms.leg_distance import least_distance
+from wsrender.mechanisms.inverse_kinematics import inverse_kinematics, least_distance
 from wsrender.mechanisms.mechanism import legs_of
 from wsrender.mechanisms.membership import count_at, poses_labelled
 from wsrender.run import execute

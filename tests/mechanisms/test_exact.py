@@ -11,8 +11,7 @@ from scipy.spatial.transform import Rotation
 from tests.mechanisms.ball_regions import at_origin, moved, random_region, region, six_pus
 from tests.mechanisms.mechanisms import known_ups, ups
 from wsrender.errors import InputError, NumericalError
-from wsrender.mechanisms.ball_region import BallRegion
-from wsrender.mechanisms.ball_surfaces import surface_table
+from wsrender.mechanisms.ball_region import BallRegion, surface_table
 from wsrender.mechanisms.exact import ExactWorkspace, Topology, exact_volumes
 from wsrender.mechanisms.solids import solid_workspace
 

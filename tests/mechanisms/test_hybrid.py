@@ -7,12 +7,10 @@ from scipy.spatial.transform import Rotation
 
 import wsrender as ws
 from tests.mechanisms.mechanisms import SPEC, mechanism, poses_of
-from wsrender.mechanisms.hybrid import hybrid_at, middle, reached_by_any, serial_transform, variants
+from wsrender.mechanisms.hybrid import hybrid_at, middle, reached_by_any, serial_transform, variants, workspace_points
 from wsrender.mechanisms.inverse_kinematics import inverse_kinematics
-from wsrender.mechanisms.jacobians import jacobians, platform_jacobian
-from wsrender.mechanisms.local_indices import CONDITION_NUMBERS
+from wsrender.mechanisms.jacobians import CONDITION_NUMBERS, jacobians, platform_jacobian
 from wsrender.mechanisms.mechanism import mechanism_of
-from wsrender.mechanisms.workspace_points import workspace_points
 from wsrender.run import execute, plan
 
 LIFT = {"type": "prismatic", "limits_m": [0.0, 0.4], "levels": 5}

@@ -7,8 +7,7 @@ from scipy.spatial.transform import Rotation
 from tests.mechanisms.mechanisms import mechanism, poses_of
 from wsrender.errors import InputError
 from wsrender.mechanisms.inverse_kinematics import inverse_kinematics
-from wsrender.mechanisms.jacobians import jacobians, platform_jacobian
-from wsrender.mechanisms.local_indices import pose_indices
+from wsrender.mechanisms.jacobians import jacobians, platform_jacobian, pose_indices
 
 STEP = 1e-6
 NAMES = ("manipulability", "inverse_condition_number", "minimum_singular_value", "isotropy")

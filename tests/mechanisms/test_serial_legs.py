@@ -12,8 +12,7 @@ from tests.mechanisms import serial_legs
 from tests.mechanisms.mechanisms import SPEC, mechanism, poses_of
 from wsrender.documents.legs import UPSLeg
 from wsrender.mechanisms.inverse_kinematics import inverse_kinematics
-from wsrender.mechanisms.jacobians import jacobians
-from wsrender.mechanisms.local_indices import CONDITION_NUMBERS, pose_indices
+from wsrender.mechanisms.jacobians import CONDITION_NUMBERS, jacobians, pose_indices
 from wsrender.mechanisms.mechanism import legs_of
 from wsrender.mechanisms.membership import count_lattice, fault_at, placed_box, poses_labelled, reachable_box
 from wsrender.reach.evidence import REACHABLE, UNDECIDED

@@ -8,7 +8,7 @@ from tests.mechanisms.mechanisms import known_ups, mechanism, poses_of, ups
 from wsrender.mechanisms.ball_region import ball_region
 from wsrender.mechanisms.exact import ExactWorkspace
 from wsrender.mechanisms.inverse_kinematics import inverse_kinematics
-from wsrender.mechanisms.singularities import sign_changes
+from wsrender.mechanisms.jacobians import sign_changes
 from wsrender.results.result import Result
 from wsrender.run import execute, finish, merge, plan, run_shard
 from wsrender.run.partial_files import load_partial, save_partial

@@ -13,9 +13,13 @@ from scipy.spatial.transform import Rotation
 from wsrender.documents.mechanism import MechanismSpec
 from wsrender.documents.serial_joints import SerialJoint
 from wsrender.engine import OrientationCounts
+from wsrender.errors import InputError
 from wsrender.mechanisms.mechanism import Mechanism, mechanism_of
 from wsrender.mechanisms.membership import AxisBox, count_at, in_base_frame, placed_box, reachable_box
 from wsrender.robot import Robot
+
+BATCH = 1 << 14
+MOST_BATCHES = 512  # eight million positions tried
 
 
 @dataclass(frozen=True, eq=False)
@@ -206,3 +210,26 @@ def serial_transform(joints: Sequence[SerialJoint], q: np.ndarray) -> np.ndarray
             step[:3, 3] += value * axis
         T = T @ step
     return T
+
+
+def workspace_points(
+    spec: MechanismSpec, count: int, *, device: str = "auto", threads: int | None = None
+) -> np.ndarray:
+    """The first ``count`` points of a Sobol set that the platform reaches without being turned, (N, 3) [m], world.
+
+    Fewer where eight million points of the box around the workspace hold fewer; InputError where they hold none.
+    """
+    from scipy.stats.qmc import Sobol
+
+    found, level = variants(spec), np.eye(3)[None]
+    box = reachable_box_of(found, level)
+    points, sobol = np.zeros((0, 3)), Sobol(3, scramble=False)
+    for _ in range(MOST_BATCHES):
+        if box is None or len(points) >= count:
+            break
+        tried = box.lower + sobol.random(BATCH) * (box.upper - box.lower)
+        reached = reached_by_any(found, tried, level, device=device, threads=threads)
+        points = np.concatenate([points, tried[reached]])
+    if not len(points):
+        raise InputError("mechanism", "reaches no position without being turned")
+    return points[:count]

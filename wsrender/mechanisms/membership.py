@@ -19,8 +19,7 @@ from wsrender.engine import (
     joined,
     poses_reached,
 )
-from wsrender.mechanisms.inverse_kinematics import fault_text, inverse_kinematics
-from wsrender.mechanisms.leg_distance import leg_pairs
+from wsrender.mechanisms.inverse_kinematics import fault_text, inverse_kinematics, leg_pairs
 from wsrender.mechanisms.mechanism import Mechanism
 from wsrender.reach.evidence import REACHABLE, UNDECIDED, UNREACHABLE
 from wsrender.robots.reachable_box import reachable_box as box_of_chain

@@ -9,7 +9,7 @@ from matplotlib.path import Path
 import wsrender as ws
 from tests.mechanisms.ball_regions import region
 from wsrender.errors import InputError
-from wsrender.mechanisms.ball_surfaces import surface_table
+from wsrender.mechanisms.ball_region import surface_table
 from wsrender.mechanisms.exact import ExactWorkspace
 from wsrender.results.drawing.camera import Camera
 from wsrender.results.drawing.depth import DepthBuffer

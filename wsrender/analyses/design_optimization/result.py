@@ -19,7 +19,7 @@ from wsrender.analyses.headline import headline, no_headline
 from wsrender.design.exact_inscribed import largest_ball, largest_cube
 from wsrender.design.inscribed import CUBE_ERROR, SPHERE_ERROR
 from wsrender.design.search import front
-from wsrender.mechanisms.ball_surfaces import surface_table
+from wsrender.mechanisms.ball_region import surface_table
 from wsrender.mechanisms.exact import ExactWorkspace
 from wsrender.volume.table import Table
 

@@ -28,7 +28,7 @@ from wsrender.geometry.surfaces import surface_entry
 from wsrender.mapping.linear_mapping import LinearMapping, MeasuredSet
 from wsrender.mapping.scale_search import best_mapping, largest_factor, scale_curve
 from wsrender.mapping.voxel_set import VoxelSet
-from wsrender.mechanisms.workspace_points import workspace_points
+from wsrender.mechanisms.hybrid import workspace_points
 from wsrender.notices import Notice
 from wsrender.robot import Robot
 from wsrender.robots.reachable_box import reachable_box

@@ -12,8 +12,7 @@ from wsrender.analyses.headline import headline
 from wsrender.analyses.parallel_workspace.result import mechanism_entries, skeleton_at
 from wsrender.analyses.partial_result import PartialResult
 from wsrender.geometry.surfaces import surface_entry
-from wsrender.mechanisms.ball_region import BallRegion, region_of
-from wsrender.mechanisms.ball_surfaces import surface_table
+from wsrender.mechanisms.ball_region import BallRegion, region_of, surface_table
 from wsrender.mechanisms.exact import ExactWorkspace
 from wsrender.mechanisms.solids import solid_workspace
 from wsrender.notices import Notice

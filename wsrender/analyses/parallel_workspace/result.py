@@ -16,7 +16,7 @@ from wsrender.indices.dimensions import task_matrix
 from wsrender.indices.index_catalogue import unit
 from wsrender.mechanisms.hybrid import Variant, from_middle, middle
 from wsrender.mechanisms.inverse_kinematics import inverse_kinematics
-from wsrender.mechanisms.local_indices import DETERMINANTS
+from wsrender.mechanisms.jacobians import DETERMINANTS
 from wsrender.mechanisms.mechanism import Mechanism
 from wsrender.mechanisms.membership import fault_at, in_base_frame, in_world
 from wsrender.sampling import subsample

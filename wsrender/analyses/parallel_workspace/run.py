@@ -25,8 +25,7 @@ from wsrender.indices.index_catalogue import is_dynamic, option_values, resolve
 from wsrender.mechanisms.ball_region import region_of
 from wsrender.mechanisms.hybrid import Variant, added, count_union, middle, variants
 from wsrender.mechanisms.inverse_kinematics import inverse_kinematics
-from wsrender.mechanisms.jacobians import check_square
-from wsrender.mechanisms.local_indices import CONDITION_NUMBERS, DETERMINANTS, pose_indices
+from wsrender.mechanisms.jacobians import CONDITION_NUMBERS, DETERMINANTS, check_square, pose_indices
 from wsrender.mechanisms.mechanism import Mechanism
 from wsrender.mechanisms.membership import count_lattice, fault_at, in_base_frame, orientations_labelled
 from wsrender.mechanisms.orientations import OrientationSet, orientation_set, random_orientations

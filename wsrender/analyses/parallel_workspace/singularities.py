@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from wsrender.analyses.partial_result import PartialResult
-from wsrender.mechanisms.singularities import TYPES, zeros
+from wsrender.mechanisms.jacobians import SINGULARITY_TYPES, zeros
 from wsrender.volume.table import Table
 from wsrender.volume.volume_data import VolumeData
 
@@ -27,7 +27,7 @@ def singularities(
     branches = _branches(plan) if plan.mechanism.branched else [""]
     entry: dict[str, Any] = {}
     positions, kinds, signs = [np.zeros((0, 3))], [], []
-    for kind, name in TYPES.items():
+    for kind, name in SINGULARITY_TYPES.items():
         values = _values(plan, partial, volume, name)
         found = [_changes(volume, column) for column in values.T]
         positions += found

@@ -10,13 +10,10 @@ import numpy as np
 from wsrender.errors import InputError
 from wsrender.mechanisms.ball_region import BallRegion
 from wsrender.mechanisms.exact.arcs import Arcs, arcs
-from wsrender.mechanisms.exact.borders import Borders, borders
-from wsrender.mechanisms.exact.bounds import bounds
-from wsrender.mechanisms.exact.faces import Face, FacesOnSurface, faces, patches
-from wsrender.mechanisms.exact.measure import HalfEdges, RegionMeasures, half_edges, measures, probes_inside
+from wsrender.mechanisms.exact.faces import Borders, Face, FacesOnSurface, Topology, borders, faces, patches, topology
+from wsrender.mechanisms.exact.measure import HalfEdges, RegionMeasures, bounds, half_edges, measures, probes_inside
 from wsrender.mechanisms.exact.mesh import region_mesh
 from wsrender.mechanisms.exact.surfaces import make_up, surfaces_of
-from wsrender.mechanisms.exact.topology import Topology, topology
 
 if TYPE_CHECKING:
     import trimesh

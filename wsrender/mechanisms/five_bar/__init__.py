@@ -3,11 +3,11 @@
 from wsrender.mechanisms.five_bar.condition_numbers import (
     Conditioning,
     conditioning,
+    conditioning_gradients,
     jacobian,
     parallel_jacobian,
     serial_jacobian,
 )
-from wsrender.mechanisms.five_bar.gradients import conditioning_gradients
 from wsrender.mechanisms.five_bar.mechanism import ASSEMBLY_MODES, WORKING_MODES, FiveBar
 from wsrender.mechanisms.five_bar.region import workspace
 

@@ -8,11 +8,10 @@ import numpy as np
 
 from wsrender.errors import NumericalError
 from wsrender.geometry.romberg import extrapolated
-from wsrender.mechanisms.five_bar.arcs import Arc
 from wsrender.mechanisms.five_bar.condition_numbers import conditioning
 from wsrender.mechanisms.five_bar.loci import BESIDE, BoundaryMeeting, Piece, end_point
 from wsrender.mechanisms.five_bar.mechanism import FiveBar
-from wsrender.mechanisms.five_bar.region import ArcRegion
+from wsrender.mechanisms.five_bar.region import Arc, ArcRegion
 
 SEGMENTS = 4096  # of a piece of a locus; its area is extrapolated from this many and fewer
 DRAWN = 512  # segments of a piece in an outline
