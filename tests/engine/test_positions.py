@@ -6,7 +6,7 @@ import pytest
 import wsrender as ws
 from wsrender.engine import Evaluation, SweepPlan, configurations, devices_of, evaluate_poses, positions_at, sweep
 from wsrender.engine import sampled_positions as sampled
-from wsrender.sampling import plan_sampling
+from wsrender.pipeline.sampling import plan_sampling
 from wsrender.tolerances import TOLERANCES
 from wsrender.volume.lattice import LatticeBlock
 

@@ -8,7 +8,7 @@ import pytest
 import wsrender as ws
 from wsrender.engine import configurations
 from wsrender.errors import InputError, ResourceError
-from wsrender.sampling import plan_sampling
+from wsrender.pipeline.sampling import plan_sampling
 from wsrender.tolerances import epsilon
 
 

@@ -7,7 +7,7 @@ from scipy import stats
 import wsrender as ws
 from tests.reference.philox import philox_4x32
 from wsrender.engine import configurations
-from wsrender.sampling import plan_sampling
+from wsrender.pipeline.sampling import plan_sampling
 from wsrender.tolerances import SMALLEST_P_VALUE, epsilon
 
 COUNT = 40_000

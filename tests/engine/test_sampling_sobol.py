@@ -7,7 +7,7 @@ from wsrender_kernels.sampling import SOBOL_BITS
 
 import wsrender as ws
 from wsrender.engine import configurations
-from wsrender.sampling import plan_sampling, scrambled_sobol, sobol_directions
+from wsrender.pipeline.sampling import plan_sampling, scrambled_sobol, sobol_directions
 
 CHAIN = ws.load_robot("ur5e").chain
 

@@ -15,7 +15,7 @@ from wsrender.geometry.planar.exact_boundary import ExactBoundary
 from wsrender.geometry.planar.monte_carlo import CELLS as NUMBERS
 from wsrender.geometry.planar.monte_carlo import cell_loops, monte_carlo_boundary
 from wsrender.geometry.planar.segments import FARTHEST, FittedSegment, FitTolerances, fitted_segments
-from wsrender.sampling import held_chain
+from wsrender.pipeline.sampling import held_chain
 
 SAMPLES, CELLS = 100_000, 2500  # as published
 ARMS = {

@@ -12,8 +12,8 @@ from wsrender.errors import DocumentError, InputError
 from wsrender.pipeline.constraints import registry
 from wsrender.pipeline.constraints.region import Region
 from wsrender.pipeline.constraints.registry import constraints_of
+from wsrender.pipeline.sampling import plan_sampling
 from wsrender.run import execute, finish, plan, run_shard
-from wsrender.sampling import plan_sampling
 from wsrender.volume.lattice import LatticeBlock
 
 SHAPES = {

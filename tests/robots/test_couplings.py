@@ -12,10 +12,10 @@ from wsrender.documents.sampling import Grid
 from wsrender.engine.grid_structure import structure_of
 from wsrender.errors import ModelError
 from wsrender.kinetostatics.kinematics import PostureKinematics
+from wsrender.pipeline.sampling import plan_sampling
 from wsrender.robot import evaluate_indices, link_shapes, robot_of_spec
 from wsrender.robot.indices import evaluation_of
 from wsrender.robots.model_warning import ModelWarning
-from wsrender.sampling import plan_sampling
 
 
 def arm(equality, extra=""):

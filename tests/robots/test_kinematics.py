@@ -10,11 +10,11 @@ import wsrender as ws
 from tests.reference import chain_kinematics
 from tests.reference.chain_kinematics import coupling
 from wsrender.engine import Accuracy, evaluate_kinematics, evaluate_poses, sampled_positions, solve_inverse
+from wsrender.pipeline.sampling import given_sampling
 from wsrender.robots.chain import Chain
 from wsrender.robots.host_kinematics import HostKinematics
 from wsrender.robots.joint_space import JointSpace
 from wsrender.robots.kinematics import Kinematics
-from wsrender.sampling import given_sampling
 
 SOURCES = Path(ws.__file__).parent
 PLACEMENT = {"position_m": (0.3, -0.2, 0.15), "quat_wxyz": (0.5, 0.1, -0.7, 0.5)}

@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 
 from wsrender import engine
+from wsrender.pipeline.sampling import plan_sampling
 from wsrender.robot import Robot
-from wsrender.sampling import plan_sampling
 
 
 def sampled_positions(

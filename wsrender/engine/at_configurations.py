@@ -8,7 +8,7 @@ from wsrender.engine.devices import devices_of
 from wsrender.engine.evaluation import Evaluation
 from wsrender.engine.sweep_plan import SweepPlan, from_origin, sweep
 from wsrender.pipeline.constraints.constraint import Constraint
-from wsrender.sampling import given_sampling
+from wsrender.pipeline.sampling import given_sampling
 
 
 @dataclass(frozen=True, eq=False)

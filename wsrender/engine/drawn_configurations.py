@@ -8,7 +8,7 @@ from wsrender_kernels.sampling import lane_table, sample_space
 from wsrender.engine.devices import devices_of
 from wsrender.engine.evaluation import REAL, device_array, vector_of
 from wsrender.engine.kernel_cache import launch, loaded
-from wsrender.sampling import SamplingPlan
+from wsrender.pipeline.sampling import SamplingPlan
 
 
 def device_space(plan: SamplingPlan, precision: str, device: wp.Device, run: int = 0):

@@ -26,8 +26,8 @@ from wsrender.engine.evaluation import Evaluation
 from wsrender.indices.entry import BASE_JOINT, TRAILING_JOINTS
 from wsrender.indices.index_catalogue import find, is_dynamic
 from wsrender.pipeline.constraints.constraint import STRUCTURES, Structure
+from wsrender.pipeline.sampling import SamplingPlan
 from wsrender.robots.chain import Chain
-from wsrender.sampling import SamplingPlan
 
 MOSTLY_FULL = 0.9  # samples per lane of the blocks of a grid whose leading coordinates are shared
 ON_AXIS = 1e-12  # of the reach: rounding of a model file's numbers

@@ -7,8 +7,8 @@ import numpy as np
 from wsrender.engine.devices import devices_of
 from wsrender.engine.evaluation import Evaluation
 from wsrender.engine.sweep_plan import SweepPlan, sweep
+from wsrender.pipeline.sampling import SamplingPlan, given_sampling
 from wsrender.robots.kinematics import Kinematics
-from wsrender.sampling import SamplingPlan, given_sampling
 
 
 def sampled_positions(

@@ -34,7 +34,7 @@ from wsrender.engine.slabs import fitted
 from wsrender.engine.sums import has_own_bound
 from wsrender.errors import NumericalError
 from wsrender.pipeline.constraints.constraint import STRUCTURES, Constraint, Structure
-from wsrender.sampling import SamplingPlan
+from wsrender.pipeline.sampling import SamplingPlan
 from wsrender.volume.lattice import LatticeBlock
 
 CHUNK_CPU, CHUNK_CUDA, CHUNK_ROWS, CHUNK_GIVEN = 1 << 20, 1 << 28, 1 << 18, 1 << 14

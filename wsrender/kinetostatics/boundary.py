@@ -13,10 +13,10 @@ from wsrender.documents.kinetostatics import BoundaryForce
 from wsrender.documents.sampling import Sobol
 from wsrender.engine import sampled_positions
 from wsrender.errors import InputError
+from wsrender.pipeline.sampling import plan_sampling
 from wsrender.reach.evidence import REACHABLE
 from wsrender.reach.inverse_solver import InverseSolver
 from wsrender.robots.chain import Chain
-from wsrender.sampling import plan_sampling
 
 SAMPLES_PER_CELL = 8
 POSITION_M = 1e-6  # residual that counts as reached, far below any cell

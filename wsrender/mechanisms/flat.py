@@ -12,7 +12,7 @@ from wsrender.documents.sampling import Sobol
 from wsrender.engine import sampled_positions
 from wsrender.mechanisms.mechanism import Mechanism
 from wsrender.mechanisms.serial_leg import NumericLeg
-from wsrender.sampling import plan_sampling
+from wsrender.pipeline.sampling import plan_sampling
 
 SAMPLES = 512
 FLAT = 1e-9  # thickness that counts as none, relative to the extent

@@ -6,8 +6,8 @@ import numpy as np
 
 from wsrender.documents.sampling import Sobol
 from wsrender.engine import configurations, evaluate_kinematics
+from wsrender.pipeline.sampling import plan_sampling
 from wsrender.robots.kinematics import Kinematics
-from wsrender.sampling import plan_sampling
 from wsrender.tolerances import FLAT
 
 SAMPLES = 1 << 10

@@ -4,8 +4,8 @@ import numpy as np
 
 from wsrender.documents.sampling import Sobol
 from wsrender.engine import Evaluation, SweepPlan, devices_of, sweep
+from wsrender.pipeline.sampling import plan_sampling
 from wsrender.robots.kinematics import Kinematics
-from wsrender.sampling import plan_sampling
 from wsrender.volume.lattice import LatticeBlock
 
 

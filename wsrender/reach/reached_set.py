@@ -10,6 +10,7 @@ import numpy as np
 from wsrender.documents.sampling import Sobol
 from wsrender.engine import configurations, positions_at
 from wsrender.pipeline.constraints.region import Region
+from wsrender.pipeline.sampling import plan_sampling
 from wsrender.reach.cover import covered_cells
 from wsrender.reach.evidence import UNREACHABLE
 from wsrender.reach.inverse_solver import InverseSolver
@@ -18,7 +19,6 @@ from wsrender.reach.starts import inwards, towards_limits
 from wsrender.reach.volume_estimate import QUANTILE, wilson
 from wsrender.robots.kinematics import Kinematics
 from wsrender.robots.reachable_box import reachable_box
-from wsrender.sampling import plan_sampling
 from wsrender.volume.lattice import LatticeBlock
 from wsrender.volume.neighbours import neighbours_and_itself
 

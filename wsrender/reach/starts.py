@@ -8,8 +8,8 @@ from scipy.spatial import KDTree
 
 from wsrender.documents.sampling import Sobol
 from wsrender.engine import configurations
+from wsrender.pipeline.sampling import plan_sampling
 from wsrender.robots.kinematics import Kinematics
-from wsrender.sampling import plan_sampling
 
 NEAR, NEAR_LIMITS, FURTHER = "near", "near limits", "further"
 EPS = 1.0  # neighbours may be farther by this share: exact ones of far targets cost more than the tries

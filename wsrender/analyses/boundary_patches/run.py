@@ -29,12 +29,12 @@ from wsrender.geometry.spatial.spatial_boundary import (
 )
 from wsrender.geometry.spatial.surfaces import Primitive
 from wsrender.notices import Notice
+from wsrender.pipeline.sampling import held_chain
 from wsrender.reach.measure_refinement import refined_measure
 from wsrender.reach.moving_joints import moving_joints
 from wsrender.reach.reached_points import ReachedPoints
 from wsrender.robot import model_chain
 from wsrender.robots.chain import Chain
-from wsrender.sampling import held_chain
 from wsrender.volume.table import Table
 
 POINTS_PER_S = 1e5  # inverse kinematics on one CPU core

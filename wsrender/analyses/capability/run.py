@@ -11,6 +11,7 @@ from wsrender.analyses.execution import Execution
 from wsrender.analyses.partial_result import PartialResult
 from wsrender.documents.sampling import Sobol
 from wsrender.engine import sampled_positions
+from wsrender.pipeline.sampling import plan_sampling
 from wsrender.reach.capability import (
     SAMPLES_PER_CELL,
     SEARCHED_BYTES,
@@ -20,7 +21,6 @@ from wsrender.reach.capability import (
 )
 from wsrender.reach.targets import check_tolerance
 from wsrender.robots.kinematics import Kinematics
-from wsrender.sampling import plan_sampling
 from wsrender.volume.lattice import check_voxels, default_voxel_size, expected_voxels
 from wsrender.volume.table import Table
 from wsrender.volume.volume_data import VolumeData

@@ -19,9 +19,9 @@ from wsrender.kinetostatics.force_fields import ForceField
 from wsrender.kinetostatics.passivity import LoopWork, largest_loop_work, stiffness_bound, stiffnesses
 from wsrender.kinetostatics.posture_data import posture_tables
 from wsrender.notices import Notice
+from wsrender.pipeline.sampling import plan_sampling
 from wsrender.robots.kinematics import Kinematics
 from wsrender.robots.reachable_box import reachable_box
-from wsrender.sampling import plan_sampling
 from wsrender.volume.lattice import LatticeBlock, block_around, check_voxels, default_voxel_size
 from wsrender.volume.volume_data import VolumeData
 from wsrender.volume.voxels import Voxels

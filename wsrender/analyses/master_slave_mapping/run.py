@@ -30,9 +30,9 @@ from wsrender.mapping.scale_search import best_mapping, largest_factor, scale_cu
 from wsrender.mapping.voxel_set import VoxelSet
 from wsrender.mechanisms.hybrid import workspace_points
 from wsrender.notices import Notice
+from wsrender.pipeline.sampling import plan_sampling
 from wsrender.robot import Robot
 from wsrender.robots.reachable_box import reachable_box
-from wsrender.sampling import plan_sampling
 from wsrender.volume.lattice import block_around, check_voxels
 from wsrender.volume.table import Table
 

@@ -19,7 +19,7 @@ from wsrender.mechanisms.inverse_kinematics import inverse_kinematics
 from wsrender.mechanisms.jacobians import DETERMINANTS
 from wsrender.mechanisms.mechanism import Mechanism
 from wsrender.mechanisms.membership import fault_at, in_base_frame, in_world
-from wsrender.sampling import subsample
+from wsrender.pipeline.sampling import subsample
 from wsrender.volume.distribution_map import DistributionMap
 from wsrender.volume.lattice import LatticeBlock
 from wsrender.volume.table import Table

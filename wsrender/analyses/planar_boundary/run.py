@@ -22,8 +22,8 @@ from wsrender.geometry.planar.monte_carlo import MonteCarloBoundary, monte_carlo
 from wsrender.geometry.planar.planar_chain import PlanarChain, planar_chain
 from wsrender.geometry.planar.segments import segment_entry, segment_table
 from wsrender.notices import Notice
+from wsrender.pipeline.sampling import plan_sampling
 from wsrender.robot import model_chain
-from wsrender.sampling import plan_sampling
 from wsrender.volume.table import Table
 
 POSITIONS_PER_S = 2e6  # of one CPU core

@@ -8,8 +8,8 @@ import numpy as np
 from wsrender.documents.sampling import Sobol
 from wsrender.engine import Evaluated, Evaluation, configurations, evaluate_at, evaluate_kinematics
 from wsrender.engine.sums import own_bound, scales_for
+from wsrender.pipeline.sampling import SamplingPlan, plan_sampling
 from wsrender.robots.reachable_box import reachable_box
-from wsrender.sampling import SamplingPlan, plan_sampling
 from wsrender.tolerances import FLAT
 from wsrender.volume.lattice import MOST_DIVISIONS, LatticeBlock, block_around, default_voxel_size
 

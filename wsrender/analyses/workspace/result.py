@@ -25,11 +25,11 @@ from wsrender.global_indices import (
 )
 from wsrender.notices import Notice
 from wsrender.pipeline.constraints.region import Region
+from wsrender.pipeline.sampling import subsample
 from wsrender.reach.holes import share_of_holes, share_unseen
 from wsrender.reach.voxel_labels import counts
 from wsrender.robot import Robot
 from wsrender.robot.constraints import check_admitted, samples_entry
-from wsrender.sampling import subsample
 from wsrender.volume.distribution_map import DistributionMap
 from wsrender.volume.volume_data import VolumeData
 

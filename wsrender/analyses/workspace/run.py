@@ -33,10 +33,10 @@ from wsrender.engine.voxel_data import volume_data
 from wsrender.errors import InputError, NotConvergedError
 from wsrender.global_indices import joint_means, workspace_mean
 from wsrender.indices.index_catalogue import default_statistics, resolve
+from wsrender.pipeline.sampling import SamplingPlan, plan_sampling
 from wsrender.robot import Robot
 from wsrender.robot.constraints import constraints_for
 from wsrender.robot.indices import evaluation_of_job
-from wsrender.sampling import SamplingPlan, plan_sampling
 from wsrender.volume.lattice import LatticeBlock, check_voxels, expected_voxels, voxel_of
 from wsrender.volume.volume_data import VolumeData
 

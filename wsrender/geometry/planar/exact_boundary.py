@@ -21,9 +21,9 @@ from wsrender.geometry.planar.planar_chain import PlanarChain, Plane, planar_cha
 from wsrender.geometry.planar.planar_set import Loop, PlanarSet, loops_of, postures
 from wsrender.geometry.planar.segments import ExactSegment
 from wsrender.geometry.planar.sweep import swept_sets
+from wsrender.pipeline.sampling import held_chain
 from wsrender.robot import model_chain
 from wsrender.robots.chain import Chain
-from wsrender.sampling import held_chain
 
 # A joint value this near to a limit, relative to its range, is at the limit: far above the rounding of postures.
 _AT_LIMIT = 1e-7
