@@ -15,6 +15,7 @@ from tests.golden.facts import bits_of
 from tests.golden.files import analyses, golden, saved_folder
 from wsrender.indices import KINEMATIC
 from wsrender.results.export import read_mesh, read_table_npz, read_volume_npz
+from wsrender.results.export.cells import cell_arrays, cell_names, vector_names
 from wsrender.results.export.columns import columns_of
 from wsrender.volume.volume_data import VolumeData
 
@@ -69,11 +70,10 @@ def test_every_format_is_read_back(analysis, saved):
 
 
 def arrays_of(data, of_volume):
-    """Arrays of a table or map by column, of a volume by statistic and index."""
+    """Arrays of a table or map by column, of a volume by the name in files; each vector is one."""
     if not of_volume:
         return columns_of(data).arrays(data)
-    statistics = {(s, name): values for s, by_index in data.statistics.items() for name, values in by_index.items()}
-    return {"count": data.count} | statistics | dict(data.vectors)
+    return dict(cell_arrays(data, cell_names(data, set()), vector_names(data, set())))
 
 
 def npz(path, data, of_volume):
@@ -86,25 +86,34 @@ def npz(path, data, of_volume):
 
 def table_csv(path, data, of_volume):
     """Of a volume a row for each voxel that holds something."""
+    arrays = arrays_of(data, of_volume)
+    if of_volume:
+        held = {name: values[data.count > 0] for name, values in arrays.items()}
+        arrays = dict(zip("ijk", (np.argwhere(data.count > 0) + data.first_voxel).T, strict=True))
+        arrays |= {axis: (arrays[k] + 0.5) * data.voxel_size_m for k, axis in zip("ijk", "xyz", strict=True)}
+        for name, values in held.items():
+            parts = zip("xyz", values.T, strict=True) if values.ndim == 2 else ()
+            arrays |= {f"{name}_{axis}": part for axis, part in parts} or {name: values}
     with path.open(encoding="utf-8", newline="") as file:
-        rows = list(csv.DictReader(file))
-    assert len(rows) == (np.count_nonzero(data.count) if of_volume else len(data))
-    for name, values in arrays_of(data, of_volume).items():
-        if rows and name in rows[0] and values.dtype.kind in "iuf":
-            kept = values[data.count > 0] if of_volume else values
-            written = [float(row[name] or "nan") for row in rows]
-            np.testing.assert_allclose(written, kept, rtol=1e-6, equal_nan=True)
+        header, *rows = csv.reader(file)
+    assert header == list(arrays)
+    for written, values in zip(zip(*rows, strict=True), arrays.values(), strict=bool(rows)):
+        if values.dtype.kind in "iuf":
+            np.testing.assert_allclose([float(each or "nan") for each in written], values, rtol=1e-6, equal_nan=True)
+        else:
+            assert [each.lower() for each in written] == [str(value).lower() for value in values]
+    assert len(rows) == len(next(iter(arrays.values())))
 
 
 def mat(path, data, of_volume):
-    found = scipy.io.loadmat(path)
-    arrays = arrays_of(data, of_volume)
-    if of_volume:
-        np.testing.assert_array_equal(found["count"], data.count)
-        return
+    found, arrays = scipy.io.loadmat(path), arrays_of(data, of_volume)
+    about = {"units", "__header__", "__version__", "__globals__", "origin_m", "voxel_size_m"}
+    assert found.keys() - about == arrays.keys()
     for name, values in arrays.items():
         if values.dtype.kind in "iuf":
-            np.testing.assert_array_equal(found[name].ravel(), values)
+            np.testing.assert_array_equal(found[name] if of_volume else found[name].ravel(), values)
+    if of_volume:
+        np.testing.assert_array_equal(found["origin_m"].ravel(), data.origin_m)
 
 
 READERS = {".npz": npz, ".csv": table_csv, ".mat": mat}
