@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from wsrender.indices import Index, Option, math, register_index
     from wsrender.kinetostatics import ForceField, force_field
     from wsrender.mechanisms.five_bar import FiveBar
+    from wsrender.pipeline.constraints.expression import ExpressionConstraint
     from wsrender.pipeline.constraints.registry import register_constraint
     from wsrender.python import (
         analyze,
@@ -76,6 +77,7 @@ __all__ = [
     "DHTable",
     "DocumentError",
     "Environment",
+    "ExpressionConstraint",
     "FiveBar",
     "ForceField",
     "Format",
@@ -144,6 +146,7 @@ _NAMES_OF_MODULE = {
     "wsrender.kinetostatics": ("ForceField", "force_field"),
     "wsrender.mechanisms.five_bar": ("FiveBar",),
     "wsrender.geometry.planar.exact_boundary": ("exact_boundary",),
+    "wsrender.pipeline.constraints.expression": ("ExpressionConstraint",),
     "wsrender.pipeline.constraints.registry": ("register_constraint",),
     "wsrender.python": (
         "analyze",

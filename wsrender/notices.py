@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import asdict, dataclass, replace
 from typing import Any, Self
 
-_PACKAGES = ("wsrender", "wsrender_kernels", "wsrender_server")
+OWN_PACKAGES = ("wsrender", "wsrender_kernels", "wsrender_server")
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ def entries(notices: Iterable[Notice]) -> list[dict[str, Any]]:
 def warn(notices: Iterable[Notice], category: type[Warning]) -> None:
     """One warning per notice, at the line of the caller: that of the first frame outside these packages."""
     frame = sys._getframe(1)
-    while frame.f_back is not None and frame.f_globals.get("__name__", "").partition(".")[0] in _PACKAGES:
+    while frame.f_back is not None and frame.f_globals.get("__name__", "").partition(".")[0] in OWN_PACKAGES:
         frame = frame.f_back
     module, registry = frame.f_globals.get("__name__"), frame.f_globals.setdefault("__warningregistry__", {})
     for notice in notices:

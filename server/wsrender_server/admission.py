@@ -16,6 +16,7 @@ from wsrender.documents.robot import RobotSpec
 from wsrender.documents.sampling import Converge, Grid
 from wsrender.errors import DocumentError, InputError, ModelError, ResourceError
 from wsrender.indices.index_catalogue import find, option_values, resolve
+from wsrender.pipeline.constraints.registry import constraints_of
 from wsrender.robots import library
 from wsrender_server.jobs.store import JobStore
 from wsrender_server.model_text import check_model
@@ -51,6 +52,7 @@ class Admission:
             self.check_robot(arm.robot, (*path, "robot"))
         for path, part in ({(): job} | arms).items():
             _check_indices(part, path)
+            _check_constraints(part, path)
             self._check_samples(part, path, job)
         total = sum(least_samples(each.sampling, each.robot) for each in job.sweeps())
         if total > self.max_samples:
@@ -145,3 +147,11 @@ def _check_indices(part: Document, path: ArmPath) -> None:
             option_values(given, resolve(indices, has_inertia=True))
         except InputError as error:
             raise DocumentError([(dotted(path, error.field), error.message)]) from None
+
+
+def _check_constraints(part: Document, path: ArmPath) -> None:
+    """Check the names and options of the constraints of a part of a document."""
+    try:
+        constraints_of(getattr(part, "constraints", None))
+    except InputError as error:
+        raise DocumentError([(dotted(path, error.field), error.message)]) from None

@@ -18,6 +18,7 @@ from wsrender.documents.quantities import integer, real
 from wsrender.errors import DocumentError, InputError
 from wsrender.indices import catalogue
 from wsrender.indices.index_catalogue import names_of
+from wsrender.pipeline.constraints.registry import added_constraints
 from wsrender.robots import library
 from wsrender_server.jobs.store import HIGHEST_PRIORITY, LONGEST_TEXT, MOST_LABELS
 from wsrender_server.problems import HttpProblem, pointer, problem_of_error, refusal
@@ -139,6 +140,8 @@ def body_schemas() -> dict[str, Any]:
     _tighten_points(parts["PointSet"], "points", 1)
     _tighten_points(parts["Mesh"], "vertices_m", 4)
     options = SubmissionOptions.model_json_schema()["properties"]
+    parts["Constraints"]["properties"] |= _added_constraints()
+    parts["Constraints"]["additionalProperties"] = False
     for part in parts.values():
         _tighten(part)
     for model in analyses.values():
@@ -251,4 +254,14 @@ def _index_options() -> dict[str, Any]:
         options = {option.name: option.schema() for option in index.options}
         schema = {"type": "object", "additionalProperties": False, "properties": options}
         schemas |= {name: schema for name in names_of(index) if options}
+    return schemas
+
+
+def _added_constraints() -> dict[str, Any]:
+    """Schemas of the constraints that other packages add: whether they act, or their options."""
+    schemas = {}
+    for name, constraint in added_constraints().items():
+        options = {option: {"type": "number", "default": value} for option, value in constraint.options}
+        choice = {"type": "object", "additionalProperties": False, "properties": options}
+        schemas[name] = {"anyOf": [{"type": "boolean"}, choice]}
     return schemas

@@ -12,7 +12,7 @@ import pytest
 import typer
 
 import wsrender as ws
-from wsrender import cli
+from wsrender import cli, extensions
 from wsrender.analyses.registry import job_classes
 from wsrender.documents.quantities import quoted
 from wsrender.errors import InputError, MissingExtraError, ModelError, NumericalError
@@ -149,7 +149,7 @@ def test_outputs_that_cannot_be_saved_are_refused_before_the_run(wsrender, execu
 
 @pytest.mark.parametrize("command", ["serve", "worker", "keys", "database", "demo"])
 def test_server_commands_name_the_pip_command(wsrender, command, monkeypatch):
-    monkeypatch.setattr(cli, "entry_points", lambda group: [])
+    monkeypatch.setattr(extensions, "entry_points", lambda group: [])
     code, _, err = wsrender(command, "--port", "8000")
     assert (code, err) == (1, pip("The server", "server"))
 
@@ -172,7 +172,7 @@ def test_extensions_join_the_command_line_only_where_they_are_needed(wsrender, m
 
     monkeypatch.setattr(EntryPoint, "load", load)
     found = [EntryPoint("server", "wsrender_server.cli:app", cli.EXTENSIONS)]
-    monkeypatch.setattr(cli, "entry_points", lambda group: found)
+    monkeypatch.setattr(extensions, "entry_points", lambda group: found)
     assert wsrender("serve", "--port", "8000") == (0, "serving on 8000\n", "")
     assert "Manage keys." in wsrender("--help")[1]
     loads.clear()
@@ -186,7 +186,7 @@ def test_an_extension_whose_requirements_are_missing_names_the_pip_command(wsren
 
     monkeypatch.setattr(EntryPoint, "load", load)
     found = [EntryPoint("server", "wsrender_server.cli:app", cli.EXTENSIONS)]
-    monkeypatch.setattr(cli, "entry_points", lambda group: found)
+    monkeypatch.setattr(extensions, "entry_points", lambda group: found)
     assert wsrender("--help")[0] == 0
     code, _, err = wsrender("serve")
     assert (code, err) == (1, pip("The server", "server"))

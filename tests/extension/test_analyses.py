@@ -1,17 +1,12 @@
 """An analysis that another package adds in one folder: from Python, the command line and a live server."""
 
 import json
-import os
-import sys
 
 import numpy as np
 import pytest
-from wsrender_server.local_server import LocalServer
 
 import wsrender as ws
 from tests.server.end_to_end.acceptance import PATIENCE_S
-from wsrender import cli
-from wsrender.analyses import registry
 from wsrender.run import finish, plan, run_shard
 from wsrender.run.partial_files import load_partial, save_partial
 
@@ -57,30 +52,22 @@ def test_it_is_the_design_of_an_optimization(package):
     assert list(best.document["best"]["values"].values()) == pytest.approx([0.8])
 
 
-def test_from_the_command_line(package, tmp_path, capsys):
-    job = tmp_path / "job.json"
-    job.write_text(json.dumps(JOB))
-    with pytest.raises(SystemExit) as ended:
-        cli.main(["run", str(job), "-o", str(tmp_path / "out")])
-    assert ended.value.code == 0
+def test_from_the_command_line(package, wsrender, tmp_path):
+    (tmp_path / "job.json").write_text(json.dumps(JOB))
+    assert wsrender("run", tmp_path / "job.json", "-o", tmp_path / "out")[0] == 0
     saved = ws.Result.load(tmp_path / "out")
     assert saved.document["middle_tip"]["position_m"] == pytest.approx(expected())
     np.testing.assert_allclose(saved.tables["tip"].columns["tip"], [expected()])
-    capsys.readouterr()
-    with pytest.raises(SystemExit):
-        cli.main(["schema", "--analysis", "middle_tip"])
-    assert json.loads(capsys.readouterr().out)["title"] == "MiddleTipJob"
+    assert json.loads(wsrender("schema", "--analysis", "middle_tip")[1])["title"] == "MiddleTipJob"
 
 
-def test_from_a_live_server(package, monkeypatch, tmp_path):
+def test_from_a_live_server(package, live):
     """The same bits; its catalogue and its refusals name it."""
-    monkeypatch.setenv("PYTHONPATH", os.pathsep.join(path for path in sys.path if path))
-    with LocalServer(tmp_path / "data") as server, ws.Client(server.url) as client:
-        job = client.submit(JOB)
-        with pytest.raises(ws.DocumentError, match="upwards"):
-            client.submit({**JOB, "upwards": "yes please"})
-        found = job.wait(timeout=PATIENCE_S).result().document
-        assert job.record["analysis"] == "middle_tip"
+    job = live.submit(JOB)
+    with pytest.raises(ws.DocumentError, match="upwards"):
+        live.submit({**JOB, "upwards": "yes please"})
+    found = job.wait(timeout=PATIENCE_S).result().document
+    assert job.record["analysis"] == "middle_tip"
     assert found["middle_tip"] == ws.execute(JOB).document["middle_tip"]
 
 
@@ -88,28 +75,3 @@ def test_a_server_lists_it(package, client):
     assert "middle_tip" in [each["id"] for each in client.get("/v1/analyses").json()["items"]]
     assert client.get("/v1/analyses/middle_tip").json()["schema"]["title"] == "MiddleTipJob"
     assert "MiddleTip" in client.get("/openapi.json").text
-
-
-def test_a_broken_package_is_a_warning_that_names_it(installed):
-    installed("broken")
-    with pytest.warns(UserWarning) as warned:
-        found = registry.job_classes()
-    assert list(found) == list(registry._ROWS)
-    texts = sorted(str(each.message) for each in warned)
-    names = ("absent_module", "no_entry", "no_job", "other_name", "workspace")
-    assert [text.partition(" is left out: ")[0] for text in texts] == [
-        f"the analysis '{name}' of the package broken-formats" for name in names
-    ]
-    for text, reason in zip(
-        texts,
-        (
-            "No module named 'no_such_module'; repair or uninstall broken-formats",
-            "must be an Entry, not str",
-            "must be a class of documents",
-            'WorkspaceJob must have the field analysis: Literal["other_name"] = "other_name"',
-            "there is an analysis 'workspace' already",
-        ),
-        strict=True,
-    ):
-        assert reason in text
-    assert ws.execute({"analysis": "indices_at", "robot": "scara", "configurations": [[0, 0, 0, 0]]}).document

@@ -4,12 +4,12 @@ import json
 import subprocess
 import sys
 
-import pytest
+import httpx2
 
 import wsrender as ws
 from tests.results.export.sample_data import assert_same_volume, random_volume
+from tests.server.end_to_end.acceptance import PATIENCE_S
 from tests.server.http.idle_server import DOCUMENT, problem_of
-from wsrender import cli
 from wsrender.results.export import formats
 
 UNCHANGED = ["npz", "csv", "mat", "vti", "stl", "svg"]
@@ -29,19 +29,23 @@ def test_from_python(package, tmp_path):
     assert_same_volume(ws.Result.load(tmp_path / "out").volume, volume)
 
 
-def test_from_the_command_line(package, tmp_path, capsys):
-    job = tmp_path / "job.json"
-    job.write_text(json.dumps(DOCUMENT))
-    with pytest.raises(SystemExit) as ended:
-        cli.main(["run", str(job), "-o", str(tmp_path / "out"), "--format", "voxels"])
-    assert ended.value.code == 0 and "volume.voxels" in capsys.readouterr().out
+def test_from_the_command_line(package, wsrender, tmp_path):
+    (tmp_path / "job.json").write_text(json.dumps(DOCUMENT))
+    code, out, _ = wsrender("run", tmp_path / "job.json", "-o", tmp_path / "out", "--format", "voxels")
+    assert code == 0 and "volume.voxels" in out
     saved = ws.Result.load(tmp_path / "out")
     assert_same_volume(voxels().read(tmp_path / "out" / "volume.voxels"), saved.volume)
-    with pytest.raises(SystemExit):
-        cli.main(["run", str(job), "-o", str(tmp_path / "out"), "--format", "odd"])
     allowed = ", ".join([*UNCHANGED, "voxels"])
     error = f"error: --format: 'odd' is not a format that can be added; allowed: {allowed}\n"
-    assert capsys.readouterr().err == error
+    assert wsrender("run", tmp_path / "job.json", "-o", tmp_path / "out", "--format", "odd") == (2, "", error)
+
+
+def test_from_a_live_server(package, live, tmp_path):
+    job = live.submit(DOCUMENT).wait(timeout=PATIENCE_S)
+    path = f"{live.url}/v1/jobs/{job.id}/artifacts/volume.vtkhdf"
+    answer = httpx2.get(path, params={"format": "voxels"}).raise_for_status()
+    (tmp_path / "volume").write_bytes(answer.content)
+    assert_same_volume(voxels().read(tmp_path / "volume"), job.result().volume)
 
 
 def test_from_a_server(package, client, finished, result, tmp_path):
@@ -59,21 +63,6 @@ def test_from_a_server(package, client, finished, result, tmp_path):
     parameters = client.get("/openapi.json").json()["paths"]["/v1/jobs/{job_id}/artifacts/{name}"]["get"]["parameters"]
     (schema,) = (each["schema"] for each in parameters if each["name"] == "format")
     assert "voxels" in json.dumps(schema) and "vti" in json.dumps(schema)
-
-
-def test_a_broken_package_is_a_warning_that_names_it(installed, tmp_path):
-    installed("broken")
-    with pytest.warns(UserWarning) as warned:
-        rows = formats.table()
-    assert rows == formats.table(own=True)
-    texts = sorted(str(each.message) for each in warned)
-    assert [text.partition(" is left out: ")[0] for text in texts] == [
-        f"the file format '{name}' of the package broken-formats" for name in ("absent", "taken", "text")
-    ]
-    assert "No module named 'no_such_module'; repair or uninstall broken-formats" in texts[0]
-    assert "volumes have a format 'vti' already, wsrender's own" in texts[1]
-    assert "must be a wsrender.Format, not str" in texts[2]
-    formats.media_type("a.vti")  # the rest works, and is not warned of again
 
 
 def test_packages_are_loaded_when_the_table_is_read(package):

@@ -7,12 +7,13 @@ from typing import Annotated, Any, Union
 
 from pydantic import BeforeValidator, Discriminator, TypeAdapter
 
-from wsrender.analyses.registry import job_classes
+from wsrender.analyses.registry import EXTENSIONS, job_classes
 from wsrender.documents.document import Document
 from wsrender.documents.problems import tagged
 from wsrender.documents.quantities import quoted
 from wsrender.documents.reading import read_document
 from wsrender.errors import InputError
+from wsrender.extensions import left_out
 
 
 def parse_job(document: Mapping[str, Any] | str | bytes | Document, without: Collection[str] = ()) -> Any:
@@ -40,7 +41,7 @@ def job_schema(analysis: str | None = None) -> dict[str, Any]:
     if analysis is None:
         return _adapter().json_schema()
     if (job := job_classes().get(analysis)) is None:
-        raise InputError("analysis", f'must be one of {quoted(job_classes())}, not "{analysis}"')
+        raise InputError("analysis", f'must be one of {quoted(job_classes())}, not "{analysis}"{left_out(EXTENSIONS)}')
     return job.model_json_schema()
 
 
@@ -49,7 +50,8 @@ def _adapter(without: frozenset[str] = frozenset()) -> TypeAdapter[Any]:
     """One discriminated union on ``analysis``."""
     jobs = {name: job for name, job in job_classes().items() if name not in without}
     union = Union[tuple(jobs.values())]  # noqa: UP007
-    kinds: Any = Annotated[union, Discriminator("analysis"), BeforeValidator(tagged("analysis", jobs))]  # type: ignore[valid-type]
+    known = tagged("analysis", jobs, left_out(EXTENSIONS))
+    kinds: Any = Annotated[union, Discriminator("analysis"), BeforeValidator(known)]  # type: ignore[valid-type]
     return TypeAdapter(kinds)
 
 

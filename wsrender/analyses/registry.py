@@ -8,12 +8,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 from importlib import import_module
-from importlib.metadata import entry_points
 from typing import Any
 
 from wsrender.documents.document import Document
 from wsrender.errors import InputError
-from wsrender.notices import Notice, warn
+from wsrender.extensions import load
 
 EXTENSIONS = "wsrender.analyses"  # entry points, loaded when the table is first read
 
@@ -74,18 +73,13 @@ def _loaded(named: Any) -> Any:
 
 @cache
 def _table() -> dict[str, Entry]:
-    """All analyses; a package's that is broken is left out, with a warning that names it."""
     found = dict(_ROWS)
-    for point in entry_points(group=EXTENSIONS):
-        try:
-            entry = point.load()
-            _check(point.name, entry, found)
-        except Exception as error:  # whatever a stranger's module raises
-            package = point.dist.name if point.dist is not None else point.value
-            text = f"the analysis {point.name!r} of the package {package} is left out: {error}"
-            warn([Notice("analysis_left_out", text, f"repair or uninstall {package}")], UserWarning)
-        else:
-            found[point.name] = entry
+
+    def add(name: str, entry: Any) -> None:
+        _check(name, entry, found)
+        found[name] = entry
+
+    load(EXTENSIONS, add)
     return found
 
 

@@ -2,12 +2,11 @@
 
 import sys
 from collections.abc import Sequence
-from importlib.metadata import entry_points
 from typing import Annotated
 
 import typer
 
-from wsrender.cli.faults import one_line_faults
+from wsrender.cli.faults import one_line_faults, one_line_warnings
 from wsrender.cli.jobs_command import jobs
 from wsrender.cli.listing import robots, schema
 from wsrender.cli.render_command import render
@@ -15,7 +14,8 @@ from wsrender.cli.report_command import report
 from wsrender.cli.reproduce_command import reproduce
 from wsrender.cli.run_command import run
 from wsrender.cli.submit_command import submit
-from wsrender.errors import MissingExtraError
+from wsrender.errors import InputError, MissingExtraError
+from wsrender.extensions import load
 
 COMMANDS = {
     "run": run,
@@ -54,21 +54,15 @@ def command_line(command: str | None) -> typer.Typer:
 
 
 def _extend(app: typer.Typer) -> None:
-    extensions = _extensions()
-    for extension in extensions:
+    def add(_: str, extension: object) -> None:
+        if not isinstance(extension, typer.Typer):
+            raise InputError("command", f"must be a typer.Typer, not {type(extension).__name__}")
         app.add_typer(extension)
-    if not extensions:
-        for name in SERVER_COMMANDS:
-            app.command(name, hidden=True, context_settings=_ANY_ARGUMENTS)(_no_server)
 
-
-def _extensions() -> list[typer.Typer]:
-    try:
-        return [extension.load() for extension in entry_points(group=EXTENSIONS)]
-    except ModuleNotFoundError as error:
-        if error.name is None or error.name.startswith("wsrender"):
-            raise
-        return []  # the server is there, what it needs is not
+    with one_line_warnings():
+        if "server" not in load(EXTENSIONS, add):  # or what it needs is not there
+            for name in SERVER_COMMANDS:
+                app.command(name, hidden=True, context_settings=_ANY_ARGUMENTS)(_no_server)
 
 
 _ANY_ARGUMENTS = {"allow_extra_args": True, "ignore_unknown_options": True}

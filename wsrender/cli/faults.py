@@ -17,13 +17,20 @@ INTERRUPTED = 130
 
 
 @contextmanager
+def one_line_warnings() -> Iterator[None]:
+    """Turn warnings into yellow lines."""
+    with warnings.catch_warnings():
+        warnings.showwarning = _show_warning
+        yield
+
+
+@contextmanager
 def one_line_faults(traceback: bool = False) -> Iterator[None]:
     """Turn exceptions into a red line and an exit code, warnings into yellow lines.
 
     With ``traceback`` exceptions pass through untouched.
     """
-    with warnings.catch_warnings():
-        warnings.showwarning = _show_warning
+    with one_line_warnings():
         try:
             yield
         except (typer.Exit, typer.Abort):

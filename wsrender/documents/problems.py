@@ -75,15 +75,15 @@ def path_text(*steps: str | int) -> str:
     return ".".join(text if _PLAIN_STEP.fullmatch(text) else json.dumps(text, ensure_ascii=False) for text in texts)
 
 
-def tagged(field: str, tags: Collection[str]) -> Callable[[Any], Any]:
-    """A validator of discriminated unions: an object must name one of the tags in its ``field``."""
+def tagged(field: str, tags: Collection[str], left_out: str = "") -> Callable[[Any], Any]:
+    """A validator of discriminated unions: an object must name one of the tags in its ``field``, else ``left_out``."""
     tags = tuple(tags)
     allowed = f"must be one of {quoted(tags)}"
 
     def validate(value: Any) -> Any:
         if isinstance(value, Mapping) and value.get(field) not in tags:
             found = f", not {shown(value[field])}" if field in value else "; it is required"
-            raise ValidationError.from_exception_data(field, [located(field, allowed + found)])
+            raise ValidationError.from_exception_data(field, [located(field, allowed + found + left_out)])
         return value
 
     return validate

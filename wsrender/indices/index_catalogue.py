@@ -4,13 +4,13 @@ import difflib
 from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from functools import cache
-from importlib.metadata import EntryPoint, entry_points
 from math import inf, sqrt
 from typing import Any
 
 from wsrender.documents.options import STATISTICS
 from wsrender.documents.problems import path_text
 from wsrender.errors import InputError, MissingInertiaError
+from wsrender.extensions import left_out, load
 from wsrender.indices import functions as f
 from wsrender.indices.dimensions import TaskMatrix
 from wsrender.indices.entry import DYNAMIC_PREFIX, Bound, Index, checked
@@ -117,26 +117,19 @@ def register_index(
 
 @cache
 def _extensions() -> dict[str, Index]:
-    """The indices of other packages; InputError names the entry point that cannot be used."""
+    """The indices of other packages."""
     found: dict[str, Index] = {}
-    for point in entry_points(group=EXTENSIONS):
-        for index in _loaded(point):
-            if index.name in _SHIPPED or index.name in found:
-                raise InputError(_origin(point), f"name: {index.name!r} is taken; remove one of the packages")
-            found[index.name] = index
+
+    def add(_: str, indices: Any) -> None:
+        new: dict[str, Index] = {}
+        for index in [indices] if isinstance(indices, Index) else indices:
+            if checked(index).name in _SHIPPED | found | new:
+                raise InputError("name", f"there is an index {index.name!r} already")
+            new[index.name] = index
+        found.update(new)
+
+    load(EXTENSIONS, add)
     return found
-
-
-def _loaded(point: EntryPoint) -> list[Index]:
-    try:
-        found = point.load()
-        return [checked(index) for index in ([found] if isinstance(found, Index) else found)]
-    except Exception as error:
-        raise InputError(_origin(point), f"cannot be used: {error}; mend or remove the package") from error
-
-
-def _origin(point: EntryPoint) -> str:
-    return f"entry point {point.name} = {point.value} of {EXTENSIONS}"
 
 
 def catalogue() -> dict[str, Index]:
@@ -168,7 +161,8 @@ def find(name: str) -> Index:
         near = difflib.get_close_matches(plain, known, 1)
         hint = f" (did you mean {near[0]!r}?)" if near else ""
         names = ", ".join(known)
-        raise InputError("indices", f"unknown index {name!r}{hint}; allowed: {names}, each also as dynamic_<name>")
+        allowed = f"allowed: {names}, each also as dynamic_<name>{left_out(EXTENSIONS)}"
+        raise InputError("indices", f"unknown index {name!r}{hint}; {allowed}")
     if index.dynamic and plain != name:
         raise InputError("indices", f"unknown index {name!r}; {plain!r} is of the accelerations already")
     return index

@@ -1,22 +1,27 @@
-"""The constraints that there are: those of job documents, and those that users and other packages add."""
+"""The constraints that there are: those of job documents, and those that users and other packages add.
+
+Another package adds an `ExpressionConstraint` through the entry-point group ``wsrender.constraints``.
+"""
 
 import inspect
 import re
 from collections.abc import Callable
+from dataclasses import replace
 from functools import cache
-from importlib.metadata import entry_points
 from math import inf
 from typing import Any
 
 from wsrender.documents.constraints import Constraints, RegionChoice
+from wsrender.documents.problems import path_text
 from wsrender.errors import InputError
+from wsrender.extensions import left_out, load
 from wsrender.indices.expression import Expression
 from wsrender.pipeline.constraints.constraint import ORDER, Constraint, Structure, in_order
 from wsrender.pipeline.constraints.expression import ExpressionConstraint
 from wsrender.pipeline.constraints.region import Point, Region
 
-EXTENSIONS = "wsrender.constraints"  # entry points: functions that call `register_constraint`
-_ADDED: dict[str, ExpressionConstraint] = {}
+EXTENSIONS = "wsrender.constraints"  # entry points, loaded when a job names one
+_ADDED: dict[str, ExpressionConstraint] = {}  # by the user
 
 
 def register_constraint(name: str, function: Callable[..., Any], *, keeps: frozenset[Structure] = frozenset()) -> None:
@@ -28,6 +33,14 @@ def register_constraint(name: str, function: Callable[..., Any], *, keeps: froze
     ``keeps``: see `Constraint`. Raises InputError where the name is not an identifier or taken, or the function uses
     anything else.
     """
+    _ADDED[name] = _checked(ExpressionConstraint(name, function, keeps=frozenset(keeps)))
+
+
+def _checked(constraint: Any) -> ExpressionConstraint:
+    """A constraint that can be used, with the options that its function has."""
+    if not isinstance(constraint, ExpressionConstraint):
+        raise InputError("constraint", f"must be an ExpressionConstraint, not {type(constraint).__name__}")
+    name, function = constraint.name, constraint.function
     if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]{0,63}", name) or name in (*ORDER, "expression"):
         raise InputError("name", f"{name!r} is not allowed; an identifier other than {', '.join(ORDER)} is")
     options = _options_of(name, function)
@@ -36,25 +49,32 @@ def register_constraint(name: str, function: Callable[..., Any], *, keeps: froze
         function(inputs[0], inputs[1][:3], [inputs[2][3 * k : 3 * k + 3] for k in range(3)], **options)
     except Exception as error:
         raise InputError("function", f"{name} cannot be compiled: {error}") from error
-    _ADDED[name] = ExpressionConstraint(name, function, tuple(options.items()), frozenset(keeps))
+    return replace(constraint, options=tuple(options.items()))
+
+
+def added_constraints() -> dict[str, ExpressionConstraint]:
+    """The constraints that packages and the user add, by name, with the defaults of their options."""
+    return _extensions() | _ADDED
 
 
 def constraints_of(choice: Constraints | None) -> tuple[Constraint, ...]:
     """The constraints of a job in the order in which they are asked. Raises InputError for a name or option unknown."""
     if choice is None:
         return ()
-    _load_extensions()
     found: list[Constraint] = [] if choice.region is None else [_region(choice.region)]
+    named = choice.model_extra or {}
+    there = added_constraints() if named else {}
+    for name in named:
+        if name not in there:
+            allowed = f"{', '.join(('region', *there))}{left_out(EXTENSIONS)}"
+            raise InputError(path_text("constraints", name), f"unknown constraint; allowed: {allowed}")
     for name, options in choice.added.items():
-        if name not in _ADDED:
-            raise InputError(f"constraints.{name}", f"unknown constraint; allowed: {', '.join(('region', *_ADDED))}")
-        known = dict(_ADDED[name].options)
+        known = dict(there[name].options)
         for option in options:
             if option not in known:
                 allowed = ", ".join(known) or "none"
-                raise InputError(f"constraints.{name}.{option}", f"unknown option; allowed: {allowed}")
-        added = _ADDED[name]
-        found.append(ExpressionConstraint(name, added.function, tuple((known | options).items()), added.keeps))
+                raise InputError(path_text("constraints", name, option), f"unknown option; allowed: {allowed}")
+        found.append(replace(there[name], options=tuple((known | options).items())))
     return in_order(tuple(found))
 
 
@@ -83,6 +103,14 @@ def _options_of(name: str, function: Callable[..., Any]) -> dict[str, float]:
 
 
 @cache
-def _load_extensions() -> None:
-    for extension in entry_points(group=EXTENSIONS):
-        extension.load()()
+def _extensions() -> dict[str, ExpressionConstraint]:
+    """The constraints of other packages."""
+    found: dict[str, ExpressionConstraint] = {}
+
+    def add(_: str, constraint: Any) -> None:
+        if (new := _checked(constraint)).name in found:
+            raise InputError("name", f"there is a constraint {new.name!r} of another package already")
+        found[new.name] = new
+
+    load(EXTENSIONS, add)
+    return found

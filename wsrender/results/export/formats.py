@@ -9,13 +9,12 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cache
 from importlib import import_module
-from importlib.metadata import entry_points
 from importlib.util import find_spec
 from pathlib import Path, PurePosixPath
 from typing import Any, Literal
 
 from wsrender.errors import InputError, MissingExtraError
-from wsrender.notices import Notice, warn
+from wsrender.extensions import left_out, load
 
 EXTENSIONS = "wsrender.formats"  # entry points, loaded when the table is first read
 GLB_FRAME = "world, +Y up"
@@ -224,7 +223,8 @@ def check_asked(names: Iterable[str], field: str = "formats") -> tuple[str, ...]
     names, known = tuple(names), suffixes(table())
     for name in names:
         if name not in known:
-            raise InputError(field, f"{name!r} is not a format that can be added; allowed: {', '.join(asked())}")
+            allowed = f"allowed: {', '.join(asked())}{left_out(EXTENSIONS)}"
+            raise InputError(field, f"{name!r} is not a format that can be added; {allowed}")
     return names
 
 
@@ -234,7 +234,8 @@ def by_ending(kind: str, path: str | Path, field: str = "path", own: bool = Fals
     choices = {row.suffix: row for row in rows(kind, own)}
     suffix = Path(path).suffix.removeprefix(".").lower()
     if suffix not in choices:
-        raise InputError(field, f'must end in {one_of(f".{each}" for each in choices)}, not "{name}"')
+        left = "" if own else left_out(EXTENSIONS)
+        raise InputError(field, f'must end in {one_of(f".{each}" for each in choices)}, not "{name}"{left}')
     return choices[suffix]
 
 
@@ -254,18 +255,14 @@ def own_functions() -> dict[str, str]:
 
 @cache
 def _extensions() -> dict[tuple[str, str], Format]:
-    """The rows of other packages; one that is broken is left out, with a warning that names it."""
+    """The rows of other packages."""
     found: dict[tuple[str, str], Format] = {}
-    for entry in entry_points(group=EXTENSIONS):
-        try:
-            row = entry.load()
-            _check(row)
-            if (row.kind, row.suffix) in found:
-                raise InputError("suffix", f"{KINDS[row.kind]} have a format {row.suffix!r} of another package already")
-        except Exception as error:  # whatever a stranger's module raises
-            package = entry.dist.name if entry.dist is not None else entry.value
-            text = f"the file format {entry.name!r} of the package {package} is left out: {error}"
-            warn([Notice("format_left_out", text, f"repair or uninstall {package}")], UserWarning)
-        else:
-            found[row.kind, row.suffix] = row
+
+    def add(_: str, row: Any) -> None:
+        _check(row)
+        if (row.kind, row.suffix) in found:
+            raise InputError("suffix", f"{KINDS[row.kind]} have a format {row.suffix!r} of another package already")
+        found[row.kind, row.suffix] = row
+
+    load(EXTENSIONS, add)
     return found
