@@ -277,8 +277,12 @@ def _around_values(shape: Shape) -> SimpleNamespace:
 
 @factory
 def _rejection(shape: Shape):
-    """Device function ``(model, q, tip, axes) -> number`` of the first constraint that is violated, from 1; else 0."""
+    """Device function ``(model, q, tip, axes) -> number`` of the first constraint that is violated, from 1; else 0.
+
+    With ``base_levels`` its ``tip`` is the lever, as of `_state`; the constraints are given the tip in the world.
+    """
     real, n = shape.real, shape.n
+    moved_base = kinematics(real, n, shape.sources, shape.plain, shape.world_axes).moved_base
     vec3, mat33, vec_n = wp.types.vector(3, real), wp.types.matrix((3, 3), real), wp.types.vector(n, real)
 
     @wp.func
@@ -288,7 +292,13 @@ def _rejection(shape: Shape):
     rejection = none
     for number, constraint in reversed(list(enumerate(shape.constraints, 1))):
         rejection = _first_of(constraint, number, rejection, vec_n, vec3, mat33)
-    return rejection
+    in_world = rejection
+
+    @wp.func
+    def of_lever(model: Any, q: vec_n, lever: vec3, axes: mat33):
+        return in_world(model, q, moved_base(model.chain, q[0], lever), axes)
+
+    return of_lever if shape.base_levels and shape.constraints else rejection
 
 
 def _first_of(constraint: Any, number: int, following: Any, vec_n: Any, vec3: Any, mat33: Any):

@@ -33,12 +33,12 @@ def added(monkeypatch):
     ws.register_constraint("pointing_down", lambda q, position, axes, cosine=0.5: -axes[2][2] - cosine)
 
 
-def swept(robot, names, constraints, sampling, precision, device, **options):
+def swept(robot, names, constraints, sampling, precision, device, block=BLOCK, **options):
     K = len(names)
     each = SweepPlan(
         Evaluation(robot.chain, names, (0, 1, 2) if names else ()),
         plan_sampling(robot.chain, sampling),
-        BLOCK,
+        block,
         frozenset({"maximum", "mean"}),
         np.full(K, 1e6),
         np.full(K, np.inf),
@@ -289,3 +289,29 @@ def test_distances_to_a_region_are_no_larger_than_those_to_points_in_it(shapes):
     np.testing.assert_array_equal(distance == 0, inside)
     apart = np.linalg.norm(points[:, None] - points[inside][None, :500], axis=-1).min(axis=1)
     assert (distance <= apart + 1e-12).all() and distance.max() > 0.5
+
+
+@pytest.mark.parametrize("names", ((), ("manipulability",), ("dynamic_manipulability", "isotropy")), ids=len)
+def test_a_collapsed_base_joint_asks_for_the_tip_in_the_world(names, precision, device, added):
+    """A height and the direction of the tool from the base, on an arm whose base frame is raised and turned."""
+    placement = ws.Transform(position_m=(0.3, -0.2, 0.7), rpy_deg=(0, 0, 40))
+    robot = ws.load_robot("ur5e", placement=placement)
+    keeps = frozenset({"base_joint"})
+    ws.register_constraint("low", lambda q, position, axes, most=0.85: most - position[2], keeps=keeps)
+    ws.register_constraint("out", out_of_axis, keeps=keeps)
+    constraints = constraints_of(Constraints(low=True, out=True))
+    collapsed, direct = (
+        swept(robot, names, constraints, ws.Grid(5), precision, device, collapse=collapse) for collapse in (True, False)
+    )
+    assert collapsed[0].structure.base_levels == 5 and direct[0].structure.base_levels == 1
+    np.testing.assert_array_equal(collapsed[1].rejected, direct[1].rejected)
+    np.testing.assert_array_equal(collapsed[1].count, direct[1].count)
+    q = configurations(direct[0].sampling, np.arange(5**6), precision)
+    poses = evaluate_poses(robot.chain, q, device="cpu")
+    low, out = (each.host(q, poses) for each in constraints)
+    assert collapsed[1].rejected.tolist() == [low.sum(), (out & ~low).sum()] and (collapsed[1].rejected > 0).all()
+
+
+def out_of_axis(q, position, axes):
+    """Positive where the tip's z axis points away from the vertical axis through (0.3, -0.2)."""
+    return (position[0] - 0.3) * axes[2][0] + (position[1] + 0.2) * axes[2][1] + 0.013
