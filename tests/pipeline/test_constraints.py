@@ -176,6 +176,7 @@ def test_options_are_numbers_of_the_kernel_and_compile_nothing(added):
         constraints = constraints_of(Constraints(elbow_up={"least": least}))
         each, found = swept(robot, (), constraints, ws.Sobol(1024), "float32", "cpu")
         shapes.append((each.shape, found.admitted))
+    assert each.shape is each.shape  # a function is traced once
     assert shapes[0][0] == shapes[1][0] and shapes[0][1] > shapes[1][1] > 0
     assert each.shape != replace(each, constraints=()).shape
     assert replace(each, constraints=()).shape.constraints == () and replace(each, constraints=()).shape.limits == 0
@@ -220,6 +221,12 @@ def test_malformed_constraints(choice, message):
 def test_what_cannot_be_added(name, function, message, added):
     with pytest.raises(InputError, match=message):
         ws.register_constraint(name, function)
+
+
+@pytest.mark.parametrize("keeps", (frozenset({"base"}), "base_joint"))
+def test_structures_that_a_constraint_may_keep(keeps, added):
+    with pytest.raises(InputError, match=r"keeps: .* is not allowed; allowed: base_joint, trailing_joints"):
+        ws.register_constraint("mine", lambda q, position, axes: q[0], keeps=keeps)
 
 
 class Crank:
@@ -315,3 +322,34 @@ def test_a_collapsed_base_joint_asks_for_the_tip_in_the_world(names, precision, 
 def out_of_axis(q, position, axes):
     """Positive where the tip's z axis points away from the vertical axis through (0.3, -0.2)."""
     return (position[0] - 0.3) * axes[2][0] + (position[1] + 0.2) * axes[2][1] + 0.013
+
+
+@pytest.mark.parametrize("sampling", (ws.Sobol(COUNT), ws.Grid(5)), ids=("sobol", "grid"))
+def test_a_base_far_away_changes_no_answer(sampling, precision, device, added):
+    """UTM coordinates: whole numbers, so that what the region says is the same to the bit."""
+    away, found = np.array([456_000.0, 5_428_000.0, 110.0]), []
+    ws.register_constraint("beside", lambda q, position, axes, x=0.0, z=0.0: position[0] - x + 0.1 * (position[2] - z))
+    for shift in (np.zeros(3), away):
+        robot = ws.load_robot("ur5e", placement=ws.Transform(position_m=tuple(shift)))
+        box = {"lower_m": (shift - 0.5).tolist(), "upper_m": (shift + 0.75).tolist()}
+        choice = {"region": {"box": box}, "beside": {"x": float(shift[0]), "z": float(shift[2])}}
+        constraints = constraints_of(Constraints(**choice))
+        block = LatticeBlock(0.125, tuple(int(8 * v) - 16 for v in shift), (32, 32, 32))
+        found.append(swept(robot, ("manipulability",), constraints, sampling, precision, device, block=block)[1])
+    near, far = found
+    np.testing.assert_array_equal(near.rejected, far.rejected)
+    np.testing.assert_array_equal(near.cells, far.cells)
+    np.testing.assert_array_equal(near.count, far.count)
+    assert (near.rejected > 0).all() and near.admitted > 0
+
+
+def test_a_joint_that_the_robot_does_not_have(added):
+    """Functions of long arms are added; of a short arm they are refused before it is swept."""
+    ws.register_constraint("tenth", lambda q, position, axes: q[9] + 1)
+    message = "constraints.tenth: takes a joint that this robot of 6 does not have"
+    for document in (
+        {"analysis": "workspace", "sampling": {"method": "sobol", "count": 1024}},
+        {"analysis": "indices_at", "configurations": [[0.0] * 6]},
+    ):
+        with pytest.raises(InputError, match=message):
+            plan({"robot": "ur5e", "constraints": {"tenth": True}, **document})

@@ -1,41 +1,48 @@
 """Device functions of constraints and their numbers."""
 
 from collections.abc import Sequence
-from functools import partial
 from importlib import import_module
 from typing import Any
 
 import numpy as np
+import warp as wp
 from wsrender_kernels.constraints.expression import expression
 
+from wsrender.engine.evaluation import REAL
 from wsrender.engine.index_code import function_of_source, source_of
-from wsrender.indices.expression import trace
-from wsrender.pipeline.constraints.constraint import Constraint
+from wsrender.pipeline.constraints.constraint import Constraint, Expressed
 from wsrender.robots.kinematics import Kinematics
 
 
-def packed_constraints(constraints: Sequence[Constraint], chain: Kinematics, origin: np.ndarray) -> np.ndarray:
+def packed_constraints(
+    constraints: Sequence[Constraint], chain: Kinematics, origin: np.ndarray, precision: str
+) -> np.ndarray:
     """The numbers of all constraints, one after the other, (D,) float64."""
-    return np.concatenate([np.zeros(0), *(each.pack(chain, origin) for each in constraints)])
+    return np.concatenate([np.zeros(0), *(_numbers(each, chain, origin, precision) for each in constraints)])
 
 
-def device_constraints(constraints: Sequence[Constraint], chain: Kinematics, real: Any) -> dict[str, Any]:
+def device_constraints(
+    constraints: Sequence[Constraint], chain: Kinematics, origin: np.ndarray, precision: str
+) -> dict[str, Any]:
     """Fields ``constraints`` and ``limits`` of a sweep's shape."""
-    sizes = [len(each.pack(chain, np.zeros(3))) for each in constraints]
-    total, functions = sum(sizes), []
+    sizes = [len(_numbers(each, chain, origin, precision)) for each in constraints]
+    total, functions, real = sum(sizes), [], REAL[precision]
     for each, offset in zip(constraints, np.cumsum([0, *sizes]).tolist(), strict=False):
-        if isinstance(each.device, str):
+        if isinstance(each.device, Expressed):
+            # Positions in the world have more digits than single precision where the base is far away.
+            own, options = wp.float64 if origin.any() else real, len(each.device.options)
+            margin = function_of_source(source_of([each.device.traced(chain.n)]), 1, chain.n + 12 + options, own)
+            functions.append(expression(margin, real, own, chain.n, options, total, offset))
+        else:
             module = import_module(f"wsrender_kernels.constraints.{each.device}")
             functions.append(getattr(module, each.device)(real, chain.n, total, offset))
-        else:
-            called, length = each.device.function, chain.n + 12 + len(each.device.options)
-            body = source_of([trace(partial(_called, called, chain.n), length, each.device.options)])
-            margin = function_of_source(body, 1, length, real)
-            functions.append(expression(margin, real, chain.n, len(each.device.options), total, offset))
     return {"constraints": tuple(functions), "limits": total}
 
 
-def _called(function: Any, n: int, inputs: tuple[Any, ...], options: Sequence[str]) -> Any:
-    """A constraint's function of the inputs q (n), position (3), axes (9) and options."""
-    axes = [inputs[n + 3 + 3 * k : n + 6 + 3 * k] for k in range(3)]
-    return function(inputs[:n], inputs[n : n + 3], axes, **dict(zip(options, inputs[n + 12 :], strict=True)))
+def _numbers(constraint: Constraint, chain: Kinematics, origin: np.ndarray, precision: str) -> np.ndarray:
+    """Those of a constraint; of an expression as single precision holds them, then what that leaves of each."""
+    numbers = constraint.pack(chain, origin, precision)
+    if not isinstance(constraint.device, Expressed):
+        return numbers
+    rounded = numbers.astype(np.float32).astype(np.float64)
+    return np.concatenate([rounded, numbers - rounded])

@@ -1,6 +1,6 @@
 """What is evaluated at every sample, and its form on a device."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -12,11 +12,9 @@ from wsrender_kernels.model import model_type
 from wsrender_kernels.spectrum import spectrum_length
 from wsrender_kernels.sweep import Shape
 
-from wsrender.engine.constraint_code import packed_constraints
 from wsrender.engine.index_code import function_of_source, index_source
 from wsrender.indices.index_catalogue import is_dynamic
 from wsrender.notices import Notice
-from wsrender.pipeline.constraints.constraint import Constraint
 from wsrender.robots.chain import Chain
 from wsrender.robots.kinematics import Kinematics
 
@@ -104,12 +102,12 @@ def drive(chain: Chain) -> tuple[tuple[int, ...], bool]:
     return tuple(int(s) for s in chain.joint_source), bool(own and np.all(chain.joint_is_revolute))
 
 
-def evaluation_model(
-    evaluation: Evaluation, precision: str, origin: np.ndarray, constraints: Sequence[Constraint] = ()
-):
-    """The Model struct of an evaluation, without what the host computes; positions are relative to ``origin`` (3,)."""
+def evaluation_model(evaluation: Evaluation, precision: str, origin: np.ndarray, limits: np.ndarray):
+    """The Model struct of an evaluation, without what the host computes; positions are relative to ``origin`` (3,).
+
+    ``limits``: numbers of all constraints, of `packed_constraints`.
+    """
     chain, real = evaluation.chain, REAL[precision]
-    limits = packed_constraints(constraints, chain, origin)
     if device_chain := evaluation.device_chain:
         model = chain_model(device_chain.relative_to(origin), precision, len(limits))
     else:

@@ -13,10 +13,10 @@ from wsrender_kernels.sampling import LANES
 from wsrender_kernels.sweep import TOTAL_SLOTS, Shape, outputs_type, record_type_of, sums_type_of, sweep_kernel
 from wsrender_kernels.voxels import lattice, lowest
 
-from wsrender.engine.constraint_code import device_constraints
+from wsrender.engine.constraint_code import device_constraints, packed_constraints
 from wsrender.engine.devices import thread_count
 from wsrender.engine.drawn_configurations import configurations, device_space, given_space
-from wsrender.engine.evaluation import REAL, Evaluation, device_array, evaluation_model, shape_of
+from wsrender.engine.evaluation import Evaluation, device_array, evaluation_model, shape_of
 from wsrender.engine.grid_structure import (
     GridStructure,
     block_count,
@@ -88,7 +88,7 @@ class SweepPlan:
         """Samples at multiples of which a range may start."""
         return LANES * self.structure.multiplicity
 
-    @property
+    @cached_property
     def shape(self) -> Shape:
         """Compile-time part of the kernel."""
         return shape_of(
@@ -103,7 +103,7 @@ class SweepPlan:
             keep_rows=self.keep_rows,
             keep_configuration=self.keep_configuration,
             keep_orientation=self.keep_orientation,
-            **device_constraints(self.constraints, self.evaluation.chain, REAL[self.precision]),
+            **device_constraints(self.constraints, self.evaluation.chain, self.origin, self.precision),
         )
 
 
@@ -245,7 +245,8 @@ class Accumulator:
         self._size = slab.size if slab else 0
         voxels = self._size + 1 if slab else 0  # one to spare for positions outside
         self._kernel = loaded(sweep_kernel(shape, device.is_cuda), device)
-        self._model = evaluation_model(plan.evaluation, plan.precision, plan.origin, plan.constraints)
+        limits = packed_constraints(plan.constraints, plan.evaluation.chain, plan.origin, plan.precision)
+        self._model = evaluation_model(plan.evaluation, plan.precision, plan.origin, limits)
         given = shape.method == "given"
         evaluated = plan.structure.evaluated
         self._run = run_length(evaluated, shape.shared)

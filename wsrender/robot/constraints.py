@@ -7,8 +7,7 @@ import numpy as np
 
 from wsrender.documents.constraints import Constraints
 from wsrender.errors import InputError
-from wsrender.pipeline.constraints.constraint import Constraint
-from wsrender.pipeline.constraints.expression import ExpressionConstraint
+from wsrender.pipeline.constraints.constraint import Constraint, Expressed
 from wsrender.pipeline.constraints.registry import constraints_of
 from wsrender.robot.model_robot import Robot
 
@@ -16,9 +15,16 @@ from wsrender.robot.model_robot import Robot
 def constraints_for(robot: Robot, choice: Constraints | None) -> tuple[Constraint, ...]:
     """The constraints of a job for its robot. Raises InputError for one that is unknown, or not for such a robot."""
     constraints = constraints_of(choice)
-    for each in constraints if robot.definition else ():
-        if isinstance(each, ExpressionConstraint):
+    for each in constraints:
+        if not isinstance(each.device, Expressed):
+            continue
+        if robot.definition:
             raise InputError(f"constraints.{each.name}", "is not available for a robot that is defined by a class")
+        try:
+            each.device.traced(robot.chain.n)
+        except InputError as error:
+            message = f"takes a joint that this robot of {robot.chain.n} does not have"
+            raise InputError(f"constraints.{each.name}", message) from error
     return constraints
 
 

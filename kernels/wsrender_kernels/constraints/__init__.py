@@ -1,9 +1,7 @@
 """Constraints on configurations, as device functions: one module each, with a factory of the module's name.
 
-``<name>(real, n, size, offset)`` makes the device function ``(limits, q, tip, axes) -> ADMITTED | VIOLATED | OPEN``:
-``limits`` (size,) holds the numbers of all constraints of a sweep, those of this one from ``offset`` on; ``q`` (n,) is
-the configuration [rad or m], ``tip`` the tip's position [m] from where positions are counted, ``axes`` (3, 3) its axes
-in the world, as columns.
+``<name>(real, n, size, offset)`` makes the device function ``(limits, q, tip, axes) -> 0 admitted | 1 violated | 2
+open``, where it cannot decide. ``limits`` (size,) holds the numbers of all constraints of a sweep, those of this one
+from ``offset`` on; ``q`` (n,) is the configuration [rad or m], ``tip`` the tip's position [m] from where positions are
+counted, ``axes`` (3, 3) its axes in the world, as columns.
 """
-
-ADMITTED, VIOLATED, OPEN = 0, 1, 2

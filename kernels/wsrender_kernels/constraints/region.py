@@ -4,12 +4,14 @@ import warp as wp
 
 from wsrender_kernels.factories import factory
 
-NUMBERS = 14  # lower and upper corner of the box; centre and squared radius of the ball; normal and offset
-
 
 @factory
 def region(real, n: int, size: int, offset: int):
-    """Device function of the constraint; see the package. A shape that is not asked for has infinite numbers."""
+    """Device function of the constraint; see the package.
+
+    Its numbers: lower and upper corner of the box; centre and squared radius of the ball; normal and offset. Of a shape
+    that is not asked for they are infinite.
+    """
     limits_type, vec_n = wp.types.vector(size, real), wp.types.vector(n, real)
     vec3, mat33 = wp.types.vector(3, real), wp.types.matrix((3, 3), real)
     UPPER, CENTER, RADIUS, NORMAL, PLANE = offset + 3, offset + 6, offset + 9, offset + 10, offset + 13

@@ -6,13 +6,13 @@ from typing import Any, Literal, Protocol, runtime_checkable
 
 import numpy as np
 
+from wsrender.indices.expression import Expression, trace
 from wsrender.robots.kinematics import Kinematics
 
 Structure = Literal["base_joint", "trailing_joints"]
 """What a grid repeats: every level of the first joint, and of last joints whose axes pass through the tip."""
 STRUCTURES: tuple[Structure, ...] = ("base_joint", "trailing_joints")
 
-ADMITTED, VIOLATED, OPEN = 0, 1, 2
 ORDER = ("region", "leg_distance", "orientation", "environment", "self_collision", "torque")
 """The first that a configuration violates is the reason why it is rejected; others follow by name."""
 
@@ -35,8 +35,11 @@ class Constraint(Protocol):
         """Structure of a grid that survives it."""
         ...
 
-    def pack(self, chain: Kinematics, origin: np.ndarray) -> np.ndarray:
-        """Its numbers (D,) float64, of positions counted from ``origin`` (3,) in the world [m]."""
+    def pack(self, chain: Kinematics, origin: np.ndarray, precision: str) -> np.ndarray:
+        """Its numbers (D,) float64, of positions in a ``precision`` counted from ``origin`` (3,) in the world [m].
+
+        What lies on a border is admitted, whichever way the precision rounds it.
+        """
         ...
 
     @property
@@ -45,7 +48,7 @@ class Constraint(Protocol):
         ...
 
     def host(self, q: np.ndarray, poses: np.ndarray) -> np.ndarray:
-        """ADMITTED or VIOLATED of configurations (N, n) [rad or m] with tip poses (N, 4, 4) in the world, (N,) int8."""
+        """Which configurations (N, n) [rad or m] with tip poses (N, 4, 4) in the world violate it, (N,) int8 of 0, 1."""
         ...
 
 
@@ -60,6 +63,18 @@ class Expressed:
 
     function: Callable[..., Any]
     options: tuple[str, ...] = ()
+
+    def traced(self, n: int) -> Expression | float:
+        """The function for ``n`` joints, of inputs q, position, axes and options one after the other.
+
+        Raises InputError where it takes a joint beyond them, TypeError for what cannot be traced.
+        """
+        return trace(self._of, n + 12 + len(self.options), n)
+
+    def _of(self, inputs: tuple[Any, ...], n: int) -> Any:
+        axes = [inputs[n + 3 + 3 * k : n + 6 + 3 * k] for k in range(3)]
+        options = dict(zip(self.options, inputs[n + 12 :], strict=True))
+        return self.function(inputs[:n], inputs[n : n + 3], axes, **options)
 
 
 def in_order(constraints: "tuple[Constraint, ...]") -> "tuple[Constraint, ...]":

@@ -24,7 +24,7 @@ class ExpressionConstraint:
         """The function that the engine traces."""
         return Expressed(self.function, tuple(name for name, _ in self.options))
 
-    def pack(self, chain: Kinematics, origin: np.ndarray) -> np.ndarray:
+    def pack(self, chain: Kinematics, origin: np.ndarray, precision: str) -> np.ndarray:
         """Where positions are counted from, for the function is given those in the world; and the options."""
         return np.array([*origin, *(value for _, value in self.options)], np.float64)
 

@@ -15,12 +15,12 @@ from wsrender.documents.constraints import Constraints, RegionChoice
 from wsrender.documents.problems import path_text
 from wsrender.errors import InputError
 from wsrender.extensions import left_out, load
-from wsrender.indices.expression import Expression
-from wsrender.pipeline.constraints.constraint import ORDER, Constraint, Structure, in_order
+from wsrender.pipeline.constraints.constraint import ORDER, STRUCTURES, Constraint, Structure, in_order
 from wsrender.pipeline.constraints.expression import ExpressionConstraint
 from wsrender.pipeline.constraints.region import Point, Region
 
 EXTENSIONS = "wsrender.constraints"  # entry points, loaded when a job names one
+MOST_JOINTS = 1000  # that a function may ask for; whether a robot has them is seen when a job is planned
 _ADDED: dict[str, ExpressionConstraint] = {}  # by the user
 
 
@@ -30,8 +30,10 @@ def register_constraint(name: str, function: Callable[..., Any], *, keeps: froze
     ``function(q, position, axes, **options)`` is 0 or more where a configuration is admitted: ``q``, the joint values
     [rad or m]; ``position``, x, y, z of the tip in the world [m]; ``axes``, its three axes in the world, three numbers
     each; ``options``, numbers with defaults, which a job may give. It may use arithmetic and ``wsrender.math``.
-    ``keeps``: see `Constraint`. Raises InputError where the name is not an identifier or taken, or the function uses
-    anything else.
+    ``keeps``: what of a grid repeats its answers, so that fewer are asked: "base_joint" where the first joint's value
+    changes none, "trailing_joints" where the values of last joints do not whose axes pass through the tip. Raises
+    InputError where the name is not an identifier or taken, for another structure, or where the function uses anything
+    else.
     """
     _ADDED[name] = _checked(ExpressionConstraint(name, function, keeps=frozenset(keeps)))
 
@@ -43,13 +45,14 @@ def _checked(constraint: Any) -> ExpressionConstraint:
     name, function = constraint.name, constraint.function
     if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]{0,63}", name) or name in (*ORDER, "expression"):
         raise InputError("name", f"{name!r} is not allowed; an identifier other than {', '.join(ORDER)} is")
-    options = _options_of(name, function)
-    inputs = [tuple(Expression("input", (float(9 * part + i),)) for i in range(9)) for part in range(3)]
+    if unknown := constraint.keeps - set(STRUCTURES):
+        raise InputError("keeps", f"{sorted(unknown)} is not allowed; allowed: {', '.join(STRUCTURES)}")
+    constraint = replace(constraint, options=tuple(_options_of(name, function).items()))
     try:
-        function(inputs[0], inputs[1][:3], [inputs[2][3 * k : 3 * k + 3] for k in range(3)], **options)
+        constraint.device.traced(MOST_JOINTS)
     except Exception as error:
         raise InputError("function", f"{name} cannot be compiled: {error}") from error
-    return replace(constraint, options=tuple(options.items()))
+    return constraint
 
 
 def added_constraints() -> dict[str, ExpressionConstraint]:
