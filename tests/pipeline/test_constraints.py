@@ -343,6 +343,35 @@ def test_a_base_far_away_changes_no_answer(sampling, precision, device, added):
     assert (near.rejected > 0).all() and near.admitted > 0
 
 
+@pytest.mark.parametrize("side", (1, -1))
+def test_an_arm_in_the_plane_that_borders_a_region_stays_in_it(side, precision):
+    """Of two links, in a plane askew in the world: rounding puts half of its positions beyond."""
+    rows = [{"a": 0.4, "limits": [-np.pi, np.pi]}, {"a": 0.3, "limits": [-np.pi, np.pi]}]
+    placement = ws.Transform(position_m=(0.31, -0.47, 0.59), rpy_deg=(37, -21, 13))
+    robot = ws.load_robot(ws.DHTable(convention="standard", rows=rows), placement=placement)
+    plane = {"point_m": [0.31, -0.47, 0.59], "normal": (side * placement.matrix()[:3, 2]).tolist()}
+    options = {"constraints": {"region": {"half_space": plane}}, "precision": precision, "task": ["x", "y"]}
+    result = ws.analyze(robot, ws.Sobol(1 << 14), **options, refined_volume=0.02)
+    assert result.document["samples"] == {"drawn": 1 << 14, "admitted": 1 << 14, "rejected": {"region": 0}}
+    low, high = result.document["headline"]["ci95"]
+    assert low <= np.pi * (0.7**2 - 0.1**2) <= high and high - low < 0.05 * high
+    q = np.random.default_rng(0).uniform(-3, 3, (1000, 2))
+    (region,) = constraints_of(Constraints(region={"half_space": plane}))
+    assert not region.host(q, robot.chain.poses(q)).any()
+
+
+def test_the_interval_of_a_small_region_is_as_narrow_as_asked():
+    """Few of the samples lie in it, and the solver's misses are not known better from so few."""
+    robot = ws.load_robot("spherical", placement=PLACED)
+    region = {"sphere": {"center_m": [1, 1.7, 3], "radius_m": 0.02}}
+    result = ws.analyze(robot, ws.Sobol(1 << 18), constraints={"region": region}, refined_volume=0.02)
+    measure = result.document["volume_m3"]["refined"]
+    low, high = measure["ci95"]
+    assert measure["met"]
+    assert low <= 4 / 3 * np.pi * 0.02**3 <= high and high - low <= 0.04 * high
+    assert measure["false_negatives"][0]["tested"] >= 4096
+
+
 def test_a_joint_that_the_robot_does_not_have(added):
     """Functions of long arms are added; of a short arm they are refused before it is swept."""
     ws.register_constraint("tenth", lambda q, position, axes: q[9] + 1)

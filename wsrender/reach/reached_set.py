@@ -13,7 +13,7 @@ from wsrender.pipeline.constraints.region import Region
 from wsrender.pipeline.sampling import plan_sampling
 from wsrender.reach.cover import covered_cells
 from wsrender.reach.evidence import UNREACHABLE
-from wsrender.reach.inverse_solver import InverseSolver
+from wsrender.reach.inverse_solver import InverseSolver, Solutions
 from wsrender.reach.occupied_cells import occupied_cells
 from wsrender.reach.starts import inwards, towards_limits
 from wsrender.reach.volume_estimate import QUANTILE, wilson
@@ -109,16 +109,21 @@ class ReachedSet:
         """
         label, far = np.full(len(points), UNREACHABLE, np.int8), self._outside(points)
         inside = far == 0
-        found = self.solver.solve(np.pad(points[inside], ((0, 0), (0, 3 - self.dimension))))
+        found = self._solved(points[inside])
         label[inside], far[inside] = found.label, found.distance_m
         return label, far
 
+    def _solved(self, points: np.ndarray) -> Solutions:
+        """What the solver finds of points (N, d), wherever the region is."""
+        return self.solver.solve(np.pad(points, ((0, 0), (0, 3 - self.dimension))))
+
     def _outside(self, points: np.ndarray) -> np.ndarray:
-        """How far points (N, d) are from the region [m], (N,)."""
+        """How far points (N, d) are from the region [m], (N,); 0 within the tolerance: arms may move in a border."""
         if self.region is None:
             return np.zeros(len(points))
         own = np.pad(points, ((0, 0), (0, 3 - self.dimension)))
-        return self.region.distance(own @ self._T_region_own[:3, :3].T + self._T_region_own[:3, 3])
+        far = self.region.distance(own @ self._T_region_own[:3, :3].T + self._T_region_own[:3, 3])
+        return np.where(far <= self.position_m, 0.0, far)
 
     def decided_among(self, points: np.ndarray, possible: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The same of points in cells of which some are ``possible`` (N,) bool; near the others nothing is reached."""
@@ -155,16 +160,20 @@ class ReachedSet:
         return classes
 
     def false_negatives(self, block: LatticeBlock, tests: int = TESTS) -> FalseNegatives:
-        """The solver tried on positions of samples that are none of its starts, from as many cells as there are."""
+        """The solver tried on positions of samples that are none of its starts, from as many cells as there are.
+
+        In the region, unless so few samples lie there that they say nothing of it.
+        """
         if not self.solid:
             return FalseNegatives(0, 0)
         positions = self._positions(SAMPLES_PER_TEST * tests)[:, : self.dimension]
-        positions = positions[self._outside(positions) == 0]
+        inside = positions[self._outside(positions) == 0]
+        positions = inside if len(inside) >= tests else positions
         cells = np.floor(positions / block.voxel_size_m).astype(np.int64) - block.first_voxel[: self.dimension]
         numbers = np.ravel_multi_index(tuple(cells.T), block.shape[: self.dimension])
         random = np.random.Generator(np.random.Philox(key=self.seed))
         chosen = np.lexsort((random.random(len(positions)), _times_before(np.asarray(numbers))))[:tests]
-        labels, _ = self.decided(positions[chosen])
+        labels = self._solved(positions[chosen]).label
         return FalseNegatives(len(chosen), int((labels == UNREACHABLE).sum()))
 
     def _positions(self, count: int) -> np.ndarray:
