@@ -372,6 +372,14 @@ def test_the_interval_of_a_small_region_is_as_narrow_as_asked():
     assert measure["false_negatives"][0]["tested"] >= 4096
 
 
+def test_converging_samples_of_which_none_is_admitted():
+    choice = {"region": {"sphere": {"center_m": [5, 5, 5], "radius_m": 0.1}}}
+    for by in ("joint_mean", "workspace_mean"):
+        sampling = ws.Converge(start=3, step=1, by=by)
+        with pytest.raises(InputError, match="constraints: admit none of 729 samples"):
+            ws.analyze("spherical", sampling, constraints=choice, refined_volume=None)
+
+
 def test_a_joint_that_the_robot_does_not_have(added):
     """Functions of long arms are added; of a short arm they are refused before it is swept."""
     ws.register_constraint("tenth", lambda q, position, axes: q[9] + 1)

@@ -35,7 +35,7 @@ from wsrender.global_indices import joint_means, workspace_mean
 from wsrender.indices.index_catalogue import default_statistics, resolve
 from wsrender.pipeline.sampling import SamplingPlan, plan_sampling
 from wsrender.robot import Robot
-from wsrender.robot.constraints import constraints_for
+from wsrender.robot.constraints import check_admitted, constraints_for, samples_entry
 from wsrender.robot.indices import evaluation_of_job
 from wsrender.volume.lattice import LatticeBlock, check_voxels, expected_voxels, voxel_of
 from wsrender.volume.volume_data import VolumeData
@@ -268,6 +268,7 @@ class WorkspaceAnalysis(Analysis):
 
             how = {"threads": execution.threads, "chunk_size": execution.chunk_size}
             partial = sweep(plan, 0, count, devices_of(self.device), progress=report, **how)
+            check_admitted(samples_entry(plan.constraints, count, partial.rejected))
             value = self._global_value(plan, partial, position, sampling.by)
             sequence.append({"per_joint": levels, "samples": count, "value": value})
             if len(sequence) > 1 and abs(value - sequence[-2]["value"]) <= sampling.tolerance:
