@@ -10,11 +10,12 @@ from wsrender_kernels.voxels import decode_extreme
 class Partial:
     """What a range of samples contributes; positions are relative to the plan's ``origin``.
 
-    ``extremes`` (2 R,): largest value and largest complement of each of the R = 5 + K outputs in ordered-integer
-    form; ``totals`` (K,) int64: fixed-point sums. Of the occupied voxels, sorted by ``cells`` (V,) int64 (flat index
-    in the lattice block): ``count`` (V,) int64, ``records`` (V, E) ordered integers, ``sums`` (V, K) int64.
-    ``rows`` maps the first sample index of a chunk to its outputs (n_rows, samples). ``rejected`` (C,): samples by the
-    first of the plan's constraints that they violate; they count in nothing else but ``samples``, and stay in the rows.
+    ``extremes`` (2 R,): largest value and largest complement, in ordered-integer form, of each of the R outputs: tip
+    position (3), K indices and, if any, two singular values; ``totals`` (K,) int64: fixed-point sums. Of the occupied
+    voxels, sorted by ``cells`` (V,) int64 (flat index in the lattice block): ``count`` (V,) int64, ``records`` (V, E)
+    ordered integers, ``sums`` (V, K) int64. ``rows`` maps the first sample index of a chunk to its outputs (n_rows,
+    samples). ``rejected`` (C,): samples by the first of the plan's constraints that they violate; they count in nothing
+    else but ``samples``, and stay in the rows.
     """
 
     samples: int

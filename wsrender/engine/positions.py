@@ -6,7 +6,7 @@ import numpy as np
 
 from wsrender.engine.devices import devices_of
 from wsrender.engine.evaluation import Evaluation
-from wsrender.engine.sweep_plan import SweepPlan, sweep
+from wsrender.engine.sweep_plan import SweepPlan, from_origin, sweep
 from wsrender.pipeline.sampling import SamplingPlan, given_sampling
 from wsrender.robots.kinematics import Kinematics
 
@@ -42,7 +42,7 @@ def sampled_positions(
     found = np.empty((count, 3))
     for start, rows in partial.rows.items():
         found[start - first : start - first + rows.shape[1]] = rows.T
-    return found + plan.origin if plan.origin.any() else found
+    return from_origin(plan, found.T)
 
 
 def positions_at(

@@ -45,7 +45,7 @@ def _checked(constraint: Any) -> ExpressionConstraint:
     name, function = constraint.name, constraint.function
     if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]{0,63}", name) or name in (*ORDER, "expression"):
         raise InputError("name", f"{name!r} is not allowed; an identifier other than {', '.join(ORDER)} is")
-    if unknown := constraint.keeps - set(STRUCTURES):
+    if unknown := set(constraint.keeps) - set(STRUCTURES):
         raise InputError("keeps", f"{sorted(unknown)} is not allowed; allowed: {', '.join(STRUCTURES)}")
     constraint = replace(constraint, options=tuple(_options_of(name, function).items()))
     try:
