@@ -175,6 +175,18 @@ def test_a_map_that_does_not_fit_is_refused_with_its_numbers():
         run.plan(document)
 
 
+@pytest.mark.parametrize(("share", "fits"), [(0.99, False), (1.01, True)])
+def test_a_map_takes_its_rows_twice(share, fits, monkeypatch):
+    """Those of the chunks, and what they are joined to."""
+    document = job("float32")
+    plan = run.plan(document).sweep
+    taken = 2 * 4 * plan.sampling.count * plan.shape.n_rows
+    cost = importlib.import_module("wsrender.analyses.cost")
+    monkeypatch.setattr(cost, "available_bytes", lambda: share * taken / cost.SHARE)
+    with nullcontext() if fits else pytest.raises(ResourceError, match="keep_map: "):
+        run.plan(document)
+
+
 def test_many_threads_do_not_refuse_what_one_can_do(monkeypatch):
     plan = run.plan(job("float32", keep_map=False, device="cpu")).sweep
     slabs = importlib.import_module("wsrender.engine.slabs")

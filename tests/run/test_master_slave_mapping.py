@@ -47,6 +47,21 @@ def test_a_box_in_a_box():
     assert (np.diff(curve["share_inside"]) <= 0).all()
 
 
+def test_what_the_search_found_goes_before_a_scale_beyond_its_bounds():
+    """A small cube fits into the wall of a hollow box; in the middle the job's own scale does, which is larger."""
+    cells = np.stack(np.meshgrid(*[np.linspace(-0.45, 0.45, 10)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
+    hollow = cells[np.abs(cells).max(axis=1) > 0.2]
+    search = {"scale": [0.2, 0.4], "steps": 4}
+    containment = {"kind": "voxels", "voxel_size_m": 0.1}
+    offsets = [[0, 0, 0], [0.35, 0.35, 0.35]]
+    found = mapped(
+        hollow, SLAVE_BOX[[0, 10, 110, -1]], search=search, scale=3.25, offsets_m=offsets, containment=containment
+    )
+    middle, wall = found.document["offsets"]
+    assert middle["succeeded"] and middle["scale"] == [3.25] * 3 and middle["volume_m3"] > wall["volume_m3"]
+    assert wall["succeeded"] and found.document["mapping"] == wall and found.document["search"]["found"]
+
+
 def test_three_scales_fill_the_box():
     result = mapped(MASTER_BOX, SLAVE_BOX, search={"scale": [0.5, 10], "uniform": False})
     assert result.document["mapping"]["scale"] == pytest.approx([5, 4, 3], rel=1e-6)
