@@ -7,7 +7,6 @@ from functools import cache
 from itertools import repeat
 from typing import Any
 
-from wsrender.analyses.indices_at.job import IndicesAtJob
 from wsrender.analyses.jobs import canonical_json, parse_job
 from wsrender.documents.arm import ArmPath, dotted, local_paths
 from wsrender.documents.document import Document
@@ -43,8 +42,6 @@ class Admission:
         did not upload, 409 for text that is no XML; ResourceError for more samples than allowed.
         """
         job = parse_job(document)
-        if isinstance(job, IndicesAtJob) and not job.configurations:
-            raise DocumentError([("configurations", "must be given: rows of joint values")])
         for path in local_paths(job.model_dump(mode="json")):
             raise DocumentError([(dotted(path), LOCAL_ONLY)])
         arms = job.arms()

@@ -218,7 +218,7 @@ def _tighten_points(part: dict[str, Any], name: str, least: int) -> None:
 
 
 def _tighten(part: dict[str, Any]) -> None:
-    """Robots also by name, index names, lists without repetition, configurations that are there."""
+    """Robots also by name, index names, lists without repetition."""
     properties = part.get("properties", {})
     for name, schema in properties.items():
         if schema.get("$ref") == ROBOT:
@@ -231,15 +231,6 @@ def _tighten(part: dict[str, Any]) -> None:
                 choice |= {"uniqueItems": True} | LISTS[name]
                 if name == "indices":
                     choice["items"] = {"enum": _index_names()}
-    if "configurations" in properties:
-        description = properties["configurations"]["description"].partition(";")[0]
-        properties["configurations"] = {
-            "type": "array",
-            "minItems": 1,
-            "items": {"type": "array", "items": {"type": "number"}},
-            "description": description + ".",
-        }
-        part["required"].append("configurations")
 
 
 def _index_names() -> list[str]:

@@ -31,7 +31,6 @@ BESIDE = {
     "five_bar": {"mechanism"},
 }
 INSTEAD = {"five_bar": {"base_m", "proximal_m", "distal_m", "limits_rad"}}
-ASKED_FOR = {"indices_at": {"configurations"}}  # though the document has a default
 EVERY = pytest.mark.parametrize("analysis", analyses())
 
 
@@ -96,8 +95,7 @@ def test_the_parameters_are_the_fields(analysis):
     for name, field in fields_of(analysis).items():
         if name not in parameters:
             continue
-        asked_for = field.is_required() or name in ASKED_FOR.get(analysis, set())
-        assert parameters[name].default == (inspect.Parameter.empty if asked_for else field.default), name
+        assert parameters[name].default == (inspect.Parameter.empty if field.is_required() else field.default), name
 
 
 @EVERY

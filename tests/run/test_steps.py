@@ -124,7 +124,8 @@ def test_indices_at_configurations_in_the_order_asked():
     assert result.document["sampling"] == {"method": "given", "samples": 3}
     assert result.document["indices"]["manipulability"]["unit"] == "m^2"
     for configurations, message in (
-        (None, r"must be given: rows of 2 joint values, joint1, joint2"),
+        (None, "must be a list, not null"),
+        ([], "must have at least 1 items"),
         ([[1.0]], r"has shape \(1, 1\); \(2,\) or \(N, 2\) is needed"),
     ):
         with pytest.raises(ws.InputError, match=f"configurations: {message}"):

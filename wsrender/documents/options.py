@@ -91,9 +91,7 @@ def _device(value: Any) -> str:
     return value
 
 
-def _configurations(value: Any) -> tuple[tuple[float, ...], ...] | None:
-    if value is None:
-        return None
+def _configurations(value: Any) -> tuple[tuple[float, ...], ...]:
     rows = tuple(tuple(real(q) for q in sequence(row)) for row in sequence(value))
     if len({len(row) for row in rows}) > 1:
         raise ValueError("must hold rows of one length, one joint value per joint")
@@ -143,4 +141,6 @@ StatisticsOrNone = Annotated[
 ]
 MapColumns = Annotated[tuple[Literal["configuration", "orientation"], ...], BeforeValidator(_columns)]
 Device = Annotated[str, BeforeValidator(_device), Field(json_schema_extra={"pattern": f"^({_DEVICE.pattern})$"})]
-Configurations = Annotated[tuple[tuple[Number, ...], ...] | None, BeforeValidator(_configurations)]
+Configurations = Annotated[
+    tuple[tuple[Number, ...], ...], Field(min_length=1), BeforeValidator(_configurations)
+]

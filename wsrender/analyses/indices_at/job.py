@@ -16,8 +16,8 @@ class IndicesAtJob(IndexChoices, Constrained, Arm, JobDocument):
 
     analysis: Literal["indices_at"] = "indices_at"
     """Name of the analysis."""
-    configurations: Configurations = None
-    """Rows of joint values [rad or m], one per joint from base to tip; null where Python passes an array."""
+    configurations: Configurations
+    """Rows of joint values [rad or m], one per joint from base to tip."""
     precision: Literal["float32", "float64"] = "float64"
     """Floating-point type of the kernels."""
 

@@ -12,7 +12,6 @@ from wsrender.analyses.indices_at.job import IndicesAtJob
 from wsrender.analyses.partial_result import PartialResult
 from wsrender.analyses.provenance import index_choices
 from wsrender.engine import Evaluated, Evaluation, evaluate_at, units_of
-from wsrender.errors import InputError
 from wsrender.pipeline.constraints.constraint import Constraint
 from wsrender.robot.constraints import constraints_for, samples_entry
 from wsrender.robot.indices import evaluation_of_job
@@ -29,18 +28,15 @@ class IndicesAtAnalysis(Analysis):
     job: IndicesAtJob
 
     def prepare(self, device: str, target: str) -> Settled:
-        """Raises InputError for configurations that are missing or of the wrong length."""
+        """Raises InputError for configurations of the wrong length."""
         _ = self.evaluation, self.constraints
         return Settled(device, target, ((0, len(self.q)),))
 
     @cached_property
     def q(self) -> np.ndarray:
         """The rows (N, n) [rad or m]; raises InputError."""
-        names = self.robot.joint_names
-        if not self.job.configurations:
-            needed = f"must be given: rows of {len(names)} joint values, {', '.join(names)}"
-            raise InputError("configurations", needed)
-        return configuration_rows(np.array(self.job.configurations, np.float64), len(names), "configurations")
+        rows = np.array(self.job.configurations, np.float64)
+        return configuration_rows(rows, len(self.robot.joint_names), "configurations")
 
     @cached_property
     def evaluation(self) -> Evaluation:
