@@ -1,6 +1,6 @@
 """The table of analyses: the job of each, and what plans it.
 
-Library, command line and server read this table; none of them names an analysis. Another package adds a row through the
+Library, command line and server parse and plan jobs by this table. Another package adds a row through the
 entry-point group ``wsrender.analyses``: the entry's name is that of the analysis, its object an ``Entry``.
 """
 

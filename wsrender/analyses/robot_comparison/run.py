@@ -35,6 +35,10 @@ class RobotComparisonAnalysis(Analysis):
         """The plans of the robots."""
         return plan_several(self.job, self.robots, self.settled, self.job.refined_volume)
 
+    def about_robots(self) -> dict[str, Any]:
+        """Nothing: the result says each robot with its numbers."""
+        return {}
+
     @property
     def cost(self) -> Cost:
         """Samples, bytes and seconds."""

@@ -65,6 +65,10 @@ class SharedWorkspaceAnalysis(Analysis):
         )
         return [planned(at, robot.placed(each)) for each in self.job.scan.placements(arm.robot.placement)]
 
+    def about_robots(self) -> dict[str, Any]:
+        """Nothing: the result says each robot with its numbers."""
+        return {}
+
     @property
     def cost(self) -> Cost:
         """Samples, bytes and seconds."""
