@@ -50,5 +50,4 @@ def planned(document: dict[str, Any]) -> Estimated:
     from wsrender.run import plan
 
     found = plan(document)
-    samples = float(sum(count for _, count in found.shards))
-    return {"samples": samples, "bytes": None, "seconds": None} | found.estimate
+    return {"samples": float(found.samples), "bytes": None, "seconds": None} | found.estimate

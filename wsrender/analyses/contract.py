@@ -3,7 +3,8 @@
 import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import asdict, dataclass, field
+from copy import copy
+from dataclasses import asdict, dataclass, field, replace
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
@@ -12,7 +13,8 @@ from pydantic import TypeAdapter
 from wsrender.analyses.cost import Cost, Costed
 from wsrender.analyses.execution import Execution
 from wsrender.analyses.headline import no_headline
-from wsrender.analyses.partial_result import PartialResult
+from wsrender.analyses.partial_result import PartialResult, Refinements, plain
+from wsrender.analyses.piece import Piece
 from wsrender.analyses.provenance import job_entry, provenance, robot_entry
 from wsrender.analyses.settled_device import settled_device
 from wsrender.documents.format import FORMAT
@@ -27,7 +29,7 @@ if TYPE_CHECKING:
     import trimesh
 
 Tell = Callable[[int], None]
-"""Called with the samples done so far."""
+"""Called with the samples of a shard done so far; of a refinement with the points decided."""
 Progress = Callable[[int, int, str], None]
 """Called with what is done, about how much there will be, and what is going on."""
 
@@ -91,6 +93,7 @@ class Analysis(Costed, ABC):
     job: Any
     settled: Any  # of the class `settles`
     resumes: ClassVar[bool] = False  # `compute` goes on from the file ``execution.checkpoint``, with the same result
+    effort: ClassVar[float] = 1.0  # a sample's time in those of a sweep
     notices: tuple[Notice, ...] = ()  # of the robots, where `wsrender.run.steps` has loaded them
 
     def __init__(self, job: Any, *robots: Robot, resolved: Mapping[str, Any] | None = None):
@@ -119,13 +122,30 @@ class Analysis(Costed, ABC):
         """The partial result of both, the same bits in any order; an analysis of one shard has nothing to merge."""
         raise ValueError(f"{self.job.analysis} has one shard")
 
+    @property
+    def refinements(self) -> int:
+        """How many things are asked beside the samples that do not depend on them."""
+        return 0
+
+    def refinement(self, number: int, progress: Progress | None, execution: Execution) -> Any:
+        """One of the `refinements`, as plain JSON values; a shard of its own where the job is divided."""
+        raise ValueError(f"{self.job.analysis} has no refinements")
+
+    def with_refinements(self, partial: Any, refinements: list[Any]) -> Any:
+        """The merged partial result with all of its `refinements`, if there are any."""
+        return partial
+
     def refine(self, partial: Any, progress: Progress | None, execution: Execution) -> Any:
-        """The merged partial result with what was asked beside the samples; the same object: nothing was."""
+        """The merged partial result with what else was asked, and depends on it; the same object: nothing was."""
         return partial
 
     @abstractmethod
     def result(self, partial: Any, execution: Execution) -> Draft:
         """What the merged and refined partial result says."""
+
+    def read(self, partial: PartialResult) -> Any:
+        """The partial result, of samples or refinements, that was ``packed``; raises what `unpacked` does."""
+        return Refinements.of(partial) if Refinements.are(partial) else self.unpacked(partial)
 
     def unpacked(self, partial: PartialResult) -> Any:
         """The partial result that was ``packed``; raises KeyError, TypeError or ValueError where it is of another."""
@@ -164,13 +184,61 @@ class Analysis(Costed, ABC):
         """(first sample, number of samples) of every shard."""
         return list(self.settled.shards)
 
+    @property
+    def samples(self) -> int:
+        """Samples of all shards."""
+        return sum(count for _, count in self.shards)
+
+    @property
+    def pieces(self) -> list[Piece]:
+        """The samples as they may be divided."""
+        return [Piece(0, self.samples, self.settled.shard_unit)]
+
+    def divided(self, size: float, most: int) -> list[tuple[int, int]]:
+        """Shards that take about as long as ``size`` samples of a sweep, about ``most`` of them at most.
+
+        Those at the end, without samples, are the `refinements`.
+        """
+        size = max(size / self.effort, self.samples / most, 1)
+        shards = [shard for piece in self.pieces for shard in piece.divided(size)]
+        return (shards or [(0, 0)]) + [(self.samples, 0)] * self.refinements
+
     def resolved(self) -> dict[str, Any]:
         """What is settled, as JSON values: with it another process plans the same."""
         return self.settled.entry()
 
+    def over(self, first: int, number: int) -> Self:
+        """The plan with one shard, of these samples."""
+        plan = copy(self)
+        plan.settled = replace(self.settled, shards=((first, number),))
+        return plan
+
     def run_shard(self, shard: int, progress: Tell | None, execution: Execution) -> Any:
         """The partial result of a shard."""
-        return self.compute(shard, execution, progress or (lambda done: None))
+        tell = progress or (lambda done: None)
+        own = [number for number, (_, count) in enumerate(self.shards) if count or number == 0]
+        if shard < len(own):
+            return self.compute(shard, execution, tell)
+        number = shard - len(own)
+        return Refinements({number: self.refinement(number, lambda done, total, message: tell(done), execution)})
+
+    def merged(self, a: Any, b: Any) -> Any:
+        """The partial result of both, of samples, refinements or both; the same bits in any order."""
+        a, b = Refinements.beside(a), Refinements.beside(b)
+        both = [each.samples for each in (a, b) if each.samples is not None]
+        samples = self.merge(*both) if len(both) == 2 else next(iter(both), None)
+        entries = {**a.entries, **b.entries}
+        return Refinements(entries, samples) if entries else samples
+
+    def refined(self, partial: Any, progress: Progress | None, execution: Execution) -> Any:
+        """The merged partial result with what was asked beside the samples; the same object: nothing was."""
+        known = Refinements.beside(partial)
+        entries = [
+            known.entries[k] if k in known.entries else plain(self.refinement(k, progress, execution))
+            for k in range(self.refinements)
+        ]
+        own = self.with_refinements(known.samples, entries) if entries else known.samples
+        return self.refine(own, progress, execution)
 
     def finish(self, partial: Any, seconds: Mapping[str, float], execution: Execution) -> Result:
         """The result: what the analysis has found, and around it what every result document has."""

@@ -7,6 +7,8 @@ from typing import Any, Self
 
 import numpy as np
 
+REFINEMENTS = "refinements"  # fact of a shard that is one
+
 
 @dataclass(frozen=True, eq=False)
 class PartialResult:
@@ -20,7 +22,7 @@ class PartialResult:
     facts: Mapping[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "facts", json.loads(json.dumps(dict(self.facts))))
+        object.__setattr__(self, "facts", plain(dict(self.facts)))
 
     def __getitem__(self, name: str) -> np.ndarray:
         """An array by its name."""
@@ -29,3 +31,38 @@ class PartialResult:
     def packed(self) -> Self:
         """Itself: it can be kept as it is."""
         return self
+
+
+@dataclass(frozen=True, eq=False)
+class Refinements:
+    """Refinements by number, as plain JSON values, and the merged partial result of samples beside them, if any is.
+
+    They are packed alone: what is merged stays in its process.
+    """
+
+    entries: Mapping[int, Any]
+    samples: Any = None
+
+    @classmethod
+    def beside(cls, partial: Any) -> Self:
+        """A partial result with the refinements it may hold."""
+        return partial if isinstance(partial, cls) else cls({}, partial)
+
+    def packed(self) -> PartialResult:
+        """As facts."""
+        return PartialResult({}, {REFINEMENTS: {str(number): entry for number, entry in self.entries.items()}})
+
+    @staticmethod
+    def are(partial: PartialResult) -> bool:
+        """Whether that is what was packed."""
+        return not partial.arrays and set(partial.facts) == {REFINEMENTS}
+
+    @classmethod
+    def of(cls, partial: PartialResult) -> Self:
+        """What was packed."""
+        return cls({int(number): entry for number, entry in partial.facts[REFINEMENTS].items()})
+
+
+def plain(value: Any) -> Any:
+    """As JSON values; raises TypeError for what is none."""
+    return json.loads(json.dumps(value))

@@ -14,7 +14,6 @@ from wsrender.volume.measure import UNITS
 from wsrender.volume.volume_data import VolumeData
 
 Progress = Callable[[int, int, str], None]
-MEASURE = "measure"  # fact of a robot whose refined measure is known
 VOLUME, VOXELS = "refined volume", "labels of voxels"  # what is going on
 
 

@@ -1,15 +1,14 @@
-"""Several robots on one lattice: a workspace plan for each, swept one after the other."""
+"""Several robots on one lattice: a workspace plan for each."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import count
 from typing import Any
 
-from wsrender.analyses.contract import Progress, Settled, Tell
+from wsrender.analyses.composed import Part, PartialParts, part_of
+from wsrender.analyses.contract import Settled
 from wsrender.analyses.cost import DOCUMENT_BYTES, Cost, in_turn, pictures_cost, refined_seconds
 from wsrender.analyses.execution import Execution
-from wsrender.analyses.partial_result import PartialResult
-from wsrender.analyses.refined import MEASURE
 from wsrender.analyses.registry import job_classes, planned
 from wsrender.documents.arm import dotted
 from wsrender.documents.index_choices import IndexChoices
@@ -17,8 +16,6 @@ from wsrender.documents.several_robots import PlacedRobot
 from wsrender.errors import InputError
 from wsrender.results.result import Result
 from wsrender.robot import Robot
-
-ROBOTS = "robots"  # fact that holds those of every robot
 
 
 @dataclass(eq=False)
@@ -31,7 +28,7 @@ class SeveralPlans:
     @property
     def samples(self) -> int:
         """Samples of all robots; a converging sampling takes more."""
-        return sum(plan.shards[0][1] for plan in self.plans)
+        return sum(plan.samples for plan in self.plans)
 
     @property
     def cost(self) -> Cost:
@@ -42,35 +39,19 @@ class SeveralPlans:
         files = DOCUMENT_BYTES * len(self.plans) + drawn + sum(plan.volume_bytes for plan in self.plans)
         return Cost(swept.samples, swept.memory_bytes, files, swept.seconds + seconds)
 
-    def settled(self, shards: tuple[tuple[int, int], ...]) -> "SeveralSettled":
-        """What is settled once, for every robot."""
-        first = self.plans[0]
-        return SeveralSettled(first.device, first.target, shards, robots=tuple(plan.resolved() for plan in self.plans))
+    def settled(self, samples: int) -> "SeveralSettled":
+        """What is settled once, for every robot of a job of so many samples."""
+        first, robots = self.plans[0], tuple(plan.resolved() for plan in self.plans)
+        return SeveralSettled(first.device, first.target, ((0, samples),), robots=robots)
 
-    def run(self, execution: Execution, tell: Tell) -> PartialResult:
-        """Sweep every robot; arrays are led by the robot's number, facts are in a list."""
-        arrays, facts, done = {}, [], 0
-        for k, plan in enumerate(self.plans):
-            partial = plan.compute(0, execution, progress_after(done, tell)).packed()
-            arrays |= {f"{k}_{name}": array for name, array in partial.arrays.items()}
-            facts.append(partial.facts)
-            done += plan.shards[0][1]
-        return PartialResult(arrays, {ROBOTS: facts})
+    @property
+    def parts(self) -> list[Part]:
+        """The plans as the first parts of a job."""
+        return [part_of(plan) for plan in self.plans]
 
-    def refine(self, partial: PartialResult, progress: Progress | None, execution: Execution) -> PartialResult:
-        """With the refined measure of every robot whose plan asks for it."""
-        measures = [plan.measured(progress, execution) for plan in self.plans]
-        known = [facts | {MEASURE: entry} for facts, entry in zip(partial.facts[ROBOTS], measures, strict=True)]
-        return PartialResult(partial.arrays, {**partial.facts, ROBOTS: known})
-
-    def results(self, partial: PartialResult, execution: Execution) -> list[Result]:
+    def results(self, partial: PartialParts, execution: Execution) -> list[Result]:
         """The workspace result of every robot."""
-        found = []
-        for k, (plan, facts) in enumerate(zip(self.plans, partial.facts[ROBOTS], strict=True)):
-            lead = f"{k}_"
-            own = {name.removeprefix(lead): a for name, a in partial.arrays.items() if name.startswith(lead)}
-            found.append(plan.finish(plan.unpacked(PartialResult(own, facts)), {}, execution))
-        return found
+        return [plan.finish(partial.parts[k], {}, execution) for k, plan in enumerate(self.plans)]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -94,11 +75,13 @@ def plan_several(
     known = settled.robots if settled else [None] * len(robots)
     names = robot_names(job.robots, robots)
     jobs = [workspace_job(job, arm, refined_volume) for arm in job.robots]
-    plans = [_planned(k, *each) for k, each in enumerate(zip(jobs, robots, known, strict=True))]
+    plans = [
+        _located(k, planned, own, robot, resolved=resolved)
+        for k, (own, robot, resolved) in enumerate(zip(jobs, robots, known, strict=True))
+    ]
     if settled is None and job.voxel_size_m is None:
         size = shared_voxel_size(plans)
-        jobs = [each.model_copy(update={"voxel_size_m": size}) for each in jobs]
-        plans = [_planned(k, *each, None) for k, each in enumerate(zip(jobs, robots, strict=True))]
+        plans = [_located(k, plan.with_voxels, size) for k, plan in enumerate(plans)]
     return SeveralPlans(names, plans)
 
 
@@ -129,15 +112,11 @@ def robot_names(arms: tuple[PlacedRobot, ...], robots: tuple[Robot, ...]) -> lis
     return names
 
 
-def _planned(number: int, job: Any, robot: Robot, resolved: dict[str, Any] | None) -> Any:
+def _located(number: int, plans: Callable[..., Any], *arguments: Any, **named: Any) -> Any:
+    """What ``plans`` makes of its arguments; its errors say which robot they are of."""
     try:
-        return planned(job, robot, resolved=resolved)
+        return plans(*arguments, **named)
     except InputError as error:
         if error.field == "voxel_size_m":  # the job's, not the robot's
             raise
         raise error.within(dotted(("robots", number))) from None
-
-
-def progress_after(before: int, tell: Tell) -> Tell:
-    """A progress that adds to what was done before."""
-    return lambda done: tell(before + done)

@@ -4,8 +4,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from wsrender.volume.lattice import LatticeBlock, block_of_all
 from wsrender.volume.registration import registered
 from wsrender.volume.volume_data import VolumeData
+from wsrender.volume.voxels import Voxels
 
 NUMBER, PRODUCT = "number", "product"
 
@@ -37,6 +39,31 @@ def volume_by_number(shared: VolumeData, robots: int) -> np.ndarray:
     cells = np.bincount(number.ravel(), minlength=robots + 1)
     cells[0] = 0
     return cells * shared.voxel_size_m**3
+
+
+def scanned_volumes(
+    others: Sequence[tuple[LatticeBlock, np.ndarray]], moved: Sequence[tuple[LatticeBlock, np.ndarray]]
+) -> np.ndarray:
+    """Volumes (N, K) [m³] that at least 1 … K robots reach: ``others`` (K - 1), and another at each of N placements.
+
+    Of each the numbers (V,) of the voxels that it reaches in a block; all blocks are of one lattice.
+    """
+    whole = block_of_all([block for block, _ in (*others, *moved)])
+    numbers, robots = np.unique(np.concatenate([_numbers_in(whole, *each) for each in others]), return_counts=True)
+    alone, rows = np.bincount(robots, minlength=len(others) + 2), []
+    for each in moved:
+        own = _numbers_in(whole, *each)
+        joined = robots[np.isin(numbers, own, assume_unique=True)]
+        added = np.bincount(joined + 1, minlength=len(alone)) - np.bincount(joined, minlength=len(alone))
+        by_number = alone + added
+        by_number[1] += len(own) - len(joined)
+        rows.append(np.cumsum((by_number * whole.voxel_size_m**3)[:0:-1])[::-1])
+    return np.array(rows)
+
+
+def _numbers_in(whole: LatticeBlock, block: LatticeBlock, cells: np.ndarray) -> np.ndarray:
+    """The numbers in a larger block of the voxels of one."""
+    return Voxels(block.shape, cells, cells).moved(whole.shape, np.subtract(block.first_voxel, whole.first_voxel)).cells
 
 
 def reached_by(shared: VolumeData, least: int) -> VolumeData:

@@ -31,6 +31,6 @@ def load_partial(path: str | Path, plan: Any) -> Any:
         with path.open("rb") as file, np.load(file, allow_pickle=False) as archive:
             facts = json.loads(archive[FACTS])
             arrays = {name: archive[name] for name in archive.files if name != FACTS}
-        return plan.unpacked(PartialResult(arrays, facts))
+        return plan.read(PartialResult(arrays, facts))
     except (OSError, ValueError, KeyError, TypeError, EOFError, zipfile.BadZipFile, zlib.error) as error:
         raise InputError(path.name, f"cannot be read as a partial result: {error}") from error

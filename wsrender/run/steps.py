@@ -25,8 +25,8 @@ def plan(document: Any, robot: Any = None, *, resolved: dict[str, Any] | None = 
     ``robot`` replaces the document's; where a job has several, a list with a robot or None for each.
 
     ``resolved`` is `Analysis.resolved` of an earlier plan of the same job: nothing in it is settled again, so that
-    partial results of different processes merge. A plan has one shard; ``shards`` of ``resolved`` may divide it, at
-    multiples of its ``shard_unit``.
+    partial results of different processes merge. A plan has one shard; ``shards`` of ``resolved`` may divide it, as
+    `Analysis.divided` says.
 
     Raises DocumentError, InputError, ModelError, ResourceError; nothing has run then.
     """
@@ -70,7 +70,7 @@ def run_shard(
 
 def merge(plan: Plan, a: Any, b: Any) -> Any:
     """The partial result of both; associative, so the order of shards does not matter."""
-    return plan.merge(a, b)
+    return plan.merged(a, b)
 
 
 def finish(
@@ -88,12 +88,11 @@ def finish(
     """
     seconds, execution = dict(seconds or {}), Execution(threads)
     started, merged = time.perf_counter(), partial
-    partial = plan.refine(merged, progress, execution)
+    partial = plan.refined(merged, progress, execution)
     if partial is not merged:
         seconds["refine"] = time.perf_counter() - started
     if progress:
-        total = sum(count for _, count in plan.shards)
-        progress(total, total, "finishing")
+        progress(plan.samples, plan.samples, "finishing")
     return plan.finish(partial, seconds, execution)
 
 
@@ -114,7 +113,7 @@ def execute(
     if progress:
         progress(0, 1, "planning")
     settled = plan(document, robot)
-    total = sum(count for _, count in settled.shards)
+    total = settled.samples
     planned_at = time.perf_counter()
 
     def report(done: int) -> None:

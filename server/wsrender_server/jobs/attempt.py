@@ -24,7 +24,7 @@ class Attempt:
     generation: int  # of the scheduler's losses, so that a lost task's name is not used again
     futures: dict[tuple[Step, int], Future] = field(default_factory=dict)
     step: Step = Step.PLAN
-    done: dict[int, int] = field(default_factory=dict)  # samples done by shard
+    done: dict[int, int] = field(default_factory=dict)  # samples done by shard; of a refinement, points decided
     decided: tuple[int, int] = (0, 0)  # points of the last step, and about how many there will be
     kept: int = 0  # samples that an earlier run of the server had done
     losses: int = 0
@@ -70,11 +70,17 @@ class Attempt:
         """Enter the step of the shards; those that are to be computed."""
         self.step, self.started, self.stale = Step.SHARD, time.monotonic(), True
         missing = self.missing(files)
-        self.kept = sum(self.done.values())
-        return missing
+        self.kept = self.samples_done
+        # Refinements take long: they begin early, yet not before any sample.
+        return sorted(missing, key=lambda i: (i > 0, self.shards[i][1] > 0))
+
+    @property
+    def samples_done(self) -> int:
+        """Samples of all shards that are done."""
+        return sum(done for shard, done in self.done.items() if self.shards[shard][1])
 
     def reported(self, shard: int, done: int) -> None:
-        """A worker has done so many samples of a shard."""
+        """A worker has done so many samples of a shard, or decided so many points of a refinement."""
         self.done[shard] = max(done, self.done.get(shard, 0))
         self.stale = True
 
@@ -85,7 +91,7 @@ class Attempt:
     def progress(self) -> Progress:
         """How far the attempt is."""
         total = sum(count for _, count in self.shards) or None
-        done = sum(self.done.values())
+        done = self.samples_done
         if self.resolved and self.resolved.get("iterates"):
             total = None
         elapsed = time.monotonic() - self.started
@@ -96,11 +102,15 @@ class Attempt:
             samples_total=total,
             rate_per_s=rate,
             eta_s=None if rate is None or total is None else max(total - done, 0) / rate,
-            message=self._message(),
+            message=self._message(total is not None and done >= total),
         )
 
-    def _message(self) -> str:
-        done, total = self.decided
-        if self.step == Step.FINISH and done:
-            return f"finishing: {done:,} of about {total:,} points decided by inverse kinematics"
+    def _message(self, sampled: bool) -> str:
+        """What is going on; once all is ``sampled``, how many points inverse kinematics has decided since."""
+        decided, expected = self.decided
+        refined = sum(done for shard, done in self.done.items() if not self.shards[shard][1])
+        if self.step == Step.FINISH and decided:
+            return f"finishing: {decided:,} of about {expected:,} points decided by inverse kinematics"
+        if self.step == Step.SHARD and sampled and refined:
+            return f"refining: {refined:,} points decided by inverse kinematics"
         return MESSAGES[self.step]

@@ -65,17 +65,14 @@ def run(task: Task) -> Any:
 def _plan(task: Task) -> dict[str, Any]:
     started = time.perf_counter()
     plan = _planned(task)
-    resolved = plan.resolved()
-    shard_samples = sum(count for _, count in resolved["shards"])
-    samples = max(plan.cost.samples, shard_samples)
+    samples = max(plan.cost.samples, plan.samples)
     if samples > _state["max_samples"]:
         allowed = _state["max_samples"]
         raise ResourceError("sampling", f"has {samples:.4g} samples; this server allows {allowed:.4g}")
-    if unit := resolved.get("shard_unit"):
-        faster = GPU_FACTOR if plan.target.startswith("cuda:") else 1
-        resolved["shards"] = _divided(shard_samples, faster * _state["shard_samples"], unit)
+    faster = GPU_FACTOR if plan.target.startswith("cuda:") else 1
+    shards = plan.divided(faster * _state["shard_samples"], MOST_SHARDS)
     return {
-        "resolved": resolved,
+        "resolved": {**plan.resolved(), "shards": [list(shard) for shard in shards]},
         "target": plan.target,
         "estimate": plan.estimate,
         "seconds": time.perf_counter() - started,
@@ -181,13 +178,6 @@ def _planned(task: Task) -> Any:
         while len(_plans) > KEPT_PLANS:
             _plans.popitem(last=False)
     return _plans[key]
-
-
-def _divided(total: int, size: int, unit: int) -> list[list[int]]:
-    """Shards of about ``size`` samples, a multiple of ``unit``, but never more than MOST_SHARDS."""
-    size = max(size, -(-total // MOST_SHARDS))
-    size = -(-size // unit) * unit
-    return [[first, min(size, total - first)] for first in range(0, total, size)]
 
 
 def _files() -> DataFolder:

@@ -79,14 +79,21 @@ class CollaborativeVolumeAnalysis(Analysis):
             cells.append([np.count_nonzero(found.collaborative), np.count_nonzero(found.boundary)])
         return PartialResult({"volumes": np.array(rows), "cells": np.array(cells)})
 
-    def refine(self, partial: PartialResult, progress: Progress | None, execution: Execution) -> PartialResult:
-        """With the true volume, if asked."""
-        if self.job.refined_volume is None:
-            return partial
-        chains = [robot.chain for robot in self.robots]
-        events, tolerance = {"true": Event(2, 2)}, self.job.refined_volume
-        true = refined_together(chains, events, tolerance, self.device, progress, execution.threads)
-        return PartialResult(partial.arrays, {"refined": true["true"]})
+    @property
+    def refinements(self) -> int:
+        """The true volume, if asked."""
+        return int(self.job.refined_volume is not None)
+
+    def refinement(self, number: int, progress: Progress | None, execution: Execution) -> dict[str, Any]:
+        """The entry of the true volume."""
+        chains, tolerance = [robot.chain for robot in self.robots], self.job.refined_volume
+        assert tolerance is not None
+        events = {"true": Event(2, 2)}
+        return refined_together(chains, events, tolerance, self.device, progress, execution.threads)["true"]
+
+    def with_refinements(self, partial: PartialResult, refinements: list[Any]) -> PartialResult:
+        """With the true volume."""
+        return PartialResult(partial.arrays, {"refined": refinements[0]})
 
     def result(self, partial: PartialResult, execution: Execution) -> Draft:
         """Means and variances over the seeds, and the bias where the true volume is known."""

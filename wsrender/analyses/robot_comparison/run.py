@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from wsrender.analyses.contract import Analysis, Draft, Progress, Tell
+from wsrender.analyses.composed import Composed, Part, PartialParts
+from wsrender.analyses.contract import Draft, Progress
 from wsrender.analyses.cost import Cost
 from wsrender.analyses.execution import Execution
 from wsrender.analyses.headline import no_headline
-from wsrender.analyses.partial_result import PartialResult
 from wsrender.analyses.robot_comparison.job import RobotComparisonJob
 from wsrender.analyses.several_result import common_entries, notices_of_each, sampling_path, skeletons
 from wsrender.analyses.several_robots import SeveralPlans, SeveralSettled, plan_several
@@ -18,8 +18,8 @@ from wsrender.volume.measure import TABLE_UNITS
 from wsrender.volume.table import Table
 
 
-class RobotComparisonAnalysis(Analysis):
-    """A planned ``robot_comparison`` job: one shard, in which the robots are swept one after the other."""
+class RobotComparisonAnalysis(Composed):
+    """A planned ``robot_comparison`` job: the samples of every robot, and its refined measure."""
 
     settles = SeveralSettled
     job: RobotComparisonJob
@@ -28,7 +28,7 @@ class RobotComparisonAnalysis(Analysis):
     def prepare(self, device: str, target: str) -> SeveralSettled:
         """Raises InputError, MissingInertiaError, ResourceError."""
         self.several = plan_several(self.job, self.robots, None, self.job.refined_volume)
-        return self.several.settled(((0, self.several.samples),))
+        return self.several.settled(self.several.samples)
 
     @cached_property
     def several(self) -> SeveralPlans:
@@ -44,15 +44,26 @@ class RobotComparisonAnalysis(Analysis):
         """Samples, bytes and seconds."""
         return self.several.cost
 
-    def compute(self, shard: int, execution: Execution, tell: Tell) -> PartialResult:
-        """Partial results of the robots."""
-        return self.several.run(execution, tell)
+    @property
+    def parts(self) -> list[Part]:
+        """The robots."""
+        return self.several.parts
 
-    def refine(self, partial: PartialResult, progress: Progress | None, execution: Execution) -> PartialResult:
-        """With the refined measure of every robot, if asked."""
-        return self.several.refine(partial, progress, execution)
+    @property
+    def refinements(self) -> int:
+        """The refined measure of every robot, if asked."""
+        return sum(plan.refinements for plan in self.several.plans)
 
-    def result(self, partial: PartialResult, execution: Execution) -> Draft:
+    def refinement(self, number: int, progress: Progress | None, execution: Execution) -> Any:
+        """The refined measure of one robot."""
+        return self.several.plans[number].refinement(0, progress, execution)
+
+    def with_refinements(self, partial: PartialParts, refinements: list[Any]) -> PartialParts:
+        """With the refined measure of every robot."""
+        each = zip(self.several.plans, refinements, strict=True)
+        return PartialParts({k: plan.with_refinements(partial.parts[k], [own]) for k, (plan, own) in enumerate(each)})
+
+    def result(self, partial: PartialParts, execution: Execution) -> Draft:
         """Every robot's volume, and the table of values and differences from the first robot."""
         results = self.several.results(partial, execution)
         names = self.several.names

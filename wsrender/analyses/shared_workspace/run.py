@@ -1,12 +1,14 @@
 """The analysis ``shared_workspace``: what several robots reach together."""
 
 from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from wsrender.analyses.contract import Analysis, Draft, Progress, Tell
+from wsrender.analyses.composed import Composed, Part, PartialParts, part_of
+from wsrender.analyses.contract import Draft, Progress, Tell
 from wsrender.analyses.cost import DOCUMENT_BYTES, Cost, in_turn, pictures_cost, refined_seconds
 from wsrender.analyses.execution import Execution
 from wsrender.analyses.headline import headline_of
@@ -14,11 +16,18 @@ from wsrender.analyses.partial_result import PartialResult
 from wsrender.analyses.refined import by_measure, refined_together
 from wsrender.analyses.registry import planned
 from wsrender.analyses.several_result import common_entries, notices_of_each, sampling_path, skeletons
-from wsrender.analyses.several_robots import SeveralPlans, SeveralSettled, plan_several, progress_after, workspace_job
+from wsrender.analyses.several_robots import SeveralPlans, SeveralSettled, plan_several, workspace_job
 from wsrender.analyses.shared_workspace.job import SharedWorkspaceJob
 from wsrender.analyses.volume_notices import occupied_differs, tolerance_not_met
 from wsrender.documents.placement_scan import PlacementScan
-from wsrender.multi.shared_volume import NUMBER, PRODUCT, reached_by, shared_volume, volume_by_number
+from wsrender.multi.shared_volume import (
+    NUMBER,
+    PRODUCT,
+    reached_by,
+    scanned_volumes,
+    shared_volume,
+    volume_by_number,
+)
 from wsrender.notices import Notice
 from wsrender.reach import Event
 from wsrender.volume.lattice import block_of_all, check_voxels
@@ -34,8 +43,8 @@ VOLUME_BYTES = 9  # of a voxel of each robot's volume: samples, and whether ther
 REACHED = {"any": "jointly reachable", "shared": "shared"}  # of which volume
 
 
-class SharedWorkspaceAnalysis(Analysis):
-    """A planned ``shared_workspace`` job: one shard, in which the robots are swept one after the other."""
+class SharedWorkspaceAnalysis(Composed):
+    """A planned ``shared_workspace`` job: samples of every robot, and of the moved one at each value of the scan."""
 
     settles = SeveralSettled
     job: SharedWorkspaceJob
@@ -45,8 +54,7 @@ class SharedWorkspaceAnalysis(Analysis):
         """Raises InputError, MissingInertiaError, ResourceError."""
         several = self.several = plan_several(self.job, self.robots)
         _check_volume(several)
-        samples = several.samples + sum(plan.shards[0][1] for plan in self.scanned)
-        return several.settled(((0, samples),))
+        return several.settled(several.samples + sum(plan.samples for plan in self.scanned))
 
     @cached_property
     def several(self) -> SeveralPlans:
@@ -55,19 +63,24 @@ class SharedWorkspaceAnalysis(Analysis):
 
     @cached_property
     def scanned(self) -> list[Any]:
-        """Plans of the moved robot, one for each value of the scan."""
+        """Plans of the moved robot, one for each value of the scan: of a volume, only positions matter."""
         if self.job.scan is None:
             return []
         arm, robot = self.job.robots[self.job.scan.robot], self.robots[self.job.scan.robot]
         first = self.several.plans[0]
-        at = workspace_job(self.job, arm).model_copy(
-            update={"voxel_size_m": first.voxel_size_m, "device": first.device}
-        )
+        alone = {"indices": (), "voxel_statistics": ("count",), "torque_scaling": False, "joint_limit_penalty": None}
+        same = {"voxel_size_m": first.voxel_size_m, "device": first.device}
+        at = workspace_job(self.job, arm).model_copy(update={**alone, **same})
         return [planned(at, robot.placed(each)) for each in self.job.scan.placements(arm.robot.placement)]
 
     def about_robots(self) -> dict[str, Any]:
         """Nothing: the result says each robot with its numbers."""
         return {}
+
+    @property
+    def parts(self) -> list[Part]:
+        """The robots, and the moved one at each value."""
+        return [*self.several.parts, *map(occupied_part, self.scanned)]
 
     @property
     def cost(self) -> Cost:
@@ -78,35 +91,28 @@ class SharedWorkspaceAnalysis(Analysis):
         files = DOCUMENT_BYTES + drawn + sum(plan.volume_bytes for plan in self.several.plans) * 1.5
         return Cost(swept.samples, swept.memory_bytes, files, swept.seconds + seconds)
 
-    def compute(self, shard: int, execution: Execution, tell: Tell) -> PartialResult:
-        """Partial results of the robots, and the volumes of every step of the scan."""
-        partial = self.several.run(execution, tell)
-        if self.job.scan is None:
-            return partial
-        scan = self._scan(self.job.scan, partial, execution, tell)
-        return PartialResult({**partial.arrays, "scan": scan}, partial.facts)
+    @property
+    def refinements(self) -> int:
+        """The refined volumes, if asked: as the robots stand, and at each value of the scan."""
+        return 0 if self.job.refined_volume is None else 1 + len(self.scanned)
 
-    def refine(self, partial: PartialResult, progress: Progress | None, execution: Execution) -> PartialResult:
-        """With the refined volumes, if asked."""
-        tolerance, scan = self.job.refined_volume, self.job.scan
-        if tolerance is None:
-            return partial
+    def refinement(self, number: int, progress: Progress | None, execution: Execution) -> dict[str, Any]:
+        """The refined volumes as the robots stand (0), or at a value of the scan."""
         robots = zip(self.robots, self.job.robots, strict=True)
         chains = [robot.chain.held(arm.sampling.locked) for robot, arm in robots]
+        if self.job.scan is not None and number:
+            moved, T_world_base = self.job.scan.robot, self.scanned[number - 1].robot.chain.T_world_base
+            chains[moved] = chains[moved].placed(T_world_base)
+        tolerance, device = self.job.refined_volume, self.several.plans[0].device
+        assert tolerance is not None
         events = {"any": Event(1, len(chains)), "shared": Event(2, len(chains))}
-        how = {"device": self.several.plans[0].device, "progress": progress, "threads": execution.threads}
-        together = refined_together(chains, events, tolerance, **how)
-        facts = {**partial.facts, "refined": together}
-        if scan is None or together["shared"]["value"] is None:
-            return PartialResult(partial.arrays, facts)
-        rows = []
-        for T_world_base in self._scanned_bases():
-            chains[scan.robot] = chains[scan.robot].placed(T_world_base)
-            volumes = refined_together(chains, events, tolerance, **how)
-            rows.append([_with_interval(volumes[name]) for name in events])
-        return PartialResult({**partial.arrays, "scan_refined": np.array(rows)}, facts)
+        return refined_together(chains, events, tolerance, device, progress, execution.threads)
 
-    def result(self, partial: PartialResult, execution: Execution) -> Draft:
+    def with_refinements(self, partial: PartialParts, refinements: list[Any]) -> "SharedPartial":
+        """With the refined volumes."""
+        return SharedPartial(partial.parts, refinements)
+
+    def result(self, partial: PartialParts, execution: Execution) -> Draft:
         """Number of robots by voxel, product of their normalised indices, union and intersection."""
         results = self.several.results(partial, execution)
         volumes = {f"robot_{name}": r.volume for name, r in zip(self.several.names, results, strict=True) if r.volume}
@@ -114,11 +120,11 @@ class SharedWorkspaceAnalysis(Analysis):
         by_number = volume_by_number(shared, len(volumes))
         meshes, surfaces = _meshes(shared)
         any_m3, shared_m3 = float(by_number.sum()), float(by_number[2:].sum())
-        found = partial.facts.get("refined")
+        found, *at_values = partial.refined if isinstance(partial, SharedPartial) else (None,)
         shared_measure = found and found["shared"]
         measures = by_measure(shared_measure, found)
         refined = measures["volume_m3"]["refined"]
-        known = found if shared_measure and shared_measure["value"] is not None else None
+        known = found if found and found["shared"]["value"] is not None else None
         document = {
             **common_entries(self.several, results),
             **measures,
@@ -134,8 +140,7 @@ class SharedWorkspaceAnalysis(Analysis):
             "surfaces": surfaces,
         }
         scan = self.job.scan
-        scanned = partial.arrays.get("scan_refined")
-        tables = {"scan": _scan_table(scan, partial["scan"], scanned, shared_measure)} if scan else {}
+        tables = {"scan": _scan_table(scan, self._scan(scan, partial), at_values, known)} if scan else {}
         own = _notices({"any": any_m3, "shared": shared_m3}, refined)
         return Draft(
             document,
@@ -149,22 +154,41 @@ class SharedWorkspaceAnalysis(Analysis):
             volumes=volumes,
         )
 
-    def _scanned_bases(self) -> list[np.ndarray]:
-        """Where the base of the moved robot stands at each value, (4, 4) each."""
-        return [plan.robot.chain.T_world_base for plan in self.scanned]
-
-    def _scan(self, scan: PlacementScan, partial: PartialResult, execution: Execution, tell: Tell) -> np.ndarray:
+    def _scan(self, scan: PlacementScan, partial: PartialParts) -> np.ndarray:
         """Volumes (values, K) [m³] reached by at least 1 … K robots at each value."""
-        volumes = [result.volume for result in self.several.results(partial, execution)]
-        before, rows = self.several.samples, []
-        for plan in self.scanned:
-            moved = SeveralPlans([""], [plan])
-            (result,) = moved.results(moved.run(execution, progress_after(before, tell)), execution)
-            volumes[scan.robot] = result.volume
-            by_number = volume_by_number(shared_volume([v for v in volumes if v is not None]), len(volumes))
-            rows.append(np.cumsum(by_number[:0:-1])[::-1])
-            before += plan.shards[0][1]
-        return np.array(rows)
+        robots = enumerate(self.several.plans)
+        others = [(plan.sweep.block, partial.parts[k].sweep.cells) for k, plan in robots if k != scan.robot]
+        moved = enumerate(self.scanned, start=len(self.several.plans))
+        return scanned_volumes(
+            others, [(plan.sweep.block, occupied_cells(plan, partial.parts[k])) for k, plan in moved]
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class SharedPartial(PartialParts):
+    """With what is refined as the robots stand, and then at every value of the scan."""
+
+    refined: list[Any]
+
+
+def occupied_part(plan: Any) -> Part:
+    """A sweep's plan of which nothing is kept but where it has been: a bit for each voxel of its block."""
+    swept = part_of(plan)
+
+    def compute(first: int, number: int, execution: Execution, tell: Tell) -> PartialResult:
+        occupied = np.zeros(plan.sweep.block.size, bool)
+        occupied[swept.compute(first, number, execution, tell).sweep.cells] = True
+        return PartialResult({"bits": np.packbits(occupied)})
+
+    def merge(a: PartialResult, b: PartialResult) -> PartialResult:
+        return PartialResult({"bits": a["bits"] | b["bits"]})
+
+    return replace(swept, compute=compute, merge=merge, unpacked=lambda partial: partial)
+
+
+def occupied_cells(plan: Any, partial: PartialResult) -> np.ndarray:
+    """Numbers of the voxels, in the block of the plan, where its sweep has been."""
+    return np.flatnonzero(np.unpackbits(partial["bits"], count=plan.sweep.block.size))
 
 
 def _check_volume(several: SeveralPlans) -> None:
@@ -205,17 +229,17 @@ def _with_interval(measure: dict[str, Any]) -> list[float]:
 
 
 def _scan_table(
-    scan: PlacementScan, at_least: np.ndarray, refined: np.ndarray | None, measure: dict[str, Any] | None
+    scan: PlacementScan, at_least: np.ndarray, at_values: list[dict[str, Any]], refined: dict[str, Any] | None
 ) -> Table:
-    """By value: volumes of the occupied voxels, and the refined ones with their intervals where they were asked for."""
-    names = ("any", "shared")
-    units = {f"occupied_{name}": "m^3" for name in names}
-    columns = {f"occupied_{name}": at_least[:, k] for k, name in enumerate(names)}
-    if refined is not None and measure is not None:
+    """By value: volumes of the occupied voxels, and the refined ones with their intervals where there are any."""
+    units = {f"occupied_{name}": "m^3" for name in REACHED}
+    columns = {f"occupied_{name}": at_least[:, k] for k, name in enumerate(REACHED)}
+    if refined is not None:
         found = {}
-        for k, name in enumerate(names):
-            found |= dict(zip((name, f"{name}_low", f"{name}_high"), refined[:, k].T, strict=True))
-        units |= dict.fromkeys(found, TABLE_UNITS[measure["unit"]])
+        for name in REACHED:
+            values = np.array([_with_interval(each[name]) for each in at_values])
+            found |= dict(zip((name, f"{name}_low", f"{name}_high"), values.T, strict=True))
+        units |= dict.fromkeys(found, TABLE_UNITS[refined["shared"]["unit"]])
         columns = found | columns
     return Table({scan.axis: np.array(scan.values), **columns}, {scan.axis: scan.unit, **units})
 

@@ -1,9 +1,10 @@
 """The analysis ``workspace``: what is settled, swept, merged and refined."""
 
 from collections.abc import Mapping
+from copy import copy
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
@@ -20,7 +21,7 @@ from wsrender.analyses.cost import (
 from wsrender.analyses.estimate import map_bytes, sweep_cost
 from wsrender.analyses.execution import Execution
 from wsrender.analyses.partial_result import PartialResult
-from wsrender.analyses.refined import MEASURE, Refined, labelled, refined
+from wsrender.analyses.refined import Refined, labelled, refined
 from wsrender.analyses.workspace.first_pass import FirstPass
 from wsrender.analyses.workspace.job import WorkspaceJob
 from wsrender.analyses.workspace.partial import WorkspacePartial, sweep_of
@@ -187,6 +188,14 @@ class WorkspaceAnalysis(Analysis):
         """Edge of a voxel [m]."""
         return self.settled.voxel_size_m
 
+    def with_voxels(self, voxel_size_m: float) -> Self:
+        """The plan with voxels of another edge [m], and what it knows of the robot; raises what `prepare` does."""
+        plan = copy(self)
+        vars(plan).pop("_expected", None)
+        plan.job = self.job.model_copy(update={"voxel_size_m": voxel_size_m})
+        plan.settled = plan.prepare(self.device, self.target)
+        return plan
+
     @property
     def least_voxel_size_m(self) -> float:
         """Edge of a voxel [m] below which the samples leave holes."""
@@ -198,38 +207,42 @@ class WorkspaceAnalysis(Analysis):
 
     def compute(self, shard: int, execution: Execution, tell: Tell) -> WorkspacePartial:
         """Sweep the shard's samples; a converging job has one shard, its sequence of grids."""
-        devices = devices_of(self.device)
         if isinstance(self.job.sampling, Converge):
             return self._converge(self.job.sampling, execution, tell)
         first, count = self.shards[shard]
         how = {"threads": execution.threads, "chunk_size": execution.chunk_size}
-        return WorkspacePartial(sweep(self.sweep, first, count, devices, progress=tell, **how), self.sweep)
+        found = sweep(self.sweep, first, count, devices_of(self.device), progress=tell, **how)
+        return WorkspacePartial(found, self.sweep)
 
     def merge(self, a: WorkspacePartial, b: WorkspacePartial) -> WorkspacePartial:
         """The partial result of both; bit for bit the same in any order."""
         return WorkspacePartial(merge(a.sweep, b.sweep), self.sweep)
 
-    def measured(self, progress: Progress | None, execution: Execution) -> dict[str, Any] | None:
-        """The entry of the refined volume, area or length, if asked."""
-        if self.job.refined_volume is None:
-            return None
+    @property
+    def refinements(self) -> int:
+        """The refined volume, area or length, if asked."""
+        return int(self.job.refined_volume is not None)
+
+    def refinement(self, number: int, progress: Progress | None, execution: Execution) -> dict[str, Any]:
+        """The entry of the refined volume, area or length."""
         chain, seed = self.robot.chain.held(self.job.sampling.locked), self.sweep.sampling.seed
-        constraints = self.sweep.constraints
-        return refined(chain, self.job.refined_volume, seed, self.device, progress, execution.threads, constraints)
+        constraints, tolerance = self.sweep.constraints, self.job.refined_volume
+        assert tolerance is not None
+        return refined(chain, tolerance, seed, self.device, progress, execution.threads, constraints)
+
+    def with_refinements(self, partial: WorkspacePartial, refinements: list[Any]) -> WorkspacePartial:
+        """With the refined volume, area or length."""
+        return replace(partial, refined=Refined(refinements[0], None))
 
     def refine(self, partial: WorkspacePartial, progress: Progress | None, execution: Execution) -> WorkspacePartial:
-        """With the refined volume, area or length and the labels of the voxels, each if asked."""
-        if self.job.refined_volume is None and not self.job.voxel_labels:
-            return partial
-        measure, labels = self.measured(progress, execution), self._labelled(partial, progress, execution)
-        return replace(partial, refined=Refined(measure, labels))
-
-    def _labelled(
-        self, partial: WorkspacePartial, progress: Progress | None, execution: Execution
-    ) -> VolumeData | None:
-        """The labels of the voxels, if asked."""
+        """With the labels of the voxels, if asked."""
         if not self.job.voxel_labels:
-            return None
+            return partial
+        measure = partial.refined and partial.refined.measure
+        return replace(partial, refined=Refined(measure, self._labelled(partial, progress, execution)))
+
+    def _labelled(self, partial: WorkspacePartial, progress: Progress | None, execution: Execution) -> VolumeData:
+        """The labels of the voxels."""
         counts = volume_data(replace(partial.plan, statistics=frozenset()), partial.sweep, {})
         chain = self.robot.chain.held(self.job.sampling.locked)
         return labelled(chain, counts, partial.plan.sampling.seed, self.device, progress, execution.threads)
@@ -244,8 +257,7 @@ class WorkspaceAnalysis(Analysis):
         plan = self.sweep
         if sequence is not None and isinstance(sampling, Converge):
             plan = self.with_grid(sequence[-1]["per_joint"], sampling)
-        measure = partial.facts.get(MEASURE)
-        return WorkspacePartial(sweep_of(partial), plan, sequence, measure and Refined(measure, None))
+        return WorkspacePartial(sweep_of(partial), plan, sequence)
 
     def _converge(self, sampling: Converge, execution: Execution, tell: Tell) -> WorkspacePartial:
         """[WSR] Algorithm 1: finer grids until an index's global value changes by at most the tolerance."""
