@@ -5,7 +5,7 @@ import pytest
 
 import wsrender as ws
 from wsrender.kinetostatics import posture_tables
-from wsrender.kinetostatics.posture_data import ellipsoids, limit_nearness
+from wsrender.kinetostatics.force_fields import ellipsoids, limit_nearness
 from wsrender.results.drawing import limits_and_ellipsoids, save_figure
 
 

@@ -8,7 +8,7 @@ import wsrender as ws
 from wsrender.documents.kinetostatics import BoundaryForce, ObstacleForce
 from wsrender.documents.robot import Transform
 from wsrender.kinetostatics.boundary import BoundaryDistance, boundary_distance
-from wsrender.kinetostatics.obstacles import ObstacleDistance
+from wsrender.kinetostatics.ramps import ObstacleDistance
 
 POSE = Transform(position_m=(0.1, -0.2, 0.3), rpy_deg=(10, 20, 30))
 SIZE = np.array([0.2, 0.4, 0.1])

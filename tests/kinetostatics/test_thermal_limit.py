@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from wsrender.documents.kinetostatics import HapticDevice
-from wsrender.kinetostatics.thermal_limit import ThermalLimit
+from wsrender.kinetostatics.passivity import ThermalLimit
 
 DEVICE = HapticDevice()
 PUSH = np.array([0.0, 0.0, 6.4])

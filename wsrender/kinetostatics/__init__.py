@@ -8,8 +8,7 @@ from wsrender.kinetostatics.characteristic_length import (
     least_condition_length,
     rms_length,
 )
-from wsrender.kinetostatics.force_fields import FieldState, ForceField, force_field
-from wsrender.kinetostatics.posture_data import posture_tables
+from wsrender.kinetostatics.force_fields import FieldState, ForceField, force_field, posture_tables
 
 __all__ = [
     "CharacteristicLength",

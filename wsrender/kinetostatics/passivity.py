@@ -1,4 +1,4 @@
-"""Energy of a rendered field: what stiffness a sampled loop can render, and what work a closed path does.
+"""Energy of a rendered field: what a sampled loop can render, what a closed path does, and what a device can hold.
 
 A loop of period T with zero-order hold renders a spring of stiffness K passively on a device of damping b if
 b > K T / 2 (Colgate and Schenkel, *Passivity of a class of sampled-data systems*, 1997).
@@ -15,6 +15,9 @@ from wsrender.kinetostatics.force_fields import ForceField
 POSTURES, LOOPS, STEPS = 256, 48, 60
 STRAY = 0.01  # of the path's size, beyond which the tip does not follow it
 HAND_SPEED = 0.1  # m/s, at which a person explores a surface
+SHARE = 0.9  # of the stiffness bound that is rendered
+VIRTUAL_SHARE = 0.5  # of the device's damping, which viscosity and injected damping may add together
+FADE = 0.2  # of the bearable heat, before its end, over which the limit sinks from the peak to the continuous force
 
 
 @dataclass(frozen=True)
@@ -144,3 +147,95 @@ def random_postures(field: ForceField, count: int, random: np.random.Generator) 
         depth = random.uniform() * min(field.joint_limits.margin[joint], chain.upper_limits[joint] - row[joint])
         row[joint] = chain.upper_limits[joint] - depth
     return q
+
+
+class EnergyControl:
+    """Between a field and a device; forces and motions are (3,), or (6,) with torque / L and L × rotation.
+
+    The rendered force rises towards the field's no faster than K |Δx| per tick with K = 0.9 · 2 (b − B)/T, the
+    stiffness that the device renders passively beside a virtual damping B = b/2 (Colgate and Schenkel 1997), and no
+    faster than ``rise`` when it rests: after a pause it comes back smoothly.
+
+    Energy is observed as in Hannaford and Ryu, *Time-domain passivity control of haptic interfaces*, 2002. What the
+    device gives is stored, as far as the field can store it: up to its potential energy, nothing where it has no
+    force. What it is given comes from there, or from what its own damping takes, b |Δx|²/T at least. Anything more was
+    created, by sampling or by the normalised form, and is taken back by damping.
+    """
+
+    def __init__(self, device: HapticDevice, viscosity: float, rise: float):
+        self._device, self._period = device, device.period_s
+        virtual = VIRTUAL_SHARE * device.damping_n_s_per_m
+        self.stiffness = SHARE * stiffness_bound(device, virtual)
+        self._most = max(virtual - viscosity, 0.0)
+        self._step = device.peak_force_n * self._period / rise
+        self.most_created = 0.0
+        self.reset(6 if device.kind == "wrench" else 3, 0.0)
+
+    def reset(self, size: int, stored: float) -> None:
+        """Start anew with no force, and with so much energy stored [J]."""
+        self.rendered = np.zeros(size)
+        self._stored = stored
+
+    @property
+    def created(self) -> float:
+        """Energy that the loop has given and did not have [J]."""
+        return max(-self._stored, 0.0)
+
+    def observe(self, sent: np.ndarray, moved: np.ndarray, capacity: float) -> None:
+        """Take in that the device moved while a force was held; ``capacity`` [J]: what the field can store there."""
+        dissipated = self._device.damping_n_s_per_m * float(moved @ moved) / self._period
+        self._stored = min(self._stored - float(sent @ moved) + dissipated, capacity)
+        self.most_created = max(self.most_created, self.created)
+
+    def approach(self, force: np.ndarray, moved: np.ndarray) -> np.ndarray:
+        """The force towards the field's that the device can render, after it moved; it sinks at once."""
+        before, size, wanted = self.rendered, math.sqrt(self.rendered @ self.rendered), math.sqrt(force @ force)
+        if size > wanted:
+            before = before * (wanted / size)
+        change = force - before
+        size, most = math.sqrt(change @ change), self.stiffness * math.sqrt(moved @ moved) + self._step
+        self.rendered = force if size <= most else before + change * (most / size)
+        return self.rendered
+
+    def damping(self, force: np.ndarray, velocity: np.ndarray) -> float:
+        """Damping [N s/m] to be added to a force while there is created energy to take back; 0 otherwise.
+
+        As much as keeps the force from giving more, and what takes the rest back within a tick, as far as the device
+        can render damping.
+        """
+        square = float(velocity @ velocity)
+        if self.created == 0.0 or square == 0.0:
+            return 0.0
+        giving = max(float(force @ velocity), 0.0) / square
+        return giving + min(self.created / (square * self._period), self._most)
+
+
+class ThermalLimit:
+    """Shortens forces so that the motors never get warmer than the continuous force F_c keeps them.
+
+    Heat h [N²] follows the squared force, dh/dt = (F² − h)/τ, and must stay at or below F_c². The limit is F_peak while
+    h ≤ 0.8 F_c² and sinks in squares to F_c at h = F_c², so that no step is felt. From cold the peak is held for
+    −τ ln(1 − 0.8 F_c²/F_peak²), 0.39 τ/10 with the default device; afterwards F_c for ever.
+    """
+
+    def __init__(self, device: HapticDevice):
+        self._peak, self._continuous = device.peak_force_n**2, device.continuous_force_n**2
+        self._time = device.thermal_time_s
+        self.heat = 0.0
+
+    @property
+    def limit(self) -> float:
+        """Largest force [N] now."""
+        share = min(max((self._continuous - self.heat) / (FADE * self._continuous), 0.0), 1.0)
+        return math.sqrt(self._continuous + (self._peak - self._continuous) * share)
+
+    def limited(self, force: np.ndarray, dt: float) -> np.ndarray:
+        """The force (any length) [N] that is held for ``dt`` [s], shortened where it must be."""
+        size, cooling = math.sqrt(force @ force), -math.expm1(-dt / self._time)
+        # What the heat bears in this step, for steps that are long beside τ.
+        bearable = math.sqrt(max(self._continuous - self.heat * (1 - cooling), 0.0) / cooling)
+        most = min(self.limit, bearable)
+        if size > most:
+            force, size = force * (most / size), most
+        self.heat += cooling * (size * size - self.heat)
+        return force

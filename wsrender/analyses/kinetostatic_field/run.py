@@ -15,9 +15,8 @@ from wsrender.analyses.partial_result import PartialResult
 from wsrender.documents.sampling import Sobol
 from wsrender.engine import configurations, sampled_positions
 from wsrender.kinetostatics.characteristic_length import CharacteristicLength
-from wsrender.kinetostatics.force_fields import ForceField
+from wsrender.kinetostatics.force_fields import ForceField, posture_tables
 from wsrender.kinetostatics.passivity import LoopWork, largest_loop_work, stiffness_bound, stiffnesses
-from wsrender.kinetostatics.posture_data import posture_tables
 from wsrender.notices import Notice
 from wsrender.pipeline.sampling import plan_sampling
 from wsrender.robots.kinematics import Kinematics
