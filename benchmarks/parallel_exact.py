@@ -12,7 +12,7 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 import numpy as np
 from pydantic import TypeAdapter
 
-from wsrender.design.exact_inscribed import largest_ball, largest_cube
+from wsrender.design.inscribed import largest_ball, largest_cube
 from wsrender.documents.mechanism import MechanismSpec
 from wsrender.mechanisms.ball_region import ball_region
 from wsrender.mechanisms.exact import ExactWorkspace, exact_volumes

@@ -2,8 +2,14 @@ import numpy as np
 import pytest
 
 from tests.mechanisms.ball_regions import moved, random_region, region, six_pus
-from wsrender.design.exact_inscribed import largest_ball, largest_cube
-from wsrender.design.inscribed import CUBE_ERROR, SPHERE_ERROR, inscribed_cube_edge, inscribed_sphere_radius
+from wsrender.design.inscribed import (
+    CUBE_ERROR,
+    SPHERE_ERROR,
+    inscribed_cube_edge,
+    inscribed_sphere_radius,
+    largest_ball,
+    largest_cube,
+)
 from wsrender.documents.robot import Transform
 from wsrender.volume.volume_data import VolumeData
 

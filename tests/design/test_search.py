@@ -1,8 +1,7 @@
 import numpy as np
 import pytest
 
-from wsrender.design.evaluation_file import EvaluationFile
-from wsrender.design.evaluations import Evaluations
+from wsrender.design.evaluations import EvaluationFile, Evaluations
 from wsrender.design.search import Space, evolve, front, grid, pareto, refine
 from wsrender.errors import InputError
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from wsrender.errors import InputError, ResourceError
-from wsrender.multi.body_elements import body_elements
+from wsrender.multi import body_elements
 
 LENS = 5 * np.pi / 12  # two unit balls at x = ±.5
 

@@ -5,7 +5,7 @@ import pytest
 
 import wsrender as ws
 from tests.multi.test_body_elements import LENS, ball
-from wsrender.multi.body_elements import body_elements
+from wsrender.multi import body_elements
 from wsrender.run import finish, plan, run_shard
 from wsrender.run.partial_files import load_partial, save_partial
 

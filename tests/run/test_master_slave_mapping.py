@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import wsrender as ws
-from wsrender.mapping.voxel_set import VoxelSet
+from wsrender.mapping import VoxelSet
 from wsrender.results.result import Result
 from wsrender.run import finish, plan, run_shard
 from wsrender.run.partial_files import load_partial, save_partial

@@ -8,7 +8,7 @@ import numpy as np
 
 from wsrender.geometry.alpha_shape import AlphaShape
 from wsrender.indices.index_catalogue import DYNAMIC, KINEMATIC
-from wsrender.multi.shared_volume import reached_by
+from wsrender.multi import reached_by
 from wsrender.reproduce.row import Row
 from wsrender.robots import library
 from wsrender.run import execute

@@ -16,7 +16,7 @@ from wsrender.analyses.refined import Progress, refined_together, volume_entry
 from wsrender.analyses.sampled_positions import sampled_positions
 from wsrender.documents.point_sets import PointSet
 from wsrender.documents.sampling import Random
-from wsrender.multi.body_elements import body_elements
+from wsrender.multi import body_elements
 from wsrender.reach import Event
 from wsrender.robot import Robot
 from wsrender.volume.table import Table

@@ -16,8 +16,7 @@ from wsrender.analyses.design_optimization.job import (
     ParetoSearch,
 )
 from wsrender.analyses.headline import headline, no_headline
-from wsrender.design.exact_inscribed import largest_ball, largest_cube
-from wsrender.design.inscribed import CUBE_ERROR, SPHERE_ERROR
+from wsrender.design.inscribed import CUBE_ERROR, SPHERE_ERROR, largest_ball, largest_cube
 from wsrender.design.search import front
 from wsrender.mechanisms.ball_region import surface_table
 from wsrender.mechanisms.exact import ExactWorkspace

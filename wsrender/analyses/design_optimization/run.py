@@ -27,8 +27,7 @@ from wsrender.analyses.design_optimization.values import FAULTS, Evaluator
 from wsrender.analyses.execution import Execution
 from wsrender.analyses.jobs import parse_job
 from wsrender.analyses.partial_result import PartialResult
-from wsrender.design.evaluation_file import EvaluationFile
-from wsrender.design.evaluations import Evaluations, feasible, scores
+from wsrender.design.evaluations import EvaluationFile, Evaluations, feasible, scores
 from wsrender.design.search import Space, evolve, grid, pareto, refine
 from wsrender.documents.json_pointer import changed
 from wsrender.documents.robot import Transform

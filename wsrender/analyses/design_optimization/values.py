@@ -16,9 +16,8 @@ from wsrender.analyses.design_optimization.job import (
 )
 from wsrender.analyses.execution import Execution
 from wsrender.analyses.jobs import parse_job
-from wsrender.design.exact_inscribed import largest_ball, largest_cube
 from wsrender.design.exact_volume import volume_gradient, volumes_of
-from wsrender.design.inscribed import inscribed_cube_edge, inscribed_sphere_radius
+from wsrender.design.inscribed import inscribed_cube_edge, inscribed_sphere_radius, largest_ball, largest_cube
 from wsrender.documents.json_pointer import found_at
 from wsrender.errors import InputError, NotConvergedError, NumericalError, ResourceError, WsrenderError
 from wsrender.mechanisms.ball_region import BallRegion

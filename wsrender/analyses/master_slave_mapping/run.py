@@ -25,9 +25,7 @@ from wsrender.documents.point_sets import PointSet
 from wsrender.errors import InputError, ResourceError
 from wsrender.geometry.alpha_shape import AlphaShape
 from wsrender.geometry.surfaces import surface_entry
-from wsrender.mapping.linear_mapping import LinearMapping, MeasuredSet
-from wsrender.mapping.scale_search import best_mapping, largest_factor, scale_curve
-from wsrender.mapping.voxel_set import VoxelSet
+from wsrender.mapping import LinearMapping, MeasuredSet, VoxelSet, best_mapping, largest_factor, scale_curve
 from wsrender.mechanisms.hybrid import workspace_points
 from wsrender.notices import Notice
 from wsrender.pipeline.sampling import plan_sampling

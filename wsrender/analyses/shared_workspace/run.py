@@ -20,14 +20,7 @@ from wsrender.analyses.several_robots import SeveralPlans, SeveralSettled, plan_
 from wsrender.analyses.shared_workspace.job import SharedWorkspaceJob
 from wsrender.analyses.volume_notices import occupied_differs, tolerance_not_met
 from wsrender.documents.placement_scan import PlacementScan
-from wsrender.multi.shared_volume import (
-    NUMBER,
-    PRODUCT,
-    reached_by,
-    scanned_volumes,
-    shared_volume,
-    volume_by_number,
-)
+from wsrender.multi import NUMBER, PRODUCT, reached_by, scanned_volumes, shared_volume, volume_by_number
 from wsrender.notices import Notice
 from wsrender.reach import Event
 from wsrender.volume.lattice import block_of_all, check_voxels

@@ -1,14 +1,20 @@
-"""The largest mapping of a slave's points that stays inside the master's workspace."""
+"""Mapping of a slave robot's workspace into that of its master: slave' = S R slave + offset ([WSR] III.D).
+
+The largest one that stays inside is searched for.
+"""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
 from scipy.ndimage import distance_transform_edt, map_coordinates
 from scipy.optimize import differential_evolution
 
-from wsrender.mapping.linear_mapping import LinearMapping, MeasuredSet
+from wsrender.errors import ResourceError
+from wsrender.volume.lattice import LatticeBlock, block_around, check_voxels
 
+MOST_VOXELS = 2**30  # one byte each
 BISECTIONS = 30
 TOUCH = 1e-7  # of a length; points nearer to a boundary lie on either side by rounding
 SEARCH_POINTS = 600  # of the slave, in the search over several numbers; the result is checked on all
@@ -16,6 +22,85 @@ GROWTH, SMALLEST_STEP = 3e-4, 2e-4  # of the scales that makes a move of the off
 WAYS = np.array([way for way in np.ndindex(3, 3, 3) if way != (1, 1, 1)]) - 1.0  # of a move: along edges and diagonals
 FIELD_CELLS = 48  # along the mean edge of the field of distances
 INWARD, OUTWARD, LAST_STEPS = 0.5, 1.2, 71  # factors on the search's result among which the exact test looks
+
+
+class MeasuredSet(Protocol):
+    """A workspace that knows its volume and what lies in it: an alpha shape or a voxel set."""
+
+    @property
+    def volume_m3(self) -> float:
+        """Volume."""
+        ...
+
+    def contains(self, points: np.ndarray) -> np.ndarray:
+        """Whether each point (N, 3) [m] lies in it, (N,) bool."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class LinearMapping:
+    """Scales along the master's axes (3,), rotation (3, 3), offset (3,) [m]."""
+
+    scale: np.ndarray
+    rotation: np.ndarray
+    offset: np.ndarray
+
+    def apply(self, points: np.ndarray) -> np.ndarray:
+        """Points (N, 3) of the slave in the master's space [m]."""
+        return (points @ self.rotation.T) * self.scale + self.offset
+
+    @property
+    def volume_factor(self) -> float:
+        """Volume of what is mapped, relative to what it was."""
+        return float(np.abs(np.prod(self.scale)))
+
+    def scaled(self, factor: float | np.ndarray, about: np.ndarray | None = None) -> "LinearMapping":
+        """The same mapping with all scales times a factor, or each times its own (3,).
+
+        The offset stays, or with ``about`` (3,), a point of the slave, the place to which that is mapped.
+        """
+        scale = self.scale * factor
+        moved = 0.0 if about is None else (self.scale - scale) * (self.rotation @ about)
+        return replace(self, scale=scale, offset=self.offset + moved)
+
+    def succeeds(self, master: MeasuredSet, points: np.ndarray) -> bool:
+        """Whether every slave point (N, 3) lies in the master's space."""
+        return bool(master.contains(self.apply(points)).all())
+
+
+@dataclass(frozen=True, eq=False)
+class VoxelSet:
+    """Voxels of the world lattice that hold a point; ``occupied`` has the shape of ``block``."""
+
+    block: LatticeBlock
+    occupied: np.ndarray
+
+    @classmethod
+    def of(cls, points: np.ndarray, voxel_size_m: float) -> "VoxelSet":
+        """The voxels of points (N, 3) [m]; ResourceError where their box has too many."""
+        block = block_around(points.min(axis=0), points.max(axis=0), voxel_size_m)
+        if block.size > MOST_VOXELS:
+            raise ResourceError("voxel_size_m", f"{voxel_size_m} makes {block.size:.3g} voxels; 2^30 are allowed")
+        check_voxels(block, 1)
+        occupied = np.zeros(block.shape, bool)
+        occupied[tuple(_cells(points, block).T)] = True
+        return cls(block, occupied)
+
+    def contains(self, points: np.ndarray) -> np.ndarray:
+        """Whether the voxel of each point (N, 3) [m] is in the set, (N,) bool."""
+        cells = _cells(points, self.block)
+        inside = ((cells >= 0) & (cells < self.block.shape)).all(axis=1)
+        cells[~inside] = 0
+        return inside & self.occupied[tuple(cells.T)]
+
+    @property
+    def volume_m3(self) -> float:
+        """Volume of the voxels."""
+        return int(np.count_nonzero(self.occupied)) * self.block.voxel_size_m**3
+
+
+def _cells(points: np.ndarray, block: LatticeBlock) -> np.ndarray:
+    return np.floor(points / block.voxel_size_m).astype(np.int64) - np.array(block.first_voxel)
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,1 +1,0 @@
-"""Mapping of a slave robot's workspace into that of its master ([WSR] III.D)."""

@@ -1,1 +1,0 @@
-"""Several robots in one space."""
