@@ -7,8 +7,8 @@ import numpy as np
 from wsrender.engine import Partial, SweepPlan
 from wsrender.robots.chain import Chain
 from wsrender.robots.dh import structural_length
-from wsrender.volume.neighbours import inner_and_outer_counts
 from wsrender.volume.volume_data import VolumeData
+from wsrender.volume.voxels import inner_and_outer_counts
 
 
 def joint_means(plan: SweepPlan, partial: Partial) -> np.ndarray:

@@ -11,8 +11,7 @@ import numpy as np
 
 from wsrender.errors import InputError, ResourceError
 from wsrender.volume.lattice import LatticeBlock, block_of_all
-from wsrender.volume.registration import registered
-from wsrender.volume.volume_data import VolumeData
+from wsrender.volume.volume_data import VolumeData, registered
 from wsrender.volume.voxels import Voxels
 
 NUMBER, PRODUCT = "number", "product"

@@ -11,8 +11,8 @@ from tests.engine.test_indices_standard import robot_and_references, task_matrix
 from tests.reference import local_indices
 from wsrender.errors import InputError, NumericalError
 from wsrender.indices import math
-from wsrender.indices.dimensions import task_matrix as task_matrix_units
 from wsrender.indices.index_catalogue import find, is_dynamic, resolve, unit
+from wsrender.indices.units import task_matrix as task_matrix_units
 
 USER_INDICES = {
     "of_sqrt": lambda s, m, n: math.sqrt(s[0] + s[-1]),

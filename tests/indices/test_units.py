@@ -15,9 +15,8 @@ from tests.reference import local_indices, mujoco_kinematics
 from tests.run.simple_robots import PLANAR, planar_arm
 from wsrender.analyses.parallel_workspace.job import ParallelWorkspaceJob
 from wsrender.engine import units_of
-from wsrender.indices.dimensions import task_matrix
 from wsrender.indices.index_catalogue import find, unit
-from wsrender.indices.units import pretty_unit
+from wsrender.indices.units import pretty_unit, task_matrix
 from wsrender.mechanisms.hybrid import variants
 from wsrender.robot.indices import evaluation_of
 

@@ -6,8 +6,7 @@ import pytest
 from tests.results.export.sample_data import random_volume
 from wsrender.errors import InputError
 from wsrender.multi import reached_by, shared_volume, volume_by_number
-from wsrender.volume.registration import registered
-from wsrender.volume.volume_data import VolumeData
+from wsrender.volume.volume_data import VolumeData, registered
 
 
 def scattered(seed, first, shape):

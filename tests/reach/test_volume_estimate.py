@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from wsrender.reach.volume_estimate import Event, _Estimation, _Stratum, estimate_volumes, wilson
-from wsrender.volume.neighbours import inner_and_outer
+from wsrender.volume.voxels import inner_and_outer
 
 EDGE, HALF = 0.1, 1.8
 IN_ONE = {"in": Event(1, 1)}

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from tests.results.export.sample_data import random_volume
-from wsrender.volume.coarser import coarser
+from wsrender.volume.volume_data import coarser
 
 
 @pytest.mark.parametrize("factor", [1, 2, 3, 5])

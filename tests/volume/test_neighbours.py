@@ -1,8 +1,7 @@
 import numpy as np
 import pytest
 
-from wsrender.volume.neighbours import LAYERS, inner_and_outer, inner_and_outer_counts, neighbours_and_itself
-from wsrender.volume.voxels import Voxels
+from wsrender.volume.voxels import LAYERS, Voxels, inner_and_outer, inner_and_outer_counts, neighbours_and_itself
 
 
 @pytest.mark.parametrize("layers", [0, 1, 2, LAYERS - 2, LAYERS - 1, LAYERS, 2 * LAYERS + 3])

@@ -5,8 +5,7 @@ import pytest
 
 from tests.results.export.sample_data import assert_same_volume, random_volume
 from wsrender.volume import volume_data
-from wsrender.volume.registration import registered
-from wsrender.volume.volume_data import VolumeData
+from wsrender.volume.volume_data import VolumeData, registered
 from wsrender.volume.voxels import Voxels
 
 

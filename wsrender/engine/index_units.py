@@ -3,8 +3,8 @@
 import numpy as np
 
 from wsrender.engine.evaluation import Evaluation
-from wsrender.indices.dimensions import task_matrix
 from wsrender.indices.index_catalogue import is_dynamic, unit
+from wsrender.indices.units import task_matrix
 from wsrender.robots.kinematics import Kinematics
 from wsrender.tolerances import FLAT
 

@@ -12,10 +12,8 @@ from wsrender.documents.problems import path_text
 from wsrender.errors import InputError, MissingInertiaError
 from wsrender.extensions import left_out, load
 from wsrender.indices import functions as f
-from wsrender.indices.dimensions import TaskMatrix
-from wsrender.indices.entry import DYNAMIC_PREFIX, Bound, Index, checked
-from wsrender.indices.option import Option, Value, values
-from wsrender.indices.units import UnitRule, unit_text
+from wsrender.indices.entry import DYNAMIC_PREFIX, Bound, Index, Option, Value, checked, values
+from wsrender.indices.units import TaskMatrix, UnitRule, unit_text
 
 CONVENTIONS = ("standard", "table_1", "wsrender_code")
 EXTENSIONS = "wsrender.indices"  # entry points of other packages: each an Index, or a list of them

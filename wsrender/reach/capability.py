@@ -17,7 +17,7 @@ from wsrender.reach.occupied_cells import occupied_cells
 from wsrender.robots.kinematics import Kinematics
 from wsrender.robots.reachable_box import reachable_box
 from wsrender.volume.lattice import LatticeBlock, block_around, check_voxels
-from wsrender.volume.neighbours import inner_and_outer
+from wsrender.volume.voxels import inner_and_outer
 
 SAMPLES_PER_CELL, LEAST_SAMPLES = 16, 1 << 20
 SEARCHED_BYTES = 5  # of a voxel: whether it is occupied, inner, outer, and copies of them

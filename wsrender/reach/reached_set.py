@@ -20,7 +20,7 @@ from wsrender.reach.volume_estimate import QUANTILE, wilson
 from wsrender.robots.kinematics import Kinematics
 from wsrender.robots.reachable_box import reachable_box
 from wsrender.volume.lattice import LatticeBlock
-from wsrender.volume.neighbours import neighbours_and_itself
+from wsrender.volume.voxels import neighbours_and_itself
 
 POSITION = 1e-8  # of the reach
 SAMPLES_PER_CELL = 4

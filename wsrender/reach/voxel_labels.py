@@ -11,9 +11,8 @@ from wsrender.reach.inverse_solver import InverseSolver
 from wsrender.reach.reached_set import tolerance_m
 from wsrender.reach.targets import INCONCLUSIVE, JOINT_LIMITS, OUT_OF_REACH, TOO_CLOSE, reasons_of
 from wsrender.robots.kinematics import Kinematics
-from wsrender.volume.neighbours import inner_and_outer
 from wsrender.volume.volume_data import VolumeData
-from wsrender.volume.voxels import Voxels
+from wsrender.volume.voxels import Voxels, inner_and_outer
 
 REASONS = ("", JOINT_LIMITS, OUT_OF_REACH, TOO_CLOSE, INCONCLUSIVE)  # by the code in the volume
 UNITS = {

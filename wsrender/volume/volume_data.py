@@ -1,6 +1,6 @@
 """Volume data: statistics of the local indices per voxel of the world lattice ([WSR] II.C.2)."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 
 import numpy as np
@@ -139,3 +139,55 @@ class _Arrays(Mapping[str, np.ndarray]):
 
     def __len__(self) -> int:
         return len(self._values)
+
+
+def coarser(volume: VolumeData, factor: int) -> VolumeData:
+    """The volume on the lattice whose voxels are ``factor`` times as long; it too is anchored at the origin."""
+    first = np.array(volume.first_voxel)
+    start = first // factor
+    x, y, z = start.tolist()
+    nx, ny, nz = ((first + volume.shape - 1) // factor - start + 1).tolist()
+    fine = volume.voxels.among(volume.voxels.count > 0)
+    at = (fine.at + first[:, None]) // factor - start[:, None]
+    cells, part_of = np.unique(np.ravel_multi_index(tuple(at), (nx, ny, nz)), return_inverse=True)
+    order = np.argsort(part_of, kind="stable")
+    starts = np.searchsorted(part_of[order], np.arange(len(cells)))
+
+    def reduced(reduce: np.ufunc, values: np.ndarray) -> np.ndarray:
+        return reduce.reduceat(values[order], starts) if len(starts) else values[:0]
+
+    count = reduced(np.add, fine.count)
+
+    def merged(statistic: str, values: np.ndarray) -> np.ndarray:
+        if statistic == "mean":
+            return reduced(np.add, values * fine.count) / count
+        return reduced(np.fmax if statistic == "maximum" else np.fmin, values)
+
+    statistics = {
+        statistic: {name: merged(statistic, values) for name, values in by_index.items()}
+        for statistic, by_index in fine.statistics.items()
+    }
+    voxels = Voxels((nx, ny, nz), cells.astype(np.int64), count, statistics)
+    return VolumeData.of_voxels(volume.voxel_size_m * factor, (x, y, z), voxels, volume.units)
+
+
+def registered(volumes: Sequence[VolumeData]) -> list[VolumeData]:
+    """The same volumes, each on the smallest block that holds all of them.
+
+    Raises InputError for volumes of different voxel sizes.
+    """
+    if len({volume.voxel_size_m for volume in volumes}) > 1:
+        sizes = ", ".join(f"{volume.voxel_size_m:g}" for volume in volumes)
+        raise InputError("voxel_size_m", f"must be the same for all volumes, not {sizes}")
+    first = np.min([volume.first_voxel for volume in volumes], axis=0)
+    end = np.max([np.add(volume.first_voxel, volume.shape) for volume in volumes], axis=0)
+    (x, y, z), (nx, ny, nz) = first.tolist(), (end - first).tolist()
+    return [
+        VolumeData.of_voxels(
+            volume.voxel_size_m,
+            (x, y, z),
+            volume.voxels.moved((nx, ny, nz), np.subtract(volume.first_voxel, first)),
+            volume.units,
+        )
+        for volume in volumes
+    ]

@@ -20,7 +20,7 @@ from wsrender.reach import Event, estimate_volumes
 from wsrender.reach.evidence import REACHABLE, UNDECIDED, UNREACHABLE
 from wsrender.reach.volume_estimate import VolumeEstimates
 from wsrender.volume.lattice import LatticeBlock, block_around
-from wsrender.volume.neighbours import inner_and_outer
+from wsrender.volume.voxels import inner_and_outer
 
 if TYPE_CHECKING:
     from wsrender.analyses.parallel_workspace.run import ParallelWorkspaceAnalysis

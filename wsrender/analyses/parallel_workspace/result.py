@@ -12,8 +12,8 @@ from wsrender.analyses.partial_result import PartialResult
 from wsrender.analyses.provenance import robot_entry
 from wsrender.documents.options import TASK_ROWS
 from wsrender.global_indices import voxel_volumes, workspace_mean
-from wsrender.indices.dimensions import task_matrix
 from wsrender.indices.index_catalogue import unit
+from wsrender.indices.units import task_matrix
 from wsrender.mechanisms.hybrid import Variant, from_middle, middle
 from wsrender.mechanisms.inverse_kinematics import inverse_kinematics
 from wsrender.mechanisms.jacobians import DETERMINANTS

@@ -8,8 +8,7 @@ from matplotlib.figure import Figure
 
 from wsrender.results.drawing.planes import SPARSE, draw_plane, new_planes, plane_normals, shared_scale, voxel_field
 from wsrender.results.drawing.style import Heading, paper_style
-from wsrender.volume.registration import registered
-from wsrender.volume.volume_data import VolumeData
+from wsrender.volume.volume_data import VolumeData, registered
 
 
 @paper_style()

@@ -10,9 +10,8 @@ from wsrender.errors import InputError
 from wsrender.results.drawing.faces import Faces
 from wsrender.results.render.scene import DrawnSurface
 from wsrender.robot import as_robot, link_shapes
-from wsrender.volume.coarser import coarser
 from wsrender.volume.distribution_map import DistributionMap
-from wsrender.volume.volume_data import VolumeData
+from wsrender.volume.volume_data import VolumeData, coarser
 
 DENSE = 8  # samples per occupied voxel from which chance leaves hardly any gap
 FEWEST_VOXELS = 24  # along the longest side
