@@ -27,11 +27,11 @@ from wsrender.documents.constraints import Constraints
 from wsrender.documents.document import Document
 from wsrender.documents.kinetostatics import ForceFieldChoice
 from wsrender.documents.mechanism import Delta, LegsMechanism, Master4DOF, SixPUS, StewartGough
+from wsrender.documents.options import AlphaShapeSurface, IsoSurface
 from wsrender.documents.orientations import EulerRanges, TiltRanges
-from wsrender.documents.placement_scan import PlacementScan
 from wsrender.documents.robot import Transform
 from wsrender.documents.sampling import Random, Sobol
-from wsrender.documents.surfaces import AlphaShapeSurface, IsoSurface
+from wsrender.documents.several_robots import PlacementScan
 from wsrender.run.from_python import runs
 
 if TYPE_CHECKING:

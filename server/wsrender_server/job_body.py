@@ -12,9 +12,9 @@ from fastapi import Request
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, StringConstraints, ValidationError
 
 from wsrender.analyses.jobs import job_schema
-from wsrender.documents.json_text import read_json
 from wsrender.documents.problems import MOST_PROBLEMS, listed, path_text, worded
 from wsrender.documents.quantities import integer, real
+from wsrender.documents.reading import read_json
 from wsrender.errors import DocumentError, InputError
 from wsrender.indices import catalogue
 from wsrender.indices.index_catalogue import names_of

@@ -6,8 +6,8 @@ import pytest
 
 from wsrender.analyses.jobs import parse_job
 from wsrender.analyses.registry import job_classes
-from wsrender.documents.json_text import LARGEST_DOCUMENT
 from wsrender.documents.quantities import quoted
+from wsrender.documents.reading import LARGEST_DOCUMENT
 from wsrender.errors import DocumentError
 
 NAN, INF = float("nan"), float("inf")

@@ -6,7 +6,7 @@ import pytest
 import wsrender as ws
 from tests.geometry.solids import BALL, SHELL, TORUS, in_ball, in_shell, in_torus, uniform_points, voxels_of
 from tests.run.simple_robots import PLANAR, gantry, planar_arm
-from wsrender.documents.surfaces import AlphaShapeSurface
+from wsrender.documents.options import AlphaShapeSurface
 from wsrender.geometry.surfaces import occupied_surface, surfaces
 from wsrender.results.result import Result
 

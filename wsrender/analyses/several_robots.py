@@ -11,7 +11,7 @@ from wsrender.analyses.cost import DOCUMENT_BYTES, Cost, in_turn, pictures_cost,
 from wsrender.analyses.execution import Execution
 from wsrender.analyses.registry import job_classes, planned
 from wsrender.documents.arm import dotted
-from wsrender.documents.index_choices import IndexChoices
+from wsrender.documents.options import IndexChoices
 from wsrender.documents.several_robots import PlacedRobot
 from wsrender.errors import InputError
 from wsrender.results.result import Result

@@ -16,7 +16,7 @@ def job_document(job: str) -> dict[str, Any]:
     """
     path = Path(job)
     if path.suffix == ".json":
-        from wsrender.documents.json_text import read_json
+        from wsrender.documents.reading import read_json
 
         document = read_json(_read(path))
         if not isinstance(document, dict):

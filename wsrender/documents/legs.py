@@ -1,4 +1,4 @@
-"""Legs of a parallel mechanism: what joins base and platform, and how far it moves.
+"""Legs of a parallel mechanism: what joins base and platform, and how far it moves; serial joints before or after it.
 
 Legs of the types UPS, PUS, RUS and delta are solved in closed form; "serial" is any chain of hinges and slides, solved
 numerically. Base points and axes are in the mechanism's base frame, platform points in the platform's. U: universal,
@@ -14,10 +14,11 @@ from pydantic import BeforeValidator, Field
 from wsrender.documents.arm import Arm
 from wsrender.documents.document import Document
 from wsrender.documents.problems import tagged
-from wsrender.documents.quantities import Name, quoted, real, sequence
+from wsrender.documents.quantities import Name, integer, quoted, real, sequence
 from wsrender.documents.robot import LARGEST, Transform, Vector
 
 SMALLEST_AXIS = 1e-9
+MOST_JOINTS = 3  # before, and after
 
 
 def _interval(value: Any) -> tuple[float, float]:
@@ -179,3 +180,45 @@ def _leg(value: Any) -> Any:
 
 ClosedFormLeg = UPSLeg | PUSLeg | RUSLeg | DeltaLeg
 Leg = Annotated[ClosedFormLeg | SerialLeg, BeforeValidator(_leg)]
+
+
+class SerialJoint(Document):
+    """A joint in series with the parallel mechanism.
+
+    Voxels are tested at so many levels of its range; refined volumes search all its values.
+    """
+
+    type: Literal["revolute", "prismatic"] = "revolute"
+    """Kind of joint."""
+    position_m: Vector = (0.0, 0.0, 0.0)
+    """A point of its axis, in the frame before it [m]."""
+    axis: Axis = (0.0, 0.0, 1.0)
+    """Direction of its axis in the frame before it; any length."""
+    limits_deg: Interval | None = None
+    """[lower, upper] angle of a revolute joint [°], at most a full turn apart."""
+    limits_m: Interval | None = None
+    """[lower, upper] position of a prismatic joint along its axis [m]."""
+    levels: Annotated[int, Field(ge=2, le=1000), BeforeValidator(integer)] = 25
+    """Values from the lower to the upper limit, both included, at which voxels are tested."""
+
+    def conflicts(self) -> Iterator[tuple[str, str]]:
+        """(field, message) of every pair of fields that do not go together."""
+        wanted, other = ("limits_deg", "limits_m") if self.type == "revolute" else ("limits_m", "limits_deg")
+        if getattr(self, wanted) is None:
+            yield wanted, f"must be given for a {self.type} joint"
+        if getattr(self, other) is not None:
+            yield other, f'must be null for a {self.type} joint: use "{wanted}"'
+        if self.limits_deg is not None and self.limits_deg[1] - self.limits_deg[0] > 360:
+            yield "limits_deg", "must not span more than 360°"
+
+    @property
+    def limits(self) -> tuple[float, float]:
+        """Lower and upper limit [rad or m]."""
+        if self.type == "revolute":
+            assert self.limits_deg is not None
+            return math.radians(self.limits_deg[0]), math.radians(self.limits_deg[1])
+        assert self.limits_m is not None
+        return self.limits_m
+
+
+SerialJoints = Annotated[tuple[SerialJoint, ...], Field(max_length=MOST_JOINTS)]

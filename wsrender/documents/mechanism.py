@@ -8,12 +8,14 @@ from pydantic import BeforeValidator, Field
 from wsrender.documents.arm import Arm, ArmPath
 from wsrender.documents.document import Document
 from wsrender.documents.environment import Bounds
-from wsrender.documents.legs import Interval, Leg, Lengths, Link, SerialLeg
+from wsrender.documents.legs import Interval, Leg, Lengths, Link, SerialJoint, SerialJoints, SerialLeg
 from wsrender.documents.problems import shown
 from wsrender.documents.quantities import Name, PositiveNumber, quoted, real, sequence
 from wsrender.documents.robot import Transform, Vector
-from wsrender.documents.serial_joints import SerialJoint, SerialJoints
 
+WORKING_MODES = ("++", "+-", "-+", "--")
+"""Signs of sin(θ3 − θ1) and sin(θ4 − θ2): the sides to which the left and the right elbow bend."""
+LEAST_RANGE = 1e-3  # [rad] of a base joint: with less the workspace is a line
 MOST_LEGS = 12
 
 

@@ -1,13 +1,14 @@
-"""The choices of a job document: task rows, indices, statistics, penalisation, device."""
+"""The choices of a job document: task rows, indices, statistics, penalisation, surfaces, device."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from numbers import Integral
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field, WithJsonSchema
+from pydantic import BeforeValidator, Field, StrictBool, WithJsonSchema
 
-from wsrender.documents.quantities import Name, Number, distinct, integer, quoted, real, sequence
+from wsrender.documents.document import Document
+from wsrender.documents.quantities import Name, Number, PositiveNumber, distinct, integer, quoted, real, sequence
 
 TASK_ROWS = ("x", "y", "z", "rx", "ry", "rz")
 NAMED_TASKS = {"linear": TASK_ROWS[:3], "angular": TASK_ROWS[3:], "full": TASK_ROWS}
@@ -17,6 +18,10 @@ MAP_COLUMNS = ("configuration", "orientation")
 DEFAULT_PENALTY = 10.0  # K of [WSR] eq. 3 when the penalisation is on
 SMALLEST_PENALTY, LARGEST_PENALTY = 1e-3, 1e6  # beyond them float32 cannot tell the penalisation from a constant
 _DEVICE = re.compile(r"auto|cpu|cuda(:\d{1,3})?")
+_ALLOWED = (
+    'must be a list of "marching_cubes", "convex_hull", {"alpha_shape": radius in metres} and '
+    '{"iso_surface": index, "fraction": of its maximum}'
+)
 
 
 def _task(value: Any) -> str | tuple[str, ...]:
@@ -144,3 +149,87 @@ Device = Annotated[str, BeforeValidator(_device), Field(json_schema_extra={"patt
 Configurations = Annotated[
     tuple[tuple[Number, ...], ...], Field(min_length=1), BeforeValidator(_configurations)
 ]
+
+
+class IndexChoices(Document):
+    """Which local indices are evaluated, and how."""
+
+    indices: Indices = "kinematic"
+    """Local indices: "kinematic", "dynamic", "all", or a list of names."""
+    index_options: IndexOptions = Field(default={})
+    """Options of the indices that have any: {index: {option: value}}."""
+    task: Task = "linear"
+    """Rows of the Jacobian, in base axes: "linear", "angular", "full", or a list from x y z rx ry rz."""
+    characteristic_length_m: PositiveNumber = 1.0
+    """Length that divides the linear rows of a task that mixes linear and angular rows [m]."""
+    convention: Literal["standard", "table_1", "wsrender_code"] = "standard"
+    """Which definition of the indices: the standard one, Table I of the WSRender paper, or its program."""
+    joint_limit_penalty: Penalty = None
+    """K of the joint-limit penalisation [1]; null or false: off; true: 10."""
+    torque_scaling: StrictBool = False
+    """Whether dynamic indices scale every joint by its largest effort [N m or N]."""
+    inertia: Literal["kernel", "mujoco"] = "kernel"
+    """What evaluates the joint-space inertia: the kernels, or MuJoCo itself."""
+    precision: Literal["float32", "float64"] = "float32"
+    """Floating-point type of the kernels."""
+    device: Device = "auto"
+    """Where the kernels run: "auto" (a GPU if there is one), "cpu", "cuda" or "cuda:N"."""
+
+    def conflicts(self) -> Iterator[tuple[str, str]]:
+        """(field, message) of every pair of fields that do not go together."""
+        if self.convention == "wsrender_code":
+            if self.task not in ("linear", "full"):
+                yield "task", 'must be left at "linear": the convention "wsrender_code" chooses its own rows'
+            if self.precision == "float32":
+                yield "precision", 'must be "float64" with the convention "wsrender_code", not "float32"'
+            if self.torque_scaling:
+                yield "torque_scaling", 'must be false with the convention "wsrender_code", which has none'
+        elif self.torque_scaling and self.indices == "kinematic":
+            yield "torque_scaling", "must be false with kinematic indices: it scales dynamic ones"
+
+
+def _fraction(value: Any) -> float:
+    number = real(value)
+    if not 0 < number <= 1:
+        raise ValueError("must be above 0, and at most 1")
+    return number
+
+
+class AlphaShapeSurface(Document):
+    """Boundary of the Delaunay tetrahedra of the sampled positions whose circumspheres are small enough."""
+
+    alpha_shape: PositiveNumber
+    """Largest radius of the circumspheres, α [m]."""
+
+
+class IsoSurface(Document):
+    """Surface of the voxels in which an index comes close to its maximum."""
+
+    iso_surface: Name
+    """The index; its largest value per voxel counts (its mean where the volume holds no maximum)."""
+    fraction: Annotated[float, Field(gt=0, le=1), BeforeValidator(_fraction)] = 0.9
+    """Threshold μ, a fraction of the largest value of all voxels."""
+
+
+Surface = Literal["marching_cubes", "convex_hull"] | AlphaShapeSurface | IsoSurface
+_NAMED = ("marching_cubes", "convex_hull")
+_KINDS = {"alpha_shape": AlphaShapeSurface, "iso_surface": IsoSurface}
+
+
+def _surface(value: Any) -> Any:
+    if isinstance(value, Document) or value in _NAMED:
+        return value
+    kinds = [kind for key, kind in _KINDS.items() if isinstance(value, Mapping) and key in value]
+    if len(kinds) != 1:
+        raise ValueError(_ALLOWED)
+    return kinds[0].model_validate(value)
+
+
+def _surfaces(value: Any) -> tuple[Any, ...]:
+    surfaces = tuple(_surface(item) for item in sequence(value))
+    if any(surface in surfaces[:k] for k, surface in enumerate(surfaces)):
+        raise ValueError("must not ask for a surface twice")
+    return surfaces
+
+
+Surfaces = Annotated[tuple[Surface, ...], BeforeValidator(_surfaces)]

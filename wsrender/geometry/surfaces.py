@@ -9,7 +9,7 @@ import trimesh
 from scipy.ndimage import distance_transform_edt
 from skimage.measure import block_reduce, marching_cubes
 
-from wsrender.documents.surfaces import AlphaShapeSurface, IsoSurface, Surface
+from wsrender.documents.options import AlphaShapeSurface, IsoSurface, Surface
 from wsrender.errors import InputError
 from wsrender.geometry.alpha_shape import AlphaShape, spatial
 from wsrender.volume.volume_data import VolumeData

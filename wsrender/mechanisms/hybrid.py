@@ -10,8 +10,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from wsrender.documents.legs import SerialJoint
 from wsrender.documents.mechanism import MechanismSpec
-from wsrender.documents.serial_joints import SerialJoint
 from wsrender.engine import OrientationCounts
 from wsrender.errors import InputError
 from wsrender.mechanisms.mechanism import Mechanism, mechanism_of

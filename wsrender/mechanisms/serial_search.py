@@ -12,8 +12,8 @@ from functools import cached_property
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from wsrender.documents.legs import SerialJoint
 from wsrender.documents.mechanism import MechanismSpec
-from wsrender.documents.serial_joints import SerialJoint
 from wsrender.mechanisms.leg_bounds import proves_all, surely_unreached
 from wsrender.mechanisms.mechanism import Mechanism, mechanism_of
 from wsrender.mechanisms.membership import in_base_frame, poses_labelled

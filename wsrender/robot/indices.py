@@ -5,8 +5,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from wsrender.documents.index_choices import IndexChoices
-from wsrender.documents.options import DEFAULT_PENALTY, LARGEST_PENALTY, NAMED_TASKS, SMALLEST_PENALTY, TASK_ROWS
+from wsrender.documents.options import (
+    DEFAULT_PENALTY,
+    LARGEST_PENALTY,
+    NAMED_TASKS,
+    SMALLEST_PENALTY,
+    TASK_ROWS,
+    IndexChoices,
+)
 from wsrender.documents.quantities import argument, positive, real, sequence
 from wsrender.errors import InputError, MissingInertiaError
 from wsrender.indices.index_catalogue import CONVENTIONS, is_dynamic, option_values, resolve

@@ -16,8 +16,8 @@ from starlette.websockets import WebSocketDisconnect
 
 from wsrender import __version__
 from wsrender.documents.arm import dotted, local_paths
-from wsrender.documents.json_text import read_json
 from wsrender.documents.kinetostatic_stream import FROM_CLIENT, FROM_SERVER, LARGEST_SAMPLE, StreamOpen
+from wsrender.documents.reading import read_json
 from wsrender.errors import DocumentError, WsrenderError
 from wsrender_server.admission import LOCAL_ONLY, Admission
 from wsrender_server.auth import Principal, entitled

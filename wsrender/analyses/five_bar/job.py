@@ -6,8 +6,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field
 
-from wsrender.documents.five_bar import LEAST_RANGE, WORKING_MODES
 from wsrender.documents.format import JobDocument
+from wsrender.documents.mechanism import LEAST_RANGE, WORKING_MODES
 from wsrender.documents.quantities import PositiveNumber, VoxelSize, distinct, integer, quoted, real, sequence
 
 MOST_CELLS = 1_000_000  # of one working mode's map

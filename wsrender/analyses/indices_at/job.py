@@ -5,8 +5,7 @@ from typing import ClassVar, Literal
 from wsrender.documents.arm import Arm
 from wsrender.documents.constraints import Constrained
 from wsrender.documents.format import JobDocument
-from wsrender.documents.index_choices import IndexChoices
-from wsrender.documents.options import Configurations
+from wsrender.documents.options import Configurations, IndexChoices
 
 
 class IndicesAtJob(IndexChoices, Constrained, Arm, JobDocument):

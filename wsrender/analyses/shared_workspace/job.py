@@ -3,9 +3,8 @@
 from collections.abc import Iterator
 from typing import Literal
 
-from wsrender.documents.placement_scan import PlacementScan
 from wsrender.documents.quantities import RelativeTolerance
-from wsrender.documents.several_robots import PlacedRobot, SeveralRobotsJob
+from wsrender.documents.several_robots import PlacedRobot, PlacementScan, SeveralRobotsJob
 
 
 class SharedWorkspaceJob(SeveralRobotsJob):

@@ -19,7 +19,7 @@ from wsrender.analyses.several_result import common_entries, notices_of_each, sa
 from wsrender.analyses.several_robots import SeveralPlans, SeveralSettled, plan_several, workspace_job
 from wsrender.analyses.shared_workspace.job import SharedWorkspaceJob
 from wsrender.analyses.volume_notices import occupied_differs, tolerance_not_met
-from wsrender.documents.placement_scan import PlacementScan
+from wsrender.documents.several_robots import PlacementScan
 from wsrender.multi import NUMBER, PRODUCT, reached_by, scanned_volumes, shared_volume, volume_by_number
 from wsrender.notices import Notice
 from wsrender.reach import Event

@@ -8,11 +8,9 @@ from pydantic import StrictBool, model_validator
 from wsrender.documents.arm import Arm
 from wsrender.documents.constraints import Constrained
 from wsrender.documents.format import JobDocument
-from wsrender.documents.index_choices import IndexChoices
-from wsrender.documents.options import MapColumns, StatisticsOrNone
+from wsrender.documents.options import IndexChoices, MapColumns, StatisticsOrNone, Surfaces
 from wsrender.documents.quantities import Count, RelativeTolerance, VoxelSize
 from wsrender.documents.sampling import DEFAULT_COUNT, SEVERAL_COUNT, Sampling, Sobol
-from wsrender.documents.surfaces import Surfaces
 
 
 class WorkspaceJob(IndexChoices, Constrained, Arm, JobDocument):

@@ -26,8 +26,8 @@ from wsrender.analyses.workspace.first_pass import FirstPass
 from wsrender.analyses.workspace.job import WorkspaceJob
 from wsrender.analyses.workspace.partial import WorkspacePartial, sweep_of
 from wsrender.analyses.workspace.result import PICTURE_SAMPLES, workspace_draft
+from wsrender.documents.options import IsoSurface
 from wsrender.documents.sampling import Converge, Grid
-from wsrender.documents.surfaces import IsoSurface
 from wsrender.engine import Partial, SweepPlan, devices_of, fitted, merge, sweep
 from wsrender.engine.sums import scales_for
 from wsrender.engine.voxel_data import volume_data

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from wsrender.documents.five_bar import LEAST_RANGE, WORKING_MODES
+from wsrender.documents.mechanism import LEAST_RANGE, WORKING_MODES
 from wsrender.documents.quantities import argument, positive
 from wsrender.errors import InputError
 from wsrender.tolerances import CLOSURE
