@@ -16,7 +16,16 @@ from wsrender.run import finish, merge, plan, run_shard
 from wsrender.run.partial_files import load_partial, save_partial
 
 # Those whose samples, or what is refined beside them, are shards.
-DIVISIBLE = {"workspace", "parallel_workspace", "shared_workspace", "robot_comparison", "collaborative_volume"}
+DIVISIBLE = {
+    "workspace",
+    "reachability",
+    "capability",
+    "shared_workspace",
+    "robot_comparison",
+    "collaborative_volume",
+    "parallel_workspace",
+    "method_comparison",
+}
 
 
 @pytest.mark.parametrize("analysis", analyses())

@@ -8,6 +8,7 @@ from typing import Any, Self
 import numpy as np
 
 REFINEMENTS = "refinements"  # fact of a shard that is one
+FIRST = "first_sample"  # array of rows, of the shard that each is of
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,6 +32,18 @@ class PartialResult:
     def packed(self) -> Self:
         """Itself: it can be kept as it is."""
         return self
+
+
+def rows_of_shard(first: int, arrays: Mapping[str, np.ndarray]) -> PartialResult:
+    """Rows (N, …) of a shard that begins with the sample ``first``, as `joined_rows` joins them."""
+    number = len(next(iter(arrays.values())))
+    return PartialResult({**arrays, FIRST: np.full(number, first, np.int64)})
+
+
+def joined_rows(a: PartialResult, b: PartialResult) -> PartialResult:
+    """The rows of both, those of earlier samples first."""
+    order = np.argsort(np.concatenate([a[FIRST], b[FIRST]]), kind="stable")
+    return PartialResult({name: np.concatenate([a[name], b[name]])[order] for name in a.arrays})
 
 
 @dataclass(frozen=True, eq=False)

@@ -64,6 +64,7 @@ def capability(
     voxel_size_m: float,
     directions: np.ndarray,
     *,
+    cells: np.ndarray | None = None,
     approach_axis: str = "z",
     position_m: float = 1e-5,
     angle_rad: float = 1e-3,
@@ -78,11 +79,12 @@ def capability(
     Where its positions fill no volume, as those of an arm that moves in a plane, the reachable point nearest to a
     centre stands for the voxel, if it lies in it.
 
-    ``position_m`` and ``angle_rad``: what counts as there. ``progress``: called with the pairs decided.
+    ``cells`` (V, 3): the voxels, of which each is decided by itself; None: the `candidates`. ``position_m`` and
+    ``angle_rad``: what counts as there. ``progress``: called with the pairs decided.
     """
     execution = {"seed": seed, "precision": precision, "device": device, "threads": threads}
     accuracy = {"position_m": position_m, "angle_rad": angle_rad}
-    cells = _candidates(chain, voxel_size_m, seed, device, threads)
+    cells = candidates(chain, voxel_size_m, seed, device, threads) if cells is None else cells
     points, reached = _points(
         InverseSolver(chain, kind="position", **accuracy, **execution), cells, voxel_size_m, threads
     )
@@ -122,7 +124,7 @@ def _points(
     return nearest, in_own_voxel(nearest, cells, voxel_size_m)
 
 
-def _candidates(chain: Kinematics, voxel_size_m: float, seed: int, device: str, threads: int | None) -> np.ndarray:
+def candidates(chain: Kinematics, voxel_size_m: float, seed: int, device: str, threads: int | None) -> np.ndarray:
     """Cells (V, 3) that samples of the chain reach, and their neighbours."""
     block = searched_block(chain, voxel_size_m)
     count = max(LEAST_SAMPLES, SAMPLES_PER_CELL * block.size)

@@ -7,14 +7,16 @@ import numpy as np
 from wsrender.analyses.capability.job import CapabilityJob
 from wsrender.analyses.contract import Analysis, Draft, Settled, Tell
 from wsrender.analyses.cost import DOCUMENT_BYTES, Cost, pictures_cost, surface_bytes
+from wsrender.analyses.estimate import RATE_CPU_CORE
 from wsrender.analyses.execution import Execution
-from wsrender.analyses.partial_result import PartialResult
+from wsrender.analyses.partial_result import PartialResult, joined_rows, rows_of_shard
 from wsrender.documents.sampling import Sobol
 from wsrender.engine import sampled_positions
 from wsrender.pipeline.sampling import plan_sampling
 from wsrender.reach.capability import (
     SAMPLES_PER_CELL,
     SEARCHED_BYTES,
+    candidates,
     capability,
     fibonacci_directions,
     searched_block,
@@ -43,8 +45,12 @@ class CapabilitySettled(Settled):
 
 
 class CapabilityAnalysis(Analysis):
-    """A planned ``capability`` job: one shard of the pairs of a voxel and a direction, about."""
+    """A planned ``capability`` job: its samples are the pairs of a voxel and a direction, about.
 
+    How many there are is known once the voxels are: a shard has its share of them.
+    """
+
+    effort = RATE_CPU_CORE / RATE
     settles = CapabilitySettled
     job: CapabilityJob
     settled: CapabilitySettled
@@ -58,12 +64,13 @@ class CapabilityAnalysis(Analysis):
         block = searched_block(chain, size)
         voxels = expected_voxels(positions, size)
         check_voxels(block, PAIR_BYTES * job.directions, share=voxels / block.size)
-        return CapabilitySettled(device, target, ((0, round(voxels * job.directions)),), voxel_size_m=size)
+        pairs = round(voxels * job.directions)
+        return CapabilitySettled(device, target, ((0, pairs),), job.directions, voxel_size_m=size)
 
     @property
     def cost(self) -> Cost:
         """Of the pairs their labels, and of every voxel searched what is known of it."""
-        pairs = float(self.shards[0][1])
+        pairs = float(self.samples)
         voxels = pairs / self.job.directions
         searched = searched_block(self.robot.chain, self.settled.voxel_size_m).size
         drawn, seconds = pictures_cost("slices", "arm")
@@ -74,11 +81,15 @@ class CapabilityAnalysis(Analysis):
 
     def compute(self, shard: int, execution: Execution, tell: Tell) -> PartialResult:
         """Cells (V, 3), from which directions they are reached (V, bytes, a bit each), undecided directions (V,)."""
-        job = self.job
+        job, chain, size = self.job, self.robot.chain, self.settled.voxel_size_m
+        first, count = self.shards[shard]
+        cells = candidates(chain, size, job.seed, self.device, execution.threads)
+        share = slice(len(cells) * first // self.samples, len(cells) * (first + count) // self.samples)
         found = capability(
-            self.robot.chain,
-            self.settled.voxel_size_m,
+            chain,
+            size,
             fibonacci_directions(job.directions),
+            cells=cells[share],
             approach_axis=job.approach_axis,
             position_m=job.position_tolerance_m,
             angle_rad=job.angle_tolerance_rad,
@@ -89,7 +100,11 @@ class CapabilityAnalysis(Analysis):
             progress=tell,
         )
         bits = np.packbits(found.reached, axis=1)
-        return PartialResult({"cells": found.cells, "bits": bits, "undecided": found.undecided})
+        return rows_of_shard(first, {"cells": found.cells, "bits": bits, "undecided": found.undecided})
+
+    def merge(self, a: PartialResult, b: PartialResult) -> PartialResult:
+        """The voxels of both, in the order of their places."""
+        return joined_rows(a, b)
 
     def result(self, partial: PartialResult, execution: Execution) -> Draft:
         """Volume data, the table ``capability`` of reached voxels, the table ``directions``, and the document."""

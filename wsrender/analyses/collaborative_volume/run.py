@@ -9,9 +9,10 @@ import numpy as np
 from wsrender.analyses.collaborative_volume.job import CollaborativeVolumeJob
 from wsrender.analyses.contract import Analysis, Draft, Settled, Tell
 from wsrender.analyses.cost import DOCUMENT_BYTES, Cost, check_memory, pictures_cost, refined_seconds
+from wsrender.analyses.estimate import RATE_CPU_CORE
 from wsrender.analyses.execution import Execution
 from wsrender.analyses.headline import headline_of, no_headline
-from wsrender.analyses.partial_result import PartialResult
+from wsrender.analyses.partial_result import PartialResult, joined_rows, rows_of_shard
 from wsrender.analyses.refined import Progress, refined_together, volume_entry
 from wsrender.analyses.sampled_positions import sampled_positions
 from wsrender.documents.point_sets import PointSet
@@ -27,8 +28,9 @@ BIASED = 'the body-elemental volume is biased; "refined_volume" gives the true o
 
 
 class CollaborativeVolumeAnalysis(Analysis):
-    """A planned ``collaborative_volume`` job: one shard of all samples."""
+    """A planned ``collaborative_volume`` job: the samples of every run."""
 
+    effort = RATE_CPU_CORE / POSITIONS_PER_S
     job: CollaborativeVolumeJob
 
     def prepare(self, device: str, target: str) -> Settled:
@@ -37,7 +39,7 @@ class CollaborativeVolumeAnalysis(Analysis):
         _ = self.sources
         check_memory(POINT_BYTES * job.samples, "samples", f"{job.samples:.4g} points of each arm", "take fewer")
         check_memory(_cell_bytes(job), "refinements", f"{job.refinements} of them", "take fewer, or fewer cells")
-        return Settled(device, target, ((0, max(self._samples, 1)),))
+        return Settled(device, target, ((0, max(self._samples, 1)),), self._of_a_run or None)
 
     @cached_property
     def sources(self) -> tuple[Robot | np.ndarray, Robot | np.ndarray]:
@@ -47,9 +49,14 @@ class CollaborativeVolumeAnalysis(Analysis):
         return left_points, right.array() if isinstance(right, PointSet) else next(robots)
 
     @property
+    def _of_a_run(self) -> int:
+        """Samples of the robots in one run."""
+        return self.job.samples * len(self.robots)
+
+    @property
     def _samples(self) -> int:
         """Of all runs and robots."""
-        return self.job.samples * self.job.seeds * len(self.robots)
+        return self._of_a_run * self.job.seeds
 
     @property
     def cost(self) -> Cost:
@@ -61,9 +68,13 @@ class CollaborativeVolumeAnalysis(Analysis):
         return Cost(samples, memory, DOCUMENT_BYTES + drawn, seconds)
 
     def compute(self, shard: int, execution: Execution, tell: Tell) -> PartialResult:
-        """V₀ … V_d of every seed."""
+        """V₀ … V_d of every seed of the shard; of points alone of all."""
         job, done, rows, cells = self.job, 0, [], []
-        for seed in range(job.seed, job.seed + job.seeds):
+        first, count = self.shards[shard]
+        runs = range(job.seeds)
+        if self._of_a_run:
+            runs = range(first // self._of_a_run, (first + count) // self._of_a_run)
+        for seed in (job.seed + run for run in runs):
             points = []
             # The arms draw different configurations, or two equal arms would reach mirrored points.
             for side, source in enumerate(self.sources):
@@ -77,7 +88,11 @@ class CollaborativeVolumeAnalysis(Analysis):
             found = body_elements(left, right, job.cells, job.refinements, job.neighbours)
             rows.append(found.volumes_m3)
             cells.append([np.count_nonzero(found.collaborative), np.count_nonzero(found.boundary)])
-        return PartialResult({"volumes": np.array(rows), "cells": np.array(cells)})
+        return rows_of_shard(first, {"volumes": np.array(rows), "cells": np.array(cells)})
+
+    def merge(self, a: PartialResult, b: PartialResult) -> PartialResult:
+        """The runs of both, in the order of their seeds."""
+        return joined_rows(a, b)
 
     @property
     def refinements(self) -> int:

@@ -1,7 +1,6 @@
 """The analysis ``method_comparison``: the four methods of [SNK], their Table 4 and Fig. 10."""
 
 import time
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -13,7 +12,7 @@ from wsrender.analyses.cost import DOCUMENT_BYTES, Cost, pictures_cost
 from wsrender.analyses.execution import Execution
 from wsrender.analyses.headline import headline
 from wsrender.analyses.method_comparison.job import MethodComparisonJob
-from wsrender.analyses.partial_result import PartialResult
+from wsrender.analyses.partial_result import PartialResult, joined_rows, rows_of_shard
 from wsrender.analyses.registry import job_classes, planned
 from wsrender.documents.robot import Transform
 from wsrender.errors import InputError
@@ -38,8 +37,9 @@ class MethodComparisonSettled(Settled):
 
 
 class MethodComparisonAnalysis(Analysis):
-    """A planned ``method_comparison`` job: one shard, its samples the runs of the methods."""
+    """A planned ``method_comparison`` job: its samples are the runs of the methods."""
 
+    effort = 1e8  # seconds
     settles = MethodComparisonSettled
     job: MethodComparisonJob
     settled: MethodComparisonSettled
@@ -54,7 +54,7 @@ class MethodComparisonAnalysis(Analysis):
                 raise
             raise type(error)("voxel_sizes_m", f"{min(sizes):g} is too small: {error.message}") from None
         runs = 1 + len(GRIDS) * len(sizes) + len(self.job.ball_subdivisions)
-        return MethodComparisonSettled(device, target, ((0, runs),), sizes=sizes)
+        return MethodComparisonSettled(device, target, ((0, runs),), shard_unit=1, sizes=sizes)
 
     def _default_sizes(self) -> tuple[float, ...]:
         volume = ExactWorkspace.of(self.region).volume_m3
@@ -76,16 +76,28 @@ class MethodComparisonAnalysis(Analysis):
             * (len(self.region.inside_radii) + len(self.region.outside_radii))
         )
         drawn, seconds = pictures_cost("other")
-        return Cost(self.shards[0][1], 500 * triangles, DOCUMENT_BYTES + drawn, triangles / 2e5 + seconds)
+        return Cost(self.samples, 500 * triangles, DOCUMENT_BYTES + drawn, triangles / 2e5 + seconds)
 
     def compute(self, shard: int, execution: Execution, tell: Tell) -> PartialResult:
-        """Method, edge of its voxels or triangles, volume and seconds of every run."""
-        rows = []
-        for row in self._runs(execution):
-            rows.append(row)
+        """Method, edge of its voxels or triangles, volume and seconds of every run of the shard.
+
+        The first run of a method that has a kernel is repeated, so that no compilation is timed.
+        """
+        first, count = self.shards[shard]
+        methods, rows = [], []
+        for method, size in self._runs[first : first + count]:
+            if method not in (*methods, SOLIDS):
+                self._volume(method, size, execution)
+            started = time.perf_counter()
+            volume = self._volume(method, size, execution)
+            methods.append(method)
+            rows.append([self._edge(method, size), volume, time.perf_counter() - started])
             tell(len(rows))
-        numbers = np.array([row[1:] for row in rows], np.float64)
-        return PartialResult({"method": np.array([row[0] for row in rows]), "numbers": numbers})
+        return rows_of_shard(first, {"method": np.array(methods), "numbers": np.array(rows, np.float64)})
+
+    def merge(self, a: PartialResult, b: PartialResult) -> PartialResult:
+        """The runs of both, in their order."""
+        return joined_rows(a, b)
 
     def result(self, partial: PartialResult, execution: Execution) -> Draft:
         """The table of all runs, with errors from the exact volume; their times are in ``timing_s``."""
@@ -114,28 +126,26 @@ class MethodComparisonAnalysis(Analysis):
             tables={"methods": Table(columns, UNITS)},
         )
 
-    def _runs(self, execution: Execution) -> Iterator[tuple[str, float, float, float]]:
-        """(method, edge, volume, seconds); every first run of a kernel is repeated, so that no compilation is timed."""
-        for repeated in (False, True):
-            started = time.perf_counter()
-            exact = ExactWorkspace.of(self.region)
-            volume = exact.volume_m3 if len(exact.mesh.faces) else 0.0
-            if repeated:
-                yield EXACT, np.nan, volume, time.perf_counter() - started
-        for method in GRIDS:
-            for number, size in enumerate(self.settled.sizes):
-                if number == 0:
-                    self._counted(method, size, execution)
-                started = time.perf_counter()
-                volume = self._counted(method, size, execution)
-                yield method, size, volume, time.perf_counter() - started
+    @property
+    def _runs(self) -> list[tuple[str, float]]:
+        """Method and size of every run: edge of its voxels [m], or how often edges are halved."""
+        grids = [(method, size) for method in GRIDS for size in self.settled.sizes]
+        return [(EXACT, np.nan), *grids, *((SOLIDS, subdivisions) for subdivisions in self.job.ball_subdivisions)]
+
+    def _edge(self, method: str, size: float) -> float:
+        """Edge of a run's voxels or triangles [m]."""
         largest = float(np.max(self.region.inside_radii, initial=0.0))
-        for subdivisions in self.job.ball_subdivisions:
-            started = time.perf_counter()
-            mesh = solid_workspace(self.region, subdivisions)
-            volume = float(mesh.volume) if len(mesh.faces) else 0.0
-            edge = ICOSAHEDRON_EDGE * largest / 2**subdivisions
-            yield SOLIDS, edge, volume, time.perf_counter() - started
+        return ICOSAHEDRON_EDGE * largest / 2**size if method == SOLIDS else size
+
+    def _volume(self, method: str, size: float, execution: Execution) -> float:
+        """What a method gives [m³]."""
+        if method in GRIDS:
+            return self._counted(method, size, execution)
+        if method == SOLIDS:
+            mesh = solid_workspace(self.region, int(size))
+            return float(mesh.volume) if len(mesh.faces) else 0.0
+        exact = ExactWorkspace.of(self.region)
+        return exact.volume_m3 if len(exact.mesh.faces) else 0.0
 
     def grid_job(self, method: Any, size: float, device: str) -> Any:
         """The job of one grid method with voxels of a size [m]."""

@@ -4,8 +4,9 @@ import numpy as np
 
 from wsrender.analyses.contract import Analysis, Draft, Settled, Tell
 from wsrender.analyses.cost import DOCUMENT_BYTES, Cost, pictures_cost
+from wsrender.analyses.estimate import RATE_CPU_CORE
 from wsrender.analyses.execution import Execution
-from wsrender.analyses.partial_result import PartialResult
+from wsrender.analyses.partial_result import PartialResult, joined_rows, rows_of_shard
 from wsrender.analyses.reachability.job import ReachabilityJob
 from wsrender.reach.targets import check_tolerance, reachable
 from wsrender.volume.table import Table
@@ -16,14 +17,15 @@ DRAWN = 3  # configurations in the picture of the robot
 
 
 class ReachabilityAnalysis(Analysis):
-    """A planned ``reachability`` job: one shard."""
+    """A planned ``reachability`` job: its samples are the targets."""
 
+    effort = RATE_CPU_CORE / RATE
     job: ReachabilityJob
 
     def prepare(self, device: str, target: str) -> Settled:
         """Raises InputError for a tolerance below what is computed."""
         check_tolerance(self.robot.chain, self.job.position_tolerance_m, self.job.precision)
-        return Settled(device, target, ((0, len(self.job.points_m)),))
+        return Settled(device, target, ((0, len(self.job.points_m)),), shard_unit=1)
 
     @property
     def cost(self) -> Cost:
@@ -35,12 +37,13 @@ class ReachabilityAnalysis(Analysis):
         return Cost(count, held, DOCUMENT_BYTES + drawn + listed, count / RATE + seconds)
 
     def compute(self, shard: int, execution: Execution, tell: Tell) -> PartialResult:
-        """All targets decided: arrays of `Reachability` by name."""
-        job = self.job
+        """The shard's targets decided: arrays of `Reachability` by name."""
+        job, (first, count) = self.job, self.shards[shard]
+        own = slice(first, first + count)
         found = reachable(
             self.robot,
-            job.points_m,
-            job.quats_wxyz,
+            job.points_m[own],
+            None if job.quats_wxyz is None else job.quats_wxyz[own],
             position_tolerance_m=job.position_tolerance_m,
             angle_tolerance_rad=job.angle_tolerance_rad,
             characteristic_length_m=job.characteristic_length_m,
@@ -50,7 +53,11 @@ class ReachabilityAnalysis(Analysis):
             threads=execution.threads,
             progress=tell,
         )
-        return PartialResult(vars(found))
+        return rows_of_shard(first, vars(found))
+
+    def merge(self, a: PartialResult, b: PartialResult) -> PartialResult:
+        """The targets of both, in the order asked."""
+        return joined_rows(a, b)
 
     def result(self, partial: PartialResult, execution: Execution) -> Draft:
         """The table ``targets``, one row per target in the order asked, and how many have which label."""
