@@ -48,7 +48,7 @@ class Constraint(Protocol):
         ...
 
     def host(self, q: np.ndarray, poses: np.ndarray) -> np.ndarray:
-        """1 of configurations (N, n) [rad or m] with tip poses (N, 4, 4) in the world that violate it, else 0; (N,) int8."""
+        """1 of configurations (N, n) [rad or m] with tip poses (N, 4, 4) in the world that violate it, else 0, int8."""
         ...
 
 
