@@ -21,6 +21,7 @@ from throughput import machine, peaks, plan_of
 import wsrender as ws
 from wsrender.engine import SweepPlan, devices_of
 from wsrender.engine.sweep_plan import Accumulator
+from wsrender.pipeline.pipeline import Pipeline
 
 PRECISIONS = ("float32", "float64")
 CHUNK_CPU, CHUNK_CUDA = 1 << 20, 1 << 26  # samples of a launch; on a GPU, whose rows it holds
@@ -51,11 +52,13 @@ def cases_of(robot: ws.Robot, device: str, threads: int, peak: dict) -> list[Cas
     cases = []
     for precision in PRECISIONS:
 
-        def add(name: str, plan: SweepPlan, slower: int, flop: int | None = None, precision: str = precision) -> None:
+        def add(
+            name: str, pipeline: Pipeline, slower: int, flop: int | None = None, precision: str = precision
+        ) -> None:
             counts = (size // slower, 5 * size // slower)
             share_of_peak = flop / peak[precision, threads] if flop else None
             cases.append(
-                Case(name, precision, lambda count: _launched(plan, count, device, threads), counts, share_of_peak)
+                Case(name, precision, lambda count: _launched(pipeline, count, device, threads), counts, share_of_peak)
             )
 
         n = robot.chain.n
@@ -66,7 +69,7 @@ def cases_of(robot: ws.Robot, device: str, threads: int, peak: dict) -> list[Cas
         full = plan_of(robot, precision, device, **fields, task="full")
         sums = plan_of(robot, precision, device, **fields | {"voxel_statistics": ["maximum", "mean"]})
         without = {"block": None, "statistics": frozenset[str]()}
-        rows = {**without, "keep_rows": True}
+        rows = {**without, "kept_rows": frozenset[str]()}
         add("6 kinematic", replace(kinematic, **without), 1, six)
         add("12", replace(every, **without), 4, twelve)
         if on_gpu:
@@ -78,11 +81,12 @@ def cases_of(robot: ws.Robot, device: str, threads: int, peak: dict) -> list[Cas
     return cases
 
 
-def _launched(plan: SweepPlan, count: int, device: str, threads: int) -> float:
+def _launched(pipeline: Pipeline, count: int, device: str, threads: int) -> float:
     """Seconds of launches alone, each thread with an accumulator of its own."""
     target = devices_of(device)[0]
     workers, chunk = (1, CHUNK_CUDA) if target.is_cuda else (threads, CHUNK_CPU)
-    accumulators = [Accumulator(plan, plan.shape, plan.block, target, chunk) for _ in range(workers)]
+    plan = SweepPlan(pipeline)
+    accumulators = [Accumulator(plan, plan.shape, pipeline.block, target, chunk) for _ in range(workers)]
 
     def work(worker: int) -> None:
         for first in range(worker * chunk, count, workers * chunk):

@@ -9,12 +9,14 @@ of six indices or more, NumPy rows (N, 3) at half that rate or more.
 import argparse
 import time
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 from throughput import plan_of
 
 import wsrender as ws
-from wsrender.engine import Evaluation, SweepPlan, devices_of, sampled_positions, sweep
+from wsrender.engine import devices_of, sampled_positions, sweep
+from wsrender.pipeline.pipeline import Pipeline
 
 SAMPLES = {"cpu": 1 << 23, "cuda": 1 << 28}
 ROWS = 1 << 22  # returned to the host
@@ -25,15 +27,14 @@ def cases_of(robot: ws.Robot, precision: str, device: str, threads: int) -> dict
     devices = devices_of(device)
     count = SAMPLES["cuda" if devices[0].is_cuda else "cpu"]
     six = plan_of(robot, precision, device, sampling=ws.Sobol(count))
-    none = np.zeros(0)
-    alone = SweepPlan(Evaluation(robot.chain, (), ()), six.sampling, None, frozenset(), none, none, precision)
-    rows = SweepPlan(six.evaluation, six.sampling, None, frozenset(), six.scales, six.bounds, precision)
+    alone = replace(six.of_tip, kept_rows=None)
+    rows = Pipeline(six.evaluation, six.sampling, bounds=six.bounds, precision=precision)
     return {
         "six indices": (count, lambda: sweep(rows, 0, count, devices, threads=threads)),
         "positions": (count, lambda: sweep(alone, 0, count, devices, threads=threads)),
         "positions, NumPy rows": (
             ROWS,
-            lambda: sampled_positions(robot.chain, six.sampling, precision, device, count=ROWS, threads=threads),
+            lambda: sampled_positions(six, device, count=ROWS, threads=threads),
         ),
     }
 

@@ -22,7 +22,8 @@ from contenders import CONTENDERS, Loop
 from peak import cpu_peak, gpu_peak
 
 import wsrender as ws
-from wsrender.engine import SweepPlan, devices_of, sweep, thread_count
+from wsrender.engine import devices_of, sweep, thread_count
+from wsrender.pipeline.pipeline import Pipeline
 
 AGREEMENT = 1e-6  # relative to the largest value, between contenders at the same configurations
 FEW, FIRST_GUESS, WANTED_SECONDS = 256, 1 << 18, 1.0
@@ -86,8 +87,8 @@ def engine_cases(robot: ws.Robot, device: str, peaks: dict, with_analyze: bool =
     return cases
 
 
-def plan_of(robot: ws.Robot, precision: str, device: str, /, **fields) -> SweepPlan:
-    """The sweep plan of a job with 2^40 random samples; by default as ws.analyze: count and maximum per voxel."""
+def plan_of(robot: ws.Robot, precision: str, device: str, /, **fields) -> Pipeline:
+    """The pipeline of a job with 2^40 random samples; by default as ws.analyze: count and maximum per voxel."""
     job = {
         "analysis": "workspace",
         "robot": {"library": robot.name},
@@ -96,11 +97,11 @@ def plan_of(robot: ws.Robot, precision: str, device: str, /, **fields) -> SweepP
         "precision": precision,
         "device": device,
     }
-    return ws.run.plan({**job, **fields}, robot).sweep  # type: ignore[attr-defined]
+    return ws.run.plan({**job, **fields}, robot).pipeline  # type: ignore[attr-defined]
 
 
-def _sweep(plan: SweepPlan, count: int, device: str, threads: int) -> None:
-    sweep(plan, 0, count, devices_of(device), threads=threads)
+def _sweep(pipeline: Pipeline, count: int, device: str, threads: int) -> None:
+    sweep(pipeline, 0, count, devices_of(device), threads=threads)
 
 
 def _analyze(robot: ws.Robot, count: int, precision: str, dynamic: bool, device: str, threads: int) -> None:

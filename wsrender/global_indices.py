@@ -4,16 +4,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from wsrender.engine import Partial, SweepPlan
+from wsrender.engine import Partial
+from wsrender.engine.sums import scales_of
+from wsrender.pipeline.pipeline import Pipeline
 from wsrender.robots.chain import Chain
 from wsrender.robots.dh import structural_length
 from wsrender.volume.volume_data import VolumeData
 from wsrender.volume.voxels import inner_and_outer_counts
 
 
-def joint_means(plan: SweepPlan, partial: Partial) -> np.ndarray:
+def joint_means(pipeline: Pipeline, partial: Partial) -> np.ndarray:
     """Mean over admitted samples of index / maximum, (K,); 0 where the maximum is 0."""
-    mean = partial.totals / plan.scales / max(partial.admitted, 1)
+    mean = partial.totals / scales_of(pipeline) / max(partial.admitted, 1)
     return _divided(mean, partial.maximum[3 : 3 + len(mean)].astype(np.float64))
 
 

@@ -15,7 +15,7 @@ from wsrender_kernels.sampling import blocks, sample_space
 import wsrender as ws
 from tests.run.simple_robots import PlanarClass
 from wsrender import run
-from wsrender.engine import devices_of, grid_structure, sweep
+from wsrender.engine import SweepPlan, devices_of, grid_structure, sweep
 from wsrender.engine.grid_structure import block_count, shared_coordinates
 from wsrender.engine.voxel_data import volume_data
 from wsrender.errors import InputError
@@ -56,6 +56,11 @@ def planned(robot, precision="float64", device="cpu", **fields):
     )
 
 
+def spared_by(plan):
+    structure = SweepPlan(plan).structure
+    return structure.base_levels, structure.weight
+
+
 def swept(plan, device="cpu", **execution):
     return sweep(plan, 0, plan.sampling.count, devices_of(device), **execution)
 
@@ -63,8 +68,8 @@ def swept(plan, device="cpu", **execution):
 @cache
 def direct(robot, precision="float64", device="cpu", **fields):
     """The sample-by-sample volume data, all twelve indices where the robot has them."""
-    plan = replace(planned(robot, precision, device, **fields).sweep, collapse=False)
-    assert plan.sampling_path == "direct"
+    plan = replace(planned(robot, precision, device, **fields).pipeline, collapse=False)
+    assert SweepPlan(plan).sampling_path == "direct"
     partial = swept(plan, device)
     return partial, volume_data(plan, partial, {})
 
@@ -99,9 +104,9 @@ CASES = [
 @pytest.mark.parametrize(("task", "convention", "indices"), CASES)
 def test_collapsed_is_direct(task, convention, indices):
     trailing = task == "linear" and indices == "kinematic"
-    plan = planned("puma560", task=task, convention=convention, indices=indices).sweep
+    plan = planned("puma560", task=task, convention=convention, indices=indices).pipeline
     base, repeats = SPARED["puma560"]
-    assert (plan.structure.base_levels, plan.structure.weight) == (base, repeats if trailing else 1)
+    assert spared_by(plan) == (base, repeats if trailing else 1)
     every = "all" if task != "full" else indices  # one kernel for both sets
     assert_agree(plan, "cpu", direct("puma560", task=task, convention=convention, indices=every), "float64")
 
@@ -123,15 +128,15 @@ def test_no_index_depends_on_the_base_joint(task, convention):
 
 def test_penalisation_keeps_the_base_joint():
     fields = {"joint_limit_penalty": 10.0}
-    plan = planned("puma560", **fields).sweep
-    assert (plan.structure.base_levels, plan.structure.weight) == (1, SPARED["puma560"][1])
+    plan = planned("puma560", **fields).pipeline
+    assert spared_by(plan) == (1, SPARED["puma560"][1])
     assert_agree(plan, "cpu", direct("puma560", **fields), "float64")
 
 
 @pytest.mark.parametrize("robot", ["cartesian", "cylindrical", "ur5e"])
 def test_robots(robot, precision, device):
-    plan = planned(robot, precision, device).sweep
-    assert (plan.structure.base_levels, plan.structure.weight) == SPARED[robot]
+    plan = planned(robot, precision, device).pipeline
+    assert spared_by(plan) == SPARED[robot]
     assert_agree(plan, device, direct(robot, precision, device), precision)
 
 
@@ -153,24 +158,24 @@ def test_robots(robot, precision, device):
 )
 def test_what_is_spared(changes, spared):
     """Nothing where it would change a number: see the documentation of the structure."""
-    plan = planned("puma560").sweep
+    plan = planned("puma560").pipeline
     plan = replace(plan, evaluation=replace(plan.evaluation, **changes))
-    assert (plan.structure.base_levels, plan.structure.weight) == spared
-    assert plan.sampling_path == ("collapsed" if max(spared) > 1 else "direct")
+    assert spared_by(plan) == spared
+    assert SweepPlan(plan).sampling_path == ("collapsed" if max(spared) > 1 else "direct")
 
 
 def test_rows_and_other_samplings_are_evaluated_one_by_one():
-    assert planned("puma560", keep_map=True).sweep.sampling_path == "direct"
+    assert SweepPlan(planned("puma560", keep_map=True).pipeline).sampling_path == "direct"
     sampling = {"method": "random", "count": 5000, "seed": 1}
-    assert planned("puma560", sampling=sampling).sweep.sampling_path == "direct"
+    assert SweepPlan(planned("puma560", sampling=sampling).pipeline).sampling_path == "direct"
 
 
 def test_a_tool_off_the_axes_keeps_the_wrist():
     tool = np.eye(4)
     tool[:3, 3] = 0.01, 0, 0.05
-    plan = planned("puma560").sweep
+    plan = planned("puma560").pipeline
     plan = replace(plan, evaluation=replace(plan.evaluation, chain=plan.evaluation.chain.placed(T_tip_tool=tool)))
-    assert (plan.structure.base_levels, plan.structure.weight) == (SPARED["puma560"][0], 1)
+    assert spared_by(plan) == (SPARED["puma560"][0], 1)
 
 
 def test_coupled_joints_are_evaluated_one_by_one():
@@ -186,13 +191,13 @@ def test_coupled_joints_are_evaluated_one_by_one():
         "indices": ["manipulability"],
         "voxel_size_m": 0.01,
     }
-    assert run.plan(document).sweep.sampling_path == "direct"
+    assert SweepPlan(run.plan(document).pipeline).sampling_path == "direct"
 
 
 def test_chunks_threads_and_shards_change_no_bit(precision):
-    plan = planned("puma560", precision).sweep
+    plan = planned("puma560", precision).pipeline
     expected = swept(plan, threads=1)
-    assert plan.division == 256 * 60
+    assert SweepPlan(plan).division == 256 * 60
     for execution in ({"threads": 2, "chunk_size": 1}, {"threads": 3, "chunk_size": 100_000}):
         found = swept(plan, **execution)
         for name in ("extremes", "totals", "cells", "count", "records", "sums"):
@@ -202,7 +207,7 @@ def test_chunks_threads_and_shards_change_no_bit(precision):
 def test_shards_at_multiples_of_the_division():
     document = planned("puma560", "float32", sampling={"method": "grid", "per_joint": [4, 40, 40, 3, 3, 4]}).job
     whole = run.plan(document)
-    unit, count = whole.resolved()["shard_unit"], whole.sweep.sampling.count
+    unit, count = whole.resolved()["shard_unit"], whole.pipeline.sampling.count
     assert unit == 256 * 4 * 36 and count > 2 * unit
     assert whole.resolved()["sampling_path"] == "collapsed"
     shards = [[0, unit], [unit, count - unit]]
@@ -229,7 +234,7 @@ def test_shards_at_multiples_of_the_division():
     ],
 )
 def test_leading_coordinates_that_blocks_share(levels, shared):
-    plan = replace(planned("puma560").sweep.sampling, levels=np.array(levels), count=prod(levels))
+    plan = replace(planned("puma560").pipeline.sampling, levels=np.array(levels), count=prod(levels))
     assert shared_coordinates(plan) == shared
     assert shared_coordinates(replace(plan, method="random")) == 0
 
@@ -270,13 +275,13 @@ def block_ranges(run_, first, count, number):
 def test_shared_coordinates_change_no_position(fields, precision, monkeypatch):
     """Runs of 15 x 17 samples, one short of a block; voxels and positions equal to the bit, indices to rounding."""
     sampling = {"method": "grid", "per_joint": [3, 2, 2, 3, 15, 17]}
-    plan = replace(planned("ur5e", precision, sampling=sampling, **fields).sweep, collapse=False)
-    assert shared_coordinates(plan.structure.evaluated) == 4
+    plan = replace(planned("ur5e", precision, sampling=sampling, **fields).pipeline, collapse=False)
+    assert shared_coordinates(SweepPlan(plan).structure.evaluated) == 4
     found = swept(plan)
     in_chunks = swept(plan, threads=2, chunk_size=1)
     assert in_chunks.records.tobytes() == found.records.tobytes() and (in_chunks.sums == found.sums).all()
     monkeypatch.setattr(grid_structure, "MOSTLY_FULL", 2.0)
-    assert shared_coordinates(plan.structure.evaluated) == 0
+    assert shared_coordinates(SweepPlan(plan).structure.evaluated) == 0
     assert_agree(plan, "cpu", (found, volume_data(plan, found, {})), precision)
 
 

@@ -14,7 +14,7 @@ import wsrender as ws
 from tests.engine.test_voxels import executed, job
 from tests.run.simple_robots import planar_arm_with_masses
 from wsrender import run
-from wsrender.engine import devices_of
+from wsrender.engine import SweepPlan, devices_of
 from wsrender.engine.memory import CACHE_LINE, device_memory
 from wsrender.errors import InputError, NumericalError, ResourceError
 
@@ -84,9 +84,9 @@ def test_large_lattices_take_the_memory_of_their_occupied_voxels(monkeypatch, tm
 def test_few_samples_of_many_voxels_keep_one_thread_busy(monkeypatch):
     """Private records of two threads would take twice the memory, or twice the slabs."""
     slabs = importlib.import_module("wsrender.engine.slabs")
-    plan = run.plan(job("float32", keep_map=False, device="cpu")).sweep
+    plan = run.plan(job("float32", keep_map=False, device="cpu")).pipeline
     monkeypatch.setattr(slabs, "available_bytes", lambda: 2**40)
-    few, many = (slabs.fitted(plan.block, plan.shape, devices_of("cpu") * 2, n)[0] for n in (100, 10**9))
+    few, many = (slabs.fitted(plan.block, SweepPlan(plan).shape, devices_of("cpu") * 2, n)[0] for n in (100, 10**9))
     assert (len(few), len(many)) == (1, 2)
 
 
@@ -95,15 +95,15 @@ def test_slabs_of_the_lattice_change_no_bit(method, precision, device, monkeypat
     sampling = {"grid": {"method": "grid", "per_joint": 7}, "random": {"method": "random", "count": 20_000, "seed": 1}}
     document = job(precision, device=device, keep_map=False, sampling=sampling[method])
     _, expected, plan = executed(document)
-    shape, done = plan.sweep.shape, []
-    block_bytes = plan.sweep.block.size * shape.bytes_per_voxel
+    shape, done = SweepPlan(plan.pipeline).shape, []
+    block_bytes = plan.pipeline.block.size * shape.bytes_per_voxel
     slabs = importlib.import_module("wsrender.engine.slabs")
     monkeypatch.setattr(slabs, "SHARE", 0.0)
     free = block_bytes // 3 / slabs.SHARE_SLAB  # of one worker
     if device == "cuda":
         monkeypatch.setattr(slabs, "SHARE_SLAB", free * slabs.SHARE_SLAB / devices_of(device)[0].free_memory)
     monkeypatch.setattr(slabs, "available_bytes", lambda: free)
-    assert len(slabs.fitted(plan.sweep.block, shape, devices_of(device)[:1], 20_000)[1]) in (4, 5)
+    assert len(slabs.fitted(plan.pipeline.block, shape, devices_of(device)[:1], 20_000)[1]) in (4, 5)
     monkeypatch.setattr(importlib.import_module("wsrender.engine.sweep_plan"), "VOXELS_FETCHED", 777)  # many parts
     found = run.run_shard(plan, 0, done.append, threads=1).sweep
     for name in ("extremes", "totals", "cells", "count", "records", "sums"):
@@ -115,7 +115,7 @@ def test_a_value_beyond_its_bound_fails_the_job():
     """Bounds of dynamic and user indices come from a coarse first pass and may be passed."""
     document = job("float32", 5000)
     plan = run.plan(document)
-    plan.sweep = replace(plan.sweep, bounds=np.array([1e-6, 1.0]))
+    plan.pipeline = replace(plan.pipeline, bounds=(1e-6, 1.0))
     message = r"index manipulability reaches 0\.\d+, beyond 1e-06, the bound of its entry"
     with pytest.raises(NumericalError, match=message):
         run.run_shard(plan, 0)
@@ -125,7 +125,7 @@ def test_a_value_may_be_as_large_as_its_bound_and_no_larger():
     plan = run.plan(job("float32", 5000))
     largest = run.run_shard(plan, 0).sweep.maximum.astype(np.float64)[3]
     for bound, allowed in ((largest, True), (np.nextafter(largest, 0), False)):
-        plan.sweep = replace(plan.sweep, bounds=np.array([bound, 1.0]))
+        plan.pipeline = replace(plan.pipeline, bounds=(bound, 1.0))
         with nullcontext() if allowed else pytest.raises(NumericalError, match="index manipulability reaches"):
             run.run_shard(plan, 0)
 
@@ -139,7 +139,7 @@ def test_bounds_are_no_larger_than_they_have_to_be():
     options = {"task": ["x", "y"], "indices": names, "voxel_size_m": 0.1, "device": "cpu", "refined_volume": None}
     robot = planar_arm_with_masses()
     result = ws.analyze(robot, ws.Sobol(2**16), **options)
-    bounds = run.plan(result.document["job"], robot).sweep.bounds
+    bounds = run.plan(result.document["job"], robot).pipeline.bounds
     assert bounds[:2] == pytest.approx([1.01 * (0.9**2 + 0.4**2) / 2, 1.01])
     assert bounds[2] == pytest.approx(2 * result.document["indices"][names[2]]["maximum"], rel=1e-3)
 
@@ -147,8 +147,8 @@ def test_bounds_are_no_larger_than_they_have_to_be():
 @pytest.mark.parametrize("chunk_size", [1, 2**20, 2**31, 2**40])
 def test_no_chunk_overflows_32_bit_counts(chunk_size):
     module = importlib.import_module("wsrender.engine.sweep_plan")
-    plan = run.plan(job("float32", keep_map=False)).sweep
-    assert 256 <= module._chunk_size(plan, chunk_size) <= module.FOLD_AFTER < 2**31
+    plan = run.plan(job("float32", keep_map=False)).pipeline
+    assert 256 <= module._chunk_size(SweepPlan(plan), chunk_size) <= module.FOLD_AFTER < 2**31
 
 
 @pytest.mark.parametrize("voxel_size_m", [1e-10, 2e-10])
@@ -179,8 +179,8 @@ def test_a_map_that_does_not_fit_is_refused_with_its_numbers():
 def test_a_map_takes_its_rows_twice(share, fits, monkeypatch):
     """Those of the chunks, and what they are joined to."""
     document = job("float32")
-    plan = run.plan(document).sweep
-    taken = 2 * 4 * plan.sampling.count * plan.shape.n_rows
+    pipeline = run.plan(document).pipeline
+    taken = 2 * 4 * pipeline.sampling.count * SweepPlan(pipeline).shape.n_rows
     cost = importlib.import_module("wsrender.analyses.cost")
     monkeypatch.setattr(cost, "available_bytes", lambda: share * taken / cost.SHARE)
     with nullcontext() if fits else pytest.raises(ResourceError, match="keep_map: "):
@@ -188,15 +188,15 @@ def test_a_map_takes_its_rows_twice(share, fits, monkeypatch):
 
 
 def test_many_threads_do_not_refuse_what_one_can_do(monkeypatch):
-    plan = run.plan(job("float32", keep_map=False, device="cpu")).sweep
+    plan = run.plan(job("float32", keep_map=False, device="cpu")).pipeline
     slabs = importlib.import_module("wsrender.engine.slabs")
-    block_bytes = plan.block.size * plan.shape.bytes_per_voxel
+    block_bytes = plan.block.size * SweepPlan(plan).shape.bytes_per_voxel
     workers = devices_of("cpu") * 64
     for fitting, chosen in ((1, 1), (5, 5), (64, 64)):
         monkeypatch.setattr(slabs, "available_bytes", lambda fitting=fitting: fitting * block_bytes / slabs.SHARE + 1)
-        found, parts = slabs.fitted(plan.block, plan.shape, workers, 10**9)
+        found, parts = slabs.fitted(plan.block, SweepPlan(plan).shape, workers, 10**9)
         assert len(found) == chosen and parts == [plan.block]
     monkeypatch.setattr(slabs, "available_bytes", lambda: block_bytes / slabs.SHARE_SLAB / 12)
-    found, parts = slabs.fitted(plan.block, plan.shape, workers, 10**9)
+    found, parts = slabs.fitted(plan.block, SweepPlan(plan).shape, workers, 10**9)
     assert len(found) == 1 and 12 <= len(parts) <= slabs.MOST_SLABS
     assert sum(slab.shape[0] for slab in parts) == plan.block.shape[0]

@@ -1,18 +1,20 @@
 """Positions alone: those of the poses, whatever the sampling, in ranges of samples, and without Jacobians."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import wsrender as ws
-from wsrender.engine import Evaluation, SweepPlan, configurations, devices_of, evaluate_poses, positions_at, sweep
-from wsrender.engine import sampled_positions as sampled
+from wsrender.engine import configurations, devices_of, evaluate_poses, sampled_positions, sweep
+from wsrender.pipeline.evaluation import Evaluation
+from wsrender.pipeline.pipeline import Pipeline, tip_pipeline
 from wsrender.pipeline.sampling import plan_sampling
 from wsrender.tolerances import TOLERANCES
 from wsrender.volume.lattice import LatticeBlock
 
 COUNT = 5000
 SAMPLINGS = (ws.Sobol(COUNT, seed=3), ws.Random(COUNT, seed=3), ws.BoundaryBiased(COUNT), ws.Grid(4))
-NONE = np.zeros(0)
 
 
 class Crank:
@@ -33,14 +35,12 @@ class Crank:
 @pytest.mark.parametrize("sampling", SAMPLINGS, ids=lambda each: each.method)
 def test_they_are_those_of_the_poses(sampling, precision, device):
     robot = ws.load_robot("ur5e", placement=ws.Transform(position_m=(0.3, -0.2, 5.0)))
-    plan = plan_sampling(robot.chain, sampling)
-    expected = evaluate_poses(robot.chain, configurations(plan, np.arange(plan.count), precision), device="cpu")[
-        :, :3, 3
-    ]
-    found = sampled(robot.chain, plan, precision, device)
-    assert found.shape == (plan.count, 3) and found.dtype == np.float64
+    pipeline = replace(tip_pipeline(robot.chain, sampling), precision=precision)
+    expected = evaluate_poses(robot.chain, configurations(pipeline), device="cpu")[:, :3, 3]
+    found = sampled_positions(pipeline, device)
+    assert found.shape == (pipeline.sampling.count, 3) and found.dtype == np.float64
     np.testing.assert_allclose(found, expected, atol=TOLERANCES[precision].position(robot.chain.reach))
-    part = sampled(robot.chain, plan, precision, device, first=512, count=768, threads=2)
+    part = sampled_positions(pipeline, device, first=512, count=768, threads=2)
     np.testing.assert_array_equal(part, found[512:1280])
 
 
@@ -48,8 +48,8 @@ def test_given_configurations_keep_their_order(device):
     robot = ws.load_robot("franka_panda")
     q = np.random.default_rng(1).uniform(robot.chain.lower_limits, robot.chain.upper_limits, (40_000, 7))
     expected = evaluate_poses(robot.chain, q, device="cpu")[:, :3, 3]
-    np.testing.assert_allclose(positions_at(robot.chain, q, device=device), expected, atol=1e-12)
-    assert positions_at(robot.chain, q[:0], device=device).shape == (0, 3)
+    np.testing.assert_allclose(sampled_positions(tip_pipeline(robot.chain, q), device), expected, atol=1e-12)
+    assert sampled_positions(tip_pipeline(robot.chain, q[:0]), device).shape == (0, 3)
 
 
 def test_a_python_robot_is_not_asked_for_jacobians(device):
@@ -58,7 +58,7 @@ def test_a_python_robot_is_not_asked_for_jacobians(device):
     chain = as_robot(Crank()).chain
     q = np.linspace(-1, 2, 300)[:, None]
     expected = 0.5 * np.stack([np.cos(q[:, 0]), np.sin(q[:, 0]), 0 * q[:, 0]], axis=1)
-    np.testing.assert_allclose(positions_at(chain, q, device=device), expected, atol=1e-15)
+    np.testing.assert_allclose(sampled_positions(tip_pipeline(chain, q), device), expected, atol=1e-15)
 
 
 @pytest.mark.parametrize("sampling", (ws.Sobol(COUNT), ws.Grid(5)), ids=lambda each: each.method)
@@ -68,11 +68,9 @@ def test_voxels_count_the_same_samples_without_indices(sampling, precision, devi
     block = LatticeBlock(0.05, (-12, -12, -12), (24, 24, 24))
     found = {}
     for names in ((), ("manipulability", "isotropy")):
-        bounds = np.full(len(names), np.inf)
         evaluation = Evaluation(robot.chain, names, (0, 1, 2) if names else ())
-        each = SweepPlan(
-            evaluation, plan, block, frozenset({"maximum", "mean"}), np.ones(len(names)), bounds, precision
-        )
+        statistics, bounds = frozenset({"maximum", "mean"}), (4.0,) * len(names)
+        each = Pipeline(evaluation, plan, (), block, statistics, bounds=bounds, precision=precision)
         found[len(names)] = sweep(each, 0, plan.count, devices_of(device))
     alone, both = found[0], found[2]
     # The compiler may fuse other products with sums: a last bit of a position, and so a sample at a voxel's face.

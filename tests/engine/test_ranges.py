@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from tests.run.small_jobs import SMALL_JOBS
+from wsrender.engine import SweepPlan
 from wsrender.errors import InputError
 from wsrender.run import plan, run_shard
 
@@ -21,7 +22,7 @@ def divided(document, shards):
 def test_a_shard_that_would_lose_samples_is_refused(shard, path):
     document = SCARA | {"keep_map": path == "direct"}
     planned = divided(document, [list(shard)])
-    assert planned.sweep.sampling_path == path
+    assert SweepPlan(planned.pipeline).sampling_path == path
     unit = planned.resolved()["shard_unit"]
     message = rf"shards: {shard[1]} samples from sample {shard[0]} are not allowed: .* shard_unit {unit}, .* 2401$"
     with pytest.raises(InputError, match=message):

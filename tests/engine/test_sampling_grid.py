@@ -1,6 +1,7 @@
 """Grids: every combination of evenly spaced joint values, the last joint fastest."""
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ import pytest
 import wsrender as ws
 from wsrender.engine import configurations
 from wsrender.errors import InputError, ResourceError
+from wsrender.pipeline.pipeline import tip_pipeline
 from wsrender.pipeline.sampling import plan_sampling
 from wsrender.tolerances import epsilon
 
@@ -22,8 +24,7 @@ ARM = arm((-30, 50), (0, 90), (-170, 170))
 
 
 def grid(chain, per_joint, precision="float64", **options):
-    plan = plan_sampling(chain, ws.Grid(per_joint, **options))
-    return configurations(plan, np.arange(plan.count), precision)
+    return configurations(replace(tip_pipeline(chain, ws.Grid(per_joint, **options)), precision=precision))
 
 
 @pytest.mark.parametrize("levels", [(2, 3, 4), (1, 31, 1), (5, 3, 17), (8, 8, 4), (1, 1, 257), (10, 10, 10), (1, 1, 1)])
@@ -74,12 +75,12 @@ def test_all_joints_locked_is_one_sample():
 
 
 def test_levels_beyond_32_bits_of_index():
-    plan = plan_sampling(ARM, ws.Grid((3000, 3001, 3002)))
-    assert plan.count == 3000 * 3001 * 3002
-    index = np.array([0, 2**32 - 1, 2**32, 2**33 + 12345, plan.count - 1])
+    pipeline = tip_pipeline(ARM, ws.Grid((3000, 3001, 3002)))
+    assert pipeline.sampling.count == 3000 * 3001 * 3002
+    index = np.array([0, 2**32 - 1, 2**32, 2**33 + 12345, pipeline.sampling.count - 1])
     digits = np.stack(np.unravel_index(index, (3000, 3001, 3002)), axis=1)
     expected = ARM.lower_limits + digits * (ARM.upper_limits - ARM.lower_limits) / [2999, 3000, 3001]
-    assert np.abs(configurations(plan, index) - expected).max() <= 1e-14
+    assert np.abs(configurations(pipeline, index) - expected).max() <= 1e-14
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,7 @@
 """Random and boundary-biased samples: pure functions of the index, with the distributions they claim."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy import stats
@@ -7,7 +9,7 @@ from scipy import stats
 import wsrender as ws
 from tests.reference.philox import philox_4x32
 from wsrender.engine import configurations
-from wsrender.pipeline.sampling import plan_sampling
+from wsrender.pipeline.pipeline import tip_pipeline
 from wsrender.tolerances import SMALLEST_P_VALUE, epsilon
 
 COUNT = 40_000
@@ -16,8 +18,8 @@ CHAIN = ws.load_robot("ur5e").chain
 
 def fractions(method, seed, count=COUNT, precision="float64", first=0):
     """Samples as fractions of the limits, (count, n)."""
-    plan = plan_sampling(CHAIN, method(2**40, seed=seed))
-    q = configurations(plan, np.arange(first, first + count), precision).astype(np.float64)
+    pipeline = replace(tip_pipeline(CHAIN, method(2**40, seed=seed)), precision=precision)
+    q = configurations(pipeline, np.arange(first, first + count)).astype(np.float64)
     return (q - CHAIN.lower_limits) / (CHAIN.upper_limits - CHAIN.lower_limits)
 
 
@@ -46,9 +48,9 @@ def twin(seed, index, n=6):
 def test_random_samples_are_those_of_the_numpy_twin(name, seed):
     index = np.array([0, 1, 255, 256, 257, 1000, 2**32 - 1, 2**32, 2**32 + 1, 2**39 + 77])
     chain = ws.load_robot(name).chain
-    plan = plan_sampling(chain, ws.Random(2**40, seed=seed))
+    pipeline = tip_pipeline(chain, ws.Random(2**40, seed=seed))
     expected = chain.lower_limits + twin(seed, index, chain.n) * (chain.upper_limits - chain.lower_limits)
-    assert np.abs(configurations(plan, index) - expected).max() <= 4 * epsilon("float64") * 2 * np.pi
+    assert np.abs(configurations(pipeline, index) - expected).max() <= 4 * epsilon("float64") * 2 * np.pi
 
 
 @pytest.mark.parametrize(("method", "steepest"), [(ws.Random, 1.0), (ws.BoundaryBiased, np.pi / 2)])
@@ -87,11 +89,12 @@ def test_boundary_samples_are_beta_distributed(precision):
 
 @pytest.mark.parametrize("method", [ws.Random, ws.BoundaryBiased, ws.Sobol])
 def test_a_sample_is_a_function_of_its_index(method, precision):
-    plan = plan_sampling(CHAIN, method(2**40, seed=5, locked={CHAIN.joint_names[2]: 0.5}))
+    pipeline = tip_pipeline(CHAIN, method(2**40, seed=5, locked={CHAIN.joint_names[2]: 0.5}))
+    pipeline = replace(pipeline, precision=precision)
     for first in (0, 2**32 - 500, 2**39):
-        whole = configurations(plan, np.arange(first, first + 1000), precision)
+        whole = configurations(pipeline, np.arange(first, first + 1000))
         order = np.random.default_rng(0).permutation(1000)[:257]
-        assert (configurations(plan, first + order, precision) == whole[order]).all()
+        assert (configurations(pipeline, first + order) == whole[order]).all()
         assert (whole[:, 2] == 0.5).all()
         assert np.ptp(whole[:, 0]) > 0.99 * (CHAIN.upper_limits[0] - CHAIN.lower_limits[0])
 

@@ -7,14 +7,15 @@ from wsrender_kernels.sampling import SOBOL_BITS
 
 import wsrender as ws
 from wsrender.engine import configurations
-from wsrender.pipeline.sampling import plan_sampling, scrambled_sobol, sobol_directions
+from wsrender.pipeline.pipeline import tip_pipeline
+from wsrender.pipeline.sampling import scrambled_sobol, sobol_directions
 
 CHAIN = ws.load_robot("ur5e").chain
 
 
 def fractions(count, seed, first=0):
-    plan = plan_sampling(CHAIN, ws.Sobol(2**40, seed=seed))
-    q = configurations(plan, np.arange(first, first + count))
+    pipeline = tip_pipeline(CHAIN, ws.Sobol(2**40, seed=seed))
+    q = configurations(pipeline, np.arange(first, first + count))
     return (q - CHAIN.lower_limits) / (CHAIN.upper_limits - CHAIN.lower_limits)
 
 

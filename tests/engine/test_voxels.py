@@ -6,6 +6,7 @@ import pytest
 import wsrender as ws
 from tests.reference.voxel_accumulation import accumulated, fixed_point
 from wsrender import run
+from wsrender.engine.sums import scales_of
 from wsrender.tolerances import epsilon
 
 INDICES = ["manipulability", "inverse_condition_number"]
@@ -62,7 +63,7 @@ def test_voxels_are_those_of_the_rows(precision, device):
 def test_sums_are_exact_integers(precision, device):
     result, partial, plan = executed(job(precision, device=device))
     for k, name in enumerate(INDICES):
-        values, scale = result.map.indices[name].astype(np.float64), plan.sweep.scales[k]
+        values, scale = result.map.indices[name].astype(np.float64), scales_of(plan.pipeline)[k]
         assert np.log2(scale) == np.round(np.log2(scale))
         assert abs(int(partial.totals[k]) - fixed_point(values, scale)) <= ambiguous(values * scale, precision)
         assert partial.sums[:, k].sum() == partial.totals[k]
@@ -91,7 +92,7 @@ def test_the_map_is_the_samples_in_order(precision):
     result, _, plan = executed(job(precision, count=1000))
     from wsrender.engine import configurations
 
-    q = configurations(plan.sweep.sampling, np.arange(1000), precision)
+    q = configurations(plan.pipeline, np.arange(1000))
     robot = ws.load_robot("phantom_omni")
     position = robot.forward_kinematics(q)[:, :3, 3]
     assert np.abs(result.map.position - position).max() <= 8 * epsilon(precision)

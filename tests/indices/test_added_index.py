@@ -10,6 +10,8 @@ from tests.reference.voxel_accumulation import accumulated
 from tests.run.simple_robots import PlanarClass, planar_arm
 from wsrender import run
 from wsrender.analyses.jobs import parse_job
+from wsrender.engine import SweepPlan
+from wsrender.engine.sums import scales_of
 from wsrender.errors import InputError, NumericalError
 from wsrender.indices.index_catalogue import (
     DYNAMIC,
@@ -92,7 +94,7 @@ def test_groups_name_the_six_whatever_is_added():
     assert resolve("kinematic", True) == KINEMATIC == local_indices.NAMES
     assert resolve("dynamic", True) == DYNAMIC == tuple(f"dynamic_{name}" for name in local_indices.NAMES)
     assert resolve("all", True) == KINEMATIC + DYNAMIC
-    assert planned("kinematic").sweep.evaluation.indices == local_indices.NAMES
+    assert planned("kinematic").pipeline.evaluation.indices == local_indices.NAMES
 
 
 def test_every_index_of_the_catalogue_says_what_it_is():
@@ -111,26 +113,26 @@ def test_bounds_of_the_six_hold_and_are_reached(name):
     plan = run.plan({"analysis": "workspace", "robot": {"library": "ur5e"}, "indices": [name], "device": "cpu"})
     rng = np.random.default_rng(0)
     values = ws.evaluate_indices("ur5e", rng.uniform(-np.pi, np.pi, (2000, 6)), [name], device="cpu")[name]
-    assert values.max() <= plan.sweep.bounds[0]
+    assert values.max() <= plan.pipeline.bounds[0]
     slides = planned([name], robot={"library": "cartesian"})
     (reached,) = ws.evaluate_indices("cartesian", np.full(6, 0.25), [name], device="cpu").values()
-    assert slides.sweep.bounds[0] == pytest.approx(1.01 * reached[0], rel=1e-12)
+    assert slides.pipeline.bounds[0] == pytest.approx(1.01 * reached[0], rel=1e-12)
 
 
 def test_a_bound_decides_the_scale_of_the_sums():
     register(ANISOTROPY), register(WEIGHTED)
     puma = {"robot": {"library": "puma560"}}
     plan = planned([*NAMES, "dynamic_anisotropy"], index_options={"weighted": {"weight": 3}}, **puma)
-    bounds, scales = plan.sweep.bounds, plan.sweep.scales
+    bounds, scales = plan.pipeline.bounds, scales_of(plan.pipeline)
     first = planned(["weighted"], index_options={"weighted": {"weight": 0}}, **puma)
     assert bounds[0] == bounds[2] == pytest.approx(1.01)  # a number holds for the dynamic variant too
-    assert bounds[1] == pytest.approx(4 * first.sweep.bounds[0]) and scales[1] == first.sweep.scales[0] / 4
+    assert bounds[1] == pytest.approx(4 * first.pipeline.bounds[0]) and scales[1] == scales_of(first.pipeline)[0] / 4
 
 
 def test_a_bound_of_the_norm_is_asked_only_where_the_norm_is_known():
     asked = []
     register(WEIGHTED, bound=lambda norm, m, n, **options: asked.append((norm, m, n)) or 100.0)
-    assert planned(["weighted"]).sweep.bounds[0] == 101.0 and asked
+    assert planned(["weighted"]).pipeline.bounds[0] == 101.0 and asked
     asked.clear()
     planned(["weighted"], convention="table_1"), planned(["dynamic_weighted"], robot={"library": "puma560"})
     assert asked == []
@@ -140,7 +142,7 @@ def test_without_a_bound_twice_the_maximum_of_the_first_pass():
     register(ANISOTROPY, bound=None)
     found = planned(["anisotropy"], robot={"library": "phantom_omni"}, sampling={"method": "sobol", "count": 2**16})
     result = run.execute(found.job.model_dump(mode="json") | {"refined_volume": None, "precision": "float64"})
-    assert found.sweep.bounds[0] == pytest.approx(2 * result.document["indices"]["anisotropy"]["maximum"], rel=1e-12)
+    assert found.pipeline.bounds[0] == pytest.approx(2 * result.document["indices"]["anisotropy"]["maximum"], rel=1e-12)
 
 
 @pytest.mark.parametrize("wrong", [0.5, lambda norm, m, n: 0.5])
@@ -186,15 +188,15 @@ def test_a_bound_that_is_none_is_refused(bad):
 
 def test_the_structure_of_a_grid_that_an_index_survives():
     register(ANISOTROPY)
-    whole = planned(["anisotropy"]).sweep
+    whole = planned(["anisotropy"]).pipeline
     register(ANISOTROPY, survives=frozenset({"base_joint"}))
-    base = planned(["anisotropy"]).sweep
+    base = planned(["anisotropy"]).pipeline
     register(ANISOTROPY, survives=frozenset())
-    none = planned(["anisotropy"]).sweep
+    none = planned(["anisotropy"]).pipeline
     found = [(plan.structure.base_levels, plan.structure.weight) for plan in (whole, base, none)]
     assert found == [(3, 27), (3, 1), (1, 1)]
-    assert [plan.sampling_path for plan in (whole, base, none)] == ["collapsed", "collapsed", "direct"]
-    assert planned(["anisotropy", "manipulability"]).sweep.sampling_path == "direct"  # one is enough
+    assert [SweepPlan(plan).sampling_path for plan in (whole, base, none)] == ["collapsed", "collapsed", "direct"]
+    assert SweepPlan(planned(["anisotropy", "manipulability"]).pipeline).sampling_path == "direct"  # one is enough
 
 
 def test_maxima_are_the_same_whatever_survives():

@@ -7,11 +7,14 @@ import pytest
 
 import wsrender as ws
 from wsrender.documents.constraints import Constraints
-from wsrender.engine import Evaluation, SweepPlan, configurations, devices_of, evaluate_poses, merge, sweep
+from wsrender.engine import SweepPlan, configurations, devices_of, evaluate_poses, merge, sweep
+from wsrender.engine.sums import scales_of
 from wsrender.errors import DocumentError, InputError
 from wsrender.pipeline.constraints import registry
 from wsrender.pipeline.constraints.region import Region
 from wsrender.pipeline.constraints.registry import constraints_of
+from wsrender.pipeline.evaluation import Evaluation
+from wsrender.pipeline.pipeline import Pipeline
 from wsrender.pipeline.sampling import plan_sampling
 from wsrender.run import execute, finish, plan, run_shard
 from wsrender.volume.lattice import LatticeBlock
@@ -34,16 +37,14 @@ def added(monkeypatch):
 
 
 def swept(robot, names, constraints, sampling, precision, device, block=BLOCK, **options):
-    K = len(names)
-    each = SweepPlan(
+    each = Pipeline(
         Evaluation(robot.chain, names, (0, 1, 2) if names else ()),
         plan_sampling(robot.chain, sampling),
+        constraints,
         block,
         frozenset({"maximum", "mean"}),
-        np.full(K, 1e6),
-        np.full(K, np.inf),
-        precision,
-        constraints=constraints,
+        bounds=(4.0,) * len(names),
+        precision=precision,
         **options,
     )
     return each, sweep(each, 0, each.sampling.count, devices_of(device))
@@ -57,7 +58,7 @@ def test_a_sweep_counts_what_the_twins_admit(shapes, names, precision, device, a
     constraints = constraints_of(Constraints(**choice))
     assert [each.name for each in constraints] == ["region", "elbow_up", "pointing_down"]
     each, found = swept(robot, names, constraints, ws.Sobol(COUNT), precision, device)
-    q = configurations(each.sampling, np.arange(COUNT), precision)
+    q = configurations(each)
     poses = evaluate_poses(robot.chain, q, device="cpu")
     violated = np.array([constraint.host(q, poses) for constraint in constraints])
     first = np.where(violated.any(axis=0), violated.argmax(axis=0) + 1, 0)
@@ -75,14 +76,14 @@ def test_values_are_those_of_admitted_samples_alone(device):
     region = Region(half_space=((0, 0, 0.3), (0, 0, 1)))
     names = ("manipulability",)
     each, found = swept(robot, names, (region,), ws.Sobol(COUNT), "float64", device)
-    rows = replace(each, keep_rows=True)
+    rows = replace(each, kept_rows=frozenset())
     partial = sweep(rows, 0, COUNT, devices_of(device))
     table = np.concatenate([partial.rows[first] for first in sorted(partial.rows)], axis=1)
     admitted = table[-1] == 0
     np.testing.assert_array_equal(admitted, table[2] + each.origin[2] >= 0.3)
     values = table[3, admitted]
     assert found.maximum[3] == values.max() and found.minimum[3] == values.min()
-    assert found.totals[0] == np.round(values * 1e6).astype(np.int64).sum() == found.sums.sum()
+    assert found.totals[0] == np.round(values * scales_of(each)[0]).astype(np.int64).sum() == found.sums.sum()
 
 
 @pytest.mark.parametrize("constraint", ("region", "elbow_up", "trailing"))
@@ -96,8 +97,8 @@ def test_a_grid_gives_the_same_with_and_without_its_structure(constraint, precis
         for collapse in (True, False)
     ]
     (collapsed, a), (_direct, b) = found
-    assert (collapsed.structure.base_levels > 1) == (constraint == "trailing")
-    assert (collapsed.structure.weight > 1) == (constraint == "region")
+    assert (SweepPlan(collapsed).structure.base_levels > 1) == (constraint == "trailing")
+    assert (SweepPlan(collapsed).structure.weight > 1) == (constraint == "region")
     np.testing.assert_array_equal(a.rejected, b.rejected)
     np.testing.assert_array_equal(a.cells, b.cells)
     np.testing.assert_array_equal(a.count, b.count)
@@ -175,11 +176,10 @@ def test_options_are_numbers_of_the_kernel_and_compile_nothing(added):
     for least in (0.1, 0.9):
         constraints = constraints_of(Constraints(elbow_up={"least": least}))
         each, found = swept(robot, (), constraints, ws.Sobol(1024), "float32", "cpu")
-        shapes.append((each.shape, found.admitted))
-    assert each.shape is each.shape  # a function is traced once
+        shapes.append((SweepPlan(each).shape, found.admitted))
     assert shapes[0][0] == shapes[1][0] and shapes[0][1] > shapes[1][1] > 0
-    assert each.shape != replace(each, constraints=()).shape
-    assert replace(each, constraints=()).shape.constraints == () and replace(each, constraints=()).shape.limits == 0
+    free = SweepPlan(replace(each, constraints=())).shape
+    assert shapes[1][0] != free and free.constraints == () and free.limits == 0
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ import wsrender as ws
 from tests.reference import chain_kinematics
 from tests.reference.chain_kinematics import coupling
 from wsrender.engine import Accuracy, evaluate_kinematics, evaluate_poses, sampled_positions, solve_inverse
-from wsrender.pipeline.sampling import given_sampling
+from wsrender.pipeline.pipeline import tip_pipeline
 from wsrender.robots.chain import Chain
 from wsrender.robots.host_kinematics import HostKinematics
 from wsrender.robots.joint_space import JointSpace
@@ -66,7 +66,7 @@ def test_functions_of_the_host_take_the_place_of_a_chain(source):
     assert found.pose == pytest.approx(expected.pose, abs=1e-12)
     assert found.jacobian == pytest.approx(expected.jacobian, abs=1e-12)
     assert np.array_equal(evaluate_poses(functions, q, device="cpu"), found.pose)
-    positions = sampled_positions(functions, given_sampling(functions, q), "float64")
+    positions = sampled_positions(tip_pipeline(functions, q))
     assert positions == pytest.approx(expected.pose[:, :3, 3], abs=1e-12)
     assert np.array_equal(functions.revolute, chain.revolute)
 

@@ -4,6 +4,7 @@ from typing import Any
 
 from wsrender.analyses.cost import Cost
 from wsrender.engine import SweepPlan, thread_count
+from wsrender.pipeline.pipeline import Pipeline
 
 # Samples per second of one CPU core and one GPU for six kinematic indices in float32 with voxels, rounded
 # down from the project's benchmarks on an AVX-512 core and an H200; dynamic indices and float64 each take about
@@ -13,25 +14,27 @@ SLOWER = 3.0
 RATE_HOST = 2e4  # where the host computes a part of every sample
 
 
-def sweep_cost(plan: SweepPlan, devices: list[Any]) -> Cost:
+def sweep_cost(pipeline: Pipeline, devices: list[Any]) -> Cost:
     """Of the sweep alone: voxel records of every worker, the map as memory and file, and seconds."""
-    on_gpu = devices[0].is_cuda
+    plan, on_gpu = SweepPlan(pipeline), devices[0].is_cuda
     workers = len(devices) if on_gpu else thread_count()
     rate = (RATE_GPU if on_gpu else RATE_CPU_CORE) * workers
-    if plan.evaluation.dynamic:
+    if pipeline.evaluation.dynamic:
         rate /= SLOWER
-    if plan.precision == "float64":
+    if pipeline.precision == "float64":
         rate /= SLOWER
-    if plan.evaluation.on_host:
+    if pipeline.evaluation.on_host:
         rate = RATE_HOST
-    samples = plan.sampling.count
-    voxels = plan.block.size if plan.block else 0
+    samples = pipeline.sampling.count
+    voxels = pipeline.block.size if pipeline.block else 0
     records = voxels * plan.shape.bytes_per_voxel
     seconds = samples / plan.structure.weight / rate
-    return Cost(samples, records * workers + map_bytes(plan), map_bytes(plan), seconds)
+    return Cost(samples, records * workers + map_bytes(pipeline), map_bytes(pipeline), seconds)
 
 
-def map_bytes(plan: SweepPlan) -> int:
+def map_bytes(pipeline: Pipeline) -> int:
     """Bytes of the rows of a map; 0 where none is kept."""
-    width = 4 if plan.precision == "float32" else 8
-    return plan.sampling.count * plan.shape.n_rows * width if plan.keep_rows else 0
+    if pipeline.kept_rows is None:
+        return 0
+    width = 4 if pipeline.precision == "float32" else 8
+    return pipeline.sampling.count * SweepPlan(pipeline).shape.n_rows * width

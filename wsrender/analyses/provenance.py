@@ -10,7 +10,7 @@ import numpy as np
 from wsrender import __version__
 from wsrender.documents.arm import at_path
 from wsrender.documents.options import TASK_ROWS
-from wsrender.engine import Evaluation
+from wsrender.pipeline.evaluation import Evaluation
 from wsrender.robot import Robot
 
 

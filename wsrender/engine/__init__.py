@@ -1,9 +1,7 @@
 """The only host code that talks to Warp: devices, packing, chunking, launches and partial results."""
 
-from wsrender.engine.at_configurations import Evaluated, evaluate_at
 from wsrender.engine.devices import devices_of, target_of, thread_count
 from wsrender.engine.drawn_configurations import configurations
-from wsrender.engine.evaluation import Evaluation
 from wsrender.engine.index_units import units_of
 from wsrender.engine.inverse import Accuracy, Tries, solve_inverse
 from wsrender.engine.kinematics import EvaluatedKinematics, evaluate_kinematics, evaluate_poses
@@ -16,7 +14,7 @@ from wsrender.engine.membership import (
     poses_reached,
 )
 from wsrender.engine.partial import Partial, merge
-from wsrender.engine.positions import positions_at, sampled_positions
+from wsrender.engine.rows import Evaluated, evaluate_samples, from_origin, sampled_positions
 from wsrender.engine.slabs import fitted
 from wsrender.engine.sweep_plan import SweepPlan, sweep
 
@@ -24,7 +22,6 @@ __all__ = [
     "Accuracy",
     "Evaluated",
     "EvaluatedKinematics",
-    "Evaluation",
     "LegTest",
     "OrientationCounts",
     "Partial",
@@ -34,14 +31,14 @@ __all__ = [
     "count_orientations",
     "count_orientations_at",
     "devices_of",
-    "evaluate_at",
     "evaluate_kinematics",
     "evaluate_poses",
+    "evaluate_samples",
     "fitted",
+    "from_origin",
     "joined",
     "merge",
     "poses_reached",
-    "positions_at",
     "sampled_positions",
     "solve_inverse",
     "sweep",

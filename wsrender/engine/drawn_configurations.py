@@ -8,6 +8,7 @@ from wsrender_kernels.sampling import lane_table, sample_space
 from wsrender.engine.devices import devices_of
 from wsrender.engine.evaluation import REAL, device_array, vector_of
 from wsrender.engine.kernel_cache import launch, loaded
+from wsrender.pipeline.pipeline import Pipeline
 from wsrender.pipeline.sampling import SamplingPlan
 
 
@@ -39,17 +40,20 @@ def given_space(q: np.ndarray, first: int, precision: str, device: wp.Device):
     return space
 
 
-def configurations(plan: SamplingPlan, indices: np.ndarray, precision: str = "float64") -> np.ndarray:
-    """Configurations (N, n) of samples with these 64-bit indices (N,), evaluated on the CPU [rad or m]."""
+def configurations(pipeline: Pipeline, indices: np.ndarray | None = None) -> np.ndarray:
+    """Configurations (N, n) [rad or m] of samples with 64-bit indices (N,), or of all, evaluated on the CPU.
+
+    Admitted or not: see `evaluate_samples`.
+    """
     (device,) = devices_of("cpu")
-    n = len(plan.lower)
-    real = REAL[precision]
+    plan, real = pipeline.sampling, REAL[pipeline.precision]
+    n, indices = len(plan.lower), np.arange(plan.count) if indices is None else indices
     q = wp.empty((len(indices), n), dtype=real, device=device)
     if len(indices):
         launch(
             loaded(configuration_kernel(real, n, plan.method), device),
             dim=len(indices),
-            inputs=[device_space(plan, precision, device), device_array(indices, wp.int64, device)],
+            inputs=[device_space(plan, pipeline.precision, device), device_array(indices, wp.int64, device)],
             outputs=[q],
             device=device,
         )

@@ -1,7 +1,5 @@
-"""What is evaluated at every sample, and its form on a device."""
+"""A pipeline on a device: compile-time shape and numbers of its evaluation."""
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -13,58 +11,12 @@ from wsrender_kernels.spectrum import spectrum_length
 from wsrender_kernels.sweep import Shape
 
 from wsrender.engine.index_code import function_of_source, index_source
-from wsrender.indices.index_catalogue import is_dynamic
-from wsrender.notices import Notice
+from wsrender.pipeline.evaluation import Evaluation
+from wsrender.pipeline.pipeline import Pipeline
 from wsrender.robots.chain import Chain
 from wsrender.robots.kinematics import Kinematics
 
 REAL = {"float32": wp.float32, "float64": wp.float64}
-
-
-@dataclass(frozen=True, eq=False)
-class Evaluation:
-    """The indices to evaluate and how (the fields of the job document, resolved).
-
-    ``rows`` are 0…5 for x y z rx ry rz; ``penalty`` is K or None. ``host_inertia(q: (N, n)) -> (N, n, n)`` replaces the
-    chain's inertia matrix. ``options``: all values of the indices that have any, by index and option.
-    """
-
-    chain: Kinematics
-    indices: tuple[str, ...]
-    rows: tuple[int, ...] = (0, 1, 2)
-    convention: str = "standard"
-    penalty: float | None = None
-    characteristic_length_m: float = 1.0
-    torque_scaling: bool = False
-    host_inertia: Callable[[np.ndarray], np.ndarray] | None = None
-    options: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
-    notices: tuple[Notice, ...] = ()  # what to know of the values
-
-    @property
-    def dynamic(self) -> bool:
-        """Whether any index is dynamic."""
-        return any(is_dynamic(name) for name in self.indices)
-
-    @property
-    def device_chain(self) -> Chain | None:
-        """The chain that the kernels evaluate; None where the host computes all kinematics."""
-        chain = self.chain.geometry
-        return chain.dynamic if chain and self.dynamic and self.host_inertia is None else chain
-
-    @property
-    def given_kinematics(self) -> bool:
-        """Whether the host computes positions and Jacobians: there is no geometry that a kernel could evaluate."""
-        return self.chain.geometry is None
-
-    @property
-    def on_host(self) -> bool:
-        """Whether the host computes a part of every sample."""
-        return self.given_kinematics or (self.dynamic and self.host_inertia is not None)
-
-    @property
-    def mixed_rows(self) -> bool:
-        """Whether the task has linear and angular rows."""
-        return bool(self.rows) and min(self.rows) < 3 <= max(self.rows)
 
 
 def shape_of(evaluation: Evaluation, precision: str, method: str, **outputs: Any) -> Shape:
@@ -102,11 +54,9 @@ def drive(chain: Chain) -> tuple[tuple[int, ...], bool]:
     return tuple(int(s) for s in chain.joint_source), bool(own and np.all(chain.joint_is_revolute))
 
 
-def evaluation_model(evaluation: Evaluation, precision: str, origin: np.ndarray, limits: np.ndarray):
-    """The Model struct of an evaluation, without what the host computes; positions are relative to ``origin`` (3,).
-
-    ``limits``: numbers of all constraints, of `packed_constraints`.
-    """
+def pipeline_model(pipeline: Pipeline, limits: np.ndarray):
+    """The Model struct of a pipeline, without what the host computes; ``limits``: of `packed_constraints`."""
+    evaluation, precision, origin = pipeline.evaluation, pipeline.precision, pipeline.origin
     chain, real = evaluation.chain, REAL[precision]
     if device_chain := evaluation.device_chain:
         model = chain_model(device_chain.relative_to(origin), precision, len(limits))

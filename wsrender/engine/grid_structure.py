@@ -22,10 +22,10 @@ import numpy as np
 from wsrender_kernels.sampling import LANES, base_levels
 from wsrender_kernels.spectrum import LINEAR, in_base_axes
 
-from wsrender.engine.evaluation import Evaluation
 from wsrender.indices.entry import BASE_JOINT, TRAILING_JOINTS
 from wsrender.indices.index_catalogue import find, is_dynamic
 from wsrender.pipeline.constraints.constraint import STRUCTURES, Structure
+from wsrender.pipeline.evaluation import Evaluation
 from wsrender.pipeline.sampling import SamplingPlan
 from wsrender.robots.chain import Chain
 

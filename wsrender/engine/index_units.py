@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from wsrender.engine.evaluation import Evaluation
 from wsrender.indices.index_catalogue import is_dynamic, unit
 from wsrender.indices.units import task_matrix
+from wsrender.pipeline.evaluation import Evaluation
 from wsrender.robots.kinematics import Kinematics
 from wsrender.tolerances import FLAT
 

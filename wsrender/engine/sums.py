@@ -3,18 +3,27 @@
 import numpy as np
 from wsrender_kernels.voxels import QUANTUM_BITS
 
-from wsrender.engine.evaluation import REAL, Evaluation
+from wsrender.engine.evaluation import REAL
 from wsrender.errors import InputError
 from wsrender.indices.index_catalogue import find, is_dynamic
+from wsrender.pipeline.evaluation import Evaluation
+from wsrender.pipeline.pipeline import Pipeline
 from wsrender.robots.chain import Chain
 
 MARGIN = 1.01  # for rounding at the bound
 
 
-def scales_for(bounds: np.ndarray, samples: int, precision: str) -> np.ndarray:
-    """Powers of two (K,): a value up to its bound fits the kernel's integers, the sum of all samples 63 bits."""
-    bits = min(QUANTUM_BITS[REAL[precision]], 62 - int(max(samples, 1) - 1).bit_length())
-    return 2.0 ** np.floor(bits - np.log2(bounds))
+def scales_of(pipeline: Pipeline) -> np.ndarray:
+    """Powers of two (K,): a value up to its bound fits the kernel's integers, the sum of all samples 63 bits.
+
+    0 without bounds. By exponents alone: logarithms differ from processor to processor.
+    """
+    if pipeline.bounds is None:
+        return np.zeros(len(pipeline.evaluation.indices))
+    samples = max(pipeline.sampling.count, 1)
+    bits = min(QUANTUM_BITS[REAL[pipeline.precision]], 62 - (samples - 1).bit_length())
+    mantissa, exponent = np.frexp(pipeline.bounds)
+    return np.ldexp(1.0, bits - exponent + (mantissa == 0.5))
 
 
 def has_own_bound(evaluation: Evaluation, name: str) -> bool:

@@ -16,7 +16,7 @@ from wsrender_kernels.voxels import lattice, lowest
 from wsrender.engine.constraint_code import device_constraints, packed_constraints
 from wsrender.engine.devices import thread_count
 from wsrender.engine.drawn_configurations import configurations, device_space, given_space
-from wsrender.engine.evaluation import Evaluation, device_array, evaluation_model, shape_of
+from wsrender.engine.evaluation import device_array, pipeline_model, shape_of
 from wsrender.engine.grid_structure import (
     GridStructure,
     block_count,
@@ -31,10 +31,10 @@ from wsrender.engine.partial import Partial, joined, merge
 from wsrender.engine.ranges import check_range
 from wsrender.engine.row_buffer import RowBuffer
 from wsrender.engine.slabs import fitted
-from wsrender.engine.sums import has_own_bound
+from wsrender.engine.sums import has_own_bound, scales_of
 from wsrender.errors import NumericalError
-from wsrender.pipeline.constraints.constraint import STRUCTURES, Constraint, Structure
-from wsrender.pipeline.sampling import SamplingPlan
+from wsrender.pipeline.constraints.constraint import STRUCTURES, Structure
+from wsrender.pipeline.pipeline import Pipeline
 from wsrender.volume.lattice import LatticeBlock
 
 CHUNK_CPU, CHUNK_CUDA, CHUNK_ROWS, CHUNK_GIVEN = 1 << 20, 1 << 28, 1 << 18, 1 << 14
@@ -46,37 +46,18 @@ FOLD_AFTER = 2**31 - 2**29  # samples until the CPU, which counts in 32 bits, mo
 
 @dataclass(frozen=True, eq=False)
 class SweepPlan:
-    """Everything a range of samples needs: evaluation, sampling, lattice block, statistics, scales, target.
+    """What the engine makes of a pipeline."""
 
-    ``scales`` (K,): power of two by which each index is multiplied for its fixed-point sums; ``bounds`` (K,): the
-    largest absolute value for which they were chosen. ``collapse``: whether the structure of a grid is used.
-    """
-
-    evaluation: Evaluation
-    sampling: SamplingPlan
-    block: LatticeBlock | None
-    statistics: frozenset[str]
-    scales: np.ndarray
-    bounds: np.ndarray
-    precision: str
-    keep_rows: bool = False
-    keep_configuration: bool = False
-    keep_orientation: bool = False
-    collapse: bool = True
-    constraints: tuple[Constraint, ...] = ()
+    pipeline: Pipeline
 
     @cached_property
     def structure(self) -> GridStructure:
         """The samples that are evaluated, and those that each of them stands for."""
-        if self.keep_rows or not self.collapse:
-            return GridStructure(self.sampling)
-        kept = frozenset[Structure](STRUCTURES).intersection(*(each.keeps for each in self.constraints))
-        return structure_of(self.evaluation, self.sampling, kept)
-
-    @property
-    def origin(self) -> np.ndarray:
-        """Where the positions of a `Partial` are counted from, in the world (3,) [m]."""
-        return self.evaluation.chain.origin if self.block is None else self.block.origin
+        each = self.pipeline
+        if each.kept_rows is not None or not each.collapse:
+            return GridStructure(each.sampling)
+        kept = frozenset[Structure](STRUCTURES).intersection(*(constraint.keeps for constraint in each.constraints))
+        return structure_of(each.evaluation, each.sampling, kept)
 
     @property
     def sampling_path(self) -> str:
@@ -91,24 +72,25 @@ class SweepPlan:
     @cached_property
     def shape(self) -> Shape:
         """Compile-time part of the kernel."""
+        each, rows = self.pipeline, self.pipeline.kept_rows
         return shape_of(
-            self.evaluation,
-            self.precision,
-            self.sampling.method,
+            each.evaluation,
+            each.precision,
+            each.sampling.method,
             base_levels=self.structure.base_levels > 1,
-            voxels=self.block is not None,
-            maximum="maximum" in self.statistics,
-            minimum="minimum" in self.statistics,
-            sums="mean" in self.statistics,
-            keep_rows=self.keep_rows,
-            keep_configuration=self.keep_configuration,
-            keep_orientation=self.keep_orientation,
-            **device_constraints(self.constraints, self.evaluation.chain, self.origin, self.precision),
+            voxels=each.block is not None,
+            maximum="maximum" in each.statistics,
+            minimum="minimum" in each.statistics,
+            sums="mean" in each.statistics,
+            keep_rows=rows is not None,
+            keep_configuration="configuration" in (rows or ()),
+            keep_orientation="orientation" in (rows or ()),
+            **device_constraints(each.constraints, each.evaluation.chain, each.origin, each.precision),
         )
 
 
 def sweep(
-    plan: SweepPlan,
+    pipeline: Pipeline,
     first: int,
     count: int,
     devices: list[wp.Device],
@@ -124,19 +106,20 @@ def sweep(
     the samples are swept once for every slab of the lattice block. Raises InputError for another range, ResourceError
     where that would take too many slabs, NumericalError for a value that is not finite or beyond its bound.
     """
-    check_range(first, count, plan.sampling.count, plan.division)
+    plan = SweepPlan(pipeline)
+    check_range(first, count, pipeline.sampling.count, plan.division)
     shape, each = plan.shape, plan.structure.multiplicity
     first, count, chunk_size = first // each, count // each, chunk_size and -(-chunk_size // each)
     workers = devices
     if not devices[0].is_cuda:
         workers = devices * thread_count(threads)
-        if not plan.evaluation.on_host:
+        if not pipeline.evaluation.on_host:
             shape = replace(shape, shared=shared_coordinates(plan.structure.evaluated))
     chunk = _chunk_size(plan, chunk_size or _fair_share(count, workers))
     workers = workers[: max(-(-count // chunk), 1)]
     slabs = [None]
-    if plan.block is not None:
-        workers, slabs = fitted(plan.block, shape, workers, count * plan.structure.base_levels)
+    if pipeline.block is not None:
+        workers, slabs = fitted(pipeline.block, shape, workers, count * plan.structure.base_levels)
     partials = []
     for number, slab in enumerate(slabs):
 
@@ -147,14 +130,8 @@ def sweep(
         accumulators = [Accumulator(plan, shape, slab, device, chunk) for device in workers]
         partials.append(_swept(accumulators, _Queue(_chunks(first, count, chunk)), report))
     result = joined(partials, slabs[0].size if slabs[0] else 0)
-    _check_values(plan, result)
+    _check_values(pipeline, result)
     return result
-
-
-def from_origin(plan: SweepPlan, rows: np.ndarray) -> np.ndarray:
-    """Positions (N, 3) [m] in the world of rows of a sweep; of a robot far from the world's origin in float64."""
-    positions = np.ascontiguousarray(rows[:3].T)
-    return positions + plan.origin if plan.origin.any() else positions
 
 
 def _swept(accumulators: list["Accumulator"], queue: "_Queue", report: Callable[[int], None]) -> Partial:
@@ -193,7 +170,7 @@ def _fair_share(count: int, workers: list[wp.Device]) -> int:
 
 def _chunk_size(plan: SweepPlan, size: int) -> int:
     size = min(size, FOLD_AFTER // plan.structure.base_levels)
-    if plan.keep_rows:
+    if plan.shape.keep_rows:
         size = min(size, CHUNK_ROWS)
     if plan.shape.method == "given":
         size = min(size, CHUNK_GIVEN)
@@ -238,21 +215,23 @@ class Accumulator:
 
     def __init__(self, plan: SweepPlan, shape: Shape, slab: LatticeBlock | None, device: wp.Device, chunk: int):
         self.plan, self.shape, self.device, self.chunk = plan, shape, device, chunk
-        real = shape.real
+        real, pipeline = shape.real, plan.pipeline
         bits = bits_type(real)
         self._lowest = lowest(real)
         self._empty_count = int(np.full(shape.count_size, self._lowest, wp.dtype_to_numpy(bits)).view(np.int64)[0])
         self._size = slab.size if slab else 0
         voxels = self._size + 1 if slab else 0  # one to spare for positions outside
         self._kernel = loaded(sweep_kernel(shape, device.is_cuda), device)
-        limits = packed_constraints(plan.constraints, plan.evaluation.chain, plan.origin, plan.precision)
-        self._model = evaluation_model(plan.evaluation, plan.precision, plan.origin, limits)
+        limits = packed_constraints(
+            pipeline.constraints, pipeline.evaluation.chain, pipeline.origin, pipeline.precision
+        )
+        self._model = pipeline_model(pipeline, limits)
         given = shape.method == "given"
         evaluated = plan.structure.evaluated
         self._run = run_length(evaluated, shape.shared)
-        self._space = None if given else device_space(evaluated, plan.precision, device, self._run)
-        self._base = device_base(plan.structure, plan.sampling, real)
-        self._lattice = _device_lattice(slab, plan.block, real)
+        self._space = None if given else device_space(evaluated, pipeline.precision, device, self._run)
+        self._base = device_base(plan.structure, pipeline.sampling, real)
+        self._lattice = _device_lattice(slab, pipeline.block, real)
         reduced = shape.reduced
         self._extremes = device_memory(2 * reduced, bits, device)
         self._totals = device_memory(TOTAL_SLOTS * (shape.n_indices + len(shape.constraints)), wp.int64, device)
@@ -261,7 +240,7 @@ class Accumulator:
         buffers = (2 if device.is_cuda else 1) if shape.keep_rows else 0
         self._row_buffers = [RowBuffer(shape.n_rows, chunk, real, device, shape.interleaved) for _ in range(buffers)]
         outputs = self._outputs = outputs_type(shape)()
-        outputs.scales = device_array(plan.scales, real, device)
+        outputs.scales = device_array(scales_of(pipeline), real, device)
         outputs.extremes, outputs.totals = self._extremes, self._totals
         self._counts = as_type(self._records, wp.int64)
         outputs.records = as_type(self._records, record_type_of(shape))
@@ -335,22 +314,20 @@ class Accumulator:
 
     def _given(self, first: int, count: int):
         """Configurations and what the host computes of them; puts the latter into the model."""
-        evaluation, precision = self.plan.evaluation, self.plan.precision
-        given = self.plan.sampling.given
-        if given is None:
-            q = configurations(self.plan.sampling, np.arange(first, first + count), precision)
-        else:
-            q = given[first : first + count]
+        pipeline = self.plan.pipeline
+        evaluation, given = pipeline.evaluation, pipeline.sampling.given
+        part = slice(first, first + count)
+        q = configurations(pipeline, np.arange(part.start, part.stop)) if given is None else given[part]
         real, device, model = self.shape.real, self.device, self._model
         if evaluation.given_kinematics:
-            chain = evaluation.chain.relative_to(self.plan.origin)
+            chain = evaluation.chain.relative_to(pipeline.origin)
             model.position_given = device_array(chain.poses(q)[:, :3, 3].T.ravel(), real, device)
             if evaluation.indices:  # they may cost a Python class many times as much as poses
                 model.jacobian_given = device_array(chain.jacobians(q).reshape(count, -1).T.ravel(), real, device)
         if evaluation.dynamic and evaluation.host_inertia is not None:
             inertia = evaluation.host_inertia(q)
             model.inertia_given = device_array(inertia.reshape(count, -1).T.ravel(), real, device)
-        return given_space(q, first, precision, device)
+        return given_space(q, first, pipeline.precision, device)
 
     def _voxels(self, part: slice) -> tuple[np.ndarray, np.ndarray]:
         """Records and sums of some of the slab's voxels, (V, record_size) and (V, sums_size)."""
@@ -419,32 +396,32 @@ def _device_lattice(block: LatticeBlock | None, whole: LatticeBlock | None, real
     return grid
 
 
-def _check_values(plan: SweepPlan, partial: Partial) -> None:
+def _check_values(pipeline: Pipeline, partial: Partial) -> None:
     if not partial.admitted:
         return
     high, low = partial.maximum.astype(np.float64), partial.minimum.astype(np.float64)
-    for k, name in enumerate(plan.evaluation.indices):
+    for k, name in enumerate(pipeline.evaluation.indices):
         largest = max(abs(high[3 + k]), abs(low[3 + k]))
         if not np.isfinite([high[3 + k], low[3 + k]]).all():
             raise NumericalError(f"index {name} has a value that is not finite (largest {high[3 + k]})")
-        if largest > plan.bounds[k]:
-            raise NumericalError(_beyond(plan, name, largest, plan.bounds[k]))
-    if plan.block is not None:
-        edge, first, shape = plan.block.voxel_size_m, plan.block.first_from_origin, plan.block.shape
+        if pipeline.bounds and largest > pipeline.bounds[k]:
+            raise NumericalError(_beyond(pipeline, name, largest, pipeline.bounds[k]))
+    if pipeline.block is not None:
+        edge, first, shape = pipeline.block.voxel_size_m, pipeline.block.first_from_origin, pipeline.block.shape
         for axis in range(3):
             if not np.isfinite([low[axis], high[axis]]).all():
                 raise NumericalError(f"the end effector's {'xyz'[axis]} is not finite")
             if low[axis] < first[axis] * edge or high[axis] > (first[axis] + shape[axis]) * edge:
                 raise NumericalError(
                     f"the end effector reaches {'xyz'[axis]} = {low[axis]:.6g} … {high[axis]:.6g} m from "
-                    f"{plan.origin[axis]:.9g} m, outside the lattice block planned for it"
+                    f"{pipeline.origin[axis]:.9g} m, outside the lattice block planned for it"
                 )
 
 
-def _beyond(plan: SweepPlan, name: str, largest: float, bound: float) -> str:
+def _beyond(pipeline: Pipeline, name: str, largest: float, bound: float) -> str:
     """What to do about an index beyond its bound."""
     told = f"index {name} reaches {largest:.6g}, beyond {bound:.6g}"
-    if has_own_bound(plan.evaluation, name):
+    if has_own_bound(pipeline.evaluation, name):
         return (
             f"{told}, the bound of its entry and one per cent: its sums would overflow; give the entry a larger bound, "
             "or None for twice its maximum over a first pass"

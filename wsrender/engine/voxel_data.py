@@ -4,30 +4,31 @@ import numpy as np
 from wsrender_kernels.voxels import decode_extreme
 
 from wsrender.engine.partial import Partial
-from wsrender.engine.sweep_plan import SweepPlan
+from wsrender.engine.sums import scales_of
+from wsrender.pipeline.pipeline import Pipeline
 from wsrender.volume.volume_data import VolumeData
 from wsrender.volume.voxels import Voxels
 
 
-def volume_data(plan: SweepPlan, partial: Partial, units: dict[str, str]) -> VolumeData:
+def volume_data(pipeline: Pipeline, partial: Partial, units: dict[str, str]) -> VolumeData:
     """The occupied part of the lattice block, cropped, with the chosen statistics as floats."""
-    assert plan.block is not None
-    names, K = plan.evaluation.indices, len(plan.evaluation.indices)
+    assert pipeline.block is not None
+    names, K = pipeline.evaluation.indices, len(pipeline.evaluation.indices)
     statistics: dict[str, dict[str, np.ndarray]] = {}
     column = 0
     for statistic in ("maximum", "minimum"):
-        if statistic in plan.statistics:
+        if statistic in pipeline.statistics:
             records = partial.records[:, column : column + K]
             statistics[statistic] = {
                 name: decode_extreme(records[:, k], minimum=statistic == "minimum") for k, name in enumerate(names)
             }
             column += K
-    if "mean" in plan.statistics:
-        samples = np.maximum(partial.count, 1)
-        statistics["mean"] = {name: partial.sums[:, k] / plan.scales[k] / samples for k, name in enumerate(names)}
-    voxels = Voxels(plan.block.shape, partial.cells, partial.count, statistics)
+    if "mean" in pipeline.statistics:
+        samples, scales = np.maximum(partial.count, 1), scales_of(pipeline)
+        statistics["mean"] = {name: partial.sums[:, k] / scales[k] / samples for k, name in enumerate(names)}
+    voxels = Voxels(pipeline.block.shape, partial.cells, partial.count, statistics)
     at = voxels.at
     low = at.min(axis=1) if at.shape[1] else np.zeros(3, np.int64)
     nx, ny, nz = (int(size) for size in (at.max(axis=1) - low + 1)) if at.shape[1] else (0, 0, 0)
-    x, y, z = (int(start) for start in plan.block.first_voxel + low)
-    return VolumeData.of_voxels(plan.block.voxel_size_m, (x, y, z), voxels.moved((nx, ny, nz), -low), units)
+    x, y, z = (int(start) for start in pipeline.block.first_voxel + low)
+    return VolumeData.of_voxels(pipeline.block.voxel_size_m, (x, y, z), voxels.moved((nx, ny, nz), -low), units)

@@ -13,7 +13,7 @@ from wsrender.documents.kinetostatics import BoundaryForce
 from wsrender.documents.sampling import Sobol
 from wsrender.engine import sampled_positions
 from wsrender.errors import InputError
-from wsrender.pipeline.sampling import plan_sampling
+from wsrender.pipeline.pipeline import tip_pipeline
 from wsrender.reach.evidence import REACHABLE
 from wsrender.reach.inverse_solver import InverseSolver
 from wsrender.robots.chain import Chain
@@ -169,8 +169,6 @@ def _spanning_axes(positions: np.ndarray) -> np.ndarray:
 
 def _positions(chain: Chain, count: int, seed: int, device: str, threads: int | None) -> Iterator[np.ndarray]:
     """World positions (N, 3) of a Sobol set of configurations [m], piece by piece."""
-    plan = plan_sampling(chain, Sobol(count, seed=seed))
+    pipeline = tip_pipeline(chain, Sobol(count, seed=seed))
     for first in range(0, count, CHUNK):
-        yield sampled_positions(
-            chain, plan, device=device, threads=threads, first=first, count=min(CHUNK, count - first)
-        )
+        yield sampled_positions(pipeline, device, threads=threads, first=first, count=min(CHUNK, count - first))

@@ -12,7 +12,7 @@ from wsrender.documents.sampling import Sobol
 from wsrender.engine import sampled_positions
 from wsrender.mechanisms.mechanism import Mechanism
 from wsrender.mechanisms.serial_leg import NumericLeg
-from wsrender.pipeline.sampling import plan_sampling
+from wsrender.pipeline.pipeline import tip_pipeline
 
 SAMPLES = 512
 FLAT = 1e-9  # thickness that counts as none, relative to the extent
@@ -73,8 +73,7 @@ def flat_of(mechanism: Mechanism, rotation: np.ndarray) -> Flat | None:
 
 def _equations(leg: NumericLeg, rotation: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Unit normals (k, 3) and offsets (k,) of what holds the platform's origin in a leg's plane or line, base frame."""
-    plan = plan_sampling(leg.chain, Sobol(SAMPLES))
-    tips = sampled_positions(leg.chain, plan)
+    tips = sampled_positions(tip_pipeline(leg.chain, Sobol(SAMPLES)))
     middle = tips.mean(axis=0)
     _, sigma, axes = np.linalg.svd(tips - middle, full_matrices=False)
     thick = sigma > FLAT * max(sigma[0], leg.chain.reach * np.sqrt(SAMPLES) * FLAT)

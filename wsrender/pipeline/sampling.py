@@ -9,6 +9,7 @@ from typing import TypeVar
 
 import numpy as np
 
+from wsrender.content import Content
 from wsrender.documents.quantities import argument, real
 from wsrender.documents.sampling import BoundaryBiased, Converge, Grid, Random, Sobol
 from wsrender.errors import InputError, ResourceError
@@ -42,7 +43,7 @@ _JOE_KUO = (
 
 
 @dataclass(frozen=True, eq=False)
-class SamplingPlan:
+class SamplingPlan(Content):
     """A sampling of n coordinates, resolved against a chain's limits.
 
     ``lower``, ``upper`` (n,) float64 [rad or m]: interval of each coordinate, of zero width where locked. ``levels``
@@ -66,13 +67,27 @@ class SamplingPlan:
         width = self.upper - self.lower
         return width / np.maximum(self.levels - 1, 1) if self.method == "grid" else width
 
+    def __str__(self) -> str:
+        levels = self.levels.tolist()
+        if self.method != "grid":
+            return f"{self.method} {_short(self.count)}"
+        return f"grid {levels[0]}^{len(levels)}" if len({*levels}) == 1 else f"grid {' × '.join(map(str, levels))}"
+
+
+def _short(count: int) -> str:
+    """A whole number, as 1e6 where that is shorter."""
+    return min(str(count), np.format_float_scientific(count, trim="-", exp_digits=1).replace("e+", "e"), key=len)
+
 
 def plan_sampling(chain: JointSpace, sampling, max_samples: int | None = None) -> SamplingPlan:
-    """Resolve a sampling of the job document for a chain.
+    """Resolve a sampling of the job document, or configurations (N, n) [rad or m] themselves, for a chain.
 
     Raises InputError for unknown or out-of-range locked joints and wrong numbers of levels, ResourceError where a
     plan has more than ``max_samples`` samples.
     """
+    levels = np.ones(chain.n, np.int64)
+    if isinstance(sampling, np.ndarray):
+        return SamplingPlan("given", len(sampling), 0, chain.lower_limits, chain.upper_limits, levels, given=sampling)
     locked = _locked_values(chain, sampling.locked, "sampling.locked")
     lower = np.where(np.isnan(locked), chain.lower_limits, locked)
     upper = np.where(np.isnan(locked), chain.upper_limits, locked)
@@ -83,7 +98,6 @@ def plan_sampling(chain: JointSpace, sampling, max_samples: int | None = None) -
         raise TypeError("a converging sampling is a sequence of grids")
     count = sampling.count
     _check_count(count, max_samples, "count")
-    levels = np.ones(chain.n, np.int64)
     if isinstance(sampling, Sobol):
         if count > 2**SOBOL_BITS:
             raise ResourceError("sampling.count", f"{count} samples; a Sobol sequence has at most 2^{SOBOL_BITS}")
@@ -91,12 +105,6 @@ def plan_sampling(chain: JointSpace, sampling, max_samples: int | None = None) -
         return SamplingPlan("sobol", count, sampling.seed, lower, upper, levels, directions, shift)
     method = {Random: "random", BoundaryBiased: "boundary"}[type(sampling)]
     return SamplingPlan(method, count, sampling.seed, lower, upper, levels)
-
-
-def given_sampling(chain: JointSpace, q: np.ndarray) -> SamplingPlan:
-    """The plan whose samples are the configurations ``q`` (N, n) [rad or m]."""
-    levels = np.ones(chain.n, np.int64)
-    return SamplingPlan("given", len(q), 0, chain.lower_limits, chain.upper_limits, levels, given=q)
 
 
 def held_chain(chain: Joints, locked: Mapping[str, float]) -> Joints:

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from wsrender.engine import positions_at
+from wsrender.engine import sampled_positions
+from wsrender.pipeline.pipeline import tip_pipeline
 from wsrender.reach.dimension import fills_volume, in_own_voxel
 from wsrender.reach.evidence import REACHABLE, UNDECIDED
 from wsrender.reach.inverse_solver import InverseSolver
@@ -120,7 +121,7 @@ def _points(
     found = solver.solve(centers)
     if fills_volume(solver.whole, threads):
         return centers, found.label == REACHABLE
-    nearest = positions_at(solver.whole, found.q, threads=threads)
+    nearest = sampled_positions(tip_pipeline(solver.whole, found.q), threads=threads)
     return nearest, in_own_voxel(nearest, cells, voxel_size_m)
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from wsrender.documents.sampling import Sobol
 from wsrender.engine import configurations, evaluate_kinematics
-from wsrender.pipeline.sampling import plan_sampling
+from wsrender.pipeline.pipeline import tip_pipeline
 from wsrender.robots.kinematics import Kinematics
 from wsrender.tolerances import FLAT
 
@@ -50,7 +50,7 @@ def tip_set(chain: Kinematics, threads: int | None = None) -> TipSet:
     The dimension is the largest rank of the linear Jacobian (Sard 1942: where it is below 3 everywhere, the positions
     have no volume), whose columns are multiplied by the joints' ranges.
     """
-    q = configurations(plan_sampling(chain, Sobol(SAMPLES)), np.arange(SAMPLES))
+    q = configurations(tip_pipeline(chain, Sobol(SAMPLES)))
     found = evaluate_kinematics(chain, q, device="cpu", threads=threads)
     ranges = chain.upper_limits - chain.lower_limits
     sigma = np.zeros(3)

@@ -1,10 +1,12 @@
 """Cells of a lattice block that samples of a chain reach."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from wsrender.documents.sampling import Sobol
-from wsrender.engine import Evaluation, SweepPlan, devices_of, sweep
-from wsrender.pipeline.sampling import plan_sampling
+from wsrender.engine import devices_of, sweep
+from wsrender.pipeline.pipeline import tip_pipeline
 from wsrender.robots.kinematics import Kinematics
 from wsrender.volume.lattice import LatticeBlock
 
@@ -16,17 +18,8 @@ def occupied_cells(
 
     Raises NumericalError where a robot that is defined by a Python class leaves the block.
     """
-    sampling = plan_sampling(chain, Sobol(count, seed=seed))
-    plan = SweepPlan(
-        Evaluation(chain, (), ()),
-        sampling,
-        block,
-        frozenset(),
-        scales=np.zeros(0),
-        bounds=np.zeros(0),
-        precision="float32",
-    )
-    swept = sweep(plan, 0, count, devices_of(device), threads=threads)
+    pipeline = replace(tip_pipeline(chain, Sobol(count, seed=seed)), block=block, precision="float32")
+    swept = sweep(pipeline, 0, count, devices_of(device), threads=threads)
     occupied = np.zeros(block.size, bool)
     occupied[swept.cells] = True
     return occupied.reshape(block.shape)

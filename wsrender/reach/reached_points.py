@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from wsrender.engine import positions_at
+from wsrender.engine import sampled_positions
+from wsrender.pipeline.pipeline import tip_pipeline
 from wsrender.reach.evidence import REACHABLE, UNDECIDED
 from wsrender.reach.inverse_solver import InverseSolver
 from wsrender.reach.reached_set import tolerance_m
@@ -26,4 +27,4 @@ class ReachedPoints:
     def nearest(self, points: np.ndarray) -> np.ndarray:
         """The reached points (N, 3) nearest to points (N, 3) [m], as far as the solver found them."""
         q = self._solver.solve(points).q
-        return positions_at(self._chain, q, threads=self._threads)
+        return sampled_positions(tip_pipeline(self._chain, q), threads=self._threads)

@@ -8,9 +8,9 @@ from math import ceil
 import numpy as np
 
 from wsrender.documents.sampling import Sobol
-from wsrender.engine import configurations, positions_at
+from wsrender.engine import configurations, sampled_positions
 from wsrender.pipeline.constraints.region import Region
-from wsrender.pipeline.sampling import plan_sampling
+from wsrender.pipeline.pipeline import tip_pipeline
 from wsrender.reach.cover import covered_cells
 from wsrender.reach.evidence import UNREACHABLE
 from wsrender.reach.inverse_solver import InverseSolver, Solutions
@@ -178,11 +178,10 @@ class ReachedSet:
 
     def _positions(self, count: int) -> np.ndarray:
         """Positions (N, 3), shuffled, of a Sobol set of another seed than the solver's, half of it next to limits."""
-        plan = plan_sampling(self.chain, Sobol(count, seed=(self.seed + 1) % 2**63))
-        q = configurations(plan, np.arange(count))
+        q = configurations(tip_pipeline(self.chain, Sobol(count, seed=(self.seed + 1) % 2**63)))
         q[count // 2 :] = inwards(self.chain, towards_limits(self.chain, q[count // 2 :]), NEXT_TO)
         q = np.random.Generator(np.random.Philox(key=self.seed)).permutation(q)
-        return positions_at(self.chain, q, threads=self.threads)
+        return sampled_positions(tip_pipeline(self.chain, q), threads=self.threads)
 
 
 def _times_before(numbers: np.ndarray) -> np.ndarray:

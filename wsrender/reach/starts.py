@@ -8,7 +8,7 @@ from scipy.spatial import KDTree
 
 from wsrender.documents.sampling import Sobol
 from wsrender.engine import configurations
-from wsrender.pipeline.sampling import plan_sampling
+from wsrender.pipeline.pipeline import tip_pipeline
 from wsrender.robots.kinematics import Kinematics
 
 NEAR, NEAR_LIMITS, FURTHER = "near", "near limits", "further"
@@ -64,7 +64,7 @@ class Starts:
     def _anywhere(self) -> np.ndarray:
         """Samples of the joint space: those of the trees, then the further ones of either kind."""
         count = self._count + 2 * FURTHER_SAMPLES
-        return configurations(plan_sampling(self._chain, Sobol(count, seed=self._seed)), np.arange(count))
+        return configurations(tip_pipeline(self._chain, Sobol(count, seed=self._seed)))
 
     @cached_property
     def _further(self) -> np.ndarray:

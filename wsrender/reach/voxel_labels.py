@@ -4,7 +4,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from wsrender.engine import positions_at
+from wsrender.engine import sampled_positions
+from wsrender.pipeline.pipeline import tip_pipeline
 from wsrender.reach.dimension import fills_volume, in_own_voxel
 from wsrender.reach.evidence import LABELS, REACHABLE
 from wsrender.reach.inverse_solver import InverseSolver
@@ -48,7 +49,7 @@ def label_voxels(
     reasons = reasons_of(solver, found, points)
     label = found.label
     if not fills_volume(chain, threads):
-        nearest = positions_at(chain, found.q, threads=threads)
+        nearest = sampled_positions(tip_pipeline(chain, found.q), threads=threads)
         held = in_own_voxel(nearest, places, volume.voxel_size_m) | (np.pad(volume.count, 1)[outer] > 0)
         label, reasons = np.where(held, REACHABLE, label), np.where(held, "", reasons)
     code = np.select([reasons == name for name in REASONS], list(range(len(REASONS))))

@@ -1,7 +1,7 @@
 """Local indices of a robot: from the words of a job document to an evaluation of the engine."""
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -17,13 +17,13 @@ from wsrender.documents.quantities import argument, positive, real, sequence
 from wsrender.errors import InputError, MissingInertiaError
 from wsrender.indices.index_catalogue import CONVENTIONS, is_dynamic, option_values, resolve
 from wsrender.notices import Notice, warn
+from wsrender.pipeline.evaluation import Evaluation
+from wsrender.pipeline.pipeline import Pipeline
+from wsrender.pipeline.sampling import plan_sampling
 from wsrender.robot.model_robot import Robot, configuration_rows
 from wsrender.robot.user_robot import as_robot
 from wsrender.robots.model_warning import ModelWarning
 from wsrender.robots.plausibility import need_ranges
-
-if TYPE_CHECKING:
-    from wsrender.engine import Evaluation
 
 # In float32: up to 7e7 the indices of arms of 3 to 7 joints err by at most 2e-5 of their largest values, from 1.3e8 on
 # their smallest singular values of three and six rows count as 0 here and there; a tenth of that.
@@ -52,7 +52,7 @@ def evaluate_indices(
     ``robot`` is a Robot, a user-defined robot or what `load_robot` takes. The other arguments are those of the job
     document ``indices_at``; ``threads`` change no bit. Raises InputError, ModelError, MissingInertiaError.
     """
-    from wsrender.engine import evaluate_at
+    from wsrender.engine import evaluate_samples
 
     robot = as_robot(robot)
     evaluation = evaluation_of(
@@ -68,11 +68,12 @@ def evaluate_indices(
         precision=precision,
     )
     rows = configuration_rows(q, robot.chain.n)
-    values = evaluate_at(evaluation, rows, precision, device, threads=threads).values
+    pipeline = Pipeline(evaluation, plan_sampling(robot.chain, rows), kept_rows=frozenset(), precision=precision)
+    values = evaluate_samples(pipeline, device, threads=threads).values
     return dict(zip(evaluation.indices, values, strict=True))
 
 
-def evaluation_of_job(job: IndexChoices, robot: Robot) -> "Evaluation":
+def evaluation_of_job(job: IndexChoices, robot: Robot) -> Evaluation:
     """The engine's evaluation of a job's choices for a robot, each checked."""
     return evaluation_of(robot, **{name: getattr(job, name) for name in IndexChoices.model_fields if name != "device"})
 
@@ -89,10 +90,8 @@ def evaluation_of(
     index_options: Mapping[str, Mapping[str, Any]],
     inertia: str,
     precision: str,
-) -> "Evaluation":
+) -> Evaluation:
     """The engine's evaluation of these choices for a robot, each checked."""
-    from wsrender.engine import Evaluation
-
     if convention not in CONVENTIONS:
         raise InputError("convention", f"{convention!r} is not allowed; {', '.join(CONVENTIONS)} are")
     if convention == "wsrender_code" and precision != "float64":

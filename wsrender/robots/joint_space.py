@@ -1,16 +1,16 @@
 """The joint space of an arm: names, limits and what follows from them, whatever its geometry."""
 
-import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
-from functools import cached_property
 from typing import Self
 
 import numpy as np
 
+from wsrender.content import Content
+
 
 @dataclass(frozen=True, eq=False)
-class JointSpace:
+class JointSpace(Content):
     """The n coordinates of an arm, in order from base to end effector: what sampling, documents and results need."""
 
     name: str
@@ -34,23 +34,6 @@ class JointSpace:
     def n(self) -> int:
         """Number of coordinates: the length of a configuration."""
         return len(self.joint_names)
-
-    @cached_property
-    def content_hash(self) -> str:
-        """SHA-256 of every number and name, hexadecimal; functions cannot be hashed."""
-        digest = hashlib.sha256()
-        for f in fields(self):
-            value = getattr(self, f.name)
-            if callable(value):
-                continue
-            digest.update(f.name.encode())
-            if isinstance(value, np.ndarray):
-                digest.update(f"{value.dtype.str}{value.shape}".encode() + value.tobytes())
-            elif isinstance(value, JointSpace):
-                digest.update(value.content_hash.encode())
-            else:
-                digest.update(repr(value).encode())
-        return digest.hexdigest()
 
     def held(self, values: Mapping[str, float]) -> Self:
         """The same with joints, by name, held at a value [rad or m]."""

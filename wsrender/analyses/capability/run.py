@@ -12,7 +12,7 @@ from wsrender.analyses.execution import Execution
 from wsrender.analyses.partial_result import PartialResult, joined_rows, rows_of_shard
 from wsrender.documents.sampling import Sobol
 from wsrender.engine import sampled_positions
-from wsrender.pipeline.sampling import plan_sampling
+from wsrender.pipeline.pipeline import tip_pipeline
 from wsrender.reach.capability import (
     SAMPLES_PER_CELL,
     SEARCHED_BYTES,
@@ -149,5 +149,4 @@ class CapabilityAnalysis(Analysis):
 
 def _positions(chain: Kinematics) -> np.ndarray:
     """Positions (N, 3) of the first samples of a Sobol set [m]."""
-    plan = plan_sampling(chain, Sobol(FIRST_SAMPLES))
-    return sampled_positions(chain, plan)
+    return sampled_positions(tip_pipeline(chain, Sobol(FIRST_SAMPLES)))

@@ -14,10 +14,11 @@ from wsrender.analyses.execution import Execution
 from wsrender.analyses.headline import headline_of, no_headline
 from wsrender.analyses.partial_result import PartialResult, joined_rows, rows_of_shard
 from wsrender.analyses.refined import Progress, refined_together, volume_entry
-from wsrender.analyses.sampled_positions import sampled_positions
 from wsrender.documents.point_sets import PointSet
 from wsrender.documents.sampling import Random
+from wsrender.engine import sampled_positions
 from wsrender.multi import body_elements
+from wsrender.pipeline.pipeline import tip_pipeline
 from wsrender.reach import Event
 from wsrender.robot import Robot
 from wsrender.volume.table import Table
@@ -80,7 +81,8 @@ class CollaborativeVolumeAnalysis(Analysis):
             for side, source in enumerate(self.sources):
                 if isinstance(source, Robot):
                     sampling = Random(job.samples, seed=(2 * seed + side) % 2**63)
-                    source = sampled_positions(source, sampling, self.device, threads=execution.threads)
+                    pipeline = tip_pipeline(source.chain, sampling)
+                    source = sampled_positions(pipeline, self.device, threads=execution.threads)
                     done += job.samples
                 points.append(source)
                 tell(done)

@@ -11,8 +11,9 @@ from wsrender.analyses.execution import Execution
 from wsrender.analyses.indices_at.job import IndicesAtJob
 from wsrender.analyses.partial_result import PartialResult
 from wsrender.analyses.provenance import index_choices
-from wsrender.engine import Evaluated, Evaluation, evaluate_at, units_of
-from wsrender.pipeline.constraints.constraint import Constraint
+from wsrender.engine import Evaluated, evaluate_samples, units_of
+from wsrender.pipeline.pipeline import Pipeline
+from wsrender.pipeline.sampling import plan_sampling
 from wsrender.robot.constraints import constraints_for, samples_entry
 from wsrender.robot.indices import evaluation_of_job
 from wsrender.robot.model_robot import configuration_rows
@@ -29,7 +30,7 @@ class IndicesAtAnalysis(Analysis):
 
     def prepare(self, device: str, target: str) -> Settled:
         """Raises InputError for configurations of the wrong length."""
-        _ = self.evaluation, self.constraints
+        _ = self.pipeline
         return Settled(device, target, ((0, len(self.q)),))
 
     @cached_property
@@ -39,35 +40,29 @@ class IndicesAtAnalysis(Analysis):
         return configuration_rows(rows, len(self.robot.joint_names), "configurations")
 
     @cached_property
-    def evaluation(self) -> Evaluation:
-        """Which indices, and how they are computed."""
-        return evaluation_of_job(self.job, self.robot)
-
-    @cached_property
-    def constraints(self) -> tuple[Constraint, ...]:
-        """Which rows are admitted."""
-        return constraints_for(self.robot, self.job.constraints)
+    def pipeline(self) -> Pipeline:
+        """The rows, which of them are admitted, and what is computed of them."""
+        evaluation = evaluation_of_job(self.job, self.robot)
+        return Pipeline(
+            evaluation,
+            plan_sampling(self.robot.chain, self.q),
+            constraints_for(self.robot, self.job.constraints),
+            kept_rows=frozenset() if evaluation.given_kinematics else frozenset({"orientation"}),
+            precision=self.job.precision,
+        )
 
     @property
     def cost(self) -> Cost:
         """Rows, their numbers and the pictures."""
         width = 4 if self.job.precision == "float32" else 8
-        held = float(len(self.q) * (3 + 6 + len(self.evaluation.indices)) * width)
+        held = float(len(self.q) * (3 + 6 + len(self.pipeline.evaluation.indices)) * width)
         drawn, seconds = pictures_cost("histogram", "robot")
         files = DOCUMENT_BYTES + drawn + self.q.nbytes + held
         return Cost(len(self.q), self.q.nbytes + held, files, len(self.q) / ROWS_PER_S + seconds)
 
     def compute(self, shard: int, execution: Execution, tell: Tell) -> PartialResult:
         """Positions and values of all rows: arrays of `Evaluated` by name."""
-        rows = evaluate_at(
-            self.evaluation,
-            self.q,
-            self.job.precision,
-            self.device,
-            with_orientation=not self.evaluation.given_kinematics,
-            threads=execution.threads,
-            constraints=self.constraints,
-        )
+        rows = evaluate_samples(self.pipeline, self.device, threads=execution.threads)
         tell(len(self.q))
         return PartialResult({name: value for name, value in vars(rows).items() if value is not None})
 
@@ -77,9 +72,9 @@ class IndicesAtAnalysis(Analysis):
         With constraints the table ``admission`` says of every row why it is rejected, "" where it is not; values of
         rejected ones are NaN, and count in no extreme.
         """
-        rows, names = Evaluated(**partial.arrays), self.evaluation.indices
+        rows, names = Evaluated(**partial.arrays), self.pipeline.evaluation.indices
         admitted, about, tables = self._admission(rows.rejected)
-        units = units_of(self.evaluation)
+        units = units_of(self.pipeline.evaluation)
         values = dict(zip(names, np.where(admitted, rows.values, np.nan), strict=True))
         entries = {
             "sampling": {"method": "given", "samples": len(self.q)},
@@ -92,17 +87,17 @@ class IndicesAtAnalysis(Analysis):
                 }
                 for name, v in values.items()
             },
-            "choices": index_choices(self.job, self.evaluation),
+            "choices": index_choices(self.job, self.pipeline.evaluation),
         }
         found = DistributionMap(rows.position, values, units, self.q, self.robot.joint_names, rows.quat_wxyz)
         sample = found.only(admitted) if tables else None
-        return Draft(entries, notices=self.evaluation.notices, map=found, sample=sample, tables=tables)
+        return Draft(entries, notices=self.pipeline.evaluation.notices, map=found, sample=sample, tables=tables)
 
     def _admission(self, rejected: np.ndarray | None) -> tuple[np.ndarray, dict[str, Any], dict[str, Table]]:
         """Which rows are admitted (N,) bool, what the document says of it, and the table of reasons."""
         if rejected is None:
             return np.ones(len(self.q), bool), {}, {}
-        reasons = np.array(["", *(each.name for each in self.constraints)])
+        reasons = np.array(["", *(each.name for each in self.pipeline.constraints)])
         counts = np.bincount(rejected, minlength=len(reasons))[1:]
-        about = samples_entry(self.constraints, len(self.q), counts)
+        about = samples_entry(self.pipeline.constraints, len(self.q), counts)
         return rejected == 0, about, {"admission": Table({"reason": reasons[rejected]})}

@@ -18,6 +18,7 @@ from wsrender.kinetostatics.characteristic_length import CharacteristicLength
 from wsrender.kinetostatics.force_fields import ForceField, posture_tables
 from wsrender.kinetostatics.passivity import LoopWork, largest_loop_work, stiffness_bound, stiffnesses
 from wsrender.notices import Notice
+from wsrender.pipeline.pipeline import tip_pipeline
 from wsrender.pipeline.sampling import plan_sampling
 from wsrender.robots.kinematics import Kinematics
 from wsrender.robots.reachable_box import reachable_box
@@ -89,12 +90,13 @@ class KinetostaticFieldAnalysis(Analysis):
         bound of the work [J], share of paths on which the force is clipped.
         """
         force_field = ForceField(self.robot, self.job.field, self.device, threads=execution.threads)
-        sampling = plan_sampling(self.robot.chain, self.job.sampling, MOST_SAMPLES)
-        cells, rows = np.empty((sampling.count, 3), np.int64), np.empty((sampling.count, 6 + len(SCALARS)))
+        pipeline = tip_pipeline(self.robot.chain, self.job.sampling, MOST_SAMPLES)
+        drawn = pipeline.sampling.count
+        cells, rows = np.empty((drawn, 3), np.int64), np.empty((drawn, 6 + len(SCALARS)))
         shown = None
-        for first in range(0, sampling.count, CHUNK):
-            numbers = np.arange(first, min(first + CHUNK, sampling.count))
-            for k, q in zip(numbers, configurations(sampling, numbers), strict=True):
+        for first in range(0, drawn, CHUNK):
+            numbers = np.arange(first, min(first + CHUNK, drawn))
+            for k, q in zip(numbers, configurations(pipeline, numbers), strict=True):
                 state = force_field.evaluate(q)
                 cells[k] = np.floor(state.posture.position / self.settled.voxel_size_m + ON_FACE)
                 size = np.sqrt(state.force @ state.force)
@@ -107,7 +109,7 @@ class KinetostaticFieldAnalysis(Analysis):
         greatest = np.zeros(len(found))
         np.maximum.at(greatest, voxel.ravel(), rows[:, 6])
         loop = largest_loop_work(force_field)
-        shown = configurations(sampling, np.zeros(1, np.int64))[0] if shown is None else shown
+        shown = configurations(pipeline, np.zeros(1, np.int64))[0] if shown is None else shown
         arrays = {"shown": shown, "cells": found, "count": count, "sums": sums, "greatest": greatest}
         about = np.array([loop.work_j, loop.length_m, loop.paths, loop.bound_j, loop.clipped])
         return PartialResult(arrays | {"stiffness": stiffnesses(force_field), "loop": about})
@@ -213,5 +215,5 @@ def _voxel_bytes(job: KinetostaticFieldJob) -> int:
 
 def _voxel_size(force_field: ForceField, samples: int) -> float:
     chain = force_field.chain
-    positions = sampled_positions(chain, plan_sampling(chain, Sobol(FIRST_SAMPLES)))
+    positions = sampled_positions(tip_pipeline(chain, Sobol(FIRST_SAMPLES)))
     return default_voxel_size(positions, samples, divisions=DIVISIONS)

@@ -20,14 +20,15 @@ from wsrender.analyses.master_slave_mapping.job import (
     MasterSlaveMappingJob,
 )
 from wsrender.analyses.partial_result import PartialResult
-from wsrender.analyses.sampled_positions import sampled_positions
 from wsrender.documents.point_sets import PointSet
+from wsrender.engine import sampled_positions
 from wsrender.errors import InputError, ResourceError
 from wsrender.geometry.alpha_shape import AlphaShape
 from wsrender.geometry.surfaces import surface_entry
 from wsrender.mapping import LinearMapping, MeasuredSet, VoxelSet, best_mapping, largest_factor, scale_curve
 from wsrender.mechanisms.hybrid import workspace_points
 from wsrender.notices import Notice
+from wsrender.pipeline.pipeline import tip_pipeline
 from wsrender.pipeline.sampling import plan_sampling
 from wsrender.robot import Robot
 from wsrender.robots.reachable_box import reachable_box
@@ -143,8 +144,8 @@ class MasterSlaveMappingAnalysis(Analysis):
             return source
         if isinstance(source, MappedMechanism):
             return workspace_points(source.mechanism, source.count, device=self.device, threads=threads)
-        sampling = _sampling(self.job, side)
-        return sampled_positions(source, sampling, self.device, max_samples=MOST_POINTS, threads=threads)
+        pipeline = tip_pipeline(source.chain, _sampling(self.job, side), MOST_POINTS)
+        return sampled_positions(pipeline, self.device, threads=threads)
 
     def _rotation(self) -> np.ndarray:
         return self.job.rotation.matrix()[:3, :3] if self.job.rotation else np.eye(3)

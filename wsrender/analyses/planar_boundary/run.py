@@ -13,7 +13,7 @@ from wsrender.analyses.headline import headline, no_headline
 from wsrender.analyses.partial_result import PartialResult
 from wsrender.analyses.partial_tables import tables_of, with_tables
 from wsrender.analyses.planar_boundary.job import PlanarBoundaryJob
-from wsrender.analyses.sampled_positions import sampled_positions
+from wsrender.engine import sampled_positions
 from wsrender.errors import NumericalError
 from wsrender.geometry.planar.agreement import disagreements, signed_area
 from wsrender.geometry.planar.exact_boundary import ExactBoundary
@@ -22,6 +22,7 @@ from wsrender.geometry.planar.monte_carlo import MonteCarloBoundary, monte_carlo
 from wsrender.geometry.planar.planar_chain import PlanarChain, planar_chain
 from wsrender.geometry.planar.segments import segment_entry, segment_table
 from wsrender.notices import Notice
+from wsrender.pipeline.pipeline import tip_pipeline
 from wsrender.pipeline.sampling import plan_sampling
 from wsrender.robot import model_chain
 from wsrender.volume.table import Table
@@ -64,7 +65,7 @@ class PlanarBoundaryAnalysis(Analysis):
         job = self.job
         exact = ExactBoundary(self.chain)
         how = {"threads": execution.threads, "progress": tell}
-        positions = sampled_positions(self.robot, job.sampling, self.device, **how)
+        positions = sampled_positions(tip_pipeline(self.robot.chain, job.sampling), self.device, **how)
         points = self.chain.plane.coordinates(positions)
         estimated = monte_carlo_boundary(self.chain, points, job.cells, job.line_tolerance_m2, job.arc_tolerance_m4)
         about = {"exact": _exact_entry(exact), "monte_carlo": _estimated_entry(estimated, exact)}

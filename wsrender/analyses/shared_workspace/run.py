@@ -150,10 +150,10 @@ class SharedWorkspaceAnalysis(Composed):
     def _scan(self, scan: PlacementScan, partial: PartialParts) -> np.ndarray:
         """Volumes (values, K) [m³] reached by at least 1 … K robots at each value."""
         robots = enumerate(self.several.plans)
-        others = [(plan.sweep.block, partial.parts[k].sweep.cells) for k, plan in robots if k != scan.robot]
+        others = [(plan.pipeline.block, partial.parts[k].sweep.cells) for k, plan in robots if k != scan.robot]
         moved = enumerate(self.scanned, start=len(self.several.plans))
         return scanned_volumes(
-            others, [(plan.sweep.block, occupied_cells(plan, partial.parts[k])) for k, plan in moved]
+            others, [(plan.pipeline.block, occupied_cells(plan, partial.parts[k])) for k, plan in moved]
         )
 
 
@@ -169,7 +169,7 @@ def occupied_part(plan: Any) -> Part:
     swept = part_of(plan)
 
     def compute(first: int, number: int, execution: Execution, tell: Tell) -> PartialResult:
-        occupied = np.zeros(plan.sweep.block.size, bool)
+        occupied = np.zeros(plan.pipeline.block.size, bool)
         occupied[swept.compute(first, number, execution, tell).sweep.cells] = True
         return PartialResult({"bits": np.packbits(occupied)})
 
@@ -181,15 +181,15 @@ def occupied_part(plan: Any) -> Part:
 
 def occupied_cells(plan: Any, partial: PartialResult) -> np.ndarray:
     """Numbers of the voxels, in the block of the plan, where its sweep has been."""
-    return np.flatnonzero(np.unpackbits(partial["bits"], count=plan.sweep.block.size))
+    return np.flatnonzero(np.unpackbits(partial["bits"], count=plan.pipeline.block.size))
 
 
 def _check_volume(several: SeveralPlans) -> None:
     """Whether the arrays of what robots share fit in memory, however far apart they stand; raises ResourceError."""
-    plans = [plan.sweep for plan in several.plans]
-    products = len(plans[0].evaluation.indices) if "maximum" in plans[0].statistics else 0
-    blocks = [plan.block for plan in plans if plan.block is not None]
-    check_voxels(block_of_all(blocks), len(plans) * VOLUME_BYTES + 4 * (1 + products))
+    pipelines = [plan.pipeline for plan in several.plans]
+    products = len(pipelines[0].evaluation.indices) if "maximum" in pipelines[0].statistics else 0
+    blocks = [each.block for each in pipelines if each.block is not None]
+    check_voxels(block_of_all(blocks), len(pipelines) * VOLUME_BYTES + 4 * (1 + products))
 
 
 def _meshes(shared: VolumeData) -> "tuple[dict[str, trimesh.Trimesh], dict[str, Any]]":

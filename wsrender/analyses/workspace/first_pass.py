@@ -6,8 +6,10 @@ from functools import cached_property
 import numpy as np
 
 from wsrender.documents.sampling import Sobol
-from wsrender.engine import Evaluated, Evaluation, configurations, evaluate_at, evaluate_kinematics
-from wsrender.engine.sums import own_bound, scales_for
+from wsrender.engine import Evaluated, configurations, evaluate_kinematics, evaluate_samples
+from wsrender.engine.sums import own_bound
+from wsrender.pipeline.evaluation import Evaluation
+from wsrender.pipeline.pipeline import Pipeline
 from wsrender.pipeline.sampling import SamplingPlan, plan_sampling
 from wsrender.robots.reachable_box import reachable_box
 from wsrender.tolerances import FLAT
@@ -30,11 +32,12 @@ class FirstPass:
     @cached_property
     def evaluated(self) -> Evaluated:
         """Positions and values of the coarse samples, in float64 on the CPU: the same on every target."""
-        return evaluate_at(self.evaluation, configurations(self._coarse, np.arange(SAMPLES)))
+        return evaluate_samples(self._coarse.at(configurations(self._coarse)))
 
-    @property
-    def _coarse(self) -> SamplingPlan:
-        return plan_sampling(self.evaluation.chain, Sobol(count=SAMPLES, seed=0, locked=self.locked))
+    @cached_property
+    def _coarse(self) -> Pipeline:
+        sampling = Sobol(count=SAMPLES, seed=0, locked=self.locked)
+        return Pipeline(self.evaluation, plan_sampling(self.evaluation.chain, sampling))
 
     def voxel_size(self, sampling: SamplingPlan | None, divisions: float = MOST_DIVISIONS) -> float:
         """Default voxel edge [m] for the samples of a plan, at most so many in the size; None: for as many as it takes.
@@ -73,16 +76,13 @@ class FirstPass:
         low, high = np.maximum(low, whole.center - reach), np.minimum(high, whole.center + reach)
         return block_around(low, high, voxel_size_m, whole.foot)
 
-    def sum_scales(self, samples: int, precision: str) -> tuple[np.ndarray, np.ndarray]:
-        """Scales and bounds (K,) of the fixed-point sums: the indices' own, else from the coarse maximum."""
-        return scales_for(self._bounds, samples, precision), self._bounds
-
     @cached_property
-    def _bounds(self) -> np.ndarray:
+    def bounds(self) -> tuple[float, ...]:
+        """Bounds (K,) of the fixed-point sums: the indices' own, else from the coarse maximum."""
         bounds = np.array([own_bound(self.evaluation, name) for name in self.evaluation.indices])
         unknown = np.isnan(bounds)
         if unknown.any():
             headroom = HEADROOM_CODE if self.evaluation.convention == "wsrender_code" else HEADROOM
             largest = headroom * np.abs(self.evaluated.values[unknown]).max(axis=1)
             bounds[unknown] = np.where(largest > 0, largest, 1.0)
-        return bounds
+        return tuple(bounds.tolist())

@@ -5,7 +5,8 @@ from typing import Any
 
 from wsrender.analyses.partial_result import PartialResult
 from wsrender.analyses.refined import Refined
-from wsrender.engine import Partial, SweepPlan
+from wsrender.engine import Partial
+from wsrender.pipeline.pipeline import Pipeline
 
 SWEEP = ("extremes", "totals", "cells", "count", "records", "sums", "rejected")
 ROWS = "rows_"
@@ -16,7 +17,7 @@ class WorkspacePartial:
     """What a sweep has found, and for a converging job the whole sequence of global values."""
 
     sweep: Partial
-    plan: SweepPlan
+    pipeline: Pipeline
     convergence: list[dict[str, Any]] | None = None
     refined: Refined | None = None
 

@@ -1,6 +1,7 @@
 """The result of a ``workspace`` job from its merged partial result."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -12,8 +13,7 @@ from wsrender.analyses.refined import by_measure
 from wsrender.analyses.volume_notices import few_samples, occupied_differs, tolerance_not_met
 from wsrender.analyses.workspace.job import WorkspaceJob
 from wsrender.analyses.workspace.partial import WorkspacePartial
-from wsrender.engine import Partial, SweepPlan, configurations, evaluate_at, units_of
-from wsrender.engine.sweep_plan import from_origin
+from wsrender.engine import Partial, SweepPlan, configurations, evaluate_samples, from_origin, units_of
 from wsrender.engine.voxel_data import volume_data
 from wsrender.global_indices import (
     VoxelVolumes,
@@ -25,6 +25,7 @@ from wsrender.global_indices import (
 )
 from wsrender.notices import Notice
 from wsrender.pipeline.constraints.region import Region
+from wsrender.pipeline.pipeline import Pipeline
 from wsrender.pipeline.sampling import subsample
 from wsrender.reach.holes import share_of_holes, share_unseen
 from wsrender.reach.voxel_labels import counts
@@ -40,25 +41,25 @@ def workspace_draft(job: WorkspaceJob, robot: Robot, found: WorkspacePartial, th
     """Map, picture sample, volume data, skeleton, surface and the entries of the document."""
     from wsrender.geometry.surfaces import surfaces
 
-    plan, partial, refined = found.plan, found.sweep, found.refined
-    samples = samples_entry(plan.constraints, partial.samples, partial.rejected)
+    pipeline, partial, refined = found.pipeline, found.sweep, found.refined
+    samples = samples_entry(pipeline.constraints, partial.samples, partial.rejected)
     check_admitted(samples)
-    evaluation = plan.evaluation
+    evaluation = pipeline.evaluation
     units = units_of(evaluation)
-    volume = volume_data(plan, partial, units)
+    volume = volume_data(pipeline, partial, units)
     volumes = voxel_volumes(volume)
-    sample = _picture_sample(plan, robot, units, threads)
+    sample = _picture_sample(pipeline, robot, units, threads)
     measure = refined.measure if refined else None
     labels = refined.voxels if refined else None
     measures = by_measure(measure, measure)
     solid = measures["volume_m3"]["refined"]
     meshes, surface_entries = surfaces(job.surfaces, volume, sample.position)
     document: dict[str, Any] = {
-        "sampling": _sampling_entry(job, plan, partial),
+        "sampling": _sampling_entry(job, pipeline, partial),
         **samples,
-        "indices": _index_entries(plan, partial, volume, units),
+        "indices": _index_entries(pipeline, partial, volume, units),
         "choices": index_choices(job, evaluation),
-        "voxel_size_m": plan.block.voxel_size_m if plan.block else None,
+        "voxel_size_m": pipeline.block.voxel_size_m if pipeline.block else None,
         **measures,
         "volume_m3": {
             "occupied": volumes.occupied,
@@ -69,12 +70,12 @@ def workspace_draft(job: WorkspaceJob, robot: Robot, found: WorkspacePartial, th
         "voxel_labels": counts(labels) if labels else None,
         "surfaces": surface_entries,
         "bounds_m": {
-            "lower": [float(v) for v in partial.minimum[:3] + plan.origin],
-            "upper": [float(v) for v in partial.maximum[:3] + plan.origin],
+            "lower": [float(v) for v in partial.minimum[:3] + pipeline.origin],
+            "upper": [float(v) for v in partial.maximum[:3] + pipeline.origin],
         },
         "global": {
             "global_isotropy": global_isotropy(partial),
-            **_structural_length(robot, measure, constrained=bool(plan.constraints)),
+            **_structural_length(robot, measure, constrained=bool(pipeline.constraints)),
         },
         "convergence": found.convergence,
     }
@@ -83,14 +84,18 @@ def workspace_draft(job: WorkspaceJob, robot: Robot, found: WorkspacePartial, th
         headline_of(measure),
         (
             *tolerance_not_met(measure),
-            *_notices(job, robot, plan, volume, volumes, solid, threads),
-            *_index_notices(plan, partial),
+            *_notices(job, robot, pipeline, volume, volumes, solid, threads),
+            *_index_notices(pipeline, partial),
         ),
-        {"sampling_path": plan.sampling_path, "seed": plan.sampling.seed},
-        map=_kept_map(plan, partial, robot, units) if plan.keep_rows else None,
+        {
+            "pipeline": str(pipeline),
+            "sampling_path": SweepPlan(pipeline).sampling_path,
+            "seed": pipeline.sampling.seed,
+        },
+        map=_kept_map(pipeline, partial, robot, units) if pipeline.kept_rows is not None else None,
         sample=sample,
         volume=volume,
-        skeleton=robot.skeleton(_middle(plan)),
+        skeleton=robot.skeleton(_middle(pipeline)),
         meshes=meshes,
         volumes={"reachability": labels} if labels else {},
     )
@@ -117,7 +122,7 @@ def _structural_length(robot: Robot, measure: dict[str, Any] | None, *, constrai
 def _notices(
     job: WorkspaceJob,
     robot: Robot,
-    plan: SweepPlan,
+    pipeline: Pipeline,
     volume: VolumeData,
     volumes: VoxelVolumes,
     solid: dict[str, Any] | None,
@@ -127,16 +132,16 @@ def _notices(
     holes = None
     if solid and robot.chain.geometry:
         held = robot.chain.held(job.sampling.locked)
-        region = next((each for each in plan.constraints if isinstance(each, Region)), None)
-        holes = share_of_holes(held, volume, seed=plan.sampling.seed, threads=threads, region=region)
+        region = next((each for each in pipeline.constraints if isinstance(each, Region)), None)
+        holes = share_of_holes(held, volume, seed=pipeline.sampling.seed, threads=threads, region=region)
     yield from few_samples(holes, share_unseen(volume))
     yield from occupied_differs(volumes.occupied, solid["value"] if solid else None)
 
 
-def _index_notices(plan: SweepPlan, partial: Partial) -> Iterator[Notice]:
+def _index_notices(pipeline: Pipeline, partial: Partial) -> Iterator[Notice]:
     """What to know of the values of the indices."""
-    yield from plan.evaluation.notices
-    if not partial.maximum[3 : 3 + len(plan.evaluation.indices)].any():
+    yield from pipeline.evaluation.notices
+    if not partial.maximum[3 : 3 + len(pipeline.evaluation.indices)].any():
         yield Notice(
             "task_without_motion",
             "all indices are 0: the task has a direction in which the arm cannot move",
@@ -145,8 +150,8 @@ def _index_notices(plan: SweepPlan, partial: Partial) -> Iterator[Notice]:
         )
 
 
-def _sampling_entry(job: WorkspaceJob, plan: SweepPlan, partial: Partial) -> dict[str, Any]:
-    sampling = plan.sampling
+def _sampling_entry(job: WorkspaceJob, pipeline: Pipeline, partial: Partial) -> dict[str, Any]:
+    sampling = pipeline.sampling
     entry: dict[str, Any] = {"method": job.sampling.method, "samples": partial.samples, "seed": sampling.seed}
     if sampling.method == "grid":
         entry["per_joint"] = [int(level) for level in sampling.levels]
@@ -154,8 +159,8 @@ def _sampling_entry(job: WorkspaceJob, plan: SweepPlan, partial: Partial) -> dic
     return entry
 
 
-def _index_entries(plan: SweepPlan, partial: Partial, volume: VolumeData, units: dict[str, str]) -> dict[str, Any]:
-    high, low, means = partial.maximum, partial.minimum, joint_means(plan, partial)
+def _index_entries(pipeline: Pipeline, partial: Partial, volume: VolumeData, units: dict[str, str]) -> dict[str, Any]:
+    high, low, means = partial.maximum, partial.minimum, joint_means(pipeline, partial)
     return {
         name: {
             "maximum": float(high[3 + k]),
@@ -164,22 +169,22 @@ def _index_entries(plan: SweepPlan, partial: Partial, volume: VolumeData, units:
             "workspace_mean": workspace_mean(volume, name),
             "unit": units[name],
         }
-        for k, name in enumerate(plan.evaluation.indices)
+        for k, name in enumerate(pipeline.evaluation.indices)
     }
 
 
-def _kept_map(plan: SweepPlan, partial: Partial, robot: Robot, units: dict[str, str]) -> DistributionMap:
-    K, n = len(plan.evaluation.indices), robot.chain.n
+def _kept_map(pipeline: Pipeline, partial: Partial, robot: Robot, units: dict[str, str]) -> DistributionMap:
+    K, n, columns = len(pipeline.evaluation.indices), robot.chain.n, pipeline.kept_rows or ()
     rows = np.concatenate([partial.rows[first] for first in sorted(partial.rows)], axis=1)
-    if plan.constraints:
+    if pipeline.constraints:
         rows = rows[:, rows[-1] == 0]
     after = 3 + K
-    q = rows[after : after + n].T if plan.keep_configuration else None
-    after += n * plan.keep_configuration
-    quat = rows[after : after + 4].T if plan.keep_orientation else None
+    q = rows[after : after + n].T if "configuration" in columns else None
+    after += n * ("configuration" in columns)
+    quat = rows[after : after + 4].T if "orientation" in columns else None
     return DistributionMap(
-        from_origin(plan, rows),
-        dict(zip(plan.evaluation.indices, rows[3 : 3 + K], strict=True)),
+        from_origin(pipeline, rows),
+        dict(zip(pipeline.evaluation.indices, rows[3 : 3 + K], strict=True)),
         units,
         q,
         robot.joint_names,
@@ -187,16 +192,17 @@ def _kept_map(plan: SweepPlan, partial: Partial, robot: Robot, units: dict[str, 
     )
 
 
-def _picture_sample(plan: SweepPlan, robot: Robot, units: dict[str, str], threads: int | None) -> DistributionMap:
+def _picture_sample(pipeline: Pipeline, robot: Robot, units: dict[str, str], threads: int | None) -> DistributionMap:
     """A fixed subsample of the samples, evaluated anew in float64 on the CPU."""
-    q = configurations(plan.sampling, subsample(plan.sampling.count, PICTURE_SAMPLES))
-    evaluated = evaluate_at(plan.evaluation, q, threads=threads, constraints=plan.constraints)
+    exact = replace(pipeline, precision="float64")
+    q = configurations(exact, subsample(pipeline.sampling.count, PICTURE_SAMPLES))
+    evaluated = evaluate_samples(exact.at(q), threads=threads)
     admitted = slice(None) if evaluated.rejected is None else evaluated.rejected == 0
-    values = dict(zip(plan.evaluation.indices, evaluated.values[:, admitted], strict=True))
+    values = dict(zip(pipeline.evaluation.indices, evaluated.values[:, admitted], strict=True))
     return DistributionMap(evaluated.position[admitted], values, units, q[admitted], robot.joint_names)
 
 
-def _middle(plan: SweepPlan) -> np.ndarray:
+def _middle(pipeline: Pipeline) -> np.ndarray:
     """Mid-range of every joint, and a quarter to either side."""
-    lower, upper = plan.sampling.lower, plan.sampling.upper
+    lower, upper = pipeline.sampling.lower, pipeline.sampling.upper
     return np.stack([lower + share * (upper - lower) for share in (0.25, 0.5, 0.75)])

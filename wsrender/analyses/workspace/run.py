@@ -29,11 +29,11 @@ from wsrender.analyses.workspace.result import PICTURE_SAMPLES, workspace_draft
 from wsrender.documents.options import IsoSurface
 from wsrender.documents.sampling import Converge, Grid
 from wsrender.engine import Partial, SweepPlan, devices_of, fitted, merge, sweep
-from wsrender.engine.sums import scales_for
 from wsrender.engine.voxel_data import volume_data
 from wsrender.errors import InputError, NotConvergedError
 from wsrender.global_indices import joint_means, workspace_mean
 from wsrender.indices.index_catalogue import default_statistics, resolve
+from wsrender.pipeline.pipeline import Pipeline
 from wsrender.pipeline.sampling import SamplingPlan, plan_sampling
 from wsrender.robot import Robot
 from wsrender.robot.constraints import check_admitted, constraints_for, samples_entry
@@ -46,13 +46,12 @@ LABEL_BYTES = 24  # of a voxel of the block: which are near, samples, and what m
 
 @dataclass(frozen=True, kw_only=True)
 class WorkspaceSettled(Settled):
-    """With the block of voxels, bounds and scales (K,) of the indices' sums, and how samples are evaluated."""
+    """With the block of voxels, bounds (K,) of the indices for their sums, and how samples are evaluated."""
 
     voxel_size_m: float
     first_voxel: tuple[int, int, int]
     shape: tuple[int, int, int]
     bounds: tuple[float, ...]
-    scales: tuple[float, ...]
     sampling_path: str
 
 
@@ -74,9 +73,10 @@ class WorkspaceAnalysis(Analysis):
         job, sampling = self.job, self.first_sampling
         size = job.voxel_size_m or self.first_pass.voxel_size(None if self._iterates else sampling)
         block = self.first_pass.block(size)
-        scales, bounds = self.first_pass.sum_scales(sampling.count, job.precision)
-        plan = self.sweep = self._sweep(block, scales, bounds)
-        self._check(plan)
+        bounds = self.first_pass.bounds
+        pipeline = self.pipeline = self._pipeline(block, bounds)
+        self._check(pipeline)
+        plan = SweepPlan(pipeline)
         fitted(block, plan.shape, devices_of(device), sampling.count)  # raises where a sweep would
         if job.voxel_labels and job.constraints is not None:
             raise InputError("voxel_labels", "must be false with constraints: labels say what is reached without them")
@@ -91,8 +91,7 @@ class WorkspaceAnalysis(Analysis):
             voxel_size_m=block.voxel_size_m,
             first_voxel=block.first_voxel,
             shape=block.shape,
-            bounds=tuple(bounds.tolist()),
-            scales=tuple(scales.tolist()),
+            bounds=bounds,
             sampling_path=plan.sampling_path,
         )
 
@@ -110,47 +109,44 @@ class WorkspaceAnalysis(Analysis):
         return FirstPass(self.evaluation, dict(self.job.sampling.locked))
 
     @cached_property
-    def sweep(self) -> SweepPlan:
-        """Everything a range of samples needs, as it is settled."""
+    def pipeline(self) -> Pipeline:
+        """Samples, constraints, values and what is kept, as they are settled."""
         settled, size = self.settled, self.settled.voxel_size_m
         about = voxel_of(self.robot.chain.foot, size)
         block = LatticeBlock(size, settled.first_voxel, settled.shape, about=about)
         collapse = settled.sampling_path == "collapsed"
-        return self._sweep(block, np.array(settled.scales), np.array(settled.bounds), collapse)
+        return self._pipeline(block, settled.bounds, collapse)
 
-    def _sweep(self, block: LatticeBlock, scales: np.ndarray, bounds: np.ndarray, collapse: bool = True) -> SweepPlan:
+    def _pipeline(self, block: LatticeBlock, bounds: tuple[float, ...], collapse: bool = True) -> Pipeline:
         job = self.job
-        return SweepPlan(
+        return Pipeline(
             self.evaluation,
             self.first_sampling,
+            constraints_for(self.robot, job.constraints),
             block,
             frozenset(job.voxel_statistics or ()),
-            scales,
+            frozenset(job.map_columns) if job.keep_map else None,
             bounds,
             job.precision,
-            keep_rows=job.keep_map,
-            keep_configuration="configuration" in job.map_columns,
-            keep_orientation="orientation" in job.map_columns,
-            collapse=collapse,
-            constraints=constraints_for(self.robot, job.constraints),
+            collapse,
         )
 
-    def _check(self, plan: SweepPlan) -> None:
+    def _check(self, pipeline: Pipeline) -> None:
         """Whether the parts of the job go together; raises InputError, ResourceError."""
         job = self.job
         if job.keep_map and "orientation" in job.map_columns and self.evaluation.given_kinematics:
             raise InputError("map_columns", "orientation is not kept for a user-defined robot")
         if isinstance(job.sampling, Converge):
-            _converging_index(plan, job.sampling)
-            if job.sampling.by == "workspace_mean" and not {"maximum", "mean"} & plan.statistics:
+            _converging_index(pipeline, job.sampling)
+            if job.sampling.by == "workspace_mean" and not {"maximum", "mean"} & pipeline.statistics:
                 raise InputError("sampling.by", "workspace_mean needs the voxel statistic maximum or mean")
-        _check_surfaces(job, plan)
-        _check_map(plan)
+        _check_surfaces(job, pipeline)
+        _check_map(pipeline)
 
     @property
     def swept_cost(self) -> Cost:
         """Of the sweep alone."""
-        return sweep_cost(self.sweep, devices_of(self.device))
+        return sweep_cost(self.pipeline, devices_of(self.device))
 
     @property
     def cost(self) -> Cost:
@@ -158,7 +154,7 @@ class WorkspaceAnalysis(Analysis):
         job, swept, (voxels, block) = self.job, self.swept_cost, self._expected
         drawn, seconds = pictures_cost("slices", "scatter", "histogram", "robot")
         rows = min(swept.samples, PICTURE_SAMPLES)
-        columns = 3 + self.sweep.evaluation.chain.n + len(self.sweep.evaluation.indices)
+        columns = 3 + self.pipeline.evaluation.chain.n + len(self.pipeline.evaluation.indices)
         files = (
             swept.file_bytes + 8.0 * columns * rows + drawn + DOCUMENT_BYTES + surface_bytes(voxels) + self.volume_bytes
         )
@@ -172,7 +168,7 @@ class WorkspaceAnalysis(Analysis):
     @property
     def volume_bytes(self) -> float:
         """Bytes of the volume's arrays as a file: counts, and a number of each statistic and index."""
-        statistics = len(self.sweep.statistics - {"count"}) * len(self.sweep.evaluation.indices)
+        statistics = len(self.pipeline.statistics - {"count"}) * len(self.pipeline.evaluation.indices)
         width = 4 if self.job.precision == "float32" else 8
         return self._expected[1] * (8.0 + width * statistics)
 
@@ -199,7 +195,7 @@ class WorkspaceAnalysis(Analysis):
     @property
     def least_voxel_size_m(self) -> float:
         """Edge of a voxel [m] below which the samples leave holes."""
-        return self.first_pass.least_voxel_size(None if self._iterates else self.sweep.sampling)
+        return self.first_pass.least_voxel_size(None if self._iterates else self.pipeline.sampling)
 
     @property
     def _iterates(self) -> bool:
@@ -211,12 +207,12 @@ class WorkspaceAnalysis(Analysis):
             return self._converge(self.job.sampling, execution, tell)
         first, count = self.shards[shard]
         how = {"threads": execution.threads, "chunk_size": execution.chunk_size}
-        found = sweep(self.sweep, first, count, devices_of(self.device), progress=tell, **how)
-        return WorkspacePartial(found, self.sweep)
+        found = sweep(self.pipeline, first, count, devices_of(self.device), progress=tell, **how)
+        return WorkspacePartial(found, self.pipeline)
 
     def merge(self, a: WorkspacePartial, b: WorkspacePartial) -> WorkspacePartial:
         """The partial result of both; bit for bit the same in any order."""
-        return WorkspacePartial(merge(a.sweep, b.sweep), self.sweep)
+        return WorkspacePartial(merge(a.sweep, b.sweep), self.pipeline)
 
     @property
     def refinements(self) -> int:
@@ -225,8 +221,8 @@ class WorkspaceAnalysis(Analysis):
 
     def refinement(self, number: int, progress: Progress | None, execution: Execution) -> dict[str, Any]:
         """The entry of the refined volume, area or length."""
-        chain, seed = self.robot.chain.held(self.job.sampling.locked), self.sweep.sampling.seed
-        constraints, tolerance = self.sweep.constraints, self.job.refined_volume
+        chain, seed = self.robot.chain.held(self.job.sampling.locked), self.pipeline.sampling.seed
+        constraints, tolerance = self.pipeline.constraints, self.job.refined_volume
         assert tolerance is not None
         return refined(chain, tolerance, seed, self.device, progress, execution.threads, constraints)
 
@@ -243,9 +239,9 @@ class WorkspaceAnalysis(Analysis):
 
     def _labelled(self, partial: WorkspacePartial, progress: Progress | None, execution: Execution) -> VolumeData:
         """The labels of the voxels."""
-        counts = volume_data(replace(partial.plan, statistics=frozenset()), partial.sweep, {})
+        counts = volume_data(replace(partial.pipeline, statistics=frozenset()), partial.sweep, {})
         chain = self.robot.chain.held(self.job.sampling.locked)
-        return labelled(chain, counts, partial.plan.sampling.seed, self.device, progress, execution.threads)
+        return labelled(chain, counts, partial.pipeline.sampling.seed, self.device, progress, execution.threads)
 
     def result(self, partial: WorkspacePartial, execution: Execution) -> Draft:
         """Map, volume, global values and the entries of the document."""
@@ -254,19 +250,19 @@ class WorkspaceAnalysis(Analysis):
     def unpacked(self, partial: PartialResult) -> WorkspacePartial:
         """The sweep; of a converging job with the plan of its last grid."""
         sequence, sampling = partial.facts["convergence"], self.job.sampling
-        plan = self.sweep
+        pipeline = self.pipeline
         if sequence is not None and isinstance(sampling, Converge):
-            plan = self.with_grid(sequence[-1]["per_joint"], sampling)
-        return WorkspacePartial(sweep_of(partial), plan, sequence)
+            pipeline = self.with_grid(sequence[-1]["per_joint"], sampling)
+        return WorkspacePartial(sweep_of(partial), pipeline, sequence)
 
     def _converge(self, sampling: Converge, execution: Execution, tell: Tell) -> WorkspacePartial:
         """[WSR] Algorithm 1: finer grids until an index's global value changes by at most the tolerance."""
-        position = self.sweep.evaluation.indices.index(_converging_index(self.sweep, sampling))
+        position = self.pipeline.evaluation.indices.index(_converging_index(self.pipeline, sampling))
         sequence: list[dict[str, float]] = []
         levels, before = sampling.start, 0
         while True:
-            plan = self.with_grid(levels, sampling)
-            count = plan.sampling.count
+            pipeline = self.with_grid(levels, sampling)
+            count = pipeline.sampling.count
             if count > (limit := min(sampling.max_samples, self.job.max_samples)):
                 values = ", ".join(f"{s['value']:.6g} ({s['per_joint']})" for s in sequence)
                 raise NotConvergedError(
@@ -279,50 +275,49 @@ class WorkspaceAnalysis(Analysis):
                 tell(before + done)
 
             how = {"threads": execution.threads, "chunk_size": execution.chunk_size}
-            partial = sweep(plan, 0, count, devices_of(self.device), progress=report, **how)
-            check_admitted(samples_entry(plan.constraints, count, partial.rejected))
-            value = self._global_value(plan, partial, position, sampling.by)
+            partial = sweep(pipeline, 0, count, devices_of(self.device), progress=report, **how)
+            check_admitted(samples_entry(pipeline.constraints, count, partial.rejected))
+            value = self._global_value(pipeline, partial, position, sampling.by)
             sequence.append({"per_joint": levels, "samples": count, "value": value})
             if len(sequence) > 1 and abs(value - sequence[-2]["value"]) <= sampling.tolerance:
-                return WorkspacePartial(partial, plan, sequence)
+                return WorkspacePartial(partial, pipeline, sequence)
             levels, before = levels + sampling.step, before + count
 
-    def with_grid(self, levels: int, sampling: Converge) -> SweepPlan:
-        """The plan of one grid; the voxel size is that of the job for all of them."""
+    def with_grid(self, levels: int, sampling: Converge) -> Pipeline:
+        """The pipeline of one grid; the voxel size is that of the job for all of them."""
         grid = plan_sampling(self.robot.chain, Grid(levels, locked=sampling.locked))
-        scales = scales_for(self.sweep.bounds, grid.count, self.job.precision)
-        plan = replace(self.sweep, sampling=grid, scales=scales)
-        _check_map(plan)
-        return plan
+        pipeline = replace(self.pipeline, sampling=grid)
+        _check_map(pipeline)
+        return pipeline
 
-    def _global_value(self, plan: SweepPlan, partial: Partial, position: int, by: str) -> float:
+    def _global_value(self, pipeline: Pipeline, partial: Partial, position: int, by: str) -> float:
         if by == "joint_mean":
-            return float(joint_means(plan, partial)[position])
-        value = workspace_mean(volume_data(plan, partial, {}), plan.evaluation.indices[position])
+            return float(joint_means(pipeline, partial)[position])
+        value = workspace_mean(volume_data(pipeline, partial, {}), pipeline.evaluation.indices[position])
         assert value is not None
         return value
 
 
-def _check_map(plan: SweepPlan) -> None:
+def _check_map(pipeline: Pipeline) -> None:
     """Whether a map that is kept fits in memory, its rows and what they are joined to; raises ResourceError."""
-    rows = f"{plan.sampling.count:.4g} rows of {plan.shape.n_rows} values"
-    check_memory(2 * map_bytes(plan), "keep_map", rows, "take fewer samples or columns, or keep no map")
+    rows = f"{pipeline.sampling.count:.4g} rows of {SweepPlan(pipeline).shape.n_rows} values"
+    check_memory(2 * map_bytes(pipeline), "keep_map", rows, "take fewer samples or columns, or keep no map")
 
 
-def _check_surfaces(job: WorkspaceJob, plan: SweepPlan) -> None:
+def _check_surfaces(job: WorkspaceJob, pipeline: Pipeline) -> None:
     """Whether the volume will hold what iso-surfaces are made of; raises InputError."""
     for surface in job.surfaces:
         if not isinstance(surface, IsoSurface):
             continue
-        if surface.iso_surface not in plan.evaluation.indices:
-            choices = ", ".join(plan.evaluation.indices)
+        if surface.iso_surface not in pipeline.evaluation.indices:
+            choices = ", ".join(pipeline.evaluation.indices)
             raise InputError("surfaces", f"{surface.iso_surface!r} is not among the job's indices: {choices}")
-        if not {"maximum", "mean"} & plan.statistics:
+        if not {"maximum", "mean"} & pipeline.statistics:
             raise InputError("surfaces", "an iso-surface needs the voxel statistic maximum or mean")
 
 
-def _converging_index(plan: SweepPlan, sampling: Converge) -> str:
-    (name,) = resolve((sampling.index,), plan.evaluation.chain.has_inertia)
-    if name not in plan.evaluation.indices:
+def _converging_index(pipeline: Pipeline, sampling: Converge) -> str:
+    (name,) = resolve((sampling.index,), pipeline.evaluation.chain.has_inertia)
+    if name not in pipeline.evaluation.indices:
         raise InputError("sampling.index", f"{sampling.index!r} is not among the job's indices")
     return name

@@ -1,0 +1,76 @@
+"""The sampling pipeline: samples → kinematics → constraints → values → what is kept of them."""
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from wsrender.pipeline.constraints.constraint import Constraint
+from wsrender.pipeline.evaluation import Evaluation
+from wsrender.pipeline.sampling import SamplingPlan, plan_sampling
+from wsrender.robots.kinematics import Kinematics
+from wsrender.volume.lattice import LatticeBlock
+
+
+@dataclass(frozen=True, repr=False)
+class Pipeline:
+    """What the engine compiles: whether it sweeps samples, evaluates given ones, or draws starts of inverse kinematics.
+
+    A value: equal to another where every number, name and function is. Of all samples it keeps, in the ``block``, the
+    count and the ``statistics`` of voxels ("maximum", "minimum", "mean"), and as ``kept_rows`` position, indices and
+    more columns, "configuration" and "orientation"; each None: not kept. ``bounds`` (K,): the largest absolute value of
+    each index, for its fixed-point sums; None: not summed. ``collapse``: whether the structure of a grid is used.
+    """
+
+    evaluation: Evaluation
+    sampling: SamplingPlan
+    constraints: tuple[Constraint, ...] = ()
+    block: LatticeBlock | None = None
+    statistics: frozenset[str] = frozenset()
+    kept_rows: frozenset[str] | None = None
+    bounds: tuple[float, ...] | None = None
+    precision: str = "float64"
+    collapse: bool = True
+
+    def at(self, q: np.ndarray) -> "Pipeline":
+        """The same at given configurations ``q`` (N, n) [rad or m], of which rows are kept."""
+        given = plan_sampling(self.evaluation.chain, q)
+        return replace(self, sampling=given, block=None, statistics=frozenset(), kept_rows=frozenset(), bounds=None)
+
+    @property
+    def of_tip(self) -> "Pipeline":
+        """The same samples, of which the tip's position alone is kept, admitted or not."""
+        tip = Evaluation(self.evaluation.chain)
+        return Pipeline(tip, self.sampling, kept_rows=frozenset(), precision=self.precision)
+
+    @property
+    def origin(self) -> np.ndarray:
+        """Where the engine counts positions from, in the world (3,) [m]."""
+        return self.evaluation.chain.origin if self.block is None else self.block.origin
+
+    def __str__(self) -> str:
+        """Its stages, such as ``sobol 1e6 → ur5e → region → manipulability → voxels 5 mm (count, maximum)``."""
+        constraints = " ∧ ".join(each.name for each in self.constraints)
+        values = ", ".join(self.evaluation.indices) or "position"
+        kept = " and ".join(self._kept())
+        stages = (str(self.sampling), self.evaluation.chain.name, constraints, values, kept)
+        return " → ".join(filter(None, stages))
+
+    __repr__ = __str__
+
+    def _kept(self) -> list[str]:
+        kept = []
+        if self.block is not None:
+            statistics = ", ".join(("count", *sorted(self.statistics - {"count"})))
+            kept.append(f"voxels {1000 * self.block.voxel_size_m:g} mm ({statistics})")
+        if self.kept_rows is not None:
+            kept.append(" ".join(("rows", ", ".join(sorted(self.kept_rows)))).rstrip())
+        return kept
+
+
+def tip_pipeline(chain: Kinematics, sampling: Any, max_samples: int | None = None) -> Pipeline:
+    """Positions of a chain's tip at a sampling of the job document, or at configurations (N, n) [rad or m].
+
+    Raises InputError, ResourceError as `plan_sampling` does.
+    """
+    return Pipeline(Evaluation(chain), plan_sampling(chain, sampling, max_samples))
