@@ -1,5 +1,6 @@
 """The sampling pipeline: samples → kinematics → constraints → values → what is kept of them."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -58,14 +59,12 @@ class Pipeline:
 
     __repr__ = __str__
 
-    def _kept(self) -> list[str]:
-        kept = []
+    def _kept(self) -> Iterator[str]:
         if self.block is not None:
             statistics = ", ".join(("count", *sorted(self.statistics - {"count"})))
-            kept.append(f"voxels {1000 * self.block.voxel_size_m:g} mm ({statistics})")
+            yield f"voxels {1000 * self.block.voxel_size_m:g} mm ({statistics})"
         if self.kept_rows is not None:
-            kept.append(" ".join(("rows", ", ".join(sorted(self.kept_rows)))).rstrip())
-        return kept
+            yield f"rows ({', '.join(sorted(self.kept_rows))})" if self.kept_rows else "rows"
 
 
 def tip_pipeline(chain: Kinematics, sampling: Any, max_samples: int | None = None) -> Pipeline:

@@ -28,6 +28,9 @@ class IndicesAtAnalysis(Analysis):
 
     job: IndicesAtJob
 
+    def __repr__(self) -> str:
+        return f"indices_at: {self.pipeline}"
+
     def prepare(self, device: str, target: str) -> Settled:
         """Raises InputError for configurations of the wrong length."""
         _ = self.pipeline
@@ -91,7 +94,9 @@ class IndicesAtAnalysis(Analysis):
         }
         found = DistributionMap(rows.position, values, units, self.q, self.robot.joint_names, rows.quat_wxyz)
         sample = found.only(admitted) if tables else None
-        return Draft(entries, notices=self.pipeline.evaluation.notices, map=found, sample=sample, tables=tables)
+        origin = {"pipeline": str(self.pipeline)}
+        notices = self.pipeline.evaluation.notices
+        return Draft(entries, notices=notices, provenance=origin, map=found, sample=sample, tables=tables)
 
     def _admission(self, rejected: np.ndarray | None) -> tuple[np.ndarray, dict[str, Any], dict[str, Table]]:
         """Which rows are admitted (N,) bool, what the document says of it, and the table of reasons."""

@@ -68,6 +68,9 @@ class WorkspaceAnalysis(Analysis):
             job = job.model_copy(update={"voxel_statistics": default_statistics(self.evaluation.indices)})
         super().__init__(job, robot, resolved=resolved)
 
+    def __repr__(self) -> str:
+        return f"workspace: {self.pipeline}"
+
     def prepare(self, device: str, target: str) -> WorkspaceSettled:
         """Raises InputError, MissingInertiaError, ResourceError."""
         job, sampling = self.job, self.first_sampling
