@@ -56,8 +56,7 @@ def leg_solver(real, kinds: tuple[str, ...], cones: bool) -> SimpleNamespace:
     """Device functions for legs of these ``kinds`` (of KINDS); ``cones``: whether any joint has one.
 
     ``solve(leg, joint, cone) -> (1 or 0, elbow)``: whether the leg reaches its platform joint (3,), with the axis of
-    the platform's cone as it stands, and the base-side end of its link. ``distance(p, p_end, q, q_end)``: the square
-    of the least distance of two segments (Ericson 2005, 5.1.9).
+    the platform's cone as it stands, and the base-side end of its link.
     """
     vec3, leg_type = wp.types.vector(3, real), wp.types.vector(LEG_STRIDE, real)
     BASE, AXIS, ZERO_AXIS, ACROSS, BASE_CONE = (_AT[name] for name in ("base", "axis", "zero", "across", "base_cone"))
@@ -155,26 +154,4 @@ def leg_solver(real, kinds: tuple[str, ...], cones: bool) -> SimpleNamespace:
             elbow = wp.where(here, elbow_crank, elbow)
         return wp.where(fits, 1, 0), elbow
 
-    @wp.func
-    def between(w: vec3, u: vec3, v: vec3, s: real, a: real, b: real, c: real, d: real, e: real):
-        t = wp.min(wp.max((b * s + e) / wp.max(c, TINY), ZERO), ONE)
-        near = wp.min(wp.max((b * t - d) / wp.max(a, TINY), ZERO), ONE)
-        gap = w + near * u - t * v
-        return wp.dot(gap, gap)
-
-    @wp.func
-    def distance(p: vec3, p_end: vec3, q: vec3, q_end: vec3):
-        u = p_end - p
-        v = q_end - q
-        w = p - q
-        a = wp.dot(u, u)
-        b = wp.dot(u, v)
-        c = wp.dot(v, v)
-        d = wp.dot(u, w)
-        e = wp.dot(v, w)
-        determinant = a * c - b * b
-        s = wp.min(wp.max((b * e - c * d) / wp.max(determinant, TINY), ZERO), ONE)
-        least = wp.min(between(w, u, v, ZERO, a, b, c, d, e), between(w, u, v, ONE, a, b, c, d, e))
-        return wp.min(least, between(w, u, v, s, a, b, c, d, e))
-
-    return SimpleNamespace(solve=solve, distance=distance, at=at, vec3=vec3, leg_type=leg_type)
+    return SimpleNamespace(solve=solve, at=at, vec3=vec3, leg_type=leg_type)

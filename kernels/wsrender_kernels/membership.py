@@ -5,6 +5,7 @@ a thread takes a pose. Method A asks every leg at every pose; method B goes on t
 a pose of the part has survived ([SNK]). Both are one kernel, so that they give the same bits.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import warp as wp
@@ -26,34 +27,38 @@ POSE_ROWS = 12  # of a pose: position, then the rows of the rotation
 
 @dataclass(frozen=True)
 class MembershipShape:
-    """The compile-time part: precision, kinds of legs (of `legs.KINDS`), number of legs, cones, leg distances."""
+    """The compile-time part: precision, kinds of legs (of `legs.KINDS`), number of legs, whether any has a cone.
+
+    ``distances``: Warp function of the ends of two links, as of `constraints`; None: legs may cross.
+    """
 
     real: type
     kinds: tuple[str, ...]
     legs: int
     cones: bool
-    distances: bool
+    distances: Callable | None = None
+    limits: int = 0  # numbers of all constraints
     given: bool = False  # positions come from an array, not from the lattice
 
 
 @factory
 def mechanism_type(shape: MembershipShape):
-    """Struct with the numbers of a mechanism."""
+    """Struct with the numbers of a mechanism; with constraints also ``limits``, theirs."""
     real, L = shape.real, shape.legs
     vec3 = wp.types.vector(3, real)
 
-    @wp.struct
     class MechanismModel:
         legs: wp.types.matrix((L, LEG_STRIDE), real)  # legs.pack_legs
         ends: wp.types.vector(L, wp.int32)  # 1 where a leg is the last of its subsystem
         pairs: wp.types.vector(L * L, wp.int32)  # 1 where the distance of two legs counts
-        clearance_2: real  # square of the least distance [m²]
         lower: vec3  # of the platform's origin, base frame [m]
         upper: vec3
         axes: wp.types.matrix((3, 3), real)  # world -> base
         origin: vec3  # of the base in the world [m]
 
-    return MechanismModel
+    if shape.limits:
+        MechanismModel.__annotations__["limits"] = wp.types.vector(shape.limits, real)
+    return wp.struct(MechanismModel)
 
 
 @factory
@@ -164,9 +169,9 @@ def _parts(shape: MembershipShape):
 
 def _lattice_cpu(shape: MembershipShape) -> wp.Kernel:
     _leg_of, in_region, place, solver = _parts(shape)
-    solve, distance, vec3 = solver.solve, solver.distance, solver.vec3
+    solve, distances, vec3 = solver.solve, shape.distances, solver.vec3
     real, Model, Block = shape.real, mechanism_type(shape), lattice_type(shape.real)
-    L, BLOCK, BLOCK_64, STRIDE, DISTANCES = shape.legs, LANES, wp.int64(LANES), TURNED_STRIDE, shape.distances
+    L, BLOCK, BLOCK_64, STRIDE, DISTANCES = shape.legs, LANES, wp.int64(LANES), TURNED_STRIDE, bool(distances)
     GIVEN = shape.given
     lane_type, flags_type = wp.types.vector(LANES, real), wp.types.vector(LANES, wp.int32)
     PART, PARTS = PART_LANES, LANES // PART_LANES
@@ -276,8 +281,8 @@ def _lattice_cpu(shape: MembershipShape) -> wp.Kernel:
                                 end_b = vec3(px[lane], py[lane], pz[lane]) + shift_b
                                 _fits_a, elbow_a = solve(leg_a, end_a, cone_a)
                                 _fits_b, elbow_b = solve(leg_b, end_b, cone_b)
-                                far = distance(elbow_a, end_a, elbow_b, end_b) >= model.clearance_2
-                                alive[lane] = alive[lane] & wp.where(far, 1, 0)
+                                answer = distances(model.limits, elbow_a, end_a, elbow_b, end_b)
+                                alive[lane] = alive[lane] & wp.where(answer == 0, 1, 0)
             weight = weights[o]
             for lane in range(BLOCK):
                 total[lane] = total[lane] + alive[lane]
@@ -297,9 +302,9 @@ def _lattice_cpu(shape: MembershipShape) -> wp.Kernel:
 
 def _lattice_cuda(shape: MembershipShape) -> wp.Kernel:
     leg_of, in_region, place, solver = _parts(shape)
-    solve, distance, vec3 = solver.solve, solver.distance, solver.vec3
+    solve, distances, vec3 = solver.solve, shape.distances, solver.vec3
     real, Model, Block = shape.real, mechanism_type(shape), lattice_type(shape.real)
-    L, STRIDE, DISTANCES, GIVEN = shape.legs, TURNED_STRIDE, shape.distances, shape.given
+    L, STRIDE, DISTANCES, GIVEN = shape.legs, TURNED_STRIDE, bool(distances), shape.given
     SLOTS = ASKED_SLOTS
 
     @wp.kernel(module="unique", module_options=UNROLLED, enable_backward=False)
@@ -355,8 +360,8 @@ def _lattice_cuda(shape: MembershipShape) -> wp.Kernel:
                         cone_b = vec3(turned[at + 3], turned[at + 4], turned[at + 5])
                         _fits_a, elbow_a = solve(leg_of(model, a), end_a, cone_a)
                         _fits_b, elbow_b = solve(leg_of(model, b), end_b, cone_b)
-                        far = distance(elbow_a, end_a, elbow_b, end_b) >= model.clearance_2
-                        alive = alive & wp.where(far, 1, 0)
+                        answer = distances(model.limits, elbow_a, end_a, elbow_b, end_b)
+                        alive = alive & wp.where(answer == 0, 1, 0)
             total += alive
             weight_sum += alive * weights[o]
         reached[i] = total
@@ -370,9 +375,9 @@ def _lattice_cuda(shape: MembershipShape) -> wp.Kernel:
 def _pose_test(shape: MembershipShape):
     """Device function ``reaches(model, p, R) -> 1 or 0`` of a pose in the base frame."""
     leg_of, in_region, _place, solver = _parts(shape)
-    solve, distance, at, vec3 = solver.solve, solver.distance, solver.at, solver.vec3
+    solve, distances, at, vec3 = solver.solve, shape.distances, solver.at, solver.vec3
     real, Model = shape.real, mechanism_type(shape)
-    L, JOINT, CONE, DISTANCES = shape.legs, PLATFORM, PLATFORM_CONE, shape.distances
+    L, JOINT, CONE, DISTANCES = shape.legs, PLATFORM, PLATFORM_CONE, bool(distances)
     mat33 = wp.types.matrix((3, 3), real)
 
     @wp.func
@@ -391,8 +396,8 @@ def _pose_test(shape: MembershipShape):
                     end_b = p + R * at(leg_b, JOINT)
                     _fits_a, elbow_a = solve(leg_a, end_a, R * at(leg_a, CONE))
                     _fits_b, elbow_b = solve(leg_b, end_b, R * at(leg_b, CONE))
-                    far = distance(elbow_a, end_a, elbow_b, end_b) >= model.clearance_2
-                    alive = alive & wp.where(far, 1, 0)
+                    answer = distances(model.limits, elbow_a, end_a, elbow_b, end_b)
+                    alive = alive & wp.where(answer == 0, 1, 0)
         return alive
 
     return reaches, vec3, mat33

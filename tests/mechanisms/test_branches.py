@@ -7,7 +7,7 @@ import pytest
 
 import wsrender as ws
 from tests.mechanisms.mechanisms import SPEC, mechanism, poses_of
-from wsrender.mechanisms.inverse_kinematics import inverse_kinematics, least_distance
+from wsrender.mechanisms.inverse_kinematics import inverse_kinematics
 from wsrender.mechanisms.mechanism import legs_of
 from wsrender.mechanisms.membership import count_at, poses_labelled
 from wsrender.run import execute
@@ -78,6 +78,11 @@ def test_both_branches_in_the_same_voxel_are_searched_apart():
         assert len(expected) > 0 and rows(found) == rows(expected)
 
 
+def least_distance(mechanism, legs):
+    (constraint,) = mechanism.constraints
+    return constraint.distance(np.stack([legs.elbows, legs.joints], axis=2))
+
+
 def test_legs_keep_their_distance_on_some_branches():
     """A pose is reached where any of the 64 combinations of branches reaches it."""
     points = np.random.default_rng(2).uniform([-0.25, -0.25, 0.2], [0.25, 0.25, 0.8], (600, 3))
@@ -86,7 +91,7 @@ def test_legs_keep_their_distance_on_some_branches():
     expected = np.zeros(len(points), bool)
     for branches in product(("plus", "minus"), repeat=6):
         legs = inverse_kinematics(mechanism(six_cranks(branches)), poses)
-        far = least_distance(mechanism(six_cranks(branches, **limited)), legs.elbows, legs.joints) >= 0.1
+        far = least_distance(mechanism(six_cranks(branches, **limited)), legs) >= 0.1
         expected |= legs.feasible & far
     mech = mechanism(six_cranks("either", **limited))
     legs = inverse_kinematics(mech, poses)
@@ -95,9 +100,9 @@ def test_legs_keep_their_distance_on_some_branches():
     counts = count_at(mech, points, np.eye(3)[None], device="cpu")
     np.testing.assert_array_equal(np.isin(np.arange(600), counts.cells[counts.reached > 0]), expected)
     # The elbows are those of a combination that keeps its distance.
-    assert (least_distance(mech, legs.elbows, legs.joints)[expected] >= 0.1).all()
+    assert (least_distance(mech, legs)[expected] >= 0.1).all()
     first = inverse_kinematics(mechanism(six_cranks("either")), poses)
-    kept = first.feasible & (least_distance(mech, first.elbows, first.joints) >= 0.1)
+    kept = first.feasible & (least_distance(mech, first) >= 0.1)
     assert 0 < kept.sum() < 0.9 * expected.sum() < first.feasible.sum()
 
 

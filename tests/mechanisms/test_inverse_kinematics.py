@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from tests.mechanisms.mechanisms import known_ups, mechanism, poses_of, random_rotations
-from wsrender.mechanisms.inverse_kinematics import FAULTS, fault_text, inverse_kinematics, segment_distance
+from wsrender.mechanisms.inverse_kinematics import FAULTS, fault_text, inverse_kinematics
+from wsrender.pipeline.constraints.leg_distance import segment_distance
 
 POSITIONS = {
     "stewart_gough": ([-0.2, -0.2, 0.4], [0.2, 0.2, 0.7]),

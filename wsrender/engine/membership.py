@@ -19,6 +19,7 @@ from wsrender_kernels.membership import (
     survivors_kernels,
 )
 
+from wsrender.engine.constraint_code import device_constraints, packed_constraints
 from wsrender.engine.devices import devices_of, thread_count
 from wsrender.engine.evaluation import REAL, device_array, vector_of
 from wsrender.engine.kernel_cache import launch, loaded
@@ -34,12 +35,11 @@ class LegTest:
     """Legs, and what is asked of them.
 
     ``legs`` has the fields of `wsrender.mechanisms.mechanism.Mechanism`, which stands above the engine. ``ends`` (L,)
-    bool: whether a leg is the last of its subsystem; ``pairs``: legs whose distance counts.
+    bool: whether a leg is the last of its subsystem.
     """
 
     legs: Any
     ends: np.ndarray
-    pairs: list[tuple[int, int]]
     precision: str = "float64"
 
     @property
@@ -48,20 +48,22 @@ class LegTest:
         legs = self.legs
         cones = max(legs.base_cone_cosine.max(), legs.platform_cone_cosine.max()) > -1
         kinds = tuple(sorted({kind_of(kind) for kind in legs.kinds}))
-        return MembershipShape(REAL[self.precision], kinds, len(legs.kinds), bool(cones), bool(self.pairs))
+        asked = device_constraints(legs.constraints, legs, np.zeros(3), self.precision)
+        (distances,) = asked["constraints"] or (None,)
+        return MembershipShape(REAL[self.precision], kinds, legs.n, bool(cones), distances, asked["limits"])
 
     def model(self, shape: MembershipShape | None = None, origin: np.ndarray | None = None):
         """The struct of the kernels of a shape, by default the test's own; the world is seen from ``origin`` (3,)."""
-        legs, real, count = self.legs, REAL[self.precision], len(self.legs.kinds)
+        legs, real, count = self.legs, REAL[self.precision], self.legs.n
         model = mechanism_type(shape or self.shape)()
         packed = pack_legs(legs)
         model.legs = wp.types.matrix(packed.shape, real)(*packed.ravel().tolist())
         model.ends = vector_of(self.ends.astype(np.int32), wp.int32)
         pairs = np.zeros((count, count), np.int32)
-        for a, b in self.pairs:
-            pairs[a, b] = 1
+        for each in legs.constraints:
+            pairs[tuple(np.transpose(each.pairs))] = 1
+            model.limits = vector_of(packed_constraints((each,), legs, np.zeros(3), self.precision), real)
         model.pairs = vector_of(pairs.ravel(), wp.int32)
-        model.clearance_2 = legs.clearance_m**2
         model.lower, model.upper = vector_of(legs.region_lower, real), vector_of(legs.region_upper, real)
         model.axes = wp.types.matrix((3, 3), real)(*legs.T_world_base[:3, :3].T.ravel().tolist())
         model.origin = vector_of(legs.T_world_base[:3, 3] - (0.0 if origin is None else origin), real)

@@ -57,7 +57,7 @@ def ball_region(mechanism: Mechanism, rotation: np.ndarray) -> BallRegion:
     Raises InputError where a leg is neither UPS nor one of a pair of PUS legs, or where a joint's cone or the distance
     of the legs is limited: then the workspace is bounded by other surfaces too; and where a leg hardly moves.
     """
-    if mechanism.clearance_m > 0:
+    if mechanism.constraints:
         raise InputError("minimum_leg_distance_m", "must be null: else not only spheres bound the workspace")
     for leg in mechanism.numeric:
         raise InputError(f"legs.{leg.number}", "is solved numerically: what bounds the workspace is unknown")

@@ -13,6 +13,7 @@ from itertools import product
 import numpy as np
 
 from wsrender.mechanisms.mechanism import Mechanism
+from wsrender.pipeline.constraints.leg_distance import segment_distance
 
 FAULTS = (
     "",
@@ -63,6 +64,7 @@ def inverse_kinematics(mechanism: Mechanism, poses: np.ndarray) -> LegSolutions:
         for branch, (value, elbow, fault) in solved[k].items():
             at = chosen == branch
             values[at, k], elbows[at, k], faults[at, k] = value[at], elbow[at], fault[at]
+    links, anyhow = np.stack([elbows, joints], axis=2), np.ones(len(poses), bool)
     inside = np.all((position >= mechanism.region_lower) & (position <= mechanism.region_upper), axis=1)
     level = np.all(np.abs(rotation - np.eye(3)) <= SAME_ORIENTATION, axis=(1, 2))
     return LegSolutions(
@@ -71,8 +73,8 @@ def inverse_kinematics(mechanism: Mechanism, poses: np.ndarray) -> LegSolutions:
         joints,
         faults,
         inside,
-        clear=least_distance(mechanism, elbows, joints) >= mechanism.clearance_m,
-        level=level if mechanism.translational else np.ones(len(poses), bool),
+        clear=np.all([anyhow, *(each.host(values, links) == 0 for each in mechanism.constraints)], axis=0),
+        level=level if mechanism.translational else anyhow,
     )
 
 
@@ -90,7 +92,7 @@ def fault_text(mechanism: Mechanism, legs: LegSolutions, pose: int) -> str:
         limits = f"limits {mechanism.lower[leg]:.6g} … {mechanism.upper[leg]:.6g} {unit}"
         at = "" if np.isnan(value) else f" at {value:.6g} {unit}"
         return f"leg {mechanism.numbers[leg] + 1} ({mechanism.kinds[leg]}){at} is {fault} ({limits})"
-    return "" if legs.clear[pose] else "two legs come closer than minimum_leg_distance_m"
+    return "" if legs.clear[pose] else "leg_distance: two legs come closer than minimum_leg_distance_m"
 
 
 Solved = tuple[np.ndarray, np.ndarray, np.ndarray]
@@ -122,7 +124,7 @@ def _chosen(mechanism: Mechanism, solved: list[dict[int, Solved]], joints: np.nd
         for other in others:
             best[(branches[first][2] != FINE) & (branches[other][2] == FINE)] = other
         chosen.append(best)
-    if mechanism.clearance_m == 0 or not mechanism.branched:
+    if not mechanism.constraints or not mechanism.branched:
         return chosen
     combinations = list(product(*solved))
     at_once = max(MOST_CHOICES // len(combinations), 1)
@@ -143,9 +145,9 @@ def _clear(mechanism: Mechanism, solved, joints: np.ndarray, combinations: list[
     for k, branches in enumerate(solved):
         for branch, (_, _, fault) in branches.items():
             clear[:, taken[:, k] == branch] &= (fault == FINE)[:, None]
-    for a, b in leg_pairs(mechanism):
+    for least, (a, b) in ((each.least_m, pair) for each in mechanism.constraints for pair in each.pairs):
         for (one, (_, elbow_a, _)), (other, (_, elbow_b, _)) in product(solved[a].items(), solved[b].items()):
-            far = segment_distance(elbow_a, joints[:, a], elbow_b, joints[:, b]) >= mechanism.clearance_m
+            far = segment_distance(elbow_a, joints[:, a], elbow_b, joints[:, b]) >= least
             clear[:, (taken[:, a] == one) & (taken[:, b] == other)] &= far[:, None]
     return clear
 
@@ -199,49 +201,3 @@ def _turned(vector: np.ndarray, axis: np.ndarray, angle: np.ndarray) -> np.ndarr
     """A vector turned about a unit axis by angles (N,) (Rodrigues 1840), (N, 3)."""
     cosine, sine = np.cos(angle)[:, None], np.sin(angle)[:, None]
     return cosine * vector + sine * np.cross(axis, vector) + (1 - cosine) * (axis @ vector) * axis
-
-
-def leg_pairs(mechanism: Mechanism) -> list[tuple[int, int]]:
-    """Pairs of legs whose distance counts: those that share neither end, nor a rail."""
-    legs = range(len(mechanism.kinds))
-    return [(a, b) for a in legs for b in legs[a + 1 :] if not _share_joint(mechanism, a, b)]
-
-
-def _share_joint(mechanism: Mechanism, a: int, b: int) -> bool:
-    return any(np.array_equal(ends[a], ends[b]) for ends in (mechanism.base, mechanism.platform))
-
-
-def least_distance(mechanism: Mechanism, elbows: np.ndarray, joints: np.ndarray) -> np.ndarray:
-    """Least distance between the links elbows … joints (N, L, 3) of two legs [m], (N,); infinite where none counts.
-
-    A link without a solution (NaN) has no distance.
-    """
-    least = np.full(len(elbows), np.inf)
-    if mechanism.clearance_m == 0:
-        return least
-    for a, b in leg_pairs(mechanism):
-        distance = segment_distance(elbows[:, a], joints[:, a], elbows[:, b], joints[:, b])
-        least = np.fmin(least, distance)
-    return least
-
-
-def segment_distance(p: np.ndarray, p_end: np.ndarray, q: np.ndarray, q_end: np.ndarray) -> np.ndarray:
-    """Distance of the segments p … p_end and q … q_end, each (N, 3), (N,) (Ericson 2005, 5.1.9).
-
-    Where the segments are neither crossing nor parallel one parameter is at an end; all four ends are tried.
-    """
-    u, v, w = p_end - p, q_end - q, p - q
-    a, b, c = (u * u).sum(axis=1), (u * v).sum(axis=1), (v * v).sum(axis=1)
-    d, e = (u * w).sum(axis=1), (v * w).sum(axis=1)
-    determinant = a * c - b * b
-    s = np.clip(np.divide(b * e - c * d, determinant, out=np.zeros_like(a), where=determinant > 0), 0, 1)
-    tries = []
-    for start in (s, np.zeros_like(s), np.ones_like(s)):
-        t = np.clip(_ratio(b * start + e, c), 0, 1)
-        near = np.clip(_ratio(b * t - d, a), 0, 1)
-        tries.append(np.linalg.norm(w + near[:, None] * u - t[:, None] * v, axis=1))
-    return np.minimum.reduce(tries)
-
-
-def _ratio(above: np.ndarray, below: np.ndarray) -> np.ndarray:
-    return np.divide(above, below, out=np.zeros_like(above), where=below > 0)

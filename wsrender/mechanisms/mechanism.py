@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import product
+from itertools import combinations, product
 
 import numpy as np
 
@@ -10,6 +10,7 @@ from wsrender.documents.legs import ClosedFormLeg, Cone, DeltaLeg, Leg, PUSLeg, 
 from wsrender.documents.mechanism import Delta, LegsMechanism, MechanismSpec, SixPUS, StewartGough
 from wsrender.documents.robot import Transform
 from wsrender.mechanisms.serial_leg import NumericLeg, numeric_leg
+from wsrender.pipeline.constraints.leg_distance import LegDistance
 from wsrender.robot import Robot
 
 
@@ -26,8 +27,8 @@ class Mechanism:
     ``base_cone_cosine`` (L,), -1 where there is none, limit the direction of the link at its base-side joint;
     ``platform_cone_…`` at the platform. What a kind of leg does not have is 0.
     ``region_lower``, ``region_upper`` (3,): box of the platform's origin, infinite where it has no side.
-    ``clearance_m``: least distance of links, 0: not limited. ``T_world_base`` (4, 4). ``home`` (4, 4): a pose that is
-    reached, in the base frame, or None.
+    ``constraints``: of `LegDistance`, where two legs may not come closer. ``T_world_base`` (4, 4). ``home`` (4, 4): a
+    pose that is reached, in the base frame, or None.
     """
 
     name: str
@@ -47,10 +48,15 @@ class Mechanism:
     platform_cone_cosine: np.ndarray
     region_lower: np.ndarray
     region_upper: np.ndarray
-    clearance_m: float
+    constraints: tuple[LegDistance, ...]
     T_world_base: np.ndarray
     home: np.ndarray | None
     numeric: tuple[NumericLeg, ...] = ()
+
+    @property
+    def n(self) -> int:
+        """Number of legs in closed form."""
+        return len(self.kinds)
 
     @property
     def translational(self) -> bool:
@@ -114,11 +120,21 @@ def mechanism_of(spec: MechanismSpec, robots: Sequence[Robot] | None = None) -> 
         platform_cone_cosine=np.array([_cone(leg.platform_cone)[1] for leg in legs]),
         region_lower=np.array([-np.inf if side is None else side for side in region.lower_m]),
         region_upper=np.array([np.inf if side is None else side for side in region.upper_m]),
-        clearance_m=spec.minimum_leg_distance_m or 0.0,
+        constraints=_constraints(spec.minimum_leg_distance_m, legs),
         T_world_base=(spec.placement or Transform()).matrix(),
         home=spec.home.matrix() if spec.home else None,
         numeric=tuple(numeric_leg(k, leg, robot) for (k, leg), robot in zip(serial, given, strict=True)),
     )
+
+
+def _constraints(least_m: float | None, legs: Sequence[ClosedFormLeg]) -> tuple[LegDistance, ...]:
+    """That legs keep a distance, if asked; those that share an end, or a rail, may touch."""
+    pairs = [(a, b) for a, b in combinations(range(len(legs)), 2) if not _share_an_end(legs[a], legs[b])]
+    return (LegDistance(least_m, tuple(pairs)),) if least_m and pairs else ()
+
+
+def _share_an_end(a: ClosedFormLeg, b: ClosedFormLeg) -> bool:
+    return np.array_equal(a.base_m, b.base_m) or np.array_equal(a.platform_m, b.platform_m)
 
 
 def legs_of(spec: MechanismSpec) -> tuple[Leg, ...]:

@@ -19,7 +19,7 @@ from wsrender.engine import (
     joined,
     poses_reached,
 )
-from wsrender.mechanisms.inverse_kinematics import fault_text, inverse_kinematics, leg_pairs
+from wsrender.mechanisms.inverse_kinematics import fault_text, inverse_kinematics
 from wsrender.mechanisms.mechanism import Mechanism
 from wsrender.reach.evidence import REACHABLE, UNDECIDED, UNREACHABLE
 from wsrender.robots.reachable_box import reachable_box as box_of_chain
@@ -30,10 +30,9 @@ BATCH = 1 << 15  # poses that numeric legs are asked at a time
 
 def leg_test(mechanism: Mechanism, precision: str = "float64") -> LegTest:
     """What the kernels ask of legs in closed form; subsystems are runs with a common base point ([SNK]'s pairs)."""
-    count = len(mechanism.kinds)
+    count = mechanism.n
     ends = np.array([k + 1 == count or not np.array_equal(*mechanism.base[[k, k + 1]]) for k in range(count)])
-    pairs = leg_pairs(mechanism) if mechanism.clearance_m > 0 else []
-    return LegTest(mechanism, ends, pairs, precision)
+    return LegTest(mechanism, ends, precision)
 
 
 def _by_pose(mechanism: Mechanism) -> bool:
@@ -43,7 +42,7 @@ def _by_pose(mechanism: Mechanism) -> bool:
 
 def _joint_branches(mechanism: Mechanism) -> bool:
     """Whether the distance of legs depends on which of their branches are taken together."""
-    return mechanism.clearance_m > 0 and mechanism.branched
+    return bool(mechanism.constraints) and mechanism.branched
 
 
 @dataclass(frozen=True, eq=False)
@@ -169,9 +168,9 @@ def poses_labelled(
     threads: int | None = None,
 ) -> tuple[np.ndarray, int]:
     """Labels (N,) int8 of platform poses (N, 4, 4), base frame, as of `InverseSolver`, and (pose, leg) pairs asked."""
-    asked = len(mechanism.kinds) * len(poses)
-    if mechanism.kinds:
-        test = replace(mechanism, clearance_m=0.0) if _joint_branches(mechanism) else mechanism
+    asked = mechanism.n * len(poses)
+    if mechanism.n:
+        test = replace(mechanism, constraints=()) if _joint_branches(mechanism) else mechanism
         fits = poses_reached(leg_test(test, precision), poses, device=device, threads=threads)
         if _joint_branches(mechanism):
             some = np.flatnonzero(fits)

@@ -19,7 +19,7 @@ ORDER = ("region", "leg_distance", "orientation", "environment", "self_collision
 
 @runtime_checkable
 class Constraint(Protocol):
-    """Which configurations of a chain are admitted. A constraint is frozen and hashable.
+    """Which configurations of a chain, or of a mechanism's legs, are admitted. A constraint is frozen and hashable.
 
     ``name`` is the reason in labels, tables and pictures; ``keeps`` the structure of a grid that survives: joints that
     change nothing in the answer.
@@ -36,10 +36,7 @@ class Constraint(Protocol):
         ...
 
     def pack(self, chain: Kinematics, origin: np.ndarray, precision: str) -> np.ndarray:
-        """Its numbers (D,) float64, of positions in a ``precision`` counted from ``origin`` (3,) in the world [m].
-
-        What lies on a border is admitted, whichever way the precision rounds it.
-        """
+        """Its numbers (D,) float64, of positions in a ``precision`` counted from ``origin`` (3,) in the world [m]."""
         ...
 
     @property
@@ -47,8 +44,11 @@ class Constraint(Protocol):
         """A module of ``wsrender_kernels.constraints``, or the function that the engine traces."""
         ...
 
-    def host(self, q: np.ndarray, poses: np.ndarray) -> np.ndarray:
-        """1 of configurations (N, n) [rad or m] with tip poses (N, 4, 4) in the world that violate it, else 0, int8."""
+    def host(self, q: np.ndarray, frames: np.ndarray) -> np.ndarray:
+        """Which configurations (N, n) [rad or m] violate it, (N,) int8: 0 or 1.
+
+        ``frames``: tip poses (N, 4, 4) in the world; of a mechanism both ends of its links (N, n, 2, 3) [m].
+        """
         ...
 
 

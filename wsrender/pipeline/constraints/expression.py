@@ -28,8 +28,8 @@ class ExpressionConstraint:
         """Where positions are counted from, for the function is given those in the world; and the options."""
         return np.array([*origin, *(value for _, value in self.options)], np.float64)
 
-    def host(self, q: np.ndarray, poses: np.ndarray) -> np.ndarray:
+    def host(self, q: np.ndarray, frames: np.ndarray) -> np.ndarray:
         """See `Constraint.host`; NumPy evaluates the function itself."""
-        axes = [[poses[:, row, k] for row in range(3)] for k in range(3)]
-        margin = self.function(list(q.T), [poses[:, row, 3] for row in range(3)], axes, **dict(self.options))
+        axes = [[frames[:, row, k] for row in range(3)] for k in range(3)]
+        margin = self.function(list(q.T), [frames[:, row, 3] for row in range(3)], axes, **dict(self.options))
         return np.where(np.broadcast_to(margin, len(q)) >= 0, 0, 1).astype(np.int8)

@@ -61,8 +61,8 @@ class Region:
         below = numbers[13] - points @ numbers[10:13]
         return np.maximum.reduce([np.linalg.norm(beside, axis=1), outside, below, np.zeros(len(points))])
 
-    def host(self, q: np.ndarray, poses: np.ndarray) -> np.ndarray:
+    def host(self, q: np.ndarray, frames: np.ndarray) -> np.ndarray:
         """See `Constraint.host`."""
-        points = poses[:, :3, 3]
+        points = frames[:, :3, 3]
         rounding = TOLERANCES["float64"].position(np.abs(points).max(initial=0.0))
         return (self.distance(points) > rounding).astype(np.int8)
