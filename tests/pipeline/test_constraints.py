@@ -162,6 +162,9 @@ def test_configurations_are_told_why_they_are_rejected(tmp_path, added):
     np.testing.assert_array_equal(np.isnan(values), expected != "")
     entry = result.document["indices"]["isotropy"]
     assert entry["maximum"] == np.nanmax(values) and entry["minimum"] == np.nanmin(values)
+    low, folded = ((expected == name).sum() for name in ("region", "elbow_up"))
+    told = f"admitted samples        {200 - low - folded} of 200; rejected by region {low}, elbow_up {folded}"
+    assert told in result.summary()
     result.save(tmp_path / "out")
     assert ws.Result.load(tmp_path / "out").tables["admission"].columns["reason"].tolist() == expected.tolist()
     nowhere = {"region": {"sphere": {"center_m": [5, 5, 5], "radius_m": 0.1}}}

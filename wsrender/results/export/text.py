@@ -39,7 +39,7 @@ def method_text(method: Any) -> str:
 
 
 def summary_text(document: dict[str, Any]) -> str:
-    """Headline, warnings, volumes, bounds, global indices, range and means of each local index; several lines."""
+    """Headline, warnings, admitted samples, volumes, bounds, global and local indices, as several lines."""
     head = [f"  {line}" for line in head_lines(document)]
     facts = [f"  {name:<24}{value}" for name, value in _facts(document)]
     table = _index_table(document.get("indices") or {})
@@ -48,6 +48,9 @@ def summary_text(document: dict[str, Any]) -> str:
 
 def _facts(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
     headline = document.get("headline") or {}
+    if samples := document.get("samples"):
+        reasons = ", ".join(f"{name} {number:,}" for name, number in samples["rejected"].items())
+        yield "admitted samples", f"{samples['admitted']:,} of {samples['drawn']:,}; rejected by {reasons}"
     if flat := document.get("flat"):
         yield from _flat(flat, headline)
     else:
