@@ -84,7 +84,8 @@ def lattice_kernel(shape: MembershipShape, cuda: bool) -> wp.Kernel:
     ``points`` (3 * count,), where they are given: coordinate r of position i at [r * count + i], base frame; ``turned``
     (orientations * L * TURNED_STRIDE,), ``weights`` (orientations,); ``by_subsystem``: 1 for method B. Out: ``reached``
     (count,), the sum of their weights ``weighted`` (count,), and ``asked``, in parts the number of (pose, leg)
-    pairs that were evaluated: one part per task on the CPU, ASKED_SLOTS, which start at 0, on CUDA. On the CPU
+    pairs that were evaluated: one part per task on the CPU, ASKED_SLOTS, which start at 0, on CUDA; with constraints
+    followed, part by part, by the number of poses that the legs reach, whatever constraints say of them. On the CPU
     ``found`` (tasks,) is above 0 where a place of the task's block is reached: only there ``reached`` and ``weighted``,
     of whole blocks, are written.
     """
@@ -229,6 +230,7 @@ def _lattice_cpu(shape: MembershipShape) -> wp.Kernel:
             pz[lane] = p[2]
             inside[lane] = in_region(model, p) & wp.where(lane < valid, 1, 0)
         pairs = wp.int32(0)
+        fitting = wp.int32(0)
         alive = flags_type()
         parts = parts_type()
         for o in range(orientations):
@@ -262,6 +264,8 @@ def _lattice_cpu(shape: MembershipShape) -> wp.Kernel:
                     left = kept
                 k += 1
             if wp.static(DISTANCES):
+                for lane in range(BLOCK):
+                    fitting += alive[lane]
                 for pair in range(wp.static(L * L)):
                     if model.pairs[pair] > 0 and left > 0:
                         a = pair / L
@@ -295,7 +299,11 @@ def _lattice_cpu(shape: MembershipShape) -> wp.Kernel:
             for lane in range(BLOCK):
                 store(reached, task * BLOCK + lane, total[lane])
                 store(weighted, task * BLOCK + lane, weight_sum[lane])
-        asked[task] = pairs
+        if wp.static(DISTANCES):
+            asked[2 * task] = pairs
+            asked[2 * task + 1] = fitting
+        else:
+            asked[task] = pairs
 
     return lattice_cpu
 
@@ -337,6 +345,7 @@ def _lattice_cuda(shape: MembershipShape) -> wp.Kernel:
         total = wp.int32(0)
         weight_sum = wp.int32(0)
         pairs = wp.int32(0)
+        fitting = wp.int32(0)
         for o in range(orientations):
             alive = wp.int32(inside)
             for k in range(L):
@@ -348,6 +357,7 @@ def _lattice_cuda(shape: MembershipShape) -> wp.Kernel:
                     alive = alive & fits
                     pairs += 1
             if wp.static(DISTANCES):
+                fitting += alive
                 for pair in range(wp.static(L * L)):
                     if model.pairs[pair] > 0 and alive > 0:
                         a = pair / L
@@ -366,7 +376,11 @@ def _lattice_cuda(shape: MembershipShape) -> wp.Kernel:
             weight_sum += alive * weights[o]
         reached[i] = total
         weighted[i] = weight_sum
-        wp.atomic_add(asked, i % SLOTS, pairs)
+        if wp.static(DISTANCES):
+            wp.atomic_add(asked, 2 * (i % SLOTS), pairs)
+            wp.atomic_add(asked, 2 * (i % SLOTS) + 1, fitting)
+        else:
+            wp.atomic_add(asked, i % SLOTS, pairs)
 
     return lattice_cuda
 

@@ -119,3 +119,38 @@ def test_voxels_of_legs_that_keep_their_distance():
     with pytest.raises(ws.InputError, match="two legs come closer"):
         home = {"position_m": [0.0, 0.0, 0.45]}
         execute({**job, "mechanism": six_cranks("either", minimum_leg_distance_m=0.35, home=home)})
+
+
+@pytest.mark.parametrize("branch", ("plus", ("either", *["plus"] * 5)), ids=("plus", "first either"))
+@pytest.mark.parametrize("method", ("grid", "grid_by_subsystem"))
+def test_poses_at_which_legs_are_too_close_count_by_that_reason(method, branch):
+    """Of what the same mechanism reaches where legs may cross, by kernels, and pose by pose where they choose."""
+    job = {**JOB, "voxel_size_m": 0.06, "method": method}
+    free = execute({**job, "mechanism": six_cranks(branch)})
+    kept = execute({**job, "mechanism": six_cranks(branch, minimum_leg_distance_m=0.1)})
+    drawn, admitted = (int(result.volume.count.sum()) for result in (free, kept))
+    rejected = {"leg_distance": drawn - admitted}
+    assert kept.document["samples"] == {"drawn": drawn, "admitted": admitted, "rejected": rejected}
+    assert 0 < admitted < drawn and "samples" not in free.document
+    assert f"{admitted:,} of {drawn:,}; rejected by leg_distance {drawn - admitted:,}" in kept.summary()
+
+
+TILTS = {"euler_xyz_deg": [[-20, 20]] * 3, "per_angle": 3}
+
+
+def test_rejected_poses_of_many_orientations_of_one_place_and_of_carried_bases():
+    """All that is drawn is what is reached where legs may cross."""
+    limited = {"minimum_leg_distance_m": 0.1}
+    slide = {"type": "prismatic", "axis": [0, 0, 1], "limits_m": [0.0, 0.05], "levels": 2}
+    carried = {"mechanism": six_cranks("plus", before=[slide]), "voxel_size_m": 0.08}
+    point = {"kind": "orientation", "position_m": [0.0, 0.0, 0.5], "orientations": TILTS}
+    lattice = {"kind": "dexterous", "voxel_size_m": 0.08, "orientations": TILTS}
+    for kind in (point, lattice, carried):
+        legs = kind.get("mechanism", six_cranks("plus"))
+        free, kept = (execute({**JOB, **kind, "mechanism": {**legs, **more}}) for more in ({}, limited))
+        drawn, admitted = (
+            result.document["orientation_workspace"]["reached"] if kind is point else int(result.volume.count.sum())
+            for result in (free, kept)
+        )
+        samples = {"drawn": drawn, "admitted": admitted, "rejected": {"leg_distance": drawn - admitted}}
+        assert kept.document["samples"] == samples and 0 < admitted < drawn

@@ -1,6 +1,6 @@
 """Which poses a parallel mechanism reaches: the lattice at several orientations, or given poses."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
 from dataclasses import dataclass, replace
 from typing import Any
@@ -75,7 +75,8 @@ class OrientationCounts:
     """Of places, by number ``cells`` (V,) int64: orientations ``reached`` and the sum of their ``weights`` (V,) int32.
 
     ``asked``: the number of (pose, leg) pairs that were evaluated. ``undecided``: poses that count as not reached, for
-    legs solved numerically were neither found to reach them nor not to.
+    legs solved numerically were neither found to reach them nor not to. ``fitting``: with constraints, poses that the
+    legs reach by themselves, of which ``rejected`` are not admitted.
     """
 
     cells: np.ndarray
@@ -83,6 +84,15 @@ class OrientationCounts:
     weights: np.ndarray
     asked: int
     undecided: int = 0
+    fitting: int = 0
+    rejected: int = 0
+
+    @staticmethod
+    def totals(parts: "Iterable[OrientationCounts]") -> tuple[int, int, int, int]:
+        """The sums of ``asked`` and of what follows it."""
+        each = [(part.asked, part.undecided, part.fitting, part.rejected) for part in parts]
+        asked, undecided, fitting, rejected = np.sum([(0, 0, 0, 0), *each], axis=0).tolist()
+        return asked, undecided, fitting, rejected
 
 
 def count_orientations(
@@ -160,7 +170,7 @@ def count_orientations_at(
     reached, weighted = np.zeros((2, len(positions)), np.int32)
     for k, part in enumerate(found):
         reached[k * size + part.cells], weighted[k * size + part.cells] = part.reached, part.weights
-    return OrientationCounts(np.arange(len(positions)), reached, weighted, sum(part.asked for part in found))
+    return OrientationCounts(np.arange(len(positions)), reached, weighted, *OrientationCounts.totals(found))
 
 
 def joined(parts: list[OrientationCounts]) -> OrientationCounts:
@@ -169,8 +179,7 @@ def joined(parts: list[OrientationCounts]) -> OrientationCounts:
     cells, reached, weights = (
         np.concatenate([none, *(getattr(part, name) for part in parts)]) for name in ("cells", "reached", "weights")
     )
-    asked, undecided = (sum(getattr(part, name) for part in parts) for name in ("asked", "undecided"))
-    return OrientationCounts(cells.astype(np.int64), reached, weights, asked, undecided)
+    return OrientationCounts(cells.astype(np.int64), reached, weights, *OrientationCounts.totals(parts))
 
 
 class _Lattice:
@@ -183,6 +192,7 @@ class _Lattice:
         points = np.zeros((0, 3)) if isinstance(places, LatticeBlock) else places
         self.given = len(points)
         shape = replace(test.shape, given=not isinstance(places, LatticeBlock))
+        self.columns = 2 if shape.distances else 1  # of what is counted
         self.device, self.by_subsystem, self.orientations = device, int(by_subsystem), len(rotations)
         self.kernel = loaded(lattice_kernel(shape, device.is_cuda), device)
         self.model = test.model(shape, places.origin if isinstance(places, LatticeBlock) else None)
@@ -204,18 +214,22 @@ class _Lattice:
         places = [self.model, self.grid, self.points, self.turned, self.weights, self.orientations]
         inputs = [*places, first, count, self.by_subsystem]
         if self.device.is_cuda:
-            asked = wp.zeros(ASKED_SLOTS, dtype=wp.int32, device=self.device)  # type: ignore[arg-type]
+            asked = wp.zeros(ASKED_SLOTS * self.columns, dtype=wp.int32, device=self.device)  # type: ignore[arg-type]
             launch(self.kernel, dim=count, inputs=inputs, outputs=[reached, weighted, asked], device=self.device)
             cells, counts, sums = survivors(reached, weighted, count)
         else:
-            found, asked = (_memory(blocks, self.device) for _ in range(2))
+            found, asked = _memory(blocks, self.device), _memory(blocks * self.columns, self.device)
             outputs = [reached, weighted, found, asked]
             launch(self.kernel, dim=blocks, inputs=inputs, outputs=outputs, device=self.device)
             some = np.flatnonzero(found.numpy())  # only there anything was written
             at = np.flatnonzero(reached.numpy().reshape(-1, LANES)[some])
             cells = some[at // LANES] * LANES + at % LANES
             counts, sums = reached.numpy()[cells], weighted.numpy()[cells]
-        return OrientationCounts(cells + first, counts, sums, int(asked.numpy().sum(dtype=np.int64)))
+        total, *fitting = asked.numpy().reshape(-1, self.columns).sum(axis=0, dtype=np.int64).tolist()
+        if not fitting:
+            return OrientationCounts(cells + first, counts, sums, total)
+        rejected = fitting[0] - int(counts.sum(dtype=np.int64))
+        return OrientationCounts(cells + first, counts, sums, total, 0, fitting[0], rejected)
 
 
 def survivors(reached: wp.array, weighted: wp.array, count: int) -> tuple[np.ndarray, ...]:

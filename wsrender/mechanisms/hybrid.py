@@ -156,19 +156,19 @@ def count_union(
     if len(found) == 1:
         return count(found[0], found[0].rotations(rotations), weights)
     reached, weighted = np.zeros((2, places), np.int32)
-    asked = undecided = 0
+    parts = []
     for number, (rotation, weight) in enumerate(zip(rotations[:, None], weights, strict=True)):
         hit = np.zeros(places, bool)
         for variant in found:
             counts = count(variant, variant.rotations(rotation), np.ones(1, np.int32))
             hit[counts.cells[counts.reached > 0]] = True
-            asked, undecided = asked + counts.asked, undecided + counts.undecided
+            parts.append(counts)
         reached += hit
         weighted += hit * weight
         if progress:
             progress(number + 1)
     cells = np.flatnonzero(reached)
-    return OrientationCounts(cells, reached[cells], weighted[cells], asked, undecided)
+    return OrientationCounts(cells, reached[cells], weighted[cells], *OrientationCounts.totals(parts))
 
 
 def added(each: Sequence[OrientationCounts]) -> OrientationCounts:
@@ -177,8 +177,7 @@ def added(each: Sequence[OrientationCounts]) -> OrientationCounts:
     reached, weights = np.zeros((2, len(cells)), np.int64)
     np.add.at(reached, place, np.concatenate([counts.reached for counts in each]))
     np.add.at(weights, place, np.concatenate([counts.weights for counts in each]))
-    asked, undecided = (sum(getattr(counts, name) for counts in each) for name in ("asked", "undecided"))
-    return OrientationCounts(cells, reached, weights, asked, undecided)
+    return OrientationCounts(cells, reached, weights, *OrientationCounts.totals(each))
 
 
 def hybrid_at(mechanism: Mechanism, spec: MechanismSpec, q: np.ndarray) -> Variant:

@@ -187,11 +187,27 @@ def poses_labelled(
     return labels, asked
 
 
+def rejections(mechanism: Mechanism, poses: np.ndarray, labels: np.ndarray, **options: Any) -> tuple[int, int]:
+    """How many poses the legs reach by themselves, and how many of these the ``labels`` (N,) do not.
+
+    0 of a mechanism without constraints; ``options`` of `poses_labelled`.
+    """
+    if not mechanism.constraints:
+        return 0, 0
+    fitting = poses_labelled(replace(mechanism, constraints=()), poses, **options)[0] == REACHABLE
+    return int(fitting.sum()), int((fitting & (labels != REACHABLE)).sum())
+
+
 def orientations_labelled(
     mechanism: Mechanism, position: np.ndarray, rotations: np.ndarray, **options: Any
-) -> np.ndarray:
-    """Labels (N,) of orientations (N, 3, 3) at one position (3,), base frame; ``options`` of `poses_labelled`."""
-    return poses_labelled(mechanism, _poses(position[None], rotations), **options)[0]
+) -> tuple[np.ndarray, tuple[int, int]]:
+    """Labels (N,) of orientations (N, 3, 3) at one position (3,), base frame; ``options`` of `poses_labelled`.
+
+    And their `rejections`.
+    """
+    poses = _poses(position[None], rotations)
+    labels = poses_labelled(mechanism, poses, **options)[0]
+    return labels, rejections(mechanism, poses, labels, **options)
 
 
 def fault_at(mechanism: Mechanism, pose: np.ndarray) -> str:
@@ -211,11 +227,13 @@ def _counted(
     **options: Any,
 ) -> OrientationCounts:
     """Counts of the positions (N, 3) with numbers ``cells`` that are reached at all."""
-    labels, asked = poses_labelled(mechanism, _poses(positions, rotations), **options)
+    poses = _poses(positions, rotations)
+    labels, asked = poses_labelled(mechanism, poses, **options)
+    fitting = rejections(mechanism, poses, labels, **options)
     hits = labels.reshape(len(positions), len(rotations)) == REACHABLE
     some = hits.any(axis=1)
     reached, weighted = hits[some].sum(axis=1).astype(np.int32), (hits[some] @ weights).astype(np.int32)
-    return OrientationCounts(cells[some], reached, weighted, asked, int((labels == UNDECIDED).sum()))
+    return OrientationCounts(cells[some], reached, weighted, asked, int((labels == UNDECIDED).sum()), *fitting)
 
 
 def _poses(positions: np.ndarray, rotations: np.ndarray) -> np.ndarray:

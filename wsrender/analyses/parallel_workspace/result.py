@@ -20,6 +20,7 @@ from wsrender.mechanisms.jacobians import DETERMINANTS
 from wsrender.mechanisms.mechanism import Mechanism
 from wsrender.mechanisms.membership import fault_at, in_base_frame, in_world
 from wsrender.pipeline.sampling import subsample
+from wsrender.robot.constraints import samples_entry
 from wsrender.volume.distribution_map import DistributionMap
 from wsrender.volume.lattice import LatticeBlock
 from wsrender.volume.table import Table
@@ -44,6 +45,7 @@ def positions_result(plan: "ParallelWorkspaceAnalysis", partial: PartialResult) 
             "legs_evaluated": int(partial["asked"][0]),
             **_undecided(plan, int(partial["asked"][1])),
         },
+        **_samples(plan, partial["asked"][2:]),
         "voxel_size_m": plan.block.voxel_size_m if plan.block else job.voxel_size_m,
         "volume_m3": _volumes(plan, partial, volume),
         "indices": _index_entries(plan, volume) if volume else {},
@@ -85,6 +87,7 @@ def orientation_result(plan: "ParallelWorkspaceAnalysis", partial: PartialResult
             "levels": list(orientations.levels),
             **_undecided(plan, int(partial["undecided"].sum())),
         },
+        **_samples(plan, partial["constrained"]),
         "orientation_workspace": {
             "position_m": list(job.position_m or ()),
             "orientations": len(is_reached),
@@ -317,6 +320,11 @@ def _legs_at(mechanism: Mechanism, pose: np.ndarray) -> np.ndarray:
 def _undecided(plan: "ParallelWorkspaceAnalysis", poses: int) -> dict[str, int]:
     """Poses that count as not reached, for the numerical solution neither found nor excluded one."""
     return {"undecided": poses} if plan.mechanism.numeric else {}
+
+
+def _samples(plan: "ParallelWorkspaceAnalysis", constrained: np.ndarray) -> dict[str, Any]:
+    """Poses that the legs reach by themselves, and what constraints leave of them; nothing without constraints."""
+    return samples_entry(plan.mechanism.constraints, int(constrained[0]), constrained[1:])
 
 
 def _sample(volume: VolumeData | None) -> DistributionMap | None:

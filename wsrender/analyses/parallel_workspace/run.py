@@ -229,7 +229,7 @@ class ParallelWorkspaceAnalysis(Analysis):
             "cells": found.cells,
             "orientations": found.reached,
             "weights": found.weights,
-            "asked": np.array([found.asked, found.undecided]),
+            "asked": np.array(OrientationCounts.totals([found])),
         }
         if self.names:
             partial |= self._indices(found.cells, cells_of_variants)
@@ -279,14 +279,18 @@ class ParallelWorkspaceAnalysis(Analysis):
         options = {"precision": self.job.precision, "device": self.device, "threads": execution.threads}
         options["by_subsystem"] = self.job.method == "grid_by_subsystem"
         rotations = self.orientations.rotations
-        labels = np.full(len(rotations), UNREACHABLE, np.int8)
+        labels, constrained = np.full(len(rotations), UNREACHABLE, np.int8), np.zeros(2, np.int64)
         for number, variant in enumerate(self.variants, start=1):
             position = in_base_frame(variant.mechanism, np.array(self.job.position_m))
-            found = orientations_labelled(variant.mechanism, position, variant.rotations(rotations), **options)
+            turned = variant.rotations(rotations)
+            found, rejections = orientations_labelled(variant.mechanism, position, turned, **options)
+            constrained += rejections
             labels = np.where(labels == REACHABLE, labels, np.where(found == UNREACHABLE, labels, found))
             tell(number * len(rotations))
         share = self._share_at_point(execution.threads)
-        return PartialResult({"reached": labels == REACHABLE, "undecided": labels == UNDECIDED, "share": share})
+        reached, undecided = labels == REACHABLE, labels == UNDECIDED
+        arrays = {"reached": reached, "undecided": undecided, "share": share, "constrained": constrained}
+        return PartialResult(arrays)
 
     def _share_at_point(self, threads: int | None) -> np.ndarray:
         """Value and 95 % interval (3,) of the share of the orientations' ranges, from random ones, not from levels."""
