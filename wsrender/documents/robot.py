@@ -76,6 +76,23 @@ Length = Annotated[float, Field(ge=-LARGEST, le=LARGEST), BeforeValidator(real)]
 NotNegative = Annotated[float, Field(ge=0), BeforeValidator(real)]
 
 
+def _pair(value: Any) -> Any:
+    if len(names := sequence(value)) != 2:
+        raise ValueError("must be a pair of names")
+    return names
+
+
+def _is_none(value: Any) -> bool:
+    return value is None
+
+
+def _is_empty(value: Any) -> bool:
+    return not value
+
+
+ShapePair = Annotated[tuple[Name, Name], BeforeValidator(_pair)]
+
+
 class Transform(Document):
     """A position and at most one of three ways to say an orientation (none: no rotation)."""
 
@@ -246,6 +263,10 @@ class RobotSpec(Document):
     """The model's unit of length [m]: 0.001 for millimetres; 1 confirms metres. The model's positions, sizes, slides
     and centres of mass are multiplied by it, its inertias [kg unit²] by its square. null: metres, and a job is refused
     where they are beyond any arm."""
+    srdf: Annotated[StrictStr | None, Field(min_length=1, exclude_if=_is_none)] = None
+    """Text of an SRDF, whose disabled pairs of links do not collide; null: none."""
+    exclude: Annotated[tuple[ShapePair, ...], BeforeValidator(sequence), Field(exclude_if=_is_empty)] = ()
+    """Pairs of names of shapes, or of bodies for all shapes on them, that do not collide."""
 
     def conflicts(self) -> Iterator[tuple[str, str]]:
         """(field, message) of every pair of fields that do not go together."""

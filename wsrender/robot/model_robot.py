@@ -1,22 +1,38 @@
 """A robot compiled by MuJoCo."""
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from wsrender import notices
 from wsrender.documents.robot import RobotSpec, Transform
 from wsrender.errors import InputError, MissingInertiaError
 from wsrender.notices import Notice
-from wsrender.robots import described, load, load_dh, load_library, load_mjcf, load_path, load_uploaded, load_urdf
+from wsrender.robot.body_tables import pair_table, shape_table
+from wsrender.robots import (
+    described,
+    load,
+    load_dh,
+    load_library,
+    load_mjcf,
+    load_path,
+    load_uploaded,
+    load_urdf,
+    xml_source,
+)
 from wsrender.robots.kinematics import Kinematics
+from wsrender.robots.model_warning import ModelWarning
 from wsrender.robots.plausibility import NO_LIMITS
+from wsrender.volume.table import Table
 
 if TYPE_CHECKING:
     import mujoco
 
+    from wsrender.robots.bodies import Bodies
     from wsrender.robots.loaded_robot import LoadedRobot
     from wsrender.robots.loading import Source
 
@@ -95,6 +111,52 @@ class Robot:
     def has_inertia(self) -> bool:
         """Whether the model has link inertias, so that dynamic indices exist."""
         return self.chain.has_inertia
+
+    @property
+    def bodies(self) -> "Bodies":
+        """The shapes that may collide, where they stand and in which pairs; meshes are read when it is first asked for.
+
+        Raises ModelError, as `shapes` and `pairs` do, where a shape cannot be had, InputError for a Python class.
+        """
+        return self._bodies("bodies")
+
+    @property
+    def shapes(self) -> Table:
+        """Shapes that may collide, a row each; none for a model that states none.
+
+        ``name``, ``body`` and ``kind`` (plane, sphere, capsule, ellipsoid, cylinder, box or mesh) as text; ``frame``
+        int, the joint of the chain that carries it, -1 for the base; ``position_m`` (S, 3) and ``quat_wxyz`` (S, 4) in
+        that frame; ``size_m`` (S, 3) as MuJoCo means it, of a mesh the edges of a box around it; ``vertices`` int of
+        its convex hull; ``surroundings`` bool, whether it belongs to the world of the model's file.
+        """
+        return shape_table(self.bodies)
+
+    @property
+    def pairs(self) -> Table:
+        """Pairs of the robot's own shapes that may collide, as text: ``first``, ``second``, and the body of each.
+
+        MuJoCo's rules choose them (see `wsrender.robots.pairs`), less what an SRDF or ``exclude`` names.
+        """
+        return pair_table(self.bodies)
+
+    @property
+    def visuals(self) -> Table:
+        """Shapes that are seen, as `shapes` has those that may collide; ``rgba`` (S, 4) 0 … 1.
+
+        Those in MuJoCo's visible groups, or a URDF's visuals; where it has none, the shapes that may collide. What has
+        no file is left out, with a ModelWarning.
+        """
+        return shape_table(self._bodies("visuals"))
+
+    def _bodies(self, which: str) -> "Bodies":
+        if self.definition:
+            raise InputError("robot", f"{self.name} is defined by a Python class, which has no shapes")
+        try:
+            found: Bodies = getattr(self._loaded, which)
+        except InputError as error:
+            raise error.at(_field_of_arm(error.field, self.spec)) if self.spec else error from None
+        notices.warn(found.notices, ModelWarning)
+        return found
 
     def forward_kinematics(self, q: Any, *, precision: str = "float64", device: str = "auto") -> np.ndarray:
         """Poses of the end effector in the world, (N, 4, 4)."""
@@ -207,6 +269,8 @@ def load_robot(
     limits: Mapping[str, Any] | None = None,
     limits_deg: Mapping[str, Any] | None = None,
     length_unit_m: float | None = None,
+    srdf: str | Path | None = None,
+    exclude: Sequence[tuple[str, str]] = (),
 ) -> Robot:
     """Load a robot: a library name, the path or text of an MJCF (.xml) or URDF file, a DH table, MjSpec or MjModel.
 
@@ -214,7 +278,9 @@ def load_robot(
     ``placement`` is the base frame in the world and ``tool`` the tool point in the tip frame, each a
     `Transform`, its fields as a dict, or a (4, 4) array. ``limits`` {joint: (lower, upper)} [rad or m] (or
     ``limits_deg``) go before the model's; ``length_unit_m`` is the model's unit of length [m]: 0.001 converts
-    millimetres, 1 confirms metres. What is odd about a model is a ModelWarning, and among the robot's ``notices``.
+    millimetres, 1 confirms metres. ``srdf`` is the path or text of an SRDF, whose disabled pairs of links do not
+    collide; nor do those of ``exclude``, pairs of names of shapes, or of bodies for all shapes on them. What is odd
+    about a model is a ModelWarning, and among the robot's ``notices``.
     Raises InputError, ModelError for a malformed or unsupported model, FrameNotFoundError listing the frames.
     """
     kind, value = described(source)
@@ -222,6 +288,7 @@ def load_robot(
     placement, tool = _as_transform(placement), _as_transform(tool)
     options |= {"placement": _matrix(placement), "tool": _matrix(tool)}
     given: dict[str, Any] = {"limits": limits or {}, "limits_deg": limits_deg or {}, "length_unit_m": length_unit_m}
+    given |= {"srdf": _srdf_text(srdf), "exclude": exclude}
     stated = RobotSpec(**{kind: value}, **given)
     loaded = load(source, **options, **_corrections(stated))
     spec = stated.model_copy(update={"placement": _transform(placement), "tool": _transform(tool)})
@@ -267,7 +334,13 @@ def _field_of_arm(field: str, spec: RobotSpec) -> str:
 
 def _corrections(spec: RobotSpec) -> dict[str, Any]:
     """What a document says of a model that the model itself does not, or not rightly."""
-    return {"limits": spec.limits, "limits_deg": spec.limits_deg, "length_unit_m": spec.length_unit_m}
+    return {name: getattr(spec, name) for name in ("limits", "limits_deg", "length_unit_m", "srdf", "exclude")}
+
+
+def _srdf_text(srdf: str | Path | None) -> str | None:
+    if srdf is None or (isinstance(srdf, str) and srdf.lstrip("\ufeff \t\r\n").startswith("<")):
+        return srdf
+    return xml_source.read(Path(srdf), "srdf").decode()
 
 
 def _as_transform(value: Any) -> Any:

@@ -10,6 +10,7 @@ from collections.abc import Iterator, Sequence
 import mujoco
 
 from wsrender.robots import frames
+from wsrender.robots.couplings import Couplings
 from wsrender.robots.frames import Frame
 from wsrender.robots.limits import Drive
 
@@ -25,6 +26,21 @@ def moving_bodies(model: mujoco.MjModel, aside: list[Drive], base: Frame) -> lis
     """Those leaders that move a body against the base: a leader that carries the base moves none."""
     above = {joint for body in frames.path(model, base.body) for joint in frames.joints_of(model, body)}
     return [drive for drive in aside if drive.joint not in above]
+
+
+def followers_aside(
+    model: mujoco.MjModel, couplings: Couplings, leaders: list[int], drives: list[Drive]
+) -> list[Drive]:
+    """The joints off the path that follow a coordinate of the chain. Raises ModelError for one not linear in it."""
+    known = {*leaders, *(drive.joint for drive in drives)}
+    followers = []
+    for joint in range(model.njnt):
+        leader = couplings.leader(joint)
+        if joint not in known and leader in leaders:
+            scale, offset = couplings.linear(joint)
+            zero = float(model.qpos0[model.jnt_qposadr[leader]])
+            followers.append(Drive(joint, leaders.index(leader), scale, offset - scale * zero))
+    return followers
 
 
 def serial_order(model: mujoco.MjModel, joints: Sequence[int], path: int) -> list[tuple[int, int]]:

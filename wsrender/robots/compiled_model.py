@@ -2,9 +2,10 @@
 
 import re
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from typing import Literal
 
 import mujoco
 
@@ -62,17 +63,22 @@ class JointFault:
     by_limits: bool = False
 
 
+Purpose = Literal["collision", "visual"]
+
+
 @dataclass(frozen=True)
 class CompiledModel:
     """A compiled model and what its source said that MuJoCo's model cannot hold.
 
     ``path_faults`` and ``inertia_faults`` map a body's number to what forbids a chain through its joints, or
     over its inertia; they are errors only for a chain that meets them. ``unset_limits`` names the joints whose limits
-    were 0 … 0, taken as none.
+    were 0 … 0, taken as none. ``with_geometry`` compiles the same bodies and joints with all shapes of a purpose, and
+    says what was odd about them; it reads meshes, and raises ModelError where one that may collide cannot be had.
     """
 
     model: mujoco.MjModel
     name: str
+    with_geometry: Callable[[Purpose], tuple[mujoco.MjModel, tuple[Notice, ...]]]
     path_faults: dict[int, str] = field(default_factory=dict)
     inertia_faults: dict[int, str] = field(default_factory=dict)
     joint_faults: tuple[JointFault, ...] = ()

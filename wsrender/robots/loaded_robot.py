@@ -6,6 +6,8 @@ import mujoco
 import numpy as np
 
 from wsrender.notices import Notice
+from wsrender.robots.bodies import Bodies
+from wsrender.robots.body_extraction import BodySource
 from wsrender.robots.chain import Chain
 
 
@@ -24,9 +26,20 @@ class LoadedRobot:
     qpos_addresses: np.ndarray  # (L,) int
     dof_addresses: np.ndarray  # (L,) int
     reference_qpos: np.ndarray  # (nq,)
+    body_source: BodySource
     notices: tuple[Notice, ...] = ()  # what was odd about the model
     leaders: tuple[tuple[int, int], ...] = ()  # off the path: address in ``qpos``, coordinate
     branches: tuple[tuple[int, int], ...] = ()  # those of them that move a body: address in ``qvel``, coordinate
+
+    @property
+    def bodies(self) -> Bodies:
+        """The shapes that may collide; see `BodySource.collision`."""
+        return self.body_source.collision.placed_as(self.chain)
+
+    @property
+    def visuals(self) -> Bodies:
+        """The shapes that are seen; see `BodySource.visual`."""
+        return self.body_source.visual.placed_as(self.chain)
 
     @property
     def coupling(self) -> np.ndarray:

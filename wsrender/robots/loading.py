@@ -2,7 +2,7 @@
 
 import hashlib
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -13,9 +13,10 @@ import numpy as np
 
 from wsrender import notices
 from wsrender.errors import InputError, MissingExtraError, ModelError
-from wsrender.robots import includes, xml_source
+from wsrender.robots import includes, mesh_files, xml_source
 from wsrender.robots.model_warning import ModelWarning
 from wsrender.robots.plausibility import doubts
+from wsrender.robots.srdf import disabled_pairs
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -26,9 +27,10 @@ if TYPE_CHECKING:
     from wsrender.robots.chain import Chain
     from wsrender.robots.compiled_model import CompiledModel
     from wsrender.robots.loaded_robot import LoadedRobot
-    from wsrender.robots.mjcf_model import ReadMesh
+    from wsrender.robots.mesh_files import ReadMesh
 
     Limits = Mapping[str, tuple[float, float]]
+    Excluded = Sequence[tuple[str, str]]
     Source = str | Path | DHTable | mujoco.MjSpec | mujoco.MjModel
 
 _FIELD = "model"
@@ -45,6 +47,8 @@ def load(
     limits: "Limits | None" = None,
     limits_deg: "Limits | None" = None,
     length_unit_m: float | None = None,
+    srdf: str | None = None,
+    exclude: "Excluded" = (),
 ) -> "LoadedRobot":
     """The robot of a library name, of a path to or the text of an MJCF or URDF file, of a DH table, MjSpec or MjModel.
 
@@ -53,11 +57,13 @@ def load(
     the only end of the model that a joint moves, else the link ``tool0``; a site goes before a body of its name.
     ``placement`` is the base frame in the world and ``tool`` the tool frame in the tip frame, (4, 4) each.
     ``limits`` (``limits_deg``: hinges in degrees) of joints of the chain by name, (lower, upper) [rad or m], go before
-    the model's. ``length_unit_m`` is the model's unit of length [m]; given, no length is doubted.
+    the model's. ``length_unit_m`` is the model's unit of length [m]; given, no length is doubted. ``srdf`` is SRDF
+    text, whose disabled pairs of links do not collide, nor do those of ``exclude``, pairs of names of shapes or bodies.
     Raises ModelError, FrameNotFoundError, InputError; gives a ModelWarning for each of the robot's notices.
     """
     options = {"base": base, "tip": tip, "name": name, "placement": placement, "tool": tool}
     options |= {"limits": limits, "limits_deg": limits_deg, "length_unit_m": length_unit_m}
+    options |= {"srdf": srdf, "exclude": exclude}
     kind, value = described(source)
     loaders = {"library": load_library, "path": load_path, "dh": load_dh, "mjcf": load_mjcf, "urdf": load_urdf}
     return loaders[kind](value, **options)
@@ -108,19 +114,20 @@ def load_dh(table: "DHTable", **options) -> "LoadedRobot":
 def load_path(path: str | Path, **options) -> "LoadedRobot":
     """The robot of a file of the user's own, MJCF or URDF by its root element; ``options`` as in ``load``.
 
-    Files that an MJCF includes and meshes that an inertia is computed from are read relative to it; nothing else is.
+    Files that an MJCF includes and meshes that an inertia is computed from are read relative to it, other meshes when
+    shapes are asked for; nothing else is.
     """
     path = Path(path)
     content = xml_source.read(path, _FIELD)
     root = xml_source.parse(content, _FIELD)
     options = {**options, "name": options.get("name") or root.get("model") or root.get("name") or path.stem}
+    read_mesh = mesh_files.from_folder(path.parent)
     if root.tag == "robot":
-        return _from_urdf(root, content, **options)
+        return _from_urdf(root, content, read_mesh, **options)
     if root.tag != "mujoco":
         raise ModelError(_FIELD, f"the root element is <{root.tag}>; <mujoco> or <robot> (URDF) is needed")
-    mjcf_model = _mjcf_model()
     content = b"".join([content, *includes.put_in(root, path.parent, _FIELD)])
-    return _from_mjcf(root, content, mjcf_model.from_folder(path.parent), **options)
+    return _from_mjcf(root, content, read_mesh, **options)
 
 
 def load_mjcf(text: str | bytes, *, assets: Mapping[str, bytes] | None = None, **options) -> "LoadedRobot":
@@ -129,12 +136,12 @@ def load_mjcf(text: str | bytes, *, assets: Mapping[str, bytes] | None = None, *
     ``assets`` maps names of mesh files, as the text writes them, to their bytes.
     """
     root = _root(text, "mujoco")
-    return _from_mjcf(root, text, _mjcf_model().from_assets(assets or {}), **options)
+    return _from_mjcf(root, text, mesh_files.from_assets(assets or {}), **options)
 
 
-def load_urdf(text: str | bytes, **options) -> "LoadedRobot":
-    """The robot of URDF text; no file is read. ``options`` as in ``load``."""
-    return _from_urdf(_root(text, "robot"), text, **options)
+def load_urdf(text: str | bytes, *, assets: Mapping[str, bytes] | None = None, **options) -> "LoadedRobot":
+    """The robot of URDF text; no file is read. ``options`` as in ``load``, ``assets`` as in ``load_mjcf``."""
+    return _from_urdf(_root(text, "robot"), text, mesh_files.from_assets(assets or {}), **options)
 
 
 def _mjcf_model():
@@ -159,11 +166,11 @@ def _from_mjcf(root: Element, text: str | bytes, read_mesh: "ReadMesh", **option
     return _loaded(compile_mjcf, text, **options)
 
 
-def _from_urdf(root: Element, text: str | bytes, **options) -> "LoadedRobot":
+def _from_urdf(root: Element, text: str | bytes, read_mesh: "ReadMesh", **options) -> "LoadedRobot":
     _mjcf_model()
     from wsrender.robots.urdf_model import compile_urdf
 
-    return _loaded(partial(compile_urdf, root, _FIELD), text, **options)
+    return _loaded(partial(compile_urdf, root, read_mesh, _FIELD), text, **options)
 
 
 def _loaded(
@@ -178,6 +185,8 @@ def _loaded(
     limits=None,
     limits_deg=None,
     length_unit_m=None,
+    srdf=None,
+    exclude=(),
     held=(),
 ) -> "LoadedRobot":
     """The robot of a model that ``compile_model`` makes of its unit of length; warns of its notices.
@@ -196,7 +205,12 @@ def _loaded(
     chain = robot.chain.placed(_rigid("placement", placement), _rigid("tool", tool))
     found = (*robot.notices, *doubts(chain, given, length_unit_m is not None, held))
     notices.warn(found, ModelWarning)
-    return replace(robot, chain=chain, notices=found)
+    disabled = disabled_pairs(srdf) if srdf is not None else ()
+    source = replace(robot.body_source, excluded=tuple(exclude), disabled=disabled)
+    loaded = replace(robot, chain=chain, notices=found, body_source=source)
+    if exclude:
+        _ = loaded.bodies  # which have the names that it must keep to
+    return loaded
 
 
 def _check_limits(chain: "Chain", limits: "Limits", limits_deg: "Limits") -> None:

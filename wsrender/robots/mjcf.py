@@ -1,5 +1,6 @@
 """MJCF text, made safe for MuJoCo's compiler: what moves and weighs is kept, the scenery is not."""
 
+from collections.abc import Collection
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element
 
@@ -32,14 +33,14 @@ def refuse_includes(mujoco: Element, field: str) -> None:
         raise ModelError(field, _REFUSED["include"])
 
 
-def sanitized(mujoco: Element, field: str) -> Element:
+def sanitized(mujoco: Element, field: str, keep: Collection[str] = ()) -> Element:
     """The ``<mujoco>`` element without scenery and materials, its numbers checked; changed in place.
 
-    Raises ModelError for elements that read other files or build bodies by the thousand, and for numbers
-    that are not finite.
+    ``keep``: sections of scenery that stay. Raises ModelError for elements that read other files or build bodies by
+    the thousand, and for numbers that are not finite.
     """
     for section in list(mujoco):
-        if section.tag in _SCENERY:
+        if section.tag in _SCENERY and section.tag not in keep:
             mujoco.remove(section)
     _clean(mujoco, field)
     _bound_replicas(mujoco, field)

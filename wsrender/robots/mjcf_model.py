@@ -1,8 +1,11 @@
-"""MJCF → MuJoCo model; mesh files are read only where an inertia is computed from them."""
+"""MJCF → MuJoCo model; without its geometry, mesh files are read only where an inertia is computed from them."""
 
+import copy
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Collection, Iterable
+from functools import partial
 from pathlib import Path
+from typing import Any
 from xml.etree.ElementTree import Element
 
 import mujoco
@@ -10,31 +13,13 @@ import mujoco
 from wsrender.errors import ModelError
 from wsrender.notices import Notice
 from wsrender.robots import mjcf, mjcf_text
-from wsrender.robots.compiled_model import MUJOCO_ERRORS, CompiledModel, JointFault, quiet, refusal
+from wsrender.robots.compiled_model import MUJOCO_ERRORS, CompiledModel, JointFault, Purpose, quiet, refusal
+from wsrender.robots.hulls import with_small_hulls
 from wsrender.robots.inertials import compile_with_inertials
 from wsrender.robots.length_unit import to_metres
+from wsrender.robots.mesh_files import ReadMesh
 
-MAX_MESH_BYTES = 256 * 2**20
-
-ReadMesh = Callable[[str], bytes | None]  # file name in the model → its bytes, None where it is not there
-
-
-def from_assets(assets: Mapping[str, bytes]) -> ReadMesh:
-    """Reads meshes from a mapping of file names, as the model writes them, to bytes; never from disk."""
-    by_last_part = {Path(name).name: content for name, content in assets.items()}
-    return lambda name: assets.get(name, by_last_part.get(Path(name).name))
-
-
-def from_folder(folder: Path) -> ReadMesh:
-    """Reads meshes relative to ``folder``: for files of the user's own."""
-
-    def read(name: str) -> bytes | None:
-        path = folder / name
-        if not path.is_file() or path.stat().st_size > MAX_MESH_BYTES:
-            return None
-        return path.read_bytes()
-
-    return read
+VISIBLE_GROUPS = 3  # MuJoCo shows groups 0, 1, 2 unless told otherwise
 
 
 def text_of(source: mujoco.MjSpec | mujoco.MjModel, field: str) -> str:
@@ -57,21 +42,84 @@ def compile_mjcf(root: Element, read_mesh: ReadMesh, field: str, length_unit_m: 
     dropped with one notice, and noted as inertia faults where that leaves a body without inertia. Ranges that are
     upside down or empty, which MuJoCo would take for none, are joint faults. Raises ModelError.
     """
-    mjcf.sanitized(root, field)
-    folder, strip = mjcf.directories(root)
-    spec = _parsed(mjcf.text(root), field)
+    whole = copy.deepcopy(root)
+    spec, files = _spec_of(root, field)
     joint_faults = _range_faults(spec)
-    files = {mesh.name: _file(mesh.file, folder, strip) for mesh in spec.meshes}
     faults, missing = _drop_geometry(spec, files, read_mesh)
     to_metres(spec, length_unit_m)
     model, inertia_faults, notices = compile_with_inertials(spec, field)
     return CompiledModel(
         model,
         root.get("model", ""),
+        partial(_with_geometry, whole, read_mesh, field, length_unit_m),
         inertia_faults=inertia_faults | {body.id: fault for body, fault in faults},
         joint_faults=tuple(JointFault(joint.parent.id, joint.name, fault, True) for joint, fault in joint_faults),
         notices=_dropped(missing) + notices,
     )
+
+
+def _with_geometry(
+    root: Element, read_mesh: ReadMesh, field: str, length_unit_m: float, purpose: Purpose
+) -> tuple[mujoco.MjModel, tuple[Notice, ...]]:
+    """See `CompiledModel.with_geometry`. What is seen but cannot be had is left out, with one notice."""
+    flags = [flag.get("filterparent") for flag in root.iterfind("option/flag") if "filterparent" in flag.attrib]
+    spec, files = _spec_of(copy.deepcopy(root), field, ["contact"] if purpose == "collision" else [])
+    _range_faults(spec)
+    spec.compiler.inertiafromgeom = mujoco.mjtInertiaFromGeom.mjINERTIAFROMGEOM_FALSE
+    missing = _keep_geometry(spec, files, read_mesh, purpose, field)
+    to_metres(spec, length_unit_m)
+    model, _, _ = compile_with_inertials(spec, field)
+    simplified: tuple[Notice, ...] = ()
+    if purpose == "collision":
+        model, simplified = with_small_hulls(spec, model, field)
+    for margins in (model.geom_margin, model.geom_gap, model.pair_margin, model.pair_gap):
+        margins[:] = 0.0
+    if flags and flags[-1] == "disable":
+        model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_FILTERPARENT
+    return model, _dropped(missing) + simplified
+
+
+def _keep_geometry(
+    spec: mujoco.MjSpec, files: dict[str, str], read_mesh: ReadMesh, purpose: Purpose, field: str
+) -> list[str]:
+    """Removes the geometry from files that is for another purpose, and reads the rest; returns missing files."""
+    geoms = list(spec.geoms)
+    paired = {name for pair in spec.pairs for name in (pair.geomname1, pair.geomname2)}
+    colliding = [geom for geom in geoms if geom.contype or geom.conaffinity or geom.name in paired]
+    wanted = {id(geom) for geom in (colliding if purpose == "collision" else shown(geoms))}
+    contents: dict[str, bytes | None] = {}
+    for geom in filter(_needs_file, geoms):
+        file = files.get(geom.meshname, "")
+        if file and id(geom) in wanted and file not in contents:
+            contents[file] = read_mesh(file)
+        there = geom.meshname in files and (not file or contents.get(file) is not None)
+        if id(geom) in wanted and not there and purpose == "collision":
+            what = f"its file {file!r} is not there, or is too large" if file else "there are no shapes of its kind"
+            raise ModelError(field, f"geom {geom.name!r} of body {geom.parent.name!r} may collide, but {what}")
+        if id(geom) not in wanted or not there:
+            spec.delete(geom)
+    _keep_meshes(spec, files, contents)
+    if purpose == "visual":
+        for mesh in spec.meshes:
+            mesh.inertia = mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL  # a picture's need not be closed
+    return [file for file, content in contents.items() if content is None]
+
+
+def shown(geoms: Iterable[Any]) -> list[Any]:
+    """Geoms, each with ``rgba`` and ``group``, that are seen: in MuJoCo's visible groups, or where none is there, all.
+
+    Collision shapes are in others by custom.
+    """
+    clear = [geom for geom in geoms if geom.rgba[3] > 0.0]
+    return [geom for geom in clear if geom.group < VISIBLE_GROUPS] or clear
+
+
+def _spec_of(root: Element, field: str, keep: Collection[str] = ()) -> tuple[mujoco.MjSpec, dict[str, str]]:
+    """The model that an element describes, which is changed, and the file of each mesh in it."""
+    mjcf.sanitized(root, field, keep)
+    folder, strip = mjcf.directories(root)
+    spec = _parsed(mjcf.text(root), field)
+    return spec, {mesh.name: _file(mesh.file, folder, strip) for mesh in spec.meshes}
 
 
 def _dropped(missing: list[str]) -> tuple[Notice, ...]:

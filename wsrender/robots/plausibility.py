@@ -1,7 +1,8 @@
 """Numbers of a chain that its author probably did not mean: other units than metres and radians, no limits."""
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterable
 from math import pi
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,11 +11,15 @@ from wsrender.notices import Notice
 from wsrender.robots.chain import Chain
 from wsrender.robots.joint_space import JointSpace
 
-NO_LIMITS, LENGTH, ANGLE = "no_usable_limits", "units_length", "units_angle"
+if TYPE_CHECKING:
+    from wsrender.robots.shapes import Shape
+
+NO_LIMITS, LENGTH, ANGLE, MESH_LENGTH = "no_usable_limits", "units_length", "units_angle", "units_mesh"
 
 PLAUSIBLE_REACH = (0.02, 20.0)  # [m]
 LARGEST_TURN = 4 * pi  # [rad] from zero
 NO_LENGTH = 1e-9  # [m]
+LONGEST_MESH = 10.0  # [m] and reaches of its arm: a link in millimetres, taken for metres, is longer
 
 
 def doubts(
@@ -98,6 +103,22 @@ def _lengths(chain: Chain, confirmed: Collection[str]) -> Notice | None:
         message = f"the reach of {chain.name!r} is {reach:.3g} m; lengths must be in metres, not millimetres"
         return Notice(LENGTH, message, "length_unit_m converts other units, 1 confirms metres", "robot.length_unit_m")
     return None
+
+
+def long_shapes(chain: Chain, shapes: "Iterable[Shape]") -> list[Notice]:
+    """A notice where meshes of a robot are much longer than the robot."""
+    sizes = {
+        shape.name: float(np.ptp(shape.vertices, axis=0).max())
+        for shape in shapes
+        if shape.kind == "mesh" and not shape.surroundings
+    }
+    most = LONGEST_MESH * max(1.0, chain.reach) if np.isfinite(chain.reach) else np.inf
+    if not (long := [name for name, size in sizes.items() if size > most]):
+        return []
+    message = f"the mesh of {long[0]!r} is {sizes[long[0]]:.3g} m long, and the arm reaches {chain.reach:.3g} m"
+    more = f" ({len(long)} meshes are so long)" if len(long) > 1 else ""
+    remedy = "the file may be in millimetres: give the mesh the scale 0.001 0.001 0.001 in the model"
+    return [Notice(MESH_LENGTH, message + more, remedy)]
 
 
 def _joints(names: Collection[str]) -> str:

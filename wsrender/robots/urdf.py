@@ -46,12 +46,18 @@ class Inertial:
 
 @dataclass(frozen=True)
 class Shape:
-    """A geometry: ``box`` (edges), ``cylinder`` (radius, length), ``sphere`` (radius) [m], or ``mesh``."""
+    """A geometry: ``box`` (edges), ``cylinder`` or ``capsule`` (radius, length), ``sphere`` (radius) [m], or ``mesh``.
+
+    ``kind`` is the name of its element, whatever that is; ``rgba`` None where no colour is stated.
+    """
 
     pose: Pose
     kind: str
     size: tuple[float, ...] = ()
     file: str = ""
+    scale: str = ""  # of a mesh, as it is written
+    name: str = ""
+    rgba: tuple[float, ...] | None = None
 
 
 @dataclass(frozen=True)
@@ -60,7 +66,8 @@ class Link:
 
     name: str
     inertial: Inertial | None
-    shapes: tuple[Shape, ...]
+    visuals: tuple[Shape, ...]
+    collisions: tuple[Shape, ...]
 
 
 @dataclass(frozen=True)
@@ -109,7 +116,8 @@ class Urdf:
 def read_urdf(robot: Element, field: str) -> Urdf:
     """Links and joints of the ``<robot>`` element; raises ModelError naming what is wrong with them."""
     _refuse_xacro(robot, field)
-    links = [_link(element, field) for element in robot.findall("link")]
+    colors = {each.get("name", ""): rgba for each in robot.findall("material") if (rgba := _rgba(each, field))}
+    links = [_link(element, colors, field) for element in robot.findall("link")]
     joints = [_joint(element, field) for element in robot.findall("joint")]
     if not links:
         raise ModelError(field, "the URDF has no <link>")
@@ -151,26 +159,41 @@ def _pose(parent: Element, field: str, where: str) -> Pose:
     return Pose(xyz, rpy)
 
 
-def _link(element: Element, field: str) -> Link:
+def _link(element: Element, colors: dict[str, tuple[float, ...]], field: str) -> Link:
     name = _name(element, field)
     where = f"link {name!r}"
     inertial = element.find("inertial")
-    shapes = []
-    for part in (*element.findall("visual"), *element.findall("collision")):
-        geometry = part.find("geometry")
-        if geometry is not None and len(geometry):
-            shapes.append(_shape(geometry[0], _pose(part, field, where), field, where))
-    return Link(name, None if inertial is None else _inertial(inertial, field, where), tuple(shapes))
+    shapes: dict[str, list[Shape]] = {"visual": [], "collision": []}
+    for tag, found in shapes.items():
+        for part in element.findall(tag):
+            geometry = part.find("geometry")
+            if geometry is not None and len(geometry):
+                found.append(_shape(geometry[0], part, colors, field, where))
+    stated = None if inertial is None else _inertial(inertial, field, where)
+    return Link(name, stated, tuple(shapes["visual"]), tuple(shapes["collision"]))
 
 
-def _shape(element: Element, pose: Pose, field: str, where: str) -> Shape:
-    expected = {"box": ("size",), "cylinder": ("radius", "length"), "sphere": ("radius",)}
-    keys = expected.get(element.tag)
-    if keys is None:
-        return Shape(pose, "mesh", file=element.get("filename", element.tag))
-    count = 3 if element.tag == "box" else 1
-    size = [v for key in keys for v in numbers(element.get(key, ""), count, field, f"{where}: {key}")]
-    return Shape(pose, element.tag, tuple(size))
+def _shape(element: Element, part: Element, colors: dict[str, tuple[float, ...]], field: str, where: str) -> Shape:
+    keys, size = _SIZES.get(element.tag, ()), []
+    for key in keys:
+        size += numbers(element.get(key, ""), 3 if element.tag == "box" else 1, field, f"{where}: {key}")
+    material = part.find("material")
+    rgba = None if material is None else _rgba(material, field) or colors.get(material.get("name", ""))
+    file = "" if keys else element.get("filename", element.tag)
+    name, scale = part.get("name", ""), element.get("scale", "")
+    return Shape(_pose(part, field, where), element.tag, tuple(size), file, scale, name, rgba)
+
+
+_SIZES = {"box": ("size",), "cylinder": ("radius", "length"), "capsule": ("radius", "length"), "sphere": ("radius",)}
+
+
+def _rgba(material: Element, field: str) -> tuple[float, ...] | None:
+    """The colour that a material states, None where it states none that can be read."""
+    color = material.find("color")
+    try:
+        return None if color is None else tuple(numbers(color.get("rgba", ""), 4, field, "rgba"))
+    except ModelError:
+        return None
 
 
 def _inertial(element: Element, field: str, where: str) -> Inertial:

@@ -1,26 +1,28 @@
 """URDF → MuJoCo model, link by link; MuJoCo's own URDF reader fuses, guesses and skips too much."""
 
 import math
+from collections.abc import Callable
+from functools import partial
 from xml.etree.ElementTree import Element
 
 import mujoco
 import numpy as np
 
 from wsrender.notices import Notice
-from wsrender.robots.compiled_model import CompiledModel, JointFault
+from wsrender.robots.compiled_model import CompiledModel, JointFault, Purpose
+from wsrender.robots.hulls import with_small_hulls
 from wsrender.robots.inertials import compile_with_inertials
 from wsrender.robots.length_unit import to_metres
-from wsrender.robots.urdf import Joint, Link, Mimic, Shape, Urdf, read_urdf
+from wsrender.robots.mesh_files import ReadMesh
+from wsrender.robots.urdf import Joint, Link, Mimic, Urdf, read_urdf
+from wsrender.robots.urdf_shapes import PRIMITIVES, add_primitives, add_shapes
+
+AddShapes = Callable[[mujoco.MjSpec, mujoco.MjsBody, Link], None]
 
 _WORLD = "world"  # what MuJoCo calls the ground
-_SHAPES = {
-    "box": mujoco.mjtGeom.mjGEOM_BOX,
-    "cylinder": mujoco.mjtGeom.mjGEOM_CYLINDER,
-    "sphere": mujoco.mjtGeom.mjGEOM_SPHERE,
-}
 
 
-def compile_urdf(robot: Element, field: str, length_unit_m: float = 1.0) -> CompiledModel:
+def compile_urdf(robot: Element, read_mesh: ReadMesh, field: str, length_unit_m: float = 1.0) -> CompiledModel:
     """The compiled model of a ``<robot>`` element, its lengths in ``length_unit_m``.
 
     Every link, fixed or not, becomes a body of its name; a link "world" that is not the root is a body of another name
@@ -32,18 +34,14 @@ def compile_urdf(robot: Element, field: str, length_unit_m: float = 1.0) -> Comp
     none. Raises ModelError.
     """
     urdf = read_urdf(robot, field)
-    spec = mujoco.MjSpec()
-    spec.modelname = urdf.name
-    spec.compiler.degree = False
-    spec.compiler.inertiafromgeom = mujoco.mjtInertiaFromGeom.mjINERTIAFROMGEOM_FALSE
-    _add_links(spec, urdf)
-    _add_mimics(spec, urdf)
+    spec = _spec_of(urdf, add_primitives)
     to_metres(spec, length_unit_m)
     model, inertia_faults, notices = compile_with_inertials(spec, field)
     joints = [(joint, model.body(_body_name(joint.child, urdf)).id) for joint in urdf.joints.values()]
     return CompiledModel(
         model,
         urdf.name,
+        partial(_with_geometry, urdf, read_mesh, field, length_unit_m),
         path_faults={
             body: f"joint {joint.name!r} is {joint.kind}: name a base below it, such as {joint.child!r}"
             for joint, body in joints
@@ -56,11 +54,40 @@ def compile_urdf(robot: Element, field: str, length_unit_m: float = 1.0) -> Comp
     )
 
 
-def _add_links(spec: mujoco.MjSpec, urdf: Urdf) -> None:
+def _with_geometry(
+    urdf: Urdf, read_mesh: ReadMesh, field: str, length_unit_m: float, purpose: Purpose
+) -> tuple[mujoco.MjModel, tuple[Notice, ...]]:
+    """See `CompiledModel.with_geometry`. What is seen but cannot be had is left out, with one notice.
+
+    A robot without ``<visual>`` is seen by what may collide.
+    """
+    missing: list[str] = []
+    visuals = purpose == "visual" and any(link.visuals for link in urdf.links.values())
+    which = "visuals" if visuals else "collisions"
+    spec = _spec_of(urdf, partial(add_shapes, purpose, which, read_mesh, missing, field))
+    to_metres(spec, length_unit_m)
+    model, _, _ = compile_with_inertials(spec, field)
+    if purpose == "collision":
+        return with_small_hulls(spec, model, field)
+    said = f"{len(missing)} shapes are not drawn: {missing[0]}" if missing else ""
+    return model, (Notice("meshes_missing", said),) if said else ()
+
+
+def _spec_of(urdf: Urdf, add_shapes: AddShapes) -> mujoco.MjSpec:
+    spec = mujoco.MjSpec()
+    spec.modelname = urdf.name
+    spec.compiler.degree = False
+    spec.compiler.inertiafromgeom = mujoco.mjtInertiaFromGeom.mjINERTIAFROMGEOM_FALSE
+    _add_links(spec, urdf, add_shapes)
+    _add_mimics(spec, urdf)
+    return spec
+
+
+def _add_links(spec: mujoco.MjSpec, urdf: Urdf, add_shapes: AddShapes) -> None:
     world = spec.worldbody
     bodies = {urdf.root: world if urdf.root == _WORLD else world.add_body(name=urdf.root)}
     standing = {urdf.root}  # links that no joint moves: what they weigh matters to nothing
-    _add_shapes(bodies[urdf.root], urdf.links[urdf.root])
+    add_shapes(spec, bodies[urdf.root], urdf.links[urdf.root])
     for joint in urdf.joints.values():
         body = bodies[joint.parent].add_body(
             name=_body_name(joint.child, urdf), pos=joint.pose.position, quat=joint.pose.quat_wxyz
@@ -68,7 +95,7 @@ def _add_links(spec: mujoco.MjSpec, urdf: Urdf) -> None:
         bodies[joint.child] = body
         if joint.child == _WORLD:
             body.add_site(name=_WORLD)
-        _add_shapes(body, urdf.links[joint.child])
+        add_shapes(spec, body, urdf.links[joint.child])
         if joint.parent in standing and not joint.movable:
             standing.add(joint.child)
         else:
@@ -85,12 +112,6 @@ def _body_name(link: str, urdf: Urdf) -> str:
     return name
 
 
-def _add_shapes(body: mujoco.MjsBody, link: Link) -> None:
-    for shape in link.shapes:
-        if shape.kind != "mesh" and min(shape.size) > 0.0:
-            _add_shape(body, shape)
-
-
 def _add_inertial(body: mujoco.MjsBody, link: Link) -> None:
     if link.inertial is None:
         return
@@ -98,18 +119,6 @@ def _add_inertial(body: mujoco.MjsBody, link: Link) -> None:
     body.explicitinertial = True
     body.mass, body.fullinertia = link.inertial.mass, [xx, yy, zz, xy, xz, yz]
     body.ipos, body.iquat = link.inertial.pose.position, link.inertial.pose.quat_wxyz
-
-
-def _add_shape(body: mujoco.MjsBody, shape: Shape) -> None:
-    size = np.zeros(3)
-    if shape.kind == "cylinder":
-        size[:2] = shape.size[0], shape.size[1] / 2
-    else:
-        size[: len(shape.size)] = np.array(shape.size) / (2 if shape.kind == "box" else 1)
-    body.add_geom(
-        type=_SHAPES[shape.kind], size=size, pos=shape.pose.position, quat=shape.pose.quat_wxyz,
-        contype=0, conaffinity=0,
-    )  # fmt: skip
 
 
 def _add_joint(body: mujoco.MjsBody, joint: Joint) -> None:
@@ -178,7 +187,12 @@ def _limit_fault(joint: Joint) -> str:
 
 
 def _dropped_meshes(urdf: Urdf) -> tuple[Notice, ...]:
-    files = [shape.file for link in urdf.links.values() for shape in link.shapes if shape.kind == "mesh"]
+    files = [
+        shape.file
+        for link in urdf.links.values()
+        for shape in (*link.visuals, *link.collisions)
+        if shape.kind not in PRIMITIVES
+    ]
     if not files:
         return ()
     message = f"geometry of {len(files)} meshes is dropped ({files[0]}, …): kinematics and inertia do not need it"

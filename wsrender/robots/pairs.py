@@ -1,0 +1,80 @@
+"""Which shapes of a robot may collide: by the rules of MuJoCo, and but for those that a user excludes."""
+
+from collections.abc import Iterable, Sequence
+from difflib import get_close_matches
+from itertools import combinations
+
+import mujoco
+import numpy as np
+
+from wsrender.errors import InputError
+from wsrender.robots.shapes import Shape
+
+Names = tuple[str, str]
+
+
+def pairs_of(model: mujoco.MjModel, geoms: Sequence[int]) -> np.ndarray:
+    """Pairs of ``geoms`` that MuJoCo tests, as their places in it, (P, 2) int, each and all in ascending order.
+
+    An explicit pair always; else geoms whose contype and conaffinity meet, on bodies that a joint separates, that are
+    not excluded, and not parent and child. Bodies without a joint between them count as one; the world's are nobody's
+    parent (MuJoCo, "Collision detection: selection").
+    """
+    explicit = {frozenset(pair) for pair in zip(model.pair_geom1.tolist(), model.pair_geom2.tolist(), strict=True)}
+    excluded = {frozenset(divmod(int(signature), 2**16)) for signature in model.exclude_signature}
+    body = model.geom_bodyid
+    return np.array(
+        [
+            (i, j)
+            for (i, first), (j, second) in combinations(enumerate(geoms), 2)
+            if frozenset((first, second)) in explicit
+            or (
+                _meet(model, first, second)
+                and frozenset((int(body[first]), int(body[second]))) not in excluded
+                and not _rigid_or_adjacent(model, int(body[first]), int(body[second]))
+            )
+        ],
+        int,
+    ).reshape(-1, 2)
+
+
+def collides(model: mujoco.MjModel) -> list[int]:
+    """The geoms that may collide at all, with whatever there is."""
+    bits = (model.geom_contype != 0) | (model.geom_conaffinity != 0)
+    bits[model.pair_geom1] = bits[model.pair_geom2] = True
+    return np.flatnonzero(bits).tolist()
+
+
+def _meet(model: mujoco.MjModel, first: int, second: int) -> bool:
+    types, affinities = model.geom_contype, model.geom_conaffinity
+    return bool(types[first] & affinities[second] or types[second] & affinities[first])
+
+
+def _rigid_or_adjacent(model: mujoco.MjModel, first: int, second: int) -> bool:
+    a, b = int(model.body_weldid[first]), int(model.body_weldid[second])
+    if a == b:
+        return True
+    if not (a and b) or model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_FILTERPARENT:
+        return False
+    above = model.body_weldid[model.body_parentid]
+    return bool(above[a] == b or above[b] == a)
+
+
+def without(pairs: np.ndarray, shapes: Sequence[Shape], excluded: Iterable[Names], field: str) -> np.ndarray:
+    """The pairs (P, 2) but for those of ``excluded`` names, each a shape's, or a body's for all shapes on it.
+
+    Raises InputError, at the entry in ``field``, for a name that is neither.
+    """
+    named: dict[str, set[int]] = {}
+    for number, shape in enumerate(shapes):
+        for name in (shape.name, shape.body):
+            named.setdefault(name, set()).add(number)
+    dropped = set()
+    for entry, names in enumerate(excluded):
+        for name in names:
+            if name not in named:
+                close = get_close_matches(name, named, n=3)
+                hint = f"did you mean {' or '.join(map(repr, close))}?" if close else f"there are {', '.join(named)}"
+                raise InputError(f"{field}.{entry}", f"no shape, and no body that has one, is named {name!r}; {hint}")
+        dropped |= {frozenset((i, j)) for i in named[names[0]] for j in named[names[1]]}
+    return np.array([pair for pair in pairs.tolist() if frozenset(pair) not in dropped], int).reshape(-1, 2)
