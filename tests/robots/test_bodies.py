@@ -46,7 +46,9 @@ def configurations(robot, count=5):
 
 
 def contacts_of(model):
-    """Pairs of names of geoms that MuJoCo tests: all that it reports where every margin is huge, the world's aside."""
+    """Pairs of geoms that MuJoCo tests: all that it reports as spheres with a huge margin, the world's aside."""
+    own = model.geom_bodyid > 0
+    model.geom_type[own], model.geom_size[own] = mujoco.mjtGeom.mjGEOM_SPHERE, 1.0
     model.geom_margin[:] = model.pair_margin[:] = model.body_margin[:] = 1e3
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
