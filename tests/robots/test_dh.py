@@ -1,5 +1,6 @@
 """DH tables to MuJoCo and back: against 4×4 products, hand-worked tables and random ones."""
 
+import itertools
 import math
 from dataclasses import replace
 
@@ -10,6 +11,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from tests.reference import chain_kinematics, dh_product
+from wsrender import load_robot
 from wsrender.documents.robot import DHTable
 from wsrender.robots import load_dh, load_mjcf, load_urdf
 from wsrender.robots.dh import modified_dh, structural_length, to_mjcf
@@ -57,6 +59,55 @@ def product_of(rows, chain, q):
     for (a, alpha, d, theta), more_theta, more_d in zip(rows, turn, slide, strict=True):
         T = T @ dh_product.step("modified", a, alpha, d + more_d, theta + more_theta)
     return T
+
+
+# --- capsules along the links ---------------------------------------------------------------------------
+
+
+@RUN
+@given(tables(), st.floats(0.01, 0.2))
+@tiny_robots_too
+def test_capsules_lie_along_the_links_and_what_always_meets_is_excluded(case, radius):
+    """From joint to joint: the ends of the capsules are the points of the skeleton. Only shapes come in addition."""
+    bare, q = case
+    robot = load_robot(bare.model_copy(update={"link_radius": radius}))
+    assert load_robot(bare).has_inertia == robot.has_inertia
+    np.testing.assert_array_equal(robot.chain.poses(q[None]), load_robot(bare).chain.poses(q[None]))
+    bodies = robot.bodies
+    data, poses = mujoco.MjData(bodies.model), bodies.poses(q[None])[0]
+    data.qpos[:] = bodies.qpos(q[None])[0]
+    mujoco.mj_kinematics(bodies.model, data)
+    joints = robot.skeleton(q)[0]
+    slides = any(row.joint == "prismatic" for row in bare.rows)
+    for one, T in zip(bodies.shapes, poses, strict=True):
+        assert (one.kind, one.size[0]) == ("capsule", radius)
+        gaps = [np.linalg.norm(joints - end, axis=1).min() for end in capsule_ends(one, T)]
+        assert slides or max(gaps) < 1e-9
+    kept = {frozenset(bodies.shapes[k].body for k in pair) for pair in bodies.pairs}
+    for one, other in itertools.combinations(dict.fromkeys(shape.body for shape in bodies.shapes), 2):
+        geoms = ([shape.geom for shape in bodies.shapes if shape.body == name] for name in (one, other))
+        distances = [mujoco.mj_geomDistance(bodies.model, data, *pair, 9.0, None) for pair in itertools.product(*geoms)]
+        assert frozenset((one, other)) in kept or min(distances) < 1e-9
+
+
+def capsule_ends(shape, T):
+    return [T[:3, 3] + sign * shape.size[1] * T[:3, 2] for sign in (1, -1)]
+
+
+def test_a_slides_capsule_reaches_the_link_before_wherever_it_stands():
+    rows = [{"a": 0.0}, {"joint": "prismatic", "a": 0.3, "d": 0.1, "limits": [-0.3, 0.5]}]
+    bodies = load_robot(table(rows).model_copy(update={"link_radius": 0.01})).bodies
+    rod = [k for k, shape in enumerate(bodies.shapes) if shape.body == "link2"]
+    for slide in (-0.3, 0.2, 0.5):
+        T = bodies.poses(np.array([[0.3, slide]]))[0]
+        heights = [end[2] for k in rod for end in capsule_ends(bodies.shapes[k], T[k])]
+        assert (min(heights), max(heights)) == pytest.approx((slide - 0.5, slide + 0.3))  # its middle is at slide + 0.1
+
+
+def test_a_radius_is_in_the_unit_of_the_table():
+    rows = [{"a": 300.0}, {"a": 200.0}]
+    robot = load_robot(table(rows, "standard").model_copy(update={"link_radius": 20.0}), length_unit_m=0.001)
+    assert robot.shapes["size_m"].tolist() == [pytest.approx([0.02, 0.15, 0]), pytest.approx([0.02, 0.1, 0])]
 
 
 # --- table → MJCF ---------------------------------------------------------------------------------------

@@ -222,6 +222,8 @@ class DHTable(Document):
     """One row per joint, from the base to the tip."""
     name: Annotated[Name, BeforeValidator(_joint_name)] = "dh"
     """Name of the robot."""
+    link_radius: Annotated[PositiveNumber | None, Field(exclude_if=_is_none)] = None
+    """Radius of capsules along the links, which then are the robot's shapes [m]; null: it has none."""
 
     def joint_names(self) -> tuple[str, ...]:
         """Names of the joints, joint1, joint2, … where a row gives none."""

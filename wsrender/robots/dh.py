@@ -25,18 +25,26 @@ def to_mjcf(table: DHTable) -> str:
 
     Joint i turns about, or slides along, the z of body ``link<i>``; the site "tool" is the last DH frame.
     Standard rows become modified ones by moving (a, alpha) to the next row, the last pair to the tool.
-    Rows without a mass give bodies without ``<inertial>``, which MuJoCo compiles with negligible mass.
+    Rows without a mass give bodies without ``<inertial>``, which MuJoCo compiles with negligible mass. Of
+    ``link_radius`` are capsules from joint to joint, on the fixed body ``base`` and on every link; that of a slide
+    reaches back to the link before it wherever it stands. Two that are nearer along the chain than their caps, and so
+    always meet, are excluded.
     """
     standard = table.convention == "standard"
     mujoco = ElementTree.Element("mujoco", model=table.name)
     ElementTree.SubElement(mujoco, "compiler", _COMPILER)
-    parent = ElementTree.SubElement(mujoco, "worldbody")
+    world = parent = ElementTree.SubElement(mujoco, "worldbody")
+    links: list[_Link] = []
+    if table.link_radius is not None:
+        links.append(_Link(ElementTree.SubElement(world, "body", name="base")))
     a, alpha = 0.0, 0.0  # of the link before the joint
     for k, (row, name) in enumerate(zip(table.rows, table.joint_names(), strict=True), start=1):
         if not standard:
             a, alpha = row.a, row.alpha
         pose = _pose(a, alpha, row.d, row.theta)
         parent = ElementTree.SubElement(parent, "body", {"name": f"link{k}", **pose})
+        if links:
+            _lengthen(links, parent, row, a, alpha)
         if standard:
             a, alpha = row.a, row.alpha
         _add_joint(parent, row, name)
@@ -44,8 +52,53 @@ def to_mjcf(table: DHTable) -> str:
             _add_inertial(parent, row, (a, alpha) if standard else (0.0, 0.0))
     tool = _pose(a, alpha, 0.0, 0.0) if standard else {}
     ElementTree.SubElement(parent, "site", {"name": "tool", **tool})
+    if links:
+        links[-1].next_joint = (a if standard else 0.0, 0.0, 0.0)
+        _add_capsules(mujoco, links, float(table.link_radius or 0.0))
     ElementTree.indent(mujoco)
     return ElementTree.tostring(mujoco, encoding="unicode") + "\n"
+
+
+@dataclass
+class _Link:
+    """A body, and the points [m] in its frame to which it reaches from its origin."""
+
+    body: ElementTree.Element
+    next_joint: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    rod: tuple[float, float] = (0.0, 0.0)  # of a slide: how far it reaches along its axis [m]
+
+    @property
+    def length(self) -> float:
+        """Largest way along it, from where the link before ends to the next joint."""
+        return math.hypot(*self.next_joint) + max(-self.rod[0], self.rod[1])
+
+
+def _lengthen(links: list[_Link], body: ElementTree.Element, row: DHRow, a: float, alpha: float) -> None:
+    """The last link reaches to the next joint; a slide back to the link before, from wherever it may stand."""
+    c, s = _cosine_sine(alpha)
+    links.append(_Link(body))
+    if row.joint == "revolute":
+        links[-2].next_joint = (a, -row.d * s, row.d * c)
+    else:
+        links[-2].next_joint = (a, 0.0, 0.0)
+        lower, upper = row.limits or (0.0, 0.0)
+        links[-1].rod = min(-row.d - upper, 0.0), max(-row.d - lower, 0.0)
+
+
+def _add_capsules(mujoco: ElementTree.Element, links: list[_Link], radius: float) -> None:
+    contact = ElementTree.SubElement(mujoco, "contact")
+    for k, link in enumerate(links):
+        lines = ((0.0, 0.0, 0.0), link.next_joint), ((0.0, 0.0, link.rod[0]), (0.0, 0.0, link.rod[1]))
+        for start, end in lines:
+            if math.dist(start, end) > COINCIDENT:
+                capsule = {"type": "capsule", "size": _text(radius), "fromto": _text(*start, *end), "mass": "0"}
+                ElementTree.SubElement(link.body, "geom", capsule)
+        way = 0.0  # along the chain, from this link to the later one
+        for later in links[k + 1 :]:
+            if way <= 2 * radius:
+                names = {"body1": link.body.get("name", ""), "body2": later.body.get("name", "")}
+                ElementTree.SubElement(contact, "exclude", names)
+            way += later.length
 
 
 def modified_dh(chain: Chain) -> np.ndarray:
