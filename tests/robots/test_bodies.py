@@ -265,3 +265,25 @@ def test_shapes_that_cannot_be_had(geom, message):
     with pytest.raises(ModelError, match=message) as caught:
         _ = robot.shapes
     assert caught.value.field == "robot.mjcf"
+
+
+@pytest.mark.parametrize("filterparent", ["enable", "disable"])
+def test_models_made_with_mujoco_keep_their_shapes_and_pairs(filterparent):
+    """What is text in a job document has the shapes of the MjSpec or MjModel; a mesh that may collide, its hull."""
+    right, spec = ws.load_robot(arm(filterparent)), mujoco.MjSpec.from_string(arm(filterparent))
+    q = configurations(right)
+    for source in (spec, spec.compile()):
+        robot = ws.load_robot(source)
+        assert robot.shapes["name"].tolist() == right.shapes["name"].tolist()
+        assert pairs_in(robot.pairs) == pairs_in(right.pairs)
+        for ours, theirs, T, T_right in zip(
+            robot.bodies.shapes, right.bodies.shapes, robot.bodies.poses(q)[0], right.bodies.poses(q)[0], strict=True
+        ):
+            assert (ours.kind, ours.size.tolist()) == (theirs.kind, theirs.size.tolist())
+            if ours.kind != "mesh":
+                np.testing.assert_allclose(T, T_right, atol=1e-14)
+            corners, expected = (
+                each.vertices @ pose[:3, :3].T + pose[:3, 3] for each, pose in ((ours, T), (theirs, T_right))
+            )
+            gaps = np.linalg.norm(corners[:, None] - expected[None], axis=2)
+            assert not len(gaps) or max(gaps.min(axis=0).max(), gaps.min(axis=1).max()) < 1e-7

@@ -1,4 +1,4 @@
-"""MJCF text of a model that MuJoCo compiled: what moves, weighs, limits and drives it, and its primitive shapes."""
+"""MJCF text of a model that MuJoCo compiled: what moves, weighs, limits and drives it, and what may collide."""
 
 from collections.abc import Iterable
 from xml.etree import ElementTree
@@ -10,6 +10,7 @@ import numpy as np
 from wsrender.errors import ModelError
 from wsrender.robots.frames import body_name, joints_of
 from wsrender.robots.limits import joint_name
+from wsrender.robots.shapes import geom_name, hull_of
 
 _JOINTS = {
     mujoco.mjtJoint.mjJNT_FREE: "free",
@@ -18,6 +19,7 @@ _JOINTS = {
     mujoco.mjtJoint.mjJNT_HINGE: "hinge",
 }
 _SHAPES = {
+    mujoco.mjtGeom.mjGEOM_PLANE: "plane",
     mujoco.mjtGeom.mjGEOM_SPHERE: "sphere",
     mujoco.mjtGeom.mjGEOM_CAPSULE: "capsule",
     mujoco.mjtGeom.mjGEOM_ELLIPSOID: "ellipsoid",
@@ -30,8 +32,8 @@ _TRANSMISSIONS = {mujoco.mjtTrn.mjTRN_JOINT: "joint", mujoco.mjtTrn.mjTRN_JOINTI
 def text_of(model: mujoco.MjModel, field: str) -> str:
     """MJCF text whose chains have the kinematics, inertias, limits and couplings of ``model``, to the last digit.
 
-    Meshes are left out: every body states its inertia. Raises ModelError for equalities of tendons, which the text
-    cannot say.
+    Every body states its inertia. Of meshes that may collide there are the convex hulls; others are left out. Raises
+    ModelError for equalities of tendons, which the text cannot say.
     """
     root = Element("mujoco", model=model.names.split(b"\0", 1)[0].decode())  # the model's own name comes first
     SubElement(root, "compiler", angle="radian", autolimits="false", inertiafromgeom="false")
@@ -40,6 +42,8 @@ def text_of(model: mujoco.MjModel, field: str) -> str:
         if body:
             elements[body] = _body(model, body, elements[int(model.body_parentid[body])])
         _fill(model, body, elements[body])
+    _add_hulls(model, SubElement(root, "asset"))
+    _add_contacts(model, root)
     _add_equalities(model, SubElement(root, "equality"), field)
     _add_actuators(model, SubElement(root, "actuator"))
     return ElementTree.tostring(root, encoding="unicode")
@@ -61,12 +65,42 @@ def _fill(model: mujoco.MjModel, body: int, element: Element) -> None:
     for site in np.flatnonzero(model.site_bodyid == body):
         if name := model.site(site).name:
             SubElement(element, "site", {"name": name} | _pose(model.site_pos, model.site_quat, int(site)))
-    for geom in np.flatnonzero(model.geom_bodyid == body):
-        if kind := _SHAPES.get(mujoco.mjtGeom(model.geom_type[geom])):
+    for geom in np.flatnonzero(model.geom_bodyid == body).tolist():
+        of_mesh = _has_hull(model, geom)
+        if kind := "mesh" if of_mesh else _SHAPES.get(mujoco.mjtGeom(model.geom_type[geom])):
             keys = ("group", "contype", "conaffinity")
             shape = {"type": kind} | {key: str(getattr(model, f"geom_{key}")[geom]) for key in keys}
-            shape |= {"size": _text(model.geom_size[geom]), "rgba": _text(model.geom_rgba[geom])}
+            shape |= {"mesh": _hull_name(model, geom)} if of_mesh else {"size": _text(model.geom_size[geom])}
+            shape |= {"name": geom_name(model, geom), "rgba": _text(model.geom_rgba[geom])}
             SubElement(element, "geom", shape | _pose(model.geom_pos, model.geom_quat, int(geom)))
+
+
+def _has_hull(model: mujoco.MjModel, geom: int) -> bool:
+    if model.geom_type[geom] != mujoco.mjtGeom.mjGEOM_MESH:
+        return False
+    return bool(model.mesh_graphadr[model.geom_dataid[geom]] >= 0)
+
+
+def _hull_name(model: mujoco.MjModel, geom: int) -> str:
+    return f"hull{model.geom_dataid[geom]}"
+
+
+def _add_hulls(model: mujoco.MjModel, section: Element) -> None:
+    named = {_hull_name(model, geom): geom for geom in range(model.ngeom) if _has_hull(model, geom)}
+    for name, geom in named.items():
+        SubElement(section, "mesh", name=name, vertex=_text(hull_of(model, geom)[0].ravel()), inertia="convex")
+
+
+def _add_contacts(model: mujoco.MjModel, root: Element) -> None:
+    if model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_FILTERPARENT:
+        SubElement(SubElement(root, "option"), "flag", filterparent="disable")
+    section = SubElement(root, "contact")
+    for signature in model.exclude_signature:
+        first, second = (body_name(model, body) for body in divmod(int(signature), 2**16))
+        SubElement(section, "exclude", body1=first, body2=second)
+    for pair in zip(model.pair_geom1, model.pair_geom2, strict=True):
+        first, second = (geom_name(model, int(geom)) for geom in pair)
+        SubElement(section, "pair", geom1=first, geom2=second)
 
 
 def _add_joint(model: mujoco.MjModel, joint: int, element: Element) -> None:
