@@ -78,5 +78,6 @@ def test_robots_without_bodies_have_none():
         def forward_kinematics(self, q):
             return np.tile(np.eye(4), (len(q), 1, 1))
 
-    assert link_shapes(ws.load_robot("scara"), np.zeros(4)) == []
+    bare = ws.load_robot(ws.DHTable(convention="standard", rows=({"a": 0.4}, {"a": 0.3})))
+    assert link_shapes(bare, np.zeros(2)) == []
     assert link_shapes(as_robot(Class()), [0]) == []

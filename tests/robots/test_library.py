@@ -1,6 +1,7 @@
 """The robot library against the published tables, written out once more and evaluated in NumPy."""
 
 import math
+import re
 import shutil
 from pathlib import Path
 
@@ -20,8 +21,9 @@ from tests.reference.published_robots import (
     UR5E_LINKS,
     dh_table,
 )
+from tests.robots.test_bodies import contacts_of
 from wsrender.errors import ModelError
-from wsrender.robots import library, load_path, load_urdf
+from wsrender.robots import library, load_dh, load_path, load_urdf
 from wsrender.robots.dh import structural_length
 
 
@@ -263,3 +265,75 @@ def test_stanford_arm_carries_the_moments_about_the_frames_origins():
 def test_a_mechanism_is_not_a_robot():
     with pytest.raises(ModelError, match=r'"delta" is a mechanism .* see parallel_workspace'):
         library.find("delta")
+
+
+# --- shapes ---------------------------------------------------------------------------------------------
+
+# Radii of capsules along the links [m], of arms whose sources state no bodies; True: the base has one too.
+ALONG_LINKS = {
+    "articulated": (0.015, False), "cartesian": (0.015, False), "cylindrical": (0.015, False), "scara": (0.015, False),
+    "slave_5r": (0.015, False), "spherical": (0.015, False), "dvrk_mtm": (0.02, False), "phantom_omni": (0.01, False),
+    "gao_6r": (0.03, True), "puma560": (0.06, True), "stanford_arm": (0.04, True),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", ALONG_LINKS)
+def test_capsules_are_those_along_the_links_of_the_table(name):
+    radius, with_base = ALONG_LINKS[name]
+    table = load_dh(dh_table(name).model_copy(update={"link_radius": radius})).bodies
+    bodies = load_path(library.find(name)).bodies
+    q = configurations(bodies.chain, 3)
+
+    def placed(of):
+        kept = [shape for shape in of.shapes if with_base or shape.body != "base"]
+        poses = dict(zip((shape.name for shape in of.shapes), np.swapaxes(of.poses(q), 0, 1), strict=True))
+        return {shape.name: (shape, poses[shape.name]) for shape in kept}
+
+    found, expected = placed(bodies), placed(table)
+    assert found.keys() == expected.keys()
+    for key, (shape, poses) in found.items():
+        theirs, T = expected[key]
+        assert shape.kind == "capsule"
+        np.testing.assert_allclose(shape.size, theirs.size, atol=1e-6)
+        np.testing.assert_allclose(poses[..., :3, 3], T[..., :3, 3], atol=1e-6)
+        np.testing.assert_allclose(np.abs((poses[..., 2] * T[..., 2]).sum(axis=-1)), 1.0, atol=1e-9)  # axes, either way
+
+    def pairs(of):
+        names = [{of.shapes[k].name for k in pair} for pair in of.pairs.tolist()]
+        return sorted(sorted(pair) for pair in names if pair <= found.keys())
+
+    assert pairs(bodies) == pairs(table)
+    text = (library.find(name).parent / "README.md").read_text()
+    assert f"capsules of radius {radius:g} m along the links" in text
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_shapes_stand_where_plain_mujoco_puts_them_and_pairs_are_those_that_it_tests(name):
+    model, bodies = mujoco.MjModel.from_xml_path(str(library.find(name))), load_path(library.find(name)).bodies
+    data, q = mujoco.MjData(model), configurations(bodies.chain, 5)
+    assert len(bodies.shapes) == model.ngeom > 0
+    for row, poses in zip(q, bodies.poses(q), strict=True):
+        data.qpos[:] = row
+        mujoco.mj_kinematics(model, data)
+        np.testing.assert_allclose(poses[:, :3, 3], data.geom_xpos, atol=1e-12)
+        np.testing.assert_allclose(poses[:, :3, :3], data.geom_xmat.reshape(-1, 3, 3), atol=1e-12)
+    assert {frozenset(pair) for pair in bodies.pairs.tolist()} == contacts_of(model)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_arms_are_free_in_the_middle_of_their_ranges(name):
+    """And nowhere does a pair collide always; the README says how often the arm does."""
+    bodies = load_path(library.find(name)).bodies
+    data, q = mujoco.MjData(bodies.model), configurations(bodies.chain, 400)
+    q[0] = (bodies.chain.lower_limits + bodies.chain.upper_limits) / 2
+    collided, always = [], None
+    for qpos in bodies.qpos(q):
+        data.qpos[:] = qpos
+        mujoco.mj_kinematics(bodies.model, data)
+        mujoco.mj_collision(bodies.model, data)
+        pairs = {tuple(sorted(contact.geom.tolist())) for contact in data.contact if contact.dist < 0}
+        collided.append(bool(pairs))
+        always = pairs if always is None else always & pairs
+    assert not collided[0] and not always
+    said = re.search(r"([\d.]+) % collide with the arm itself", (library.find(name).parent / "README.md").read_text())
+    assert 100 * np.mean(collided) == pytest.approx(float(said[1]) if said else 0.0, abs=8.0 if said else 0.0)
