@@ -7,6 +7,7 @@ import trimesh
 
 import wsrender as ws
 from wsrender.robot import as_robot, link_shapes
+from wsrender.robots.model_warning import ModelWarning
 
 MODEL = """
 <mujoco><compiler angle="degree"/>
@@ -81,3 +82,33 @@ def test_robots_without_bodies_have_none():
     bare = ws.load_robot(ws.DHTable(convention="standard", rows=({"a": 0.4}, {"a": 0.3})))
     assert link_shapes(bare, np.zeros(2)) == []
     assert link_shapes(as_robot(Class()), [0]) == []
+
+
+MESH = """<robot name="arm"><link name="a"><visual><geometry><mesh filename="arm.{suffix}"/></geometry></visual>
+  <collision><geometry><sphere radius="9"/></geometry></collision></link><link name="tip"/><link name="world"/>
+  <joint name="i" type="revolute"><parent link="world"/><child link="a"/><origin xyz="0 0 1"/><axis xyz="0 0 1"/>
+    <limit lower="-2" upper="2" effort="1"/></joint>
+  <joint name="j" type="fixed"><parent link="a"/><child link="tip"/><origin xyz=".3 0 0"/></joint></robot>"""
+
+
+def test_meshes_are_drawn_as_they_are(tmp_path):
+    """Not their hulls, and not what may collide."""
+    hollow = trimesh.creation.annulus(0.1, 0.2, 0.3)
+    (tmp_path / "arm.stl").write_bytes(hollow.export(file_type="stl"))
+    (tmp_path / "arm.urdf").write_text(MESH.format(suffix="stl"))
+    with pytest.warns(ModelWarning, match="meshes is dropped"):
+        robot = ws.load_robot(tmp_path / "arm.urdf", tip="tip")
+    (shape,) = link_shapes(robot, np.zeros(1))
+    drawn = trimesh.Trimesh(shape.vertices, shape.faces)
+    assert drawn.volume == pytest.approx(hollow.volume, rel=1e-5)
+    np.testing.assert_allclose(drawn.bounds.mean(axis=0), [0, 0, 1], atol=1e-6)
+
+
+def test_bodies_that_cannot_be_read_are_told_of(tmp_path):
+    (tmp_path / "m.stl").write_bytes(b"no mesh")
+    (tmp_path / "arm.xml").write_text("""<mujoco><asset><mesh name="m" file="m.stl"/></asset><worldbody><body>
+      <inertial mass="1" pos="0 0 0" diaginertia="1 1 1"/><joint range="-1 1"/><geom type="mesh" mesh="m"/>
+      <site name="tool" pos="1 0 0"/></body></worldbody></mujoco>""")
+    robot = ws.load_robot(tmp_path / "arm.xml")
+    with pytest.warns(ModelWarning, match="the bodies of arm are not drawn: .*MuJoCo refuses the model"):
+        assert link_shapes(robot, np.zeros(1)) == []

@@ -5,13 +5,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from wsrender import notices
+from wsrender.errors import ModelError
+from wsrender.notices import Notice
 from wsrender.robot.model_robot import Robot, configuration_rows
+from wsrender.robots.model_warning import ModelWarning
 
 if TYPE_CHECKING:
-    import mujoco
     import trimesh
 
-_VISIBLE_GROUPS = 3  # MuJoCo shows groups 0, 1, 2 unless told otherwise
+    from wsrender.robots.shapes import Shape
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,69 +27,45 @@ class LinkShape:
 
 
 def link_shapes(robot: Robot, q: Any) -> list[LinkShape]:
-    """The geometries of a robot's model at configuration ``q`` (n,); none for a model without, or a Python class.
+    """What is seen of a robot (see `Robot.visuals`) at configuration ``q`` (n,).
 
-    Geometries in groups above 2 (collision shapes, by custom) are left out where the model has others; planes and
-    height fields always are.
+    None for a model without shapes or a Python class; nor, with a ModelWarning, for one whose shapes cannot be read.
     """
     if robot.definition:
         return []
-    import mujoco
-
-    from wsrender.robots import frames
-
-    loaded, model = robot._loaded, robot.model
-    data = mujoco.MjData(model)
-    loaded.set_configuration(data, configuration_rows(q, robot.chain.n)[0])
-    mujoco.mj_kinematics(model, data)
-    base, _ = frames.choose(model, robot.base, robot.tip)
-    T_world_model = robot.chain.T_world_base @ np.linalg.inv(base.pose(data))
-    shapes = []
-    for geom in _shown(model):
-        mesh = _mesh(model, geom)
-        if mesh is not None:
-            T = T_world_model @ frames.transform(data.geom_xpos[geom], data.geom_xmat[geom].reshape(3, 3))
-            red, green, blue = (float(part) for part in _rgba(model, geom)[:3])
-            shapes.append(LinkShape(mesh.vertices @ T[:3, :3].T + T[:3, 3], np.asarray(mesh.faces), (red, green, blue)))
-    return shapes
+    try:
+        bodies = robot._loaded.visuals  # those without files were told of when the model was loaded
+    except ModelError as error:
+        notices.warn([Notice("bodies_not_drawn", f"the bodies of {robot.name} are not drawn: {error}")], ModelWarning)
+        return []
+    poses = bodies.poses(configuration_rows(q, robot.chain.n))[0]
+    return [_placed(shape, T) for shape, T in zip(bodies.shapes, poses, strict=True)]
 
 
-def _shown(model: "mujoco.MjModel") -> list[int]:
-    clear = [geom for geom in range(model.ngeom) if _rgba(model, geom)[3] > 0]
-    visible = [geom for geom in clear if model.geom_group[geom] < _VISIBLE_GROUPS]
-    return visible or clear
+def _placed(shape: "Shape", T: np.ndarray) -> LinkShape:
+    mesh = _mesh(shape)
+    red, green, blue = (float(part) for part in shape.rgba[:3])
+    return LinkShape(mesh.vertices @ T[:3, :3].T + T[:3, 3], np.asarray(mesh.faces), (red, green, blue))
 
 
-def _rgba(model: "mujoco.MjModel", geom: int) -> np.ndarray:
-    material = model.geom_matid[geom]
-    return model.mat_rgba[material] if material >= 0 else model.geom_rgba[geom]
-
-
-def _mesh(model: "mujoco.MjModel", geom: int) -> "trimesh.Trimesh | None":
-    """A geometry in its own frame; its ``size`` means what MuJoCo's reference says of each type."""
-    import mujoco
+def _mesh(shape: "Shape") -> "trimesh.Trimesh":
+    """A shape in its own frame."""
     import trimesh
 
-    kind, (a, b, c) = mujoco.mjtGeom(model.geom_type[geom]), model.geom_size[geom].tolist()
-    if kind == mujoco.mjtGeom.mjGEOM_SPHERE:
+    a, b, c = shape.size.tolist()
+    if shape.kind == "sphere":
         return trimesh.creation.icosphere(3, a)
-    if kind == mujoco.mjtGeom.mjGEOM_CAPSULE:
+    if shape.kind == "capsule":
         return _centered(trimesh.creation.capsule(2 * b, a))
-    if kind == mujoco.mjtGeom.mjGEOM_CYLINDER:
+    if shape.kind == "cylinder":
         return trimesh.creation.cylinder(a, 2 * b)
-    if kind == mujoco.mjtGeom.mjGEOM_ELLIPSOID:
+    if shape.kind == "ellipsoid":
         ball = trimesh.creation.icosphere(3)
         ball.apply_scale((a, b, c))
         return ball
-    if kind == mujoco.mjtGeom.mjGEOM_BOX:
+    if shape.kind == "box":
         return trimesh.creation.box((2 * a, 2 * b, 2 * c))
-    if kind == mujoco.mjtGeom.mjGEOM_MESH:
-        mesh = int(model.geom_dataid[geom])
-        first, count = int(model.mesh_vertadr[mesh]), int(model.mesh_vertnum[mesh])
-        face, faces = int(model.mesh_faceadr[mesh]), int(model.mesh_facenum[mesh])
-        triangles = model.mesh_face[face : face + faces].copy()
-        return trimesh.Trimesh(model.mesh_vert[first : first + count].copy(), triangles, process=False)
-    return None
+    return trimesh.Trimesh(shape.vertices, shape.faces, process=False)
 
 
 def _centered(mesh: "trimesh.Trimesh") -> "trimesh.Trimesh":
