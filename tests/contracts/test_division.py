@@ -12,7 +12,7 @@ from wsrender_server.jobs.task import Step, Task
 import wsrender as ws
 from tests.golden.facts import bits_of
 from tests.golden.files import analyses, golden_names, job_of
-from wsrender.run import finish, merge, plan, run_shard
+from wsrender.run import finish, further, merge, plan, run_shard
 from wsrender.run.partial_files import load_partial, save_partial
 
 # Those whose samples, or what is refined beside them, are shards.
@@ -25,6 +25,7 @@ DIVISIBLE = {
     "collaborative_volume",
     "parallel_workspace",
     "method_comparison",
+    "design_optimization",
 }
 
 
@@ -57,25 +58,35 @@ def divisions(planned):
     found = {}
     for name in golden_names():
         whole = planned(name)
-        shards = whole.divided(whole.samples * whole.effort / 4, 256)
-        if len(shards) > 1:
-            found[name] = plan(job_of(name), resolved={**whole.resolved(), "shards": shards})
+        settled = whole.division(whole.samples * whole.effort / 4, 4)
+        if settled != whole.settled:
+            found[name] = plan(job_of(name), resolved=json.loads(json.dumps(settled.entry())))
     return found
 
 
+def shards_of(divided, first):
+    """Partial results of a plan's shards from the ``first`` on, in the reverse order; each has travelled."""
+    shards = range(first, len(divided.shards))
+    return [divided.read(run_shard(divided, shard).packed()) for shard in reversed(shards)]
+
+
 def test_shards_in_any_order_change_no_bit(planned, local):
-    """Samples and refinements, each of which has travelled, in another order than they were planned in."""
-    found = divisions(planned)
+    """Samples and refinements, in other orders than they were planned in; further rounds too."""
+    found, rounds = divisions(planned), set()
     assert {name.partition(".")[0] for name in found} == DIVISIBLE
-    assert {name for name, each in found.items() if each.refinements} >= {
-        "robot_comparison",
-        "shared_workspace.refined",
-    }
+    assert {"robot_comparison", "shared_workspace.refined"} <= {k for k, each in found.items() if each.refinements}
     for name, divided in found.items():
-        partials = [divided.read(run_shard(divided, shard).packed()) for shard in reversed(range(len(divided.shards)))]
-        merged = reduce(lambda a, b: merge(divided, a, b), partials[1::2] + partials[::2])
+        partials = shards_of(divided, 0)
+        while True:
+            merged = reduce(lambda a, b: merge(divided, a, b), partials[1::2] + partials[::2])
+            if (more := further(divided, merged)) is None:
+                break
+            before, divided = len(divided.shards), more
+            partials += shards_of(divided, before)
+            rounds.add(name)
         assert bits_of(finish(divided, merged)) == bits_of(local(name)), name
         assert len(planned(name).shards) == 1
+    assert rounds == {"design_optimization.pareto"}
 
 
 @pytest.mark.parametrize("wanted", [1, 1000])
@@ -86,15 +97,19 @@ def test_a_server_divides_as_the_analysis_says(wanted, planned, monkeypatch):
     several = set()
     for name in golden_names():
         whole = planned(name)
-        shards = steps.run(Task(Step.PLAN, name, name, job_of(name)))["resolved"]["shards"]
+        resolved = steps.run(Task(Step.PLAN, name, name, job_of(name)))["resolved"]
+        shards = resolved["shards"]
         ends = [0, *(first + count for first, count in shards)]
-        assert [first for first, _ in shards] == ends[:-1] and ends[-1] == whole.samples
+        several |= {name.partition(".")[0]} if len(shards) > 1 else set()
+        assert len(shards) <= 2 * steps.MOST_SHARDS and [first for first, _ in shards] == ends[:-1]
         assert [count for _, count in shards[1:]].count(0) == whole.refinements
+        if designs := resolved.get("designs"):  # of a first round
+            assert ends[-1] == len(designs) <= whole.samples == resolved["most_samples"]
+            continue
+        assert ends[-1] == whole.samples
         for piece in whole.pieces:
             inside = {first - piece.first for first, count in shards if count and piece.within(first, count)[1]}
             assert inside == {0} if piece.unit is None else all(first % piece.unit == 0 for first in inside), name
-        assert len(shards) <= 2 * steps.MOST_SHARDS
-        several |= {name.partition(".")[0]} if len(shards) > 1 else set()
     assert several == DIVISIBLE
 
 
@@ -103,15 +118,21 @@ def test_a_server_merges_shards_and_refinements(planned, local, monkeypatch, tmp
     state = {"shard_samples": 2000, "max_samples": 10**10, "gauges": [0, 0, 0], "threads": 1}
     files = DataFolder(tmp_path)
     monkeypatch.setattr(steps, "_state", {**state, "files": files})
-    for own, name in {"a": "shared_workspace.refined", "b": "robot_comparison"}.items():
+    rounds = []
+    names = {"a": "shared_workspace.refined", "b": "robot_comparison", "c": "design_optimization.pareto"}
+    for own, name in names.items():
         task = Task(Step.PLAN, own, own, job_of(name), seconds={})
-        task = replace(task, resolved=json.loads(json.dumps(steps.run(task)["resolved"])))
-        for shard in reversed(range(len(task.resolved["shards"]))):
-            monkeypatch.setattr(steps, "_plans", type(steps._plans)())
-            steps.run(replace(task, step=Step.SHARD, shard=shard))
-        record = steps.run(replace(task, step=Step.FINISH))[0]
-        document = json.loads(files.artifact(own, record["sha256"]).read_text())
+        found = steps.run(task)
+        while isinstance(found, dict):
+            task = replace(task, resolved=json.loads(json.dumps(found["resolved"])))
+            for shard in reversed(range(len(task.resolved["shards"]))):
+                monkeypatch.setattr(steps, "_plans", type(steps._plans)())
+                steps.run(replace(task, step=Step.SHARD, shard=shard))
+            rounds.append(name)
+            found = steps.run(replace(task, step=Step.FINISH))
+        document = json.loads(files.artifact(own, found[0]["sha256"]).read_text())
         assert lasting(document) == lasting(json.loads(json.dumps(local(name).document))), name
+    assert [rounds.count(name) for name in names.values()][:2] == [1, 1] and rounds.count(names["c"]) > 1
 
 
 def lasting(document):

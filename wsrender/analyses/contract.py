@@ -203,15 +203,27 @@ class Analysis(Costed, ABC):
         shards = [shard for piece in self.pieces for shard in piece.divided(size)]
         return (shards or [(0, 0)]) + [(self.samples, 0)] * self.refinements
 
+    def division(self, size: float, most: int) -> Settled:
+        """What is settled, `divided` into shards; they may be the first of several rounds, see `further`."""
+        return replace(self.settled, shards=tuple(self.divided(size, most)))
+
+    def further(self, partial: Any, execution: Execution) -> Settled | None:
+        """What is settled with one more round of shards, which follow from the merged ones; None: they were all."""
+        return None
+
+    def settled_as(self, settled: Any) -> Self:
+        """The plan with other shards."""
+        plan = copy(self)
+        plan.settled = settled
+        return plan
+
     def resolved(self) -> dict[str, Any]:
         """What is settled, as JSON values: with it another process plans the same."""
         return self.settled.entry()
 
     def over(self, first: int, number: int) -> Self:
         """The plan with one shard, of these samples."""
-        plan = copy(self)
-        plan.settled = replace(self.settled, shards=((first, number),))
-        return plan
+        return self.settled_as(replace(self.settled, shards=((first, number),)))
 
     def run_shard(self, shard: int, progress: Tell | None, execution: Execution) -> Any:
         """The partial result of a shard."""

@@ -1,5 +1,5 @@
-"""Running a job, in the four steps that every door uses: plan, run_shard, merge, finish."""
+"""Running a job, in the steps that every door uses: plan, run_shard, merge, further shards where there are, finish."""
 
-from wsrender.run.steps import Plan, execute, finish, merge, plan, run_shard
+from wsrender.run.steps import Plan, execute, finish, further, merge, plan, run_shard
 
-__all__ = ["Plan", "execute", "finish", "merge", "plan", "run_shard"]
+__all__ = ["Plan", "execute", "finish", "further", "merge", "plan", "run_shard"]

@@ -25,8 +25,8 @@ def plan(document: Any, robot: Any = None, *, resolved: dict[str, Any] | None = 
     ``robot`` replaces the document's; where a job has several, a list with a robot or None for each.
 
     ``resolved`` is `Analysis.resolved` of an earlier plan of the same job: nothing in it is settled again, so that
-    partial results of different processes merge. A plan has one shard; ``shards`` of ``resolved`` may divide it, as
-    `Analysis.divided` says.
+    partial results of different processes merge. A plan has one shard; that of an `Analysis.division` has several, and
+    what is merged of them may have `further` ones.
 
     Raises DocumentError, InputError, ModelError, ResourceError; nothing has run then.
     """
@@ -73,6 +73,12 @@ def merge(plan: Plan, a: Any, b: Any) -> Any:
     return plan.merged(a, b)
 
 
+def further(plan: Plan, partial: Any, *, threads: int | None = None) -> Plan | None:
+    """The plan with one more round of shards that follow from the merged ones, as of a search; None: they were all."""
+    settled = plan.further(partial, Execution(threads, runner=execute))
+    return None if settled is None else plan.settled_as(settled)
+
+
 def finish(
     plan: Plan,
     partial: Any,
@@ -86,7 +92,7 @@ def finish(
     ``progress(done, total, message)`` is called while a plan refines, with points and about how many there will be,
     and with all samples once the rest begins.
     """
-    seconds, execution = dict(seconds or {}), Execution(threads)
+    seconds, execution = dict(seconds or {}), Execution(threads, runner=execute)
     started, merged = time.perf_counter(), partial
     partial = plan.refined(merged, progress, execution)
     if partial is not merged:

@@ -90,9 +90,10 @@ class Attempt:
 
     def progress(self) -> Progress:
         """How far the attempt is."""
-        total = sum(count for _, count in self.shards) or None
+        settled = self.resolved or {}
+        total = settled.get("most_samples") or sum(count for _, count in self.shards) or None
         done = self.samples_done
-        if self.resolved and self.resolved.get("iterates"):
+        if settled.get("iterates"):
             total = None
         elapsed = time.monotonic() - self.started
         rate = (done - self.kept) / elapsed if self.step == Step.SHARD and elapsed > 0 and done > self.kept else None

@@ -171,9 +171,9 @@ class Dispatcher:
             self._submit_finish(attempt)
 
     def _submit_finish(self, attempt: Attempt) -> None:
-        attempt.seconds["sweep"] = time.monotonic() - attempt.started
+        attempt.seconds["sweep"] = attempt.seconds.get("sweep", 0.0) + time.monotonic() - attempt.started
         attempt.step, attempt.stale = Step.FINISH, True
-        self._submit(attempt, Step.FINISH)
+        self._submit(attempt, Step.FINISH, [len(attempt.shards)])  # of another name after every round
 
     def _put(self, action: Callable[[], None]) -> None:
         self._inbox.put(action)
@@ -212,10 +212,10 @@ class Dispatcher:
             if outcome.value:
                 log.error("computation %s, %s: %s", computation_id, step, outcome.value)
             self._fail(attempt, outcome.error or {})
-        elif step == Step.PLAN:
+        elif isinstance(outcome.value, dict):  # a plan, or more shards of it
             self.store.settle(computation_id, outcome.value["resolved"], outcome.value["target"])
             attempt.resolved = outcome.value["resolved"]
-            attempt.seconds["plan"] = outcome.value["seconds"]
+            attempt.seconds.setdefault("plan", outcome.value.get("seconds", 0.0))
             del attempt.futures[step, shard]
             self._submit_shards(attempt)
         elif step == Step.SHARD:

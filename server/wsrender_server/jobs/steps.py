@@ -57,7 +57,7 @@ def describe() -> dict[str, str]:
 
 
 def run(task: Task) -> Any:
-    """Run a step. PLAN gives what was settled, FINISH the records of the artifacts, SHARD None."""
+    """Run a step. PLAN gives what was settled, SHARD None, FINISH the artifacts' records, or more shards settled."""
     _state["gauges"][1] = _state["gauges"][2] = 0
     return {Step.PLAN: _plan, Step.SHARD: _shard, Step.FINISH: _finish}[task.step](task)
 
@@ -70,9 +70,8 @@ def _plan(task: Task) -> dict[str, Any]:
         allowed = _state["max_samples"]
         raise ResourceError("sampling", f"has {samples:.4g} samples; this server allows {allowed:.4g}")
     faster = GPU_FACTOR if plan.target.startswith("cuda:") else 1
-    shards = plan.divided(faster * _state["shard_samples"], MOST_SHARDS)
     return {
-        "resolved": {**plan.resolved(), "shards": [list(shard) for shard in shards]},
+        "resolved": plan.division(faster * _state["shard_samples"], MOST_SHARDS).entry(),
         "target": plan.target,
         "estimate": plan.estimate,
         "seconds": time.perf_counter() - started,
@@ -98,13 +97,15 @@ def _shard(task: Task) -> None:
     save_partial(partial, path)
 
 
-def _finish(task: Task) -> list[dict[str, Any]]:
-    """Merge all partial results, in one pass that holds two of them, and write the artifacts."""
-    from wsrender.run import finish, merge
+def _finish(task: Task) -> list[dict[str, Any]] | dict[str, Any]:
+    """Merge all partial results, in one pass that holds two of them, and write the artifacts; or settle more shards."""
+    from wsrender.run import finish, further, merge
 
     plan = _planned(task)
     partials = (_load(task, shard, plan) for shard in range(len(plan.shards)))
     partial = reduce(lambda a, b: merge(plan, a, b), partials)
+    if (more := further(plan, partial, threads=_state["threads"])) is not None:
+        return {"resolved": more.resolved(), "target": more.target}
     gauges = _state["gauges"]
 
     def report(done: int, total: int, message: str) -> None:
@@ -172,7 +173,7 @@ def _planned(task: Task) -> Any:
     """The plan of a computation, made once per process."""
     from wsrender.run import plan
 
-    key = f"{task.token}:{task.resolved is not None}"
+    key = f"{task.token}:{len(task.resolved['shards']) if task.resolved else 0}"
     if key not in _plans:
         _plans[key] = plan(task.document, resolved=task.resolved)
         while len(_plans) > KEPT_PLANS:

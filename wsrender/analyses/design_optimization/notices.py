@@ -5,7 +5,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from wsrender.analyses.design_optimization.values import Evaluator
 from wsrender.design.evaluations import feasible
 from wsrender.errors import NotConvergedError, NumericalError, ResourceError
 from wsrender.notices import Notice
@@ -17,18 +16,18 @@ if TYPE_CHECKING:
 FAILURES = {error.code for error in (NotConvergedError, NumericalError, ResourceError)}
 
 
-def fault_entries(evaluator: Evaluator) -> list[dict[str, Any]]:
-    """Why designs have no value: kind of error, its first reason, the parameters there, and the number of designs."""
-    names = [parameter.name for parameter in evaluator.plan.job.parameters]
-    return [
-        {
-            "code": fault.error.code,
-            "reason": str(fault.error),
-            "designs": fault.designs,
-            "parameters": dict(zip(names, fault.design, strict=True)),
-        }
-        for fault in evaluator.faults.values()
-    ]
+def fault_entries(faults: Sequence[dict[str, Any]], names: Sequence[str]) -> list[dict[str, Any]]:
+    """Why designs have no value: kind of error, its first reason, the parameters there, and the number of designs.
+
+    ``faults``: entries of `DesignFault`, the first one first; those of one kind and field are counted together.
+    """
+    found: dict[tuple[str, str], dict[str, Any]] = {}
+    for fault in faults:
+        code, field = fault["kind"]
+        parameters = dict(zip(names, fault["design"], strict=True))
+        entry = {"code": code, "reason": fault["reason"], "designs": 0, "parameters": parameters}
+        found.setdefault((code, field), entry)["designs"] += 1
+    return list(found.values())
 
 
 def design_notices(

@@ -1,10 +1,12 @@
 """The analysis ``design_optimization``: parameters of another job, searched for the best values of its result."""
 
+import sys
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from wsrender.analyses.contract import Analysis, Draft, Settled, Tell
+from wsrender.analyses.contract import Analysis, Draft, Progress, Settled, Tell
 from wsrender.analyses.cost import DOCUMENT_BYTES, Cost, pictures_cost
 from wsrender.analyses.design_optimization.job import (
     EXACT,
@@ -26,12 +28,13 @@ from wsrender.analyses.design_optimization.result import (
 from wsrender.analyses.design_optimization.values import FAULTS, Evaluator
 from wsrender.analyses.execution import Execution
 from wsrender.analyses.jobs import parse_job
-from wsrender.analyses.partial_result import PartialResult
+from wsrender.analyses.partial_result import FIRST, PartialResult, joined_rows, rows_of_shard
+from wsrender.analyses.piece import Piece
 from wsrender.design.evaluations import EvaluationFile, Evaluations, feasible, scores
 from wsrender.design.search import Space, evolve, grid, pareto, refine
 from wsrender.documents.json_pointer import changed
 from wsrender.documents.robot import Transform
-from wsrender.errors import InputError, NotConvergedError
+from wsrender.errors import InputError, NotConvergedError, NumericalError
 from wsrender.mechanisms.ball_region import BallRegion, region_of
 from wsrender.mechanisms.mechanism import mechanism_of
 
@@ -39,17 +42,39 @@ BATCH, SLOW_BATCH = 256, 1  # designs between two reports of progress
 EXACT_PER_S, OTHERS_PER_S = 1e3, 1.0  # designs, rounded down
 
 
-class DesignOptimizationAnalysis(Analysis):
-    """A planned ``design_optimization`` job: one shard of as many designs as the search evaluates at most."""
+@dataclass(frozen=True, kw_only=True)
+class DesignSettled(Settled):
+    """With the designs of all rounds of a divided search; its samples are as many as the search evaluates at most."""
 
+    designs: tuple[tuple[float, ...], ...] = ()
+    most_samples: int = 0
+
+
+class PendingDesigns(Exception):  # noqa: N818 - no error: a search has come to designs without values
+    """The designs (N, n) that a search asks for next."""
+
+    def __init__(self, designs: np.ndarray):
+        super().__init__()
+        self.designs = tuple(map(tuple, designs.tolist()))
+
+
+class DesignOptimizationAnalysis(Analysis):
+    """A planned ``design_optimization`` job: one shard of as many designs as the search evaluates at most.
+
+    Divided, each design that a job must run for is a shard, and each generation a round: the search, which is no work
+    beside its evaluations, is done again with the values that are known until it asks for others.
+    """
+
+    settles = DesignSettled
+    settled: DesignSettled
     resumes = True  # a search that was stopped takes the designs that it has evaluated from its checkpoint
     job: DesignOptimizationJob
 
-    def prepare(self, device: str, target: str) -> Settled:
+    def prepare(self, device: str, target: str) -> DesignSettled:
         """Raises InputError for a mechanism that other surfaces than spheres bound, where an exact value is asked."""
         if exact := [objective.value for objective in self.job.objectives if objective.value in EXACT]:
             self._check_mechanism(exact[0])
-        return Settled(device, target, ((0, self.job.most_evaluations),))
+        return DesignSettled(device, target, ((0, self.job.most_evaluations),))
 
     def _check_mechanism(self, exact: str) -> None:
         inner: Any = self.job.design
@@ -100,13 +125,69 @@ class DesignOptimizationAnalysis(Analysis):
         """Weights (k,) of the values in the score; negative where small values are good."""
         return np.array([o.weight if o.goal == "maximize" else -o.weight for o in self.job.objectives])
 
+    def division(self, size: float, most: int) -> Settled:
+        """A first round of the designs that the search begins with; one shard where they are exact or go to a file."""
+        if self.is_exact or isinstance(self.job.evaluations, EvaluationsInFile):
+            return self.settled
+        try:
+            self._searched(None, self._given())
+        except PendingDesigns as asked:
+            most_samples = self.job.most_evaluations
+            return self._round(replace(self.settled, shards=(), most_samples=most_samples), asked.designs, most)
+        return self.settled
+
+    def further(self, partial: PartialResult, execution: Execution) -> Settled | None:
+        """One more round, of the next generation."""
+        if FIRST not in partial.arrays:
+            return None
+        try:
+            self._searched(None, self._known(partial))
+        except PendingDesigns as asked:
+            return self._round(self.settled, asked.designs, len(asked.designs))
+        return None
+
+    def _round(self, settled: DesignSettled, designs: Any, most: int) -> DesignSettled:
+        """What is settled, with shards of these designs, about as many as ``most``."""
+        before, each = len(settled.designs), -(-len(designs) // most)
+        shards = Piece(before, len(designs), 1).divided(each)
+        return replace(settled, shards=(*settled.shards, *shards), designs=(*settled.designs, *designs))
+
+    def _given(self) -> np.ndarray:
+        """Rows (E, n + k) of the designs that the job knows."""
+        return np.array(self.job.evaluations, np.float64).reshape(-1, len(self._columns))
+
+    def _known(self, partial: PartialResult) -> np.ndarray:
+        """Rows (E, n + k) of the designs of all rounds, and those that the job knows."""
+        return np.concatenate([self._given(), np.hstack([partial["designs"], partial["values"]])])
+
+    def _searched(
+        self, evaluator: Evaluator | None, known: np.ndarray, batch: int = sys.maxsize, **told: Any
+    ) -> tuple[Evaluations, str]:
+        """The search with designs that are ``known``, rows (E, n + k), and how it ended.
+
+        Without an evaluator it raises PendingDesigns where it needs others.
+        """
+
+        def pending(designs: np.ndarray) -> np.ndarray:
+            raise PendingDesigns(designs)
+
+        count = len(self.job.parameters)
+        rows = [(tuple(row[:count]), tuple(row[count:])) for row in known.tolist()]
+        evaluations = Evaluations(evaluator or pending, self.weights, known=rows, batch=batch, **told)
+        return evaluations, self._search(evaluations, evaluator)
+
     def compute(self, shard: int, execution: Execution, tell: Tell) -> PartialResult:
-        """All designs (E, n) in the order of the search, their values (E, k), and what the search says."""
-        given, width = self.job.evaluations, len(self._columns)
+        """All designs (E, n) in the order of the search, their values (E, k), and what the search says.
+
+        Of a shard of a round its designs, their values, and why they have none.
+        """
+        if self.settled.designs:
+            return self._evaluated(*self.shards[shard], execution, tell)
+        given = self.job.evaluations
         own = EvaluationFile(given.path, self._columns) if isinstance(given, EvaluationsInFile) else None
-        known = own.rows() if own else np.array(given, np.float64).reshape(-1, width)
+        known = own.rows() if own else self._given()
         kept = EvaluationFile(execution.checkpoint, self._columns) if execution.checkpoint else None
-        before = _with_values(kept.rows()) if kept else np.empty((0, width))
+        before = _with_values(kept.rows()) if kept else np.empty((0, len(self._columns)))
         evaluator = Evaluator(self, execution)
         evaluator.count = len(before)
 
@@ -115,20 +196,46 @@ class DesignOptimizationAnalysis(Analysis):
                 if file:
                     file.append(designs, values)
 
-        count = len(self.job.parameters)
-        evaluations = Evaluations(
-            evaluator,
-            self.weights,
-            known=[(tuple(row[:count]), tuple(row[count:])) for row in np.concatenate([known, before]).tolist()],
-            report=tell,
-            keep=keep,
-            batch=BATCH if self.is_exact else SLOW_BATCH,
-        )
-        ended = self._search(evaluations, evaluator)
+        batch = BATCH if self.is_exact else SLOW_BATCH
+        evaluations, ended = self._searched(evaluator, np.concatenate([known, before]), batch, report=tell, keep=keep)
+        faults = [fault.entry() for fault in evaluator.faults]
+        return self._whole(evaluations, ended, evaluator.count, faults, execution)
+
+    def _evaluated(self, first: int, count: int, execution: Execution, tell: Tell) -> PartialResult:
+        """The designs of a shard, their values, and faults by the designs' numbers."""
+        evaluator, rows, faults = Evaluator(self, execution), [], {}
+        designs = np.array(self.settled.designs[first : first + count])
+        for number, design in enumerate(designs):
+            before = len(evaluator.faults)
+            rows.append(evaluator(design[None])[0])
+            faults |= {str(first + number): fault.entry() for fault in evaluator.faults[before:]}
+            tell(number + 1)
+        found = rows_of_shard(first, {"designs": designs, "values": np.array(rows)})
+        return PartialResult(found.arrays, {"faults": faults})
+
+    def merge(self, a: PartialResult, b: PartialResult) -> PartialResult:
+        """The designs of both, in their order."""
+        return PartialResult(joined_rows(a, b).arrays, {"faults": {**a.facts["faults"], **b.facts["faults"]}})
+
+    def refine(self, partial: PartialResult, progress: Progress | None, execution: Execution) -> PartialResult:
+        """What the search says of all rounds, as if they had been one shard."""
+        if FIRST not in partial.arrays:
+            return partial
+        faults = [partial.facts["faults"][number] for number in sorted(partial.facts["faults"], key=int)]
+        evaluations, ended = self._searched(None, self._known(partial))
+        return self._whole(evaluations, ended, len(self.settled.designs), faults, execution)
+
+    def _whole(
+        self, evaluations: Evaluations, ended: str, evaluated: int, faults: list[dict[str, Any]], execution: Execution
+    ) -> PartialResult:
+        """The partial result of the whole search; raises the first of the faults where no design has a value."""
         designs, values = evaluations.rows()
-        if not np.isfinite(values).any() and evaluator.fault is not None:
-            raise evaluator.fault
-        about = {"ended": ended, "evaluated": evaluator.count, "faults": fault_entries(evaluator)}
+        if faults and not np.isfinite(values).any():
+            again = Evaluator(self, execution)
+            again(np.array([faults[0]["design"]]))
+            raise again.fault or NumericalError(faults[0]["reason"])
+        names = [parameter.name for parameter in self.job.parameters]
+        about = {"ended": ended, "evaluated": evaluated, "faults": fault_entries(faults, names)}
         return PartialResult({"designs": designs, "values": values}, about)
 
     def result(self, partial: PartialResult, execution: Execution) -> Draft:
@@ -187,7 +294,7 @@ class DesignOptimizationAnalysis(Analysis):
         mechanism = getattr(self.job.design, "mechanism", None)
         return {"mechanism": {"name": mechanism_of(mechanism).name}} if mechanism else {}
 
-    def _search(self, evaluations: Evaluations, evaluator: Evaluator) -> str:
+    def _search(self, evaluations: Evaluations, evaluator: Evaluator | None) -> str:
         space, search = self.space, self.job.search
         if isinstance(search, GridSweep):
             designs = grid(space, search.counts(len(self.job.parameters)))
@@ -210,7 +317,7 @@ class DesignOptimizationAnalysis(Analysis):
         )
         if not len(evaluations):
             raise NotConvergedError("no design that the constraints allow was found", [])
-        if search.refine and {objective.value for objective in self.job.objectives} == {EXACT_VOLUME}:
+        if evaluator and search.refine and {objective.value for objective in self.job.objectives} == {EXACT_VOLUME}:
             designs, values = evaluations.rows()
             if feasible(values, self.weights).any():
                 start = designs[scores(values, self.weights).argmax()]

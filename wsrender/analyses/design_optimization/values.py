@@ -34,23 +34,27 @@ FEW_SAMPLES, FEW_LEVELS = 256, 3  # of a run that shows what a result holds
 
 @dataclass
 class DesignFault:
-    """Why designs have no value: the first error of its kind, the design that raised it, and how many did."""
+    """Why a design has no value."""
 
     error: WsrenderError
     design: list[float]
-    designs: int = 0
+
+    def entry(self) -> dict[str, Any]:
+        """As plain JSON values."""
+        error = self.error
+        return {"kind": [error.code, getattr(error, "field", "")], "reason": str(error), "design": self.design}
 
 
 class Evaluator:
     """Values of designs: exact ones many at a time, others by running the inner job of each.
 
-    A design whose job ends in an error has no value. ``faults`` are these errors by their kind, the first one first;
-    ``count`` is the number of designs evaluated.
+    A design whose job ends in an error has no value. ``faults`` are these errors, the first one first; ``count`` is the
+    number of designs evaluated.
     """
 
     def __init__(self, plan: "DesignOptimizationAnalysis", execution: Execution):
         self.plan, self.execution = plan, execution
-        self.faults: dict[tuple[str, str], DesignFault] = {}
+        self.faults: list[DesignFault] = []
         self.count = 0
         self._pointers_hold = plan.is_exact
 
@@ -69,7 +73,7 @@ class Evaluator:
     @property
     def fault(self) -> WsrenderError | None:
         """The first error of a design."""
-        return next((fault.error for fault in self.faults.values()), None)
+        return self.faults[0].error if self.faults else None
 
     def gradient(self, design: np.ndarray) -> np.ndarray:
         """Derivatives (n,) of the score of an exact volume."""
@@ -140,14 +144,13 @@ class Evaluator:
         return values
 
     def _keep(self, error: Exception, design: np.ndarray) -> None:
-        """Count a design's error with those of its kind and field."""
+        """Keep a design's error."""
         if isinstance(error, MemoryError):
             error = ResourceError("design", f"needs more memory than there is ({str(error) or 'MemoryError'})")
         elif isinstance(error, InputError) and error.field != "objectives":
             error = error.within("design")
         assert isinstance(error, WsrenderError)
-        kind = error.code, getattr(error, "field", "")
-        self.faults.setdefault(kind, DesignFault(error, design.tolist())).designs += 1
+        self.faults.append(DesignFault(error, design.tolist()))
 
     def _inner_job(self, design: np.ndarray) -> Any:
         """The job of a design; volumes are refined only where an objective reads them."""
