@@ -56,9 +56,9 @@ def test_ends_on_limits_and_narrow_misses_need_a_long_search(on_limit, residual_
     evidence = Evidence(chain, "pose", Accuracy(1e-5, 1e-5, chain.reach / 2), np.zeros(1, bool))
     no, yes, residual = np.zeros(1, bool), np.ones(1, bool), np.full(1, residual_m)
     for _ in range(enough - 1):
-        evidence.record(Tries(q[None], residual, np.zeros(1), no, yes), residual[None])
+        evidence.record(np.arange(1), Tries(q[None], residual, np.zeros(1), no, yes), residual[None])
     assert evidence.label[0] == UNDECIDED
-    evidence.record(Tries(q[None], residual, np.zeros(1), no, yes), residual[None])
+    evidence.record(np.arange(1), Tries(q[None], residual, np.zeros(1), no, yes), residual[None])
     assert evidence.label[0] == UNREACHABLE
 
 

@@ -31,7 +31,7 @@ FOLD, FLATTER, LITTLE = 1e-3, 0.01, 1.1
 class Evidence:
     """The best of all tries of every target, and the evidence that nothing better exists.
 
-    ``q`` (N, n), ``distance`` (N,) [m], ``angle`` (N,) [rad], ``label`` (N,) int8; ``pending``: undecided targets.
+    ``q`` (N, n), ``distance`` (N,) [m], ``angle`` (N,) [rad], ``label`` (N,) int8.
     ``proven`` (N,) bool: targets known to be out of reach.
     """
 
@@ -41,7 +41,6 @@ class Evidence:
         self.q = np.zeros((count, chain.n))
         self.distance, self.angle = np.full(count, np.inf), np.full(count, np.inf)
         self.label = np.full(count, UNDECIDED, np.int8)
-        self.pending = np.arange(count)
         self._kind, self._chain = kind, chain
         self._residual = np.full(count, np.inf)  # of the best try
         self._nearest_end = np.full(count, np.inf)  # least residual at which a try came to rest
@@ -50,9 +49,14 @@ class Evidence:
         # Ends, those at the least residual, and those of these on no limit.
         self._ends, self._agreeing, self._stretched = (np.zeros(count, np.int32) for _ in range(3))
 
-    def record(self, tries: Tries, residual: np.ndarray) -> None:
-        """Take in tries of every pending target, residuals (P, tries each) [m], and settle what is decided."""
-        pending, each = self.pending, residual.shape[1]
+    @property
+    def pending(self) -> np.ndarray:
+        """Undecided targets, (P,)."""
+        return np.flatnonzero(self.label == UNDECIDED)
+
+    def record(self, pending: np.ndarray, tries: Tries, residual: np.ndarray) -> None:
+        """Take in tries of pending targets (P,), residuals (P, tries each) [m], and settle what is decided."""
+        each = residual.shape[1]
         reached, ended = tries.reached.reshape(residual.shape), tries.stationary.reshape(residual.shape)
         best = np.argmin(np.where(reached, -1.0, residual), axis=1)
         chosen = np.arange(len(pending)) * each + best
@@ -63,7 +67,6 @@ class Evidence:
         self.q[at], self.distance[at], self.angle[at] = tries.q[chosen], tries.distance[chosen], tries.angle[chosen]
         self._count_ends(pending, np.where(ended, residual, np.inf), self._off_limits(tries.q).reshape(residual.shape))
         self.label[pending] = np.where(found, REACHABLE, np.where(self._unreachable(pending), UNREACHABLE, UNDECIDED))
-        self.pending = pending[self.label[pending] == UNDECIDED]
 
     @property
     def narrow(self) -> np.ndarray:

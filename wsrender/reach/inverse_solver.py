@@ -13,7 +13,8 @@ from wsrender.reach.starts import FURTHER, NEAR, NEAR_LIMITS, Starts, inwards
 from wsrender.robots.kinematics import Kinematics
 from wsrender.robots.reachable_box import reachable_box
 
-BATCH = 1 << 15  # targets that are solved together: their starts are held in memory
+BATCH = 1 << 15  # targets that are solved together
+MOST_TRIES = 1 << 18  # held in memory at a time
 # Starts between two looks at what they found, by kind of target: a label depends on its target alone.
 LATER = ((FURTHER, 8), (FURTHER, 32), (FURTHER, 64), (FURTHER, 128))
 GROUPS = {
@@ -92,10 +93,12 @@ class InverseSolver:
     def _solve(self, position: np.ndarray, orientation: np.ndarray | None) -> Solutions:
         targets = _targets(position, orientation)
         search = Evidence(self.chain, self.kind, self.accuracy, self._out_of_reach(position))
-        for starts in self._groups(targets, search):
-            each = starts.shape[1]
-            tries = self._tries(np.repeat(targets[search.pending], each, axis=0), starts.reshape(-1, self.chain.n))
-            search.record(tries, self._residual(tries).reshape(-1, each))
+        for source, first, last in _groups(self.kind):
+            each = last - first
+            for part in _parts(search.pending, each):
+                starts = self._starts.of(source, self._features(targets[part]), first, last)
+                tries = self._tries(np.repeat(targets[part], each, axis=0), starts.reshape(-1, self.chain.n))
+                search.record(part, tries, self._residual(tries).reshape(-1, each))
         narrow = search.narrow
         tries = self._tries(targets[narrow], inwards(self.chain, search.q[narrow], STEP_BACK), flatness=FLATTER)
         search.settle(narrow, tries, self._residual(tries))
@@ -109,6 +112,10 @@ class InverseSolver:
         So it is where hinges that turn for ever reach the target, or come nearest with a slide at its end.
         """
         targets = _targets(position, orientation)
+        parts = _parts(np.arange(len(targets)), WITHOUT_LIMITS)
+        return np.concatenate([np.zeros(0, bool), *(self._held(q[part], targets[part]) for part in parts)])
+
+    def _held(self, q: np.ndarray, targets: np.ndarray) -> np.ndarray:
         further = np.tile(self._starts.further(0, WITHOUT_LIMITS - 1), (len(targets), 1, 1))
         starts = np.concatenate([q[:, None, self._kept], further], axis=1).reshape(-1, self.chain.n)
         tries = self._tries(np.repeat(targets, WITHOUT_LIMITS, axis=0), starts, without_limits=True)
@@ -134,15 +141,6 @@ class InverseSolver:
             return tries
         options["precision"], at = "float64", np.flatnonzero(tries.reached)
         return tries.replaced(at, solve_inverse(self.chain, targets[at], tries.q[at], accuracy, **options))
-
-    def _groups(self, targets: np.ndarray, search: Evidence) -> Iterator[np.ndarray]:
-        """Starts (P, g, m) of the targets that are pending when each group's turn comes."""
-        taken: dict[str, int] = {NEAR: 0, NEAR_LIMITS: 0, FURTHER: 0}
-        for source, each in GROUPS[self.kind]:
-            if not len(search.pending):
-                return
-            first, taken[source] = taken[source], taken[source] + each
-            yield self._starts.of(source, self._features(targets[search.pending]), first, first + each)
 
     def _out_of_reach(self, position: np.ndarray) -> np.ndarray:
         """Whether positions (N, 3) are farther than the tolerance from a sphere or a box that hold the workspace.
@@ -176,6 +174,19 @@ class InverseSolver:
         turning = self.chain.periodic
         q[:, turning] = np.remainder(q[:, turning] + np.pi, 2 * np.pi) - np.pi
         return q
+
+
+def _groups(kind: str) -> Iterator[tuple[str, int, int]]:
+    """Of every group its source, and the first and last number of its starts."""
+    taken = {NEAR: 0, NEAR_LIMITS: 0, FURTHER: 0}
+    for source, each in GROUPS[kind]:
+        first, taken[source] = taken[source], taken[source] + each
+        yield source, first, first + each
+
+
+def _parts(targets: np.ndarray, tries: int) -> list[np.ndarray]:
+    """Targets by number (P,) in parts, none empty, that hold at most MOST_TRIES of so many tries each."""
+    return np.array_split(targets, -(-len(targets) * tries // MOST_TRIES)) if len(targets) else []
 
 
 def _targets(position: np.ndarray, orientation: np.ndarray | None) -> np.ndarray:
