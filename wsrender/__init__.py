@@ -61,6 +61,7 @@ if TYPE_CHECKING:
     )
     from wsrender.reach import Reachability, reachable
     from wsrender.results.export.formats import Format, register_format
+    from wsrender.results.presentation import Picture, register_picture
     from wsrender.results.result import Result
     from wsrender.robot import Robot, evaluate_indices, load_robot
     from wsrender.run import execute
@@ -95,6 +96,7 @@ __all__ = [
     "NotFoundError",
     "NumericalError",
     "Option",
+    "Picture",
     "QuotaError",
     "Random",
     "Reachability",
@@ -133,6 +135,7 @@ __all__ = [
     "register_constraint",
     "register_format",
     "register_index",
+    "register_picture",
     "robot_comparison",
     "run",
     "shared_workspace",
@@ -142,6 +145,7 @@ __all__ = [
 _NAMES_OF_MODULE = {
     "wsrender.client": ("Client",),
     "wsrender.results.export.formats": ("Format", "register_format"),
+    "wsrender.results.presentation": ("Picture", "register_picture"),
     "wsrender.indices": ("Index", "Option", "register_index"),
     "wsrender.kinetostatics": ("ForceField", "force_field"),
     "wsrender.mechanisms.five_bar": ("FiveBar",),

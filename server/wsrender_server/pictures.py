@@ -7,13 +7,11 @@ from typing import Any
 import numpy as np
 
 from wsrender.errors import InputError
-from wsrender.results.export.artifacts import PARTS, part_file
-from wsrender.results.export.formats import Format, kept
+from wsrender.results.export.formats import Format
+from wsrender.results.presentation import picture_of
 from wsrender.results.result import Result
 
 AXES = "xyz"
-# Files that a result's pictures are drawn from, by what they hold.
-SOURCES = {part: part_file(part) for part in PARTS}
 
 
 def slice_values(
@@ -78,30 +76,15 @@ def _layer(counts: Any, normal: int, at: float | None, size: float, first: int) 
     return min(max(int(np.floor(cells + 1e-9)), 0), layers - 1)
 
 
-def draw(document: dict[str, Any], files: dict[str, str], plot: str, format: Format, options: dict[str, Any]) -> bytes:
+def draw(document: dict[str, Any], files: dict[str, str], name: str, format: Format, options: dict[str, Any]) -> bytes:
     """A picture of a result in a format of pictures; ``files`` maps names of its artifacts to paths.
 
-    ``options``: index, statistic, axis and at, where the plot has them. Raises InputError where the result does not
-    hold what the plot shows.
+    ``options``: those that the picture takes are used. Raises InputError where the result does not hold what it shows.
     """
-    parts = {part: kept(PARTS[part]).read(files[SOURCES[part]]) for part in _needed(plot, files)}
-    plots = Result(document, **parts).plot
-    if plot == "slice":
-        place = {options.get("axis") or "z": options.get("at")}
-        figure = plots.slice(**place, index=options.get("index"), statistic=options.get("statistic"))
-    elif plot == "slices":
-        figure = plots.slices(index=options.get("index"), statistic=options.get("statistic"))
-    else:
-        figure = getattr(plots, plot)(options.get("index"))
+    plot = Result.of_files(document, {file: Path(path) for file, path in files.items()}).plot
+    taken = picture_of(document, name).takes
+    figure = plot(name, **{key: value for key, value in options.items() if value is not None and key in taken})
     with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / format.file(plot)
+        path = Path(folder) / format.file(name)
         format.write(figure, path)
         return path.read_bytes()
-
-
-def _needed(plot: str, files: dict[str, str]) -> list[str]:
-    """The parts of the result that a plot shows, of those whose files are there."""
-    # The whole map only where there is no sample of it.
-    samples = "sample" if SOURCES["sample"] in files else "map"
-    needed = ["volume"] if plot in ("slice", "slices") else [samples, "skeleton"]
-    return [part for part in needed if SOURCES[part] in files]

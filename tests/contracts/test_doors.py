@@ -11,6 +11,7 @@ from tests.golden.facts import bits_of
 from tests.golden.files import analyses, job_of
 from tests.run.journeys import from_the_command_line
 from tests.server.end_to_end.acceptance import PATIENCE_S
+from wsrender.results.drawing.result_plots import ResultPlots
 from wsrender.results.export.headline import headline_lines
 
 ANALYSES = pytest.mark.parametrize("analysis", analyses())
@@ -63,7 +64,7 @@ def test_the_server_gives_what_a_local_run_gives(analysis, jobs, saved, client):
 @ANALYSES
 def test_the_command_line_gives_what_python_gives(analysis, saved, tmp_path, monkeypatch, capsys):
     """Every file but the pictures, which another test draws."""
-    monkeypatch.setattr(ws.Result, "_pictures", lambda self: {})
+    monkeypatch.setattr(ResultPlots, "pictures", [])
     result, local = from_the_command_line(job_of(analysis), tmp_path), ws.Result.load(saved(analysis))
     assert bits_of(result) == bits_of(local)
     found, by_name = result.document["artifacts"], {each["name"]: each for each in local.document["artifacts"]}

@@ -15,12 +15,14 @@ from wsrender.analyses import jobs as jobs_of_documents
 from wsrender.analyses import registry
 from wsrender.indices import index_catalogue
 from wsrender.pipeline.constraints import registry as constraints
+from wsrender.results import presentation
 from wsrender.results.export import formats
 
 HERE = Path(__file__).parent
 # What has been read of packages.
 READ = (
     formats._extensions,
+    presentation._extensions,
     index_catalogue._extensions,
     constraints._extensions,
     registry._table,

@@ -10,6 +10,7 @@ from wsrender.documents.constraints import Constraints
 from wsrender.indices import KINEMATIC, catalogue
 from wsrender.pipeline.constraints.registry import added_constraints, constraints_of
 from wsrender.results.export import formats
+from wsrender.results.presentation import all_pictures
 
 ABSENT = "No module named 'no_such_module'"
 WORKSPACE = {"analysis": "workspace", "robot": "scara", "sampling": {"method": "grid", "per_joint": 3}, "device": "cpu"}
@@ -39,6 +40,13 @@ REASONS = {
         "taken": "there is an index 'manipulability' already",
         "twice": "there is an index 'largest' already",
     },
+    "pictures": {
+        "absent": ABSENT,
+        "needy": "'curve.scan' is none of samples, volume",
+        "taken": "there is a picture 'aspects' already, wsrender's own",
+        "text": "must be a wsrender.Picture, not str",
+        "upper": "'Upper' is not allowed",
+    },
 }
 
 
@@ -49,6 +57,7 @@ def read(group):
         "constraints": lambda: list(added_constraints()),
         "formats": formats.table,
         "indices": lambda: list(catalogue()),
+        "pictures": lambda: list(all_pictures()),
     }[group]()
 
 
@@ -58,7 +67,7 @@ def test_each_entry_point_is_a_warning_that_names_it(group, installed):
     installed("broken")
     with pytest.warns(UserWarning) as warned:
         assert read(group) == whole
-    texts = sorted(str(each.message) for each in warned)
+    texts = sorted(text for text in (str(each.message) for each in warned) if f" of wsrender.{group} in " in text)
     for text, (name, reason) in zip(texts, REASONS[group].items(), strict=True):
         start = f"the entry point '{name}' of wsrender.{group} in the package broken-lab is left out: "
         assert text.startswith(start) and reason in text and text.endswith("; repair or uninstall broken-lab")
@@ -73,6 +82,7 @@ def test_each_entry_point_is_a_warning_that_names_it(group, installed):
         ("constraints", lambda: ws.execute(WORKSPACE | {"constraints": {"wavy": {}}}), "constraints.wavy"),
         ("formats", lambda: formats.check_asked(["voxels"]), "formats"),
         ("formats", lambda: formats.by_ending("volume", "a.voxels"), "path"),
+        ("pictures", lambda: ws.Result({"analysis": "workspace"}).plot("needy"), "picture"),
         ("indices", lambda: ws.execute(WORKSPACE | {"indices": ["heavy"]}), "indices"),
     ],
 )

@@ -43,7 +43,7 @@ def test_from_the_command_line(package, wsrender, tmp_path):
 def test_from_a_live_server(package, live, tmp_path):
     job = live.submit(DOCUMENT).wait(timeout=PATIENCE_S)
     path = f"{live.url}/v1/jobs/{job.id}/artifacts/volume.vtkhdf"
-    answer = httpx2.get(path, params={"format": "voxels"}).raise_for_status()
+    answer = httpx2.get(path, params={"format": "voxels"}, timeout=PATIENCE_S).raise_for_status()
     (tmp_path / "volume").write_bytes(answer.content)
     assert_same_volume(voxels().read(tmp_path / "volume"), job.result().volume)
 

@@ -29,7 +29,7 @@ def facts_of(result: Any, estimate: Mapping[str, float]) -> dict[str, Any]:
         ESTIMATE: estimate,
         "document": _lasting(result.document),
         "data": {name: _array(array, unit, name.rpartition("/")[2]) for name, array, unit in arrays_of(result)},
-        "pictures": sorted(result._pictures()),
+        "pictures": sorted(row.name for row in result.plot.pictures),
     }
     return json.loads(json.dumps(facts, allow_nan=False, default=np.ndarray.tolist))
 

@@ -34,7 +34,7 @@ def test_a_saved_result_is_read(version, analysis, tmp_path):
     assert set(result.meshes) == {name.removesuffix(".ply") for name in names if name.endswith(".ply")}
     assert (result.skeleton is not None) == ("skeleton.npy" in names)
     assert result.summary().strip()
-    assert result._pictures()
+    assert result.plot.pictures
 
 
 @pytest.mark.parametrize(("version", "analysis"), SAVED)

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 import wsrender as ws
+from wsrender.analyses.kinetostatic_field.pictures import limits_and_ellipsoids
 from wsrender.kinetostatics import posture_tables
 from wsrender.kinetostatics.force_fields import ellipsoids, limit_nearness
-from wsrender.results.drawing import limits_and_ellipsoids, save_figure
+from wsrender.results.drawing import save_figure
 
 
 def planar():

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import wsrender as ws
+from wsrender.analyses.five_bar.presentation import MODE_VOLUMES
 from wsrender.mechanisms.five_bar import WORKING_MODES, conditioning
-from wsrender.results.drawing.five_bar import MODE_VOLUMES
 from wsrender.run import execute
 
 SMALL = {"voxel_size_m": 0.4, "joint_steps": 40}

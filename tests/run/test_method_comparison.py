@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import wsrender as ws
+from wsrender.analyses.method_comparison.presentation import method_rows
 from wsrender.errors import InputError
-from wsrender.results.export.text import method_rows
 
 
 def test_the_four_methods_agree_on_the_published_six_pus(tmp_path):

@@ -6,13 +6,14 @@ entry-point group ``wsrender.analyses``: the entry's name is that of the analysi
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 from importlib import import_module
 from typing import Any
 
 from wsrender.documents.document import Document
 from wsrender.errors import InputError
 from wsrender.extensions import load
+from wsrender.results.presentation import Presentation
 
 EXTENSIONS = "wsrender.analyses"  # entry points, loaded when the table is first read
 
@@ -21,22 +22,25 @@ EXTENSIONS = "wsrender.analyses"  # entry points, loaded when the table is first
 class Entry:
     """An analysis: the class of its job, and what plans it, an ``Analysis`` (see `wsrender.analyses.contract`).
 
-    Either may be ``"module:name"``: jobs are imported when the table is first read, what plans one when it is planned.
+    Each may be ``"module:name"``: jobs are imported when the table is first read, what plans one when it is planned.
+    ``presentation`` says how its results are shown; None: as those of any analysis.
     """
 
     job: str | type[Document]
     run: str | Callable[..., Any]
+    presentation: str | Presentation | None = None
 
 
-def _own(name: str, job: str, run: str) -> Entry:
+def _own(name: str, job: str, run: str, presentation: str | None = "PRESENTATION") -> Entry:
     """An analysis of this package, in a folder of its name."""
     folder = f"{__name__.rpartition('.')[0]}.{name}"
-    return Entry(f"{folder}.job:{job}", f"{folder}.run:{run}")
+    shown = None if presentation is None else f"{folder}.presentation:{presentation}"
+    return Entry(f"{folder}.job:{job}", f"{folder}.run:{run}", shown)
 
 
 _ROWS = {
-    "workspace": _own("workspace", "WorkspaceJob", "WorkspaceAnalysis"),
-    "indices_at": _own("indices_at", "IndicesAtJob", "IndicesAtAnalysis"),
+    "workspace": _own("workspace", "WorkspaceJob", "WorkspaceAnalysis", None),
+    "indices_at": _own("indices_at", "IndicesAtJob", "IndicesAtAnalysis", None),
     "reachability": _own("reachability", "ReachabilityJob", "ReachabilityAnalysis"),
     "capability": _own("capability", "CapabilityJob", "CapabilityAnalysis"),
     "shared_workspace": _own("shared_workspace", "SharedWorkspaceJob", "SharedWorkspaceAnalysis"),
@@ -62,6 +66,12 @@ def job_classes() -> dict[str, type[Document]]:
 def planned(job: Any, *robots: Any, resolved: dict[str, Any] | None = None) -> Any:
     """The plan of a job with its robots; ``resolved``: what an earlier plan of it settled."""
     return _loaded(_table()[job.analysis].run)(job, *robots, resolved=resolved)
+
+
+def presentations() -> dict[str, Callable[[], Presentation]]:
+    """What gives the presentation of each analysis that has one, by its name."""
+    table = {name: entry.presentation for name, entry in _table().items()}
+    return {name: partial(_loaded, named) for name, named in table.items() if named is not None}
 
 
 def _loaded(named: Any) -> Any:
@@ -98,3 +108,5 @@ def _check(name: str, entry: Any, found: dict[str, Entry]) -> None:
     for needed in ("arms", "sweeps"):
         if not callable(getattr(job, needed, None)):
             raise InputError("job", f"{job.__name__} must have the method {needed}(), as Arm has it")
+    if not isinstance(shown := _loaded(entry.presentation), Presentation | None):
+        raise InputError("presentation", f"must be a Presentation, not {type(shown).__name__}")

@@ -1,7 +1,7 @@
 """The result of an analysis: a document, the data behind it, its files and pictures."""
 
 import warnings
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
@@ -31,7 +31,8 @@ from wsrender.results.export.columns import columns_of
 from wsrender.results.export.formats import by_ending, check_asked, kept, written
 from wsrender.results.export.result_format import current_document
 from wsrender.results.export.text import sampling_text, summary_text
-from wsrender.results.report import Picture, report_page
+from wsrender.results.presentation import presentation_of
+from wsrender.results.report import ShownPicture, report_page
 from wsrender.results.report.entries import label
 from wsrender.volume.distribution_map import DistributionMap
 from wsrender.volume.table import Table
@@ -44,7 +45,7 @@ if TYPE_CHECKING:
     from wsrender.results.drawing.result_plots import ResultPlots
 
 REPORT_VIEWS = ("boundary", "isosurface")
-PLANAR_BOUNDARY = "boundary"  # table of the lines and arcs around what a planar arm reaches
+VIEW_CAPTIONS = {"boundary": "Boundary of the workspace", "isosurface": "Voxels of at least 0.9 of the maximum"}
 
 
 @dataclass(eq=False)
@@ -82,10 +83,9 @@ class Result:
     @property
     def plot(self) -> "ResultPlots":
         """Pictures as matplotlib Figures, such as ``plot.slice(z=0.3)`` or ``plot.scatter(index)``."""
-        robots = [str(each.get("name")) for each in self.document.get("robots") or ()]
-        title, data = sampling_text(self.document), self._drawable()
-        held = (self.tables, self.volumes, self.meshes, len(robots) or self._legs)
-        return drawing.ResultPlots(title, *data, *held, self._warnings, robots)
+        title, arms = sampling_text(self.document), len(self.document.get("robots") or ()) or self._legs
+        held = (*self._drawable(), self.tables, self.volumes, self.meshes)
+        return drawing.ResultPlots(self.document, title, *held, arms)
 
     @property
     def _warnings(self) -> list[dict[str, Any]]:
@@ -160,22 +160,19 @@ class Result:
         samples = self.sample if self.sample is not None else self.map
         return samples if samples is not None and len(samples) else None, self.volume, self.skeleton
 
-    def _pictures(self) -> "dict[str, Callable[[], Figure]]":
-        """What draws each picture that the result has data for, by its name."""
-        return drawing.pictures_of(self.plot, self.document)
-
     def report(self, path: str | Path, views: Iterable[str] = REPORT_VIEWS) -> None:
         """Write one HTML page with pictures, tables, provenance and the job document; it needs no network.
 
         ``views`` are the 3-D pictures, of those of ``render``; without the extra ``render`` or OpenGL they are left
         out, with a RenderWarning and a note in the page. Raises InputError for an unknown view.
         """
-        pictures = [Picture(name, drawing.png(draw())) for name, draw in self._pictures().items()]
+        plot = self.plot
+        pictures = [ShownPicture(row.name, drawing.png(row.drawn(plot)), row.caption) for row in plot.pictures]
         notes = []
         has_volume = any(each.volume is not None and each.volume.n_occupied for each in self._subjects(""))
         for view in views if has_volume else ():
             try:
-                pictures.append(Picture(view, drawing.png(self.render(view))))
+                pictures.append(ShownPicture(view, drawing.png(self.render(view)), VIEW_CAPTIONS.get(view, "")))
             except (MissingExtraError, RenderError) as error:
                 notes.append(f"3-D pictures are left out: {error}")
                 warnings.warn(notes[-1], RenderWarning, stacklevel=2)
@@ -217,11 +214,30 @@ class Result:
         """
         folder = Path(folder)
         document = current_document(read_document(folder))
-        files = verified_artifacts(document, folder)
+        return cls.of_files(document, verified_artifacts(document, folder))
+
+    @classmethod
+    def of_files(cls, document: dict[str, Any], files: Mapping[str, Path]) -> "Result":
+        """The result of a document in today's form, as far as its ``files`` by name are there."""
         parts: dict[str, Any] = {part: _restored(kind, files.get(part_file(part))) for part, kind in PARTS.items()}
         for part, kind in NAMED_PARTS.items():
             parts[part] = {name: _restored(kind, files[file]) for name, file in named_files(part, files).items()}
         return cls(document, **parts)
+
+
+def files_of_parts(words: Iterable[str], names: Collection[str]) -> list[str]:
+    """Of the files ``names`` of a result those that hold parts as pictures name them, such as ``tables.scan``.
+
+    Samples are the whole map only where there is no sample of it.
+    """
+    wanted = {word.partition(".")[::2] for word in words}
+    if ("samples", "") in wanted:
+        wanted.add(("sample" if part_file("sample") in names else "map", ""))
+    files = [part_file(part) for part in PARTS if (part, "") in wanted and part_file(part) in names]
+    for part in NAMED_PARTS:
+        named = named_files(part, names).items()
+        files += [file for name, file in named if (part, "") in wanted or (part, name) in wanted]
+    return files
 
 
 def named_results(results: Iterable[Result]) -> dict[str, Result]:
@@ -254,9 +270,9 @@ def _artifacts(result: Result, formats: tuple[str, ...]) -> Iterator[Artifact]:
     for name, data in {"map": result.map, "sample": result.sample, **result.tables}.items():
         if data is not None:
             yield from _table_files(name, data, formats)
-    if result.document.get("analysis") == "planar_boundary" and PLANAR_BOUNDARY in result.tables:
-        drawing = result.tables[PLANAR_BOUNDARY]
-        yield from _files("drawing", PLANAR_BOUNDARY, drawing, formats, (len(drawing),), {"coordinates": "m"}, "plane")
+    for name in presentation_of(result.document).drawings:
+        if (lines := result.tables.get(name)) is not None:
+            yield from _files("drawing", name, lines, formats, (len(lines),), {"coordinates": "m"}, "plane")
     for name, volume in {"volume": result.volume, **result.volumes}.items():
         if volume is not None:
             yield from _volume_files(name, volume, formats)
@@ -296,9 +312,9 @@ def _volume_files(name: str, volume: VolumeData, formats: tuple[str, ...]) -> It
 
 def _picture_files(result: Result, formats: tuple[str, ...]) -> Iterator[Artifact]:
     """Each picture that the result has data for, and the numbers of the histogram."""
-    pictures = result._pictures()
-    if "histogram" in pictures and result.plot.samples is not None:
-        write = partial(drawing.write_histogram_csv, result.plot.samples)
+    plot = result.plot
+    if plot.samples is not None and plot.samples.indices:
+        write = partial(drawing.write_histogram_csv, plot.samples)
         yield Artifact("plots/histogram.csv", write, frame=None)
-    for name, draw in pictures.items():
-        yield from _files("picture", f"plots/{name}", draw(), formats)
+    for row in plot.pictures:
+        yield from _files("picture", f"plots/{row.name}", row.drawn(plot), formats)

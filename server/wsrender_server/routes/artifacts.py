@@ -16,14 +16,17 @@ from starlette.concurrency import run_in_threadpool
 from wsrender.documents.format import FORMAT
 from wsrender.notices import entries
 from wsrender.results.export import formats
+from wsrender.results.export.artifacts import part_file
 from wsrender.results.export.result_format import current_document
+from wsrender.results.presentation import PLANE, all_pictures, picture_of
+from wsrender.results.result import files_of_parts
 from wsrender_server.auth import Reader
 from wsrender_server.formats import OneOf
 from wsrender_server.jobs.records import ArtifactRecord, JobRecord
 from wsrender_server.jobs.states import ENDED, JobState
 from wsrender_server.jobs.versions import notices_of
 from wsrender_server.parts import Parts, Server
-from wsrender_server.pictures import SOURCES, draw, slice_values
+from wsrender_server.pictures import draw, slice_values
 from wsrender_server.problems import HttpProblem, problem_responses
 from wsrender_server.routes.files import file_response
 from wsrender_server.routes.job_views import JobId, Page, View, WarningView, found
@@ -47,6 +50,10 @@ NPY, RAW, PICTURE = "application/x-npy", "application/octet-stream", formats.row
 
 def _picture_suffixes() -> list[str]:
     return formats.suffixes(formats.rows("picture"))
+
+
+def _picture_names() -> list[str]:
+    return list(all_pictures())
 
 
 class ArtifactView(View):
@@ -202,8 +209,8 @@ async def get_slice(
     file = formats.kept("volume").file(volume)
     _, path = await run_in_threadpool(_artifact, server, job, file)
     if kind == PICTURE.media_type:
-        options = {"axis": axis, "at": at, "index": index, "statistic": statistic}
-        return await _drawn(server, job, "slice", PICTURE, options, {SOURCES["volume"]: str(path)})
+        options = {axis: at, "index": index, "statistic": statistic}
+        return await _drawn(server, job, PLANE, PICTURE, options, {part_file("volume"): str(path)})
     with _not_found_if_gone(file, path):
         plane = await _or_404(server.side_process.run(slice_values, str(path), axis, at, index, statistic))
     values: np.ndarray = plane["values"]
@@ -230,18 +237,18 @@ async def get_slice(
 async def get_plot(
     server: Server,
     job: Finished,
-    plot: Literal["robot", "scatter", "slices", "slice", "histogram"],
+    plot: Annotated[str, OneOf(_picture_names)],
     format: Annotated[str, OneOf(_picture_suffixes), Query(description="Format of the picture.")] = PICTURE.suffix,
     index: Annotated[str | None, _INDEX] = None,
     statistic: Annotated[Statistic | None, _STATISTIC] = None,
     axis: Annotated[Literal["x", "y", "z"] | None, Query(description="Normal of the plane of `slice`.")] = None,
     at: Annotated[float | None, _AT] = None,
 ) -> Response:
-    """The arm in its workspace, the sampled positions, planes of voxels, or how values are spread.
+    """Any picture that results have: the arm in its workspace, sampled positions, planes of voxels, and so on.
 
-    404 where the result has no data for it. All pictures of a result are among its files too, as `plots/<name>.png`.
+    404 where the result has no data for it. Its pictures are among its files too, as `plots/<name>.png`.
     """
-    options = {"axis": axis, "at": at, "index": index, "statistic": statistic}
+    options = {axis or "z": at, "index": index, "statistic": statistic}
     return await _drawn(server, job, plot, formats.by_ending("picture", f"{plot}.{format}"), options)
 
 
@@ -254,7 +261,7 @@ async def _drawn(
     instead: Mapping[str, str] = MappingProxyType({}),
 ) -> Response:
     """A picture of the result's files, or of those ``instead`` of them."""
-    document, files = await run_in_threadpool(_sources, server, job)
+    document, files = await run_in_threadpool(_sources, server, job, plot)
     files |= instead
     with _not_found_if_gone(", ".join(files), *map(Path, files.values())):
         content = await _or_404(server.side_process.run(draw, document, files, plot, format, options))
@@ -269,9 +276,13 @@ def _result_document(server: Parts, job: JobRecord) -> dict[str, Any]:
     return current_document(document)
 
 
-def _sources(server: Parts, job: JobRecord) -> tuple[dict[str, Any], dict[str, str]]:
+def _sources(server: Parts, job: JobRecord, plot: str) -> tuple[dict[str, Any], dict[str, str]]:
+    """The result document, and the files that the picture is drawn from."""
     document = _result_document(server, job)
-    paths = {name: server.store.artifact_path(job.owner, job.id, name) for name in SOURCES.values()}
+    names = [record.name for record in server.store.artifacts(job.owner, job.id)]
+    picture = picture_of(document, plot)
+    wanted = files_of_parts((*picture.needs, *picture.uses), names)
+    paths = {name: server.store.artifact_path(job.owner, job.id, name) for name in wanted}
     return document, {name: str(path) for name, path in paths.items() if path is not None}
 
 

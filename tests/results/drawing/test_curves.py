@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 from matplotlib.collections import PathCollection
 
+from wsrender.analyses.master_slave_mapping.pictures import mapped_points
 from wsrender.errors import InputError
-from wsrender.results.drawing import curves, mapped_points
+from wsrender.results.drawing import curves
 from wsrender.volume.table import Table
 
 

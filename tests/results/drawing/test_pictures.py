@@ -11,6 +11,7 @@ from PIL import Image
 
 import wsrender as ws
 from tests.results.export.sample_data import ODD_NAMES, random_map, random_volume
+from wsrender.analyses.robot_comparison.pictures import side_by_side
 from wsrender.errors import InputError
 from wsrender.results import drawing
 from wsrender.results.drawing.box import AZIMUTH_DEG, ELEVATION_DEG, space_around
@@ -67,7 +68,7 @@ def test_colours_of_robots_side_by_side_span_their_values_alone():
         name: VolumeData(0.1, (0, 0, 0), count, {"maximum": {"x": np.full(count.shape, value)}})
         for name, value in (("a", 5.5), ("b", 7.0))
     }
-    figure = drawing.side_by_side(volumes, index="x")
+    figure = side_by_side(volumes, index="x")
     images = [image for axes in figure.axes for image in axes.images]
     assert len(images) >= 6 and {(image.norm.vmin, image.norm.vmax) for image in images[:6]} == {(5.5, 7.0)}
 
@@ -79,7 +80,7 @@ def test_robots_side_by_side_are_cut_where_most_voxels_are_occupied():
     label = np.where(count > 0, 1.0, np.nan)
     label[:, :, 4] = 0.0
     volume = VolumeData(0.1, (0, 0, 0), count, {"maximum": {"x": label}})
-    figure = drawing.side_by_side({"a": volume, "b": volume}, index="x")
+    figure = side_by_side({"a": volume, "b": volume}, index="x")
     shown = np.ma.filled(figure.axes[0].images[0].get_array(), np.nan)
     np.testing.assert_array_equal(shown, label[:, :, 1].T)
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from tests.results.export.sample_data import random_volume
+from wsrender.analyses.robot_comparison.pictures import side_by_side
 from wsrender.results import drawing
 from wsrender.volume.volume_data import VolumeData
 
@@ -22,7 +23,7 @@ def test_a_metre_is_equally_long_in_all_planes(shape):
     vectors = np.random.default_rng(0).normal(size=(*shape, 3))
     field = VolumeData(0.1, (0, 0, 0), np.ones(shape, int), vectors={"force": vectors})
     several = {"a": random_volume(shape), "b": random_volume(shape)}
-    for figure in (drawing.slices(random_volume(shape)), drawing.side_by_side(several), drawing.vector_planes(field)):
+    for figure in (drawing.slices(random_volume(shape)), side_by_side(several), drawing.vector_planes(field)):
         figure.draw_without_rendering()
         lengths = [inches_of_a_metre(figure, axes) for axes in figure.axes if axes.images]
         assert len(lengths) >= (3 if min(shape) > 1 else 1)
@@ -32,7 +33,7 @@ def test_a_metre_is_equally_long_in_all_planes(shape):
 @pytest.mark.parametrize("shape", SHAPES, ids=str)
 @pytest.mark.parametrize("name", ["ur5e", "a robot with quite a long name indeed"])
 def test_names_of_robots_numbers_and_titles_do_not_overlap(shape, name):
-    figure = drawing.side_by_side({name: random_volume(shape), "b": random_volume(shape)}, title="two")
+    figure = side_by_side({name: random_volume(shape), "b": random_volume(shape)}, title="two")
     figure.draw_without_rendering()
     names = [text for text in figure.texts if text.get_text() in (name, "b")]
     assert len(names) == 2
@@ -60,7 +61,7 @@ def panels_of(figure):
 )
 def test_sets_in_a_plane_or_on_a_line_are_not_drawn_edge_on(shape, labels):
     field = VolumeData(0.1, (0, 0, 0), np.ones(shape, int), vectors={"force": np.ones((*shape, 3))})
-    for figure in (drawing.slices(field), drawing.vector_planes(field), drawing.side_by_side({"a": field, "b": field})):
+    for figure in (drawing.slices(field), drawing.vector_planes(field), side_by_side({"a": field, "b": field})):
         figure.draw_without_rendering()
         panels = panels_of(figure)
         rows = len(panels) // len(labels)
@@ -81,7 +82,7 @@ def test_the_only_layer_is_told_by_its_ends():
 @pytest.mark.parametrize("robots", [2, 3, 6])
 def test_a_picture_of_several_robots_fits_on_a_page(robots):
     volumes = {f"r{k}": random_volume((20, 20, 20)) for k in range(robots)}
-    width, height = drawing.side_by_side(volumes).get_size_inches()
+    width, height = side_by_side(volumes).get_size_inches()
     assert width < 14 and height < 8.0 + 0.9 * robots
 
 
@@ -100,7 +101,7 @@ def box_at(low, high, shape=(12, 12, 12)):
 )
 def test_planes_of_a_comparison_cut_every_robot(a, b, layer):
     volumes = {"a": box_at(*a), "b": box_at(*b)}
-    panels = panels_of(drawing.side_by_side(volumes))
+    panels = panels_of(side_by_side(volumes))
     middle = (layer - 6 + 0.5) * 0.1
     assert [axes.get_title() for axes in panels] == [f"{name} = {middle:.3g} m (world)" for name in "xyz"] * 2
     for axes in panels:

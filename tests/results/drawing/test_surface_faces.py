@@ -8,6 +8,7 @@ from matplotlib.path import Path
 
 import wsrender as ws
 from tests.mechanisms.ball_regions import region
+from wsrender.analyses.boundary_patches.pictures import faces_of_patches
 from wsrender.errors import InputError
 from wsrender.mechanisms.ball_region import surface_table
 from wsrender.mechanisms.exact import ExactWorkspace
@@ -15,7 +16,6 @@ from wsrender.results.drawing.camera import Camera
 from wsrender.results.drawing.depth import DepthBuffer
 from wsrender.results.drawing.faces import faces_of, leg_numbers
 from wsrender.results.drawing.faces_of_surface import in_sight, shaded, surface_faces
-from wsrender.results.drawing.patches import faces_of_patches
 from wsrender.volume.table import Table
 
 LENS = region([(0, 0, 0, 1), (1, 0, 0, 1)])  # two unit balls: two caps that share one circle

@@ -7,6 +7,7 @@ import pytest
 
 import wsrender as ws
 from tests.results.export.sample_data import random_map, random_volume
+from wsrender.analyses.reachability.pictures import labelled_targets
 from wsrender.errors import InputError
 from wsrender.results import drawing
 from wsrender.results.export.text import sampling_text
@@ -37,11 +38,11 @@ def test_a_reachability_job_shows_its_targets(reached, tmp_path):
 def test_labels_have_marks_of_their_own():
     label = np.array(["reachable", "undecided", "unreachable", "reachable"])
     columns = {"position": np.eye(4, 3), "label": label, "quat_wxyz": np.eye(4)}
-    axes = drawing.labelled_targets(Table(columns)).axes[0]
+    axes = labelled_targets(Table(columns)).axes[0]
     marks = {line.get_marker(): len(line.get_xdata()) for line in axes.lines}
     assert (marks["o"], marks["^"], marks["x"]) == (2, 1, 1)
     with pytest.raises(InputError, match="rows of position and label are needed"):
-        drawing.labelled_targets(Table({"position": np.eye(3)}))
+        labelled_targets(Table({"position": np.eye(3)}))
 
 
 WARNINGS = [
@@ -96,5 +97,5 @@ def test_titles_say_in_words_how_samples_are_spread_and_how_a_voxel_is_approache
         sampling = {"samples": 1200, "method": method}
         assert sampling_text({"robot": {"name": "arm"}, "sampling": sampling}) == f"arm · 1,200 samples ({words})"
     capability = {"directions": 50, "approach_axis": "-x"}
-    title = sampling_text({"robot": {"name": "arm"}, "capability": capability})
+    title = sampling_text({"analysis": "capability", "robot": {"name": "arm"}, "capability": capability})
     assert title == "arm · 50 directions of approach by the tip's -x axis"

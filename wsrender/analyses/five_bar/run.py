@@ -10,6 +10,7 @@ from wsrender.analyses.contract import Analysis, Draft, Settled, Tell
 from wsrender.analyses.cost import DOCUMENT_BYTES, Cost, pictures_cost
 from wsrender.analyses.execution import Execution
 from wsrender.analyses.five_bar.job import FiveBarJob
+from wsrender.analyses.five_bar.presentation import MODE_VOLUMES
 from wsrender.analyses.headline import headline, no_headline
 from wsrender.analyses.partial_result import PartialResult
 from wsrender.analyses.partial_tables import tables_of, with_tables
@@ -38,7 +39,6 @@ from wsrender.mechanisms.five_bar.tables import (
     outlines_table,
     postures_table,
 )
-from wsrender.results.drawing.five_bar import MODE_VOLUMES
 from wsrender.volume.lattice import round_to_digits
 from wsrender.volume.table import Table
 from wsrender.volume.volume_data import VolumeData

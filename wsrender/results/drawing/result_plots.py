@@ -1,33 +1,25 @@
 """The pictures of one result: what ``result.plot`` offers."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.figure import Figure
 
 from wsrender.errors import InputError
-from wsrender.results.drawing.arm_plane import planar_boundary
-from wsrender.results.drawing.comparison import side_by_side
-from wsrender.results.drawing.designs import sweep_surface, trade_off
 from wsrender.results.drawing.distribution import histogram
 from wsrender.results.drawing.faces import Faces, faces_of
 from wsrender.results.drawing.faces_of_surface import surface_faces
-from wsrender.results.drawing.five_bar import MODE_VOLUMES, aspect_maps, conditioning_maps
-from wsrender.results.drawing.master_slave import mapped_points
-from wsrender.results.drawing.method_comparison import errors_by_size
-from wsrender.results.drawing.orientation_map import orientations
-from wsrender.results.drawing.patches import faces_of_patches
 from wsrender.results.drawing.planes import slice_plane, slices
 from wsrender.results.drawing.point_cloud import scatter
-from wsrender.results.drawing.posture import limits_and_ellipsoids
 from wsrender.results.drawing.stick_figure import robot
 from wsrender.results.drawing.style import Heading
 from wsrender.results.drawing.table_curves import curves
-from wsrender.results.drawing.targets import labelled_targets
 from wsrender.results.drawing.vector_field import vector_planes
 from wsrender.results.drawing.warned import Kind, heading
+from wsrender.results.presentation import Picture, all_pictures, picture_of, pictures_of
 from wsrender.volume.distribution_map import DistributionMap
 from wsrender.volume.table import Table
 from wsrender.volume.volume_data import VolumeData
@@ -38,8 +30,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class ResultPlots:
-    """Pictures of a result, each a matplotlib Figure titled with its robot and sampling."""
+    """Pictures of a result, each a matplotlib Figure titled with its robot and sampling.
 
+    Those below, of any result; and by attribute, or by name as in ``plot("targets")``, those of the table of pictures
+    (`wsrender.results.presentation`): of the result's analysis, and what packages add.
+    """
+
+    document: Mapping[str, Any]
     title: str
     samples: DistributionMap | None
     volume: VolumeData | None
@@ -48,45 +45,36 @@ class ResultPlots:
     volumes: Mapping[str, VolumeData] = field(default_factory=dict)
     meshes: "Mapping[str, trimesh.Trimesh]" = field(default_factory=dict)
     arms: int = 1  # robots whose skeletons stand one after the other
-    warnings: Sequence[Mapping[str, Any]] = ()  # of the result document
-    robots: Sequence[str] = ()  # names of several robots
+
+    @property
+    def pictures(self) -> list[Picture]:
+        """The rows of the pictures that the result is saved with."""
+        rows = pictures_of(self.document).values()
+        return [row for row in rows if row.saved and not row.missing(self) and row.where(self)]
+
+    def __call__(self, name: str, *arguments: Any, **options: Any) -> Figure:
+        """The picture of a name, with its options.
+
+        Raises InputError for one that there is not, and where the result does not hold what it needs.
+        """
+        return picture_of(self.document, name).drawn(self, *arguments, **options)
+
+    def __getattr__(self, name: str) -> Any:
+        """The picture of a name, as a function of its options."""
+        if name.startswith("_") or name not in pictures_of(self.document) | all_pictures():
+            raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
+        return partial(self, name)
+
+    def __dir__(self) -> list[str]:
+        return sorted({*super().__dir__(), *pictures_of(self.document)})
+
+    def heading(self, kind: Kind) -> Heading:
+        """The title of a picture of this kind, with the result's warnings that concern it."""
+        return heading(self.title, self.document.get("warnings") or (), kind)
 
     def curves(self, table: str) -> Figure:
         """A table as curves over its first column."""
-        return curves(self._table(table), title=self._heading("other"))
-
-    def mapping(self) -> Figure:
-        """A slave's points in its master's workspace: green inside, red outside."""
-        if "mapping" not in self.tables:
-            raise InputError("table", "the result holds no mapping of a slave to its master")
-        return mapped_points(self.tables["mapping"], title=self._heading("samples"))
-
-    def targets(self) -> Figure:
-        """The targets of a reachability job by their labels, with the arm at the first that it reaches."""
-        return labelled_targets(self._table("targets"), self.skeleton, title=self._heading("other"))
-
-    def orientations(self) -> Figure:
-        """Which orientations of a mechanism's platform are reached at a point."""
-        if "orientations" not in self.tables:
-            raise InputError("table", "the result holds no orientations at a point")
-        return orientations(self.tables["orientations"], title=self._heading("other"))
-
-    def conditioning(self, matrix: str = "j", space: str = "cartesian") -> Figure:
-        """κ of a five-bar's Jacobian A, B or J ("a", "b", "j") over P ("cartesian") or θ1 and θ2 ("joint")."""
-        volumes = {mode: self.volumes[name] for mode, name in MODE_VOLUMES.items() if name in self.volumes}
-        return conditioning_maps(volumes, self._five_bar_tables(), matrix, space, title=self._heading("other"))
-
-    def aspects(self) -> Figure:
-        """Singularity-free aspects of a five-bar with their areas, one panel for each working mode."""
-        return aspect_maps(self._five_bar_tables(), title=self._heading("other"))
-
-    def sweep(self, value: str | None = None) -> Figure:
-        """A value of a design sweep over its first two parameters, as a surface and as contours."""
-        return sweep_surface(self._table("sweep"), value, title=self._heading("other"))
-
-    def methods(self) -> Figure:
-        """Errors of the methods of a comparison against the edge of their voxels or triangles."""
-        return errors_by_size(self._table("methods"), title=self._heading("other"))
+        return curves(self._table(table), title=self.heading("other"))
 
     def surface(self, mesh: str | None = None) -> Figure:
         """A mesh of the result (by default the first) from two sides, its faces in their colours where they are known.
@@ -96,38 +84,15 @@ class ResultPlots:
         if not self.meshes or (mesh is not None and mesh not in self.meshes):
             raise InputError("mesh", f"the result has no {mesh!r}; it holds {', '.join(self.meshes) or 'no mesh'}")
         shown = self.meshes[mesh or next(iter(self.meshes))]
-        return surface_faces(faces_of(shown, self.tables.get("surfaces")), title=self._heading("surface"))
-
-    def trade_off(self, x: str, y: str) -> Figure:
-        """Two objectives of a Pareto search against each other."""
-        return trade_off(self._table("evaluations"), self._table("pareto"), x, y, title=self._heading("other"))
-
-    def boundary(self) -> Figure:
-        """The boundary of a planar arm: samples, Monte Carlo segments and the exact lines and arcs."""
-        return planar_boundary(self.tables, title=self._heading("boundary"))
-
-    def patches(self) -> Figure:
-        """The boundary of a spatial arm from two sides: patches in their colours, edges and corners."""
-        if "patches" not in self.meshes:
-            raise InputError("mesh", "the result holds no patches of a boundary")
-        return surface_faces(
-            faces_of_patches(self.meshes["patches"], self._table("patches")), title=self._heading("surface")
-        )
-
-    def side_by_side(self, index: str | None = None, *, statistic: str | None = None) -> Figure:
-        """The robots of a comparison in the same planes, with the same axes and one colour scale."""
-        if not self.volumes:
-            raise InputError("volumes", "the result holds no volumes of several robots")
-        robots = {name.removeprefix("robot_"): volume for name, volume in self.volumes.items()}
-        return side_by_side(robots, index=index, statistic=statistic, title=self._heading("volume"))
+        return surface_faces(faces_of(shown, self.tables.get("surfaces")), title=self.heading("surface"))
 
     def scatter(self, index: str | None = None) -> Figure:
         """Sampled positions in space, coloured by an index (by default the first)."""
-        return scatter(self._samples(), index, title=self._heading("samples"))
+        return scatter(self._samples(), index, title=self.heading("samples"))
 
     def histogram(self, index: str | None = None) -> Figure:
         """Distribution of an index over the samples; of each index by default."""
-        return histogram(self._samples(), index, title=self._heading("samples"))
+        return histogram(self._samples(), index, title=self.heading("samples"))
 
     def slice(
         self,
@@ -139,7 +104,7 @@ class ResultPlots:
         statistic: str | None = None,
     ) -> Figure:
         """Voxels cut by the plane at x, y or z [m], coloured by a statistic of an index."""
-        choice: dict[str, Any] = {"index": index, "statistic": statistic, "title": self._heading("volume")}
+        choice: dict[str, Any] = {"index": index, "statistic": statistic, "title": self.heading("volume")}
         return slice_plane(self._volume(), x=x, y=y, z=z, **choice)
 
     def slices(
@@ -150,19 +115,13 @@ class ResultPlots:
         statistic: str | None = None,
     ) -> Figure:
         """Planes normal to x, y and z at the coordinates ``at`` [m]; of voxels in a plane that one alone."""
-        return slices(self._volume(), at=at, index=index, statistic=statistic, title=self._heading("volume"))
+        return slices(self._volume(), at=at, index=index, statistic=statistic, title=self.heading("volume"))
 
     def vectors(
         self, name: str | None = None, at: tuple[float | None, float | None, float | None] = (None, None, None)
     ) -> Figure:
         """Stream lines of a vector (by default the first) in three planes, normal to x, y and z at ``at`` [m]."""
-        return vector_planes(self._volume(), name, at=at, title=self._heading("volume"))
-
-    def posture(self) -> Figure:
-        """The arm in one posture: links coloured by nearness to joint limits, ellipsoids of velocity and force."""
-        if not {"posture", "ellipsoids"} <= set(self.tables):
-            raise InputError("table", "the result holds no posture with its ellipsoids")
-        return limits_and_ellipsoids(self.tables["posture"], self.tables["ellipsoids"], title=self._heading("other"))
+        return vector_planes(self._volume(), name, at=at, title=self.heading("volume"))
 
     def robot(self, index: str | None = None) -> Figure:
         """The arm as a stick figure in its workspace, coloured by an index (by default the first).
@@ -172,8 +131,9 @@ class ResultPlots:
         if self.skeleton is None:
             raise InputError("skeleton", "the result holds no configurations of the arm to draw")
         surface = None if self.samples is not None else self._workspace()
-        kept = {"surface": surface, "arms": self.arms, "names": self.robots}
-        return robot(self.skeleton, self.samples, index, **kept, title=self._heading("samples"))
+        names = [str(each.get("name")) for each in self.document.get("robots") or ()]
+        kept = {"surface": surface, "arms": self.arms, "names": names}
+        return robot(self.skeleton, self.samples, index, **kept, title=self.heading("samples"))
 
     def _workspace(self) -> Faces | None:
         """What the arm is drawn in where there are no samples: a mesh, or the surface of the voxels."""
@@ -185,14 +145,6 @@ class ResultPlots:
         from wsrender.geometry.surfaces import occupied_surface
 
         return faces_of(occupied_surface(volumes[0]), None)
-
-    def _heading(self, kind: Kind) -> Heading:
-        return heading(self.title, self.warnings, kind)
-
-    def _five_bar_tables(self) -> Mapping[str, Table]:
-        if "aspect_outlines" not in self.tables:
-            raise InputError("tables", "the result is not one of a five-bar")
-        return self.tables
 
     def _table(self, name: str) -> Table:
         if name not in self.tables:

@@ -5,9 +5,9 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from wsrender.notices import Notice
+from wsrender.results.presentation import presentation_of
 
 _UNITS = {"m3": "m³", "m2": "m²", "m": "m"}
-_MEASURED = {"shared_workspace": "shared", "collaborative_volume": "collaborative"}  # others: what is reachable
 _SCIENTIFIC = 1e-4  # below: 1.23e-05 rather than 0.0000123
 
 
@@ -16,7 +16,7 @@ def headline_lines(document: Mapping[str, Any]) -> list[str]:
 
     Those of several robots follow under their names, or stand there alone where there is none of all together.
     """
-    whose = _MEASURED.get(str(document.get("analysis")), "reachable")
+    whose = presentation_of(document).measured
     found = document.get("headline")
     if not found:
         return []

@@ -9,7 +9,7 @@ from html import escape
 from typing import Any
 
 from wsrender.results.export.headline import headline_lines, warning_lines
-from wsrender.results.export.text import method_rows
+from wsrender.results.presentation import presentation_of
 from wsrender.results.report.entries import facts_html, label, records_html, table_html, value_html
 from wsrender.volume.table import Table
 
@@ -21,22 +21,6 @@ _LATER = ("robot", "robots", "mechanism", "sampling", "choices")  # after the pi
 _NAMED_IN_TABLE = ("comparison",)  # results whose table says the same, with the names of robots over its columns
 _LAST = ("job", "artifacts", "provenance", "timing_s")  # sections of their own, at the end
 _WIDE = 1.6  # width by height from which a picture takes the whole width
-_CAPTIONS = {
-    **{f"kappa_{m}_cartesian": f"κ({m.upper()}) over the points of each working mode" for m in "abj"},
-    **{f"kappa_{m}_joint": f"κ({m.upper()}) over the actuated angles of each working and assembly mode" for m in "abj"},
-    "aspects": "Parts of each working mode without type 2 singularities",
-    "convergence": "The best value so far",
-    "sweep": "The value over the designs",
-    "pareto": "Objectives against each other",
-    "methods": "Errors of the methods by the size of their voxels and triangles",
-    "robot": "The arm in its workspace",
-    "scatter": "Samples",
-    "slices": "Voxels in planes",
-    "histogram": "Distribution of the indices over the samples",
-    "boundary": "Boundary of the workspace",
-    "isosurface": "Voxels of at least 0.9 of the maximum",
-}
-
 _STYLE = """
 :root { color-scheme: light; }
 body { font: 15px/1.5 system-ui, "DejaVu Sans", sans-serif; color: #222; background: #fff; margin: 0 auto;
@@ -72,16 +56,17 @@ code { font-size: .8rem; overflow-wrap: anywhere; }
 
 
 @dataclass(frozen=True)
-class Picture:
-    """A PNG picture and its name, such as ``slices``."""
+class ShownPicture:
+    """A PNG picture and its name, such as ``slices``; ``said`` is its caption, by default its name in words."""
 
     name: str
     png: bytes
+    said: str = ""
 
     @property
     def caption(self) -> str:
         """What it shows."""
-        return _CAPTIONS.get(self.name) or label(self.name)[:1].upper() + label(self.name)[1:]
+        return self.said or label(self.name)[:1].upper() + label(self.name)[1:]
 
     @property
     def is_wide(self) -> bool:
@@ -93,7 +78,7 @@ class Picture:
 def report_page(
     title: str,
     document: Mapping[str, Any],
-    pictures: Sequence[Picture],
+    pictures: Sequence[ShownPicture],
     tables: Mapping[str, Table],
     notes: Sequence[str] = (),
 ) -> str:
@@ -104,8 +89,7 @@ def report_page(
     nested: dict[str, Any] = {
         key: value for key, value in document.items() if isinstance(value, Mapping | list) and value
     }
-    if document.get("analysis") == "method_comparison":
-        nested["methods"] = method_rows(document)
+    nested |= presentation_of(document).sections(document)
     sections = [_head(document), _section("Main values", facts_html(single))]
     results = [key for key in nested if key not in _FIRST + _LATER + _LAST]
     named = {key: tables[key] for key in _NAMED_IN_TABLE if key in tables}
@@ -152,12 +136,12 @@ def _head(document: Mapping[str, Any]) -> str:
     return lines + (f"<section class=warnings><h2>Warnings</h2><ul>{items}</ul></section>" if items else "")
 
 
-def _pictures(pictures: Sequence[Picture], notes: Sequence[str]) -> str:
+def _pictures(pictures: Sequence[ShownPicture], notes: Sequence[str]) -> str:
     figures = "".join(map(_figure, pictures))
     return figures + "".join(f"<p class=note>{escape(note)}</p>" for note in notes)
 
 
-def _figure(picture: Picture) -> str:
+def _figure(picture: ShownPicture) -> str:
     caption, wide = escape(picture.caption), " class=wide" if picture.is_wide else ""
     source = f"data:image/png;base64,{base64.b64encode(picture.png).decode()}"
     return f'<figure{wide}><img alt="{caption}" src="{source}"><figcaption>{caption}</figcaption></figure>'

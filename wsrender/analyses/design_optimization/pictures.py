@@ -7,6 +7,7 @@ from matplotlib.ticker import MaxNLocator
 
 from wsrender.errors import InputError
 from wsrender.results.drawing.color_scale import ColorScale, color_scale
+from wsrender.results.drawing.result_plots import ResultPlots
 from wsrender.results.drawing.style import GREY, INK, Heading, color_map, new_figure, paper_style, quantity
 from wsrender.results.drawing.view import add_view, inches
 from wsrender.volume.table import Table
@@ -98,3 +99,17 @@ def _three(table: Table, value: str | None) -> tuple[str, str, np.ndarray]:
 
 def _label(table: Table, name: str) -> str:
     return quantity(name, table.units.get(name))
+
+
+def sweep(plot: ResultPlots, value: str | None = None) -> Figure:
+    """A value of a design sweep over its first two parameters, as a surface and as contours; over one as a curve."""
+    if len(plot.document["parameters"]) == 1:
+        return plot.curves("sweep")
+    return sweep_surface(plot.tables["sweep"], value, title=plot.heading("other"))
+
+
+def pareto(plot: ResultPlots, x: str | None = None, y: str | None = None) -> Figure:
+    """Two objectives of a Pareto search against each other, by default the first two."""
+    first, second = (objective["name"] for objective in plot.document["objectives"][:2])
+    tables = plot.tables["evaluations"], plot.tables["pareto"]
+    return trade_off(*tables, x or first, y or second, title=plot.heading("other"))

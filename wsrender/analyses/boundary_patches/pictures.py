@@ -4,8 +4,11 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from wsrender.results.drawing.faces import NUMBER, Faces
+from wsrender.results.drawing.faces_of_surface import surface_faces
+from wsrender.results.drawing.result_plots import ResultPlots
 from wsrender.volume.table import Table
 
 if TYPE_CHECKING:
@@ -70,3 +73,9 @@ def _label(patches: Table, k: int) -> str:
     words = " ".join([str(k), str(patches["kind"][k]).replace("_", " "), *numbers])
     generated = str(patches["generated_by"][k])
     return f"{words}: {generated}" if generated else words
+
+
+def patches(plot: ResultPlots) -> Figure:
+    """The boundary of a spatial arm from two sides: patches in their colours, edges and corners."""
+    faces = faces_of_patches(plot.meshes["patches"], plot.tables["patches"])
+    return surface_faces(faces, title=plot.heading("surface"))

@@ -11,6 +11,7 @@ from matplotlib.ticker import MaxNLocator
 
 from wsrender.errors import InputError
 from wsrender.geometry.planar.segments import drawn
+from wsrender.results.drawing.result_plots import ResultPlots
 from wsrender.results.drawing.style import INK, Heading, new_figure, paper_style
 from wsrender.volume.table import Table
 
@@ -19,7 +20,7 @@ _LONGEST, _LEAST = 5.6, 1.6  # edges of the axes [in]
 
 
 @paper_style()
-def planar_boundary(tables: Mapping[str, Table], *, title: Heading | str = "") -> Figure:
+def boundary_lines(tables: Mapping[str, Table], *, title: Heading | str = "") -> Figure:
     """Tables ``boundary``, ``monte_carlo``, ``samples`` and ``points`` of the analysis, as far as there are any.
 
     A Monte Carlo boundary that has not converged, by the column of that name, is pale and dashed, and the legend says
@@ -86,3 +87,8 @@ def _draw_points(axes: Axes, table: Table) -> None:
         ends = np.stack([table["point"][rows], table["nearest"][rows]], axis=1)
         axes.add_collection(LineCollection(list(ends), color=color, lw=0.7, zorder=5))
         axes.plot(*table["point"][rows].T, ls="", marker="D", ms=4, mew=0, color=color, label=label, zorder=6)
+
+
+def boundary(plot: ResultPlots) -> Figure:
+    """The boundary of a planar arm: samples, Monte Carlo segments and the exact lines and arcs."""
+    return boundary_lines(plot.tables, title=plot.heading("boundary"))

@@ -5,6 +5,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from wsrender.errors import InputError
+from wsrender.results.drawing.result_plots import ResultPlots
 from wsrender.results.drawing.style import Heading, color_map, new_figure, paper_style
 from wsrender.volume.table import Table
 
@@ -42,3 +43,8 @@ def errors_by_size(table: Table, *, title: Heading | str = "") -> Figure:
         axis.set_minor_formatter(NullFormatter())
     axes.legend(frameon=False, fontsize=8)
     return figure
+
+
+def methods(plot: ResultPlots) -> Figure:
+    """Errors of the methods of a comparison against the edge of their voxels or triangles."""
+    return errors_by_size(plot.tables["methods"], title=plot.heading("other"))

@@ -7,6 +7,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from wsrender.results.drawing.planes import SPARSE, draw_plane, new_planes, plane_normals, shared_scale, voxel_field
+from wsrender.results.drawing.result_plots import ResultPlots
 from wsrender.results.drawing.style import Heading, paper_style
 from wsrender.volume.volume_data import VolumeData, registered
 
@@ -50,3 +51,9 @@ def common_layer(volumes: Sequence[VolumeData], axis: int) -> int:
     if 0 <= zero < layers and filled[:, zero].min() >= SPARSE:
         return zero
     return int(np.lexsort([filled.mean(axis=0), filled.min(axis=0)])[-1])
+
+
+def comparison(plot: ResultPlots, index: str | None = None, *, statistic: str | None = None) -> Figure:
+    """The robots of a comparison in the same planes, with the same axes and one colour scale."""
+    robots = {name.removeprefix("robot_"): volume for name, volume in plot.volumes.items()}
+    return side_by_side(robots, index=index, statistic=statistic, title=plot.heading("volume"))

@@ -6,6 +6,7 @@ from matplotlib.lines import Line2D
 
 from wsrender.errors import InputError
 from wsrender.results.drawing.cloud import thinned
+from wsrender.results.drawing.result_plots import ResultPlots
 from wsrender.results.drawing.style import GREY, Heading, paper_style
 from wsrender.results.drawing.view import new_view
 from wsrender.volume.table import Table
@@ -40,3 +41,8 @@ def mapped_points(table: Table, *, title: Heading | str = "", frame: str = "worl
         handles.append(Line2D([], [], ls="", marker="o", ms=5, color=color, label=label))
     view.axes.legend(handles=handles, loc="upper left", frameon=False, fontsize=8)
     return figure
+
+
+def mapping(plot: ResultPlots) -> Figure:
+    """A slave's points in its master's workspace: green inside, red outside."""
+    return mapped_points(plot.tables["mapping"], title=plot.heading("samples"))

@@ -13,6 +13,7 @@ from matplotlib.patches import Patch
 from scipy.spatial import ConvexHull
 
 from wsrender.errors import InputError
+from wsrender.results.drawing.result_plots import ResultPlots
 from wsrender.results.drawing.style import GREY, INK, Heading, paper_style
 from wsrender.results.drawing.view import BAR, View, inches, new_view
 from wsrender.volume.table import Table
@@ -114,3 +115,9 @@ def _handles(ellipsoids: Table) -> list[Any]:
         label = f"rendered force, {np.linalg.norm(rendered):.2g} N"
         handles.append(Line2D([], [], color=RENDERED, lw=2.0, label=label))
     return handles
+
+
+def posture(plot: ResultPlots) -> Figure:
+    """The arm in one posture: links coloured by nearness to joint limits, ellipsoids of velocity and force."""
+    tables = plot.tables["posture"], plot.tables["ellipsoids"]
+    return limits_and_ellipsoids(*tables, title=plot.heading("other"))

@@ -14,14 +14,15 @@ from matplotlib.patches import Patch, PathPatch
 from matplotlib.path import Path
 from matplotlib.ticker import MaxNLocator, MultipleLocator
 
+from wsrender.analyses.five_bar.presentation import MODE_VOLUMES
 from wsrender.errors import InputError
+from wsrender.results.drawing.result_plots import ResultPlots
 from wsrender.results.drawing.style import INK, Heading, color_map, new_figure, paper_style
 from wsrender.volume.table import Table
 from wsrender.volume.volume_data import VolumeData
 
 MATRICES = "abj"
 SPACES = ("cartesian", "joint")
-MODE_VOLUMES = {"++": "plus_plus", "+-": "plus_minus", "-+": "minus_plus", "--": "minus_minus"}
 """Names of the volumes in a result."""
 _TICKS = (1.0, 1.25, 1.5, 2.0, 3.0, 5.0, 10.0)
 _RED, _BLUE = "#c8102e", "#1f4fd8"
@@ -309,3 +310,20 @@ def _add_legend(
         label = f"κ = {', '.join(f'{float(level):g}' for level in levels)}"
         handles.append(Line2D([], [], color="#bbbbbb", lw=1.0, label=label))
     figure.legend(handles=handles, loc="outside lower center", ncols=min(len(handles), 4), frameon=False, fontsize=8)
+
+
+def conditioning(plot: ResultPlots, matrix: str = "j", space: str = "cartesian") -> Figure:
+    """κ of a five-bar's Jacobian A, B or J ("a", "b", "j") over P ("cartesian") or θ1 and θ2 ("joint")."""
+    volumes = {mode: plot.volumes[name] for mode, name in MODE_VOLUMES.items() if name in plot.volumes}
+    return conditioning_maps(volumes, _tables(plot), matrix, space, title=plot.heading("other"))
+
+
+def aspects(plot: ResultPlots) -> Figure:
+    """Singularity-free aspects of a five-bar with their areas, one panel for each working mode."""
+    return aspect_maps(_tables(plot), title=plot.heading("other"))
+
+
+def _tables(plot: ResultPlots) -> Mapping[str, Table]:
+    if "aspect_outlines" not in plot.tables:
+        raise InputError("tables", "the result is not one of a five-bar")
+    return plot.tables

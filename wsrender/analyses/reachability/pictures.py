@@ -8,6 +8,7 @@ from matplotlib.lines import Line2D
 
 from wsrender.errors import InputError
 from wsrender.results.drawing.cloud import thinned
+from wsrender.results.drawing.result_plots import ResultPlots
 from wsrender.results.drawing.stick_figure import arm_handles, draw_arm
 from wsrender.results.drawing.style import GREY, Heading, paper_style
 from wsrender.results.drawing.view import View, new_view
@@ -58,3 +59,8 @@ def _draw_axes(view: View, position: np.ndarray, quat_wxyz: np.ndarray) -> None:
     direction = np.stack([2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)], axis=1)
     length = _AXIS * float((view.space.upper - view.space.lower).max())
     view.add_segments(np.stack([position, position + length * direction], axis=1), color=GREY, lw=0.8, zorder=2.5)
+
+
+def targets(plot: ResultPlots) -> Figure:
+    """The targets of a reachability job by their labels, with the arm at the first that it reaches."""
+    return labelled_targets(plot.tables["targets"], plot.skeleton, title=plot.heading("other"))

@@ -9,6 +9,7 @@ from matplotlib.projections.polar import PolarAxes
 from matplotlib.ticker import MaxNLocator
 
 from wsrender.errors import InputError
+from wsrender.results.drawing.result_plots import ResultPlots
 from wsrender.results.drawing.style import INK, Heading, color_map, new_figure, paper_style
 from wsrender.volume.table import Table
 
@@ -18,7 +19,7 @@ _REACHED = "reached"
 
 
 @paper_style()
-def orientations(table: Table, *, title: Heading | str = "") -> Figure:
+def orientation_map(table: Table, *, title: Heading | str = "") -> Figure:
     """What of a grid of orientations is reached, one panel for each of at most six levels of the last angle.
 
     The table has three columns of angles [rad], of a regular grid with the last fastest, and ``reached``. Azimuth and
@@ -78,3 +79,8 @@ def _edges(levels: np.ndarray) -> np.ndarray:
         return levels[0] + np.deg2rad([-0.5, 0.5])
     middle = (levels[1:] + levels[:-1]) / 2
     return np.concatenate([[2 * levels[0] - middle[0]], middle, [2 * levels[-1] - middle[-1]]])
+
+
+def orientations(plot: ResultPlots) -> Figure:
+    """Which orientations of a mechanism's platform are reached at a point."""
+    return orientation_map(plot.tables["orientations"], title=plot.heading("other"))

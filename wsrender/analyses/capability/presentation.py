@@ -1,0 +1,21 @@
+"""How capability maps are shown."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from wsrender.results.presentation import Presentation
+
+
+def facts(document: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    """The mean index, and the volume where all directions are reached."""
+    yield "reachability index", f"{document['capability']['mean_index']:.4g} on average"
+    yield "dexterous volume", f"{document['capability']['dexterous_volume_m3']:.4g} m³"
+
+
+def title(document: Mapping[str, Any]) -> list[str]:
+    """The directions that are counted."""
+    found = document["capability"]
+    return [f"{found['directions']} directions of approach by the tip's {found['approach_axis']} axis"]
+
+
+PRESENTATION = Presentation(facts=facts, title=title)

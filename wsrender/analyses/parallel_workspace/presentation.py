@@ -1,0 +1,25 @@
+"""How workspaces of parallel mechanisms are shown."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from wsrender.results.presentation import Picture, Presentation
+
+_HERE = f"{__name__.rpartition('.')[0]}.pictures"
+_SURFACE = "wsrender.results.drawing.result_plots:ResultPlots.surface"
+
+
+def facts(document: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    """How many orientations are reached at a point, where that was asked."""
+    if found := document.get("orientation_workspace"):
+        share = f"{100 * found['share']:.3g} % of their measure"  # a solid angle or a volume of rotations
+        yield "orientations reached", f"{found['reached']:,} of {found['orientations']:,}, {share}"
+
+
+PRESENTATION = Presentation(
+    (
+        Picture("surface", _SURFACE, "", ("meshes.workspace",), ("tables.surfaces",), options={"mesh": "workspace"}),
+        Picture("orientations", f"{_HERE}:orientations", needs=("tables.orientations",)),
+    ),
+    facts,
+)
