@@ -6,6 +6,7 @@ from dataclasses import replace
 import matplotlib as mpl
 import numpy as np
 import pytest
+import trimesh
 from matplotlib.collections import PathCollection
 from PIL import Image
 
@@ -348,3 +349,25 @@ def test_no_display_and_no_pyplot_is_needed():
 def test_errors_name_what_is_there(draw, message):
     with pytest.raises(InputError, match=message):
         draw()
+
+
+def test_a_shared_volume_shows_how_many_robots_reach_a_voxel():
+    """Of an index its product, whatever number of indices there are."""
+    ones = np.ones((2, 3, 4), np.float32)
+    for names in (["x"], ["x", "y"]):
+        statistics = {"number": {"robots": 2 * ones}, "product": dict.fromkeys(names, ones / 2)}
+        volume = VolumeData(0.1, (0, 0, 0), np.ones((2, 3, 4), int), statistics, {"robots": "1"})
+        assert drawing.slice_plane(volume).axes[-1].get_ylabel() == "Number of robots"
+        assert drawing.slice_plane(volume, index=names[-1]).axes[-1].get_ylabel().startswith("Product of")
+
+
+def test_what_robots_share_is_highlighted_in_their_workspace():
+    box = trimesh.creation.box
+    meshes = {"union": box((2, 2, 2)), "intersection": box((1, 1, 1))}
+    document = {"robots": [{"name": "a"}, {"name": "b"}]}
+    figure = ws.Result(document, skeleton=SKELETON[:2], meshes=meshes).plot.robot()
+    assert "shared by at least two" in [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
+    (_, drawn) = (np.asarray(image.get_array()) for image in figure.axes[0].images)
+    r, g, b = drawn[drawn[..., 3] > 0][:, :3].mean(axis=0)
+    assert g > 2 * r and g > b
+    assert len(ws.Result(document, skeleton=SKELETON[:2], meshes={"union": box()}).plot.robot().axes[0].images) == 1

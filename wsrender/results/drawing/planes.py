@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from wsrender.errors import InputError
+from wsrender.multi.shared_volume import NUMBER
 from wsrender.results.drawing.color_scale import SIGNED, ColorScale, color_scale
 from wsrender.results.drawing.style import INK, Heading, new_figure, paper_style, quantity
 from wsrender.results.drawing.view import inches
@@ -158,7 +159,8 @@ def new_planes(
 def voxel_field(volume: VolumeData, index: str | None, statistic: str | None) -> Field:
     """A statistic of an index per voxel: by default the maximum of the first, or the count of samples.
 
-    Where the maximum is known of fewer indices than another statistic, that one is the default.
+    Where the maximum is known of fewer indices than another statistic, that one is the default; of a volume that
+    several robots share it is how many of them reach the voxel.
 
     Raises InputError for an unknown index or statistic, or a volume without occupied voxels.
     """
@@ -183,7 +185,8 @@ def _statistic(volume: VolumeData, index: str | None, statistic: str | None) -> 
     """Name of the index, its values (V,) and their label."""
     if statistic is None:
         # That of most indices: a field of forces has the maximum of the force alone, which is the device's peak.
-        ranked = sorted(volume.statistics, key=lambda name: (-len(volume.statistics[name]), name != "maximum"))
+        held = [name for name, of in volume.statistics.items() if index is None or index in of] or volume.statistics
+        ranked = sorted(held, key=lambda name: (name != NUMBER, -len(volume.statistics[name]), name != "maximum"))
         statistic = next(iter(ranked), "maximum")
     if statistic not in volume.statistics:
         raise InputError("statistic", f"the volume has no {statistic!r}; it holds {_listed(volume.statistics)}")

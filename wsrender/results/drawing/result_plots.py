@@ -132,7 +132,9 @@ class ResultPlots:
             raise InputError("skeleton", "the result holds no configurations of the arm to draw")
         surface = None if self.samples is not None else self._workspace()
         names = [str(each.get("name")) for each in self.document.get("robots") or ()]
-        kept = {"surface": surface, "arms": self.arms, "names": names}
+        both = self.meshes.get("intersection") if self.arms > 1 else None
+        shared = None if both is None else faces_of(both, None)
+        kept = {"surface": surface, "shared": shared, "arms": self.arms, "names": names}
         return robot(self.skeleton, self.samples, index, **kept, title=self.heading("samples"))
 
     def _workspace(self) -> Faces | None:

@@ -1,11 +1,13 @@
 """The arm as a stick figure in the cloud of its samples."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 
 from wsrender.errors import InputError
 from wsrender.results.drawing.cloud import far_half, scale_of, thinned
@@ -17,6 +19,7 @@ from wsrender.volume.distribution_map import DistributionMap
 
 _ACCENT = "#c8102e"
 _ROBOTS = ("#0072b2", "#d55e00", "#cc79a7", "#e69f00", "#56b4e9")  # Okabe and Ito 2008
+SHARED_COLOR, SHARED_LABEL = (0.0, 0.62, 0.451), "shared by at least two"
 _CLOUD_POINTS = 12_000
 _VEIL = 0.5  # opacity of a surface before the arm
 
@@ -28,6 +31,7 @@ def robot(
     index: str | None = None,
     *,
     surface: Faces | None = None,
+    shared: Faces | None = None,
     arms: int = 1,
     names: Sequence[str] = (),
     title: Heading | str = "",
@@ -37,8 +41,8 @@ def robot(
 
     ``skeleton`` (K, L+2, 3) holds world positions [m] of base, joint origins and tip; the first ``arms`` of the K are
     drawn in full, the others, configurations of the first, pale; ``names`` are those of arms of several robots, which
-    have a colour each. The cloud is coloured by ``index`` (by default the
-    map's first); without samples ``surface`` is drawn. Raises InputError for another shape or an unknown index.
+    have a colour each. The cloud is coloured by ``index`` (by default the map's first); without samples ``surface`` is
+    drawn, and in it what several robots share. Raises InputError for another shape or an unknown index.
     """
     skeleton = np.asarray(skeleton, np.float64)
     if skeleton.ndim != 3 or skeleton.shape[1] < 2 or skeleton.shape[2] != 3 or len(skeleton) == 0:
@@ -48,6 +52,8 @@ def robot(
         figure, view = new_view(np.concatenate([skeleton.reshape(-1, 3), around]), title, frame)
         if surface is not None:
             view.add_surface(*shaded(surface, view.space.camera), alpha=_VEIL)
+        if shared is not None:
+            view.add_surface(*shaded(replace(shared, colors={0: SHARED_COLOR}), view.space.camera), alpha=_VEIL)
     else:
         figure, view = new_view(np.concatenate([skeleton.reshape(-1, 3), samples.position]), title, frame)
         behind = np.flatnonzero(far_half(samples.position))
@@ -65,7 +71,11 @@ def robot(
     colors = [_ROBOTS[k % len(_ROBOTS)] if names else INK for k in range(arms)]
     for arm, color in zip(skeleton[:arms], colors, strict=False):
         draw_arm(view, arm, color)
-    robots = [Line2D([], [], color=color, lw=3.2, label=name) for name, color in zip(names, colors, strict=False)]
+    robots: list[Artist] = [
+        Line2D([], [], color=color, lw=3.2, label=name) for name, color in zip(names, colors, strict=False)
+    ]
+    if shared is not None:
+        robots.append(Patch(facecolor=SHARED_COLOR, alpha=_VEIL, label=SHARED_LABEL))
     view.axes.legend(handles=[*robots, *arm_handles()], loc="upper left", frameon=False, fontsize=8)
     return figure
 

@@ -12,6 +12,7 @@ from matplotlib.patches import Patch
 from wsrender.documents.environment import Environment
 from wsrender.errors import InputError
 from wsrender.results.drawing.box import AZIMUTH_DEG, ELEVATION_DEG, SeenBox, space_around
+from wsrender.results.drawing.stick_figure import SHARED_COLOR, SHARED_LABEL
 from wsrender.results.drawing.style import INK, Heading
 from wsrender.results.render import environment as surroundings
 from wsrender.results.render.environment import Item
@@ -19,7 +20,7 @@ from wsrender.results.render.figure import PANEL_PIXELS, figure_of
 from wsrender.results.render.process import drawn
 from wsrender.results.render.scene import Cloud, Color, DrawnSurface, Layer, Lines, Plates, Points, Rods, Scene
 from wsrender.results.render.subject import Subject
-from wsrender.results.render.views import ROBOT_COLORS, SHARED_COLOR, VIEWS, Choice
+from wsrender.results.render.views import ROBOT_COLORS, VIEWS, Choice
 from wsrender.world.triangles import foot
 
 if TYPE_CHECKING:
@@ -64,7 +65,7 @@ def picture(
         drawing.layers.append(
             DrawnSurface(shared.vertices, shared.faces, SHARED_COLOR, alpha=_SHARED_ALPHA, smooth=True)
         )
-        drawing.handles.append(Patch(facecolor=SHARED_COLOR, alpha=_SHARED_ALPHA, label="shared by at least two"))
+        drawing.handles.append(Patch(facecolor=SHARED_COLOR, alpha=_SHARED_ALPHA, label=SHARED_LABEL))
     if any(subject.arm is not None for subject in subjects) and any(_is_opaque(layer) for layer in drawing.layers):
         drawing.notes.append(SHINING)
     space = space_around(_extent(subjects, drawing.layers, items), PANEL_PIXELS, azimuth_deg, elevation_deg)

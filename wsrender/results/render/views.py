@@ -19,7 +19,6 @@ from wsrender.results.render.scene import Cloud, Color, DrawnSurface, Layer, Lin
 from wsrender.results.render.subject import Subject
 from wsrender.volume.volume_data import VolumeData
 
-SHARED_COLOR: Color = (0.0, 0.62, 0.451)
 ROBOT_COLORS: list[Color] = [
     (0.0, 0.447, 0.698), (0.835, 0.369, 0.0),
     (0.8, 0.475, 0.655), (0.902, 0.624, 0.0), (0.337, 0.706, 0.914),
