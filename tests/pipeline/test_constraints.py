@@ -393,3 +393,12 @@ def test_a_joint_that_the_robot_does_not_have(added):
     ):
         with pytest.raises(InputError, match=message):
             plan({"robot": "ur5e", "constraints": {"tenth": True}, **document})
+
+
+def test_the_arms_of_pictures_are_admitted_and_titles_say_by_what():
+    region = {"region": {"box": {"lower_m": [-1, -1, 0.5], "upper_m": [0, 0, 1.2]}}}
+    options = {"refined_volume": None, "indices": ["manipulability"], "device": "cpu"}
+    result = ws.analyze("ur5e", ws.Sobol(1 << 13), constraints=region, **options)
+    tips = result.skeleton[:, -1]
+    assert len(tips) == 3 and (tips >= [-1, -1, 0.5]).all() and (tips <= [0, 0, 1.2]).all()
+    assert result.plot.title == "ur5e · 8,192 samples (sobol) · admitted by region"

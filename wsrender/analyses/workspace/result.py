@@ -95,7 +95,7 @@ def workspace_draft(job: WorkspaceJob, robot: Robot, found: WorkspacePartial, th
         map=_kept_map(pipeline, partial, robot, units) if pipeline.kept_rows is not None else None,
         sample=sample,
         volume=volume,
-        skeleton=robot.skeleton(_middle(pipeline)),
+        skeleton=_shown_arms(pipeline, robot, sample),
         meshes=meshes,
         volumes={"reachability": labels} if labels else {},
     )
@@ -202,7 +202,17 @@ def _picture_sample(pipeline: Pipeline, robot: Robot, units: dict[str, str], thr
     return DistributionMap(evaluated.position[admitted], values, units, q[admitted], robot.joint_names)
 
 
-def _middle(pipeline: Pipeline) -> np.ndarray:
-    """Mid-range of every joint, and a quarter to either side."""
+def _shown_arms(pipeline: Pipeline, robot: Robot, sample: DistributionMap) -> np.ndarray | None:
+    """The arm (3, L+2, 3) at mid-range of every joint, and a quarter to either side.
+
+    Under constraints at the admitted configurations nearest to these; None where no sample is admitted.
+    """
     lower, upper = pipeline.sampling.lower, pipeline.sampling.upper
-    return np.stack([lower + share * (upper - lower) for share in (0.25, 0.5, 0.75)])
+    middle = np.stack([lower + share * (upper - lower) for share in (0.25, 0.5, 0.75)])
+    if pipeline.constraints:
+        if sample.configuration is None or not len(sample):
+            return None
+        span = np.where(upper > lower, upper - lower, 1.0)
+        apart = (np.abs(sample.configuration - middle[:, None]) / span).sum(axis=-1)
+        middle = sample.configuration[apart.argmin(axis=1)]
+    return robot.skeleton(middle)

@@ -25,6 +25,8 @@ def sampling_text(document: dict[str, Any]) -> str:
     if "samples" in sampling:
         method = f" ({method_text(sampling['method'])})" if "method" in sampling else ""
         parts.append(f"{sampling['samples']:,} samples{method}")
+    if samples := document.get("samples"):
+        parts.append(f"admitted by {', '.join(samples['rejected'])}")
     return " · ".join([*parts, *presentation_of(document).title(document)])
 
 
