@@ -56,6 +56,11 @@ def test_occupied_volumes_are_told_where_they_differ_by_more_than_a_tenth(scale,
     assert not list(occupied_differs(scale, None)) and not list(occupied_differs(scale, 0.0))
 
 
+def test_a_large_difference_is_an_ordinary_percentage():
+    (notice,) = occupied_differs(2.6, 1.0)
+    assert "2.6 m³, +160 % from the reachable volume of 1 m³" in notice.message
+
+
 def test_intervals_wider_than_asked_are_told():
     """A 3R twisted by 1e-3 rad: a slab of half a millimetre, for which the budget of points is too low."""
     limits = {"limits_deg": (-150, 150)}

@@ -43,7 +43,7 @@ def tolerance_not_met(measure: Mapping[str, Any] | None) -> Iterator[Notice]:
 def occupied_differs(occupied: float, refined: float | None, reached: str = "reachable") -> Iterator[Notice]:
     """That the occupied voxels are another volume [m³] than the one that inverse kinematics finds to be ``reached``."""
     if refined and abs(occupied - refined) > MOST_DIFFERENCE * refined:
-        more = f"{100 * (occupied / refined - 1):+.2g} %"
+        more = f"{100 * (occupied / refined - 1):+.0f} %"
         yield Notice(
             "occupied_differs",
             f"the occupied voxels make {occupied:.4g} m³, {more} from the {reached} volume of {refined:.4g} m³",
