@@ -30,7 +30,7 @@ from wsrender.documents.mechanism import Delta, LegsMechanism, Master4DOF, SixPU
 from wsrender.documents.options import AlphaShapeSurface, IsoSurface
 from wsrender.documents.orientations import EulerRanges, TiltRanges
 from wsrender.documents.robot import Transform
-from wsrender.documents.sampling import Random, Sobol
+from wsrender.documents.sampling import BoundaryBiased, Sobol
 from wsrender.documents.several_robots import PlacementScan
 from wsrender.run.from_python import runs
 
@@ -581,7 +581,7 @@ def five_bar(
 @runs("planar_boundary")
 def planar_boundary(
     robot: RobotLike,
-    sampling: SamplingLike | None = Random(count=100_000),
+    sampling: SamplingLike | None = BoundaryBiased(count=400_000),
     *,
     base: str | None = None,
     tip: str | None = None,

@@ -120,9 +120,16 @@ def test_a_joint_that_others_follow_is_named(boundary, tmp_path):
 
 
 def test_the_scara_of_the_library():
+    """Each door says how joints are held there: of a job in its sampling."""
     with pytest.raises(ws.ModelError, match=r"joint 'joint4' turns about .*; .* locked=\{\"joint4\": 0.0\}$"):
-        ws.planar_boundary("scara")
+        ws.exact_boundary("scara")
     assert ws.exact_boundary("scara", locked={"joint4": 0.0}).dimension == 2
+    with pytest.raises(ws.ModelError) as raised:
+        ws.planar_boundary("scara")
+    as_field, in_python = str(raised.value).split('such as with "sampling": ')[1].split(", in Python sampling=")
+    sampling = eval(in_python, {"ws": ws})
+    assert json.loads(as_field) == sampling.model_dump(exclude={"seed"}, exclude_defaults=False)
+    assert ws.planar_boundary("scara", sampling, device="cpu").document["exact"]["dimension"] == 2
 
 
 def test_slides_alone():

@@ -121,8 +121,9 @@ def _pythonic(text: str) -> str:
 def _imports(functions: str) -> str:
     """Statements for the documents that the functions name, and for what makes them run."""
     used: dict[str, set[str]] = {"wsrender.run.from_python": {"runs"}}
+    code = re.sub(r'""".*?"""', "", functions, flags=re.DOTALL)
     for document in _documents():
-        if re.search(rf"\b{document.__name__}\b", functions):
+        if re.search(rf"\b{document.__name__}\b", code):
             used.setdefault(document.__module__, set()).add(document.__name__)
     return "\n".join(_import(module, sorted(names)) for module, names in sorted(used.items()))
 

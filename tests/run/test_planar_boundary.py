@@ -58,7 +58,7 @@ def test_a_monte_carlo_boundary_that_has_not_converged_says_so_and_is_drawn_so(r
     lines, labels = drawn_lines(result)
     assert labels == ["samples", "Monte Carlo,\nnot converged", "exact", "inside", "outside"]
     assert lines[0].get_alpha() < 0.5 and lines[0].get_linestyle()[0][1] is not None
-    converged = execute(JOB | {"sampling": {"method": "boundary", "count": 100_000}})
+    converged = execute({name: value for name, value in JOB.items() if name != "sampling"})  # as by default
     assert converged.document["monte_carlo"]["converged"] and converged.document["warnings"] == []
     lines, labels = drawn_lines(converged)
     assert labels[1] == "Monte Carlo" and lines[0].get_alpha() is None and lines[0].get_linestyle()[0][1] is None

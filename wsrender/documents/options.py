@@ -146,9 +146,7 @@ StatisticsOrNone = Annotated[
 ]
 MapColumns = Annotated[tuple[Literal["configuration", "orientation"], ...], BeforeValidator(_columns)]
 Device = Annotated[str, BeforeValidator(_device), Field(json_schema_extra={"pattern": f"^({_DEVICE.pattern})$"})]
-Configurations = Annotated[
-    tuple[tuple[Number, ...], ...], Field(min_length=1), BeforeValidator(_configurations)
-]
+Configurations = Annotated[tuple[tuple[Number, ...], ...], Field(min_length=1), BeforeValidator(_configurations)]
 
 
 class IndexChoices(Document):

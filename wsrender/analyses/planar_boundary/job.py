@@ -9,7 +9,7 @@ from wsrender.documents.arm import Arm
 from wsrender.documents.format import JobDocument
 from wsrender.documents.options import Device
 from wsrender.documents.quantities import Number, PositiveNumber, integer, rows_of
-from wsrender.documents.sampling import Converge, Random, Sampling
+from wsrender.documents.sampling import BoundaryBiased, Converge, Sampling
 
 MOST_CELLS = 1_000_000
 
@@ -24,7 +24,7 @@ class PlanarBoundaryJob(Arm, JobDocument):
 
     analysis: Literal["planar_boundary"] = "planar_boundary"
     """Name of the analysis."""
-    sampling: Sampling = Random(100_000)
+    sampling: Sampling = BoundaryBiased(400_000)
     """Samples of the Monte Carlo boundary, N_m in number. Joints locked here are held for the exact boundary too."""
     cells: Annotated[int, Field(ge=1, le=MOST_CELLS), BeforeValidator(integer)] | None = None
     """N_g: number of cells of the grid over the samples; null: 2500, as published, or the most that the samples fill,

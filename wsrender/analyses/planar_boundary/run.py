@@ -31,6 +31,8 @@ POSITIONS_PER_S = 2e6  # of one CPU core
 SWEEP_S = 0.1  # of a six-joint arm
 SAMPLE_BYTES = 64.0  # its position, in space and in the plane, and its cell
 DRAWN = 20_000  # samples kept for the picture
+SAMPLING = '{"method": "boundary", "count": 400000, "locked": {}}'
+HOLDING = f'"sampling": {SAMPLING}, in Python sampling=ws.BoundaryBiased(400_000, locked={{}})'
 
 
 class PlanarBoundaryAnalysis(Analysis):
@@ -48,7 +50,7 @@ class PlanarBoundaryAnalysis(Analysis):
     @cached_property
     def chain(self) -> PlanarChain:
         """The arm in its plane."""
-        return planar_chain(model_chain(self.robot).held(self.job.sampling.locked))
+        return planar_chain(model_chain(self.robot).held(self.job.sampling.locked), HOLDING)
 
     @property
     def cost(self) -> Cost:

@@ -1,5 +1,6 @@
 """Arms whose end effector stays in a plane, found from their chain."""
 
+import json
 from dataclasses import dataclass
 from itertools import accumulate
 
@@ -57,17 +58,18 @@ class PlanarChain:
         return float(np.hypot(links[:, 0], links[:, 1]).sum() + sum(slides))
 
 
-def planar_chain(chain: Chain) -> PlanarChain:
+def planar_chain(chain: Chain, holding: str = "locked={}") -> PlanarChain:
     """The planar chain of an arm; joints whose limits are equal are held there.
 
-    Raises ModelError, naming the joint, where a joint turns about another axis than the first or slides out of the
-    plane, with joints to hold so that the others stay in one, and for coupled joints.
+    ``holding``: how the caller holds joints, with {} in the place of their values by name. Raises ModelError, naming
+    the joint, where a joint turns about another axis than the first or slides out of the plane, with joints to hold so
+    that the others stay in one, and for coupled joints.
     """
     moving, frames, from_last = _frames(chain)
     tip = frames[-1, :3, :3] @ from_last + frames[-1, :3, 3] if len(moving) else from_last
     plane_axes = _plane_axes(frames, chain.joint_is_revolute[moving])
     normal = np.cross(*plane_axes)
-    _check(chain, frames, moving, normal)
+    _check(chain, frames, moving, normal, holding)
     base = chain.T_world_base[:3, 3]
     joints = tuple(_joint(chain, *joint, base, plane_axes) for joint in zip(moving.tolist(), frames, strict=True))
     plane = Plane((tip @ normal) * normal, plane_axes)
@@ -106,18 +108,16 @@ def _normal(frames: np.ndarray, revolute: np.ndarray) -> np.ndarray:
     return normal / np.linalg.norm(normal)
 
 
-def _check(chain: Chain, frames: np.ndarray, moving: np.ndarray, normal: np.ndarray) -> None:
+def _check(chain: Chain, frames: np.ndarray, moving: np.ndarray, normal: np.ndarray, holding: str) -> None:
     leaving = _leaving(chain, frames, moving, normal)
     if not leaving.any():
         return
     i, axis = moving[leaving][0], frames[leaving][0, :3, 2]
     how = "turns about" if chain.joint_is_revolute[i] else "slides along"
     what = f"joint {chain.joint_names[chain.joint_source[i]]!r} {how} {_shown(axis)}"
-    held = ", ".join(f'"{name}": {value!r}' for name, value in _planar_when_held(chain).items())
+    held = holding.replace("{}", json.dumps(_planar_when_held(chain)))
     plane = f"out of the plane with normal {_shown(normal)}"
-    raise ModelError(
-        "robot", f"the arm is not planar: {what}, {plane}; hold what leaves a plane, such as with locked={{{held}}}"
-    )
+    raise ModelError("robot", f"the arm is not planar: {what}, {plane}; hold what leaves a plane, such as with {held}")
 
 
 def _leaving(chain: Chain, frames: np.ndarray, moving: np.ndarray, normal: np.ndarray) -> np.ndarray:
