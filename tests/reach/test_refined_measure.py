@@ -178,7 +178,10 @@ def test_a_planar_arm_adds_nothing_to_a_volume():
     found = refined_measures([solid, flat], EVENTS, 0.02)
     assert {measure.quantity for measure in found.values()} == {"volume"}
     assert holds(found["any"], CASES["spherical"].volume)
-    assert found["all"].value == 0.0
+    assert found["all"].value == 0.0 and found["all"].reason == (
+        "a tip that stays in a plane, on a surface or on a curve reaches no volume"
+    )
+    assert found["any"].reason == ""
     assert len(found["all"].false_negatives) == 2
 
 

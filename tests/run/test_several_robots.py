@@ -136,6 +136,17 @@ def test_robots_that_fill_no_volume_share_an_area_or_nothing():
     assert apart["shared_ratio_volume"] == "occupied"
 
 
+def test_an_arm_in_a_plane_shares_no_volume_and_the_headline_says_why():
+    """Nothing of each robot alone is measured: the document says so, the summary has no line of it."""
+    result = ws.shared_workspace([gantry(), planar_arm()], ws.Random(500), **REFINED)
+    headline = result.document["headline"]
+    assert (headline["value"], headline["ci95"]) == (0.0, [0.0, 0.0])
+    assert "in a plane" in headline["reason"] and headline["reason"] in result.summary()
+    for robot in result.document["robots"]:
+        assert robot["headline"]["reason"] == robot["global"]["structural_length_reason"]
+        assert robot["headline"]["reason"] not in result.summary() and "refined_volume" not in str(robot)
+
+
 def test_compared_robots_have_a_headline_each():
     document = ws.robot_comparison([gantry(), planar_arm()], ws.Random(5000), **REFINED).document
     box, plane = (robot["headline"] for robot in document["robots"])

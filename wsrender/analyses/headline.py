@@ -14,7 +14,7 @@ def headline_of(measure: Mapping[str, Any] | None) -> dict[str, Any]:
         return no_headline(NOT_ASKED)
     if measure["value"] is None:
         return no_headline(measure["reason"], measure["quantity"])
-    return headline(measure["quantity"], measure["value"], measure["ci95"])
+    return headline(measure["quantity"], measure["value"], measure["ci95"], measure["reason"])
 
 
 def headline(quantity: str, value: float, ci95: Sequence[float] | None, reason: str = "") -> dict[str, Any]:

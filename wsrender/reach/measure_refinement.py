@@ -12,7 +12,7 @@ from wsrender.pipeline.constraints.region import Region
 from wsrender.reach.dimension import FLAT, TipSet, tip_set
 from wsrender.reach.reached_set import FalseNegatives, tolerance_m
 from wsrender.reach.volume_estimate import Event, VolumeEstimate
-from wsrender.reach.volume_refinement import by_the_origin, decided_volumes
+from wsrender.reach.volume_refinement import RefinedVolumes, by_the_origin, decided_volumes
 from wsrender.robots.kinematics import Kinematics
 from wsrender.volume.measure import QUANTITIES, UNITS
 
@@ -20,6 +20,11 @@ CURVED = {0: "the tip does not move", 1: "the tip stays on a curve", 2: "the tip
 # Points that are decided at most: so many over the square of the tolerance, and never more than the most. Solid arms
 # take a tenth or less; the interval of a shell thinner than a hundredth of its size is wider than asked instead.
 BUDGET, MOST_POINTS = 10.0, 10_000_000
+LESS = {
+    1: "a tip that does not move reaches no length",
+    2: "a tip that stays on a curve reaches no area",
+    3: "a tip that stays in a plane, on a surface or on a curve reaches no volume",
+}
 APART = {1: "the tips move on different lines", 2: "the tips move in different planes"}
 
 
@@ -28,9 +33,10 @@ class RefinedMeasure:
     """A volume, area or length with its 95 % interval.
 
     ``quantity``: "volume", "area" or "length"; ``unit``: "m3", "m2" or "m". ``value`` and ``ci95`` are None where the
-    set has none, and ``reason`` says why; else it is "". ``met``: whether the interval is as narrow as asked.
-    ``undecided``: how much inverse kinematics left open, in the same unit. ``points``: how many it decided.
-    ``position_tolerance_m``: the largest residual that counted as reached. ``false_negatives``: of every chain.
+    set has none, and ``reason`` says why; where too few chains have one to share, why ``value`` is 0; else it is "".
+    ``met``: whether the interval is as narrow as asked. ``undecided``: how much inverse kinematics left open, in the
+    same unit. ``points``: how many it decided. ``position_tolerance_m``: the largest residual that counted as reached.
+    ``false_negatives``: of every chain.
     """
 
     quantity: str
@@ -105,9 +111,9 @@ def refined_measures(
     )
     tried = dict(zip(filling, found.false_negatives, strict=True))
     misses = tuple(tried.get(k, FalseNegatives(0, 0)) for k in range(len(chains)))
+    reasons = {name: "" if event.least <= len(filling) else LESS[highest] for name, event in events.items()}
     return {
-        name: _measure(quantity, estimate, found.points, found.position_m, misses)
-        for name, estimate in found.volumes.items()
+        name: _measure(quantity, estimate, reasons[name], found, misses) for name, estimate in found.volumes.items()
     }
 
 
@@ -143,17 +149,17 @@ def _without(quantity: str, reason: str, position_m: float, chains: int) -> Refi
 
 
 def _measure(
-    quantity: str, estimate: VolumeEstimate, points: int, position_m: float, misses: tuple[FalseNegatives, ...]
+    quantity: str, estimate: VolumeEstimate, reason: str, found: RefinedVolumes, misses: tuple[FalseNegatives, ...]
 ) -> RefinedMeasure:
     return RefinedMeasure(
         quantity,
         estimate.value,
         (estimate.low, estimate.high),
         UNITS[quantity],
-        "",
+        reason,
         estimate.met,
         2 * estimate.undecided,
-        points,
-        position_m,
+        found.points,
+        found.position_m,
         misses,
     )

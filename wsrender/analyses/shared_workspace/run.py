@@ -11,7 +11,7 @@ from wsrender.analyses.composed import Composed, Part, PartialParts, part_of
 from wsrender.analyses.contract import Draft, Progress, Tell
 from wsrender.analyses.cost import DOCUMENT_BYTES, Cost, in_turn, pictures_cost, refined_seconds
 from wsrender.analyses.execution import Execution
-from wsrender.analyses.headline import headline_of
+from wsrender.analyses.headline import NOT_ASKED, headline_of, no_headline
 from wsrender.analyses.partial_result import PartialResult
 from wsrender.analyses.refined import by_measure, refined_together
 from wsrender.analyses.registry import planned
@@ -33,6 +33,7 @@ if TYPE_CHECKING:
 
 
 VOLUME_BYTES = 9  # of a voxel of each robot's volume: samples, and whether there are any
+TOGETHER = "what the robots reach together is measured, not what each does: robot_comparison measures that"
 REACHED = {"any": "jointly reachable", "shared": "shared"}  # of which volume
 
 
@@ -119,7 +120,7 @@ class SharedWorkspaceAnalysis(Composed):
         refined = measures["volume_m3"]["refined"]
         known = found if found and found["shared"]["value"] is not None else None
         document = {
-            **common_entries(self.several, results),
+            **_measured_together(common_entries(self.several, results)),
             **measures,
             "volume_m3": {
                 "any": any_m3,
@@ -182,6 +183,15 @@ def occupied_part(plan: Any) -> Part:
 def occupied_cells(plan: Any, partial: PartialResult) -> np.ndarray:
     """Numbers of the voxels, in the block of the plan, where its sweep has been."""
     return np.flatnonzero(np.unpackbits(partial["bits"], count=plan.pipeline.block.size))
+
+
+def _measured_together(common: dict[str, Any]) -> dict[str, Any]:
+    """The entries, in which every robot says why nothing of it alone is measured."""
+    robots = [robot | {"headline": no_headline(TOGETHER)} for robot in common["robots"]]
+    for robot in robots:
+        if robot["global"]["structural_length_reason"] == NOT_ASKED:
+            robot["global"] = robot["global"] | {"structural_length_reason": TOGETHER}
+    return common | {"robots": robots}
 
 
 def _check_volume(several: SeveralPlans) -> None:
