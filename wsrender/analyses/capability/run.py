@@ -9,6 +9,7 @@ from wsrender.analyses.contract import Analysis, Draft, Settled, Tell
 from wsrender.analyses.cost import DOCUMENT_BYTES, Cost, pictures_cost, surface_bytes
 from wsrender.analyses.estimate import RATE_CPU_CORE
 from wsrender.analyses.execution import Execution
+from wsrender.analyses.headline import no_headline
 from wsrender.analyses.partial_result import PartialResult, joined_rows, rows_of_shard
 from wsrender.documents.sampling import Sobol
 from wsrender.engine import sampled_positions
@@ -133,6 +134,10 @@ class CapabilityAnalysis(Analysis):
         chain = self.robot.chain
         return Draft(
             {"voxel_size_m": edge, "capability": entry},
+            no_headline(
+                f"whole voxels are counted: {entry['reachable_volume_m3']:.4g} m³ are reached, "
+                f"{entry['dexterous_volume_m3']:.4g} m³ of them from {job.dexterous_threshold:g} of the directions"
+            ),
             volume=self._volume(cells, reached),
             tables={"capability": Table(columns, {"position": "m"}), "directions": Table(directions)},
             skeleton=self.robot.skeleton((chain.lower_limits + chain.upper_limits) / 2),
