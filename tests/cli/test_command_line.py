@@ -119,6 +119,7 @@ def test_run_saves_and_prints_the_summary_and_the_files(wsrender, execute, tmp_p
 
         def save(self, folder, formats):
             seen.update(folder=folder, formats=formats)
+            (folder / "result.json").write_bytes(b" " * 1234)
 
         def summary(self):
             return "manipulability [m³] up to 0.2"
@@ -131,7 +132,11 @@ def test_run_saves_and_prints_the_summary_and_the_files(wsrender, execute, tmp_p
     execute(execute_job)
     code, out, err = wsrender("run", "ur5e", "-o", str(tmp_path), "--format", "csv", "--format", "npz")
     assert (code, err) == (0, "")
-    assert out.splitlines() == ["manipulability [m³] up to 0.2", f"{tmp_path}/volume.vtkhdf  12.3 MB"]
+    assert out.splitlines() == [
+        "manipulability [m³] up to 0.2",
+        f"{tmp_path}/result.json  1.23 kB",
+        f"{tmp_path}/volume.vtkhdf  12.3 MB",
+    ]
     assert seen["document"] == {"analysis": "workspace", "robot": {"library": "ur5e"}}
     assert (seen["folder"], seen["formats"]) == (tmp_path, ("csv", "npz"))
 

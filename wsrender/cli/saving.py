@@ -30,10 +30,13 @@ def save_and_report(result: Any, output: Path, formats: list[str] | None) -> Non
 
 def report(result: Any, output: Path) -> None:
     """Print the summary of a saved result and its files."""
+    from wsrender.results.export.artifacts import DOCUMENT
+
     console = Console(soft_wrap=True, highlight=False, markup=False)
     console.print(result.summary())
-    for artifact in result.document["artifacts"]:
-        console.print(f"{output / artifact['name']}  {_size(artifact['bytes'])}")
+    sizes = {each["name"]: each["bytes"] for each in result.document["artifacts"]}
+    for name, size in ({DOCUMENT: (output / DOCUMENT).stat().st_size} | sizes).items():
+        console.print(f"{output / name}  {_size(size)}")
 
 
 def _size(count: float) -> str:
