@@ -34,7 +34,7 @@ DRAWING = {  # what draws, and jobs for which it does
     ("wsrender.analyses.parallel_workspace.run", "random_orientations"): {
         "orientations": job_of("parallel_workspace.orientation") | {"seed": SEED}
     },
-    ("wsrender.mapping.scale_search", "differential_evolution"): {
+    ("wsrender.mapping", "differential_evolution"): {
         "mapping": job_of("master_slave_mapping") | {"offsets_m": [[0, 0, 0]], "search": MAPPING_SEARCH}
     },
     ("wsrender.analyses.design_optimization.run", "evolve"): {"design": seeded("design_optimization.searched")},
