@@ -12,7 +12,7 @@ from wsrender.analyses.jobs import parse_job
 from wsrender.cli.reproduce_command import NAMES
 from wsrender.errors import InputError
 from wsrender.indices.index_catalogue import DYNAMIC, KINEMATIC
-from wsrender.reproduce import CASES, Row, cases, gao, reproduce, wsrender_tables
+from wsrender.reproduce import CASES, Row, cases, gao, reproduce, zhang
 from wsrender.volume.volume_data import VolumeData
 
 NUMBER = np.repeat([1.0, 2.0], [1, 3])[:, None, None] * np.ones((4, 4, 4))
@@ -39,7 +39,7 @@ def documents(monkeypatch):
             global_indices={"joint_mean": dict.fromkeys([*KINEMATIC, *DYNAMIC], 0.5)},
         )
 
-    monkeypatch.setattr(wsrender_tables, "execute", execute)
+    monkeypatch.setattr(zhang, "execute", execute)
     monkeypatch.setattr(gao, "execute", execute)
     return seen
 
@@ -81,7 +81,7 @@ def test_table_6_is_the_table_of_the_paper(documents):
 
 def test_exact_volumes_of_table_6():
     """By quadrature here; the articulated pair's to the digits that the paper's readers know."""
-    exact = {robot: (*known["exact"], known["alone"]) for robot, known in wsrender_tables.PAIRS.items()}
+    exact = {robot: (*known["exact"], known["alone"]) for robot, known in zhang.PAIRS.items()}
     assert exact["spherical"][:2] == pytest.approx(spherical_pair(), rel=5e-5)
     any_volume, both, alone = exact["articulated"]
     assert alone == pytest.approx(articulated(), rel=1e-5)
@@ -91,9 +91,9 @@ def test_exact_volumes_of_table_6():
 
 def test_volumes_of_table_6_hold_what_is_exact(monkeypatch):
     """Run for real, at a coarser tolerance than the command's."""
-    monkeypatch.setattr(wsrender_tables, "TOLERANCE", 0.02)
-    monkeypatch.setattr(wsrender_tables, "PER_JOINT", 40)
-    rows = [row for row in wsrender_tables._pair("articulated", None) if row.low is not None]
+    monkeypatch.setattr(zhang, "TOLERANCE", 0.02)
+    monkeypatch.setattr(zhang, "PER_JOINT", 40)
+    rows = [row for row in zhang._pair("articulated", None) if row.low is not None]
     assert [row.quantity for row in rows] == ["V_a, refined", "V_s, refined", "one arm, refined"]
     for row in rows:
         assert row.low <= row.exact <= row.high

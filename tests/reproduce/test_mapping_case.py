@@ -6,7 +6,7 @@ import numpy as np
 
 from tests.reference.chain_kinematics import forward_kinematics
 from wsrender.analyses.jobs import parse_job
-from wsrender.reproduce import reproduce, wsrender_mapping
+from wsrender.reproduce import reproduce, zhang
 from wsrender.robots import library, load_path
 
 
@@ -27,7 +27,7 @@ def test_rows_hold_what_the_jobs_found(monkeypatch):
         volumes = {"master": 3.1, "slave": 0.1, "mapped": 2}
         return SimpleNamespace(document={"volume_m3": volumes, "mapping": offsets[-1], "offsets": offsets})
 
-    monkeypatch.setattr(wsrender_mapping, "execute", execute)
+    monkeypatch.setattr(zhang, "execute", execute)
     rows = reproduce("wsrender-mapping")
     assert [row.reproduced for row in rows] == [3.0, 3.1, 0.1, 0.0, 0.1, 0.2, 2, 0.02]
     assert (rows[0].low, rows[0].high) == (2.0, 4.0)

@@ -7,13 +7,11 @@ from typing import Annotated
 import typer
 
 from wsrender.cli.faults import one_line_faults, one_line_warnings
-from wsrender.cli.jobs_command import jobs
+from wsrender.cli.job_command import run
+from wsrender.cli.jobs_command import jobs, submit
 from wsrender.cli.listing import robots, schema
-from wsrender.cli.render_command import render
-from wsrender.cli.report_command import report
+from wsrender.cli.render_command import render, report
 from wsrender.cli.reproduce_command import reproduce
-from wsrender.cli.run_command import run
-from wsrender.cli.submit_command import submit
 from wsrender.errors import InputError, MissingExtraError
 from wsrender.extensions import load
 

@@ -1,15 +1,18 @@
-"""Commands that take a job: a document, or a robot and options for the common case."""
+"""``wsrender run``, and what commands take that take a job: a document, or a robot and options for the common case."""
 
 import inspect
 import json
 from collections.abc import Callable
 from functools import wraps
+from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
 from wsrender.cli.faults import one_line_faults
 from wsrender.cli.job_options import corrected_robot, job_document, name_or_list, sampling_document
+from wsrender.cli.saving import Formats, check_output, save_and_report
+from wsrender.progress import RunProgress
 
 _SAMPLING = "Sampling"
 _ANALYSIS = "Analysis"
@@ -120,3 +123,21 @@ def _print_job(document: dict[str, Any]) -> None:
     from wsrender.analyses.jobs import canonical_json, parse_job
 
     typer.echo(json.dumps(json.loads(canonical_json(parse_job(document))), indent=2))
+
+
+@job_command
+def run(
+    document: dict[str, Any],
+    output: Annotated[Path, typer.Option("--output", "-o", help="Folder for the results.")] = Path("out"),
+    formats: Formats = None,
+) -> None:
+    """Analyse a robot; write the result document, volume, surface and pictures to a folder.
+
+    Options override the fields of a job document.
+    """
+    check_output(output, formats)
+    from wsrender.run import execute
+
+    with RunProgress() as progress:
+        result = execute(document, progress=progress)
+    save_and_report(result, output, formats)

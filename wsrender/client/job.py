@@ -9,8 +9,7 @@ from urllib.parse import quote
 
 import httpx2
 
-from wsrender.client.connection import Connection
-from wsrender.client.problems import error_of_problem
+from wsrender.client.connection import Connection, error_of_problem
 from wsrender.client.remote_result import RemoteFiles, RemoteResult
 from wsrender.errors import JobFailedError, WaitTimeoutError
 from wsrender.progress import RunProgress

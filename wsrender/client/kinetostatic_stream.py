@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
-from wsrender.client.problems import error_of_problem
+from wsrender.client.connection import error_of_problem
 from wsrender.errors import AccessError, MissingExtraError, QuotaError, ServerConnectionError, WaitTimeoutError
 
 if TYPE_CHECKING:

@@ -8,8 +8,7 @@ from wsrender.reproduce.five_bar import five_bar
 from wsrender.reproduce.gao import gao
 from wsrender.reproduce.row import Row
 from wsrender.reproduce.shah import shah
-from wsrender.reproduce.wsrender_mapping import mapping
-from wsrender.reproduce.wsrender_tables import table_3, table_6
+from wsrender.reproduce.zhang import mapping, table_3, table_6
 from wsrender.run.steps import Progress
 
 CASES: dict[str, Callable[[Progress | None], list[Row]]] = {

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from wsrender.errors import MissingExtraError, RenderError
-from wsrender.results.render import process, windows
+from wsrender.results.render import process
 from wsrender.results.render.scene import Camera, Scene
 
 SCENE = Scene(Camera(np.zeros(3), np.array([0.0, 1.0, 0.0]), np.array([0.0, 0.0, 1.0]), 1.0), (8, 8))
@@ -16,37 +16,37 @@ SCENE = Scene(Camera(np.zeros(3), np.array([0.0, 1.0, 0.0]), np.array([0.0, 0.0,
 @pytest.fixture(autouse=True)
 def anew():
     """Nothing known of earlier probes."""
-    windows._first_working.cache_clear()
+    process._first_working.cache_clear()
     yield
-    windows._first_working.cache_clear()
+    process._first_working.cache_clear()
 
 
 def answers(monkeypatch, code):
     """Replace what the probe runs."""
-    monkeypatch.setattr(windows, "_PROBE", code)
+    monkeypatch.setattr(process, "_PROBE", code)
 
 
 def test_an_x_window_without_a_display_is_refused(monkeypatch):
-    monkeypatch.setenv(windows.CHOICE, windows.X11)
+    monkeypatch.setenv(process.CHOICE, process.X11)
     monkeypatch.delenv("DISPLAY", raising=False)
     with pytest.raises(RenderError, match=r"vtkXOpenGLRenderWindow: DISPLAY is not set.*apt install libx11-6 libgl1"):
-        windows.window_environment()
+        process.window_environment()
 
 
 def test_a_window_that_vtk_does_not_have_is_refused(monkeypatch):
     """The real probe, with a name that VTK answers by another window."""
-    monkeypatch.setenv(windows.CHOICE, "vtkNoSuchRenderWindow")
+    monkeypatch.setenv(process.CHOICE, "vtkNoSuchRenderWindow")
     with pytest.raises(RenderError, match="vtkNoSuchRenderWindow: "):
-        windows.window_environment()
+        process.window_environment()
 
 
 def test_missing_libraries_and_their_packages_are_named(monkeypatch):
-    monkeypatch.delenv(windows.CHOICE, raising=False)
+    monkeypatch.delenv(process.CHOICE, raising=False)
     monkeypatch.delenv("DISPLAY", raising=False)
-    monkeypatch.setattr(windows.sys, "platform", "linux")
+    monkeypatch.setattr(process.sys, "platform", "linux")
     answers(monkeypatch, "import sys; print('missing', sys.argv[2], flush=True)\nimport os; os.abort()")
     with pytest.raises(RenderError) as refused:
-        windows.window_environment()
+        process.window_environment()
     text = str(refused.value)
     assert "vtkEGLRenderWindow: libEGL.so.1 missing" in text
     assert "vtkOSOpenGLRenderWindow: libOSMesa.so.8 missing" in text
@@ -62,16 +62,16 @@ def test_missing_libraries_and_their_packages_are_named(monkeypatch):
     ],
 )
 def test_a_driver_that_does_not_work_is_no_crash(monkeypatch, code, fault):
-    monkeypatch.setenv(windows.CHOICE, windows.EGL)
-    monkeypatch.setattr(windows, "PROBE_TIMEOUT_S", 0.5 if "sleep" in code else 60.0)
+    monkeypatch.setenv(process.CHOICE, process.EGL)
+    monkeypatch.setattr(process, "PROBE_TIMEOUT_S", 0.5 if "sleep" in code else 60.0)
     answers(monkeypatch, code)
     with pytest.raises(RenderError, match=f"vtkEGLRenderWindow: {fault}"):
-        windows.window_environment()
+        process.window_environment()
 
 
 def test_the_first_window_that_draws_is_taken_and_remembered(monkeypatch, tmp_path):
-    monkeypatch.delenv(windows.CHOICE, raising=False)
-    monkeypatch.setattr(windows.sys, "platform", "linux")
+    monkeypatch.delenv(process.CHOICE, raising=False)
+    monkeypatch.setattr(process.sys, "platform", "linux")
     log = tmp_path / "log"
     answers(
         monkeypatch,
@@ -79,8 +79,8 @@ def test_the_first_window_that_draws_is_taken_and_remembered(monkeypatch, tmp_pa
         "print('drawn' if sys.argv[1] == 'vtkOSOpenGLRenderWindow' else 'black')",
     )
     for _ in range(2):
-        assert windows.window_environment()[windows.CHOICE] == windows.OSMESA
-    assert log.read_text().split() == [windows.EGL, windows.OSMESA]
+        assert process.window_environment()[process.CHOICE] == process.OSMESA
+    assert log.read_text().split() == [process.EGL, process.OSMESA]
 
 
 def test_without_pyvista_the_pip_command_is_named(monkeypatch):

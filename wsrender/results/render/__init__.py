@@ -12,8 +12,7 @@ from wsrender.errors import MissingExtraError
 if TYPE_CHECKING:
     from wsrender.results.render.composition import picture
     from wsrender.results.render.environment import Box, Floor, Table
-    from wsrender.results.render.result_robot import own_robot
-    from wsrender.results.render.subject import Subject
+    from wsrender.results.render.subject import Subject, own_robot
     from wsrender.results.render.views import VIEWS
 
 # Modules are not called like their functions: importing one would hide the function.
@@ -23,7 +22,7 @@ _MODULES = {
     "Subject": "subject",
     "Table": "environment",
     "VIEWS": "views",
-    "own_robot": "result_robot",
+    "own_robot": "subject",
     "picture": "composition",
 }
 

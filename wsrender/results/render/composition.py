@@ -1,4 +1,4 @@
-"""A 3-D picture of one or several robots in their workspaces."""
+"""A 3-D picture of one or several robots in their workspaces, as a matplotlib figure with its legend."""
 
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
@@ -12,11 +12,12 @@ from matplotlib.patches import Patch
 from wsrender.documents.environment import Environment
 from wsrender.errors import InputError
 from wsrender.results.drawing.box import AZIMUTH_DEG, ELEVATION_DEG, SeenBox, space_around
+from wsrender.results.drawing.color_scale import ColorScale
 from wsrender.results.drawing.stick_figure import SHARED_COLOR, SHARED_LABEL
-from wsrender.results.drawing.style import INK, Heading
+from wsrender.results.drawing.style import DPI, INK, Heading, new_figure, paper_style
+from wsrender.results.drawing.view import inches, note, write_labels
 from wsrender.results.render import environment as surroundings
 from wsrender.results.render.environment import Item
-from wsrender.results.render.figure import PANEL_PIXELS, figure_of
 from wsrender.results.render.process import drawn
 from wsrender.results.render.scene import Cloud, Color, DrawnSurface, Layer, Lines, Plates, Points, Rods, Scene
 from wsrender.results.render.subject import Subject
@@ -31,6 +32,13 @@ _TIP: Color = (0.784, 0.063, 0.18)
 _SHARED_ALPHA = 0.4
 SHINING = "pale parts of the arm are hidden"
 _ROD = 0.006  # radius of a rod, relative to the longest edge of the picture's box
+_SIZE = (7.0, 5.11)  # of the figure below its heading [in]
+_PANEL = (0.0, 0.28, 5.88, 4.8)  # left, bottom, width, height of the drawn scene, above the notes [in]
+_BAR = (6.09, 1.08, 0.14, 3.02)  # left, bottom, width, height [in]
+_COLUMNS, _ROWS, _ROW = 4, 2, 0.17  # of the legend, the rows that the scene leaves room for, height of one [in]
+
+PANEL_PIXELS = (round(_PANEL[2] * DPI), round(_PANEL[3] * DPI))
+POINT = DPI / 72  # pixels
 
 
 def picture(
@@ -151,3 +159,32 @@ def _robot_handles(subjects: Sequence[Subject]) -> list[Artist]:
 def _environment_handles(environment: Sequence[Item]) -> list[Artist]:
     kinds = dict.fromkeys((surroundings.color(item), surroundings.label(item)) for item in environment)
     return [Patch(facecolor=color, label=label) for color, label in kinds]
+
+
+@paper_style()
+def figure_of(
+    picture: np.ndarray,
+    space: SeenBox,
+    *,
+    title: Heading | str,
+    notes: Sequence[str],
+    handles: list[Artist],
+    scale: ColorScale | None,
+) -> Figure:
+    """The picture (height, width, 3) with axes in metres, legend, and colour bar where there is a scale."""
+    rows = -(-len(handles) // _COLUMNS)
+    height = _SIZE[1] + _ROW * max(rows - _ROWS, 0)
+    figure = new_figure(_SIZE[0], height, title, layout=None)
+    axes = figure.add_axes(inches(figure, _PANEL))
+    axes.set_axis_off()
+    wide = picture.shape[1] / picture.shape[0]
+    axes.imshow(picture, extent=(-wide, wide, -1, 1), interpolation="none")
+    write_labels(axes, space)
+    place = {"loc": "upper center", "bbox_to_anchor": (0.5, height / float(figure.get_size_inches()[1]))}
+    by_rows = [handle for k in range(_COLUMNS) for handle in handles[k::_COLUMNS]]  # matplotlib fills columns
+    figure.legend(handles=by_rows, frameon=False, fontsize=8, columnspacing=1.5, ncols=_COLUMNS, **place)
+    if scale is not None:
+        scale.add_bar(figure, cax=figure.add_axes(inches(figure, _BAR)))
+    for line, text in enumerate(reversed(["world frame", *notes])):
+        note(figure, 0.14, 0.1 + 0.16 * line, text, fontsize=7.5)
+    return figure
