@@ -1,4 +1,4 @@
-"""What a submitted job document must fulfil before it is queued; nothing here runs native code on strangers' models."""
+"""What a submitted job or robot model must fulfil; nothing here runs native code on strangers' models."""
 
 import json
 from collections.abc import Iterable, Mapping
@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from functools import cache
 from itertools import repeat
 from typing import Any
+
+from defusedxml import DefusedXmlException
 
 from wsrender.analyses.jobs import canonical_json, parse_job
 from wsrender.documents.arm import ArmPath, dotted, local_paths
@@ -16,13 +18,46 @@ from wsrender.documents.sampling import Converge, Grid
 from wsrender.errors import DocumentError, InputError, ModelError, ResourceError
 from wsrender.indices.index_catalogue import find, option_values, resolve
 from wsrender.pipeline.constraints.registry import constraints_of
-from wsrender.robots import library
+from wsrender.robots import library, mjcf, xml_source
 from wsrender_server.jobs.store import JobStore
-from wsrender_server.model_text import check_model
-from wsrender_server.problems import HttpProblem, pointer
+from wsrender_server.problems import HttpProblem, pointer, problem_of_error, refusal
 
+ROOTS = ("mujoco", "robot")
 LOCAL_ONLY = "is for local runs only; upload the model, or send text or points"
 BEYOND_LIMITS = 10**18  # samples
+
+
+def check_model(field: str, text: str, prefix: str = "") -> str:
+    """The name of the root element of XML that looks harmless; nothing is compiled.
+
+    ``field`` within ``prefix`` is where in the body the text is.
+
+    Raises ModelError for hostile text: document types, entities, outside references, too large, too deep; and for
+    files that it includes. Raises HttpProblem 409 for text that is no model: not well-formed, or of another root
+    element.
+    """
+    try:
+        root = xml_source.parse(text, field)
+    except ModelError as error:
+        malformed = error.__cause__ is not None and not isinstance(error.__cause__, DefusedXmlException)
+        if malformed or not text.strip():
+            raise refusal(problem_of_error(error, prefix), 409) from None
+        raise
+    if root.tag not in ROOTS:
+        wrong = ModelError(field, f"the root element is <{root.tag}>; <mujoco> or <robot> (URDF) is needed")
+        raise refusal(problem_of_error(wrong, prefix), 409)
+    if root.tag == "mujoco":
+        mjcf.refuse_includes(root, field)
+    return root.tag
+
+
+def decoded_model(content: bytes) -> str:
+    """The text of an uploaded model. Raises HttpProblem 409 for anything but UTF-8."""
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        wrong = ModelError("document", f"must be UTF-8 text; byte {error.start} is not")
+        raise refusal(problem_of_error(wrong), 409) from None
 
 
 @dataclass(frozen=True)

@@ -1,6 +1,7 @@
 """Commands of the server: ``wsrender serve | worker | keys | database | demo``."""
 
 import signal
+import tempfile
 import threading
 from collections.abc import Iterator
 from contextlib import closing, contextmanager, nullcontext
@@ -182,11 +183,18 @@ def demo(
 ) -> None:
     """Start a server, analyse a robot through it, and leave maps, volume and pictures in a folder."""
     with one_line_faults():
-        from wsrender.cli.saving import check_output, report
-        from wsrender_server.demo import demonstrate
+        from wsrender.cli.saving import check_output, save_and_report
+        from wsrender.client import Client
+        from wsrender_server.local_server import LocalServer
 
         check_output(output, None)
-        report(demonstrate(robot, output), output)
+        with (
+            tempfile.TemporaryDirectory(prefix="wsrender-demo-", ignore_cleanup_errors=True) as data,
+            LocalServer(Path(data)) as server,
+            Client(server.url) as client,
+        ):
+            job = {"analysis": "workspace", "robot": {"library": robot}, "keep_map": True}
+            save_and_report(client.submit(job).wait(progress=True).result(), output, None)
 
 
 def settings_of(**given: Any) -> Settings:

@@ -1,13 +1,20 @@
-"""Artifacts in other formats on request, converted in the side process and kept for a while."""
+"""Artifacts in other formats, slices and plots on request, made in the side process."""
 
 import asyncio
 import os
+import tempfile
 import uuid
 from pathlib import Path
+from typing import Any
+
+import numpy as np
 
 from wsrender import __version__
+from wsrender.errors import InputError
 from wsrender.results.export.artifacts import sha256 as sha256_of
 from wsrender.results.export.formats import Format, of_file, others
+from wsrender.results.presentation import picture_of
+from wsrender.results.result import Result
 from wsrender_server.jobs.files import DataFolder
 from wsrender_server.jobs.records import ArtifactRecord
 from wsrender_server.problems import HttpProblem
@@ -15,6 +22,7 @@ from wsrender_server.side_process import SideProcess
 
 MOST_KEPT = 64  # converted files
 TIMEOUT_S = 600.0
+AXES = "xyz"
 
 
 class ConvertedFiles:
@@ -72,3 +80,79 @@ def convert(source: Path, stored: Format, target: Path, wanted: Format) -> str:
     """
     wanted.write(stored.read(source), target)
     return sha256_of(target)
+
+
+def slice_values(
+    volume_file: str, axis: str, at: float | None, index: str | None, statistic: str | None
+) -> dict[str, Any]:
+    """The plane of voxels at a coordinate ``at`` [m] along an axis; by default the one with most occupied voxels.
+
+    Returns ``values``, float32 (a, b) over the two other axes in the order x, y, z, NaN where empty; ``origin_m``, the
+    lower corner of its first voxel (2,); ``voxel_size_m``; ``at_m``, the centre of the plane; ``name`` of the array.
+    Raises InputError for a plane outside the volume and an index or statistic that it does not hold.
+    """
+    import h5py
+
+    normal = AXES.index(axis)
+    with h5py.File(volume_file, "r") as file:
+        root: Any = file["VTKHDF"]
+        name = _array_name(root["CellData"], index, statistic)
+        size, first = float(root.attrs["Spacing"][0]), np.asarray(root.attrs["first_voxel"])
+        layer = _layer(root["CellData"]["count"], normal, at, size, int(first[normal]))
+        where: list[Any] = [slice(None)] * 3
+        where[2 - normal] = layer  # files hold z, y, x
+        counts = np.asarray(root["CellData"]["count"][tuple(where)]).T
+        values = np.asarray(root["CellData"][name][tuple(where)]).T.astype(np.float32)
+    values[counts == 0] = np.nan
+    across = [k for k in range(3) if k != normal]
+    return {
+        "values": np.ascontiguousarray(values),
+        "origin_m": [float(first[k] * size) for k in across],
+        "voxel_size_m": size,
+        "at_m": float((first[normal] + layer + 0.5) * size),
+        "name": name,
+    }
+
+
+def _array_name(cells: Any, index: str | None, statistic: str | None) -> str:
+    if statistic == "count":
+        return "count"
+    arrays = {
+        (str(data.attrs["statistic"]), str(data.attrs["index"])): name
+        for name, data in cells.items()
+        if "statistic" in data.attrs
+    }
+    if not arrays and index is None and statistic is None:
+        return "count"
+    order = sorted(arrays, key=lambda key: key[0] != "maximum")  # the maximum first, then as in the file
+    for found in order:
+        if statistic in (None, found[0]) and index in (None, found[1]):
+            return arrays[found]
+    held = ", ".join(["count", *(f"{statistic} of {name}" for statistic, name in arrays)])
+    raise InputError("index", f"the volume has no {statistic or 'statistic'} of {index or 'an index'}; it holds {held}")
+
+
+def _layer(counts: Any, normal: int, at: float | None, size: float, first: int) -> int:
+    layers = counts.shape[2 - normal]
+    if at is None:
+        across = tuple(k for k in range(3) if k != 2 - normal)
+        return int(np.count_nonzero(counts[...], axis=across).argmax())
+    cells = at / size - first
+    if not -1e-9 <= cells <= layers + 1e-9:
+        low, high = first * size, (first + layers) * size
+        raise InputError("at", f"the plane {AXES[normal]} = {at:g} m misses the workspace, {low:g} … {high:g} m")
+    return min(max(int(np.floor(cells + 1e-9)), 0), layers - 1)
+
+
+def draw(document: dict[str, Any], files: dict[str, str], name: str, format: Format, options: dict[str, Any]) -> bytes:
+    """A picture of a result in a format of pictures; ``files`` maps names of its artifacts to paths.
+
+    ``options``: those that the picture takes are used. Raises InputError where the result does not hold what it shows.
+    """
+    plot = Result.of_files(document, {file: Path(path) for file, path in files.items()}).plot
+    taken = picture_of(document, name).takes
+    figure = plot(name, **{key: value for key, value in options.items() if value is not None and key in taken})
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / format.file(name)
+        format.write(figure, path)
+        return path.read_bytes()

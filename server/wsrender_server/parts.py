@@ -6,12 +6,11 @@ from typing import Annotated, Protocol
 from fastapi import Depends, Request
 
 from wsrender_server.conversions import ConvertedFiles
-from wsrender_server.estimates import Estimates
 from wsrender_server.jobs.records import WorkerRecord
 from wsrender_server.jobs.store import JobStore
 from wsrender_server.metrics import Metrics
 from wsrender_server.settings import Settings
-from wsrender_server.side_process import SideProcess
+from wsrender_server.side_process import Estimates, SideProcess
 from wsrender_server.streams.sessions import Streams
 
 

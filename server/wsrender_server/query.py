@@ -1,13 +1,17 @@
-"""Query parameters: what a route does not declare is refused, never ignored."""
+"""Query parameters: what a route does not declare is refused, never ignored; names of formats are the table's."""
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from typing import Any
 
 from fastapi import Request
 from fastapi.dependencies.models import Dependant
 from fastapi.routing import APIRoute, APIWebSocketRoute
+from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
+from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 from starlette.requests import HTTPConnection
 
+from wsrender.results.export.formats import one_of
 from wsrender_server.problems import HttpProblem
 
 
@@ -45,3 +49,22 @@ def _declared(dependant: Dependant) -> Iterator[str]:
 
 def _listed(allowed: list[str]) -> str:
     return f"allowed: {', '.join(allowed)}" if allowed else "none is allowed"
+
+
+class OneOf:
+    """Marks text that must be one of some suffixes, which are asked for anew: formats may be added later."""
+
+    def __init__(self, suffixes: Callable[[], list[str]]):
+        self._suffixes = suffixes
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.no_info_after_validator_function(self._checked, handler(source))
+
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        return {"type": "string", "enum": sorted(self._suffixes())}
+
+    def _checked(self, suffix: str) -> str:
+        if suffix not in self._suffixes():
+            choices = one_of(f"'{each}'" for each in sorted(self._suffixes()))
+            raise PydanticCustomError("format", "Input should be {choices}", {"choices": choices})
+        return suffix

@@ -1,5 +1,6 @@
 """Settings of the server: environment variables WSRENDER_…, options of the commands, defaults."""
 
+import warnings
 from functools import cached_property
 from pathlib import Path
 from typing import Self
@@ -7,9 +8,23 @@ from typing import Self
 from pydantic import Field, model_validator
 from pydantic_settings import BaseSettings, SettingsConfigDict
 
-from wsrender_server.data_folder import default_data_dir
-
+OLD_FOLDER = Path("wsrender-data")  # in the working directory: the default of 0.1
 GIB = 2**30
+
+
+def default_data_dir() -> Path:
+    """The user's own folder for wsrender; ``./wsrender-data`` where there is one, with a warning. Creates nothing."""
+    import platformdirs
+
+    users = platformdirs.user_data_path("wsrender", appauthor=False)
+    if not OLD_FOLDER.is_dir():
+        return users
+    text = (
+        f"data_dir: {OLD_FOLDER.absolute()} is used, the default folder of earlier versions; the default is now "
+        f"{users}: move the folder there, or name it by --data-dir or WSRENDER_DATA_DIR"
+    )
+    warnings.warn(text, UserWarning, stacklevel=2)
+    return OLD_FOLDER.absolute()
 
 
 class Settings(BaseSettings):

@@ -3,8 +3,7 @@
 from pathlib import Path
 
 import pytest
-from wsrender_server.data_folder import OLD_FOLDER, default_data_dir
-from wsrender_server.settings import Settings
+from wsrender_server.settings import OLD_FOLDER, Settings, default_data_dir
 
 from wsrender import cli
 

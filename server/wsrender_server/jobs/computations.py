@@ -16,10 +16,17 @@ from wsrender_server.jobs.changes import Changes
 from wsrender_server.jobs.database import Transactions
 from wsrender_server.jobs.files import DataFolder
 from wsrender_server.jobs.identity import Identity, device_of
-from wsrender_server.jobs.records import ArtifactRecord, ComputationRecord, Progress, QueueSummary
-from wsrender_server.jobs.rows import enter, finish, move, report
-from wsrender_server.jobs.states import LIVE, UNFINISHED, ComputationState, JobState
-from wsrender_server.jobs.tables import ArtifactFile, Computation, DeviceTarget, Job
+from wsrender_server.jobs.records import (
+    LIVE,
+    UNFINISHED,
+    ArtifactRecord,
+    ComputationRecord,
+    ComputationState,
+    JobState,
+    Progress,
+    QueueSummary,
+)
+from wsrender_server.jobs.tables import ArtifactFile, Computation, DeviceTarget, Job, enter, finish, move, report
 
 
 class ComputationStore:

@@ -15,8 +15,7 @@ from wsrender_server.jobs.computations import ComputationStore
 from wsrender_server.jobs.engine import Engine, outcome_of
 from wsrender_server.jobs.faults import EngineUnavailable, StoreUnavailable
 from wsrender_server.jobs.identity import device_of
-from wsrender_server.jobs.records import ArtifactRecord
-from wsrender_server.jobs.states import ComputationState
+from wsrender_server.jobs.records import ArtifactRecord, ComputationState
 from wsrender_server.jobs.task import Outcome, Step, Verdict, error
 from wsrender_server.settings import Settings
 

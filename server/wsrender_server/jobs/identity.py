@@ -1,4 +1,4 @@
-"""What makes two submissions the same computation."""
+"""What makes two submissions the same computation, and what to say of numbers of another version."""
 
 import hashlib
 import json
@@ -9,6 +9,7 @@ from typing import Any
 from wsrender import __version__
 from wsrender.documents.arm import dotted, local_paths, robots_in
 from wsrender.errors import InputError
+from wsrender.notices import Notice
 from wsrender.robots.library import find
 
 
@@ -40,3 +41,16 @@ def device_of(document: Mapping[str, Any]) -> str:
 @cache
 def _library_hash(name: str | None) -> str | None:
     return None if name is None else hashlib.sha256(find(name).read_bytes()).hexdigest()
+
+
+def notices_of(version: str) -> list[Notice]:
+    """What an owner should know of a result that a version has computed: nothing where it is this one."""
+    if version == __version__:
+        return []
+    return [
+        Notice(
+            "other_version",
+            f"computed by wsrender {version}; this server runs {__version__}, whose numbers may differ",
+            "submit the job again for numbers of this version",
+        )
+    ]

@@ -1,10 +1,65 @@
-"""What the store hands out: plain values, never rows of the database. Times are aware datetimes in UTC."""
+"""What the store hands out: states and plain values, never rows of the database. Times are aware datetimes in UTC."""
 
+import base64
+import binascii
 from dataclasses import dataclass, field
-from datetime import datetime
+from datetime import UTC, datetime
+from enum import StrEnum
 from typing import Any
 
-from wsrender_server.jobs.states import ComputationState, JobState
+from wsrender.errors import InputError
+
+
+class JobState(StrEnum):
+    """State of a job, as a client sees it."""
+
+    QUEUED = "queued"
+    RUNNING = "running"
+    CANCELING = "canceling"
+    SUCCEEDED = "succeeded"
+    FAILED = "failed"
+    CANCELED = "canceled"
+    TIMED_OUT = "timed_out"
+
+
+class ComputationState(StrEnum):
+    """State of a computation, which one or more jobs of one owner wait for."""
+
+    WAITING = "waiting"
+    RUNNING = "running"
+    STOPPING = "stopping"
+    SUCCEEDED = "succeeded"
+    FAILED = "failed"
+    STOPPED = "stopped"
+
+
+LIVE = (JobState.QUEUED, JobState.RUNNING)  # jobs for which a computation goes on
+ENDED = (JobState.SUCCEEDED, JobState.FAILED, JobState.CANCELED, JobState.TIMED_OUT)
+RETRYABLE = (JobState.FAILED, JobState.CANCELED, JobState.TIMED_OUT)
+UNFINISHED = (ComputationState.WAITING, ComputationState.RUNNING, ComputationState.STOPPING)
+
+NEXT: dict[JobState, tuple[JobState, ...]] = {
+    JobState.QUEUED: (
+        JobState.RUNNING,
+        JobState.CANCELING,
+        JobState.SUCCEEDED,
+        JobState.FAILED,
+        JobState.CANCELED,
+    ),
+    JobState.RUNNING: (
+        JobState.CANCELING,
+        JobState.SUCCEEDED,
+        JobState.FAILED,
+        JobState.CANCELED,
+        JobState.TIMED_OUT,
+    ),
+    JobState.CANCELING: (JobState.CANCELED,),
+    JobState.SUCCEEDED: (),
+    JobState.FAILED: (JobState.QUEUED, JobState.RUNNING, JobState.SUCCEEDED),
+    JobState.CANCELED: (JobState.QUEUED, JobState.RUNNING, JobState.SUCCEEDED),
+    JobState.TIMED_OUT: (JobState.QUEUED, JobState.RUNNING, JobState.SUCCEEDED),
+}
+"""The states that may follow each state; an ended job moves again only by a retry."""
 
 
 @dataclass(frozen=True)
@@ -122,3 +177,19 @@ class QueueSummary:
     waiting: int
     running: int
     oldest_queued_at: datetime | None = None
+
+
+def cursor_after(record: JobRecord) -> str:
+    """The cursor of the page that follows a job."""
+    text = f"{round(record.created_at.timestamp() * 1e6)}.{record.id}"
+    return base64.urlsafe_b64encode(text.encode()).decode().rstrip("=")
+
+
+def place_of(cursor: str) -> tuple[datetime, str]:
+    """Time and id of the job before a cursor; InputError for a text that is no cursor."""
+    try:
+        text = base64.urlsafe_b64decode(cursor + "=" * (-len(cursor) % 4)).decode("ascii")
+        time, job_id = text.split(".")
+        return datetime.fromtimestamp(int(time) / 1e6, UTC), job_id
+    except (binascii.Error, ValueError, OverflowError, OSError) as error:
+        raise InputError("cursor", "is not one that a list of jobs has given") from error

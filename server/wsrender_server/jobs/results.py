@@ -11,8 +11,7 @@ from sqlalchemy.exc import IntegrityError
 
 from wsrender_server.jobs.database import Transactions
 from wsrender_server.jobs.files import DataFolder
-from wsrender_server.jobs.records import ArtifactRecord
-from wsrender_server.jobs.states import JobState
+from wsrender_server.jobs.records import ArtifactRecord, JobState
 from wsrender_server.jobs.tables import ArtifactFile, Job, Model
 
 

@@ -16,17 +16,35 @@ from wsrender.documents.arm import dotted, robots_in
 from wsrender.errors import InputError
 from wsrender_server.jobs.changes import Changes
 from wsrender_server.jobs.computations import ComputationStore
-from wsrender_server.jobs.cursor import cursor_after, place_of
 from wsrender_server.jobs.database import Transactions, open_database
 from wsrender_server.jobs.faults import IdempotencyConflict, InvalidTransition, QueueFull, StoreUnavailable
 from wsrender_server.jobs.files import DataFolder
 from wsrender_server.jobs.identity import Identity, device_of
 from wsrender_server.jobs.keys import KeyStore
-from wsrender_server.jobs.records import EventRecord, JobRecord, Submission
+from wsrender_server.jobs.records import (
+    ENDED,
+    LIVE,
+    RETRYABLE,
+    ComputationState,
+    EventRecord,
+    JobRecord,
+    JobState,
+    Submission,
+    cursor_after,
+    place_of,
+)
 from wsrender_server.jobs.results import ResultStore
-from wsrender_server.jobs.rows import job_record, subscribe
-from wsrender_server.jobs.states import ENDED, LIVE, RETRYABLE, ComputationState, JobState
-from wsrender_server.jobs.tables import ArtifactFile, Computation, Event, Job, Label, Model, Timestamp
+from wsrender_server.jobs.tables import (
+    ArtifactFile,
+    Computation,
+    Event,
+    Job,
+    Label,
+    Model,
+    Timestamp,
+    job_record,
+    subscribe,
+)
 from wsrender_server.migrations import upgrade
 from wsrender_server.settings import Settings
 

@@ -21,13 +21,12 @@ from wsrender.results.export.result_format import current_document
 from wsrender.results.presentation import PLANE, all_pictures, picture_of
 from wsrender.results.result import files_of_parts
 from wsrender_server.auth import Reader
-from wsrender_server.formats import OneOf
-from wsrender_server.jobs.records import ArtifactRecord, JobRecord
-from wsrender_server.jobs.states import ENDED, JobState
-from wsrender_server.jobs.versions import notices_of
+from wsrender_server.conversions import draw, slice_values
+from wsrender_server.jobs.identity import notices_of
+from wsrender_server.jobs.records import ENDED, ArtifactRecord, JobRecord, JobState
 from wsrender_server.parts import Parts, Server
-from wsrender_server.pictures import draw, slice_values
 from wsrender_server.problems import HttpProblem, problem_responses
+from wsrender_server.query import OneOf
 from wsrender_server.routes.files import file_response
 from wsrender_server.routes.job_views import JobId, Page, View, WarningView, found
 

@@ -9,8 +9,8 @@ from pydantic import Field
 from wsrender.analyses.jobs import job_schema
 from wsrender.analyses.registry import job_classes
 from wsrender.robots import library
+from wsrender_server.admission import check_model, decoded_model
 from wsrender_server.auth import Reader, Submitter
-from wsrender_server.model_text import check_model, decoded_model
 from wsrender_server.parts import Server
 from wsrender_server.problems import HttpProblem, problem_responses
 from wsrender_server.routes.files import has_it

@@ -9,8 +9,7 @@ from fastapi import APIRouter, Depends, Header
 from fastapi.sse import EventSourceResponse, ServerSentEvent
 
 from wsrender_server.auth import Reader
-from wsrender_server.jobs.records import JobRecord
-from wsrender_server.jobs.states import ENDED
+from wsrender_server.jobs.records import ENDED, JobRecord
 from wsrender_server.parts import Server
 from wsrender_server.problems import problem_responses
 from wsrender_server.routes.job_views import JobId, event_data, found

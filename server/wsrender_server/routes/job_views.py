@@ -8,9 +8,8 @@ from fastapi import Path
 from pydantic import BaseModel, ConfigDict, Field
 
 from wsrender.notices import entries
-from wsrender_server.jobs.records import EventRecord, JobRecord
-from wsrender_server.jobs.states import JobState
-from wsrender_server.jobs.versions import notices_of
+from wsrender_server.jobs.identity import notices_of
+from wsrender_server.jobs.records import EventRecord, JobRecord, JobState
 from wsrender_server.problems import HttpProblem, Problem, problem_of_job
 
 ItemT = TypeVar("ItemT")

@@ -16,7 +16,7 @@ from wsrender.errors import DocumentError, InputError
 from wsrender_server.admission import Admission
 from wsrender_server.auth import Principal, Reader, Submitter
 from wsrender_server.job_body import JobBody, json_body, read_body, refused
-from wsrender_server.jobs.states import ENDED, JobState
+from wsrender_server.jobs.records import ENDED, JobState
 from wsrender_server.parts import Parts, Server
 from wsrender_server.problems import HttpProblem, problem_responses
 from wsrender_server.routes.job_views import JobId, JobView, Page, View, found, job_view

@@ -24,8 +24,7 @@ from wsrender_server.auth import Principal, entitled
 from wsrender_server.parts import Parts
 from wsrender_server.problems import HttpProblem, problem_of_error, problem_responses, response_of_problem
 from wsrender_server.query import check_parameters
-from wsrender_server.streams.message_rate import MessageRate
-from wsrender_server.streams.sessions import Session
+from wsrender_server.streams.sessions import MessageRate, Session
 
 PATH = "/v1/kinetostatic-stream"
 PROTOCOL = "wsrender.v1"  # the WebSocket subprotocol, where a client offers any

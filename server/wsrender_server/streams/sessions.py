@@ -1,4 +1,4 @@
-"""Sessions of live streams, as the process that answers sees them."""
+"""Sessions of live streams, as the process that answers sees them, and how fast their messages come."""
 
 import asyncio
 import contextlib
@@ -15,11 +15,26 @@ from starlette.concurrency import run_in_threadpool
 
 from wsrender_server.problems import HttpProblem
 from wsrender_server.settings import Settings
-from wsrender_server.streams.scheduling import calm_down, hurry
+from wsrender_server.streams.loop_process import calm_down, hurry
 
 MOST_UNREAD = 1 << 16  # bytes that the loop does not take before it counts as hung
 END_S = 2.0  # for a loop to end by itself
 FORCE = b'{"type":"force"'
+
+
+class MessageRate:
+    """Counts the messages of every second [s], of which ``most`` are allowed."""
+
+    def __init__(self, most: int):
+        self._most = most
+        self._second = self._count = 0
+
+    def exceeded(self, now: float) -> bool:
+        """Take in a message at a time [s]; whether it is one too many."""
+        if int(now) != self._second:
+            self._second, self._count = int(now), 0
+        self._count += 1
+        return self._count > self._most
 
 
 class Session(asyncio.Protocol):

@@ -13,7 +13,7 @@ import pytest
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import connect
 from wsrender_server.local_server import LocalServer
-from wsrender_server.streams.message_rate import MessageRate
+from wsrender_server.streams.sessions import MessageRate
 
 import wsrender as ws
 from wsrender.documents.kinetostatic_stream import Force, Opened, Statistics

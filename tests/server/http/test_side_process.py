@@ -81,12 +81,12 @@ def validated(client):
 
 def test_a_job_whose_planning_crashes_is_refused(client, monkeypatch):
     with monkeypatch.context() as patch:
-        patch.setattr("wsrender_server.estimates.planned", abort)
+        patch.setattr("wsrender_server.side_process.planned", abort)
         problem_of(validated(client), 409, "crashed")
     assert client.get("/healthz").status_code == 200
 
 
 def test_planning_that_takes_too_long_is_refused(client, monkeypatch):
-    monkeypatch.setattr("wsrender_server.estimates.planned", sleep)
-    monkeypatch.setattr("wsrender_server.estimates.TIMEOUT_S", 1.0)
+    monkeypatch.setattr("wsrender_server.side_process.planned", sleep)
+    monkeypatch.setattr("wsrender_server.side_process.TIMEOUT_S", 1.0)
     problem_of(validated(client), 409, "too_slow")

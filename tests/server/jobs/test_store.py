@@ -7,8 +7,7 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 from wsrender_server.jobs.faults import DiskFull, IdempotencyConflict, InvalidTransition, QueueFull, StoreUnavailable
 from wsrender_server.jobs.files import DataFolder
-from wsrender_server.jobs.records import ArtifactRecord, Progress
-from wsrender_server.jobs.states import ComputationState, JobState
+from wsrender_server.jobs.records import ArtifactRecord, ComputationState, JobState, Progress
 from wsrender_server.jobs.store import JobStore
 
 from tests.server.jobs.documents import canonical
