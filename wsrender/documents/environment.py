@@ -11,7 +11,7 @@ from pydantic import BeforeValidator, Discriminator, Field, ValidationError, mod
 
 from wsrender.documents.document import Document
 from wsrender.documents.problems import located, tagged
-from wsrender.documents.quantities import Name, PositiveNumber, real, sequence
+from wsrender.documents.quantities import Name, PositiveNumber, points_of, real, sequence
 from wsrender.documents.robot import LengthUnit, Transform, Vector
 
 MOST_SHAPES = 100
@@ -22,11 +22,8 @@ MESH_FILES = (".obj", ".ply", ".stl")
 def _points(value: Any) -> tuple[tuple[float, ...], ...] | None:
     if value is None:
         return None
-    try:
-        points = tuple(tuple(real(number) for number in sequence(point)) for point in sequence(value))
-    except ValueError:
-        points = ()
-    if not 4 <= len(points) <= MOST_VERTICES or any(len(point) != 3 for point in points):
+    points = points_of(value)
+    if not 4 <= len(points) <= MOST_VERTICES:
         raise ValueError(f"must be a list of 4 … {MOST_VERTICES} points [x, y, z], finite numbers")
     return points
 

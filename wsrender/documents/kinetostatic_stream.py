@@ -12,8 +12,8 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_valida
 
 from wsrender.documents.arm import Arm
 from wsrender.documents.document import Document
-from wsrender.documents.kinetostatics import ForceFieldChoice
-from wsrender.documents.quantities import Number, PositiveNumber, real, sequence
+from wsrender.documents.kinetostatics import ForceFieldChoice, JointValues
+from wsrender.documents.quantities import PositiveNumber, real, sequence
 
 LARGEST_SAMPLE = 4096  # bytes
 LARGEST_COORDINATE = 1e6  # of a sample: squares and rotations of it are finite
@@ -27,10 +27,6 @@ def _frequencies(value: Any) -> tuple[float, ...]:
     if len(numbers) != 2 or not 0 < numbers[0] <= numbers[1] <= 1000:
         raise ValueError("must be [low, high], 0 < low ≤ high ≤ 1000")
     return numbers
-
-
-def _values(value: Any) -> tuple[float, ...] | None:
-    return None if value is None else tuple(real(number) for number in sequence(value))
 
 
 class MotionScales(Document):
@@ -72,7 +68,7 @@ class StreamOpen(Arm):
     """Which forces act."""
     input: Literal["configuration", "pose"] = "configuration"
     """What samples hold: joint values, or positions (and for a wrench device orientations) of the tip."""
-    start: Annotated[tuple[Number, ...] | None, BeforeValidator(_values)] = None
+    start: JointValues = None
     """Configuration from which the first pose is solved [rad or m]; null: the middle of every joint's range."""
     cues: Cues = Cues()
     """What is felt besides the force."""

@@ -9,23 +9,19 @@ from pydantic import BeforeValidator, Field, StrictBool
 from wsrender.documents.document import Document
 from wsrender.documents.environment import MOST_SHAPES, Environment, Shape
 from wsrender.documents.options import Task
-from wsrender.documents.quantities import Number, PositiveNumber, Seed, integer, real, sequence
+from wsrender.documents.quantities import Number, PositiveNumber, Seed, integer, real, sequence, share
 
 
-def _posture(value: Any) -> tuple[float, ...] | None:
+def _joint_values(value: Any) -> tuple[float, ...] | None:
     return None if value is None else tuple(real(number) for number in sequence(value))
+
+
+JointValues = Annotated[tuple[Number, ...] | None, BeforeValidator(_joint_values)]
 
 
 def _obstacles(value: Any) -> Any:
     """An environment, such as `ws.Environment` makes, is one of obstacles."""
     return {"items": value.items} if type(value) is Environment else value
-
-
-def _share(value: Any) -> float:
-    number = real(value)
-    if not 0 < number <= 1:
-        raise ValueError("must be above 0, up to 1")
-    return number
 
 
 class CharacteristicLengthChoice(Document):
@@ -36,7 +32,7 @@ class CharacteristicLengthChoice(Document):
     Jacobian to the isotropic matrices at the posture; "least_condition": least condition number there."""
     length_m: PositiveNumber | None = None
     """The length of the method "given" [m]."""
-    posture: Annotated[tuple[Number, ...] | None, BeforeValidator(_posture)] = None
+    posture: JointValues = None
     """Joint values of the posture [rad or m]; null: the middle of every joint's range."""
 
     def conflicts(self) -> Iterator[tuple[str, str]]:
@@ -85,7 +81,7 @@ class JointLimitForce(Document):
 class ConditioningForce(Document):
     """A force away from ill-conditioned postures, towards a larger inverse condition number."""
 
-    inverse_condition_on: Annotated[float, Field(gt=0, le=1), BeforeValidator(_share)] = 0.2
+    inverse_condition_on: Annotated[float, Field(gt=0, le=1), BeforeValidator(share)] = 0.2
     """Inverse condition number below which the force acts [1]."""
     condition_threshold: Annotated[float, Field(gt=1), BeforeValidator(real)] = 20.0
     """Condition number at which it has its full strength [1]."""

@@ -14,7 +14,7 @@ from pydantic import BeforeValidator, Field
 from wsrender.documents.arm import Arm
 from wsrender.documents.document import Document
 from wsrender.documents.problems import tagged
-from wsrender.documents.quantities import Name, integer, quoted, real, sequence
+from wsrender.documents.quantities import Name, integer, numbers_of, quoted, real
 from wsrender.documents.robot import LARGEST, Transform, Vector
 
 SMALLEST_AXIS = 1e-9
@@ -22,10 +22,7 @@ MOST_JOINTS = 3  # before, and after
 
 
 def _interval(value: Any) -> tuple[float, float]:
-    try:
-        numbers = tuple(real(number) for number in sequence(value))
-    except ValueError:
-        numbers = ()
+    numbers = numbers_of(value)
     if len(numbers) != 2 or not -LARGEST <= numbers[0] < numbers[1] <= LARGEST:
         raise ValueError(f"must be [lower, upper], lower below upper, within ±{LARGEST:g}")
     return numbers[0], numbers[1]
@@ -39,10 +36,7 @@ def _lengths(value: Any) -> tuple[float, float]:
 
 
 def _axis(value: Any) -> tuple[float, ...]:
-    try:
-        numbers = tuple(real(number) for number in sequence(value))
-    except ValueError:
-        numbers = ()
+    numbers = numbers_of(value)
     if len(numbers) != 3 or not SMALLEST_AXIS < math.hypot(*numbers) < LARGEST:
         raise ValueError("must be a list of 3 finite numbers, not all 0; any length will do")
     return numbers

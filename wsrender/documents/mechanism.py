@@ -10,7 +10,7 @@ from wsrender.documents.document import Document
 from wsrender.documents.environment import Bounds
 from wsrender.documents.legs import Interval, Leg, Lengths, Link, SerialJoint, SerialJoints, SerialLeg
 from wsrender.documents.problems import shown
-from wsrender.documents.quantities import Name, PositiveNumber, quoted, real, sequence
+from wsrender.documents.quantities import Name, PositiveNumber, points_of, quoted, real, sequence
 from wsrender.documents.robot import Transform, Vector
 
 WORKING_MODES = ("++", "+-", "-+", "--")
@@ -29,11 +29,8 @@ def _three(value: Any) -> tuple[float, ...]:
 def _six_points(value: Any) -> tuple[tuple[float, ...], ...] | None:
     if value is None:
         return None
-    try:
-        points = tuple(tuple(real(x) for x in sequence(point)) for point in sequence(value))
-    except ValueError:
-        points = ()
-    if len(points) != 6 or any(len(point) != 3 for point in points):
+    points = points_of(value)
+    if len(points) != 6:
         raise ValueError("must be a list of 6 points [x, y, z], finite numbers")
     return points
 

@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field, StrictBool, WithJsonSchema
 
 from wsrender.documents.document import Document
-from wsrender.documents.quantities import Name, Number, PositiveNumber, distinct, integer, quoted, real, sequence
+from wsrender.documents.quantities import Name, Number, PositiveNumber, distinct, integer, quoted, real, sequence, share
 
 TASK_ROWS = ("x", "y", "z", "rx", "ry", "rz")
 NAMED_TASKS = {"linear": TASK_ROWS[:3], "angular": TASK_ROWS[3:], "full": TASK_ROWS}
@@ -186,13 +186,6 @@ class IndexChoices(Document):
             yield "torque_scaling", "must be false with kinematic indices: it scales dynamic ones"
 
 
-def _fraction(value: Any) -> float:
-    number = real(value)
-    if not 0 < number <= 1:
-        raise ValueError("must be above 0, and at most 1")
-    return number
-
-
 class AlphaShapeSurface(Document):
     """Boundary of the Delaunay tetrahedra of the sampled positions whose circumspheres are small enough."""
 
@@ -205,7 +198,7 @@ class IsoSurface(Document):
 
     iso_surface: Name
     """The index; its largest value per voxel counts (its mean where the volume holds no maximum)."""
-    fraction: Annotated[float, Field(gt=0, le=1), BeforeValidator(_fraction)] = 0.9
+    fraction: Annotated[float, Field(gt=0, le=1), BeforeValidator(share)] = 0.9
     """Threshold μ, a fraction of the largest value of all voxels."""
 
 

@@ -7,16 +7,13 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, Field
 
 from wsrender.documents.document import Document
-from wsrender.documents.quantities import integer, real, sequence
+from wsrender.documents.quantities import integer, numbers_of, real, sequence
 
 MOST_ORIENTATIONS = 10_000_000
 
 
 def _angles(value: Any) -> tuple[float, float]:
-    try:
-        numbers = tuple(real(number) for number in sequence(value))
-    except ValueError:
-        numbers = ()
+    numbers = numbers_of(value)
     if len(numbers) != 2 or not -360 <= numbers[0] <= numbers[1] <= 360:
         raise ValueError("must be [lower, upper] in degrees, lower not above upper, within ±360")
     return numbers[0], numbers[1]

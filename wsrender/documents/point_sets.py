@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import BeforeValidator
 
 from wsrender.documents.document import Document
-from wsrender.documents.quantities import Name, real, sequence
+from wsrender.documents.quantities import Name, points_of
 from wsrender.errors import InputError
 
 MOST_POINTS = 10_000_000
@@ -17,11 +17,8 @@ MOST_POINTS = 10_000_000
 def _points(value: Any) -> tuple[Any, ...] | None:
     if value is None:
         return None
-    try:
-        points = tuple(tuple(map(real, sequence(point))) for point in sequence(value))
-    except ValueError:
-        points = ()
-    if not points or any(len(point) != 3 for point in points):
+    points = points_of(value)
+    if not points:
         raise ValueError("must be a list of points [x, y, z], finite numbers")
     return points
 

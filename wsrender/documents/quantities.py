@@ -58,6 +58,31 @@ def sequence(value: Any) -> list:
     return list(value)
 
 
+def numbers_of(value: Any) -> tuple[float, ...]:
+    """The finite numbers of a list; none of anything else, which the caller refuses in its own words."""
+    try:
+        return tuple(real(number) for number in sequence(value))
+    except ValueError:
+        return ()
+
+
+def points_of(value: Any) -> tuple[tuple[float, ...], ...]:
+    """Points [x, y, z] of finite numbers; none of anything else, which the caller refuses in its own words."""
+    try:
+        points = tuple(numbers_of(point) for point in sequence(value))
+    except ValueError:
+        return ()
+    return points if all(len(point) == 3 for point in points) else ()
+
+
+def share(value: Any) -> float:
+    """A number above 0, up to 1; ValueError otherwise."""
+    number = real(value)
+    if not 0 < number <= 1:
+        raise ValueError("must be above 0, and at most 1")
+    return number
+
+
 def argument(field: str, convert: Callable[[Any], Any], value: Any) -> Any:
     """What ``convert`` makes of an argument of a Python function; InputError, naming the field, where it refuses."""
     try:

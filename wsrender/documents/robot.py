@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import BeforeValidator, Field, StrictStr, model_validator
 
 from wsrender.documents.document import Document
-from wsrender.documents.quantities import Name, Number, PositiveNumber, quoted, real, sequence
+from wsrender.documents.quantities import Name, Number, PositiveNumber, numbers_of, quoted, real, sequence
 
 SOURCES = ("library", "dh", "mjcf", "urdf", "model", "path")
 LARGEST = 1e6  # m or rad: beyond any robot, far from overflow
@@ -20,10 +20,7 @@ def _numbers(*counts: int) -> BeforeValidator:
     allowed = " or ".join(str(count) for count in counts)
 
     def validate(value: Any) -> tuple[float, ...]:
-        try:
-            numbers = tuple(real(number) for number in sequence(value))
-        except ValueError:
-            numbers = ()
+        numbers = numbers_of(value)
         if len(numbers) not in counts:
             raise ValueError(f"must be a list of {allowed} finite numbers")
         return numbers
@@ -34,10 +31,7 @@ def _numbers(*counts: int) -> BeforeValidator:
 def _interval(value: Any) -> tuple[float, ...] | None:
     if value is None:
         return None
-    try:
-        numbers = tuple(real(number) for number in sequence(value))
-    except ValueError:
-        numbers = ()
+    numbers = numbers_of(value)
     if len(numbers) != 2:
         raise ValueError("must be [lower, upper], two finite numbers, or null")
     if not numbers[0] < numbers[1]:

@@ -43,12 +43,9 @@ _INDEX = Query(max_length=256, description="Name of an index; the first by defau
 _VOLUME = Query(max_length=256, description="Which volume, where the result has several: name of its file.")
 _STATISTIC = Query(description="Statistic per voxel; the maximum by default, if it was kept.")
 _AT = Query(allow_inf_nan=False, description="Coordinate of the plane [m]; the plane with most voxels by default.")
+_SUFFIX = OneOf(lambda: formats.suffixes(formats.rows("picture")))
 Statistic = Literal["count", "maximum", "mean", "minimum"]
 NPY, RAW, PICTURE = "application/x-npy", "application/octet-stream", formats.rows("picture", own=True)[0]
-
-
-def _picture_suffixes() -> list[str]:
-    return formats.suffixes(formats.rows("picture"))
 
 
 def _picture_names() -> list[str]:
@@ -143,7 +140,7 @@ def list_artifacts(server: Server, job: Finished) -> Page[ArtifactView]:
     """All files in one page; 409 while there is no result."""
     records = server.store.artifacts(job.owner, job.id)
     path = f"/v1/jobs/{job.id}/artifacts"
-    return Page(items=[ArtifactView(**vars(record), href=f"{path}/{record.name}") for record in records])
+    return Page(items=[ArtifactView.of(record, href=f"{path}/{record.name}") for record in records])
 
 
 @router.get(
@@ -237,7 +234,7 @@ async def get_plot(
     server: Server,
     job: Finished,
     plot: Annotated[str, OneOf(_picture_names)],
-    format: Annotated[str, OneOf(_picture_suffixes), Query(description="Format of the picture.")] = PICTURE.suffix,
+    format: Annotated[str, _SUFFIX, Query(description="Format of the picture.")] = PICTURE.suffix,
     index: Annotated[str | None, _INDEX] = None,
     statistic: Annotated[Statistic | None, _STATISTIC] = None,
     axis: Annotated[Literal["x", "y", "z"] | None, Query(description="Normal of the plane of `slice`.")] = None,

@@ -95,10 +95,7 @@ def get_analysis(
 )
 def list_robots(principal: Reader) -> Page[RobotView]:
     """The robots that jobs can name; all in one page."""
-    robots = library.describe()
-    return Page(
-        items=[RobotView(**{name: getattr(robot, name) for name in RobotView.model_fields}) for robot in robots]
-    )
+    return Page(items=[RobotView.of(robot) for robot in library.describe()])
 
 
 async def _xml_body(request: Request) -> bytes:

@@ -1,8 +1,7 @@
 """Jobs as JSON."""
 
-from dataclasses import asdict
 from datetime import datetime
-from typing import Annotated, Any, Generic, TypeVar
+from typing import Annotated, Any, Generic, Self, TypeVar
 
 from fastapi import Path
 from pydantic import BaseModel, ConfigDict, Field
@@ -23,6 +22,11 @@ class View(BaseModel):
     """Base of what the server answers."""
 
     model_config = ConfigDict(use_attribute_docstrings=True)
+
+    @classmethod
+    def of(cls, record: Any, **made: Any) -> Self:
+        """What a record holds, with the fields that are made of it."""
+        return cls(**{name: getattr(record, name) for name in cls.model_fields if name not in made}, **made)
 
 
 class Page(View, Generic[ItemT]):
@@ -114,15 +118,12 @@ class JobView(View):
     """Where else to look."""
 
 
-_MADE = ("progress", "error", "warnings", "links")  # here, of what the record holds
-
-
 def job_view(job: JobRecord) -> JobView:
     """A job as JSON."""
     path, has_result = f"/v1/jobs/{job.id}", job.state == JobState.SUCCEEDED
-    return JobView(
-        **{name: getattr(job, name) for name in JobView.model_fields if name not in _MADE},
-        progress=ProgressView(**asdict(job.progress)),
+    return JobView.of(
+        job,
+        progress=ProgressView.of(job.progress),
         error=None if job.error is None else Problem(**problem_of_job(job.error)),
         warnings=[WarningView(**entry) for entry in entries(notices_of(job.version) if has_result else ())],
         links=JobLinks(self=path, events=f"{path}/events", result=f"{path}/result", artifacts=f"{path}/artifacts"),

@@ -1,13 +1,12 @@
 """API keys, managed by whoever holds one of the scope admin."""
 
 from datetime import datetime
-from typing import Annotated, Any
+from typing import Annotated
 
 from fastapi import APIRouter, Path, Response
 from pydantic import BaseModel, ConfigDict, Field
 
 from wsrender_server.auth import Administrator, Scope
-from wsrender_server.jobs.records import KeyRecord
 from wsrender_server.parts import Server
 from wsrender_server.problems import HttpProblem, problem_responses
 from wsrender_server.routes.job_views import Page, View
@@ -51,7 +50,7 @@ class NewKey(KeyView):
 @router.get("/keys", summary="List the API keys", response_model=Page[KeyView], responses=problem_responses(401, 403))
 def list_keys(server: Server, principal: Administrator) -> Page[KeyView]:
     """All keys of the database, oldest first, revoked ones included; those of a key file are not listed."""
-    return Page(items=[KeyView(**_fields(key)) for key in server.store.list_keys()])
+    return Page(items=[KeyView.of(key) for key in server.store.list_keys()])
 
 
 @router.post(
@@ -65,7 +64,7 @@ def create_key(server: Server, principal: Administrator, response: Response, key
     """The answer holds the secret, this once."""
     made, secret = server.store.create_key(key.name, key.scopes)
     response.headers["Cache-Control"] = "no-store"
-    return NewKey(**_fields(made), secret=secret)
+    return NewKey.of(made, secret=secret)
 
 
 @router.post(
@@ -83,8 +82,4 @@ def revoke_key(
     key = server.store.revoke_key(key_id)
     if key is None:
         raise HttpProblem(404, f"there is no key {key_id}", "key_not_found")
-    return KeyView(**_fields(key))
-
-
-def _fields(key: KeyRecord) -> dict[str, Any]:
-    return {name: getattr(key, name) for name in KeyView.model_fields}
+    return KeyView.of(key)

@@ -78,7 +78,7 @@ class Version(View):
 @router.get("/v1/queue", summary="Look at the queue", response_model=QueueView, responses=problem_responses(401, 403))
 def get_queue(server: Server, principal: Reader) -> QueueView:
     """How many jobs wait and run, of everyone together."""
-    return QueueView(**vars(server.store.queue_summary()))
+    return QueueView.of(server.store.queue_summary())
 
 
 @router.get(
@@ -86,7 +86,7 @@ def get_queue(server: Server, principal: Reader) -> QueueView:
 )
 def list_workers(server: Server, principal: Reader) -> Page[WorkerView]:
     """Workers that answer; all in one page."""
-    return Page(items=[WorkerView(**vars(worker)) for worker in server.jobs.workers()])
+    return Page(items=[WorkerView.of(worker) for worker in server.jobs.workers()])
 
 
 @router.get("/healthz", summary="Whether the server answers", response_model=Health, responses=problem_responses())
