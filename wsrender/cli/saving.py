@@ -24,14 +24,9 @@ def check_output(output: Path, formats: list[str] | None) -> None:
 
 def save_and_report(result: Any, output: Path, formats: list[str] | None) -> None:
     """Save a result; print its summary and the files written."""
-    result.save(output, formats=tuple(formats or ()))
-    report(result, output)
-
-
-def report(result: Any, output: Path) -> None:
-    """Print the summary of a saved result and its files."""
     from wsrender.results.export.artifacts import DOCUMENT
 
+    result.save(output, formats=tuple(formats or ()))
     console = Console(soft_wrap=True, highlight=False, markup=False)
     console.print(result.summary())
     sizes = {each["name"]: each["bytes"] for each in result.document["artifacts"]}

@@ -6,8 +6,7 @@ Problem documents (RFC 9457) are raised as the exceptions of wsrender.errors.
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from types import TracebackType
-from typing import Any, Self
+from typing import Any
 
 import httpx2
 
@@ -201,14 +200,6 @@ class Connection:
             on_loss or (lambda reason: None),
             lambda: self._reached,
         )
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self.close()
 
 
 def worth_repeating(response: httpx2.Response) -> bool:

@@ -87,48 +87,18 @@ def boundary_distance(
     origin = low - (EDGE + 0.5) * cell
     shape = np.ceil((high - low) / cell).astype(int) + 2 * EDGE + 2
     inside = np.zeros(shape, bool)
-    _fill(inside, chain, axes, origin, cell, choice, device, threads)
+    for each in _positions(chain, SAMPLES_PER_CELL * inside.size, choice.seed, device, threads):
+        at = np.round((each @ axes.T - origin) / cell).astype(np.int64)
+        inside[tuple(np.clip(at, 0, shape - 1).T)] = True
+    inside |= binary_closing(inside)  # gaps of one cell between samples
     if choice.refined:
-        _decide(inside, chain, axes, origin, cell, choice, device, threads)
+        near = np.argwhere(np.abs(_signed_distance(inside)) < DECIDED)
+        plane = (np.eye(3) - axes.T @ axes) @ positions[0]
+        solver = InverseSolver(chain, position_m=POSITION_M, seed=choice.seed, device=device, threads=threads)
+        inside[tuple(near.T)] = solver.solve((origin + near * cell) @ axes + plane).label == REACHABLE
     # A cell counts where a sample falls into any part of it: on average half a cell too far out.
     values = (_signed_distance(inside) - (0.0 if choice.refined else 0.5)) * cell
     return BoundaryDistance(values, axes, origin, cell)
-
-
-def _fill(
-    inside: np.ndarray,
-    chain: Chain,
-    axes: np.ndarray,
-    origin: np.ndarray,
-    cell: float,
-    choice: BoundaryForce,
-    device: str,
-    threads: int | None,
-) -> None:
-    """Mark the cells that samples reach; gaps of one cell between samples are closed."""
-    last = np.array(inside.shape) - 1
-    for positions in _positions(chain, SAMPLES_PER_CELL * inside.size, choice.seed, device, threads):
-        at = np.round((positions @ axes.T - origin) / cell).astype(np.int64)
-        inside[tuple(np.clip(at, 0, last).T)] = True
-    inside |= binary_closing(inside)
-
-
-def _decide(
-    inside: np.ndarray,
-    chain: Chain,
-    axes: np.ndarray,
-    origin: np.ndarray,
-    cell: float,
-    choice: BoundaryForce,
-    device: str,
-    threads: int | None,
-) -> None:
-    """Decide the cells at the boundary by inverse kinematics of their centres."""
-    near = np.argwhere(np.abs(_signed_distance(inside)) < DECIDED)
-    plane = (np.eye(3) - axes.T @ axes) @ next(_positions(chain, 1, choice.seed, device, threads))[0]
-    centers = (origin + near * cell) @ axes + plane
-    solver = InverseSolver(chain, position_m=POSITION_M, seed=choice.seed, device=device, threads=threads)
-    inside[tuple(near.T)] = solver.solve(centers).label == REACHABLE
 
 
 def _signed_distance(inside: np.ndarray) -> np.ndarray:
