@@ -1,9 +1,13 @@
 """Commands of the server: ``wsrender serve | worker | keys | database | demo``."""
 
+import os
 import signal
+import subprocess
+import sys
 import tempfile
 import threading
-from collections.abc import Iterator
+import time
+from collections.abc import Iterator, Sequence
 from contextlib import closing, contextmanager, nullcontext
 from pathlib import Path
 from typing import Annotated, Any
@@ -38,6 +42,8 @@ Scheduler = Annotated[
 CaFile = Annotated[Path | None, typer.Option(help="Certificate authority (PEM).", rich_help_panel=_TLS)]
 CertFile = Annotated[Path | None, typer.Option(help="Certificate of this process (PEM).", rich_help_panel=_TLS)]
 KeyFile = Annotated[Path | None, typer.Option(help="Private key of this process (PEM).", rich_help_panel=_TLS)]
+RESTART_S = 2.0
+LOOK_S = 0.2
 
 
 @app.command()
@@ -236,8 +242,6 @@ def _say_where(settings: Settings) -> None:
 
 
 def _work_on(gpus: str, settings: Settings, stop: threading.Event) -> None:
-    from wsrender_server.gpu_workers import gpu_numbers, run_workers
-
     files = {
         "--tls-ca-file": settings.tls_ca_file,
         "--tls-cert-file": settings.tls_cert_file,
@@ -246,3 +250,48 @@ def _work_on(gpus: str, settings: Settings, stop: threading.Event) -> None:
     arguments = ["--scheduler", str(settings.scheduler), "--data-dir", str(settings.data_dir)]
     arguments += [str(part) for option in files.items() for part in option]
     run_workers(gpu_numbers(gpus), arguments, stop)
+
+
+def gpu_numbers(choice: str) -> list[str]:
+    """The GPUs that ``choice`` names: "all", or numbers separated by commas. Raises InputError."""
+    present = _present_gpus()
+    if choice == "all":
+        if not present:
+            raise InputError("--gpus", "this machine has no NVIDIA GPU, or nvidia-smi does not see it")
+        return present
+    chosen = [number.strip() for number in choice.split(",")]
+    for number in chosen:
+        if number not in present:
+            raise InputError("--gpus", f'GPU "{number}" is not one of {", ".join(present) or "none"}')
+    return chosen
+
+
+def run_workers(gpus: Sequence[str], arguments: Sequence[str], stop: threading.Event) -> None:
+    """Keep one ``wsrender worker`` per GPU running until ``stop``; each sees its GPU only.
+
+    ``arguments`` are those of each worker. One that ends is started again.
+    """
+    workers = {gpu: _start_worker(gpu, arguments) for gpu in gpus}
+    while not stop.wait(LOOK_S):
+        for gpu, worker in workers.items():
+            if worker.poll() is not None:
+                time.sleep(RESTART_S)
+                workers[gpu] = _start_worker(gpu, arguments)
+    for worker in workers.values():
+        worker.send_signal(signal.SIGTERM)
+    for worker in workers.values():
+        worker.wait()
+
+
+def _start_worker(gpu: str, arguments: Sequence[str]) -> subprocess.Popen[bytes]:
+    environment = {**os.environ, "CUDA_DEVICE_ORDER": "PCI_BUS_ID", "CUDA_VISIBLE_DEVICES": gpu}
+    return subprocess.Popen([sys.executable, "-m", "wsrender", "worker", *arguments], env=environment)
+
+
+def _present_gpus() -> list[str]:
+    """Numbers of the GPUs in the order of their bus, asked without starting CUDA here."""
+    query = ["nvidia-smi", "--query-gpu=index", "--format=csv,noheader"]
+    try:
+        return subprocess.run(query, capture_output=True, text=True, check=True, timeout=30).stdout.split()
+    except (OSError, subprocess.SubprocessError):
+        return []

@@ -4,8 +4,7 @@ import numpy as np
 
 import wsrender as ws
 from wsrender.geometry.planar.exact_boundary import ExactBoundary
-from wsrender.geometry.planar.motion import PlanarJoint
-from wsrender.geometry.planar.planar_chain import PlanarChain, Plane
+from wsrender.geometry.planar.planar_chain import PlanarChain, PlanarJoint, Plane
 
 XY = Plane(np.zeros(3), np.eye(3)[:2])
 

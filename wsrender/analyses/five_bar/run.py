@@ -17,17 +17,17 @@ from wsrender.analyses.partial_tables import tables_of, with_tables
 from wsrender.mechanisms.five_bar import ASSEMBLY_MODES, FiveBar
 from wsrender.mechanisms.five_bar.aspects import Aspect, aspects
 from wsrender.mechanisms.five_bar.condition_numbers import conditioning
-from wsrender.mechanisms.five_bar.isotropy import isotropic_points
-from wsrender.mechanisms.five_bar.loci import Piece, end_point, pieces, postures, type_2_curves
-from wsrender.mechanisms.five_bar.maps import (
+from wsrender.mechanisms.five_bar.isotropy import (
     QUANTITIES,
     PlaneLattice,
     cartesian_map,
+    isotropic_points,
     joint_axis,
     joint_map,
     plane_bounds,
     plane_lattice,
 )
+from wsrender.mechanisms.five_bar.loci import Piece, end_point, pieces, postures, type_2_curves
 from wsrender.mechanisms.five_bar.mechanism import wrapped
 from wsrender.mechanisms.five_bar.region import ArcRegion, workspace
 from wsrender.mechanisms.five_bar.tables import (

@@ -18,7 +18,7 @@ from wsrender.geometry.components import components
 from wsrender.geometry.planar.arrangement import ON_CURVE, Classes, arrange, side_classes, told_apart
 from wsrender.geometry.planar.curves import TURN, Curves
 from wsrender.geometry.planar.distances import approaches, meetings, point_distances
-from wsrender.geometry.planar.motion import PlanarJoint, Source, candidates
+from wsrender.geometry.planar.planar_chain import PlanarJoint, Source, candidates
 from wsrender.geometry.planar.planar_set import PlanarSet, closes, loops_of
 
 _AT_ONCE = 1 << 16  # pieces of orbits that are looked at together

@@ -7,7 +7,7 @@ import numpy as np
 from wsrender.errors import NumericalError
 from wsrender.geometry.planar.curves import TURN, Curves, cross
 from wsrender.geometry.planar.distances import orbit_distances
-from wsrender.geometry.planar.motion import Candidates, PlanarJoint, Source
+from wsrender.geometry.planar.planar_chain import Candidates, PlanarJoint, Source
 
 _AT_ONCE = 1 << 20  # angles that are held in memory at once
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from wsrender.errors import NumericalError
 from wsrender.geometry.planar.arrangement import ON_CURVE, Arrangement, arrange, side_classes, told_apart
-from wsrender.geometry.planar.motion import Candidates, PlanarJoint, Source, candidates
+from wsrender.geometry.planar.planar_chain import Candidates, PlanarJoint, Source, candidates
 from wsrender.geometry.planar.planar_set import PlanarSet, Span, closes
 
 

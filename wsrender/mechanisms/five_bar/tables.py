@@ -7,9 +7,8 @@ import numpy as np
 
 from wsrender.mechanisms.five_bar.aspects import Aspect
 from wsrender.mechanisms.five_bar.condition_numbers import conditioning
-from wsrender.mechanisms.five_bar.isotropy import isotropic_b, isotropic_points
+from wsrender.mechanisms.five_bar.isotropy import JointMap, PlaneLattice, iso_curves, isotropic_b, isotropic_points
 from wsrender.mechanisms.five_bar.loci import Piece, end_point, least_kappa_a_curves, pieces
-from wsrender.mechanisms.five_bar.maps import JointMap, PlaneLattice, iso_curves
 from wsrender.mechanisms.five_bar.mechanism import FiveBar, wrapped
 from wsrender.mechanisms.five_bar.region import LEGS, Arc, ArcRegion
 from wsrender.volume.table import Table
