@@ -36,8 +36,7 @@ Database = Annotated[
     str | None, typer.Option(help="postgresql+psycopg://…; default: SQLite in the data folder.", metavar="URL")
 ]
 Scheduler = Annotated[
-    str | None,
-    typer.Option(help="Dask scheduler, tls://host:port.", metavar="ADDRESS", rich_help_panel=_WORKERS),
+    str | None, typer.Option(help="Dask scheduler, tls://host:port.", metavar="ADDRESS", rich_help_panel=_WORKERS)
 ]
 CaFile = Annotated[Path | None, typer.Option(help="Certificate authority (PEM).", rich_help_panel=_TLS)]
 CertFile = Annotated[Path | None, typer.Option(help="Certificate of this process (PEM).", rich_help_panel=_TLS)]
@@ -88,8 +87,7 @@ def worker(
     scheduler: Scheduler = None,
     data_dir: DataDir = None,
     gpus: Annotated[
-        str | None,
-        typer.Option(help='"all", or numbers such as 0,1: one process per GPU. Default: one process.'),
+        str | None, typer.Option(help='"all", or numbers such as 0,1: one process per GPU. Default: one process.')
     ] = None,
     tls_ca_file: CaFile = None,
     tls_cert_file: CertFile = None,

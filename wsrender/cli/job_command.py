@@ -52,8 +52,7 @@ def _document(
     tip: Annotated[str | None, typer.Option(help="Site, body or link at the end of the chain.")] = None,
     base: Annotated[str | None, typer.Option(help="Body or link at which the chain starts.")] = None,
     limits: Annotated[
-        list[str] | None,
-        typer.Option(help="JOINT=LOWER,UPPER instead of the model's limits, in rad or m; repeatable."),
+        list[str] | None, typer.Option(help="JOINT=LOWER,UPPER instead of the model's limits, in rad or m; repeatable.")
     ] = None,
     length_unit_m: Annotated[
         float | None, typer.Option(help="The model's unit of length in metres; 1 confirms metres.")
@@ -65,8 +64,7 @@ def _document(
         str | None, typer.Option(help="Samples per joint: N, or N,N,… by joint.", rich_help_panel=_SAMPLING)
     ] = None,
     samples: Annotated[
-        str | None,
-        typer.Option(help="Number of samples, such as 1e6 (Sobol by default).", rich_help_panel=_SAMPLING),
+        str | None, typer.Option(help="Number of samples, such as 1e6 (Sobol by default).", rich_help_panel=_SAMPLING)
     ] = None,
     seed: Annotated[int | None, typer.Option(help="Seed of the samples.", rich_help_panel=_SAMPLING)] = None,
     lock: Annotated[
@@ -74,12 +72,10 @@ def _document(
         typer.Option(help="JOINT=VALUE held still, in rad or m; repeatable.", rich_help_panel=_SAMPLING),
     ] = None,
     indices: Annotated[
-        str | None,
-        typer.Option(help="kinematic, dynamic, all, or names: a,b,c.", rich_help_panel=_ANALYSIS),
+        str | None, typer.Option(help="kinematic, dynamic, all, or names: a,b,c.", rich_help_panel=_ANALYSIS)
     ] = None,
     task: Annotated[
-        str | None,
-        typer.Option(help="linear, angular, full, or rows such as x,y.", rich_help_panel=_ANALYSIS),
+        str | None, typer.Option(help="linear, angular, full, or rows such as x,y.", rich_help_panel=_ANALYSIS)
     ] = None,
     convention: Annotated[
         str | None, typer.Option(help="standard, table_1 or wsrender_code.", rich_help_panel=_ANALYSIS)

@@ -20,8 +20,7 @@ SERVER = "http://127.0.0.1:8000"
 
 Server = Annotated[str, typer.Option(envvar="WSRENDER_SERVER", help="Address of the server.", metavar="URL")]
 Token = Annotated[
-    str | None,
-    typer.Option(envvar="WSRENDER_TOKEN", help="API key, where the server asks for one.", show_envvar=True),
+    str | None, typer.Option(envvar="WSRENDER_TOKEN", help="API key, where the server asks for one.", show_envvar=True)
 ]
 jobs = typer.Typer(no_args_is_help=True, help="List, show, cancel, retry and download the jobs on a server.")
 

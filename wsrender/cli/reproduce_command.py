@@ -19,10 +19,7 @@ PIPED_WIDTH = 260  # columns off a terminal: one value a line
 
 
 def reproduce(
-    name: Annotated[
-        str,
-        typer.Argument(metavar="NAME", help=f"One of {', '.join(NAMES)}."),
-    ],
+    name: Annotated[str, typer.Argument(metavar="NAME", help=f"One of {', '.join(NAMES)}.")],
     as_json: Annotated[bool, typer.Option("--json", help="Print the rows as JSON.")] = False,
     traceback: Annotated[bool, typer.Option("--traceback", help="Show where an error came from.")] = False,
 ) -> None:

@@ -17,11 +17,7 @@ class Document(BaseModel):
     """A part of a job document. Unknown fields, NaN, infinities and numbers in strings are refused."""
 
     model_config = ConfigDict(
-        extra="forbid",
-        frozen=True,
-        validate_default=False,
-        use_attribute_docstrings=True,
-        protected_namespaces=(),
+        extra="forbid", frozen=True, validate_default=False, use_attribute_docstrings=True, protected_namespaces=()
     )
 
     long_fields: ClassVar[tuple[str, ...]] = ()

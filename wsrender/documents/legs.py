@@ -153,13 +153,7 @@ class SerialLeg(Arm):
             yield "actuated", f"must be different names, not {quoted(self.actuated)}"
 
 
-LEGS: dict[str, type[Document]] = {
-    "UPS": UPSLeg,
-    "PUS": PUSLeg,
-    "RUS": RUSLeg,
-    "delta": DeltaLeg,
-    "serial": SerialLeg,
-}
+LEGS: dict[str, type[Document]] = {"UPS": UPSLeg, "PUS": PUSLeg, "RUS": RUSLeg, "delta": DeltaLeg, "serial": SerialLeg}
 _known = tagged("type", LEGS)
 
 

@@ -113,17 +113,10 @@ def _ordered(value: Any, allowed: tuple[str, ...]) -> tuple[str, ...]:
 
 
 Task = Annotated[
-    Literal["linear", "angular", "full"] | tuple[Literal["x", "y", "z", "rx", "ry", "rz"], ...],
-    BeforeValidator(_task),
+    Literal["linear", "angular", "full"] | tuple[Literal["x", "y", "z", "rx", "ry", "rz"], ...], BeforeValidator(_task)
 ]
-Indices = Annotated[
-    Literal["kinematic", "dynamic", "all"] | tuple[Name, ...],
-    BeforeValidator(_indices),
-]
-IndicesOrNone = Annotated[
-    Literal["kinematic", "dynamic", "all"] | tuple[Name, ...],
-    BeforeValidator(_indices_or_none),
-]
+Indices = Annotated[Literal["kinematic", "dynamic", "all"] | tuple[Name, ...], BeforeValidator(_indices)]
+IndicesOrNone = Annotated[Literal["kinematic", "dynamic", "all"] | tuple[Name, ...], BeforeValidator(_indices_or_none)]
 _OptionValue = Annotated[bool | int | float | tuple[Number, ...], BeforeValidator(_option_value)]
 IndexOptions = Annotated[
     dict[Name, Annotated[dict[Name, _OptionValue], BeforeValidator(_options)]], BeforeValidator(_options)

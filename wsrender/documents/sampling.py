@@ -7,16 +7,7 @@ from pydantic import BeforeValidator, Discriminator, Field
 
 from wsrender.documents.document import Document
 from wsrender.documents.problems import tagged
-from wsrender.documents.quantities import (
-    LARGEST_COUNT,
-    Count,
-    Name,
-    Number,
-    PositiveNumber,
-    Seed,
-    integer,
-    sequence,
-)
+from wsrender.documents.quantities import LARGEST_COUNT, Count, Name, Number, PositiveNumber, Seed, integer, sequence
 
 
 def _per_joint(value: Any) -> int | tuple[int, ...]:
@@ -31,10 +22,7 @@ def _per_joint(value: Any) -> int | tuple[int, ...]:
     return counts if hasattr(value, "__len__") else counts[0]
 
 
-PerJoint = Annotated[
-    Count | Annotated[tuple[Count, ...], Field(min_length=1)],
-    BeforeValidator(_per_joint),
-]
+PerJoint = Annotated[Count | Annotated[tuple[Count, ...], Field(min_length=1)], BeforeValidator(_per_joint)]
 
 
 class _Sampling(Document):

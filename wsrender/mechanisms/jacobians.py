@@ -172,10 +172,7 @@ def _batch(
     if mechanism.numeric:
         return values
     diagonal = np.diagonal(J.B, axis1=1, axis2=2)
-    return values | {
-        "determinant_A": np.where(regular, np.linalg.det(A), 0.0),
-        "determinant_B": diagonal.prod(axis=1),
-    }
+    return values | {"determinant_A": np.where(regular, np.linalg.det(A), 0.0), "determinant_B": diagonal.prod(axis=1)}
 
 
 def _values(found: Any, poses: int) -> np.ndarray:

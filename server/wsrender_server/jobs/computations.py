@@ -241,12 +241,7 @@ class ComputationStore:
         return [job.id for job in jobs]
 
     def _detach(
-        self,
-        session: Session,
-        job: Job,
-        computation: Computation,
-        end: JobState,
-        error: dict[str, Any] | None = None,
+        self, session: Session, job: Job, computation: Computation, end: JobState, error: dict[str, Any] | None = None
     ) -> None:
         """Take a job off its computation, which stops with its last job; a canceled one waits for that."""
         others = [other for other in self._jobs(session, computation.id, LIVE) if other.id != job.id]

@@ -39,20 +39,8 @@ RETRYABLE = (JobState.FAILED, JobState.CANCELED, JobState.TIMED_OUT)
 UNFINISHED = (ComputationState.WAITING, ComputationState.RUNNING, ComputationState.STOPPING)
 
 NEXT: dict[JobState, tuple[JobState, ...]] = {
-    JobState.QUEUED: (
-        JobState.RUNNING,
-        JobState.CANCELING,
-        JobState.SUCCEEDED,
-        JobState.FAILED,
-        JobState.CANCELED,
-    ),
-    JobState.RUNNING: (
-        JobState.CANCELING,
-        JobState.SUCCEEDED,
-        JobState.FAILED,
-        JobState.CANCELED,
-        JobState.TIMED_OUT,
-    ),
+    JobState.QUEUED: (JobState.RUNNING, JobState.CANCELING, JobState.SUCCEEDED, JobState.FAILED, JobState.CANCELED),
+    JobState.RUNNING: (JobState.CANCELING, JobState.SUCCEEDED, JobState.FAILED, JobState.CANCELED, JobState.TIMED_OUT),
     JobState.CANCELING: (JobState.CANCELED,),
     JobState.SUCCEEDED: (),
     JobState.FAILED: (JobState.QUEUED, JobState.RUNNING, JobState.SUCCEEDED),

@@ -130,12 +130,7 @@ def _publish(document: dict[str, Any], staging: Path, computation: str) -> list[
     from wsrender.results.export.formats import media_type
 
     path = staging / DOCUMENT
-    own = {
-        "name": DOCUMENT,
-        "media_type": media_type(DOCUMENT),
-        "bytes": path.stat().st_size,
-        "sha256": sha256(path),
-    }
+    own = {"name": DOCUMENT, "media_type": media_type(DOCUMENT), "bytes": path.stat().st_size, "sha256": sha256(path)}
     records = [own, *document["artifacts"]]
     for record in records:
         target = _files().artifact(computation, record["sha256"])

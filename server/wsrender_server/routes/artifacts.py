@@ -178,10 +178,7 @@ router.add_api_route("/jobs/{job_id:id}/artifacts/{name:path}", get_artifact, me
     summary="A plane of voxels",
     response_class=Response,
     responses={
-        200: {
-            "description": "The plane",
-            "content": dict.fromkeys((NPY, RAW, PICTURE.media_type), _BINARY),
-        },
+        200: {"description": "The plane", "content": dict.fromkeys((NPY, RAW, PICTURE.media_type), _BINARY)},
         **problem_responses(401, 403, 404, 406, 409, 422, 429),
     },
 )

@@ -108,12 +108,7 @@ async def _xml_body(request: Request) -> bytes:
 _MODEL_BODY = {
     "requestBody": {
         "required": True,
-        "content": {
-            "application/xml": {
-                "schema": {"type": "string"},
-                "example": "<mujoco><worldbody/></mujoco>",
-            }
-        },
+        "content": {"application/xml": {"schema": {"type": "string"}, "example": "<mujoco><worldbody/></mujoco>"}},
     }
 }
 

@@ -13,8 +13,7 @@ from wsrender_server.problems import HttpProblem, Problem, problem_of_job
 
 ItemT = TypeVar("ItemT")
 JobId = Annotated[
-    str,
-    Path(pattern="^[0-9a-f]{32}$", description="Id of a job.", examples=["3f2b8c1d9e4a4b5c8d7e6f5a4b3c2d1e"]),
+    str, Path(pattern="^[0-9a-f]{32}$", description="Id of a job.", examples=["3f2b8c1d9e4a4b5c8d7e6f5a4b3c2d1e"])
 ]
 
 

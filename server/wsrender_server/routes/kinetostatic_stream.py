@@ -186,10 +186,7 @@ def asyncapi() -> dict[str, Any]:
         "asyncapi": "3.0.0",
         "info": {"title": "wsrender kinetostatic stream", "version": __version__},
         "channels": {
-            "stream": {
-                "address": PATH,
-                "messages": {name: {"$ref": f"#/components/messages/{name}"} for name in names},
-            }
+            "stream": {"address": PATH, "messages": {name: {"$ref": f"#/components/messages/{name}"} for name in names}}
         },
         "operations": {
             "receive": {

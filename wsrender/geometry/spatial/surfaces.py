@@ -78,10 +78,9 @@ class Primitive:
             ):
                 return False
             along = between @ self.axis
-            apart = {
-                "plane": abs(along),
-                "cylinder": np.linalg.norm(between - along * self.axis),
-            }.get(self.kind, np.linalg.norm(between))
+            apart = {"plane": abs(along), "cylinder": np.linalg.norm(between - along * self.axis)}.get(
+                self.kind, np.linalg.norm(between)
+            )
         names = ("radius", "tube_radius", "half_angle")
         sizes = [abs(getattr(self, name) - getattr(other, name)) for name in names]
         return bool(max(apart, *sizes) <= tolerance)

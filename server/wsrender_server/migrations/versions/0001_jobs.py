@@ -79,10 +79,7 @@ def upgrade() -> None:
         sa.Column("progress", sa.JSON(), nullable=True),
         sa.Column("error", sa.JSON(), nullable=True),
         sa.Column("last_event", sa.Integer(), nullable=False),
-        sa.ForeignKeyConstraint(
-            ["computation_id"],
-            ["computations.id"],
-        ),
+        sa.ForeignKeyConstraint(["computation_id"], ["computations.id"]),
         sa.PrimaryKeyConstraint("id"),
         sa.UniqueConstraint("owner", "idempotency_key"),
     )
