@@ -67,7 +67,7 @@ def serve(
     Every option can be given by an environment variable as well, such as WSRENDER_PORT; server/README.md lists more.
     """
     with one_line_faults():
-        settings = settings_of(**_given(locals(), Settings))
+        settings = settings_of(**locals())
 
         from wsrender_server.local_server import READY
         from wsrender_server.serving import listen, serve_until_stopped
@@ -95,7 +95,7 @@ def worker(
 ) -> None:
     """Compute for a Dask scheduler; the data folder must be the server's, shared between the machines."""
     with one_line_faults():
-        settings = settings_of(**_given(locals(), Settings))
+        settings = settings_of(**locals())
         if settings.scheduler is None:
             raise InputError("--scheduler", "must be given, such as tls://lab:8786")
         _say_where(settings)
@@ -123,7 +123,7 @@ def create_key(
     with one_line_faults():
         from wsrender_server.jobs.store import open_store
 
-        settings = settings_of(**_given(locals(), Settings))
+        settings = settings_of(**locals())
         with closing(open_store(settings)) as store:
             key, secret = store.create_key(name, *([scope] if scope else []))
         typer.echo(secret)
@@ -143,7 +143,7 @@ def list_keys(data_dir: DataDir = None, database: Database = None) -> None:
         from rich.table import Table
 
         table = Table("id", "name", "scopes", "created", "revoked", box=SIMPLE_HEAD, show_edge=False)
-        settings = settings_of(**_given(locals(), Settings))
+        settings = settings_of(**locals())
         with _existing_store(settings) as store:
             found = [] if store is None else store.list_keys()
         if store is None:
@@ -160,7 +160,7 @@ def revoke_key(
 ) -> None:
     """Revoke an API key: requests with it are refused from now on."""
     with one_line_faults():
-        settings = settings_of(**_given(locals(), Settings))
+        settings = settings_of(**locals())
         with _existing_store(settings) as store:
             revoked = None if store is None else store.revoke_key(id)
         if revoked is None:
@@ -175,7 +175,7 @@ def upgrade_database(data_dir: DataDir = None, database: Database = None) -> Non
         from wsrender_server.jobs.database import open_database
         from wsrender_server.migrations import upgrade
 
-        settings = settings_of(**_given(locals(), Settings))
+        settings = settings_of(**locals())
         upgrade(open_database(settings.database_url))
         typer.echo("the database is up to date")
 
@@ -202,18 +202,16 @@ def demo(
 
 
 def settings_of(**given: Any) -> Settings:
-    """Settings from options, then environment variables, then defaults. Raises InputError."""
+    """Settings from those of a command's options that are given, then environment variables, then defaults.
+
+    Raises InputError.
+    """
     try:
-        return Settings(**given)
+        return Settings(**{name: given[name] for name in Settings.model_fields if given.get(name) is not None})
     except ValidationError as error:
         fault = error.errors()[0]
         field = ".".join(str(part) for part in fault["loc"]) or "settings"
         raise InputError(field, fault["msg"].removeprefix("Value error, ")) from None
-
-
-def _given(options: dict[str, Any], kind: type[Settings]) -> dict[str, Any]:
-    """Those of a command's options that are settings and were given."""
-    return {name: options[name] for name in kind.model_fields if options.get(name) is not None}
 
 
 @contextmanager
