@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from wsrender.notices import Notice
-from wsrender.results.presentation import presentation_of
+from wsrender.results.presentation import Presentation, presentation_of
 
 _UNITS = {"m3": "m³", "m2": "m²", "m": "m"}
 _SCIENTIFIC = 1e-4  # below: 1.23e-05 rather than 0.0000123
@@ -20,7 +20,7 @@ def headline_lines(document: Mapping[str, Any]) -> list[str]:
     found = document.get("headline")
     if not found:
         return []
-    together = document.get("analysis") in _MEASURED
+    together = whose != Presentation.measured
     robots = [robot for robot in document.get("robots") or () if robot.get("headline")]
     each = [robot for robot in robots if not together or robot["headline"]["value"] is not None]
     lines = [] if each and found["value"] is None else [headline_text(found, whose)]
