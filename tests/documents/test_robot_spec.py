@@ -181,6 +181,14 @@ def test_each_source_is_told_apart(source, value):
     assert robot.source == source
     assert robot.placement is not None and robot.placement.matrix()[2, 3] == 1.0
     assert RobotSpec(**json.loads(robot.model_dump_json())) == robot
+    assert not {"srdf", "exclude", "link_radius"} & {*robot.model_dump(), *(robot.model_dump()["dh"] or {})}
+
+
+def test_what_a_robot_says_of_its_bodies_survives_json():
+    dh = {"convention": "standard", "rows": [ROW], "link_radius": 0.05}
+    robot = RobotSpec(dh=dh, srdf="<robot/>", exclude=(("link1", "base"), ["link1", "link3"]))
+    assert RobotSpec(**json.loads(robot.model_dump_json())) == robot
+    assert robot.model_dump(mode="json")["exclude"] == [["link1", "base"], ["link1", "link3"]]
 
 
 @pytest.mark.parametrize(
@@ -198,6 +206,11 @@ def test_each_source_is_told_apart(source, value):
         ({"dh": {"convention": "modified", "rows": [{"d": "x"}]}}, "dh.rows.0.d", "must be a number"),
         ({"library": "ur5e", "tool": {"position_m": [0, 0]}}, "tool.position_m", "list of 3 finite numbers"),
         ({"name": "ur5e"}, "name", "is not a known field"),
+        ({"library": "ur5e", "srdf": ""}, "srdf", "must not be empty"),
+        ({"library": "ur5e", "exclude": [["a", "b"], ["a"]]}, "exclude.1", "must be a pair of names"),
+        ({"library": "ur5e", "exclude": [["a", 5]]}, "exclude.0.1", "must be a string, not 5"),
+        ({"library": "ur5e", "exclude": "ab"}, "exclude", "must be a list"),
+        ({"dh": {"convention": "modified", "rows": [ROW], "link_radius": 0}}, "dh.link_radius", "greater than 0"),
     ],
 )
 def test_a_bad_robot_is_refused_by_name(fields, field, message):
