@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from wsrender.errors import InputError
-from wsrender.multi.shared_volume import NUMBER
+from wsrender.multi import NUMBER
 from wsrender.results.drawing.color_scale import SIGNED, ColorScale, color_scale
 from wsrender.results.drawing.style import INK, Heading, new_figure, paper_style, quantity
 from wsrender.results.drawing.view import inches
