@@ -109,11 +109,11 @@ def _same_model(robot: Robot, entry: Mapping[str, Any]) -> bool:
 
 
 def _as_in_result(robot: str | Path, entry: Mapping[str, Any]) -> Robot:
-    names = {name: entry.get(f"{name}_frame") for name in ("base", "tip")}
+    base, tip = entry.get("base_frame"), entry.get("tip_frame")
     placement, tool = (np.array(entry[name]) if name in entry else None for name in _POSES)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of the model: said when it was loaded to be compared
-        return load_robot(robot, **names, placement=placement, tool=tool)
+        return load_robot(robot, base=base, tip=tip, placement=placement, tool=tool)
 
 
 def _same_frames(robot: Robot, entry: Mapping[str, Any]) -> bool:
