@@ -260,6 +260,7 @@ def shared_workspace(
     robots: Sequence[RobotLike],
     sampling: SamplingLike | Sequence[SamplingLike | None] | None = None,
     *,
+    constraints: Constraints | Mapping[str, Any] | None = None,
     indices: Literal["kinematic", "dynamic", "all"] | list[str] | tuple[str, ...] = "kinematic",
     index_options: Mapping[str, Mapping[str, bool | int | float | Sequence[float] | np.ndarray]] = {},
     task: Literal["linear", "angular", "full"] | Sequence[Literal["x", "y", "z", "rx", "ry", "rz"]] = "linear",
@@ -285,6 +286,7 @@ def shared_workspace(
         document; the arms of one model are loaded with other base and tip.
     ``sampling``: How joint spaces are sampled, one for all robots or a list of one for each; None: 2^20 Sobol samples,
         of a robot that is a Python class 2^16.
+    ``constraints``: Which configurations are admitted; None: all.
     ``indices``: Local indices: "kinematic", "dynamic", "all", or a list of names.
     ``index_options``: Options of the indices that have any: {index: {option: value}}.
     ``task``: Rows of the Jacobian, in base axes: "linear", "angular", "full", or a list from x y z rx ry rz.
@@ -316,6 +318,7 @@ def robot_comparison(
     robots: Sequence[RobotLike],
     sampling: SamplingLike | Sequence[SamplingLike | None] | None = None,
     *,
+    constraints: Constraints | Mapping[str, Any] | None = None,
     indices: Literal["kinematic", "dynamic", "all"] | list[str] | tuple[str, ...] = "kinematic",
     index_options: Mapping[str, Mapping[str, bool | int | float | Sequence[float] | np.ndarray]] = {},
     task: Literal["linear", "angular", "full"] | Sequence[Literal["x", "y", "z", "rx", "ry", "rz"]] = "linear",
@@ -340,6 +343,7 @@ def robot_comparison(
         document; the arms of one model are loaded with other base and tip.
     ``sampling``: How joint spaces are sampled, one for all robots or a list of one for each; None: 2^20 Sobol samples,
         of a robot that is a Python class 2^16.
+    ``constraints``: Which configurations are admitted; None: all.
     ``indices``: Local indices: "kinematic", "dynamic", "all", or a list of names.
     ``index_options``: Options of the indices that have any: {index: {option: value}}.
     ``task``: Rows of the Jacobian, in base axes: "linear", "angular", "full", or a list from x y z rx ry rz.

@@ -402,3 +402,33 @@ def test_the_arms_of_pictures_are_admitted_and_titles_say_by_what():
     tips = result.skeleton[:, -1]
     assert len(tips) == 3 and (tips >= [-1, -1, 0.5]).all() and (tips <= [0, 0, 1.2]).all()
     assert result.plot.title == "ur5e · 8,192 samples (sobol) · admitted by region"
+
+
+ALONE = {"position_m": [1.0, 2.0, 3.0], "rpy_deg": [0, 0, 90]}
+HALF = {"region": {"half_space": {"point_m": [1, 2, 3], "normal": [1, 0, 1]}}}
+
+
+def test_robots_that_share_a_workspace_share_its_region():
+    """Twice the same arm: shared is what one reaches; of a moved one at each value what is left of it."""
+    arm = {"robot": {"library": "spherical", "placement": ALONE}, "sampling": {"method": "sobol", "count": 1 << 16}}
+    document = {"analysis": "shared_workspace", "robots": [arm] * 2, "constraints": HALF, "refined_volume": 0.02}
+    scan = {"robot": 1, "axis": "x", "values": [1.0, 9.0]}
+    result = execute(document | {"voxel_size_m": 0.02, "scan": scan})
+    table = result.tables["scan"].columns
+    np.testing.assert_allclose(table["any"], [FULL / 2, 3 * FULL / 2], rtol=0.05)
+    np.testing.assert_allclose(table["shared"], [FULL / 2, 0], rtol=0.05)
+    low, high = result.document["headline"]["ci95"]
+    assert low <= FULL / 2 <= high and result.document["headline"]["value"] == pytest.approx(FULL / 2, rel=0.02)
+    for robot in result.document["robots"]:
+        assert robot["samples"]["admitted"] + robot["samples"]["rejected"]["region"] == 1 << 16
+    assert result.volume.count.sum() < 2 << 16
+
+
+def test_what_inverse_kinematics_does_not_know_has_no_shared_headline(added):
+    robots = [{"robot": {"library": "ur5e"}, "sampling": {"method": "sobol", "count": 4096}}] * 2
+    for analysis in ("shared_workspace", "robot_comparison"):
+        result = execute({"analysis": analysis, "robots": robots, "constraints": {"elbow_up": True}})
+        first = result.document["robots"][0]
+        assert first["samples"]["rejected"]["elbow_up"] > 0
+        headline = (result.document if analysis == "shared_workspace" else first)["headline"]
+        assert headline["value"] is None and "does not know the constraint elbow_up" in headline["reason"]

@@ -38,12 +38,19 @@ def refined(
     constraints: Sequence[Constraint] = (),
 ) -> dict[str, Any]:
     """The entry of the refined volume, area or length of a chain, under constraints that inverse kinematics knows."""
-    region = next((each for each in constraints if isinstance(each, Region)), None)
-    if unknown := ", ".join(each.name for each in constraints if each is not region):
-        reason = f"inverse kinematics does not know the constraint {unknown}: only what was sampled is known"
-        return measure_entry(unmeasured(chain, reason), tolerance)
+    region, reason = _known(constraints)
+    if reason:
+        return measure_entry(unmeasured([chain], reason), tolerance)
     options = {"seed": seed, "device": device, "threads": threads, "progress": _named(progress, VOLUME)}
     return measure_entry(refined_measure(chain, tolerance, region=region, **options), tolerance)
+
+
+def _known(constraints: Sequence[Constraint]) -> tuple[Region | None, str]:
+    """The region, which inverse kinematics knows, and why there is no measure with others; "" without others."""
+    region = next((each for each in constraints if isinstance(each, Region)), None)
+    unknown = ", ".join(each.name for each in constraints if each is not region)
+    reason = f"inverse kinematics does not know the constraint {unknown}: only what was sampled is known"
+    return region, reason if unknown else ""
 
 
 def labelled(
@@ -60,11 +67,14 @@ def refined_together(
     device: str,
     progress: Progress | None,
     threads: int | None,
+    constraints: Sequence[Constraint] = (),
 ) -> dict[str, dict[str, Any]]:
-    """Entries of what so many of several placed chains reach, by event."""
-    found = refined_measures(
-        chains, events, tolerance, device=device, threads=threads, progress=_named(progress, VOLUME)
-    )
+    """Entries of what so many of several placed chains reach, by event; see `refined`."""
+    region, reason = _known(constraints)
+    if reason:
+        return {name: measure_entry(unmeasured(chains, reason), tolerance) for name in events}
+    options = {"device": device, "threads": threads, "progress": _named(progress, VOLUME), "region": region}
+    found = refined_measures(chains, events, tolerance, **options)
     return {name: measure_entry(measure, tolerance) for name, measure in found.items()}
 
 

@@ -8,14 +8,14 @@ from wsrender.analyses.several_robots import SeveralPlans
 from wsrender.notices import Notice
 from wsrender.results.result import Result
 
-OF_EACH = ("robot", "sampling", "indices", "volume_m3", "headline", "bounds_m", "global", "convergence")
+OF_EACH = ("robot", "sampling", "samples", "indices", "volume_m3", "headline", "bounds_m", "global", "convergence")
 
 
 def common_entries(several: SeveralPlans, results: list[Result]) -> dict[str, Any]:
     """Robots with the values of each alone, the choices they share and the voxel size."""
     documents = [result.document for result in results]
     robots = [
-        {"name": name, **{key: document[key] for key in OF_EACH}}
+        {"name": name, **{key: document[key] for key in OF_EACH if key in document}}
         for name, document in zip(several.names, documents, strict=True)
     ]
     return {

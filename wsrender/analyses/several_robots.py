@@ -92,7 +92,8 @@ def shared_voxel_size(plans: Sequence[Any]) -> float:
 
 def workspace_job(job: Any, arm: PlacedRobot, refined_volume: float | None = None) -> Any:
     """The workspace job of one robot of a job of several."""
-    choices = {name: getattr(job, name) for name in (*IndexChoices.model_fields, "voxel_size_m", "max_samples")}
+    shared = (*IndexChoices.model_fields, "constraints", "voxel_size_m", "max_samples")
+    choices = {name: getattr(job, name) for name in shared}
     choices["voxel_statistics"] = ("count", "maximum")  # what robots are compared by
     own = {"robot": arm.robot, "base": arm.base, "tip": arm.tip, "sampling": arm.sampling}
     return job_classes()["workspace"](**choices, **own, refined_volume=refined_volume)

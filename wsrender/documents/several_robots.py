@@ -6,6 +6,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field
 
 from wsrender.documents.arm import Arm, ArmPath
+from wsrender.documents.constraints import Constrained
 from wsrender.documents.document import Document
 from wsrender.documents.format import JobDocument
 from wsrender.documents.options import IndexChoices
@@ -27,8 +28,8 @@ class PlacedRobot(Arm):
     """How its joint space is sampled; by default 2^20 Sobol samples."""
 
 
-class SeveralRobotsJob(IndexChoices, JobDocument):
-    """A job of several robots that are swept on one lattice."""
+class SeveralRobotsJob(IndexChoices, Constrained, JobDocument):
+    """A job of several robots that are swept on one lattice, all under the same constraints."""
 
     robots: Annotated[tuple[PlacedRobot, ...], Field(min_length=2, max_length=MOST_ROBOTS), BeforeValidator(sequence)]
     """The robots and where they stand; the arms of one model are the same robot with other base and tip."""

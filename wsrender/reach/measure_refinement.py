@@ -138,9 +138,9 @@ def _without_measure(sets: list[TipSet], T_world_own: np.ndarray) -> str:
     return APART[dimension] if (np.array(beside) > np.array(own) + slack).any() else ""
 
 
-def unmeasured(chain: Kinematics, reason: str) -> RefinedMeasure:
-    """No volume of what a chain reaches, for a reason."""
-    return _without("volume", reason, tolerance_m(chain), 1)
+def unmeasured(chains: Sequence[Kinematics], reason: str) -> RefinedMeasure:
+    """No volume of what chains reach, for a reason."""
+    return _without("volume", reason, max(map(tolerance_m, chains)), len(chains))
 
 
 def _without(quantity: str, reason: str, position_m: float, chains: int) -> RefinedMeasure:

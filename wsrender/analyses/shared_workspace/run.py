@@ -100,7 +100,8 @@ class SharedWorkspaceAnalysis(Composed):
         tolerance, device = self.job.refined_volume, self.several.plans[0].device
         assert tolerance is not None
         events = {"any": Event(1, len(chains)), "shared": Event(2, len(chains))}
-        return refined_together(chains, events, tolerance, device, progress, execution.threads)
+        constraints = self.several.plans[0].pipeline.constraints
+        return refined_together(chains, events, tolerance, device, progress, execution.threads, constraints)
 
     def with_refinements(self, partial: PartialParts, refinements: list[Any]) -> "SharedPartial":
         """With the refined volumes."""
