@@ -116,7 +116,7 @@ def test_voxels_of_legs_that_keep_their_distance():
     assert result.skeleton is not None
     fixed = execute({**job, "mechanism": six_cranks("plus", minimum_leg_distance_m=0.1)})
     assert fixed.volume is None or fixed.volume.n_occupied < result.volume.n_occupied
-    with pytest.raises(ws.InputError, match="two legs come closer"):
+    with pytest.raises(ws.InputError, match="leg_distance: two legs come closer"):
         home = {"position_m": [0.0, 0.0, 0.45]}
         execute({**job, "mechanism": six_cranks("either", minimum_leg_distance_m=0.35, home=home)})
 

@@ -11,6 +11,8 @@ from wsrender.engine import SweepPlan, configurations, devices_of, evaluate_pose
 from wsrender.engine.sums import scales_of
 from wsrender.errors import DocumentError, InputError
 from wsrender.pipeline.constraints import registry
+from wsrender.pipeline.constraints.constraint import Constraint, in_order
+from wsrender.pipeline.constraints.leg_distance import LegDistance
 from wsrender.pipeline.constraints.region import Region
 from wsrender.pipeline.constraints.registry import constraints_of
 from wsrender.pipeline.evaluation import Evaluation
@@ -171,6 +173,14 @@ def test_configurations_are_told_why_they_are_rejected(tmp_path, added):
     none = execute(document | {"constraints": nowhere})
     assert none.document["indices"]["isotropy"]["maximum"] is None and none.document["samples"]["admitted"] == 0
     none.save(tmp_path / "none")
+
+
+def test_all_are_constraints_and_asked_in_one_order(added):
+    legs = LegDistance(0.1, ((0, 1),))
+    (added_one,) = constraints_of(Constraints(elbow_up=True))
+    each = (added_one, legs, Region(ball=((0, 0, 0), 1)))
+    assert all(isinstance(one, Constraint) and hash(one) == hash(replace(one)) for one in each)
+    assert [one.name for one in in_order(each)] == ["region", "leg_distance", "elbow_up"]
 
 
 def test_options_are_numbers_of_the_kernel_and_compile_nothing(added):
