@@ -1,9 +1,10 @@
 """A pipeline is a value that prints itself; all four entrances of the engine give what it says."""
 
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 import wsrender as ws
 from wsrender.documents.constraints import Constraints
@@ -68,6 +69,26 @@ def test_equal_jobs_make_equal_pipelines():
 )
 def test_whatever_differs_makes_another(change):
     assert planned(**change) != planned()
+
+
+OTHER = {str: "other", bool: True, int: 7, float: 0.5, type(None): 0.25, tuple: ("other",), dict: {"isotropy": {}}}
+
+
+def test_no_field_is_left_out():
+    """Each replaced, of the pipeline and of what it is made of."""
+    pipeline = tip_pipeline(ws.load_robot("ur5e").chain, ws.Sobol(100))
+    for part in (pipeline, pipeline.evaluation, pipeline.sampling):
+        for field in fields(part):
+            value = getattr(part, field.name)
+            if type(value) in OTHER:
+                other = not value if value is True or value is False else OTHER[type(value)]
+            elif isinstance(value, np.ndarray):
+                other = value + value.dtype.type(1)
+            elif isinstance(value, frozenset):
+                other = frozenset({"minimum"})
+            else:
+                continue  # a part of its own
+            assert replace(part, **{field.name: other}) != part, field.name
 
 
 def test_arms_are_compared_by_their_numbers_and_classes_by_themselves():
@@ -164,6 +185,18 @@ def test_all_entrances_agree(sampling, precision):
     np.testing.assert_allclose(
         swept.totals / scales_of(pipeline), at.values[:, admitted].sum(axis=1), rtol=1e-3 if near > 1e-9 else 1e-9
     )
+
+
+def test_rows_keep_what_they_are_asked_for(precision):
+    chain = ws.load_robot("ur5e").chain
+    kept = frozenset({"configuration", "orientation"})
+    evaluation = Evaluation(chain, ("manipulability",), (0, 1, 2))
+    pipeline = Pipeline(evaluation, plan_sampling(chain, ws.Sobol(700)), (ABOVE,), kept_rows=kept, precision=precision)
+    rows, q = evaluate_samples(pipeline), configurations(pipeline)
+    np.testing.assert_array_equal(rows.q, q)
+    turned = Rotation.from_quat(rows.quat_wxyz, scalar_first=True).as_matrix()
+    np.testing.assert_allclose(turned, chain.poses(q)[:, :3, :3], atol=1e-12 if precision == "float64" else 1e-5)
+    assert evaluate_samples(pipeline.at(q)).q is None and rows.rejected.any()
 
 
 def test_a_range_of_samples_is_drawn_alone():

@@ -14,7 +14,7 @@ from wsrender.engine.membership import (
     poses_reached,
 )
 from wsrender.engine.partial import Partial, merge
-from wsrender.engine.rows import Evaluated, evaluate_samples, from_origin, sampled_positions
+from wsrender.engine.rows import Evaluated, evaluate_samples, evaluated_of, sampled_positions
 from wsrender.engine.slabs import fitted
 from wsrender.engine.sweep_plan import SweepPlan, sweep
 
@@ -34,8 +34,8 @@ __all__ = [
     "evaluate_kinematics",
     "evaluate_poses",
     "evaluate_samples",
+    "evaluated_of",
     "fitted",
-    "from_origin",
     "joined",
     "merge",
     "poses_reached",

@@ -13,7 +13,7 @@ from wsrender.analyses.refined import by_measure
 from wsrender.analyses.volume_notices import few_samples, occupied_differs, tolerance_not_met
 from wsrender.analyses.workspace.job import WorkspaceJob
 from wsrender.analyses.workspace.partial import WorkspacePartial
-from wsrender.engine import Partial, SweepPlan, configurations, evaluate_samples, from_origin, units_of
+from wsrender.engine import Evaluated, Partial, SweepPlan, configurations, evaluate_samples, evaluated_of, units_of
 from wsrender.engine.voxel_data import volume_data
 from wsrender.global_indices import (
     VoxelVolumes,
@@ -48,7 +48,8 @@ def workspace_draft(job: WorkspaceJob, robot: Robot, found: WorkspacePartial, th
     units = units_of(evaluation)
     volume = volume_data(pipeline, partial, units)
     volumes = voxel_volumes(volume)
-    sample = _picture_sample(pipeline, robot, units, threads)
+    sample = _admitted(pipeline, _picture_sample(pipeline, threads), robot, units)
+    rows = None if pipeline.kept_rows is None else evaluated_of(pipeline, partial)
     measure = refined.measure if refined else None
     labels = refined.voxels if refined else None
     measures = by_measure(measure, measure)
@@ -92,7 +93,7 @@ def workspace_draft(job: WorkspaceJob, robot: Robot, found: WorkspacePartial, th
             "sampling_path": SweepPlan(pipeline).sampling_path,
             "seed": pipeline.sampling.seed,
         },
-        map=_kept_map(pipeline, partial, robot, units) if pipeline.kept_rows is not None else None,
+        map=rows and _admitted(pipeline, rows, robot, units),
         sample=sample,
         volume=volume,
         skeleton=_shown_arms(pipeline, robot, sample),
@@ -173,33 +174,17 @@ def _index_entries(pipeline: Pipeline, partial: Partial, volume: VolumeData, uni
     }
 
 
-def _kept_map(pipeline: Pipeline, partial: Partial, robot: Robot, units: dict[str, str]) -> DistributionMap:
-    K, n, columns = len(pipeline.evaluation.indices), robot.chain.n, pipeline.kept_rows or ()
-    rows = np.concatenate([partial.rows[first] for first in sorted(partial.rows)], axis=1)
-    if pipeline.constraints:
-        rows = rows[:, rows[-1] == 0]
-    after = 3 + K
-    q = rows[after : after + n].T if "configuration" in columns else None
-    after += n * ("configuration" in columns)
-    quat = rows[after : after + 4].T if "orientation" in columns else None
-    return DistributionMap(
-        from_origin(pipeline, rows),
-        dict(zip(pipeline.evaluation.indices, rows[3 : 3 + K], strict=True)),
-        units,
-        q,
-        robot.joint_names,
-        quat,
-    )
-
-
-def _picture_sample(pipeline: Pipeline, robot: Robot, units: dict[str, str], threads: int | None) -> DistributionMap:
+def _picture_sample(pipeline: Pipeline, threads: int | None) -> Evaluated:
     """A fixed subsample of the samples, evaluated anew in float64 on the CPU."""
     exact = replace(pipeline, precision="float64")
     q = configurations(exact, subsample(pipeline.sampling.count, PICTURE_SAMPLES))
-    evaluated = evaluate_samples(exact.at(q), threads=threads)
-    admitted = slice(None) if evaluated.rejected is None else evaluated.rejected == 0
-    values = dict(zip(pipeline.evaluation.indices, evaluated.values[:, admitted], strict=True))
-    return DistributionMap(evaluated.position[admitted], values, units, q[admitted], robot.joint_names)
+    return replace(evaluate_samples(exact.at(q), threads=threads), q=q)
+
+
+def _admitted(pipeline: Pipeline, found: Evaluated, robot: Robot, units: dict[str, str]) -> DistributionMap:
+    values = dict(zip(pipeline.evaluation.indices, found.values, strict=True))
+    every = DistributionMap(found.position, values, units, found.q, robot.joint_names, found.quat_wxyz)
+    return every if found.rejected is None else every.only(found.rejected == 0)
 
 
 def _shown_arms(pipeline: Pipeline, robot: Robot, sample: DistributionMap) -> np.ndarray | None:
