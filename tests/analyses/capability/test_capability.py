@@ -92,8 +92,8 @@ def test_document_and_volume_say_the_same(result, tmp_path):
     dexterous = (table["reachability_index"] >= 0.94).sum()
     assert entry["dexterous_volume_m3"] == pytest.approx(dexterous * 0.05**3)
     assert 0 < dexterous < len(table)
-    counted = ("reachable_volume_m3", "dexterous_volume_m3", "dexterous_threshold")
-    assert all(f"{entry[name]:.4g}" in result.document["headline"]["reason"] for name in counted)
+    counted = (f"{entry[name]:.4g} m³" for name in ("reachable_volume_m3", "dexterous_volume_m3"))
+    assert all(text in result.document["headline"]["reason"] for text in (*counted, " 94 %"))
     cells = np.round(table["position"] / 0.05 - 0.5).astype(int) - result.volume.first_voxel
     assert index_of(result.volume)[tuple(cells.T)] == pytest.approx(table["reachability_index"])
     assert result.tables["directions"]["voxels"].sum() == result.volume.count.sum()

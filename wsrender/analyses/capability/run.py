@@ -135,8 +135,8 @@ class CapabilityAnalysis(Analysis):
         return Draft(
             {"voxel_size_m": edge, "capability": entry},
             no_headline(
-                f"whole voxels are counted: {entry['reachable_volume_m3']:.4g} m³ are reached, "
-                f"{entry['dexterous_volume_m3']:.4g} m³ of them from {job.dexterous_threshold:g} of the directions"
+                f"whole voxels are counted, {entry['reachable_volume_m3']:.4g} m³ that are reached, of them "
+                f"{entry['dexterous_volume_m3']:.4g} m³ from {100 * job.dexterous_threshold:.4g} % of the directions"
             ),
             volume=self._volume(cells, reached),
             tables={"capability": Table(columns, {"position": "m"}), "directions": Table(directions)},

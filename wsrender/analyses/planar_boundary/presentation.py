@@ -17,7 +17,7 @@ def facts(document: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
         yield "perimeter", f"{exact['perimeter_m']:.9g} m"
         kinds = [segment["kind"] for loop in exact["loops"] for segment in loop["segments"]]
         holes = sum(loop["hole"] for loop in exact["loops"])
-        yield "boundary", f"{kinds.count('arc')} arcs, {kinds.count('line')} lines; {holes} holes"
+        yield "boundary", f"{kinds.count('arc')} arcs, {kinds.count('line')} lines; {holes} hole{'s' * (holes != 1)}"
 
 
 PRESENTATION = Presentation(
