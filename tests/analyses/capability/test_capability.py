@@ -114,6 +114,14 @@ def test_a_voxel_at_the_threshold_is_dexterous():
     assert entry["dexterous_volume_m3"] == entry["reachable_volume_m3"] > 0
 
 
+@pytest.mark.parametrize(("tolerance", "warned"), [(1e-3, True), (0.5, False)])
+def test_a_tip_that_cannot_turn_is_warned_of(tolerance, warned):
+    """That of a scara always points along z; the nearest of 100 directions is 8° off."""
+    found = ws.capability("scara", voxel_size_m=0.2, angle_tolerance_rad=tolerance, device="cpu").document
+    assert (found["capability"]["maximum_index"] == 0.0) == warned
+    assert [each["code"] for each in found["warnings"]] == ["no_direction_reached"] * warned
+
+
 def index_of(volume):
     return volume.statistics["fraction"]["approach_directions"]
 

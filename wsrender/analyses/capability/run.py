@@ -1,6 +1,8 @@
 """The analysis ``capability``: reachability index per voxel, dexterous workspace."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -13,6 +15,7 @@ from wsrender.analyses.headline import no_headline
 from wsrender.analyses.partial_result import PartialResult, joined_rows, rows_of_shard
 from wsrender.documents.sampling import Sobol
 from wsrender.engine import sampled_positions
+from wsrender.notices import Notice
 from wsrender.pipeline.pipeline import tip_pipeline
 from wsrender.reach.capability import (
     SAMPLES_PER_CELL,
@@ -138,6 +141,7 @@ class CapabilityAnalysis(Analysis):
                 f"whole voxels are counted, {entry['reachable_volume_m3']:.4g} m³ that are reached, of them "
                 f"{entry['dexterous_volume_m3']:.4g} m³ from {100 * job.dexterous_threshold:.4g} % of the directions"
             ),
+            _notices(entry),
             volume=self._volume(cells, reached),
             tables={"capability": Table(columns, {"position": "m"}), "directions": Table(directions)},
             skeleton=self.robot.skeleton((chain.lower_limits + chain.upper_limits) / 2),
@@ -150,6 +154,17 @@ class CapabilityAnalysis(Analysis):
         statistics = {"fraction": {"approach_directions": reached.mean(axis=1).astype(np.float32)}}
         first, voxels = Voxels.at_places(cells, reached.sum(axis=1), statistics)
         return VolumeData.of_voxels(self.settled.voxel_size_m, first, voxels, {"approach_directions": "1"})
+
+
+def _notices(entry: dict[str, Any]) -> Iterator[Notice]:
+    """That no direction of the set is reached anywhere, as of an arm whose tip keeps its direction."""
+    if entry["voxels"] and not entry["maximum_index"]:
+        yield Notice(
+            "no_direction_reached",
+            f"the tip's {entry['approach_axis']} axis reaches none of the {entry['directions']} directions anywhere",
+            "give a larger angle tolerance or more directions, or look at the axis that the arm can turn",
+            "angle_tolerance_rad",
+        )
 
 
 def _positions(chain: Kinematics) -> np.ndarray:
