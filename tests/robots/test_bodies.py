@@ -172,6 +172,20 @@ def test_pairs_that_are_excluded():
     assert len(more) == len(whole) - 2
 
 
+def test_a_body_stands_for_all_of_its_shapes():
+    text = arm().replace(
+        '<geom name="shelf" size=".2"/>', '<geom name="shelf" size=".2"/><geom name="lamp" size=".1"/>'
+    )
+    whole, less = ws.load_robot(text).pairs, ws.load_robot(text, exclude=[("shelf", "egg")]).pairs
+    assert [pair for pair in pairs_in(whole) if pair not in pairs_in(less)] == [{"egg", "shelf"}, {"egg", "lamp"}]
+
+
+def test_a_models_unit_is_that_of_its_shapes():
+    small, whole = ws.load_robot(arm(), length_unit_m=0.1).shapes, ws.load_robot(arm()).shapes
+    for name in ("size_m", "position_m"):
+        np.testing.assert_allclose(small[name], whole[name] / 10, atol=1e-8)
+
+
 def pairs_in(table):
     return [{*names} for names in zip(table["first"], table["second"], strict=True)]
 
@@ -242,6 +256,14 @@ def test_robots_without_shapes_have_empty_tables():
 
     with pytest.raises(InputError, match="defined by a Python class, which has no shapes"):
         _ = ws.robot.as_robot(Class()).shapes
+
+
+def test_the_number_of_shapes_is_bounded():
+    text = arm().replace(
+        '<geom name="shelf"', '<replicate count="1000" offset="0 0 1"><geom size=".1"/></replicate><geom'
+    )
+    with pytest.raises(ModelError, match="the model has 1008 shapes; at most 1000 are supported"):
+        _ = ws.load_robot(text).pairs
 
 
 @pytest.mark.parametrize(

@@ -250,6 +250,7 @@ def test_large_hulls_are_simplified_outwards(tmp_path, monkeypatch):
     """The model that MuJoCo tests has the same hull; on bodies that turn their own axes as well."""
     ball = trimesh.creation.icosphere(3, 0.1)
     ball.apply_scale((1, 2, 3))
+    ball.apply_transform(trimesh.transformations.euler_matrix(0.3, 0.4, 0.5))  # its principal axes are not the file's
     robot = loaded(tmp_path, content=ball.export(file_type="stl"))
     exact = robot.bodies
     monkeypatch.setattr(hulls, "MOST_VERTICES", 600)

@@ -22,6 +22,8 @@ from wsrender.robots.pairs import Names, collides, pairs_of, without
 from wsrender.robots.plausibility import long_shapes
 from wsrender.robots.shapes import Shape, shape_of
 
+MOST_SHAPES = 1000  # whose pairs are tried one by one; robots with hands have 200
+
 
 @dataclass(frozen=True, eq=False)
 class BodySource:
@@ -78,7 +80,10 @@ class BodySource:
             joints = [(moving[number], sign) for number, sign in order]
             chain = replace(self.chain, has_inertia=False, with_branches=None, **links_of(model, geometry, joints))
             numbers = [drive.joint if sign > 0 else -1 for drive, sign in joints]
-            shapes = self._shapes(model, geometry, chosen(model), numbers, purpose)
+            geoms = chosen(model)
+            if len(geoms) > MOST_SHAPES:
+                raise ModelError(self.field, f"the model has {len(geoms)} shapes; at most {MOST_SHAPES} are supported")
+            shapes = self._shapes(model, geometry, geoms, numbers, purpose)
         addresses = np.array([model.jnt_qposadr[joint] if joint >= 0 else -1 for joint in numbers])
         return Bodies(model, chain, shapes, np.zeros((0, 2), int), self.reference, addresses, notices)
 
