@@ -187,15 +187,12 @@ def test_a_bound_that_is_none_is_refused(bad):
 
 
 def test_the_structure_of_a_grid_that_an_index_survives():
-    register(ANISOTROPY)
-    whole = planned(["anisotropy"]).pipeline
-    register(ANISOTROPY, survives=frozenset({"base_joint"}))
-    base = planned(["anisotropy"]).pipeline
-    register(ANISOTROPY, survives=frozenset())
-    none = planned(["anisotropy"]).pipeline
-    found = [(plan.structure.base_levels, plan.structure.weight) for plan in (whole, base, none)]
-    assert found == [(3, 27), (3, 1), (1, 1)]
-    assert [SweepPlan(plan).sampling_path for plan in (whole, base, none)] == ["collapsed", "collapsed", "direct"]
+    found = {}
+    for survives in (None, frozenset({"base_joint"}), frozenset()):
+        register(ANISOTROPY, survives=survives)
+        plan = SweepPlan(planned(["anisotropy"]).pipeline)
+        found[survives] = (plan.structure.base_levels, plan.structure.weight, plan.sampling_path)
+    assert list(found.values()) == [(3, 27, "collapsed"), (3, 1, "collapsed"), (1, 1, "direct")]
     assert SweepPlan(planned(["anisotropy", "manipulability"]).pipeline).sampling_path == "direct"  # one is enough
 
 
