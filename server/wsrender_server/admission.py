@@ -11,6 +11,7 @@ from defusedxml import DefusedXmlException
 
 from wsrender.analyses.jobs import canonical_json, parse_job
 from wsrender.documents.arm import ArmPath, dotted, local_paths
+from wsrender.documents.constraints import Constraints
 from wsrender.documents.document import Document
 from wsrender.documents.problems import MOST_PROBLEMS
 from wsrender.documents.robot import RobotSpec
@@ -183,7 +184,10 @@ def _check_indices(part: Document, path: ArmPath) -> None:
 
 def _check_constraints(part: Document, path: ArmPath) -> None:
     """Check the names and options of the constraints of a part of a document."""
+    choice = getattr(part, "constraints", None)
+    if not isinstance(choice, Constraints):  # those of designs are others
+        return
     try:
-        constraints_of(getattr(part, "constraints", None))
+        constraints_of(choice)
     except InputError as error:
         raise DocumentError([(dotted(path, error.field), error.message)]) from None

@@ -5,6 +5,7 @@ import json
 import pytest
 from wsrender_server.routes.kinetostatic_stream import _admitted
 
+from tests.golden.files import golden_names, job_of
 from tests.server.http.idle_server import DOCUMENT, problem_of
 from wsrender.analyses.jobs import canonical_json, parse_job
 from wsrender.errors import DocumentError, InputError
@@ -271,3 +272,9 @@ def test_obstacles_of_earlier_documents_are_the_same_job(client):
         assert client.post("/v1/jobs", json=job, headers=headers).status_code == (200 if key else 202)
     problem = problem_of(client.post("/v1/jobs", json=jobs[2] | {"format": 3}), 422, "invalid_document")
     assert [error["pointer"] for error in problem["errors"]] == ["#/format"]
+
+
+@pytest.mark.parametrize("name", golden_names())
+def test_every_golden_job_is_admitted(name, client):
+    response = client.post("/v1/jobs", json=job_of(name))
+    assert response.status_code == 202, response.text
