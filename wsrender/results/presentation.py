@@ -32,10 +32,10 @@ class Picture:
     """One picture of a result.
 
     ``draw(plot, **options)`` returns a matplotlib Figure: ``plot`` is the result's `ResultPlots`, ``options`` are those
-    given here. A result has the picture if it holds what the picture ``needs``, one of ``PARTS`` or a named one such as
+    given here. A result has the picture if it holds what the picture ``needs``, of ``PARTS`` or a named one such as
     ``"tables.scan"``, is of one of the ``analyses`` (none: of any), and ``where(plot)`` is true. ``uses`` is drawn too
-    where it is there. ``caption`` stands below it in reports. ``saved``: whether it is among a result's files; others
-    are drawn where they are asked for.
+    where it is there, of ``"samples|meshes"`` the first. ``caption`` stands below it in reports. ``saved``: whether it
+    is among a result's files; others are drawn where they are asked for.
     """
 
     name: str
@@ -89,7 +89,7 @@ CURVES = ("scan", "refinements", "scales", "convergence")  # tables that are dra
 _CAPTIONS = {"convergence": "The best value so far"}
 _ROWS = (
     Picture("robot", _PLOTS + "robot", "The arm in its workspace", ("skeleton",),
-            ("samples", "volume", "volumes", "meshes")),
+            ("samples|meshes|volume",)),
     Picture("scatter", _PLOTS + "scatter", "Samples", ("samples",)),
     Picture("slices", _PLOTS + "slices", "Voxels in planes", ("volume",)),
     Picture("histogram", _PLOTS + "histogram", "Distribution of the indices over the samples", ("samples",),
@@ -179,7 +179,7 @@ def _check(row: Any) -> None:
     if row.name in _own():
         raise InputError("name", f"there is a picture {row.name!r} already, wsrender's own")
     for member in ("needs", "uses"):
-        for word in getattr(row, member):
+        for word in (each for words in getattr(row, member) for each in words.split("|")):
             if word.partition(".")[0] not in PARTS:
                 raise InputError(member, f"{word!r} is none of {', '.join(PARTS)}, nor a named one such as tables.scan")
 

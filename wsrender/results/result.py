@@ -226,18 +226,21 @@ class Result:
 
 
 def files_of_parts(words: Iterable[str], names: Collection[str]) -> list[str]:
-    """Of the files ``names`` of a result those that hold parts as pictures name them, such as ``tables.scan``.
+    """Of the files ``names`` of a result those that hold parts in the words of `Picture`."""
+    found: dict[str, None] = {}
+    for word in words:
+        choices = (_files_of_part(each, names) for each in word.split("|"))
+        found |= dict.fromkeys(next(filter(None, choices), []))
+    return list(found)
 
-    Samples are the whole map only where there is no sample of it.
-    """
-    wanted = {word.partition(".")[::2] for word in words}
-    if ("samples", "") in wanted:
-        wanted.add(("sample" if part_file("sample") in names else "map", ""))
-    files = [part_file(part) for part in PARTS if (part, "") in wanted and part_file(part) in names]
-    for part in NAMED_PARTS:
-        named = named_files(part, names).items()
-        files += [file for name, file in named if (part, "") in wanted or (part, name) in wanted]
-    return files
+
+def _files_of_part(word: str, names: Collection[str]) -> list[str]:
+    """Samples are the whole map only where there is no sample of it."""
+    part, _, name = word.partition(".")
+    if part in NAMED_PARTS:
+        return [file for key, file in named_files(part, names).items() if name in ("", key)]
+    files = [part_file(each) for each in (("sample", "map") if part == "samples" else (part,))]
+    return [file for file in files if file in names][:1]
 
 
 def named_results(results: Iterable[Result]) -> dict[str, Result]:
