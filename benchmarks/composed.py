@@ -2,11 +2,13 @@
 
     python benchmarks/composed.py scan --before 387fc60~1 [--repeats 5]
     python benchmarks/composed.py workers [--repeats 3]
+    python benchmarks/composed.py steps
 
 `scan`: two robots, 12 placements, no refined volumes; this checkout and the commit, in a temporary worktree, run in
 turn. `workers`: a shared_workspace job on a server with one and with two workers of one thread each, in turn, each run
-with another seed. Prints the least seconds of the wall clock and of the processor, and their ratios: nothing is
-asserted, and on a busy machine those of the processor say more.
+with another seed. `steps`: the same job's steps one after the other in one thread, and from their seconds of the
+processor what one and two workers would take, which other load changes less. Prints the least seconds of the wall clock,
+of a scan those of the processor too, and their ratios: nothing is asserted.
 """
 
 import argparse
@@ -16,8 +18,10 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import reduce
 from pathlib import Path
+from typing import Any
 
 ROOT = Path(__file__).parents[1]
 SCAN = """
@@ -34,20 +38,22 @@ for _ in sys.stdin:
     print(time.perf_counter() - wall, time.process_time() - cpu, flush=True)
 """
 PLACES = ((0, 0, 0), (0.5, 0, 0))
-SAMPLES, SHARD = 1 << 26, 1 << 23
+SAMPLES, SHARD = 1 << 28, 1 << 25
 
 
 def main() -> None:
     """Parse the options and print."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("what", choices=["scan", "workers"])
+    parser.add_argument("what", choices=["scan", "workers", "steps"])
     parser.add_argument("--before", default="387fc60~1", help="commit that the scan is compared with")
     parser.add_argument("--repeats", type=int, default=5)
     options = parser.parse_args()
     if options.what == "scan":
         print_scan(options.before, options.repeats)
-    else:
+    elif options.what == "workers":
         print_workers(options.repeats)
+    else:
+        print_steps()
 
 
 def print_scan(before: str, repeats: int) -> None:
@@ -111,11 +117,37 @@ def print_workers(repeats: int) -> None:
     print_ratio(taken)
 
 
+def print_steps() -> None:
+    """Seconds of the processor of every step of a job, and what one and two workers make of them."""
+    from wsrender import run
+
+    def timed(step: Callable[[], Any]) -> tuple[Any, float]:
+        started = time.process_time()
+        return step(), time.process_time() - started
+
+    whole = run.plan(shared(SAMPLES, 0))
+    run.run_shard(run.plan(shared(1 << 12, 0)), 0, threads=1)  # kernels loaded
+    divided, planning = timed(lambda: run.plan(shared(SAMPLES, 0)).settled_as(whole.division(SHARD, 256)))
+    swept = [timed(lambda k=k: run.run_shard(divided, k, threads=1)) for k in range(len(divided.shards))]
+    partials, shards = zip(*swept, strict=True)
+
+    def finish(folder: str) -> None:
+        run.finish(divided, reduce(divided.merged, partials), threads=1).save(folder)
+
+    with tempfile.TemporaryDirectory() as folder:
+        _, finishing = timed(lambda: finish(folder))
+    two = [0.0, 0.0]
+    for seconds in shards:
+        two[two.index(min(two))] += seconds
+    print(f"plan {planning:.3f} s, {len(shards)} shards {sum(shards):.3f} s, merge and finish {finishing:.3f} s")
+    print_ratio({name: [[planning + each + finishing]] for name, each in (("two", max(two)), ("one", sum(shards)))})
+
+
 def shared(samples: int, seed: int) -> dict:
     """A job of two arms."""
     sampling = {"method": "sobol", "count": samples, "seed": seed}
     robots = [{"robot": {"library": "ur5e", "placement": {"position_m": at}}, "sampling": sampling} for at in PLACES]
-    return {"analysis": "shared_workspace", "robots": robots, "voxel_size_m": 0.02, "refined_volume": None}
+    return {"analysis": "shared_workspace", "robots": robots, "voxel_size_m": 0.05, "refined_volume": None}
 
 
 def print_ratio(taken: dict[str, list[list[float]]]) -> None:
@@ -124,7 +156,7 @@ def print_ratio(taken: dict[str, list[list[float]]]) -> None:
     for name, seconds in least.items():
         print(f"{name:12}", *(f"{value:8.3f} s" for value in seconds))
     first, second = least.values()
-    print(f"{'ratio':12}", *(f"{b / a:8.3f}  " for a, b in zip(first, second, strict=True)), "(wall, processor)")
+    print(f"{'ratio':12}", *(f"{b / a:8.3f}  " for a, b in zip(first, second, strict=True)))
 
 
 if __name__ == "__main__":

@@ -77,7 +77,8 @@ class Settings(BaseSettings):
     max_streams_per_owner: int = Field(default=2, ge=0)
     """Live streams that an owner may have at a time."""
     shard_samples: int = Field(default=1 << 26, ge=1)
-    """Samples of a shard on the CPU, 256 times as many on a GPU; large jobs get larger shards."""
+    """Samples of a sweep's shard on the CPU, 256 times as many on a GPU; large jobs get larger shards. Those of other
+    analyses take about as long."""
 
     @model_validator(mode="after")
     def _complete_tls(self) -> Self:

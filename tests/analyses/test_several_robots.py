@@ -6,6 +6,8 @@ import pytest
 import wsrender as ws
 from tests.run.simple_robots import PlanarClass, gantry, planar_arm
 from wsrender.analyses.volume_notices import MOST_HOLES
+from wsrender.analyses.workspace import first_pass
+from wsrender.analyses.workspace.run import WorkspaceAnalysis
 from wsrender.reach.holes import share_of_holes
 from wsrender.results.result import Result
 from wsrender.run import finish, plan, run_shard
@@ -75,6 +77,27 @@ def test_scan_of_an_offset():
     assert table["occupied_shared"] == pytest.approx(common)
     assert table["occupied_any"] == pytest.approx(2 * BOX - common)
     assert table.units == {"x": "m", "occupied_any": "m^3", "occupied_shared": "m^3"}
+
+
+def test_no_robot_is_planned_twice_and_no_result_is_built_for_a_placement(monkeypatch):
+    """One first pass of each robot tells the voxel size of all; a scan reads where its sweeps have been."""
+    passes, built = [], []
+    evaluate, finished = first_pass.evaluate_at, WorkspaceAnalysis.finish
+    monkeypatch.setattr(first_pass, "evaluate_at", lambda *given: passes.append(given) or evaluate(*given))
+    monkeypatch.setattr(WorkspaceAnalysis, "finish", lambda *given: built.append(given) or finished(*given))
+    scan = {"axis": "x", "values": [0.0, 0.1, 0.2]}
+    options = {**OPTIONS, "voxel_size_m": None}
+    result = ws.shared_workspace([gantry(), gantry()], ws.Sobol(4096), scan=scan, **options)
+    assert (len(result.tables["scan"]), len(passes), len(built)) == (3, 2, 2)
+
+
+def test_a_scan_of_three_robots_counts_those_who_stay():
+    """Two of them stand together, so that at least two reach their box wherever the third is."""
+    robots = [gantry(), gantry(), moved(5, 0, 0)]
+    scan = {"axis": "x", "values": [0.0, 0.1, 5.0], "robot": 2}
+    table = ws.shared_workspace(robots, FULL, scan=scan, **OPTIONS).tables["scan"]
+    assert table["occupied_shared"] == pytest.approx(BOX)
+    assert table["occupied_any"] == pytest.approx([BOX, BOX + 0.1 * 0.4 * 0.2, 2 * BOX])
 
 
 @pytest.mark.parametrize(("robot", "shared"), [(0, 0.1), (1, 0.05)])

@@ -81,7 +81,8 @@ class Attempt:
 
     def reported(self, shard: int, done: int) -> None:
         """A worker has done so many samples of a shard, or decided so many points of a refinement."""
-        self.done[shard] = max(done, self.done.get(shard, 0))
+        if shard < len(self.shards):  # planning has none yet
+            self.done[shard] = max(done, self.done.get(shard, 0))
         self.stale = True
 
     def refined(self, done: int, total: int) -> None:

@@ -203,7 +203,7 @@ class DesignOptimizationAnalysis(Analysis):
 
     def _evaluated(self, first: int, count: int, execution: Execution, tell: Tell) -> PartialResult:
         """The designs of a shard, their values, and faults by the designs' numbers."""
-        evaluator, rows, faults = Evaluator(self, execution), [], {}
+        evaluator, rows, faults = Evaluator(self, execution, looks_first=first == 0), [], {}
         designs = np.array(self.settled.designs[first : first + count])
         for number, design in enumerate(designs):
             before = len(evaluator.faults)

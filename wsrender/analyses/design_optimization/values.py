@@ -48,12 +48,13 @@ class DesignFault:
 class Evaluator:
     """Values of designs: exact ones many at a time, others by running the inner job of each.
 
+    ``looks_first``: whether a small run shows that the objectives are there before the first design runs.
     A design whose job ends in an error has no value. ``faults`` are these errors, the first one first; ``count`` is the
     number of designs evaluated.
     """
 
-    def __init__(self, plan: "DesignOptimizationAnalysis", execution: Execution):
-        self.plan, self.execution = plan, execution
+    def __init__(self, plan: "DesignOptimizationAnalysis", execution: Execution, *, looks_first: bool = True):
+        self.plan, self.execution, self._looks_first = plan, execution, looks_first
         self.faults: list[DesignFault] = []
         self.count = 0
         self._pointers_hold = plan.is_exact
@@ -63,7 +64,7 @@ class Evaluator:
 
         Raises InputError for an objective that is no number of the result, before the first design runs where it can.
         """
-        if not self._pointers_hold:
+        if self._looks_first and not self._pointers_hold:
             self._check_pointers()
         self.count += len(designs)
         if self.plan.is_exact:
