@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 import wsrender_server
 from matplotlib.figure import Figure
-from wsrender_server.pictures import draw
+from wsrender_server.conversions import draw
 
 import wsrender as ws
 from tests.golden.files import analyses, golden, golden_names
