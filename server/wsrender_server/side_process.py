@@ -1,4 +1,7 @@
-"""A child process for heavy work on behalf of requests, such as what a job would take."""
+"""A child process for heavy work on behalf of requests: plans, with what a job would take, conversions, pictures.
+
+It keeps native code that reads strangers' models, and long holds of Python's lock, away from the process that answers.
+"""
 
 import asyncio
 import json

@@ -1,6 +1,7 @@
 """The process of one live stream: a loop of fixed steps between a link of lines and a rendering.
 
-It is scheduled in real time where the system lets us (CAP_SYS_NICE).
+Lines to it: ``<arrival in ns> <JSON>``; lines from it: JSON. Times are those of ``time.perf_counter``, which all
+processes of a machine share on Linux.
 """
 
 import contextlib
@@ -25,6 +26,7 @@ from wsrender.robot import robot_of_spec
 from wsrender.robots.uploaded import MODELS_VARIABLE
 from wsrender_server.jobs.child_process import settle_in
 from wsrender_server.problems import problem_of_error
+from wsrender_server.streams.scheduling import hurry
 
 MOST_WAITING = 1 << 16  # bytes that are not taken: then forces are dropped, not sent late
 HISTORY = 60_000  # ticks whose times are kept
@@ -33,32 +35,6 @@ LOOPS_TRIED = 12
 REPORT_S = 0.1  # between forces while no sample comes
 
 _messages: TypeAdapter[Sample | Ask] = TypeAdapter(Annotated[Sample | Ask, Discriminator("type")])
-
-
-def hurry() -> bool:
-    """Let this process run before everything else; whether the system allows it.
-
-    All of its threads, for one that holds Python's lock holds up the others; not those, nor the processes, that it
-    starts from now on.
-    """
-    return hasattr(os, "SCHED_RESET_ON_FORK") and _schedule(os.SCHED_FIFO | os.SCHED_RESET_ON_FORK, 1)
-
-
-def calm_down() -> None:
-    """Let this process take its turn again."""
-    if hasattr(os, "SCHED_OTHER"):
-        _schedule(os.SCHED_OTHER, 0)
-
-
-def _schedule(policy: int, priority: int) -> bool:
-    try:
-        os.sched_setscheduler(0, policy, os.sched_param(priority))  # 0: the calling thread
-    except OSError:  # not allowed
-        return False
-    for thread in Path("/proc/self/task").iterdir():
-        with contextlib.suppress(OSError):  # it has just ended
-            os.sched_setscheduler(int(thread.name), policy, os.sched_param(priority))
-    return True
 
 
 def run_loop(link: socket.socket, document: str, models: Path) -> None:

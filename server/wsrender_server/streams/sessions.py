@@ -15,7 +15,7 @@ from starlette.concurrency import run_in_threadpool
 
 from wsrender_server.problems import HttpProblem
 from wsrender_server.settings import Settings
-from wsrender_server.streams.loop_process import calm_down, hurry
+from wsrender_server.streams.scheduling import calm_down, hurry
 
 MOST_UNREAD = 1 << 16  # bytes that the loop does not take before it counts as hung
 END_S = 2.0  # for a loop to end by itself
