@@ -7,7 +7,7 @@
 `scan`: two robots, 12 placements, no refined volumes; this checkout and the commit, in a temporary worktree, run in
 turn. `workers`: a shared_workspace job on a server with one and with two workers of one thread each, in turn, each run
 with another seed. `steps`: the same job's steps one after the other in one thread, and from their seconds of the
-processor what one and two workers would take, which other load changes less. Prints the least seconds of the wall clock,
+processor what one and two workers would take, which other load changes less. Prints the least seconds of the clock,
 of a scan those of the processor too, and their ratios: nothing is asserted.
 """
 
