@@ -48,10 +48,6 @@ Statistic = Literal["count", "maximum", "mean", "minimum"]
 NPY, RAW, PICTURE = "application/x-npy", "application/octet-stream", formats.rows("picture", own=True)[0]
 
 
-def _picture_names() -> list[str]:
-    return list(all_pictures())
-
-
 class ArtifactView(View):
     """A file of a result."""
 
@@ -230,7 +226,7 @@ async def get_slice(
 async def get_plot(
     server: Server,
     job: Finished,
-    plot: Annotated[str, OneOf(_picture_names)],
+    plot: Annotated[str, OneOf(lambda: list(all_pictures()))],
     format: Annotated[str, _SUFFIX, Query(description="Format of the picture.")] = PICTURE.suffix,
     index: Annotated[str | None, _INDEX] = None,
     statistic: Annotated[Statistic | None, _STATISTIC] = None,
