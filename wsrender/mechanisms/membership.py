@@ -11,14 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from wsrender.engine import (
-    LegTest,
-    OrientationCounts,
-    count_orientations,
-    count_orientations_at,
-    joined,
-    poses_reached,
-)
+from wsrender.engine import LegTest, OrientationCounts, count_orientations, count_orientations_at, joined, poses_reached
 from wsrender.mechanisms.inverse_kinematics import fault_text, inverse_kinematics
 from wsrender.mechanisms.mechanism import Mechanism
 from wsrender.reach.evidence import REACHABLE, UNDECIDED, UNREACHABLE
