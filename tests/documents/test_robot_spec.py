@@ -181,12 +181,15 @@ def test_each_source_is_told_apart(source, value):
     assert robot.source == source
     assert robot.placement is not None and robot.placement.matrix()[2, 3] == 1.0
     assert RobotSpec(**json.loads(robot.model_dump_json())) == robot
-    assert not {"srdf", "exclude", "link_radius"} & {*robot.model_dump(), *(robot.model_dump()["dh"] or {})}
+    assert not {"srdf", "exclude", "reference", "link_radius"} & {
+        *robot.model_dump(),
+        *(robot.model_dump()["dh"] or {}),
+    }
 
 
 def test_what_a_robot_says_of_its_bodies_survives_json():
     dh = {"convention": "standard", "rows": [ROW], "link_radius": 0.05}
-    robot = RobotSpec(dh=dh, srdf="<robot/>", exclude=(("link1", "base"), ["link1", "link3"]))
+    robot = RobotSpec(dh=dh, srdf="<robot/>", reference={"j": 1}, exclude=(("link1", "base"), ["link1", "link3"]))
     assert RobotSpec(**json.loads(robot.model_dump_json())) == robot
     assert robot.model_dump(mode="json")["exclude"] == [["link1", "base"], ["link1", "link3"]]
 
@@ -209,6 +212,7 @@ def test_what_a_robot_says_of_its_bodies_survives_json():
         ({"library": "ur5e", "srdf": ""}, "srdf", "must not be empty"),
         ({"library": "ur5e", "exclude": [["a", "b"], ["a"]]}, "exclude.1", "must be a pair of names"),
         ({"library": "ur5e", "exclude": [["a", 5]]}, "exclude.0.1", "must be a string, not 5"),
+        ({"library": "ur5e", "reference": {"j": "x"}}, "reference.j", "must be a number"),
         ({"library": "ur5e", "exclude": "ab"}, "exclude", "must be a list"),
         ({"dh": {"convention": "modified", "rows": [ROW], "link_radius": 0}}, "dh.link_radius", "greater than 0"),
     ],

@@ -258,6 +258,37 @@ def test_robots_without_shapes_have_empty_tables():
         _ = ws.robot.as_robot(Class()).shapes
 
 
+BRANCHES = """<mujoco><compiler angle="radian"/><worldbody><body name="a"><joint name="i" range="-1 1"/>
+    <geom name="a" size=".1"/><site name="tool" pos="1 0 0"/>
+    <body name="jaw" pos=".5 0 0"><joint name="grip" axis="0 1 0" ref=".1"/><geom size=".1" pos=".3 0 0"/></body>
+    <body name="jaw2" pos=".5 0 0"><joint name="second"/><geom size=".1" pos=".3 0 0"/></body></body></worldbody>
+  <equality><joint joint1="second" joint2="grip" polycoef=".2 -.5 .1 0 0"/></equality></mujoco>"""
+
+
+def test_branches_stand_at_their_reference():
+    """Shapes, and what the arm carries; what follows such a joint stands where that puts it."""
+    robot = ws.load_robot(BRANCHES, reference={"grip": 0.6})
+    model = mujoco.MjModel.from_xml_string(BRANCHES)
+    data, M = mujoco.MjData(model), np.empty((3, 3))
+    data.joint("i").qpos, data.joint("grip").qpos = 0.4, 0.6
+    data.joint("second").qpos = 0.2 - 0.5 * 0.5 + 0.1 * 0.25
+    mujoco.mj_forward(model, data)
+    mujoco.mj_fullM(model, data, M)
+    q = np.array([[0.4]])
+    np.testing.assert_allclose(robot.bodies.poses(q)[0, :, :3, 3], data.geom_xpos, atol=POSE)
+    for method in ("kernel", "mujoco"):
+        np.testing.assert_allclose(robot.inertia_matrix(q, method=method, device="cpu")[0, 0, 0], M[0, 0], rtol=1e-12)
+    assert robot.spec is not None and robot.spec.model_dump(mode="json")["reference"] == {"grip": 0.6}
+    assert ws.robot.robot_of_spec(robot.spec).bodies.qpos(q).tolist() == robot.bodies.qpos(q).tolist()
+
+
+@pytest.mark.parametrize("name", ["i", "second", "gripp", "nothing"])
+def test_references_of_what_does_not_stand_by_itself(name):
+    with pytest.raises(InputError, match=r"is no joint that stands still beside the chain; .*grip") as caught:
+        ws.load_robot(BRANCHES, reference={name: 0.0})
+    assert caught.value.field == f"reference.{name}"
+
+
 def test_the_number_of_shapes_is_bounded():
     text = arm().replace(
         '<geom name="shelf"', '<replicate count="1000" offset="0 0 1"><geom size=".1"/></replicate><geom'

@@ -259,6 +259,8 @@ class RobotSpec(Document):
     """The model's unit of length [m]: 0.001 for millimetres; 1 confirms metres. The model's positions, sizes, slides
     and centres of mass are multiplied by it, its inertias [kg unit²] by its square. null: metres, and a job is refused
     where they are beyond any arm."""
+    reference: Annotated[dict[Name, Number], Field(exclude_if=_is_empty)] = Field(default={})
+    """Where joints beside the chain stand, by name [rad or m]; others of them at the model's zero."""
     srdf: Annotated[StrictStr | None, Field(min_length=1, exclude_if=_is_none)] = None
     """Text of an SRDF, whose disabled pairs of links do not collide; null: none."""
     exclude: Annotated[tuple[ShapePair, ...], BeforeValidator(sequence), Field(exclude_if=_is_empty)] = ()

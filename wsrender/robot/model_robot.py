@@ -269,6 +269,7 @@ def load_robot(
     limits: Mapping[str, Any] | None = None,
     limits_deg: Mapping[str, Any] | None = None,
     length_unit_m: float | None = None,
+    reference: Mapping[str, float] | None = None,
     srdf: str | Path | None = None,
     exclude: Sequence[tuple[str, str]] = (),
 ) -> Robot:
@@ -278,9 +279,10 @@ def load_robot(
     ``placement`` is the base frame in the world and ``tool`` the tool point in the tip frame, each a
     `Transform`, its fields as a dict, or a (4, 4) array. ``limits`` {joint: (lower, upper)} [rad or m] (or
     ``limits_deg``) go before the model's; ``length_unit_m`` is the model's unit of length [m]: 0.001 converts
-    millimetres, 1 confirms metres. ``srdf`` is the path or text of an SRDF, whose disabled pairs of links do not
-    collide; nor do those of ``exclude``, pairs of names of shapes, or of bodies for all shapes on them. What is odd
-    about a model is a ModelWarning, and among the robot's ``notices``.
+    millimetres, 1 confirms metres. ``reference`` {joint: value} [rad or m] says where joints beside the chain stand,
+    such as those of another arm; others of them stand at the model's zero. ``srdf`` is the path or text of an SRDF,
+    whose disabled pairs of links do not collide; nor do those of ``exclude``, pairs of names of shapes, or of bodies
+    for all shapes on them. What is odd about a model is a ModelWarning, and among the robot's ``notices``.
     Raises InputError, ModelError for a malformed or unsupported model, FrameNotFoundError listing the frames.
     """
     kind, value = described(source)
@@ -288,7 +290,7 @@ def load_robot(
     placement, tool = _as_transform(placement), _as_transform(tool)
     options |= {"placement": _matrix(placement), "tool": _matrix(tool)}
     given: dict[str, Any] = {"limits": limits or {}, "limits_deg": limits_deg or {}, "length_unit_m": length_unit_m}
-    given |= {"srdf": _srdf_text(srdf), "exclude": exclude}
+    given |= {"reference": reference or {}, "srdf": _srdf_text(srdf), "exclude": exclude}
     stated = RobotSpec(**{kind: value}, **given)
     loaded = load(source, **options, **_corrections(stated))
     spec = stated.model_copy(update={"placement": _transform(placement), "tool": _transform(tool)})
@@ -334,7 +336,8 @@ def _field_of_arm(field: str, spec: RobotSpec) -> str:
 
 def _corrections(spec: RobotSpec) -> dict[str, Any]:
     """What a document says of a model that the model itself does not, or not rightly."""
-    return {name: getattr(spec, name) for name in ("limits", "limits_deg", "length_unit_m", "srdf", "exclude")}
+    names = ("limits", "limits_deg", "length_unit_m", "reference", "srdf", "exclude")
+    return {name: getattr(spec, name) for name in names}
 
 
 def _srdf_text(srdf: str | Path | None) -> str | None:

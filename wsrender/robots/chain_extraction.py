@@ -2,11 +2,12 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
+from difflib import get_close_matches
 
 import mujoco
 import numpy as np
 
-from wsrender.errors import ModelError
+from wsrender.errors import InputError, ModelError
 from wsrender.notices import Notice
 from wsrender.robots import branches, frames
 from wsrender.robots.body_extraction import BodySource
@@ -32,14 +33,16 @@ def extract(
     name: str,
     source_hash: str,
     limits: Mapping[str, tuple[float, float]],
+    reference: Mapping[str, float],
     field: str,
 ) -> LoadedRobot:
     """The robot between the frames ``base`` and ``tip`` (see ``frames.choose``) of a compiled model.
 
-    The chain is read from MuJoCo's own kinematics with its joints at ``qpos0``; everything else is held at
-    ``qpos0`` too, followers where their leaders put them, and its mass belongs to the joint that carries
-    it. Joints held by a coupling become part of the fixed links; a leader on another branch is a coordinate.
-    ``limits`` of joints, by name [rad or m], go before those of the model. Raises ModelError.
+    The chain is read from MuJoCo's own kinematics with its joints at ``qpos0``; everything else is held at its
+    ``reference``, by name [rad or m], or at ``qpos0`` too, followers where their leaders put them, and its mass
+    belongs to the joint that carries it. Joints held by a coupling become part of the fixed links; a leader on another
+    branch is a coordinate. ``limits`` of joints, by name [rad or m], go before those of the model. Raises ModelError,
+    InputError for a ``reference`` of what does not stand still.
     """
     model = compiled.model
     base_frame, tip_frame = frames.choose(model, base, tip)
@@ -56,8 +59,8 @@ def extract(
     for body, fault in compiled.inertia_faults.items():
         if carrier[body] >= 0:
             raise ModelError(field, fault)
-    reference = couplings.reference_qpos()
-    geometry = Geometry.at_reference(model, moving, reference, base_frame, tip_frame)
+    qpos = couplings.reference_qpos(_off_chain(model, couplings, leaders, drives, reference))
+    geometry = Geometry.at_reference(model, moving, qpos, base_frame, tip_frame)
     lower, upper, periodic, notices = coordinate_limits(model, [*drives, *aside], leaders, limits, field)
     names = tuple(joint_name(model, leader) for leader in leaders)
     chain = Chain(
@@ -72,9 +75,9 @@ def extract(
         links = links_of(model, geometry, [(moving[number], sign) for number, sign in order])
         chain = replace(chain, with_branches=replace(chain, **links))
     _check(chain.dynamic, field)
-    qpos, dofs = (addresses[[drive.joint for drive in drives]] for addresses in (model.jnt_qposadr, model.jnt_dofadr))
+    joints, dofs = (addresses[[drive.joint for drive in drives]] for addresses in (model.jnt_qposadr, model.jnt_dofadr))
     return LoadedRobot(
-        model, chain, source_hash, qpos, dofs, reference,
+        model, chain, source_hash, joints, dofs, qpos,
         notices=(
             *compiled.notices, *_limit_notices(compiled, limits), *_notes_off_chain(compiled, met),
             *notices, *(gripper_notices(model, tip_frame, drives) if tip is None else ()),
@@ -82,9 +85,29 @@ def extract(
         leaders=tuple((int(model.jnt_qposadr[drive.joint]), drive.source) for drive in aside),
         branches=tuple((int(model.jnt_dofadr[drive.joint]), drive.source) for drive in moving[len(drives) :]),
         body_source=BodySource(
-            compiled.with_geometry, chain, base_frame, tip_frame, couplings, reference, leaders, drives, aside, field
+            compiled.with_geometry, chain, base_frame, tip_frame, couplings, qpos, leaders, drives, aside, field
         ),
     )  # fmt: skip
+
+
+def _off_chain(
+    model: mujoco.MjModel, couplings: Couplings, leaders: list[int], drives: list[Drive], reference: Mapping[str, float]
+) -> dict[int, float]:
+    """The joints of a reference, and their values [rad or m].
+
+    Raises InputError for one that moves, follows another, is no hinge or slide, or that the model does not have.
+    """
+    moving = {*leaders, *(drive.joint for drive in drives)}
+    kinds = (mujoco.mjtJoint.mjJNT_HINGE, mujoco.mjtJoint.mjJNT_SLIDE)
+    single = [joint for joint in range(model.njnt) if mujoco.mjtJoint(model.jnt_type[joint]) in kinds]
+    free = {joint_name(model, joint): joint for joint in single if couplings.leader(joint) == joint}
+    known = {name: joint for name, joint in free.items() if joint not in moving}
+    for name in reference:
+        if name not in known:
+            hint = get_close_matches(name, known, n=1)
+            allowed = f"did you mean {hint[0]!r}?" if hint else f"allowed: {', '.join(known) or 'none'}"
+            raise InputError(f"reference.{name}", f"is no joint that stands still beside the chain; {allowed}")
+    return {known[name]: value for name, value in reference.items()}
 
 
 def _bodies_between(model: mujoco.MjModel, base: Frame, tip: Frame) -> list[int]:

@@ -4,6 +4,7 @@ A coupling is MuJoCo's: y − y₀ = a₀ + a₁(x − x₀) + … + a₄(x − 
 y₀, x₀ their values in ``qpos0``. All displacements below are these differences.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import mujoco
@@ -60,11 +61,15 @@ class Couplings:
             scale, offset = slope * scale, slope * offset + constant
         return scale, offset
 
-    def reference_qpos(self) -> np.ndarray:
-        """``qpos0`` with every follower where its leaders put it, (nq,)."""
-        qpos = np.array(self._model.qpos0)
+    def reference_qpos(self, given: Mapping[int, float]) -> np.ndarray:
+        """``qpos0`` with joints at values ``given`` [rad or m], and every follower where its leaders put it, (nq,)."""
+        qpos, addresses = np.array(self._model.qpos0), self._model.jnt_qposadr
+        for joint, value in given.items():
+            qpos[addresses[joint]] = value
         for joint in self._by_follower:
-            displacement = 0.0
+            leader = self.leader(joint)
+            at = None if leader is None else addresses[leader]
+            displacement = 0.0 if at is None else qpos[at] - self._model.qpos0[at]
             for coupling in self._couplings(joint):
                 displacement = np.polynomial.polynomial.polyval(displacement, coupling.coefficients)
             qpos[self._model.jnt_qposadr[joint]] += displacement

@@ -47,6 +47,7 @@ def load(
     limits: "Limits | None" = None,
     limits_deg: "Limits | None" = None,
     length_unit_m: float | None = None,
+    reference: Mapping[str, float] | None = None,
     srdf: str | None = None,
     exclude: "Excluded" = (),
 ) -> "LoadedRobot":
@@ -57,13 +58,14 @@ def load(
     the only end of the model that a joint moves, else the link ``tool0``; a site goes before a body of its name.
     ``placement`` is the base frame in the world and ``tool`` the tool frame in the tip frame, (4, 4) each.
     ``limits`` (``limits_deg``: hinges in degrees) of joints of the chain by name, (lower, upper) [rad or m], go before
-    the model's. ``length_unit_m`` is the model's unit of length [m]; given, no length is doubted. ``srdf`` is SRDF
+    the model's. ``length_unit_m`` is the model's unit of length [m]; given, no length is doubted. ``reference`` is
+    where joints beside the chain stand, by name [rad or m], instead of at the model's zero. ``srdf`` is SRDF
     text, whose disabled pairs of links do not collide, nor do those of ``exclude``, pairs of names of shapes or bodies.
     Raises ModelError, FrameNotFoundError, InputError; gives a ModelWarning for each of the robot's notices.
     """
     options = {"base": base, "tip": tip, "name": name, "placement": placement, "tool": tool}
     options |= {"limits": limits, "limits_deg": limits_deg, "length_unit_m": length_unit_m}
-    options |= {"srdf": srdf, "exclude": exclude}
+    options |= {"reference": reference, "srdf": srdf, "exclude": exclude}
     kind, value = described(source)
     loaders = {"library": load_library, "path": load_path, "dh": load_dh, "mjcf": load_mjcf, "urdf": load_urdf}
     return loaders[kind](value, **options)
@@ -185,6 +187,7 @@ def _loaded(
     limits=None,
     limits_deg=None,
     length_unit_m=None,
+    reference=None,
     srdf=None,
     exclude=(),
     held=(),
@@ -200,7 +203,8 @@ def _loaded(
     given = dict(limits or {}) | {joint: tuple(np.radians(ends)) for joint, ends in (limits_deg or {}).items()}
     with building(_FIELD):
         compiled = compile_model(1.0 if length_unit_m is None else length_unit_m)
-        robot = extract(compiled, base, tip, name or compiled.name or "robot", source_hash, given, _FIELD)
+        called = name or compiled.name or "robot"
+        robot = extract(compiled, base, tip, called, source_hash, given, reference or {}, _FIELD)
     _check_limits(robot.chain, limits or {}, limits_deg or {})
     chain = robot.chain.placed(_rigid("placement", placement), _rigid("tool", tool))
     found = (*robot.notices, *doubts(chain, given, length_unit_m is not None, held))
