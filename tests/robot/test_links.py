@@ -96,8 +96,7 @@ def test_meshes_are_drawn_as_they_are(tmp_path):
     hollow = trimesh.creation.annulus(0.1, 0.2, 0.3)
     (tmp_path / "arm.stl").write_bytes(hollow.export(file_type="stl"))
     (tmp_path / "arm.urdf").write_text(MESH.format(suffix="stl"))
-    with pytest.warns(ModelWarning, match="meshes is dropped"):
-        robot = ws.load_robot(tmp_path / "arm.urdf", tip="tip")
+    robot = ws.load_robot(tmp_path / "arm.urdf", tip="tip")
     (shape,) = link_shapes(robot, np.zeros(1))
     drawn = trimesh.Trimesh(shape.vertices, shape.faces)
     assert drawn.volume == pytest.approx(hollow.volume, rel=1e-5)

@@ -136,8 +136,7 @@ def loaded(tmp_path, suffix="stl", scale="1 1 1", urdf=URDF, content=None):
     (tmp_path / "meshes").mkdir(exist_ok=True)
     (tmp_path / "meshes" / f"brick.{suffix}").write_bytes(FILES[suffix] if content is None else content)
     (tmp_path / "arm.urdf").write_text(urdf.format(suffix=suffix, scale=scale))
-    with pytest.warns(ModelWarning, match="meshes is dropped"):
-        return ws.load_robot(tmp_path / "arm.urdf", tip="tip")
+    return ws.load_robot(tmp_path / "arm.urdf", tip="tip")
 
 
 @pytest.mark.parametrize("scale", ["1 1 1", ".5 -1 2"])
@@ -207,9 +206,8 @@ def test_meshes_in_millimetres_are_noticed(tmp_path):
 
 def test_a_models_unit_is_that_of_its_meshes(tmp_path):
     loaded(tmp_path)
-    with pytest.warns(ModelWarning):
-        small = ws.load_robot(tmp_path / "arm.urdf", tip="tip", length_unit_m=0.001)
-        whole = ws.load_robot(tmp_path / "arm.urdf", tip="tip")
+    small = ws.load_robot(tmp_path / "arm.urdf", tip="tip", length_unit_m=0.001)
+    whole = ws.load_robot(tmp_path / "arm.urdf", tip="tip")
     for name in ("size_m", "position_m"):
         np.testing.assert_allclose(small.shapes[name], whole.shapes[name] / 1000, atol=1e-9)
 
@@ -240,7 +238,7 @@ def test_text_reads_no_file(tmp_path, monkeypatch):
     text = URDF.format(suffix="stl", scale="1 1 1")
     with pytest.warns(ModelWarning, match="meshes is dropped"):
         robot = ws.load_robot(text, tip="tip")
-        given = load_urdf(text, assets={"brick.stl": FILES["stl"]}, tip="tip")
+    given = load_urdf(text, assets={"brick.stl": FILES["stl"]}, tip="tip")
     with pytest.raises(ModelError, match=r"the file 'meshes/brick\.stl' is not there"):
         _ = robot.shapes
     assert [shape.kind for shape in given.bodies.shapes] == ["cylinder", "mesh", "box", "sphere"]

@@ -143,7 +143,7 @@ def load_mjcf(text: str | bytes, *, assets: Mapping[str, bytes] | None = None, *
 
 def load_urdf(text: str | bytes, *, assets: Mapping[str, bytes] | None = None, **options) -> "LoadedRobot":
     """The robot of URDF text; no file is read. ``options`` as in ``load``, ``assets`` as in ``load_mjcf``."""
-    return _from_urdf(_root(text, "robot"), text, mesh_files.from_assets(assets or {}), **options)
+    return _from_urdf(_root(text, "robot"), text, mesh_files.from_assets(assets) if assets else None, **options)
 
 
 def _mjcf_model():
@@ -168,7 +168,7 @@ def _from_mjcf(root: Element, text: str | bytes, read_mesh: "ReadMesh", **option
     return _loaded(compile_mjcf, text, **options)
 
 
-def _from_urdf(root: Element, text: str | bytes, read_mesh: "ReadMesh", **options) -> "LoadedRobot":
+def _from_urdf(root: Element, text: str | bytes, read_mesh: "ReadMesh | None", **options) -> "LoadedRobot":
     _mjcf_model()
     from wsrender.robots.urdf_model import compile_urdf
 

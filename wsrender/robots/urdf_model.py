@@ -13,7 +13,7 @@ from wsrender.robots.compiled_model import CompiledModel, JointFault, Purpose
 from wsrender.robots.hulls import with_small_hulls
 from wsrender.robots.inertials import compile_with_inertials
 from wsrender.robots.length_unit import to_metres
-from wsrender.robots.mesh_files import ReadMesh
+from wsrender.robots.mesh_files import ReadMesh, from_assets
 from wsrender.robots.urdf import Joint, Link, Mimic, Urdf, read_urdf
 from wsrender.robots.urdf_shapes import PRIMITIVES, add_primitives, add_shapes
 
@@ -22,16 +22,16 @@ AddShapes = Callable[[mujoco.MjSpec, mujoco.MjsBody, Link], None]
 _WORLD = "world"  # what MuJoCo calls the ground
 
 
-def compile_urdf(robot: Element, read_mesh: ReadMesh, field: str, length_unit_m: float = 1.0) -> CompiledModel:
+def compile_urdf(robot: Element, read_mesh: ReadMesh | None, field: str, length_unit_m: float = 1.0) -> CompiledModel:
     """The compiled model of a ``<robot>`` element, its lengths in ``length_unit_m``.
 
     Every link, fixed or not, becomes a body of its name; a link "world" that is not the root is a body of another name
     with a site "world". The root link stands still in the world. Inertia comes from ``<inertial>`` alone, and is left
-    out where no joint moves a link. Primitive shapes are kept as massless geometry, meshes are dropped with one notice.
-    Floating and planar joints are held at zero, and noted as faults of the path through
-    them. Joints that cannot be read, which are held too, and revolute ones whose limits are missing, equal or upside
-    down are joint faults. Limits that are both 0, as exporters write them where none were set, or infinite count as
-    none. Raises ModelError.
+    out where no joint moves a link. Primitive shapes are kept as massless geometry, meshes are read where shapes are
+    asked for; without ``read_mesh`` there are none, of which there is a notice. Floating and planar joints are held at
+    zero, and noted as faults of the path through them. Joints that cannot be read, held too, and revolute ones
+    whose limits are missing, equal or upside down are joint faults. Limits that are both 0, as exporters write them
+    where none were set, or infinite count as none. Raises ModelError.
     """
     urdf = read_urdf(robot, field)
     spec = _spec_of(urdf, add_primitives)
@@ -41,7 +41,7 @@ def compile_urdf(robot: Element, read_mesh: ReadMesh, field: str, length_unit_m:
     return CompiledModel(
         model,
         urdf.name,
-        partial(_with_geometry, urdf, read_mesh, field, length_unit_m),
+        partial(_with_geometry, urdf, read_mesh or from_assets({}), field, length_unit_m),
         path_faults={
             body: f"joint {joint.name!r} is {joint.kind}: name a base below it, such as {joint.child!r}"
             for joint, body in joints
@@ -50,7 +50,7 @@ def compile_urdf(robot: Element, read_mesh: ReadMesh, field: str, length_unit_m:
         inertia_faults=inertia_faults,
         joint_faults=tuple(fault for joint, body in joints if (fault := _fault(joint, body, urdf.joints))),
         unset_limits=tuple(j.name for j, _ in joints if j.kind == "revolute" and j.limits == (0.0, 0.0)),
-        notices=_dropped_meshes(urdf) + notices,
+        notices=notices if read_mesh else (*_dropped_meshes(urdf), *notices),
     )
 
 
