@@ -83,7 +83,8 @@ class SharedWorkspaceAnalysis(Composed):
         drawn, seconds = pictures_cost("slices", "product", "robot")
         seconds += refined_seconds(self.job.refined_volume) * (1 + len(self.scanned))
         files = DOCUMENT_BYTES + drawn + sum(plan.volume_bytes for plan in self.several.plans) * 1.5
-        return Cost(swept.samples, swept.memory_bytes, files, swept.seconds + seconds)
+        bits = sum(plan.pipeline.block.size for plan in self.scanned) / 8
+        return Cost(swept.samples, swept.memory_bytes + bits, files, swept.seconds + seconds)
 
     @property
     def refinements(self) -> int:
