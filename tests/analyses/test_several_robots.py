@@ -82,8 +82,8 @@ def test_scan_of_an_offset():
 def test_no_robot_is_planned_twice_and_no_result_is_built_for_a_placement(monkeypatch):
     """One first pass of each robot tells the voxel size of all; a scan reads where its sweeps have been."""
     passes, built = [], []
-    evaluate, finished = first_pass.evaluate_at, WorkspaceAnalysis.finish
-    monkeypatch.setattr(first_pass, "evaluate_at", lambda *given: passes.append(given) or evaluate(*given))
+    evaluate, finished = first_pass.evaluate_samples, WorkspaceAnalysis.finish
+    monkeypatch.setattr(first_pass, "evaluate_samples", lambda *given: passes.append(given) or evaluate(*given))
     monkeypatch.setattr(WorkspaceAnalysis, "finish", lambda *given: built.append(given) or finished(*given))
     scan = {"axis": "x", "values": [0.0, 0.1, 0.2]}
     options = {**OPTIONS, "voxel_size_m": None}
