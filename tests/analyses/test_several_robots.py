@@ -6,7 +6,6 @@ import pytest
 import wsrender as ws
 from tests.run.simple_robots import PlanarClass, gantry, planar_arm
 from wsrender.analyses.volume_notices import MOST_HOLES
-from wsrender.analyses.workspace import first_pass
 from wsrender.analyses.workspace.run import WorkspaceAnalysis
 from wsrender.reach.holes import share_of_holes
 from wsrender.results.result import Result
@@ -80,15 +79,15 @@ def test_scan_of_an_offset():
 
 
 def test_no_robot_is_planned_twice_and_no_result_is_built_for_a_placement(monkeypatch):
-    """One first pass of each robot tells the voxel size of all; a scan reads where its sweeps have been."""
-    passes, built = [], []
-    evaluate, finished = first_pass.evaluate_samples, WorkspaceAnalysis.finish
-    monkeypatch.setattr(first_pass, "evaluate_samples", lambda *given: passes.append(given) or evaluate(*given))
-    monkeypatch.setattr(WorkspaceAnalysis, "finish", lambda *given: built.append(given) or finished(*given))
+    """Not for the voxel size that all share either; a scan reads where its sweeps have been."""
+    plans, built = [], []
+    planned, finished = WorkspaceAnalysis.__init__, WorkspaceAnalysis.finish
+    monkeypatch.setattr(WorkspaceAnalysis, "__init__", lambda *a, **k: plans.append(a) or planned(*a, **k))
+    monkeypatch.setattr(WorkspaceAnalysis, "finish", lambda *a: built.append(a) or finished(*a))
     scan = {"axis": "x", "values": [0.0, 0.1, 0.2]}
     options = {**OPTIONS, "voxel_size_m": None}
     result = ws.shared_workspace([gantry(), gantry()], ws.Sobol(4096), scan=scan, **options)
-    assert (len(result.tables["scan"]), len(passes), len(built)) == (3, 2, 2)
+    assert (len(result.tables["scan"]), len(plans), len(built)) == (3, 2 + 3, 2)
 
 
 def test_a_scan_of_three_robots_counts_those_who_stay():
