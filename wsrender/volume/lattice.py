@@ -138,7 +138,14 @@ def default_voxel_size(
     its area, a linear one its length; a hull smaller than a cube of a quarter of its extent counts as that cube. A
     single point has no holes, and counts as a metre. 0 where nothing bounds the edge from below.
     """
-    dimension, measure, extent = _measure(positions)
+    return voxel_size_of(measured(positions), samples, least=least, divisions=divisions)
+
+
+def voxel_size_of(
+    hull: tuple[int, float, float], samples: float = np.inf, *, least: float = 0.0, divisions: float = MOST_DIVISIONS
+) -> float:
+    """The same of positions that are `measured`."""
+    dimension, measure, extent = hull
     whole, holding = POINT_M, 0.0
     if dimension:
         whole = max(measure ** (1 / dimension), extent * THINNEST)
@@ -153,7 +160,7 @@ def expected_voxels(positions: np.ndarray, voxel_size_m: float) -> float:
     The volume (area, length) is measured with voxels so large that the samples leave next to no holes: half of those
     at its boundary belong to it. Its share per voxel is the answer, at least 1.
     """
-    dimension, _, _ = _measure(positions)
+    dimension, _, _ = measured(positions)
     size = default_voxel_size(positions, len(positions))
     cells = np.floor(positions / size).astype(np.int64)
     held = set(map(tuple, cells.tolist()))
@@ -163,7 +170,7 @@ def expected_voxels(positions: np.ndarray, voxel_size_m: float) -> float:
     return max((inner + len(held)) / 2 * (size / voxel_size_m) ** dimension, 1.0)
 
 
-def _measure(positions: np.ndarray) -> tuple[int, float, float]:
+def measured(positions: np.ndarray) -> tuple[int, float, float]:
     """Dimension of a set of positions (N, 3), length, area or volume of its convex hull, and largest extent [m]."""
     from scipy.spatial import ConvexHull
 

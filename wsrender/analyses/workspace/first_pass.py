@@ -13,7 +13,7 @@ from wsrender.pipeline.pipeline import Pipeline
 from wsrender.pipeline.sampling import SamplingPlan, plan_sampling
 from wsrender.robots.reachable_box import reachable_box
 from wsrender.tolerances import FLAT
-from wsrender.volume.lattice import MOST_DIVISIONS, LatticeBlock, block_around, default_voxel_size
+from wsrender.volume.lattice import MOST_DIVISIONS, LatticeBlock, block_around, measured, voxel_size_of
 
 SAMPLES = 2**16
 STEP_SAMPLES = 2**10
@@ -39,21 +39,25 @@ class FirstPass:
         sampling = Sobol(count=SAMPLES, seed=0, locked=self.locked)
         return Pipeline(self.evaluation, plan_sampling(self.evaluation.chain, sampling))
 
+    @cached_property
+    def _hull(self) -> tuple[int, float, float]:
+        """Dimension, measure and extent of the positions."""
+        return measured(self.evaluated.position)
+
     def voxel_size(self, sampling: SamplingPlan | None, divisions: float = MOST_DIVISIONS) -> float:
         """Default voxel edge [m] for the samples of a plan, at most so many in the size; None: for as many as it takes.
 
         Of a grid count its distinct positions, and voxels are no smaller than the longest step that one level of one
         joint makes, in the median over configurations.
         """
-        positions = self.evaluated.position
         if sampling is None:
-            return default_voxel_size(positions, divisions=divisions)
+            return voxel_size_of(self._hull, divisions=divisions)
         if sampling.method != "grid":
-            return default_voxel_size(positions, sampling.count, divisions=divisions)
+            return voxel_size_of(self._hull, sampling.count, divisions=divisions)
         steps = self._steps(sampling)
-        moving = steps.max(axis=0) > FLAT * np.ptp(positions, axis=0).max()
+        moving = steps.max(axis=0) > FLAT * np.ptp(self.evaluated.position, axis=0).max()
         distinct = np.prod(sampling.levels[moving], dtype=float)
-        return default_voxel_size(positions, distinct, least=float(np.median(steps.max(axis=1))), divisions=divisions)
+        return voxel_size_of(self._hull, distinct, least=float(np.median(steps.max(axis=1))), divisions=divisions)
 
     def least_voxel_size(self, sampling: SamplingPlan | None) -> float:
         """The voxel edge [m] below which the samples of a plan leave holes; 0 for as many as it takes."""
