@@ -25,6 +25,7 @@ from wsrender.analyses.design_optimization.job import (
 from wsrender.analyses.master_slave_mapping.job import Containment, MappingSearch
 from wsrender.documents.constraints import Constraints
 from wsrender.documents.document import Document
+from wsrender.documents.environment import Environment
 from wsrender.documents.kinetostatics import ForceFieldChoice
 from wsrender.documents.mechanism import Delta, LegsMechanism, Master4DOF, SixPUS, StewartGough
 from wsrender.documents.options import AlphaShapeSurface, IsoSurface
@@ -51,6 +52,7 @@ def analyze(
     base: str | None = None,
     tip: str | None = None,
     constraints: Constraints | Mapping[str, Any] | None = None,
+    environment: Environment | Mapping[str, Any] | None = None,
     index_options: Mapping[str, Mapping[str, bool | int | float | Sequence[float] | np.ndarray]] = {},
     characteristic_length_m: float = 1.0,
     convention: Literal["standard", "table_1", "wsrender_code"] = "standard",
@@ -85,6 +87,7 @@ def analyze(
     ``base``: Body, link or site at which the chain starts; None: the world.
     ``tip``: Site, body or link at the end of the chain; None: the site "tool", or else the only end there is.
     ``constraints``: Which configurations are admitted; None: all.
+    ``environment``: What stands around, which the robot's shapes do not enter; None: nothing.
     ``index_options``: Options of the indices that have any: {index: {option: value}}.
     ``characteristic_length_m``: Length that divides the linear rows of a task that mixes linear and angular rows [m].
     ``convention``: Which definition of the indices: the standard one, Table I of the WSRender paper, or its program.
@@ -123,6 +126,7 @@ def indices_at(
     base: str | None = None,
     tip: str | None = None,
     constraints: Constraints | Mapping[str, Any] | None = None,
+    environment: Environment | Mapping[str, Any] | None = None,
     indices: Literal["kinematic", "dynamic", "all"] | list[str] | tuple[str, ...] = "kinematic",
     index_options: Mapping[str, Mapping[str, bool | int | float | Sequence[float] | np.ndarray]] = {},
     task: Literal["linear", "angular", "full"] | Sequence[Literal["x", "y", "z", "rx", "ry", "rz"]] = "linear",
@@ -147,6 +151,7 @@ def indices_at(
     ``base``: Body, link or site at which the chain starts; None: the world.
     ``tip``: Site, body or link at the end of the chain; None: the site "tool", or else the only end there is.
     ``constraints``: Which configurations are admitted; None: all.
+    ``environment``: What stands around, which the robot's shapes do not enter; None: nothing.
     ``indices``: Local indices: "kinematic", "dynamic", "all", or a list of names.
     ``index_options``: Options of the indices that have any: {index: {option: value}}.
     ``task``: Rows of the Jacobian, in base axes: "linear", "angular", "full", or a list from x y z rx ry rz.
@@ -261,6 +266,7 @@ def shared_workspace(
     sampling: SamplingLike | Sequence[SamplingLike | None] | None = None,
     *,
     constraints: Constraints | Mapping[str, Any] | None = None,
+    environment: Environment | Mapping[str, Any] | None = None,
     indices: Literal["kinematic", "dynamic", "all"] | list[str] | tuple[str, ...] = "kinematic",
     index_options: Mapping[str, Mapping[str, bool | int | float | Sequence[float] | np.ndarray]] = {},
     task: Literal["linear", "angular", "full"] | Sequence[Literal["x", "y", "z", "rx", "ry", "rz"]] = "linear",
@@ -287,6 +293,7 @@ def shared_workspace(
     ``sampling``: How joint spaces are sampled, one for all robots or a list of one for each; None: 2^20 Sobol samples,
         of a robot that is a Python class 2^16.
     ``constraints``: Which configurations are admitted; None: all.
+    ``environment``: What stands around, which the robot's shapes do not enter; None: nothing.
     ``indices``: Local indices: "kinematic", "dynamic", "all", or a list of names.
     ``index_options``: Options of the indices that have any: {index: {option: value}}.
     ``task``: Rows of the Jacobian, in base axes: "linear", "angular", "full", or a list from x y z rx ry rz.
@@ -319,6 +326,7 @@ def robot_comparison(
     sampling: SamplingLike | Sequence[SamplingLike | None] | None = None,
     *,
     constraints: Constraints | Mapping[str, Any] | None = None,
+    environment: Environment | Mapping[str, Any] | None = None,
     indices: Literal["kinematic", "dynamic", "all"] | list[str] | tuple[str, ...] = "kinematic",
     index_options: Mapping[str, Mapping[str, bool | int | float | Sequence[float] | np.ndarray]] = {},
     task: Literal["linear", "angular", "full"] | Sequence[Literal["x", "y", "z", "rx", "ry", "rz"]] = "linear",
@@ -344,6 +352,7 @@ def robot_comparison(
     ``sampling``: How joint spaces are sampled, one for all robots or a list of one for each; None: 2^20 Sobol samples,
         of a robot that is a Python class 2^16.
     ``constraints``: Which configurations are admitted; None: all.
+    ``environment``: What stands around, which the robot's shapes do not enter; None: nothing.
     ``indices``: Local indices: "kinematic", "dynamic", "all", or a list of names.
     ``index_options``: Options of the indices that have any: {index: {option: value}}.
     ``task``: Rows of the Jacobian, in base axes: "linear", "angular", "full", or a list from x y z rx ry rz.

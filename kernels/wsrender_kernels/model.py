@@ -8,10 +8,11 @@ from wsrender_kernels.kinematics import chain_type
 
 
 @factory
-def model_type(real, n: int, joints: int, limits: int = 0):
+def model_type(real, n: int, joints: int, limits: int = 0, labelled: bool = False):
     """Struct with the numbers of a robot of n coordinates; what a kernel's shape does not use is empty or 0.
 
-    Of a sweep with constraints also ``limits``, their numbers.
+    Of a sweep with constraints also ``limits``, their numbers, and where ``labelled``, ``labels`` of the samples from
+    ``first_label`` on, which other kernels have decided.
 
     Vectors in the struct, not arrays: on the CPU the compiler then sees that nothing written in the lane loop changes
     them, on CUDA they are read from constant memory.
@@ -35,4 +36,6 @@ def model_type(real, n: int, joints: int, limits: int = 0):
 
     if limits:
         Model.__annotations__["limits"] = wp.types.vector(limits, real)
+    if labelled:
+        Model.__annotations__ |= {"labels": wp.array(dtype=wp.uint8), "first_label": wp.int64}
     return wp.struct(Model)

@@ -75,7 +75,8 @@ class Shape:
     keep_rows: bool = False
     keep_configuration: bool = False
     keep_orientation: bool = False
-    constraints: tuple[Callable, ...] = ()  # Warp functions (limits, q, tip, axes) -> 0 admitted | 1 violated | 2 open
+    # Warp functions (limits, q, tip, axes) -> 0 admitted | 1 violated, or the label of samples that are rejected
+    constraints: tuple[Callable | int, ...] = ()
     limits: int = 0  # numbers of all constraints
 
     @property
@@ -86,6 +87,11 @@ class Shape:
         """
         tip_axes = self.keep_orientation or bool(self.constraints)
         return tip_axes or in_base_axes(self.rows) or self.convention == "wsrender_code"
+
+    @property
+    def labelled(self) -> bool:
+        """Whether other kernels have labelled the samples: see `collision`."""
+        return any(isinstance(each, int) for each in self.constraints)
 
     @property
     def many_rows(self) -> bool:
@@ -164,7 +170,7 @@ def _state(shape: Shape) -> SimpleNamespace:
     forward, jacobian, jacobian_type = kin.forward, kin.jacobian, kin.jacobian_type
     dyn = inertia(real, n, shape.sources, shape.plain)
     inertia_matrix, inertia_type = dyn.inertia_matrix, dyn.joint_inertia_type
-    Model = model_type(real, n, len(shape.sources), shape.limits)
+    Model = model_type(real, n, len(shape.sources), shape.limits, shape.labelled)
     vec3, vec_n, mat33 = kin.vec3, kin.vec_n, wp.types.matrix((3, 3), real)
     BASE_LEVELS = shape.base_levels
 
@@ -233,7 +239,7 @@ def _around_values(shape: Shape) -> SimpleNamespace:
         wp.types.vector(rows, real) for rows, _columns in (spectra.kinematic_shape, spectra.dynamic_shape)
     )
     indices = shape.indices
-    Model, Space = model_type(real, n, len(shape.sources), shape.limits), sample_space(real, n)
+    Model, Space = model_type(real, n, len(shape.sources), shape.limits, shape.labelled), sample_space(real, n)
     output_type, found_type = wp.types.vector(shape.n_outputs, real), wp.types.vector(shape.n_indices + 2, real)
     to_quaternion = orientation(real)
     K, rejection, CONSTRAINED, REASON = shape.n_indices, _rejection(shape), bool(shape.constraints), shape.n_outputs - 1
@@ -257,7 +263,7 @@ def _around_values(shape: Shape) -> SimpleNamespace:
             for i in range(4):
                 out[ORIENTATION + i] = quat[i]
         if wp.static(CONSTRAINED):
-            out[REASON] = real(rejection(model, q, tip, axes))
+            out[REASON] = real(rejection(model, q, tip, axes, first + wp.int64(lane)))
         J = penalized(model, q, J)
         return out, kinematic_matrix(model, J), dynamic_matrix(model, J, M), volume_of(J)
 
@@ -277,7 +283,7 @@ def _around_values(shape: Shape) -> SimpleNamespace:
 
 @factory
 def _rejection(shape: Shape):
-    """Device function ``(model, q, tip, axes) -> number`` of the first constraint that is violated, from 1; else 0.
+    """Device function ``(model, q, tip, axes, sample) -> number`` of the first violated constraint, from 1; else 0.
 
     With ``base_levels`` its ``tip`` is the lever, as of `_state`; the constraints are given the tip in the world.
     """
@@ -286,17 +292,18 @@ def _rejection(shape: Shape):
     vec3, mat33, vec_n = wp.types.vector(3, real), wp.types.matrix((3, 3), real), wp.types.vector(n, real)
 
     @wp.func
-    def none(model: Any, q: vec_n, tip: vec3, axes: mat33):
+    def none(model: Any, q: vec_n, tip: vec3, axes: mat33, sample: wp.int64):
         return wp.int32(0)
 
     rejection = none
     for number, constraint in reversed(list(enumerate(shape.constraints, 1))):
-        rejection = _first_of(constraint, number, rejection, vec_n, vec3, mat33)
+        first_of = _first_label if isinstance(constraint, int) else _first_of
+        rejection = first_of(constraint, number, rejection, vec_n, vec3, mat33)
     in_world = rejection
 
     @wp.func
-    def of_lever(model: Any, q: vec_n, lever: vec3, axes: mat33):
-        return in_world(model, q, moved_base(model.chain, q[0], lever), axes)
+    def of_lever(model: Any, q: vec_n, lever: vec3, axes: mat33, sample: wp.int64):
+        return in_world(model, q, moved_base(model.chain, q[0], lever), axes, sample)
 
     return of_lever if shape.base_levels and shape.constraints else rejection
 
@@ -305,11 +312,24 @@ def _first_of(constraint: Any, number: int, following: Any, vec_n: Any, vec3: An
     """Device function as `_rejection`, of one constraint before others."""
 
     @wp.func
-    def first_of(model: Any, q: vec_n, tip: vec3, axes: mat33):
-        rejected = following(model, q, tip, axes)
+    def first_of(model: Any, q: vec_n, tip: vec3, axes: mat33, sample: wp.int64):
+        rejected = following(model, q, tip, axes, sample)
         return wp.where(constraint(model.limits, q, tip, axes) == 0, rejected, number)
 
     return first_of
+
+
+def _first_label(label: int, number: int, following: Any, vec_n: Any, vec3: Any, mat33: Any):
+    """The same of a constraint that has labelled the samples that it rejects."""
+    load, LABEL = memory(wp.uint8).load, wp.uint8(label)
+
+    @wp.func
+    def first_label(model: Any, q: vec_n, tip: vec3, axes: mat33, sample: wp.int64):
+        rejected = following(model, q, tip, axes, sample)
+        at = wp.int32(sample - model.first_label)
+        return wp.where(load(model.labels, at) == LABEL, number, rejected)
+
+    return first_label
 
 
 @factory
@@ -319,7 +339,7 @@ def _positions(shape: Shape):
     draw = sampling(real, n, shape.method, shape.shared).draw
     kin = kinematics(real, n, shape.sources, shape.plain, shape.world_axes)
     forward, vec3 = kin.forward, kin.vec3
-    Model, Space = model_type(real, n, len(shape.sources), shape.limits), sample_space(real, n)
+    Model, Space = model_type(real, n, len(shape.sources), shape.limits, shape.labelled), sample_space(real, n)
     output_type, to_quaternion = wp.types.vector(shape.n_outputs, real), orientation(real)
     mat33 = wp.types.matrix((3, 3), real)
     BASE_LEVELS, GIVEN = shape.base_levels, shape.given_jacobian
@@ -348,7 +368,7 @@ def _positions(shape: Shape):
             for i in range(4):
                 out[ORIENTATION + i] = quat[i]
         if wp.static(CONSTRAINED):
-            out[REASON] = real(rejection(model, q, tip, axes))
+            out[REASON] = real(rejection(model, q, tip, axes, first + wp.int64(lane)))
         for r in range(3):
             out[r] = tip[r]
         if wp.static(KEEP_CONFIGURATION):
@@ -370,7 +390,10 @@ def _evaluation(shape: Shape):
     CALLED = shape.many_rows and shape.dynamic
     kinematic_values = singular_values(real, *spectra.kinematic_shape, shape.penalty or CALLED, not CALLED)
     dynamic_values = singular_values(real, *spectra.dynamic_shape, True, not CALLED)
-    Model, Space = model_type(real, shape.n, len(shape.sources), shape.limits), sample_space(real, shape.n)
+    Model, Space = (
+        model_type(real, shape.n, len(shape.sources), shape.limits, shape.labelled),
+        sample_space(real, shape.n),
+    )
     FOUND = shape.n_indices + 2
 
     @wp.func(inline=True)
@@ -403,7 +426,10 @@ def _staged_lanes(shape: Shape):
     DYNAMIC = ROWS_B == ROWS_A
     SIDE_BY_SIDE = PART_LANES * (2 if DYNAMIC else 1)
     values_of_lanes = singular_values_of_lanes(real, ROWS_A, COLUMNS, shape.penalty or DYNAMIC, SIDE_BY_SIDE)
-    Model, Space = model_type(real, shape.n, len(shape.sources), shape.limits), sample_space(real, shape.n)
+    Model, Space = (
+        model_type(real, shape.n, len(shape.sources), shape.limits, shape.labelled),
+        sample_space(real, shape.n),
+    )
     values_type, numbers_type = wp.types.vector(shape.n_outputs * LANES, real), wp.types.vector(PART_LANES, real)
     lanes_type = wp.types.vector(ROWS_A * COLUMNS * SIDE_BY_SIDE, real)
     sigma_a_type, sigma_b_type = wp.types.vector(ROWS_A, real), wp.types.vector(ROWS_B, real)
@@ -504,7 +530,10 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
     block_of = blocks(real, shape.n, shape.shared)
     ordered = elementary(real).ordered
     cell, quantized = voxels(real).cell, voxels(real).quantized
-    Model, Space = model_type(real, shape.n, len(shape.sources), shape.limits), sample_space(real, shape.n)
+    Model, Space = (
+        model_type(real, shape.n, len(shape.sources), shape.limits, shape.labelled),
+        sample_space(real, shape.n),
+    )
     Lattice, Outputs, bits = lattice(real), outputs_type(shape), bits_type(real)
     vec3, Base, at_level = wp.types.vector(3, real), base_levels(real), grid_level(real)
     moved_base = kinematics(real, shape.n, shape.sources, shape.plain, shape.world_axes).moved_base
@@ -712,7 +741,10 @@ def _cuda_kernel(shape: Shape) -> wp.Kernel:
     prepare, evaluate = sampling(real, shape.n, shape.method).prepare, _evaluation(shape)
     ordered = elementary(real).ordered
     cell, quantized = voxels(real).cell, voxels(real).quantized
-    Model, Space = model_type(real, shape.n, len(shape.sources), shape.limits), sample_space(real, shape.n)
+    Model, Space = (
+        model_type(real, shape.n, len(shape.sources), shape.limits, shape.labelled),
+        sample_space(real, shape.n),
+    )
     Lattice, Outputs, bits = lattice(real), outputs_type(shape), bits_type(real)
     vec3, Base, at_level = wp.types.vector(3, real), base_levels(real), grid_level(real)
     moved_base = kinematics(real, shape.n, shape.sources, shape.plain, shape.world_axes).moved_base

@@ -11,6 +11,7 @@ from wsrender.analyses.cost import DOCUMENT_BYTES, Cost, in_turn, pictures_cost,
 from wsrender.analyses.execution import Execution
 from wsrender.analyses.registry import job_classes, planned
 from wsrender.documents.arm import dotted
+from wsrender.documents.constraints import Constrained
 from wsrender.documents.options import IndexChoices
 from wsrender.documents.several_robots import PlacedRobot
 from wsrender.errors import InputError
@@ -92,7 +93,7 @@ def shared_voxel_size(plans: Sequence[Any]) -> float:
 
 def workspace_job(job: Any, arm: PlacedRobot, refined_volume: float | None = None) -> Any:
     """The workspace job of one robot of a job of several."""
-    shared = (*IndexChoices.model_fields, "constraints", "voxel_size_m", "max_samples")
+    shared = (*IndexChoices.model_fields, *Constrained.model_fields, "voxel_size_m", "max_samples")
     choices = {name: getattr(job, name) for name in shared}
     choices["voxel_statistics"] = ("count", "maximum")  # what robots are compared by
     own = {"robot": arm.robot, "base": arm.base, "tip": arm.tip, "sampling": arm.sampling}

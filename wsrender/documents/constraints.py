@@ -1,13 +1,14 @@
 """Constraints on configurations in a job document: each by its name."""
 
 from collections.abc import Iterator, Mapping
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, ConfigDict, StrictBool
+from pydantic import BeforeValidator, ConfigDict, Field, StrictBool
 
 from wsrender.documents.document import Document
-from wsrender.documents.environment import Bounds, HalfSpace, Sphere
-from wsrender.documents.quantities import Number, real
+from wsrender.documents.environment import Bounds, Environment, HalfSpace, Sphere
+from wsrender.documents.quantities import NonNegativeNumber, Number, real, sequence
+from wsrender.documents.robot import ShapePair
 
 
 class RegionChoice(Document):
@@ -24,6 +25,20 @@ class RegionChoice(Document):
         """(field, message) of every pair of fields that do not go together."""
         if self.box is None and self.sphere is None and self.half_space is None:
             yield "box", "must be given, or a sphere or a half_space"
+
+
+class Apart(Document):
+    """Shapes that keep apart."""
+
+    margin_m: NonNegativeNumber = 0.0
+    """Least distance [m]; 0: they may touch."""
+    exclude: Annotated[tuple[ShapePair, ...], BeforeValidator(sequence)] = ()
+    """Pairs of names, of shapes or of bodies for all shapes on them, that may come nearer."""
+
+
+def _apart(value: Any) -> Any:
+    """The choice of a constraint that may be given as true."""
+    return {} if value is True else value
 
 
 def _options(value: Any) -> Any:
@@ -49,6 +64,14 @@ class Constraints(Document):
 
     region: RegionChoice | None = None
     """Where the tip may be; null: anywhere."""
+    self_collision: Annotated[
+        Apart | Literal[False] | None, BeforeValidator(_apart), Field(exclude_if=lambda value: value is None)
+    ] = None
+    """The robot's own shapes keep apart; true: they may touch; null: they are not asked for."""
+    environment: Annotated[
+        Apart | Literal[False] | None, BeforeValidator(_apart), Field(exclude_if=lambda value: value is None)
+    ] = None
+    """How far the robot keeps from the job's ``environment``; null: it may touch it; false: it is only drawn."""
 
     @property
     def added(self) -> dict[str, dict[str, float]]:
@@ -62,3 +85,5 @@ class Constrained(Document):
 
     constraints: Constraints | None = None
     """Which configurations are admitted; null: all."""
+    environment: Annotated[Environment | None, Field(exclude_if=lambda value: value is None)] = None
+    """What stands around, which the robot's shapes do not enter; null: nothing."""

@@ -125,6 +125,7 @@ def quoted(names: Iterable[str]) -> str:
 
 Number = Annotated[float, BeforeValidator(real)]
 PositiveNumber = Annotated[float, Field(gt=0), BeforeValidator(real)]
+NonNegativeNumber = Annotated[float, Field(ge=0), BeforeValidator(real)]
 # Edge of a voxel [m]: from below the parts of any robot to beyond any, far from overflow. What a robot's size allows
 # within that, `wsrender.volume.lattice` says.
 VoxelSize = Annotated[float, Field(ge=SMALLEST_VOXEL_M, le=LARGEST_VOXEL_M), BeforeValidator(positive)]

@@ -10,6 +10,7 @@ from wsrender_kernels.constraints.expression import expression
 
 from wsrender.engine.evaluation import REAL
 from wsrender.engine.index_code import function_of_source, source_of
+from wsrender.pipeline.constraints.collision import labelling
 from wsrender.pipeline.constraints.constraint import Constraint, Expressed
 from wsrender.robots.kinematics import Kinematics
 
@@ -27,8 +28,11 @@ def device_constraints(
     """Fields ``constraints`` and ``limits`` of a sweep's shape."""
     sizes = [len(_numbers(each, chain, origin, precision)) for each in constraints]
     total, functions, real = sum(sizes), [], REAL[precision]
+    labels = {each.name: number for number, each in enumerate(labelling(constraints), 1)}
     for each, offset in zip(constraints, np.cumsum([0, *sizes]).tolist(), strict=False):
-        if isinstance(each.device, Expressed):
+        if each.name in labels:
+            functions.append(labels[each.name])
+        elif isinstance(each.device, Expressed):
             # Positions in the world have more digits than single precision where the base is far away.
             own, options = wp.float64 if origin.any() else real, len(each.device.options)
             margin = function_of_source(source_of([each.device.traced(chain.n)]), 1, chain.n + 12 + options, own)

@@ -54,14 +54,17 @@ def drive(chain: Chain) -> tuple[tuple[int, ...], bool]:
     return tuple(int(s) for s in chain.joint_source), bool(own and np.all(chain.joint_is_revolute))
 
 
-def pipeline_model(pipeline: Pipeline, limits: np.ndarray):
-    """The Model struct of a pipeline, without what the host computes; ``limits``: of `packed_constraints`."""
+def pipeline_model(pipeline: Pipeline, limits: np.ndarray, labelled: bool = False):
+    """The Model struct of a pipeline, without what the host computes.
+
+    ``limits``: of `packed_constraints`; ``labelled``: whether samples are labelled first.
+    """
     evaluation, precision, origin = pipeline.evaluation, pipeline.precision, pipeline.origin
     chain, real = evaluation.chain, REAL[precision]
     if device_chain := evaluation.device_chain:
-        model = chain_model(device_chain.relative_to(origin), precision, len(limits))
+        model = chain_model(device_chain.relative_to(origin), precision, len(limits), labelled)
     else:
-        model = _placed_model(chain, chain.n, precision, len(limits))
+        model = _placed_model(chain, chain.n, precision, len(limits), labelled)
     if len(limits):
         model.limits = vector_of(limits, real)
     model.lower, model.upper = vector_of(chain.lower_limits, real), vector_of(chain.upper_limits, real)
@@ -75,9 +78,9 @@ def pipeline_model(pipeline: Pipeline, limits: np.ndarray):
     return model
 
 
-def chain_model(chain: Chain, precision: str, limits: int = 0):
+def chain_model(chain: Chain, precision: str, limits: int = 0, labelled: bool = False):
     """The Model struct with a chain's kinematics and inertias alone, and room for so many numbers of constraints."""
-    real, model = REAL[precision], _placed_model(chain, len(chain.joint_source), precision, limits)
+    real, model = REAL[precision], _placed_model(chain, len(chain.joint_source), precision, limits, labelled)
     kinematics = pack_kinematics(
         chain.T_world_base,
         chain.T_joint,
@@ -91,10 +94,10 @@ def chain_model(chain: Chain, precision: str, limits: int = 0):
     return model
 
 
-def _placed_model(chain: Kinematics, joints: int, precision: str, limits: int):
+def _placed_model(chain: Kinematics, joints: int, precision: str, limits: int, labelled: bool):
     """A Model struct for so many joints that says how the base stands, and nothing of what it carries."""
     real = REAL[precision]
-    model = model_type(real, chain.n, joints, limits)()
+    model = model_type(real, chain.n, joints, limits, labelled)()
     model.base_axes = wp.types.matrix((3, 3), real)(*chain.T_world_base[:3, :3].T.ravel().tolist())
     model.linear_scale = 1.0
     return model

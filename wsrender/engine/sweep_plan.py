@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
 from dataclasses import dataclass, field, replace
 from functools import cached_property, reduce
+from typing import Any
 
 import numpy as np
 import warp as wp
@@ -38,6 +39,7 @@ from wsrender.pipeline.pipeline import Pipeline
 from wsrender.volume.lattice import LatticeBlock
 
 CHUNK_CPU, CHUNK_CUDA, CHUNK_ROWS, CHUNK_GIVEN = 1 << 20, 1 << 28, 1 << 18, 1 << 14
+CHUNK_LABELLED = 1 << 24
 CHUNK_LEAST, CHUNKS_PER_THREAD = 1 << 15, 8
 THREADS_PER_SM = 2048  # of a GPU: a whole multiple of those that run at a time
 VOXELS_ABSORBED, VOXELS_FETCHED = 1 << 14, 1 << 23  # at a time
@@ -58,6 +60,11 @@ class SweepPlan:
             return GridStructure(each.sampling)
         kept = frozenset[Structure](STRUCTURES).intersection(*(constraint.keeps for constraint in each.constraints))
         return structure_of(each.evaluation, each.sampling, kept)
+
+    @property
+    def evaluated(self) -> Pipeline:
+        """The pipeline of the samples that are evaluated."""
+        return replace(self.pipeline, sampling=self.structure.evaluated)
 
     @property
     def sampling_path(self) -> str:
@@ -134,6 +141,15 @@ def sweep(
     return result
 
 
+def _collisions(plan: SweepPlan, shape: Shape, device: wp.Device, chunk: int) -> Any:
+    """What labels the samples first, where a constraint asks for it."""
+    if not shape.labelled:
+        return None
+    from wsrender.engine.collision import collisions_of
+
+    return collisions_of(plan.evaluated, shape, device, chunk)
+
+
 def _swept(accumulators: list["Accumulator"], queue: "_Queue", report: Callable[[int], None]) -> Partial:
     """What the accumulators make of the chunks of a queue, each in a thread of its own."""
     with ThreadPoolExecutor(len(accumulators)) as pool:
@@ -174,6 +190,8 @@ def _chunk_size(plan: SweepPlan, size: int) -> int:
         size = min(size, CHUNK_ROWS)
     if plan.shape.method == "given":
         size = min(size, CHUNK_GIVEN)
+    if plan.shape.labelled:
+        size = min(size, CHUNK_LABELLED)
     return -(-size // LANES) * LANES
 
 
@@ -225,12 +243,13 @@ class Accumulator:
         limits = packed_constraints(
             pipeline.constraints, pipeline.evaluation.chain, pipeline.origin, pipeline.precision
         )
-        self._model = pipeline_model(pipeline, limits)
+        self._model = pipeline_model(pipeline, limits, shape.labelled)
         given = shape.method == "given"
         evaluated = plan.structure.evaluated
         self._run = run_length(evaluated, shape.shared)
         self._space = None if given else device_space(evaluated, pipeline.precision, device, self._run)
         self._base = device_base(plan.structure, pipeline.sampling, real)
+        self._collisions = _collisions(plan, shape, device, chunk)
         self._lattice = _device_lattice(slab, pipeline.block, real)
         reduced = shape.reduced
         self._extremes = device_memory(2 * reduced, bits, device)
@@ -303,13 +322,15 @@ class Accumulator:
         if self._row_buffers:
             self._outputs.rows_out = self._row_buffers[0].on_device
         space = self._space or self._given(first, count)
+        tasks = block_count(self._run, first, count)
+        if self._collisions is not None:
+            self._model.labels, self._model.first_label = self._collisions.label(space, first, count, tasks), first
         inputs = [self._model, space, self._base, self._lattice, first, count]
         if self.device.is_cuda:
             threads = min(count, THREADS_PER_SM * self.device.sm_count)
             outputs = [self._outputs, self._counts, self._records, self._sums]
             launch(self._kernel, dim=threads, inputs=[*inputs, threads], outputs=outputs, device=self.device)
         else:
-            tasks = block_count(self._run, first, count)
             launch(self._kernel, dim=tasks, inputs=inputs, outputs=[self._outputs], device=self.device)
 
     def _given(self, first: int, count: int):

@@ -6,15 +6,25 @@ from typing import Any
 import numpy as np
 
 from wsrender.documents.constraints import Constraints
+from wsrender.documents.environment import Environment
 from wsrender.errors import InputError
-from wsrender.pipeline.constraints.constraint import Constraint, Expressed
+from wsrender.pipeline.constraints.constraint import Constraint, Expressed, in_order
 from wsrender.pipeline.constraints.registry import constraints_of
 from wsrender.robot.model_robot import Robot
 
 
-def constraints_for(robot: Robot, choice: Constraints | None) -> tuple[Constraint, ...]:
-    """The constraints of a job for its robot. Raises InputError for one that is unknown, or not for such a robot."""
+def constraints_for(
+    robot: Robot, choice: Constraints | None, environment: Environment | None = None
+) -> tuple[Constraint, ...]:
+    """The constraints of a job for its robot, and its environment.
+
+    Raises InputError for one that is unknown, or not for such a robot.
+    """
     constraints = constraints_of(choice)
+    if environment or (choice and (choice.self_collision or choice.environment)):
+        from wsrender.robot.collisions import collision_constraints
+
+        constraints = in_order((*constraints, *collision_constraints(robot, choice, environment)))
     for each in constraints:
         if not isinstance(each.device, Expressed):
             continue

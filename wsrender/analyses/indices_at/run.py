@@ -49,7 +49,7 @@ class IndicesAtAnalysis(Analysis):
         return Pipeline(
             evaluation,
             plan_sampling(self.robot.chain, self.q),
-            constraints_for(self.robot, self.job.constraints),
+            constraints_for(self.robot, self.job.constraints, self.job.environment),
             kept_rows=frozenset() if evaluation.given_kinematics else frozenset({"orientation"}),
             precision=self.job.precision,
         )

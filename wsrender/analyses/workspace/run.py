@@ -33,6 +33,7 @@ from wsrender.engine.voxel_data import volume_data
 from wsrender.errors import InputError, NotConvergedError
 from wsrender.global_indices import joint_means, workspace_mean
 from wsrender.indices.index_catalogue import default_statistics, resolve
+from wsrender.pipeline.constraints.constraint import Constraint
 from wsrender.pipeline.pipeline import Pipeline
 from wsrender.pipeline.sampling import SamplingPlan, plan_sampling
 from wsrender.robot import Robot
@@ -81,7 +82,7 @@ class WorkspaceAnalysis(Analysis):
         self._check(pipeline)
         plan = SweepPlan(pipeline)
         fitted(block, plan.shape, devices_of(device), sampling.count)  # raises where a sweep would
-        if job.voxel_labels and job.constraints is not None:
+        if job.voxel_labels and (job.constraints is not None or job.environment is not None):
             raise InputError("voxel_labels", "must be false with constraints: labels say what is reached without them")
         if job.voxel_labels:
             check_voxels(block, LABEL_BYTES)
@@ -120,12 +121,17 @@ class WorkspaceAnalysis(Analysis):
         collapse = settled.sampling_path == "collapsed"
         return self._pipeline(block, settled.bounds, collapse)
 
+    @cached_property
+    def constraints(self) -> tuple[Constraint, ...]:
+        """What samples must satisfy; tables of collisions are made here."""
+        return constraints_for(self.robot, self.job.constraints, self.job.environment)
+
     def _pipeline(self, block: LatticeBlock, bounds: tuple[float, ...], collapse: bool = True) -> Pipeline:
         job = self.job
         return Pipeline(
             self.evaluation,
             self.first_sampling,
-            constraints_for(self.robot, job.constraints),
+            self.constraints,
             block,
             frozenset(job.voxel_statistics or ()),
             frozenset(job.map_columns) if job.keep_map else None,

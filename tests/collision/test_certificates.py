@@ -1,0 +1,116 @@
+"""Proofs, tables and covers against MuJoCo and random search; the folder of programs."""
+
+import numpy as np
+import pytest
+
+import wsrender as ws
+from tests.collision.robots import drawn, random_text
+from wsrender.collision import certificates as certified
+from wsrender.collision import store
+from wsrender.collision.certificates import FREE, HIT, MIXED, certificates
+from wsrender.collision.covers import LEVELS, cover, from_segment
+from wsrender.collision.distance import frames_of
+from wsrender.collision.solids import Solid
+from wsrender.documents.constraints import Constraints
+from wsrender.robot.constraints import constraints_for
+
+SIZE = np.array([0.11, 0.07, 0.05])
+SOLIDS = {
+    "box": Solid("box", "box", 0, np.eye(4), SIZE),
+    "cylinder": Solid("cylinder", "cylinder", 0, np.eye(4), SIZE),
+    "ellipsoid": Solid("ellipsoid", "ellipsoid", 0, np.eye(4), SIZE),
+    "hull": Solid("hull", "hull", 0, np.eye(4), SIZE, np.random.default_rng(3).normal(size=(30, 3)) * SIZE),
+    "capsule": Solid("capsule", "capsule", 0, np.eye(4), SIZE),
+}
+
+
+def inside(solid: Solid, points: np.ndarray) -> np.ndarray:
+    """Which points (N, 3) the solid holds."""
+    x, y, z = points.T
+    match solid.kind:
+        case "box":
+            return (np.abs(points) <= solid.size).all(axis=1)
+        case "cylinder":
+            return (np.hypot(x, y) <= solid.size[0]) & (np.abs(z) <= solid.size[1])
+        case "ellipsoid":
+            return ((points / solid.size) ** 2).sum(axis=1) <= 1
+        case "capsule":
+            return from_segment(points, *solid.points) <= solid.size[0]
+    from scipy.spatial import ConvexHull
+
+    planes = ConvexHull(solid.points).equations
+    return (points @ planes[:, :3].T + planes[:, 3] <= 0).all(axis=1)
+
+
+@pytest.mark.parametrize("name", SOLIDS)
+def test_covers_hold_the_solid_and_are_held_by_it(name):
+    solid, found = SOLIDS[name], cover(SOLIDS[name])
+    points = np.random.default_rng(0).uniform(-0.4, 0.4, (200_000, 3))
+    within = inside(solid, points)
+    assert len(found.outer) == len(found.inner) == (1 if found.exact else len(LEVELS))
+    for outer, inner in zip(found.outer, found.inner, strict=True):
+        around = np.any(
+            [from_segment(points, a, b) <= r for a, b, r in zip(outer.a, outer.b, outer.radius, strict=True)], axis=0
+        )
+        core = np.any(
+            [from_segment(points, a, b) <= r for a, b, r in zip(inner.a, inner.b, inner.radius, strict=True)], axis=0
+        )
+        assert (around | ~within).all()
+        assert (within | ~core).all()
+        assert core.any()
+
+
+@pytest.mark.parametrize("seed", [2, 7, 9])
+def test_what_is_proven_holds_at_random_configurations(seed, monkeypatch):
+    monkeypatch.setattr(certified, "CELLS", 128)
+    robot = ws.load_robot(random_text(seed, 4))
+    (constraint,) = constraints_for(robot, Constraints(self_collision=True))
+    pairs, chain, distances = constraint.own, constraint.chain, constraint.distances
+    known = certificates(pairs, chain, distances)
+    q = drawn(robot, 20_000)
+    frames = frames_of(chain, q)
+
+    def distance(number):
+        a, b = pairs.pairs[number]
+        T_a, T_b = (frames[:, pairs.solids[k].joint + 1] @ pairs.solids[k].T for k in (a, b))
+        return distances.between(a, b, T_a, T_b, 2.0)
+
+    assert known.never
+    for number in known.never:
+        assert (distance(number) > 0).all(), pairs.name(number)
+    assert known.tables
+    for table in known.tables:
+        low, high = chain.lower_limits[list(table.coordinates)], chain.upper_limits[list(table.coordinates)]
+        cells = ((q[:, list(table.coordinates)] - low) / (high - low) * table.labels.shape).astype(int)
+        label = table.labels[tuple(np.minimum(cells, np.array(table.labels.shape) - 1).T)]
+        found = distance(table.pair)
+        assert (found[label == FREE] > 0).all()
+        assert (found[label == HIT] < 0).all()
+        assert 0 < (label == MIXED).mean() < 0.3
+    numbers = (*known.never, *(table.pair for table in known.tables), *known.left)
+    assert sorted(numbers) == list(range(len(pairs.pairs)))
+
+
+def test_programs_are_made_once(tmp_path, monkeypatch):
+    monkeypatch.setenv(store.FOLDER, str(tmp_path))
+    robot = ws.load_robot(random_text(1, 3))
+    made = []
+    monkeypatch.setattr(store, "program", lambda *args, own=store.program: made.append(1) or own(*args))
+
+    def planned():
+        store._LATEST.clear()
+        (constraint,) = constraints_for(robot, Constraints(self_collision=True))
+        return store.stored_program(constraint.own, constraint.chain, constraint.distances)
+
+    first, again = planned(), planned()
+    assert len(made) == 1
+    assert np.array_equal(first.test_numbers, again.test_numbers)
+    assert first.epsilon == again.epsilon
+    (path,) = (tmp_path / "collision").glob("*.npz")
+    path.write_bytes(path.read_bytes()[:100])  # as a full disk leaves it
+    planned()
+    assert len(made) == 2
+    monkeypatch.setattr(store, "LIMIT_BYTES", 1)
+    robot = ws.load_robot(random_text(3, 3))
+    planned()
+    assert len(list((tmp_path / "collision").glob("*.npz"))) == 1

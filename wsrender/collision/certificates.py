@@ -1,0 +1,142 @@
+"""What is proven of a pair over all configurations: never, always, or a table of where.
+
+The signed distance changes by no more than its rates times the change of each coordinate (`levers`): a distance at the
+middle of a box of configurations decides all of it where it exceeds what the box can change (Lipschitz).
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from wsrender.collision.distance import Distances, frames_of
+from wsrender.collision.levers import rates
+from wsrender.collision.solids import Pairs
+from wsrender.robots.chain import Chain
+
+FREE, HIT, MIXED = 0, 1, 2
+CELLS = 1024  # of a table, along each coordinate
+FIRST_CELLS = 32
+# What a cell's label leaves for float32: angles are off by an ulp or two (4e-6 rad), which moves half a metre by 2e-6.
+SLACK_M = 2e-5
+TRIED, LOOKED_AT = 256, 4096  # distances after which nobody tries to prove any more
+FAR_M = 2.0  # beyond which distances need not be told apart
+
+
+@dataclass(frozen=True, eq=False)
+class Table:
+    """Labels (K1, K2) int8 of a pair over the ranges of two coordinates, FREE, HIT or MIXED; K2 = 1 of one alone."""
+
+    pair: int
+    coordinates: tuple[int, int]
+    labels: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Certificates:
+    """Numbers of pairs that never collide by proof; tables of others; pairs that are left; which of both always do."""
+
+    never: tuple[int, ...]
+    always: tuple[int, ...]
+    tables: tuple[Table, ...]
+    left: tuple[int, ...]
+
+
+def certificates(pairs: Pairs, chain: Chain, distances: Distances) -> Certificates:
+    """What is proven of every pair within the chain's limits, which must be finite."""
+    never, always, tables, left = [], [], [], []
+    for number in range(len(pairs.pairs)):
+        pair = _Pair(pairs, number, chain, distances)
+        if len(pair.coordinates) <= 2 and not pair.round:
+            labels = pair.table()
+            if (labels == FREE).all():
+                never.append(number)
+                continue
+            tables.append(Table(number, pair.two_coordinates, labels))
+            if (labels == HIT).all():
+                always.append(number)
+        elif (proven := pair.proven()) == FREE:
+            never.append(number)
+        else:
+            left.append(number)
+            if proven == HIT:
+                always.append(number)
+    return Certificates(tuple(never), tuple(always), tuple(tables), tuple(left))
+
+
+class _Pair:
+    """A pair's distance as a function of the coordinates between its solids."""
+
+    def __init__(self, pairs: Pairs, number: int, chain: Chain, distances: Distances):
+        self.a, self.b = (int(k) for k in pairs.pairs[number])
+        self.solids, self.margin = pairs.solids, pairs.margin(number)
+        self.chain, self.distances = chain, distances
+        own = rates(chain, self.solids[self.a], self.solids[self.b])
+        self.coordinates = tuple(own)
+        self.rate = np.array(list(own.values()))
+        self.low, self.high = (limit[list(own)] for limit in (chain.lower_limits, chain.upper_limits))
+
+    @property
+    def round(self) -> bool:
+        """Whether one test of two capsules decides it as well as a table."""
+        return self.solids[self.a].is_round and self.solids[self.b].is_round
+
+    @property
+    def two_coordinates(self) -> tuple[int, int]:
+        """Its coordinates; another beside a single one, over which a table has one cell."""
+        first = self.coordinates[0] if self.coordinates else 0
+        return first, self.coordinates[1] if len(self.coordinates) > 1 else first
+
+    def distance(self, values: np.ndarray) -> np.ndarray:
+        """What is left of the distance over the margin (N,) [m], at values (N, c) of the coordinates."""
+        q = np.tile((self.chain.lower_limits + self.chain.upper_limits) / 2, (len(values), 1))
+        q[:, list(self.coordinates)] = values
+        frames = frames_of(self.chain, q)
+        T_a, T_b = (frames[:, self.solids[k].joint + 1] @ self.solids[k].T for k in (self.a, self.b))
+        return self.distances.between(self.a, self.b, T_a, T_b, FAR_M) - self.margin
+
+    def label(self, middle: np.ndarray, widths: np.ndarray) -> np.ndarray:
+        """Of boxes of configurations around their middles (N, c), of widths (c,): FREE, HIT or MIXED (N,)."""
+        distance, change = self.distance(middle), float(self.rate @ widths) / 2 + SLACK_M
+        # A distance that was cut at FAR_M is at least that.
+        return np.where(distance > change, FREE, np.where(distance < -change, HIT, MIXED)).astype(np.int8)
+
+    def table(self) -> np.ndarray:
+        """Labels (K1, K2) of the cells, by a tree of cells of four."""
+        count = len(self.coordinates)
+        shape = tuple(CELLS if k < count else 1 for k in range(2))
+        labels = np.full(shape, MIXED, np.int8)
+        size = CELLS // FIRST_CELLS
+        corners = np.stack(np.meshgrid(*(np.arange(0, edge, size) for edge in shape), indexing="ij"), -1).reshape(-1, 2)
+        cell = (self.high - self.low) / CELLS
+        while len(corners):
+            found = self.label(self.low + (corners[:, :count] + size / 2) * cell, size * cell)
+            for (i, j), label in zip(corners[found != MIXED], found[found != MIXED], strict=True):
+                labels[i : i + size, j : j + size] = label
+            corners = corners[found == MIXED]
+            if size == 1:
+                break
+            size //= 2
+            steps = np.stack(np.meshgrid(*((0, size) if k < count else (0,) for k in range(2)), indexing="ij"), -1)
+            corners = (corners[:, None] + steps.reshape(1, -1, 2)).reshape(-1, 2)
+        return labels
+
+    def proven(self) -> int:
+        """FREE or HIT where that is proven of all configurations, by halving boxes of them; else MIXED."""
+        drawn = np.random.default_rng(0).random((TRIED, len(self.coordinates)))
+        touching = self.distance(self.low + drawn * (self.high - self.low)) < 0
+        if touching.any() and not touching.all():
+            return MIXED
+        sign = -1.0 if touching.all() else 1.0
+        low, high, looked_at = self.low[None], self.high[None], 0
+        while len(low):
+            looked_at += len(low)
+            middle, change = (low + high) / 2, (high - low) / 2 * self.rate
+            if looked_at > LOOKED_AT or (sign * (distance := self.distance(middle)) < 0).any():
+                return MIXED
+            open_ = sign * distance <= change.sum(axis=1) + SLACK_M
+            low, high, middle, longest = low[open_], high[open_], middle[open_], change[open_].argmax(axis=1)
+            rows = np.arange(len(low))
+            left_high, right_low = high.copy(), low.copy()
+            left_high[rows, longest] = right_low[rows, longest] = middle[rows, longest]
+            low, high = np.concatenate([low, right_low]), np.concatenate([left_high, high])
+        return FREE if sign > 0 else HIT

@@ -1,0 +1,100 @@
+"""Signed distances of solids by MuJoCo, the reference."""
+
+import threading
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wsrender.collision.solids import Pairs, Solid
+from wsrender.robots.chain import Chain
+
+if TYPE_CHECKING:
+    import mujoco
+
+TYPES = {
+    "sphere": "SPHERE",
+    "capsule": "CAPSULE",
+    "cylinder": "CYLINDER",
+    "ellipsoid": "ELLIPSOID",
+    "box": "BOX",
+    "hull": "MESH",
+    "half_space": "PLANE",
+}
+
+
+class Distances:
+    """`mj_geomDistance` of solids that stand anywhere; threads may call it side by side."""
+
+    def __init__(self, solids: Sequence[Solid]):
+        import mujoco
+
+        spec = mujoco.MjSpec()
+        for number, solid in enumerate(solids):
+            geom = spec.worldbody.add_geom(
+                type=getattr(mujoco.mjtGeom, f"mjGEOM_{TYPES[solid.kind]}"), size=_size(solid)
+            )
+            if solid.kind == "hull":
+                mesh = spec.add_mesh(name=f"hull{number}", uservert=solid.points.ravel())
+                mesh.inertia = mujoco.mjtMeshInertia.mjMESH_INERTIA_CONVEX
+                geom.meshname = mesh.name
+        self.model = spec.compile()
+        # MuJoCo turns a mesh to its principal axes and moves it to its centre.
+        self.own = np.tile(np.eye(4), (len(solids), 1, 1))
+        for number, solid in enumerate(solids):
+            if solid.kind == "hull":
+                R = np.zeros(9)
+                mesh = self.model.geom_dataid[number]
+                mujoco.mju_quat2Mat(R, self.model.mesh_quat[mesh])
+                self.own[number, :3, :3], self.own[number, :3, 3] = R.reshape(3, 3), self.model.mesh_pos[mesh]
+        self._local = threading.local()
+
+    def between(self, a: int, b: int, T_a: np.ndarray, T_b: np.ndarray, limit: float) -> np.ndarray:
+        """Signed distances (N,) [m] of two solids with frames (N, 4, 4) in one frame, cut at ``limit`` > 0."""
+        from mujoco import mj_geomDistance as distance
+
+        data = self._data()
+        T_a, T_b = T_a @ self.own[a], T_b @ self.own[b]
+        positions, rotations = np.stack([T_a, T_b], 1)[:, :, :3, 3], np.stack([T_a, T_b], 1)[:, :, :3, :3]
+        rotations = rotations.reshape(-1, 2, 9)
+        at, turned = data.geom_xpos, data.geom_xmat
+        found, model = np.empty(len(T_a)), self.model
+        for i in range(len(found)):
+            at[a], at[b] = positions[i]
+            turned[a], turned[b] = rotations[i]
+            found[i] = distance(model, data, a, b, limit, None)
+        return found
+
+    def _data(self) -> "mujoco.MjData":
+        if not hasattr(self._local, "data"):
+            import mujoco
+
+            self._local.data = mujoco.MjData(self.model)
+        return self._local.data
+
+
+def _size(solid: Solid) -> np.ndarray:
+    return np.array([1.0, 1.0, 1.0]) if solid.kind in ("half_space", "hull") else np.asarray(solid.size, float)
+
+
+def frames_of(chain: Chain, q: np.ndarray) -> np.ndarray:
+    """Frames (N, L + 1, 4, 4) of the base, which comes first, and of all joints, in the base's frame."""
+    in_world = chain.frames(q)[:, :-1]
+    base = np.broadcast_to(np.eye(4), (len(q), 1, 4, 4))
+    return np.concatenate([base, np.linalg.inv(chain.T_world_base) @ in_world], axis=1)
+
+
+def blocked_by(pairs: Pairs, distances: Distances, chain: Chain, q: np.ndarray, asked: np.ndarray) -> np.ndarray:
+    """Number, from 1, of the first constraint that configurations ``q`` (N, n) violate, or 0; (N,) int8.
+
+    ``asked`` (N, P) bool: the pairs that are not known to be free. By MuJoCo in float64.
+    """
+    frames, found = frames_of(chain, q), np.zeros(len(q), np.int8)
+    for pair in np.flatnonzero(asked.any(axis=0)).tolist():
+        open_ = np.flatnonzero(asked[:, pair] & (found == 0))
+        a, b = pairs.pairs[pair]
+        T_a, T_b = (frames[open_, pairs.solids[k].joint + 1] @ pairs.solids[k].T for k in (a, b))
+        margin = pairs.margin(pair)
+        near = distances.between(a, b, T_a, T_b, margin + 1e-3) < margin
+        found[open_[near]] = pairs.reason[pair] + 1
+    return found

@@ -1,0 +1,347 @@
+"""What a kernel asks of every configuration: flat arrays of capsules, tests between them, tables, and hulls.
+
+Tests are certified: two solids are apart where all capsules around them are, and touch where any two within them do.
+What neither says is open for this pair, and goes on to the narrow phase.
+"""
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from wsrender.collision.certificates import CELLS, FREE, Certificates, certificates
+from wsrender.collision.covers import LEVELS, Capsules, Cover, cover
+from wsrender.collision.distance import Distances, frames_of
+from wsrender.collision.solids import BASE, Pairs, Solid
+from wsrender.robots.chain import Chain
+
+DRAWN = 4096  # configurations over which the levels of covers are chosen
+# Of an open pair in the narrow phase, measured in tests of two capsules.
+OPEN_COST = 600.0
+EPSILON = 5e-6  # of the reach, at least 2 m: what positions in float32 may be off [m]
+ABSENT = -1.0  # a squared distance that nothing falls below
+SHORT = 1e-10  # squared length of an axis that is a point [m²]
+PAD = 16  # vertices are padded to lanes of so many
+KIND = {"sphere": 0, "capsule": 0, "cylinder": 0, "box": 0, "hull": 0, "ellipsoid": 1, "half_space": 2}
+
+
+@dataclass(frozen=True, eq=False)
+class Program:
+    """Arrays of the kernels; float32 or int32, but for ``table_words`` (uint32).
+
+    ``joints`` (L, 15): rotation (9) and translation (3) before the motion, scale, offset, 1 where it turns;
+    ``sources`` (L,); ``lower``, ``upper`` (n,). ``capsules`` (C, 6): middle and half axis in the frame of
+    ``capsule_frame`` (C,), 0 of the base. ``pairs`` (T, 4): pair, first test, tests of spheres, of capsules; then
+    ``planes`` (U, 3): pair, first test, tests; ``tests`` (t, 2): capsules, or half-space's capsule and capsule;
+    ``test_numbers`` (t, 6): squared lengths of both half axes, each with its reciprocal; squared distances below which
+    they are near and hit (distances, of planes). ``tables`` (K, 4): pair, two coordinates, first word;
+    ``table_numbers`` (K, 4): lowest value and cells per unit of both; ``table_columns`` (K,); ``table_words``.
+    ``solid_frame`` (S,), ``solids`` (S, 16): rotation and translation in its joint, radius, disc, kind, 0;
+    ``solid_sizes`` (S, 3); ``vertices`` (V,): x, y and z in turn; ``vertex_range`` (S, 2); ``solid_pairs`` (P, 2);
+    ``pair_numbers`` (P, 2): margin, reason. ``epsilon``: what float32 may be off [m]; ``columns``: cells of a table
+    along its first coordinate; ``never``, ``always``: pairs by proof.
+    """
+
+    joints: np.ndarray
+    sources: np.ndarray
+    lower: np.ndarray
+    upper: np.ndarray
+    capsules: np.ndarray
+    capsule_frame: np.ndarray
+    pairs: np.ndarray
+    planes: np.ndarray
+    tests: np.ndarray
+    test_numbers: np.ndarray
+    tables: np.ndarray
+    table_numbers: np.ndarray
+    table_columns: np.ndarray
+    table_words: np.ndarray
+    solid_frame: np.ndarray
+    solids: np.ndarray
+    solid_sizes: np.ndarray
+    vertices: np.ndarray
+    vertex_range: np.ndarray
+    solid_pairs: np.ndarray
+    pair_numbers: np.ndarray
+    epsilon: float
+    columns: int
+    never: np.ndarray
+    always: np.ndarray
+
+    @property
+    def n_bytes(self) -> int:
+        """Bytes of its arrays."""
+        return sum(value.nbytes for field in fields(self) if isinstance(value := getattr(self, field.name), np.ndarray))
+
+
+def program(pairs: Pairs, chain: Chain, distances: Distances | None = None) -> Program:
+    """The program of pairs of a chain: proofs, tables and covers are made here, which takes seconds."""
+    known = certificates(pairs, chain, distances or Distances(pairs.solids))
+    covers: dict[int, Cover] = {}
+    for number in sorted({int(k) for pair in known.left for k in pairs.pairs[pair]}):
+        if pairs.solids[number].kind != "half_space":
+            covers[number] = cover(pairs.solids[number])
+    chosen = _Chosen(pairs, chain, covers)
+    levels = {pair: chosen.levels(pair) for pair in known.left}
+    epsilon = EPSILON * max(2.0, _extent(pairs, chain))
+    return _packed(pairs, chain, known, covers, levels, epsilon)
+
+
+def _extent(pairs: Pairs, chain: Chain) -> float:
+    """Upper bound of the coordinates that any solid's points have [m]."""
+    links = np.linalg.norm(chain.T_joint[:, :3, 3], axis=1).sum() + chain.largest_slide.sum()
+    own = [np.linalg.norm(solid.T[:3, 3]) + min(solid.bounding_radius, links) for solid in pairs.solids]
+    return float(links + max(own, default=0.0))
+
+
+class _Chosen:
+    """Levels of covers by what they cost over drawn configurations."""
+
+    def __init__(self, pairs: Pairs, chain: Chain, covers: dict[int, Cover]):
+        self.pairs, self.covers = pairs, covers
+        drawn = np.random.default_rng(0).random((DRAWN, chain.n))
+        self.frames = frames_of(chain, chain.lower_limits + drawn * (chain.upper_limits - chain.lower_limits))
+        self._placed: dict[tuple[int, str, int], tuple[np.ndarray, np.ndarray, np.ndarray]] = {}
+
+    def levels(self, pair: int) -> tuple[int, int | None]:
+        """Levels of the covers outside and inside with the least expected cost; None: none inside."""
+        a, b = self.pairs.pairs[pair]
+        margin = self.pairs.margin(pair)
+        exact = all(self.pairs.solids[k].kind == "half_space" or self.covers[k].exact for k in (a, b))
+        if exact:
+            return 0, 0
+        near = [self._below(a, b, "outer", level, margin) for level in range(len(LEVELS))]
+        hit = [self._below(a, b, "inner", level, margin) for level in range(len(LEVELS))]
+        choices = []
+        for outer, (tests, close) in enumerate(near):
+            choices.append((tests + OPEN_COST * close.mean(), outer, None))
+            choices += [
+                (tests + more + OPEN_COST * (close & ~touching).mean(), outer, inner)
+                for inner, (more, touching) in enumerate(hit)
+            ]
+        _, outer, inner = min(choices, key=lambda each: each[0])
+        return outer, inner
+
+    def _below(self, a: int, b: int, side: str, level: int, margin: float) -> tuple[int, np.ndarray]:
+        """Number of tests, and where (N,) any of them is below the sum of radii."""
+        below, tests = np.zeros(DRAWN, bool), 0
+        middle_b, half_b, radius_b = self._capsules(b, side, level)
+        if self.pairs.solids[a].kind == "half_space":
+            T = self.pairs.solids[a].T
+            for k in range(len(radius_b)):
+                height = (middle_b[:, k] - T[:3, 3]) @ T[:3, 2]
+                below |= height - np.abs(half_b[:, k] @ T[:3, 2]) < radius_b[k] + margin
+            return len(radius_b), below
+        middle_a, half_a, radius_a = self._capsules(a, side, level)
+        for i in range(len(radius_a)):
+            for k in range(len(radius_b)):
+                apart = axes_distance(middle_a[:, i], half_a[:, i], middle_b[:, k], half_b[:, k])
+                below |= apart < radius_a[i] + radius_b[k] + margin
+                tests += 1
+        return tests, below
+
+    def _capsules(self, solid: int, side: str, level: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Middles and half axes (N, C, 3) in the base's frame, radii (C,)."""
+        level = 0 if self.covers[solid].exact else level
+        key = (solid, side, level)
+        if key not in self._placed:
+            own = self.pairs.solids[solid]
+            capsules: Capsules = getattr(self.covers[solid], side)[level]
+            T = self.frames[:, own.joint + 1] @ own.T
+            R = T[:, :3, :3]
+            middle = np.einsum("nij,cj->nci", R, (capsules.a + capsules.b) / 2) + T[:, None, :3, 3]
+            self._placed[key] = middle, np.einsum("nij,cj->nci", R, (capsules.b - capsules.a) / 2), capsules.radius
+        return self._placed[key]
+
+
+def axes_distance(middle_a: np.ndarray, half_a: np.ndarray, middle_b: np.ndarray, half_b: np.ndarray) -> np.ndarray:
+    """Distances (N,) of segments given by middles and half axes (N, 3); never below the least (Ericson 2004, 5.1.9)."""
+
+    def dot(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        return (x * y).sum(axis=-1)
+
+    r, a, e = middle_a - middle_b, np.maximum(dot(half_a, half_a), SHORT), np.maximum(dot(half_b, half_b), SHORT)
+    b, c, f = dot(half_a, half_b), dot(half_a, r), dot(half_b, r)
+    s = np.clip((b * f - c * e) / (a * e * 1.000001 - b * b), -1, 1)
+    t = np.clip((b * s + f) / e, -1, 1)
+    s = np.clip((b * t - c) / a, -1, 1)
+    return np.linalg.norm(r + s[..., None] * half_a - t[..., None] * half_b, axis=-1)
+
+
+class _Rows:
+    """Capsules and tests as they come."""
+
+    def __init__(self, pairs: Pairs, covers: dict[int, Cover]):
+        self.solids, self.covers = pairs.solids, covers
+        self.numbers: dict[tuple[int, str, int, int], int] = {}
+        self.capsules: list[tuple[int, np.ndarray, float]] = []
+        self.tests: list[tuple[int, int]] = []
+        self.test_numbers: list[list[float]] = []
+
+    def of(self, solid: int, side: str, level: int) -> list[int]:
+        """Numbers of the capsules of a solid's cover."""
+        exact = self.covers[solid].exact
+        side, level = ("outer", 0) if exact else (side, level)
+        capsules: Capsules = getattr(self.covers[solid], side)[level]
+        own, found = self.solids[solid], []
+        for k, (a, b, radius) in enumerate(zip(capsules.a, capsules.b, capsules.radius, strict=True)):
+            key = (solid, side, level, k)
+            if key not in self.numbers:
+                middle = own.T[:3, :3] @ ((a + b) / 2) + own.T[:3, 3]
+                self._add(key, own.joint, np.r_[middle, own.T[:3, :3] @ ((b - a) / 2)], float(radius))
+            found.append(self.numbers[key])
+        return found
+
+    def plane(self, solid: int) -> int:
+        """Number of the row that holds a point of a half-space's border and its normal."""
+        key, own = (solid, "plane", 0, 0), self.solids[solid]
+        if key not in self.numbers:
+            self._add(key, own.joint, np.r_[own.T[:3, 3], own.T[:3, 2]], 0.0)
+        return self.numbers[key]
+
+    def _add(self, key: tuple[int, str, int, int], joint: int, numbers: np.ndarray, radius: float) -> None:
+        self.numbers[key] = len(self.capsules)
+        self.capsules.append((joint - BASE, numbers, radius))
+
+
+def _packed(
+    pairs: Pairs,
+    chain: Chain,
+    known: Certificates,
+    covers: dict[int, Cover],
+    levels: dict[int, tuple[int, int | None]],
+    epsilon: float,
+) -> Program:
+    rows = _Rows(pairs, covers)
+    pair_rows, plane_rows = [], []
+    for pair in known.left:
+        if pairs.solids[pairs.pairs[pair][0]].kind == "half_space":
+            plane_rows.append(_plane_tests(rows, pairs, pair, levels[pair], epsilon))
+        else:
+            pair_rows.append(_capsule_tests(rows, pairs, pair, levels[pair], epsilon))
+    tables = [table for table in known.tables if not (table.labels == FREE).all()]
+    words, numbers, columns, table_rows = [], [], [], []
+    for table in tables:
+        ranges = [(chain.lower_limits[k], chain.upper_limits[k]) for k in table.coordinates]
+        per_unit = [edge / (high - low) for edge, (low, high) in zip(table.labels.shape, ranges, strict=True)]
+        table_rows.append([table.pair, *table.coordinates, sum(map(len, words))])
+        numbers.append([ranges[0][0], per_unit[0], ranges[1][0], per_unit[1]])
+        columns.append(table.labels.shape[1])
+        words.append(_words(table.labels))
+    vertices, vertex_range = _vertices(pairs.solids)
+    placed = [solid.T @ _shift(center_of(solid)) for solid in pairs.solids]  # the narrow phase starts at the origins
+    joints = [
+        [*T[:3, :3].ravel(), *T[:3, 3], scale, offset, float(turns)]
+        for T, scale, offset, turns in zip(
+            chain.T_joint, chain.joint_scale, chain.joint_offset, chain.joint_is_revolute, strict=True
+        )
+    ]
+    return Program(
+        joints=_f(joints, 15),
+        sources=np.array(chain.joint_source, np.int32),
+        lower=np.array(chain.lower_limits, np.float32),
+        upper=np.array(chain.upper_limits, np.float32),
+        capsules=_f([numbers for _, numbers, _ in rows.capsules], 6),
+        capsule_frame=np.array([frame for frame, _, _ in rows.capsules], np.int32),
+        pairs=_i(pair_rows, 4),
+        planes=_i(plane_rows, 3),
+        tests=_i(rows.tests, 2),
+        test_numbers=_f(rows.test_numbers, 6),
+        tables=_i(table_rows, 4),
+        table_numbers=_f(numbers, 4),
+        table_columns=np.array(columns, np.int32),
+        table_words=np.concatenate([np.zeros(0, np.uint32), *words]),
+        solid_frame=np.array([solid.joint - BASE for solid in pairs.solids], np.int32),
+        solids=_f(
+            [
+                [*T[:3, :3].ravel(), *T[:3, 3], s.radius, s.disc, KIND[s.kind], 0.0]
+                for T, s in zip(placed, pairs.solids, strict=True)
+            ],
+            16,
+        ),
+        solid_sizes=_f([solid.size for solid in pairs.solids], 3),
+        vertices=vertices,
+        vertex_range=vertex_range,
+        solid_pairs=_i(pairs.pairs, 2),
+        pair_numbers=_f([[pairs.margin(k), pairs.reason[k]] for k in range(len(pairs.pairs))], 2),
+        epsilon=epsilon,
+        columns=CELLS,
+        never=np.array(known.never, np.int32),
+        always=np.array(known.always, np.int32),
+    )
+
+
+def _capsule_tests(rows: _Rows, pairs: Pairs, pair: int, levels: tuple[int, int | None], epsilon: float) -> list[int]:
+    """Tests of a pair, those of two balls first; its row."""
+    a, b = (int(k) for k in pairs.pairs[pair])
+    margin, exact = pairs.margin(pair), rows.covers[a].exact and rows.covers[b].exact
+    found = []
+    for side, level in (("outer", levels[0]), ("inner", None if exact else levels[1])):
+        if level is None:
+            continue
+        for i in rows.of(a, side, level):
+            for k in rows.of(b, side, level):
+                sum_ = rows.capsules[i][2] + rows.capsules[k][2] + margin
+                squares = [max(float(rows.capsules[c][1][3:] @ rows.capsules[c][1][3:]), SHORT) for c in (i, k)]
+                near = (sum_ + epsilon) ** 2 if side == "outer" else ABSENT
+                hit = max(sum_ - epsilon, 0.0) ** 2 if side == "inner" or exact else ABSENT
+                balls = all(square <= SHORT for square in squares)
+                found.append((not balls, (i, k), [squares[0], 1 / squares[0], squares[1], 1 / squares[1], near, hit]))
+    found.sort(key=lambda each: each[0])
+    first, balls = len(rows.tests), sum(not each[0] for each in found)
+    rows.tests += [each[1] for each in found]
+    rows.test_numbers += [each[2] for each in found]
+    return [pair, first, balls, len(found) - balls]
+
+
+def _plane_tests(rows: _Rows, pairs: Pairs, pair: int, levels: tuple[int, int | None], epsilon: float) -> list[int]:
+    """Tests of a half-space and a solid; its row."""
+    a, b = (int(k) for k in pairs.pairs[pair])
+    margin, exact, first, plane = pairs.margin(pair), rows.covers[b].exact, len(rows.tests), rows.plane(a)
+    for side, level in (("outer", levels[0]), ("inner", None if exact else levels[1])):
+        if level is None:
+            continue
+        for k in rows.of(b, side, level):
+            radius = rows.capsules[k][2] + margin
+            near = radius + epsilon if side == "outer" else -np.inf
+            hit = radius - epsilon if side == "inner" or exact else -np.inf
+            rows.tests.append((plane, k))
+            rows.test_numbers.append([0.0, 0.0, 0.0, 0.0, near, hit])
+    return [pair, first, len(rows.tests) - first]
+
+
+def _words(labels: np.ndarray) -> np.ndarray:
+    """Labels of two bits, sixteen to a word (W,) uint32."""
+    flat = labels.ravel().astype(np.uint32)
+    flat = np.pad(flat, (0, -len(flat) % 16)).reshape(-1, 16)
+    return np.bitwise_or.reduce(flat << (2 * np.arange(16, dtype=np.uint32)), axis=1).astype(np.uint32)
+
+
+def _vertices(solids: tuple[Solid, ...]) -> tuple[np.ndarray, np.ndarray]:
+    """All points, x, y and z of each solid in turn, padded by its first; and where they are (S, 2)."""
+    parts, ranges, first = [], [], 0
+    for solid in solids:
+        points = solid.points - center_of(solid)
+        points = np.concatenate([points, np.repeat(points[:1], -len(points) % PAD, axis=0)])
+        ranges.append([first, len(points)])
+        parts.append(points.T.ravel())
+        first += 3 * len(points)
+    return np.concatenate(parts).astype(np.float32), np.array(ranges, np.int32)
+
+
+def center_of(solid: Solid) -> np.ndarray:
+    """A point inside, (3,) in its own frame."""
+    return solid.points.mean(axis=0)
+
+
+def _shift(by: np.ndarray) -> np.ndarray:
+    T = np.eye(4)
+    T[:3, 3] = by
+    return T
+
+
+def _f(rows: object, width: int) -> np.ndarray:
+    return np.asarray(rows, np.float32).reshape(-1, width)
+
+
+def _i(rows: object, width: int) -> np.ndarray:
+    return np.asarray(rows, np.int32).reshape(-1, width)

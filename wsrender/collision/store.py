@@ -1,0 +1,97 @@
+"""Programs on disk, by the content of robot, surroundings and limits: what takes seconds is done once."""
+
+import hashlib
+import os
+from dataclasses import fields
+from io import BytesIO
+from pathlib import Path
+from zipfile import BadZipFile
+
+import mujoco
+import numpy as np
+import platformdirs
+from filelock import FileLock
+
+from wsrender.collision.distance import Distances
+from wsrender.collision.program import Program, program
+from wsrender.collision.solids import Pairs
+from wsrender.robots.chain import Chain
+
+FOLDER = "WSRENDER_CACHE_DIR"  # environment variable
+LIMIT_BYTES = 2**30  # of all programs; those not used for longest go first
+MADE = 1  # how programs are made: counted up with every change of certificates, covers or arrays
+
+
+_LATEST: dict[str, Program] = {}  # of this process
+KEPT = 8
+
+
+def stored_program(pairs: Pairs, chain: Chain, distances: Distances) -> Program:
+    """The program of pairs, from the folder or made and put there; a process that makes the same is waited for."""
+    key = _key(pairs, chain)
+    if key not in _LATEST:
+        found = _from_folder(key, pairs, chain, distances)
+        while len(_LATEST) >= KEPT:
+            _LATEST.pop(next(iter(_LATEST)))
+        _LATEST[key] = found
+    return _LATEST[key]
+
+
+def _from_folder(key: str, pairs: Pairs, chain: Chain, distances: Distances) -> Program:
+    folder = Path(os.environ.get(FOLDER) or platformdirs.user_cache_path("wsrender", appauthor=False)) / "collision"
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / f"{key}.npz"
+    with FileLock(path.with_suffix(".lock")):
+        found = _read(path)
+        if found is None:
+            found = program(pairs, chain, distances)
+            _write(path, found)
+    _forget(folder, keep=path)
+    return found
+
+
+def _key(pairs: Pairs, chain: Chain) -> str:
+    made = hashlib.sha256(f"{MADE} {mujoco.__version__} {pairs.digest}".encode())
+    names = (
+        "T_joint",
+        "joint_is_revolute",
+        "joint_source",
+        "joint_scale",
+        "joint_offset",
+        "lower_limits",
+        "upper_limits",
+    )
+    for name in names:
+        made.update(np.ascontiguousarray(getattr(chain, name), np.float64).tobytes())
+    return made.hexdigest()[:32]
+
+
+def _read(path: Path) -> Program | None:
+    """The program of a file, which is used from now on; None where there is none, or it cannot be read."""
+    try:
+        with path.open("rb") as file, np.load(file, allow_pickle=False) as arrays:
+            values = {field.name: arrays[field.name] for field in fields(Program)}
+        os.utime(path)
+    except (OSError, KeyError, ValueError, BadZipFile):
+        return None
+    return Program(**values | {"epsilon": float(values["epsilon"]), "columns": int(values["columns"])})
+
+
+def _write(path: Path, found: Program) -> None:
+    buffer = BytesIO()
+    np.savez(buffer, **{field.name: getattr(found, field.name) for field in fields(Program)})
+    partly = path.with_suffix(f".{os.getpid()}")
+    partly.write_bytes(buffer.getvalue())
+    partly.replace(path)
+
+
+def _forget(folder: Path, keep: Path) -> None:
+    """Remove files until the rest takes no more than the limit."""
+    sizes = {path: path.stat() for path in folder.glob("*.npz") if path.exists()}
+    total = sum(stat.st_size for stat in sizes.values())
+    for path in sorted(sizes, key=lambda each: sizes[each].st_mtime):
+        if total <= LIMIT_BYTES:
+            break
+        if path != keep:
+            path.unlink(missing_ok=True)
+            total -= sizes[path].st_size

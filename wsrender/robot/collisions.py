@@ -1,0 +1,167 @@
+"""Collision constraints of a robot: its shapes and what stands around it as solids, and which of them keep apart."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from wsrender.collision.solids import BASE, Pairs, Solid
+from wsrender.collision.store import stored_program
+from wsrender.documents.constraints import Apart, Constraints
+from wsrender.documents.environment import Box, Capsule, Cylinder, Environment, HalfSpace, Mesh, Sphere
+from wsrender.errors import InputError
+from wsrender.pipeline.constraints.collision import CollisionConstraint, labelling
+from wsrender.robot.model_robot import Robot
+from wsrender.robots.chain import Chain
+from wsrender.robots.pairs import without
+from wsrender.robots.shapes import Shape
+from wsrender.world.meshes import hull_vertices
+
+if TYPE_CHECKING:
+    from wsrender.robots.bodies import Bodies
+
+SELF, AROUND = "self_collision", "environment"
+KINDS: dict[str, Any] = {"mesh": "hull", "plane": "half_space"}  # of shapes, by what solids call them
+
+ENDLESS = (
+    np.pi,
+    1.0,
+)  # what tables hold of a joint without limits, that turns [rad] or slides [m]: beyond, MuJoCo is asked
+
+
+def collision_constraints(
+    robot: Robot, choice: Constraints | None, environment: Environment | None
+) -> tuple[CollisionConstraint, ...]:
+    """What ``choice`` asks of the robot's shapes; an environment is kept out of, unless it is only drawn.
+
+    Tables are made here, in seconds, where this robot's are not on disk yet. Raises InputError where the robot has no
+    shapes, for names that name nothing, a margin beyond the robot's size, and where pairs collide in every
+    configuration.
+    """
+    own = choice.self_collision if choice else None
+    around = choice.environment if choice else None
+    if around is None and environment is not None:
+        around = Apart()
+    if own is None and not around:
+        return ()
+    bodies = _bodies(robot, SELF if own else AROUND)
+    chain = _limited(bodies.chain)
+    shapes = [_solid(shape) for shape in bodies.shapes]
+    items = list(_items(environment, chain)) if around else []
+    solids = tuple(shapes + items)
+    found = []
+    if around:
+        still = [k for k, shape in enumerate(bodies.shapes) if shape.surroundings]
+        still += range(len(shapes), len(solids))
+        if not still:
+            raise InputError(f"constraints.{AROUND}", "must not be given without an environment: nothing stands around")
+        moving = [k for k, solid in enumerate(shapes) if solid.joint != BASE]
+        named = (*bodies.shapes, *(_named(solid, bodies.shapes[0]) for solid in items))
+        pairs = _pairs([(k, item) for k in moving for item in still], named, around, AROUND)
+        found.append(CollisionConstraint(AROUND, chain, solids, pairs, around.margin_m))
+    if own:
+        pairs = _pairs(bodies.pairs.tolist(), bodies.shapes, own, SELF)
+        found.append(CollisionConstraint(SELF, chain, solids, pairs, own.margin_m))
+    for constraint in found:
+        if constraint.margin_m > (size := _size(bodies)):
+            message = f"must be at most the robot's size, {size:.3g} m, not {constraint.margin_m:g}"
+            raise InputError(f"constraints.{constraint.name}.margin_m", message)
+    _refuse_always(tuple(found))
+    return tuple(found)
+
+
+def _bodies(robot: Robot, name: str) -> "Bodies":
+    field = f"constraints.{name}"
+    if robot.definition:
+        raise InputError(field, "is not available for a robot that is defined by a class: it has no shapes")
+    bodies = robot.bodies
+    if not any(shape.frame != BASE for shape in bodies.shapes):
+        remedy = "give its links collision shapes (URDF collision, MJCF geoms), or a table of DH parameters link_radius"
+        raise InputError(field, f"must not be given: {robot.name} has no shapes that may collide; {remedy}")
+    return bodies
+
+
+def _limited(chain: Chain) -> Chain:
+    """The chain with ends where it has none: see ENDLESS."""
+    ends = np.where(chain.revolute, *ENDLESS)
+    lower, upper = (
+        np.where(np.isfinite(limit), limit, sign * ends)
+        for limit, sign in ((chain.lower_limits, -1), (chain.upper_limits, 1))
+    )
+    return replace(chain, lower_limits=lower, upper_limits=upper)
+
+
+def _solid(shape: Shape) -> Solid:
+    kind: Any = KINDS.get(shape.kind, shape.kind)
+    return Solid(
+        shape.name, kind, shape.frame, shape.T_frame_shape, shape.size, shape.vertices if kind == "hull" else None
+    )
+
+
+def _items(environment: Environment | None, chain: Chain) -> Iterator[Solid]:
+    """The items of an environment as solids that stand with the base."""
+    world = np.linalg.inv(chain.T_world_base)
+    for number, item in enumerate(environment.items if environment else ()):
+        name, size, T, vertices = item.name or f"{item.shape} {number + 1}", np.zeros(3), np.eye(4), None
+        match item:
+            case HalfSpace():
+                T[:3, :3], T[:3, 3] = _turned_to(np.array(item.normal)), item.point_m
+            case Sphere():
+                size[0], T[:3, 3] = item.radius_m, item.position_m
+            case Box():
+                size, T = np.array(item.size_m) / 2, item.matrix()
+            case Cylinder() | Capsule():
+                size[:2], T = (item.radius_m, item.length_m / 2), item.matrix()
+            case Mesh():
+                try:
+                    vertices, T = hull_vertices(item), item.matrix()
+                except InputError as error:
+                    raise error.within(f"environment.items.{number}") from None
+        kind: Any = KINDS.get(item.shape, item.shape)
+        yield Solid(name, kind, BASE, world @ T, size, vertices)
+
+
+def _turned_to(normal: np.ndarray) -> np.ndarray:
+    """A rotation (3, 3) whose z is along a normal."""
+    z = normal / np.linalg.norm(normal)
+    x = np.cross(z, np.eye(3)[np.abs(z).argmin()])
+    x /= np.linalg.norm(x)
+    return np.column_stack([x, np.cross(z, x), z])
+
+
+def _named(solid: Solid, like: Shape) -> Shape:
+    """A shape of the solid's name, by which pairs are excluded."""
+    return replace(like, name=solid.name, body=AROUND)
+
+
+def _pairs(pairs: Sequence[Sequence[int]], shapes: Sequence[Shape], choice: Apart, name: str) -> np.ndarray:
+    return without(np.array(pairs, int).reshape(-1, 2), shapes, choice.exclude, f"constraints.{name}.exclude")
+
+
+def _size(bodies: "Bodies") -> float:
+    """Upper bound of how far the robot's shapes are from its first joint [m]."""
+    chain = bodies.chain
+    links = (
+        np.linalg.norm(chain.T_joint[1:, :3, 3], axis=1).sum()
+        + np.where(np.isfinite(chain.largest_slide), chain.largest_slide, 0.0).sum()
+    )
+    own = [np.linalg.norm(s.T_frame_shape[:3, 3]) + _solid(s).bounding_radius for s in bodies.shapes if s.frame != BASE]
+    return float(links + max(own))
+
+
+def _refuse_always(constraints: tuple[CollisionConstraint, ...]) -> None:
+    """Raises InputError for pairs that are proven to collide in every configuration."""
+    first, *_ = labelling(constraints)
+    together = Pairs.of(first.solids, *((each.pairs, each.margin_m) for each in constraints))
+    always = stored_program(together, first.chain, first.distances).always
+    for reason, constraint in enumerate(constraints):
+        pairs = [together.pairs[k] for k in always if together.reason[k] == reason]
+        if pairs:
+            names = [[first.solids[k].name for k in pair] for pair in pairs]
+            told = "; ".join(" and ".join(pair) for pair in names)
+            remedy = f"constraints.{constraint.name}.exclude = {names} lets them, or move what stands there"
+            raise InputError(
+                f"constraints.{constraint.name}",
+                f"would admit nothing: {told} collide in every configuration; {remedy}",
+            )
