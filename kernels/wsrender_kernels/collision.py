@@ -14,11 +14,11 @@ from typing import Any
 import warp as wp
 
 from wsrender_kernels.factories import factory
-from wsrender_kernels.options import CUDA_OPTIONS, SHORT_OPTIONS
+from wsrender_kernels.options import CUDA_OPTIONS, MODULE_OPTIONS, SHORT_OPTIONS
 from wsrender_kernels.sampling import LANES, blocks, sample_space, sampling
 
 PART_LANES = 64
-OPEN = 255  # label of a sample that is listed
+DECIDED = 255  # of a listed sample whose label stands
 CAPACITY = 16  # capsules: the scratch is for a multiple of so many
 
 _ARRAYS = {
@@ -50,21 +50,24 @@ def program_type():
 
 
 _SINCOS = """
-    auto sincos_of = [](float a, float& sine, float& cosine) {
+#if defined(__CUDA_ARCH__)
+    auto bits_of = [](float x) { return __float_as_uint(x); };
+    auto float_of = [](unsigned x) { return __uint_as_float(x); };
+#else
+    auto bits_of = [](float x) { unsigned bits; __builtin_memcpy(&bits, &x, 4); return bits; };
+    auto float_of = [](unsigned x) { float value; __builtin_memcpy(&value, &x, 4); return value; };
+#endif
+    auto sincos_of = [&](float a, float& sine, float& cosine) {
         float shifted = a * 0.6366197723675814f + 12582912.f, quarter = shifted - 12582912.f;
         float r = (a - quarter * 1.57079637050628662109375f) + quarter * 4.37113900018624283e-8f, z = r * r;
         float s = r + r * z * (-1.6666654611e-1f + z * (8.3321608736e-3f - z * 1.9515295891e-4f));
         float c = 4.166664568298827e-2f + z * (-1.388731625493765e-3f + z * 2.443315711809948e-5f);
         c = 1.f + z * (-0.5f + z * c);
-        unsigned m, us, uc;
-        __builtin_memcpy(&m, &shifted, 4);
-        float s2 = (m & 1u) ? c : s, c2 = (m & 1u) ? s : c;
-        __builtin_memcpy(&us, &s2, 4);
-        __builtin_memcpy(&uc, &c2, 4);
+        unsigned m = bits_of(shifted), us = bits_of((m & 1u) ? c : s), uc = bits_of((m & 1u) ? s : c);
         us ^= (m << 30) & 0x80000000u;
         uc ^= ((m << 30) + 0x40000000u) & 0x80000000u;
-        __builtin_memcpy(&sine, &us, 4);
-        __builtin_memcpy(&cosine, &uc, 4);
+        sine = float_of(us);
+        cosine = float_of(uc);
     };
 """
 
@@ -397,14 +400,23 @@ _NARROW = """
         }
         open_masks.data[(long long)item * W + w] = left;
     }
-    pending.data[item] = (wp::uint8)hit_anyway;
     const bool open = label == 0 && open_reason < 99;
-    labels.data[at] = (wp::uint8)(open ? 255 : (label != 0 ? label : hit_anyway));
+    pending.data[item] = (wp::uint8)(open ? hit_anyway : @DECIDED);
+    if (!open) labels.data[at] = (wp::uint8)(label != 0 ? label : hit_anyway);
 """
 
 
 def _code(snippet: str, n: int, joints: int, capsules: int, words: int) -> str:
-    values = {"SINCOS": _SINCOS, "LANES": PART_LANES, "BLOCK": LANES, "N": n, "L": joints, "CAP": capsules, "W": words}
+    values = {
+        "SINCOS": _SINCOS,
+        "DECIDED": DECIDED,
+        "LANES": PART_LANES,
+        "BLOCK": LANES,
+        "N": n,
+        "L": joints,
+        "CAP": capsules,
+        "W": words,
+    }
     for name, value in values.items():
         snippet = snippet.replace(f"@{name}", str(value))
     return snippet
@@ -494,8 +506,8 @@ def filter_kernel(
 def narrow_kernel(real: Any, n: int, joints: int, words: int, method: str, cuda: bool) -> wp.Kernel:
     """Kernel that decides listed samples, one thread each; see the module.
 
-    Labels of those that stay open are OPEN, their masks what is left; ``pending`` (count,): their label if none of that
-    touches.
+    ``pending`` (count,): of those that stay open the label if nothing of what their masks are left with touches, of
+    others DECIDED.
     """
     draws = sampling(real, n, method)
     prepare, draw = draws.prepare, draws.draw
@@ -530,3 +542,16 @@ def narrow_kernel(real: Any, n: int, joints: int, words: int, method: str, cuda:
         decide(q, item, at, program, labels, open_masks, pending)
 
     return narrow
+
+
+@wp.kernel(module="unique", module_options=MODULE_OPTIONS, enable_backward=False)
+def put_labels(
+    # in
+    ids: wp.array(dtype=wp.int32),
+    found: wp.array(dtype=wp.uint8),
+    # out
+    labels: wp.array(dtype=wp.uint8),
+):
+    """Labels of samples that the host has decided."""
+    item = wp.tid()
+    labels[ids[item]] = found[item]

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 import warp as wp
-from wsrender_kernels.collision import ARRAYS, CAPACITY, OPEN, filter_kernel, narrow_kernel, program_type
+from wsrender_kernels.collision import ARRAYS, CAPACITY, DECIDED, filter_kernel, narrow_kernel, program_type, put_labels
 from wsrender_kernels.sweep import Shape
 
 from wsrender.collision.distance import blocked_by
@@ -14,7 +14,7 @@ from wsrender.collision.store import stored_program
 from wsrender.engine.drawn_configurations import configurations
 from wsrender.engine.evaluation import REAL, device_array
 from wsrender.engine.kernel_cache import launch, loaded
-from wsrender.engine.memory import device_memory
+from wsrender.engine.memory import device_memory, fetched
 from wsrender.pipeline.constraints.collision import labelling
 from wsrender.pipeline.pipeline import Pipeline
 
@@ -58,19 +58,19 @@ class Collisions:
 
     def _settle(self, first: int, listed: int) -> int:
         """Ask MuJoCo about what is open; how many samples."""
-        labels: Any = self.labels.numpy()
-        ids: Any = self._ids.numpy()[:listed]
-        items = np.flatnonzero(labels[ids] == OPEN)
+        pending = fetched(self._pending, 0, listed)
+        items = np.flatnonzero(pending != DECIDED)
         if not len(items):
             return 0
-        open_ = ids[items]
-        masks = self._masks.numpy()[: listed * self.words].reshape(listed, self.words)[items]
+        open_ = fetched(self._ids, 0, listed)[items]
+        masks = fetched(self._masks, 0, listed * self.words).reshape(listed, self.words)[items]
         bits = np.unpackbits(masks.view(np.uint8), axis=1, bitorder="little")[:, : len(self.pairs.pairs)]
         q = self._configurations(first + open_.astype(np.int64))
         found = blocked_by(self.pairs, self.distances, self.chain, q, bits.astype(bool))
-        labels[open_] = np.where(found > 0, found, self._pending.numpy()[:listed][items])
-        if self.device.is_cuda:
-            self.labels.assign(labels)
+        found = np.where(found > 0, found, pending[items])
+        inputs = [device_array(open_, wp.int32, self.device), device_array(found, wp.uint8, self.device)]
+        put = loaded(put_labels, self.device)
+        launch(put, dim=len(items), inputs=inputs, outputs=[self.labels], device=self.device)
         return len(items)
 
     def _configurations(self, indices: np.ndarray) -> np.ndarray:
