@@ -1,21 +1,24 @@
 """What a plan says that its job will take, beside what it took: files, the growth with voxels, and the names."""
 
-from dataclasses import fields
+import importlib
+import tracemalloc
 
 import pytest
 
 from wsrender import run
-from wsrender.analyses.cost import Cost, in_turn
+from wsrender.analyses.cost import Asks, Cost, check_memory, in_turn
+from wsrender.errors import ResourceError
 
 SAMPLING = {"method": "random", "count": 4096, "seed": 1}
 ARM = {"robot": "phantom_omni", "sampling": SAMPLING}
+POINTS = [[0.8 * ((k * s) % 1) - 0.4 for s in (0.618, 0.7549, 0.5698)] for k in range(100)]
 JOBS = {
     "workspace": ARM | {"refined_volume": None},
     "labelled workspace": ARM | {"refined_volume": None, "voxel_labels": True, "voxel_size_m": 0.04},
     "map": ARM | {"refined_volume": None, "keep_map": True},
     "capability": {"robot": "phantom_omni", "directions": 20, "voxel_size_m": 0.05},
     "kinetostatic_field": ARM | {"sampling": {"method": "sobol", "count": 1024}},
-    "reachability": {"robot": "phantom_omni", "points_m": [[0.1, 0.001 * k, 0.1] for k in range(100)]},
+    "reachability": {"robot": "phantom_omni", "points_m": POINTS},
     "shared_workspace": {"robots": [ARM, ARM | {"name": "other"}], "refined_volume": None},
     "robot_comparison": {"robots": [ARM, ARM | {"name": "other"}], "refined_volume": None},
 }
@@ -52,11 +55,122 @@ def test_files_are_as_large_as_estimated(name, tmp_path):
     assert planned.cost.file_bytes == pytest.approx(taken, rel=0.3)
 
 
+PLAIN = {"refined_volume": None}
+ASIDE = {"robot": {"library": "phantom_omni", "placement": {"position_m": [0.5, 0, 0]}}, "name": "aside"}
+ARMS = {"robots": [ARM | more | {"sampling": SAMPLING | {"count": 200_000}} for more in ({}, ASIDE)]} | PLAIN
+PLANAR = {"robot": "scara", "sampling": {"method": "random", "count": 500_000, "locked": {"joint4": 0.0}}}
+SIDES = {side: {"robot": "phantom_omni"} for side in ("left", "right")}
+ROWS = [[(k * s) % 1 for s in (0.61, 0.75, 0.56, 0.33, 0.47, 0.29)] for k in range(20_000)]
+LARGE = {
+    "workspace": ARM | PLAIN | {"sampling": SAMPLING | {"count": 300_000}, "voxel_size_m": 0.005},
+    "map": ARM
+    | PLAIN
+    | {"sampling": SAMPLING | {"count": 300_000}, "keep_map": True, "map_columns": ["configuration"]},
+    "kinetostatic_field": ARM | {"sampling": {"method": "sobol", "count": 4096}},
+    "indices_at": {"robot": "phantom_omni", "configurations": ROWS},
+    "shared_workspace": ARMS | {"voxel_size_m": 0.01},
+    "robot_comparison": ARMS | {"voxel_size_m": 0.005},
+    "collaborative_volume": SIDES | PLAIN | {"samples": 200_000, "seeds": 1},
+    "planar_boundary": PLANAR,
+    "parallel_workspace": {"mechanism": "six_pus", "voxel_size_m": 0.02} | PLAIN,
+    "orientations": {"mechanism": "stewart_gough", "kind": "orientation", "position_m": [0, 0, 0.55]}
+    | {"orientations": {"tilt_deg": 40}},
+}
+OF_ANALYSIS = {"map": "workspace", "orientations": "parallel_workspace"}
+
+
+@pytest.mark.parametrize("name", LARGE)
+def test_memory_and_samples_are_as_estimated(name):
+    """Of jobs of which arrays are most; what is traced are the arrays of the host, those of kernels on a CPU too."""
+    analysis = OF_ANALYSIS.get(name, name)
+    small = JOBS.get(name, {}) or LARGE[name]
+    warm = run.plan({"analysis": analysis} | small)
+    run.finish(warm, run.run_shard(warm, 0, threads=1), threads=1)
+    done = 0
+
+    def report(samples: int) -> None:
+        nonlocal done
+        done = max(done, samples)
+
+    tracemalloc.start()
+    try:
+        planned = run.plan({"analysis": analysis} | LARGE[name])
+        tracemalloc.reset_peak()  # what the plan keeps counts, not what it took meanwhile
+        run.finish(planned, run.run_shard(planned, 0, report, threads=1), threads=1)
+        peak = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert planned.cost.memory_bytes == pytest.approx(peak, rel=0.3)
+    assert done == planned.cost.samples
+
+
+@pytest.mark.parametrize("name", ["workspace", "capability", "kinetostatic_field", "planar_boundary"])
+def test_ten_times_the_samples_are_ten_times_the_work(name):
+    """Seconds are compared by benchmarks/cost.py; here a factor that is lost between two sizes is noticed."""
+    fields = {
+        "workspace": ("sampling", [SAMPLING | {"count": n} for n in (10**8, 10**9)]),
+        "capability": ("directions", [500, 5000]),
+        "kinetostatic_field": ("sampling", [{"method": "sobol", "count": n} for n in (10**6, 10**7)]),
+        "planar_boundary": ("sampling", [PLANAR["sampling"] | {"count": n} for n in (10**7, 10**8)]),
+    }
+    field, sizes = fields[name]
+    base = PLANAR if name == "planar_boundary" else JOBS[name] | {"voxel_size_m": 0.02}
+    small, large = (run.plan({"analysis": name} | base | {field: size}).cost for size in sizes)
+    assert large.samples == pytest.approx(10 * small.samples, rel=1e-3)
+    assert 5 < large.seconds / small.seconds < 11
+
+
+def test_memory_that_is_not_there_names_field_bytes_and_remedy(monkeypatch):
+    monkeypatch.setattr(importlib.import_module("wsrender.analyses.cost"), "available_bytes", lambda: 5 * 2**30)
+    check_memory(Cost(1, 4 * 2**30, 1, 1))
+    with pytest.raises(ResourceError, match=r"points: makes a job of 32.0 GiB of memory; 5.0 GiB are free: take fewer"):
+        check_memory(Cost(1, 32 * 2**30, 1, 1, Asks("points", "take fewer")))
+    voxels = Asks("voxel_size_m", voxel_size_m=0.001)
+    with pytest.raises(ResourceError, match=r"voxel_size_m: makes a job of 32.0 GiB .*: choose 0.002 or more"):
+        check_memory(Cost(1, 32 * 2**30, 1, 1, voxels))
+
+
+BIG = {
+    "workspace": ({"keep_map": True, "sampling": SAMPLING | {"count": 10**10}}, "keep_map"),
+    "capability": ({"voxel_size_m": 1e-5}, "voxel_size_m"),
+    "kinetostatic_field": ({"voxel_size_m": 1e-5}, "voxel_size_m"),
+    "indices_at": ({}, "configurations"),
+    "reachability": ({}, "points_m"),
+    "shared_workspace": ({"voxel_size_m": 1e-3}, "voxel_size_m"),
+    "robot_comparison": ({"voxel_size_m": 1e-3}, "voxel_size_m"),
+    "collaborative_volume": ({"samples": 10**7}, "samples"),
+    "planar_boundary": ({"sampling": PLANAR["sampling"] | {"count": 10**10}}, "sampling"),
+    "master_slave_mapping": ({"containment": {"kind": "voxels", "voxel_size_m": 1e-5}}, "containment.voxel_size_m"),
+    "five_bar": ({"voxel_size_m": 0.005}, "voxel_size_m"),
+    "boundary_patches": ({"cells": 256}, "cells"),
+    "parallel_workspace": ({"voxel_size_m": 4e-3}, "voxel_size_m"),
+    "method_comparison": ({"voxel_sizes_m": [0.4], "ball_subdivisions": [7]}, "ball_subdivisions"),
+}
+OTHERS = {
+    "master_slave_mapping": {"master": ARM, "slave": ARM},
+    "five_bar": {"base_m": 0.5, "proximal_m": 0.3, "distal_m": 0.4},
+    "boundary_patches": {"robot": "phantom_omni"},
+    "method_comparison": {"mechanism": "six_pus"},
+}
+
+
+@pytest.mark.parametrize("name", BIG)
+def test_what_does_not_fit_is_refused_when_it_is_planned(name, monkeypatch):
+    """Before anything is taken, with the field that asks for it; some beside little free memory."""
+    fields, field = BIG[name]
+    free = 10_000_000 if fields else 300_000
+    monkeypatch.setattr(importlib.import_module("wsrender.analyses.cost"), "available_bytes", lambda: free)
+    base = LARGE.get(name) or JOBS.get(name) or OTHERS[name]
+    with pytest.raises(ResourceError, match=r"GiB are free: (take|choose)") as caught:
+        run.plan({"analysis": name} | base | fields)
+    assert caught.value.field == field
+
+
 @pytest.mark.parametrize("name", JOBS)
 def test_an_estimate_is_the_cost(name):
     planned = run.plan(job(name))
     cost = planned.cost
-    assert all(getattr(cost, field.name) > 0 for field in fields(Cost))
+    assert all(value > 0 for value in cost.estimate().values())
     assert (
         planned.estimate
         == cost.estimate()
@@ -73,7 +187,8 @@ def test_an_estimate_is_the_cost(name):
 @pytest.mark.parametrize("name", ["capability", "workspace"])
 def test_half_the_edge_takes_eight_times_the_voxels(name):
     coarse, fine = (run.plan(job(name, voxel_size_m=size)).cost for size in (0.01, 0.005))
-    assert fine.memory_bytes == pytest.approx(8 * coarse.memory_bytes, rel=0.1)
+    least = 6 if name == "workspace" else 1  # few hold a sample, and what inverse kinematics holds is bounded
+    assert least < fine.memory_bytes / coarse.memory_bytes < 8.1
     assert fine.file_bytes > coarse.file_bytes and fine.seconds >= coarse.seconds
     samples = 8 if name == "capability" else 1
     assert fine.samples == pytest.approx(samples * coarse.samples, rel=1e-3)

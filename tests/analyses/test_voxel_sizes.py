@@ -68,19 +68,19 @@ def test_refused_voxels_name_bytes_and_the_smallest_that_fits(monkeypatch):
 
 
 def test_labels_of_voxels_are_counted(monkeypatch):
-    """A voxel's labels take more than its records: the job without them fits."""
-    module = importlib.import_module("wsrender.volume.lattice")
-    monkeypatch.setattr(module, "available_bytes", lambda: 10_000_000)
-    job = at_size("workspace", 0.006)
+    """The job without them fits."""
+    module = importlib.import_module("wsrender.analyses.cost")
+    monkeypatch.setattr(module, "available_bytes", lambda: 30_000_000)
+    job = at_size("workspace", 0.006) | {"refined_volume": None}
     assert run.plan(job).shards
-    with pytest.raises(ResourceError, match=r"voxel_size_m: 0.006 gives"):
+    with pytest.raises(ResourceError, match=r"voxel_size_m: makes a job of .* GiB of memory; 0.0 GiB are free: choose"):
         run.plan(job | {"voxel_labels": True})
 
 
 def test_robots_far_apart_share_a_volume_too_large():
     apart = {"robot": {"library": "phantom_omni", "placement": {"position_m": [5000.0, 5000.0, 5000.0]}}}
     robots = [ARM, ARM | apart]
-    with pytest.raises(ResourceError, match=r"voxel_size_m: 0.01 gives") as caught:
+    with pytest.raises(ResourceError, match=r"voxel_size_m: makes a job of .* choose") as caught:
         run.plan({"analysis": "shared_workspace", "robots": robots, "refined_volume": None, "voxel_size_m": 0.01})
     assert caught.value.field == "voxel_size_m"
 

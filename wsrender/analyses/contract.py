@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 import numpy as np
 from pydantic import TypeAdapter
 
-from wsrender.analyses.cost import Cost, Costed
+from wsrender.analyses.cost import Cost, Costed, check_memory
 from wsrender.analyses.execution import Execution
 from wsrender.analyses.headline import no_headline
 from wsrender.analyses.partial_result import PartialResult, Refinements, plain
@@ -99,15 +99,22 @@ class Analysis(Costed, ABC):
     def __init__(self, job: Any, *robots: Robot, resolved: Mapping[str, Any] | None = None):
         """Plan a job, or take what `resolved` of an earlier plan of it says.
 
-        Raises what `prepare` raises, and InputError where the device of the earlier plan is not here.
+        Raises what `prepare` raises, ResourceError where memory does not suffice, and InputError where the device of
+        the earlier plan is not here.
         """
         self.job, self.robots = job, robots
         device = settled_device(self.asked_device, resolved)
         self.settled = self.prepare(*device) if resolved is None else self.settles.of(resolved)
+        if resolved is None:
+            self.check_memory()
 
     @abstractmethod
     def prepare(self, device: str, target: str) -> Settled:
         """Check what cannot be computed, and settle what is settled once; nothing has run or been allocated then."""
+
+    def check_memory(self) -> None:
+        """Whether what the job takes of memory can be taken; raises ResourceError."""
+        check_memory(self.cost)
 
     @property
     @abstractmethod

@@ -1,11 +1,25 @@
 """What a job takes: the one account from which its estimate, the limit of its samples and the check of memory come."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from wsrender.errors import ResourceError
 from wsrender.memory import SHARE, available_bytes
+from wsrender.reach.inverse_solver import MOST_TRIES
+from wsrender.volume.lattice import rounded_up
+
+
+@dataclass(frozen=True)
+class Asks:
+    """The field of a job that asks for most of its memory, and what to do where that is not there.
+
+    ``voxel_size_m``: the edge of its voxels [m], where larger ones are the remedy.
+    """
+
+    field: str = "analysis"
+    remedy: str = "ask for less"
+    voxel_size_m: float | None = None
 
 
 @dataclass(frozen=True)
@@ -13,14 +27,16 @@ class Cost:
     """Samples, memory, files and time of a job, as planning knows them.
 
     ``samples``: configurations, points, poses or pairs that the analysis decides, those of refined volumes not among
-    them. ``memory_bytes``: the largest arrays that are held at a time. ``file_bytes``: the artifacts' numbers, of
-    compressed files before they are compressed. ``seconds``: on idle cores or a GPU, from plan to result.
+    them. ``memory_bytes``: the largest arrays that the host holds at a time, from plan to result; ``asks``: who asks
+    for most of them. ``file_bytes``: the artifacts' numbers, of compressed files before they are compressed.
+    ``seconds``: on idle cores or a GPU, from plan to saved files.
     """
 
     samples: float
     memory_bytes: float
     file_bytes: float
     seconds: float
+    asks: Asks = field(default=Asks(), compare=False)
 
     def estimate(self) -> dict[str, float]:
         """As the HTTP interface and the command line give it; ``bytes`` is the name that ``memory_bytes`` had first."""
@@ -47,32 +63,40 @@ class Costed:
         return self.cost.estimate()
 
 
-# Of pictures as drawn of small jobs of a six-joint arm, measured by benchmarks/cost.py: bytes of each, and one core's
-# seconds; the numbers of the histogram are in its.
-PICTURE_BYTES = {
-    "slices": 8.0e4,
-    "scatter": 4.2e5,
-    "histogram": 1.3e5,
-    "robot": 1.6e5,
-    "arm": 1.05e5,  # in one posture
-    "posture": 1.6e5,
-    "product": 9.0e4,
-    "comparison": 1.4e5,
-    "targets": 1.1e5,
-    "refinements": 5.0e4,
-    "other": 1.2e5,
+# Of pictures as drawn of small jobs of a six-joint arm: bytes of each, and one core's seconds; the numbers of the
+# histogram are in its. All below was measured by benchmarks/cost.py.
+PICTURES = {
+    "slices": (8.0e4, 0.25),
+    "scatter": (4.2e5, 0.25),
+    "histogram": (1.3e5, 0.4),
+    "robot": (1.6e5, 0.2),
+    "arm": (1.05e5, 0.2),  # in one posture
+    "surface": (1.6e5, 1.1),  # of a volume, with arms in it
+    "arm_in_surface": (1.4e5, 1.0),
+    "posture": (1.6e5, 0.2),
+    "field": (2.0e4, 1.3),  # without its arrows
+    "product": (9.0e4, 0.2),
+    "comparison": (1.4e5, 0.4),
+    "targets": (1.1e5, 0.12),
+    "refinements": (5.0e4, 0.1),
+    "map": (6.5e5, 0.7),  # of a five-bar
+    "patches": (2.5e5, 1.7),
+    "other": (1.2e5, 0.15),
 }
-PICTURE_S = 0.35
 DOCUMENT_BYTES = 1.0e4  # of a result document, without what is listed in it
+LISTED_BYTES, LISTED_MEMORY = 26.0, 27.0  # of a number that the document lists: in the file, and as a Python object
 SURFACE_BYTES = 750.0  # ply and glb of the voxels' surface, by the number of voxels to the power 2/3
-DECIDED_PER_S = 2e4  # points decided by inverse kinematics on one core, rounded down from benchmarks/inverse.py
-REFINED_S = 1.0  # of a refined volume with a tolerance of REFINED_TO, a six-joint arm on one core
+WRITTEN_PER_S = 6e7  # bytes of files
+DECIDED_PER_S = 2e5  # points decided by inverse kinematics on one core, most of them within reach
+TRY_BYTES = 220.0  # of a try of inverse kinematics: start, target, what was found, and copies
+REFINED_S = 0.7  # of a refined volume with a tolerance of REFINED_TO, a six-joint arm on one core
 REFINED_TO = 0.01
+REFINED_BYTES = 5e7  # of its points, cells and tries
 
 
 def pictures_cost(*names: str) -> tuple[float, float]:
     """Bytes and seconds of pictures by their names."""
-    return sum(PICTURE_BYTES[name] for name in names), PICTURE_S * len(names)
+    return sum(PICTURES[name][0] for name in names), sum(PICTURES[name][1] for name in names)
 
 
 def surface_bytes(voxels: float) -> float:
@@ -80,28 +104,47 @@ def surface_bytes(voxels: float) -> float:
     return SURFACE_BYTES * voxels ** (2 / 3)
 
 
+def solved_bytes(targets: float) -> float:
+    """Bytes that inverse kinematics holds while it decides so many targets."""
+    return TRY_BYTES * min(16.0 * targets, MOST_TRIES)
+
+
 def refined_seconds(tolerance: float | None) -> float:
     """Seconds of a refined volume; 0 of none."""
     return 0.0 if tolerance is None else REFINED_S * max(1.0, REFINED_TO / tolerance)
 
 
+def refined_bytes(tolerance: float | None) -> float:
+    """Bytes that are held while a volume is refined; 0 of none."""
+    return 0.0 if tolerance is None else REFINED_BYTES
+
+
 def in_turn(costs: Iterable[Cost]) -> Cost:
     """Of parts that run one after the other: memory of the largest, all else of all."""
     costs = list(costs)
+    largest = max(costs, key=lambda cost: cost.memory_bytes)
     return Cost(
         sum(cost.samples for cost in costs),
-        max(cost.memory_bytes for cost in costs),
+        largest.memory_bytes,
         sum(cost.file_bytes for cost in costs),
         sum(cost.seconds for cost in costs),
+        largest.asks,
     )
 
 
-def check_memory(needed: float, field: str, of: str, remedy: str) -> None:
-    """Whether so many bytes can be taken; raises ResourceError, naming the ``field`` that asks for them.
+def fits(needed: float) -> bool:
+    """Whether so many bytes of memory can be taken."""
+    return needed <= SHARE * available_bytes()
 
-    ``of``: what needs them, in the plural; ``remedy``: what to do instead.
-    """
-    free = available_bytes()
-    if needed > SHARE * free:
-        numbers = f"{needed / 2**30:.1f} GiB; {free / 2**30:.1f} GiB are free"
-        raise ResourceError(field, f"{of} need {numbers}: {remedy}")
+
+def check_memory(cost: Cost) -> None:
+    """Whether the memory of a job can be taken; raises ResourceError, naming the field that asks for most of it."""
+    needed, free, asks = cost.memory_bytes, available_bytes(), cost.asks
+    if needed <= SHARE * free:
+        return
+    remedy = asks.remedy
+    if asks.voxel_size_m is not None:
+        smallest = asks.voxel_size_m * (needed / max(SHARE * free, 1.0)) ** (1 / 3)
+        remedy = f"choose {rounded_up(smallest, 2):g} or more"
+    numbers = f"{needed / 2**30:.1f} GiB of memory; {free / 2**30:.1f} GiB are free"
+    raise ResourceError(asks.field, f"makes a job of {numbers}: {remedy}")

@@ -1,13 +1,21 @@
 """Several robots on one lattice: a workspace plan for each."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import count
 from typing import Any
 
 from wsrender.analyses.composed import Part, PartialParts, part_of
 from wsrender.analyses.contract import Settled
-from wsrender.analyses.cost import DOCUMENT_BYTES, Cost, in_turn, pictures_cost, refined_seconds
+from wsrender.analyses.cost import (
+    DOCUMENT_BYTES,
+    WRITTEN_PER_S,
+    Cost,
+    in_turn,
+    pictures_cost,
+    refined_bytes,
+    refined_seconds,
+)
 from wsrender.analyses.execution import Execution
 from wsrender.analyses.registry import job_classes, planned
 from wsrender.documents.arm import dotted
@@ -34,11 +42,29 @@ class SeveralPlans:
     @property
     def cost(self) -> Cost:
         """Of all robots: they are swept one after the other, and their volumes kept."""
-        swept = in_turn(plan.swept_cost for plan in self.plans)
+        swept = self.swept_cost
         drawn, seconds = pictures_cost("comparison", "arm")
-        seconds += sum(refined_seconds(plan.job.refined_volume) for plan in self.plans)
+        tolerances = [plan.job.refined_volume for plan in self.plans]
         files = DOCUMENT_BYTES * len(self.plans) + drawn + sum(plan.volume_bytes for plan in self.plans)
-        return Cost(swept.samples, swept.memory_bytes, files, swept.seconds + seconds)
+        seconds += swept.seconds + sum(map(refined_seconds, tolerances)) + files / WRITTEN_PER_S
+        memory = max(swept.memory_bytes, self.kept_bytes + max(map(refined_bytes, tolerances)))
+        return Cost(swept.samples, memory, files, seconds, swept.asks)
+
+    @property
+    def swept_cost(self) -> Cost:
+        """Of the sweeps, beside what is kept of the robots before."""
+        swept, last = in_turn(plan.swept_cost for plan in self.plans), self.plans[-1].kept_bytes
+        return replace(swept, memory_bytes=swept.memory_bytes + (self.kept_bytes - last) / 2)
+
+    @property
+    def most_bytes(self) -> float:
+        """More than all of them take of memory: see `WorkspaceAnalysis.most_bytes`."""
+        return 2 * sum(plan.most_bytes for plan in self.plans)
+
+    @property
+    def kept_bytes(self) -> float:
+        """Of all robots' partial results and volumes."""
+        return sum(plan.kept_bytes for plan in self.plans)
 
     def settled(self, samples: int) -> "SeveralSettled":
         """What is settled once, for every robot of a job of so many samples."""

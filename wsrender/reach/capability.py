@@ -17,11 +17,11 @@ from wsrender.reach.inverse_solver import InverseSolver
 from wsrender.reach.occupied_cells import occupied_cells
 from wsrender.robots.kinematics import Kinematics
 from wsrender.robots.reachable_box import reachable_box
-from wsrender.volume.lattice import LatticeBlock, block_around, check_voxels
+from wsrender.volume.lattice import LatticeBlock, block_around
 from wsrender.volume.voxels import inner_and_outer
 
 SAMPLES_PER_CELL, LEAST_SAMPLES = 16, 1 << 20
-SEARCHED_BYTES = 5  # of a voxel: whether it is occupied, inner, outer, and copies of them
+SEARCHED_BYTES = 17  # of a voxel: its samples, whether it is occupied, inner, outer, and copies of them
 BATCH = 1 << 16  # pairs decided at a time
 # Columns: the tip frame turned so that its z is the axis that approaches.
 AXES = {
@@ -107,10 +107,8 @@ def capability(
 
 
 def searched_block(chain: Kinematics, voxel_size_m: float) -> LatticeBlock:
-    """The voxels among which those that are reached are looked for; ResourceError where they do not fit in memory."""
-    block = block_around(*reachable_box(chain, chain.lower_limits, chain.upper_limits), voxel_size_m)
-    check_voxels(block, SEARCHED_BYTES)
-    return block
+    """The voxels among which those that are reached are looked for."""
+    return block_around(*reachable_box(chain, chain.lower_limits, chain.upper_limits), voxel_size_m)
 
 
 def _points(

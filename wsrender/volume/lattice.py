@@ -112,17 +112,17 @@ def _least(size: float) -> str:
     return f"at least {rounded_up(size * (1 + 1e-9), 2):g} is allowed"
 
 
-def check_voxels(block: LatticeBlock, bytes_each: float, *, field: str = "voxel_size_m", share: float = 1.0) -> None:
-    """Whether so many bytes for each voxel of a ``share`` of a block fit in memory.
+def check_voxels(block: LatticeBlock, bytes_each: float) -> None:
+    """Whether so many bytes for each voxel of a block fit in memory.
 
-    Raises ResourceError, with the smallest voxel that does, for the ``field`` that holds the voxel's edge.
+    Raises ResourceError, with the smallest voxel that does, for the field ``voxel_size_m``.
     """
-    needed, free = float(block.size) * share * bytes_each, available_bytes()
+    needed, free = float(block.size) * bytes_each, available_bytes()
     if needed <= SHARE * free:
         return
     smallest = rounded_up(block.voxel_size_m * (needed / max(SHARE * free, 1.0)) ** (1 / 3), 2)
     raise ResourceError(
-        field,
+        "voxel_size_m",
         f"{block.voxel_size_m:g} gives {' x '.join(map(str, block.shape))} voxels, which need "
         f"{needed / 2**30:.1f} GiB; {free / 2**30:.1f} GiB are free: choose {smallest:g} or more",
     )

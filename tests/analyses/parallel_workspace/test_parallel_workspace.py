@@ -303,11 +303,9 @@ def test_a_tolerance_that_is_not_met_is_said(monkeypatch):
 
 def test_voxels_that_do_not_fit_in_memory_are_refused_while_planning(monkeypatch):
     """1.5e9 voxels were accepted, and ended in an ArrayMemoryError of 33 GiB in the refined volume."""
-    from wsrender.analyses.parallel_workspace import lattice as parallel_lattice
-
-    monkeypatch.setattr(parallel_lattice, "available_bytes", lambda: 2**30)
+    monkeypatch.setattr("wsrender.analyses.cost.available_bytes", lambda: 2**30)
     plan({**STEWART, "voxel_size_m": 0.004})
-    with pytest.raises(ws.ResourceError, match=r"GiB; 0\.8 GiB are free: choose 0\.00\d+ or more") as caught:
+    with pytest.raises(ws.ResourceError, match=r"GiB of memory; 1\.0 GiB are free: choose 0\.00\d+ or more") as caught:
         plan({**STEWART, "voxel_size_m": 0.001})
     assert caught.value.field == "voxel_size_m"
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from wsrender.analyses.boundary_patches.job import BoundaryPatchesJob
 from wsrender.analyses.contract import Analysis, Draft, Settled, Tell
-from wsrender.analyses.cost import DOCUMENT_BYTES, Cost, check_memory, pictures_cost
+from wsrender.analyses.cost import DOCUMENT_BYTES, WRITTEN_PER_S, Asks, Cost, pictures_cost
 from wsrender.analyses.execution import Execution
 from wsrender.analyses.headline import headline
 from wsrender.analyses.partial_result import PartialResult
@@ -42,7 +42,7 @@ POINTS_PER_CELL = 40.0  # of the surface: bisections of the edges that it crosse
 INTEGRATED = 1e5  # points of the volume's integral, or of its estimate, about
 VOLUME_TOLERANCE = 0.005  # of the volume that is estimated beside a fitted boundary
 ENCLOSED_ERROR = 1e-3  # of the volume: the patches of arms without thin parts were off by 1e-9 … 7e-4
-BYTES_PER_CORNER, BYTES_PER_CELL = 40.0, 1e4  # of the lattice; of the surface, with its triangles
+BYTES_PER_CORNER, BYTES_PER_CELL = 40.0, 4.2e3  # of the lattice; of the surface, with its triangles
 
 MESH_BYTES = 100.0  # of a cell of the surface in ply and glb
 
@@ -58,7 +58,6 @@ class BoundaryPatchesAnalysis(Analysis):
         InputError for a robot without a model, unknown joints to lock or values beyond their limits; ResourceError.
         """
         _ = self.arm
-        check_memory(self.cost.memory_bytes, "cells", f"{self.job.cells} cells across", "take fewer")
         return Settled(device, target, ((0, self._points),))
 
     @cached_property
@@ -81,9 +80,10 @@ class BoundaryPatchesAnalysis(Analysis):
         """Points to be tested, bytes of lattice and mesh, seconds."""
         points, cells = float(self._points), self.job.cells
         held = BYTES_PER_CORNER * cells**3 + BYTES_PER_CELL * 6 * cells**2
-        drawn, seconds = pictures_cost("other", "robot")
-        surface = MESH_BYTES * 6 * cells**2
-        return Cost(points, held, DOCUMENT_BYTES + drawn + surface, points / POINTS_PER_S + seconds)
+        drawn, seconds = pictures_cost("patches")
+        files = DOCUMENT_BYTES + drawn + MESH_BYTES * 6 * cells**2
+        seconds += points / POINTS_PER_S + files / WRITTEN_PER_S
+        return Cost(points, held, files, seconds, Asks("cells", "take fewer"))
 
     def compute(self, shard: int, execution: Execution, tell: Tell) -> PartialResult:
         """Patches, edges and corners, and the mesh."""

@@ -8,7 +8,15 @@ import numpy as np
 
 from wsrender.analyses.capability.job import CapabilityJob
 from wsrender.analyses.contract import Analysis, Draft, Settled, Tell
-from wsrender.analyses.cost import DOCUMENT_BYTES, Cost, pictures_cost, surface_bytes
+from wsrender.analyses.cost import (
+    DOCUMENT_BYTES,
+    WRITTEN_PER_S,
+    Asks,
+    Cost,
+    pictures_cost,
+    solved_bytes,
+    surface_bytes,
+)
 from wsrender.analyses.estimate import RATE_CPU_CORE
 from wsrender.analyses.execution import Execution
 from wsrender.analyses.headline import no_headline
@@ -27,18 +35,19 @@ from wsrender.reach.capability import (
 )
 from wsrender.reach.targets import check_tolerance
 from wsrender.robots.kinematics import Kinematics
-from wsrender.volume.lattice import check_voxels, default_voxel_size, expected_voxels
+from wsrender.volume.lattice import default_voxel_size, expected_voxels
 from wsrender.volume.table import Table
 from wsrender.volume.volume_data import VolumeData
 from wsrender.volume.voxels import Voxels
 
-RATE = 2e4  # pairs of voxel and direction per second of one core, rounded down from benchmarks/inverse.py
-TABLE_BYTES, VOXEL_BYTES = 58, 12  # of a voxel in the table, and in the volume
+RATE = 8e4  # pairs of voxel and direction per second of one core
+TABLE_BYTES, VOXEL_BYTES = 58, 12  # of a voxel in the table beside the bits of its directions, and in the volume
 FILLED = 0.5  # of the voxels searched, the block of those that are reached
 POSITIONS_PER_S = 2e6  # of one CPU core
 DIVISIONS = 20  # of the size of a workspace: every voxel has many directions
 FIRST_SAMPLES = 1 << 16
 PAIR_BYTES = 2.25  # of a voxel and a direction: its label, whether it is reached, as byte and bit, twice
+CANDIDATE_BYTES = 150  # of a voxel that is decided: its centre, and the configuration that is nearest to it
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -65,9 +74,7 @@ class CapabilityAnalysis(Analysis):
         check_tolerance(chain, job.position_tolerance_m, job.precision)
         positions = _positions(chain)
         size = job.voxel_size_m or default_voxel_size(positions, divisions=DIVISIONS)
-        block = searched_block(chain, size)
         voxels = expected_voxels(positions, size)
-        check_voxels(block, PAIR_BYTES * job.directions, share=voxels / block.size)
         pairs = round(voxels * job.directions)
         return CapabilitySettled(device, target, ((0, pairs),), job.directions, voxel_size_m=size)
 
@@ -77,11 +84,12 @@ class CapabilityAnalysis(Analysis):
         pairs = float(self.samples)
         voxels = pairs / self.job.directions
         searched = searched_block(self.robot.chain, self.settled.voxel_size_m).size
-        drawn, seconds = pictures_cost("slices", "arm")
-        kept = TABLE_BYTES * voxels + VOXEL_BYTES * FILLED * searched + surface_bytes(voxels)
-        memory = PAIR_BYTES * pairs + SEARCHED_BYTES * searched
-        found = SAMPLES_PER_CELL * searched / POSITIONS_PER_S
-        return Cost(pairs, memory, DOCUMENT_BYTES + drawn + kept, pairs / RATE + found + seconds)
+        drawn, seconds = pictures_cost("slices", "arm_in_surface")
+        table = (TABLE_BYTES + self.job.directions / 8) * voxels
+        files = DOCUMENT_BYTES + drawn + table + VOXEL_BYTES * FILLED * searched + surface_bytes(voxels)
+        memory = max(PAIR_BYTES * pairs + CANDIDATE_BYTES * voxels + solved_bytes(pairs), SEARCHED_BYTES * searched)
+        seconds += SAMPLES_PER_CELL * searched / POSITIONS_PER_S + (voxels + pairs) / RATE + files / WRITTEN_PER_S
+        return Cost(pairs, memory, files, seconds, Asks("voxel_size_m", voxel_size_m=self.settled.voxel_size_m))
 
     def compute(self, shard: int, execution: Execution, tell: Tell) -> PartialResult:
         """Cells (V, 3), from which directions they are reached (V, bytes, a bit each), undecided directions (V,)."""

@@ -8,7 +8,7 @@ import numpy as np
 
 from wsrender.analyses.collaborative_volume.job import CollaborativeVolumeJob
 from wsrender.analyses.contract import Analysis, Draft, Settled, Tell
-from wsrender.analyses.cost import DOCUMENT_BYTES, Cost, check_memory, pictures_cost, refined_seconds
+from wsrender.analyses.cost import DOCUMENT_BYTES, Asks, Cost, pictures_cost, refined_bytes, refined_seconds
 from wsrender.analyses.estimate import RATE_CPU_CORE
 from wsrender.analyses.execution import Execution
 from wsrender.analyses.headline import headline_of, no_headline
@@ -23,7 +23,7 @@ from wsrender.reach import Event
 from wsrender.robot import Robot
 from wsrender.volume.table import Table
 
-POINT_BYTES = 100.0  # of two arms: positions, places in the box, cells
+POINT_BYTES = 165.0  # of two arms: positions, places in the box, cells
 POSITIONS_PER_S = 2e6  # of one CPU core
 BIASED = 'the body-elemental volume is biased; "refined_volume" gives the true one of two robots'
 
@@ -35,11 +35,8 @@ class CollaborativeVolumeAnalysis(Analysis):
     job: CollaborativeVolumeJob
 
     def prepare(self, device: str, target: str) -> Settled:
-        """Raises InputError for points that cannot be read, ResourceError for too many of them or of cells."""
-        job = self.job
+        """Raises InputError for points that cannot be read."""
         _ = self.sources
-        check_memory(POINT_BYTES * job.samples, "samples", f"{job.samples:.4g} points of each arm", "take fewer")
-        check_memory(_cell_bytes(job), "refinements", f"{job.refinements} of them", "take fewer, or fewer cells")
         return Settled(device, target, ((0, max(self._samples, 1)),), self._of_a_run or None)
 
     @cached_property
@@ -65,8 +62,15 @@ class CollaborativeVolumeAnalysis(Analysis):
         samples = float(self._samples)
         drawn, seconds = pictures_cost("refinements")
         seconds += samples / POSITIONS_PER_S + refined_seconds(self.job.refined_volume) * bool(len(self.robots) == 2)
-        memory = POINT_BYTES * self.job.samples + _cell_bytes(self.job)
-        return Cost(samples, memory, DOCUMENT_BYTES + drawn, seconds)
+        points, cells = POINT_BYTES * self._points, _cell_bytes(self.job)
+        memory = max(points + cells, refined_bytes(self.job.refined_volume))
+        asks = Asks("samples" if points > cells else "refinements", "take fewer samples, refinements or cells")
+        return Cost(samples, memory, DOCUMENT_BYTES + drawn, seconds, asks)
+
+    @property
+    def _points(self) -> int:
+        """Of one arm, the larger number."""
+        return max(self.job.samples if isinstance(each, Robot) else len(each) for each in self.sources)
 
     def compute(self, shard: int, execution: Execution, tell: Tell) -> PartialResult:
         """V₀ … V_d of every seed of the shard; of points alone of all."""
@@ -143,7 +147,7 @@ class CollaborativeVolumeAnalysis(Analysis):
 
 def _cell_bytes(job: CollaborativeVolumeJob) -> float:
     """Bytes of the finest division: the cells of each arm, and those of both."""
-    return 3.0 * math.prod(job.cells) * (job.refinements + 1) ** 3
+    return 2.1 * math.prod(job.cells) * (job.refinements + 1) ** 3
 
 
 def _variance(volumes: np.ndarray) -> np.ndarray | None:

@@ -2,12 +2,13 @@
 
 import sys
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from wsrender.analyses.contract import Analysis, Draft, Progress, Settled, Tell
-from wsrender.analyses.cost import DOCUMENT_BYTES, Cost, pictures_cost
+from wsrender.analyses.cost import DOCUMENT_BYTES, NOTHING, Asks, Cost, pictures_cost
 from wsrender.analyses.design_optimization.job import (
     EXACT,
     EXACT_VOLUME,
@@ -30,6 +31,7 @@ from wsrender.analyses.execution import Execution
 from wsrender.analyses.jobs import parse_job
 from wsrender.analyses.partial_result import FIRST, PartialResult, joined_rows, rows_of_shard
 from wsrender.analyses.piece import Piece
+from wsrender.analyses.registry import planned
 from wsrender.design.evaluations import EvaluationFile, Evaluations, feasible, scores
 from wsrender.design.search import Space, evolve, grid, pareto, refine
 from wsrender.documents.json_pointer import changed
@@ -39,7 +41,8 @@ from wsrender.mechanisms.ball_region import BallRegion, region_of
 from wsrender.mechanisms.mechanism import mechanism_of
 
 BATCH, SLOW_BATCH = 256, 1  # designs between two reports of progress
-EXACT_PER_S, OTHERS_PER_S = 1e3, 1.0  # designs, rounded down
+EXACT_PER_S, OTHERS_PER_S = 1e3, 5.0  # designs
+BEST_BYTES = 2.7e5  # of the best design's mesh
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -93,12 +96,25 @@ class DesignOptimizationAnalysis(Analysis):
 
     @property
     def cost(self) -> Cost:
-        """Designs, their bytes, and seconds; of designs that are not exact a guess."""
+        """Designs, their bytes with those of one that is run, and seconds; of designs that are not exact a guess."""
         designs = float(self.job.most_evaluations)
         columns = len(self.job.parameters) + len(self.job.objectives)
-        drawn, seconds = pictures_cost("other", "other")
+        drawn, seconds = pictures_cost("refinements", *["patches"] * self.is_exact)
+        files = DOCUMENT_BYTES + drawn + BEST_BYTES * self.is_exact + 16.0 * columns * designs
         seconds += designs / (EXACT_PER_S if self.is_exact else OTHERS_PER_S)
-        return Cost(designs, 24.0 * columns * designs, DOCUMENT_BYTES + drawn + 8.0 * columns * designs, seconds)
+        memory, asks = 24.0 * columns * designs, Asks("search", "take fewer designs")
+        if not self.is_exact:
+            inner = self._inner
+            memory, asks = memory + inner.memory_bytes, replace(inner.asks, field=f"design.{inner.asks.field}")
+        return Cost(designs, memory, files, seconds, asks)
+
+    @cached_property
+    def _inner(self) -> Cost:
+        """Of the design as it is written; nothing is known where that cannot be planned, as others may be."""
+        try:
+            return planned(self.job.design, *self.robots).cost
+        except FAULTS:
+            return NOTHING
 
     @property
     def is_exact(self) -> bool:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from wsrender.analyses.contract import Analysis, Draft, Settled, Tell
-from wsrender.analyses.cost import DOCUMENT_BYTES, Cost, pictures_cost
+from wsrender.analyses.cost import DOCUMENT_BYTES, WRITTEN_PER_S, Asks, Cost, pictures_cost
 from wsrender.analyses.execution import Execution
 from wsrender.analyses.five_bar.job import FiveBarJob
 from wsrender.analyses.five_bar.presentation import MODE_VOLUMES
@@ -44,7 +44,11 @@ from wsrender.volume.table import Table
 from wsrender.volume.volume_data import VolumeData
 
 CELLS_ACROSS = 250  # of the default Cartesian maps
-CELLS_PER_S = 5e5  # of maps and their curves, one CPU core
+CELLS_PER_S, CURVES_S = 2e5, 0.4  # of maps, and seconds of the curves, one CPU core
+CELL_BYTES = 150.0  # of a cell of a map while it is made
+# Of a cell in the files; of the curves, and of iso-curves by the square root of the number of cells.
+CELL_FILE_BYTES, CURVE_BYTES, ISO_BYTES = 55.0, 1.75e6, 5.7e3
+BY_CELLS = Asks("voxel_size_m", "choose larger cells")
 UNITS = {"det_a": "m^2", "det_b": "m^4"}
 SAME_AREA = 1e-9  # of areas: rounding
 
@@ -83,8 +87,10 @@ class FiveBarAnalysis(Analysis):
     def cost(self) -> Cost:
         """Cells of the maps, their bytes, and seconds."""
         cells = float(self._cells + self._joint_cells)
-        drawn, seconds = pictures_cost(*["other"] * 4)
-        return Cost(cells, 200.0 * cells, DOCUMENT_BYTES + drawn + 100.0 * cells, cells / CELLS_PER_S + seconds)
+        drawn, seconds = pictures_cost(*["map"] * 7)
+        files = DOCUMENT_BYTES + drawn + CURVE_BYTES + CELL_FILE_BYTES * cells + ISO_BYTES * np.sqrt(cells)
+        seconds += cells / CELLS_PER_S + CURVES_S + files / WRITTEN_PER_S
+        return Cost(cells, CELL_BYTES * cells, float(files), float(seconds), BY_CELLS)
 
     def compute(self, shard: int, execution: Execution, tell: Tell) -> PartialResult:
         """Boundary, loci, aspects, maps and iso-curves of every working mode."""

@@ -6,7 +6,15 @@ from typing import Any
 import numpy as np
 
 from wsrender.analyses.contract import Analysis, Draft, Settled, Tell
-from wsrender.analyses.cost import DOCUMENT_BYTES, Cost, pictures_cost
+from wsrender.analyses.cost import (
+    DOCUMENT_BYTES,
+    LISTED_BYTES,
+    LISTED_MEMORY,
+    WRITTEN_PER_S,
+    Asks,
+    Cost,
+    pictures_cost,
+)
 from wsrender.analyses.execution import Execution
 from wsrender.analyses.indices_at.job import IndicesAtJob
 from wsrender.analyses.partial_result import PartialResult
@@ -20,7 +28,7 @@ from wsrender.robot.model_robot import configuration_rows
 from wsrender.volume.distribution_map import DistributionMap
 from wsrender.volume.table import Table
 
-ROWS_PER_S = 1e6  # of one CPU core, with their files
+ROWS_PER_S = 4e5  # of one CPU core
 
 
 class IndicesAtAnalysis(Analysis):
@@ -58,10 +66,12 @@ class IndicesAtAnalysis(Analysis):
     def cost(self) -> Cost:
         """Rows, their numbers and the pictures."""
         width = 4 if self.job.precision == "float32" else 8
-        held = float(len(self.q) * (3 + 6 + len(self.pipeline.evaluation.indices)) * width)
-        drawn, seconds = pictures_cost("histogram", "robot")
-        files = DOCUMENT_BYTES + drawn + self.q.nbytes + held
-        return Cost(len(self.q), self.q.nbytes + held, files, len(self.q) / ROWS_PER_S + seconds)
+        numbers = float(len(self.q) * (3 + 6 + len(self.pipeline.evaluation.indices)))
+        drawn, seconds = pictures_cost("histogram", "scatter")
+        files = DOCUMENT_BYTES + drawn + self.q.nbytes + width * numbers + LISTED_BYTES * self.q.size
+        memory = self.q.nbytes + (width + 4) * numbers + LISTED_MEMORY * self.q.size
+        seconds += len(self.q) / ROWS_PER_S + files / WRITTEN_PER_S
+        return Cost(len(self.q), memory, files, seconds, Asks("configurations", "take fewer"))
 
     def compute(self, shard: int, execution: Execution, tell: Tell) -> PartialResult:
         """Positions and values of all rows: arrays of `Evaluated` by name."""

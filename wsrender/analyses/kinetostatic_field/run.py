@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from wsrender.analyses.contract import Analysis, Draft, Settled, Tell
-from wsrender.analyses.cost import DOCUMENT_BYTES, Cost, pictures_cost, surface_bytes
+from wsrender.analyses.cost import DOCUMENT_BYTES, WRITTEN_PER_S, Asks, Cost, pictures_cost, surface_bytes
 from wsrender.analyses.execution import Execution
 from wsrender.analyses.headline import no_headline
 from wsrender.analyses.kinetostatic_field.job import KinetostaticFieldJob
@@ -22,15 +22,15 @@ from wsrender.pipeline.pipeline import tip_pipeline
 from wsrender.pipeline.sampling import plan_sampling
 from wsrender.robots.kinematics import Kinematics
 from wsrender.robots.reachable_box import reachable_box
-from wsrender.volume.lattice import LatticeBlock, block_around, check_voxels, default_voxel_size
+from wsrender.volume.lattice import LatticeBlock, block_around, default_voxel_size
 from wsrender.volume.volume_data import VolumeData
 from wsrender.volume.voxels import Voxels
 
-SAMPLE_BYTES = 24 + 8 * 9 + 8  # of a configuration: its voxel, six components with three numbers, its voxel again
+SAMPLE_BYTES = 24 + 8 * 9 + 96  # of a configuration: its voxel, six components with three numbers, voxels sorted
 ARROW_BYTES, LARGEST_FIELD_BYTES = 4e3, 4e5  # of a voxel in the picture of the field, and of the picture
 OCCUPIED = 0.13  # of the block that holds every reach, the voxels that do
 FILLED = 0.3  # of the block that holds every reach, the block of the voxels reached
-RATE = 4e3  # configurations per second of one core, rounded down
+RATE, LOOPS_S = 2.5e4, 0.4  # configurations per second of one core; seconds of the closed paths
 DIVISIONS = 25  # of the size of a workspace: a mean needs several configurations
 FIRST_SAMPLES, DRAWN = 1 << 14, 3
 MOST_SAMPLES = 100_000_000
@@ -70,7 +70,7 @@ class KinetostaticFieldAnalysis(Analysis):
         force_field = ForceField(self.robot, checked)
         count = plan_sampling(chain, job.sampling, MOST_SAMPLES).count
         size = job.voxel_size_m or _voxel_size(force_field, count)
-        check_voxels(_block(chain, size), _voxel_bytes(job))
+        _ = _block(chain, size)  # raises where there are too many voxels to be numbered
         return KinetostaticFieldSettled(device, target, ((0, count),), voxel_size_m=size)
 
     @property
@@ -80,8 +80,14 @@ class KinetostaticFieldAnalysis(Analysis):
         voxels = min(OCCUPIED * block.size, count)
         field = min(ARROW_BYTES * voxels, LARGEST_FIELD_BYTES)
         kept = field + _voxel_bytes(self.job) * FILLED * block.size + surface_bytes(voxels)
-        drawn, seconds = pictures_cost("slices", "arm", "posture")
-        return Cost(count, SAMPLE_BYTES * count, DOCUMENT_BYTES + drawn + kept, count / RATE + seconds)
+        drawn, seconds = pictures_cost("slices", "surface", "posture", "field")
+        files = DOCUMENT_BYTES + drawn + kept
+        seconds += count / RATE + LOOPS_S + files / WRITTEN_PER_S
+        rows, volume = SAMPLE_BYTES * count, _voxel_bytes(self.job) * FILLED * block.size
+        asks = Asks("voxel_size_m", voxel_size_m=self.settled.voxel_size_m)
+        if rows > volume:
+            asks = Asks("sampling", "take fewer samples")
+        return Cost(count, rows + volume, files, seconds, asks)
 
     def compute(self, shard: int, execution: Execution, tell: Tell) -> PartialResult:
         """Of every voxel: cell (V, 3), number of configurations (V,), sums (V, 6 + scalars), greatest force (V,).

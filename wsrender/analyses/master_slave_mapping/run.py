@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from wsrender.analyses.contract import Analysis, Draft, Settled, Tell
-from wsrender.analyses.cost import DOCUMENT_BYTES, Cost, pictures_cost
+from wsrender.analyses.cost import DOCUMENT_BYTES, Asks, Cost, pictures_cost
 from wsrender.analyses.execution import Execution
 from wsrender.analyses.headline import no_headline
 from wsrender.analyses.master_slave_mapping.job import (
@@ -32,11 +32,13 @@ from wsrender.pipeline.pipeline import tip_pipeline
 from wsrender.pipeline.sampling import plan_sampling
 from wsrender.robot import Robot
 from wsrender.robots.reachable_box import reachable_box
-from wsrender.volume.lattice import block_around, check_voxels
+from wsrender.volume.lattice import block_around
 from wsrender.volume.table import Table
 
 POSITIONS = {"position": "m", "slave_position": "m"}
-POINTS_PER_S = 2e4  # from the configuration to the end of an alpha shape, one CPU core
+POINTS_PER_S = 1.2e4  # one CPU core, from the configuration to the end of an alpha shape
+SHAPE_BYTES, POINT_BYTES = 3300.0, 350.0  # of a point: while its alpha shape is made, and beside
+FILE_BYTES, FAILING_BYTES = 26.0, 45.0  # of a point; of the slave's, of which some fail
 
 Source = Robot | MappedMechanism | np.ndarray
 
@@ -52,8 +54,7 @@ class MasterSlaveMappingAnalysis(Analysis):
         for name, count in zip(("master", "slave"), counts, strict=True):
             if count > MOST_POINTS:
                 raise ResourceError(name, f"has {count:.4g} points; at most {MOST_POINTS:.4g} are mapped")
-        for name, source in zip(("master", "slave"), self.sources, strict=True):
-            _check_voxels(self.job.containment, name, source)
+        _ = self._voxels
         return Settled(device, target, ((0, sum(counts)),))
 
     @cached_property
@@ -75,10 +76,24 @@ class MasterSlaveMappingAnalysis(Analysis):
 
     @property
     def cost(self) -> Cost:
-        """Points, their bytes with those of the shapes, and seconds without the search."""
-        points = float(self.samples)
-        drawn, seconds = pictures_cost("other", "robot")
-        return Cost(points, 1000.0 * points, DOCUMENT_BYTES + drawn + 60.0 * points, points / POINTS_PER_S + seconds)
+        """Points, their bytes with those of the shapes and voxels, and seconds without the search."""
+        points, each = float(self.samples), [_count(self.job, side, of) for side, of in enumerate(self.sources)]
+        drawn, seconds = pictures_cost("targets")
+        files = DOCUMENT_BYTES + drawn + FILE_BYTES * points + FAILING_BYTES * each[1]
+        shapes = SHAPE_BYTES * max(each) + POINT_BYTES * points
+        asks = Asks("slave" if each[1] > each[0] else "master", "take fewer points")
+        if self._voxels > shapes:
+            asks = Asks("containment.voxel_size_m", voxel_size_m=self.job.containment.voxel_size_m)
+        return Cost(points, shapes + self._voxels, files, points / POINTS_PER_S + seconds, asks)
+
+    @cached_property
+    def _voxels(self) -> float:
+        """Voxels of both workspaces, a byte each; InputError where they are too small to be numbered.
+
+        Those of a mechanism are counted when its points are known.
+        """
+        sides = zip(("master", "slave"), self.sources, strict=True)
+        return float(sum(_voxels_of(self.job.containment, name, source) for name, source in sides))
 
     def compute(self, shard: int, execution: Execution, tell: Tell) -> PartialResult:
         """Points of both robots, the mapping of each offset, and the curve of the best."""
@@ -176,20 +191,17 @@ class MasterSlaveMappingAnalysis(Analysis):
         )
 
 
-def _check_voxels(containment: Containment, name: str, source: Source) -> None:
-    """Whether the voxels of a workspace fit in memory; raises InputError, ResourceError.
-
-    Those of a mechanism are counted when its points are known.
-    """
+def _voxels_of(containment: Containment, name: str, source: Source) -> int:
+    """Voxels of a workspace; 0 where there are none."""
     size = containment.voxel_size_m
     if size is None or isinstance(source, MappedMechanism):
-        return
+        return 0
     if isinstance(source, np.ndarray):
         box = source.min(axis=0), source.max(axis=0)
     else:
         box = reachable_box(source.chain, source.chain.lower_limits, source.chain.upper_limits)
     try:
-        check_voxels(block_around(*box, size), 1)
+        return block_around(*box, size).size
     except InputError as error:
         raise type(error)("containment.voxel_size_m", f"{error.message} (for the {name})") from None
 

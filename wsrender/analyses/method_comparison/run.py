@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from wsrender.analyses.contract import Analysis, Draft, Settled, Tell
-from wsrender.analyses.cost import DOCUMENT_BYTES, Cost, pictures_cost
+from wsrender.analyses.cost import DOCUMENT_BYTES, Asks, Cost, pictures_cost
 from wsrender.analyses.execution import Execution
 from wsrender.analyses.headline import headline
 from wsrender.analyses.method_comparison.job import MethodComparisonJob
@@ -25,6 +25,7 @@ from wsrender.volume.table import Table
 
 GRIDS, EXACT, SOLIDS = ("grid", "grid_by_subsystem"), "exact", "solids"
 PARTS = (5, 10, 20, 40)  # of the volume's cube root
+TRIANGLE_BYTES, TRIANGLES_PER_S, RUNS_S = 500.0, 2e5, 0.1  # of balls; seconds of the exact workspace and the grids
 ICOSAHEDRON_EDGE = 1.0515  # of the radius of the sphere around it
 UNITS = {"size": "m", "volume": "m^3"}
 
@@ -69,14 +70,13 @@ class MethodComparisonAnalysis(Analysis):
 
     @property
     def cost(self) -> Cost:
-        """Runs, bytes of the largest ball's meshes, and seconds of them."""
-        triangles = (
-            20.0
-            * 4 ** max(self.job.ball_subdivisions)
-            * (len(self.region.inside_radii) + len(self.region.outside_radii))
-        )
-        drawn, seconds = pictures_cost("other")
-        return Cost(self.samples, 500 * triangles, DOCUMENT_BYTES + drawn, triangles / 2e5 + seconds)
+        """Runs, bytes of the largest ball's meshes, and seconds of all of them; grids are counted sooner."""
+        balls = len(self.region.inside_radii) + len(self.region.outside_radii)
+        triangles = [20.0 * balls * 4**halved for halved in self.job.ball_subdivisions]
+        drawn, seconds = pictures_cost("refinements")
+        seconds += RUNS_S + sum(triangles) / TRIANGLES_PER_S
+        asks = Asks("ball_subdivisions", "take fewer")
+        return Cost(self.samples, TRIANGLE_BYTES * max(triangles), DOCUMENT_BYTES + drawn, seconds, asks)
 
     def compute(self, shard: int, execution: Execution, tell: Tell) -> PartialResult:
         """Method, edge of its voxels or triangles, volume and seconds of every run of the shard.
@@ -154,6 +154,7 @@ class MethodComparisonAnalysis(Analysis):
             orientation=self.job.orientation,
             method=method,
             voxel_size_m=size,
+            refined_volume=None,
             device=device,
         )
 

@@ -8,19 +8,17 @@ from typing import Any
 import numpy as np
 
 from wsrender.analyses.parallel_workspace.job import ParallelWorkspaceJob
-from wsrender.errors import InputError, ResourceError
+from wsrender.errors import InputError
 from wsrender.mechanisms.flat import MEASURES, Flat, flat_of
 from wsrender.mechanisms.hybrid import Variant, reachable_box_of, reached_by_any
 from wsrender.mechanisms.inverse_kinematics import SAME_ORIENTATION
 from wsrender.mechanisms.membership import AxisBox, placed_box, reachable_box
 from wsrender.mechanisms.orientations import OrientationSet
-from wsrender.memory import SHARE, available_bytes
 from wsrender.volume.lattice import LatticeBlock, block_around, round_to_digits
 
 FIRST_POINTS, FEWEST_POINTS = 1 << 16, 1 << 10  # of the estimate that the default voxel size is made of
 SHARE_POINTS = 1 << 12  # of the estimate of how many voxels are kept
 LEAST_SHARE = 1e-3  # of the box: where hardly anything is reached
-COPIES = 3  # of what is kept of a voxel: of shards, merged, and of the result
 MOST_COMPARED = 8  # values of serial joints at which planes are compared
 FLAT_AREA = 1e-9  # relative to its extent: thickness of a box that holds a plane
 
@@ -47,20 +45,17 @@ class FlatLattice(LatticeBlock):
 
 
 def lattice_of(
-    job: ParallelWorkspaceJob, found: Sequence[Variant], orientations: OrientationSet, columns: int, device: str
+    job: ParallelWorkspaceJob, found: Sequence[Variant], orientations: OrientationSet, device: str
 ) -> LatticeBlock | None:
-    """The lattice around all that the legs can reach; None where that is nothing. ``columns``: values of a voxel.
+    """The lattice around all that the legs can reach; None where that is nothing.
 
-    Raises InputError for a turned delta, ResourceError where the voxels that are kept do not fit in memory.
+    Raises InputError for a turned delta.
     """
     level = np.allclose(orientations.rotations, np.eye(3), rtol=0, atol=SAME_ORIENTATION)
     if found[0].mechanism.translational and not level:
         raise InputError("orientation", "must be null: the parallelograms of a delta do not let its platform turn")
     flat, _ = common_flat(found, orientations)
-    block = _in_space(job, found, orientations, device) if flat is None else _in_flat(job, flat, found, orientations)
-    if block is not None:
-        _check_memory(block, columns, found, orientations, device)
-    return block
+    return _in_space(job, found, orientations, device) if flat is None else _in_flat(job, flat, found, orientations)
 
 
 def common_flat(found: Sequence[Variant], orientations: OrientationSet) -> tuple[Flat | None, str]:
@@ -164,23 +159,12 @@ def _share(found, orientations: OrientationSet, box: AxisBox, flat: Flat | None,
     return float(reached_by_any(found, world, orientations.rotations, device=device).mean())
 
 
-def _check_memory(block: LatticeBlock, columns: int, found, orientations, device: str) -> None:
-    """Raise ResourceError where what is kept of the voxels that are reached does not fit in memory."""
-    each = COPIES * 8 * (3 + columns)
-    free = SHARE * available_bytes()
-    if block.size * each <= free:
-        return
+def reached_share(block: LatticeBlock, found, orientations: OrientationSet, device: str) -> float:
+    """The share of a lattice's voxels that is reached, estimated; at least LEAST_SHARE."""
     low = np.array(block.first_voxel) * block.voxel_size_m
     box = AxisBox(low, low + np.array(block.shape) * block.voxel_size_m)
     flat = block.flat if isinstance(block, FlatLattice) else None
-    needed = block.size * each * _share(found, orientations, box, flat, SHARE_POINTS, device)
-    if needed > free:
-        edge = block.voxel_size_m * float(np.cbrt(needed / free))
-        raise ResourceError(
-            "voxel_size_m",
-            f"{block.voxel_size_m:.3g} gives {' x '.join(map(str, block.shape))} voxels, of which those that are "
-            f"reached need {needed / 2**30:.1f} GiB; {free / 2**30:.1f} GiB are free: choose {edge:.2g} or more",
-        )
+    return max(_share(found, orientations, box, flat, SHARE_POINTS, device), LEAST_SHARE)
 
 
 def quantity(block: LatticeBlock | None) -> tuple[str, str]:

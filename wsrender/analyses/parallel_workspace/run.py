@@ -8,11 +8,28 @@ from typing import Any
 import numpy as np
 
 from wsrender.analyses.contract import Analysis, Draft, Progress, Settled, Tell
-from wsrender.analyses.cost import DOCUMENT_BYTES, Cost, pictures_cost, surface_bytes
+from wsrender.analyses.cost import (
+    DOCUMENT_BYTES,
+    WRITTEN_PER_S,
+    Asks,
+    Cost,
+    fits,
+    pictures_cost,
+    refined_bytes,
+    refined_seconds,
+    surface_bytes,
+)
 from wsrender.analyses.execution import Execution
 from wsrender.analyses.parallel_workspace.exact import boundary_partial, boundary_result
 from wsrender.analyses.parallel_workspace.job import BY_BOUNDARY, ParallelWorkspaceJob
-from wsrender.analyses.parallel_workspace.lattice import common_flat, described, lattice_of, quantity, settled_lattice
+from wsrender.analyses.parallel_workspace.lattice import (
+    common_flat,
+    described,
+    lattice_of,
+    quantity,
+    reached_share,
+    settled_lattice,
+)
 from wsrender.analyses.parallel_workspace.refined import labels_at_poses, refined_entry
 from wsrender.analyses.parallel_workspace.result import orientation_result, positions_result
 from wsrender.analyses.partial_result import PartialResult
@@ -37,7 +54,12 @@ from wsrender.volume.lattice import LatticeBlock
 
 Arrays = dict[str, np.ndarray]
 
-RATE_CPU_CORE, RATE_GPU = 8e7, 4e8  # poses per second, rounded down from benchmarks/parallel.py
+RATE_CPU_CORE, RATE_GPU = 1.6e8, 4e8  # poses per second, rounded down from benchmarks/parallel.py
+INDEX_BYTES = 750  # of a voxel while its indices are computed: its pose, Jacobians and their inverses
+INDICES_PER_S = 8e4  # voxels whose indices are computed
+POSE_BYTES, SHARE_BYTES = 75, 4.4e7  # of an orientation at a point; of the estimate of their share
+BOUNDARY_BYTES = 3.3e6  # of the mesh of an exact boundary
+COPIES = 5  # of what is kept of a voxel: of parts, joined and sorted, and of the result
 RATE_NUMERIC_CORE = 5e4  # poses of a numeric leg per second, from benchmarks/inverse.py
 
 
@@ -69,7 +91,7 @@ class ParallelWorkspaceAnalysis(Analysis):
         if by_boundary:
             _check_boundary(mechanism, self.orientations)
         on_lattice = job.kind != "orientation" and not by_boundary
-        block = lattice_of(job, self.variants, self.orientations, self._columns, device) if on_lattice else None
+        block = lattice_of(job, self.variants, self.orientations, device) if on_lattice else None
         poses = self._count * (block.size if block else 1)
         if poses > job.max_poses:
             raise ResourceError("max_poses", f"is {job.max_poses:.4g}; the job has {poses:.4g} poses: larger voxels?")
@@ -122,11 +144,35 @@ class ParallelWorkspaceAnalysis(Analysis):
         poses, threads = float(sum(count for _, count in self.shards)), thread_count()
         rate = RATE_GPU if self.target.startswith("cuda") else RATE_CPU_CORE * threads
         seconds = poses / rate + poses * len(self.mechanism.numeric) / (RATE_NUMERIC_CORE * threads)
-        voxels = self.block.size if self.block else 0
-        drawn, drawing = pictures_cost("slices", "robot")
-        kept = (8 + 4 * len(self.names)) * voxels + surface_bytes(voxels)
-        memory = 8 * poses / len(self.orientations.rotations)
-        return Cost(poses, memory, DOCUMENT_BYTES + drawn + kept, seconds + drawing)
+        drawn, drawing = pictures_cost("slices", "robot", "targets")
+        kept = (8 + 12 * self._columns) * self._reached + surface_bytes(self._reached)
+        seconds += self._reached * bool(self.names) / INDICES_PER_S + drawing + refined_seconds(self.job.refined_volume)
+        files = DOCUMENT_BYTES + drawn + kept
+        asks = Asks("orientations", "take fewer")
+        if self.block is not None:
+            asks = Asks("voxel_size_m", voxel_size_m=self.block.voxel_size_m)
+        return Cost(poses, self._memory(self._reached), files, seconds + files / WRITTEN_PER_S, asks)
+
+    def check_memory(self) -> None:
+        """Refused is what does not fit; how many voxels are reached need not be known of what fits in any case."""
+        if not fits(self._memory(self.block.size if self.block else 0)):
+            super().check_memory()
+
+    def _memory(self, reached: float) -> float:
+        """Of so many voxels that are reached, of a boundary, or of the orientations at a point."""
+        if self.job.kind == "orientation":
+            return SHARE_BYTES + POSE_BYTES * self.samples
+        if self.job.method in BY_BOUNDARY:
+            return BOUNDARY_BYTES
+        kept = (COPIES * 8 * (3 + self._columns) + INDEX_BYTES * bool(self.names)) * reached
+        return float(max(kept, refined_bytes(self.job.refined_volume)))
+
+    @cached_property
+    def _reached(self) -> float:
+        """How many voxels are reached, about."""
+        if self.block is None:
+            return 0.0
+        return self.block.size * reached_share(self.block, self.variants, self.orientations, self.device)
 
     def about_robots(self) -> dict[str, Any]:
         """Nothing: the mechanism's legs name them."""

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from wsrender.analyses.contract import Analysis, Draft, Settled, Tell
-from wsrender.analyses.cost import DOCUMENT_BYTES, Cost, check_memory, pictures_cost
+from wsrender.analyses.cost import DOCUMENT_BYTES, Asks, Cost, pictures_cost
 from wsrender.analyses.execution import Execution
 from wsrender.analyses.headline import headline, no_headline
 from wsrender.analyses.partial_result import PartialResult
@@ -29,7 +29,8 @@ from wsrender.volume.table import Table
 
 POSITIONS_PER_S = 2e6  # of one CPU core
 SWEEP_S = 0.1  # of a six-joint arm
-SAMPLE_BYTES = 64.0  # its position, in space and in the plane, and its cell
+SAMPLE_BYTES = 70.0  # its position, in space and in the plane, and its cell
+SEGMENTS_BYTES = 6e4  # of both boundaries' segments, as tables, drawings and in the document
 DRAWN = 20_000  # samples kept for the picture
 SAMPLING = '{"method": "boundary", "count": 400000, "locked": {}}'
 HOLDING = f'"sampling": {SAMPLING}, in Python sampling=ws.BoundaryBiased(400_000, locked={{}})'
@@ -43,7 +44,6 @@ class PlanarBoundaryAnalysis(Analysis):
     def prepare(self, device: str, target: str) -> Settled:
         """Raises ModelError, naming the joint, for an arm that is not planar; InputError for one without a model."""
         samples = plan_sampling(model_chain(self.robot), self.job.sampling).count
-        check_memory(SAMPLE_BYTES * samples, "sampling", f"{samples:.4g} positions", "take fewer samples")
         _ = self.chain
         return Settled(device, target, ((0, samples),))
 
@@ -56,11 +56,10 @@ class PlanarBoundaryAnalysis(Analysis):
     def cost(self) -> Cost:
         """Samples, bytes of their positions, seconds."""
         count = float(self.shards[0][1])
-        drawn, seconds = pictures_cost("other", "robot")
-        kept = 24.0 * min(count, DRAWN)
-        return Cost(
-            count, SAMPLE_BYTES * count, DOCUMENT_BYTES + drawn + kept, SWEEP_S + count / POSITIONS_PER_S + seconds
-        )
+        drawn, seconds = pictures_cost("posture")
+        files = DOCUMENT_BYTES + SEGMENTS_BYTES + drawn + 16.0 * min(count, DRAWN)
+        seconds += SWEEP_S + count / POSITIONS_PER_S
+        return Cost(count, SAMPLE_BYTES * count, files, seconds, Asks("sampling", "take fewer samples"))
 
     def compute(self, shard: int, execution: Execution, tell: Tell) -> PartialResult:
         """Both boundaries, the samples of the picture, and the answers about points."""

@@ -3,7 +3,17 @@
 import numpy as np
 
 from wsrender.analyses.contract import Analysis, Draft, Settled, Tell
-from wsrender.analyses.cost import DOCUMENT_BYTES, Cost, pictures_cost
+from wsrender.analyses.cost import (
+    DECIDED_PER_S,
+    DOCUMENT_BYTES,
+    LISTED_BYTES,
+    LISTED_MEMORY,
+    WRITTEN_PER_S,
+    Asks,
+    Cost,
+    pictures_cost,
+    solved_bytes,
+)
 from wsrender.analyses.estimate import RATE_CPU_CORE
 from wsrender.analyses.execution import Execution
 from wsrender.analyses.partial_result import PartialResult, joined_rows, rows_of_shard
@@ -11,15 +21,16 @@ from wsrender.analyses.reachability.job import ReachabilityJob
 from wsrender.reach.targets import check_tolerance, reachable
 from wsrender.volume.table import Table
 
-RATE = 2e4  # targets per second, rounded down from benchmarks/inverse.py: many unreachable poses on one core
-TABLE_BYTES, LISTED_BYTES = 120, 60  # of a target in the table, and in the job that the document keeps
+POSES_PER_S = 1.2e4  # of one core, where many are unreachable
+TABLE_BYTES = 60  # of a target in the table beside its configuration
+LABEL_BYTES = 220  # of a target: its label and reason as text, residuals, and copies
 DRAWN = 3  # configurations in the picture of the robot
 
 
 class ReachabilityAnalysis(Analysis):
     """A planned ``reachability`` job: its samples are the targets."""
 
-    effort = RATE_CPU_CORE / RATE
+    effort = RATE_CPU_CORE / POSES_PER_S
     job: ReachabilityJob
 
     def prepare(self, device: str, target: str) -> Settled:
@@ -30,11 +41,12 @@ class ReachabilityAnalysis(Analysis):
     @property
     def cost(self) -> Cost:
         """Targets, what is known of each, and the table."""
-        count = len(self.job.points_m)
-        held = float(count * (self.robot.chain.n + 8) * 8)
-        drawn, seconds = pictures_cost("targets")
-        listed = (TABLE_BYTES + LISTED_BYTES) * count
-        return Cost(count, held, DOCUMENT_BYTES + drawn + listed, count / RATE + seconds)
+        count, n, listed = len(self.job.points_m), self.robot.chain.n, 3 if self.job.quats_wxyz is None else 7
+        drawn, seconds = pictures_cost("targets", "robot")
+        files = DOCUMENT_BYTES + drawn + (TABLE_BYTES + 8 * (n + listed - 3) + LISTED_BYTES * listed) * count
+        memory = (LABEL_BYTES + 16 * n + (8 + LISTED_MEMORY) * listed) * count + solved_bytes(count)
+        seconds += count / (DECIDED_PER_S if listed == 3 else POSES_PER_S) + files / WRITTEN_PER_S
+        return Cost(count, memory, files, seconds, Asks("points_m", "take fewer"))
 
     def compute(self, shard: int, execution: Execution, tell: Tell) -> PartialResult:
         """The shard's targets decided: arrays of `Reachability` by name."""

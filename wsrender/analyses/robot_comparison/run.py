@@ -8,7 +8,7 @@ import numpy as np
 
 from wsrender.analyses.composed import Composed, Part, PartialParts
 from wsrender.analyses.contract import Draft, Progress
-from wsrender.analyses.cost import Cost
+from wsrender.analyses.cost import Cost, fits
 from wsrender.analyses.execution import Execution
 from wsrender.analyses.headline import no_headline
 from wsrender.analyses.robot_comparison.job import RobotComparisonJob
@@ -29,6 +29,11 @@ class RobotComparisonAnalysis(Composed):
         """Raises InputError, MissingInertiaError, ResourceError."""
         self.several = plan_several(self.job, self.robots, None, self.job.refined_volume)
         return self.several.settled(self.several.samples)
+
+    def check_memory(self) -> None:
+        """Refused is what does not fit; see `WorkspaceAnalysis.check_memory`."""
+        if not fits(self.several.most_bytes):
+            super().check_memory()
 
     @cached_property
     def several(self) -> SeveralPlans:

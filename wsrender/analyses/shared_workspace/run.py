@@ -9,7 +9,17 @@ import numpy as np
 
 from wsrender.analyses.composed import Composed, Part, PartialParts, part_of
 from wsrender.analyses.contract import Draft, Progress, Tell
-from wsrender.analyses.cost import DOCUMENT_BYTES, Cost, in_turn, pictures_cost, refined_seconds
+from wsrender.analyses.cost import (
+    DOCUMENT_BYTES,
+    WRITTEN_PER_S,
+    Asks,
+    Cost,
+    fits,
+    in_turn,
+    pictures_cost,
+    refined_bytes,
+    refined_seconds,
+)
 from wsrender.analyses.execution import Execution
 from wsrender.analyses.headline import NOT_ASKED, headline_of, no_headline
 from wsrender.analyses.partial_result import PartialResult
@@ -23,7 +33,7 @@ from wsrender.documents.several_robots import PlacementScan
 from wsrender.multi import NUMBER, PRODUCT, reached_by, scanned_volumes, shared_volume, volume_by_number
 from wsrender.notices import Notice
 from wsrender.reach import Event
-from wsrender.volume.lattice import block_of_all, check_voxels
+from wsrender.volume.lattice import block_of_all
 from wsrender.volume.measure import TABLE_UNITS
 from wsrender.volume.table import Table
 from wsrender.volume.volume_data import VolumeData
@@ -32,8 +42,12 @@ if TYPE_CHECKING:
     import trimesh
 
 
-VOLUME_BYTES = 9  # of a voxel of each robot's volume: samples, and whether there are any
 TOGETHER = "what the robots reach together is measured, not what each does: robot_comparison measures that"
+# Of a voxel of the block of all: samples, number and products of indices; of each robot samples and indices;
+# of what makes them.
+SHARED_BYTES, VOLUME_BYTES, MAKING_BYTES = 12, 9, 60
+FILLED = 0.7  # of the block that holds what robots may reach, the block of what they do
+DENSE_PER_S = 2e8  # bytes of dense arrays that are made
 REACHED = {"any": "jointly reachable", "shared": "shared"}  # of which volume
 
 
@@ -47,7 +61,6 @@ class SharedWorkspaceAnalysis(Composed):
     def prepare(self, device: str, target: str) -> SeveralSettled:
         """Raises InputError, MissingInertiaError, ResourceError."""
         several = self.several = plan_several(self.job, self.robots)
-        _check_volume(several)
         return several.settled(several.samples + sum(plan.samples for plan in self.scanned))
 
     @cached_property
@@ -79,12 +92,41 @@ class SharedWorkspaceAnalysis(Composed):
     @property
     def cost(self) -> Cost:
         """Samples, bytes and seconds."""
-        swept = in_turn(plan.swept_cost for plan in [*self.several.plans, *self.scanned])
-        drawn, seconds = pictures_cost("slices", "product", "robot")
-        seconds += refined_seconds(self.job.refined_volume) * (1 + len(self.scanned))
-        files = DOCUMENT_BYTES + drawn + sum(plan.volume_bytes for plan in self.several.plans) * 1.5
-        bits = sum(plan.pipeline.block.size for plan in self.scanned) / 8
-        return Cost(swept.samples, swept.memory_bytes + bits, files, swept.seconds + seconds)
+        several, tolerance = self.several, self.job.refined_volume
+        swept = in_turn([several.swept_cost, *(plan.swept_cost for plan in self.scanned)])
+        (voxels, products), dense = self._block, self._dense_bytes
+        memory = self._bits + max(swept.memory_bytes, several.kept_bytes + max(dense, refined_bytes(tolerance)))
+        drawn, seconds = pictures_cost("slices", "product", "surface")
+        volumes = sum(plan.volume_bytes for plan in several.plans)
+        files = DOCUMENT_BYTES + drawn + volumes + FILLED * voxels * (SHARED_BYTES + 4 * products)
+        seconds += swept.seconds + refined_seconds(tolerance) * len(several.plans) * (1 + len(self.scanned))
+        seconds += dense / DENSE_PER_S + files / WRITTEN_PER_S
+        asks = Asks("voxel_size_m", voxel_size_m=several.plans[0].voxel_size_m)
+        return Cost(swept.samples, memory, files, seconds, asks)
+
+    def check_memory(self) -> None:
+        """Refused is what does not fit; see `WorkspaceAnalysis.check_memory`."""
+        if not fits(self.several.most_bytes + self._dense_bytes + self._bits):
+            super().check_memory()
+
+    @property
+    def _bits(self) -> float:
+        """Bytes that say where the robot that the scan moves has been."""
+        return sum(plan.pipeline.block.size for plan in self.scanned) / 8
+
+    @property
+    def _dense_bytes(self) -> float:
+        """Of what is made of the block of all."""
+        voxels, products = self._block
+        own = VOLUME_BYTES + 4 * products
+        return float(voxels * (SHARED_BYTES + 4 * products + own * len(self.several.plans) + MAKING_BYTES))
+
+    @property
+    def _block(self) -> tuple[int, int]:
+        """Voxels of the block that holds what all robots may reach, and indices of which there are products."""
+        pipelines = [plan.pipeline for plan in self.several.plans]
+        products = len(pipelines[0].evaluation.indices) if "maximum" in pipelines[0].statistics else 0
+        return block_of_all([each.block for each in pipelines if each.block is not None]).size, products
 
     @property
     def refinements(self) -> int:
@@ -194,14 +236,6 @@ def _measured_together(common: dict[str, Any]) -> dict[str, Any]:
         if robot["global"]["structural_length_reason"] == NOT_ASKED:
             robot["global"] = robot["global"] | {"structural_length_reason": TOGETHER}
     return common | {"robots": robots}
-
-
-def _check_volume(several: SeveralPlans) -> None:
-    """Whether the arrays of what robots share fit in memory, however far apart they stand; raises ResourceError."""
-    pipelines = [plan.pipeline for plan in several.plans]
-    products = len(pipelines[0].evaluation.indices) if "maximum" in pipelines[0].statistics else 0
-    blocks = [each.block for each in pipelines if each.block is not None]
-    check_voxels(block_of_all(blocks), len(pipelines) * VOLUME_BYTES + 4 * (1 + products))
 
 
 def _meshes(shared: VolumeData) -> "tuple[dict[str, trimesh.Trimesh], dict[str, Any]]":

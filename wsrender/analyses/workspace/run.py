@@ -12,13 +12,17 @@ from wsrender.analyses.contract import Analysis, Draft, Progress, Settled, Tell
 from wsrender.analyses.cost import (
     DECIDED_PER_S,
     DOCUMENT_BYTES,
+    WRITTEN_PER_S,
     Cost,
     check_memory,
+    fits,
     pictures_cost,
+    refined_bytes,
     refined_seconds,
+    solved_bytes,
     surface_bytes,
 )
-from wsrender.analyses.estimate import map_bytes, sweep_cost
+from wsrender.analyses.estimate import held, kept_bytes, sweep_cost
 from wsrender.analyses.execution import Execution
 from wsrender.analyses.partial_result import PartialResult
 from wsrender.analyses.refined import Refined, labelled, refined
@@ -39,10 +43,10 @@ from wsrender.pipeline.sampling import SamplingPlan, plan_sampling
 from wsrender.robot import Robot
 from wsrender.robot.constraints import check_admitted, constraints_for, samples_entry
 from wsrender.robot.indices import evaluation_of_job
-from wsrender.volume.lattice import LatticeBlock, check_voxels, expected_voxels, voxel_of
+from wsrender.volume.lattice import LatticeBlock, expected_voxels, voxel_of
 from wsrender.volume.volume_data import VolumeData
 
-LABEL_BYTES = 24  # of a voxel of the block: which are near, samples, and what makes them
+LABEL_BYTES, LABELLED_BYTES = 24, 250  # of a voxel of the cropped block: what is near; of one that is decided
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -84,8 +88,6 @@ class WorkspaceAnalysis(Analysis):
         fitted(block, plan.shape, devices_of(device), sampling.count)  # raises where a sweep would
         if job.voxel_labels and (job.constraints is not None or job.environment is not None):
             raise InputError("voxel_labels", "must be false with constraints: labels say what is reached without them")
-        if job.voxel_labels:
-            check_voxels(block, LABEL_BYTES)
         return WorkspaceSettled(
             device,
             target,
@@ -150,12 +152,37 @@ class WorkspaceAnalysis(Analysis):
             if job.sampling.by == "workspace_mean" and not {"maximum", "mean"} & pipeline.statistics:
                 raise InputError("sampling.by", "workspace_mean needs the voxel statistic maximum or mean")
         _check_surfaces(job, pipeline)
-        _check_map(pipeline)
+
+    def check_memory(self) -> None:
+        """Refused is what does not fit; how many voxels hold a sample need not be known of what fits in any case."""
+        if not fits(self.most_bytes):
+            super().check_memory()
+
+    @property
+    def most_bytes(self) -> float:
+        """Of memory if every sample were in a voxel of its own: found without the coarse samples."""
+        block = self.pipeline.block
+        every = float(min(self.pipeline.sampling.count, block.size if block else 0))
+        return self._memory(sweep_cost(self.pipeline, devices_of(self.device), every), every)
 
     @property
     def swept_cost(self) -> Cost:
         """Of the sweep alone."""
-        return sweep_cost(self.pipeline, devices_of(self.device))
+        return sweep_cost(self.pipeline, devices_of(self.device), self._held)
+
+    @property
+    def kept_bytes(self) -> float:
+        """Of the partial result's voxels and the volume made of them."""
+        return 2 * kept_bytes(self.pipeline, self._held)
+
+    def _memory(self, swept: Cost, voxels: float) -> float:
+        """Of the sweep, or of what follows it, whose voxels are held beside it."""
+        kept, labels = 2 * kept_bytes(self.pipeline, voxels), 0.0
+        if self.job.voxel_labels:
+            expected, block = self._expected
+            near = min(27 * voxels, (np.cbrt(expected) + 2) ** 3)
+            labels = LABELLED_BYTES * near + solved_bytes(near) + LABEL_BYTES * block
+        return float(max(swept.memory_bytes, kept + refined_bytes(self.job.refined_volume) + labels))
 
     @property
     def cost(self) -> Cost:
@@ -167,12 +194,12 @@ class WorkspaceAnalysis(Analysis):
         files = (
             swept.file_bytes + 8.0 * columns * rows + drawn + DOCUMENT_BYTES + surface_bytes(voxels) + self.volume_bytes
         )
-        memory = swept.memory_bytes + LABEL_BYTES * block * job.voxel_labels
+        memory = self._memory(swept, self._held)
         seconds += swept.seconds + refined_seconds(job.refined_volume)
         if job.voxel_labels:
             near = (np.cbrt(voxels) + 2) ** 3
             files, seconds = files + 16.0 * (np.cbrt(block) + 2) ** 3, seconds + near / DECIDED_PER_S
-        return Cost(swept.samples, memory, float(files), float(seconds))
+        return Cost(swept.samples, memory, float(files), float(seconds + files / WRITTEN_PER_S), swept.asks)
 
     @property
     def volume_bytes(self) -> float:
@@ -187,6 +214,11 @@ class WorkspaceAnalysis(Analysis):
         positions, size = self.first_pass.evaluated.position, self.voxel_size_m
         cells = np.floor(positions / size)
         return expected_voxels(positions, size), float(np.prod(np.ptp(cells, axis=0) + 1))
+
+    @property
+    def _held(self) -> float:
+        """Voxels that hold a sample, of those that would hold one of enough samples."""
+        return held(self._expected[0], self.pipeline.sampling.count)
 
     @property
     def voxel_size_m(self) -> float:
@@ -296,7 +328,8 @@ class WorkspaceAnalysis(Analysis):
         """The pipeline of one grid; the voxel size is that of the job for all of them."""
         grid = plan_sampling(self.robot.chain, Grid(levels, locked=sampling.locked))
         pipeline = replace(self.pipeline, sampling=grid)
-        _check_map(pipeline)
+        if pipeline.kept_rows is not None:
+            check_memory(sweep_cost(pipeline, devices_of(self.device), held(self._expected[0], grid.count)))
         return pipeline
 
     def _global_value(self, pipeline: Pipeline, partial: Partial, position: int, by: str) -> float:
@@ -305,12 +338,6 @@ class WorkspaceAnalysis(Analysis):
         value = workspace_mean(volume_data(pipeline, partial, {}), pipeline.evaluation.indices[position])
         assert value is not None
         return value
-
-
-def _check_map(pipeline: Pipeline) -> None:
-    """Whether a map that is kept fits in memory, its rows and what they are joined to; raises ResourceError."""
-    rows = f"{pipeline.sampling.count:.4g} rows of {SweepPlan(pipeline).shape.n_rows} values"
-    check_memory(2 * map_bytes(pipeline), "keep_map", rows, "take fewer samples or columns, or keep no map")
 
 
 def _check_surfaces(job: WorkspaceJob, pipeline: Pipeline) -> None:
