@@ -7,8 +7,8 @@ import wsrender as ws
 from tests.collision.robots import drawn, nearest
 from tests.reference.class_robots import SphericalClass
 from wsrender.documents.constraints import Constraints
-from wsrender.errors import InputError
-from wsrender.robot import as_robot
+from wsrender.errors import InputError, ResourceError
+from wsrender.robot import as_robot, collisions
 from wsrender.robot.constraints import constraints_for
 
 ARM = """<mujoco><compiler angle="radian" autolimits="true"/><worldbody>{world}<body name="base">{base}
@@ -70,6 +70,14 @@ def test_surroundings_that_swallow_the_robot_are_refused():
 )
 def test_choices_that_are_refused(choice, field, message):
     refused(arm(), field, message, **choice)
+
+
+def test_too_many_pairs_are_refused_before_any_table_is_made(monkeypatch):
+    monkeypatch.setattr(collisions, "MOST_PAIRS", 20)
+    monkeypatch.setattr(collisions, "stored_program", None)
+    with pytest.raises(ResourceError, match="would keep 21 pairs of shapes apart, more than 20") as caught:
+        constraints_for(ws.load_robot("ur5e"), Constraints(self_collision=True))
+    assert caught.value.field == "constraints.self_collision"
 
 
 def test_python_robots_are_refused():

@@ -10,7 +10,7 @@ from wsrender.collision.solids import BASE, Pairs, Solid
 from wsrender.collision.store import stored_program
 from wsrender.documents.constraints import Apart, Constraints
 from wsrender.documents.environment import Box, Capsule, Cylinder, Environment, HalfSpace, Mesh, Sphere
-from wsrender.errors import InputError
+from wsrender.errors import InputError, ResourceError
 from wsrender.pipeline.constraints.collision import CollisionConstraint, labelling
 from wsrender.robot.model_robot import Robot
 from wsrender.robots.chain import Chain
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from wsrender.robots.bodies import Bodies
 
 SELF, AROUND = "self_collision", "environment"
+MOST_PAIRS = 2000  # of both constraints: each may take a table of 256 KiB, and a second to make it
 KINDS: dict[str, Any] = {"mesh": "hull", "plane": "half_space"}  # of shapes, by what solids call them
 
 ENDLESS = (
@@ -67,6 +68,9 @@ def collision_constraints(
         if constraint.margin_m > (size := _size(bodies)):
             message = f"must be at most the robot's size, {size:.3g} m, not {constraint.margin_m:g}"
             raise InputError(f"constraints.{constraint.name}.margin_m", message)
+    if (count := sum(len(constraint.pairs) for constraint in found)) > MOST_PAIRS:
+        message = f"would keep {count} pairs of shapes apart, more than {MOST_PAIRS}: exclude some"
+        raise ResourceError(f"constraints.{found[0].name}", message)
     _refuse_always(tuple(found))
     return tuple(found)
 

@@ -1,0 +1,142 @@
+"""Labels of self-collisions beside MuJoCo in C, and filtered sweeps beside the same without: one thread, in turn.
+
+    python benchmarks/collisions.py [--robots ur5e franka_panda …, or paths of models] [--repeats 5] [--exclude a,b …]
+
+Labels are exact: sampling, kinematics, filter, narrow phase and MuJoCo for what is open, in CPU seconds of the thread.
+MuJoCo's loop (mujoco_loop.c, compiled here with cc against the wheel's headers) takes kinematics and collisions. Ratios
+are of the least times of the repeats. Boxes: surroundings of 20 and 100, in times of the sweep with self-collisions.
+"""
+
+import argparse
+import ctypes
+import subprocess
+import tempfile
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import mujoco
+import numpy as np
+from throughput import plan_of
+
+import wsrender as ws
+from wsrender.documents.constraints import Constraints
+from wsrender.engine import configurations, devices_of, sweep
+from wsrender.engine.collision import Collisions, collisions_of
+from wsrender.engine.drawn_configurations import device_space
+from wsrender.engine.sweep_plan import SweepPlan
+from wsrender.pipeline.evaluation import Evaluation
+from wsrender.pipeline.pipeline import Pipeline
+from wsrender.pipeline.sampling import plan_sampling
+from wsrender.robot.constraints import constraints_for
+
+SAMPLES, CHUNK, OF_MUJOCO, SWEPT = 1 << 21, 1 << 18, 1 << 15, 1 << 22
+
+
+def mujoco_loop() -> Callable[[mujoco.MjModel, np.ndarray], np.ndarray]:
+    """Labels (N,) of configurations (N, nq) by mujoco_loop.c."""
+    folder, package = tempfile.mkdtemp(), Path(mujoco.__file__).parent
+    library = Path(folder, "mujoco_loop.so")
+    (runtime,) = package.glob("libmujoco.so.*")
+    headers = [f"-I{path}" for path in (package / "include", package) if path.is_dir()]
+    source = Path(__file__).with_name("mujoco_loop.c")
+    command = ["cc", "-O3", "-shared", "-fPIC", *headers, source, "-o", library, runtime, f"-Wl,-rpath,{package}"]
+    subprocess.run(command, check=True)
+    run = ctypes.CDLL(str(library)).blocked
+
+    def labels(model: mujoco.MjModel, q: np.ndarray) -> np.ndarray:
+        data, found = mujoco.MjData(model), np.zeros(len(q), np.uint8)
+        pointers = [ctypes.c_void_p(each) for each in (model._address, data._address, q.ctypes.data)]
+        run(*pointers, len(q), ctypes.c_void_p(found.ctypes.data))
+        return found
+
+    return labels
+
+
+def labelled(robot: ws.Robot, constraints: tuple, precision: str) -> tuple[Collisions, Pipeline, object]:
+    """What labels SAMPLES random configurations on the CPU, their pipeline and sample space."""
+    sampling = plan_sampling(robot.chain, ws.Random(SAMPLES))
+    pipeline = Pipeline(Evaluation(robot.chain), sampling, constraints, kept_rows=frozenset(), precision=precision)
+    (device,) = devices_of("cpu")
+    space = device_space(sampling, precision, device)
+    return collisions_of(pipeline, SweepPlan(pipeline).shape, device, CHUNK), pipeline, space
+
+
+def least(repeats: int, cases: dict[str, Callable[[], object]]) -> dict[str, float]:
+    """Least CPU seconds of this thread of every case, taken in turn."""
+    found = dict.fromkeys(cases, np.inf)
+    for _ in range(repeats + 1):
+        for name, case in cases.items():
+            started = time.thread_time()
+            case()
+            found[name] = min(found[name], time.thread_time() - started)
+    return found
+
+
+def boxes(robot: ws.Robot, count: int) -> ws.Environment:
+    """Boxes of 10 cm that stand about the robot, none at its base."""
+    random, reach = np.random.default_rng(0), robot.chain.reach
+    away = random.normal(size=(count, 3))
+    places = (
+        robot.chain.center + away / np.linalg.norm(away, axis=1)[:, None] * random.uniform(0.6, 1.1, (count, 1)) * reach
+    )
+    return ws.Environment([ws.Box(size_m=(0.1, 0.1, 0.1), position_m=tuple(place.tolist())) for place in places])
+
+
+def report(robot: ws.Robot, loop: Callable[[mujoco.MjModel, np.ndarray], np.ndarray], repeats: int) -> None:
+    """Print what is measured of one robot."""
+    constraints = constraints_for(robot, Constraints(self_collision=True))
+    own, pipeline, space = labelled(robot, constraints, "float32")
+    model, bodies = robot.bodies.model, robot.bodies
+    q = np.asarray(configurations(pipeline, np.arange(OF_MUJOCO)), np.float64)
+    qpos = np.ascontiguousarray(bodies.qpos(q))
+    expected, found = loop(model, qpos), own.label(space, 0, CHUNK, CHUNK // 256).numpy()[:OF_MUJOCO] > 0
+
+    def all_labels() -> None:
+        for first in range(0, SAMPLES, CHUNK):
+            own.label(space, first, CHUNK, CHUNK // 256)
+
+    took = least(repeats, {"labels": all_labels, "MuJoCo": lambda: loop(model, qpos)})
+    rate, of_mujoco = SAMPLES / took["labels"], OF_MUJOCO / took["MuJoCo"]
+    print(f"{robot.name}: {len(bodies.pairs)} pairs, blocked {expected.mean():.4f}; {(found != expected).sum()} differ")
+    print(f"  labels {rate / 1e6:.2f} M/s, MuJoCo in C {of_mujoco / 1e6:.3f} M/s: {rate / of_mujoco:.1f} times")
+    print(f"  decided by filter, narrow phase, MuJoCo: {np.round(own.decided / own.decided.sum(), 6)}")
+    bare = plan_of(robot, "float32", "cpu", sampling=ws.Random(SWEPT))
+    bare = replace(bare, kept_rows=None)
+    cases = {"unfiltered": bare, "self-collision": replace(bare, constraints=constraints)}
+    for count in (20, 100):
+        both = constraints_for(robot, Constraints(self_collision=True), boxes(robot, count))
+        cases[f"{count} boxes"] = replace(bare, constraints=both)
+    devices = devices_of("cpu")
+    swept = {name: lambda each=each: sweep(each, 0, SWEPT, devices, threads=1) for name, each in cases.items()}
+    seconds = dict.fromkeys(swept, np.inf)
+    for _ in range(repeats + 1):
+        for name, case in swept.items():
+            started = time.perf_counter()
+            case()
+            seconds[name] = min(seconds[name], time.perf_counter() - started)
+    for name, each in seconds.items():
+        print(
+            f"  sweep, {name}: {SWEPT / each / 1e6:.2f} M/s, {seconds['unfiltered'] / each:.2f} of the unfiltered rate"
+        )
+    alone = seconds["self-collision"]
+    print(
+        f"  20 boxes {seconds['20 boxes'] / alone:.2f}, 100 boxes {seconds['100 boxes'] / alone:.2f} times self-collision"
+    )
+
+
+def main() -> None:
+    """Run from the command line."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--robots", nargs="+", default=["ur5e", "franka_panda", "kuka_iiwa14"])
+    parser.add_argument("--repeats", type=int, default=5)
+    parser.add_argument("--exclude", nargs="*", default=[], metavar="A,B")
+    given = parser.parse_args()
+    loop, excluded = mujoco_loop(), [tuple(each.split(",")) for each in given.exclude]
+    for name in given.robots:
+        report(ws.load_robot(name, exclude=excluded), loop, given.repeats)
+
+
+if __name__ == "__main__":
+    main()
