@@ -121,9 +121,8 @@ def report(robot: ws.Robot, loop: Callable[[mujoco.MjModel, np.ndarray], np.ndar
             f"  sweep, {name}: {SWEPT / each / 1e6:.2f} M/s, {seconds['unfiltered'] / each:.2f} of the unfiltered rate"
         )
     alone = seconds["self-collision"]
-    print(
-        f"  20 boxes {seconds['20 boxes'] / alone:.2f}, 100 boxes {seconds['100 boxes'] / alone:.2f} times self-collision"
-    )
+    twenty, hundred = (seconds[f"{count} boxes"] / alone for count in (20, 100))
+    print(f"  20 boxes take {twenty:.2f}, 100 boxes {hundred:.2f} times as long as self-collision")
 
 
 def main() -> None:

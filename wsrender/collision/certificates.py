@@ -46,7 +46,9 @@ def certificates(pairs: Pairs, chain: Chain, distances: Distances) -> Certificat
     never, always, tables, left = [], [], [], []
     for number in range(len(pairs.pairs)):
         pair = _Pair(pairs, number, chain, distances)
-        if len(pair.coordinates) <= 2 and not pair.round:
+        # Neighbours are so near that their covers always touch; what stands around is hardly ever.
+        tabled = len(pair.coordinates) <= (1 if pairs.around[pairs.reason[number]] else 2) and not pair.round
+        if tabled:
             labels = pair.table()
             if (labels == FREE).all():
                 never.append(number)

@@ -77,9 +77,11 @@ def program(pairs: Pairs, chain: Chain, distances: Distances | None = None) -> P
     """The program of pairs of a chain: proofs, tables and covers are made here, which takes seconds."""
     known = certificates(pairs, chain, distances or Distances(pairs.solids))
     covers: dict[int, Cover] = {}
+    alike: dict[tuple[object, ...], Cover] = {}
     for number in sorted({int(k) for pair in known.left for k in pairs.pairs[pair]}):
-        if pairs.solids[number].kind != "half_space":
-            covers[number] = cover(pairs.solids[number])
+        if (solid := pairs.solids[number]).kind != "half_space":
+            form = solid.kind, solid.size.tobytes(), solid.points.tobytes()
+            covers[number] = alike[form] = alike.get(form) or cover(solid)
     chosen = _Chosen(pairs, chain, covers)
     levels = {pair: chosen.levels(pair) for pair in known.left}
     epsilon = EPSILON * max(2.0, _extent(pairs, chain))
@@ -109,6 +111,9 @@ class _Chosen:
         exact = all(self.pairs.solids[k].kind == "half_space" or self.covers[k].exact for k in (a, b))
         if exact:
             return 0, 0
+        tests, close = self._below(a, b, "outer", 0, margin)
+        if OPEN_COST * close.mean() <= tests:
+            return 0, None
         near = [self._below(a, b, "outer", level, margin) for level in range(len(LEVELS))]
         hit = [self._below(a, b, "inner", level, margin) for level in range(len(LEVELS))]
         choices = []

@@ -69,28 +69,31 @@ class Pairs:
     """Pairs of solids that must keep ``margin_m`` [m] apart: (P, 2) numbers of solids, the lower joint first.
 
     ``reason`` (P,): number of the constraint that the pair belongs to, from 0; pairs stand in the order of reasons.
+    ``around`` by constraint: whether its pairs are of solids and what stands around them.
     """
 
     solids: tuple[Solid, ...]
     pairs: np.ndarray
     reason: np.ndarray
     margin_m: tuple[float, ...]
+    around: tuple[bool, ...]
 
     @classmethod
-    def of(cls, solids: tuple[Solid, ...], *groups: tuple[np.ndarray, float]) -> "Pairs":
-        """Pairs (P, 2) and margin of every constraint, in order."""
+    def of(cls, solids: tuple[Solid, ...], *groups: tuple[np.ndarray, float, bool]) -> "Pairs":
+        """Of every constraint, in order, pairs (P, 2), margin, and whether they are of what stands around."""
         ordered = []
-        for pairs, _margin in groups:
+        for pairs, _margin, _around in groups:
             pairs = np.array(pairs, int).reshape(-1, 2)
             joints = np.array([solid.joint for solid in solids])[pairs]
             ordered.append(np.where(joints[:, :1] > joints[:, 1:], pairs[:, ::-1], pairs))
         numbers = [np.full(len(pairs), number) for number, pairs in enumerate(ordered)]
-        margins = tuple(float(margin) for _, margin in groups)
+        margins = tuple(float(margin) for _, margin, _ in groups)
         return cls(
             solids,
             np.concatenate([np.zeros((0, 2), int), *ordered]),
             np.concatenate([[], *numbers]).astype(int),
             margins,
+            tuple(around for _, _, around in groups),
         )
 
     def margin(self, pair: int) -> float:
@@ -105,7 +108,7 @@ class Pairs:
     @cached_property
     def digest(self) -> str:
         """Of all that structures are made of."""
-        made = hashlib.sha256(repr((self.margin_m, self.pairs.tolist(), self.reason.tolist())).encode())
+        made = hashlib.sha256(repr((self.margin_m, self.around, self.pairs.tolist(), self.reason.tolist())).encode())
         for solid in self.solids:
             made.update(f"{solid.kind} {solid.joint}".encode())
             for numbers in (solid.T, solid.size, solid.points):

@@ -83,7 +83,7 @@ class Collisions:
 def collisions_of(pipeline: Pipeline, shape: Shape, device: wp.Device, chunk: int) -> Collisions:
     """What labels the samples of a pipeline before they are swept with a kernel of a shape."""
     constraints = labelling(pipeline.constraints)
-    pairs = Pairs.of(constraints[0].solids, *((each.pairs, each.margin_m) for each in constraints))
+    pairs = Pairs.of(constraints[0].solids, *(each.group for each in constraints))
     program = stored_program(pairs, constraints[0].chain, constraints[0].distances)
     return Collisions(pipeline, pairs, program, shape, device, chunk)
 

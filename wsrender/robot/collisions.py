@@ -157,7 +157,7 @@ def _size(bodies: "Bodies") -> float:
 def _refuse_always(constraints: tuple[CollisionConstraint, ...]) -> None:
     """Raises InputError for pairs that are proven to collide in every configuration."""
     first, *_ = labelling(constraints)
-    together = Pairs.of(first.solids, *((each.pairs, each.margin_m) for each in constraints))
+    together = Pairs.of(first.solids, *(each.group for each in constraints))
     always = stored_program(together, first.chain, first.distances).always
     for reason, constraint in enumerate(constraints):
         pairs = [together.pairs[k] for k in always if together.reason[k] == reason]

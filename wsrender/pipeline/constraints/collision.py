@@ -42,7 +42,12 @@ class CollisionConstraint:
     @cached_property
     def own(self) -> Pairs:
         """The pairs by themselves."""
-        return Pairs.of(self.solids, (self.pairs, self.margin_m))
+        return Pairs.of(self.solids, self.group)
+
+    @property
+    def group(self) -> tuple[np.ndarray, float, bool]:
+        """As `Pairs.of` takes it."""
+        return self.pairs, self.margin_m, self.name == "environment"
 
     @cached_property
     def distances(self) -> Distances:
