@@ -544,14 +544,19 @@ def narrow_kernel(real: Any, n: int, joints: int, words: int, method: str, cuda:
     return narrow
 
 
-@wp.kernel(module="unique", module_options=MODULE_OPTIONS, enable_backward=False)
-def put_labels(
-    # in
-    ids: wp.array(dtype=wp.int32),
-    found: wp.array(dtype=wp.uint8),
-    # out
-    labels: wp.array(dtype=wp.uint8),
-):
-    """Labels of samples that the host has decided."""
-    item = wp.tid()
-    labels[ids[item]] = found[item]
+@factory
+def put_kernel() -> wp.Kernel:
+    """Kernel that puts the labels ``found`` (N,) of samples ``ids`` (N,) that the host has decided."""
+
+    @wp.kernel(module="unique", module_options=MODULE_OPTIONS, enable_backward=False)
+    def put(
+        # in
+        ids: wp.array(dtype=wp.int32),
+        found: wp.array(dtype=wp.uint8),
+        # out
+        labels: wp.array(dtype=wp.uint8),
+    ):
+        item = wp.tid()
+        labels[ids[item]] = found[item]
+
+    return put

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 import warp as wp
-from wsrender_kernels.collision import ARRAYS, CAPACITY, DECIDED, filter_kernel, narrow_kernel, program_type, put_labels
+from wsrender_kernels.collision import ARRAYS, CAPACITY, DECIDED, filter_kernel, narrow_kernel, program_type, put_kernel
 from wsrender_kernels.sweep import Shape
 
 from wsrender.collision.distance import blocked_by
@@ -69,7 +69,7 @@ class Collisions:
         found = blocked_by(self.pairs, self.distances, self.chain, q, bits.astype(bool))
         found = np.where(found > 0, found, pending[items])
         inputs = [device_array(open_, wp.int32, self.device), device_array(found, wp.uint8, self.device)]
-        put = loaded(put_labels, self.device)
+        put = loaded(put_kernel(), self.device)
         launch(put, dim=len(items), inputs=inputs, outputs=[self.labels], device=self.device)
         return len(items)
 
