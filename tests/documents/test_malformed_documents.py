@@ -124,8 +124,8 @@ MALFORMED = [
     (job(robot=""), "robot.library", "must not be empty"),
     # unknown and wrong fields
     (job(tipp="tool"), "tipp", "is not a known field; did you mean tip?"),
-    (at(voxel_size_m=0.1), "voxel_size_m", "is not a known field; allowed: format, robot"),
-    (at(sampling={"method": "grid"}), "sampling", "is not a known field"),
+    (at(configurations=[[0]], voxel_size_m=0.1), "voxel_size_m", "is not a known field; allowed: format, robot"),
+    (at(configurations=[[0]], sampling={"method": "grid"}), "sampling", "is not a known field"),
     (job(base=""), "base", "must not be empty"),
     (job(tip=3), "tip", "must be a string, not 3"),
     (job(tip="\ud800"), "tip", "must be valid Unicode text"),

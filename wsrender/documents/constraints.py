@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, ConfigDict, Field, StrictBool
+from pydantic import BeforeValidator, ConfigDict, StrictBool
 
 from wsrender.documents.document import Document
 from wsrender.documents.environment import Bounds, Environment, HalfSpace, Sphere
@@ -64,13 +64,9 @@ class Constraints(Document):
 
     region: RegionChoice | None = None
     """Where the tip may be; null: anywhere."""
-    self_collision: Annotated[
-        Apart | Literal[False] | None, BeforeValidator(_apart), Field(exclude_if=lambda value: value is None)
-    ] = None
+    self_collision: Annotated[Apart | Literal[False] | None, BeforeValidator(_apart)] = None
     """The robot's own shapes keep apart; true: they may touch; null: they are not asked for."""
-    environment: Annotated[
-        Apart | Literal[False] | None, BeforeValidator(_apart), Field(exclude_if=lambda value: value is None)
-    ] = None
+    environment: Annotated[Apart | Literal[False] | None, BeforeValidator(_apart)] = None
     """How far the robot keeps from the job's ``environment``; null: it may touch it; false: it is only drawn."""
 
     @property
@@ -85,5 +81,5 @@ class Constrained(Document):
 
     constraints: Constraints | None = None
     """Which configurations are admitted; null: all."""
-    environment: Annotated[Environment | None, Field(exclude_if=lambda value: value is None)] = None
+    environment: Environment | None = None
     """What stands around, which the robot's shapes do not enter; null: nothing."""
