@@ -87,7 +87,12 @@ def test_a_server_refuses_at_once_what_it_does_not_know(package, client, constra
 
 def test_the_schema_of_a_server_tells_of_it(package, client):
     schema = client.get("/openapi.json").json()["components"]["schemas"]["Constraints"]
-    assert schema["additionalProperties"] is False and set(schema["properties"]) == {"region", "tool_down"}
+    assert schema["additionalProperties"] is False and set(schema["properties"]) == {
+        "environment",
+        "region",
+        "self_collision",
+        "tool_down",
+    }
     switch, options = schema["properties"]["tool_down"]["anyOf"]
     assert switch == {"type": "boolean"} and options["properties"] == {"cosine": {"type": "number", "default": 0.5}}
     assert client.post("/v1/jobs", json=JOB).status_code == 202

@@ -53,7 +53,7 @@ def test_the_steps_run_on_the_threads_of_the_process(tmp_path, monkeypatch):
 
     files = DataFolder(tmp_path)
     monkeypatch.setattr(steps, "_state", {"files": files, "threads": THREADS, "gauges": [0, 0, 0]})
-    monkeypatch.setattr(steps, "_planned", lambda task: SimpleNamespace(shards=[(0, 1)]))
+    monkeypatch.setattr(steps, "_planned", lambda task: SimpleNamespace(shards=[(0, 1)], further=lambda *_: None))
     monkeypatch.setattr(steps, "_load", lambda *args: None)
     for name in ("run_shard", "finish"):
         monkeypatch.setattr(run, name, kept(name))

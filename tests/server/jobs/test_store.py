@@ -516,7 +516,7 @@ def another_version(monkeypatch):
     """``another_version(version)`` is what this process is from now on."""
 
     def become(version):
-        for module in ("identity", "store", "computations", "versions"):
+        for module in ("identity", "store", "computations"):
             monkeypatch.setattr(f"wsrender_server.jobs.{module}.__version__", version)
 
     return become
