@@ -114,3 +114,11 @@ def test_programs_are_made_once(tmp_path, monkeypatch):
     robot = ws.load_robot(random_text(3, 3))
     planned()
     assert len(list((tmp_path / "collision").glob("*.npz"))) == 1
+
+
+def test_a_folder_that_cannot_be_written_costs_time_alone(tmp_path, monkeypatch):
+    (tmp_path / "file").write_text("")
+    monkeypatch.setenv(store.FOLDER, str(tmp_path / "file"))
+    monkeypatch.setattr(store, "_LATEST", {})
+    (constraint,) = constraints_for(ws.load_robot(random_text(1, 3)), Constraints(self_collision=True))
+    assert len(store.stored_program(constraint.own, constraint.chain, constraint.distances).solid_pairs)

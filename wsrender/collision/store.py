@@ -39,14 +39,17 @@ def stored_program(pairs: Pairs, chain: Chain, distances: Distances) -> Program:
 
 def _from_folder(key: str, pairs: Pairs, chain: Chain, distances: Distances) -> Program:
     folder = Path(os.environ.get(FOLDER) or platformdirs.user_cache_path("wsrender", appauthor=False)) / "collision"
-    folder.mkdir(parents=True, exist_ok=True)
     path = folder / f"{key}.npz"
-    with FileLock(path.with_suffix(".lock")):
-        found = _read(path)
-        if found is None:
-            found = program(pairs, chain, distances)
-            _write(path, found)
-    _forget(folder, keep=path)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with FileLock(path.with_suffix(".lock")):
+            found = _read(path)
+            if found is None:
+                found = program(pairs, chain, distances)
+                _write(path, found)
+        _forget(folder, keep=path)
+    except OSError:  # a folder that cannot be written, as in a container: made for this process alone
+        found = _read(path) or program(pairs, chain, distances)
     return found
 
 
