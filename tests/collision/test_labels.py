@@ -52,16 +52,13 @@ def test_arms_of_the_library(name, device):
     assert (np.abs(nearest(constraint, q[differ])) <= UNSURE).all()
 
 
-@pytest.mark.parametrize("seed", [1, 2, 4, 7, 8, 9, 10, 14])
+@pytest.mark.parametrize("seed", [0, 1, 2, 6, 7, 8, 11, 12])  # of others a pair always collides
 def test_random_primitives_with_margins_and_surroundings(seed, device):
     random = np.random.default_rng(seed)
     robot = ws.load_robot(random_text(seed, int(random.integers(2, 7))), placement=ws.Transform(position_m=(0.1, 0, 0)))
     margins = (0.0, 0.0) if seed % 2 else (0.02, 0.01)
     apart = {"self_collision": {"margin_m": margins[0]}, "environment": {"margin_m": margins[1]}}
-    try:
-        constraints = constraints_for(robot, Constraints(**apart), AROUND)
-    except ws.InputError as error:
-        pytest.skip(f"this one always collides: {error}")
+    constraints = constraints_for(robot, Constraints(**apart), AROUND)
     q, precision = drawn(robot, 6_000), ("float32", "float64")[seed % 2]
     found = labels(robot, q, constraints, precision, device)
     least = [nearest(each, q) - each.margin_m for each in constraints]
