@@ -1,6 +1,16 @@
 """Fixtures of the whole suite."""
 
+import os
+
 import pytest
+
+STARTED_WITH = os.environ.get("PYTHONPATH")
+
+
+@pytest.fixture(autouse=True)
+def searched_modules():
+    """No fixture that outlives its tests may change which modules the processes find that others start."""
+    assert os.environ.get("PYTHONPATH") == STARTED_WITH
 
 
 def available_devices():

@@ -2,6 +2,7 @@
 
 import os
 import sys
+from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
@@ -64,11 +65,15 @@ def package(installed):
 @pytest.fixture(scope="session")
 def live(tmp_path_factory):
     """A client of a running server in whose environment the package is installed."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("PYTHONPATH", os.pathsep.join([str(HERE / "package"), *filter(None, sys.path)]))
-        with LocalServer(tmp_path_factory.mktemp("server")) as server, ws.Client(server.url) as client:
-            client.url = server.url
-            yield client
+    with ExitStack() as stack:
+        with (
+            pytest.MonkeyPatch.context() as patch
+        ):  # while it starts: the tests of other folders have their own servers
+            patch.setenv("PYTHONPATH", os.pathsep.join([str(HERE / "package"), *filter(None, sys.path)]))
+            server = stack.enter_context(LocalServer(tmp_path_factory.mktemp("server")))
+        client = stack.enter_context(ws.Client(server.url))
+        client.url = server.url
+        yield client
 
 
 @pytest.fixture
