@@ -10,7 +10,7 @@ from typing import Any
 from defusedxml import DefusedXmlException
 
 from wsrender.analyses.jobs import canonical_json, parse_job
-from wsrender.documents.arm import ArmPath, dotted, local_paths
+from wsrender.documents.arm import Arm, ArmPath, dotted, local_paths
 from wsrender.documents.constraints import Constraints
 from wsrender.documents.document import Document
 from wsrender.documents.problems import MOST_PROBLEMS
@@ -87,7 +87,7 @@ class Admission:
             _check_indices(part, path)
             _check_constraints(part, path)
             self._check_samples(part, path, job)
-        total = sum(least_samples(each.sampling, each.robot) for each in job.sweeps())
+        total = sum(least_samples(each.sampling, each) for each in job.sweeps())
         if total > self.max_samples:
             message = f"have at least {total:.4g} samples together; this server allows {self.max_samples:.4g}"
             raise ResourceError("sampling", message)
@@ -115,7 +115,7 @@ class Admission:
         sampling = getattr(part, "sampling", None)
         if sampling is None:
             return
-        samples = least_samples(sampling, getattr(part, "robot", None))
+        samples = least_samples(sampling, part)
         limits = {"this server allows": self.max_samples}
         if not isinstance(sampling, Converge):  # which stops by itself where a grid would be too large
             limits["max_samples is"] = getattr(part, "max_samples", getattr(job, "max_samples", BEYOND_LIMITS))
@@ -125,15 +125,15 @@ class Admission:
                 raise ResourceError(dotted(path, "sampling"), message)
 
 
-def least_samples(sampling: Any, robot: RobotSpec | None) -> int:
-    """Samples taken at least; exact where the number of joints is known without compiling a model."""
+def least_samples(sampling: Any, part: Document) -> int:
+    """Samples that a part of a document takes at least; exact where its joints are known without compiling a model."""
     if not isinstance(sampling, Grid | Converge):
         return sampling.count
     levels = sampling.per_joint if isinstance(sampling, Grid) else sampling.start
-    if isinstance(levels, int):
-        joints = 1 if robot is None else _joints(robot)
-        levels = repeat(levels, max(joints - len(sampling.locked), 1))
-    return _product(levels)
+    joints = _joints(part) if isinstance(levels, int) else len(levels)
+    free = max(joints - len(sampling.locked), 1)
+    # A list may say how many a locked joint would have, too.
+    return _product(repeat(levels, free) if isinstance(levels, int) else sorted(levels)[:free])
 
 
 def _product(factors: Iterable[int]) -> int:
@@ -146,11 +146,14 @@ def _product(factors: Iterable[int]) -> int:
     return product
 
 
-def _joints(robot: RobotSpec) -> int:
-    if robot.dh is not None:
-        return len(robot.dh.rows)
-    if robot.library is not None:
-        return _library_joints()[robot.library]
+def _joints(part: Document) -> int:
+    """Joints of an arm at least: all of its robot's where it does not name the ends of its chain."""
+    if not isinstance(part, Arm) or part.base is not None or part.tip is not None:
+        return 1
+    if part.robot.dh is not None:
+        return len(part.robot.dh.rows)
+    if part.robot.library is not None:
+        return _library_joints()[part.robot.library]
     return 1
 
 

@@ -125,6 +125,19 @@ def test_wrong_documents(client, jobs, fields, status, code, pointer):
     assert jobs.store.list("local") == ([], None)
 
 
+@pytest.mark.parametrize(
+    "fields",
+    [
+        {"tip": "link2", "sampling": {"method": "grid", "per_joint": 1000}},
+        {"sampling": {"method": "grid", "per_joint": [10**4, 1, 10**4, 10**4], "locked": {"joint1": 0, "joint4": 0}}},
+    ],
+)
+def test_only_joints_that_are_sampled_count_against_limits(client, fields):
+    """Those between the ends that a document names, and none that it locks."""
+    response = client.post("/v1/jobs", json=DOCUMENT | fields | {"max_samples": 10**6})
+    assert response.status_code == 202, response.text
+
+
 @pytest.mark.parametrize("upload", [False, True])
 def test_a_model_that_includes_files_is_refused_with_how_to_inline_them(client, upload):
     """Nothing beside a model is opened: neither of text nor of an uploaded file."""
