@@ -198,7 +198,7 @@ async def get_slice(
     file = formats.kept("volume").file(volume)
     _, path = await run_in_threadpool(_artifact, server, job, file)
     if kind == PICTURE.media_type:
-        options = {axis: at, "index": index, "statistic": statistic}
+        options = {"axis": axis, axis: at, "index": index, "statistic": statistic}
         return await _drawn(server, job, PLANE, PICTURE, options, {part_file("volume"): str(path)})
     with _not_found_if_gone(file, path):
         plane = await _or_404(server.side_process.run(slice_values, str(path), axis, at, index, statistic))
@@ -237,7 +237,7 @@ async def get_plot(
 
     404 where the result has no data for it. Its pictures are among its files too, as `plots/<name>.png`.
     """
-    options = {axis or "z": at, "index": index, "statistic": statistic}
+    options = {"axis": axis, axis or "z": at, "index": index, "statistic": statistic}
     return await _drawn(server, job, plot, formats.by_ending("picture", f"{plot}.{format}"), options)
 
 

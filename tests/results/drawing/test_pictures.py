@@ -100,6 +100,10 @@ def test_slice_without_coordinate_shows_zero_or_the_fullest_plane():
     for first, layer in ((-2, 2), (5, 1)):
         volume = VolumeData(0.1, (0, 0, first), count)
         assert f"z = {(first + layer + 0.5) * 0.1:.3g} m" in drawing.slice_plane(volume).axes[0].get_title()
+        volume = VolumeData(0.1, (0, first, 0), count.transpose(0, 2, 1))
+        assert f"y = {(first + layer + 0.5) * 0.1:.3g} m" in drawing.slice_plane(volume, axis="y").axes[0].get_title()
+    with pytest.raises(InputError, match="axis: must be x, y or z, not 'yz'"):
+        drawing.slice_plane(volume, axis="yz")
 
 
 @pytest.mark.parametrize(("at_zero", "shown"), [(4, 0.05), (3, 0.15)])

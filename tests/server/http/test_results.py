@@ -10,6 +10,7 @@ import pytest
 from tests.results.export.sample_data import random_volume
 from tests.server.http.idle_server import problem_of
 from wsrender.results import export
+from wsrender.results.drawing import png
 from wsrender.results.result import Result
 
 
@@ -173,6 +174,17 @@ def test_slices_are_planes_of_the_volume(client, finished, volume, axis):
     shape = tuple(int(value) for value in raw.headers["x-shape"].split(","))
     counts = volume.count.take(layer, normal)
     np.testing.assert_array_equal(np.nan_to_num(np.frombuffer(raw.content, "<f4").reshape(shape)), counts)
+
+
+def test_slices_are_drawn_normal_to_their_axis(client, finished, result, volume):
+    """Without a coordinate too."""
+    for normal, axis in enumerate("xyz"):
+        for at in (None, float(volume.centers(normal)[0])):
+            expected = png(result.plot.slice(axis=axis, **({} if at is None else {axis: at})))
+            query = {"axis": axis} | ({} if at is None else {"at": at})
+            for path in ("volume/slice", "plots/slice"):
+                response = client.get(f"{finished}/{path}", params=query, headers={"Accept": "image/png"})
+                assert response.content == expected, (path, query)
 
 
 def test_slices_of_what_is_not_there(client, finished):

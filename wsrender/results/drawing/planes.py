@@ -61,6 +61,7 @@ def slice_plane(
     x: float | None = None,
     y: float | None = None,
     z: float | None = None,
+    axis: str = "z",
     index: str | None = None,
     statistic: str | None = None,
     title: Heading | str = "",
@@ -68,21 +69,23 @@ def slice_plane(
 ) -> Figure:
     """The voxels cut by one plane, given by its coordinate x, y or z [m] in the world frame.
 
-    Without a coordinate: z = 0, or the plane with most voxels where that has less than a quarter of them. ``statistic``
-    is by default the maximum if the volume holds it; ``"count"`` shows the number of samples. ``index`` is by
-    default the first. Colours span the whole volume, so slices compare.
+    Without a coordinate: that normal to ``axis`` at 0, or with most voxels where it has less than a quarter of them.
+    ``statistic`` is by default the maximum if the volume holds it; ``"count"`` shows the number of samples. ``index``
+    is by default the first. Colours span the whole volume, so slices compare.
 
-    Raises InputError for more than one coordinate, a plane outside the volume, an unknown index or
+    Raises InputError for more than one coordinate, an unknown axis, a plane outside the volume, an unknown index or
     statistic, or a volume without occupied voxels.
     """
     field = voxel_field(volume, index, statistic)
-    given = [(axis, at) for axis, at in enumerate((x, y, z)) if at is not None]
+    given = [(normal, at) for normal, at in enumerate((x, y, z)) if at is not None]
     if len(given) > 1:
         raise InputError("slice", "takes one of x, y, z; use slices for all three")
-    axis, at = given[0] if given else (2, None)
-    layer = layer_at(volume, axis, at, field)
-    figure, panels = new_planes(volume, field.scale, title, axes=(axis,))
-    draw_plane(panels[0, 0], volume, field, axis, layer, frame)
+    if axis not in tuple(NAMES):
+        raise InputError("axis", f"must be x, y or z, not {axis!r}")
+    normal, at = given[0] if given else (NAMES.index(axis), None)
+    layer = layer_at(volume, normal, at, field)
+    figure, panels = new_planes(volume, field.scale, title, axes=(normal,))
+    draw_plane(panels[0, 0], volume, field, normal, layer, frame)
     return figure
 
 

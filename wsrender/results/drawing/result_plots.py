@@ -100,12 +100,13 @@ class ResultPlots:
         x: float | None = None,
         y: float | None = None,
         z: float | None = None,
+        axis: str = "z",
         index: str | None = None,
         statistic: str | None = None,
     ) -> Figure:
-        """Voxels cut by the plane at x, y or z [m], coloured by a statistic of an index."""
+        """Voxels cut by the plane at x, y or z [m], or one normal to ``axis``, coloured by a statistic of an index."""
         choice: dict[str, Any] = {"index": index, "statistic": statistic, "title": self.heading("volume")}
-        return slice_plane(self._volume(), x=x, y=y, z=z, **choice)
+        return slice_plane(self._volume(), x=x, y=y, z=z, axis=axis, **choice)
 
     def slices(
         self,
