@@ -5,10 +5,12 @@ import pytest
 
 import wsrender as ws
 from tests.run.simple_robots import planar_arm
+from wsrender.indices import index_catalogue
 
 
-@pytest.fixture(scope="module", autouse=True)
-def spread():
+@pytest.fixture(autouse=True)
+def spread(monkeypatch):
+    monkeypatch.setattr(index_catalogue, "_ADDED", {})
     ws.register_index("spread_of_sigma", lambda sigma, m, n: sigma[0] - sigma[-1], symbol="Δσ", unit="m")
 
 

@@ -43,6 +43,7 @@ REASONS = {
     "pictures": {
         "absent": ABSENT,
         "needy": "'curve.scan' is none of samples, volume",
+        "part": "'samples.x' is none of samples, volume",
         "taken": "there is a picture 'aspects' already, wsrender's own",
         "text": "must be a wsrender.Picture, not str",
         "upper": "'Upper' is not allowed",

@@ -10,7 +10,7 @@ import numpy as np
 
 from wsrender import notices
 from wsrender.documents.robot import RobotSpec, Transform
-from wsrender.errors import InputError, MissingInertiaError
+from wsrender.errors import InputError, MissingInertiaError, ModelError
 from wsrender.notices import Notice
 from wsrender.robot.body_tables import pair_table, shape_table
 from wsrender.robots import (
@@ -343,7 +343,10 @@ def _corrections(spec: RobotSpec) -> dict[str, Any]:
 def _srdf_text(srdf: str | Path | None) -> str | None:
     if srdf is None or (isinstance(srdf, str) and srdf.lstrip("\ufeff \t\r\n").startswith("<")):
         return srdf
-    return xml_source.read(Path(srdf), "srdf").decode()
+    try:
+        return xml_source.read(Path(srdf), "srdf").decode()
+    except UnicodeDecodeError as error:
+        raise ModelError("srdf", f"{Path(srdf).name} is not UTF-8: {error.reason}") from error
 
 
 def _as_transform(value: Any) -> Any:

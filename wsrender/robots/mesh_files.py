@@ -2,7 +2,9 @@
 
 import os
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from functools import cache
+from itertools import chain
 from pathlib import Path, PurePosixPath
 from xml.etree.ElementTree import Element
 
@@ -114,9 +116,19 @@ def _collada(content: bytes) -> Triangles:
     unit = root.find("asset/unit")
     metre = float(unit.get("meter", "1")) if unit is not None else 1.0
     parts: list[Triangles] = []
+    geometry = cache(lambda url: _geometry(by_id[url], by_id))
     scenes = [by_id[scene.get("url", "")] for scene in root.iterfind("scene/instance_visual_scene")]
-    for scene in scenes:
-        _add_nodes(scene, np.diag([metre, metre, metre, 1.0]), by_id, parts, ())
+    nodes = chain.from_iterable(_nodes(scene, np.diag([metre, metre, metre, 1.0]), by_id, ()) for scene in scenes)
+    size = 0
+    for count, (node, T) in enumerate(nodes):
+        if count == xml_source.MAX_ELEMENTS:
+            raise ValueError(f"its nodes are instances of more than {count} others")
+        for instance in node.findall("instance_geometry"):
+            for vertices, faces in geometry(instance.get("url", "")):
+                size += max(len(vertices), faces.size)
+                if size > MAX_CORNERS:
+                    raise ValueError(f"it has more than {MAX_CORNERS // 3} triangles")
+                parts.append((vertices @ T[:3, :3].T + T[:3, 3], faces))
     if not parts:
         return np.zeros((0, 3)), np.zeros((0, 3), int)
     offsets = np.cumsum([0, *(len(vertices) for vertices, _ in parts[:-1])])
@@ -126,20 +138,16 @@ def _collada(content: bytes) -> Triangles:
     )
 
 
-def _add_nodes(
-    parent: Element, T: np.ndarray, by_id: dict[str, Element], parts: list[Triangles], above: tuple[Element, ...]
-) -> None:
-    """Adds the geometries below a node or scene at ``T`` (4, 4); ``above``: nodes that it is an instance within."""
+def _nodes(
+    parent: Element, T: np.ndarray, by_id: dict[str, Element], above: tuple[Element, ...]
+) -> Iterator[tuple[Element, np.ndarray]]:
+    """The nodes below a node or scene at ``T`` (4, 4), each at its own; ``above``: those that it is an instance in."""
     for node in [*parent.findall("node"), *(by_id[each.get("url", "")] for each in parent.findall("instance_node"))]:
         if node in above or len(above) > xml_source.MAX_DEPTH:
             raise ValueError("a node is an instance of itself")
         T_node = T @ _placed(node)
-        for instance in node.findall("instance_geometry"):
-            for vertices, faces in _geometry(by_id[instance.get("url", "")], by_id):
-                parts.append((vertices @ T_node[:3, :3].T + T_node[:3, 3], faces))
-                if sum(faces.size for _, faces in parts) > MAX_CORNERS:
-                    raise ValueError(f"it has more than {MAX_CORNERS // 3} triangles")
-        _add_nodes(node, T_node, by_id, parts, (*above, node))
+        yield node, T_node
+        yield from _nodes(node, T_node, by_id, (*above, node))
 
 
 def _placed(node: Element) -> np.ndarray:

@@ -7,6 +7,8 @@ from xml.etree.ElementTree import Element
 from wsrender.errors import ModelError
 from wsrender.robots.xml_source import MAX_ELEMENTS, number
 
+MOST_MADE = 1_000_000  # vertices of meshes that MuJoCo makes by itself
+
 # Sections that neither kinematics nor inertia depend on; several of them could read files.
 _SCENERY = ("option", "size", "visual", "statistic", "custom", "extension", "deformable", "contact",
             "sensor", "keyframe")  # fmt: skip
@@ -23,7 +25,7 @@ _NUMERIC = {
     "pos", "quat", "axis", "axisangle", "xyaxes", "zaxis", "euler", "range", "ref", "size", "fromto", "mass",
     "diaginertia", "fullinertia", "armature", "polycoef", "gear", "ctrlrange", "forcerange", "density",
     "actuatorfrcrange", "anchor", "relpose", "vertex", "scale", "refpos", "refquat", "boundmass",
-    "boundinertia", "settotalmass", "offset", "coef", "margin", "springref", "damping", "stiffness",
+    "boundinertia", "settotalmass", "offset", "coef", "margin", "springref", "damping", "stiffness", "params",
 }  # fmt: skip
 
 
@@ -44,6 +46,7 @@ def sanitized(mujoco: Element, field: str, keep: Collection[str] = ()) -> Elemen
             mujoco.remove(section)
     _clean(mujoco, field)
     _bound_replicas(mujoco, field)
+    _bound_made_meshes(mujoco, field)
     return mujoco
 
 
@@ -95,5 +98,16 @@ def _bound_replicas(mujoco: Element, field: str) -> None:
 def _expanded(element: Element) -> int:
     """Number of elements after replicas are written out."""
     inside = sum(_expanded(child) for child in element)
-    count = element.get("count", "1") if element.tag == "replicate" else "1"
-    return 1 + inside * (int(count) if count.isdecimal() else 1)
+    try:
+        count = int(element.get("count", "1")) if element.tag == "replicate" else 1  # with spaces and sign, as MuJoCo
+    except ValueError:
+        count = 1  # which MuJoCo refuses
+    return 1 + inside * max(count, 1)
+
+
+def _bound_made_meshes(mujoco: Element, field: str) -> None:
+    """A mesh that is made of ``params`` has at most the square of the largest in vertices."""
+    params = [mesh.get("params", "").split() for mesh in mujoco.iter("mesh")]
+    largest = [max(abs(float(word)) for word in words) for words in params if words]
+    if (count := sum(each * each for each in largest)) > MOST_MADE:
+        raise ModelError(field, f"params of meshes make up to {count:.3g} vertices; at most {MOST_MADE} are allowed")

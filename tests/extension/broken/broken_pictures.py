@@ -1,4 +1,4 @@
-"""Entries that are no pictures, one whose name wsrender has, and one that needs what there is not."""
+"""Entries that are no pictures, one whose name wsrender has, and some that need what there is not."""
 
 import wsrender as ws
 
@@ -6,3 +6,4 @@ TEXT = "robot"
 TAKEN = ws.Picture("aspects", print)
 UPPER = ws.Picture("Upper", print)
 NEEDY = ws.Picture("needy", print, needs=("curve.scan",))
+PART = ws.Picture("part", print, uses=("meshes.best|samples.x",))
