@@ -11,7 +11,7 @@ from wsrender_server.local_server import LocalServer
 
 import wsrender as ws
 from tests.server.http.conftest import client, finished, jobs, result, result_folder, settings, submit  # noqa: F401
-from wsrender import cli
+from wsrender import cli, extensions
 from wsrender.analyses import jobs as jobs_of_documents
 from wsrender.analyses import registry
 from wsrender.indices import index_catalogue
@@ -54,6 +54,7 @@ def installed(monkeypatch):
 def forget():
     for read in READ:
         read.cache_clear()
+    extensions._LEFT_OUT.clear()
 
 
 @pytest.fixture

@@ -304,14 +304,15 @@ def test_names_are_shown_as_they_are(tmp_path):
 @pytest.mark.parametrize("suffix", ["png", "svg"])
 def test_equal_pictures_are_equal_files(tmp_path, suffix):
     hashes = set()
-    for k in range(2):
-        mpl.rcParams["font.size"] = 10 + k  # the user's own settings play no part
-        figures = (drawing.scatter(random_map()), drawing.slices(random_volume((5, 4, 3))))
-        for number, figure in enumerate(figures):
-            drawing.save_figure(figure, tmp_path / f"{number}.{suffix}")
-        hashes.add(b"".join(hashlib.sha256(path.read_bytes()).digest() for path in sorted(tmp_path.iterdir())))
-    assert len(hashes) == 1
-    assert mpl.rcParams["font.size"] == 11
+    with mpl.rc_context():
+        for k in range(2):
+            mpl.rcParams["font.size"] = 10 + k  # the user's own settings play no part
+            figures = (drawing.scatter(random_map()), drawing.slices(random_volume((5, 4, 3))))
+            for number, figure in enumerate(figures):
+                drawing.save_figure(figure, tmp_path / f"{number}.{suffix}")
+            hashes.add(b"".join(hashlib.sha256(path.read_bytes()).digest() for path in sorted(tmp_path.iterdir())))
+        assert len(hashes) == 1
+        assert mpl.rcParams["font.size"] == 11
 
 
 def test_no_display_and_no_pyplot_is_needed():
