@@ -236,6 +236,7 @@ class Dispatcher:
             )
             self._fail(attempt, reason)
         elif step == Step.FINISH:
+            del attempt.futures[step, shard]
             self._submit_shards(attempt)  # those whose files are there are not computed again
         else:
             self._submit(attempt, step, [shard])

@@ -214,6 +214,15 @@ def test_a_process_lost_while_it_merges_costs_no_partial_result(service, tmp_pat
     assert list((service.settings.data_dir / "scratch").iterdir()) == []
 
 
+def test_a_damaged_partial_result_is_computed_again(service, tmp_path):
+    document = canonical(**{**SHARDED, "sampling": {"method": "sobol", "count": 2**20, "seed": 13}})
+    job, folder = service.store.submit("ann", document).job.id, service.settings.data_dir
+    for name in wait_until(lambda: partial_times(folder), what="a partial result"):
+        (folder / name).write_bytes(b"")
+    assert ended(service.store, job).state == "succeeded"
+    assert comparable(service.store.result_document("ann", job)) == local_document(document, tmp_path / "local")
+
+
 def test_too_much_memory_fails_only_its_own_job(service):
     # Records of 0.8 GiB for each thread.
     statistics = {"indices": ["manipulability"], "voxel_statistics": ["count", "maximum", "minimum"]}
