@@ -1,5 +1,7 @@
 """Designs that fail, that are empty, or that nobody can find in a result: what a search makes of them."""
 
+from functools import reduce
+
 import numpy as np
 import pytest
 
@@ -7,7 +9,7 @@ import wsrender as ws
 from wsrender.analyses.design_optimization import values as design_values
 from wsrender.analyses.jobs import canonical_json, parse_job
 from wsrender.errors import NotConvergedError, NumericalError
-from wsrender.run import steps
+from wsrender.run import finish, merge, plan, run_shard, steps
 
 VOLUME = [{"value": "exact_volume"}]
 AREA = [{"value": "/exact/area_m2"}]
@@ -114,6 +116,33 @@ def test_a_design_that_fails_is_infeasible_and_the_search_goes_on(monkeypatch, e
     assert codes(found) == ["designs_failed"] and found.document["search"]["without_value"] == 1
     with pytest.raises(ws.WsrenderError, match=reason):  # of a search in which no design has a value
         swept(turn_and_slide(), upper_limit(89, 90), AREA)
+
+
+def test_a_design_without_the_objective_has_no_value_in_one_shard_as_in_several():
+    """The axes are parallel in the last one, whose tip reaches an area alone."""
+    rows = [{"alpha_deg": 90, "limits_deg": [-180, 180]}, {"a": 0.5, "limits_deg": [-90, 90]}]
+    arm = {"dh": {"convention": "standard", "rows": [*rows, {"a": 0.4, "limits_deg": [0, 150]}]}}
+    sampling, indices = {"method": "sobol", "count": 1000}, {"indices": ["manipulability"], "task": "linear"}
+    whole = plan(
+        {
+            "analysis": "design_optimization",
+            "design": {"analysis": "workspace", "robot": arm, "sampling": sampling, "refined_volume": 0.3, **indices},
+            "parameters": [{"name": "twist", "pointers": "/robot/dh/rows/0/alpha_deg", "bounds": [90, 180]}],
+            "objectives": [{"value": "/volume_m3/refined/value"}],
+            "search": {"method": "sweep", "steps": 3},
+        }
+    )
+    divided = whole.settled_as(whole.division(1, 3))
+    partials = [run_shard(divided, shard) for shard in range(3)]
+    results = [
+        finish(whole, run_shard(whole, 0)),
+        finish(divided, reduce(lambda a, b: merge(divided, a, b), partials)),
+    ]
+    for result in results:
+        assert np.isfinite(result.tables["sweep"]["volume_refined_value"]).tolist() == [True, True, False]
+        (fault,) = result.document["search"]["faults"]
+        assert fault["parameters"] == {"twist": 180} and "points to nothing" in fault["reason"]
+    assert results[0].document["search"] == results[1].document["search"]
 
 
 def test_an_exact_design_that_fails_leaves_the_others_of_its_batch(monkeypatch):

@@ -48,23 +48,24 @@ class DesignFault:
 class Evaluator:
     """Values of designs: exact ones many at a time, others by running the inner job of each.
 
-    ``looks_first``: whether a small run shows that the objectives are there before the first design runs.
+    ``looks_first``: whether a small run shows that the objectives are there before the first design runs; else another
+    process sees to it.
     A design whose job ends in an error has no value. ``faults`` are these errors, the first one first; ``count`` is the
     number of designs evaluated.
     """
 
     def __init__(self, plan: "DesignOptimizationAnalysis", execution: Execution, *, looks_first: bool = True):
-        self.plan, self.execution, self._looks_first = plan, execution, looks_first
+        self.plan, self.execution = plan, execution
         self.faults: list[DesignFault] = []
         self.count = 0
-        self._pointers_hold = plan.is_exact
+        self._pointers_hold = plan.is_exact or not looks_first
 
     def __call__(self, designs: np.ndarray) -> np.ndarray:
         """Values (N, k) of designs (N, n), NaN where a design has none.
 
         Raises InputError for an objective that is no number of the result, before the first design runs where it can.
         """
-        if self._looks_first and not self._pointers_hold:
+        if not self._pointers_hold:
             self._check_pointers()
         self.count += len(designs)
         if self.plan.is_exact:
