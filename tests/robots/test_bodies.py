@@ -231,6 +231,12 @@ def test_srdf_that_is_refused(text, message):
     assert caught.value.field == "srdf"
 
 
+def test_an_srdf_in_another_encoding_is_refused(tmp_path):
+    (tmp_path / "arm.srdf").write_bytes('<robot name="é"/>'.encode("latin-1"))
+    with pytest.raises(ModelError, match=r"srdf: arm\.srdf is not UTF-8"):
+        ws.load_robot(arm(), srdf=tmp_path / "arm.srdf")
+
+
 def test_tables():
     robot = ws.load_robot(arm())
     shapes, visuals = robot.shapes, robot.visuals

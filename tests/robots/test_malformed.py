@@ -65,6 +65,18 @@ MJCF = {
         mjcf('<replicate count="999"><replicate count="999"><geom size="1"/></replicate></replicate>'),
         "replicas make .* elements; at most",
     ),
+    "replicas by the million, written with spaces": (
+        mjcf('<replicate count=" 999"><replicate count="+999 "><geom size="1"/></replicate></replicate>'),
+        "replicas make .* elements; at most",
+    ),
+    "replicas fewer than none": (
+        mjcf('<replicate count="-1"><replicate count="99999"><geom size="1"/></replicate></replicate>'),
+        "replicas make .* elements; at most",
+    ),
+    "meshes made by the million": (
+        mjcf(more='<asset><mesh name="m" builtin="plate" params="2000 1"/></asset>'),
+        r"make up to 4e\+06 vertices; at most 1000000",
+    ),
     "unknown element": (mjcf("<jiont/>"), "unrecognized element"),
     "unknown attribute": (mjcf('<joint nmae="j"/>'), "unrecognized attribute: 'nmae'"),
     "no joint": (mjcf(""), "there is no joint between base 'world' and tip 'a'"),

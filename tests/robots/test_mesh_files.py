@@ -90,6 +90,21 @@ def test_a_node_that_holds_itself_is_refused():
         mesh_files.triangles(loop.encode(), "a.dae", "model")
 
 
+def test_nodes_that_double_are_refused():
+    twice = "".join(f'<node id="d{k}">{2 * f"""<instance_node url="#d{k + 1}"/>"""}</node>' for k in range(60))
+    doubling = DAE.replace('<node id="n">', f'{twice}<node id="d60"/><node id="n"><instance_node url="#d0"/>')
+    with pytest.raises(ModelError, match="its nodes are instances of more than 20000 others"):
+        mesh_files.triangles(doubling.encode(), "a.dae", "model")
+
+
+def test_the_number_of_vertices_without_triangles_is_bounded(monkeypatch):
+    bare = DAE.replace("<p>0 0 1 0 2 0 0 1 1 1 3 1</p>", "").replace("<p>0 1 2 3</p>", "")
+    bare = bare.replace("<vcount>4</vcount>", "")
+    monkeypatch.setattr(mesh_files, "MAX_CORNERS", 6)
+    with pytest.raises(ModelError, match="more than 2 triangles"):
+        mesh_files.triangles(bare.encode(), "a.dae", "model")
+
+
 def test_the_number_of_triangles_is_bounded(monkeypatch):
     monkeypatch.setattr(mesh_files, "MAX_CORNERS", 6)
     with pytest.raises(ModelError, match="has 12 triangles; allowed: 2"):
