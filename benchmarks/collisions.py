@@ -1,6 +1,6 @@
 """Labels of self-collisions beside MuJoCo in C, and filtered sweeps beside the same without: one thread, in turn.
 
-    python benchmarks/collisions.py [--robots ur5e franka_panda …, or paths of models] [--repeats 5] [--exclude a,b …]
+    python benchmarks/collisions.py [--robots ur5e …, or paths of models] [--repeats 5] [--exclude a,b] [--device cuda]
 
 Labels are exact: sampling, kinematics, filter, narrow phase and MuJoCo for what is open, in CPU seconds of the thread.
 MuJoCo's loop (mujoco_loop.c, compiled here with cc against the wheel's headers) takes kinematics and collisions. Ratios
@@ -18,6 +18,7 @@ from pathlib import Path
 
 import mujoco
 import numpy as np
+import warp as wp
 from throughput import plan_of
 
 import wsrender as ws
@@ -32,6 +33,7 @@ from wsrender.pipeline.sampling import plan_sampling
 from wsrender.robot.constraints import constraints_for
 
 SAMPLES, CHUNK, OF_MUJOCO, SWEPT = 1 << 21, 1 << 18, 1 << 15, 1 << 22
+ON_GPU, GPU_CHUNK = 1 << 28, 1 << 26
 
 
 def mujoco_loop() -> Callable[[mujoco.MjModel, np.ndarray], np.ndarray]:
@@ -54,13 +56,15 @@ def mujoco_loop() -> Callable[[mujoco.MjModel, np.ndarray], np.ndarray]:
     return labels
 
 
-def labelled(robot: ws.Robot, constraints: tuple, precision: str) -> tuple[Collisions, Pipeline, object]:
-    """What labels SAMPLES random configurations on the CPU, their pipeline and sample space."""
-    sampling = plan_sampling(robot.chain, ws.Random(SAMPLES))
-    pipeline = Pipeline(Evaluation(robot.chain), sampling, constraints, kept_rows=frozenset(), precision=precision)
-    (device,) = devices_of("cpu")
-    space = device_space(sampling, precision, device)
-    return collisions_of(pipeline, SweepPlan(pipeline).shape, device, CHUNK), pipeline, space
+def labelled(
+    robot: ws.Robot, constraints: tuple, device: str = "cpu", count: int = SAMPLES, chunk: int = CHUNK
+) -> tuple[Collisions, Pipeline, object]:
+    """What labels ``count`` random configurations on a device, their pipeline and sample space."""
+    sampling = plan_sampling(robot.chain, ws.Random(count))
+    pipeline = Pipeline(Evaluation(robot.chain), sampling, constraints, kept_rows=frozenset(), precision="float32")
+    (own,) = devices_of(device)[:1]
+    space = device_space(sampling, "float32", own)
+    return collisions_of(pipeline, SweepPlan(pipeline).shape, own, chunk), pipeline, space
 
 
 def least(repeats: int, cases: dict[str, Callable[[], object]]) -> dict[str, float]:
@@ -84,10 +88,43 @@ def boxes(robot: ws.Robot, count: int) -> ws.Environment:
     return ws.Environment([ws.Box(size_m=(0.1, 0.1, 0.1), position_m=tuple(place.tolist())) for place in places])
 
 
+def on_gpu(robot: ws.Robot, repeats: int) -> None:
+    """Print what one GPU does of a robot's self-collisions, labels alone and swept into voxels."""
+    constraints = constraints_for(robot, Constraints(self_collision=True))
+    started = time.perf_counter()
+    own, _, space = labelled(robot, constraints, "cuda", ON_GPU, GPU_CHUNK)
+    ready = time.perf_counter() - started
+    bare = plan_of(robot, "float32", "cuda", sampling=ws.Random(ON_GPU))
+    bare = replace(bare, kept_rows=None)
+    filtered, devices = replace(bare, constraints=constraints), devices_of("cuda")[:1]
+
+    def all_labels() -> None:
+        for first in range(0, ON_GPU, GPU_CHUNK):
+            own.label(space, first, GPU_CHUNK, 0)
+        wp.synchronize()
+
+    cases: dict[str, Callable[[], object]] = {
+        "labels": all_labels,
+        "sweep": lambda: sweep(bare, 0, ON_GPU, devices),
+        "filtered sweep": lambda: sweep(filtered, 0, ON_GPU, devices),
+    }
+    seconds = dict.fromkeys(cases, np.inf)
+    for _ in range(repeats + 1):
+        for name, case in cases.items():
+            started = time.perf_counter()
+            case()
+            seconds[name] = min(seconds[name], time.perf_counter() - started)
+    rates = ", ".join(f"{name} {ON_GPU / each / 1e9:.2f} G/s" for name, each in seconds.items())
+    print(f"{robot.name} on {devices[0].name}: {rates}; ready in {ready:.1f} s")
+    print(
+        f"  decided by filter, narrow phase (float32, float64), MuJoCo: {np.round(own.decided / own.decided.sum(), 8)}"
+    )
+
+
 def report(robot: ws.Robot, loop: Callable[[mujoco.MjModel, np.ndarray], np.ndarray], repeats: int) -> None:
     """Print what is measured of one robot."""
     constraints = constraints_for(robot, Constraints(self_collision=True))
-    own, pipeline, space = labelled(robot, constraints, "float32")
+    own, pipeline, space = labelled(robot, constraints)
     model, bodies = robot.bodies.model, robot.bodies
     q = np.asarray(configurations(pipeline, np.arange(OF_MUJOCO)), np.float64)
     qpos = np.ascontiguousarray(bodies.qpos(q))
@@ -101,7 +138,9 @@ def report(robot: ws.Robot, loop: Callable[[mujoco.MjModel, np.ndarray], np.ndar
     rate, of_mujoco = SAMPLES / took["labels"], OF_MUJOCO / took["MuJoCo"]
     print(f"{robot.name}: {len(bodies.pairs)} pairs, blocked {expected.mean():.4f}; {(found != expected).sum()} differ")
     print(f"  labels {rate / 1e6:.2f} M/s, MuJoCo in C {of_mujoco / 1e6:.3f} M/s: {rate / of_mujoco:.1f} times")
-    print(f"  decided by filter, narrow phase, MuJoCo: {np.round(own.decided / own.decided.sum(), 6)}")
+    print(
+        f"  decided by filter, narrow phase (float32, float64), MuJoCo: {np.round(own.decided / own.decided.sum(), 7)}"
+    )
     bare = plan_of(robot, "float32", "cpu", sampling=ws.Random(SWEPT))
     bare = replace(bare, kept_rows=None)
     cases = {"unfiltered": bare, "self-collision": replace(bare, constraints=constraints)}
@@ -131,7 +170,12 @@ def main() -> None:
     parser.add_argument("--robots", nargs="+", default=["ur5e", "franka_panda", "kuka_iiwa14"])
     parser.add_argument("--repeats", type=int, default=5)
     parser.add_argument("--exclude", nargs="*", default=[], metavar="A,B")
+    parser.add_argument("--device", choices=["cpu", "cuda"], default="cpu")
     given = parser.parse_args()
+    if given.device == "cuda":
+        for name in given.robots:
+            on_gpu(ws.load_robot(name), given.repeats)
+        return
     loop, excluded = mujoco_loop(), [tuple(each.split(",")) for each in given.exclude]
     for name in given.robots:
         report(ws.load_robot(name, exclude=excluded), loop, given.repeats)

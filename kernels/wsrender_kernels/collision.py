@@ -6,7 +6,7 @@ with the same numbers of coordinates and joints. On CUDA a thread takes a sample
 It labels a sample ADMITTED or with the number of the reason, from 1; a sample with pairs that no test decides is listed
 with a mask of those. ``narrow`` decides listed samples pair by pair: portals of the Minkowski difference (Snethen,
 *XenoCollide*, 2008), certified by a gap along a direction or by a portal that the origin lies behind, each by more than
-what float32 may be off; what is still open then stays listed, for the host.
+what float32 may be off; what is still open then is listed for the same in float64, and at last for the host.
 """
 
 from typing import Any
@@ -18,12 +18,11 @@ from wsrender_kernels.options import CUDA_OPTIONS, MODULE_OPTIONS, SHORT_OPTIONS
 from wsrender_kernels.sampling import LANES, blocks, sample_space, sampling
 
 PART_LANES = 64
-DECIDED = 255  # of a listed sample whose label stands
 CAPACITY = 16  # capsules: the scratch is for a multiple of so many
 
+REAL_ARRAYS = ("joints", "solids", "solid_sizes", "vertices", "pair_numbers")  # what the narrow phase computes with
 _ARRAYS = {
-    wp.float32: ("joints", "lower", "upper", "capsules", "test_numbers", "table_numbers", "solids", "solid_sizes",
-                 "vertices", "pair_numbers"),
+    wp.float32: ("lower", "upper", "capsules", "test_numbers", "table_numbers"),
     wp.int32: ("sources", "capsule_frame", "pairs", "planes", "tests", "tables", "table_columns", "solid_frame",
                "vertex_range", "solid_pairs"),
     wp.uint32: ("table_words", "first_reason"),
@@ -32,7 +31,7 @@ ARRAYS = {name: dtype for dtype, names in _ARRAYS.items() for name in names}
 
 
 @factory
-def program_type():
+def program_type(real: Any):
     """Struct with the arrays of a `wsrender.collision.program.Program`, flat, and their numbers of rows."""
 
     class CollisionProgram:
@@ -42,9 +41,9 @@ def program_type():
         n_tables: wp.int32
         n_solid_pairs: wp.int32
         columns: wp.int32  # cells of a table along its first coordinate
-        epsilon: wp.float32
+        epsilon: real
 
-    for name, dtype in ARRAYS.items():
+    for name, dtype in [*ARRAYS.items(), *((name, real) for name in REAL_ARRAYS)]:
         CollisionProgram.__annotations__[name] = wp.array(dtype=dtype)
     return wp.struct(CollisionProgram)
 
@@ -235,87 +234,110 @@ _FILTER = """
     #undef LANE_LOOP
 """
 
-_NARROW = """
-    constexpr int N = @N, L = @L, W = @W;
+_UNROLLED = """
 @SINCOS
-    float F[12 * (L + 1)] = {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0};  // rows of the rotation, then the origin
+    auto clamped = [](float x) { return wp::max(wp::min(x, 1.f), -1.f); };
+    const float* q = &values.c[0];
+@BODY
+    unsigned any = 0u, first = 0u;
+    for (int w = 0; w < @W; w++) { any |= masks[w]; first |= masks[w] & program.first_reason.data[w]; }
+    int label = hit[0] ? 1 : (hit[1] ? 2 : 0);
+    bool open = hit[0] ? false : (hit[1] ? first != 0u : any != 0u);
+    if (!inside) { open = true; label = 0; }
+    labels.data[offset] = (wp::uint8)label;
+    if (open) {
+#if defined(__CUDA_ARCH__)
+        const int place = atomicAdd(listed.data, 1);
+#else
+        const int place = listed.data[0]++;
+#endif
+        ids.data[place] = offset;
+        for (int w = 0; w < @W; w++) open_masks.data[(long long)place * @W + w] = inside ? masks[w] : ~0u;
+    }
+"""
+
+_NARROW = """
+    typedef @REAL real;
+    constexpr int N = @N, L = @L, W = @W;
+@TRIGONOMETRY
+    real F[12 * (L + 1)] = {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0};  // rows of the rotation, then the origin
     for (int i = 0; i < L; i++) {
-        const float* t = program.joints.data + 15 * i; const float* S = F + 12 * i; float* D = F + 12 * (i + 1);
-        float moved = t[12] * q[program.sources.data[i]] + t[13], angle = t[14] * moved, slide = moved - angle, s, c;
+        const real* t = program.joints.data + 15 * i; const real* S = F + 12 * i; real* D = F + 12 * (i + 1);
+        real moved = t[12] * q[program.sources.data[i]] + t[13], angle = t[14] * moved, slide = moved - angle, s, c;
         sincos_of(angle, s, c);
         for (int k = 0; k < 3; k++) {
-            float X = S[3 * k], Y = S[3 * k + 1], Z = S[3 * k + 2];
-            float x = X * t[0] + Y * t[3] + Z * t[6], y = X * t[1] + Y * t[4] + Z * t[7];
-            float z = X * t[2] + Y * t[5] + Z * t[8];
+            real X = S[3 * k], Y = S[3 * k + 1], Z = S[3 * k + 2];
+            real x = X * t[0] + Y * t[3] + Z * t[6], y = X * t[1] + Y * t[4] + Z * t[7];
+            real z = X * t[2] + Y * t[5] + Z * t[8];
             D[3 * k] = c * x + s * y; D[3 * k + 1] = c * y - s * x; D[3 * k + 2] = z;
             D[9 + k] = S[9 + k] + X * t[9] + Y * t[10] + Z * t[11] + slide * z;
         }
     }
-    const float eps = program.epsilon;
-    auto dot = [](const float* a, const float* b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; };
-    auto cross = [](const float* a, const float* b, float* o) {
-        float x = a[1] * b[2] - a[2] * b[1], y = a[2] * b[0] - a[0] * b[2], z = a[0] * b[1] - a[1] * b[0];
+    const real eps = program.epsilon;
+    auto dot = [](const real* a, const real* b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; };
+    auto cross = [](const real* a, const real* b, real* o) {
+        real x = a[1] * b[2] - a[2] * b[1], y = a[2] * b[0] - a[0] * b[2], z = a[0] * b[1] - a[1] * b[0];
         o[0] = x; o[1] = y; o[2] = z;
     };
-    auto copy = [](float* a, const float* b) { for (int k = 0; k < 3; k++) a[k] = b[k]; };
-    auto unit = [&](float* a) {
-        float length = sqrtf(dot(a, a));
+    auto copy = [](real* a, const real* b) { for (int k = 0; k < 3; k++) a[k] = b[k]; };
+    auto unit = [&](real* a) {
+        real length = @SQRT(dot(a, a));
         if (!(length > 1e-12f)) return false;
         for (int k = 0; k < 3; k++) a[k] /= length;
         return true;
     };
-    auto placed = [&](int solid, float* R, float* p) {
-        const float* S = F + 12 * program.solid_frame.data[solid]; const float* t = program.solids.data + 16 * solid;
+    auto placed = [&](int solid, real* R, real* p) {
+        const real* S = F + 12 * program.solid_frame.data[solid]; const real* t = program.solids.data + 16 * solid;
         for (int r = 0; r < 3; r++) {
-            const float* row = S + 3 * r;
+            const real* row = S + 3 * r;
             for (int k = 0; k < 3; k++) R[3 * r + k] = row[0] * t[k] + row[1] * t[3 + k] + row[2] * t[6 + k];
             p[r] = S[9 + r] + S[3 * r] * t[9] + S[3 * r + 1] * t[10] + S[3 * r + 2] * t[11];
         }
     };
     // Farthest point of a solid along d.
-    auto support = [&](int solid, const float* R, const float* p, float dx, float dy, float dz, float* o) {
-        float lx = R[0] * dx + R[3] * dy + R[6] * dz, ly = R[1] * dx + R[4] * dy + R[7] * dz;
-        float lz = R[2] * dx + R[5] * dy + R[8] * dz;
-        const float* numbers = program.solids.data + 16 * solid;
-        float x, y, z;
+    auto support = [&](int solid, const real* R, const real* p, real dx, real dy, real dz, real* o) {
+        real lx = R[0] * dx + R[3] * dy + R[6] * dz, ly = R[1] * dx + R[4] * dy + R[7] * dz;
+        real lz = R[2] * dx + R[5] * dy + R[8] * dz;
+        const real* numbers = program.solids.data + 16 * solid;
+        real x, y, z;
         if (numbers[14] == 1.f) {
-            const float* size = program.solid_sizes.data + 3 * solid;
-            float sx = size[0] * lx, sy = size[1] * ly, sz = size[2] * lz, length = sqrtf(sx * sx + sy * sy + sz * sz);
+            const real* size = program.solid_sizes.data + 3 * solid;
+            real sx = size[0] * lx, sy = size[1] * ly, sz = size[2] * lz, length = @SQRT(sx * sx + sy * sy + sz * sz);
             length = length > 1e-12f ? 1.f / length : 0.f;
             x = size[0] * sx * length; y = size[1] * sy * length; z = size[2] * sz * length;
         } else {
             const int first = program.vertex_range.data[2 * solid], count = program.vertex_range.data[2 * solid + 1];
-            const float* VX = program.vertices.data + first; const float* VY = VX + count; const float* VZ = VY + count;
+            const real* VX = program.vertices.data + first; const real* VY = VX + count; const real* VZ = VY + count;
             int best = 0;
 #if defined(__CUDA_ARCH__)
-            float most = -1e30f;
+            real most = -1e30f;
             for (int v = 0; v < count; v++) {
-                float t = VX[v] * lx + VY[v] * ly + VZ[v] * lz;
+                real t = VX[v] * lx + VY[v] * ly + VZ[v] * lz;
                 if (t > most) { most = t; best = v; }
             }
 #else
-            float highest[16]; int which[16];
+            real highest[16]; int which[16];
             for (int l = 0; l < 16; l++) { highest[l] = -1e30f; which[l] = 0; }
             for (int v = 0; v < count; v += 16) {
                 #pragma clang loop vectorize(assume_safety)
                 for (int l = 0; l < 16; l++) {
-                    float t = VX[v + l] * lx + VY[v + l] * ly + VZ[v + l] * lz;
+                    real t = VX[v + l] * lx + VY[v + l] * ly + VZ[v + l] * lz;
                     bool higher = t > highest[l];
                     highest[l] = higher ? t : highest[l]; which[l] = higher ? v + l : which[l];
                 }
             }
-            float most = -1e30f;
+            real most = -1e30f;
             for (int l = 0; l < 16; l++) if (highest[l] > most) { most = highest[l]; best = which[l]; }
 #endif
             x = VX[best]; y = VY[best]; z = VZ[best];
         }
-        const float radius = numbers[12], disc = numbers[13];
+        const real radius = numbers[12], disc = numbers[13];
         if (disc > 0.f) {
-            float h = sqrtf(lx * lx + ly * ly);
+            real h = @SQRT(lx * lx + ly * ly);
             if (h > 1e-12f) { x += disc * lx / h; y += disc * ly / h; }
         }
         if (radius > 0.f) {
-            float h = sqrtf(lx * lx + ly * ly + lz * lz);
+            real h = @SQRT(lx * lx + ly * ly + lz * lz);
             if (h > 1e-12f) { x += radius * lx / h; y += radius * ly / h; z += radius * lz / h; }
         }
         o[0] = R[0] * x + R[1] * y + R[2] * z + p[0];
@@ -325,24 +347,24 @@ _NARROW = """
     // 0 apart, 1 touching, 2 open.
     auto decided = [&](int pair) -> int {
         const int a = program.solid_pairs.data[2 * pair], b = program.solid_pairs.data[2 * pair + 1];
-        const float margin = program.pair_numbers.data[2 * pair];
-        float RA[9], pA[3], RB[9], pB[3];
+        const real margin = program.pair_numbers.data[2 * pair];
+        real RA[9], pA[3], RB[9], pB[3];
         placed(a, RA, pA); placed(b, RB, pB);
         if (program.solids.data[16 * a + 14] == 2.f) {
-            float n[3] = {RA[2], RA[5], RA[8]}, lowest[3];
+            real n[3] = {RA[2], RA[5], RA[8]}, lowest[3];
             support(b, RB, pB, -n[0], -n[1], -n[2], lowest);
             for (int k = 0; k < 3; k++) lowest[k] -= pA[k];
-            float height = dot(lowest, n) - margin;
+            real height = dot(lowest, n) - margin;
             return height > eps ? 0 : (height < -eps ? 1 : 2);
         }
         // Of the Minkowski difference B - A, widened by the margin: farthest point along d.
-        auto farthest = [&](const float* d, float* o) {
-            float x[3], y[3];
+        auto farthest = [&](const real* d, real* o) {
+            real x[3], y[3];
             support(b, RB, pB, d[0], d[1], d[2], y);
             support(a, RA, pA, -d[0], -d[1], -d[2], x);
             for (int k = 0; k < 3; k++) o[k] = y[k] - x[k] + margin * d[k];
         };
-        float v0[3], v1[3], v2[3], v3[3], v4[3], n[3], t1[3], t2[3], e;
+        real v0[3], v1[3], v2[3], v3[3], v4[3], n[3], t1[3], t2[3], e;
         for (int k = 0; k < 3; k++) { v0[k] = pB[k] - pA[k]; n[k] = -v0[k]; }
         if (!unit(n)) return 2;
         farthest(n, v1); e = dot(v1, n); if (e < -eps) return 0;
@@ -376,7 +398,7 @@ _NARROW = """
             cross(t1, t2, n); if (!unit(n)) return 2;
             if (dot(n, v1) > eps) return 1;
             farthest(n, v4); e = dot(v4, n); if (e < -eps) return 0;
-            if (e - dot(v3, n) < 1e-6f) return 2;
+            if (e - dot(v3, n) < real(@STALLED)) return 2;
             cross(v4, v0, t1);
             if (dot(v1, t1) > 0.f) { if (dot(v2, t1) > 0.f) copy(v1, v4); else copy(v3, v4); }
             else { if (dot(v3, t1) > 0.f) copy(v2, v4); else copy(v1, v4); }
@@ -385,6 +407,7 @@ _NARROW = """
     };
     const int hit_anyway = labels.data[at];  // a later reason, where an earlier one is open
     int label = 0, open_reason = 99;
+    unsigned still[W] = {0u};
     for (int w = 0; w < W && label == 0; w++) {
         unsigned mask = open_masks.data[(long long)item * W + w], left = 0u;
         for (int bit = 0; bit < 32 && mask >> bit; bit++) {
@@ -398,18 +421,34 @@ _NARROW = """
             left |= 1u << bit;
             open_reason = open_reason < reason ? open_reason : reason;
         }
-        open_masks.data[(long long)item * W + w] = left;
+        still[w] = left;
     }
-    const bool open = label == 0 && open_reason < 99;
-    pending.data[item] = (wp::uint8)(open ? hit_anyway : @DECIDED);
-    if (!open) labels.data[at] = (wp::uint8)(label != 0 ? label : hit_anyway);
+    if (label != 0 || open_reason == 99) {
+        labels.data[at] = (wp::uint8)(label != 0 ? label : hit_anyway);
+        return;
+    }
+#if defined(__CUDA_ARCH__)
+    const int place = atomicAdd(listed.data, 1);
+#else
+    const int place = listed.data[0]++;
+#endif
+    ids.data[place] = at;
+    otherwise.data[place] = (wp::uint8)hit_anyway;
+    for (int w = 0; w < W; w++) masks.data[(long long)place * W + w] = still[w];
 """
 
 
-def _code(snippet: str, n: int, joints: int, capsules: int, words: int) -> str:
+_TRIGONOMETRY = "    auto sincos_of = [](double a, double& sine, double& cosine) { sine = sin(a); cosine = cos(a); };\n"
+
+
+def _code(snippet: str, n: int, joints: int, capsules: int, words: int, body: str = "", exact: bool = False) -> str:
     values = {
+        "TRIGONOMETRY": _TRIGONOMETRY if exact else _SINCOS,
         "SINCOS": _SINCOS,
-        "DECIDED": DECIDED,
+        "BODY": body,
+        "REAL": "double" if exact else "float",
+        "SQRT": "sqrt" if exact else "sqrtf",
+        "STALLED": 1e-12 if exact else 1e-6,  # how much farther a point lies that is no longer farther [m]
         "LANES": PART_LANES,
         "BLOCK": LANES,
         "N": n,
@@ -424,22 +463,33 @@ def _code(snippet: str, n: int, joints: int, capsules: int, words: int) -> str:
 
 @factory
 def filter_kernel(
-    real: Any, n: int, joints: int, capsules: int, words: int, method: str, shared: int, cuda: bool
+    real: Any,
+    n: int,
+    joints: int,
+    capsules: int,
+    words: int,
+    method: str,
+    shared: int,
+    cuda: bool,
+    body: str | None = None,
 ) -> wp.Kernel:
     """Kernel that labels the samples of a chunk and lists what is open; see the module.
 
-    ``capsules``: scratch for so many; ``words``: of a mask of pairs. Out: ``labels`` (count,), ``listed`` (1,) how many
-    are, ``ids`` (count,) their numbers in the chunk, ``open_masks`` (count * words,).
+    ``capsules``: scratch for so many; ``words``: of a mask of pairs; ``cuda``: a thread takes a sample, not a block;
+    ``body``: of one robot, as `collision_unrolled.unrolled` writes it, for such a thread. Out: ``labels`` (count,),
+    ``listed`` (1,) how many are, ``ids`` (count,) their numbers in the chunk, ``open_masks`` (count * words,).
     """
     block_of, draws = blocks(real, n, shared), sampling(real, n, method, shared)
     prepare, draw = draws.prepare, draws.draw
-    Space, Program = sample_space(real, n), program_type()
+    Space, Program = sample_space(real, n), program_type(wp.float32)
     size = 1 if cuda else LANES
     values_type = wp.types.vector(n * size, wp.float32)
     u8, i32, u32 = (wp.array(dtype=dtype) for dtype in (wp.uint8, wp.int32, wp.uint32))
     BLOCK, LANE_MASK = LANES, wp.int64(LANES - 1)
 
-    @wp.func_native(_code(_FILTER, n, joints, capsules, words))
+    code = _code(_FILTER if body is None else _UNROLLED, n, joints, capsules, words, body or "")
+
+    @wp.func_native(code)
     def filtered(
         values: values_type,
         valid: wp.int32,
@@ -503,21 +553,34 @@ def filter_kernel(
 
 
 @factory
-def narrow_kernel(real: Any, n: int, joints: int, words: int, method: str, cuda: bool) -> wp.Kernel:
+def narrow_kernel(
+    real: Any, n: int, joints: int, words: int, method: str, cuda: bool, exact: bool = False
+) -> wp.Kernel:
     """Kernel that decides listed samples, one thread each; see the module.
 
-    ``pending`` (count,): of those that stay open the label if nothing of what their masks are left with touches, of
-    others DECIDED.
+    What stays open is listed again: ``ids``, ``masks`` of the pairs that are left, and in ``otherwise`` the label where
+    none of those touches. ``exact``: computed in float64.
     """
     draws = sampling(real, n, method)
     prepare, draw = draws.prepare, draws.draw
-    Space, Program = sample_space(real, n), program_type()
+    Space, Program = sample_space(real, n), program_type(wp.float64 if exact else wp.float32)
     vec_n = wp.types.vector(n, wp.float32)
     u8, i32, u32 = (wp.array(dtype=dtype) for dtype in (wp.uint8, wp.int32, wp.uint32))
     LANE_MASK = wp.int64(LANES - 1)
 
-    @wp.func_native(_code(_NARROW, n, joints, 0, words))
-    def decide(q: vec_n, item: wp.int32, at: wp.int32, program: Program, labels: u8, open_masks: u32, pending: u8): ...
+    @wp.func_native(_code(_NARROW, n, joints, 0, words, exact=exact))
+    def decide(
+        q: vec_n,
+        item: wp.int32,
+        at: wp.int32,
+        program: Program,
+        open_masks: u32,
+        labels: u8,
+        listed: i32,
+        ids: i32,
+        masks: u32,
+        otherwise: u8,
+    ): ...
 
     @wp.kernel(module="unique", module_options=CUDA_OPTIONS if cuda else SHORT_OPTIONS, enable_backward=False)
     def narrow(
@@ -525,21 +588,24 @@ def narrow_kernel(real: Any, n: int, joints: int, words: int, method: str, cuda:
         program: Program,
         space: Space,
         first: wp.int64,
-        ids: i32,
+        open_ids: i32,
+        open_masks: u32,
         # out
         labels: u8,
-        open_masks: u32,
-        pending: u8,
+        listed: i32,
+        ids: i32,
+        masks: u32,
+        otherwise: u8,
     ):
         item = wp.tid()
-        at = ids[item]
+        at = open_ids[item]
         index = first + wp.int64(at)
         start = index - (index & LANE_MASK)
         drawn = draw(space, prepare(space, start), start, wp.int32(index & LANE_MASK))
         q = vec_n()
         for i in range(n):
             q[i] = wp.float32(drawn[i])
-        decide(q, item, at, program, labels, open_masks, pending)
+        decide(q, item, at, program, open_masks, labels, listed, ids, masks, otherwise)
 
     return narrow
 

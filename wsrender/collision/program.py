@@ -26,7 +26,7 @@ KIND = {"sphere": 0, "capsule": 0, "cylinder": 0, "box": 0, "hull": 0, "ellipsoi
 
 @dataclass(frozen=True, eq=False)
 class Program:
-    """Arrays of the kernels; float32 or int32, but for ``table_words`` (uint32).
+    """Arrays of the kernels: float32, int32, uint32 (``table_words``), and float64 what the narrow phase computes with.
 
     ``joints`` (L, 15): rotation (9) and translation (3) before the motion, scale, offset, 1 where it turns;
     ``sources`` (L,); ``lower``, ``upper`` (n,). ``capsules`` (C, 6): middle and half axis in the frame of
@@ -241,7 +241,7 @@ def _packed(
         )
     ]
     return Program(
-        joints=_f(joints, 15),
+        joints=_d(joints, 15),
         sources=np.array(chain.joint_source, np.int32),
         lower=np.array(chain.lower_limits, np.float32),
         upper=np.array(chain.upper_limits, np.float32),
@@ -256,18 +256,18 @@ def _packed(
         table_columns=np.array(columns, np.int32),
         table_words=np.concatenate([np.zeros(0, np.uint32), *words]),
         solid_frame=np.array([solid.joint - BASE for solid in pairs.solids], np.int32),
-        solids=_f(
+        solids=_d(
             [
                 [*T[:3, :3].ravel(), *T[:3, 3], s.radius, s.disc, KIND[s.kind], 0.0]
                 for T, s in zip(placed, pairs.solids, strict=True)
             ],
             16,
         ),
-        solid_sizes=_f([solid.size for solid in pairs.solids], 3),
+        solid_sizes=_d([solid.size for solid in pairs.solids], 3),
         vertices=vertices,
         vertex_range=vertex_range,
         solid_pairs=_i(pairs.pairs, 2),
-        pair_numbers=_f([[pairs.margin(k), pairs.reason[k]] for k in range(len(pairs.pairs))], 2),
+        pair_numbers=_d([[pairs.margin(k), pairs.reason[k]] for k in range(len(pairs.pairs))], 2),
         epsilon=epsilon,
         columns=CELLS,
         never=np.array(known.never, np.int32),
@@ -330,7 +330,7 @@ def _vertices(solids: tuple[Solid, ...]) -> tuple[np.ndarray, np.ndarray]:
         ranges.append([first, len(points)])
         parts.append(points.T.ravel())
         first += 3 * len(points)
-    return np.concatenate(parts).astype(np.float32), np.array(ranges, np.int32)
+    return np.concatenate(parts), np.array(ranges, np.int32)
 
 
 def center_of(solid: Solid) -> np.ndarray:
@@ -346,6 +346,10 @@ def _shift(by: np.ndarray) -> np.ndarray:
 
 def _f(rows: object, width: int) -> np.ndarray:
     return np.asarray(rows, np.float32).reshape(-1, width)
+
+
+def _d(rows: object, width: int) -> np.ndarray:
+    return np.asarray(rows, np.float64).reshape(-1, width)
 
 
 def _i(rows: object, width: int) -> np.ndarray:

@@ -4,7 +4,16 @@ from typing import Any
 
 import numpy as np
 import warp as wp
-from wsrender_kernels.collision import ARRAYS, CAPACITY, DECIDED, filter_kernel, narrow_kernel, program_type, put_kernel
+from wsrender_kernels.collision import (
+    ARRAYS,
+    CAPACITY,
+    REAL_ARRAYS,
+    filter_kernel,
+    narrow_kernel,
+    program_type,
+    put_kernel,
+)
+from wsrender_kernels.collision_unrolled import unrolled
 from wsrender_kernels.sweep import Shape
 
 from wsrender.collision.distance import blocked_by
@@ -18,60 +27,69 @@ from wsrender.engine.memory import device_memory, fetched
 from wsrender.pipeline.constraints.collision import labelling
 from wsrender.pipeline.pipeline import Pipeline
 
+EXACT = 1.2e-6  # within which MuJoCo is asked: its own tolerance is 1e-6 [m]
+
 
 class Collisions:
     """Labels the samples of chunks of at most ``chunk`` on a device: 0, or the number from 1 of what rejects them."""
 
     def __init__(self, pipeline: Pipeline, pairs: Pairs, program: Program, shape: Shape, device: wp.Device, chunk: int):
         first, *_ = labelling(pipeline.constraints)
-        self.pipeline, self.pairs, self.device = pipeline, pairs, device
+        self.pipeline, self.pairs, self.program, self.device = pipeline, pairs, program, device
         self.chain, self.distances = first.chain, first.distances
         real, n, joints, cuda = REAL[pipeline.precision], first.chain.n, len(first.chain.joint_source), device.is_cuda
-        self.words = max(-(-len(pairs.pairs) // 32), 1)
+        self.words = _words(len(pairs.pairs))
         capacity = max(-(-len(program.capsules) // CAPACITY), 1) * CAPACITY
-        kernel = filter_kernel(real, n, joints, capacity, self.words, shape.method, shape.shared, cuda)
+        body = unrolled(program, self.words) if cuda else None
+        kernel = filter_kernel(real, n, joints, capacity, self.words, shape.method, shape.shared, cuda, body)
         self._filter = loaded(kernel, device)
-        self._narrow = loaded(narrow_kernel(real, n, joints, self.words, shape.method, cuda), device)
-        self._program = _on_device(program, pairs, self.words, device)
+        self._narrow = [
+            narrow_kernel(real, n, joints, self.words, shape.method, cuda, exact) for exact in (False, True)
+        ]
+        self._programs = _on_device(program, pairs, self.words, device)
         self.labels = device_memory(chunk, wp.uint8, device)
-        self._listed = device_memory(1, wp.int32, device)
-        self._ids = device_memory(chunk, wp.int32, device)
-        self._masks = device_memory(chunk * self.words, wp.uint32, device)
-        self._pending = device_memory(chunk, wp.uint8, device)
-        self.decided = np.zeros(3, np.int64)  # by the filter, by the narrow phase, by MuJoCo
+        self._otherwise = device_memory(chunk, wp.uint8, device)
+        # What is open after one pass goes into the next: two lists in turn.
+        self._lists = [
+            (
+                device_memory(1, wp.int32, device),
+                device_memory(chunk, wp.int32, device),
+                device_memory(chunk * self.words, wp.uint32, device),
+            )
+            for _ in range(2)
+        ]
+        self.decided = np.zeros(4, np.int64)  # by the filter, the narrow phase in float32 and in float64, MuJoCo
 
     def label(self, space: Any, first: int, count: int, tasks: int) -> wp.array:
         """Labels (chunk,) uint8 of samples first … first + count - 1; ``tasks``: blocks of the CPU."""
-        self._listed.zero_()
+        into, after = self._lists
+        into[0].zero_()
         dim = count if self.device.is_cuda else tasks
-        outputs = [self.labels, self._listed, self._ids, self._masks]
-        launch(self._filter, dim=dim, inputs=[self._program, space, first, count], outputs=outputs, device=self.device)
-        listed = int(self._listed.numpy()[0])
-        left = 0
-        if listed:
-            inputs = [self._program, space, first, self._ids]
-            outputs = [self.labels, self._masks, self._pending]
-            launch(self._narrow, dim=listed, inputs=inputs, outputs=outputs, device=self.device)
-            left = self._settle(first, listed)
-        self.decided += [count - listed, listed - left, left]
+        inputs = [self._programs[0], space, first, count]
+        launch(self._filter, dim=dim, inputs=inputs, outputs=[self.labels, *into], device=self.device)
+        left = [count, int(into[0].numpy()[0])]
+        for kernel, program in zip(self._narrow, self._programs, strict=True):
+            if left[-1]:
+                after[0].zero_()
+                inputs, outputs = [program, space, first, *into[1:]], [self.labels, *after, self._otherwise]
+                launch(loaded(kernel, self.device), dim=left[-1], inputs=inputs, outputs=outputs, device=self.device)
+                into, after = after, into
+            left.append(int(into[0].numpy()[0]) if left[-1] else 0)
+        if left[-1]:
+            self._settle(first, left[-1], *into[1:])
+        self.decided -= np.diff([*left, 0])
         return self.labels
 
-    def _settle(self, first: int, listed: int) -> int:
-        """Ask MuJoCo about what is open; how many samples."""
-        pending = fetched(self._pending, 0, listed)
-        items = np.flatnonzero(pending != DECIDED)
-        if not len(items):
-            return 0
-        open_ = fetched(self._ids, 0, listed)[items]
-        masks = fetched(self._masks, 0, listed * self.words).reshape(listed, self.words)[items]
+    def _settle(self, first: int, count: int, ids: wp.array, masks: wp.array) -> None:
+        """Ask MuJoCo about the ``count`` samples that are open still."""
+        open_, masks = fetched(ids, 0, count), fetched(masks, 0, count * self.words).reshape(count, self.words)
         bits = np.unpackbits(masks.view(np.uint8), axis=1, bitorder="little")[:, : len(self.pairs.pairs)]
         q = self._configurations(first + open_.astype(np.int64))
         found = blocked_by(self.pairs, self.distances, self.chain, q, bits.astype(bool))
-        found = np.where(found > 0, found, pending[items])
+        found = np.where(found > 0, found, fetched(self._otherwise, 0, count))
         inputs = [device_array(open_, wp.int32, self.device), device_array(found, wp.uint8, self.device)]
         put = loaded(put_kernel(), self.device)
-        launch(put, dim=len(items), inputs=inputs, outputs=[self.labels], device=self.device)
-        return len(items)
+        launch(put, dim=count, inputs=inputs, outputs=[self.labels], device=self.device)
 
     def _configurations(self, indices: np.ndarray) -> np.ndarray:
         """Those of samples (N,), as the kernels draw them, (N, n) float64."""
@@ -88,15 +106,38 @@ def collisions_of(pipeline: Pipeline, shape: Shape, device: wp.Device, chunk: in
     return Collisions(pipeline, pairs, program, shape, device, chunk)
 
 
-def _on_device(program: Program, pairs: Pairs, words: int, device: wp.Device) -> Any:
-    struct = program_type()()
+def bytes_per_sample(pipeline: Pipeline) -> int:
+    """What `Collisions` hold for each sample of a chunk."""
+    return 2 + 2 * (4 + 4 * _words(sum(len(each.group[0]) for each in labelling(pipeline.constraints))))
+
+
+def _words(pairs: int) -> int:
+    """Words of a mask of so many pairs."""
+    return max(-(-pairs // 32), 1)
+
+
+def _on_device(program: Program, pairs: Pairs, words: int, device: wp.Device) -> tuple[Any, Any]:
+    """The program for float32, and for the narrow phase in float64."""
     first_reason = np.zeros(words * 32, bool)
     first_reason[: len(pairs.pairs)] = pairs.reason == 0
     values = {"first_reason": np.packbits(first_reason, bitorder="little").view(np.uint32)}
-    for name, dtype in ARRAYS.items():
+
+    def array(name: str, dtype: Any) -> wp.array:
         value = values[name] if name in values else getattr(program, name)
-        setattr(struct, name, device_array(np.ravel(value) if value.size else np.zeros(1), dtype, device))
-    struct.n_capsules, struct.n_pairs, struct.n_planes = len(program.capsules), len(program.pairs), len(program.planes)
-    struct.n_tables, struct.n_solid_pairs = len(program.tables), len(pairs.pairs)
-    struct.columns, struct.epsilon = program.columns, program.epsilon
-    return struct
+        return device_array(np.ravel(value) if value.size else np.zeros(1), dtype, device)
+
+    arrays = {name: array(name, dtype) for name, dtype in ARRAYS.items()}
+    structs = []
+    for real, epsilon in ((wp.float32, program.epsilon), (wp.float64, EXACT)):
+        struct = program_type(real)()
+        for name, value in [*arrays.items(), *((name, array(name, real)) for name in REAL_ARRAYS)]:
+            setattr(struct, name, value)
+        struct.n_capsules, struct.n_pairs, struct.n_planes = (
+            len(program.capsules),
+            len(program.pairs),
+            len(program.planes),
+        )
+        struct.n_tables, struct.n_solid_pairs = len(program.tables), len(pairs.pairs)
+        struct.columns, struct.epsilon = program.columns, epsilon
+        structs.append(struct)
+    return structs[0], structs[1]

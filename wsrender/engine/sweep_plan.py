@@ -39,7 +39,7 @@ from wsrender.pipeline.pipeline import Pipeline
 from wsrender.volume.lattice import LatticeBlock
 
 CHUNK_CPU, CHUNK_CUDA, CHUNK_ROWS, CHUNK_GIVEN = 1 << 20, 1 << 28, 1 << 18, 1 << 14
-CHUNK_LABELLED = 1 << 24
+LABELLED_BYTES_CPU, LABELLED_BYTES_CUDA = 1 << 26, 1 << 31  # of labels and lists of what is open, of one worker
 CHUNK_LEAST, CHUNKS_PER_THREAD = 1 << 15, 8
 THREADS_PER_SM = 2048  # of a GPU: a whole multiple of those that run at a time
 VOXELS_ABSORBED, VOXELS_FETCHED = 1 << 14, 1 << 23  # at a time
@@ -122,7 +122,7 @@ def sweep(
         workers = devices * thread_count(threads)
         if not pipeline.evaluation.on_host:
             shape = replace(shape, shared=shared_coordinates(plan.structure.evaluated))
-    chunk = _chunk_size(plan, chunk_size or _fair_share(count, workers))
+    chunk = _chunk_size(plan, chunk_size or _fair_share(count, workers), devices[0])
     workers = workers[: max(-(-count // chunk), 1)]
     slabs = [None]
     if pipeline.block is not None:
@@ -184,14 +184,17 @@ def _fair_share(count: int, workers: list[wp.Device]) -> int:
     return min(CHUNK_CPU, max(CHUNK_LEAST, count // (CHUNKS_PER_THREAD * len(workers))))
 
 
-def _chunk_size(plan: SweepPlan, size: int) -> int:
+def _chunk_size(plan: SweepPlan, size: int, device: wp.Device) -> int:
     size = min(size, FOLD_AFTER // plan.structure.base_levels)
     if plan.shape.keep_rows:
         size = min(size, CHUNK_ROWS)
     if plan.shape.method == "given":
         size = min(size, CHUNK_GIVEN)
     if plan.shape.labelled:
-        size = min(size, CHUNK_LABELLED)
+        from wsrender.engine.collision import bytes_per_sample
+
+        allowed = LABELLED_BYTES_CUDA if device.is_cuda else LABELLED_BYTES_CPU
+        size = min(size, max(allowed // bytes_per_sample(plan.pipeline), LANES))
     return -(-size // LANES) * LANES
 
 

@@ -1,0 +1,84 @@
+"""The filter as it is written for CUDA beside the one of the CPU, and what each pass leaves to the next."""
+
+import numpy as np
+import pytest
+import warp as wp
+from wsrender_kernels.collision import CAPACITY, filter_kernel
+from wsrender_kernels.collision_unrolled import MOST_TESTS, unrolled
+
+import wsrender as ws
+from tests.collision.robots import random_text
+from tests.collision.test_labels import AROUND, pipeline
+from wsrender.documents.constraints import Constraints
+from wsrender.engine import devices_of
+from wsrender.engine.collision import collisions_of
+from wsrender.engine.drawn_configurations import device_space
+from wsrender.engine.kernel_cache import launch, loaded
+from wsrender.engine.sweep_plan import SweepPlan
+from wsrender.robot.constraints import constraints_for
+
+N = 1 << 15
+SELF = Constraints(self_collision=True)
+WORLD = ws.Environment(
+    [
+        ws.HalfSpace(name="floor", point_m=(0, 0, -0.05)),
+        ws.Box(name="box", size_m=(0.2, 0.2, 0.2), position_m=(0.4, 0, 0.4)),
+    ]
+)
+
+
+def collisions(robot, environment=None, count=N):
+    """What labels, and the sample space, of random configurations."""
+    each = pipeline(robot, ws.Random(count), constraints_for(robot, SELF, environment))
+    (device,) = devices_of("cpu")
+    return collisions_of(each, SweepPlan(each).shape, device, count), device_space(each.sampling, "float32", device)
+
+
+def filtered(own, space, kernel, tasks):
+    """Labels (N,), masks (N, words), and whether a sample is listed (N,), by a filter."""
+    device, words = own.device, own.words
+    labels, listed = wp.zeros(N, dtype=wp.uint8, device=device), wp.zeros(1, dtype=wp.int32, device=device)
+    ids, masks = (wp.zeros(N * k, dtype=t, device=device) for k, t in ((1, wp.int32), (words, wp.uint32)))
+    inputs, outputs = [own._programs[0], space, 0, N], [labels, listed, ids, masks]
+    launch(loaded(kernel, device), dim=tasks, inputs=inputs, outputs=outputs, device=device)
+    at = ids.numpy()[: listed.numpy()[0]]
+    found, open_ = np.zeros((N, words), np.uint32), np.zeros(N, bool)
+    found[at], open_[at] = masks.numpy().reshape(N, words)[: len(at)], True
+    return labels.numpy(), found, open_
+
+
+@pytest.mark.parametrize("case", ["ur5e", "ur5e in a world", 6, 7, 8, 10, 12])
+def test_the_filter_written_for_one_robot_says_what_the_one_for_all_says(case):
+    if isinstance(case, int):
+        robot, environment = ws.load_robot(random_text(case, 4)), AROUND
+    else:
+        robot, environment = ws.load_robot("ur5e"), WORLD if "world" in case else None
+    own, space = collisions(robot, environment)
+    program, joints = own.program, len(own.chain.joint_source)
+    size = max(-(-len(program.capsules) // CAPACITY), 1) * CAPACITY
+    of_all = filter_kernel(wp.float32, own.chain.n, joints, size, own.words, "random", 0, False)
+    of_one = filter_kernel(
+        wp.float32, own.chain.n, joints, size, own.words, "random", 0, True, unrolled(program, own.words)
+    )
+    labels, masks, open_ = filtered(own, space, of_all, N // 256)
+    found, own_masks, own_open = filtered(own, space, of_one, N)
+    same = open_ == own_open
+    assert same.mean() > 0.9999  # rounding may move one that lies on a bound
+    np.testing.assert_array_equal(found[same], labels[same])
+    assert (own_masks[same] == masks[same]).all(axis=1).mean() > 0.9999
+    assert 0 < open_.sum() < N and (labels > 0).any()
+
+
+def test_a_program_of_too_many_tests_is_read_as_data():
+    own, _ = collisions(ws.load_robot("ur5e"))
+    assert unrolled(own.program, own.words) is not None
+    rows = np.zeros((MOST_TESTS + 1, 2), np.int32)
+    assert unrolled(type(own.program)(**{**vars(own.program), "tests": rows}), own.words) is None
+
+
+def test_float64_leaves_little_to_mujoco():
+    own, space = collisions(ws.load_robot("ur5e"), WORLD, 1 << 18)
+    own.label(space, 0, 1 << 18, (1 << 18) // 256)
+    by_filter, narrow, exact, by_mujoco = own.decided.tolist()
+    assert by_filter + narrow + exact + by_mujoco == 1 << 18
+    assert min(by_filter, narrow, exact) > 0 and by_mujoco <= 0.3 * (exact + by_mujoco)
