@@ -82,8 +82,8 @@ class Collisions:
 
     def _settle(self, first: int, count: int, ids: wp.array, masks: wp.array) -> None:
         """Ask MuJoCo about the ``count`` samples that are open still."""
-        open_, masks = fetched(ids, 0, count), fetched(masks, 0, count * self.words).reshape(count, self.words)
-        bits = np.unpackbits(masks.view(np.uint8), axis=1, bitorder="little")[:, : len(self.pairs.pairs)]
+        open_, rows = fetched(ids, 0, count), fetched(masks, 0, count * self.words).reshape(count, self.words)
+        bits = np.unpackbits(rows.view(np.uint8), axis=1, bitorder="little")[:, : len(self.pairs.pairs)]
         q = self._configurations(first + open_.astype(np.int64))
         found = blocked_by(self.pairs, self.distances, self.chain, q, bits.astype(bool))
         found = np.where(found > 0, found, fetched(self._otherwise, 0, count))
