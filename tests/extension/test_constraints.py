@@ -21,6 +21,7 @@ JOB = {
     "refined_volume": None,
     "device": "cpu",
 }
+UNKNOWN = "unknown constraint; allowed: region, orientation, self_collision, environment, tool_down"
 
 
 @pytest.fixture(scope="module")
@@ -60,7 +61,7 @@ def test_from_the_command_line(package, wsrender, admitted, tmp_path):
     assert code == 0, err
     check(ws.Result.load(tmp_path / "out"), admitted)
     (tmp_path / "job.json").write_text(json.dumps({**JOB, "constraints": {"tool_up": True}}))
-    error = "error: constraints.tool_up: unknown constraint; allowed: region, tool_down\n"
+    error = f"error: constraints.tool_up: {UNKNOWN}\n"
     assert wsrender("run", tmp_path / "job.json", "-o", tmp_path / "no") == (2, "", error)
 
 
@@ -73,8 +74,16 @@ def test_from_a_live_server(live, admitted):
 @pytest.mark.parametrize(
     ("constraints", "pointer", "detail"),
     [
-        ({"tool_up": True}, "#/constraints/tool_up", "unknown constraint; allowed: region, tool_down"),
-        ({"tool_up": False}, "#/constraints/tool_up", "unknown constraint; allowed: region, tool_down"),
+        (
+            {"tool_up": True},
+            "#/constraints/tool_up",
+            UNKNOWN,
+        ),
+        (
+            {"tool_up": False},
+            "#/constraints/tool_up",
+            UNKNOWN,
+        ),
         ({"tool_down": {"angle": 1}}, "#/constraints/tool_down/angle", "unknown option; allowed: cosine"),
     ],
 )
@@ -89,6 +98,7 @@ def test_the_schema_of_a_server_tells_of_it(package, client):
     schema = client.get("/openapi.json").json()["components"]["schemas"]["Constraints"]
     assert schema["additionalProperties"] is False and set(schema["properties"]) == {
         "environment",
+        "orientation",
         "region",
         "self_collision",
         "tool_down",

@@ -198,7 +198,10 @@ def test_options_are_numbers_of_the_kernel_and_compile_nothing(added):
 @pytest.mark.parametrize(
     "choice, message",
     [
-        ({"elbows": True}, "constraints.elbows: unknown constraint; allowed: region, elbow_up, pointing_down"),
+        (
+            {"elbows": True},
+            "constraints.elbows: unknown constraint; allowed: region, orientation, .*, elbow_up, pointing_down",
+        ),
         ({"elbow_up": {"x": 1}}, "constraints.elbow_up.x: unknown option; allowed: least"),
         ({"region": {"sphere": {"center_m": [5, 5, 5], "radius_m": 0.1}}}, "admit none of 256 samples"),
     ],

@@ -1,14 +1,17 @@
 """Constraints on configurations in a job document: each by its name."""
 
+import math
 from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, ConfigDict, StrictBool
+from pydantic import BeforeValidator, ConfigDict, Field, StrictBool
 
 from wsrender.documents.document import Document
 from wsrender.documents.environment import Bounds, Environment, HalfSpace, Sphere
-from wsrender.documents.quantities import NonNegativeNumber, Number, real, sequence
-from wsrender.documents.robot import ShapePair
+from wsrender.documents.quantities import NonNegativeNumber, Number, quoted, real, sequence
+from wsrender.documents.robot import Quaternion, ShapePair, Transform, Vector
+
+_ROTATIONS = ("quat_wxyz", "rpy_deg", "euler_xyz_deg")
 
 
 class RegionChoice(Document):
@@ -25,6 +28,40 @@ class RegionChoice(Document):
         """(field, message) of every pair of fields that do not go together."""
         if self.box is None and self.sphere is None and self.half_space is None:
             yield "box", "must be given, or a sphere or a half_space"
+
+
+class OrientationChoice(Document):
+    """How the tip stands in the world: an axis of it near a direction, or its whole rotation near another."""
+
+    axis: Vector = (0.0, 0.0, 1.0)
+    """An axis in the tip's frame; any length but zero."""
+    toward: Vector | None = None
+    """The direction in the world near it, the middle of a cone; any length but zero. Null: a rotation is given."""
+    quat_wxyz: Quaternion | None = None
+    """Instead, a rotation of the tip in the world: quaternion, scalar first; any length but zero, it is normalised."""
+    rpy_deg: Vector | None = None
+    """Instead, roll, pitch, yaw about fixed x, y, z as in URDF: R = Rz(yaw) Ry(pitch) Rx(roll) [°]."""
+    euler_xyz_deg: Vector | None = None
+    """Instead, angles about the moving x, y, z: R = Rx Ry Rz [°]."""
+    within_deg: Annotated[float, Field(ge=0, le=180), BeforeValidator(real)]
+    """Largest angle between the two directions, or of the rotation from one to the other [°]."""
+
+    @property
+    def rotation(self) -> Transform:
+        """The rotation, where one is given."""
+        return Transform.model_construct(**{name: getattr(self, name) for name in _ROTATIONS})
+
+    def conflicts(self) -> Iterator[tuple[str, str]]:
+        """(field, message) of every pair of fields that do not go together."""
+        given = [name for name in _ROTATIONS if getattr(self, name) is not None]
+        if self.toward is None and not given:
+            yield "toward", f"must be given, or one of {quoted(_ROTATIONS)}"
+        for name in ("axis", "toward"):
+            if given and name in self.model_fields_set and getattr(self, name) is not None:
+                yield name, f'must not be given together with "{given[0]}", which says the whole rotation'
+            elif (vector := getattr(self, name)) is not None and not 1e-6 < math.hypot(*vector) < 1e6:
+                yield name, f"must not have length {math.hypot(*vector):g}: it says no direction"
+        yield from self.rotation.conflicts()
 
 
 class Apart(Document):
@@ -64,6 +101,8 @@ class Constraints(Document):
 
     region: RegionChoice | None = None
     """Where the tip may be; null: anywhere."""
+    orientation: OrientationChoice | None = None
+    """How the tip may stand; null: in any way."""
     self_collision: Annotated[Apart | Literal[False] | None, BeforeValidator(_apart)] = None
     """The robot's own shapes keep apart; true: they may touch; null: they are not asked for."""
     environment: Annotated[Apart | Literal[False] | None, BeforeValidator(_apart)] = None

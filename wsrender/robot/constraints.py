@@ -9,6 +9,7 @@ from wsrender.documents.constraints import Constraints
 from wsrender.documents.environment import Environment
 from wsrender.errors import InputError
 from wsrender.pipeline.constraints.constraint import Constraint, Expressed, in_order
+from wsrender.pipeline.constraints.region import Region
 from wsrender.pipeline.constraints.registry import constraints_of
 from wsrender.robot.model_robot import Robot
 
@@ -26,10 +27,10 @@ def constraints_for(
 
         constraints = in_order((*constraints, *collision_constraints(robot, choice, environment)))
     for each in constraints:
+        if robot.definition and not isinstance(each, Region):
+            raise InputError(f"constraints.{each.name}", "is not available for a robot that is defined by a class")
         if not isinstance(each.device, Expressed):
             continue
-        if robot.definition:
-            raise InputError(f"constraints.{each.name}", "is not available for a robot that is defined by a class")
         try:
             each.device.traced(robot.chain.n)
         except InputError as error:

@@ -8,15 +8,16 @@ import re
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
-from math import inf
+from math import hypot, inf, radians
 from typing import Any
 
-from wsrender.documents.constraints import Constraints, RegionChoice
+from wsrender.documents.constraints import Constraints, OrientationChoice, RegionChoice
 from wsrender.documents.problems import path_text
 from wsrender.errors import InputError
 from wsrender.extensions import left_out, load
 from wsrender.pipeline.constraints.constraint import ORDER, STRUCTURES, Constraint, Structure, in_order
 from wsrender.pipeline.constraints.expression import ExpressionConstraint
+from wsrender.pipeline.constraints.orientation import Orientation
 from wsrender.pipeline.constraints.region import Point, Region
 
 EXTENSIONS = "wsrender.constraints"  # entry points, loaded when a job names one
@@ -65,11 +66,13 @@ def constraints_of(choice: Constraints | None) -> tuple[Constraint, ...]:
     if choice is None:
         return ()
     found: list[Constraint] = [] if choice.region is None else [_region(choice.region)]
+    if choice.orientation is not None:
+        found.append(_orientation(choice.orientation))
     named = choice.model_extra or {}
     there = added_constraints() if named else {}
     for name in named:
         if name not in there:
-            allowed = f"{', '.join(('region', *there))}{left_out(EXTENSIONS)}"
+            allowed = f"{', '.join((*Constraints.model_fields, *there))}{left_out(EXTENSIONS)}"
             raise InputError(path_text("constraints", name), f"unknown constraint; allowed: {allowed}")
     for name, options in choice.added.items():
         known = dict(there[name].options)
@@ -88,6 +91,20 @@ def _region(choice: RegionChoice) -> Region:
         ball and (ball.position_m, ball.radius_m),
         half and (half.point_m, half.normal),
     )
+
+
+def _orientation(choice: OrientationChoice) -> Orientation:
+    within = radians(choice.within_deg)
+    if choice.toward is not None:
+        return Orientation((_unit(choice.axis),), (_unit(choice.toward),), within)
+    x, y, z = (tuple(axis) for axis in choice.rotation.matrix()[:3, :3].T.tolist())
+    return Orientation(((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (x, y, z), within)
+
+
+def _unit(vector: Point) -> Point:
+    length = hypot(*vector)
+    x, y, z = (each / length for each in vector)
+    return x, y, z
 
 
 def _corner(sides: tuple[float | None, float | None, float | None], open_side: float) -> Point:
