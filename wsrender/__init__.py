@@ -32,7 +32,18 @@ from wsrender.version import __version__
 if TYPE_CHECKING:
     from wsrender import run
     from wsrender.client import Client
-    from wsrender.documents.environment import Box, Capsule, Cylinder, Environment, HalfSpace, Mesh, Sphere
+    from wsrender.documents.environment import (
+        Box,
+        Capsule,
+        Cylinder,
+        Ellipsoid,
+        Environment,
+        HalfSpace,
+        Mesh,
+        OtherRobot,
+        Scene,
+        Sphere,
+    )
     from wsrender.documents.robot import DHRow, DHTable, Transform
     from wsrender.documents.sampling import BoundaryBiased, Converge, Grid, Random, Sobol
     from wsrender.geometry.planar.exact_boundary import exact_boundary
@@ -77,6 +88,7 @@ __all__ = [
     "DHRow",
     "DHTable",
     "DocumentError",
+    "Ellipsoid",
     "Environment",
     "ExpressionConstraint",
     "FiveBar",
@@ -96,6 +108,7 @@ __all__ = [
     "NotFoundError",
     "NumericalError",
     "Option",
+    "OtherRobot",
     "Picture",
     "QuotaError",
     "Random",
@@ -104,6 +117,7 @@ __all__ = [
     "ResourceError",
     "Result",
     "Robot",
+    "Scene",
     "ServerConnectionError",
     "ServerError",
     "Sobol",
@@ -174,7 +188,18 @@ _NAMES_OF_MODULE = {
     "wsrender.results.result": ("Result",),
     "wsrender.robot": ("Robot", "evaluate_indices", "load_robot"),
     "wsrender.run": ("execute",),
-    "wsrender.documents.environment": ("Box", "Capsule", "Cylinder", "Environment", "HalfSpace", "Mesh", "Sphere"),
+    "wsrender.documents.environment": (
+        "Box",
+        "Capsule",
+        "Cylinder",
+        "Ellipsoid",
+        "Environment",
+        "HalfSpace",
+        "Mesh",
+        "OtherRobot",
+        "Scene",
+        "Sphere",
+    ),
     "wsrender.documents.robot": ("DHRow", "DHTable", "Transform"),
     "wsrender.documents.sampling": ("BoundaryBiased", "Converge", "Grid", "Random", "Sobol"),
 }

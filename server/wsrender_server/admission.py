@@ -10,11 +10,10 @@ from typing import Any
 from defusedxml import DefusedXmlException
 
 from wsrender.analyses.jobs import canonical_json, parse_job
-from wsrender.documents.arm import Arm, ArmPath, dotted, local_paths
+from wsrender.documents.arm import Arm, ArmPath, dotted, local_paths, models_in
 from wsrender.documents.constraints import Constraints
 from wsrender.documents.document import Document
 from wsrender.documents.problems import MOST_PROBLEMS
-from wsrender.documents.robot import RobotSpec
 from wsrender.documents.sampling import Converge, Grid
 from wsrender.errors import DocumentError, InputError, ModelError, ResourceError
 from wsrender.indices.index_catalogue import find, option_values, resolve
@@ -61,6 +60,12 @@ def decoded_model(content: bytes) -> str:
         raise refusal(problem_of_error(wrong), 409) from None
 
 
+def refuse_paths(document: Any) -> None:
+    """Raises DocumentError where a canonical document names a file: a server opens none."""
+    for path in local_paths(document):
+        raise DocumentError([(dotted(path), LOCAL_ONLY)])
+
+
 @dataclass(frozen=True)
 class Admission:
     """Admits the documents of one owner, whatever their analysis."""
@@ -78,11 +83,10 @@ class Admission:
         did not upload, 409 for text that is no XML; ResourceError for more samples than allowed.
         """
         job = parse_job(document)
-        for path in local_paths(job.model_dump(mode="json")):
-            raise DocumentError([(dotted(path), LOCAL_ONLY)])
+        plain = job.model_dump(mode="json")
+        refuse_paths(plain)
+        self.check_models(plain)
         arms = job.arms()
-        for path, arm in arms.items():
-            self.check_robot(arm.robot, (*path, "robot"))
         for path, part in ({(): job} | arms).items():
             _check_indices(part, path)
             _check_constraints(part, path)
@@ -93,20 +97,24 @@ class Admission:
             raise ResourceError("sampling", message)
         return json.loads(canonical_json(job))
 
-    def check_robot(self, robot: RobotSpec, path: ArmPath) -> None:
-        """Raises DocumentError, ModelError or HttpProblem for a robot that the owner cannot have."""
-        if robot.library is not None:
+    def check_models(self, document: Any) -> None:
+        """Raises DocumentError, ModelError or HttpProblem for models that the owner cannot have."""
+        for path, model in models_in(document):
+            self._check_model(model, path)
+
+    def _check_model(self, model: Mapping[str, Any], path: ArmPath) -> None:
+        if model.get("library") is not None:
             try:
-                library.find(robot.library)
+                library.find(model["library"])
             except ModelError as error:
                 raise DocumentError([(dotted(path, "library"), error.message)]) from None
-        for name, text in (("mjcf", robot.mjcf), ("urdf", robot.urdf)):
-            if text is not None:
-                check_model(dotted(path, name), text, self.prefix)
-        if robot.model is not None and self.store.get_model(self.owner, robot.model) is None:
+        for name in ("mjcf", "urdf"):
+            if model.get(name) is not None:
+                check_model(dotted(path, name), model[name], self.prefix)
+        if (sha256 := model.get("model")) is not None and self.store.get_model(self.owner, sha256) is None:
             raise HttpProblem(
                 404,
-                f"you have uploaded no model {robot.model}",
+                f"you have uploaded no model {sha256}",
                 "model_not_found",
                 errors=[(pointer(dotted(path, "model"), self.prefix), "is no model that you uploaded")],
             )

@@ -137,6 +137,7 @@ def body_schemas() -> dict[str, Any]:
     parts: dict[str, Any] = schema.pop("$defs")
     _tighten_robot(parts["RobotSpec"])
     analyses = {name: ref.rpartition("/")[2] for name, ref in schema["discriminator"]["mapping"].items()}
+    _tighten_scene(parts["Scene"])
     _tighten_points(parts["PointSet"], "points", 1)
     _tighten_points(parts["Mesh"], "vertices_m", 4)
     options = SubmissionOptions.model_json_schema()["properties"]
@@ -207,6 +208,15 @@ def _tighten_robot(part: dict[str, Any]) -> None:
         properties[name] = properties[name]["anyOf"][0] | {"description": properties[name]["description"]}
     properties["dh"] = _ref("DHTable")
     part["oneOf"] = [{"required": [source]} for source in ("library", "dh", "mjcf", "urdf", "model")]
+
+
+def _tighten_scene(part: dict[str, Any]) -> None:
+    """Exactly one source; no paths."""
+    properties = part["properties"]
+    del properties["path"]
+    for name in ("mjcf", "model"):
+        properties[name] = properties[name]["anyOf"][0] | {"description": properties[name]["description"]}
+    part["oneOf"] = [{"required": [source]} for source in ("mjcf", "model")]
 
 
 def _tighten_points(part: dict[str, Any], name: str, least: int) -> None:

@@ -5,7 +5,7 @@ import json
 import pytest
 
 from wsrender.analyses.jobs import canonical_json, parse_job
-from wsrender.documents.arm import at_path, dotted, robots_in
+from wsrender.documents.arm import at_path, dotted, models_in
 from wsrender.errors import DocumentError
 
 
@@ -13,20 +13,20 @@ def test_a_job_of_one_robot_is_an_arm():
     job = parse_job({"analysis": "workspace", "robot": "scara", "tip": "tool"})
     assert job.arms() == {(): job}
     document = json.loads(canonical_json(job))
-    ((path, robot),) = robots_in(document)
+    ((path, robot),) = models_in(document)
     assert (path, robot["library"]) == (("robot",), "scara")
 
 
 def test_robots_anywhere_in_a_document_are_found():
     document = {"robots": [{"robot": {"library": "a"}}, {"robot": {"path": "b"}}], "master": {"robot": {"dh": {}}}}
-    found = dict(robots_in(document))
+    found = dict(models_in(document))
     assert list(found) == [("robots", 0, "robot"), ("robots", 1, "robot"), ("master", "robot")]
     assert all(at_path(document, path) is robot for path, robot in found.items())
     assert [dotted(path, "path") for path in found][1] == "robots.1.robot.path"
 
 
 def test_a_number_of_a_robot_is_no_robot():
-    assert list(robots_in({"scan": {"robot": 1, "axis": "x"}, "robots": []})) == []
+    assert list(models_in({"scan": {"robot": 1, "axis": "x"}, "robots": []})) == []
 
 
 def test_robots_are_few():

@@ -33,11 +33,19 @@ def test_an_environment_is_written_and_read():
         ws.Sphere(radius_m=0.1, position_m=(1, 2, 3)),
         ws.Cylinder(radius_m=0.1, length_m=2),
         ws.Capsule(radius_m=0.1, length_m=2, quat_wxyz=(1, 0, 0, 0)),
+        ws.Ellipsoid(size_m=(1, 2, 3), rpy_deg=(0, 0, 90)),
         ws.Mesh(vertices_m=CORNERS),
+        ws.Scene("cell.xml", position_m=(1, 0, 0)),
+        ws.OtherRobot(robot={"library": "ur5e", "placement": {"position_m": (0, 1, 0)}}, configuration=[0] * 6),
         ws.Mesh("a.STL", length_unit_m=0.001),
     ]
     environment = ws.Environment(shapes)
     assert ws.Environment(**json.loads(environment.model_dump_json())) == environment
+
+
+def test_an_item_with_a_robot_is_one_without_being_called_so():
+    item = {"robot": {"library": "ur5e"}, "configuration": [0] * 6}
+    assert ws.Environment([item]) == ws.Environment([{"shape": "robot", **item}])
 
 
 def problems(**fields):
@@ -49,7 +57,16 @@ def problems(**fields):
 @pytest.mark.parametrize(
     ("shape", "field", "message"),
     [
-        ({"shape": "cone"}, "shape", 'must be one of "half_space", "box", "sphere", "cylinder", "capsule", "mesh"'),
+        (
+            {"shape": "cone"},
+            "shape",
+            'must be one of "half_space", "box", "sphere", "cylinder", "capsule", "ellipsoid", ',
+        ),
+        ({"shape": "scene"}, "path", 'one of "path", "mjcf", "model"'),
+        ({"shape": "scene", "path": "a.xml", "mjcf": "<mujoco/>"}, "mjcf", "another source of the scene"),
+        ({"robot": "ur5e"}, "configuration", "is required"),
+        ({"robot": "ur5e", "configuration": "home"}, "configuration", "must be a list of finite numbers"),
+        ({"robot": {}, "configuration": [0]}, "robot.library", "is required, or another source"),
         ({}, "shape", "it is required"),
         (TABLE | {"size_m": [1, 0, 1]}, "size_m.1", "must be greater than 0, not 0"),
         (TABLE | {"size_m": [1, 1, 1, 1]}, "size_m", "must have at most 3 items"),

@@ -26,12 +26,16 @@ def box_distance(point):
     return distance, T[:3, :3] @ (gradient / np.linalg.norm(gradient) * np.sign(local))
 
 
-@pytest.mark.parametrize("shape", ["sphere", "box", "mesh"])
+BOX_IN_A_FILE = '<mujoco><worldbody><geom type="box" size="0.1 0.2 0.05"/></worldbody></mujoco>'
+
+
+@pytest.mark.parametrize("shape", ["sphere", "box", "mesh", "scene"])
 def test_distance_and_direction(shape):
     items = {
         "sphere": {"center_m": POSE.position_m, "radius_m": 0.15},
         "box": {"pose": POSE, "size_m": SIZE.tolist()},
         "mesh": {"pose": POSE, "vertices_m": [*CORNERS, (0, 0, 0)]},
+        "scene": {"pose": POSE, "mjcf": BOX_IN_A_FILE},
     }
     obstacle = ObstacleDistance(ObstacleForce(items=[{"shape": shape, **items[shape]}], tip_radius_m=0.01))
     rng = np.random.default_rng(0)

@@ -12,7 +12,7 @@ import httpx2
 from wsrender.client.connection import Connection
 from wsrender.client.job import Job
 from wsrender.client.kinetostatic_stream import KinetostaticStream
-from wsrender.documents.arm import dotted, robots_in
+from wsrender.documents.arm import dotted, models_in
 from wsrender.documents.problems import path_text
 from wsrender.errors import DocumentError, InputError
 
@@ -147,7 +147,7 @@ class Client:
         if not isinstance(job, Mapping) and not hasattr(job, "model_dump"):
             raise InputError("job", f"must be a job document (dict) or a typed job, not {type(job).__name__}")
         document = _plain(job)
-        for path, robot in robots_in(document):
+        for path, robot in models_in(document):
             if isinstance(robot.get("path"), str):
                 robot["model"] = self.upload_model(robot.pop("path"), dotted(path, "path"))
         return document

@@ -46,14 +46,14 @@ class Arm(Document):
         return [arm for arm in self.arms().values() if hasattr(arm, "sampling")]
 
 
-def robots_in(document: Any, path: ArmPath = ()) -> Iterator[tuple[ArmPath, dict[str, Any]]]:
-    """(path, robot) of every robot of a canonical document."""
+def models_in(document: Any, path: ArmPath = ()) -> Iterator[tuple[ArmPath, dict[str, Any]]]:
+    """(path, robot or scene) of everything in a canonical document that a model says: it may name a file of its own."""
     items = document.items() if isinstance(document, dict) else enumerate(document)
     for key, value in items:
-        if key == "robot" and isinstance(value, dict):
+        if isinstance(value, dict) and (key == "robot" or value.get("shape") == "scene"):
             yield (*path, key), value
         elif isinstance(value, dict | list):
-            yield from robots_in(value, (*path, key))
+            yield from models_in(value, (*path, key))
 
 
 def local_paths(document: Any, path: ArmPath = ()) -> Iterator[ArmPath]:

@@ -9,14 +9,16 @@ from typing import Annotated, Any, ClassVar, Literal, get_args
 
 from pydantic import BeforeValidator, Discriminator, Field, ValidationError, model_validator
 
+from wsrender.documents.arm import Arm
 from wsrender.documents.document import Document
 from wsrender.documents.problems import located, tagged
-from wsrender.documents.quantities import Name, PositiveNumber, points_of, real, sequence
-from wsrender.documents.robot import LengthUnit, Transform, Vector
+from wsrender.documents.quantities import Name, PositiveNumber, numbers_of, points_of, quoted, real, sequence
+from wsrender.documents.robot import LengthUnit, ModelHash, Transform, Vector, XmlText
 
 MOST_SHAPES = 100
 MOST_VERTICES = 10_000
 MESH_FILES = (".obj", ".ply", ".stl")
+SCENES = ("path", "mjcf", "model")
 
 
 def _points(value: Any) -> tuple[tuple[float, ...], ...] | None:
@@ -26,6 +28,12 @@ def _points(value: Any) -> tuple[tuple[float, ...], ...] | None:
     if not 4 <= len(points) <= MOST_VERTICES:
         raise ValueError(f"must be a list of 4 … {MOST_VERTICES} points [x, y, z], finite numbers")
     return points
+
+
+def _configuration(value: Any) -> tuple[float, ...]:
+    if not (numbers := numbers_of(value)):
+        raise ValueError("must be a list of finite numbers, one for each joint")
+    return numbers
 
 
 def _sides(value: Any) -> tuple[float | None, ...]:
@@ -40,6 +48,7 @@ def _sides(value: Any) -> tuple[float | None, ...]:
 
 Edges = Annotated[tuple[PositiveNumber, PositiveNumber, PositiveNumber], BeforeValidator(sequence)]
 Points = Annotated[tuple[tuple[float, float, float], ...] | None, BeforeValidator(_points)]
+Configuration = Annotated[tuple[float, ...], BeforeValidator(_configuration)]
 Sides = Annotated[tuple[float | None, float | None, float | None], BeforeValidator(_sides)]
 
 
@@ -136,6 +145,15 @@ class Capsule(_Placed):
     """Length of the cylinder, between the centres of the half balls [m]."""
 
 
+class Ellipsoid(_Placed):
+    """An ellipsoid; its place is that of its centre."""
+
+    shape: Literal["ellipsoid"] = "ellipsoid"
+    """ellipsoid."""
+    size_m: Edges
+    """Lengths of its axes along its own x, y, z [m]."""
+
+
 class Mesh(_Placed):
     """The convex hull of points, such as the vertices of a mesh; its place is that of their frame."""
 
@@ -164,16 +182,66 @@ class Mesh(_Placed):
             yield "length_unit_m", 'must be 1 without "path": vertices_m are in metres'
 
 
-_AnyShape = HalfSpace | Box | Sphere | Cylinder | Capsule | Mesh
-SHAPES: dict[str, type[Document]] = {each.model_fields["shape"].default: each for each in get_args(_AnyShape)}
-Shape = Annotated[_AnyShape, Discriminator("shape"), BeforeValidator(tagged("shape", SHAPES))]
+class OtherRobot(_Named, Arm):
+    """Another robot that stands still: all its shapes that may collide, named robot/shape."""
+
+    shape: Literal["robot"] = "robot"
+    """robot."""
+    configuration: Configuration
+    """Where the joints between its base and tip stand [rad or m]; others at its reference."""
+
+
+class Scene(_Placed):
+    """What stands still in an MJCF file: shapes that may collide and that no joint moves, named scene/geom.
+
+    Its place is that of the file's world.
+    """
+
+    shape: Literal["scene"] = "scene"
+    """scene."""
+    mjcf: XmlText | None = None
+    """Its text."""
+    model: ModelHash | None = None
+    """SHA-256 of an MJCF model uploaded to a server, 64 hexadecimal digits."""
+    path: Name | None = None
+    """An .xml file; local runs only."""
+    length_unit_m: LengthUnit = 1.0
+    """Unit of length of the file in metres: 0.001 of millimetres."""
+
+    def __init__(self, path: Any = None, /, **values: Any):
+        Document.__init__(self, **values if path is None else {"path": str(path), **values})
+
+    __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
+
+    def conflicts(self) -> Iterator[tuple[str, str]]:
+        """(field, message) of every pair of fields that do not go together."""
+        yield from super().conflicts()
+        given = [name for name in SCENES if getattr(self, name) is not None]
+        if len(given) != 1:
+            field = given[1] if given else SCENES[0]
+            yield field, f"must be given, or another source of the scene: one of {quoted(SCENES)}"
+
+
+def _shape(value: Any) -> Any:
+    """A shape by its tag, which an object with a robot need not have."""
+    if isinstance(value, Mapping) and "robot" in value:
+        value = {"shape": "robot", **value}
+    return _tagged(value)
+
+
+Shape = HalfSpace | Box | Sphere | Cylinder | Capsule | Ellipsoid | Mesh
+"""One that is a shape itself."""
+_AnyItem = Shape | OtherRobot | Scene
+SHAPES: dict[str, type[Document]] = {each.model_fields["shape"].default: each for each in get_args(_AnyItem)}
+_tagged = tagged("shape", SHAPES)
+Item = Annotated[_AnyItem, Discriminator("shape"), BeforeValidator(_shape)]
 
 
 class Environment(Document):
     """What stands around a robot."""
 
-    items: Annotated[tuple[Shape, ...], Field(max_length=MOST_SHAPES)]
-    """The shapes; names are unique."""
+    items: Annotated[tuple[Item, ...], Field(max_length=MOST_SHAPES)]
+    """Shapes, robots and scenes; names are unique."""
 
     def __init__(self, items: Iterable[Any] | None = None, /, **values: Any):
         Document.__init__(self, **values if items is None else {"items": tuple(items), **values})

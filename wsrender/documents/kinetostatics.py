@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field, StrictBool
 
 from wsrender.documents.document import Document
-from wsrender.documents.environment import MOST_SHAPES, Environment, Shape
+from wsrender.documents.environment import MOST_SHAPES, Environment, Item
 from wsrender.documents.options import Task
 from wsrender.documents.quantities import Number, PositiveNumber, Seed, integer, real, sequence, share
 
@@ -112,7 +112,7 @@ class BoundaryForce(Document):
 class ObstacleForce(Environment):
     """A force away from what stands around, on a ball around the end effector."""
 
-    items: Annotated[tuple[Shape, ...], Field(min_length=1, max_length=MOST_SHAPES)]
+    items: Annotated[tuple[Item, ...], Field(min_length=1, max_length=MOST_SHAPES)]
     """The obstacles; names are unique."""
     tip_radius_m: PositiveNumber = 0.005
     """Radius of the ball around the end effector [m]."""

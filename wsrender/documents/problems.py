@@ -148,7 +148,7 @@ def _path(loc: tuple[int | str, ...], document: Any) -> str:
     for step in loc:
         if step == "[key]" and step not in (node if isinstance(node, Mapping) else ()):
             continue  # pydantic's word for a key that is not allowed, which is the step before
-        if not entered and isinstance(node, Mapping) and step in map(node.get, _TAGS):
+        if not entered and isinstance(node, Mapping) and step in (*map(node.get, _TAGS), *_implied(steps)):
             entered = True
             continue
         steps.append(step)
@@ -160,3 +160,8 @@ def _path(loc: tuple[int | str, ...], document: Any) -> str:
         else:
             node = None
     return path_text(*steps) or "document"
+
+
+def _implied(steps: list[int | str]) -> tuple[str, ...]:
+    """The tag that an item of an environment need not have."""
+    return ("robot",) if steps[-2:-1] == ["items"] else ()

@@ -67,6 +67,8 @@ Limits = Annotated[tuple[float, float] | None, BeforeValidator(_interval)]
 Range = Annotated[tuple[float, float], BeforeValidator(_range)]
 LengthUnit = Annotated[float, Field(ge=1e-9, le=LARGEST), BeforeValidator(real)]
 Length = Annotated[float, Field(ge=-LARGEST, le=LARGEST), BeforeValidator(real)]
+XmlText = Annotated[StrictStr, Field(min_length=1)]
+ModelHash = Annotated[StrictStr, Field(pattern=r"^[0-9a-f]{64}$")]
 NotNegative = Annotated[float, Field(ge=0), BeforeValidator(real)]
 
 
@@ -239,11 +241,11 @@ class RobotSpec(Document):
     """Name of a robot of the library."""
     dh: DHTable | None = None
     """Denavit–Hartenberg table."""
-    mjcf: Annotated[StrictStr, Field(min_length=1)] | None = None
+    mjcf: XmlText | None = None
     """Text of an MJCF model."""
-    urdf: Annotated[StrictStr, Field(min_length=1)] | None = None
+    urdf: XmlText | None = None
     """Text of a URDF model."""
-    model: Annotated[StrictStr, Field(pattern=r"^[0-9a-f]{64}$")] | None = None
+    model: ModelHash | None = None
     """SHA-256 of a model uploaded to a server, 64 hexadecimal digits."""
     path: Name | None = None
     """An .xml (MJCF) or .urdf file; local runs only."""

@@ -7,6 +7,7 @@ import numpy as np
 
 from wsrender.documents.kinetostatics import JointLimitForce, ObstacleForce
 from wsrender.errors import InputError
+from wsrender.robot.surroundings import shapes_around
 from wsrender.robots.chain import Chain
 from wsrender.world.distances import FAR, NearestShape
 
@@ -101,7 +102,7 @@ class ObstacleDistance:
     def __init__(self, choice: ObstacleForce):
         self._radius = choice.tip_radius_m
         try:
-            self._nearest = NearestShape(choice.items)
+            self._nearest = NearestShape([each.shape for each in shapes_around(choice.items)])
         except InputError as error:
             raise error.within("obstacles") from None
 

@@ -1,6 +1,6 @@
 """Collision constraints of a robot: its shapes and what stands around it as solids, and which of them keep apart."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -9,14 +9,14 @@ import numpy as np
 from wsrender.collision.solids import BASE, Pairs, Solid
 from wsrender.collision.store import stored_program
 from wsrender.documents.constraints import Apart, Constraints
-from wsrender.documents.environment import Box, Capsule, Cylinder, Environment, HalfSpace, Mesh, Sphere
+from wsrender.documents.environment import Box, Capsule, Cylinder, Ellipsoid, Environment, HalfSpace, Mesh, Sphere
 from wsrender.errors import InputError, ResourceError
 from wsrender.pipeline.constraints.collision import CollisionConstraint, labelling
 from wsrender.robot.model_robot import Robot
+from wsrender.robot.surroundings import Standing, shapes_around
 from wsrender.robots.chain import Chain
 from wsrender.robots.pairs import without
 from wsrender.robots.shapes import Shape
-from wsrender.world.meshes import hull_vertices
 
 if TYPE_CHECKING:
     from wsrender.robots.bodies import Bodies
@@ -49,7 +49,8 @@ def collision_constraints(
     bodies = _bodies(robot, SELF if own else AROUND)
     chain = _limited(bodies.chain)
     shapes = [_solid(shape) for shape in bodies.shapes]
-    items = list(_items(environment, chain)) if around else []
+    standing = _standing(environment) if around else ()
+    items = [_still(each, chain) for each in standing]
     solids = tuple(shapes + items)
     found = []
     if around:
@@ -58,7 +59,7 @@ def collision_constraints(
         if not still:
             raise InputError(f"constraints.{AROUND}", "must not be given without an environment: nothing stands around")
         moving = [k for k, solid in enumerate(shapes) if solid.joint != BASE]
-        named = (*bodies.shapes, *(_named(solid, bodies.shapes[0]) for solid in items))
+        named = (*bodies.shapes, *(replace(bodies.shapes[0], name=each.name, body=each.item) for each in standing))
         pairs = _pairs([(k, item) for k in moving for item in still], named, around, AROUND)
         found.append(CollisionConstraint(AROUND, chain, solids, pairs, around.margin_m))
     if own:
@@ -86,6 +87,13 @@ def _bodies(robot: Robot, name: str) -> "Bodies":
     return bodies
 
 
+def _standing(environment: Environment | None) -> tuple[Standing, ...]:
+    try:
+        return shapes_around(environment.items) if environment else ()
+    except InputError as error:
+        raise error.within("environment") from None
+
+
 def _limited(chain: Chain) -> Chain:
     """The chain with ends where it has none: see ENDLESS."""
     ends = np.where(chain.revolute, *ENDLESS)
@@ -103,27 +111,22 @@ def _solid(shape: Shape) -> Solid:
     )
 
 
-def _items(environment: Environment | None, chain: Chain) -> Iterator[Solid]:
-    """The items of an environment as solids that stand with the base."""
-    world = np.linalg.inv(chain.T_world_base)
-    for number, item in enumerate(environment.items if environment else ()):
-        name, size, T, vertices = item.name or f"{item.shape} {number + 1}", np.zeros(3), np.eye(4), None
-        match item:
-            case HalfSpace():
-                T[:3, :3], T[:3, 3] = _turned_to(np.array(item.normal)), item.point_m
-            case Sphere():
-                size[0], T[:3, 3] = item.radius_m, item.position_m
-            case Box():
-                size, T = np.array(item.size_m) / 2, item.matrix()
-            case Cylinder() | Capsule():
-                size[:2], T = (item.radius_m, item.length_m / 2), item.matrix()
-            case Mesh():
-                try:
-                    vertices, T = hull_vertices(item), item.matrix()
-                except InputError as error:
-                    raise error.within(f"environment.items.{number}") from None
-        kind: Any = KINDS.get(item.shape, item.shape)
-        yield Solid(name, kind, BASE, world @ T, size, vertices)
+def _still(standing: Standing, chain: Chain) -> Solid:
+    """A shape of the world as a solid that stands with the base."""
+    shape, size, T, vertices = standing.shape, np.zeros(3), np.eye(4), None
+    match shape:
+        case HalfSpace():
+            T[:3, :3], T[:3, 3] = _turned_to(np.array(shape.normal)), shape.point_m
+        case Sphere():
+            size[0], T[:3, 3] = shape.radius_m, shape.position_m
+        case Box() | Ellipsoid():
+            size, T = np.array(shape.size_m) / 2, shape.matrix()
+        case Cylinder() | Capsule():
+            size[:2], T = (shape.radius_m, shape.length_m / 2), shape.matrix()
+        case Mesh():
+            vertices, T = np.array(shape.vertices_m), shape.matrix()
+    kind: Any = KINDS.get(shape.shape, shape.shape)
+    return Solid(standing.name, kind, BASE, np.linalg.inv(chain.T_world_base) @ T, size, vertices)
 
 
 def _turned_to(normal: np.ndarray) -> np.ndarray:
@@ -132,11 +135,6 @@ def _turned_to(normal: np.ndarray) -> np.ndarray:
     x = np.cross(z, np.eye(3)[np.abs(z).argmin()])
     x /= np.linalg.norm(x)
     return np.column_stack([x, np.cross(z, x), z])
-
-
-def _named(solid: Solid, like: Shape) -> Shape:
-    """A shape of the solid's name, by which pairs are excluded."""
-    return replace(like, name=solid.name, body=AROUND)
 
 
 def _pairs(pairs: Sequence[Sequence[int]], shapes: Sequence[Shape], choice: Apart, name: str) -> np.ndarray:

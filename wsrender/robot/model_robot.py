@@ -293,7 +293,7 @@ def load_robot(
     given |= {"reference": reference or {}, "srdf": _srdf_text(srdf), "exclude": exclude}
     stated = RobotSpec(**{kind: value}, **given)
     loaded = load(source, **options, **_corrections(stated))
-    spec = stated.model_copy(update={"placement": _transform(placement), "tool": _transform(tool)})
+    spec = stated.model_copy(update={"placement": transform_of(placement), "tool": transform_of(tool)})
     return Robot(loaded, spec, name, base, tip)
 
 
@@ -359,7 +359,7 @@ def _matrix(transform: Any) -> np.ndarray | None:
     return transform.matrix() if isinstance(transform, Transform) else np.asarray(transform, np.float64)
 
 
-def _transform(value: Any) -> Transform | None:
+def transform_of(value: Any) -> Transform | None:
     """The document form of a placement or tool."""
     if value is None or isinstance(value, Transform):
         return value

@@ -22,15 +22,20 @@ def load_uploaded(sha256: str, **options) -> "LoadedRobot":
     ``options`` as in `wsrender.robots.loading.load`. Raises InputError where this process has no such folder or the
     folder no such file, ModelError for a file that is no model.
     """
-    folder = os.environ.get(MODELS_VARIABLE)
-    if folder is None:
-        raise InputError(_FIELD, "an uploaded model is known to its server only; give path, mjcf or urdf")
-    path = Path(folder) / sha256
-    if not path.is_file():
-        raise InputError(_FIELD, f"{sha256} is not among the uploaded models")
-    content = path.read_bytes()
+    content = uploaded_content(sha256, _FIELD)
     root = xml_source.parse(content, _FIELD)
     loaders = {"mujoco": load_mjcf, "robot": load_urdf}
     if root.tag not in loaders:
         raise ModelError(_FIELD, f"the root element is <{root.tag}>; <mujoco> or <robot> (URDF) is needed")
     return loaders[root.tag](content, **options)
+
+
+def uploaded_content(sha256: str, field: str) -> bytes:
+    """What was uploaded by that name. Raises InputError where nothing was, or this is no server."""
+    folder = os.environ.get(MODELS_VARIABLE)
+    if folder is None:
+        raise InputError(field, "an uploaded model is known to its server only; give path, mjcf or urdf")
+    path = Path(folder) / sha256
+    if not path.is_file():
+        raise InputError(field, f"{sha256} is not among the uploaded models")
+    return path.read_bytes()

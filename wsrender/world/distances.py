@@ -7,7 +7,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from wsrender.documents.environment import Box, Capsule, Cylinder, HalfSpace, Mesh, Shape, Sphere
+from wsrender.documents.environment import Box, Capsule, Cylinder, Ellipsoid, HalfSpace, Mesh, Shape, Sphere
 from wsrender.documents.robot import Transform
 from wsrender.errors import InputError
 from wsrender.robots.compiled_model import MUJOCO_ERRORS, quiet
@@ -84,6 +84,8 @@ def _add(spec: Any, shape: Shape, number: int) -> None:
             add(type=kinds.mjGEOM_SPHERE, size=[shape.radius_m, 0, 0], pos=shape.position_m)
         case Box():
             add(type=kinds.mjGEOM_BOX, size=[edge / 2 for edge in shape.size_m], **_place(shape))
+        case Ellipsoid():
+            add(type=kinds.mjGEOM_ELLIPSOID, size=[edge / 2 for edge in shape.size_m], **_place(shape))
         case Cylinder():
             add(type=kinds.mjGEOM_CYLINDER, size=[shape.radius_m, shape.length_m / 2, 0], **_place(shape))
         case Capsule():

@@ -3,11 +3,11 @@
 import numpy as np
 import trimesh
 
-from wsrender.documents.environment import Box, Capsule, Cylinder, HalfSpace, Mesh, Sphere
+from wsrender.documents.environment import Box, Capsule, Cylinder, Ellipsoid, HalfSpace, Mesh, Sphere
 from wsrender.documents.robot import Transform
 from wsrender.world.meshes import hull_vertices
 
-Solid = Sphere | Box | Cylinder | Capsule | Mesh
+Solid = Sphere | Box | Cylinder | Capsule | Ellipsoid | Mesh
 """A shape that is bounded."""
 
 # Faces of a box whose corners are numbered by the bits x y z, outward.
@@ -63,11 +63,14 @@ def _frame(normal: np.ndarray) -> np.ndarray:
     return np.stack([x, np.cross(z, x), z], axis=1)
 
 
-def _mesh(shape: Sphere | Cylinder | Capsule | Mesh) -> trimesh.Trimesh:
+def _mesh(shape: Sphere | Cylinder | Capsule | Ellipsoid | Mesh) -> trimesh.Trimesh:
     """A shape in its own frame."""
     match shape:
         case Sphere():
             return trimesh.creation.icosphere(subdivisions=_HALVINGS, radius=shape.radius_m)
+        case Ellipsoid():
+            ball = trimesh.creation.icosphere(subdivisions=_HALVINGS)
+            return ball.apply_scale(np.array(shape.size_m) / 2)
         case Cylinder():
             return trimesh.creation.cylinder(radius=shape.radius_m, height=shape.length_m, sections=_SIDES)
         case Capsule():

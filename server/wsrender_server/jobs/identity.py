@@ -7,7 +7,7 @@ from functools import cache
 from typing import Any
 
 from wsrender import __version__
-from wsrender.documents.arm import dotted, local_paths, robots_in
+from wsrender.documents.arm import dotted, local_paths, models_in
 from wsrender.errors import InputError
 from wsrender.notices import Notice
 from wsrender.robots.library import find
@@ -27,7 +27,7 @@ class Identity:
         """
         for path in local_paths(document):
             raise InputError(dotted(path), "is for local runs; send the points, or upload the model")
-        libraries = [robot.get("library") for _, robot in robots_in(document)]
+        libraries = [robot.get("library") for _, robot in models_in(document)]
         anyone = self.shared_cache and bool(libraries) and None not in libraries
         parts = ["" if anyone else owner, document, [_library_hash(name) for name in libraries], __version__, target]
         return hashlib.sha256(json.dumps(parts, sort_keys=True).encode()).hexdigest()

@@ -12,7 +12,7 @@ from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
 from wsrender import __version__
-from wsrender.documents.arm import dotted, robots_in
+from wsrender.documents.arm import dotted, models_in
 from wsrender.errors import InputError
 from wsrender_server.jobs.changes import Changes
 from wsrender_server.jobs.computations import ComputationStore
@@ -264,7 +264,7 @@ class JobStore(ComputationStore, ResultStore, KeyStore):
 
     def _computation(self, session: Session, owner: str, document, priority: int) -> Computation:
         """The computation of a document, locked until the transaction ends; a new one if there is none."""
-        for path, robot in robots_in(document):
+        for path, robot in models_in(document):
             model = robot.get("model")
             if model is not None and session.get(Model, (owner, model)) is None:
                 raise InputError(dotted(path, "model"), f"{model} is not among your models; upload it first")

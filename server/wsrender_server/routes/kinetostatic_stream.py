@@ -15,11 +15,10 @@ from starlette.concurrency import run_in_threadpool
 from starlette.websockets import WebSocketDisconnect
 
 from wsrender import __version__
-from wsrender.documents.arm import dotted, local_paths
 from wsrender.documents.kinetostatic_stream import FROM_CLIENT, FROM_SERVER, LARGEST_SAMPLE, StreamOpen
 from wsrender.documents.reading import read_json
 from wsrender.errors import DocumentError, WsrenderError
-from wsrender_server.admission import LOCAL_ONLY, Admission
+from wsrender_server.admission import Admission, refuse_paths
 from wsrender_server.auth import Principal, entitled
 from wsrender_server.parts import Parts
 from wsrender_server.problems import HttpProblem, problem_of_error, problem_responses, response_of_problem
@@ -111,9 +110,8 @@ def _admitted(parts: Parts, principal: Principal, text: str) -> str:
         raise DocumentError([("document", f"must be an object, not {type(value).__name__}")])
     choice = StreamOpen(**value)
     canonical = choice.model_dump(mode="json")
-    for path in local_paths(canonical):
-        raise DocumentError([(dotted(path), LOCAL_ONLY)])
-    Admission(parts.store, principal.owner, parts.settings.max_samples, "").check_robot(choice.robot, ("robot",))
+    refuse_paths(canonical)
+    Admission(parts.store, principal.owner, parts.settings.max_samples, "").check_models(canonical)
     return json.dumps(canonical)
 
 

@@ -76,6 +76,25 @@ def test_shapes_of_an_environment_are_drawn():
     assert drawn.volume == pytest.approx(4 / 3 * np.pi * 0.2**3, rel=0.02)
 
 
+def test_robots_and_scenes_are_drawn_shape_by_shape():
+    ellipsoid = ws.Ellipsoid(size_m=(0.2, 0.4, 0.6), position_m=(0, 0, 1))
+    (drawn,) = solids(ellipsoid)
+    assert drawn.volume == pytest.approx(np.pi / 6 * 0.2 * 0.4 * 0.6, rel=0.02)
+    place = {"position_m": (1, 2, 0)}
+    other = ws.OtherRobot(robot={"library": "ur5e", "placement": place}, configuration=[0] * 6)
+    cell = ws.Scene(mjcf='<mujoco><worldbody><geom type="plane" size="1 1 1"/><geom size=".1"/></worldbody></mujoco>')
+    robot, scene = items_of([other, cell])
+    assert [label(robot), label(scene)] == ["robot", "scene"]
+    arm = ws.load_robot("ur5e", placement=ws.Transform(**place))
+    assert len(surfaces(robot, LOWER, UPPER)) == len(arm.bodies.shapes)
+    centers = arm.bodies.poses(np.zeros((1, 6)))[0, :, :3, 3]
+    low, high = corners(robot).min(axis=0), corners(robot).max(axis=0)
+    assert ((low < centers) & (centers < high)).all()
+    assert planes([scene]) == [ws.HalfSpace()]
+    with pytest.raises(InputError, match=r"environment\.1\.configuration: has shape"):
+        items_of([Floor(), ws.OtherRobot(robot="ur5e", configuration=[0])])
+
+
 def test_what_is_no_item_is_refused():
     with pytest.raises(InputError, match=r"environment\.1: must be a wsrender Environment's shape, .*, not 'table'"):
         items_of([Floor(), "table"])

@@ -196,6 +196,21 @@ def test_robot_files_are_uploaded(server, client, tmp_path):
         client.submit({**DOCUMENT, "robot": {"path": str(tmp_path / "missing.urdf")}})
 
 
+def test_files_of_what_stands_around_are_uploaded(server, client, tmp_path):
+    arm, scene = tmp_path / "arm.urdf", tmp_path / "scene.xml"
+    arm.write_text("<robot name='arm'/>")
+    scene.write_text("<mujoco/>")
+    server.answer("POST", "/v1/models", says({"sha256": "ab" * 32}, 201), says({"sha256": "cd" * 32}, 201))
+    server.answer("POST", "/v1/jobs", says(JOB, 202))
+    around = ws.Environment([ws.OtherRobot(robot={"path": str(arm)}, configuration=[0]), ws.Scene(scene)])
+    client.submit({**DOCUMENT, "environment": around})
+    *uploads, submission = server.requests
+    assert [upload.content for upload in uploads] == [arm.read_bytes(), scene.read_bytes()]
+    robot, cell = json.loads(submission.content)["environment"]["items"]
+    assert (robot["robot"]["model"], cell["model"]) == ("ab" * 32, "cd" * 32)
+    assert "path" not in cell
+
+
 def test_files_of_several_robots_are_uploaded(server, client, tmp_path):
     """Wherever in the document they are; the document that was given stays as it is."""
     arms = [tmp_path / f"{name}.urdf" for name in ("left", "right")]

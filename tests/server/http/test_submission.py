@@ -95,6 +95,13 @@ def test_wrong_bodies(client, body, status, code, pointer):
     assert not problem["retryable"]
 
 
+def _around(**item):
+    return {"environment": {"items": [item]}}
+
+
+ITEM = "#/environment/items/0"
+
+
 @pytest.mark.parametrize(
     ("fields", "status", "code", "pointer"),
     [
@@ -107,6 +114,12 @@ def test_wrong_bodies(client, body, status, code, pointer):
         ({"robot": {"mjcf": "<mujoco>"}}, 409, "invalid_model", "#/robot/mjcf"),
         ({"robot": {"mjcf": " "}}, 409, "invalid_model", "#/robot/mjcf"),
         ({"robot": {"mjcf": "<other/>"}}, 409, "invalid_model", "#/robot/mjcf"),
+        (_around(robot={"path": "/etc/passwd"}, configuration=[0]), 422, "invalid_document", f"{ITEM}/robot/path"),
+        (_around(robot={"model": "0" * 64}, configuration=[0]), 404, "model_not_found", f"{ITEM}/robot/model"),
+        (_around(robot={"urdf": OUTSIDE}, configuration=[0]), 422, "invalid_model", f"{ITEM}/robot/urdf"),
+        (_around(shape="scene", path="/etc/passwd"), 422, "invalid_document", f"{ITEM}/path"),
+        (_around(shape="scene", model="0" * 64), 404, "model_not_found", f"{ITEM}/model"),
+        (_around(shape="scene", mjcf=BOMB), 422, "invalid_model", f"{ITEM}/mjcf"),
         ({"indices": ["beauty"]}, 422, "invalid_document", "#/indices"),
         ({"sampling": {"method": "random", "count": 10**15}}, 409, "resource_limit", "#/sampling"),
         ({"sampling": {"method": "random", "count": 10**16}}, 422, "invalid_document", "#/sampling/count"),

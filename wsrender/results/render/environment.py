@@ -2,12 +2,14 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from wsrender.documents import environment as world
 from wsrender.errors import InputError
 from wsrender.results.render.scene import Color, DrawnSurface
+from wsrender.robot.surroundings import shapes_around
 from wsrender.world.triangles import plate, triangles
 
 TABLE_TOP = 0.04  # thickness of a table's top and legs [m]
@@ -75,7 +77,19 @@ class Floor:
         return [world.HalfSpace(point_m=(0.0, 0.0, self.height_m))]
 
 
-Item = Box | Table | Floor | world.Shape
+@dataclass(frozen=True)
+class Standing:
+    """A robot or a scene: its shapes, read once, and what a legend calls it."""
+
+    kind: str
+    stands: tuple[world.Shape, ...]
+
+    def shapes(self) -> tuple[world.Shape, ...]:
+        """Its shapes in the world."""
+        return self.stands
+
+
+Item = Box | Table | Floor | Standing | world.Shape
 _WOOD: Color = (0.72, 0.62, 0.5)
 COLORS: dict[type, Color] = {Table: (0.62, 0.66, 0.7), Floor: (0.86, 0.86, 0.84), world.HalfSpace: (0.86, 0.86, 0.84)}
 
@@ -87,13 +101,21 @@ def color(item: Item) -> Color:
 
 def label(item: Item) -> str:
     """What a legend calls an item: its kind."""
+    if isinstance(item, Standing):
+        return item.kind
     return type(item).__name__.lower() if isinstance(item, Box | Table | Floor) else item.shape.replace("_", " ")
 
 
 def items_of(environment: "Iterable[Item] | world.Environment") -> list[Item]:
-    """The items of an environment. Raises InputError for what is none."""
-    items = list(environment.items if isinstance(environment, world.Environment) else environment)
+    """The items of an environment. Raises InputError for what is none, or has no shapes."""
+    items: list[Any] = list(environment.items if isinstance(environment, world.Environment) else environment)
     for k, item in enumerate(items):
+        if isinstance(item, world.OtherRobot | world.Scene):
+            try:
+                items[k] = Standing(item.shape, tuple(each.shape for each in shapes_around([item])))
+            except InputError as error:
+                raise error.at(error.field.replace("items.0", f"environment.{k}", 1)) from None
+            continue
         if not isinstance(item, (Box, Table, Floor, *world.SHAPES.values())):
             allowed = "a wsrender Environment's shape, or a wsrender.results.render Floor, Table or Box"
             raise InputError(f"environment.{k}", f"must be {allowed}, not {item!r}")
@@ -119,7 +141,7 @@ def surfaces(item: Item, lower: np.ndarray, upper: np.ndarray) -> list[DrawnSurf
 
 
 def _shapes(item: Item) -> "Sequence[world.Shape]":
-    return item.shapes() if isinstance(item, Box | Table | Floor) else [item]
+    return item.shapes() if isinstance(item, Box | Table | Floor | Standing) else [item]
 
 
 def _check(field: str, values: tuple[float, ...], count: int, positive: bool = False) -> None:

@@ -1,0 +1,126 @@
+"""Robots and scenes that stand around: labels against MuJoCo on a model of everything, made by MuJoCo itself."""
+
+import mujoco
+import numpy as np
+import pytest
+import trimesh
+
+import wsrender as ws
+from tests.collision.robots import drawn, random_text
+from tests.collision.test_labels import labels, wrong
+from wsrender.collision.solids import BASE
+from wsrender.documents.constraints import Constraints
+from wsrender.errors import InputError
+from wsrender.robot.constraints import constraints_for
+from wsrender.robot.surroundings import shapes_around
+
+POSE = {"position_m": (0.25, -0.1, 0.2), "quat_wxyz": (0.9, 0.1, -0.3, 0.2)}
+CELL = """<mujoco><asset><mesh name="wedge" vertex="0 0 0  .2 0 0  0 .3 0  0 0 .2"/></asset><worldbody>
+<geom name="floor" type="plane" size="1 1 .1" pos="0 0 -.6"/><geom name="seen" size="9" contype="0" conaffinity="0"/>
+<body name="bench" pos=".3 .1 -.2" euler="0 20 30"><geom name="top" type="box" size=".2 .1 .03"/>
+<geom type="mesh" mesh="wedge"/><body pos="0 0 .1"><geom name="rail" type="ellipsoid" size=".05 .2 .03"/></body></body>
+<body><freejoint/><geom name="thrown" size="3"/></body></worldbody></mujoco>"""
+
+
+def together(robot: str, other: str, moves: bool = True) -> tuple[mujoco.MjModel, list[int], list[int]]:
+    """A model of both, the other at POSE; geoms of the robot that its joints move, and of the other."""
+    spec, child = mujoco.MjSpec.from_string(robot), mujoco.MjSpec.from_string(other)
+    frame = spec.worldbody.add_frame(pos=POSE["position_m"], quat=POSE["quat_wxyz"])
+    spec.attach(child, frame=frame, prefix="other/")
+    model = spec.compile()
+    bodies = [model.body(body).name for body in model.geom_bodyid]
+    names = [model.geom(geom).name for geom in range(model.ngeom)]
+    foreign = [body.startswith("other/") or name.startswith("other/") for body, name in zip(bodies, names, strict=True)]
+    fixed = model.body_weldid[model.geom_bodyid] == 0
+    own = [geom for geom in range(model.ngeom) if not foreign[geom] and not fixed[geom]]
+    return model, own, [geom for geom in range(model.ngeom) if foreign[geom] and (moves or fixed[geom])]
+
+
+def distances(model, own, around, qpos) -> np.ndarray:
+    """Least signed distance (N,) [m] of the robot's geoms from the others."""
+    data, found = mujoco.MjData(model), []
+    for row in qpos:
+        data.qpos[: len(row)] = row
+        mujoco.mj_kinematics(model, data)
+        found.append(min(mujoco.mj_geomDistance(model, data, a, b, 1.0, None) for a in own for b in around))
+    return np.array(found)
+
+
+@pytest.mark.parametrize(("seed", "other"), [(2, 6), (6, 1), (7, 2), (12, 6)])
+def test_another_robot_at_a_configuration(seed, other, device):
+    robot, text = ws.load_robot(random_text(seed, 3)), random_text(other, 3)
+    stands = drawn(ws.load_robot(text), 1, other)[0]
+    item = ws.OtherRobot(robot={"mjcf": text, "placement": POSE}, name="neighbour", configuration=stands)
+    margin, q = (0.0, 0.03)[seed % 2], drawn(robot, 4000)
+    constraints = constraints_for(robot, Constraints(environment={"margin_m": margin}), ws.Environment([item]))
+    model, own, around = together(random_text(seed, 3), text)
+    least = distances(model, own, around, np.hstack([q, np.tile(stands, (len(q), 1))])) - margin
+    assert 0 < (least < 0).sum() < len(q)
+    assert not wrong(labels(robot, q, constraints, device=device) > 0, least < 0, least).size
+    assert {solid.name.split("/")[0] for solid in constraints[0].solids if solid.joint == BASE} >= {"neighbour"}
+
+
+@pytest.mark.parametrize("seed", [2, 6, 7])
+def test_what_stands_still_in_a_scene(seed, device):
+    robot, q = ws.load_robot(random_text(seed, 4)), drawn(ws.load_robot(random_text(seed, 4)), 4000)
+    cell = ws.Environment([ws.Scene(mjcf=CELL, name="cell", **POSE)])
+    names = [each.name for each in shapes_around(cell.items)]
+    assert names == ["cell/floor", "cell/top", "cell/bench/1", "cell/rail"]
+    constraints = constraints_for(robot, None, cell)
+    model, own, around = together(random_text(seed, 4), CELL, moves=False)
+    around = [geom for geom in around if model.geom(geom).name != "other/seen"]
+    least = distances(model, own, around, q)
+    assert 0 < (least < 0).sum() < len(q)
+    assert not wrong(labels(robot, q, constraints, device=device) > 0, least < 0, least).size
+
+
+def test_a_scene_of_files_is_the_scene_of_its_text(tmp_path):
+    (tmp_path / "parts").mkdir()
+    trimesh.creation.box((0.1, 0.2, 0.3)).export(tmp_path / "parts" / "box.stl")
+    (tmp_path / "parts.xml").write_text(
+        '<mujoco><compiler meshdir="parts"/><asset><mesh name="box" file="box.stl"/></asset></mujoco>'
+    )
+    (tmp_path / "scene.xml").write_text(
+        '<mujoco><include file="parts.xml"/><worldbody><geom name="block" type="mesh" mesh="box" pos="1 2 3"/>'
+        "</worldbody></mujoco>"
+    )
+    (found,) = shapes_around([ws.Scene(tmp_path / "scene.xml", name="cell")])
+    assert found.name == "cell/block"
+    corners = np.array(found.shape.vertices_m) @ found.shape.matrix()[:3, :3].T + found.shape.matrix()[:3, 3]
+    assert np.allclose(corners.min(axis=0), [0.95, 1.9, 2.85], atol=1e-6)
+    assert np.allclose(corners.max(axis=0), [1.05, 2.1, 3.15], atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("item", "field", "message"),
+    [
+        ({"robot": "ur5e", "configuration": [0, 0]}, "configuration", r"has shape .*\(6,\) or"),
+        ({"robot": "ur5e", "configuration": [0, 0, 90, 0, 0, 0]}, "configuration", "at 90, beyond its limits"),
+        ({"robot": {"library": "ur5"}, "configuration": [0]}, "robot.library", "ur5"),
+        ({"robot": {"mjcf": CELL}, "configuration": [0]}, "robot.mjcf", "is a free joint on the chain"),
+        (
+            {"robot": {"dh": {"convention": "standard", "rows": [{"a": 0.3}] * 2}}, "configuration": [0, 0]},
+            "robot",
+            "has no shapes that may collide",
+        ),
+        ({"shape": "scene", "path": "nowhere/scene.xml"}, "path", "nowhere"),
+        ({"shape": "scene", "mjcf": "<robot/>"}, "mjcf", "<mujoco> is needed"),
+        ({"shape": "scene", "mjcf": "<mujoco/>"}, "mjcf", "holds no shape that may collide and that no joint moves"),
+        ({"shape": "scene", "mjcf": '<mujoco><include file="a.xml"/></mujoco>'}, "mjcf", "includes are refused"),
+        ({"shape": "scene", "model": "0" * 64}, "model", "is known to its server only"),
+    ],
+)
+def test_robots_and_scenes_that_cannot_be_had_name_the_field(item, field, message):
+    with pytest.raises(InputError, match=message) as caught:
+        constraints_for(ws.load_robot("ur5e"), None, ws.Environment([ws.HalfSpace(point_m=(0, 0, -1)), item]))
+    assert caught.value.field == f"environment.items.1.{field}"
+
+
+def test_all_of_an_item_may_be_let_off():
+    robot = ws.load_robot("ur5e")
+    around = ws.Environment([ws.OtherRobot(robot="ur5e", name="twin", configuration=[0] * 6), ws.Scene(mjcf=CELL)])
+    hands = {shape.body for shape in robot.bodies.shapes}
+    choice = Constraints(environment={"exclude": [(body, "twin") for body in hands]})
+    (constraint,) = constraints_for(robot, choice, around)
+    paired = [constraint.solids[k] for k in constraint.pairs.ravel()]
+    assert {solid.name.split("/")[0] for solid in paired if solid.joint == BASE} == {"scene 2"}

@@ -1,0 +1,135 @@
+"""What an environment holds, as shapes in the world: those of its robots and scenes one by one."""
+
+import warnings
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from wsrender.documents.environment import (
+    Box,
+    Capsule,
+    Cylinder,
+    Ellipsoid,
+    HalfSpace,
+    Item,
+    Mesh,
+    OtherRobot,
+    Scene,
+    Shape,
+    Sphere,
+)
+from wsrender.documents.robot import Transform
+from wsrender.errors import InputError
+from wsrender.robot.model_robot import Robot, configuration_rows, robot_of_spec, transform_of
+from wsrender.robots import shapes as models
+from wsrender.robots.model_warning import ModelWarning
+from wsrender.robots.plausibility import LENGTH
+from wsrender.world.meshes import hull_vertices
+
+BEYOND = 1e-6  # rad or m by which a configuration may be beyond a limit: rounding
+
+
+@dataclass(frozen=True)
+class Standing:
+    """A shape that stands in the world; ``name``: its own, or item/shape; ``item``: the name of its item."""
+
+    name: str
+    item: str
+    shape: Shape
+
+
+def shapes_around(items: Iterable[Item]) -> tuple[Standing, ...]:
+    """The shapes of an environment's items, in order; the corners of meshes are read, and are those of their hulls.
+
+    Raises InputError, ModelError, the field from ``items`` on, for what cannot be had.
+    """
+    found = []
+    for number, item in enumerate(items):
+        name = item.name or f"{item.shape} {number + 1}"
+        try:
+            match item:
+                case OtherRobot():
+                    found += _robot(item, name)
+                case Scene():
+                    found += _scene(item, name)
+                case Mesh():
+                    found.append(Standing(name, name, _hull(item)))
+                case _:
+                    found.append(Standing(name, name, item))
+        except InputError as error:
+            raise error.within(f"items.{number}") from None
+    return tuple(found)
+
+
+def _robot(item: OtherRobot, name: str) -> Iterator[Standing]:
+    robot = _loaded(item)
+    q, chain = configuration_rows(item.configuration, robot.chain.n, "configuration"), robot.chain
+    beyond = np.flatnonzero((q[0] < chain.lower_limits - BEYOND) | (q[0] > chain.upper_limits + BEYOND))
+    if beyond.size:
+        k = int(beyond[0])
+        low, high = chain.lower_limits[k], chain.upper_limits[k]
+        message = f"puts joint {chain.joint_names[k]!r} at {q[0, k]:g}, beyond its limits {low:g} … {high:g} [rad or m]"
+        raise InputError("configuration", message)
+    bodies = robot.bodies
+    if not bodies.shapes:
+        raise InputError("robot", f"{robot.name} has no shapes that may collide")
+    for shape, T in zip(bodies.shapes, bodies.poses(q)[0], strict=True):
+        yield Standing(f"{name}/{shape.name}", name, as_document(shape, T))
+
+
+def _loaded(item: OtherRobot) -> Robot:
+    """The robot of an item. Raises InputError where its lengths were probably millimetres."""
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", ".*no usable limits", ModelWarning)  # it stands still
+        robot = robot_of_spec(item.robot, item.base, item.tip)
+    for notice in robot.notices:
+        if notice.code == LENGTH:
+            raise InputError(str(notice.field), f"{notice.message}; {notice.remedy}")
+    return robot
+
+
+def _scene(item: Scene, name: str) -> Iterator[Standing]:
+    from wsrender.robots.scenes import scene_of_path, scene_of_text, uploaded_scene
+
+    if item.path is not None:
+        shapes = scene_of_path(item.path, item.length_unit_m)
+    elif item.mjcf is not None:
+        shapes = scene_of_text(item.mjcf, item.length_unit_m)
+    else:
+        shapes = uploaded_scene(str(item.model), item.length_unit_m)
+    for shape in shapes:
+        yield Standing(f"{name}/{shape.name}", name, as_document(shape, item.matrix() @ shape.T_frame_shape))
+
+
+def _hull(item: Mesh) -> Mesh:
+    placed = item.model_dump(include={*Transform.model_fields, "name"})
+    return Mesh(vertices_m=_points(hull_vertices(item)), **placed)
+
+
+def _points(vertices: np.ndarray) -> Any:
+    return tuple(map(tuple, vertices.tolist()))
+
+
+def as_document(shape: models.Shape, T: np.ndarray) -> Shape:
+    """A robot's shape, its frame at ``T`` (4, 4) in the world [m], in the words of an environment."""
+    radius, half, _ = shape.size
+    placed = transform_of(T)
+    assert placed is not None
+    place, at, z = placed.model_dump(exclude_none=True), placed.position_m, tuple(T[:3, 2].tolist())
+    edges: Any = tuple((2 * shape.size).tolist())
+    match shape.kind:
+        case "plane":
+            return HalfSpace(point_m=at, normal=z)
+        case "sphere":
+            return Sphere(radius_m=radius, position_m=at)
+        case "capsule":
+            return Capsule(radius_m=radius, length_m=2 * half, **place)
+        case "cylinder":
+            return Cylinder(radius_m=radius, length_m=2 * half, **place)
+        case "box":
+            return Box(size_m=edges, **place)
+        case "ellipsoid":
+            return Ellipsoid(size_m=edges, **place)
+    return Mesh(vertices_m=_points(shape.vertices), **place)
