@@ -151,8 +151,8 @@ class Shape:
 
     @property
     def bytes_per_voxel(self) -> int:
-        """Bytes of one voxel's record and its 64-bit sums."""
-        return self.record_size * (4 if self.real is wp.float32 else 8) + 8 * self.sums_size
+        """Bytes of one voxel's record, its 64-bit sums, and its rejected samples by constraint."""
+        return self.record_size * (4 if self.real is wp.float32 else 8) + 8 * (self.sums_size + len(self.constraints))
 
 
 def _power_of_two(size: int) -> int:
@@ -498,12 +498,12 @@ def outputs_type(shape: Shape):
     C),): fixed-point sums of the indices, scaled by ``scales`` (K,), and how many samples each of the C constraints
     rejects, in parts; ``records``, ``sums``: one vector per voxel;
     ``rows_out`` (n_rows * rows_stride,): row r of the chunk's sample s at [r * rows_stride + s], interleaved ones at
-    [s * n_rows + r].
+    [s * n_rows + r]. With constraints also ``rejections`` (voxels * C,): samples of a voxel that each rejects; and
+    ``earliest`` (C,): the number of the first sample that each does.
     """
     real, bits = shape.real, bits_type(shape.real)
     record_type, sums_type = record_type_of(shape), sums_type_of(shape)
 
-    @wp.struct
     class Outputs:
         scales: wp.array(dtype=real)
         extremes: wp.array(dtype=bits)
@@ -513,7 +513,11 @@ def outputs_type(shape: Shape):
         rows_out: wp.array(dtype=real)
         rows_stride: wp.int64
 
-    return Outputs
+    if shape.constraints:
+        Outputs.__annotations__["earliest"] = wp.array(dtype=wp.int64)
+        if shape.voxels:
+            Outputs.__annotations__["rejections"] = wp.array(dtype=wp.int64)
+    return wp.struct(Outputs)
 
 
 @factory
@@ -555,6 +559,7 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
     BLOCK = LANES
     load_record, store_record = memory(record_type).load, memory(record_type).store
     load_sums, store_sums = memory(sums_type).load, memory(sums_type).store
+    load_count, store_count = memory(wp.int64).load, memory(wp.int64).store
     # Scratch in rows of LANES. Vectors on the stack: of an array, neither the stride nor what else points to it is
     # known when the kernel is compiled, and the lane loop would be compiled twice, without SIMD the second time.
     values_type = wp.types.vector(N_OUTPUTS * LANES, real)
@@ -586,6 +591,8 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
         quanta = quanta_type()
         cells = cells_type()
         levers = levers_type()
+        if wp.static(CONSTRAINED):
+            places = cells_type()
 
         if wp.static(STAGED):
             values = staged_lanes(model, space, block, start, valid)
@@ -615,6 +622,7 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
                 for lane in range(BLOCK):
                     cells[lane] = cell(grid, vec3(values[lane], values[BLOCK + lane], values[2 * BLOCK + lane]))
                     if wp.static(CONSTRAINED):
+                        places[lane] = cells[lane]
                         cells[lane] = wp.where(values[REASON + lane] == ADMITTED, cells[lane], grid.spare)
 
             # While, or Warp would write the loops over outputs out, and their lane loops as often.
@@ -664,10 +672,14 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
             if wp.static(CONSTRAINED):
                 for c in range(CONSTRAINTS):
                     rejected = wp.int32(0)
+                    earliest = wp.int32(BLOCK)
                     for lane in range(BLOCK):
                         of_this = values[REASON + lane] == real(c + 1) and lane < valid
                         rejected += wp.where(of_this, 1, 0)
+                        earliest = wp.min(earliest, wp.where(of_this, lane, BLOCK))
                     to.totals[K + c] = to.totals[K + c] + wp.int64(rejected)
+                    if rejected > 0:
+                        to.earliest[c] = wp.min(to.earliest[c], start + wp.int64(earliest))
 
             if wp.static(VOXELS):
                 # Touch all target records first: their cache misses then overlap, which halves the time.
@@ -698,6 +710,12 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
                         for k in range(K):
                             addend[k] = wp.int64(quanta[k * BLOCK + lane])
                         store_sums(to.sums, voxel, load_sums(to.sums, voxel) + addend)
+                if wp.static(CONSTRAINED):
+                    for lane in range(valid):
+                        reason = wp.int32(values[REASON + lane])
+                        if reason > 0:
+                            counted = places[lane] * CONSTRAINTS + reason - 1
+                            store_count(to.rejections, counted, load_count(to.rejections, counted) + wp.int64(1))
 
         if wp.static(INTERLEAVED):
             for lane in range(valid):
@@ -753,6 +771,7 @@ def _cuda_kernel(shape: Shape) -> wp.Kernel:
     TOTALS = K + CONSTRAINTS
     ADMITTED = real(0.0)
     extremes_type, totals_type = wp.types.vector(REDUCED, bits), wp.types.vector(max(TOTALS, 1), wp.int64)
+    earliest_type, LAST = wp.types.vector(max(CONSTRAINTS, 1), wp.int64), wp.int64(2**63 - 1)
     N_ROWS, RECORD, SUMS_SIZE = shape.n_rows, shape.record_size, shape.sums_size
     INTERLEAVED = shape.keep_rows and shape.interleaved
     VOXELS, MAXIMUM, MINIMUM, SUMS = shape.voxels, shape.maximum, shape.minimum, shape.sums_size > 0
@@ -798,6 +817,10 @@ def _cuda_kernel(shape: Shape) -> wp.Kernel:
         for r in range(REDUCED):
             largest[r] = LOWEST
             smallest[r] = ~LOWEST
+        if wp.static(CONSTRAINED):
+            earliest = earliest_type()
+            for c in range(CONSTRAINTS):
+                earliest[c] = LAST
         offset = wp.int64(thread)
         while offset < count:
             index = first + offset
@@ -817,7 +840,9 @@ def _cuda_kernel(shape: Shape) -> wp.Kernel:
                 if wp.static(CONSTRAINED):
                     admitted = out[REASON] == ADMITTED
                     for c in range(CONSTRAINTS):
-                        total[K + c] += wp.where(out[REASON] == real(c + 1), wp.int64(1), wp.int64(0))
+                        of_this = out[REASON] == real(c + 1)
+                        total[K + c] += wp.where(of_this, wp.int64(1), wp.int64(0))
+                        earliest[c] = wp.min(earliest[c], wp.where(of_this, index, LAST))
                 for r in range(REDUCED):
                     key = ordered(out[r])
                     if wp.static(CONSTRAINED):
@@ -833,8 +858,10 @@ def _cuda_kernel(shape: Shape) -> wp.Kernel:
                     total[k] += quantum
                 if wp.static(VOXELS):
                     voxel = cell(grid, vec3(out[0], out[1], out[2]))
-                    if wp.static(CONSTRAINED):
-                        voxel = wp.where(admitted, voxel, grid.spare)
+                    if wp.static(CONSTRAINED):  # noqa: SIM102
+                        if not admitted:
+                            add(to.rejections, voxel * CONSTRAINTS + wp.int32(out[REASON]) - 1, wp.int64(1))
+                            voxel = grid.spare
                     if voxel != grid.spare:
                         at = voxel * RECORD
                         add(counts, voxel * COUNT, wp.int64(1))
@@ -868,5 +895,8 @@ def _cuda_kernel(shape: Shape) -> wp.Kernel:
             slot = (thread % TOTAL_SLOTS) * TOTALS
             for k in range(TOTALS):
                 wp.atomic_add(to.totals, slot + k, total[k])
+            if wp.static(CONSTRAINED):
+                for c in range(CONSTRAINTS):
+                    wp.atomic_min(to.earliest, c, earliest[c])
 
     return sweep_cuda

@@ -122,7 +122,7 @@ def test_chunks_threads_and_shards_change_no_bit():
     whole = sweep(each, 0, samples.count, cpu, threads=1)
     parts = [sweep(each, first, count, cpu, threads=2, chunk_size=1024) for first, count in ((0, 8192), (8192, 21808))]
     again = merge(*parts)
-    for name in ("count", "maximum", "rejected"):
+    for name in ("count", "maximum", "rejected", "earliest", "blocked_cells", "blocked"):
         assert np.array_equal(getattr(whole, name), getattr(again, name)), name
 
 

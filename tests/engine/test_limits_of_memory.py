@@ -14,6 +14,7 @@ import wsrender as ws
 from tests.engine.test_voxels import executed, job
 from tests.run.simple_robots import planar_arm_with_masses
 from wsrender import run
+from wsrender.analyses.workspace.partial import SWEEP
 from wsrender.engine import SweepPlan, devices_of
 from wsrender.engine.memory import CACHE_LINE, device_memory
 from wsrender.errors import InputError, NumericalError, ResourceError
@@ -90,10 +91,12 @@ def test_few_samples_of_many_voxels_keep_one_thread_busy(monkeypatch):
     assert (len(few), len(many)) == (1, 2)
 
 
+@pytest.mark.parametrize("constraints", [None, {"region": {"box": {"lower_m": [None, 0.05, None]}}}])
 @pytest.mark.parametrize("method", ["random", "grid"])
-def test_slabs_of_the_lattice_change_no_bit(method, precision, device, monkeypatch):
+def test_slabs_of_the_lattice_change_no_bit(method, constraints, precision, device, monkeypatch):
     sampling = {"grid": {"method": "grid", "per_joint": 7}, "random": {"method": "random", "count": 20_000, "seed": 1}}
-    document = job(precision, device=device, keep_map=False, sampling=sampling[method])
+    choice = {"sampling": sampling[method], "constraints": constraints}
+    document = job(precision, device=device, keep_map=False, **choice)
     _, expected, plan = executed(document)
     shape, done = SweepPlan(plan.pipeline).shape, []
     block_bytes = plan.pipeline.block.size * shape.bytes_per_voxel
@@ -106,8 +109,9 @@ def test_slabs_of_the_lattice_change_no_bit(method, precision, device, monkeypat
     assert len(slabs.fitted(plan.pipeline.block, shape, devices_of(device)[:1], 20_000)[1]) in (4, 5)
     monkeypatch.setattr(importlib.import_module("wsrender.engine.sweep_plan"), "VOXELS_FETCHED", 777)  # many parts
     found = run.run_shard(plan, 0, done.append, threads=1).sweep
-    for name in ("extremes", "totals", "cells", "count", "records", "sums"):
+    for name in SWEEP:
         assert getattr(found, name).tobytes() == getattr(expected, name).tobytes(), name
+    assert len(found.blocked) == (0 if constraints is None else len(np.unique(found.blocked_cells))) != 1
     assert found.samples == expected.samples and len(np.unique(np.diff(done) >= 0)) == 1 and done[-1] <= found.samples
 
 

@@ -5,6 +5,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from wsrender_kernels.voxels import decode_extreme
 
+NONE = 2**63 - 1  # the number of no sample
+
 
 @dataclass(frozen=True, eq=False)
 class Partial:
@@ -15,7 +17,8 @@ class Partial:
     voxels, sorted by ``cells`` (V,) int64 (flat index in the lattice block): ``count`` (V,) int64, ``records`` (V, E)
     ordered integers, ``sums`` (V, K) int64. ``rows`` maps the first sample index of a chunk to its outputs (n_rows,
     samples). ``rejected`` (C,): samples by the first of the plan's constraints that they violate; they count in nothing
-    else but ``samples``, and stay in the rows.
+    else but ``samples``, and stay in the rows. ``earliest`` (C,): the number of the first of them, NONE where there is
+    none; of the voxels that hold any, sorted by ``blocked_cells`` (B,), how many: ``blocked`` (B, C) int64.
     """
 
     samples: int
@@ -27,6 +30,9 @@ class Partial:
     sums: np.ndarray
     rows: dict[int, np.ndarray]
     rejected: np.ndarray = field(default_factory=lambda: np.zeros(0, np.int64))
+    earliest: np.ndarray = field(default_factory=lambda: np.zeros(0, np.int64))
+    blocked_cells: np.ndarray = field(default_factory=lambda: np.zeros(0, np.int64))
+    blocked: np.ndarray = field(default_factory=lambda: np.zeros((0, 0), np.int64))
 
     @property
     def admitted(self) -> int:
@@ -46,17 +52,14 @@ class Partial:
 
 def merge(a: Partial, b: Partial) -> Partial:
     """The partial result of both ranges of samples; associative and commutative, bit for bit."""
-    cells, where_a, where_b = _union(a.cells, b.cells)
-    count = np.zeros(len(cells), np.int64)
-    count[where_a] = a.count
-    count[where_b] += b.count
+    cells, where_a, where_b = union(a.cells, b.cells)
+    count = added(len(cells), (where_a, a.count), (where_b, b.count))
     lowest = -np.iinfo(a.records.dtype).max
     records = np.full((len(cells), a.records.shape[1]), lowest, a.records.dtype)
     records[where_a] = a.records
     records[where_b] = np.maximum(records[where_b], b.records)
-    sums = np.zeros((len(cells), a.sums.shape[1]), np.int64)
-    sums[where_a] = a.sums
-    sums[where_b] += b.sums
+    sums = added(len(cells), (where_a, a.sums), (where_b, b.sums))
+    blocked_cells, blocked_a, blocked_b = union(a.blocked_cells, b.blocked_cells)
     return Partial(
         a.samples + b.samples,
         np.maximum(a.extremes, b.extremes),
@@ -67,7 +70,18 @@ def merge(a: Partial, b: Partial) -> Partial:
         sums,
         {**a.rows, **b.rows},
         a.rejected + b.rejected,
+        np.minimum(a.earliest, b.earliest),
+        blocked_cells,
+        added(len(blocked_cells), (blocked_a, a.blocked), (blocked_b, b.blocked)),
     )
+
+
+def added(size: int, *parts: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
+    """Of so many voxels the sums of values (V,) or (V, K) int64 at places (V,), no two of which are alike."""
+    total = np.zeros((size, *parts[0][1].shape[1:]), np.int64)
+    for at, values in parts:
+        total[at] += values
+    return total
 
 
 def joined(partials: list[Partial], voxels: int) -> Partial:
@@ -76,12 +90,18 @@ def joined(partials: list[Partial], voxels: int) -> Partial:
         return partials[0]
     return replace(
         partials[0],
-        cells=np.concatenate([partial.cells + slab * voxels for slab, partial in enumerate(partials)]),
-        **{name: np.concatenate([getattr(p, name) for p in partials]) for name in ("count", "records", "sums")},
+        **{
+            name: np.concatenate([getattr(partial, name) + slab * voxels for slab, partial in enumerate(partials)])
+            for name in ("cells", "blocked_cells")
+        },
+        **{
+            name: np.concatenate([getattr(p, name) for p in partials])
+            for name in ("count", "records", "sums", "blocked")
+        },
     )
 
 
-def _union(a: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def union(a: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Sorted union of two sorted sets of cells, and where the cells of each stand in it."""
     at = np.searchsorted(a, b)
     known = np.zeros(len(b), bool)

@@ -54,7 +54,8 @@ def _slab_width(block: LatticeBlock, shape: Shape, free: float) -> int:
     """Voxels along x of the slabs whose records fit in so many free bytes; 0 where MOST_SLABS are too few."""
     nx, ny, nz = block.shape
     slice_bytes = ny * nz * shape.bytes_per_voxel
-    largest = (LARGEST_ARRAY - shape.record_size) // (ny * nz * max(shape.record_size, shape.sums_size))
+    widest = max(shape.record_size, shape.sums_size, len(shape.constraints))
+    largest = (LARGEST_ARRAY - widest) // (ny * nz * widest)
     if nx * slice_bytes <= SHARE * free and nx <= largest:
         return nx
     width = int(min(SHARE_SLAB * free // slice_bytes, largest))

@@ -28,7 +28,7 @@ from wsrender.engine.grid_structure import (
 )
 from wsrender.engine.kernel_cache import launch, loaded
 from wsrender.engine.memory import as_type, device_memory, fetched
-from wsrender.engine.partial import Partial, joined, merge
+from wsrender.engine.partial import NONE, Partial, joined, merge
 from wsrender.engine.ranges import check_range
 from wsrender.engine.row_buffer import RowBuffer
 from wsrender.engine.slabs import fitted
@@ -259,6 +259,8 @@ class Accumulator:
         self._totals = device_memory(TOTAL_SLOTS * (shape.n_indices + len(shape.constraints)), wp.int64, device)
         self._records = device_memory(voxels * shape.record_size, bits, device)
         self._sums = device_memory(voxels * shape.sums_size, wp.int64, device)
+        self._rejections = device_memory(voxels * len(shape.constraints), wp.int64, device)
+        self._earliest = device_memory(len(shape.constraints), wp.int64, device)
         buffers = (2 if device.is_cuda else 1) if shape.keep_rows else 0
         self._row_buffers = [RowBuffer(shape.n_rows, chunk, real, device, shape.interleaved) for _ in range(buffers)]
         outputs = self._outputs = outputs_type(shape)()
@@ -268,6 +270,10 @@ class Accumulator:
         outputs.records = as_type(self._records, record_type_of(shape))
         outputs.sums = as_type(self._sums, sums_type_of(shape))
         outputs.rows_out, outputs.rows_stride = wp.empty(0, dtype=real, device=device), chunk
+        if shape.constraints:
+            outputs.earliest = self._earliest
+            if slab:
+                outputs.rejections = self._rejections
         self._folded: Partial | None = None
         self._clear()
 
@@ -299,16 +305,20 @@ class Accumulator:
         extremes, totals = self._extremes.numpy(), self._totals.numpy()
         np.maximum(extremes, other._extremes.numpy(), out=extremes)
         totals += other._totals.numpy()
+        earliest = self._earliest.numpy()
+        np.minimum(earliest, other._earliest.numpy(), out=earliest)
         everywhere = slice(0, self._size)
         own, added = self._voxels(everywhere), other._voxels(everywhere)
 
         def absorb_voxels(start: int) -> None:
             part = slice(start, start + VOXELS_ABSORBED)
-            (records, sums), (more_records, more_sums) = ((table[part] for table in pair) for pair in (own, added))
+            records, sums, rejections = (table[part] for table in own)
+            more_records, more_sums, more_rejections = (table[part] for table in added)
             counts = _counts(records) + (_counts(more_records) - self._empty_count)
             np.maximum(records, more_records, out=records)
             _counts(records)[:] = counts
             sums += more_sums
+            rejections += more_rejections
 
         list(pool.map(absorb_voxels, range(0, len(own[0]), VOXELS_ABSORBED)))
 
@@ -353,31 +363,39 @@ class Accumulator:
             model.inertia_given = device_array(inertia.reshape(count, -1).T.ravel(), real, device)
         return given_space(q, first, pipeline.precision, device)
 
-    def _voxels(self, part: slice) -> tuple[np.ndarray, np.ndarray]:
-        """Records and sums of some of the slab's voxels, (V, record_size) and (V, sums_size)."""
-        voxels, size, width = part.stop - part.start, self.shape.record_size, self.shape.sums_size
-        records = fetched(self._records, part.start * size, part.stop * size)
-        sums = fetched(self._sums, part.start * width, part.stop * width)
-        return records.reshape(voxels, size), sums.reshape(voxels, width)
+    def _voxels(self, part: slice) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Of some of the slab's voxels records (V, record_size), sums (V, sums_size) and rejected samples (V, C)."""
+        shape = self.shape
+        records, sums, rejections = (
+            fetched(values, part.start * width, part.stop * width).reshape(part.stop - part.start, width)
+            for values, width in (
+                (self._records, shape.record_size),
+                (self._sums, shape.sums_size),
+                (self._rejections, len(shape.constraints)),
+            )
+        )
+        return records, sums, rejections
 
     def _occupied(self) -> list[np.ndarray]:
-        """Cells, counts, extremes and sums of the slab's occupied voxels.
+        """Cells, counts, extremes and sums of the slab's occupied voxels; cells and numbers of rejected samples.
 
         Part by part: the host of a GPU may not have the memory for all records.
         """
         first, found = self.shape.count_size, []
         for start in range(0, max(self._size, 1), VOXELS_FETCHED):
-            records, sums = self._voxels(slice(start, min(start + VOXELS_FETCHED, self._size)))
+            records, sums, rejections = self._voxels(slice(start, min(start + VOXELS_FETCHED, self._size)))
             counts = _counts(records)
             cells = np.flatnonzero(counts != self._empty_count)
             extremes = records[cells, first : first + self.shape.extremes]
             kept = sums[cells, : self.shape.n_indices * self.shape.sums]
-            found.append((start + cells, counts[cells] - self._empty_count, extremes, kept))
+            blocked = np.flatnonzero(rejections.any(axis=1))
+            occupied = start + cells, counts[cells] - self._empty_count, extremes, kept
+            found.append((*occupied, start + blocked, rejections[blocked]))
         return [np.concatenate(parts) for parts in zip(*found, strict=True)]
 
     def _fold(self) -> None:
         """Add what the device holds to the 64-bit host arrays."""
-        cells, count, extremes, sums = self._occupied()
+        cells, count, extremes, sums, blocked_cells, blocked = self._occupied()
         weight = self.plan.structure.weight
         totals = self._totals.numpy().reshape(TOTAL_SLOTS, -1).sum(axis=0) * weight
         held = Partial(
@@ -390,14 +408,24 @@ class Accumulator:
             sums * weight,
             self._rows,
             totals[self.shape.n_indices :],
+            self._first_samples(),
+            blocked_cells,
+            blocked * weight,
         )
         self._folded = held if self._folded is None else merge(self._folded, held)
+
+    def _first_samples(self) -> np.ndarray:
+        """Of every constraint the first sample that it rejects: of those that one stands for, the first."""
+        earliest = self._earliest.numpy()
+        return np.where(earliest == NONE, NONE, earliest * self.plan.structure.weight)
 
     def _clear(self) -> None:
         self._counted = 0
         self._rows: dict[int, np.ndarray] = {}
         self._records.fill_(self._lowest)
         self._sums.zero_()
+        self._rejections.zero_()
+        self._earliest.fill_(NONE)
         self._totals.zero_()
         self._extremes.fill_(self._lowest)
 

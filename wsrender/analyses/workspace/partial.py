@@ -8,7 +8,10 @@ from wsrender.analyses.refined import Refined
 from wsrender.engine import Partial
 from wsrender.pipeline.pipeline import Pipeline
 
-SWEEP = ("extremes", "totals", "cells", "count", "records", "sums", "rejected")
+SWEEP = (
+    *("extremes", "totals", "cells", "count", "records", "sums"),
+    *("rejected", "earliest", "blocked_cells", "blocked"),
+)
 ROWS = "rows_"
 
 
