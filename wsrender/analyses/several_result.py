@@ -8,7 +8,10 @@ from wsrender.analyses.several_robots import SeveralPlans
 from wsrender.notices import Notice
 from wsrender.results.result import Result
 
-OF_EACH = ("robot", "sampling", "samples", "indices", "volume_m3", "headline", "bounds_m", "global", "convergence")
+OF_EACH = (
+    *("robot", "sampling", "samples", "rejections", "indices", "volume_m3", "headline", "bounds_m", "global"),
+    "convergence",
+)
 
 
 def common_entries(several: SeveralPlans, results: list[Result]) -> dict[str, Any]:

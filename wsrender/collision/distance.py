@@ -27,6 +27,8 @@ TYPES = {
 }
 PARALLEL = 1e-30  # half an axis across a face that counts as along it [m]
 
+AT_A_TIME = 4096  # configurations whose frames are held
+
 
 class Distances:
     """`mj_geomDistance` of solids that stand anywhere, mended; threads may call it side by side."""
@@ -111,9 +113,34 @@ def blocked_by(pairs: Pairs, distances: Distances, chain: Chain, q: np.ndarray, 
     frames, found = frames_of(chain, q), np.zeros(len(q), np.int8)
     for pair in np.flatnonzero(asked.any(axis=0)).tolist():
         open_ = np.flatnonzero(asked[:, pair] & (found == 0))
-        a, b = pairs.pairs[pair]
-        T_a, T_b = (frames[open_, pairs.solids[k].joint + 1] @ pairs.solids[k].T for k in (a, b))
-        margin = pairs.margin(pair)
-        near = distances.between(a, b, T_a, T_b, margin + 1e-3) < margin
+        near = _near(pairs, distances, pair, *_placed(pairs, pair, frames[open_]))
         found[open_[near]] = pairs.reason[pair] + 1
     return found
+
+
+def colliding(pairs: Pairs, distances: Distances, chain: Chain, q: np.ndarray) -> np.ndarray:
+    """Which pairs are nearer than their margins at configurations ``q`` (N, n), (N, P) bool, by MuJoCo in float64.
+
+    It is not asked of what balls around two solids keep apart.
+    """
+    found = np.zeros((len(q), len(pairs.pairs)), bool)
+    for start in range(0, len(q), AT_A_TIME):
+        frames = frames_of(chain, q[start : start + AT_A_TIME])
+        for pair, solids in enumerate(pairs.pairs):
+            T_a, T_b = _placed(pairs, pair, frames)
+            far = pairs.margin(pair) + sum(pairs.solids[k].bounding_radius for k in solids)
+            close = np.flatnonzero(np.linalg.norm(T_a[:, :3, 3] - T_b[:, :3, 3], axis=1) <= far)
+            found[start + close, pair] = _near(pairs, distances, pair, T_a[close], T_b[close])
+    return found
+
+
+def _placed(pairs: Pairs, pair: int, frames: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Frames (N, 4, 4) of both solids of a pair, of those (N, L + 1, 4, 4) of base and joints."""
+    a, b = (frames[:, pairs.solids[k].joint + 1] @ pairs.solids[k].T for k in pairs.pairs[pair])
+    return a, b
+
+
+def _near(pairs: Pairs, distances: Distances, pair: int, T_a: np.ndarray, T_b: np.ndarray) -> np.ndarray:
+    a, b = pairs.pairs[pair]
+    margin = pairs.margin(pair)
+    return distances.between(a, b, T_a, T_b, margin + 1e-3) < margin

@@ -94,6 +94,9 @@ _ROWS = (
     Picture("slices", _PLOTS + "slices", "Voxels in planes", ("volume",)),
     Picture("histogram", _PLOTS + "histogram", "Distribution of the indices over the samples", ("samples",),
             where=lambda plot: bool(plot.samples.indices)),
+    Picture("admission", _PLOTS + "admission", "Voxels that are free, and those without an admitted sample",
+            ("volumes.admission",)),
+    Picture("share", _PLOTS + "share", "Share of the samples that constraints admit", ("volumes.admission",)),
     *(Picture(name, _PLOTS + "curves", _CAPTIONS.get(name, ""), (f"tables.{name}",), options={"table": name})
       for name in CURVES),
     Picture("field", _PLOTS + "vectors", needs=("volume",), where=lambda plot: bool(plot.volume.vectors)),

@@ -25,6 +25,7 @@ from wsrender.pipeline.sampling import plan_sampling
 from wsrender.robot.constraints import constraints_for, samples_entry
 from wsrender.robot.indices import evaluation_of_job
 from wsrender.robot.model_robot import configuration_rows
+from wsrender.robot.rejections import colliding_pairs, first_rejected
 from wsrender.volume.distribution_map import DistributionMap
 from wsrender.volume.table import Table
 
@@ -83,7 +84,8 @@ class IndicesAtAnalysis(Analysis):
         """The map, one row per configuration in the order asked, and the extremes of each index.
 
         With constraints the table ``admission`` says of every row why it is rejected, "" where it is not; values of
-        rejected ones are NaN, and count in no extreme.
+        rejected ones are NaN, and count in no extreme. The entry ``rejections`` has the first row of each reason, and
+        which pairs of shapes collide how often.
         """
         rows, names = Evaluated(**partial.arrays), self.pipeline.evaluation.indices
         admitted, about, tables = self._admission(rows.rejected)
@@ -115,4 +117,8 @@ class IndicesAtAnalysis(Analysis):
         reasons = np.array(["", *(each.name for each in self.pipeline.constraints)])
         counts = np.bincount(rejected, minlength=len(reasons))[1:]
         about = samples_entry(self.pipeline.constraints, len(self.q), counts)
+        numbers, rows = np.unique(rejected, return_index=True)
+        rows, rejecting = rows[numbers > 0], [self.pipeline.constraints[k - 1] for k in numbers[numbers > 0]]
+        pairs = colliding_pairs(self.pipeline.constraints, self.q, rejected)
+        about["rejections"] = {"first": first_rejected(rejecting, rows, self.q[rows]), **pairs}
         return rejected == 0, about, {"admission": Table({"reason": reasons[rejected]})}

@@ -14,7 +14,7 @@ from wsrender.analyses.volume_notices import few_samples, occupied_differs, tole
 from wsrender.analyses.workspace.job import WorkspaceJob
 from wsrender.analyses.workspace.partial import WorkspacePartial
 from wsrender.engine import Evaluated, Partial, SweepPlan, configurations, evaluate_samples, evaluated_of, units_of
-from wsrender.engine.voxel_data import volume_data
+from wsrender.engine.voxel_data import admission_data, volume_data
 from wsrender.global_indices import (
     VoxelVolumes,
     global_isotropy,
@@ -31,6 +31,7 @@ from wsrender.reach.holes import share_of_holes, share_unseen
 from wsrender.reach.voxel_labels import counts
 from wsrender.robot import Robot
 from wsrender.robot.constraints import check_admitted, samples_entry
+from wsrender.robot.rejections import colliding_pairs, first_rejected, lost_voxels, moved_means
 from wsrender.volume.distribution_map import DistributionMap
 from wsrender.volume.volume_data import VolumeData
 
@@ -48,7 +49,10 @@ def workspace_draft(job: WorkspaceJob, robot: Robot, found: WorkspacePartial, th
     units = units_of(evaluation)
     volume = volume_data(pipeline, partial, units)
     volumes = voxel_volumes(volume)
-    sample = _admitted(pipeline, _picture_sample(pipeline, threads), robot, units)
+    drawn = _picture_sample(pipeline, threads)
+    sample = _admitted(pipeline, drawn, robot, units)
+    admission = admission_data(pipeline, partial) if pipeline.constraints else None
+    rejections = {"rejections": _rejections(pipeline, partial, drawn, admission)} if admission else {}
     rows = None if pipeline.kept_rows is None else evaluated_of(pipeline, partial)
     measure = refined.measure if refined else None
     labels = refined.voxels if refined else None
@@ -58,6 +62,7 @@ def workspace_draft(job: WorkspaceJob, robot: Robot, found: WorkspacePartial, th
     document: dict[str, Any] = {
         "sampling": _sampling_entry(job, pipeline, partial),
         **samples,
+        **rejections,
         "indices": _index_entries(pipeline, partial, volume, units),
         "choices": index_choices(job, evaluation),
         "voxel_size_m": pipeline.block.voxel_size_m if pipeline.block else None,
@@ -98,8 +103,32 @@ def workspace_draft(job: WorkspaceJob, robot: Robot, found: WorkspacePartial, th
         volume=volume,
         skeleton=_shown_arms(pipeline, robot, sample),
         meshes=meshes,
-        volumes={"reachability": labels} if labels else {},
+        volumes={name: each for name, each in {"reachability": labels, "admission": admission}.items() if each},
     )
+
+
+def _rejections(pipeline: Pipeline, partial: Partial, sample: Evaluated, admission: VolumeData) -> dict[str, Any]:
+    """The first rejected sample by reason, the pairs that collide, and what is lost beside a loss at random.
+
+    Pairs and means are of the ``sample``.
+    """
+    rejecting = np.flatnonzero(partial.rejected)
+    constraints, numbers = [pipeline.constraints[k] for k in rejecting], partial.earliest[rejecting]
+    rejected, count, voxel = sample.rejected, admission.voxels.count, admission.voxel_size_m**3
+    assert rejected is not None and sample.q is not None
+    admitted, lost = admission.voxels.statistics["samples"]["admitted"], int(partial.rejected.sum())
+    return {
+        "first": first_rejected(constraints, numbers, configurations(pipeline, numbers)),
+        **colliding_pairs(pipeline.constraints, sample.q, rejected),
+        "volume_m3": lost_voxels(count, admitted, partial.samples, lost, voxel),
+        "means": {
+            "counted": len(rejected),
+            "indices": {
+                name: moved_means(values, rejected)
+                for name, values in zip(pipeline.evaluation.indices, sample.values, strict=True)
+            },
+        },
+    }
 
 
 def _structural_length(robot: Robot, measure: dict[str, Any] | None, *, constrained: bool) -> dict[str, Any]:

@@ -188,12 +188,14 @@ class WorkspaceAnalysis(Analysis):
     def cost(self) -> Cost:
         """Of the sweep, and of the refined measure, labels, files and pictures."""
         job, swept, (voxels, block) = self.job, self.swept_cost, self._expected
-        drawn, seconds = pictures_cost("slices", "scatter", "histogram", "robot")
+        of_constraints = ("admission", "share") if self.constraints else ()
+        drawn, seconds = pictures_cost("slices", "scatter", "histogram", "robot", *of_constraints)
         rows = min(swept.samples, PICTURE_SAMPLES)
         columns = 3 + self.pipeline.evaluation.chain.n + len(self.pipeline.evaluation.indices)
-        files = (
-            swept.file_bytes + 8.0 * columns * rows + drawn + DOCUMENT_BYTES + surface_bytes(voxels) + self.volume_bytes
-        )
+        files = swept.file_bytes + 8.0 * columns * rows + drawn + DOCUMENT_BYTES + surface_bytes(voxels)
+        files += self.volume_bytes
+        if self.constraints:  # of each voxel samples drawn, admitted and rejected by each, and a share
+            files += block * 8.0 * (3 + len(self.constraints))
         memory = self._memory(swept, self._held)
         seconds += swept.seconds + refined_seconds(job.refined_volume)
         if job.voxel_labels:

@@ -30,7 +30,8 @@ Extend = Literal["neither", "min", "max", "both"]
 class ColorScale:
     """Colours of a quantity: ``norm`` and ``colors``, the bar's ``label``, its pointed ends and its ticks.
 
-    Values beyond ``norm`` have the colour of the pointed end. ``ticks`` of None are left to matplotlib.
+    Values beyond ``norm`` have the colour of the pointed end. ``ticks`` of None are left to matplotlib; ``names``
+    stand at them instead of numbers.
     """
 
     norm: Normalize
@@ -38,6 +39,7 @@ class ColorScale:
     label: str
     extend: Extend = "neither"
     ticks: Sequence[float] | MaxNLocator | None = None
+    names: Sequence[str] | None = None
 
     @property
     def diverging(self) -> bool:
@@ -65,6 +67,8 @@ class ColorScale:
         mappable = ScalarMappable(self.norm, self.colors)
         bar = figure.colorbar(mappable, extend=self.extend, extendfrac=0.04, ticks=self.ticks, **place)
         bar.set_label(self.label)
+        if self.names is not None:
+            bar.set_ticklabels(self.names)
         bar.outline.set_visible(False)
         bar.minorticks_off()
         if self.diverging:

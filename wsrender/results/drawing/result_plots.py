@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from wsrender.errors import InputError
+from wsrender.results.drawing.admission import blocked_planes
 from wsrender.results.drawing.distribution import histogram
 from wsrender.results.drawing.faces import Faces, faces_of
 from wsrender.results.drawing.faces_of_surface import surface_faces
@@ -117,6 +118,14 @@ class ResultPlots:
     ) -> Figure:
         """Planes normal to x, y and z at the coordinates ``at`` [m]; of voxels in a plane that one alone."""
         return slices(self._volume(), at=at, index=index, statistic=statistic, title=self.heading("volume"))
+
+    def admission(self, at: tuple[float | None, float | None, float | None] = (None, None, None)) -> Figure:
+        """Planes of the voxels that constraints leave free, and of those that they block, by the reason."""
+        return blocked_planes(self.volumes["admission"], at=at, title=self.heading("volume"))
+
+    def share(self, at: tuple[float | None, float | None, float | None] = (None, None, None)) -> Figure:
+        """Planes of the share of samples in each voxel that constraints admit."""
+        return slices(self.volumes["admission"], at=at, statistic="share", title=self.heading("volume"))
 
     def vectors(
         self, name: str | None = None, at: tuple[float | None, float | None, float | None] = (None, None, None)

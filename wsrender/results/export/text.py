@@ -8,6 +8,7 @@ from wsrender.results.export.headline import head_lines
 from wsrender.results.presentation import presentation_of
 from wsrender.volume.measure import TABLE_UNITS, UNITS
 
+MOST_PAIRS = 3  # told of those that collide
 _METHODS = {
     "boundary": "near the joint limits",
     "given": "as given",
@@ -39,7 +40,7 @@ def summary_text(document: dict[str, Any]) -> str:
     """Headline, warnings, admitted samples, volumes, bounds, global and local indices, as several lines."""
     head = [f"  {line}" for line in head_lines(document)]
     facts = [f"  {name:<24}{value}" for name, value in _facts(document)]
-    table = _index_table(document.get("indices") or {})
+    table = _index_table(document.get("indices") or {}, "admitted samples" if document.get("samples") else "samples")
     return "\n".join([sampling_text(document), *head, *facts, *table, *_difference_table(document)])
 
 
@@ -48,6 +49,7 @@ def _facts(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
     if samples := document.get("samples"):
         reasons = ", ".join(f"{name} {number:,}" for name, number in samples["rejected"].items())
         yield "admitted samples", f"{samples['admitted']:,} of {samples['drawn']:,}; rejected by {reasons}"
+        yield from _rejections(document.get("rejections") or {})
     if flat := document.get("flat"):
         yield from _flat(flat, headline)
     else:
@@ -60,6 +62,22 @@ def _facts(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
     for name, value in (document.get("global") or {}).items():
         if isinstance(value, int | float):
             yield name.replace("_", " "), f"{value:.4g}"
+
+
+def _rejections(rejections: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    """The pairs that collide most often, and what is lost beside a loss at random."""
+    if found := rejections.get("pairs"):
+        most = [
+            f"{' – '.join(pair['shapes'])} {pair['samples'] / found['counted']:.2%}"
+            for pair in found["colliding"][:MOST_PAIRS]
+        ]
+        more = len(found["colliding"]) - len(most)
+        told = "; ".join(most) + (f"; {more} more" if more else "") or "none"
+        yield "colliding pairs", f"{told} (of {found['counted']:,} samples)"
+    if lost := rejections.get("volume_m3"):
+        random, (low, high) = lost["lost_at_random"]["value"], lost["lost_at_random"]["ci95"]
+        beside = f"with as many samples dropped at random {random:.4g} m³ (95 %: {low:.4g} … {high:.4g})"
+        yield "voxels lost", f"{lost['lost']:.4g} m³ of {lost['drawn']:.4g}; {beside}"
 
 
 def _flat(flat: dict[str, Any], headline: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
@@ -95,7 +113,7 @@ def _measures(
             yield from _measures(value, quantity, headline, f"{words} ")
 
 
-def _index_table(indices: dict[str, dict[str, Any]]) -> Iterator[str]:
+def _index_table(indices: dict[str, dict[str, Any]], samples: str = "samples") -> Iterator[str]:
     if not indices:
         return
     extremes, means = ("minimum", "maximum"), ("joint_mean", "workspace_mean")
@@ -110,7 +128,7 @@ def _index_table(indices: dict[str, dict[str, Any]]) -> Iterator[str]:
         relative = "".join(f"{_number(values.get(column)):>17}" for column in means)
         yield f"  {name:<{width}}{low_high}  {units[name]:<{unit_width}}{relative}".rstrip()
     if any(values.get("joint_mean") is not None for values in indices.values()):
-        yield "  means are of value / maximum: over the samples, and over the occupied voxels"
+        yield f"  means are of value / maximum: over the {samples}, and over the occupied voxels"
 
 
 def _difference_table(document: dict[str, Any]) -> Iterator[str]:

@@ -1,0 +1,45 @@
+"""What constraints leave of a workspace, in planes: voxels that stay free, and what blocks the others."""
+
+import numpy as np
+from matplotlib.colors import BoundaryNorm, ListedColormap
+from matplotlib.figure import Figure
+
+from wsrender.errors import InputError
+from wsrender.results.drawing.color_scale import ColorScale
+from wsrender.results.drawing.planes import Field, draw_plane, layer_at, new_planes, plane_normals
+from wsrender.results.drawing.style import Heading, paper_style
+from wsrender.volume.volume_data import VolumeData
+
+FREE = "#d9d9d9"
+# Okabe and Ito 2008, told apart by the colour-blind; further reasons begin anew, paler.
+BLOCKED = ("#d55e00", "#0072b2", "#cc79a7", "#009e73", "#e69f00", "#56b4e9")
+
+
+@paper_style()
+def blocked_planes(
+    volume: VolumeData,
+    *,
+    at: tuple[float | None, float | None, float | None] = (None, None, None),
+    title: Heading | str = "",
+    frame: str = "world",
+) -> Figure:
+    """Voxels of the planes normal to x, y and z at the coordinates ``at`` [m] by what blocks them.
+
+    Of a ``volume`` with "samples" by reason, those "admitted" first: a voxel is free where one is admitted, else
+    blocked by the reason of most of its samples. Raises InputError for a volume without these.
+    """
+    voxels, samples = volume.voxels, volume.voxels.statistics.get("samples", {})
+    if "admitted" not in samples or not volume.n_occupied:
+        raise InputError("volume", "does not hold the samples that constraints admit and reject")
+    rejected = {name: values for name, values in samples.items() if name != "admitted"}
+    code = np.where(samples["admitted"] > 0, 0, 1 + np.argmax(list(rejected.values()), axis=0))
+    colors = [FREE, *(BLOCKED[k % len(BLOCKED)] for k in range(len(rejected)))]
+    norm = BoundaryNorm(np.arange(len(colors) + 1) - 0.5, len(colors))
+    names = ("free", *(f"blocked by\n{name.replace('_', ' ')}" for name in rejected))
+    scale = ColorScale(norm, ListedColormap(colors), "", ticks=range(len(names)), names=names)
+    field = Field(voxels, code.astype(np.float64), scale)
+    normals = plane_normals([volume], at)
+    figure, panels = new_planes(volume, field.scale, title, axes=normals)
+    for axes, axis in zip(panels[0], normals, strict=True):
+        draw_plane(axes, volume, field, axis, layer_at(volume, axis, at[axis], field), frame)
+    return figure
