@@ -11,18 +11,20 @@ from wsrender.errors import ResourceError
 
 SAMPLING = {"method": "random", "count": 4096, "seed": 1}
 ARM = {"robot": "phantom_omni", "sampling": SAMPLING}
+REGION = {"box": {"lower_m": [None, -0.25, None]}}  # which leaves most of what the arm reaches
 POINTS = [[0.8 * ((k * s) % 1) - 0.4 for s in (0.618, 0.7549, 0.5698)] for k in range(100)]
 JOBS = {
     "workspace": ARM | {"refined_volume": None},
     "labelled workspace": ARM | {"refined_volume": None, "voxel_labels": True, "voxel_size_m": 0.04},
     "map": ARM | {"refined_volume": None, "keep_map": True},
+    "constrained workspace": ARM | {"refined_volume": None, "constraints": {"region": REGION}},
     "capability": {"robot": "phantom_omni", "directions": 20, "voxel_size_m": 0.05},
     "kinetostatic_field": ARM | {"sampling": {"method": "sobol", "count": 1024}},
     "reachability": {"robot": "phantom_omni", "points_m": POINTS},
     "shared_workspace": {"robots": [ARM, ARM | {"name": "other"}], "refined_volume": None},
     "robot_comparison": {"robots": [ARM, ARM | {"name": "other"}], "refined_volume": None},
 }
-OF_WORKSPACE = ("labelled workspace", "map")
+OF_WORKSPACE = ("labelled workspace", "map", "constrained workspace")
 
 
 def job(name: str, **fields) -> dict:
@@ -63,6 +65,9 @@ SIDES = {side: {"robot": "phantom_omni"} for side in ("left", "right")}
 ROWS = [[(k * s) % 1 for s in (0.61, 0.75, 0.56, 0.33, 0.47, 0.29)] for k in range(20_000)]
 LARGE = {
     "workspace": ARM | PLAIN | {"sampling": SAMPLING | {"count": 300_000}, "voxel_size_m": 0.005},
+    "constrained workspace": ARM
+    | PLAIN
+    | {"sampling": SAMPLING | {"count": 300_000}, "voxel_size_m": 0.005, "constraints": {"region": REGION}},
     "map": ARM
     | PLAIN
     | {"sampling": SAMPLING | {"count": 300_000}, "keep_map": True, "map_columns": ["configuration"]},
@@ -76,7 +81,7 @@ LARGE = {
     "orientations": {"mechanism": "stewart_gough", "kind": "orientation", "position_m": [0, 0, 0.55]}
     | {"orientations": {"tilt_deg": 40}},
 }
-OF_ANALYSIS = {"map": "workspace", "orientations": "parallel_workspace"}
+OF_ANALYSIS = {"map": "workspace", "constrained workspace": "workspace", "orientations": "parallel_workspace"}
 
 
 @pytest.mark.parametrize("name", LARGE)

@@ -1,6 +1,7 @@
 """What results say of rejected samples: where they lie, the first ones, pairs that collide, and losses by chance."""
 
 from collections import Counter
+from concurrent.futures import ThreadPoolExecutor
 
 import mujoco
 import numpy as np
@@ -10,7 +11,8 @@ import wsrender as ws
 from tests.collision.robots import drawn
 from tests.collision.test_labels import AROUND, SELF, labels
 from wsrender.documents.constraints import Constraints
-from wsrender.engine import configurations, devices_of, evaluated_of, sweep
+from wsrender.engine import SweepPlan, configurations, devices_of, evaluated_of, merge, sweep
+from wsrender.engine.sweep_plan import Accumulator
 from wsrender.pipeline.evaluation import Evaluation
 from wsrender.pipeline.pipeline import Pipeline
 from wsrender.pipeline.sampling import plan_sampling
@@ -62,6 +64,25 @@ def test_a_grid_that_is_collapsed_counts_all_that_it_stands_for():
         assert a.earliest.tolist() == b.earliest.tolist() and a.rejected.sum() == a.blocked.sum() > 0
         for name in ("blocked_cells", "blocked", "cells", "count"):
             assert np.array_equal(getattr(a, name), getattr(b, name)), name
+
+
+def test_what_threads_have_counted_adds_up_in_any_order():
+    robot = ws.load_robot("scara")
+    constraints = constraints_for(robot, Constraints(region={"box": {"lower_m": [None, 0.1, None]}}))
+    samples, (cpu,) = plan_sampling(robot.chain, ws.Sobol(8_192)), devices_of("cpu")
+    plan = SweepPlan(Pipeline(Evaluation(robot.chain), samples, constraints, BLOCK))
+    whole = sweep(plan.pipeline, 0, samples.count, [cpu])
+    ranges = ((0, 2_048), (2_048, 6_144))
+    for order in (ranges, ranges[::-1]):
+        own, other = (Accumulator(plan, plan.shape, BLOCK, cpu, 8_192) for _ in order)
+        own.add(*order[0])
+        other.add(*order[1])
+        parts = [sweep(plan.pipeline, *part, [cpu]) for part in order]
+        with ThreadPoolExecutor(1) as pool:
+            own.absorb(other, pool)
+        for found in (own.partial(), merge(*parts)):
+            for name in ("rejected", "earliest", "blocked_cells", "blocked"):
+                assert np.array_equal(getattr(found, name), getattr(whole, name)), name
 
 
 def test_a_constraint_that_rejects_nothing_has_no_first_sample():

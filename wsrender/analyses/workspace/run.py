@@ -46,6 +46,7 @@ from wsrender.robot.indices import evaluation_of_job
 from wsrender.volume.lattice import LatticeBlock, expected_voxels, voxel_of
 from wsrender.volume.volume_data import VolumeData
 
+ROWS_HELD = 3.5  # copies of the pictures' samples where some are rejected
 LABEL_BYTES, LABELLED_BYTES = 24, 250  # of a voxel of the cropped block: what is near; of one that is decided
 
 
@@ -182,6 +183,8 @@ class WorkspaceAnalysis(Analysis):
             expected, block = self._expected
             near = min(27 * voxels, (np.cbrt(expected) + 2) ** 3)
             labels = LABELLED_BYTES * near + solved_bytes(near) + LABEL_BYTES * block
+        if self.constraints:
+            kept += ROWS_HELD * self._picture_bytes
         return float(max(swept.memory_bytes, kept + refined_bytes(self.job.refined_volume) + labels))
 
     @property
@@ -190,9 +193,7 @@ class WorkspaceAnalysis(Analysis):
         job, swept, (voxels, block) = self.job, self.swept_cost, self._expected
         of_constraints = ("admission", "share") if self.constraints else ()
         drawn, seconds = pictures_cost("slices", "scatter", "histogram", "robot", *of_constraints)
-        rows = min(swept.samples, PICTURE_SAMPLES)
-        columns = 3 + self.pipeline.evaluation.chain.n + len(self.pipeline.evaluation.indices)
-        files = swept.file_bytes + 8.0 * columns * rows + drawn + DOCUMENT_BYTES + surface_bytes(voxels)
+        files = swept.file_bytes + self._picture_bytes + drawn + DOCUMENT_BYTES + surface_bytes(voxels)
         files += self.volume_bytes
         if self.constraints:  # of each voxel samples drawn, admitted and rejected by each, and a share
             files += block * 8.0 * (3 + len(self.constraints))
@@ -202,6 +203,12 @@ class WorkspaceAnalysis(Analysis):
             near = (np.cbrt(voxels) + 2) ** 3
             files, seconds = files + 16.0 * (np.cbrt(block) + 2) ** 3, seconds + near / DECIDED_PER_S
         return Cost(swept.samples, memory, float(files), float(seconds + files / WRITTEN_PER_S), swept.asks)
+
+    @property
+    def _picture_bytes(self) -> float:
+        """Bytes of the pictures' samples, as arrays."""
+        columns = 3 + self.pipeline.evaluation.chain.n + len(self.pipeline.evaluation.indices)
+        return 8.0 * columns * min(self.pipeline.sampling.count, PICTURE_SAMPLES)
 
     @property
     def volume_bytes(self) -> float:
