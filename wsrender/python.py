@@ -101,7 +101,8 @@ def analyze(
     ``voxel_statistics``: What is kept per voxel, from count, maximum, mean, minimum; count always is. None: what means
         something for the indices, count and maximum of the six.
     ``refined_volume``: Half width of the headline's 95 % interval, relative to it [1]: of the volume that inverse
-        kinematics finds reachable, of a planar workspace the area, of a line the length; None: none is computed.
+        kinematics finds reachable, of a planar workspace the area, of a line the length; under constraints of what it
+        finds free, beside what they block; None: none is computed.
     ``voxel_labels``: Whether every voxel is labelled reachable, unreachable or undecided by inverse kinematics.
     ``surfaces``: Meshes of the workspace, each with its volume: "marching_cubes" of the voxels, "convex_hull" and
         {"alpha_shape": α in metres} of the picture's subsample, {"iso_surface": index, "fraction": μ} of the voxels.

@@ -296,10 +296,13 @@ def test_nothing_is_reached_in_a_region_out_of_reach():
     assert (found.value, found.ci95) == (0.0, (0.0, 0.0))
 
 
-def test_what_inverse_kinematics_does_not_know_has_no_headline(added):
-    result = ws.analyze("ur5e", ws.Sobol(1 << 12), constraints={"elbow_up": True})
-    headline = result.document["headline"]
-    assert headline["value"] is None and "does not know the constraint elbow_up" in headline["reason"]
+def test_headlines_are_of_what_is_free(added):
+    """Of the two postures of a UR5e's elbow one is nearly always admitted."""
+    result = ws.analyze("ur5e", ws.Sobol(1 << 12), constraints={"elbow_up": True}, refined_volume=0.02)
+    volume, headline = result.document["volume_m3"], result.document["headline"]
+    assert headline["ci95"] == volume["free"]["ci95"] and headline["value"] == pytest.approx(3.80, rel=0.03)
+    assert list(volume["blocked"]["by"]) == ["elbow_up"] and volume["blocked"]["value"] < 0.03 * 3.80
+    assert "free volume" in result.summary() and "blocked volume" in result.summary()
     with pytest.raises(InputError, match="voxel_labels: must be false with constraints"):
         ws.analyze("ur5e", ws.Sobol(1 << 12), constraints={"elbow_up": True}, voxel_labels=True)
 
@@ -443,5 +446,9 @@ def test_what_inverse_kinematics_does_not_know_has_no_shared_headline(added):
         result = execute({"analysis": analysis, "robots": robots, "constraints": {"elbow_up": True}})
         first = result.document["robots"][0]
         assert first["samples"]["rejected"]["elbow_up"] > 0
-        headline = (result.document if analysis == "shared_workspace" else first)["headline"]
-        assert headline["value"] is None and "does not know the constraint elbow_up" in headline["reason"]
+        assert first["volume_m3"].get("blocked", {}).get("by", {}).keys() <= {"elbow_up"}
+        if analysis == "shared_workspace":
+            headline = result.document["headline"]
+            assert headline["value"] is None and "does not know the constraint elbow_up" in headline["reason"]
+        else:
+            assert first["headline"]["value"] == first["volume_m3"]["free"]["value"] > 0

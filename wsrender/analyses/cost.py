@@ -94,6 +94,7 @@ TRY_BYTES = 220.0  # of a try of inverse kinematics: start, target, what was fou
 REFINED_S = 0.7  # of a refined volume with a tolerance of REFINED_TO, a six-joint arm on one core
 REFINED_TO = 0.01
 REFINED_BYTES = 5e7  # of its points, cells and tries
+SEARCHED_S, SEARCHED_BYTES = 5.0, 2e8  # of a free volume under constraints: with samples, of which it takes starts
 
 
 def pictures_cost(*names: str) -> tuple[float, float]:
@@ -111,14 +112,15 @@ def solved_bytes(targets: float) -> float:
     return TRY_BYTES * min(16.0 * targets, MOST_TRIES)
 
 
-def refined_seconds(tolerance: float | None) -> float:
-    """Seconds of a refined volume; 0 of none."""
-    return 0.0 if tolerance is None else REFINED_S * max(1.0, REFINED_TO / tolerance)
+def refined_seconds(tolerance: float | None, searched: bool = False) -> float:
+    """Seconds of a refined volume, ``searched`` under constraints or not; 0 of none."""
+    each = SEARCHED_S if searched else REFINED_S
+    return 0.0 if tolerance is None else each * max(1.0, REFINED_TO / tolerance)
 
 
-def refined_bytes(tolerance: float | None) -> float:
+def refined_bytes(tolerance: float | None, searched: bool = False) -> float:
     """Bytes that are held while a volume is refined; 0 of none."""
-    return 0.0 if tolerance is None else REFINED_BYTES
+    return 0.0 if tolerance is None else SEARCHED_BYTES if searched else REFINED_BYTES
 
 
 def in_turn(costs: Iterable[Cost]) -> Cost:

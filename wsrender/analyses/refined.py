@@ -6,7 +6,14 @@ from typing import Any
 
 from wsrender.pipeline.constraints.constraint import Constraint
 from wsrender.pipeline.constraints.region import Region
-from wsrender.reach.measure_refinement import RefinedMeasure, refined_measure, refined_measures, unmeasured
+from wsrender.reach.free_volume import ALL_BLOCKED, FREE
+from wsrender.reach.measure_refinement import (
+    RefinedMeasure,
+    free_measures,
+    refined_measure,
+    refined_measures,
+    unmeasured,
+)
 from wsrender.reach.volume_estimate import Event
 from wsrender.reach.voxel_labels import label_voxels
 from wsrender.robots.kinematics import Kinematics
@@ -37,20 +44,30 @@ def refined(
     threads: int | None,
     constraints: Sequence[Constraint] = (),
 ) -> dict[str, Any]:
-    """The entry of the refined volume, area or length of a chain, under constraints that inverse kinematics knows."""
-    region, reason = _known(constraints)
-    if reason:
-        return measure_entry(unmeasured([chain], reason), tolerance)
+    """The entry of the refined volume, area or length of a chain.
+
+    Under constraints other than a region it is what is free, and has ``parts``: see `_parts`.
+    """
+    region, others = divided(constraints)
     options = {"seed": seed, "device": device, "threads": threads, "progress": _named(progress, VOLUME)}
-    return measure_entry(refined_measure(chain, tolerance, region=region, **options), tolerance)
+    if not others:
+        return measure_entry(refined_measure(chain, tolerance, region=region, **options), tolerance)
+    found = free_measures(chain, others, tolerance, region=region, **options)
+    return measure_entry(found[FREE], tolerance) | {"parts": _parts(found)}
 
 
-def _known(constraints: Sequence[Constraint]) -> tuple[Region | None, str]:
-    """The region, which inverse kinematics knows, and why there is no measure with others; "" without others."""
+def _parts(found: Mapping[str, RefinedMeasure]) -> dict[str, Any]:
+    """What is free, blocked in all and by each constraint, and what was left undecided, with 95 % intervals."""
+    of_each = {name: {"value": each.value, "ci95": each.ci95 and list(each.ci95)} for name, each in found.items()}
+    free, blocked = of_each.pop(FREE), of_each.pop(ALL_BLOCKED)
+    undecided = {"value": found[FREE].undecided, "ci95": list(found[FREE].undecided_ci95)}
+    return {"free": free, "blocked": blocked | {"by": of_each}, "undecided": undecided}
+
+
+def divided(constraints: Sequence[Constraint]) -> tuple[Region | None, list[Constraint]]:
+    """The region, which is asked of targets themselves, and the other constraints."""
     region = next((each for each in constraints if isinstance(each, Region)), None)
-    unknown = ", ".join(each.name for each in constraints if each is not region)
-    reason = f"inverse kinematics does not know the constraint {unknown}: only what was sampled is known"
-    return region, reason if unknown else ""
+    return region, [each for each in constraints if each is not region]
 
 
 def labelled(
@@ -70,8 +87,10 @@ def refined_together(
     constraints: Sequence[Constraint] = (),
 ) -> dict[str, dict[str, Any]]:
     """Entries of what so many of several placed chains reach, by event; see `refined`."""
-    region, reason = _known(constraints)
-    if reason:
+    region, others = divided(constraints)
+    if others:
+        unknown = ", ".join(each.name for each in others)
+        reason = f"inverse kinematics of several robots does not know the constraint {unknown}: only samples do"
         return {name: measure_entry(unmeasured(chains, reason), tolerance) for name in events}
     options = {"device": device, "threads": threads, "progress": _named(progress, VOLUME), "region": region}
     found = refined_measures(chains, events, tolerance, **options)
@@ -96,11 +115,17 @@ def measure_entry(found: RefinedMeasure, tolerance: float) -> dict[str, Any]:
 
 
 def by_measure(measure: dict[str, Any] | None, entry: Any) -> dict[str, Any]:
-    """The ``entry`` under what the measure is, {"volume_m3": {"refined": …}} …: None there where it has no value."""
+    """The ``entry`` under what the measure is, {"volume_m3": {"refined": …}} …: None there where it has no value.
+
+    Beside it the parts of a measure under constraints, free, blocked and undecided.
+    """
     quantity = measure["quantity"] if measure else "volume"
     known = measure is not None and measure["value"] is not None
+    parts = measure.get("parts", {}) if measure and known else {}
+    if isinstance(entry, dict):
+        entry = {name: value for name, value in entry.items() if name != "parts"}
     found = {"volume_m3": {"refined": None}}
-    return found | {f"{quantity}_{UNITS[quantity]}": {"refined": entry if known else None}}
+    return found | {f"{quantity}_{UNITS[quantity]}": {"refined": entry if known else None, **parts}}
 
 
 def volume_entry(measure: dict[str, Any]) -> dict[str, Any]:

@@ -13,8 +13,6 @@ from wsrender.analyses.cost import (
     Cost,
     in_turn,
     pictures_cost,
-    refined_bytes,
-    refined_seconds,
 )
 from wsrender.analyses.execution import Execution
 from wsrender.analyses.registry import job_classes, planned
@@ -44,10 +42,10 @@ class SeveralPlans:
         """Of all robots: they are swept one after the other, and their volumes kept."""
         swept = self.swept_cost
         drawn, seconds = pictures_cost("comparison", "arm")
-        tolerances = [plan.job.refined_volume for plan in self.plans]
+        refined_memory, refined_time = zip(*(plan.refined_cost for plan in self.plans), strict=True)
         files = DOCUMENT_BYTES * len(self.plans) + drawn + sum(plan.volume_bytes for plan in self.plans)
-        seconds += swept.seconds + sum(map(refined_seconds, tolerances)) + files / WRITTEN_PER_S
-        memory = max(swept.memory_bytes, self.kept_bytes + max(map(refined_bytes, tolerances)))
+        seconds += swept.seconds + sum(refined_time) + files / WRITTEN_PER_S
+        memory = max(swept.memory_bytes, self.kept_bytes + max(refined_memory))
         return Cost(swept.samples, memory, files, seconds, swept.asks)
 
     @property

@@ -95,7 +95,7 @@ class InverseSolver:
         search = Evidence(self.chain, self.kind, self.accuracy, self._out_of_reach(position))
         for source, first, last in _groups(self.kind):
             each = last - first
-            for part in _parts(search.pending, each):
+            for part in parts_of(search.pending, each):
                 starts = self._starts.of(source, self._features(targets[part]), first, last)
                 tries = self._tries(np.repeat(targets[part], each, axis=0), starts.reshape(-1, self.chain.n))
                 search.record(part, tries, self._residual(tries).reshape(-1, each))
@@ -106,13 +106,28 @@ class InverseSolver:
         q[:, self._kept] = self._within_a_turn(search.q)
         return Solutions(q, search.distance, search.angle, search.label, search.proven)
 
+    def tries(self, starts: np.ndarray, position: np.ndarray, orientation: np.ndarray | None = None) -> Tries:
+        """One try from each configuration (N, n) to its target; joints that do not move it keep their values."""
+        tries = self._tries(_targets(position, orientation), starts[:, self._kept])
+        q = starts.copy()
+        q[:, self._kept] = self._within_a_turn(tries.q)
+        return replace(tries, q=q)
+
+    def features(self, position: np.ndarray, orientation: np.ndarray | None = None) -> np.ndarray:
+        """Coordinates (N, f) of targets whose distance is the residual that tries reduce [m]."""
+        return self._features(_targets(position, orientation))
+
+    def features_at(self, q: np.ndarray) -> np.ndarray:
+        """Those of the poses at configurations (N, n)."""
+        return self._features_at(q[:, self._kept])
+
     def held_by_limits(self, q: np.ndarray, position: np.ndarray, orientation: np.ndarray | None = None) -> np.ndarray:
         """Whether limits alone keep the chain from targets, (N,) bool; ``q`` (N, n): a first start.
 
         So it is where hinges that turn for ever reach the target, or come nearest with a slide at its end.
         """
         targets = _targets(position, orientation)
-        parts = _parts(np.arange(len(targets)), WITHOUT_LIMITS)
+        parts = parts_of(np.arange(len(targets)), WITHOUT_LIMITS)
         return np.concatenate([np.zeros(0, bool), *(self._held(q[part], targets[part]) for part in parts)])
 
     def _held(self, q: np.ndarray, targets: np.ndarray) -> np.ndarray:
@@ -184,7 +199,7 @@ def _groups(kind: str) -> Iterator[tuple[str, int, int]]:
         yield source, first, first + each
 
 
-def _parts(targets: np.ndarray, tries: int) -> list[np.ndarray]:
+def parts_of(targets: np.ndarray, tries: int) -> list[np.ndarray]:
     """Targets by number (P,) in parts, none empty, that hold at most MOST_TRIES of so many tries each."""
     return np.array_split(targets, -(-len(targets) * tries // MOST_TRIES)) if len(targets) else []
 

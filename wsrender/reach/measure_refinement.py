@@ -8,9 +8,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from wsrender.pipeline.constraints.constraint import Constraint
 from wsrender.pipeline.constraints.region import Region
+from wsrender.reach.admission import Admission
 from wsrender.reach.dimension import FLAT, TipSet, tip_set
-from wsrender.reach.reached_set import FalseNegatives, tolerance_m
+from wsrender.reach.free_volume import ALL_BLOCKED, FREE, free_volumes
+from wsrender.reach.reached_set import FalseNegatives, ReachedSet, tolerance_m
 from wsrender.reach.volume_estimate import Event, VolumeEstimate
 from wsrender.reach.volume_refinement import RefinedVolumes, by_the_origin, decided_volumes
 from wsrender.robots.kinematics import Kinematics
@@ -36,7 +39,7 @@ class RefinedMeasure:
     set has none, and ``reason`` says why; where too few chains have one to share, why ``value`` is 0; else it is "".
     ``met``: whether the interval is as narrow as asked. ``undecided``: how much inverse kinematics left open, in the
     same unit. ``points``: how many it decided. ``position_tolerance_m``: the largest residual that counted as reached.
-    ``false_negatives``: of every chain.
+    ``false_negatives``: of every chain. ``undecided_ci95``: the interval of what was left open.
     """
 
     quantity: str
@@ -49,6 +52,7 @@ class RefinedMeasure:
     points: int
     position_tolerance_m: float
     false_negatives: tuple[FalseNegatives, ...]
+    undecided_ci95: tuple[float, float] = (0.0, 0.0)
 
 
 def refined_measure(
@@ -64,6 +68,45 @@ def refined_measure(
     """What the end effector of one chain reaches, to a relative ``tolerance``; as in `refined_measures`."""
     options = {"seed": seed, "device": device, "threads": threads, "progress": progress, "region": region}
     return refined_measures([chain], {"reachable": Event(1, 1)}, tolerance, **options)["reachable"]
+
+
+def free_measures(
+    chain: Kinematics,
+    constraints: Sequence[Constraint],
+    tolerance: float,
+    *,
+    seed: int = 0,
+    device: str = "cpu",
+    threads: int | None = None,
+    progress: Callable[[int, int], None] | None = None,
+    region: Region | None = None,
+) -> dict[str, RefinedMeasure]:
+    """What the end effector reaches in configurations that ``constraints`` admit, to a relative ``tolerance``.
+
+    By name: FREE, ALL_BLOCKED, where it is reached in others alone, and of that what each constraint blocks; see
+    `free_volumes`. Options as in `refined_measures`.
+    """
+    own = chain.placed(np.eye(4))
+    own = own.relative_to(own.origin)
+    filled = tip_set(own, threads)
+    quantity = QUANTITIES[max(filled.span, 1)]
+    T_world_own = _own_frame([own], filled)
+    if reason := _without_measure([filled], T_world_own):
+        nothing = _without(quantity, reason, tolerance_m(own), 1)
+        return dict.fromkeys((FREE, ALL_BLOCKED, *(each.name for each in constraints)), nothing)
+    how = {"seed": seed, "device": device, "threads": threads}
+    reached = ReachedSet.within(own, filled, T_world_own, filled.dimension, chain.T_world_base, region, **how)
+    found = free_volumes(
+        reached,
+        Admission(chain, constraints, device, threads),
+        tolerance,
+        seed=seed,
+        max_points=most_points(tolerance),
+        progress=progress,
+    )
+    return {
+        name: _measure(quantity, estimate, "", found, found.false_negatives) for name, estimate in found.volumes.items()
+    }
 
 
 def refined_measures(
@@ -102,7 +145,7 @@ def refined_measures(
         events,
         tolerance,
         seed=seed,
-        max_points=int(min(BUDGET / tolerance**2, MOST_POINTS)),
+        max_points=most_points(tolerance),
         device=device,
         threads=threads,
         progress=progress,
@@ -115,6 +158,11 @@ def refined_measures(
     return {
         name: _measure(quantity, estimate, reasons[name], found, misses) for name, estimate in found.volumes.items()
     }
+
+
+def most_points(tolerance: float) -> int:
+    """Points that are decided at most."""
+    return int(min(BUDGET / tolerance**2, MOST_POINTS))
 
 
 def _own_frame(chains: list[Kinematics], first: TipSet) -> np.ndarray:
@@ -162,4 +210,5 @@ def _measure(
         found.points,
         found.position_m,
         misses,
+        estimate.undecided_ci95,
     )

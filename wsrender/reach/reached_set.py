@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
 from math import ceil
+from typing import Any
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from wsrender.engine import configurations, sampled_positions
 from wsrender.pipeline.constraints.region import Region
 from wsrender.pipeline.pipeline import tip_pipeline
 from wsrender.reach.cover import covered_cells
+from wsrender.reach.dimension import TipSet
 from wsrender.reach.evidence import UNREACHABLE
 from wsrender.reach.inverse_solver import InverseSolver, Solutions
 from wsrender.reach.occupied_cells import occupied_cells
@@ -102,12 +104,34 @@ class ReachedSet:
         base = np.eye(4) if T_region_base is None else T_region_base
         self._T_region_own = base @ np.linalg.inv(chain.T_world_base)
 
+    @classmethod
+    def within(
+        cls,
+        chain: Kinematics,
+        filled: TipSet,
+        T_world_own: np.ndarray,
+        dimension: int,
+        T_region_base: np.ndarray,
+        region: Region | None,
+        **how: Any,
+    ) -> "ReachedSet":
+        """What a chain, whose positions are ``filled``, reaches of the space of a frame's first axes."""
+        return cls(
+            chain.placed(np.linalg.inv(T_world_own) @ chain.T_world_base),
+            dimension,
+            solid=filled.dimension == dimension,
+            thickness_m=filled.thickness_m(T_world_own, dimension),
+            region=region,
+            T_region_base=T_region_base,
+            **how,
+        )
+
     def decided(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Labels (N,) int8 of points (N, d), and distances (N,) [m] to the nearest reachable point that was found.
 
         Of points outside the region those to the region: what is reached in it is no nearer.
         """
-        label, far = np.full(len(points), UNREACHABLE, np.int8), self._outside(points)
+        label, far = np.full(len(points), UNREACHABLE, np.int8), self.outside(points)
         inside = far == 0
         found = self._solved(points[inside])
         label[inside], far[inside] = found.label, found.distance_m
@@ -115,13 +139,17 @@ class ReachedSet:
 
     def _solved(self, points: np.ndarray) -> Solutions:
         """What the solver finds of points (N, d), wherever the region is."""
-        return self.solver.solve(np.pad(points, ((0, 0), (0, 3 - self.dimension))))
+        return self.solver.solve(self.padded(points))
 
-    def _outside(self, points: np.ndarray) -> np.ndarray:
+    def padded(self, points: np.ndarray) -> np.ndarray:
+        """Points (N, d) in the world, (N, 3)."""
+        return np.pad(points, ((0, 0), (0, 3 - self.dimension)))
+
+    def outside(self, points: np.ndarray) -> np.ndarray:
         """How far points (N, d) are from the region [m], (N,); 0 within the tolerance: arms may move in a border."""
         if self.region is None:
             return np.zeros(len(points))
-        own = np.pad(points, ((0, 0), (0, 3 - self.dimension)))
+        own = self.padded(points)
         far = self.region.distance(own @ self._T_region_own[:3, :3].T + self._T_region_own[:3, 3])
         return np.where(far <= self.position_m, 0.0, far)
 
@@ -152,8 +180,8 @@ class ReachedSet:
         centers = (at + block.first_voxel[: self.dimension] + 0.5) * block.voxel_size_m
         half = 0.5 * block.voxel_size_m * np.sqrt(self.dimension)
         corners = np.array(list(product((-0.5, 0.5), repeat=self.dimension))) * block.voxel_size_m
-        within = np.all([self._outside(centers + corner) == 0 for corner in corners], axis=0)
-        cut = self._outside(centers) <= half
+        within = np.all([self.outside(centers + corner) == 0 for corner in corners], axis=0)
+        cut = self.outside(centers) <= half
         own = classes[tuple(at.T)]
         # A shape that lies within one cell holds none of its corners, and its centre is near.
         classes[tuple(at.T)] = np.where(within, own, np.where(cut, np.minimum(own, border), 0))
@@ -167,12 +195,11 @@ class ReachedSet:
         if not self.solid:
             return FalseNegatives(0, 0)
         positions = self._positions(SAMPLES_PER_TEST * tests)[:, : self.dimension]
-        inside = positions[self._outside(positions) == 0]
+        inside = positions[self.outside(positions) == 0]
         positions = inside if len(inside) >= tests else positions
         cells = np.floor(positions / block.voxel_size_m).astype(np.int64) - block.first_voxel[: self.dimension]
         numbers = np.ravel_multi_index(tuple(cells.T), block.shape[: self.dimension])
-        random = np.random.Generator(np.random.Philox(key=self.seed))
-        chosen = np.lexsort((random.random(len(positions)), _times_before(np.asarray(numbers))))[:tests]
+        chosen = chosen_evenly(np.asarray(numbers), self.seed)[:tests]
         labels = self._solved(positions[chosen]).label
         return FalseNegatives(len(chosen), int((labels == UNREACHABLE).sum()))
 
@@ -182,6 +209,12 @@ class ReachedSet:
         q[count // 2 :] = inwards(self.chain, towards_limits(self.chain, q[count // 2 :]), NEXT_TO)
         q = np.random.Generator(np.random.Philox(key=self.seed)).permutation(q)
         return sampled_positions(tip_pipeline(self.chain, q), threads=self.threads)
+
+
+def chosen_evenly(numbers: np.ndarray, seed: int) -> np.ndarray:
+    """Order (N,) of positions by the numbers of their cells (N,): one of every cell at random, then another of each."""
+    random = np.random.Generator(np.random.Philox(key=seed))
+    return np.lexsort((random.random(len(numbers)), _times_before(numbers)))
 
 
 def _times_before(numbers: np.ndarray) -> np.ndarray:

@@ -42,13 +42,17 @@ class Event:
 
 @dataclass(frozen=True)
 class VolumeEstimate:
-    """A volume [m³] with its 95 % interval, what undecided points may add to its half, and whether it is as asked."""
+    """A volume [m³] with its 95 % interval, what undecided points may add to its half, and whether it is as asked.
+
+    ``undecided_ci95``: of the volume whose points are undecided, twice ``undecided``.
+    """
 
     value: float
     low: float
     high: float
     undecided: float
     met: bool
+    undecided_ci95: tuple[float, float] = (0.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -175,17 +179,20 @@ class _Estimation:
         count = np.array([s.count for s in self.strata])
         surely = np.array([s.surely[k] for s in self.strata])
         possibly = np.array([s.possibly[k] for s in self.strata])
+        here = size * self._may_happen(k)
         least, most = (size * surely / count).sum(), (size * possibly / count).sum()
-        below = least - np.sqrt(((size * (surely / count - wilson(surely, count)[0])) ** 2).sum())
-        more = size * (wilson(possibly, count)[1] - possibly / count) * self._may_happen(k)
-        above = most + np.sqrt((more**2).sum())
+        below = least - _deviation(size, surely, count)[0]
+        above = most + _deviation(here, possibly, count)[1]
+        fewer, more = _deviation(here, possibly - surely, count)
         value, hidden = (least + most) / 2, self.missed(most)
         above += hidden
         if event.most < max(e.most for e in self.events.values()):
             below -= hidden  # a point missed by one set may count for this event wrongly
         below = max(below, 0.0)
         met = bool(above - below <= 2 * self.tolerance * (value or size.sum()))
-        return VolumeEstimate(float(value), float(below), float(above), float(most - least) / 2, met)
+        open_ = float(most - least)
+        interval = max(open_ - float(fewer), 0.0), open_ + float(more)
+        return VolumeEstimate(float(value), float(below), float(above), open_ / 2, met, interval)
 
     def _may_happen(self, event: int) -> np.ndarray:
         """Whether enough sets reach into every stratum, (S,) bool."""
@@ -238,6 +245,12 @@ class _Estimation:
                 self.progress(self.points, max(self.points, self.expected))
         labels, distance = zip(*parts, strict=True)
         return np.concatenate(labels), np.concatenate(distance)
+
+
+def _deviation(size: np.ndarray, successes: np.ndarray, count: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """How far below and above the volume of all strata that of ``successes`` may be (Zou & Donner 2008)."""
+    share, (low, high) = successes / count, wilson(successes, count)
+    return np.sqrt(((size * (share - low)) ** 2).sum()), np.sqrt(((size * (high - share)) ** 2).sum())
 
 
 def wilson(successes: np.ndarray, count: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

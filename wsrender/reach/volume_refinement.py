@@ -99,19 +99,9 @@ def decided_volumes(
     ``sets``: what their positions fill; those of a smaller dimension add nothing. ``region``: where positions count, in
     a world in which the chains stand on ``bases``, (4, 4) each.
     """
-    into = np.linalg.inv(T_world_own)
+    how = {"seed": seed, "device": device, "threads": threads}
     reached = [
-        ReachedSet(
-            chain.placed(into @ chain.T_world_base),
-            dimension,
-            solid=filled.dimension == dimension,
-            thickness_m=filled.thickness_m(T_world_own, dimension),
-            seed=seed,
-            device=device,
-            threads=threads,
-            region=region,
-            T_region_base=base,
-        )
+        ReachedSet.within(chain, filled, T_world_own, dimension, base, region, **how)
         for chain, filled, base in zip(chains, sets, bases or [np.eye(4)] * len(chains), strict=True)
     ]
     position_m = max(each.position_m for each in reached)
@@ -119,7 +109,7 @@ def decided_volumes(
     if not solid:
         volumes = {name: VolumeEstimate(0.0, 0.0, 0.0, 0.0, met=True) for name in events}
         return RefinedVolumes(volumes, 0, tuple(FalseNegatives(0, 0) for _ in reached), position_m)
-    block = _block(solid)
+    block = block_of(solid)
     levels = LEVELS.get(len(solid), 1)
     classes = [each.classes(block, levels) for each in solid]
     misses = [each.false_negatives(block, tests_of(tolerance)) for each in reached]
@@ -163,7 +153,7 @@ def _strata(classes: Sequence[np.ndarray], least: int) -> tuple[list[np.ndarray]
     return np.split(wanted[order], first[1:]), sets.tolist()
 
 
-def _block(sets: Sequence[ReachedSet]) -> LatticeBlock:
+def block_of(sets: Sequence[ReachedSet]) -> LatticeBlock:
     """The cells that hold all of the sets; beside their space, those around it."""
     low, high = np.min([each.low for each in sets], axis=0), np.max([each.high for each in sets], axis=0)
     edge = float(np.prod(high - low) ** (1 / len(low))) / CELLS

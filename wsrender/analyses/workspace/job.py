@@ -28,7 +28,8 @@ class WorkspaceJob(IndexChoices, Constrained, Arm, JobDocument):
     indices, count and maximum of the six."""
     refined_volume: RelativeTolerance | None = 0.01
     """Half width of the headline's 95 % interval, relative to it [1]: of the volume that inverse kinematics finds
-    reachable, of a planar workspace the area, of a line the length; null: none is computed."""
+    reachable, of a planar workspace the area, of a line the length; under constraints of what it finds free, beside
+    what they block; null: none is computed."""
     voxel_labels: StrictBool = False
     """Whether every voxel is labelled reachable, unreachable or undecided by inverse kinematics."""
     surfaces: Surfaces = ()

@@ -9,7 +9,7 @@ import numpy as np
 from wsrender.analyses.contract import Draft
 from wsrender.analyses.headline import NOT_ASKED, headline_of
 from wsrender.analyses.provenance import index_choices
-from wsrender.analyses.refined import by_measure
+from wsrender.analyses.refined import by_measure, divided
 from wsrender.analyses.volume_notices import few_samples, occupied_differs, tolerance_not_met
 from wsrender.analyses.workspace.job import WorkspaceJob
 from wsrender.analyses.workspace.partial import WorkspacePartial
@@ -24,7 +24,6 @@ from wsrender.global_indices import (
     workspace_mean,
 )
 from wsrender.notices import Notice
-from wsrender.pipeline.constraints.region import Region
 from wsrender.pipeline.pipeline import Pipeline
 from wsrender.pipeline.sampling import subsample
 from wsrender.reach.holes import share_of_holes, share_unseen
@@ -71,7 +70,7 @@ def workspace_draft(job: WorkspaceJob, robot: Robot, found: WorkspacePartial, th
             "occupied": volumes.occupied,
             "inner": volumes.inner,
             "outer": volumes.outer,
-            "refined": solid,
+            **measures["volume_m3"],
         },
         "voxel_labels": counts(labels) if labels else None,
         "surfaces": surface_entries,
@@ -160,12 +159,12 @@ def _notices(
 ) -> Iterator[Notice]:
     """What to know of the volume: too few samples, or voxels that are far from what is reachable."""
     holes = None
-    if solid and robot.chain.geometry:
+    region, others = divided(pipeline.constraints)
+    if solid and robot.chain.geometry and not others:  # else empty voxels may be blocked
         held = robot.chain.held(job.sampling.locked)
-        region = next((each for each in pipeline.constraints if isinstance(each, Region)), None)
         holes = share_of_holes(held, volume, seed=pipeline.sampling.seed, threads=threads, region=region)
     yield from few_samples(holes, share_unseen(volume))
-    yield from occupied_differs(volumes.occupied, solid["value"] if solid else None)
+    yield from occupied_differs(volumes.occupied, solid["value"] if solid else None, "free" if others else "reachable")
 
 
 def _index_notices(pipeline: Pipeline, partial: Partial) -> Iterator[Notice]:

@@ -25,7 +25,7 @@ from wsrender.analyses.cost import (
 from wsrender.analyses.estimate import held, kept_bytes, sweep_cost
 from wsrender.analyses.execution import Execution
 from wsrender.analyses.partial_result import PartialResult
-from wsrender.analyses.refined import Refined, labelled, refined
+from wsrender.analyses.refined import Refined, divided, labelled, refined
 from wsrender.analyses.workspace.first_pass import FirstPass
 from wsrender.analyses.workspace.job import WorkspaceJob
 from wsrender.analyses.workspace.partial import WorkspacePartial, sweep_of
@@ -185,7 +185,7 @@ class WorkspaceAnalysis(Analysis):
             labels = LABELLED_BYTES * near + solved_bytes(near) + LABEL_BYTES * block
         if self.constraints:
             kept += ROWS_HELD * self._picture_bytes
-        return float(max(swept.memory_bytes, kept + refined_bytes(self.job.refined_volume) + labels))
+        return float(max(swept.memory_bytes, kept + self.refined_cost[0] + labels))
 
     @property
     def cost(self) -> Cost:
@@ -198,7 +198,7 @@ class WorkspaceAnalysis(Analysis):
         if self.constraints:  # of each voxel samples drawn, admitted and rejected by each, and a share
             files += block * 8.0 * (3 + len(self.constraints))
         memory = self._memory(swept, self._held)
-        seconds += swept.seconds + refined_seconds(job.refined_volume)
+        seconds += swept.seconds + self.refined_cost[1]
         if job.voxel_labels:
             near = (np.cbrt(voxels) + 2) ** 3
             files, seconds = files + 16.0 * (np.cbrt(block) + 2) ** 3, seconds + near / DECIDED_PER_S
@@ -209,6 +209,12 @@ class WorkspaceAnalysis(Analysis):
         """Bytes of the pictures' samples, as arrays."""
         columns = 3 + self.pipeline.evaluation.chain.n + len(self.pipeline.evaluation.indices)
         return 8.0 * columns * min(self.pipeline.sampling.count, PICTURE_SAMPLES)
+
+    @property
+    def refined_cost(self) -> tuple[float, float]:
+        """Bytes and seconds of the refined volume."""
+        tolerance, searched = self.job.refined_volume, bool(divided(self.constraints)[1])
+        return refined_bytes(tolerance, searched), refined_seconds(tolerance, searched)
 
     @property
     def volume_bytes(self) -> float:

@@ -23,8 +23,15 @@ def headline_lines(document: Mapping[str, Any]) -> list[str]:
     together = whose != Presentation.measured
     robots = [robot for robot in document.get("robots") or () if robot.get("headline")]
     each = [robot for robot in robots if not together or robot["headline"]["value"] is not None]
-    lines = [] if each and found["value"] is None else [headline_text(found, whose)]
-    return lines + [f"{robot.get('name')}: {headline_text(robot['headline'])}" for robot in each]
+    lines = [] if each and found["value"] is None else [headline_text(found, _free(document) or whose)]
+    own = [headline_text(robot["headline"], _free(robot) or Presentation.measured) for robot in each]
+    return lines + [f"{robot.get('name')}: {text}" for robot, text in zip(each, own, strict=True)]
+
+
+def _free(entries: Mapping[str, Any]) -> str:
+    """What the headline of a robot measures under constraints that may block what it reaches; "" of any other."""
+    headline = entries["headline"]
+    return "free" if "free" in (entries.get(f"{headline['quantity']}_{headline['unit']}") or {}) else ""
 
 
 def headline_text(headline: Mapping[str, Any], whose: str = "reachable") -> str:

@@ -108,7 +108,9 @@ def _measures(
         elif isinstance(value, dict) and "ci95" in value:
             low, high = value["ci95"]
             if (value["value"], [low, high]) != said:
-                yield f"{words} {quantity}", f"{value['value']:.4g} {unit} (95 %: {low:.4g} … {high:.4g})"
+                by = ", ".join(f"{name} {each['value']:.4g}" for name, each in value.get("by", {}).items())
+                text = f"{value['value']:.4g} {unit} (95 %: {low:.4g} … {high:.4g})"
+                yield f"{words} {quantity}", f"{text}; by {by}" if by else text
         elif isinstance(value, dict):
             yield from _measures(value, quantity, headline, f"{words} ")
 

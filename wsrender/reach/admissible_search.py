@@ -1,0 +1,209 @@
+"""Targets under constraints: inverse kinematics looks for a solution that they admit.
+
+A target is free where a solution is admitted. It is blocked where many solutions were found, from starts of all kinds,
+and every one was rejected: evidence of a search, no proof; where an admitted sample lies near, the search is longer.
+Else it is unreachable or undecided as without constraints, or undecided because too few solutions were found.
+
+Redundant arms come from every start to another point of their self-motions, and joints that do not move the target
+stand where they stood in the start.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+from functools import cached_property
+
+import numpy as np
+from scipy.spatial import KDTree
+
+from wsrender.documents.sampling import Sobol
+from wsrender.engine import Tries, configurations
+from wsrender.pipeline.pipeline import tip_pipeline
+from wsrender.reach.admission import Admission
+from wsrender.reach.evidence import REACHABLE, UNDECIDED
+from wsrender.reach.inverse_solver import BATCH, InverseSolver, parts_of
+from wsrender.reach.starts import EPS, towards_limits
+
+BLOCKED = 2  # beside the labels of evidence
+SAMPLES, NEIGHBOURS = 1 << 20, 1 << 16  # drawn; admitted ones that starts are chosen from
+NEAR, FURTHER = "near", "further"
+# Starts between two looks, by number: the admitted samples nearest to the target, and of all kinds the same for every
+# target.
+FIRST = ((NEAR, 0, 1), (NEAR, 1, 8))
+FURTHER_SAMPLES = 128
+LATER = ((NEAR, 8, 32), (FURTHER, 0, 32), (NEAR, 32, 96), (FURTHER, 32, FURTHER_SAMPLES))
+# Rejected solutions that say that a target is blocked: at once where no admitted sample is nearer than a share of the
+# reach, else after all starts.
+CLEARLY_BLOCKED, NARROWLY, BLOCKED_AFTER_ALL = 24, 0.1, 8
+
+
+@dataclass(frozen=True, eq=False)
+class Admissible:
+    """What the search found of N targets.
+
+    ``q`` (N, n): admitted, else rejected, else nearest; ``distance_m``, ``angle_rad`` (N,): what is left there to the
+    target; ``label`` (N,) int8, BLOCKED among them; ``rejected`` (N, C): solutions that each of the constraints was the
+    first to reject; ``near_m`` (N,): how near an admitted sample is, by the residual that tries reduce.
+    """
+
+    q: np.ndarray
+    distance_m: np.ndarray
+    angle_rad: np.ndarray
+    label: np.ndarray
+    rejected: np.ndarray
+    near_m: np.ndarray
+
+    @property
+    def reason(self) -> np.ndarray:
+        """Of blocked targets the constraint, from 1, that rejected most solutions, else 0, (N,) int64."""
+        return np.where(self.label == BLOCKED, 1 + self.rejected.argmax(axis=1), 0)
+
+    @property
+    def pending(self) -> np.ndarray:
+        """Undecided targets, (P,)."""
+        return np.flatnonzero(self.label == UNDECIDED)
+
+    def take(self, at: np.ndarray, tries: Tries, reasons: np.ndarray) -> None:
+        """Record as many tries of each of the targets ``at`` (P,), and what rejects them (T,), 0 what nothing does."""
+        solved = tries.reached.reshape(len(at), -1)
+        reasons = reasons.reshape(solved.shape)
+        admitted = solved & (reasons == 0)
+        best = np.argmax(2 * admitted + solved, axis=1)
+        free = admitted.any(axis=1)
+        better = free | (solved.any(axis=1) & ~self.rejected[at].any(axis=1))
+        chosen = (np.arange(len(at)) * solved.shape[1] + best)[better]
+        self.q[at[better]] = tries.q[chosen]
+        self.distance_m[at[better]], self.angle_rad[at[better]] = tries.distance[chosen], tries.angle[chosen]
+        self.label[at[free]] = REACHABLE
+        for k in range(self.rejected.shape[1]):
+            self.rejected[at, k] += (solved & (reasons == k + 1)).sum(axis=1)
+
+
+class AdmissibleSearch:
+    """Decides targets of a ``solver``, whose chain is that of the ``admission``, wherever it stands."""
+
+    def __init__(self, solver: InverseSolver, admission: Admission):
+        self.solver, self.admission = solver, admission
+
+    def decide(
+        self,
+        position: np.ndarray,
+        orientation: np.ndarray | None = None,
+        progress: Callable[[int], None] | None = None,
+    ) -> Admissible:
+        """Targets in the solver's world, and ``progress``, as `InverseSolver.solve` takes them."""
+        parts = []
+        for first in range(0, max(len(position), 1), BATCH):
+            batch = slice(first, first + BATCH)
+            parts.append(self._decide(position[batch], _some(orientation, batch)))
+            if progress:
+                progress(min(first + BATCH, len(position)))
+        return Admissible(*(np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(Admissible)))
+
+    def _decide(self, position: np.ndarray, orientation: np.ndarray | None) -> Admissible:
+        found = self._nothing(self.solver.features(position, orientation))
+        for source, first, last in FIRST:
+            self._search(found, found.pending, source, first, last, position, orientation)
+        rest = found.pending
+        solved = self.solver.solve(position[rest], _some(orientation, rest))
+        # What was reached once is reached, whatever the other search says.
+        missed = (solved.label != REACHABLE) & ~found.rejected[rest].any(axis=1)
+        at = rest[missed]
+        found.q[at], found.label[at] = solved.q[missed], solved.label[missed]
+        found.distance_m[at], found.angle_rad[at] = solved.distance_m[missed], solved.angle_rad[missed]
+        self._tried(found, rest[~missed], solved.q[~missed, None], position, orientation)
+        clearly = found.near_m > NARROWLY * self.solver.chain.reach
+        for source, first, last in LATER:
+            self._search(found, found.pending, source, first, last, position, orientation)
+            found.label[self._rejected(found, CLEARLY_BLOCKED) & clearly] = BLOCKED
+        found.label[self._rejected(found, BLOCKED_AFTER_ALL)] = BLOCKED
+        return found
+
+    def _nothing(self, features: np.ndarray) -> Admissible:
+        """What is known before any try of targets with ``features`` (N, f)."""
+        count = len(features)
+        return Admissible(
+            np.zeros((count, self.solver.whole.n)),
+            np.full(count, np.inf),
+            np.full(count, np.inf),
+            np.full(count, UNDECIDED, np.int8),
+            np.zeros((count, len(self.admission.names)), np.int32),
+            self._tree.query(features, eps=EPS)[0] if self._tree else np.full(count, np.inf),
+        )
+
+    @staticmethod
+    def _rejected(found: Admissible, least: int) -> np.ndarray:
+        """Undecided targets of which at least so many solutions were rejected, (N,) bool."""
+        return (found.label == UNDECIDED) & (found.rejected.sum(axis=1) >= least)
+
+    def _search(
+        self,
+        found: Admissible,
+        at: np.ndarray,
+        source: str,
+        first: int,
+        last: int,
+        position: np.ndarray,
+        orientation: np.ndarray | None,
+    ) -> None:
+        """Try targets ``at`` (P,) from starts number ``first`` … ``last`` - 1 of a source."""
+        if source == NEAR and not self._tree:
+            return
+        for part in parts_of(at, last - first):
+            if source == NEAR:
+                features = self.solver.features(position[part], _some(orientation, part))
+                starts = self._near(features, first, last)
+            else:
+                starts = np.tile(self._further[first:last], (len(part), 1, 1))
+            self._tried(found, part, starts, position, orientation)
+
+    def _tried(
+        self,
+        found: Admissible,
+        at: np.ndarray,
+        starts: np.ndarray,
+        position: np.ndarray,
+        orientation: np.ndarray | None,
+    ) -> None:
+        """One try from each of the starts (P, s, n) of targets ``at`` (P,), and what the constraints say of it."""
+        if not len(at):
+            return
+        targets = np.repeat(at, starts.shape[1])
+        tries = self.solver.tries(starts.reshape(len(targets), -1), position[targets], _some(orientation, targets))
+        reasons = np.zeros(len(targets), np.int8)
+        if tries.reached.any():
+            reasons[tries.reached] = self.admission.rejected(tries.q[tries.reached])
+        found.take(at, tries, reasons)
+
+    def _near(self, features: np.ndarray, first: int, last: int) -> np.ndarray:
+        """The admitted samples nearest to targets with ``features`` (P, f), (P, last - first, n)."""
+        assert self._tree
+        neighbours = list(range(first + 1, min(last, self._tree.n) + 1)) or [self._tree.n]
+        _, at = self._tree.query(features, k=neighbours, eps=EPS)  # type: ignore[arg-type]
+        return self.samples[0][at]
+
+    @cached_property
+    def samples(self) -> tuple[np.ndarray, np.ndarray]:
+        """Admitted configurations (N, n) and their positions (N, 3) [m] in the solver's world."""
+        q, position = self.admission.samples(SAMPLES, self.solver.seed)
+        T = self.solver.whole.T_world_base @ np.linalg.inv(self.admission.chain.T_world_base)
+        return q, position @ T[:3, :3].T + T[:3, 3]
+
+    @cached_property
+    def _tree(self) -> KDTree | None:
+        """Of admitted samples; None where none is."""
+        q = self.samples[0][:NEIGHBOURS]
+        return KDTree(self.solver.features_at(q)) if len(q) else None
+
+    @cached_property
+    def _further(self) -> np.ndarray:
+        """Samples of the joint space and of its limits, and admitted ones, by turns, (FURTHER_SAMPLES, n)."""
+        chain, each = self.solver.whole, FURTHER_SAMPLES // 2
+        anywhere = configurations(tip_pipeline(chain, Sobol(2 * each, seed=self.solver.seed)))
+        kinds = [anywhere[:each], towards_limits(chain, anywhere[each:]), self.samples[0][-each:]]
+        number = np.concatenate([np.arange(len(kind)) for kind in kinds])
+        return np.concatenate(kinds)[np.argsort(number, kind="stable")][:FURTHER_SAMPLES]
+
+
+def _some(orientation: np.ndarray | None, at: np.ndarray | slice) -> np.ndarray | None:
+    """Those of some targets, where there are any."""
+    return None if orientation is None else orientation[at]

@@ -1,0 +1,47 @@
+"""Which configurations of a chain its constraints admit, and samples of them."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from wsrender.documents.sampling import Sobol
+from wsrender.engine import evaluate_samples
+from wsrender.pipeline.constraints.constraint import Constraint
+from wsrender.pipeline.evaluation import Evaluation
+from wsrender.pipeline.pipeline import Pipeline
+from wsrender.pipeline.sampling import plan_sampling
+from wsrender.robots.kinematics import Kinematics
+
+
+@dataclass(frozen=True, eq=False)
+class Admission:
+    """What ``constraints`` say of configurations of a ``chain`` that stands where they are meant."""
+
+    chain: Kinematics
+    constraints: Sequence[Constraint]
+    device: str = "cpu"
+    threads: int | None = None
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The constraints' names: reason k, from 1, is that of the k-th."""
+        return tuple(each.name for each in self.constraints)
+
+    def rejected(self, q: np.ndarray) -> np.ndarray:
+        """The number, from 1, of the first constraint that rejects configurations (N, n), or 0, (N,) int8."""
+        found = evaluate_samples(self._pipeline(q), self.device, threads=self.threads).rejected
+        assert found is not None
+        return found
+
+    def samples(self, count: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
+        """Those of ``count`` Sobol samples that are admitted, (N, n) [rad or m], and their positions (N, 3) [m]."""
+        pipeline = self._pipeline(Sobol(count, seed=seed), frozenset({"configuration"}), "float32")
+        found = evaluate_samples(pipeline, self.device, threads=self.threads)
+        assert found.q is not None and found.rejected is not None
+        admitted = found.rejected == 0
+        return found.q[admitted].astype(np.float64), found.position[admitted].astype(np.float64)
+
+    def _pipeline(self, sampling: object, kept: frozenset[str] = frozenset(), precision: str = "float64") -> Pipeline:
+        plan = plan_sampling(self.chain, sampling)
+        return Pipeline(Evaluation(self.chain), plan, tuple(self.constraints), kept_rows=kept, precision=precision)
