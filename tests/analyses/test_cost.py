@@ -19,6 +19,8 @@ JOBS = {
     "map": ARM | {"refined_volume": None, "keep_map": True},
     "constrained workspace": ARM | {"refined_volume": None, "constraints": {"region": REGION}},
     "capability": {"robot": "phantom_omni", "directions": 20, "voxel_size_m": 0.05},
+    "capability: many directions": {"robot": "phantom_omni", "directions": 2000, "voxel_size_m": 0.1},
+    "master_slave_mapping": {"master": ARM, "slave": ARM, "search": {}},
     "kinetostatic_field": ARM | {"sampling": {"method": "sobol", "count": 1024}},
     "reachability": {"robot": "phantom_omni", "points_m": POINTS},
     "shared_workspace": {"robots": [ARM, ARM | {"name": "other"}], "refined_volume": None},
@@ -29,7 +31,7 @@ OF_WORKSPACE = ("labelled workspace", "map", "constrained workspace")
 
 def job(name: str, **fields) -> dict:
     """A small job."""
-    analysis = "workspace" if name in OF_WORKSPACE else name
+    analysis = "workspace" if name in OF_WORKSPACE else name.partition(":")[0]
     return {"analysis": analysis, "device": "cpu"} | JOBS[name] | fields
 
 

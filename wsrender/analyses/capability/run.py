@@ -41,7 +41,8 @@ from wsrender.volume.volume_data import VolumeData
 from wsrender.volume.voxels import Voxels
 
 RATE = 8e4  # pairs of voxel and direction per second of one core
-TABLE_BYTES, VOXEL_BYTES = 58, 12  # of a voxel in the table beside the bits of its directions, and in the volume
+TABLE_BYTES, VOXEL_BYTES = 40, 12  # of a voxel in the table beside the bits of its directions, and in the volume
+BITS_BYTES, DIRECTION_BYTES = 4, 32  # of eight directions of a voxel, and of a direction in its own table
 FILLED = 0.5  # of the voxels searched, the block of those that are reached
 POSITIONS_PER_S = 2e6  # of one CPU core
 DIVISIONS = 20  # of the size of a workspace: every voxel has many directions
@@ -85,7 +86,8 @@ class CapabilityAnalysis(Analysis):
         voxels = pairs / self.job.directions
         searched = searched_block(self.robot.chain, self.settled.voxel_size_m).size
         drawn, seconds = pictures_cost("slices", "arm_in_surface")
-        table = (TABLE_BYTES + self.job.directions / 8) * voxels
+        table = (TABLE_BYTES + BITS_BYTES * np.ceil(self.job.directions / 8)) * voxels
+        table += DIRECTION_BYTES * self.job.directions
         files = DOCUMENT_BYTES + drawn + table + VOXEL_BYTES * FILLED * searched + surface_bytes(voxels)
         memory = max(PAIR_BYTES * pairs + CANDIDATE_BYTES * voxels + solved_bytes(pairs), SEARCHED_BYTES * searched)
         seconds += SAMPLES_PER_CELL * searched / POSITIONS_PER_S + (voxels + pairs) / RATE + files / WRITTEN_PER_S

@@ -39,6 +39,7 @@ POSITIONS = {"position": "m", "slave_position": "m"}
 POINTS_PER_S = 1.2e4  # one CPU core, from the configuration to the end of an alpha shape
 SHAPE_BYTES, POINT_BYTES = 3300.0, 350.0  # of a point: while its alpha shape is made, and beside
 FILE_BYTES, FAILING_BYTES = 26.0, 45.0  # of a point; of the slave's, of which some fail
+SURFACE_BYTES = 700.0  # of an alpha shape's ply and glb, by the square root of its points
 
 Source = Robot | MappedMechanism | np.ndarray
 
@@ -78,8 +79,9 @@ class MasterSlaveMappingAnalysis(Analysis):
     def cost(self) -> Cost:
         """Points, their bytes with those of the shapes and voxels, and seconds without the search."""
         points, each = float(self.samples), [_count(self.job, side, of) for side, of in enumerate(self.sources)]
-        drawn, seconds = pictures_cost("targets")
+        drawn, seconds = pictures_cost("mapping", *(["scales"] if self.job.search else []))
         files = DOCUMENT_BYTES + drawn + FILE_BYTES * points + FAILING_BYTES * each[1]
+        files += sum(SURFACE_BYTES * np.sqrt(count) for count in each)
         shapes = SHAPE_BYTES * max(each) + POINT_BYTES * points
         asks = Asks("slave" if each[1] > each[0] else "master", "take fewer points")
         if self._voxels > shapes:
