@@ -47,7 +47,8 @@ def certificates(pairs: Pairs, chain: Chain, distances: Distances) -> Certificat
     for number in range(len(pairs.pairs)):
         pair = _Pair(pairs, number, chain, distances)
         # Neighbours are so near that their covers always touch; what stands around is hardly ever.
-        tabled = len(pair.coordinates) <= (1 if pairs.around[pairs.reason[number]] else 2) and not pair.round
+        most = 0 if pair.round else 1 if pairs.around[pairs.reason[number]] else 2
+        tabled = len(pair.coordinates) <= most
         if tabled:
             labels = pair.table()
             if (labels == FREE).all():

@@ -227,7 +227,10 @@ def _packed(
     words, numbers, columns, table_rows = [], [], [], []
     for table in tables:
         ranges = [(chain.lower_limits[k], chain.upper_limits[k]) for k in table.coordinates]
-        per_unit = [edge / (high - low) for edge, (low, high) in zip(table.labels.shape, ranges, strict=True)]
+        per_unit = [
+            edge / (high - low) if edge > 1 else 0.0
+            for edge, (low, high) in zip(table.labels.shape, ranges, strict=True)
+        ]
         table_rows.append([table.pair, *table.coordinates, sum(map(len, words))])
         numbers.append([ranges[0][0], per_unit[0], ranges[1][0], per_unit[1]])
         columns.append(table.labels.shape[1])

@@ -25,10 +25,11 @@ SELF, AROUND = "self_collision", "environment"
 MOST_PAIRS = 2000  # of both constraints: each may take a table of 256 KiB, and a second to make it
 KINDS: dict[str, Any] = {"mesh": "hull", "plane": "half_space"}  # of shapes, by what solids call them
 
+FARTHEST = 8.0  # angles [rad] that float32 is trusted with
 ENDLESS = (
     np.pi,
     1.0,
-)  # what tables hold of a joint without limits, that turns [rad] or slides [m]: beyond, MuJoCo is asked
+)  # what tables hold of a joint without limits, or with farther ones, that turns [rad] or slides [m]; beyond: float64
 
 
 def collision_constraints(
@@ -95,13 +96,13 @@ def _standing(environment: Environment | None) -> tuple[Standing, ...]:
 
 
 def _limited(chain: Chain) -> Chain:
-    """The chain with ends where it has none: see ENDLESS."""
-    ends = np.where(chain.revolute, *ENDLESS)
-    lower, upper = (
-        np.where(np.isfinite(limit), limit, sign * ends)
-        for limit, sign in ((chain.lower_limits, -1), (chain.upper_limits, 1))
-    )
-    return replace(chain, lower_limits=lower, upper_limits=upper)
+    """The chain with ends where it has none that tables can hold: see ENDLESS."""
+    ends, source = np.where(chain.revolute, *ENDLESS), chain.joint_source
+    limits = np.stack([chain.lower_limits, chain.upper_limits])
+    moved = np.where(chain.joint_is_revolute, np.abs(chain.joint_scale * limits[:, source] + chain.joint_offset), 0)
+    held = np.isfinite(limits).all(axis=0)
+    held[source[~(moved.max(axis=0) <= FARTHEST)]] = False
+    return replace(chain, lower_limits=np.where(held, limits[0], -ends), upper_limits=np.where(held, limits[1], ends))
 
 
 def _solid(shape: Shape) -> Solid:
