@@ -22,6 +22,9 @@ SOLIDS = {
     "hull": Solid("hull", "hull", 0, np.eye(4), SIZE, np.random.default_rng(3).normal(size=(30, 3)) * SIZE),
     "capsule": Solid("capsule", "capsule", 0, np.eye(4), SIZE),
 }
+_ROUND = np.random.default_rng(4).normal(size=(900, 3))
+_ROUND = _ROUND / np.linalg.norm(_ROUND, axis=1, keepdims=True) * SIZE
+SOLIDS["hull of many corners"] = Solid("many", "hull", 0, np.eye(4), SIZE, _ROUND)
 
 
 def inside(solid: Solid, points: np.ndarray) -> np.ndarray:

@@ -4,11 +4,13 @@ import mujoco
 import numpy as np
 import pytest
 import trimesh
+from scipy.spatial import ConvexHull
 
 import wsrender as ws
-from tests.collision.robots import drawn, random_text
-from tests.collision.test_labels import labels, wrong
-from wsrender.collision.solids import BASE
+from tests.collision.robots import drawn, nearest, random_text
+from tests.collision.test_labels import SELF, labels, wrong
+from wsrender.collision.solids import BASE, Pairs
+from wsrender.collision.store import stored_program
 from wsrender.documents.constraints import Constraints
 from wsrender.errors import InputError
 from wsrender.robot.constraints import constraints_for
@@ -124,3 +126,45 @@ def test_all_of_an_item_may_be_let_off():
     (constraint,) = constraints_for(robot, choice, around)
     paired = [constraint.solids[k] for k in constraint.pairs.ravel()]
     assert {solid.name.split("/")[0] for solid in paired if solid.joint == BASE} == {"scene 2"}
+
+
+def test_meshes_of_many_corners_are_simplified_outwards():
+    """What 10,000 corners stand for is planned in seconds, and holds all of them."""
+    points = np.random.default_rng(0).normal(size=(10_000, 3))
+    points = points / np.linalg.norm(points, axis=1, keepdims=True) * [0.2, 0.1, 0.05]
+    (standing,) = shapes_around((ws.Mesh(vertices_m=points.tolist()),))
+    assert isinstance(standing.shape, ws.Mesh)
+    corners = np.array(standing.shape.vertices_m)
+    planes = ConvexHull(corners).equations
+    assert len(corners) <= 1000
+    assert (points @ planes[:, :3].T + planes[:, 3]).max() < 1e-9
+    assert (np.ptp(corners, axis=0) - np.ptp(points, axis=0)).max() < 2 * 0.005 * 0.4
+
+
+def test_a_mesh_too_small_for_mujoco_is_refused():
+    tiny = ws.Environment([ws.Mesh(vertices_m=(np.eye(4, 3) * 2e-5).tolist(), position_m=(0.4, 0, 0.4))])
+    with pytest.raises(InputError, match="at least 1e-14 m³ are needed") as caught:
+        constraints_for(ws.load_robot("ur5e"), None, tiny)
+    assert caught.value.field == "environment.items.0.vertices_m"
+
+
+def test_labels_do_not_depend_on_where_base_and_plane_are_said_to_be(device):
+    far = np.array([1e5, -2e5, 3e3])
+    q, found = drawn(ws.load_robot("ur5e"), 4000), []
+    for base, along in ((0 * far, 0.0), (far, 0.0), (0 * far, 1e6)):
+        floor = ws.HalfSpace(name="floor", point_m=tuple(np.add(base, (along, 0, -0.05))))
+        box = ws.Box(name="box", size_m=(0.3, 0.3, 0.3), position_m=tuple(np.add(base, (0.4, 0, 0.4))))
+        robot = ws.load_robot("ur5e", placement=ws.Transform(position_m=tuple(base)))
+        constraints = constraints_for(robot, SELF, ws.Environment([floor, box]))
+        least = np.min([nearest(each, q) for each in constraints], axis=0)
+        found.append(labels(robot, q, constraints, device=device))
+        assert not wrong(found[-1] > 0, least < 0, least).size
+        clear = np.abs(least) > 1e-4
+        assert np.array_equal(found[-1][clear], found[0][clear])
+        assert stored(constraints).epsilon < 2e-5
+
+
+def stored(constraints):
+    """The program of constraints."""
+    pairs = Pairs.of(constraints[0].solids, *(each.group for each in constraints))
+    return stored_program(pairs, constraints[0].chain, constraints[0].distances)

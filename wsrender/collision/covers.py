@@ -85,8 +85,10 @@ def _volume(a: np.ndarray, b: np.ndarray, radius: float) -> float:
 
 def _around(points: np.ndarray, thorough: bool) -> tuple[np.ndarray, np.ndarray, float]:
     """A small capsule around points: from those along their principal axes, the ends moved (Nelder and Mead 1965)."""
-    center = points.mean(axis=0)
+    all_points, center = points, points.mean(axis=0)
     axes, found = np.linalg.svd(points - center, full_matrices=False)[2], []
+    if len(points) > len(_ball()):
+        points = points[np.unique((_ball() @ points.T).argmax(axis=1))]
 
     def volume(ends: np.ndarray) -> float:
         return _volume(ends[:3], ends[3:], from_segment(points, ends[:3], ends[3:]).max())
@@ -105,22 +107,21 @@ def _around(points: np.ndarray, thorough: bool) -> tuple[np.ndarray, np.ndarray,
             ends = minimize(volume, ends, method="Nelder-Mead", options=options).x
         found.append((volume(ends), ends))
     ends = min(found, key=lambda each: each[0])[1]
-    return ends[:3], ends[3:], float(from_segment(points, ends[:3], ends[3:]).max()) + TIGHT
+    return ends[:3], ends[3:], float(from_segment(all_points, ends[:3], ends[3:]).max()) + TIGHT
 
 
 def _cut(points: np.ndarray, normal: np.ndarray, offset: float) -> tuple[np.ndarray, np.ndarray]:
-    """Vertices of the parts of a polytope on the two sides of a plane, with others that do no harm."""
-    height = points @ normal - offset
-    below, above = points[height <= 0], points[height > 0]
-    h_below, h_above = height[height <= 0], height[height > 0]
-    share = (h_below[:, None] / (h_below[:, None] - h_above[None]))[..., None]
-    crossing = (below[:, None] * (1 - share) + above[None] * share).reshape(-1, 3)
+    """Vertices of the parts of a polytope on the two sides of a plane."""
     try:
-        across = np.linalg.svd(normal[None])[2][1:]
-        crossing = crossing[ConvexHull(crossing @ across.T).vertices]
-    except QhullError:
-        pass  # a section without area: all crossings are kept
-    return np.vstack([below, crossing]), np.vstack([above, crossing])
+        edges = np.sort(ConvexHull(points).simplices[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+        edges = np.unique(edges, axis=0)
+    except QhullError:  # a part without volume: any two of its points are an edge
+        edges = np.stack(np.triu_indices(len(points), 1), axis=1)
+    height = points @ normal - offset
+    first, second = edges[height[edges[:, 0]] * height[edges[:, 1]] < 0].T
+    share = (height[first] / (height[first] - height[second]))[:, None]
+    crossing = points[first] * (1 - share) + points[second] * share
+    return np.vstack([points[height <= 0], crossing]), np.vstack([points[height > 0], crossing])
 
 
 def outer_capsules(points: np.ndarray, counts: tuple[int, ...]) -> tuple[Capsules, ...]:

@@ -24,6 +24,7 @@ from wsrender.documents.robot import Transform
 from wsrender.errors import InputError
 from wsrender.robot.model_robot import Robot, configuration_rows, robot_of_spec, transform_of
 from wsrender.robots import shapes as models
+from wsrender.robots.hulls import MOST_VERTICES, simplified
 from wsrender.robots.model_warning import ModelWarning
 from wsrender.robots.plausibility import LENGTH
 from wsrender.world.meshes import hull_vertices
@@ -104,8 +105,16 @@ def _scene(item: Scene, name: str) -> Iterator[Standing]:
 
 
 def _hull(item: Mesh) -> Mesh:
+    """The hull of a mesh; of many corners it is simplified outwards, as those of robots are."""
     placed = item.model_dump(include={*Transform.model_fields, "name"})
-    return Mesh(vertices_m=_points(hull_vertices(item)), **placed)
+    vertices = hull_vertices(item)
+    if len(vertices) > MOST_VERTICES and (simpler := simplified(vertices)) is not None:
+        vertices = simpler
+    elif len(vertices) > MOST_VERTICES:
+        field = "path" if item.vertices_m is None else "vertices_m"
+        message = f"has a hull of {len(vertices)} corners; {MOST_VERTICES} that hold it go too far beyond it"
+        raise InputError(field, f"{message}: give a simpler mesh")
+    return Mesh(vertices_m=_points(vertices), **placed)
 
 
 def _points(vertices: np.ndarray) -> Any:

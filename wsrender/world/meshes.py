@@ -10,6 +10,8 @@ from scipy.spatial import ConvexHull, QhullError
 from wsrender.documents.environment import Mesh
 from wsrender.errors import InputError
 
+LEAST_M3 = 1e-14  # volume of a mesh; MuJoCo refuses less than a tenth of it [m³]
+
 
 def hull_vertices(mesh: Mesh) -> np.ndarray:
     """Corners (V, 3) [m] of the convex hull of a mesh, in its own frame.
@@ -19,9 +21,12 @@ def hull_vertices(mesh: Mesh) -> np.ndarray:
     field = "path" if mesh.vertices_m is None else "vertices_m"
     vertices = np.array(mesh.vertices_m) if mesh.vertices_m is not None else _of_file(mesh)
     try:
-        return vertices[ConvexHull(vertices).vertices]
+        hull = ConvexHull(vertices)
     except (QhullError, ValueError) as error:
         raise InputError(field, "enclose no volume: they lie in a plane") from error
+    if hull.volume < LEAST_M3:
+        raise InputError(field, f"enclose {hull.volume:.2g} m³; at least {LEAST_M3:g} m³ are needed")
+    return vertices[hull.vertices]
 
 
 def _of_file(mesh: Mesh) -> np.ndarray:

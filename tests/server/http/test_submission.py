@@ -281,6 +281,14 @@ def felt(*items):
     return {"analysis": "kinetostatic_field", "robot": "scara", "field": {"obstacles": {"items": items}}}
 
 
+def test_files_of_surroundings_are_not_opened(client):
+    items = [{"shape": "mesh", "path": "/etc/part.stl"}]
+    job = {"analysis": "workspace", "robot": "ur5e", "environment": {"items": items}}
+    problem = problem_of(client.post("/v1/jobs", json=job), 422, "invalid_document")
+    (error,) = problem["errors"]
+    assert error["pointer"] == "#/environment/items/0/path" and "is for local runs only" in error["detail"]
+
+
 def test_meshes_in_files_are_not_opened(client):
     job = felt({"shape": "mesh", "path": "/etc/part.stl"})
     problem = problem_of(client.post("/v1/jobs", json=job), 422, "invalid_document")
