@@ -44,18 +44,22 @@ def drawn(robot: ws.Robot, count: int, seed: int = 0) -> np.ndarray:
     return (low + random * (high - low)).astype(np.float32).astype(np.float64)
 
 
-def collides(robot: ws.Robot, q: np.ndarray) -> np.ndarray:
-    """Whether MuJoCo's own pipeline reports a contact between the robot's shapes, (N,) bool."""
+def collides(robot: ws.Robot, q: np.ndarray, pairs: np.ndarray | None = None) -> np.ndarray:
+    """Whether MuJoCo's own pipeline reports a contact between the robot's ``pairs`` of shapes, (N,) bool."""
     bodies = robot.bodies
     model, data = bodies.model, mujoco.MjData(bodies.model)
     model.geom_margin[:] = 0
-    own = {bodies.shapes[k].geom for pair in bodies.pairs for k in pair}
+    own = np.zeros((model.ngeom, model.ngeom), bool)
+    for a, b in bodies.pairs if pairs is None else pairs:
+        a, b = bodies.shapes[a].geom, bodies.shapes[b].geom
+        own[a, b] = own[b, a] = True
     found = np.zeros(len(q), bool)
     for i, qpos in enumerate(bodies.qpos(q)):
         data.qpos[:] = qpos
         mujoco.mj_kinematics(model, data)
         mujoco.mj_collision(model, data)
-        found[i] = any(c.dist < 0 and c.geom1 in own and c.geom2 in own for c in data.contact[: data.ncon])
+        if data.ncon:
+            found[i] = own[tuple(data.contact.geom[data.contact.dist < 0].T)].any()
     return found
 
 

@@ -1,5 +1,8 @@
 """Proofs, tables and covers against MuJoCo and random search; the folder of programs."""
 
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -117,6 +120,43 @@ def test_programs_are_made_once(tmp_path, monkeypatch):
     robot = ws.load_robot(random_text(3, 3))
     planned()
     assert len(list((tmp_path / "collision").glob("*.npz"))) == 1
+
+
+def test_who_makes_the_same_program_is_waited_for(tmp_path, monkeypatch):
+    monkeypatch.setenv(store.FOLDER, str(tmp_path))
+    monkeypatch.setattr(store, "KEPT", 1)
+    made, robots = [], [ws.load_robot(random_text(seed, 3)) for seed in (1, 3)]
+    monkeypatch.setattr(store, "_LATEST", {})
+    planned = [constraints_for(robot, Constraints(self_collision=True))[0] for robot in robots]
+    for path in (tmp_path / "collision").glob("*.npz"):
+        path.unlink()
+    monkeypatch.setattr(store, "program", lambda *args, own=store.program: made.append(args[0].digest) or own(*args))
+
+    def asked(number):
+        store._LATEST.clear()  # as another process, which has its own
+        each = planned[number % 2]
+        return number % 2, store.stored_program(each.own, each.chain, each.distances)
+
+    with ThreadPoolExecutor(8) as pool:
+        found = list(pool.map(asked, range(24)))
+    assert sorted(made) == sorted({each.own.digest for each in planned})
+    for number, each in found:
+        assert np.array_equal(each.solid_pairs, planned[number].own.pairs)
+
+
+def test_a_program_belongs_to_all_that_it_is_made_of():
+    robot = ws.load_robot(random_text(1, 3))
+    (one,) = constraints_for(robot, Constraints(self_collision=True))
+    solid = one.solids[0]
+    others = [replace(one, margin_m=1e-6), replace(one, pairs=one.pairs[:-1]), replace(one, name="environment")]
+    others.append(replace(one, solids=(replace(solid, size=solid.size + 1e-9), *one.solids[1:])))
+    others.append(replace(one, solids=(replace(solid, T=solid.T + 1e-9), *one.solids[1:])))
+    names = ("lower_limits", "upper_limits", "joint_scale", "joint_offset", "T_joint")
+    others += [replace(one, chain=replace(one.chain, **{name: getattr(one.chain, name) + 1e-9})) for name in names]
+    others.append(replace(one, chain=replace(one.chain, joint_is_revolute=~one.chain.joint_is_revolute)))
+    keys = {store._key(each.own, each.chain) for each in (one, *others)}
+    assert len(keys) == 1 + len(others)
+    assert len({one, *others}) == 1 + len(others) - 2  # limits change no label
 
 
 def test_a_folder_that_cannot_be_written_costs_time_alone(tmp_path, monkeypatch):

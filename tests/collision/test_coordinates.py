@@ -8,6 +8,8 @@ import pytest
 import wsrender as ws
 from tests.collision.robots import drawn, nearest, random_text
 from tests.collision.test_labels import SELF, labels, wrong
+from wsrender.collision import certificates, program, store
+from wsrender.collision.store import stored_program
 from wsrender.robot.constraints import constraints_for
 from wsrender.robots.model_warning import ModelWarning
 
@@ -79,3 +81,24 @@ def test_limits_of_many_turns(device):
     q = near_boundary(constraints[0], drawn(robot, 4000)).astype(np.float32).astype(np.float64)
     least = nearest(constraints[0], q)
     assert not wrong(labels(robot, q, constraints, device=device) > 0, least < 0, least).size
+
+
+def test_every_cell_of_a_table(device, tmp_path, monkeypatch):
+    """Of a table of few cells, each is looked at: labels of the kernels against MuJoCo's."""
+    monkeypatch.setenv(store.FOLDER, str(tmp_path))
+    for module in (certificates, program):
+        monkeypatch.setattr(module, "CELLS", 32)
+    text = f"""<mujoco><compiler angle="radian" autolimits="true"/><worldbody><body name="base">
+    <geom type="box" size=".1 .1 .2" pos="0 0 -.3"/><body name="one">{INERTIAL}<joint axis="0 0 1" range="-2 3"/>
+    <body name="two" pos=".1 0 0">{INERTIAL}<joint axis="0 1 0" range="-1 3"/>
+    <geom type="box" size=".2 .02 .03" pos=".2 0 0"/><site name="tip" pos=".5 0 0"/></body></body></body>
+    </worldbody></mujoco>"""
+    robot = ws.load_robot(text)
+    (constraint,) = constraints_for(robot, SELF)
+    assert len(stored_program(constraint.own, constraint.chain, constraint.distances).tables) == 1
+    low, high = robot.lower_limits, robot.upper_limits
+    cells = np.stack(np.meshgrid(np.arange(32), np.arange(32), indexing="ij"), -1).reshape(-1, 1, 2)
+    within = np.random.default_rng(0).uniform(0.02, 0.98, (32 * 32, 6, 2))
+    q = (low + (cells + within) / 32 * (high - low)).reshape(-1, 2).astype(np.float32).astype(np.float64)
+    least = nearest(constraint, q)
+    assert not wrong(labels(robot, q, (constraint,), device=device) > 0, least < 0, least).size

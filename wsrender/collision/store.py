@@ -29,12 +29,12 @@ KEPT = 8
 def stored_program(pairs: Pairs, chain: Chain, distances: Distances) -> Program:
     """The program of pairs, from the folder or made and put there; a process that makes the same is waited for."""
     key = _key(pairs, chain)
-    if key not in _LATEST:
+    if (found := _LATEST.get(key)) is None:
         found = _from_folder(key, pairs, chain, distances)
-        while len(_LATEST) >= KEPT:
-            _LATEST.pop(next(iter(_LATEST)))
+        for old in list(_LATEST)[: 1 - KEPT]:
+            _LATEST.pop(old, None)  # another thread may have
         _LATEST[key] = found
-    return _LATEST[key]
+    return found
 
 
 def _from_folder(key: str, pairs: Pairs, chain: Chain, distances: Distances) -> Program:

@@ -67,8 +67,9 @@ class CollisionConstraint:
 
     @cached_property
     def _key(self) -> tuple[object, ...]:
-        chain = (self.chain.T_joint, self.chain.joint_source, self.chain.joint_scale, self.chain.joint_offset)
-        return self.name, self.own.digest, *(np.ascontiguousarray(numbers).tobytes() for numbers in chain)
+        names = ("T_joint", "joint_is_revolute", "joint_source", "joint_scale", "joint_offset")
+        chain = (np.ascontiguousarray(getattr(self.chain, name)).tobytes() for name in names)
+        return self.name, self.own.digest, *chain
 
 
 def labelling(constraints: Sequence[object]) -> tuple[CollisionConstraint, ...]:
