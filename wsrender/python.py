@@ -53,6 +53,7 @@ def analyze(
     tip: str | None = None,
     constraints: Constraints | Mapping[str, Any] | None = None,
     environment: Environment | Mapping[str, Any] | None = None,
+    gravity_m_s2: Sequence[float] | np.ndarray | None = None,
     index_options: Mapping[str, Mapping[str, bool | int | float | Sequence[float] | np.ndarray]] = {},
     characteristic_length_m: float = 1.0,
     convention: Literal["standard", "table_1", "wsrender_code"] = "standard",
@@ -88,6 +89,7 @@ def analyze(
     ``tip``: Site, body or link at the end of the chain; None: the site "tool", or else the only end there is.
     ``constraints``: Which configurations are admitted; None: all.
     ``environment``: What stands around, which the robot's shapes do not enter; None: nothing.
+    ``gravity_m_s2``: Gravity in the world, whatever the model says [m/s²]; None: 9.81 along -z.
     ``index_options``: Options of the indices that have any: {index: {option: value}}.
     ``characteristic_length_m``: Length that divides the linear rows of a task that mixes linear and angular rows [m].
     ``convention``: Which definition of the indices: the standard one, Table I of the WSRender paper, or its program.
@@ -128,6 +130,7 @@ def indices_at(
     tip: str | None = None,
     constraints: Constraints | Mapping[str, Any] | None = None,
     environment: Environment | Mapping[str, Any] | None = None,
+    gravity_m_s2: Sequence[float] | np.ndarray | None = None,
     indices: Literal["kinematic", "dynamic", "all"] | list[str] | tuple[str, ...] = "kinematic",
     index_options: Mapping[str, Mapping[str, bool | int | float | Sequence[float] | np.ndarray]] = {},
     task: Literal["linear", "angular", "full"] | Sequence[Literal["x", "y", "z", "rx", "ry", "rz"]] = "linear",
@@ -153,6 +156,7 @@ def indices_at(
     ``tip``: Site, body or link at the end of the chain; None: the site "tool", or else the only end there is.
     ``constraints``: Which configurations are admitted; None: all.
     ``environment``: What stands around, which the robot's shapes do not enter; None: nothing.
+    ``gravity_m_s2``: Gravity in the world, whatever the model says [m/s²]; None: 9.81 along -z.
     ``indices``: Local indices: "kinematic", "dynamic", "all", or a list of names.
     ``index_options``: Options of the indices that have any: {index: {option: value}}.
     ``task``: Rows of the Jacobian, in base axes: "linear", "angular", "full", or a list from x y z rx ry rz.
@@ -268,6 +272,7 @@ def shared_workspace(
     *,
     constraints: Constraints | Mapping[str, Any] | None = None,
     environment: Environment | Mapping[str, Any] | None = None,
+    gravity_m_s2: Sequence[float] | np.ndarray | None = None,
     indices: Literal["kinematic", "dynamic", "all"] | list[str] | tuple[str, ...] = "kinematic",
     index_options: Mapping[str, Mapping[str, bool | int | float | Sequence[float] | np.ndarray]] = {},
     task: Literal["linear", "angular", "full"] | Sequence[Literal["x", "y", "z", "rx", "ry", "rz"]] = "linear",
@@ -295,6 +300,7 @@ def shared_workspace(
         of a robot that is a Python class 2^16.
     ``constraints``: Which configurations are admitted; None: all.
     ``environment``: What stands around, which the robot's shapes do not enter; None: nothing.
+    ``gravity_m_s2``: Gravity in the world, whatever the model says [m/s²]; None: 9.81 along -z.
     ``indices``: Local indices: "kinematic", "dynamic", "all", or a list of names.
     ``index_options``: Options of the indices that have any: {index: {option: value}}.
     ``task``: Rows of the Jacobian, in base axes: "linear", "angular", "full", or a list from x y z rx ry rz.
@@ -328,6 +334,7 @@ def robot_comparison(
     *,
     constraints: Constraints | Mapping[str, Any] | None = None,
     environment: Environment | Mapping[str, Any] | None = None,
+    gravity_m_s2: Sequence[float] | np.ndarray | None = None,
     indices: Literal["kinematic", "dynamic", "all"] | list[str] | tuple[str, ...] = "kinematic",
     index_options: Mapping[str, Mapping[str, bool | int | float | Sequence[float] | np.ndarray]] = {},
     task: Literal["linear", "angular", "full"] | Sequence[Literal["x", "y", "z", "rx", "ry", "rz"]] = "linear",
@@ -354,6 +361,7 @@ def robot_comparison(
         of a robot that is a Python class 2^16.
     ``constraints``: Which configurations are admitted; None: all.
     ``environment``: What stands around, which the robot's shapes do not enter; None: nothing.
+    ``gravity_m_s2``: Gravity in the world, whatever the model says [m/s²]; None: 9.81 along -z.
     ``indices``: Local indices: "kinematic", "dynamic", "all", or a list of names.
     ``index_options``: Options of the indices that have any: {index: {option: value}}.
     ``task``: Rows of the Jacobian, in base axes: "linear", "angular", "full", or a list from x y z rx ry rz.

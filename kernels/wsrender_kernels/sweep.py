@@ -17,6 +17,7 @@ from typing import Any
 
 import warp as wp
 
+from wsrender_kernels.constraints import OfChain
 from wsrender_kernels.denormals import denormals_to_zero, restore_denormals
 from wsrender_kernels.elementary import bits_type, elementary
 from wsrender_kernels.factories import factory
@@ -75,8 +76,9 @@ class Shape:
     keep_rows: bool = False
     keep_configuration: bool = False
     keep_orientation: bool = False
-    # Warp functions (limits, q, tip, axes) -> 0 admitted | 1 violated, or the label of samples that are rejected
-    constraints: tuple[Callable | int, ...] = ()
+    # Warp functions (limits, q, tip, axes) -> 0 admitted | 1 violated, those of the whole chain (model, q, tip, axes),
+    # or the label of samples that are rejected
+    constraints: tuple[Callable | OfChain | int, ...] = ()
     limits: int = 0  # numbers of all constraints
 
     @property
@@ -297,8 +299,11 @@ def _rejection(shape: Shape):
 
     rejection = none
     for number, constraint in reversed(list(enumerate(shape.constraints, 1))):
-        first_of = _first_label if isinstance(constraint, int) else _first_of
-        rejection = first_of(constraint, number, rejection, vec_n, vec3, mat33)
+        if isinstance(constraint, OfChain):
+            rejection = _first_of_chain(constraint.function, number, rejection, vec_n, vec3, mat33)
+        else:
+            first_of = _first_label if isinstance(constraint, int) else _first_of
+            rejection = first_of(constraint, number, rejection, vec_n, vec3, mat33)
     in_world = rejection
 
     @wp.func
@@ -317,6 +322,17 @@ def _first_of(constraint: Any, number: int, following: Any, vec_n: Any, vec3: An
         return wp.where(constraint(model.limits, q, tip, axes) == 0, rejected, number)
 
     return first_of
+
+
+def _first_of_chain(constraint: Any, number: int, following: Any, vec_n: Any, vec3: Any, mat33: Any):
+    """The same of a constraint that asks for the chain: its frames are those of the sample, which compilers see."""
+
+    @wp.func
+    def first_of_chain(model: Any, q: vec_n, tip: vec3, axes: mat33, sample: wp.int64):
+        rejected = following(model, q, tip, axes, sample)
+        return wp.where(constraint(model, q, tip, axes) == 0, rejected, number)
+
+    return first_of_chain
 
 
 def _first_label(label: int, number: int, following: Any, vec_n: Any, vec3: Any, mat33: Any):

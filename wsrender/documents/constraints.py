@@ -73,9 +73,33 @@ class Apart(Document):
     """Pairs of names, of shapes or of bodies for all shapes on them, that may come nearer."""
 
 
+class TorqueChoice(Document):
+    """Joints hold the arm and a payload within their torque limits."""
+
+    payload_kg: NonNegativeNumber = 0.0
+    """A point mass that the tip carries [kg]."""
+    payload_com_m: Vector = (0.0, 0.0, 0.0)
+    """Where it is in the tip's frame [m]."""
+    acceleration_m_s2: NonNegativeNumber = 0.0
+    """Acceleration of the tip that is held in every direction of the linear task too [m/s²]; 0: at rest."""
+
+
 def _apart(value: Any) -> Any:
     """The choice of a constraint that may be given as true."""
     return {} if value is True else value
+
+
+def _switch(choice: Any) -> BeforeValidator:
+    """A validator of a choice that may be given as true, all by default, or false, none."""
+
+    def switched(value: Any) -> Any:
+        return _apart(value) if value is not False else None
+
+    return BeforeValidator(switched, json_schema_input_type=choice | StrictBool | None)
+
+
+def _is_none(value: Any) -> bool:
+    return value is None
 
 
 def _options(value: Any) -> Any:
@@ -103,10 +127,13 @@ class Constraints(Document):
     """Where the tip may be; null: anywhere."""
     orientation: OrientationChoice | None = None
     """How the tip may stand; null: in any way."""
-    self_collision: Annotated[Apart | Literal[False] | None, BeforeValidator(_apart)] = None
+    self_collision: Annotated[Apart | None, _switch(Apart)] = None
     """The robot's own shapes keep apart; true: they may touch; null: they are not asked for."""
     environment: Annotated[Apart | Literal[False] | None, BeforeValidator(_apart)] = None
     """How far the robot keeps from the job's ``environment``; null: it may touch it; false: it is only drawn."""
+
+    torque: Annotated[TorqueChoice | None, _switch(TorqueChoice)] = None
+    """Torque limits hold the arm and what it carries; true: without a payload; null: they are not asked for."""
 
     @property
     def added(self) -> dict[str, dict[str, float]]:
@@ -122,3 +149,5 @@ class Constrained(Document):
     """Which configurations are admitted; null: all."""
     environment: Environment | None = None
     """What stands around, which the robot's shapes do not enter; null: nothing."""
+    gravity_m_s2: Annotated[Vector | None, Field(exclude_if=_is_none)] = None
+    """Gravity in the world, whatever the model says [m/s²]; null: 9.81 along -z."""

@@ -6,12 +6,13 @@ from typing import Any
 
 import numpy as np
 import warp as wp
+from wsrender_kernels.constraints import OfChain as Marked
 from wsrender_kernels.constraints.expression import expression
 
-from wsrender.engine.evaluation import REAL
+from wsrender.engine.evaluation import REAL, drive, packed_bodies
 from wsrender.engine.index_code import function_of_source, source_of
 from wsrender.pipeline.constraints.collision import labelling
-from wsrender.pipeline.constraints.constraint import Constraint, Expressed
+from wsrender.pipeline.constraints.constraint import Constraint, Expressed, OfChain
 from wsrender.robots.kinematics import Kinematics
 
 
@@ -37,15 +38,27 @@ def device_constraints(
             own, options = wp.float64 if origin.any() else real, len(each.device.options)
             margin = function_of_source(source_of([each.device.traced(chain.n)]), 1, chain.n + 12 + options, own)
             functions.append(expression(margin, real, own, chain.n, options, total, offset))
+        elif isinstance(each.device, OfChain):
+            asked = each.device
+            arguments = (real, chain.n, *drive(asked.chain), *asked.choices, total, offset)
+            functions.append(Marked(_factory(asked.module)(*arguments)))
         else:
-            module = import_module(f"wsrender_kernels.constraints.{each.device}")
-            functions.append(getattr(module, each.device)(real, chain.n, total, offset))
+            functions.append(_factory(each.device)(real, chain.n, total, offset))
     return {"constraints": tuple(functions), "limits": total}
 
 
+def _factory(name: str) -> Any:
+    return getattr(import_module(f"wsrender_kernels.constraints.{name}"), name)
+
+
 def _numbers(constraint: Constraint, chain: Kinematics, origin: np.ndarray, precision: str) -> np.ndarray:
-    """Those of a constraint; of an expression as single precision holds them, then what that leaves of each."""
+    """Those of a constraint; of an expression as single precision holds them, then what that leaves of each.
+
+    Of the whole chain its bodies follow.
+    """
     numbers = constraint.pack(chain, origin, precision)
+    if isinstance(constraint.device, OfChain):
+        return np.concatenate([numbers, packed_bodies(constraint.device.chain)])
     if not isinstance(constraint.device, Expressed):
         return numbers
     rounded = numbers.astype(np.float32).astype(np.float64)

@@ -11,7 +11,6 @@ from wsrender_kernels.spectrum import spectrum_length
 from wsrender_kernels.sweep import Shape
 
 from wsrender.engine.index_code import function_of_source, index_source
-from wsrender.pipeline.evaluation import Evaluation
 from wsrender.pipeline.pipeline import Pipeline
 from wsrender.robots.chain import Chain
 from wsrender.robots.kinematics import Kinematics
@@ -19,22 +18,22 @@ from wsrender.robots.kinematics import Kinematics
 REAL = {"float32": wp.float32, "float64": wp.float64}
 
 
-def shape_of(evaluation: Evaluation, precision: str, method: str, **outputs: Any) -> Shape:
-    """Compile-time part of the sweep kernel of an evaluation."""
-    real, n = REAL[precision], evaluation.chain.n
+def shape_of(pipeline: Pipeline, **outputs: Any) -> Shape:
+    """Compile-time part of the sweep kernel of a pipeline, but for what it keeps and its constraints."""
+    evaluation, chain, real = pipeline.evaluation, pipeline.device_chain, REAL[pipeline.precision]
+    n = evaluation.chain.n
     indices = None
     if evaluation.indices:
         body = index_source(evaluation.indices, evaluation.rows, n, evaluation.convention, evaluation.options)
         length = spectrum_length(n, evaluation.rows, evaluation.convention)
         indices = function_of_source(body, len(evaluation.indices), length, real)
-    chain = evaluation.device_chain
     sources, plain = drive(chain) if chain else (tuple(range(n)), True)
     return Shape(
         real=real,
         n=n,
         sources=sources,
         plain=plain,
-        method="given" if evaluation.on_host else method,
+        method="given" if evaluation.on_host else pipeline.sampling.method,
         rows=evaluation.rows,
         convention=evaluation.convention,
         indices=indices,
@@ -61,7 +60,7 @@ def pipeline_model(pipeline: Pipeline, limits: np.ndarray, labelled: bool = Fals
     """
     evaluation, precision, origin = pipeline.evaluation, pipeline.precision, pipeline.origin
     chain, real = evaluation.chain, REAL[precision]
-    if device_chain := evaluation.device_chain:
+    if device_chain := pipeline.device_chain:
         model = chain_model(device_chain.relative_to(origin), precision, len(limits), labelled)
     else:
         model = _placed_model(chain, chain.n, precision, len(limits), labelled)
@@ -89,9 +88,13 @@ def chain_model(chain: Chain, precision: str, limits: int = 0, labelled: bool = 
         chain.joint_scale,
         chain.joint_offset,
     )
-    bodies = pack_inertia(chain.T_joint, chain.mass, chain.center_of_mass, chain.inertia, chain.armature)
-    model.chain, model.bodies = vector_of(kinematics, real), vector_of(bodies, real)
+    model.chain, model.bodies = vector_of(kinematics, real), vector_of(packed_bodies(chain), real)
     return model
+
+
+def packed_bodies(chain: Chain) -> np.ndarray:
+    """The numbers of a chain's bodies, (L * BODY_STRIDE,) float64."""
+    return pack_inertia(chain.T_joint, chain.mass, chain.center_of_mass, chain.inertia, chain.armature)
 
 
 def _placed_model(chain: Kinematics, joints: int, precision: str, limits: int, labelled: bool):

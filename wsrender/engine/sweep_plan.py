@@ -81,9 +81,7 @@ class SweepPlan:
         """Compile-time part of the kernel."""
         each, rows = self.pipeline, self.pipeline.kept_rows
         return shape_of(
-            each.evaluation,
-            each.precision,
-            each.sampling.method,
+            each,
             base_levels=self.structure.base_levels > 1,
             voxels=each.block is not None,
             maximum="maximum" in each.statistics,

@@ -6,9 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from wsrender.pipeline.constraints.constraint import Constraint
+from wsrender.pipeline.constraints.constraint import Constraint, OfChain
 from wsrender.pipeline.evaluation import Evaluation
 from wsrender.pipeline.sampling import SamplingPlan, plan_sampling
+from wsrender.robots.chain import Chain
 from wsrender.robots.kinematics import Kinematics
 from wsrender.volume.lattice import LatticeBlock
 
@@ -48,6 +49,13 @@ class Pipeline:
     def origin(self) -> np.ndarray:
         """Where the engine counts positions from, in the world (3,) [m]."""
         return self.evaluation.chain.origin if self.block is None else self.block.origin
+
+    @property
+    def device_chain(self) -> Chain | None:
+        """The chain that the kernels evaluate, with all bodies where a constraint asks for them; None: the host's."""
+        chain = self.evaluation.device_chain
+        whole = any(isinstance(each.device, OfChain) for each in self.constraints)
+        return chain.dynamic if chain and whole else chain
 
     def __str__(self) -> str:
         """Its stages, such as ``sobol 1e6 → ur5e → region → manipulability → voxels 5 mm (count, maximum)``."""

@@ -5,23 +5,43 @@ from typing import Any
 
 import numpy as np
 
-from wsrender.documents.constraints import Constraints
+from wsrender.documents.constraints import Constraints, TorqueChoice
 from wsrender.documents.environment import Environment
 from wsrender.errors import InputError
 from wsrender.pipeline.constraints.constraint import Constraint, Expressed, in_order
-from wsrender.pipeline.constraints.region import Region
+from wsrender.pipeline.constraints.region import Point, Region
 from wsrender.pipeline.constraints.registry import constraints_of
+from wsrender.pipeline.constraints.torque import Torque
+from wsrender.robot.indices import check_inertias, task_rows
 from wsrender.robot.model_robot import Robot
+
+LINEAR = (0, 1, 2)  # rows of a task
+GRAVITY = (0.0, 0.0, -9.81)  # m/s², in the world
+EFFORTS = "MJCF actuatorfrcrange or forcerange, URDF effort, effort_limit of DH rows"
+
+
+def constraints_of_job(job: Any, robot: Robot) -> tuple[Constraint, ...]:
+    """The constraints of a job of one arm, with its environment, gravity, task and precision; as `constraints_for`."""
+    asked = {"gravity": job.gravity_m_s2 or GRAVITY, "rows": task_rows(job.task), "precision": job.precision}
+    return constraints_for(robot, job.constraints, job.environment, **asked)
 
 
 def constraints_for(
-    robot: Robot, choice: Constraints | None, environment: Environment | None = None
+    robot: Robot,
+    choice: Constraints | None,
+    environment: Environment | None = None,
+    *,
+    gravity: Point = GRAVITY,
+    rows: tuple[int, ...] = LINEAR,
+    precision: str = "float64",
 ) -> tuple[Constraint, ...]:
-    """The constraints of a job for its robot, and its environment.
+    """The constraints for a robot, in what stands around it, with a task's ``rows``.
 
     Raises InputError for one that is unknown, or not for such a robot.
     """
     constraints = constraints_of(choice)
+    if choice and choice.torque:
+        constraints = in_order((*constraints, _torque(robot, choice.torque, gravity, rows, precision)))
     if environment or (choice and (choice.self_collision or choice.environment)):
         from wsrender.robot.collisions import collision_constraints
 
@@ -37,6 +57,26 @@ def constraints_for(
             message = f"takes a joint that this robot of {robot.chain.n} does not have"
             raise InputError(f"constraints.{each.name}", message) from error
     return constraints
+
+
+def _torque(robot: Robot, choice: TorqueChoice, gravity: Point, rows: tuple[int, ...], precision: str) -> Torque:
+    """Raises InputError for a robot without what it asks for."""
+    chain = robot.chain.geometry
+    if chain is None:
+        raise InputError("constraints.torque", "is not available for a robot that is defined by a class")
+    if not robot.has_inertia:
+        raise InputError("constraints.torque", f"must not be given: the model of {robot.name} lacks masses or inertias")
+    if chain.effort_limits is None:
+        message = f"must not be given: the model of {robot.name} lacks torque limits for some joint ({EFFORTS})"
+        raise InputError("constraints.torque", message)
+    linear = tuple(row for row in rows if row in LINEAR)
+    if choice.acceleration_m_s2:
+        if not linear:
+            message = f"must be 0 with a task without linear rows, not {choice.acceleration_m_s2:g}"
+            raise InputError("constraints.torque.acceleration_m_s2", message)
+        check_inertias(robot, precision)
+    laden = chain.dynamic.carrying(choice.payload_kg, np.array(choice.payload_com_m))
+    return Torque(laden, gravity, choice.acceleration_m_s2, linear if choice.acceleration_m_s2 else ())
 
 
 def samples_entry(constraints: Sequence[Constraint], drawn: int, rejected: np.ndarray) -> dict[str, Any]:

@@ -109,7 +109,7 @@ def evaluation_of(
         raise MissingInertiaError("torque_scaling", f"the model of {robot.name} lacks effort limits for some joint")
     characteristic_length_m = argument("characteristic_length_m", positive, characteristic_length_m)
     host_inertia = robot.given_inertia(inertia)
-    notices = _checked_inertias(robot, precision) if dynamic and not robot.definition else ()
+    notices = check_inertias(robot, precision) if dynamic and not robot.definition else ()
     if (penalty := _penalty(joint_limit_penalty)) is not None:
         need_ranges(chain, "robot.limits")
     return Evaluation(
@@ -126,7 +126,7 @@ def evaluation_of(
     )
 
 
-def _checked_inertias(robot: Robot, precision: str) -> tuple[Notice, ...]:
+def check_inertias(robot: Robot, precision: str) -> tuple[Notice, ...]:
     """Whether float32 holds the robot's dynamic indices: J M^-1 with columns too different loses its small values.
 
     Float64 does, but a link without mass, whose acceleration has no bound, is worth a warning.

@@ -20,6 +20,11 @@ def _first_moved(T_joint: np.ndarray, by: np.ndarray) -> np.ndarray:
     return T_joint
 
 
+def _of_point(at: np.ndarray) -> np.ndarray:
+    """Inertia (3, 3) [m²] of a unit mass at a point (3,) [m]."""
+    return at @ at * np.eye(3) - np.outer(at, at)
+
+
 def _motions(turns: bool, by: np.ndarray) -> np.ndarray:
     """Turns about z by angles (N,), or slides along it, (N, 4, 4)."""
     T = np.tile(np.eye(4), (len(by), 1, 1))
@@ -158,6 +163,21 @@ class Chain(Kinematics):
             T_world_base=T_world_base,
             T_joint=_first_moved(self.T_joint, offset),
             with_branches=whole and replace(whole, T_joint=_first_moved(whole.T_joint, offset)),
+        )
+
+    def carrying(self, mass: float, at: np.ndarray) -> Self:
+        """The same with a point mass [kg] at ``at`` (3,) [m] in the tool's frame."""
+        link, total = self.mass[-1], self.mass[-1] + mass
+        if not mass:
+            return self
+        place = (self.T_tip @ self.T_tip_tool)[:3] @ [*at, 1.0]
+        center = (link * self.center_of_mass[-1] + mass * place) / total
+        about = link * _of_point(self.center_of_mass[-1] - center) + mass * _of_point(place - center)
+        return replace(
+            self,
+            mass=np.append(self.mass[:-1], total),
+            center_of_mass=np.vstack([self.center_of_mass[:-1], center]),
+            inertia=np.concatenate([self.inertia[:-1], [self.inertia[-1] + about]]),
         )
 
     @property

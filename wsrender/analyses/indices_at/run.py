@@ -22,7 +22,7 @@ from wsrender.analyses.provenance import index_choices
 from wsrender.engine import Evaluated, evaluate_samples, units_of
 from wsrender.pipeline.pipeline import Pipeline
 from wsrender.pipeline.sampling import plan_sampling
-from wsrender.robot.constraints import constraints_for, samples_entry
+from wsrender.robot.constraints import constraints_of_job, samples_entry
 from wsrender.robot.indices import evaluation_of_job
 from wsrender.robot.model_robot import configuration_rows
 from wsrender.robot.rejections import colliding_pairs, first_rejected
@@ -58,7 +58,7 @@ class IndicesAtAnalysis(Analysis):
         return Pipeline(
             evaluation,
             plan_sampling(self.robot.chain, self.q),
-            constraints_for(self.robot, self.job.constraints, self.job.environment),
+            constraints_of_job(self.job, self.robot),
             kept_rows=frozenset() if evaluation.given_kinematics else frozenset({"orientation"}),
             precision=self.job.precision,
         )

@@ -41,7 +41,7 @@ from wsrender.pipeline.constraints.constraint import Constraint
 from wsrender.pipeline.pipeline import Pipeline
 from wsrender.pipeline.sampling import SamplingPlan, plan_sampling
 from wsrender.robot import Robot
-from wsrender.robot.constraints import check_admitted, constraints_for, samples_entry
+from wsrender.robot.constraints import check_admitted, constraints_of_job, samples_entry
 from wsrender.robot.indices import evaluation_of_job
 from wsrender.volume.lattice import LatticeBlock, expected_voxels, voxel_of
 from wsrender.volume.volume_data import VolumeData
@@ -127,7 +127,7 @@ class WorkspaceAnalysis(Analysis):
     @cached_property
     def constraints(self) -> tuple[Constraint, ...]:
         """What samples must satisfy; tables of collisions are made here."""
-        return constraints_for(self.robot, self.job.constraints, self.job.environment)
+        return constraints_of_job(self.job, self.robot)
 
     def _pipeline(self, block: LatticeBlock, bounds: tuple[float, ...], collapse: bool = True) -> Pipeline:
         job = self.job

@@ -7,6 +7,7 @@ from typing import Any, Literal, Protocol, runtime_checkable
 import numpy as np
 
 from wsrender.indices.expression import Expression, trace
+from wsrender.robots.chain import Chain
 from wsrender.robots.kinematics import Kinematics
 
 Structure = Literal["base_joint", "trailing_joints"]
@@ -40,8 +41,8 @@ class Constraint(Protocol):
         ...
 
     @property
-    def device(self) -> "str | Expressed":
-        """A module of ``wsrender_kernels.constraints``, or the function that the engine traces."""
+    def device(self) -> "str | OfChain | Expressed":
+        """A module of ``wsrender_kernels.constraints``, also of the whole chain, or the function that is traced."""
         ...
 
     def host(self, q: np.ndarray, frames: np.ndarray) -> np.ndarray:
@@ -50,6 +51,18 @@ class Constraint(Protocol):
         ``frames``: tip poses (N, 4, 4) in the world; of a mechanism both ends of its links (N, n, 2, 3) [m].
         """
         ...
+
+
+@dataclass(frozen=True)
+class OfChain:
+    """A module of ``wsrender_kernels.constraints`` that asks for the whole chain, and its choices.
+
+    ``chain``: has the joints of the robot's `Chain.dynamic`; its bodies are the last numbers of the constraint.
+    """
+
+    module: str
+    choices: tuple[Any, ...]
+    chain: Chain
 
 
 @dataclass(frozen=True)

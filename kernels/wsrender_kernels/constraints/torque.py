@@ -1,0 +1,139 @@
+"""Joints hold the arm and what it carries, at rest or while the tip accelerates in any direction."""
+
+from collections.abc import Iterable
+from typing import Any
+
+import warp as wp
+
+from wsrender_kernels.factories import factory
+from wsrender_kernels.inertia import BODY_STRIDE, inertia
+from wsrender_kernels.kinematics import JOINT_STRIDE, chain_type, frames_type, kinematics
+from wsrender_kernels.matrices import followed_by, written_out
+
+
+@factory
+def torque(real, n: int, sources: tuple[int, ...], plain: bool, rows: tuple[int, ...], size: int, offset: int):
+    """Device function of the constraint; see the package.
+
+    ``rows``: those of the linear task in which the tip accelerates; none at rest. Its numbers: gravity in the world
+    (3,) [m/s²], the acceleration [m/s²], the joints' limits (n,) [N m or N], and `pack_inertia` of the chain with what
+    it carries.
+    """
+    L = len(sources)
+    SOURCE = wp.types.vector(L, wp.int32)(*sources)
+    STRIDE, B, BODY = JOINT_STRIDE, L * JOINT_STRIDE, BODY_STRIDE
+    ACCELERATION, EFFORT, BODIES = offset + 3, offset + 4, offset + 4 + n
+    limits_type, vec_n, vec3 = wp.types.vector(size, real), wp.types.vector(n, real), wp.types.vector(3, real)
+    mat33, axes_type = wp.types.matrix((3, 3), real), wp.types.matrix((L, 3), real)
+    kin, dyn = kinematics(real, n, sources, plain, True), inertia(real, n, sources, plain)
+    forward, jacobian, inertia_matrix = kin.forward, kin.jacobian, dyn.inertia_matrix
+    Chain, Frames = chain_type(real, L), frames_type(real, L)
+    bodies_type, M_ROWS = wp.types.vector(L * BODY, real), max(len(rows), 1)
+    ROWS, rows_type = wp.types.vector(M_ROWS, wp.int32)(*(rows or (0,))), wp.types.matrix((M_ROWS, n), real)
+    solve = dyn.solve(M_ROWS)
+    PLAIN = plain
+    copied = "".join(f"bodies.c[{k}] = limits.c[{BODIES + k}]; " for k in range(L * BODY))
+
+    @wp.func_native(written_out(real, f"wp::vec_t<{L * BODY}, R> bodies;", copied, "return bodies;"))
+    def bodies_of(limits: limits_type) -> bodies_type: ...
+
+    @wp.func_native(_norms_in_cpp(real, n, M_ROWS))
+    def norms(Q: rows_type, X: rows_type) -> vec_n: ...
+
+    @wp.func
+    def weights(limits: limits_type, chain: Chain, frames: Frames):
+        """Torques by which gravity pulls at the joints, (n,)."""
+        g = vec3()
+        for k in range(3):
+            for r in range(3):
+                g[k] += chain[B + 3 * k + r] * limits[offset + r]
+        pulls = axes_type()  # gravity in the frame of each joint
+        for i in range(L):
+            a = i * STRIDE
+            y = chain[a] * g[1] + chain[a + 1] * g[2]
+            z = chain[a] * g[2] - chain[a + 1] * g[1]
+            x = g[0]
+            g = vec3(frames.cosines[i] * x + frames.sines[i] * y, frames.cosines[i] * y - frames.sines[i] * x, z)
+            pulls[i, 0] = g[0]
+            pulls[i, 1] = g[1]
+            pulls[i, 2] = g[2]
+        torques = vec_n()
+        h = vec3()  # first moment of all beyond a joint, about its origin
+        for back in range(L):
+            i = L - 1 - back
+            a = i * STRIDE
+            b = BODIES + i * BODY
+            h = h + vec3(limits[b + 1], limits[b + 2], limits[b + 3])
+            pull = h[0] * pulls[i, 1] - h[1] * pulls[i, 0]
+            z = h[2]
+            if wp.static(not PLAIN):
+                pull = pull * chain[a + 8] + limits[b] * pulls[i, 2] * chain[a + 9]
+                z = z + limits[b] * frames.slides[i]
+            torques[SOURCE[i]] += pull
+            x = frames.cosines[i] * h[0] - frames.sines[i] * h[1]
+            y = frames.sines[i] * h[0] + frames.cosines[i] * h[1]
+            h = vec3(x, chain[a] * y - chain[a + 1] * z, chain[a + 1] * y + chain[a] * z)
+        return torques
+
+    @wp.func
+    def efforts_at_rest(limits: limits_type, model: Any, frames: Frames):
+        """Largest torques, (n,)."""
+        torques = weights(limits, model.chain, frames)
+        for i in range(n):
+            torques[i] = wp.abs(torques[i])
+        return torques
+
+    @wp.func
+    def efforts_of_acceleration(limits: limits_type, model: Any, frames: Frames):
+        M = inertia_matrix(model.chain, bodies_of(limits), frames)
+        J = jacobian(model.chain, frames)
+        Q = rows_type()
+        for r in range(M_ROWS):
+            for c in range(n):
+                for k in range(3):
+                    Q[r, c] += model.base_axes[ROWS[r], k] * J[k, c]
+        held = norms(Q, solve(M, Q))
+        torques = weights(limits, model.chain, frames)
+        for i in range(n):
+            torques[i] = wp.abs(torques[i]) + limits[ACCELERATION] * held[i]
+        return torques
+
+    efforts = efforts_of_acceleration if rows else efforts_at_rest
+
+    @wp.func
+    def overloaded(model: Any, q: vec_n, tip: vec3, axes: mat33):
+        _tip, _x, _y, _z, frames = forward(model.chain, q)
+        torques = efforts(model.limits, model, frames)
+        admitted = wp.int32(1)
+        for i in range(n):
+            # Not a number, of a singular posture, is not within the limit.
+            admitted = wp.where(torques[i] <= model.limits[EFFORT + i], admitted, 0)
+        return 1 - admitted
+
+    return overloaded
+
+
+def _norms_in_cpp(real, n: int, m: int) -> str:
+    """(J_v, J_v M^-1) -> norms of the rows of J_v' Λ, Λ = (J_v M^-1 J_v')^-1 (Khatib 1987), (n,).
+
+    With J_v = R Q, R triangular and Q M^-1 Q' = 1, by Gram and Schmidt, they are Q' R^-1, whose error grows with the
+    condition of J_v and not with its square. Not a number, or all but infinite, where J_v is singular.
+    """
+    lines = []
+    for r in range(m):
+        lines += [f"R q{r}_{c} = Q.data[{r}][{c}], x{r}_{c} = X.data[{r}][{c}];" for c in range(n)]
+        for s in range(r):
+            lines.append(f"const R R{r}_{s} = {_sum(f'q{r}_{c} * x{s}_{c}' for c in range(n))};")
+            lines += [f"q{r}_{c} -= R{r}_{s} * q{s}_{c}; x{r}_{c} -= R{r}_{s} * x{s}_{c};" for c in range(n)]
+        lines.append(f"const R P{r} = R(1) / wp::sqrt({_sum(f'q{r}_{c} * x{r}_{c}' for c in range(n))});")
+        lines += [f"q{r}_{c} *= P{r}; x{r}_{c} *= P{r};" for c in range(n)]
+    for c in range(n):
+        for r in reversed(range(m)):
+            less = followed_by("-", (f"y{s}_{c} * R{s}_{r}" for s in range(r + 1, m)))
+            lines.append(f"const R y{r}_{c} = (q{r}_{c}{less}) * P{r};")
+        lines.append(f"norms.c[{c}] = wp::sqrt({_sum(f'y{r}_{c} * y{r}_{c}' for r in range(m))});")
+    return written_out(real, f"wp::vec_t<{n}, R> norms;", *lines, "return norms;")
+
+
+def _sum(terms: Iterable[str]) -> str:
+    return " + ".join(terms)
