@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 import warp as wp
 from wsrender_kernels.constraints import OfChain as Marked
-from wsrender_kernels.constraints.expression import expression
+from wsrender_kernels.constraints.expression import expression, expression_of_chain
+from wsrender_kernels.kinematics import device_joint_frames
 
 from wsrender.engine.evaluation import REAL, drive, packed_bodies
 from wsrender.engine.index_code import function_of_source, source_of
@@ -35,9 +36,7 @@ def device_constraints(
             functions.append(labels[each.name])
         elif isinstance(each.device, Expressed):
             # Positions in the world have more digits than single precision where the base is far away.
-            own, options = wp.float64 if origin.any() else real, len(each.device.options)
-            margin = function_of_source(source_of([each.device.traced(chain.n)]), 1, chain.n + 12 + options, own)
-            functions.append(expression(margin, real, own, chain.n, options, total, offset))
+            functions.append(_traced(each, chain, real, wp.float64 if origin.any() else real, total, offset))
         elif isinstance(each.device, OfChain):
             asked = each.device
             arguments = (real, chain.n, *drive(asked.chain), *asked.choices, total, offset)
@@ -45,6 +44,17 @@ def device_constraints(
         else:
             functions.append(_factory(each.device)(real, chain.n, total, offset))
     return {"constraints": tuple(functions), "limits": total}
+
+
+def _traced(constraint: Any, chain: Kinematics, real: Any, own: Any, total: int, offset: int) -> Any:
+    """The device function of an expression, evaluated in the precision ``own``."""
+    asked, n, whole = constraint.device, chain.n, constraint.chain
+    joints, options = len(whole.joint_source) if whole else n, len(asked.options)
+    margin = function_of_source(source_of([asked.traced(n, joints)]), 1, asked.inputs(n, joints), own)
+    if not asked.asks:
+        return expression(margin, real, own, n, options, total, offset)
+    arguments = (margin, real, own, n, *drive(whole), asked.asks, options, total, offset)
+    return Marked(expression_of_chain(*arguments))
 
 
 def _factory(name: str) -> Any:
@@ -62,4 +72,11 @@ def _numbers(constraint: Constraint, chain: Kinematics, origin: np.ndarray, prec
     if not isinstance(constraint.device, Expressed):
         return numbers
     rounded = numbers.astype(np.float32).astype(np.float64)
-    return np.concatenate([rounded, numbers - rounded])
+    both = np.concatenate([rounded, numbers - rounded])
+    return np.concatenate([both, *_chain_numbers(constraint)]) if constraint.device.asks else both
+
+
+def _chain_numbers(constraint: Any) -> tuple[np.ndarray, ...]:
+    """What an expression of the whole chain has more."""
+    chain, turned = constraint.chain, device_joint_frames(constraint.chain.T_joint)
+    return *constraint.limits, np.array(constraint.gravity), turned[:, 0, :2].ravel(), packed_bodies(chain)

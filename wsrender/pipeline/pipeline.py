@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from wsrender.pipeline.constraints.constraint import Constraint, OfChain
+from wsrender.pipeline.constraints.constraint import Constraint, asks_for_chain
 from wsrender.pipeline.evaluation import Evaluation
 from wsrender.pipeline.sampling import SamplingPlan, plan_sampling
 from wsrender.robots.chain import Chain
@@ -54,7 +54,7 @@ class Pipeline:
     def device_chain(self) -> Chain | None:
         """The chain that the kernels evaluate, with all bodies where a constraint asks for them; None: the host's."""
         chain = self.evaluation.device_chain
-        whole = any(isinstance(each.device, OfChain) for each in self.constraints)
+        whole = any(map(asks_for_chain, self.constraints))
         return chain.dynamic if chain and whole else chain
 
     def __str__(self) -> str:

@@ -1,6 +1,7 @@
 """Constraints of a robot: from the words of a job document to the pipeline's, and what results say of them."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -8,7 +9,8 @@ import numpy as np
 from wsrender.documents.constraints import Constraints, TorqueChoice
 from wsrender.documents.environment import Environment
 from wsrender.errors import InputError
-from wsrender.pipeline.constraints.constraint import Constraint, Expressed, in_order
+from wsrender.pipeline.constraints.constraint import Constraint, Structure, in_order
+from wsrender.pipeline.constraints.expression import ExpressionConstraint
 from wsrender.pipeline.constraints.region import Point, Region
 from wsrender.pipeline.constraints.registry import constraints_of
 from wsrender.pipeline.constraints.torque import Torque
@@ -46,17 +48,31 @@ def constraints_for(
         from wsrender.robot.collisions import collision_constraints
 
         constraints = in_order((*constraints, *collision_constraints(robot, choice, environment)))
-    for each in constraints:
-        if robot.definition and not isinstance(each, Region):
-            raise InputError(f"constraints.{each.name}", "is not available for a robot that is defined by a class")
-        if not isinstance(each.device, Expressed):
-            continue
-        try:
-            each.device.traced(robot.chain.n)
-        except InputError as error:
-            message = f"takes a joint that this robot of {robot.chain.n} does not have"
-            raise InputError(f"constraints.{each.name}", message) from error
-    return constraints
+    return tuple(_for_robot(each, robot, gravity) for each in constraints)
+
+
+def _for_robot(each: Constraint, robot: Robot, gravity: Point) -> Constraint:
+    """A constraint with what it asks of the robot. Raises InputError where it is not for such a robot."""
+    if isinstance(each, Region):
+        return each
+    if (chain := robot.chain.geometry) is None:
+        raise InputError(f"constraints.{each.name}", "is not available for a robot that is defined by a class")
+    if not isinstance(each, ExpressionConstraint):
+        return each
+    if "g" in each.asks and not robot.has_inertia:
+        raise InputError(f"constraints.{each.name}", f"takes g, and the model of {robot.name} lacks masses or inertias")
+    if each.asks:
+        if chain.with_branches is not None and "frames" in each.asks:
+            message = "takes frames, and joints of this robot follow a joint on another branch"
+            raise InputError(f"constraints.{each.name}", message)
+        keeps = frozenset[Structure]() if chain.with_branches is not None else each.keeps
+        each = replace(each, chain=chain.dynamic, gravity=gravity, keeps=keeps)
+    try:
+        each.device.traced(chain.n, len(chain.joint_source))
+    except InputError as error:
+        message = f"takes a joint that this robot of {chain.n} does not have"
+        raise InputError(f"constraints.{each.name}", message) from error
+    return each
 
 
 def _torque(robot: Robot, choice: TorqueChoice, gravity: Point, rows: tuple[int, ...], precision: str) -> Torque:

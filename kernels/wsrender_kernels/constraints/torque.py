@@ -6,8 +6,9 @@ from typing import Any
 import warp as wp
 
 from wsrender_kernels.factories import factory
+from wsrender_kernels.gravity import gravity_pulls
 from wsrender_kernels.inertia import BODY_STRIDE, inertia
-from wsrender_kernels.kinematics import JOINT_STRIDE, chain_type, frames_type, kinematics
+from wsrender_kernels.kinematics import frames_type, kinematics
 from wsrender_kernels.matrices import followed_by, written_out
 
 
@@ -20,60 +21,21 @@ def torque(real, n: int, sources: tuple[int, ...], plain: bool, rows: tuple[int,
     it carries.
     """
     L = len(sources)
-    SOURCE = wp.types.vector(L, wp.int32)(*sources)
-    STRIDE, B, BODY = JOINT_STRIDE, L * JOINT_STRIDE, BODY_STRIDE
     ACCELERATION, EFFORT, BODIES = offset + 3, offset + 4, offset + 4 + n
     limits_type, vec_n, vec3 = wp.types.vector(size, real), wp.types.vector(n, real), wp.types.vector(3, real)
-    mat33, axes_type = wp.types.matrix((3, 3), real), wp.types.matrix((L, 3), real)
+    mat33, Frames = wp.types.matrix((3, 3), real), frames_type(real, L)
     kin, dyn = kinematics(real, n, sources, plain, True), inertia(real, n, sources, plain)
     forward, jacobian, inertia_matrix = kin.forward, kin.jacobian, dyn.inertia_matrix
-    Chain, Frames = chain_type(real, L), frames_type(real, L)
-    bodies_type, M_ROWS = wp.types.vector(L * BODY, real), max(len(rows), 1)
+    bodies_type, M_ROWS = wp.types.vector(L * BODY_STRIDE, real), max(len(rows), 1)
     ROWS, rows_type = wp.types.vector(M_ROWS, wp.int32)(*(rows or (0,))), wp.types.matrix((M_ROWS, n), real)
-    solve = dyn.solve(M_ROWS)
-    PLAIN = plain
-    copied = "".join(f"bodies.c[{k}] = limits.c[{BODIES + k}]; " for k in range(L * BODY))
+    solve, weights = dyn.solve(M_ROWS), gravity_pulls(real, n, sources, plain, size, offset, BODIES)
+    copied = "".join(f"bodies.c[{k}] = limits.c[{BODIES + k}]; " for k in range(L * BODY_STRIDE))
 
-    @wp.func_native(written_out(real, f"wp::vec_t<{L * BODY}, R> bodies;", copied, "return bodies;"))
+    @wp.func_native(written_out(real, f"wp::vec_t<{L * BODY_STRIDE}, R> bodies;", copied, "return bodies;"))
     def bodies_of(limits: limits_type) -> bodies_type: ...
 
     @wp.func_native(_norms_in_cpp(real, n, M_ROWS))
     def norms(Q: rows_type, X: rows_type) -> vec_n: ...
-
-    @wp.func
-    def weights(limits: limits_type, chain: Chain, frames: Frames):
-        """Torques by which gravity pulls at the joints, (n,)."""
-        g = vec3()
-        for k in range(3):
-            for r in range(3):
-                g[k] += chain[B + 3 * k + r] * limits[offset + r]
-        pulls = axes_type()  # gravity in the frame of each joint
-        for i in range(L):
-            a = i * STRIDE
-            y = chain[a] * g[1] + chain[a + 1] * g[2]
-            z = chain[a] * g[2] - chain[a + 1] * g[1]
-            x = g[0]
-            g = vec3(frames.cosines[i] * x + frames.sines[i] * y, frames.cosines[i] * y - frames.sines[i] * x, z)
-            pulls[i, 0] = g[0]
-            pulls[i, 1] = g[1]
-            pulls[i, 2] = g[2]
-        torques = vec_n()
-        h = vec3()  # first moment of all beyond a joint, about its origin
-        for back in range(L):
-            i = L - 1 - back
-            a = i * STRIDE
-            b = BODIES + i * BODY
-            h = h + vec3(limits[b + 1], limits[b + 2], limits[b + 3])
-            pull = h[0] * pulls[i, 1] - h[1] * pulls[i, 0]
-            z = h[2]
-            if wp.static(not PLAIN):
-                pull = pull * chain[a + 8] + limits[b] * pulls[i, 2] * chain[a + 9]
-                z = z + limits[b] * frames.slides[i]
-            torques[SOURCE[i]] += pull
-            x = frames.cosines[i] * h[0] - frames.sines[i] * h[1]
-            y = frames.sines[i] * h[0] + frames.cosines[i] * h[1]
-            h = vec3(x, chain[a] * y - chain[a + 1] * z, chain[a + 1] * y + chain[a] * z)
-        return torques
 
     @wp.func
     def efforts_at_rest(limits: limits_type, model: Any, frames: Frames):

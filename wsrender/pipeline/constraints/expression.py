@@ -1,4 +1,4 @@
-"""Constraints of users: an expression of the configuration and the tip's pose, traced by the engine."""
+"""Constraints of users: an expression of the configuration, the tip's pose and the chain, traced by the engine."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -6,30 +6,63 @@ from typing import Any
 
 import numpy as np
 
-from wsrender.pipeline.constraints.constraint import Expressed, Structure
+from wsrender.pipeline.constraints.constraint import Expressed, Frame, JointLimits, Structure
+from wsrender.pipeline.constraints.region import Point
+from wsrender.robots.chain import Chain
+from wsrender.robots.dynamics import gravity_torques
 from wsrender.robots.kinematics import Kinematics
 
 
 @dataclass(frozen=True)
 class ExpressionConstraint:
-    """Admits configurations where a function of them is 0 or more; see `Expressed`. ``options``: names and values."""
+    """Admits configurations where a function of them is 0 or more; see `Expressed`. ``options``: names and values.
+
+    ``asks``: what more of the chain it takes; then ``chain``, the robot's `Chain.dynamic`, and ``gravity`` in the world
+    [m/s²] are given.
+    """
 
     name: str
     function: Callable[..., Any]
     options: tuple[tuple[str, float], ...] = ()
     keeps: frozenset[Structure] = frozenset()
+    asks: tuple[str, ...] = ()
+    chain: Chain | None = None
+    gravity: Point = (0.0, 0.0, 0.0)
 
     @property
     def device(self) -> Expressed:
         """The function that the engine traces."""
-        return Expressed(self.function, tuple(name for name, _ in self.options))
+        return Expressed(self.function, tuple(name for name, _ in self.options), self.asks)
 
     def pack(self, chain: Kinematics, origin: np.ndarray, precision: str) -> np.ndarray:
         """Where positions are counted from, for the function is given those in the world; and the options."""
         return np.array([*origin, *(value for _, value in self.options)], np.float64)
 
+    @property
+    def limits(self) -> JointLimits:
+        """What is given as ``limits``: (n,) each."""
+        assert self.chain is not None
+        efforts = self.chain.effort_limits
+        most = np.full(self.chain.n, np.inf) if efforts is None else efforts
+        return JointLimits(self.chain.lower_limits, self.chain.upper_limits, most)
+
     def host(self, q: np.ndarray, frames: np.ndarray) -> np.ndarray:
         """See `Constraint.host`; NumPy evaluates the function itself."""
-        axes = [[frames[:, row, k] for row in range(3)] for k in range(3)]
-        margin = self.function(list(q.T), [frames[:, row, 3] for row in range(3)], axes, **dict(self.options))
+        asked = {name: self._asked(name, q) for name in self.asks}
+        margin = self.function(list(q.T), *_pose(frames), **asked, **dict(self.options))
         return np.where(np.broadcast_to(margin, len(q)) >= 0, 0, 1).astype(np.int8)
+
+    def _asked(self, name: str, q: np.ndarray) -> Any:
+        assert self.chain is not None
+        if name == "frames":
+            return [Frame(*_pose(T)) for T in self.chain.frames(q)[:, :-1].swapaxes(0, 1)]
+        if name == "limits":
+            return self.limits
+        if name == "g":
+            return list(gravity_torques(self.chain, q, np.array(self.gravity)).T)
+        return self.chain.jacobians(q).transpose(1, 2, 0)
+
+
+def _pose(T: np.ndarray) -> tuple[list[Any], list[Any]]:
+    """Position and axes of frames (N, 4, 4): numbers (N,) each."""
+    return [T[:, row, 3] for row in range(3)], [[T[:, row, k] for row in range(3)] for k in range(3)]

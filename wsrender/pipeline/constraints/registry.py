@@ -15,7 +15,7 @@ from wsrender.documents.constraints import Constraints, OrientationChoice, Regio
 from wsrender.documents.problems import path_text
 from wsrender.errors import InputError
 from wsrender.extensions import left_out, load
-from wsrender.pipeline.constraints.constraint import ORDER, STRUCTURES, Constraint, Structure, in_order
+from wsrender.pipeline.constraints.constraint import ASKED, ORDER, STRUCTURES, Constraint, Structure, in_order
 from wsrender.pipeline.constraints.expression import ExpressionConstraint
 from wsrender.pipeline.constraints.orientation import Orientation
 from wsrender.pipeline.constraints.region import Point, Region
@@ -30,7 +30,10 @@ def register_constraint(name: str, function: Callable[..., Any], *, keeps: froze
 
     ``function(q, position, axes, **options)`` is 0 or more where a configuration is admitted: ``q``, the joint values
     [rad or m]; ``position``, x, y, z of the tip in the world [m]; ``axes``, its three axes in the world, three numbers
-    each; ``options``, numbers with defaults, which a job may give. It may use arithmetic and ``wsrender.math``.
+    each; ``options``, numbers with defaults, which a job may give. It may use arithmetic and ``wsrender.math``. By name
+    it may ask for more: ``frames[i].position`` and ``.axes`` of joint i, as those of the tip; ``J[row][joint]``, linear
+    then angular rows at the tip in the world; ``g``, what the joints take against gravity [N m or N]; ``limits.lower``,
+    ``.upper`` and ``.effort``, infinite where there is none.
     ``keeps``: what of a grid repeats its answers, so that fewer are asked: "base_joint" where the first joint's value
     changes none, "trailing_joints" where the values of last joints do not whose axes pass through the tip. Raises
     InputError where the name is not an identifier or taken, for another structure, or where the function uses anything
@@ -48,9 +51,10 @@ def _checked(constraint: Any) -> ExpressionConstraint:
         raise InputError("name", f"{name!r} is not allowed; an identifier other than {', '.join(ORDER)} is")
     if unknown := set(constraint.keeps) - set(STRUCTURES):
         raise InputError("keeps", f"{sorted(unknown)} is not allowed; allowed: {', '.join(STRUCTURES)}")
-    constraint = replace(constraint, options=tuple(_options_of(name, function).items()))
+    asks, options = _parameters_of(name, function)
+    constraint = replace(constraint, options=tuple(options.items()), asks=asks)
     try:
-        constraint.device.traced(MOST_JOINTS)
+        constraint.device.traced(MOST_JOINTS, MOST_JOINTS)
     except Exception as error:
         raise InputError("function", f"{name} cannot be compiled: {error}") from error
     return constraint
@@ -113,13 +117,15 @@ def _corner(sides: tuple[float | None, float | None, float | None], open_side: f
     return x, y, z
 
 
-def _options_of(name: str, function: Callable[..., Any]) -> dict[str, float]:
-    """The options of a constraint's function with their defaults."""
+def _parameters_of(name: str, function: Callable[..., Any]) -> tuple[tuple[str, ...], dict[str, float]]:
+    """What a constraint's function asks for by name, and its options with their defaults."""
     parameters = list(inspect.signature(function).parameters.values())[3:]
-    without = [each.name for each in parameters if not isinstance(each.default, int | float)]
+    asks = tuple(each.name for each in parameters if each.name in ASKED)
+    options = [each for each in parameters if each.name not in ASKED]
+    without = [each.name for each in options if not isinstance(each.default, int | float)]
     if without:
         raise InputError("function", f"the options of {name} must have numbers as defaults: {', '.join(without)}")
-    return {each.name: float(each.default) for each in parameters}
+    return asks, {each.name: float(each.default) for each in options}
 
 
 @cache
