@@ -30,9 +30,9 @@ from wsrender.documents.kinetostatics import ForceFieldChoice
 from wsrender.documents.mechanism import Delta, LegsMechanism, Master4DOF, SixPUS, StewartGough
 from wsrender.documents.options import AlphaShapeSurface, IsoSurface
 from wsrender.documents.orientations import EulerRanges, TiltRanges
-from wsrender.documents.robot import Transform
 from wsrender.documents.sampling import BoundaryBiased, Sobol
 from wsrender.documents.several_robots import PlacementScan
+from wsrender.documents.transform import Transform
 from wsrender.run.from_python import runs
 
 if TYPE_CHECKING:

@@ -13,6 +13,7 @@ from wsrender.documents.robot import RobotSpec, Transform
 from wsrender.errors import InputError, MissingInertiaError, ModelError
 from wsrender.notices import Notice
 from wsrender.robot.body_tables import pair_table, shape_table
+from wsrender.robot.tool_shapes import attached
 from wsrender.robots import (
     described,
     load,
@@ -272,6 +273,7 @@ def load_robot(
     reference: Mapping[str, float] | None = None,
     srdf: str | Path | None = None,
     exclude: Sequence[tuple[str, str]] = (),
+    tool_shapes: Sequence[Any] = (),
 ) -> Robot:
     """Load a robot: a library name, the path or text of an MJCF (.xml) or URDF file, a DH table, MjSpec or MjModel.
 
@@ -282,7 +284,9 @@ def load_robot(
     millimetres, 1 confirms metres. ``reference`` {joint: value} [rad or m] says where joints beside the chain stand,
     such as those of another arm; others of them stand at the model's zero. ``srdf`` is the path or text of an SRDF,
     whose disabled pairs of links do not collide; nor do those of ``exclude``, pairs of names of shapes, or of bodies
-    for all shapes on them. What is odd about a model is a ModelWarning, and among the robot's ``notices``.
+    for all shapes on them. ``tool_shapes``, of tool and payload, are carried by the tip, in its frame: `Box`, `Sphere`,
+    `Cylinder`, `Capsule`, `Ellipsoid`, `Mesh` or their fields; they collide as a body of the name tool that is fixed to
+    the tip's would. What is odd about a model is a ModelWarning, and among the robot's ``notices``.
     Raises InputError, ModelError for a malformed or unsupported model, FrameNotFoundError listing the frames.
     """
     kind, value = described(source)
@@ -291,6 +295,7 @@ def load_robot(
     options |= {"placement": _matrix(placement), "tool": _matrix(tool)}
     given: dict[str, Any] = {"limits": limits or {}, "limits_deg": limits_deg or {}, "length_unit_m": length_unit_m}
     given |= {"reference": reference or {}, "srdf": _srdf_text(srdf), "exclude": exclude}
+    given |= {"tool_shapes": tool_shapes}
     stated = RobotSpec(**{kind: value}, **given)
     loaded = load(source, **options, **_corrections(stated))
     spec = stated.model_copy(update={"placement": transform_of(placement), "tool": transform_of(tool)})
@@ -310,7 +315,6 @@ def robot_of_spec(
         "tip": tip,
         "placement": spec.placement.matrix() if spec.placement else None,
         "tool": spec.tool.matrix() if spec.tool else None,
-        **_corrections(spec),
     }
     loaders = {
         "library": load_library,
@@ -321,7 +325,7 @@ def robot_of_spec(
         "model": load_uploaded,
     }
     try:
-        loaded = loaders[spec.source](getattr(spec, spec.source), **options)
+        loaded = loaders[spec.source](getattr(spec, spec.source), **options, **_corrections(spec))
     except InputError as error:
         raise error.at(_field_of_arm(error.field, spec)) from None
     return Robot(loaded, spec, base=base, tip=tip)
@@ -337,7 +341,8 @@ def _field_of_arm(field: str, spec: RobotSpec) -> str:
 def _corrections(spec: RobotSpec) -> dict[str, Any]:
     """What a document says of a model that the model itself does not, or not rightly."""
     names = ("limits", "limits_deg", "length_unit_m", "reference", "srdf", "exclude")
-    return {name: getattr(spec, name) for name in names}
+    found = {name: getattr(spec, name) for name in names}
+    return found | ({"attached": attached(spec.tool_shapes)} if spec.tool_shapes else {})
 
 
 def _srdf_text(srdf: str | Path | None) -> str | None:

@@ -7,7 +7,7 @@ from functools import cached_property
 import mujoco
 import numpy as np
 
-from wsrender.errors import ModelError
+from wsrender.errors import InputError, ModelError
 from wsrender.notices import Notice
 from wsrender.robots import branches
 from wsrender.robots.bodies import Bodies
@@ -18,9 +18,9 @@ from wsrender.robots.couplings import Couplings
 from wsrender.robots.frames import Frame, transform
 from wsrender.robots.limits import Drive, joint_name
 from wsrender.robots.mjcf_model import shown
-from wsrender.robots.pairs import Names, collides, pairs_of, without
+from wsrender.robots.pairs import Names, collides, pairs_of, pairs_of_child, without
 from wsrender.robots.plausibility import long_shapes
-from wsrender.robots.shapes import Shape, shape_of
+from wsrender.robots.shapes import ATTACHED, Shape, shape_of
 
 MOST_SHAPES = 1000  # whose pairs are tried one by one; robots with hands have 200
 
@@ -29,6 +29,7 @@ MOST_SHAPES = 1000  # whose pairs are tried one by one; robots with hands have 2
 class BodySource:
     """What the bodies of a chain are made from; see `wsrender.robots.chain_extraction.extract` for its parts.
 
+    ``attached``: shapes that the tip carries, in its frame, as a body fixed to the tip's has them.
     ``excluded``: names of shapes or bodies that a user does not want tested against each other; ``disabled``: of links
     that an SRDF says need not be, which may name links that the robot has not.
     """
@@ -43,6 +44,7 @@ class BodySource:
     drives: list[Drive]
     aside: list[Drive]
     field: str
+    attached: tuple[Shape, ...] = ()
     excluded: tuple[Names, ...] = ()
     disabled: tuple[Names, ...] = ()
 
@@ -50,7 +52,11 @@ class BodySource:
     def collision(self) -> Bodies:
         """The shapes that may collide. Raises ModelError where one cannot be had, InputError for ``excluded`` names."""
         bodies = self._bodies("collision", collides)
-        shapes, pairs = bodies.shapes, pairs_of(bodies.model, [shape.geom for shape in bodies.shapes])
+        shapes = bodies.shapes
+        geoms = [shape.geom for shape in shapes if shape.geom != ATTACHED]
+        pairs = np.concatenate(
+            [pairs_of(bodies.model, geoms), pairs_of_child(bodies.model, geoms, self.tip.body, len(shapes))]
+        )
         own = np.array([not shape.surroundings for shape in shapes], bool)
         with_shapes = {shape.body for shape in shapes}
         disabled = [names for names in self.disabled if with_shapes.issuperset(names)]
@@ -84,6 +90,7 @@ class BodySource:
             if len(geoms) > MOST_SHAPES:
                 raise ModelError(self.field, f"the model has {len(geoms)} shapes; at most {MOST_SHAPES} are supported")
             shapes = self._shapes(model, geometry, geoms, numbers, purpose)
+            shapes += self._attached(model, geometry, shapes, numbers)
         addresses = np.array([model.jnt_qposadr[joint] if joint >= 0 else -1 for joint in numbers])
         return Bodies(model, chain, shapes, np.zeros((0, 2), int), self.reference, addresses, notices)
 
@@ -111,6 +118,19 @@ class BodySource:
             hull = purpose == "collision"
             shapes.append(shape_of(model, geom, frame, inverse(frames[frame]) @ T, hull, self.field))
         return tuple(shapes)
+
+    def _attached(
+        self, model: mujoco.MjModel, geometry: Geometry, shapes: tuple[Shape, ...], joints: list[int]
+    ) -> tuple[Shape, ...]:
+        """The shapes that the tip carries. Raises InputError for a name that the model's have."""
+        frame = int(carriers(model, joints)[self.tip.body])
+        T = inverse(joint_frame(model, geometry.data, joints[frame])) @ geometry.tip
+        taken = {name for shape in shapes for name in (shape.name, shape.body)}
+        for number, shape in enumerate(self.attached):
+            if shape.name in taken:
+                message = f"must be another than that of a shape or body of the model, {shape.name!r}"
+                raise InputError(f"tool_shapes.{number}.name", message)
+        return tuple(replace(shape, frame=frame, T_frame_shape=T @ shape.T_frame_shape) for shape in self.attached)
 
 
 def _seen(model: mujoco.MjModel) -> list[int]:

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from wsrender.robots.compiled_model import CompiledModel
     from wsrender.robots.loaded_robot import LoadedRobot
     from wsrender.robots.mesh_files import ReadMesh
+    from wsrender.robots.shapes import Shape
 
     Limits = Mapping[str, tuple[float, float]]
     Excluded = Sequence[tuple[str, str]]
@@ -50,6 +51,7 @@ def load(
     reference: Mapping[str, float] | None = None,
     srdf: str | None = None,
     exclude: "Excluded" = (),
+    attached: "Sequence[Shape]" = (),
 ) -> "LoadedRobot":
     """The robot of a library name, of a path to or the text of an MJCF or URDF file, of a DH table, MjSpec or MjModel.
 
@@ -61,11 +63,12 @@ def load(
     the model's. ``length_unit_m`` is the model's unit of length [m]; given, no length is doubted. ``reference`` is
     where joints beside the chain stand, by name [rad or m], instead of at the model's zero. ``srdf`` is SRDF
     text, whose disabled pairs of links do not collide, nor do those of ``exclude``, pairs of names of shapes or bodies.
+    ``attached``: shapes that the tip carries, in its frame.
     Raises ModelError, FrameNotFoundError, InputError; gives a ModelWarning for each of the robot's notices.
     """
     options = {"base": base, "tip": tip, "name": name, "placement": placement, "tool": tool}
     options |= {"limits": limits, "limits_deg": limits_deg, "length_unit_m": length_unit_m}
-    options |= {"reference": reference, "srdf": srdf, "exclude": exclude}
+    options |= {"reference": reference, "srdf": srdf, "exclude": exclude, "attached": attached}
     kind, value = described(source)
     loaders = {"library": load_library, "path": load_path, "dh": load_dh, "mjcf": load_mjcf, "urdf": load_urdf}
     return loaders[kind](value, **options)
@@ -190,6 +193,7 @@ def _loaded(
     reference=None,
     srdf=None,
     exclude=(),
+    attached=(),
     held=(),
 ) -> "LoadedRobot":
     """The robot of a model that ``compile_model`` makes of its unit of length; warns of its notices.
@@ -210,7 +214,7 @@ def _loaded(
     found = (*robot.notices, *doubts(chain, given, length_unit_m is not None, held))
     notices.warn(found, ModelWarning)
     disabled = disabled_pairs(srdf) if srdf is not None else ()
-    source = replace(robot.body_source, excluded=tuple(exclude), disabled=disabled)
+    source = replace(robot.body_source, attached=tuple(attached), excluded=tuple(exclude), disabled=disabled)
     loaded = replace(robot, chain=chain, notices=found, body_source=source)
     if exclude:
         _ = loaded.bodies  # which have the names that it must keep to

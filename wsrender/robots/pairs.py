@@ -38,6 +38,20 @@ def pairs_of(model: mujoco.MjModel, geoms: Sequence[int]) -> np.ndarray:
     ).reshape(-1, 2)
 
 
+def pairs_of_child(model: mujoco.MjModel, geoms: Sequence[int], body: int, count: int) -> np.ndarray:
+    """Pairs (P, 2) int of ``geoms`` with further shapes, numbered on up to ``count``, of a body fixed to ``body``.
+
+    Those shapes have contype and conaffinity 1, MuJoCo's defaults; excludes do not name their body.
+    """
+    met = [
+        number
+        for number, geom in enumerate(geoms)
+        if (model.geom_contype[geom] | model.geom_conaffinity[geom]) & 1
+        and not _rigid_or_adjacent(model, body, int(model.geom_bodyid[geom]))
+    ]
+    return np.array([(i, j) for j in range(len(geoms), count) for i in met], int).reshape(-1, 2)
+
+
 def collides(model: mujoco.MjModel) -> list[int]:
     """The geoms that may collide at all, with whatever there is."""
     bits = (model.geom_contype != 0) | (model.geom_conaffinity != 0)

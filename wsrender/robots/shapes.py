@@ -12,6 +12,8 @@ from wsrender.robots.frames import body_name
 Kind = Literal["plane", "sphere", "capsule", "ellipsoid", "cylinder", "box", "mesh"]
 _GEOMS = {getattr(mujoco.mjtGeom, f"mjGEOM_{kind.upper()}"): kind for kind in get_args(Kind)}
 
+ATTACHED = -1  # number of a shape that the model does not have, but its tip carries
+
 
 def _none() -> np.ndarray:
     return np.zeros((0, 3))
@@ -33,7 +35,7 @@ class Shape:
     frame: int
     T_frame_shape: np.ndarray  # (4, 4)
     size: np.ndarray
-    geom: int  # its number in the compiled model
+    geom: int  # its number in the compiled model, or ATTACHED
     surroundings: bool  # it belongs to the world of the model's file, not to the robot
     rgba: np.ndarray  # (4,) 0 … 1
     vertices: np.ndarray = field(default_factory=_none)

@@ -1,0 +1,169 @@
+"""Shapes of job documents, in one vocabulary: of what stands around, of regions, and of tools.
+
+Lengths are full lengths. A shape is solid; a half-space is solid behind its plane.
+"""
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import Annotated, Any, ClassVar, Literal, get_args
+
+from pydantic import BeforeValidator, Discriminator, ValidationError, model_validator
+
+from wsrender.documents.document import Document
+from wsrender.documents.problems import located, tagged
+from wsrender.documents.quantities import Name, PositiveNumber, points_of, sequence
+from wsrender.documents.transform import LengthUnit, Transform, Vector
+
+MOST_VERTICES = 10_000
+MESH_FILES = (".obj", ".ply", ".stl")
+
+
+def _points(value: Any) -> tuple[tuple[float, ...], ...] | None:
+    if value is None:
+        return None
+    points = points_of(value)
+    if not 4 <= len(points) <= MOST_VERTICES:
+        raise ValueError(f"must be a list of 4 … {MOST_VERTICES} points [x, y, z], finite numbers")
+    return points
+
+
+Edges = Annotated[tuple[PositiveNumber, PositiveNumber, PositiveNumber], BeforeValidator(sequence)]
+Points = Annotated[tuple[tuple[float, float, float], ...] | None, BeforeValidator(_points)]
+
+
+class Named(Document):
+    """What may have a name."""
+
+    name: Name | None = None
+    """Name in messages and pictures; null: none."""
+
+    earlier: ClassVar[str] = ""
+    """A field that once said where the shape is, and is read still."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _converted(cls, data: Any) -> Any:
+        if not isinstance(data, Mapping) or cls.earlier not in data:
+            return data
+        value = data[cls.earlier]
+        now = _fields_of_pose(value) if cls.earlier == "pose" else {"position_m": value}
+        if twice := sorted(now.keys() & data.keys()):
+            problem = located(cls.earlier, f'must not be given together with "{twice[0]}", which says the same')
+            raise ValidationError.from_exception_data(cls.__name__, [problem])
+        return {name: each for name, each in data.items() if name != cls.earlier} | now
+
+
+def _fields_of_pose(pose: Any) -> dict[str, Any]:
+    """The fields of a placement that now stand in the shape itself."""
+    if isinstance(pose, Transform):
+        return pose.model_dump(exclude_unset=True)
+    return dict(pose) if isinstance(pose, Mapping) else {"position_m": pose}
+
+
+class Placed(Named, Transform):
+    """A shape with a place and an orientation."""
+
+    earlier = "pose"
+
+
+class HalfSpace(Named):
+    """All on one side of a plane: of what stands around, the side behind it is solid; a region is the side before."""
+
+    shape: Literal["half_space"] = "half_space"
+    """half_space."""
+    point_m: Vector = (0.0, 0.0, 0.0)
+    """A point of the plane, in the world [m]."""
+    normal: Vector = (0.0, 0.0, 1.0)
+    """The plane's normal, pointing into what is free; any length but zero."""
+
+    def conflicts(self) -> Iterator[tuple[str, str]]:
+        """(field, message) of every pair of fields that do not go together."""
+        if not 1e-6 < math.hypot(*self.normal) < 1e6:
+            yield "normal", f"must not have length {math.hypot(*self.normal):g}: it says no direction"
+
+
+class Sphere(Named):
+    """A ball."""
+
+    earlier = "center_m"
+
+    shape: Literal["sphere"] = "sphere"
+    """sphere."""
+    position_m: Vector = (0.0, 0.0, 0.0)
+    """Its centre in the world [m]; center_m says the same."""
+    radius_m: PositiveNumber
+    """Its radius [m]."""
+
+
+class Box(Placed):
+    """A box; its place is that of its centre."""
+
+    shape: Literal["box"] = "box"
+    """box."""
+    size_m: Edges
+    """Edge lengths along its own x, y, z [m]."""
+
+
+class Cylinder(Placed):
+    """A cylinder about its own z; its place is that of its centre."""
+
+    shape: Literal["cylinder"] = "cylinder"
+    """cylinder."""
+    radius_m: PositiveNumber
+    """Its radius [m]."""
+    length_m: PositiveNumber
+    """Its length [m]."""
+
+
+class Capsule(Placed):
+    """A cylinder about its own z with a half ball at either end; its place is that of its centre."""
+
+    shape: Literal["capsule"] = "capsule"
+    """capsule."""
+    radius_m: PositiveNumber
+    """Radius of cylinder and half balls [m]."""
+    length_m: PositiveNumber
+    """Length of the cylinder, between the centres of the half balls [m]."""
+
+
+class Ellipsoid(Placed):
+    """An ellipsoid; its place is that of its centre."""
+
+    shape: Literal["ellipsoid"] = "ellipsoid"
+    """ellipsoid."""
+    size_m: Edges
+    """Lengths of its axes along its own x, y, z [m]."""
+
+
+class Mesh(Placed):
+    """The convex hull of points, such as the vertices of a mesh; its place is that of their frame."""
+
+    shape: Literal["mesh"] = "mesh"
+    """mesh."""
+    vertices_m: Points = None
+    """Points [x, y, z] in that frame [m]; they must not lie in a plane."""
+    path: Name | None = None
+    """A file with the vertices, .stl, .obj or .ply; local runs only."""
+    length_unit_m: LengthUnit = 1.0
+    """Unit of length of the file in metres: 0.001 of millimetres."""
+
+    def __init__(self, path: Any = None, /, **values: Any):
+        Document.__init__(self, **values if path is None else {"path": str(path), **values})
+
+    __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
+
+    def conflicts(self) -> Iterator[tuple[str, str]]:
+        """(field, message) of every pair of fields that do not go together."""
+        yield from super().conflicts()
+        if (self.vertices_m is None) == (self.path is None):
+            yield "vertices_m", 'must be given, or else "path": one of the two'
+        if self.path is not None and not self.path.lower().endswith(MESH_FILES):
+            yield "path", f'must end in {", ".join(MESH_FILES)}, not "{self.path}"'
+        if self.path is None and self.length_unit_m != 1:
+            yield "length_unit_m", 'must be 1 without "path": vertices_m are in metres'
+
+
+_Bounded = Box | Sphere | Cylinder | Capsule | Ellipsoid | Mesh
+_TAGS = [each.model_fields["shape"].default for each in get_args(_Bounded)]
+ToolShape = Annotated[_Bounded, Discriminator("shape"), BeforeValidator(tagged("shape", _TAGS))]
+"""One that a tip may carry."""
