@@ -23,7 +23,7 @@ from wsrender_server.jobs.store import JobStore
 from wsrender_server.problems import HttpProblem, pointer, problem_of_error, refusal
 
 ROOTS = ("mujoco", "robot")
-LOCAL_ONLY = "is for local runs only; upload the model, or send text or points"
+LOCAL_ONLY = "is for local runs only; upload the file and name it by model, or send text or points"
 BEYOND_LIMITS = 10**18  # samples
 
 

@@ -140,6 +140,8 @@ def body_schemas() -> dict[str, Any]:
     _tighten_scene(parts["Scene"])
     _tighten_points(parts["PointSet"], "points", 1)
     _tighten_points(parts["Mesh"], "vertices_m", 4)
+    parts["Mesh"]["oneOf"] = [{"required": parts["Mesh"].pop("required")}, {"required": ["model"]}]
+    _not_null(parts["Mesh"], "model")
     options = SubmissionOptions.model_json_schema()["properties"]
     parts["Constraints"]["properties"] |= _added_constraints()
     parts["Constraints"]["additionalProperties"] = False
@@ -215,8 +217,13 @@ def _tighten_scene(part: dict[str, Any]) -> None:
     properties = part["properties"]
     del properties["path"]
     for name in ("mjcf", "model"):
-        properties[name] = properties[name]["anyOf"][0] | {"description": properties[name]["description"]}
+        _not_null(part, name)
     part["oneOf"] = [{"required": [source]} for source in ("mjcf", "model")]
+
+
+def _not_null(part: dict[str, Any], name: str) -> None:
+    field = part["properties"][name]
+    part["properties"][name] = field["anyOf"][0] | {"description": field["description"]}
 
 
 def _tighten_points(part: dict[str, Any], name: str, least: int) -> None:

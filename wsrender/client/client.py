@@ -14,6 +14,7 @@ from wsrender.client.job import Job
 from wsrender.client.kinetostatic_stream import KinetostaticStream
 from wsrender.documents.arm import dotted, models_in
 from wsrender.documents.problems import path_text
+from wsrender.documents.shapes import MESH_FILES
 from wsrender.errors import DocumentError, InputError
 
 PAGE = 100  # jobs in one answer
@@ -66,12 +67,13 @@ class Client:
     def upload_model(self, model: str | Path | bytes, field: str = "robot.path") -> str:
         """Upload an MJCF or URDF file, or its bytes; the SHA-256 for ``robot: {"model": sha256}``.
 
-        Meshes do not travel: geometry that needs them is dropped by the server. Raises InputError, naming ``field``,
-        where the file cannot be read, ModelError where it is no model.
+        Meshes do not travel with it: geometry that needs them is dropped by the server. A mesh (.stl, .obj, .ply) that
+        is a shape by itself is uploaded alike, for ``{"shape": "mesh", "model": sha256}``. Raises InputError, naming
+        ``field``, where the file cannot be read, ModelError where it is no model.
         """
         text = model if isinstance(model, bytes) else _read(Path(model), field)
         answer = self._connection.request(
-            "POST", "/v1/models", content=text, headers={"Content-Type": "application/xml"}
+            "POST", "/v1/models", content=text, headers={"Content-Type": _media_type(model)}
         )
         return answer.json()["sha256"]
 
@@ -180,6 +182,11 @@ def _plain(document: Any) -> Any:
 
 def _items(answer: Any) -> list[dict[str, Any]]:
     return answer["items"]
+
+
+def _media_type(model: str | Path | bytes) -> str:
+    ending = "" if isinstance(model, bytes) else Path(model).suffix.lower()
+    return f"model/{ending[1:]}" if ending in MESH_FILES else "application/xml"
 
 
 def _read(path: Path, field: str) -> bytes:

@@ -47,13 +47,18 @@ class Arm(Document):
 
 
 def models_in(document: Any, path: ArmPath = ()) -> Iterator[tuple[ArmPath, dict[str, Any]]]:
-    """(path, robot or scene) of everything in a canonical document that a model says: it may name a file of its own."""
+    """(path, part) of everything in a canonical document that a model or a file says: robots, scenes, meshes."""
     items = document.items() if isinstance(document, dict) else enumerate(document)
     for key, value in items:
-        if isinstance(value, dict) and (key == "robot" or value.get("shape") == "scene"):
+        if isinstance(value, dict) and (key == "robot" or _names_a_file(value)):
             yield (*path, key), value
-        elif isinstance(value, dict | list):
+        if isinstance(value, dict | list):
             yield from models_in(value, (*path, key))
+
+
+def _names_a_file(part: dict[str, Any]) -> bool:
+    sources = part.get("path"), part.get("model")
+    return part.get("shape") == "scene" or (part.get("shape") == "mesh" and sources != (None, None))
 
 
 def local_paths(document: Any, path: ArmPath = ()) -> Iterator[ArmPath]:

@@ -11,8 +11,8 @@ from pydantic import BeforeValidator, Discriminator, Field
 from wsrender.documents.arm import Arm
 from wsrender.documents.document import Document
 from wsrender.documents.problems import tagged
-from wsrender.documents.quantities import Name, numbers_of, quoted, real, sequence
-from wsrender.documents.robot import ModelHash, XmlText
+from wsrender.documents.quantities import Name, Sha256, numbers_of, quoted, real, sequence
+from wsrender.documents.robot import XmlText
 from wsrender.documents.shapes import (
     Box,
     Capsule,
@@ -69,7 +69,7 @@ class Scene(Placed):
     """scene."""
     mjcf: XmlText | None = None
     """Its text."""
-    model: ModelHash | None = None
+    model: Sha256 | None = None
     """SHA-256 of an MJCF model uploaded to a server, 64 hexadecimal digits."""
     path: Name | None = None
     """An .xml file; local runs only."""

@@ -141,4 +141,5 @@ def _file_name(value: Any) -> Any:
 
 
 Name = Annotated[StrictStr, Field(min_length=1, max_length=LONGEST_NAME)]
+Sha256 = Annotated[StrictStr, Field(pattern=r"^[0-9a-f]{64}$")]
 FileName = Annotated[StrictStr, Field(pattern=f"^{_FILE_NAME.pattern}$"), BeforeValidator(_file_name)]

@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import BeforeValidator, Field, StrictStr, model_validator
 
 from wsrender.documents.document import Document
-from wsrender.documents.quantities import Name, Number, PositiveNumber, numbers_of, quoted, real, sequence
+from wsrender.documents.quantities import Name, Number, PositiveNumber, Sha256, numbers_of, quoted, real, sequence
 from wsrender.documents.shapes import ToolShape
 from wsrender.documents.transform import LARGEST, LengthUnit, Transform, Vector, number_list
 
@@ -54,7 +54,6 @@ Limits = Annotated[tuple[float, float] | None, BeforeValidator(_interval)]
 Range = Annotated[tuple[float, float], BeforeValidator(_range)]
 Length = Annotated[float, Field(ge=-LARGEST, le=LARGEST), BeforeValidator(real)]
 XmlText = Annotated[StrictStr, Field(min_length=1)]
-ModelHash = Annotated[StrictStr, Field(pattern=r"^[0-9a-f]{64}$")]
 NotNegative = Annotated[float, Field(ge=0), BeforeValidator(real)]
 
 
@@ -195,7 +194,7 @@ class RobotSpec(Document):
     """Text of an MJCF model."""
     urdf: XmlText | None = None
     """Text of a URDF model."""
-    model: ModelHash | None = None
+    model: Sha256 | None = None
     """SHA-256 of a model uploaded to a server, 64 hexadecimal digits."""
     path: Name | None = None
     """An .xml (MJCF) or .urdf file; local runs only."""

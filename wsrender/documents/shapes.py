@@ -7,11 +7,11 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, ClassVar, Literal, get_args
 
-from pydantic import BeforeValidator, Discriminator, ValidationError, model_validator
+from pydantic import BeforeValidator, Discriminator, Field, ValidationError, model_validator
 
 from wsrender.documents.document import Document
 from wsrender.documents.problems import located, tagged
-from wsrender.documents.quantities import Name, PositiveNumber, points_of, sequence
+from wsrender.documents.quantities import Name, PositiveNumber, Sha256, points_of, sequence
 from wsrender.documents.transform import LengthUnit, Transform, Vector
 
 MOST_VERTICES = 10_000
@@ -25,6 +25,10 @@ def _points(value: Any) -> tuple[tuple[float, ...], ...] | None:
     if not 4 <= len(points) <= MOST_VERTICES:
         raise ValueError(f"must be a list of 4 … {MOST_VERTICES} points [x, y, z], finite numbers")
     return points
+
+
+def _is_none(value: Any) -> bool:
+    return value is None
 
 
 Edges = Annotated[tuple[PositiveNumber, PositiveNumber, PositiveNumber], BeforeValidator(sequence)]
@@ -144,6 +148,8 @@ class Mesh(Placed):
     """Points [x, y, z] in that frame [m]; they must not lie in a plane."""
     path: Name | None = None
     """A file with the vertices, .stl, .obj or .ply; local runs only."""
+    model: Annotated[Sha256 | None, Field(exclude_if=_is_none)] = None
+    """SHA-256 of such a file that was uploaded to a server, 64 hexadecimal digits."""
     length_unit_m: LengthUnit = 1.0
     """Unit of length of the file in metres: 0.001 of millimetres."""
 
@@ -155,12 +161,12 @@ class Mesh(Placed):
     def conflicts(self) -> Iterator[tuple[str, str]]:
         """(field, message) of every pair of fields that do not go together."""
         yield from super().conflicts()
-        if (self.vertices_m is None) == (self.path is None):
-            yield "vertices_m", 'must be given, or else "path": one of the two'
+        if sum(each is not None for each in (self.vertices_m, self.path, self.model)) != 1:
+            yield "vertices_m", 'must be given, or else "path" or "model": one of them'
         if self.path is not None and not self.path.lower().endswith(MESH_FILES):
             yield "path", f'must end in {", ".join(MESH_FILES)}, not "{self.path}"'
-        if self.path is None and self.length_unit_m != 1:
-            yield "length_unit_m", 'must be 1 without "path": vertices_m are in metres'
+        if self.vertices_m is not None and self.length_unit_m != 1:
+            yield "length_unit_m", 'must be 1 without "path" or "model": vertices_m are in metres'
 
 
 _Bounded = Box | Sphere | Cylinder | Capsule | Ellipsoid | Mesh

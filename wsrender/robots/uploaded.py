@@ -34,7 +34,7 @@ def uploaded_content(sha256: str, field: str) -> bytes:
     """What was uploaded by that name. Raises InputError where nothing was, or this is no server."""
     folder = os.environ.get(MODELS_VARIABLE)
     if folder is None:
-        raise InputError(field, "an uploaded model is known to its server only; give path, mjcf or urdf")
+        raise InputError(field, "what was uploaded is known to its server only; give a path or a text")
     path = Path(folder) / sha256
     if not path.is_file():
         raise InputError(field, f"{sha256} is not among the uploaded models")

@@ -1,5 +1,6 @@
 """The vertices of meshes, of which the convex hull counts."""
 
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -8,7 +9,9 @@ import trimesh
 from scipy.spatial import ConvexHull, QhullError
 
 from wsrender.documents.environment import Mesh
-from wsrender.errors import InputError
+from wsrender.errors import InputError, ModelError
+from wsrender.robots import mesh_files
+from wsrender.robots.uploaded import uploaded_content
 
 LEAST_M3 = 1e-14  # volume of a mesh; MuJoCo refuses less than a tenth of it [m³]
 
@@ -18,8 +21,10 @@ def hull_vertices(mesh: Mesh) -> np.ndarray:
 
     Raises InputError, naming the field, where its vertices lie in a plane, and where its file cannot be read.
     """
-    field = "path" if mesh.vertices_m is None else "vertices_m"
-    vertices = np.array(mesh.vertices_m) if mesh.vertices_m is not None else _of_file(mesh)
+    if mesh.vertices_m is not None:
+        field, vertices = "vertices_m", np.array(mesh.vertices_m)
+    else:
+        field, (vertices, _) = "path" if mesh.model is None else "model", triangles_of(mesh)
     try:
         hull = ConvexHull(vertices)
     except (QhullError, ValueError) as error:
@@ -29,18 +34,47 @@ def hull_vertices(mesh: Mesh) -> np.ndarray:
     return vertices[hull.vertices]
 
 
-def _of_file(mesh: Mesh) -> np.ndarray:
-    """Vertices (V, 3) [m] of the file of a mesh."""
-    path = Path(str(mesh.path))
+def triangles_of(mesh: Mesh) -> mesh_files.Triangles:
+    """Vertices (V, 3) [m] and faces (F, 3) of the file of a mesh. Raises InputError where it cannot be read."""
+    if mesh.model is not None:
+        content = uploaded_content(mesh.model, "model")
+        vertices, faces = _read(content, f"{mesh.model[:8]}…{_ending(content)}", "model")
+    else:
+        path = Path(str(mesh.path))
+        try:
+            if path.stat().st_size > mesh_files.MAX_MESH_BYTES:
+                raise InputError("path", f"{path} has more than {mesh_files.MAX_MESH_BYTES >> 20} MiB")
+            content = path.read_bytes()
+        except OSError as error:
+            raise InputError("path", f"{path} cannot be read: {error.strerror}") from error
+        vertices, faces = _read(content, str(path), "path")
+    return mesh.length_unit_m * vertices, faces
+
+
+def _read(content: bytes, name: str, field: str) -> mesh_files.Triangles:
     try:
-        with path.open("rb") as file:
-            found: Any = trimesh.load(file, file_type=path.suffix[1:].lower(), process=False)
-        parts: list[Any] = found.dump() if isinstance(found, trimesh.Scene) else [found]
-        vertices = np.concatenate([np.asarray(part.vertices, np.float64) for part in parts])
-    except OSError as error:
-        raise InputError("path", f"{path} cannot be read: {error.strerror}") from error
-    except Exception as error:  # its readers raise whatever they stumble over
-        raise InputError("path", f"{path} cannot be read as a mesh: {error}") from error
+        return _ply(content) if name.lower().endswith(".ply") else mesh_files.triangles(content, name, field)
+    except ModelError as error:
+        raise InputError(field, f"{name} cannot be read as a mesh: {error.message}") from error
+
+
+def _ending(content: bytes) -> str:
+    """What the name of a mesh's file would end in, by what it begins with."""
+    if content[:3] == b"ply":
+        return ".ply"
+    count = int.from_bytes(content[80:84], "little")
+    binary = len(content) == 84 + 50 * count and len(content) >= 84
+    return ".stl" if binary or content.lstrip()[:5].lower() == b"solid" else ".obj"
+
+
+def _ply(content: bytes) -> mesh_files.Triangles:
+    try:
+        found: Any = trimesh.load(BytesIO(content), file_type="ply", process=False)
+        vertices, faces = np.asarray(found.vertices, np.float64), np.asarray(found.faces, int)
+    except Exception as error:  # its reader raises whatever it stumbles over
+        raise ModelError("path", str(error)) from error
+    if not len(faces) or faces.size > mesh_files.MAX_CORNERS:
+        raise ModelError("path", f"it has {len(faces)} triangles; allowed: 1 … {mesh_files.MAX_CORNERS // 3}")
     if not np.isfinite(vertices).all():
-        raise InputError("path", f"{path} must hold finite numbers")
-    return mesh.length_unit_m * vertices
+        raise ModelError("path", "it must hold finite numbers")
+    return vertices, faces

@@ -8,6 +8,7 @@ from pydantic import Field
 
 from wsrender.analyses.jobs import job_schema
 from wsrender.analyses.registry import job_classes
+from wsrender.documents.shapes import MESH_FILES
 from wsrender.robots import library
 from wsrender_server.admission import check_model, decoded_model
 from wsrender_server.auth import Reader, Submitter
@@ -17,6 +18,7 @@ from wsrender_server.routes.files import has_it
 from wsrender_server.routes.job_views import Page, View
 
 XML_TYPES = ("application/xml", "text/xml")
+MESH_TYPES = tuple(f"model/{ending[1:]}" for ending in MESH_FILES)
 
 router = APIRouter(prefix="/v1")
 
@@ -98,23 +100,27 @@ def list_robots(principal: Reader) -> Page[RobotView]:
     return Page(items=[RobotView.of(robot) for robot in library.describe()])
 
 
-async def _xml_body(request: Request) -> bytes:
+async def _uploaded_body(request: Request) -> tuple[str, bytes]:
     media_type = request.headers.get("content-type", "").partition(";")[0].strip().lower()
-    if media_type not in XML_TYPES:
-        raise HttpProblem(415, f"the body must be application/xml, not {media_type or 'of no type'}")
-    return await request.body()
+    if media_type not in XML_TYPES + MESH_TYPES:
+        allowed = ", ".join(("application/xml", *MESH_TYPES))
+        raise HttpProblem(415, f"the body must be {allowed}, not {media_type or 'of no type'}")
+    return media_type, await request.body()
 
 
 _MODEL_BODY = {
     "requestBody": {
         "required": True,
-        "content": {"application/xml": {"schema": {"type": "string"}, "example": "<mujoco><worldbody/></mujoco>"}},
+        "content": {
+            "application/xml": {"schema": {"type": "string"}, "example": "<mujoco><worldbody/></mujoco>"},
+            **{media_type: {"schema": {"type": "string", "format": "binary"}} for media_type in MESH_TYPES},
+        },
     }
 }
 
 
 @router.post(
-    "/models", tags=["models"], summary="Upload a robot model", status_code=201, response_model=ModelView,
+    "/models", tags=["models"], summary="Upload a model or a mesh", status_code=201, response_model=ModelView,
     responses={
         201: {
             "headers": {"Location": {"description": "The model.", "schema": {"type": "string"}}},
@@ -125,22 +131,33 @@ _MODEL_BODY = {
     openapi_extra=_MODEL_BODY,
 )  # fmt: skip
 def upload_model(
-    server: Server, principal: Submitter, response: Response, text: Annotated[bytes, Depends(_xml_body)]
+    server: Server,
+    principal: Submitter,
+    response: Response,
+    body: Annotated[tuple[str, bytes], Depends(_uploaded_body)],
 ) -> ModelView:
     """MJCF or URDF text, root element `<mujoco>` or `<robot>`, without document types, entities or outside files.
 
-    It is compiled by the jobs that name it. Meshes do not travel.
+    Or an STL, OBJ or PLY mesh, for `{"shape": "mesh", "model": sha256}`. Either is read by the jobs that name it;
+    meshes of a model do not travel with it.
     """
-    check_model("document", decoded_model(text))
+    media_type, text = body
+    if media_type in XML_TYPES:
+        check_model("document", decoded_model(text))
+    elif not text:
+        raise HttpProblem(409, "the mesh is empty", "invalid_model")
     sha256 = server.store.put_model(principal.owner, text)
     response.headers["Location"] = f"/v1/models/{sha256}"
     return ModelView(sha256=sha256, bytes=len(text), href=f"/v1/models/{sha256}")
 
 
+_OCTETS = {"application/octet-stream": {"schema": {"type": "string", "format": "binary"}}}
+
+
 @router.get(
     "/models/{sha256}", tags=["models"], summary="Get back a model", response_class=Response,
     responses={
-        200: {"description": "The model", "content": {"application/xml": {"schema": {"type": "string"}}}},
+        200: {"description": "The model", "content": {"application/xml": {"schema": {"type": "string"}}, **_OCTETS}},
         304: {"description": "The client has it already"},
         **problem_responses(401, 403, 404, 422),
     },
@@ -159,7 +176,8 @@ def get_model(
     headers = {"ETag": etag, "Content-Disposition": "attachment"}
     if has_it(request, etag):
         return Response(status_code=304, headers={"ETag": etag})
-    return Response(content, headers=headers, media_type="application/xml")
+    is_text = content.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"<")
+    return Response(content, headers=headers, media_type="application/xml" if is_text else "application/octet-stream")
 
 
 @cache

@@ -8,6 +8,7 @@ import pytest
 
 import wsrender as ws
 from tests.server.client.recorded_server import refuses, says
+from wsrender.documents.arm import local_paths
 
 JOB = {"id": "j1", "state": "queued", "analysis": "workspace", "labels": {}, "progress": None, "error": None}
 DOCUMENT = {"analysis": "workspace", "robot": {"library": "ur5e"}}
@@ -200,15 +201,24 @@ def test_files_of_what_stands_around_are_uploaded(server, client, tmp_path):
     arm, scene = tmp_path / "arm.urdf", tmp_path / "scene.xml"
     arm.write_text("<robot name='arm'/>")
     scene.write_text("<mujoco/>")
-    server.answer("POST", "/v1/models", says({"sha256": "ab" * 32}, 201), says({"sha256": "cd" * 32}, 201))
+    mesh = tmp_path / "part.STL"
+    mesh.write_bytes(b"solid part")
+    hashes = [pair * 32 for pair in ("ab", "cd", "ef", "01")]
+    server.answer("POST", "/v1/models", *(says({"sha256": each}, 201) for each in hashes))
     server.answer("POST", "/v1/jobs", says(JOB, 202))
-    around = ws.Environment([ws.OtherRobot(robot={"path": str(arm)}, configuration=[0]), ws.Scene(scene)])
-    client.submit({**DOCUMENT, "environment": around})
+    items = [ws.OtherRobot(robot={"path": str(arm)}, configuration=[0]), ws.Scene(scene), ws.Mesh(mesh)]
+    robot = {"library": "scara", "tool_shapes": [{"shape": "mesh", "path": str(mesh)}]}
+    client.submit({**DOCUMENT, "environment": ws.Environment(items), "robot": robot})
     *uploads, submission = server.requests
-    assert [upload.content for upload in uploads] == [arm.read_bytes(), scene.read_bytes()]
-    robot, cell = json.loads(submission.content)["environment"]["items"]
-    assert (robot["robot"]["model"], cell["model"]) == ("ab" * 32, "cd" * 32)
-    assert "path" not in cell
+    types = {upload.content: upload.headers["content-type"] for upload in uploads}
+    assert types == {
+        arm.read_bytes(): "application/xml", scene.read_bytes(): "application/xml", b"solid part": "model/stl",
+    }  # fmt: skip
+    sent = json.loads(submission.content)
+    robot, cell, part = sent["environment"]["items"]
+    models = [robot["robot"]["model"], cell["model"], part["model"], sent["robot"]["tool_shapes"][0]["model"]]
+    assert sorted(models) == sorted(hashes)
+    assert not list(local_paths(sent))
 
 
 def test_files_of_several_robots_are_uploaded(server, client, tmp_path):

@@ -7,6 +7,7 @@ from contextlib import closing
 
 import pytest
 import structlog
+import trimesh
 from wsrender_server.jobs.faults import DiskFull, StoreUnavailable
 
 from tests.server.http.idle_server import DOCUMENT, problem_of
@@ -191,6 +192,37 @@ def test_models(client, submit):
     assert submit(robot={"model": model["sha256"]})["state"] == "queued"
     problem_of(client.post("/v1/models", content=text), 415)
     problem_of(client.get(f"/v1/models/{'0' * 64}"), 404, "model_not_found")
+
+
+@pytest.mark.parametrize("ending", ["stl", "obj", "ply"])
+def test_meshes(client, submit, ending):
+    content = trimesh.creation.box((0.1, 0.2, 0.3)).export(file_type=ending)
+    content = content if isinstance(content, bytes) else content.encode()
+    response = client.post("/v1/models", content=content, headers={"Content-Type": f"model/{ending}"})
+    assert response.status_code == 201, response.text
+    sha256 = response.json()["sha256"]
+    got = client.get(f"/v1/models/{sha256}")
+    assert got.content == content and got.headers["content-type"] == "application/octet-stream"
+    item = {"shape": "mesh", "model": sha256, "position_m": [2, 0, 0]}
+    assert submit(environment={"items": [item]})["state"] == "queued"
+    robot = {"library": "scara", "tool_shapes": [item]}
+    assert submit(robot=robot)["state"] == "queued"
+
+
+def test_meshes_are_read_where_jobs_are_planned(client):
+    """In the child process: what is none is refused there, by the field that names it."""
+    document = {"analysis": "indices_at", "robot": "ur5e", "configurations": [[0] * 6]}
+    found = []
+    for content in (trimesh.creation.box((0.1, 0.2, 0.3)).export(file_type="stl"), b"no mesh"):
+        answer = client.post("/v1/models", content=content, headers={"Content-Type": "model/stl"})
+        item = {"shape": "mesh", "model": answer.json()["sha256"], "position_m": [2, 0, 0]}
+        found.append(client.post("/v1/jobs:validate", json=document | {"environment": {"items": [item]}}))
+        while found[-1].json().get("code") == "planning":
+            found[-1] = client.post("/v1/jobs:validate", json=document | {"environment": {"items": [item]}})
+    assert found[0].status_code == 200, found[0].text
+    (error,) = problem_of(found[1], 409, "invalid_input")["errors"]
+    assert error["pointer"] == "#/environment/items/0/model" and "cannot be read as a mesh" in error["detail"]
+    problem_of(client.post("/v1/models", content=b"", headers={"Content-Type": "model/stl"}), 409, "invalid_model")
 
 
 def _raises(error):
