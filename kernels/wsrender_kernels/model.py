@@ -8,11 +8,11 @@ from wsrender_kernels.kinematics import chain_type
 
 
 @factory
-def model_type(real, n: int, joints: int, limits: int = 0, labelled: bool = False):
+def model_type(real, n: int, joints: int, limits: int = 0, labelled: bool = False, given_values: bool = False):
     """Struct with the numbers of a robot of n coordinates; what a kernel's shape does not use is empty or 0.
 
     Of a sweep with constraints also ``limits``, their numbers, and where ``labelled``, ``labels`` of the samples from
-    ``first_label`` on, which other kernels have decided.
+    ``first_label`` on, which other kernels have decided; and ``values_given`` of indices that the host gives.
 
     Vectors in the struct, not arrays: on the CPU the compiler then sees that nothing written in the lane loop changes
     them, on CUDA they are read from constant memory.
@@ -38,4 +38,6 @@ def model_type(real, n: int, joints: int, limits: int = 0, labelled: bool = Fals
         Model.__annotations__["limits"] = wp.types.vector(limits, real)
     if labelled:
         Model.__annotations__ |= {"labels": wp.array(dtype=wp.uint8), "first_label": wp.int64}
+    if given_values:
+        Model.__annotations__["values_given"] = wp.array(dtype=real)  # (G * stride,)
     return wp.struct(Model)

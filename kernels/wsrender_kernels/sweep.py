@@ -65,6 +65,7 @@ class Shape:
     dynamic: bool = False  # whether any index is dynamic
     given_jacobian: bool = False  # tip position and Jacobian are inputs (user-defined robots)
     given_inertia: bool = False  # M(q) is an input (MuJoCo's own)
+    given_values: tuple[int, ...] = ()  # indices whose values are inputs
     penalty: bool = False  # joint-limit penalisation
     torque_scaling: bool = False
     base_levels: bool = False  # whether a sample stands for every level of the base joint
@@ -161,6 +162,32 @@ def _power_of_two(size: int) -> int:
     return 1 << (size - 1).bit_length()
 
 
+def _model(shape: Shape):
+    """Struct type of the robot's numbers."""
+    given = bool(shape.given_values)
+    return model_type(shape.real, shape.n, len(shape.sources), shape.limits, shape.labelled, given)
+
+
+@factory
+def _given_values(shape: Shape):
+    """Device function ``(model, space, sample, found) -> found`` with the values that are inputs."""
+    found_type, Space = wp.types.vector(shape.n_indices + 2, shape.real), sample_space(shape.real, shape.n)
+    Model, GIVEN = _model(shape), len(shape.given_values)
+    INDEX = wp.types.vector(max(GIVEN, 1), wp.int32)(*shape.given_values)
+
+    @wp.func
+    def unchanged(model: Model, space: Space, sample: wp.int64, found: found_type):
+        return found
+
+    @wp.func
+    def given_values(model: Model, space: Space, sample: wp.int64, found: found_type):
+        for g in range(GIVEN):
+            found[INDEX[g]] = model.values_given[wide(g) * space.given_stride + sample - space.given_first]
+        return found
+
+    return given_values if GIVEN else unchanged
+
+
 @factory
 def _state(shape: Shape) -> SimpleNamespace:
     """Device function ``(model, q, at, stride) -> tip, tip axes (3 x 3), J, M`` from the chain or from given arrays.
@@ -172,7 +199,7 @@ def _state(shape: Shape) -> SimpleNamespace:
     forward, jacobian, jacobian_type = kin.forward, kin.jacobian, kin.jacobian_type
     dyn = inertia(real, n, shape.sources, shape.plain)
     inertia_matrix, inertia_type = dyn.inertia_matrix, dyn.joint_inertia_type
-    Model = model_type(real, n, len(shape.sources), shape.limits, shape.labelled)
+    Model = _model(shape)
     vec3, vec_n, mat33 = kin.vec3, kin.vec_n, wp.types.matrix((3, 3), real)
     BASE_LEVELS = shape.base_levels
 
@@ -241,7 +268,7 @@ def _around_values(shape: Shape) -> SimpleNamespace:
         wp.types.vector(rows, real) for rows, _columns in (spectra.kinematic_shape, spectra.dynamic_shape)
     )
     indices = shape.indices
-    Model, Space = model_type(real, n, len(shape.sources), shape.limits, shape.labelled), sample_space(real, n)
+    Model, Space = _model(shape), sample_space(real, n)
     output_type, found_type = wp.types.vector(shape.n_outputs, real), wp.types.vector(shape.n_indices + 2, real)
     to_quaternion = orientation(real)
     K, rejection, CONSTRAINED, REASON = shape.n_indices, _rejection(shape), bool(shape.constraints), shape.n_outputs - 1
@@ -355,7 +382,7 @@ def _positions(shape: Shape):
     draw = sampling(real, n, shape.method, shape.shared).draw
     kin = kinematics(real, n, shape.sources, shape.plain, shape.world_axes)
     forward, vec3 = kin.forward, kin.vec3
-    Model, Space = model_type(real, n, len(shape.sources), shape.limits, shape.labelled), sample_space(real, n)
+    Model, Space = _model(shape), sample_space(real, n)
     output_type, to_quaternion = wp.types.vector(shape.n_outputs, real), orientation(real)
     mat33 = wp.types.matrix((3, 3), real)
     BASE_LEVELS, GIVEN = shape.base_levels, shape.given_jacobian
@@ -407,15 +434,17 @@ def _evaluation(shape: Shape):
     kinematic_values = singular_values(real, *spectra.kinematic_shape, shape.penalty or CALLED, not CALLED)
     dynamic_values = singular_values(real, *spectra.dynamic_shape, True, not CALLED)
     Model, Space = (
-        model_type(real, shape.n, len(shape.sources), shape.limits, shape.labelled),
+        _model(shape),
         sample_space(real, shape.n),
     )
-    FOUND = shape.n_indices + 2
+    FOUND, GIVEN, given_values = shape.n_indices + 2, bool(shape.given_values), _given_values(shape)
 
     @wp.func(inline=True)
     def evaluate(model: Model, space: Space, block: Any, first: wp.int64, lane: wp.int32):
         out, A, B, volume = matrices(model, space, block, first, lane)
         found = indices_of(volume, kinematic_values(A), dynamic_values(B))
+        if wp.static(GIVEN):
+            found = given_values(model, space, first + wp.int64(lane), found)
         for k in range(FOUND):
             out[3 + k] = found[k]
         return out
@@ -443,13 +472,14 @@ def _staged_lanes(shape: Shape):
     SIDE_BY_SIDE = PART_LANES * (2 if DYNAMIC else 1)
     values_of_lanes = singular_values_of_lanes(real, ROWS_A, COLUMNS, shape.penalty or DYNAMIC, SIDE_BY_SIDE)
     Model, Space = (
-        model_type(real, shape.n, len(shape.sources), shape.limits, shape.labelled),
+        _model(shape),
         sample_space(real, shape.n),
     )
     values_type, numbers_type = wp.types.vector(shape.n_outputs * LANES, real), wp.types.vector(PART_LANES, real)
     lanes_type = wp.types.vector(ROWS_A * COLUMNS * SIDE_BY_SIDE, real)
     sigma_a_type, sigma_b_type = wp.types.vector(ROWS_A, real), wp.types.vector(ROWS_B, real)
     N_OUTPUTS, FOUND, BLOCK, PART = shape.n_outputs, shape.n_indices + 2, LANES, PART_LANES
+    GIVEN, given_values = bool(shape.given_values), _given_values(shape)
 
     @wp.func(inline=True)
     def staged_lanes(model: Model, space: Space, block: Any, first: wp.int64, valid: wp.int32):
@@ -487,6 +517,8 @@ def _staged_lanes(shape: Shape):
                         sigma_b[r] = sigma[place + PART]
                     place += SIDE_BY_SIDE
                 found = indices_of(volumes[lane], sigma_a, sigma_b)
+                if wp.static(GIVEN):
+                    found = given_values(model, space, first + wp.int64(wp.min(part + lane, valid - 1)), found)
                 place = part + lane  # added up in another order, clang does not see that it is no negative index
                 for k in range(FOUND):
                     values[(3 + k) * BLOCK + place] = found[k]
@@ -551,7 +583,7 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
     ordered = elementary(real).ordered
     cell, quantized = voxels(real).cell, voxels(real).quantized
     Model, Space = (
-        model_type(real, shape.n, len(shape.sources), shape.limits, shape.labelled),
+        _model(shape),
         sample_space(real, shape.n),
     )
     Lattice, Outputs, bits = lattice(real), outputs_type(shape), bits_type(real)
@@ -776,7 +808,7 @@ def _cuda_kernel(shape: Shape) -> wp.Kernel:
     ordered = elementary(real).ordered
     cell, quantized = voxels(real).cell, voxels(real).quantized
     Model, Space = (
-        model_type(real, shape.n, len(shape.sources), shape.limits, shape.labelled),
+        _model(shape),
         sample_space(real, shape.n),
     )
     Lattice, Outputs, bits = lattice(real), outputs_type(shape), bits_type(real)

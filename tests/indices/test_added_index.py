@@ -98,7 +98,11 @@ def test_groups_name_the_six_whatever_is_added():
 
 
 def test_every_index_of_the_catalogue_says_what_it_is():
-    for index in catalogue().values():
+    given = [index for index in catalogue().values() if index.given]
+    assert [index.name for index in given] == ["clearance", "clearance_lower_bound"]
+    assert all(not index.surviving(False) and index.unit == "m" for index in given)
+    assert all({"minimum", "mean", "maximum"} < set(index.voxel_statistics) for index in given)
+    for index in (each for each in catalogue().values() if not each.given):
         assert index.symbol and index.source and index.unit and index.needs == ("sigma",), index.name
         assert index.bound is not None and index.surviving(False) == {"base_joint", "trailing_joints"}
         assert index.surviving(True) == {"base_joint"} and index.voxel_statistics == ("count", "maximum")

@@ -47,6 +47,15 @@ def cover(solid: Solid) -> Cover:
     return Cover(outer_capsules(around, outer), inner_capsules(within, inner), exact=False)
 
 
+def outer_cover(solid: Solid) -> tuple[Capsules, Capsules]:
+    """One capsule that holds a solid, and two that do; a round solid is its own."""
+    if solid.is_round:
+        (own,) = cover(solid).outer
+        return own, own
+    one, two = outer_capsules(_polytopes(solid)[0], (1, 2))
+    return one, two
+
+
 def _polytopes(solid: Solid) -> tuple[np.ndarray, np.ndarray]:
     """Vertices of a polytope around a solid and of one within it."""
     if solid.kind == "cylinder":

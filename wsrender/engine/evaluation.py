@@ -41,6 +41,7 @@ def shape_of(pipeline: Pipeline, **outputs: Any) -> Shape:
         dynamic=evaluation.dynamic,
         given_jacobian=evaluation.given_kinematics,
         given_inertia=evaluation.dynamic and evaluation.host_inertia is not None,
+        given_values=tuple(k for k, name in enumerate(evaluation.indices) if name in evaluation.given),
         penalty=evaluation.penalty is not None,
         torque_scaling=evaluation.torque_scaling and evaluation.dynamic,
         **outputs,
@@ -53,17 +54,18 @@ def drive(chain: Chain) -> tuple[tuple[int, ...], bool]:
     return tuple(int(s) for s in chain.joint_source), bool(own and np.all(chain.joint_is_revolute))
 
 
-def pipeline_model(pipeline: Pipeline, limits: np.ndarray, labelled: bool = False):
+def pipeline_model(pipeline: Pipeline, limits: np.ndarray, shape: Shape):
     """The Model struct of a pipeline, without what the host computes.
 
-    ``limits``: of `packed_constraints`; ``labelled``: whether samples are labelled first.
+    ``limits``: of `packed_constraints`; ``shape``: the kernel's.
     """
+    more = {"labelled": shape.labelled, "given_values": bool(shape.given_values)}
     evaluation, precision, origin = pipeline.evaluation, pipeline.precision, pipeline.origin
     chain, real = evaluation.chain, REAL[precision]
     if device_chain := pipeline.device_chain:
-        model = chain_model(device_chain.relative_to(origin), precision, len(limits), labelled)
+        model = chain_model(device_chain.relative_to(origin), precision, len(limits), **more)
     else:
-        model = _placed_model(chain, chain.n, precision, len(limits), labelled)
+        model = _placed_model(chain, chain.n, precision, len(limits), **more)
     if len(limits):
         model.limits = vector_of(limits, real)
     model.lower, model.upper = vector_of(chain.lower_limits, real), vector_of(chain.upper_limits, real)
@@ -77,9 +79,9 @@ def pipeline_model(pipeline: Pipeline, limits: np.ndarray, labelled: bool = Fals
     return model
 
 
-def chain_model(chain: Chain, precision: str, limits: int = 0, labelled: bool = False):
+def chain_model(chain: Chain, precision: str, limits: int = 0, **more: bool):
     """The Model struct with a chain's kinematics and inertias alone, and room for so many numbers of constraints."""
-    real, model = REAL[precision], _placed_model(chain, len(chain.joint_source), precision, limits, labelled)
+    real, model = REAL[precision], _placed_model(chain, len(chain.joint_source), precision, limits, **more)
     kinematics = pack_kinematics(
         chain.T_world_base,
         chain.T_joint,
@@ -97,10 +99,10 @@ def packed_bodies(chain: Chain) -> np.ndarray:
     return pack_inertia(chain.T_joint, chain.mass, chain.center_of_mass, chain.inertia, chain.armature)
 
 
-def _placed_model(chain: Kinematics, joints: int, precision: str, limits: int, labelled: bool):
+def _placed_model(chain: Kinematics, joints: int, precision: str, limits: int, **more: bool):
     """A Model struct for so many joints that says how the base stands, and nothing of what it carries."""
     real = REAL[precision]
-    model = model_type(real, chain.n, joints, limits, labelled)()
+    model = model_type(real, chain.n, joints, limits, **more)()
     model.base_axes = wp.types.matrix((3, 3), real)(*chain.T_world_base[:3, :3].T.ravel().tolist())
     model.linear_scale = 1.0
     return model

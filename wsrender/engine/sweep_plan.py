@@ -244,7 +244,7 @@ class Accumulator:
         limits = packed_constraints(
             pipeline.constraints, pipeline.evaluation.chain, pipeline.origin, pipeline.precision
         )
-        self._model = pipeline_model(pipeline, limits, shape.labelled)
+        self._model = pipeline_model(pipeline, limits, shape)
         given = shape.method == "given"
         evaluated = plan.structure.evaluated
         self._run = run_length(evaluated, shape.shared)
@@ -359,6 +359,9 @@ class Accumulator:
         if evaluation.dynamic and evaluation.host_inertia is not None:
             inertia = evaluation.host_inertia(q)
             model.inertia_given = device_array(inertia.reshape(count, -1).T.ravel(), real, device)
+        if evaluation.given:
+            found = [of(np.asarray(q, np.float64)) for of in evaluation.given.values()]
+            model.values_given = device_array(np.concatenate(found), real, device)
         return given_space(q, first, pipeline.precision, device)
 
     def _voxels(self, part: slice) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -126,7 +126,8 @@ class Index:
 
     ``function(sigma, m, n, **options)`` gets the m singular values of the task matrix, descending, each a number or
     array, and the values of its ``options``. ``needs`` is ``("sigma",)``, those of J, and then ``dynamic_<name>`` is
-    the same of J M⁻¹; or ``("dynamic_sigma",)``, those of J M⁻¹ alone. ``unit`` is a text, or follows from the task
+    the same of J M⁻¹; or ``("dynamic_sigma",)``, those of J M⁻¹ alone; catalogued ones of ``("clearance",)`` are given
+    by the host. ``unit`` is a text, or follows from the task
     matrix, as in ``lambda A: A.volume``. ``conventions`` and ``convention_units`` hold what another convention than
     the standard defines differently.
 
@@ -150,6 +151,11 @@ class Index:
     aliases: tuple[str, ...] = ()
     conventions: Mapping[str, Callable[..., Any]] = field(default_factory=dict)
     convention_units: Mapping[str, UnitRule] = field(default_factory=dict)
+
+    @property
+    def given(self) -> bool:
+        """Whether the host gives its values, by its options: it is no function of singular values."""
+        return "clearance" in self.needs
 
     @property
     def dynamic(self) -> bool:

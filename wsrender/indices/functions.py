@@ -4,6 +4,7 @@
 In the convention ``wsrender_code``, ``sigma`` is mu = √det of the original program followed by its values s.
 """
 
+from wsrender.errors import InputError
 from wsrender.indices import math
 
 
@@ -106,3 +107,8 @@ def code_isotropy(sigma, m, n):
     """Mu^(1/n) over the mean of s."""
     s = sigma[1:]
     return math.divide(len(s) * code_order_independent_manipulability(sigma, m, n), sum(s[1:], s[0]))
+
+
+def given_by_shapes(sigma, m, n, limit_m):
+    """Of an index that is no function of singular values: the engine asks the robot's shapes. Raises InputError."""
+    raise InputError("indices", "must not ask for clearance: it is that of the shapes of a serial arm")

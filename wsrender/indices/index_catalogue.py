@@ -75,9 +75,19 @@ SIX = (
         },
     ),
 )  # fmt: skip
+_LIMIT = Option("limit_m", 0.25, "m", range=(1e-3, 10.0), description="what farther distances are told as, either sign")
+_ABOUT = {
+    "function": f.given_by_shapes, "range": (-inf, inf), "unit": "m", "needs": ("clearance",),
+    "bound": lambda norm, m, n, limit_m: limit_m, "options": (_LIMIT,),
+    "voxel_statistics": ("count", "maximum", "mean", "minimum"),
+}  # fmt: skip
+CLEARANCE = (
+    Index("clearance", "d", source="MuJoCo's mj_geomDistance", **_ABOUT),
+    Index("clearance_lower_bound", "d_low", source="capsules around the shapes", **_ABOUT),
+)
 KINEMATIC = tuple(index.name for index in SIX)
 DYNAMIC = tuple(DYNAMIC_PREFIX + name for name in KINEMATIC)
-_SHIPPED: dict[str, Index] = {index.name: index for index in SIX}
+_SHIPPED: dict[str, Index] = {index.name: index for index in (*SIX, *CLEARANCE)}
 _ADDED: dict[str, Index] = {}  # by the user
 
 
@@ -159,17 +169,18 @@ def find(name: str) -> Index:
         near = difflib.get_close_matches(plain, known, 1)
         hint = f" (did you mean {near[0]!r}?)" if near else ""
         names = ", ".join(known)
-        allowed = f"allowed: {names}, each also as dynamic_<name>{left_out(EXTENSIONS)}"
+        allowed = f"allowed: {names}, those of singular values also as dynamic_<name>{left_out(EXTENSIONS)}"
         raise InputError("indices", f"unknown index {name!r}{hint}; {allowed}")
-    if index.dynamic and plain != name:
-        raise InputError("indices", f"unknown index {name!r}; {plain!r} is of the accelerations already")
+    if plain != name and (index.dynamic or index.given):
+        why = "is of shapes" if index.given else "is of the accelerations already"
+        raise InputError("indices", f"unknown index {name!r}; {plain!r} {why}")
     return index
 
 
 def names_of(index: Index) -> tuple[str, ...]:
     """Every name by which a job may ask for an index: its own, aliases, and those of its dynamic variant."""
     plain = (index.name, *index.aliases)
-    return plain if index.dynamic else (*plain, *(DYNAMIC_PREFIX + name for name in plain))
+    return plain if index.dynamic or index.given else (*plain, *(DYNAMIC_PREFIX + name for name in plain))
 
 
 def resolve(request: str | Sequence[str], has_inertia: bool) -> tuple[str, ...]:

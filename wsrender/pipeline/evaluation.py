@@ -17,7 +17,8 @@ class Evaluation:
     """The indices to evaluate and how (the fields of the job document, resolved); without any, the tip's position.
 
     ``rows`` are 0…5 for x y z rx ry rz; ``penalty`` is K or None. ``host_inertia(q: (N, n)) -> (N, n, n)`` replaces the
-    chain's inertia matrix. ``options``: all values of the indices that have any, by index and option.
+    chain's inertia matrix, ``given(q: (N, n)) -> (N,)`` by index what the host gives. ``options``: all values of the
+    indices that have any, by index and option.
     """
 
     chain: Kinematics
@@ -29,6 +30,7 @@ class Evaluation:
     torque_scaling: bool = False
     host_inertia: Callable[[np.ndarray], np.ndarray] | None = None
     options: Mapping[str, Mapping[str, Any]] = field(default_factory=dict, hash=False)
+    given: Mapping[str, Callable[[np.ndarray], np.ndarray]] = field(default_factory=dict, hash=False)
     notices: tuple[Notice, ...] = ()  # what to know of the values
 
     @property
@@ -50,7 +52,7 @@ class Evaluation:
     @property
     def on_host(self) -> bool:
         """Whether the host computes a part of every sample."""
-        return self.given_kinematics or (self.dynamic and self.host_inertia is not None)
+        return bool(self.given) or self.given_kinematics or (self.dynamic and self.host_inertia is not None)
 
     @property
     def mixed_rows(self) -> bool:

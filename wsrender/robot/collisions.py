@@ -2,10 +2,11 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from wsrender.collision.clearance import Clearance
 from wsrender.collision.solids import BASE, Pairs, Solid
 from wsrender.collision.store import stored_program
 from wsrender.documents.constraints import Apart, Constraints
@@ -47,6 +48,38 @@ def collision_constraints(
         around = Apart()
     if own is None and not around:
         return ()
+    found = _kept_apart(robot, own, around, environment)
+    _refuse_always(found)
+    return found
+
+
+def clearance_of(robot: Robot, choice: Constraints | None, environment: Environment | None) -> Clearance:
+    """Distances of the robot's own shapes, and of those from its environment, as far as constraints ask for both.
+
+    Without constraints both are asked for. Raises InputError where the robot has no shapes, or nothing is asked for.
+    """
+    own = choice.self_collision if choice else None
+    around = choice.environment if choice else None
+    own = Apart() if own is None else own
+    around = Apart() if around is None and environment is not None else around
+    if not own and not around:
+        raise InputError("indices", "must not ask for clearance where constraints say that nothing keeps apart")
+    try:
+        found = _kept_apart(robot, own, around, environment)
+    except InputError as error:
+        raise InputError("indices", f"must not ask for clearance: {error.field} {error.message}") from error
+    pairs = Pairs.of(found[0].solids, *((each.pairs, 0.0, each.name == AROUND) for each in found))
+    chain, distances = found[0].chain, found[0].distances
+    return Clearance(pairs, chain, distances, frozenset(stored_program(pairs, chain, distances).never.tolist()))
+
+
+def _kept_apart(
+    robot: Robot,
+    own: Apart | Literal[False] | None,
+    around: Apart | Literal[False] | None,
+    environment: Environment | None,
+) -> tuple[CollisionConstraint, ...]:
+    """The constraints of the robot's surroundings and of its own shapes, of which at least one is asked for."""
     bodies = _bodies(robot, SELF if own else AROUND)
     chain = _limited(bodies.chain)
     shapes = [_solid(shape) for shape in bodies.shapes]
@@ -73,7 +106,6 @@ def collision_constraints(
     if (count := sum(len(constraint.pairs) for constraint in found)) > MOST_PAIRS:
         message = f"would keep {count} pairs of shapes apart, more than {MOST_PAIRS}: exclude some"
         raise ResourceError(f"constraints.{found[0].name}", message)
-    _refuse_always(tuple(found))
     return tuple(found)
 
 

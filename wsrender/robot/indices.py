@@ -1,10 +1,14 @@
 """Local indices of a robot: from the words of a job document to an evaluation of the engine."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
 
+from wsrender.documents.constraints import Constraints
+from wsrender.documents.environment import Environment
 from wsrender.documents.options import (
     DEFAULT_PENALTY,
     LARGEST_PENALTY,
@@ -15,7 +19,7 @@ from wsrender.documents.options import (
 )
 from wsrender.documents.quantities import argument, positive, real, sequence
 from wsrender.errors import InputError, MissingInertiaError
-from wsrender.indices.index_catalogue import CONVENTIONS, is_dynamic, option_values, resolve
+from wsrender.indices.index_catalogue import CONVENTIONS, find, is_dynamic, option_values, resolve
 from wsrender.notices import Notice, warn
 from wsrender.pipeline.evaluation import Evaluation
 from wsrender.pipeline.pipeline import Pipeline
@@ -67,6 +71,7 @@ def evaluate_indices(
         inertia=inertia,
         precision=precision,
     )
+    evaluation = _with_clearance(evaluation, robot, None, None)
     rows = configuration_rows(q, robot.chain.n)
     pipeline = Pipeline(evaluation, plan_sampling(robot.chain, rows), kept_rows=frozenset(), precision=precision)
     values = evaluate_samples(pipeline, device, threads=threads).values
@@ -75,7 +80,23 @@ def evaluate_indices(
 
 def evaluation_of_job(job: IndexChoices, robot: Robot) -> Evaluation:
     """The engine's evaluation of a job's choices for a robot, each checked."""
-    return evaluation_of(robot, **{name: getattr(job, name) for name in IndexChoices.model_fields if name != "device"})
+    choices = {name: getattr(job, name) for name in IndexChoices.model_fields if name != "device"}
+    evaluation = evaluation_of(robot, **choices)
+    return _with_clearance(evaluation, robot, getattr(job, "constraints", None), getattr(job, "environment", None))
+
+
+def _with_clearance(
+    evaluation: Evaluation, robot: Robot, choice: Constraints | None, environment: Environment | None
+) -> Evaluation:
+    """With what the shapes give of its indices; raises InputError where the robot has none."""
+    names = [name for name in evaluation.indices if find(name).given]
+    if not names:
+        return evaluation
+    from wsrender.robot.collisions import clearance_of
+
+    clearance, options = clearance_of(robot, choice, environment), evaluation.options
+    of = {"clearance": clearance.least, "clearance_lower_bound": clearance.lower_bound}
+    return replace(evaluation, given={name: partial(of[name], **options[name]) for name in names})
 
 
 def evaluation_of(

@@ -1,6 +1,6 @@
 """What a coarse first pass over 2^16 Sobol samples settles: voxel size, lattice block, scales of the sums."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -37,7 +37,9 @@ class FirstPass:
     @cached_property
     def _coarse(self) -> Pipeline:
         sampling = Sobol(count=SAMPLES, seed=0, locked=self.locked)
-        return Pipeline(self.evaluation, plan_sampling(self.evaluation.chain, sampling))
+        # What the host gives takes long, and has a bound of its own.
+        nothing = dict.fromkeys(self.evaluation.given, lambda q: np.zeros(len(q)))
+        return Pipeline(replace(self.evaluation, given=nothing), plan_sampling(self.evaluation.chain, sampling))
 
     @cached_property
     def _hull(self) -> tuple[int, float, float]:
