@@ -39,6 +39,10 @@ class Tries:
     reached: np.ndarray
     stationary: np.ndarray
 
+    def taken(self, at: np.ndarray) -> "Tries":
+        """Those ``at`` places (M,)."""
+        return Tries(**{each.name: getattr(self, each.name)[at] for each in fields(self)})
+
     def replaced(self, at: np.ndarray, others: "Tries") -> "Tries":
         """These, but for those ``at`` places (M,)."""
         columns = {each.name: getattr(self, each.name).copy() for each in fields(self)}

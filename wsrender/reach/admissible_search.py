@@ -4,6 +4,9 @@ A target is free where a solution is admitted. It is blocked where many solution
 and every one was rejected: evidence of a search, no proof; where an admitted sample lies near, the search is longer.
 Else it is unreachable or undecided as without constraints, or undecided because too few solutions were found.
 
+Near what is free it walks too: an admitted sample is moved towards the target, part of the way and all of it, from
+configurations that differ a little from it, and the admitted one that is nearest goes on from there.
+
 Redundant arms come from every start to another point of their self-motions, and joints that do not move the target
 stand where they stood in the start.
 """
@@ -21,19 +24,24 @@ from wsrender.pipeline.pipeline import tip_pipeline
 from wsrender.reach.admission import Admission
 from wsrender.reach.evidence import REACHABLE, UNDECIDED
 from wsrender.reach.inverse_solver import BATCH, InverseSolver, parts_of
-from wsrender.reach.starts import EPS, towards_limits
+from wsrender.reach.starts import EPS, inwards, towards_limits
 
 BLOCKED = 2  # beside the labels of evidence
-SAMPLES, NEIGHBOURS = 1 << 20, 1 << 16  # drawn; admitted ones that starts are chosen from
+SAMPLES, NEIGHBOURS = 1 << 20, 1 << 18  # drawn; admitted ones that starts are chosen from
 NEAR, FURTHER = "near", "further"
 # Starts between two looks, by number: the admitted samples nearest to the target, and of all kinds the same for every
 # target.
 FIRST = ((NEAR, 0, 1), (NEAR, 1, 8))
 FURTHER_SAMPLES = 128
-LATER = ((NEAR, 8, 32), (FURTHER, 0, 32), (NEAR, 32, 96), (FURTHER, 32, FURTHER_SAMPLES))
+LATER = ((NEAR, 8, 32), (FURTHER, 0, 32), (FURTHER, 32, FURTHER_SAMPLES))
 # Rejected solutions that say that a target is blocked: at once where no admitted sample is nearer than a share of the
 # reach, else after all starts.
 CLEARLY_BLOCKED, NARROWLY, BLOCKED_AFTER_ALL = 24, 0.1, 8
+
+# Walks: of so many samples, in so many steps, of which each tries these shares of the way, each after changes of all
+# coordinates by these deviations [rad, or reaches for slides].
+WALKS, STEPS, SHARES, DEVIATIONS = 8, 16, (1.0, 0.4, 0.1), (0.01, 0.03, 0.1, 0.3)
+LONGER = 3  # times as many walks tell how many free targets others miss
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,6 +123,10 @@ class AdmissibleSearch:
         for source, first, last in LATER:
             self._search(found, found.pending, source, first, last, position, orientation)
             found.label[self._rejected(found, CLEARLY_BLOCKED) & clearly] = BLOCKED
+        if orientation is None:
+            at = found.pending[found.rejected[found.pending].any(axis=1)]
+            for part in parts_of(at, WALKS * len(SHARES) * len(DEVIATIONS)):
+                self._walk(found, part, position, WALKS, self.solver.seed)
         found.label[self._rejected(found, BLOCKED_AFTER_ALL)] = BLOCKED
         return found
 
@@ -156,6 +168,51 @@ class AdmissibleSearch:
                 starts = np.tile(self._further[first:last], (len(part), 1, 1))
             self._tried(found, part, starts, position, orientation)
 
+    def blocked_wrongly(self, found: Admissible, position: np.ndarray) -> int:
+        """How many of the blocked positions a LONGER search, of other changes, finds free; their labels are lost."""
+        blocked = np.flatnonzero(found.label == BLOCKED)
+        found.label[blocked] = UNDECIDED
+        for part in parts_of(blocked, LONGER * WALKS * len(SHARES) * len(DEVIATIONS)):
+            self._walk(found, part, position, LONGER * WALKS, (self.solver.seed + 1) % 2**63)
+        return int((found.label[blocked] == REACHABLE).sum())
+
+    def _walk(self, found: Admissible, at: np.ndarray, position: np.ndarray, walks: int, key: int) -> None:
+        """Walk from so many admitted samples nearest to targets ``at`` (P,)."""
+        if not self._tree or not len(at):
+            return
+        q = self._near(self.solver.features(position[at]), 0, walks)
+        chain, (P, W, n), S, D = self.solver.whole, q.shape, len(SHARES), len(DEVIATIONS)
+        scale = np.where(chain.revolute, 1.0, chain.reach)
+        random = np.random.Generator(np.random.Philox(key=key))
+        T = self.solver.positions_at(q.reshape(-1, n)).reshape(P, W, 3)
+        for _ in range(STEPS):
+            changes = random.normal(size=(S, D, n)) * np.array(DEVIATIONS)[:, None] * scale
+            open_ = found.label[at] == UNDECIDED
+            at, q, T = at[open_], q[open_], T[open_]
+            if not len(at):
+                return
+            starts = inwards(chain, q[:, :, None, None] + changes, 0.0)
+            way = position[at][:, None] - T
+            targets = T[:, :, None] + np.array(SHARES)[:, None] * way[:, :, None]
+            targets = np.broadcast_to(targets[:, :, :, None], (*starts.shape[:-1], 3))
+            tries = self.solver.tries(starts.reshape(-1, n), targets.reshape(-1, 3))
+            reasons = self._reasons(tries)
+            shape = (len(at), W, S * D)
+            admitted = (tries.reached & (reasons == 0)).reshape(shape)
+            # All of the way comes first, so that the first that is admitted is the farthest.
+            best = admitted.argmax(axis=2)
+            moved = np.take_along_axis(admitted, best[..., None], axis=2)
+            q = np.where(
+                moved, np.take_along_axis(tries.q.reshape(*shape, n), best[..., None, None], axis=2)[:, :, 0], q
+            )
+            T = np.where(
+                moved, np.take_along_axis(targets.reshape(*shape, 3), best[..., None, None], axis=2)[:, :, 0], T
+            )
+            whole = np.zeros((len(at), W, S, D), bool)
+            whole[:, :, 0] = True
+            at_target = np.flatnonzero(whole.ravel())
+            found.take(at, tries.taken(at_target), reasons[at_target])
+
     def _tried(
         self,
         found: Admissible,
@@ -169,10 +226,14 @@ class AdmissibleSearch:
             return
         targets = np.repeat(at, starts.shape[1])
         tries = self.solver.tries(starts.reshape(len(targets), -1), position[targets], _some(orientation, targets))
-        reasons = np.zeros(len(targets), np.int8)
+        found.take(at, tries, self._reasons(tries))
+
+    def _reasons(self, tries: Tries) -> np.ndarray:
+        """What rejects those tries (T,) that reached their targets, 0: nothing."""
+        reasons = np.zeros(len(tries.q), np.int8)
         if tries.reached.any():
             reasons[tries.reached] = self.admission.rejected(tries.q[tries.reached])
-        found.take(at, tries, reasons)
+        return reasons
 
     def _near(self, features: np.ndarray, first: int, last: int) -> np.ndarray:
         """The admitted samples nearest to targets with ``features`` (P, f), (P, last - first, n)."""

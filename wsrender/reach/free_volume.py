@@ -64,8 +64,11 @@ class FreeSet:
         far[inside] = np.where(found.label == REACHABLE, 0.0, beside)
         return labels, far
 
-    def strata(self, block: LatticeBlock) -> list[np.ndarray]:
-        """Cells (M, d) of a block that are alike: by what samples, and admitted samples, reach of their neighbours."""
+    def strata(self, block: LatticeBlock) -> tuple[list[np.ndarray], list[np.ndarray]]:
+        """Cells (M, d) of a block that are alike: by what samples, and admitted samples, reach of their neighbours.
+
+        All, and those of them that admitted samples reach, or a neighbour of.
+        """
         d = self.reached.dimension
         reach = self.reached.classes(block, 1)
         cells = self._cells(block, self.search.samples[1])
@@ -76,7 +79,8 @@ class FreeSet:
         # Where the border of the region, or of the reach, passes through the innermost cells.
         free = np.where((free > LEVELS) & (reach < 3), 1 + LEVELS // 2, free)
         code = np.where(free > 0, 3 + free, reach) * (reach > 0)
-        return [np.argwhere(code == k) + block.first_voxel[:d] for k in np.unique(code[code > 0])]
+        cells = {k: np.argwhere(code == k) + block.first_voxel[:d] for k in np.unique(code[code > 0]).tolist()}
+        return list(cells.values()), [each for k, each in cells.items() if k > 3]
 
     def false_negatives(self, block: LatticeBlock, tests: int) -> FalseNegatives:
         """The search tried on positions of admitted samples that are none of its starts, from as many cells."""
@@ -89,6 +93,19 @@ class FreeSet:
         chosen = chosen_evenly(np.asarray(numbers), self.reached.seed)[:tests]
         label = self.search.decide(self.reached.padded(positions[chosen])).label
         return FalseNegatives(len(chosen), int(((label == UNREACHABLE) | (label == BLOCKED)).sum()))
+
+    def found_later(self, strata: list[np.ndarray], edge: float, tests: int) -> FalseNegatives:
+        """The search tried beside a longer one, at random points of cells (M, d) of an ``edge`` [m]."""
+        random = np.random.Generator(np.random.Philox(key=self.reached.seed))
+        cells = np.concatenate([*strata, np.zeros((0, self.reached.dimension), np.int64)])
+        if not len(cells):
+            return FalseNegatives(0, 0)
+        points = (cells[random.integers(len(cells), size=tests)] + random.random((tests, cells.shape[1]))) * edge
+        points = self.reached.padded(points[self.reached.outside(points) == 0])
+        found = self.search.decide(points)
+        free = int((found.label == REACHABLE).sum())
+        missed = self.search.blocked_wrongly(found, points)
+        return FalseNegatives(free + missed, missed)
 
     def _cells(self, block: LatticeBlock, positions: np.ndarray) -> np.ndarray:
         d = self.reached.dimension
@@ -106,16 +123,18 @@ def free_volumes(
 ) -> RefinedVolumes:
     """Volumes free, blocked, and blocked by each constraint, by name; the first to a relative ``tolerance``.
 
-    Blocked is what a search found so; the share of free positions that it may have called blocked, as tried on others,
-    widens all intervals.
+    Blocked is what a search found so. What it may have missed widens all intervals: it is tried on positions of other
+    admitted samples, and beside a longer search.
     """
     own = FreeSet(reached, admission)
     block = block_of([reached])
-    misses = own.false_negatives(block, tests_of(tolerance))
-    hidden = hidden_share([misses])
+    strata, near_free = own.strata(block)
+    tests = tests_of(tolerance)
+    misses = own.false_negatives(block, tests), own.found_later(near_free, block.voxel_size_m, tests)
+    hidden = hidden_share(misses)
     found = estimate_volumes(
         own.decided,
-        own.strata(block),
+        strata,
         block.voxel_size_m,
         own.events,
         tolerance,
@@ -126,7 +145,7 @@ def free_volumes(
     )
     free = found.volumes[FREE]
     volumes = {name: each if name == FREE else _less(each, hidden * free.high) for name, each in found.volumes.items()}
-    return RefinedVolumes(volumes, found.points, (misses,), reached.position_m)
+    return RefinedVolumes(volumes, found.points, misses, reached.position_m)
 
 
 def _less(blocked: VolumeEstimate, missed: float) -> VolumeEstimate:

@@ -113,6 +113,10 @@ class InverseSolver:
         q[:, self._kept] = self._within_a_turn(tries.q)
         return replace(tries, q=q)
 
+    def positions_at(self, q: np.ndarray) -> np.ndarray:
+        """Positions (N, 3) [m] of the end point at configurations (N, n)."""
+        return evaluate_poses(self.chain, q[:, self._kept], device="cpu", threads=self._workers)[:, :3, 3]
+
     def features(self, position: np.ndarray, orientation: np.ndarray | None = None) -> np.ndarray:
         """Coordinates (N, f) of targets whose distance is the residual that tries reduce [m]."""
         return self._features(_targets(position, orientation))

@@ -39,7 +39,8 @@ class RefinedMeasure:
     set has none, and ``reason`` says why; where too few chains have one to share, why ``value`` is 0; else it is "".
     ``met``: whether the interval is as narrow as asked. ``undecided``: how much inverse kinematics left open, in the
     same unit. ``points``: how many it decided. ``position_tolerance_m``: the largest residual that counted as reached.
-    ``false_negatives``: of every chain. ``undecided_ci95``: the interval of what was left open.
+    ``false_negatives``: of every chain; of one under constraints two, positions of admitted samples, and random ones
+    that a longer search was tried on too. ``undecided_ci95``: the interval of what was left open.
     """
 
     quantity: str
