@@ -13,6 +13,8 @@ from wsrender.pipeline.pipeline import Pipeline
 from wsrender.pipeline.sampling import plan_sampling
 from wsrender.robots.kinematics import Kinematics
 
+WORTH_THREADS = 1 << 14  # configurations that take longer than setting up what labels them
+
 
 @dataclass(frozen=True, eq=False)
 class Admission:
@@ -30,7 +32,8 @@ class Admission:
 
     def rejected(self, q: np.ndarray) -> np.ndarray:
         """The number, from 1, of the first constraint that rejects configurations (N, n), or 0, (N,) int8."""
-        found = evaluate_samples(self._pipeline(q), self.device, threads=self.threads).rejected
+        threads = 1 if len(q) < WORTH_THREADS else self.threads
+        found = evaluate_samples(self._pipeline(q), self.device, threads=threads).rejected
         assert found is not None
         return found
 
