@@ -184,6 +184,8 @@ def reachability(
     *,
     base: str | None = None,
     tip: str | None = None,
+    constraints: Constraints | Mapping[str, Any] | None = None,
+    environment: Environment | Mapping[str, Any] | None = None,
     position_tolerance_m: float = 1e-05,
     angle_tolerance_rad: float = 1e-05,
     characteristic_length_m: float | None = None,
@@ -196,6 +198,8 @@ def reachability(
 ) -> Result:
     """Which of given targets a robot reaches within its joint limits, by inverse kinematics from many starts.
 
+    Under constraints a target is reachable where a configuration is admitted, and blocked where all were rejected.
+
     `reachable` is the quick form, which gives labels and arrays.
 
     ``robot``: A Robot, what `load_robot` takes, an object with limits and forward_kinematics, or its part of a job
@@ -204,6 +208,8 @@ def reachability(
     ``quats_wxyz``: Orientations of the targets, a quaternion w, x, y, z for each point; None: any orientation will do.
     ``base``: Body, link or site at which the chain starts; None: the world.
     ``tip``: Site, body or link at the end of the chain; None: the site "tool", or else the only end there is.
+    ``constraints``: Which configurations are admitted; None: all.
+    ``environment``: What stands around, which the robot's shapes do not enter; None: nothing.
     ``position_tolerance_m``: Largest distance to a target that counts as reached [m].
     ``angle_tolerance_rad``: Largest angle to a target's orientation that counts as reached [rad].
     ``characteristic_length_m``: Length that makes an angle comparable to a distance while both shrink [m]; None: half

@@ -1,6 +1,6 @@
 """Whether a robot reaches given targets, with what configuration, or why not."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -9,6 +9,9 @@ from scipy.spatial.transform import Rotation
 
 from wsrender.documents.quantities import argument, positive
 from wsrender.errors import InputError
+from wsrender.pipeline.constraints.constraint import Constraint
+from wsrender.reach.admissible_search import BLOCKED, Admissible, AdmissibleSearch
+from wsrender.reach.admission import Admission
 from wsrender.reach.evidence import CLEARLY, LABELS, UNDECIDED, UNREACHABLE
 from wsrender.reach.inverse_solver import InverseSolver, Solutions
 from wsrender.robot import as_robot
@@ -31,6 +34,10 @@ class Reachability:
     targets "out of reach" (no configuration, limits or not) or "joint limits" (hinges without limits would reach it,
     or come nearest with a slide at its end); of undecided ones "too close to the tolerance" or "search not
     conclusive"; else "".
+
+    Under C constraints a label may be "blocked" too, by the constraint that is its reason: configurations that reach
+    the target were found, and all were rejected, ``rejected`` (N, C) int32 by each first; None without constraints.
+    Those of ``configurations`` that reach a target are then admitted, of blocked targets they are not.
     """
 
     configurations: np.ndarray
@@ -38,6 +45,7 @@ class Reachability:
     residual_rad: np.ndarray
     labels: np.ndarray
     reasons: np.ndarray
+    rejected: np.ndarray | None = None
 
 
 def reachable(
@@ -53,6 +61,7 @@ def reachable(
     device: str = "auto",
     threads: int | None = None,
     progress: Callable[[int], None] | None = None,
+    constraints: Sequence[Constraint] = (),
 ) -> Reachability:
     """Decide which ``points`` (N, 3) [m], or poses with ``orientations`` (N, 4) quat_wxyz, the end effector reaches.
 
@@ -60,7 +69,8 @@ def reachable(
     Positions and orientations are in the world frame. Every target is tried from many starts within the joint limits
     (`InverseSolver`); "unreachable" needs a proof or consistent evidence, else the label is "undecided". A label
     depends on its target and ``seed`` alone. ``characteristic_length_m`` makes an angle comparable to a distance
-    while both shrink (default: half the reach). ``progress``: called with the targets decided.
+    while both shrink (default: half the reach). ``progress``: called with the targets decided. ``constraints``: those
+    of `wsrender.robot.constraints.constraints_for`, which must admit the configurations.
 
     Raises InputError, ModelError.
     """
@@ -80,10 +90,21 @@ def reachable(
         device=device,
         threads=threads,
     )
-    found = solver.solve(position, axes, progress)
-    labels = np.array([LABELS[label] for label in found.label.tolist()], dtype="<U11")
-    reasons = reasons_of(solver, found, position, axes)
-    return Reachability(found.q, found.distance_m, found.angle_rad, labels, reasons)
+    names = LABELS | {BLOCKED: "blocked"}
+    if constraints:
+        admission = Admission(subject.chain, constraints, device, threads)
+        found = AdmissibleSearch(solver, admission).decide(position, axes, progress)
+        reasons = reasons_of(solver, found, position, axes).astype(f"<U{max(26, *map(len, admission.names))}")
+        open_ = (found.label == UNDECIDED) & found.rejected.any(axis=1)
+        reasons[open_] = INCONCLUSIVE
+        blocked = found.label == BLOCKED
+        reasons[blocked] = np.array(["", *admission.names])[found.reason[blocked]]
+    else:
+        found = solver.solve(position, axes, progress)
+        reasons = reasons_of(solver, found, position, axes)
+    labels = np.array([names[label] for label in found.label.tolist()], dtype="<U11")
+    rejected = found.rejected if isinstance(found, Admissible) else None
+    return Reachability(found.q, found.distance_m, found.angle_rad, labels, reasons, rejected)
 
 
 def check_tolerance(chain: Kinematics, position_tolerance_m: float, precision: str) -> None:
@@ -121,7 +142,7 @@ def rotations(quat_wxyz: Any, count: int) -> np.ndarray:
 
 
 def reasons_of(
-    solver: InverseSolver, found: Solutions, position: np.ndarray, axes: np.ndarray | None = None
+    solver: InverseSolver, found: Solutions | Admissible, position: np.ndarray, axes: np.ndarray | None = None
 ) -> np.ndarray:
     """Why targets are not reachable, as in `Reachability`, (N,) text."""
     reasons = np.full(len(position), "", dtype="<U26")

@@ -6,6 +6,7 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import BeforeValidator, Field
 
 from wsrender.documents.arm import Arm
+from wsrender.documents.constraints import Constrained
 from wsrender.documents.format import JobDocument
 from wsrender.documents.options import Device
 from wsrender.documents.quantities import Number, PositiveNumber, Seed, real, rows_of
@@ -17,8 +18,11 @@ Points = Annotated[tuple[tuple[Number, Number, Number], ...], Field(min_length=1
 Quaternions = Annotated[tuple[tuple[Number, Number, Number, Number], ...], Field(min_length=1), rows_of(4)]
 
 
-class ReachabilityJob(Arm, JobDocument):
-    """Which of given targets a robot reaches within its joint limits, by inverse kinematics from many starts."""
+class ReachabilityJob(Constrained, Arm, JobDocument):
+    """Which of given targets a robot reaches within its joint limits, by inverse kinematics from many starts.
+
+    Under constraints a target is reachable where a configuration is admitted, and blocked where all were rejected.
+    """
 
     long_fields: ClassVar[tuple[str, ...]] = ("points_m", "quats_wxyz")
 
@@ -43,6 +47,7 @@ class ReachabilityJob(Arm, JobDocument):
 
     def conflicts(self) -> Iterator[tuple[str, str]]:
         """(field, message) of every pair of fields that do not go together."""
+        yield from super().conflicts()
         if self.quats_wxyz is None:
             return
         if len(self.quats_wxyz) != len(self.points_m):

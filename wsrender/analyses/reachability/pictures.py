@@ -17,6 +17,7 @@ from wsrender.volume.table import Table
 # Okabe and Ito 2008, and a mark of its own each: told apart by the colour-blind, and in grey.
 _MARKS: dict[str, dict[str, Any]] = {
     "reachable": {"marker": "o", "ms": 5.0, "mfc": "#009e73", "mec": "white", "mew": 0.5},
+    "blocked": {"marker": "s", "ms": 5.0, "mfc": "#0072b2", "mec": "white", "mew": 0.5},
     "unreachable": {"marker": "x", "ms": 5.0, "mec": "#d55e00", "mew": 1.4},
     "undecided": {"marker": "^", "ms": 6.0, "mfc": "#e69f00", "mec": "black", "mew": 0.6},
 }

@@ -9,8 +9,8 @@ _HERE = f"{__name__.rpartition('.')[0]}.pictures"
 
 
 def facts(document: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-    """How many targets are reached, are not, and are not decided."""
-    for name in ("reachable", "unreachable", "undecided"):
+    """How many targets are reached, are blocked, are not reached, and are not decided."""
+    for name in ("reachable", "blocked", "unreachable", "undecided"):
         if name in document["targets"]:
             yield f"{name} targets", f"{document['targets'][name]:,}"
 

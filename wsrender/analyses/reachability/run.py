@@ -1,5 +1,7 @@
 """The analysis ``reachability``: labels, configurations and residuals of given targets."""
 
+from functools import cached_property
+
 import numpy as np
 
 from wsrender.analyses.contract import Analysis, Draft, Settled, Tell
@@ -8,6 +10,7 @@ from wsrender.analyses.cost import (
     DOCUMENT_BYTES,
     LISTED_BYTES,
     LISTED_MEMORY,
+    SEARCHED_BYTES,
     WRITTEN_PER_S,
     Asks,
     Cost,
@@ -18,12 +21,16 @@ from wsrender.analyses.estimate import RATE_CPU_CORE
 from wsrender.analyses.execution import Execution
 from wsrender.analyses.partial_result import PartialResult, joined_rows, rows_of_shard
 from wsrender.analyses.reachability.job import ReachabilityJob
+from wsrender.pipeline.constraints.constraint import Constraint
 from wsrender.reach.targets import check_tolerance, reachable
+from wsrender.robot.constraints import constraints_for
 from wsrender.volume.table import Table
 
 POSES_PER_S = 1.2e4  # of one core, where many are unreachable
 TABLE_BYTES = 60  # of a target in the table beside its configuration
 LABEL_BYTES = 220  # of a target: its label and reason as text, residuals, and copies
+SEARCHED_PER_S = 3e3  # targets under constraints, of one core, where many are blocked narrowly
+LABELS = ("reachable", "blocked", "unreachable", "undecided")
 DRAWN = 3  # configurations in the picture of the robot
 
 
@@ -36,7 +43,13 @@ class ReachabilityAnalysis(Analysis):
     def prepare(self, device: str, target: str) -> Settled:
         """Raises InputError for a tolerance below what is computed."""
         check_tolerance(self.robot.chain, self.job.position_tolerance_m, self.job.precision)
+        _ = self.constraints
         return Settled(device, target, ((0, len(self.job.points_m)),), shard_unit=1)
+
+    @cached_property
+    def constraints(self) -> tuple[Constraint, ...]:
+        """What configurations must satisfy; raises InputError."""
+        return constraints_for(self.robot, self.job.constraints, self.job.environment)
 
     @property
     def cost(self) -> Cost:
@@ -46,6 +59,8 @@ class ReachabilityAnalysis(Analysis):
         files = DOCUMENT_BYTES + drawn + (TABLE_BYTES + 8 * (n + listed - 3) + LISTED_BYTES * listed) * count
         memory = (LABEL_BYTES + 16 * n + (8 + LISTED_MEMORY) * listed) * count + solved_bytes(count)
         seconds += count / (DECIDED_PER_S if listed == 3 else POSES_PER_S) + files / WRITTEN_PER_S
+        if self.constraints:
+            memory, seconds = memory + SEARCHED_BYTES, seconds + count / SEARCHED_PER_S
         return Cost(count, memory, files, seconds, Asks("points_m", "take fewer"))
 
     def compute(self, shard: int, execution: Execution, tell: Tell) -> PartialResult:
@@ -64,8 +79,9 @@ class ReachabilityAnalysis(Analysis):
             device=self.device,
             threads=execution.threads,
             progress=tell,
+            constraints=self.constraints,
         )
-        return rows_of_shard(first, vars(found))
+        return rows_of_shard(first, {name: rows for name, rows in vars(found).items() if rows is not None})
 
     def merge(self, a: PartialResult, b: PartialResult) -> PartialResult:
         """The targets of both, in the order asked."""
@@ -74,10 +90,11 @@ class ReachabilityAnalysis(Analysis):
     def result(self, partial: PartialResult, execution: Execution) -> Draft:
         """The table ``targets``, one row per target in the order asked, and how many have which label."""
         labels, reasons = partial["labels"], partial["reasons"]
+        names = LABELS if self.constraints else tuple(name for name in LABELS if name != "blocked")
         reached = labels == "reachable"
         counts = {
             "count": len(labels),
-            **{name: int((labels == name).sum()) for name in ("reachable", "unreachable", "undecided")},
+            **{name: int((labels == name).sum()) for name in names},
             "reasons": {str(name): int((reasons == name).sum()) for name in np.unique(reasons) if name},
             "largest_residual_of_reachable_m": float(partial["residual_m"][reached].max(initial=0.0)),
             "largest_residual_of_reachable_rad": float(partial["residual_rad"][reached].max(initial=0.0)),
@@ -96,6 +113,9 @@ class ReachabilityAnalysis(Analysis):
             "residual_m": partial["residual_m"],
             "residual_rad": partial["residual_rad"],
         }
+        if self.constraints:
+            rejected = partial["rejected"].T
+            columns |= {f"rejected_{each.name}": row for each, row in zip(self.constraints, rejected, strict=True)}
         chain = self.robot.chain
         for name, values in zip(chain.joint_names, partial["configurations"].T, strict=True):
             columns[f"q_{name}"] = values
