@@ -6,7 +6,11 @@ from scipy.spatial.transform import Rotation
 
 import wsrender as ws
 from tests.collision.robots import collides
+from tests.reference import closed_form_inverse as closed_form
+from tests.reference.published_robots import dh_table
 from tests.run.journeys import from_a_partial_file, from_the_command_line
+from wsrender.reach import reachable
+from wsrender.robot.constraints import constraints_for
 from wsrender.run import execute, plan
 
 POINTS = [[-0.3, 0.0, 0.0], [-0.1, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 0.3, 0.0]]
@@ -102,3 +106,25 @@ def test_labels_under_constraints_do_not_depend_on_shards(tmp_path):
         assert np.array_equal(column, np.concatenate([half[name] for half in halves])), name
     travelled = from_a_partial_file(GUARDED | {"points_m": points.tolist()}, tmp_path).tables["targets"]
     assert np.array_equal(travelled["rejected_environment"], whole["rejected_environment"])
+
+
+def test_poses_between_a_floor_and_a_box_against_all_postures():
+    """A Puma of capsules along its links: every posture in closed form, and MuJoCo's distances of each."""
+    table = dh_table("puma560").model_copy(update={"link_radius": 0.04})
+    robot = ws.load_robot(table)
+    random, directions = np.random.default_rng(5), Rotation.random(600, random_state=6)
+    points = random.uniform([-0.9, -0.9, -0.6], [0.9, 0.9, 0.9], (600, 3))
+    around = ws.Environment([ws.HalfSpace(point_m=(0, 0, -0.5)), ws.Box(size_m=(0.2, 2, 2), position_m=(0.6, 0, 0))])
+    (apart,) = constraints_for(robot, None, around)
+    with np.errstate(invalid="ignore"):
+        arm = closed_form.puma560_arm(points)
+        solutions = closed_form.with_spherical_wrist("puma560", arm, directions.as_matrix())
+    inside = closed_form.within_limits(solutions, robot.lower_limits, robot.upper_limits, robot.chain.revolute)
+    admitted = np.zeros(inside.shape, bool)
+    admitted[inside] = apart.host(solutions[inside], np.zeros((0, 4, 4))) == 0
+    expected = np.select([admitted.any(axis=1), inside.any(axis=1)], ["reachable", "blocked"], "unreachable")
+    quats = directions.as_quat(scalar_first=True)
+    found = reachable(robot, points, quats, constraints=(apart,), device="cpu")
+    decided = found.labels != "undecided"
+    assert min((expected == name).sum() for name in ("reachable", "blocked", "unreachable")) > 50
+    assert (~decided).mean() <= 0.01 and (found.labels != expected)[decided].sum() <= 1e-3 * decided.sum()
