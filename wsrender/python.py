@@ -232,6 +232,8 @@ def capability(
     *,
     base: str | None = None,
     tip: str | None = None,
+    constraints: Constraints | Mapping[str, Any] | None = None,
+    environment: Environment | Mapping[str, Any] | None = None,
     voxel_size_m: float | None = None,
     directions: int = 100,
     approach_axis: Literal["x", "y", "z", "-x", "-y", "-z"] = "z",
@@ -248,11 +250,14 @@ def capability(
     """Per voxel, the share of approach directions from which its centre is reached, by inverse kinematics.
 
     Where the arm's positions fill no volume, as in a plane, the reachable point nearest to the centre stands for it.
+    Under constraints a direction is reached where they admit a configuration, and blocked where they reject all.
 
     ``robot``: A Robot, what `load_robot` takes, an object with limits and forward_kinematics, or its part of a job
         document.
     ``base``: Body, link or site at which the chain starts; None: the world.
     ``tip``: Site, body or link at the end of the chain; None: the site "tool", or else the only end there is.
+    ``constraints``: Which configurations are admitted; None: all.
+    ``environment``: What stands around, which the robot's shapes do not enter; None: nothing.
     ``voxel_size_m``: Edge of a voxel [m]; None: a twentieth of the cube root of the workspace's convex-hull volume.
     ``directions``: Number of approach directions, spread evenly over the sphere.
     ``approach_axis``: Axis of the tip frame that points along the direction; the turn about it is free.

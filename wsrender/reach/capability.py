@@ -4,13 +4,16 @@ After Zacharias, Borst, Hirzinger, *Capturing robot workspace structure*, 2007, 
 centre and a direction is decided by inverse kinematics, the turn about the direction being free.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from wsrender.engine import sampled_positions
+from wsrender.pipeline.constraints.constraint import Constraint
 from wsrender.pipeline.pipeline import tip_pipeline
+from wsrender.reach.admissible_search import Admissible, AdmissibleSearch
+from wsrender.reach.admission import Admission
 from wsrender.reach.dimension import fills_volume, in_own_voxel
 from wsrender.reach.evidence import REACHABLE, UNDECIDED
 from wsrender.reach.inverse_solver import InverseSolver
@@ -38,12 +41,15 @@ AXES = {
 class Capability:
     """Of the voxels that are reached: cells (V, 3) int64, and from which of D directions they are, (V, D) bool.
 
-    ``undecided`` (V,): directions about which the search was not conclusive; they count as not reached.
+    ``undecided`` (V,): directions about which the search was not conclusive; they count as not reached. Under C
+    constraints ``blocked`` (V, C): directions from which it is reached in configurations alone that are rejected, by
+    the constraint that rejects most of them; None without constraints.
     """
 
     cells: np.ndarray
     reached: np.ndarray
     undecided: np.ndarray
+    blocked: np.ndarray | None = None
 
     @property
     def index(self) -> np.ndarray:
@@ -74,6 +80,7 @@ def capability(
     device: str = "cpu",
     threads: int | None = None,
     progress: Callable[[int], None] | None = None,
+    constraints: Sequence[Constraint] = (),
 ) -> Capability:
     """Decide which voxel centres the end effector reaches with its ``approach_axis`` along each direction (D, 3).
 
@@ -81,29 +88,38 @@ def capability(
     centre stands for the voxel, if it lies in it.
 
     ``cells`` (V, 3): the voxels, of which each is decided by itself; None: the `candidates`. ``position_m`` and
-    ``angle_rad``: what counts as there. ``progress``: called with the pairs decided.
+    ``angle_rad``: what counts as there. ``progress``: called with the pairs decided. ``constraints`` must admit the
+    configurations.
     """
     execution = {"seed": seed, "precision": precision, "device": device, "threads": threads}
     accuracy = {"position_m": position_m, "angle_rad": angle_rad}
     cells = candidates(chain, voxel_size_m, seed, device, threads) if cells is None else cells
+    admission = Admission(chain, constraints, device, threads) if constraints else None
     points, reached = _points(
-        InverseSolver(chain, kind="position", **accuracy, **execution), cells, voxel_size_m, threads
+        InverseSolver(chain, kind="position", **accuracy, **execution), admission, cells, voxel_size_m, threads
     )
     cells, points = cells[reached], points[reached]
 
     turned = np.eye(4)
     turned[:3, :3] = AXES[approach_axis]
     solver = InverseSolver(chain.placed(T_tip_tool=chain.T_tip_tool @ turned), kind="axis", **accuracy, **execution)
+    search = AdmissibleSearch(solver, admission) if admission else None
     labels = np.zeros((len(cells), len(directions)), np.int8)
+    blocked = np.zeros((len(cells), len(constraints)), np.int64)
     each = max(1, BATCH // len(directions))
     for first in range(0, len(cells), each):
         batch = slice(first, first + each)
         position = np.repeat(points[batch], len(directions), axis=0)
         axes = np.tile(directions, (len(points[batch]), 1))
-        labels[batch] = solver.solve(position, axes).label.reshape(-1, len(directions))
+        found = search.decide(position, axes) if search else solver.solve(position, axes)
+        labels[batch] = found.label.reshape(-1, len(directions))
+        if isinstance(found, Admissible):
+            reason = found.reason.reshape(-1, len(directions))
+            blocked[batch] = np.stack([(reason == k + 1).sum(axis=1) for k in range(len(constraints))], axis=1)
         if progress:
             progress(min(first + each, len(cells)) * len(directions))
-    return Capability(cells, labels == REACHABLE, (labels == UNDECIDED).sum(axis=1))
+    undecided = (labels == UNDECIDED).sum(axis=1)
+    return Capability(cells, labels == REACHABLE, undecided, blocked if constraints else None)
 
 
 def searched_block(chain: Kinematics, voxel_size_m: float) -> LatticeBlock:
@@ -112,15 +128,17 @@ def searched_block(chain: Kinematics, voxel_size_m: float) -> LatticeBlock:
 
 
 def _points(
-    solver: InverseSolver, cells: np.ndarray, voxel_size_m: float, threads: int | None
+    solver: InverseSolver, admission: Admission | None, cells: np.ndarray, voxel_size_m: float, threads: int | None
 ) -> tuple[np.ndarray, np.ndarray]:
     """The point (V, 3) [m] that stands for each cell, and whether it is reached (V,)."""
-    centers = (cells + 0.5) * voxel_size_m
-    found = solver.solve(centers)
-    if fills_volume(solver.whole, threads):
-        return centers, found.label == REACHABLE
-    nearest = sampled_positions(tip_pipeline(solver.whole, found.q), threads=threads)
-    return nearest, in_own_voxel(nearest, cells, voxel_size_m)
+    points = (cells + 0.5) * voxel_size_m
+    held, solid = np.ones(len(cells), bool), fills_volume(solver.whole, threads)
+    if not solid:
+        points = sampled_positions(tip_pipeline(solver.whole, solver.solve(points).q), threads=threads)
+        held = in_own_voxel(points, cells, voxel_size_m)
+    if admission:
+        return points, held & (AdmissibleSearch(solver, admission).decide(points).label == REACHABLE)
+    return points, held & (solver.solve(points).label == REACHABLE if solid else True)
 
 
 def candidates(chain: Kinematics, voxel_size_m: float, seed: int, device: str, threads: int | None) -> np.ndarray:

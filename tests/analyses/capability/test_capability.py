@@ -7,6 +7,7 @@ import wsrender as ws
 from tests.reference import closed_form_inverse as closed_form
 from tests.reference.published_robots import dh_table
 from wsrender.reach.capability import capability, fibonacci_directions
+from wsrender.robot.constraints import constraints_for
 from wsrender.run import execute, finish, plan, run_shard
 from wsrender.run.partial_files import load_partial, save_partial
 
@@ -158,3 +159,32 @@ def test_a_partial_result_travels(result, tmp_path):
 
 def test_default_voxels_are_a_twentieth_of_the_workspace():
     assert plan({"analysis": "capability", "robot": "ur5e", "device": "cpu"}).resolved()["voxel_size_m"] == 0.077
+
+
+def test_directions_between_a_floor_and_a_box_in_closed_form():
+    """A Puma of capsules along its links; its sixth joint turns nothing that may collide."""
+    robot = ws.load_robot(dh_table("puma560").model_copy(update={"link_radius": 0.04}))
+    around = ws.Environment([ws.HalfSpace(point_m=(0, 0, -0.3)), ws.Box(size_m=(0.2, 2, 2), position_m=(0.6, 0, 0))])
+    job = {"analysis": "capability", "voxel_size_m": 0.25, "directions": 12, "device": "cpu"}
+    result = execute({**job, "robot": robot.spec, "environment": around})
+    (apart,) = constraints_for(robot, None, around)
+    table, directions = result.tables["capability"], fibonacci_directions(12)
+    centers = np.repeat(table["position"], len(directions), axis=0)
+    z = np.tile(directions, (len(table["position"]), 1))
+    x = np.cross(z, np.roll(z, 1, axis=1) + np.array([0.3, 0.1, 0.2]))
+    x /= np.linalg.norm(x, axis=1)[:, None]
+    with np.errstate(invalid="ignore"):
+        arm = closed_form.puma560_arm(centers)
+        solutions = closed_form.with_spherical_wrist("puma560", arm, np.stack([x, np.cross(z, x), z], axis=2))
+    solutions[:, :, 5] = np.where(np.isnan(solutions[:, :, 5]), np.nan, 0.0)
+    inside = closed_form.within_limits(solutions, robot.lower_limits, robot.upper_limits, robot.chain.revolute)
+    admitted = np.zeros(inside.shape, bool)
+    admitted[inside] = apart.host(solutions[inside], np.zeros((0, 4, 4))) == 0
+    free, reach = admitted.any(axis=1), inside.any(axis=1)
+    found = np.unpackbits(table["direction_bits"], axis=1, count=12).astype(bool).ravel()
+    blocked, undecided = table["blocked_environment"].sum(), table["undecided"].sum()
+    assert free.sum() > 300 and (reach & ~free).sum() > 30
+    assert (found & ~free).sum() <= 0.002 * free.size
+    assert (free & ~found).sum() <= 0.002 * free.size + undecided
+    assert blocked == result.document["capability"]["blocked_pairs"]["environment"]
+    assert abs(blocked - (reach & ~free).sum()) <= 0.004 * free.size + undecided

@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 from pydantic import BeforeValidator, Field
 
 from wsrender.documents.arm import Arm
+from wsrender.documents.constraints import Constrained
 from wsrender.documents.format import JobDocument
 from wsrender.documents.options import Device
 from wsrender.documents.quantities import PositiveNumber, Seed, VoxelSize, integer, real
@@ -12,10 +13,11 @@ from wsrender.documents.quantities import PositiveNumber, Seed, VoxelSize, integ
 LARGEST_SET = 10_000
 
 
-class CapabilityJob(Arm, JobDocument):
+class CapabilityJob(Constrained, Arm, JobDocument):
     """Per voxel, the share of approach directions from which its centre is reached, by inverse kinematics.
 
     Where the arm's positions fill no volume, as in a plane, the reachable point nearest to the centre stands for it.
+    Under constraints a direction is reached where they admit a configuration, and blocked where they reject all.
     """
 
     analysis: Literal["capability"] = "capability"

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,7 @@ from wsrender.analyses.cost import (
     solved_bytes,
     surface_bytes,
 )
+from wsrender.analyses.cost import SEARCHED_BYTES as SEARCH_BYTES
 from wsrender.analyses.estimate import RATE_CPU_CORE
 from wsrender.analyses.execution import Execution
 from wsrender.analyses.headline import no_headline
@@ -24,6 +26,7 @@ from wsrender.analyses.partial_result import PartialResult, joined_rows, rows_of
 from wsrender.documents.sampling import Sobol
 from wsrender.engine import sampled_positions
 from wsrender.notices import Notice
+from wsrender.pipeline.constraints.constraint import Constraint
 from wsrender.pipeline.pipeline import tip_pipeline
 from wsrender.reach.capability import (
     SAMPLES_PER_CELL,
@@ -34,6 +37,7 @@ from wsrender.reach.capability import (
     searched_block,
 )
 from wsrender.reach.targets import check_tolerance
+from wsrender.robot.constraints import constraints_for
 from wsrender.robots.kinematics import Kinematics
 from wsrender.volume.lattice import default_voxel_size, expected_voxels
 from wsrender.volume.table import Table
@@ -47,6 +51,7 @@ FILLED = 0.5  # of the voxels searched, the block of those that are reached
 POSITIONS_PER_S = 2e6  # of one CPU core
 DIVISIONS = 20  # of the size of a workspace: every voxel has many directions
 FIRST_SAMPLES = 1 << 16
+CONSTRAINED_RATE = 2e3  # pairs under constraints, where many are blocked
 PAIR_BYTES = 2.25  # of a voxel and a direction: its label, whether it is reached, as byte and bit, twice
 CANDIDATE_BYTES = 150  # of a voxel that is decided: its centre, and the configuration that is nearest to it
 
@@ -73,11 +78,17 @@ class CapabilityAnalysis(Analysis):
         """Raises InputError for a tolerance below what is computed, ResourceError for too many voxels."""
         job, chain = self.job, self.robot.chain
         check_tolerance(chain, job.position_tolerance_m, job.precision)
+        _ = self.constraints
         positions = _positions(chain)
         size = job.voxel_size_m or default_voxel_size(positions, divisions=DIVISIONS)
         voxels = expected_voxels(positions, size)
         pairs = round(voxels * job.directions)
         return CapabilitySettled(device, target, ((0, pairs),), job.directions, voxel_size_m=size)
+
+    @cached_property
+    def constraints(self) -> tuple[Constraint, ...]:
+        """What configurations must satisfy; raises InputError."""
+        return constraints_for(self.robot, self.job.constraints, self.job.environment)
 
     @property
     def cost(self) -> Cost:
@@ -91,6 +102,8 @@ class CapabilityAnalysis(Analysis):
         files = DOCUMENT_BYTES + drawn + table + VOXEL_BYTES * FILLED * searched + surface_bytes(voxels)
         memory = max(PAIR_BYTES * pairs + CANDIDATE_BYTES * voxels + solved_bytes(pairs), SEARCHED_BYTES * searched)
         seconds += SAMPLES_PER_CELL * searched / POSITIONS_PER_S + (voxels + pairs) / RATE + files / WRITTEN_PER_S
+        if self.constraints:
+            memory, seconds = memory + SEARCH_BYTES, seconds + pairs / CONSTRAINED_RATE
         return Cost(pairs, memory, files, seconds, Asks("voxel_size_m", voxel_size_m=self.settled.voxel_size_m))
 
     def compute(self, shard: int, execution: Execution, tell: Tell) -> PartialResult:
@@ -112,9 +125,12 @@ class CapabilityAnalysis(Analysis):
             device=self.device,
             threads=execution.threads,
             progress=tell,
+            constraints=self.constraints,
         )
-        bits = np.packbits(found.reached, axis=1)
-        return rows_of_shard(first, {"cells": found.cells, "bits": bits, "undecided": found.undecided})
+        rows = {"cells": found.cells, "bits": np.packbits(found.reached, axis=1), "undecided": found.undecided}
+        if found.blocked is not None:
+            rows["blocked"] = found.blocked
+        return rows_of_shard(first, rows)
 
     def merge(self, a: PartialResult, b: PartialResult) -> PartialResult:
         """The voxels of both, in the order of their places."""
@@ -143,6 +159,10 @@ class CapabilityAnalysis(Analysis):
             "undecided": partial["undecided"],
             "direction_bits": partial["bits"],
         }
+        if self.constraints:
+            names, blocked = [each.name for each in self.constraints], partial["blocked"]
+            entry["blocked_pairs"] = dict(zip(names, blocked.sum(axis=0).tolist(), strict=True))
+            columns |= {f"blocked_{name}": column for name, column in zip(names, blocked.T, strict=True)}
         directions = {"direction": fibonacci_directions(job.directions), "voxels": reached.sum(axis=0)}
         chain = self.robot.chain
         return Draft(
