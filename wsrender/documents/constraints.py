@@ -9,7 +9,8 @@ from pydantic import BeforeValidator, ConfigDict, Field, StrictBool
 from wsrender.documents.document import Document
 from wsrender.documents.environment import Bounds, Environment, HalfSpace, Sphere
 from wsrender.documents.quantities import NonNegativeNumber, Number, quoted, real, sequence
-from wsrender.documents.robot import Quaternion, ShapePair, Transform, Vector
+from wsrender.documents.robot import ShapePair
+from wsrender.documents.transform import Quaternion, Transform, Vector
 
 _ROTATIONS = ("quat_wxyz", "rpy_deg", "euler_xyz_deg")
 
