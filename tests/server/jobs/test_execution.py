@@ -23,6 +23,8 @@ from tests.server.jobs.waiting import (
 
 QUICK = {"sampling": {"method": "sobol", "count": 4096}, "voxel_size_m": 0.05, "device": "cpu"}
 SHARDED = {**QUICK, "robot": "ur5e", "sampling": {"method": "sobol", "count": 2**20}, "voxel_size_m": 0.1}
+FLOOR = {"items": [{"shape": "half_space", "point_m": [0, 0, -0.003]}]}
+GUARDED = {**SHARDED, "environment": FLOOR, "constraints": {"self_collision": True}, "refined_volume": 0.03}
 # Each of its shards takes many seconds: what happens to it happens in the middle of one.
 LONG = {
     **SHARDED,
@@ -67,11 +69,13 @@ def quick_job(service):
     return ended(service.store, service.store.submit("ann", document).job.id)
 
 
-def test_a_result_equals_the_local_run(store, tmp_path):
-    job = ended(store, store.submit("ann", canonical(**SHARDED)).job.id)
+@pytest.mark.parametrize("fields", (SHARDED, GUARDED), ids=("all", "guarded"))
+def test_a_result_equals_the_local_run(store, tmp_path, fields):
+    job = ended(store, store.submit("ann", canonical(**fields)).job.id)
     assert job.state == "succeeded", job.error
     document = store.result_document("ann", job.id)
-    assert comparable(document) == local_document(canonical(**SHARDED), tmp_path / "local")
+    assert comparable(document) == local_document(canonical(**fields), tmp_path / "local")
+    assert ("free" in document["volume_m3"]) == (fields is GUARDED)
     for artifact in store.artifacts("ann", job.id):
         content = store.artifact_path("ann", job.id, artifact.name).read_bytes()
         assert (len(content), hashlib.sha256(content).hexdigest()) == (artifact.bytes, artifact.sha256)
