@@ -23,9 +23,9 @@ class Guarded:
     constraints: tuple[Constraint, ...]
 
 
-def _robot(bodies: str) -> ws.Robot:
+def _robot(bodies: str, placement: ws.Transform | None = None) -> ws.Robot:
     text = f'<mujoco><compiler angle="radian" autolimits="true"/><worldbody>{bodies}</worldbody></mujoco>'
-    return ws.load_robot(text, tip="tip")
+    return ws.load_robot(text, tip="tip", placement=placement)
 
 
 def _body(name: str, pos: str, joint: str, geom: str, inner: str) -> str:
@@ -106,15 +106,17 @@ def free_and_blocked_of_scara(levels: int = 2000) -> tuple[float, float]:
     return free.sum() * edge**2 * STROKE, (reach & ~free).sum() * edge**2 * STROKE
 
 
-def spherical() -> Guarded:
-    """A slide that points anywhere, beside a wall."""
+def spherical(placement: ws.Transform | None = None) -> Guarded:
+    """A slide that points anywhere, beside a wall; both are placed."""
     tip = '<site name="tip" pos="0 0 0"/>'
     ends = f"{-NEAREST} 0 0 0 0 0"
     slide = _body("slide", "0 0 0", f'type="slide" axis="1 0 0" range="{NEAREST} {FARTHEST}"', ends, tip)
     up = _body("up", "0 0 0", 'type="hinge" axis="0 -1 0" range="-1.5707963267949 1.5707963267949"', "", slide)
     turn = 'type="hinge" axis="0 0 1" range="-3.14159265358979 3.14159265358979"'
-    robot = _robot(_body("turn", "0 0 0", turn, "", up))
-    return _guarded(robot, ws.HalfSpace(point_m=(WALL, 0, 0), normal=(-1, 0, 0)))
+    robot = _robot(_body("turn", "0 0 0", turn, "", up), placement)
+    T = np.eye(4) if placement is None else placement.matrix()
+    point, normal = T[:3, :3] @ [WALL, 0, 0] + T[:3, 3], T[:3, :3] @ [-1, 0, 0]
+    return _guarded(robot, ws.HalfSpace(point_m=tuple(point), normal=tuple(normal)))
 
 
 def free_and_blocked_of_spherical() -> tuple[float, float]:

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+import wsrender as ws
 from tests.reach import guarded_arms as arms
 from wsrender.reach.admissible_search import BLOCKED, AdmissibleSearch
 from wsrender.reach.admission import Admission
@@ -34,8 +35,12 @@ def test_a_scara_beside_a_column():
     assert blocked > 0.015 * free and holds(found["blocked"], blocked)
 
 
-def test_a_spherical_arm_beside_a_wall():
-    found, (free, blocked) = measured(arms.spherical()), arms.free_and_blocked_of_spherical()
+FAR = ws.Transform(position_m=(5e5, 4.2e6, 10.0), rpy_deg=(20, 0, 90))
+
+
+@pytest.mark.parametrize("placement", (None, FAR), ids=("here", "far away"))
+def test_a_spherical_arm_beside_a_wall(placement):
+    found, (free, blocked) = measured(arms.spherical(placement)), arms.free_and_blocked_of_spherical()
     assert found["free"].met and found["free"].value == pytest.approx(free, rel=0.01) and holds(found["free"], free)
     assert holds(found["blocked"], blocked)
 
