@@ -171,14 +171,14 @@ def test_gravity_of_the_job_by_every_door(tmp_path):
         "robot": {"library": "ur5e"},
         "sampling": {"method": "sobol", "count": COUNT},
         "constraints": {"torque": {"payload_kg": 25.0}},
-        "refined_volume": 0.05,
+        "refined_volume": 0.3,
         "device": "cpu",
     }
     rejected = {}
     for name, gravity in (("earth", None), ("same", GRAVITY), ("moon", (0, 0, -1.62)), ("none", (0, 0, 0))):
         result = ws.execute(job | {"gravity_m_s2": gravity})
         rejected[name] = result.document["samples"]["rejected"]["torque"]
-        assert "torque" in result.document["headline"]["reason"]
+        assert result.document["headline"]["value"] > 0
         assert result.document["job"].get("gravity_m_s2") == (None if gravity is None else list(gravity))
     assert rejected["earth"] == rejected["same"] > rejected["moon"] == rejected["none"] == 0
     robot = ws.load_robot("ur5e")
