@@ -17,6 +17,7 @@ from wsrender.documents.problems import MOST_PROBLEMS
 from wsrender.documents.sampling import Converge, Grid
 from wsrender.errors import DocumentError, InputError, ModelError, ResourceError
 from wsrender.indices.index_catalogue import find, option_values, resolve
+from wsrender.pipeline.constraints.host_function import on_host
 from wsrender.pipeline.constraints.registry import constraints_of
 from wsrender.robots import library, mjcf, xml_source
 from wsrender_server.jobs.store import JobStore
@@ -199,6 +200,9 @@ def _check_constraints(part: Document, path: ArmPath) -> None:
     if not isinstance(choice, Constraints):  # those of designs are others
         return
     try:
-        constraints_of(choice)
+        asked = constraints_of(choice)
     except InputError as error:
         raise DocumentError([(dotted(path, error.field), error.message)]) from None
+    for each in on_host(asked):
+        message = "is a Python function of a process, which jobs of a server cannot ask: give one that can be traced"
+        raise DocumentError([(dotted(path, f"constraints.{each.name}"), message)])

@@ -18,6 +18,7 @@ from wsrender.documents.reading import read_json
 from wsrender.errors import DocumentError, InputError
 from wsrender.indices import catalogue
 from wsrender.indices.index_catalogue import names_of
+from wsrender.pipeline.constraints.host_function import on_host
 from wsrender.pipeline.constraints.registry import added_constraints
 from wsrender.robots import library
 from wsrender_server.jobs.store import HIGHEST_PRIORITY, LONGEST_TEXT, MOST_LABELS
@@ -269,6 +270,8 @@ def _added_constraints() -> dict[str, Any]:
     """Schemas of the constraints that other packages add: whether they act, or their options."""
     schemas = {}
     for name, constraint in added_constraints().items():
+        if on_host((constraint,)):
+            continue
         options = {option: {"type": "number", "default": value} for option, value in constraint.options}
         choice = {"type": "object", "additionalProperties": False, "properties": options}
         schemas[name] = {"anyOf": [{"type": "boolean"}, choice]}

@@ -20,7 +20,7 @@ from wsrender.collision.distance import blocked_by
 from wsrender.collision.program import Program
 from wsrender.collision.solids import Pairs
 from wsrender.collision.store import stored_program
-from wsrender.engine.drawn_configurations import configurations
+from wsrender.engine.drawn_configurations import drawn_or_given
 from wsrender.engine.evaluation import REAL, device_array
 from wsrender.engine.kernel_cache import launch, loaded
 from wsrender.engine.memory import device_memory, fetched
@@ -84,18 +84,12 @@ class Collisions:
         """Ask MuJoCo about the ``count`` samples that are open still."""
         open_, rows = fetched(ids, 0, count), fetched(masks, 0, count * self.words).reshape(count, self.words)
         bits = np.unpackbits(rows.view(np.uint8), axis=1, bitorder="little")[:, : len(self.pairs.pairs)]
-        q = self._configurations(first + open_.astype(np.int64))
+        q = drawn_or_given(self.pipeline, first + open_.astype(np.int64))
         found = blocked_by(self.pairs, self.distances, self.chain, q, bits.astype(bool))
         found = np.where(found > 0, found, fetched(self._otherwise, 0, count))
         inputs = [device_array(open_, wp.int32, self.device), device_array(found, wp.uint8, self.device)]
         put = loaded(put_kernel(), self.device)
         launch(put, dim=count, inputs=inputs, outputs=[self.labels], device=self.device)
-
-    def _configurations(self, indices: np.ndarray) -> np.ndarray:
-        """Those of samples (N,), as the kernels draw them, (N, n) float64."""
-        given = self.pipeline.sampling.given
-        q = configurations(self.pipeline, indices) if given is None else given[indices]
-        return np.asarray(q, np.float64)
 
 
 def collisions_of(pipeline: Pipeline, shape: Shape, device: wp.Device, chunk: int) -> Collisions:

@@ -14,6 +14,7 @@ from wsrender.engine.evaluation import REAL, drive, packed_bodies
 from wsrender.engine.index_code import function_of_source, source_of
 from wsrender.pipeline.constraints.collision import labelling
 from wsrender.pipeline.constraints.constraint import Constraint, Expressed, OfChain
+from wsrender.pipeline.constraints.host_function import on_host
 from wsrender.robots.kinematics import Kinematics
 
 
@@ -30,7 +31,7 @@ def device_constraints(
     """Fields ``constraints`` and ``limits`` of a sweep's shape."""
     sizes = [len(_numbers(each, chain, origin, precision)) for each in constraints]
     total, functions, real = sum(sizes), [], REAL[precision]
-    labels = {each.name: number for number, each in enumerate(labelling(constraints), 1)}
+    labels = {each.name: number for number, each in enumerate((*labelling(constraints), *on_host(constraints)), 1)}
     for each, offset in zip(constraints, np.cumsum([0, *sizes]).tolist(), strict=False):
         if each.name in labels:
             functions.append(labels[each.name])

@@ -58,3 +58,9 @@ def configurations(pipeline: Pipeline, indices: np.ndarray | None = None) -> np.
             device=device,
         )
     return q.numpy()
+
+
+def drawn_or_given(pipeline: Pipeline, indices: np.ndarray) -> np.ndarray:
+    """Configurations of samples (N,) as the kernels have them, (N, n) float64 [rad or m]."""
+    given = pipeline.sampling.given
+    return np.asarray(configurations(pipeline, indices) if given is None else given[indices], np.float64)

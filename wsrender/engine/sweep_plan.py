@@ -34,7 +34,9 @@ from wsrender.engine.row_buffer import RowBuffer
 from wsrender.engine.slabs import fitted
 from wsrender.engine.sums import has_own_bound, scales_of
 from wsrender.errors import NumericalError
+from wsrender.pipeline.constraints.collision import labelling
 from wsrender.pipeline.constraints.constraint import STRUCTURES, Structure
+from wsrender.pipeline.constraints.host_function import on_host
 from wsrender.pipeline.pipeline import Pipeline
 from wsrender.volume.lattice import LatticeBlock
 
@@ -144,8 +146,11 @@ def _collisions(plan: SweepPlan, shape: Shape, device: wp.Device, chunk: int) ->
     if not shape.labelled:
         return None
     from wsrender.engine.collision import collisions_of
+    from wsrender.engine.host_labels import HostLabels
 
-    return collisions_of(plan.evaluated, shape, device, chunk)
+    constraints = plan.pipeline.constraints
+    apart = collisions_of(plan.evaluated, shape, device, chunk) if labelling(constraints) else None
+    return HostLabels(plan.evaluated, apart, device, chunk) if on_host(constraints) else apart
 
 
 def _swept(accumulators: list["Accumulator"], queue: "_Queue", report: Callable[[int], None]) -> Partial:

@@ -5,7 +5,7 @@ Another package adds an `ExpressionConstraint` through the entry-point group ``w
 
 import inspect
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from functools import cache
 from math import hypot, inf, radians
@@ -17,15 +17,18 @@ from wsrender.errors import InputError
 from wsrender.extensions import left_out, load
 from wsrender.pipeline.constraints.constraint import ASKED, ORDER, STRUCTURES, Constraint, Structure, in_order
 from wsrender.pipeline.constraints.expression import ExpressionConstraint
+from wsrender.pipeline.constraints.host_function import HostConstraint
 from wsrender.pipeline.constraints.orientation import Orientation
 from wsrender.pipeline.constraints.region import Point, Region
 
 EXTENSIONS = "wsrender.constraints"  # entry points, loaded when a job names one
 MOST_JOINTS = 1000  # that a function may ask for; whether a robot has them is seen when a job is planned
-_ADDED: dict[str, ExpressionConstraint] = {}  # by the user
+_ADDED: dict[str, ExpressionConstraint | HostConstraint] = {}  # by the user
 
 
-def register_constraint(name: str, function: Callable[..., Any], *, keeps: frozenset[Structure] = frozenset()) -> None:
+def register_constraint(
+    name: str, function: Callable[..., Any], *, keeps: frozenset[Structure] = frozenset(), on_host: bool = False
+) -> None:
     """Add a constraint on configurations; jobs then take it by its name among their ``constraints``.
 
     ``function(q, position, axes, **options)`` is 0 or more where a configuration is admitted: ``q``, the joint values
@@ -38,8 +41,16 @@ def register_constraint(name: str, function: Callable[..., Any], *, keeps: froze
     changes none, "trailing_joints" where the values of last joints do not whose axes pass through the tip. Raises
     InputError where the name is not an identifier or taken, for another structure, or where the function uses anything
     else.
+
+    ``on_host``: the function is any, ``function(q, poses, **options)`` of configurations (N, n) [rad or m] and poses of
+    the tip in the world (N, 4, 4) to (N,) bool, whether each is admitted; NumPy's pace, and of this process alone.
     """
-    _ADDED[name] = _checked(ExpressionConstraint(name, function, keeps=frozenset(keeps)))
+    if on_host:
+        _check(name, keeps)
+        options = _parameters_of(name, function, 2)[1]
+        _ADDED[name] = HostConstraint(name, function, tuple(options.items()), frozenset(keeps))
+    else:
+        _ADDED[name] = _checked(ExpressionConstraint(name, function, keeps=frozenset(keeps)))
 
 
 def _checked(constraint: Any) -> ExpressionConstraint:
@@ -47,10 +58,7 @@ def _checked(constraint: Any) -> ExpressionConstraint:
     if not isinstance(constraint, ExpressionConstraint):
         raise InputError("constraint", f"must be an ExpressionConstraint, not {type(constraint).__name__}")
     name, function = constraint.name, constraint.function
-    if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]{0,63}", name) or name in (*ORDER, "expression"):
-        raise InputError("name", f"{name!r} is not allowed; an identifier other than {', '.join(ORDER)} is")
-    if unknown := set(constraint.keeps) - set(STRUCTURES):
-        raise InputError("keeps", f"{sorted(unknown)} is not allowed; allowed: {', '.join(STRUCTURES)}")
+    _check(name, constraint.keeps)
     asks, options = _parameters_of(name, function)
     constraint = replace(constraint, options=tuple(options.items()), asks=asks)
     try:
@@ -60,7 +68,14 @@ def _checked(constraint: Any) -> ExpressionConstraint:
     return constraint
 
 
-def added_constraints() -> dict[str, ExpressionConstraint]:
+def _check(name: str, keeps: Iterable[str]) -> None:
+    if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]{0,63}", name) or name in (*ORDER, "expression"):
+        raise InputError("name", f"{name!r} is not allowed; an identifier other than {', '.join(ORDER)} is")
+    if unknown := set(keeps) - set(STRUCTURES):
+        raise InputError("keeps", f"{sorted(unknown)} is not allowed; allowed: {', '.join(STRUCTURES)}")
+
+
+def added_constraints() -> dict[str, ExpressionConstraint | HostConstraint]:
     """The constraints that packages and the user add, by name, with the defaults of their options."""
     return _extensions() | _ADDED
 
@@ -117,9 +132,9 @@ def _corner(sides: tuple[float | None, float | None, float | None], open_side: f
     return x, y, z
 
 
-def _parameters_of(name: str, function: Callable[..., Any]) -> tuple[tuple[str, ...], dict[str, float]]:
+def _parameters_of(name: str, function: Callable[..., Any], first: int = 3) -> tuple[tuple[str, ...], dict[str, float]]:
     """What a constraint's function asks for by name, and its options with their defaults."""
-    parameters = list(inspect.signature(function).parameters.values())[3:]
+    parameters = list(inspect.signature(function).parameters.values())[first:]
     asks = tuple(each.name for each in parameters if each.name in ASKED)
     options = [each for each in parameters if each.name not in ASKED]
     without = [each.name for each in options if not isinstance(each.default, int | float)]
