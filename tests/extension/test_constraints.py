@@ -21,7 +21,7 @@ JOB = {
     "refined_volume": None,
     "device": "cpu",
 }
-UNKNOWN = "unknown constraint; allowed: region, orientation, self_collision, environment, tool_down"
+UNKNOWN = "unknown constraint; allowed: region, orientation, self_collision, environment, torque, tool_down"
 
 
 @pytest.fixture(scope="module")
@@ -102,6 +102,7 @@ def test_the_schema_of_a_server_tells_of_it(package, client):
         "region",
         "self_collision",
         "tool_down",
+        "torque",
     }
     switch, options = schema["properties"]["tool_down"]["anyOf"]
     assert switch == {"type": "boolean"} and options["properties"] == {"cosine": {"type": "number", "default": 0.5}}
