@@ -640,7 +640,7 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
         cells = cells_type()
         levers = levers_type()
         if wp.static(CONSTRAINED):
-            places = cells_type()
+            counts = cells_type()  # of rejected samples; admitted ones count in the spare voxel
 
         if wp.static(STAGED):
             values = staged_lanes(model, space, block, start, valid)
@@ -670,8 +670,10 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
                 for lane in range(BLOCK):
                     cells[lane] = cell(grid, vec3(values[lane], values[BLOCK + lane], values[2 * BLOCK + lane]))
                     if wp.static(CONSTRAINED):
-                        places[lane] = cells[lane]
-                        cells[lane] = wp.where(values[REASON + lane] == ADMITTED, cells[lane], grid.spare)
+                        reason = wp.int32(values[REASON + lane])
+                        counts[lane] = wp.where(reason > 0, cells[lane], grid.spare) * CONSTRAINTS
+                        counts[lane] += wp.max(reason - 1, 0)
+                        cells[lane] = wp.where(reason > 0, grid.spare, cells[lane])
 
             # While, or Warp would write the loops over outputs out, and their lane loops as often.
             r = wp.int32(0)
@@ -737,6 +739,8 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
                     largest_count = wp.max(largest_count, load_record(to.records, cells[lane])[0])
                     if wp.static(SUMS):
                         smallest_sum = wp.min(smallest_sum, load_sums(to.sums, cells[lane])[0])
+                    if wp.static(CONSTRAINED):
+                        smallest_sum = wp.min(smallest_sum, load_count(to.rejections, counts[lane]))
                 # Neither is ever true (a count has no such value, a sum fewer bits), but the compiler does not know:
                 # it would drop the loop above.
                 lowest_key = wp.where(largest_count == ~LOWEST or smallest_sum < LEAST_SUM, ~LOWEST, LOWEST)
@@ -760,10 +764,8 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
                         store_sums(to.sums, voxel, load_sums(to.sums, voxel) + addend)
                 if wp.static(CONSTRAINED):
                     for lane in range(valid):
-                        reason = wp.int32(values[REASON + lane])
-                        if reason > 0:
-                            counted = places[lane] * CONSTRAINTS + reason - 1
-                            store_count(to.rejections, counted, load_count(to.rejections, counted) + wp.int64(1))
+                        number = load_count(to.rejections, counts[lane])
+                        store_count(to.rejections, counts[lane], number + wp.int64(1))
 
         if wp.static(INTERLEAVED):
             for lane in range(valid):
