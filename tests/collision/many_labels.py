@@ -30,12 +30,12 @@ MODELS: dict[str, str | None] = {
     "ur3_gripper": None,
     "ur5_robot": None,
     "ur10_robot": None,
-    "kinova": "j2s6s200_end_effector",
+    "hextilt_flying_arm_5": None,
     "xarm7": None,
     "so100": None,
     "z1": None,
     "talos_left_arm": "gripper_left_motor_double_link",
-    "solo12": "FL_FOOT",
+    "finger_edu": None,
 }
 
 

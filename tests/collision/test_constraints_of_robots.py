@@ -6,6 +6,7 @@ import pytest
 import wsrender as ws
 from tests.collision.robots import drawn, nearest
 from tests.reference.class_robots import SphericalClass
+from wsrender.collision.solids import BASE
 from wsrender.documents.constraints import Constraints
 from wsrender.errors import InputError, ResourceError
 from wsrender.robot import as_robot, collisions
@@ -131,3 +132,24 @@ def test_an_environment_that_is_only_drawn_rejects_nothing():
     }
     assert "samples" not in ws.execute(document | {"constraints": {"environment": False}}).document
     assert ws.execute(document).document["samples"]["rejected"] == {"environment": 1}
+
+
+def test_every_pair_is_kept_apart_but_those_that_are_excluded():
+    robot = ws.load_robot("ur5e")
+    floor = ws.Environment([ws.HalfSpace(name="floor", point_m=(0, 0, -0.05)), ws.Sphere(name="ball", radius_m=0.1)])
+    names = [shape.name for shape in robot.bodies.shapes]
+
+    def kept(constraint):
+        return {frozenset(constraint.solids[k].name for k in pair) for pair in constraint.pairs}
+
+    own = {frozenset(names[k] for k in pair) for pair in robot.bodies.pairs}
+    moved = {shape.name for shape in robot.bodies.shapes if shape.frame != BASE}
+    around = {frozenset((name, item)) for name in moved for item in ("floor", "ball")}
+    excluded = [sorted(pair) for pair in sorted(own, key=sorted)[:2]]
+    near = [[sorted(moved)[0], "ball"], [sorted(moved)[1], "ball"]]
+    choice = Constraints(self_collision={"exclude": excluded}, environment={"exclude": near})
+    environment, self_collision = constraints_for(robot, choice, floor)
+    assert kept(self_collision) == own - set(map(frozenset, excluded))
+    assert kept(environment) == around - set(map(frozenset, near))
+    (whole,) = constraints_for(robot, Constraints(self_collision=True))
+    assert kept(whole) == own and len(whole.pairs) == len(own)
