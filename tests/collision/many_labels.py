@@ -35,7 +35,7 @@ MODELS: dict[str, str | None] = {
     "so100": None,
     "z1": None,
     "talos_left_arm": "gripper_left_motor_double_link",
-    "finger_edu": None,
+    "ur5_gripper": None,
 }
 
 

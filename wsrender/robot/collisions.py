@@ -132,8 +132,8 @@ def _limited(chain: Chain) -> Chain:
     ends, source = np.where(chain.revolute, *ENDLESS), chain.joint_source
     limits = np.stack([chain.lower_limits, chain.upper_limits])
     moved = np.where(chain.joint_is_revolute, np.abs(chain.joint_scale * limits[:, source] + chain.joint_offset), 0)
-    held: np.ndarray = np.isfinite(limits).all(axis=0)
-    held[source[~(moved.max(axis=0) <= FARTHEST)]] = False
+    near = moved.max(axis=0) <= FARTHEST
+    held = np.isfinite(limits).all(axis=0) & ~np.isin(np.arange(chain.n), source[~near])
     return replace(chain, lower_limits=np.where(held, limits[0], -ends), upper_limits=np.where(held, limits[1], ends))
 
 
