@@ -8,11 +8,14 @@ from scipy.spatial import ConvexHull
 
 import wsrender as ws
 from tests.collision.robots import drawn, nearest, random_text
+from tests.collision.test_constraints_of_robots import arm
 from tests.collision.test_labels import SELF, labels, wrong
+from tests.world.test_convex_pieces import SOLIDS, inside, mesh_of
 from wsrender.collision.solids import BASE, Pairs
 from wsrender.collision.store import stored_program
 from wsrender.documents.constraints import Constraints
 from wsrender.errors import InputError
+from wsrender.results.render.environment import items_of, surfaces
 from wsrender.robot.constraints import constraints_for
 from wsrender.robot.surroundings import shapes_around
 
@@ -168,3 +171,30 @@ def stored(constraints):
     """The program of constraints."""
     pairs = Pairs.of(constraints[0].solids, *(each.group for each in constraints))
     return stored_program(pairs, constraints[0].chain, constraints[0].distances)
+
+
+@pytest.mark.parametrize("margin", [0.0, 0.02])
+def test_a_solid_that_is_not_convex(tmp_path, margin, device):
+    """A table whose legs the hand reaches between: the distance of the hand's ball by the triangles."""
+    solid, _ = SOLIDS["table"]
+    vertices, faces = mesh_of(solid)
+    trimesh.Trimesh(vertices, faces).export(tmp_path / "table.stl")
+    place = {"position_m": (-0.3, 0.3, -0.45), "rpy_deg": (0, 0, 20)}
+    around = ws.Environment([ws.Mesh(tmp_path / "table.stl", convex=False, name="table", **place)])
+    robot, choice = arm(), Constraints(environment={"margin_m": margin})
+    constraints = constraints_for(robot, choice, around)
+    assert [solid.name for solid in constraints[0].solids[-5:]] == [f"table/{k}" for k in range(5)]
+    q = drawn(robot, 1500)
+    hand = next(k for k, shape in enumerate(robot.bodies.shapes) if shape.name == "hand")
+    T = np.linalg.inv(ws.Transform(**place).matrix())
+    centers = robot.bodies.poses(q)[:, hand, :3, 3] @ T[:3, :3].T + T[:3, 3]
+    corners = vertices[faces]
+    near = [np.linalg.norm(trimesh.triangles.closest_point(corners, np.tile(p, (len(faces), 1))) - p, axis=1).min()
+            for p in centers]  # fmt: skip
+    least = np.where(inside(solid, centers), -1, 1) * near - 0.05 - margin
+    assert 0 < (least < 0).sum() < len(q)
+    assert not wrong(labels(robot, q, constraints, device=device) > 0, least < 0, least).size
+    (hull,) = constraints_for(robot, choice, ws.Environment([ws.Mesh(tmp_path / "table.stl", **place)]))
+    assert (labels(robot, q, (hull,)) > 0).sum() > (least < 0).sum()
+    items = items_of(around)
+    assert len(surfaces(items[0], np.zeros(3), np.ones(3))) == 5

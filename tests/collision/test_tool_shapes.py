@@ -3,10 +3,13 @@
 import mujoco
 import numpy as np
 import pytest
+import trimesh
+from scipy.spatial import ConvexHull
 
 import wsrender as ws
 from tests.collision.robots import collides, drawn, random_text
 from tests.collision.test_labels import AROUND, labels, nearest, wrong
+from tests.world.test_convex_pieces import SOLIDS, mesh_of
 from wsrender.documents.constraints import Constraints
 from wsrender.errors import InputError
 from wsrender.robot.constraints import constraints_for
@@ -84,6 +87,15 @@ def test_they_move_with_the_tip_wherever_the_tool_point_is():
     assert robot.shapes["name"][-6:].tolist() == ["hand", "finger", "tool/2", "payload", "wedge", "drop"]
     assert set(robot.shapes["body"][-6:].tolist()) == {"tool"}
     assert np.array_equal(bare.forward_kinematics(q), robot.forward_kinematics(q))
+
+
+def test_a_solid_that_is_not_convex_is_carried_in_pieces(tmp_path):
+    solid, _ = SOLIDS["L"]
+    trimesh.Trimesh(*mesh_of(solid)).export(tmp_path / "hook.stl")
+    robot = ws.load_robot("ur5e", tool_shapes=[ws.Mesh(tmp_path / "hook.stl", name="hook", convex=False), TOOL[0]])
+    assert robot.shapes["name"][-3:].tolist() == ["hook/0", "hook/1", "hand"]
+    volumes = [ConvexHull(shape.vertices).volume for shape in robot.bodies.shapes[-3:-1]]
+    assert sum(volumes) == pytest.approx(solid.volume(), rel=1e-5)
 
 
 def test_pairs_with_them_may_be_let_off():

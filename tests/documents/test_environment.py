@@ -38,6 +38,7 @@ def test_an_environment_is_written_and_read():
         ws.Scene("cell.xml", position_m=(1, 0, 0)),
         ws.OtherRobot(robot={"library": "ur5e", "placement": {"position_m": (0, 1, 0)}}, configuration=[0] * 6),
         ws.Mesh("a.STL", length_unit_m=0.001),
+        ws.Mesh("a.ply", convex=False, tolerance_m=0.01),
     ]
     environment = ws.Environment(shapes)
     assert ws.Environment(**json.loads(environment.model_dump_json())) == environment
@@ -88,6 +89,9 @@ def problems(**fields):
         ({"shape": "mesh", "path": "a.dae"}, "path", 'must end in .obj, .ply, .stl, not "a.dae"'),
         ({"shape": "mesh", "vertices_m": CORNERS, "length_unit_m": 0.001}, "length_unit_m", 'must be 1 without "path"'),
         ({"shape": "mesh", "path": "a.stl", "model": "0" * 64}, "vertices_m", "one of them"),
+        ({"shape": "mesh", "vertices_m": CORNERS, "convex": False}, "convex", "which say no triangles"),
+        ({"shape": "mesh", "path": "a.stl", "tolerance_m": 0.01}, "tolerance_m", 'but with "convex": false'),
+        ({"shape": "mesh", "path": "a.stl", "convex": False, "tolerance_m": 0}, "tolerance_m", "greater than 0"),
         ({"shape": "mesh", "model": "abc"}, "model", "must match"),
         (TABLE | {"pose": {"rpy_deg": [0, 0, 0]}, "rpy_deg": [0, 0, 0]}, "pose", "which says the same"),
         (TABLE | {"pose": {"yaw": 1}, "position_m": None}, "yaw", "is not a known field"),

@@ -7,7 +7,7 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, ClassVar, Literal, get_args
 
-from pydantic import BeforeValidator, Discriminator, Field, ValidationError, model_validator
+from pydantic import BeforeValidator, Discriminator, Field, StrictBool, ValidationError, model_validator
 
 from wsrender.documents.document import Document
 from wsrender.documents.problems import located, tagged
@@ -25,6 +25,10 @@ def _points(value: Any) -> tuple[tuple[float, ...], ...] | None:
     if not 4 <= len(points) <= MOST_VERTICES:
         raise ValueError(f"must be a list of 4 … {MOST_VERTICES} points [x, y, z], finite numbers")
     return points
+
+
+def _is_true(value: Any) -> bool:
+    return value is True
 
 
 def _is_none(value: Any) -> bool:
@@ -140,7 +144,7 @@ class Ellipsoid(Placed):
 
 
 class Mesh(Placed):
-    """The convex hull of points, such as the vertices of a mesh; its place is that of their frame."""
+    """The convex hull of points, such as the vertices of a mesh, or a closed mesh; its place is that of their frame."""
 
     shape: Literal["mesh"] = "mesh"
     """mesh."""
@@ -152,6 +156,11 @@ class Mesh(Placed):
     """SHA-256 of such a file that was uploaded to a server, 64 hexadecimal digits."""
     length_unit_m: LengthUnit = 1.0
     """Unit of length of the file in metres: 0.001 of millimetres."""
+    convex: Annotated[StrictBool, Field(exclude_if=_is_true)] = True
+    """Whether it is the convex hull of the vertices; false: the solid that the file's triangles enclose, as convex
+    pieces that hold it and go at most tolerance_m beyond it."""
+    tolerance_m: Annotated[PositiveNumber | None, Field(exclude_if=_is_none)] = None
+    """How far convex pieces may go beyond the solid [m]; null: 0.001."""
 
     def __init__(self, path: Any = None, /, **values: Any):
         Document.__init__(self, **values if path is None else {"path": str(path), **values})
@@ -167,6 +176,10 @@ class Mesh(Placed):
             yield "path", f'must end in {", ".join(MESH_FILES)}, not "{self.path}"'
         if self.vertices_m is not None and self.length_unit_m != 1:
             yield "length_unit_m", 'must be 1 without "path" or "model": vertices_m are in metres'
+        if self.vertices_m is not None and not self.convex:
+            yield "convex", "must be true with vertices_m, which say no triangles"
+        if self.convex and self.tolerance_m is not None:
+            yield "tolerance_m", 'must not be given but with "convex": false'
 
 
 _Bounded = Box | Sphere | Cylinder | Capsule | Ellipsoid | Mesh

@@ -24,10 +24,9 @@ from wsrender.documents.robot import Transform
 from wsrender.errors import InputError
 from wsrender.robot.model_robot import Robot, configuration_rows, robot_of_spec, transform_of
 from wsrender.robots import shapes as models
-from wsrender.robots.hulls import MOST_VERTICES, simplified
 from wsrender.robots.model_warning import ModelWarning
 from wsrender.robots.plausibility import LENGTH
-from wsrender.world.meshes import hull_vertices
+from wsrender.world.meshes import convex_parts
 
 BEYOND = 1e-6  # rad or m by which a configuration may be beyond a limit: rounding
 
@@ -42,7 +41,7 @@ class Standing:
 
 
 def shapes_around(items: Iterable[Item]) -> tuple[Standing, ...]:
-    """The shapes of an environment's items, in order; the corners of meshes are read, and are those of their hulls.
+    """The shapes of an environment's items, in order; meshes as the corners of their convex parts.
 
     Raises InputError, ModelError, the field from ``items`` on, for what cannot be had.
     """
@@ -56,7 +55,7 @@ def shapes_around(items: Iterable[Item]) -> tuple[Standing, ...]:
                 case Scene():
                     found += _scene(item, name)
                 case Mesh():
-                    found.append(Standing(name, name, _hull(item)))
+                    found += _parts(item, name)
                 case _:
                     found.append(Standing(name, name, item))
         except InputError as error:
@@ -104,17 +103,11 @@ def _scene(item: Scene, name: str) -> Iterator[Standing]:
         yield Standing(f"{name}/{shape.name}", name, as_document(shape, item.matrix() @ shape.T_frame_shape))
 
 
-def _hull(item: Mesh) -> Mesh:
-    """The hull of a mesh; of many corners it is simplified outwards, as those of robots are."""
-    placed = item.model_dump(include={*Transform.model_fields, "name"})
-    vertices = hull_vertices(item)
-    if len(vertices) > MOST_VERTICES and (simpler := simplified(vertices)) is not None:
-        vertices = simpler
-    elif len(vertices) > MOST_VERTICES:
-        field = "path" if item.vertices_m is None else "vertices_m"
-        message = f"has a hull of {len(vertices)} corners; {MOST_VERTICES} that hold it go too far beyond it"
-        raise InputError(field, f"{message}: give a simpler mesh")
-    return Mesh(vertices_m=_points(vertices), **placed)
+def _parts(item: Mesh, name: str) -> Iterator[Standing]:
+    place = item.model_dump(include=set(Transform.model_fields))
+    for number, corners in enumerate(convex_parts(item)):
+        part = Mesh(name=item.name, vertices_m=_points(corners), **place)
+        yield Standing(name if item.convex else f"{name}/{number}", name, part)
 
 
 def _points(vertices: np.ndarray) -> Any:

@@ -1,7 +1,8 @@
 """Shapes of tool and payload, from the words of a document to those of a robot's bodies."""
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -21,16 +22,16 @@ def attached(shapes: Sequence[ToolShape]) -> "tuple[Shape, ...]":
     found = []
     for number, shape in enumerate(shapes):
         try:
-            found.append(_attached(shape, shape.name or f"{BODY}/{number}"))
+            found += _attached(shape, shape.name or f"{BODY}/{number}")
         except InputError as error:
             raise error.within(f"tool_shapes.{number}") from None
     return tuple(found)
 
 
-def _attached(shape: ToolShape, name: str) -> "Shape":
+def _attached(shape: ToolShape, name: str) -> "Iterator[Shape]":
     from wsrender.robots.shapes import ATTACHED, Shape
 
-    size, more = np.zeros(3), dict[str, Any]()
+    size = np.zeros(3)
     T = Transform(position_m=shape.position_m).matrix() if isinstance(shape, Sphere) else shape.matrix()
     match shape:
         case Sphere():
@@ -39,11 +40,15 @@ def _attached(shape: ToolShape, name: str) -> "Shape":
             size = np.array(shape.size_m) / 2
         case Cylinder() | Capsule():
             size[:2] = shape.radius_m, shape.length_m / 2
-        case Mesh():
-            import trimesh
+    own = Shape(name, BODY, shape.shape, -1, T, size, ATTACHED, False, np.array(GREY))
+    if not isinstance(shape, Mesh):
+        yield own
+        return
+    import trimesh
 
-            from wsrender.world.meshes import hull_vertices
+    from wsrender.world.meshes import convex_parts
 
-            hull = trimesh.convex.convex_hull(hull_vertices(shape))
-            more = {"vertices": np.array(hull.vertices), "faces": np.array(hull.faces, np.int32)}
-    return Shape(name, BODY, shape.shape, -1, T, size, ATTACHED, False, np.array(GREY), **more)
+    for number, corners in enumerate(convex_parts(shape)):
+        hull = trimesh.convex.convex_hull(corners)
+        called = name if shape.convex else f"{name}/{number}"
+        yield replace(own, name=called, vertices=np.array(hull.vertices), faces=np.array(hull.faces, np.int32))

@@ -11,9 +11,36 @@ from scipy.spatial import ConvexHull, QhullError
 from wsrender.documents.environment import Mesh
 from wsrender.errors import InputError, ModelError
 from wsrender.robots import mesh_files
+from wsrender.robots.hulls import MOST_VERTICES, simplified
 from wsrender.robots.uploaded import uploaded_content
 
 LEAST_M3 = 1e-14  # volume of a mesh; MuJoCo refuses less than a tenth of it [m³]
+TOLERANCE_M = 1e-3
+
+
+def convex_parts(mesh: Mesh) -> list[np.ndarray]:
+    """Corners (V, 3) [m] of the convex parts of a mesh, in its own frame: its hull, or the pieces of a solid.
+
+    A hull of many corners is simplified outwards, as those of robots are. Raises InputError as `hull_vertices` and
+    `convex_pieces` do, and where no hull of fewer corners is near enough.
+    """
+    if mesh.convex:
+        return [_simple_hull(mesh)]
+    from wsrender.world.convex_pieces import convex_pieces
+
+    field, tolerance_m = "path" if mesh.model is None else "model", mesh.tolerance_m or TOLERANCE_M
+    return convex_pieces(*triangles_of(mesh), tolerance_m, field)
+
+
+def _simple_hull(mesh: Mesh) -> np.ndarray:
+    vertices = hull_vertices(mesh)
+    if len(vertices) <= MOST_VERTICES:
+        return vertices
+    if (simpler := simplified(vertices)) is None:
+        field = "vertices_m" if mesh.vertices_m is not None else "path" if mesh.model is None else "model"
+        message = f"has a hull of {len(vertices)} corners; {MOST_VERTICES} that hold it go too far beyond it"
+        raise InputError(field, f"{message}: give a simpler mesh")
+    return simpler
 
 
 def hull_vertices(mesh: Mesh) -> np.ndarray:

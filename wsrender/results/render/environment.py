@@ -79,7 +79,7 @@ class Floor:
 
 @dataclass(frozen=True)
 class Standing:
-    """A robot or a scene: its shapes, read once, and what a legend calls it."""
+    """A robot, a scene or a mesh in parts: its shapes, read once, and what a legend calls it."""
 
     kind: str
     stands: tuple[world.Shape, ...]
@@ -110,7 +110,7 @@ def items_of(environment: "Iterable[Item] | world.Environment") -> list[Item]:
     """The items of an environment. Raises InputError for what is none, or has no shapes."""
     items: list[Any] = list(environment.items if isinstance(environment, world.Environment) else environment)
     for k, item in enumerate(items):
-        if isinstance(item, world.OtherRobot | world.Scene):
+        if isinstance(item, world.OtherRobot | world.Scene) or (isinstance(item, world.Mesh) and not item.convex):
             try:
                 items[k] = Standing(item.shape, tuple(each.shape for each in shapes_around([item])))
             except InputError as error:
