@@ -26,6 +26,9 @@ CELL = """<mujoco><asset><mesh name="wedge" vertex="0 0 0  .2 0 0  0 .3 0  0 0 .
 <geom type="mesh" mesh="wedge"/><body pos="0 0 .1"><geom name="rail" type="ellipsoid" size=".05 .2 .03"/></body></body>
 <body><freejoint/><geom name="thrown" size="3"/></body></worldbody></mujoco>"""
 
+HILLS = """<mujoco><asset><hfield name="hills" nrow="2" ncol="2" size="1 1 1 .1"/></asset><worldbody>
+<geom type="hfield" hfield="hills"/></worldbody></mujoco>"""
+
 
 def together(robot: str, other: str, moves: bool = True) -> tuple[mujoco.MjModel, list[int], list[int]]:
     """A model of both, the other at POSE; geoms of the robot that its joints move, and of the other."""
@@ -112,6 +115,8 @@ def test_a_scene_of_files_is_the_scene_of_its_text(tmp_path):
         ({"shape": "scene", "mjcf": "<robot/>"}, "mjcf", "<mujoco> is needed"),
         ({"shape": "scene", "mjcf": "<mujoco/>"}, "mjcf", "holds no shape that may collide and that no joint moves"),
         ({"shape": "scene", "mjcf": '<mujoco><include file="a.xml"/></mujoco>'}, "mjcf", "includes are refused"),
+        ({"shape": "scene", "mjcf": HILLS}, "mjcf", "may collide, but there are no shapes of its kind"),
+        ({"shape": "mesh", "model": "0" * 64}, "model", "is known to its server only"),
         ({"shape": "scene", "model": "0" * 64}, "model", "is known to its server only"),
     ],
 )

@@ -1,0 +1,35 @@
+"""Scenes, robots and meshes in files that a client uploads: the server counts what a local run counts."""
+
+import trimesh
+
+import wsrender as ws
+from tests.server.end_to_end.acceptance import PATIENCE_S
+
+CELL = """<mujoco><worldbody><geom name="floor" type="plane" size="1 1 1" pos="0 0 -.2"/>
+<geom name="wall" type="box" size=".02 1 1" pos="-.5 0 0"/></worldbody></mujoco>"""
+PENDULUM = """<mujoco><worldbody><body><joint name="a" axis="0 1 0" range="-90 90"/>
+<geom type="capsule" size=".05" fromto="0 0 0 0 0 .4"/></body></worldbody></mujoco>"""
+
+
+def test_files_of_what_stands_around_travel(client, tmp_path):
+    scene, other, mesh = tmp_path / "cell.xml", tmp_path / "other.xml", tmp_path / "part.stl"
+    scene.write_text(CELL)
+    other.write_text(PENDULUM)
+    trimesh.creation.box((0.2, 0.2, 0.2)).export(mesh)
+    items = [
+        ws.Scene(scene, name="cell"),
+        ws.OtherRobot(robot={"path": str(other), "placement": {"position_m": (0.5, 0.5, 0)}}, configuration=[0.5]),
+        ws.Mesh(mesh, position_m=(0.4, -0.4, 0.3), convex=False),
+    ]
+    tool = {"shape": "mesh", "path": str(mesh), "position_m": [0, 0, 0.1]}
+    document = {
+        "analysis": "workspace",
+        "robot": {"library": "ur5e", "tool_shapes": [tool]},
+        "environment": ws.Environment(items),
+        "sampling": {"method": "sobol", "count": 4096},
+        "device": "cpu",
+    }
+    result = client.submit(document).wait(timeout=PATIENCE_S).result()
+    local = ws.execute({**document, "environment": ws.Environment(items).model_dump(mode="json")})
+    assert result.document["samples"] == local.document["samples"]
+    assert 0 < result.document["samples"]["rejected"]["environment"] < 4096
