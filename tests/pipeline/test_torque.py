@@ -199,6 +199,17 @@ def test_gravity_of_the_job_by_every_door(tmp_path):
                 assert each["samples"]["rejected"] == {"torque": expected}
 
 
+def test_targets_are_reached_under_the_gravity_of_the_job():
+    """A stretched arm that cannot be held on earth is held on the moon."""
+    tip = ws.load_robot("ur5e").forward_kinematics([0.1, -0.05, 0.1, 0.2, 0.1, 0.0])[0, :3, 3]
+    job = {"analysis": "reachability", "robot": {"library": "ur5e"}, "points_m": [tip.tolist()]}
+    job |= {"constraints": {"torque": {"payload_kg": 40.0}}, "device": "cpu"}
+    labels = [
+        ws.execute(job | {"gravity_m_s2": g}).tables["targets"].columns["label"][0] for g in (None, (0, 0, -1.62))
+    ]
+    assert labels[0] != "reachable" == labels[1]
+
+
 def test_payloads_are_numbers_of_the_kernel():
     robot = ws.load_robot("ur5e")
     shapes = []

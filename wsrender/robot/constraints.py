@@ -23,8 +23,9 @@ EFFORTS = "MJCF actuatorfrcrange or forcerange, URDF effort, effort_limit of DH 
 
 
 def constraints_of_job(job: Any, robot: Robot) -> tuple[Constraint, ...]:
-    """The constraints of a job of one arm, with its environment, gravity, task and precision; as `constraints_for`."""
-    asked = {"gravity": job.gravity_m_s2 or GRAVITY, "rows": task_rows(job.task), "precision": job.precision}
+    """The constraints of a job of one arm, with its environment and gravity, task and precision if it has any."""
+    rows, precision = task_rows(getattr(job, "task", "linear")), getattr(job, "precision", "float64")
+    asked = {"gravity": job.gravity_m_s2 or GRAVITY, "rows": rows, "precision": precision}
     return constraints_for(robot, job.constraints, job.environment, **asked)
 
 

@@ -37,7 +37,7 @@ from wsrender.reach.capability import (
     searched_block,
 )
 from wsrender.reach.targets import check_tolerance
-from wsrender.robot.constraints import constraints_for
+from wsrender.robot.constraints import constraints_of_job
 from wsrender.robots.kinematics import Kinematics
 from wsrender.volume.lattice import default_voxel_size, expected_voxels
 from wsrender.volume.table import Table
@@ -88,7 +88,7 @@ class CapabilityAnalysis(Analysis):
     @cached_property
     def constraints(self) -> tuple[Constraint, ...]:
         """What configurations must satisfy; raises InputError."""
-        return constraints_for(self.robot, self.job.constraints, self.job.environment)
+        return constraints_of_job(self.job, self.robot)
 
     @property
     def cost(self) -> Cost:

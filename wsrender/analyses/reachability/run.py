@@ -23,7 +23,7 @@ from wsrender.analyses.partial_result import PartialResult, joined_rows, rows_of
 from wsrender.analyses.reachability.job import ReachabilityJob
 from wsrender.pipeline.constraints.constraint import Constraint
 from wsrender.reach.targets import check_tolerance, reachable
-from wsrender.robot.constraints import constraints_for
+from wsrender.robot.constraints import constraints_of_job
 from wsrender.volume.table import Table
 
 POSES_PER_S = 1.2e4  # of one core, where many are unreachable
@@ -49,7 +49,7 @@ class ReachabilityAnalysis(Analysis):
     @cached_property
     def constraints(self) -> tuple[Constraint, ...]:
         """What configurations must satisfy; raises InputError."""
-        return constraints_for(self.robot, self.job.constraints, self.job.environment)
+        return constraints_of_job(self.job, self.robot)
 
     @property
     def cost(self) -> Cost:
