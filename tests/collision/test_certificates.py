@@ -9,12 +9,13 @@ import pytest
 import wsrender as ws
 from tests.collision.robots import drawn, random_text
 from wsrender.collision import certificates as certified
-from wsrender.collision import store
+from wsrender.collision import levers, store
 from wsrender.collision.certificates import FREE, HIT, MIXED, certificates
 from wsrender.collision.covers import LEVELS, cover, from_segment
 from wsrender.collision.distance import frames_of
 from wsrender.collision.solids import Solid
 from wsrender.documents.constraints import Constraints
+from wsrender.robot import collisions
 from wsrender.robot.constraints import constraints_for
 
 SIZE = np.array([0.11, 0.07, 0.05])
@@ -165,3 +166,21 @@ def test_a_folder_that_cannot_be_written_costs_time_alone(tmp_path, monkeypatch)
     monkeypatch.setattr(store, "_LATEST", {})
     (constraint,) = constraints_for(ws.load_robot(random_text(1, 3)), Constraints(self_collision=True))
     assert len(store.stored_program(constraint.own, constraint.chain, constraint.distances).solid_pairs)
+
+
+@pytest.mark.parametrize("seed", [2, 7, 9, 34])
+def test_levers_are_no_shorter_than_what_random_configurations_have(seed):
+    robot = ws.load_robot(random_text(seed, 5))
+    bodies = robot.bodies
+    chain, q, tight = bodies.chain, drawn(robot, 3000), []
+    frames = frames_of(chain, q)
+    for solid in map(collisions._solid, bodies.shapes):
+        for joint in np.flatnonzero(chain.joint_is_revolute).tolist():
+            T = np.linalg.inv(frames[:, joint + 1]) @ frames[:, solid.joint + 1] @ solid.T
+            points = np.einsum("nij,pj->npi", T[:, :3, :3], solid.points) + T[:, None, :3, 3]
+            found = float(np.hypot(points[..., 0], points[..., 1]).max()) + solid.radius
+            between = range(min(solid.joint + 1, joint), max(solid.joint, joint) + 1)
+            lever = levers._lever(chain, joint, solid, between)
+            assert lever >= found - 1e-9
+            tight.append(lever / found)
+    assert min(tight) < 1.02
