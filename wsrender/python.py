@@ -186,6 +186,7 @@ def reachability(
     tip: str | None = None,
     constraints: Constraints | Mapping[str, Any] | None = None,
     environment: Environment | Mapping[str, Any] | None = None,
+    gravity_m_s2: Sequence[float] | np.ndarray | None = None,
     position_tolerance_m: float = 1e-05,
     angle_tolerance_rad: float = 1e-05,
     characteristic_length_m: float | None = None,
@@ -210,6 +211,7 @@ def reachability(
     ``tip``: Site, body or link at the end of the chain; None: the site "tool", or else the only end there is.
     ``constraints``: Which configurations are admitted; None: all.
     ``environment``: What stands around, which the robot's shapes do not enter; None: nothing.
+    ``gravity_m_s2``: Gravity in the world, whatever the model says [m/s²]; None: 9.81 along -z.
     ``position_tolerance_m``: Largest distance to a target that counts as reached [m].
     ``angle_tolerance_rad``: Largest angle to a target's orientation that counts as reached [rad].
     ``characteristic_length_m``: Length that makes an angle comparable to a distance while both shrink [m]; None: half
@@ -234,6 +236,7 @@ def capability(
     tip: str | None = None,
     constraints: Constraints | Mapping[str, Any] | None = None,
     environment: Environment | Mapping[str, Any] | None = None,
+    gravity_m_s2: Sequence[float] | np.ndarray | None = None,
     voxel_size_m: float | None = None,
     directions: int = 100,
     approach_axis: Literal["x", "y", "z", "-x", "-y", "-z"] = "z",
@@ -258,6 +261,7 @@ def capability(
     ``tip``: Site, body or link at the end of the chain; None: the site "tool", or else the only end there is.
     ``constraints``: Which configurations are admitted; None: all.
     ``environment``: What stands around, which the robot's shapes do not enter; None: nothing.
+    ``gravity_m_s2``: Gravity in the world, whatever the model says [m/s²]; None: 9.81 along -z.
     ``voxel_size_m``: Edge of a voxel [m]; None: a twentieth of the cube root of the workspace's convex-hull volume.
     ``directions``: Number of approach directions, spread evenly over the sphere.
     ``approach_axis``: Axis of the tip frame that points along the direction; the turn about it is free.

@@ -14,7 +14,7 @@ from wsrender.errors import InputError
 from wsrender.world.meshes import LEAST_M3
 
 MOST_PIECES = 100
-MOST_TRIANGLES = 20_000
+MOST_TRIANGLES = 5_000  # each face is looked at from each corner: 100 MB
 THIN_M = 1e-6  # pieces with no ball of that radius within are left out, and those smaller than MuJoCo takes
 # Of a mesh's size, by which a cut is away from the face whose plane it follows: one along it leaves folds of no volume.
 SHIFT = 1e-8
