@@ -86,8 +86,9 @@ def test_pieces_of_a_shallow_bowl_hold_it_and_keep_to_the_tolerance(tolerance):
     ],
 )
 def test_meshes_that_are_no_solids_are_refused(change, message):
+    vertices, faces = change(*mesh_of(cube((0.1, 0.2, 0.3))))
     with pytest.raises(InputError, match=message) as caught:
-        convex_pieces(*change(*mesh_of(cube((0.1, 0.2, 0.3)))), 1e-3, "path")
+        convex_pieces(vertices, faces, 1e-3, "path")
     assert caught.value.field == "path"
 
 
