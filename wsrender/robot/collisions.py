@@ -159,10 +159,10 @@ def _still(standing: Standing, chain: Chain) -> Solid:
         case Mesh():
             vertices, T = np.array(shape.vertices_m), shape.matrix()
     kind: Any = KINDS.get(shape.shape, shape.shape)
-    T = np.asarray(np.linalg.inv(chain.T_world_base) @ T)
+    T_base: np.ndarray = np.linalg.inv(chain.T_world_base) @ T
     if kind == "half_space":  # its point nearest to the base: what is far costs precision
-        T[:3, 3] = T[:3, 2] * (T[:3, 2] @ T[:3, 3])
-    return Solid(standing.name, kind, BASE, T, size, vertices)
+        T_base[:3, 3] = T_base[:3, 2] * (T_base[:3, 2] @ T_base[:3, 3])
+    return Solid(standing.name, kind, BASE, T_base, size, vertices)
 
 
 def _turned_to(normal: np.ndarray) -> np.ndarray:
