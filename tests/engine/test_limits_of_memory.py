@@ -149,10 +149,11 @@ def test_bounds_are_no_larger_than_they_have_to_be():
 
 
 @pytest.mark.parametrize("chunk_size", [1, 2**20, 2**31, 2**40])
-def test_no_chunk_overflows_32_bit_counts(chunk_size):
+def test_no_chunk_overflows_32_bit_counts(chunk_size, device):
     module = importlib.import_module("wsrender.engine.sweep_plan")
     plan = run.plan(job("float32", keep_map=False)).pipeline
-    assert 256 <= module._chunk_size(SweepPlan(plan), chunk_size) <= module.FOLD_AFTER < 2**31
+    (own,) = devices_of(device)
+    assert 256 <= module._chunk_size(SweepPlan(plan), chunk_size, own) <= module.FOLD_AFTER < 2**31
 
 
 @pytest.mark.parametrize("voxel_size_m", [1e-10, 2e-10])

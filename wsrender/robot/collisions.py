@@ -54,16 +54,13 @@ def collision_constraints(
 
 
 def clearance_of(robot: Robot, choice: Constraints | None, environment: Environment | None) -> Clearance:
-    """Distances of the robot's own shapes, and of those from its environment, as far as constraints ask for both.
+    """Distances of the robot's own shapes, and from its environment unless that is only drawn.
 
-    Without constraints both are asked for. Raises InputError where the robot has no shapes, or nothing is asked for.
+    Pairs that constraints exclude do not count. Raises InputError where the robot has no shapes.
     """
-    own = choice.self_collision if choice else None
+    own = (choice.self_collision if choice else None) or Apart()
     around = choice.environment if choice else None
-    own = Apart() if own is None else own
     around = Apart() if around is None and environment is not None else around
-    if not own and not around:
-        raise InputError("indices", "must not ask for clearance where constraints say that nothing keeps apart")
     try:
         found = _kept_apart(robot, own, around, environment)
     except InputError as error:
@@ -75,7 +72,7 @@ def clearance_of(robot: Robot, choice: Constraints | None, environment: Environm
 
 def _kept_apart(
     robot: Robot,
-    own: Apart | Literal[False] | None,
+    own: Apart | None,
     around: Apart | Literal[False] | None,
     environment: Environment | None,
 ) -> tuple[CollisionConstraint, ...]:
