@@ -19,8 +19,9 @@ from wsrender.extensions import left_out, load
 
 _REGISTRY = "wsrender.analyses.registry:presentations"  # of the layer above, which is read by name alone
 EXTENSIONS = "wsrender.pictures"  # entry points, loaded when the table is first read
-PARTS = ("samples", "volume", "skeleton", "tables", "volumes", "meshes")
-"""What a result may hold of what pictures show: the fields of `ResultPlots`."""
+NAMED = ("tables", "volumes", "meshes")
+PARTS = ("samples", "volume", "skeleton", *NAMED)
+"""What a result may hold of what pictures show: the fields of `ResultPlots`; of those NAMED several by name."""
 
 Function = str | Callable[..., Any]
 """A function, or ``"module:name"`` of one that is imported when it is needed."""
@@ -183,7 +184,8 @@ def _check(row: Any) -> None:
         raise InputError("name", f"there is a picture {row.name!r} already, wsrender's own")
     for member in ("needs", "uses"):
         for word in (each for words in getattr(row, member) for each in words.split("|")):
-            if word.partition(".")[0] not in PARTS:
+            part, dot, _ = word.partition(".")
+            if part not in (NAMED if dot else PARTS):
                 raise InputError(member, f"{word!r} is none of {', '.join(PARTS)}, nor a named one such as tables.scan")
 
 

@@ -10,6 +10,7 @@ from wsrender.robots.compiled_model import MUJOCO_ERRORS, quiet, refusal
 from wsrender.robots.shapes import geom_name, hull_of
 
 MOST_VERTICES = 1000  # of a hull: a test of a pair looks at each; nine in ten meshes of robots have fewer
+LEAST_M3 = 1e-14  # volume of a mesh; MuJoCo refuses less than a tenth of it [m³]
 FARTHEST = 5e-3  # of the longest edge of a box around it, a simplified hull goes beyond it at most
 
 

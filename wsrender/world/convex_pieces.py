@@ -11,7 +11,7 @@ from scipy.optimize import linprog
 from scipy.spatial import ConvexHull, QhullError
 
 from wsrender.errors import InputError
-from wsrender.world.meshes import LEAST_M3
+from wsrender.robots.hulls import LEAST_M3
 
 MOST_PIECES = 100
 MOST_TRIANGLES = 5_000  # each face is looked at from each corner: 100 MB

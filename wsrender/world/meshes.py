@@ -11,10 +11,9 @@ from scipy.spatial import ConvexHull, QhullError
 from wsrender.documents.environment import Mesh
 from wsrender.errors import InputError, ModelError
 from wsrender.robots import mesh_files
-from wsrender.robots.hulls import MOST_VERTICES, simplified
+from wsrender.robots.hulls import LEAST_M3, MOST_VERTICES, simplified
 from wsrender.robots.uploaded import uploaded_content
 
-LEAST_M3 = 1e-14  # volume of a mesh; MuJoCo refuses less than a tenth of it [m³]
 TOLERANCE_M = 1e-3
 
 
