@@ -7,7 +7,7 @@ from pydantic import BeforeValidator
 
 from wsrender.documents.document import Document
 from wsrender.documents.quantities import Name
-from wsrender.documents.robot import RobotSpec
+from wsrender.documents.robot import SOURCES, RobotSpec
 
 ArmPath = tuple[str | int, ...]
 """Keys from a job document to an arm in it; empty: the job itself is one."""
@@ -50,10 +50,15 @@ def models_in(document: Any, path: ArmPath = ()) -> Iterator[tuple[ArmPath, dict
     """(path, part) of everything in a canonical document that a model or a file says: robots, scenes, meshes."""
     items = document.items() if isinstance(document, dict) else enumerate(document)
     for key, value in items:
-        if isinstance(value, dict) and (key == "robot" or _names_a_file(value)):
+        if isinstance(value, dict) and ((key == "robot" and _is_robot(value)) or _names_a_file(value)):
             yield (*path, key), value
         if isinstance(value, dict | list):
             yield from models_in(value, (*path, key))
+
+
+def _is_robot(part: dict[str, Any]) -> bool:
+    """Whether it is no constraint or index of that name, whose options are numbers."""
+    return any(name in part and not isinstance(part[name], int | float) for name in SOURCES)
 
 
 def _names_a_file(part: dict[str, Any]) -> bool:

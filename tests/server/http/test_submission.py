@@ -128,6 +128,8 @@ ITEM = "#/environment/items/0"
         (_around(shape="scene", path="/etc/passwd"), 422, "invalid_document", f"{ITEM}/path"),
         (_around(shape="scene", model="0" * 64), 404, "model_not_found", f"{ITEM}/model"),
         (_around(shape="scene", mjcf=BOMB), 422, "invalid_model", f"{ITEM}/mjcf"),
+        ({"constraints": {"robot": {"mjcf": 5}}}, 422, "invalid_document", "#/constraints/robot"),
+        ({"constraints": {"robot": {"model": 5}}}, 422, "invalid_document", "#/constraints/robot"),
         ({"indices": ["beauty"]}, 422, "invalid_document", "#/indices"),
         ({"sampling": {"method": "random", "count": 10**15}}, 409, "resource_limit", "#/sampling"),
         ({"sampling": {"method": "random", "count": 10**16}}, 422, "invalid_document", "#/sampling/count"),
