@@ -6,8 +6,10 @@ import pytest
 import trimesh
 from scipy.spatial import ConvexHull
 
+from wsrender.documents.shapes import Mesh
 from wsrender.errors import InputError
 from wsrender.world.convex_pieces import convex_pieces
+from wsrender.world.meshes import convex_parts
 
 cube, cylinder = manifold3d.Manifold.cube, manifold3d.Manifold.cylinder
 LEG = (0.05, 0.05, 0.5)
@@ -82,6 +84,7 @@ def test_pieces_of_a_shallow_bowl_hold_it_and_keep_to_the_tolerance(tolerance):
     [
         (lambda v, f: (v, f[1:]), "is not closed: 3 edges are not those of two triangles"),
         (lambda v, f: (v * [1, 1, 0], f), "encloses no volume"),
+        (lambda v, f: (v * [1e4, 1e-4, 7e-5], f), "too thin for its size, 1000 m, to be cut"),
         (lambda v, f: (v, np.repeat(f, 2000, axis=0)), "has 24000 triangles; a solid may have 5000"),
     ],
 )
@@ -102,3 +105,15 @@ def test_a_surface_that_is_inside_out_encloses_the_same():
     vertices, faces = mesh_of(SOLIDS["L"][0])
     pieces = convex_pieces(vertices, faces[:, ::-1], 1e-3, "path")
     assert sum(ConvexHull(piece).volume for piece in pieces) == pytest.approx(SOLIDS["L"][0].volume(), rel=1e-6)
+
+
+@pytest.mark.parametrize("convex", [True, False])
+@pytest.mark.parametrize("corner", [8, -1])
+def test_triangles_of_corners_that_are_not_there_are_refused(tmp_path, corner, convex):
+    path = tmp_path / "box.ply"
+    trimesh.Trimesh(*mesh_of(cube((0.1, 0.2, 0.3)))).export(path, encoding="ascii")
+    text = path.read_text().split()
+    path.write_text(path.read_text().rstrip().removesuffix(text[-1]) + f"{corner}\n")
+    with pytest.raises(InputError, match="names vertices that it does not have") as caught:
+        convex_parts(Mesh(path, convex=convex))
+    assert caught.value.field == "path"

@@ -26,13 +26,13 @@ def convex_pieces(vertices: np.ndarray, faces: np.ndarray, tolerance_m: float, f
     """Corners (V, 3) [m] of convex pieces that hold a solid and go at most ``tolerance_m`` beyond it.
 
     ``vertices`` (V, 3) [m], ``faces`` (F, 3): its closed surface. Raises InputError for a surface that is not closed,
-    encloses no volume or has too many triangles, and where MOST_PIECES do not suffice.
+    encloses no volume, is too thin for its size or has too many triangles, and where MOST_PIECES do not suffice.
     """
     left, found = [_solid(vertices, faces, field)], []
     size = float(np.ptp(vertices, axis=0).max())
     while left:
         part = left.pop()
-        cut = _Part(part, size, tolerance_m)
+        cut = _Part(part, size, tolerance_m, field)
         if cut.thin:
             continue
         if cut.good:
@@ -81,7 +81,7 @@ def _apart(part: manifold3d.Manifold) -> list[manifold3d.Manifold]:
 class _Part:
     """What is known of a part: whether its hull will do (``good``), or else the ``halves`` of a cut."""
 
-    def __init__(self, part: manifold3d.Manifold, size: float, tolerance_m: float):
+    def __init__(self, part: manifold3d.Manifold, size: float, tolerance_m: float, field: str):
         mesh = part.to_mesh64()
         points, faces = np.array(mesh.vert_properties)[:, :3], np.array(mesh.tri_verts).astype(int)
         a, b, c = points[faces].transpose(1, 0, 2)
@@ -103,6 +103,8 @@ class _Part:
             return
         self.corners = points[hull.vertices]
         while not self.good:
+            if not len(normals):
+                raise InputError(field, f"has a part too thin for its size, {size:g} m, to be cut: give a simpler mesh")
             center, radius = _inner_ball(normals, offsets)
             most = max(float(above.max()) - ROUNDING * size, 0.0)
             beyond = most / (radius + most) if radius > 0 else np.inf

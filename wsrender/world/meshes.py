@@ -101,6 +101,8 @@ def _ply(content: bytes) -> mesh_files.Triangles:
         raise ModelError("path", str(error)) from error
     if not len(faces) or faces.size > mesh_files.MAX_CORNERS:
         raise ModelError("path", f"it has {len(faces)} triangles; allowed: 1 … {mesh_files.MAX_CORNERS // 3}")
+    if faces.min() < 0 or faces.max() >= len(vertices):
+        raise ModelError("path", "it names vertices that it does not have")
     if not np.isfinite(vertices).all():
         raise ModelError("path", "it must hold finite numbers")
     return vertices, faces
