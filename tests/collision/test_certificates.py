@@ -145,7 +145,7 @@ def test_who_makes_the_same_program_is_waited_for(tmp_path, monkeypatch):
         assert np.array_equal(each.solid_pairs, planned[number].own.pairs)
 
 
-def test_a_program_belongs_to_all_that_it_is_made_of():
+def test_a_program_belongs_to_all_that_it_is_made_of(monkeypatch):
     robot = ws.load_robot(random_text(1, 3))
     (one,) = constraints_for(robot, Constraints(self_collision=True))
     solid = one.solids[0]
@@ -158,6 +158,8 @@ def test_a_program_belongs_to_all_that_it_is_made_of():
     keys = {store._key(each.own, each.chain) for each in (one, *others)}
     assert len(keys) == 1 + len(others)
     assert len({one, *others}) == 1 + len(others) - 2  # limits change no label
+    monkeypatch.setattr(store, "MADE", store.MADE + 1)
+    assert store._key(one.own, one.chain) not in keys
 
 
 def test_a_folder_that_cannot_be_written_costs_time_alone(tmp_path, monkeypatch):

@@ -1,5 +1,7 @@
 """The filter as it is written for CUDA beside the one of the CPU, and what each pass leaves to the next."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import warp as wp
@@ -7,11 +9,12 @@ from wsrender_kernels.collision import CAPACITY, filter_kernel
 from wsrender_kernels.collision_unrolled import MOST_TESTS, unrolled
 
 import wsrender as ws
-from tests.collision.robots import random_text
+from tests.collision.robots import drawn, nearest, random_text
 from tests.collision.test_labels import AROUND, pipeline
+from tests.collision.test_labels import labels as rejected
 from wsrender.documents.constraints import Constraints
-from wsrender.engine import devices_of
-from wsrender.engine.collision import collisions_of
+from wsrender.engine import configurations, devices_of
+from wsrender.engine.collision import _on_device, collisions_of
 from wsrender.engine.drawn_configurations import device_space
 from wsrender.engine.kernel_cache import launch, loaded
 from wsrender.engine.sweep_plan import SweepPlan
@@ -67,6 +70,41 @@ def test_the_filter_written_for_one_robot_says_what_the_one_for_all_says(case):
     np.testing.assert_array_equal(found[same], labels[same])
     assert (own_masks[same] == masks[same]).all(axis=1).mean() > 0.9999
     assert 0 < open_.sum() < N and (labels > 0).any()
+
+
+def test_the_filter_written_for_one_robot_decides_nothing_beyond_the_limits():
+    """Limits are those of the robot, but for one half of its first joint's range."""
+    own, space = collisions(ws.load_robot("ur5e"))
+    upper = own.program.upper.copy()
+    upper[0] = (own.program.lower[0] + upper[0]) / 2
+    own.program = replace(own.program, upper=upper)
+    own._programs = _on_device(own.program, own.pairs, own.words, own.device)
+    joints = len(own.chain.joint_source)
+    kernel = filter_kernel(
+        wp.float32, own.chain.n, joints, CAPACITY, own.words, "random", 0, True, unrolled(own.program, own.words)
+    )
+    found, masks, open_ = filtered(own, space, kernel, N)
+    beyond = np.asarray(configurations(own.pipeline))[:, 0] > upper[0] + 1e-3
+    assert 0.4 < beyond.mean() < 0.6
+    assert open_[beyond].all() and not found[beyond].any() and (masks[beyond] == 2**32 - 1).all()
+    assert not open_[~beyond].all()
+
+
+def test_what_rounding_decides_is_asked_of_mujoco():
+    """Configurations within 1e-8 m of where MuJoCo says that shapes touch have the label that it gives."""
+    robot = ws.load_robot(random_text(8, 4))
+    constraints = constraints_for(robot, SELF, AROUND)
+    q = drawn(robot, 4000)
+    hit = np.any([nearest(each, q) < 0 for each in constraints], axis=0)
+    count = min(hit.sum(), (~hit).sum(), 1000)
+    free, blocked = q[~hit][:count], q[hit][:count]
+    for _ in range(26):
+        middle = (free + blocked) / 2
+        touching = np.any([nearest(each, middle) < 0 for each in constraints], axis=0)[:, None]
+        free, blocked = np.where(touching, free, middle), np.where(touching, middle, blocked)
+    assert count > 100
+    assert not rejected(robot, free, constraints, "float64").any()
+    assert rejected(robot, blocked, constraints, "float64").all()
 
 
 def test_a_program_of_too_many_tests_is_read_as_data():

@@ -194,6 +194,13 @@ def test_what_a_robot_says_of_its_bodies_survives_json():
     assert robot.model_dump(mode="json")["exclude"] == [["link1", "base"], ["link1", "link3"]]
 
 
+def test_a_tip_carries_a_hundred_shapes_at_most():
+    sphere = {"shape": "sphere", "radius_m": 1}
+    assert len(RobotSpec(library="scara", tool_shapes=[sphere] * 100).tool_shapes) == 100
+    with pytest.raises(DocumentError, match="must have at most 100 items"):
+        RobotSpec(library="scara", tool_shapes=[sphere] * 101)
+
+
 @pytest.mark.parametrize(
     ("fields", "field", "message"),
     [

@@ -11,13 +11,17 @@ import pytest
 import warp as wp
 
 import wsrender as ws
+from tests.collision.test_labels import pipeline
 from tests.engine.test_voxels import executed, job
 from tests.run.simple_robots import planar_arm_with_masses
 from wsrender import run
 from wsrender.analyses.workspace.partial import SWEEP
+from wsrender.documents.constraints import Constraints
 from wsrender.engine import SweepPlan, devices_of
 from wsrender.engine.memory import CACHE_LINE, device_memory
+from wsrender.engine.sweep_plan import _chunk_size
 from wsrender.errors import InputError, NumericalError, ResourceError
+from wsrender.robot.constraints import constraints_for
 
 
 def peak_bytes():
@@ -42,6 +46,15 @@ def test_memory_does_not_grow_with_the_samples():
     assert result.volume.count.sum() == 40_000_000
     # A single byte kept per sample would show.
     assert peak_bytes() - before < 15_000_000
+
+
+def test_chunks_are_smaller_where_labels_of_a_sample_take_more(monkeypatch):
+    robot, (device,) = ws.load_robot("ur5e"), devices_of("cpu")
+    constraints = constraints_for(robot, Constraints(self_collision=True))
+    plan = SweepPlan(pipeline(robot, ws.Random(1 << 20), constraints))
+    for size, chunk in ((1 << 6, 1 << 18), (1 << 10, 1 << 16), (1 << 40, 256)):
+        monkeypatch.setattr("wsrender.engine.collision.bytes_per_sample", lambda _, size=size: size)
+        assert _chunk_size(plan, 1 << 20, device) == chunk
 
 
 def test_voxels_that_do_not_fit_are_refused_with_their_numbers():
