@@ -81,6 +81,19 @@ def test_too_many_pairs_are_refused_before_any_table_is_made(monkeypatch):
     assert caught.value.field == "constraints.self_collision"
 
 
+def test_far_too_many_pairs_are_refused_before_they_are_listed(monkeypatch):
+    around = ws.Environment([ws.Sphere(radius_m=0.01, position_m=(9, 0, k)) for k in range(30)])
+    robot = ws.load_robot("ur5e")
+    moving = sum(shape.frame >= 0 for shape in robot.bodies.shapes)
+    monkeypatch.setattr(collisions, "MOST_LISTED", 30 * moving)
+    assert len(constraints_for(robot, None, around)[0].pairs) == 30 * moving
+    monkeypatch.setattr(collisions, "MOST_LISTED", 30 * moving - 1)
+    monkeypatch.setattr(collisions, "_pairs", None)
+    with pytest.raises(ResourceError, match=f"would look at {30 * moving} pairs of shapes") as caught:
+        constraints_for(robot, None, around)
+    assert caught.value.field == "constraints.environment"
+
+
 def test_python_robots_are_refused():
     refused(as_robot(SphericalClass()), "constraints.self_collision", "defined by a class", self_collision=True)
 

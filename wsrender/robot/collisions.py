@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
 SELF, AROUND = "self_collision", "environment"
 MOST_PAIRS = 2000  # of both constraints: each may take a table of 256 KiB, and a second to make it
+MOST_LISTED = 100 * MOST_PAIRS  # of shapes and what stands around, before those that are excluded: 60 MB
 KINDS: dict[str, Any] = {"mesh": "hull", "plane": "half_space"}  # of shapes, by what solids call them
 
 FARTHEST = 8.0  # angles [rad] that float32 is trusted with
@@ -90,6 +91,9 @@ def _kept_apart(
         if not still:
             raise InputError(f"constraints.{AROUND}", "must not be given without an environment: nothing stands around")
         moving = [k for k, solid in enumerate(shapes) if solid.joint != BASE]
+        if (count := len(moving) * len(still)) > MOST_LISTED:
+            message = f"would look at {count} pairs of shapes, more than {MOST_LISTED}: give fewer shapes"
+            raise ResourceError(f"constraints.{AROUND}", message)
         named = (*bodies.shapes, *(replace(bodies.shapes[0], name=each.name, body=each.item) for each in standing))
         pairs = _pairs([(k, item) for k in moving for item in still], named, around, AROUND)
         found.append(CollisionConstraint(AROUND, chain, solids, pairs, around.margin_m))
