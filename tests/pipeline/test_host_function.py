@@ -54,6 +54,13 @@ def test_samples_are_those_that_the_function_admits(precision, device, added):
         assert again.document["samples"]["rejected"] == result.document["samples"]["rejected"]
 
 
+def test_parts_of_a_chunk_are_asked_one_after_the_other(monkeypatch, added):
+    whole = ws.execute({**JOB, "keep_map": True}, chunk_size=4096, threads=1)
+    monkeypatch.setattr("wsrender.engine.host_labels.AT_A_TIME", 1000)
+    parts = ws.execute({**JOB, "keep_map": True}, chunk_size=4096, threads=1)
+    assert np.array_equal(parts.map.position, whole.map.position)
+
+
 def test_it_is_asked_after_those_before_it(device, added):
     """A sample counts under the first constraint that it violates, beside shapes and expressions too."""
     ws.register_constraint("also", lambda q, poses: q[:, 0] > -3.0, on_host=True)
