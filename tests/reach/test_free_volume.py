@@ -29,6 +29,12 @@ def test_two_links_over_a_floor():
     assert found["blocked"] == found["environment"] and holds(found["blocked"], whole - exact)
 
 
+def test_a_fine_tolerance_cuts_cells():
+    found, exact = measured(arms.two_links(), tolerance=0.002), arms.free_area_of_two_links()
+    assert found["free"].met and found["free"].value == pytest.approx(exact, rel=0.002)
+    assert found["free"].points > 20_000
+
+
 def test_a_scara_beside_a_column():
     found, (free, blocked) = measured(arms.scara()), arms.free_and_blocked_of_scara()
     assert found["free"].met and found["free"].value == pytest.approx(free, rel=0.01) and holds(found["free"], free)

@@ -46,7 +46,7 @@ class FreeSet:
         return {FREE: Event(free, free), ALL_BLOCKED: Event(1, free - 1, precise=False), **each}
 
     def decided(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Labels (N, C + 1) of points (N, d), whether they are that deep, and about how far they are from what is free.
+        """Of points (N, d) whether they are that deep, and about how far they are from what is free; both (N, C + 1).
 
         Where solutions were found, but too few, points are at least 1 deep.
         """
@@ -62,7 +62,7 @@ class FreeSet:
         labels[inside] = own
         beside = np.where(found.label == UNREACHABLE, found.distance_m, found.near_m)
         far[inside] = np.where(found.label == REACHABLE, 0.0, beside)
-        return labels, far
+        return labels, np.broadcast_to(far[:, None], labels.shape)
 
     def strata(self, block: LatticeBlock) -> tuple[list[np.ndarray], list[np.ndarray]]:
         """Cells (M, d) of a block that are alike: by what samples, and admitted samples, reach of their neighbours.
