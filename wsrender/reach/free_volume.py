@@ -132,19 +132,25 @@ def free_volumes(
     tests = tests_of(tolerance)
     misses = own.false_negatives(block, tests), own.found_later(near_free, block.voxel_size_m, tests)
     hidden = hidden_share(misses)
+    whole = sum(map(len, strata)) * block.voxel_size_m**reached.dimension
+
+    def missed(value: float) -> float:
+        # A search that misses all of few targets says nothing of what there is, which is no more than all cells.
+        return whole if np.isinf(hidden) else min(hidden * value, whole)
+
     found = estimate_volumes(
         own.decided,
         strata,
         block.voxel_size_m,
         own.events,
         tolerance,
-        missed=lambda value: hidden * value,
+        missed=missed,
         seed=seed,
         max_points=max_points,
         progress=progress,
     )
     free = found.volumes[FREE]
-    volumes = {name: each if name == FREE else _less(each, hidden * free.high) for name, each in found.volumes.items()}
+    volumes = {name: each if name == FREE else _less(each, missed(free.high)) for name, each in found.volumes.items()}
     return RefinedVolumes(volumes, found.points, misses, reached.position_m)
 
 
