@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
-from scipy.spatial import ConvexHull
+from scipy.spatial import ConvexHull, Delaunay
 
 from tests.geometry.solids import BALL, SHELL, TORUS, in_ball, in_shell, in_torus, uniform_points
 from wsrender.errors import InputError
+from wsrender.geometry import alpha_shape
 from wsrender.geometry.alpha_shape import AlphaShape
 
 
@@ -91,3 +92,16 @@ def test_points_of_a_grid_lie_on_common_spheres():
 def test_what_has_no_shape(points, alpha, message):
     with pytest.raises(InputError, match=message):
         AlphaShape.of(points, alpha)
+
+
+def test_places_in_tetrahedra_are_those_of_scipy(monkeypatch):
+    """To rounding; of a grid's flat tetrahedra, and of nearly flat ones, none."""
+    grid = np.stack(np.meshgrid(*[np.arange(6.0)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
+    nearly = grid + 1e-13 * np.random.default_rng(0).random(grid.shape)
+    for points in (np.random.default_rng(1).random((500, 3)), grid, nearly):
+        expected = Delaunay(points).transform
+        monkeypatch.setattr(alpha_shape, "_in_general_position", lambda points: points)
+        found = AlphaShape.of(points).located.transform
+        np.testing.assert_array_equal(np.isnan(found), np.isnan(expected))
+        np.testing.assert_allclose(found, expected, rtol=1e-9, atol=1e-9 * np.nanmax(np.abs(expected)))
+    assert np.isnan(expected).any() and not np.isnan(expected).all()

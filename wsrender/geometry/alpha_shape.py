@@ -51,8 +51,17 @@ class AlphaShape:
 
     def contains(self, points: np.ndarray) -> np.ndarray:
         """Whether each point (N, 3) [m] lies in the shape, (N,) bool."""
-        inside = self.delaunay.find_simplex(points)
+        inside = self.located.find_simplex(points)
         return (inside >= 0) & self.kept[inside]
+
+    @cached_property
+    def located(self) -> Delaunay:
+        """The triangulation with its ``transform``, which SciPy makes with a call of LAPACK for each tetrahedron.
+
+        Its threads wait for one another: a second becomes ten where other programs run.
+        """
+        self.delaunay._transform = _barycentric(self.delaunay)  # type: ignore[attr-defined]
+        return self.delaunay
 
     @property
     def volume_m3(self) -> float:
@@ -173,6 +182,18 @@ def spatial(points: np.ndarray) -> np.ndarray:
     if not extents[2] > max(_FLATTEST * extents[0], rounding):
         raise InputError("points", f"are {len(points)} points in a plane, which enclose no volume")
     return points
+
+
+def _barycentric(delaunay: Delaunay) -> np.ndarray:
+    """`Delaunay.transform` (T, 4, 3)."""
+    corners = np.moveaxis(delaunay.points[delaunay.simplices], 1, 0)
+    edges = np.stack([corners[k] - corners[3] for k in range(3)], axis=2)
+    found, solid = np.full((len(edges), 4, 3), np.nan), np.flatnonzero(np.linalg.det(edges))
+    inverse = np.linalg.inv(edges[solid])
+    found[solid] = np.concatenate([inverse, corners[3][solid][:, None]], axis=1)
+    condition = np.linalg.norm(edges[solid], 1, axis=(1, 2)) * np.linalg.norm(inverse, 1, axis=(1, 2))
+    found[solid[condition * 1000 * np.finfo(float).eps > 1]] = np.nan  # flat ones hold nothing, as SciPy has it
+    return found
 
 
 def _in_general_position(points: np.ndarray) -> np.ndarray:
