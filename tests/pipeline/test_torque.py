@@ -16,23 +16,27 @@ from wsrender.errors import DocumentError, InputError
 from wsrender.pipeline.evaluation import Evaluation
 from wsrender.pipeline.pipeline import Pipeline
 from wsrender.pipeline.sampling import plan_sampling
-from wsrender.robot.constraints import GRAVITY, LINEAR, constraints_for
+from wsrender.robot.constraints import LINEAR, constraints_for
+from wsrender.robot.gravity import GRAVITY
 
 MODELS = Path(__file__).parents[2] / "mjcf"
 COUNT = 1024
 PLACED = ws.Transform(position_m=(0.2, 0.1, 0.0), rpy_deg=(20, -35, 70))
 NEAR = {"float32": 1e-4, "float64": 1e-9}  # margin at which rounding decides
 
-# A turn, a slide and two turns, of which the last two follow a joint on another branch, which weighs too.
+# A turn, a slide and two turns, of which the last two follow a joint on another branch, which weighs too. What they
+# take is by C transposed the leader's: -20 … 20, 1.5 (-4 … 3) and -2 (-1 … 2.5).
+EFFORTS = [[-9, -19, -20 - 6 - 5], [14, 23, 20 + 4.5 + 2]]
 ARM = """<mujoco><compiler angle="radian"/><worldbody>
-  <body name="L" pos="0 0.3 0"><joint name="lead" axis="0 1 0.3" range="-1 1" actuatorfrcrange="-30 30"/>
+  <body name="L" pos="0 0.3 0"><joint name="lead" axis="0 1 0.3" range="-1 1" actuatorfrcrange="-20 20"/>
     <geom size=".1" pos=".2 0 0" mass="3"/></body>
-  <body name="A"><joint name="a" axis="0 0 1" range="-1 1" actuatorfrcrange="-9 9"/>
+  <body name="A"><joint name="a" axis="0 0 1" range="-1 1" actuatorfrcrange="-9 14"/>
     <geom size=".1" pos=".2 0 0" mass="2"/>
-  <body name="B" pos=".4 0 0"><joint name="b" type="slide" axis="0 1 1" range="-.2 .2" actuatorfrcrange="-23 23"
+  <body name="B" pos=".4 0 0"><joint name="b" type="slide" axis="0 1 1" range="-.2 .2" actuatorfrcrange="-19 23"
       armature=".2"/><geom size=".1" pos=".2 0 0" mass="1"/>
-  <body name="C" pos=".1 0 0"><joint name="c" axis="0 1 0.2" range="-3 3"/><geom size=".1" pos=".1 .1 0" mass=".7"/>
-  <body name="D" pos=".3 0 0"><joint name="d" axis="1 0 0" range="-3 3" armature=".1"/>
+  <body name="C" pos=".1 0 0"><joint name="c" axis="0 1 0.2" range="-3 3" actuatorfrcrange="-4 3"/>
+    <geom size=".1" pos=".1 .1 0" mass=".7"/>
+  <body name="D" pos=".3 0 0"><joint name="d" axis="1 0 0" range="-3 3" armature=".1" actuatorfrcrange="-1 2.5"/>
     <geom size=".1" pos="0 .2 0" mass=".5"/><site name="tool" pos="0 .1 .1" euler="0.3 0 0.2"/>
   </body></body></body></body></worldbody>
   <equality><joint joint1="c" joint2="lead" polycoef="0.2 1.5 0 0 0"/>
@@ -42,14 +46,15 @@ ARM = """<mujoco><compiler angle="radian"/><worldbody>
 class Bare:
     """A model of MuJoCo's alone, with a payload at the tip; ``slopes``: of followers, by name, the leader and slope."""
 
-    def __init__(self, text, joints, tip, payload, at, slopes=()):
+    def __init__(self, text, joints, tip, payload, at, slopes=(), inertia=(1e-12, 1e-12, 1e-12)):
         spec = mujoco.MjSpec.from_string(text)
         site = spec.site(tip)
         R = np.zeros(9)
         mujoco.mju_quat2Mat(R, spec.compile().site(tip).quat)
         place = spec.compile().site(tip).pos + R.reshape(3, 3) @ at
         if payload:
-            site.parent.add_body(pos=place, ipos=[0, 0, 0], mass=payload, inertia=[1e-12] * 3, explicitinertial=True)
+            held = site.parent.add_body(pos=place, quat=spec.compile().site(tip).quat, mass=payload, ipos=[0, 0, 0])
+            held.explicitinertial, held.inertia = True, inertia
         self.model, self.tip = spec.compile(), tip
         self.C = np.zeros((self.model.nv, len(joints)))
         for k, joint in enumerate(joints):
@@ -59,7 +64,7 @@ class Bare:
         self.offsets = {follower: offset for follower, _, _, offset in slopes}
 
     def efforts(self, q, gravity, acceleration=0.0, axes=LINEAR):
-        """|τ| (N, n) at rest, or while the tip accelerates along ``axes`` of the base."""
+        """τ at rest (N, n), and what is added while the tip accelerates along ``axes`` of the base."""
         model, found = self.model, []
         model.opt.gravity = gravity
         data = mujoco.MjData(model)
@@ -70,15 +75,15 @@ class Bare:
             data.qpos[:], data.qvel[:] = full, 0
             mujoco.mj_fwdPosition(model, data)
             mujoco.mj_fwdVelocity(model, data)
-            torques = np.abs(self.C.T @ data.qfrc_bias)
+            more = np.zeros(len(q[0]))
             if acceleration:
                 names = [model.joint(k).name for k in range(model.njnt)]
                 M = self.C.T @ by_mujoco.inertia_matrix(model, data, names) @ self.C
                 J = by_mujoco.jacobian(model, data, self.tip, names)[list(axes)] @ self.C
                 held = J.T @ np.linalg.inv(J @ np.linalg.inv(M) @ J.T)
-                torques += acceleration * np.linalg.norm(held, axis=1)
-            found.append(torques)
-        return np.array(found)
+                more = acceleration * np.linalg.norm(held, axis=1)
+            found.append((self.C.T @ data.qfrc_bias, more))
+        return np.array(found).swapaxes(0, 1)
 
 
 def text_of(name):
@@ -103,8 +108,8 @@ def labels(robot, choice, precision, device, names=(), rows=LINEAR, **asked):
 
 def agree(q, rejected, twin, efforts, precision):
     """The kernel's labels and the twin's margins are those of the efforts."""
-    limits = twin.limits
-    margin = ((limits - efforts) / limits).min(axis=1)
+    (torques, more), (back, forth) = efforts, twin.chain.efforts
+    margin = np.minimum(((forth - torques - more) / forth).min(axis=1), ((torques - more - back) / -back).min(axis=1))
     np.testing.assert_allclose(twin.margin(q), np.maximum(margin, -1), atol=1e-8)
     sure = np.abs(margin) > NEAR[precision]
     np.testing.assert_array_equal(rejected[sure], (margin < 0)[sure])
@@ -129,8 +134,10 @@ def test_labels_of_an_acceleration(payload, acceleration, rows, precision, devic
     """Along all directions, those of a plane or of a line of the base; the payload is in the inertia too."""
     robot = ws.load_robot("ur5e", placement=PLACED)
     choice = {"payload_kg": payload, "payload_com_m": (0.1, 0, 0.1), "acceleration_m_s2": acceleration}
+    choice |= {"payload_inertia_kg_m2": (0.9, 0.5, 0.6)} if payload else {}
     q, rejected, twin = labels(robot, choice, precision, device, rows=rows)
-    bare = Bare(text_of("ur5e"), list(robot.joint_names), robot.tip_frame, payload, np.array([0.1, 0, 0.1]))
+    at, inertia = np.array([0.1, 0, 0.1]), (0.9, 0.5, 0.6)
+    bare = Bare(text_of("ur5e"), list(robot.joint_names), robot.tip_frame, payload, at, inertia=inertia)
     gravity = PLACED.matrix()[:3, :3].T @ GRAVITY
     agree(q, rejected, twin, bare.efforts(q, gravity, acceleration, rows), precision)
 
@@ -138,6 +145,7 @@ def test_labels_of_an_acceleration(payload, acceleration, rows, precision, devic
 @pytest.mark.parametrize("acceleration", (0.0, 2.0))
 def test_slides_followers_and_what_moves_on_another_branch(acceleration, precision, device):
     robot = ws.load_robot(ARM)
+    np.testing.assert_allclose(robot.chain.efforts, EFFORTS)
     assert robot.joint_names == ("a", "b", "lead") and robot.chain.geometry.with_branches is not None
     gravity, at = (3.0, -2.0, -8.0), (0.03, 0.02, -0.1)
     choice = {"payload_kg": 0.8, "payload_com_m": at, "acceleration_m_s2": acceleration}
@@ -221,6 +229,23 @@ def test_payloads_are_numbers_of_the_kernel():
     assert constraints_for(robot, Constraints(torque=False)) == constraints_for(robot, Constraints()) == ()
 
 
+@pytest.mark.parametrize(
+    ("stated", "asks", "noted"),
+    [
+        ("0 0 -1.62", {"constraints": {"torque": True}}, True),
+        ("0 0 -1.62", {"constraints": {"torque": True}, "gravity_m_s2": [0, 0, -1.62]}, False),
+        ("0 0 -1.62", {}, False),
+        ("0 0 -9.81", {"constraints": {"torque": True}}, False),
+    ],
+)
+def test_a_model_of_another_gravity_is_noted(stated, asks, noted):
+    text = ARM.replace("<worldbody>", f'<option gravity="{stated}"/><worldbody>')
+    job = {"analysis": "indices_at", "robot": {"mjcf": text}, "configurations": [[0, 0, 0]], "device": "cpu"}
+    found = [each for each in ws.execute(job | asks).document["warnings"] if each["code"] == "gravity"]
+    assert [each["field"] for each in found] == ["gravity_m_s2"] * noted
+    assert all("[0.0, 0.0, -1.62]" in each["message"] for each in found)
+
+
 class Crank:
     limits = ((-1.0, 2.0),)
 
@@ -236,7 +261,7 @@ LINK = {"a": 0.4, "limits": [-3, 3]}
     [
         (Crank(), True, {}, r"constraints\.torque: is not available .* a class"),
         ([LINK | {"effort_limit": 5.0}], True, {}, r"constraints\.torque: .* lacks masses or inertias"),
-        ([LINK | {"mass": 1.0}], {"payload_kg": 1}, {}, r"constraints\.torque: .* lacks torque limits for some joint"),
+        ([LINK | {"mass": 1.0}], {"payload_kg": 1}, {}, r"constraints\.torque: .* lacks torque limits of joint1 "),
         ("ur5e", {"acceleration_m_s2": 1}, {"task": "angular"}, r"torque\.acceleration_m_s2: must be 0 with a task"),
     ],
 )
@@ -254,6 +279,11 @@ def test_what_cannot_be_is_refused_when_a_job_is_planned(robot, choice, options,
         ({"payload_com_m": [0, 0]}, r"constraints.torque.payload_com_m: must be a list of 3"),
         ({"acceleration_m_s2": -1}, r"constraints.torque.acceleration_m_s2: must be .*0"),
         ({"payload": 1}, r"constraints.torque.payload: "),
+        ({"payload_inertia_kg_m2": [1, 1, 1]}, r"payload_inertia_kg_m2: must not be given without .payload_kg"),
+        (
+            {"payload_kg": 1, "payload_inertia_kg_m2": [1, -1, 1]},
+            r"payload_inertia_kg_m2: .* negative principal",
+        ),
     ],
 )
 def test_malformed_torques(choice, message):

@@ -13,7 +13,7 @@ from wsrender.engine import Accuracy, evaluate_kinematics, evaluate_poses, sampl
 from wsrender.pipeline.pipeline import tip_pipeline
 from wsrender.robots.chain import Chain
 from wsrender.robots.host_kinematics import HostKinematics
-from wsrender.robots.joint_space import JointSpace
+from wsrender.robots.joint_space import JointSpace, unlimited
 from wsrender.robots.kinematics import Kinematics
 
 SOURCES = Path(ws.__file__).parent
@@ -41,7 +41,8 @@ def as_functions(chain):
     names = ("name", "base_frame", "tip_frame", "joint_names", "lower_limits", "upper_limits", "periodic")
     return HostKinematics(
         **{name: getattr(chain, name) for name in names},
-        effort_limits=None,
+        efforts=unlimited(chain.n),
+        velocity_limits=np.full(chain.n, np.inf),
         turning=chain.revolute,
         has_inertia=False,
         base_pose=own.poses,

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from wsrender import robots
-from wsrender.errors import InputError
+from wsrender.errors import InputError, ModelError
 
 
 def arm(joint="", actuator="", kind="hinge"):
@@ -115,8 +115,43 @@ def test_coupled_hinges_without_limits():
         ('actuatorfrcrange="-5 5"', '<motor joint="j" gear="10" ctrlrange="-2 2"/>', 5.0),
         ("", '<motor joint="j" ctrlrange="-2 2"/><motor joint="j" ctrlrange="-3 3"/>', 5.0),
         ("", '<motor joint="j"/>', None),
+        ('actuatorfrcrange="0 7"', "", None),
     ],
 )
 def test_effort_limits(joint, actuator, effort):
     efforts = robots.load_mjcf(arm(joint, actuator)).chain.effort_limits
     assert efforts is None if effort is None else efforts[0] == effort
+
+
+@pytest.mark.parametrize(
+    ("joint", "actuator", "efforts"),
+    [
+        ('actuatorfrcrange="-5 7"', '<motor joint="j" gear="-10" ctrlrange="-.4 2"/>', [-5.0, 4.0]),
+        ("", '<general joint="j" gainprm="-2" ctrlrange="-1 3"/><motor joint="j" ctrlrange="-3 1"/>', [-9.0, 3.0]),
+    ],
+)
+def test_efforts_of_both_directions(joint, actuator, efforts):
+    assert robots.load_mjcf(arm(joint, actuator)).chain.efforts[:, 0].tolist() == efforts
+
+
+def test_limits_of_efforts_and_speeds_that_are_given():
+    text = coupled(-2, 'actuatorfrcrange="-1 3"')
+    chain = robots.load_mjcf(text).chain
+    assert chain.efforts[:, 0].tolist() == [-6, 2]  # what b holds, -2 times as much at a
+    assert chain.unlimited_velocities == ("a",) and chain.unlimited_efforts == ()
+    chain = robots.load_mjcf(text, effort_limits={"a": 5}, velocity_limits={"a": 4, "b": 6}).chain
+    assert chain.efforts[:, 0].tolist() == [-11, 7] and chain.velocity_limits.tolist() == [3]
+    for field in ("effort_limits", "velocity_limits"):
+        with pytest.raises(InputError, match=rf"{field}\.c: is no joint of the chain; allowed: a, b"):
+            robots.load_mjcf(text, **{field: {"c": 1}})
+
+
+def test_speeds_of_an_mjcf():
+    text = arm('range="0 500"', kind="slide").replace(
+        "<worldbody>", '<custom><numeric name="velocity_limits" data="{}"/></custom><worldbody>'
+    )
+    assert robots.load_mjcf(text.format("250"), length_unit_m=0.001).chain.velocity_limits.tolist() == [0.25]
+    assert robots.load_mjcf(text.format("0"), length_unit_m=0.001).chain.unlimited_velocities == ("j",)
+    for data in ("1 2", "-1"):
+        with pytest.raises(ModelError, match="must be 1 numbers, one for each joint, 0 where it has none"):
+            robots.load_mjcf(text.format(data))

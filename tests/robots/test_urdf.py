@@ -129,6 +129,9 @@ def test_limits_and_efforts():
     assert chain.effort_limits is not None
     np.testing.assert_array_equal(chain.effort_limits, [150, 150, 80, 28])
     assert quietly(robots.load_urdf, ARM.replace('effort="80"', 'effort="0"')).chain.effort_limits is None
+    np.testing.assert_array_equal(chain.velocity_limits, [2, 2, 1, 3])
+    unlimited = ARM.replace('effort="80" velocity="1"', 'effort="80" velocity="inf"')
+    assert np.isinf(quietly(robots.load_urdf, unlimited).chain.velocity_limits).tolist() == [False, False, True, False]
 
 
 def test_meshes_are_dropped_with_one_warning_and_shapes_kept():

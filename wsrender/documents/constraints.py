@@ -9,10 +9,14 @@ from pydantic import BeforeValidator, ConfigDict, Field, StrictBool
 from wsrender.documents.document import Document
 from wsrender.documents.environment import Bounds, Environment, HalfSpace, Sphere
 from wsrender.documents.quantities import NonNegativeNumber, Number, quoted, real, sequence
-from wsrender.documents.robot import ShapePair
+from wsrender.documents.robot import Inertia, ShapePair, least_moment
 from wsrender.documents.transform import Quaternion, Transform, Vector
 
 _ROTATIONS = ("quat_wxyz", "rpy_deg", "euler_xyz_deg")
+
+
+def _is_none(value: Any) -> bool:
+    return value is None
 
 
 class RegionChoice(Document):
@@ -78,11 +82,22 @@ class TorqueChoice(Document):
     """Joints hold the arm and a payload within their torque limits."""
 
     payload_kg: NonNegativeNumber = 0.0
-    """A point mass that the tip carries [kg]."""
+    """A mass that the tip carries [kg]."""
     payload_com_m: Vector = (0.0, 0.0, 0.0)
     """Where it is in the tip's frame [m]."""
+    payload_inertia_kg_m2: Annotated[Inertia | None, Field(exclude_if=_is_none)] = None
+    """Its inertia about there, axes of the tip's frame: [ixx, iyy, izz] or these and ixy, ixz, iyz [kg m²]; null: it is
+    a point."""
     acceleration_m_s2: NonNegativeNumber = 0.0
     """Acceleration of the tip that is held in every direction of the linear task too [m/s²]; 0: at rest."""
+
+    def conflicts(self) -> Iterator[tuple[str, str]]:
+        """(field, message) of every pair of fields that do not go together."""
+        if (inertia := self.payload_inertia_kg_m2) is not None:
+            if not self.payload_kg:
+                yield "payload_inertia_kg_m2", 'must not be given without "payload_kg": nothing is carried'
+            if (least := least_moment(inertia)) < 0:
+                yield "payload_inertia_kg_m2", f"must not have a negative principal moment, here {least:g} kg m²"
 
 
 def _apart(value: Any) -> Any:
@@ -97,10 +112,6 @@ def _switch(choice: Any) -> BeforeValidator:
         return _apart(value) if value is not False else None
 
     return BeforeValidator(switched, json_schema_input_type=choice | StrictBool | None)
-
-
-def _is_none(value: Any) -> bool:
-    return value is None
 
 
 def _options(value: Any) -> Any:

@@ -74,6 +74,18 @@ def _is_empty(value: Any) -> bool:
 ShapePair = Annotated[tuple[Name, Name], BeforeValidator(_pair)]
 
 
+def matrix_of(inertia: tuple[float, ...]) -> np.ndarray:
+    """The matrix (3, 3) of an `Inertia`."""
+    ixx, iyy, izz, ixy, ixz, iyz = (*inertia, 0.0, 0.0, 0.0)[:6]
+    return np.array([[ixx, ixy, ixz], [ixy, iyy, iyz], [ixz, iyz, izz]])
+
+
+def least_moment(inertia: tuple[float, ...]) -> float:
+    """The least principal moment of an `Inertia`; 0 where only rounding makes it negative."""
+    moments = np.linalg.eigvalsh(matrix_of(inertia))
+    return float(moments[0]) if moments[0] < -1e-9 * np.abs(moments).max() else max(float(moments[0]), 0.0)
+
+
 class DHRow(Document):
     """One joint of a Denavit–Hartenberg table, with its limits and, optionally, the inertia of its link.
 
@@ -144,14 +156,12 @@ class DHRow(Document):
             yield "limits", "must be given for a prismatic joint: [lower, upper] in metres"
         if self.mass is None and (any(self.inertia) or any(self.center_of_mass)):
             yield "mass", 'must be given together with "inertia" and "center_of_mass"'
-        moments = np.linalg.eigvalsh(self.inertia_matrix())
-        if moments[0] < -1e-9 * np.abs(moments).max():
-            yield "inertia", f"must not have a negative principal moment, here {moments[0]:g} kg m²"
+        if (least := least_moment(self.inertia)) < 0:
+            yield "inertia", f"must not have a negative principal moment, here {least:g} kg m²"
 
     def inertia_matrix(self) -> np.ndarray:
         """Inertia of the link about its centre of mass, axes of the DH frame [kg m²], shape (3, 3)."""
-        ixx, iyy, izz, ixy, ixz, iyz = (*self.inertia, 0.0, 0.0, 0.0)[:6]
-        return np.array([[ixx, ixy, ixz], [ixy, iyy, iyz], [ixz, iyz, izz]])
+        return matrix_of(self.inertia)
 
 
 class DHTable(Document):
@@ -215,6 +225,10 @@ class RobotSpec(Document):
     """The model's unit of length [m]: 0.001 for millimetres; 1 confirms metres. The model's positions, sizes, slides
     and centres of mass are multiplied by it, its inertias [kg unit²] by its square. null: metres, and a job is refused
     where they are beyond any arm."""
+    effort_limits: Annotated[dict[Name, PositiveNumber], Field(exclude_if=_is_empty)] = Field(default={})
+    """Largest torques or forces of joints, by name, in both directions [N m or N], instead of the model's."""
+    velocity_limits: Annotated[dict[Name, PositiveNumber], Field(exclude_if=_is_empty)] = Field(default={})
+    """Largest speeds of joints, by name [rad/s or m/s], instead of the model's."""
     reference: Annotated[dict[Name, Number], Field(exclude_if=_is_empty)] = Field(default={})
     """Where joints beside the chain stand, by name [rad or m]; others of them at the model's zero."""
     srdf: Annotated[StrictStr | None, Field(min_length=1, exclude_if=_is_none)] = None

@@ -29,7 +29,6 @@ def moving_joints(chain: Chain, axis: bool = False) -> tuple[Chain, np.ndarray]:
     return replace(
         chain,
         joint_names=tuple(chain.joint_names[k] for k in kept),
-        effort_limits=None,
         joint_source=np.searchsorted(kept, chain.joint_source[:joints]),
         armature=chain.armature[:joints],
         has_inertia=False,
@@ -38,5 +37,8 @@ def moving_joints(chain: Chain, axis: bool = False) -> tuple[Chain, np.ndarray]:
         T_tip=T,
         T_tip_tool=np.eye(4),
         **{name: getattr(chain, name)[:joints] for name in per_joint},
-        **{name: getattr(chain, name)[kept] for name in ("lower_limits", "upper_limits", "periodic")},
+        **{
+            name: getattr(chain, name)[kept] for name in ("lower_limits", "upper_limits", "periodic", "velocity_limits")
+        },
+        efforts=chain.efforts[:, kept],
     ), kept

@@ -8,24 +8,25 @@ import numpy as np
 
 from wsrender.documents.constraints import Constraints, TorqueChoice
 from wsrender.documents.environment import Environment
+from wsrender.documents.robot import matrix_of
 from wsrender.errors import InputError
 from wsrender.pipeline.constraints.constraint import Constraint, Structure, in_order
 from wsrender.pipeline.constraints.expression import ExpressionConstraint
 from wsrender.pipeline.constraints.region import Point, Region
 from wsrender.pipeline.constraints.registry import constraints_of
 from wsrender.pipeline.constraints.torque import Torque
+from wsrender.robot.gravity import GRAVITY, gravity_of
 from wsrender.robot.indices import check_inertias, task_rows
 from wsrender.robot.model_robot import Robot
 
 LINEAR = (0, 1, 2)  # rows of a task
-GRAVITY = (0.0, 0.0, -9.81)  # m/s², in the world
-EFFORTS = "MJCF actuatorfrcrange or forcerange, URDF effort, effort_limit of DH rows"
+EFFORTS = "robot.effort_limits, MJCF actuatorfrcrange or forcerange, URDF effort, effort_limit of DH rows"
 
 
 def constraints_of_job(job: Any, robot: Robot) -> tuple[Constraint, ...]:
     """The constraints of a job of one arm, with its environment and gravity, task and precision if it has any."""
     rows, precision = task_rows(getattr(job, "task", "linear")), getattr(job, "precision", "float64")
-    asked = {"gravity": job.gravity_m_s2 or GRAVITY, "rows": rows, "precision": precision}
+    asked = {"gravity": gravity_of(job), "rows": rows, "precision": precision}
     return constraints_for(robot, job.constraints, job.environment, **asked)
 
 
@@ -83,8 +84,8 @@ def _torque(robot: Robot, choice: TorqueChoice, gravity: Point, rows: tuple[int,
         raise InputError("constraints.torque", "is not available for a robot that is defined by a class")
     if not robot.has_inertia:
         raise InputError("constraints.torque", f"must not be given: the model of {robot.name} lacks masses or inertias")
-    if chain.effort_limits is None:
-        message = f"must not be given: the model of {robot.name} lacks torque limits for some joint ({EFFORTS})"
+    if missing := chain.unlimited_efforts:
+        message = f"must not be given: {robot.name} lacks torque limits of {', '.join(missing)} ({EFFORTS})"
         raise InputError("constraints.torque", message)
     linear = tuple(row for row in rows if row in LINEAR)
     if choice.acceleration_m_s2:
@@ -92,7 +93,8 @@ def _torque(robot: Robot, choice: TorqueChoice, gravity: Point, rows: tuple[int,
             message = f"must be 0 with a task without linear rows, not {choice.acceleration_m_s2:g}"
             raise InputError("constraints.torque.acceleration_m_s2", message)
         check_inertias(robot, precision)
-    laden = chain.dynamic.carrying(choice.payload_kg, np.array(choice.payload_com_m))
+    inertia = None if choice.payload_inertia_kg_m2 is None else matrix_of(choice.payload_inertia_kg_m2)
+    laden = chain.dynamic.carrying(choice.payload_kg, np.array(choice.payload_com_m), inertia)
     return Torque(laden, gravity, choice.acceleration_m_s2, linear if choice.acceleration_m_s2 else ())
 
 

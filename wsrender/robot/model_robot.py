@@ -79,6 +79,11 @@ class Robot:
         return self._loaded.source_hash
 
     @property
+    def stated_gravity(self) -> tuple[float, ...] | None:
+        """Gravity (3,) [m/s²] that the model states, which jobs do not use; None where it states none."""
+        return None if self.definition else self._loaded.gravity
+
+    @property
     def notices(self) -> tuple[Notice, ...]:
         """What was odd about the model when it was loaded; results hold it among their warnings."""
         return self._loaded.notices
@@ -269,6 +274,8 @@ def load_robot(
     tool: Any = None,
     limits: Mapping[str, Any] | None = None,
     limits_deg: Mapping[str, Any] | None = None,
+    effort_limits: Mapping[str, float] | None = None,
+    velocity_limits: Mapping[str, float] | None = None,
     length_unit_m: float | None = None,
     reference: Mapping[str, float] | None = None,
     srdf: str | Path | None = None,
@@ -280,10 +287,11 @@ def load_robot(
     ``base`` and ``tip`` name a site, body or link (default: the world, and the site "tool" or the only end).
     ``placement`` is the base frame in the world and ``tool`` the tool point in the tip frame, each a
     `Transform`, its fields as a dict, or a (4, 4) array. ``limits`` {joint: (lower, upper)} [rad or m] (or
-    ``limits_deg``) go before the model's; ``length_unit_m`` is the model's unit of length [m]: 0.001 converts
-    millimetres, 1 confirms metres. ``reference`` {joint: value} [rad or m] says where joints beside the chain stand,
-    such as those of another arm; others of them stand at the model's zero. ``srdf`` is the path or text of an SRDF,
-    whose disabled pairs of links do not collide; nor do those of ``exclude``, pairs of names of shapes, or of bodies
+    ``limits_deg``) go before the model's, as do ``effort_limits`` {joint: value} [N m or N] and ``velocity_limits``
+    [rad/s or m/s]; ``length_unit_m`` is the model's unit of length [m]: 0.001 converts millimetres, 1 confirms metres.
+    ``reference`` {joint: value} [rad or m] says where joints beside the chain stand, such as those of another arm;
+    others of them stand at the model's zero. ``srdf`` is the path or text of an SRDF, whose disabled pairs of links do
+    not collide; nor do those of ``exclude``, pairs of names of shapes, or of bodies
     for all shapes on them. ``tool_shapes``, of tool and payload, are carried by the tip, in its frame: `Box`, `Sphere`,
     `Cylinder`, `Capsule`, `Ellipsoid`, `Mesh` or their fields; they collide as a body of the name tool that is fixed to
     the tip's would. What is odd about a model is a ModelWarning, and among the robot's ``notices``.
@@ -294,6 +302,7 @@ def load_robot(
     placement, tool = _as_transform(placement), _as_transform(tool)
     options |= {"placement": _matrix(placement), "tool": _matrix(tool)}
     given: dict[str, Any] = {"limits": limits or {}, "limits_deg": limits_deg or {}, "length_unit_m": length_unit_m}
+    given |= {"effort_limits": effort_limits or {}, "velocity_limits": velocity_limits or {}}
     given |= {"reference": reference or {}, "srdf": _srdf_text(srdf), "exclude": exclude}
     given |= {"tool_shapes": tool_shapes}
     stated = RobotSpec(**{kind: value}, **given)
@@ -340,7 +349,16 @@ def _field_of_arm(field: str, spec: RobotSpec) -> str:
 
 def _corrections(spec: RobotSpec) -> dict[str, Any]:
     """What a document says of a model that the model itself does not, or not rightly."""
-    names = ("limits", "limits_deg", "length_unit_m", "reference", "srdf", "exclude")
+    names = (
+        "limits",
+        "limits_deg",
+        "effort_limits",
+        "velocity_limits",
+        "length_unit_m",
+        "reference",
+        "srdf",
+        "exclude",
+    )
     found = {name: getattr(spec, name) for name in names}
     return found | ({"attached": attached(spec.tool_shapes)} if spec.tool_shapes else {})
 

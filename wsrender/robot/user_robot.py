@@ -15,6 +15,7 @@ from wsrender.robot.model_robot import Robot, configuration_rows, load_robot
 from wsrender.robots import of_mujoco
 from wsrender.robots.chain import Chain
 from wsrender.robots.host_kinematics import HostKinematics
+from wsrender.robots.joint_space import unlimited
 
 HASHED_POSES = 16
 TURNING = 1e-6  # rad per unit of a joint: less is rounding of finite differences
@@ -230,7 +231,8 @@ def _kinematics(
         lower_limits=limits[:, 0],
         upper_limits=limits[:, 1],
         periodic=np.zeros(len(limits), bool),
-        effort_limits=None,
+        efforts=unlimited(len(limits)),
+        velocity_limits=np.full(len(limits), np.inf),
         turning=turning,
         has_inertia=has_inertia,
         base_pose=checked.pose,

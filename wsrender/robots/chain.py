@@ -165,14 +165,20 @@ class Chain(Kinematics):
             with_branches=whole and replace(whole, T_joint=_first_moved(whole.T_joint, offset)),
         )
 
-    def carrying(self, mass: float, at: np.ndarray) -> Self:
-        """The same with a point mass [kg] at ``at`` (3,) [m] in the tool's frame."""
+    def carrying(self, mass: float, at: np.ndarray, inertia: np.ndarray | None = None) -> Self:
+        """The same with a mass [kg] at ``at`` (3,) [m] in the tool's frame.
+
+        ``inertia`` (3, 3) [kg m²]: about there, in the tool's axes; None: it is a point.
+        """
         link, total = self.mass[-1], self.mass[-1] + mass
         if not mass:
             return self
-        place = (self.T_tip @ self.T_tip_tool)[:3] @ [*at, 1.0]
+        T = self.T_tip @ self.T_tip_tool
+        place, R = T[:3] @ [*at, 1.0], T[:3, :3]
         center = (link * self.center_of_mass[-1] + mass * place) / total
         about = link * _of_point(self.center_of_mass[-1] - center) + mass * _of_point(place - center)
+        if inertia is not None:
+            about += R @ inertia @ R.T
         return replace(
             self,
             mass=np.append(self.mass[:-1], total),

@@ -1,7 +1,7 @@
 """From a compiled MuJoCo model to the Chain between a base and a tip."""
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from difflib import get_close_matches
 
 import mujoco
@@ -18,7 +18,7 @@ from wsrender.robots.couplings import Couplings, refuse_loops
 from wsrender.robots.frames import Frame
 from wsrender.robots.gripper_tip import gripper_notices
 from wsrender.robots.inertials import MASSLESS
-from wsrender.robots.limits import Drive, coordinate_limits, effort_limits, joint_name
+from wsrender.robots.limits import Drive, coordinate_limits, effort_limits, joint_name, velocity_limits
 from wsrender.robots.loaded_robot import LoadedRobot
 
 MAX_JOINTS = 16
@@ -26,25 +26,30 @@ MOST_NOTED = 4  # faults that one notice tells
 LARGEST_NUMBER = 1e9  # of metres, radians, kilograms: beyond it, products overflow single precision
 
 
+@dataclass(frozen=True)
+class Given:
+    """What goes before the model's numbers, by joint: limits [rad or m], efforts [N m or N], speeds [rad/s or m/s].
+
+    ``reference``: where joints beside the chain stand [rad or m].
+    """
+
+    limits: Mapping[str, tuple[float, float]]
+    efforts: Mapping[str, float]
+    velocities: Mapping[str, float]
+    reference: Mapping[str, float]
+
+
 def extract(
-    compiled: CompiledModel,
-    base: str | None,
-    tip: str | None,
-    name: str,
-    source_hash: str,
-    limits: Mapping[str, tuple[float, float]],
-    reference: Mapping[str, float],
-    field: str,
+    compiled: CompiledModel, base: str | None, tip: str | None, name: str, source_hash: str, given: Given, field: str
 ) -> LoadedRobot:
     """The robot between the frames ``base`` and ``tip`` (see ``frames.choose``) of a compiled model.
 
     The chain is read from MuJoCo's own kinematics with its joints at ``qpos0``; everything else is held at its
-    ``reference``, by name [rad or m], or at ``qpos0`` too, followers where their leaders put them, and its mass
-    belongs to the joint that carries it. Joints held by a coupling become part of the fixed links; a leader on another
-    branch is a coordinate. ``limits`` of joints, by name [rad or m], go before those of the model. Raises ModelError,
-    InputError for a ``reference`` of what does not stand still.
+    reference, or at ``qpos0`` too, followers where their leaders put them, and its mass belongs to the joint that
+    carries it. Joints held by a coupling become part of the fixed links; a leader on another branch is a coordinate.
+    Raises ModelError, InputError for a reference of what does not stand still, or efforts and speeds of what does.
     """
-    model = compiled.model
+    model, limits = compiled.model, given.limits
     base_frame, tip_frame = frames.choose(model, base, tip)
     bodies = _bodies_between(model, base_frame, tip_frame)
     _refuse_faults(compiled, bodies, limits, base_frame, tip_frame, field)
@@ -59,14 +64,18 @@ def extract(
     for body, fault in compiled.inertia_faults.items():
         if carrier[body] >= 0:
             raise ModelError(field, fault)
-    qpos = couplings.reference_qpos(_off_chain(model, couplings, leaders, drives, reference))
+    qpos = couplings.reference_qpos(_off_chain(model, couplings, leaders, drives, given.reference))
     geometry = Geometry.at_reference(model, moving, qpos, base_frame, tip_frame)
-    lower, upper, periodic, notices = coordinate_limits(model, [*drives, *aside], leaders, limits, field)
+    driven, n = [*drives, *aside], len(leaders)
+    _refuse_unknown(model, driven, given)
+    lower, upper, periodic, notices = coordinate_limits(model, driven, leaders, limits, field)
     names = tuple(joint_name(model, leader) for leader in leaders)
     chain = Chain(
         name=name, base_frame=base_frame.name, tip_frame=tip_frame.name, joint_names=names,
         lower_limits=lower, upper_limits=upper, periodic=periodic,
-        effort_limits=effort_limits(model, leaders), has_inertia=_has_inertia(model, carrier),
+        efforts=effort_limits(model, driven, n, given.efforts),
+        velocity_limits=velocity_limits(model, driven, n, compiled.velocity_limits, given.velocities),
+        has_inertia=_has_inertia(model, carrier),
         leader_is_revolute=np.array([is_hinge(model, leader) for leader in leaders]),
         **links_of(model, geometry, [(drive, 1) for drive in drives]),
     )  # fmt: skip
@@ -82,12 +91,22 @@ def extract(
             *compiled.notices, *_limit_notices(compiled, limits), *_notes_off_chain(compiled, met),
             *notices, *(gripper_notices(model, tip_frame, drives) if tip is None else ()),
         ),
+        gravity=compiled.gravity,
         leaders=tuple((int(model.jnt_qposadr[drive.joint]), drive.source) for drive in aside),
         branches=tuple((int(model.jnt_dofadr[drive.joint]), drive.source) for drive in moving[len(drives) :]),
         body_source=BodySource(
             compiled.with_geometry, chain, base_frame, tip_frame, couplings, qpos, leaders, drives, aside, field
         ),
     )  # fmt: skip
+
+
+def _refuse_unknown(model: mujoco.MjModel, driven: list[Drive], given: Given) -> None:
+    """Raises InputError for efforts and speeds of what no coordinate of the chain moves."""
+    known = list(dict.fromkeys(joint_name(model, drive.joint) for drive in driven))
+    for field, values in (("effort_limits", given.efforts), ("velocity_limits", given.velocities)):
+        for name in values:
+            if name not in known:
+                raise InputError(f"{field}.{name}", f"is no joint of the chain; allowed: {', '.join(known)}")
 
 
 def _off_chain(

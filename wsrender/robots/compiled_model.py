@@ -72,8 +72,10 @@ class CompiledModel:
 
     ``path_faults`` and ``inertia_faults`` map a body's number to what forbids a chain through its joints, or
     over its inertia; they are errors only for a chain that meets them. ``unset_limits`` names the joints whose limits
-    were 0 … 0, taken as none. ``with_geometry`` compiles the same bodies and joints with all shapes of a purpose, and
-    says what was odd about them; it reads meshes, and raises ModelError where one that may collide cannot be had.
+    were 0 … 0, taken as none. ``velocity_limits`` [rad/s or m/s] are those of all joints by number, 0 for none, or
+    empty; ``gravity`` (3,) [m/s²] is what the model states, if it does. ``with_geometry`` compiles the same bodies and
+    joints with all shapes of a purpose, and says what was odd about them; it reads meshes, and raises ModelError where
+    one that may collide cannot be had.
     """
 
     model: mujoco.MjModel
@@ -83,4 +85,6 @@ class CompiledModel:
     inertia_faults: dict[int, str] = field(default_factory=dict)
     joint_faults: tuple[JointFault, ...] = ()
     unset_limits: tuple[str, ...] = ()
+    velocity_limits: tuple[float, ...] = ()
+    gravity: tuple[float, ...] | None = None
     notices: tuple[Notice, ...] = ()

@@ -2,11 +2,16 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 
 from wsrender.content import Content
+
+
+def unlimited(n: int) -> np.ndarray:
+    """`JointSpace.efforts` (2, n) that nothing limits."""
+    return np.tile([[-np.inf], [np.inf]], n)
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,7 +25,8 @@ class JointSpace(Content):
     lower_limits: np.ndarray  # (n,) [rad or m]; -pi where periodic, -inf where endless
     upper_limits: np.ndarray  # (n,) [rad or m]; +pi where periodic, inf where endless
     periodic: np.ndarray  # (n,) bool: a hinge without limits
-    effort_limits: np.ndarray | None  # (n,) [N m or N], None where the model has none for some joint
+    efforts: np.ndarray  # (2, n) [N m or N]: least, negative, and largest; infinite where nothing limits them
+    velocity_limits: np.ndarray  # (n,) [rad/s or m/s]; infinite where nothing limits them
 
     def __post_init__(self):
         for f in fields(self):
@@ -29,6 +35,21 @@ class JointSpace(Content):
                 value = np.array(value, order="C")
                 value.setflags(write=False)
                 object.__setattr__(self, f.name, value)
+
+    @property
+    def effort_limits(self) -> np.ndarray | None:
+        """Largest efforts in both directions [N m or N], (n,); None where some coordinate has no limit."""
+        return None if self.unlimited_efforts else np.abs(self.efforts).min(axis=0)
+
+    @property
+    def unlimited_efforts(self) -> tuple[str, ...]:
+        """Names of the coordinates whose efforts nothing limits."""
+        return self._named(~np.isfinite(self.efforts).all(axis=0))
+
+    @property
+    def unlimited_velocities(self) -> tuple[str, ...]:
+        """Names of the coordinates whose speeds nothing limits."""
+        return self._named(~np.isfinite(self.velocity_limits))
 
     @property
     def n(self) -> int:
@@ -49,8 +70,10 @@ class JointSpace(Content):
     @property
     def endless(self) -> tuple[str, ...]:
         """Names of the coordinates without usable limits: slides without any, hinges that whole turns do not suit."""
-        bounded = np.isfinite(self.lower_limits) & np.isfinite(self.upper_limits)
-        return tuple(name for name, ends in zip(self.joint_names, bounded, strict=True) if not ends)
+        return self._named(~(np.isfinite(self.lower_limits) & np.isfinite(self.upper_limits)))
+
+    def _named(self, which: Any) -> tuple[str, ...]:
+        return tuple(name for name, this in zip(self.joint_names, which, strict=True) if this)
 
     def within(self, share: float) -> np.ndarray:
         """The configuration (n,) at a share 0 … 1 of every range [rad or m]; 0 where a coordinate is endless."""

@@ -1,6 +1,7 @@
 """Models whose lengths are not metres: scaled before they are compiled."""
 
 import math
+from collections.abc import Sequence
 
 import mujoco
 import numpy as np
@@ -28,6 +29,12 @@ def to_metres(spec: mujoco.MjSpec, unit_m: float) -> None:
     for equality in spec.equalities:
         if equality.type == mujoco.mjtEq.mjEQ_JOINT:
             _scale_coupling(spec, equality, unit_m)
+
+
+def in_metres(model: mujoco.MjModel, velocities: Sequence[float], unit_m: float) -> tuple[float, ...]:
+    """Velocities of all joints of a model, of slides in its unit of length per second: in rad/s or m/s."""
+    slides = model.jnt_type == mujoco.mjtJoint.mjJNT_SLIDE
+    return tuple(np.where(slides, unit_m, 1.0) * velocities) if len(velocities) else ()
 
 
 def _scale_joint(joint: mujoco.MjsJoint, unit_m: float) -> None:

@@ -1,6 +1,6 @@
 """Limits of the coordinates of a chain: what every joint that a coordinate drives allows."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import mujoco
@@ -8,8 +8,10 @@ import numpy as np
 
 from wsrender.errors import ModelError
 from wsrender.notices import Notice
+from wsrender.robots.joint_space import unlimited
 
 LARGEST_ANGLE, LARGEST_SLIDE = 1e4, 1e5  # rad, m: beyond them an exporter has written that there is no limit
+ANY_EFFORT = np.array([-np.inf, np.inf])
 ROUNDING = 1e-6  # share of a leader's range: rounding of a model file's numbers
 
 
@@ -102,14 +104,37 @@ class _Limiting:
         )
 
 
-def effort_limits(model: mujoco.MjModel, leaders: list[int]) -> np.ndarray | None:
-    """Largest joint torque or force in both directions [N m or N], (n,); None if a joint has no limit.
+def effort_limits(model: mujoco.MjModel, drives: list[Drive], n: int, given: Mapping[str, float]) -> np.ndarray:
+    """Least and largest torque or force of n coordinates [N m or N], (2, n): by Cᵀ those of the joints they drive.
 
-    The smaller of the joint's ``actuatorfrcrange`` and the sum over its actuators of their force limits
-    times gear.
+    Of the joints that have a limit; infinite where none has. That of a joint is the one ``given`` by name, or the
+    smaller of its ``actuatorfrcrange`` and the sum over its actuators of their force limits times gear.
     """
-    efforts = [min(_joint_effort(model, joint), _actuator_effort(model, joint)) for joint in leaders]
-    return np.array(efforts) if np.isfinite(efforts).all() else None
+    efforts = np.zeros((2, n))
+    limited = np.zeros(n, bool)
+    for drive in drives:
+        own = _narrower(_joint_effort(model, drive.joint), _actuator_effort(model, drive.joint))
+        if (largest := given.get(joint_name(model, drive.joint))) is not None:
+            own = np.array([-largest, largest])
+        if np.isfinite(own).all():
+            limited[drive.source] = True
+            efforts[:, drive.source] += np.sort(drive.scale * own)
+    return np.where(limited, efforts, unlimited(n))
+
+
+def velocity_limits(
+    model: mujoco.MjModel, drives: list[Drive], n: int, stated: Sequence[float], given: Mapping[str, float]
+) -> np.ndarray:
+    """Largest speeds of n coordinates [rad/s or m/s], (n,): what all joints that they drive allow; infinite: any.
+
+    ``stated``: by the model's number of a joint, 0 for none; those ``given`` by name go before.
+    """
+    speeds = np.full(n, np.inf)
+    for drive in drives:
+        own = given.get(joint_name(model, drive.joint), stated[drive.joint] if stated else 0.0)
+        if own > 0.0 and drive.scale:
+            speeds[drive.source] = min(speeds[drive.source], own / abs(drive.scale))
+    return speeds
 
 
 def _intersection(model: mujoco.MjModel, driven: list[Drive]) -> tuple[float, float] | None:
@@ -134,40 +159,42 @@ def _whole_turns(model: mujoco.MjModel, drive: Drive) -> bool:
     return model.jnt_type[drive.joint] == mujoco.mjtJoint.mjJNT_HINGE and drive.scale.is_integer()
 
 
-def _joint_effort(model: mujoco.MjModel, joint: int) -> float:
-    if not model.jnt_actfrclimited[joint]:
-        return np.inf
-    return _both_ways(model.jnt_actfrcrange[joint])
+def _joint_effort(model: mujoco.MjModel, joint: int) -> np.ndarray:
+    return _two_sided(model.jnt_actfrcrange[joint]) if model.jnt_actfrclimited[joint] else ANY_EFFORT
 
 
-def _actuator_effort(model: mujoco.MjModel, joint: int) -> float:
+def _actuator_effort(model: mujoco.MjModel, joint: int) -> np.ndarray:
     transmissions = (mujoco.mjtTrn.mjTRN_JOINT, mujoco.mjtTrn.mjTRN_JOINTINPARENT)
     efforts = [
-        abs(model.actuator_gear[actuator, 0]) * _force(model, actuator)
+        np.sort(model.actuator_gear[actuator, 0] * _force(model, actuator))
         for actuator in range(model.nu)
         if mujoco.mjtTrn(model.actuator_trntype[actuator]) in transmissions
         and model.actuator_trnid[actuator, 0] == joint
+        and model.actuator_gear[actuator, 0]
     ]
-    return sum(efforts) if efforts else np.inf
+    return np.sum(efforts, axis=0) if efforts else ANY_EFFORT
 
 
-def _force(model: mujoco.MjModel, actuator: int) -> float:
-    """Force limit of an actuator before its gear: its range, or for motors what the control range gives."""
-    force = np.inf
+def _force(model: mujoco.MjModel, actuator: int) -> np.ndarray:
+    """Force limits (2,) of an actuator before its gear: its range, or for motors what the control range gives."""
+    force = ANY_EFFORT
     if model.actuator_forcelimited[actuator]:
-        force = _both_ways(model.actuator_forcerange[actuator])
+        force = _two_sided(model.actuator_forcerange[actuator])
     motor = (
         model.actuator_gaintype[actuator] == mujoco.mjtGain.mjGAIN_FIXED
         and model.actuator_biastype[actuator] == mujoco.mjtBias.mjBIAS_NONE
         and model.actuator_dyntype[actuator] == mujoco.mjtDyn.mjDYN_NONE
     )
     if motor and model.actuator_ctrllimited[actuator]:
-        gain = abs(model.actuator_gainprm[actuator, 0])
-        force = min(force, gain * _both_ways(model.actuator_ctrlrange[actuator]))
+        by_control = model.actuator_gainprm[actuator, 0] * model.actuator_ctrlrange[actuator]
+        force = _narrower(force, _two_sided(np.sort(by_control)))
     return force
 
 
-def _both_ways(limits: np.ndarray) -> float:
-    """The magnitude available in both directions; no limit where one direction has none at all."""
-    smaller = float(np.abs(limits).min())
-    return smaller if smaller > 0.0 else np.inf
+def _narrower(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    return np.array([max(a[0], b[0]), min(a[1], b[1])])
+
+
+def _two_sided(limits: np.ndarray) -> np.ndarray:
+    """The limits in both directions; none where one direction has none at all."""
+    return np.array(limits) if limits[0] < 0.0 < limits[1] else ANY_EFFORT

@@ -27,6 +27,7 @@ class LoadedRobot:
     dof_addresses: np.ndarray  # (L,) int
     reference_qpos: np.ndarray  # (nq,)
     body_source: BodySource
+    gravity: tuple[float, ...] | None = None  # (3,) [m/s²] that the model states
     notices: tuple[Notice, ...] = ()  # what was odd about the model
     leaders: tuple[tuple[int, int], ...] = ()  # off the path: address in ``qpos``, coordinate
     branches: tuple[tuple[int, int], ...] = ()  # those of them that move a body: address in ``qvel``, coordinate

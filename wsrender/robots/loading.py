@@ -47,6 +47,8 @@ def load(
     tool: np.ndarray | None = None,
     limits: "Limits | None" = None,
     limits_deg: "Limits | None" = None,
+    effort_limits: Mapping[str, float] | None = None,
+    velocity_limits: Mapping[str, float] | None = None,
     length_unit_m: float | None = None,
     reference: Mapping[str, float] | None = None,
     srdf: str | None = None,
@@ -60,7 +62,8 @@ def load(
     the only end of the model that a joint moves, else the link ``tool0``; a site goes before a body of its name.
     ``placement`` is the base frame in the world and ``tool`` the tool frame in the tip frame, (4, 4) each.
     ``limits`` (``limits_deg``: hinges in degrees) of joints of the chain by name, (lower, upper) [rad or m], go before
-    the model's. ``length_unit_m`` is the model's unit of length [m]; given, no length is doubted. ``reference`` is
+    the model's, as do ``effort_limits`` [N m or N] and ``velocity_limits`` [rad/s or m/s] of joints by name.
+    ``length_unit_m`` is the model's unit of length [m]; given, no length is doubted. ``reference`` is
     where joints beside the chain stand, by name [rad or m], instead of at the model's zero. ``srdf`` is SRDF
     text, whose disabled pairs of links do not collide, nor do those of ``exclude``, pairs of names of shapes or bodies.
     ``attached``: shapes that the tip carries, in its frame.
@@ -68,6 +71,7 @@ def load(
     """
     options = {"base": base, "tip": tip, "name": name, "placement": placement, "tool": tool}
     options |= {"limits": limits, "limits_deg": limits_deg, "length_unit_m": length_unit_m}
+    options |= {"effort_limits": effort_limits, "velocity_limits": velocity_limits}
     options |= {"reference": reference, "srdf": srdf, "exclude": exclude, "attached": attached}
     kind, value = described(source)
     loaders = {"library": load_library, "path": load_path, "dh": load_dh, "mjcf": load_mjcf, "urdf": load_urdf}
@@ -189,6 +193,8 @@ def _loaded(
     tool=None,
     limits=None,
     limits_deg=None,
+    effort_limits=None,
+    velocity_limits=None,
     length_unit_m=None,
     reference=None,
     srdf=None,
@@ -200,7 +206,7 @@ def _loaded(
 
     ``held``: joints that need no limits.
     """
-    from wsrender.robots.chain_extraction import extract
+    from wsrender.robots.chain_extraction import Given, extract
     from wsrender.robots.compiled_model import building
 
     source_hash = hashlib.sha256(text.encode() if isinstance(text, str) else text).hexdigest()
@@ -208,7 +214,8 @@ def _loaded(
     with building(_FIELD):
         compiled = compile_model(1.0 if length_unit_m is None else length_unit_m)
         called = name or compiled.name or "robot"
-        robot = extract(compiled, base, tip, called, source_hash, given, reference or {}, _FIELD)
+        own = Given(given, effort_limits or {}, velocity_limits or {}, reference or {})
+        robot = extract(compiled, base, tip, called, source_hash, own, _FIELD)
     _check_limits(robot.chain, limits or {}, limits_deg or {})
     chain = robot.chain.placed(_rigid("placement", placement), _rigid("tool", tool))
     found = (*robot.notices, *doubts(chain, given, length_unit_m is not None, held))

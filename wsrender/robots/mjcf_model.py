@@ -12,13 +12,14 @@ import mujoco
 
 from wsrender.errors import ModelError
 from wsrender.notices import Notice
-from wsrender.robots import mjcf, mjcf_text
+from wsrender.robots import mjcf, mjcf_text, xml_source
 from wsrender.robots.compiled_model import MUJOCO_ERRORS, CompiledModel, JointFault, Purpose, quiet, refusal
 from wsrender.robots.hulls import with_small_hulls
 from wsrender.robots.inertials import compile_with_inertials
-from wsrender.robots.length_unit import to_metres
+from wsrender.robots.length_unit import in_metres, to_metres
 from wsrender.robots.mesh_files import ReadMesh
 
+VELOCITIES = "velocity_limits"  # of all joints, in the model's order [rad/s or m/s]
 VISIBLE_GROUPS = 3  # MuJoCo shows groups 0, 1, 2 unless told otherwise
 
 
@@ -42,7 +43,7 @@ def compile_mjcf(root: Element, read_mesh: ReadMesh, field: str, length_unit_m: 
     dropped with one notice, and noted as inertia faults where that leaves a body without inertia. Ranges that are
     upside down or empty, which MuJoCo would take for none, are joint faults. Raises ModelError.
     """
-    whole = copy.deepcopy(root)
+    whole, velocities, gravity = copy.deepcopy(root), _velocity_limits(root, field), _gravity(root, field)
     spec, files = _spec_of(root, field)
     joint_faults = _range_faults(spec)
     faults, missing = _drop_geometry(spec, files, read_mesh)
@@ -54,8 +55,29 @@ def compile_mjcf(root: Element, read_mesh: ReadMesh, field: str, length_unit_m: 
         partial(_with_geometry, whole, read_mesh, field, length_unit_m),
         inertia_faults=inertia_faults | {body.id: fault for body, fault in faults},
         joint_faults=tuple(JointFault(joint.parent.id, joint.name, fault, True) for joint, fault in joint_faults),
+        velocity_limits=in_metres(model, _of_joints(velocities, model, field), length_unit_m),
+        gravity=gravity,
         notices=_dropped(missing) + notices,
     )
+
+
+def _velocity_limits(root: Element, field: str) -> list[float]:
+    """What the ``<custom>`` numeric of that name says; empty where there is none."""
+    found = [each for each in root.iterfind("custom/numeric") if each.get("name") == VELOCITIES]
+    words = found[-1].get("data", "").split() if found else []
+    return [xml_source.number(word, field, f"<numeric> {VELOCITIES!r}") for word in words]
+
+
+def _of_joints(velocities: list[float], model: mujoco.MjModel, field: str) -> list[float]:
+    if velocities and (len(velocities) != model.njnt or min(velocities) < 0):
+        message = f"must be {model.njnt} numbers, one for each joint, 0 where it has none, not {velocities}"
+        raise ModelError(field, f"<numeric> {VELOCITIES!r} {message}")
+    return velocities
+
+
+def _gravity(root: Element, field: str) -> tuple[float, ...] | None:
+    found = [each.attrib["gravity"] for each in root.iterfind("option") if "gravity" in each.attrib]
+    return tuple(xml_source.numbers(found[-1], 3, field, "<option> gravity")) if found else None
 
 
 def _with_geometry(

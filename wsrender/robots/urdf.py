@@ -81,7 +81,7 @@ class Mimic:
 
 @dataclass(frozen=True)
 class Joint:
-    """A ``<joint>``; ``limits`` [rad or m] are None without ``<limit>``, ``effort`` 0 where not stated.
+    """A ``<joint>``; ``limits`` [rad or m] are None without ``<limit>``, ``effort``, ``velocity`` 0 where not stated.
 
     ``fault`` says why nothing can be known of how it moves; empty where all of it can be read.
     """
@@ -94,6 +94,7 @@ class Joint:
     axis: np.ndarray
     limits: tuple[float, float] | None = None
     effort: float = 0.0
+    velocity: float = 0.0
     mimic: Mimic | None = None
     fault: str = ""
 
@@ -230,9 +231,9 @@ def _joint(element: Element, field: str) -> Joint:
 def _moving(joint: Joint, element: Element, field: str, where: str) -> Joint:
     if joint.kind not in JOINT_TYPES:
         raise ModelError(field, f"{where} has type {joint.kind!r}; allowed: {', '.join(JOINT_TYPES)}")
-    limits, effort = _limits(element, joint.kind, field, where)
+    limits, most = _limits(element, joint.kind, field, where)
     axis = _axis(element, joint.kind, field, where)
-    return replace(joint, axis=axis, limits=limits, effort=effort, mimic=_mimic(element, field, where))
+    return replace(joint, axis=axis, limits=limits, **most, mimic=_mimic(element, field, where))
 
 
 def _axis(element: Element, kind: str, field: str, where: str) -> np.ndarray:
@@ -246,15 +247,15 @@ def _axis(element: Element, kind: str, field: str, where: str) -> np.ndarray:
     return axis / length
 
 
-def _limits(element: Element, kind: str, field: str, where: str) -> tuple[tuple[float, float] | None, float]:
+def _limits(element: Element, kind: str, field: str, where: str) -> tuple[tuple[float, float] | None, dict[str, float]]:
     tag = element.find("limit")
     if tag is None:
-        return None, 0.0
-    effort = _effort(tag.get("effort", "0"), field, where)
+        return None, {}
+    most = {name: _most(tag.get(name, "0"), field, f"{where}: its {name} limit") for name in ("effort", "velocity")}
     if kind not in ("revolute", "prismatic"):
-        return None, effort
+        return None, most
     lower, upper = (_limit(tag.get(end, "0"), field, f"{where}: {end} limit") for end in ("lower", "upper"))
-    return (lower, upper), effort
+    return (lower, upper), most
 
 
 def _limit(text: str, field: str, where: str) -> float:
@@ -263,14 +264,13 @@ def _limit(text: str, field: str, where: str) -> float:
     return math.copysign(math.inf, -1 if "-" in text else 1) if infinite else number(text, field, where)
 
 
-def _effort(text: str, field: str, where: str) -> float:
-    """Effort limit; 0 (none) where it is infinite."""
+def _most(text: str, field: str, where: str) -> float:
+    """Limit of effort or velocity; 0 (none) where it is infinite."""
     if text.strip().lower() in _INFINITE and "-" not in text:
         return 0.0
-    effort = number(text, field, f"{where}: effort limit")
-    if effort < 0.0:
-        raise ModelError(field, f"{where}: its effort limit is {effort:g}; it must not be negative")
-    return effort
+    if (most := number(text, field, where)) < 0.0:
+        raise ModelError(field, f"{where} is {most:g}; it must not be negative")
+    return most
 
 
 def _mimic(element: Element, field: str, where: str) -> Mimic | None:

@@ -12,7 +12,7 @@ from wsrender.notices import Notice
 from wsrender.robots.compiled_model import CompiledModel, JointFault, Purpose
 from wsrender.robots.hulls import with_small_hulls
 from wsrender.robots.inertials import compile_with_inertials
-from wsrender.robots.length_unit import to_metres
+from wsrender.robots.length_unit import in_metres, to_metres
 from wsrender.robots.mesh_files import ReadMesh, from_assets
 from wsrender.robots.urdf import Joint, Link, Mimic, Urdf, read_urdf
 from wsrender.robots.urdf_shapes import PRIMITIVES, add_primitives, add_shapes
@@ -50,8 +50,13 @@ def compile_urdf(robot: Element, read_mesh: ReadMesh | None, field: str, length_
         inertia_faults=inertia_faults,
         joint_faults=tuple(fault for joint, body in joints if (fault := _fault(joint, body, urdf.joints))),
         unset_limits=tuple(j.name for j, _ in joints if j.kind == "revolute" and j.limits == (0.0, 0.0)),
+        velocity_limits=in_metres(model, [urdf.joints[j].velocity for j in _names(model)], length_unit_m),
         notices=notices if read_mesh else (*_dropped_meshes(urdf), *notices),
     )
+
+
+def _names(model: mujoco.MjModel) -> list[str]:
+    return [model.joint(k).name for k in range(model.njnt)]
 
 
 def _with_geometry(

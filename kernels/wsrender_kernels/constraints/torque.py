@@ -1,101 +1,35 @@
 """Joints hold the arm and what it carries, at rest or while the tip accelerates in any direction."""
 
-from collections.abc import Iterable
 from typing import Any
 
 import warp as wp
 
 from wsrender_kernels.factories import factory
-from wsrender_kernels.gravity import gravity_pulls
-from wsrender_kernels.inertia import BODY_STRIDE, inertia
-from wsrender_kernels.kinematics import frames_type, kinematics
-from wsrender_kernels.matrices import followed_by, written_out
+from wsrender_kernels.kinematics import kinematics
+from wsrender_kernels.loads import loads
 
 
 @factory
 def torque(real, n: int, sources: tuple[int, ...], plain: bool, rows: tuple[int, ...], size: int, offset: int):
     """Device function of the constraint; see the package.
 
-    ``rows``: those of the linear task in which the tip accelerates; none at rest. Its numbers: gravity in the world
-    (3,) [m/s²], the acceleration [m/s²], the joints' limits (n,) [N m or N], and `pack_inertia` of the chain with what
-    it carries.
+    Its numbers: gravity in the world (3,) [m/s²], the acceleration [m/s²] in the ``rows`` of the task, the joints'
+    limits back and forth (n,) each [N m or N], and `pack_inertia` of the chain with what it carries.
     """
-    L = len(sources)
-    ACCELERATION, EFFORT, BODIES = offset + 3, offset + 4, offset + 4 + n
-    limits_type, vec_n, vec3 = wp.types.vector(size, real), wp.types.vector(n, real), wp.types.vector(3, real)
-    mat33, Frames = wp.types.matrix((3, 3), real), frames_type(real, L)
-    kin, dyn = kinematics(real, n, sources, plain, True), inertia(real, n, sources, plain)
-    forward, jacobian, inertia_matrix = kin.forward, kin.jacobian, dyn.inertia_matrix
-    bodies_type, M_ROWS = wp.types.vector(L * BODY_STRIDE, real), max(len(rows), 1)
-    ROWS, rows_type = wp.types.vector(M_ROWS, wp.int32)(*(rows or (0,))), wp.types.matrix((M_ROWS, n), real)
-    solve, weights = dyn.solve(M_ROWS), gravity_pulls(real, n, sources, plain, size, offset, BODIES)
-    copied = "".join(f"bodies.c[{k}] = limits.c[{BODIES + k}]; " for k in range(L * BODY_STRIDE))
-
-    @wp.func_native(written_out(real, f"wp::vec_t<{L * BODY_STRIDE}, R> bodies;", copied, "return bodies;"))
-    def bodies_of(limits: limits_type) -> bodies_type: ...
-
-    @wp.func_native(_norms_in_cpp(real, n, M_ROWS))
-    def norms(Q: rows_type, X: rows_type) -> vec_n: ...
-
-    @wp.func
-    def efforts_at_rest(limits: limits_type, model: Any, frames: Frames):
-        """Largest torques, (n,)."""
-        torques = weights(limits, model.chain, frames)
-        for i in range(n):
-            torques[i] = wp.abs(torques[i])
-        return torques
-
-    @wp.func
-    def efforts_of_acceleration(limits: limits_type, model: Any, frames: Frames):
-        M = inertia_matrix(model.chain, bodies_of(limits), frames)
-        J = jacobian(model.chain, frames)
-        Q = rows_type()
-        for r in range(M_ROWS):
-            for c in range(n):
-                for k in range(3):
-                    Q[r, c] += model.base_axes[ROWS[r], k] * J[k, c]
-        held = norms(Q, solve(M, Q))
-        torques = weights(limits, model.chain, frames)
-        for i in range(n):
-            torques[i] = wp.abs(torques[i]) + limits[ACCELERATION] * held[i]
-        return torques
-
-    efforts = efforts_of_acceleration if rows else efforts_at_rest
+    BACK, FORTH, BODIES = offset + 4, offset + 4 + n, offset + 4 + 2 * n
+    vec_n, vec3, mat33 = wp.types.vector(n, real), wp.types.vector(3, real), wp.types.matrix((3, 3), real)
+    forward = kinematics(real, n, sources, plain, True).forward
+    loads_of = loads(real, n, sources, plain, rows, size, offset, BODIES)
 
     @wp.func
     def overloaded(model: Any, q: vec_n, tip: vec3, axes: mat33):
         _tip, _x, _y, _z, frames = forward(model.chain, q)
-        torques = efforts(model.limits, model, frames)
+        pulls, more = loads_of(model, frames)
         admitted = wp.int32(1)
         for i in range(n):
-            # Not a number, of a singular posture, is not within the limit.
-            admitted = wp.where(torques[i] <= model.limits[EFFORT + i], admitted, 0)
+            # Not a number, of a singular posture, is not within a limit.
+            admitted = wp.where(more[i] + pulls[i] <= model.limits[BACK + i], admitted, 0)
+            admitted = wp.where(more[i] - pulls[i] <= model.limits[FORTH + i], admitted, 0)
         return 1 - admitted
 
     return overloaded
-
-
-def _norms_in_cpp(real, n: int, m: int) -> str:
-    """(J_v, J_v M^-1) -> norms of the rows of J_v' Λ, Λ = (J_v M^-1 J_v')^-1 (Khatib 1987), (n,).
-
-    With J_v = R Q, R triangular and Q M^-1 Q' = 1, by Gram and Schmidt, they are Q' R^-1, whose error grows with the
-    condition of J_v and not with its square. Not a number, or all but infinite, where J_v is singular.
-    """
-    lines = []
-    for r in range(m):
-        lines += [f"R q{r}_{c} = Q.data[{r}][{c}], x{r}_{c} = X.data[{r}][{c}];" for c in range(n)]
-        for s in range(r):
-            lines.append(f"const R R{r}_{s} = {_sum(f'q{r}_{c} * x{s}_{c}' for c in range(n))};")
-            lines += [f"q{r}_{c} -= R{r}_{s} * q{s}_{c}; x{r}_{c} -= R{r}_{s} * x{s}_{c};" for c in range(n)]
-        lines.append(f"const R P{r} = R(1) / wp::sqrt({_sum(f'q{r}_{c} * x{r}_{c}' for c in range(n))});")
-        lines += [f"q{r}_{c} *= P{r}; x{r}_{c} *= P{r};" for c in range(n)]
-    for c in range(n):
-        for r in reversed(range(m)):
-            less = followed_by("-", (f"y{s}_{c} * R{s}_{r}" for s in range(r + 1, m)))
-            lines.append(f"const R y{r}_{c} = (q{r}_{c}{less}) * P{r};")
-        lines.append(f"norms.c[{c}] = wp::sqrt({_sum(f'y{r}_{c} * y{r}_{c}' for r in range(m))});")
-    return written_out(real, f"wp::vec_t<{n}, R> norms;", *lines, "return norms;")
-
-
-def _sum(terms: Iterable[str]) -> str:
-    return " + ".join(terms)

@@ -35,21 +35,21 @@ class Torque:
         return OfChain("torque", (self.rows if self.acceleration else (),), self.chain)
 
     def pack(self, chain: Kinematics, origin: np.ndarray, precision: str) -> np.ndarray:
-        """Gravity (3,), acceleration, effort limits (n,)."""
-        return np.array([*self.gravity, self.acceleration, *self.limits])
-
-    @property
-    def limits(self) -> np.ndarray:
-        """Effort limits (n,) [N m or N]; robots without are refused."""
-        assert self.chain.effort_limits is not None
-        return self.chain.effort_limits
+        """Gravity (3,), acceleration, efforts back and forth (n,) each."""
+        return np.array([*self.gravity, self.acceleration, *np.abs(self.chain.efforts).ravel()])
 
     def margin(self, q: np.ndarray) -> np.ndarray:
-        """Least (limit - |τ|) / limit of the joints at ``q`` (N, n), (N,); -1 at least, and where J_v is singular."""
-        limits, torques = self.limits, np.abs(gravity_torques(self.chain, q, np.array(self.gravity)))
+        """Least (limit - |τ|) / limit of the joints at ``q`` (N, n), (N,); -1 at least, and where J_v is singular.
+
+        The limit is that in the direction of the torque.
+        """
+        held, more = gravity_torques(self.chain, q, np.array(self.gravity)), 0.0
         if self.acceleration:
-            torques += self.acceleration * self._per_acceleration(q)
-        return np.maximum(((limits - torques) / limits).min(axis=1), -1.0)
+            more = self.acceleration * self._per_acceleration(q)
+        sides = zip(np.abs(self.chain.efforts), (-held, held), strict=True)
+        return np.maximum(
+            np.min([((limit - torque - more) / limit).min(axis=1) for limit, torque in sides], axis=0), -1.0
+        )
 
     def _per_acceleration(self, q: np.ndarray) -> np.ndarray:
         """Norms of the rows of J_v' Λ, (N, n); infinite where J_v is singular."""
