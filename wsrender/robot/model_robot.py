@@ -25,6 +25,7 @@ from wsrender.robots import (
     load_urdf,
     xml_source,
 )
+from wsrender.robots.closed_form import ClosedForm
 from wsrender.robots.kinematics import Kinematics
 from wsrender.robots.model_warning import ModelWarning
 from wsrender.robots.plausibility import NO_LIMITS
@@ -117,6 +118,16 @@ class Robot:
     def has_inertia(self) -> bool:
         """Whether the model has link inertias, so that dynamic indices exist."""
         return self.chain.has_inertia
+
+    @property
+    def closed_form(self) -> str | None:
+        """The class of arms that closed-form inverse kinematics solves this one by, in words; None: of none.
+
+        Told by the axes, joints that are held left out: "spherical wrist, axes 2 and 3 parallel", "three parallel
+        axes", "SCARA", "planar arm"; a spherical "shoulder" is a wrist at the base.
+        """
+        closed = ClosedForm.of(self.chain)
+        return closed and closed.name
 
     @property
     def bodies(self) -> "Bodies":

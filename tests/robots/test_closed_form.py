@@ -1,0 +1,153 @@
+"""Classes of arms with closed-form inverse kinematics, told by their axes."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+import wsrender as ws
+from tests.reference.arms_by_axes import (
+    PARALLEL,
+    RELATIONS,
+    WRIST,
+    axes_of,
+    chain_of,
+    direction,
+    frame,
+    random_arm,
+    reversed_chain,
+    slid_along_axes,
+)
+from wsrender.robots.closed_form import ClosedForm
+
+LIBRARY = {
+    "articulated": "spherical wrist, axes 1 and 2 intersecting",
+    "cartesian": "spherical wrist, PPP arm",
+    "cylindrical": "spherical wrist, RPP arm",
+    "dvrk_mtm": "spherical wrist, axes 1 and 2 intersecting",
+    "franka_panda": None,
+    "gao_6r": "spherical wrist, axes 2 and 3 parallel",
+    "kuka_iiwa14": None,
+    "phantom_omni": "spherical wrist, axes 1 and 2 intersecting",
+    "puma560": "spherical wrist, axes 1 and 2 intersecting",
+    "scara": "shoulder of one axis, RPR arm",  # its slide lies across, not along, the hinges before it
+    "slave_5r": "wrist of two axes, RRP arm",
+    "spherical": "spherical wrist, RRP arm",
+    "stanford_arm": "spherical wrist, RRP arm",
+    "ur5e": "three parallel axes",
+}
+
+
+def class_of(chain):
+    closed = ClosedForm.of(chain)
+    return closed and closed.name
+
+
+@pytest.mark.parametrize("name", LIBRARY)
+def test_arms_of_the_library(name):
+    assert ws.load_robot(name).closed_form == LIBRARY[name]
+
+
+def named(kind):
+    return kind if kind == PARALLEL else f"{WRIST}, {kind}"
+
+
+@pytest.mark.parametrize("kind", [*RELATIONS, PARALLEL])
+def test_the_class_is_in_the_axes_alone(kind):
+    for seed in range(10):
+        chain, random = random_arm(kind, seed), np.random.default_rng(seed)
+        assert class_of(chain) == named(kind)
+        assert class_of(slid_along_axes(chain, random.uniform(-1, 1, (6, 2)))) == named(kind)
+        moved, tool = (frame(direction(random), random.uniform(-2, 2, 3)) for _ in range(2))
+        T_joint = chain.T_joint.copy()
+        T_joint[0] = moved @ T_joint[0]
+        assert class_of(replace(chain, T_joint=T_joint, T_tip=chain.T_tip @ tool)) == named(kind)
+        backwards = {"axes 1 and 2": "axes 6 and 5", "axes 2 and 3": "axes 5 and 4", WRIST: "spherical shoulder"}
+        expected = named(kind)
+        for word, other in backwards.items():
+            expected = expected.replace(word, other)
+        assert class_of(reversed_chain(chain)) == expected
+
+
+def tilted(chain, joint, by):
+    """The chain with one axis turned about a line across it, through its point."""
+    h, o, T_tip = axes_of(chain)
+    about = np.cross(h[joint], np.eye(3)[np.argmin(np.abs(h[joint]))])
+    h[joint] = Rotation.from_rotvec(by * about / np.linalg.norm(about)).apply(h[joint])
+    return chain_of(h, o, T_tip, chain.lower_limits, chain.upper_limits)
+
+
+def shifted(chain, joint, by, beside):
+    """The chain with one axis moved away from that of another joint."""
+    h, o, T_tip = axes_of(chain)
+    off = np.cross(h[joint], h[beside])
+    o[joint] += by * off / np.linalg.norm(off)
+    return chain_of(h, o, T_tip, chain.lower_limits, chain.upper_limits)
+
+
+def test_an_axis_that_is_a_little_off_leaves_its_class():
+    for seed in range(5):
+        arm = random_arm(PARALLEL, seed)
+        assert class_of(tilted(arm, 2, 1e-6)) is None
+        assert class_of(tilted(arm, 2, 1e-9)) == PARALLEL
+        assert class_of(shifted(arm, 5, 4e-6, beside=4)) is None
+        for kind in RELATIONS:
+            assert class_of(shifted(random_arm(kind, seed), 4, 4e-6, beside=5)) is None
+        # Beside these classes the quartic of general arms would lose its digits.
+        assert class_of(shifted(random_arm(RELATIONS[0], seed), 0, 4e-6, beside=1)) is None
+        assert class_of(tilted(random_arm(RELATIONS[1], seed), 0, 4e-6)) is None
+        for off in (
+            tilted(random_arm(RELATIONS[2], seed), 2, 4e-6),
+            shifted(random_arm(RELATIONS[3], seed), 2, 4e-6, beside=1),
+        ):
+            assert class_of(off) == named(RELATIONS[4])
+
+
+@pytest.mark.parametrize(
+    ("kinds", "relation"),
+    [("RRP", 0), ("RRP", 1), ("RPP", 4), ("PRP", 2), ("PPR", 4), ("PRR", 2), ("PRR", 3), ("PPP", 4), ("RPR", 0)],
+)
+def test_slides_among_the_first_three(kinds, relation):
+    chain = random_arm(RELATIONS[relation], 3, kinds)
+    if kinds in ("PRP", "RPR"):  # the slide must lie across the second axis, the hinge across the slide
+        h, o, T_tip = axes_of(chain)
+        h[2] = np.cross(h[1], h[0]) / np.linalg.norm(np.cross(h[1], h[0]))
+        chain = chain_of(h, o, T_tip, chain.lower_limits, chain.upper_limits, chain.joint_is_revolute)
+    assert class_of(chain) == f"{WRIST}, {kinds} arm"
+
+
+def test_a_hinge_and_a_slide_along_it_move_the_same_way_in_either_order():
+    chain = random_arm(RELATIONS[4], 3, "RPR")
+    h, o, T_tip = axes_of(chain)
+    assert class_of(chain) is None
+    h[:3] = h[0]
+    chain = chain_of(h, o, T_tip, chain.lower_limits, chain.upper_limits, chain.joint_is_revolute)
+    assert class_of(chain) == f"{WRIST}, PRR arm"
+
+
+def test_held_joints_are_left_out():
+    seven = ws.load_robot("kuka_iiwa14")
+    assert seven.closed_form is None
+    assert seven.held({seven.joint_names[2]: 0.4}).closed_form == "spherical wrist, axes 1 and 2 intersecting"
+    assert seven.held({seven.joint_names[6]: 0.4}).closed_form is not None
+    assert ws.load_robot("ur5e").held({"wrist_3_joint": 1.0}).closed_form == "three parallel axes"
+
+
+def test_arms_of_fewer_joints():
+    row = ws.DHRow
+    scara = [row(a=0.3, d=0.4), row(a=0.25, alpha_deg=180), row(joint="prismatic", limits=(0, 0.2)), row(d=0.05)]
+    quill = [*scara[:2], row(), row(joint="prismatic", limits=(0, 0.2))]
+    planar = [row(a=0.3), row(a=0.2), row(a=0.1)]
+    for rows, name in ((scara, "SCARA"), (quill, "SCARA"), (planar, "planar arm")):
+        table = ws.DHTable(convention="standard", rows=tuple(rows), name="arm")
+        assert ws.load_robot(table).closed_form == name
+
+
+def test_coupled_joints_and_arms_of_other_kinds_have_none():
+    row = ws.DHRow
+    offset_wrist = [row(alpha_deg=90, a=0.1, d=0.1 * k) for k in range(6)]
+    assert ws.load_robot(ws.DHTable(convention="standard", rows=tuple(offset_wrist), name="arm")).closed_form is None
+    chain = ws.load_robot("ur5e").chain
+    assert class_of(replace(chain, joint_scale=np.array([1.0, 1, 1, 1, 1, 2]))) is None
+    assert class_of(replace(chain, joint_source=np.array([0, 1, 2, 3, 4, 4]))) is None
