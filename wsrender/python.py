@@ -105,7 +105,8 @@ def analyze(
     ``refined_volume``: Half width of the headline's 95 % interval, relative to it [1]: of the volume that inverse
         kinematics finds reachable, of a planar workspace the area, of a line the length; under constraints of what it
         finds free, beside what they block; None: none is computed.
-    ``voxel_labels``: Whether every voxel is labelled reachable, unreachable or undecided by inverse kinematics.
+    ``voxel_labels``: Whether every voxel is labelled reachable, unreachable or undecided by inverse kinematics; under
+        constraints reachable in configurations that they admit, or blocked by one where others are found.
     ``surfaces``: Meshes of the workspace, each with its volume: "marching_cubes" of the voxels, "convex_hull" and
         {"alpha_shape": α in metres} of the picture's subsample, {"iso_surface": index, "fraction": μ} of the voxels.
         Where none is asked for, that of the voxels is among the files all the same.

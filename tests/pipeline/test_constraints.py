@@ -303,8 +303,6 @@ def test_headlines_are_of_what_is_free(added):
     assert headline["ci95"] == volume["free"]["ci95"] and headline["value"] == pytest.approx(3.80, rel=0.03)
     assert list(volume["blocked"]["by"]) == ["elbow_up"] and volume["blocked"]["value"] < 0.03 * 3.80
     assert "free volume" in result.summary() and "blocked volume" in result.summary()
-    with pytest.raises(InputError, match="voxel_labels: must be false with constraints"):
-        ws.analyze("ur5e", ws.Sobol(1 << 12), constraints={"elbow_up": True}, voxel_labels=True)
 
 
 @pytest.mark.parametrize("shapes", (["box"], ["sphere"], ["half_space"], [*SHAPES]), ids="+".join)

@@ -92,6 +92,7 @@ LISTED_BYTES, LISTED_MEMORY = 26.0, 27.0  # of a number that the document lists:
 SURFACE_BYTES = 750.0  # ply and glb of the voxels' surface, by the number of voxels to the power 2/3
 WRITTEN_PER_S = 6e7  # bytes of files
 DECIDED_PER_S = 2e5  # points decided by inverse kinematics on one core, most of them within reach
+SEARCHED_PER_S = 3e3  # targets under constraints, on one core, where many are blocked narrowly
 TRY_BYTES = 220.0  # of a try of inverse kinematics: start, target, what was found, and copies
 REFINED_S = 0.7  # of a refined volume with a tolerance of REFINED_TO, a six-joint arm on one core
 REFINED_TO = 0.01

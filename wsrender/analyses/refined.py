@@ -71,10 +71,17 @@ def divided(constraints: Sequence[Constraint]) -> tuple[Region | None, list[Cons
 
 
 def labelled(
-    chain: Kinematics, volume: VolumeData, seed: int, device: str, progress: Progress | None, threads: int | None
+    chain: Kinematics,
+    volume: VolumeData,
+    seed: int,
+    device: str,
+    progress: Progress | None,
+    threads: int | None,
+    constraints: Sequence[Constraint] = (),
 ) -> VolumeData:
     """The labels of a workspace's ``volume``."""
-    return label_voxels(chain, volume, seed=seed, device=device, threads=threads, progress=_named(progress, VOXELS))
+    options = {"seed": seed, "device": device, "threads": threads, "progress": _named(progress, VOXELS)}
+    return label_voxels(chain, volume, constraints, **options)
 
 
 def refined_together(

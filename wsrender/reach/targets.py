@@ -22,6 +22,7 @@ POSITION_TOLERANCE_M, ANGLE_TOLERANCE_RAD = 1e-5, 1e-5
 
 JOINT_LIMITS, OUT_OF_REACH = "joint limits", "out of reach"
 TOO_CLOSE, INCONCLUSIVE = "too close to the tolerance", "search not conclusive"
+NAMES = LABELS | {BLOCKED: "blocked"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,19 +91,14 @@ def reachable(
         device=device,
         threads=threads,
     )
-    names = LABELS | {BLOCKED: "blocked"}
     if constraints:
-        admission = Admission(subject.chain, constraints, device, threads)
-        found = AdmissibleSearch(solver, admission).decide(position, axes, progress)
-        reasons = reasons_of(solver, found, position, axes).astype(f"<U{max(26, *map(len, admission.names))}")
-        open_ = (found.label == UNDECIDED) & found.rejected.any(axis=1)
-        reasons[open_] = INCONCLUSIVE
-        blocked = found.label == BLOCKED
-        reasons[blocked] = np.array(["", *admission.names])[found.reason[blocked]]
+        search = AdmissibleSearch(solver, Admission(subject.chain, constraints, device, threads))
+        found = search.decide(position, axes, progress)
+        reasons = admissible_reasons(search, found, position, axes)
     else:
         found = solver.solve(position, axes, progress)
         reasons = reasons_of(solver, found, position, axes)
-    labels = np.array([names[label] for label in found.label.tolist()], dtype="<U11")
+    labels = np.array([NAMES[label] for label in found.label.tolist()], dtype="<U11")
     rejected = found.rejected if isinstance(found, Admissible) else None
     return Reachability(found.q, found.distance_m, found.angle_rad, labels, reasons, rejected)
 
@@ -152,4 +148,16 @@ def reasons_of(
     reasons[undecided] = np.where(close[undecided], TOO_CLOSE, INCONCLUSIVE)
     held = solver.held_by_limits(found.q[missed], position[missed], None if axes is None else axes[missed])
     reasons[missed] = np.where(held, JOINT_LIMITS, OUT_OF_REACH)
+    return reasons
+
+
+def admissible_reasons(
+    search: AdmissibleSearch, found: Admissible, position: np.ndarray, axes: np.ndarray | None = None
+) -> np.ndarray:
+    """Why targets are not free, as in `Reachability`, (N,) text: of blocked ones the constraint."""
+    names = np.array(["", *search.admission.names])
+    reasons = reasons_of(search.solver, found, position, axes).astype(f"<U{max(26, *map(len, names))}")
+    reasons[(found.label == UNDECIDED) & found.rejected.any(axis=1)] = INCONCLUSIVE
+    blocked = found.label == BLOCKED
+    reasons[blocked] = names[found.reason[blocked]]
     return reasons

@@ -11,6 +11,7 @@ from wsrender.analyses.cost import (
     LISTED_BYTES,
     LISTED_MEMORY,
     SEARCHED_BYTES,
+    SEARCHED_PER_S,
     WRITTEN_PER_S,
     Asks,
     Cost,
@@ -29,7 +30,6 @@ from wsrender.volume.table import Table
 POSES_PER_S = 1.2e4  # of one core, where many are unreachable
 TABLE_BYTES = 60  # of a target in the table beside its configuration
 LABEL_BYTES = 220  # of a target: its label and reason as text, residuals, and copies
-SEARCHED_PER_S = 3e3  # targets under constraints, of one core, where many are blocked narrowly
 LABELS = ("reachable", "blocked", "unreachable", "undecided")
 DRAWN = 3  # configurations in the picture of the robot
 

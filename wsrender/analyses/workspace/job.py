@@ -31,7 +31,8 @@ class WorkspaceJob(IndexChoices, Constrained, Arm, JobDocument):
     reachable, of a planar workspace the area, of a line the length; under constraints of what it finds free, beside
     what they block; null: none is computed."""
     voxel_labels: StrictBool = False
-    """Whether every voxel is labelled reachable, unreachable or undecided by inverse kinematics."""
+    """Whether every voxel is labelled reachable, unreachable or undecided by inverse kinematics; under constraints
+    reachable in configurations that they admit, or blocked by one where others are found."""
     surfaces: Surfaces = ()
     """Meshes of the workspace, each with its volume: "marching_cubes" of the voxels, "convex_hull" and {"alpha_shape":
     α in metres} of the picture's subsample, {"iso_surface": index, "fraction": μ} of the voxels. Where none is asked

@@ -72,7 +72,7 @@ def workspace_draft(job: WorkspaceJob, robot: Robot, found: WorkspacePartial, th
             "outer": volumes.outer,
             **measures["volume_m3"],
         },
-        "voxel_labels": counts(labels) if labels else None,
+        "voxel_labels": counts(labels, pipeline.constraints) if labels else None,
         "surfaces": surface_entries,
         "bounds_m": {
             "lower": [float(v) for v in partial.minimum[:3] + pipeline.origin],

@@ -12,6 +12,8 @@ from wsrender.analyses.contract import Analysis, Draft, Progress, Settled, Tell
 from wsrender.analyses.cost import (
     DECIDED_PER_S,
     DOCUMENT_BYTES,
+    SEARCHED_BYTES,
+    SEARCHED_PER_S,
     WRITTEN_PER_S,
     Cost,
     check_memory,
@@ -33,7 +35,7 @@ from wsrender.analyses.workspace.result import PICTURE_SAMPLES, workspace_draft
 from wsrender.documents.options import IsoSurface
 from wsrender.documents.sampling import Converge, Grid
 from wsrender.engine import Partial, SweepPlan, devices_of, fitted, merge, sweep
-from wsrender.engine.voxel_data import volume_data
+from wsrender.engine.voxel_data import admission_data, volume_data
 from wsrender.errors import InputError, NotConvergedError
 from wsrender.global_indices import joint_means, workspace_mean
 from wsrender.indices.index_catalogue import default_statistics, resolve
@@ -87,8 +89,6 @@ class WorkspaceAnalysis(Analysis):
         self._check(pipeline)
         plan = SweepPlan(pipeline)
         fitted(block, plan.shape, devices_of(device), sampling.count)  # raises where a sweep would
-        if job.voxel_labels and (job.constraints is not None or job.environment is not None):
-            raise InputError("voxel_labels", "must be false with constraints: labels say what is reached without them")
         return WorkspaceSettled(
             device,
             target,
@@ -183,6 +183,7 @@ class WorkspaceAnalysis(Analysis):
             expected, block = self._expected
             near = min(27 * voxels, (np.cbrt(expected) + 2) ** 3)
             labels = LABELLED_BYTES * near + solved_bytes(near) + LABEL_BYTES * block
+            labels += SEARCHED_BYTES * bool(self.constraints)
         if self.constraints:
             kept += ROWS_HELD * self._picture_bytes
         return float(max(swept.memory_bytes, kept + self.refined_cost[0] + labels))
@@ -201,7 +202,8 @@ class WorkspaceAnalysis(Analysis):
         seconds += swept.seconds + self.refined_cost[1]
         if job.voxel_labels:
             near = (np.cbrt(voxels) + 2) ** 3
-            files, seconds = files + 16.0 * (np.cbrt(block) + 2) ** 3, seconds + near / DECIDED_PER_S
+            rate = SEARCHED_PER_S if self.constraints else DECIDED_PER_S
+            files, seconds = files + 16.0 * (np.cbrt(block) + 2) ** 3, seconds + near / rate
         return Cost(swept.samples, memory, float(files), float(seconds + files / WRITTEN_PER_S), swept.asks)
 
     @property
@@ -295,9 +297,11 @@ class WorkspaceAnalysis(Analysis):
 
     def _labelled(self, partial: WorkspacePartial, progress: Progress | None, execution: Execution) -> VolumeData:
         """The labels of the voxels."""
-        counts = volume_data(replace(partial.pipeline, statistics=frozenset()), partial.sweep, {})
+        pipeline = replace(partial.pipeline, statistics=frozenset())
+        constraints, seed = pipeline.constraints, pipeline.sampling.seed
+        drawn = admission_data(pipeline, partial.sweep) if constraints else volume_data(pipeline, partial.sweep, {})
         chain = self.robot.chain.held(self.job.sampling.locked)
-        return labelled(chain, counts, partial.pipeline.sampling.seed, self.device, progress, execution.threads)
+        return labelled(chain, drawn, seed, self.device, progress, execution.threads, constraints)
 
     def result(self, partial: WorkspacePartial, execution: Execution) -> Draft:
         """Map, volume, global values and the entries of the document."""
