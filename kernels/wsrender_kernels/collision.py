@@ -402,7 +402,8 @@ _NARROW = """
         for (it = 0; it < 40; it++) {
             for (int k = 0; k < 3; k++) { t1[k] = v2[k] - v1[k]; t2[k] = v3[k] - v1[k]; }
             cross(t1, t2, n); if (!unit(n)) return 2;
-            if (dot(n, v1) > eps) return 1;
+            // All three corners beyond the origin: of a thin portal the normal is known badly.
+            if (wp::min(wp::min(dot(n, v1), dot(n, v2)), dot(n, v3)) > eps) return 1;
             farthest(n, v4); e = dot(v4, n); if (e < -eps) return 0;
             if (e - dot(v3, n) < real(@STALLED)) return 2;
             cross(v4, v0, t1);

@@ -89,9 +89,10 @@ def program(pairs: Pairs, chain: Chain, distances: Distances | None = None) -> P
 
 
 def _extent(pairs: Pairs, chain: Chain) -> float:
-    """Upper bound of the coordinates that any solid's points have [m]."""
+    """Upper bound of the coordinates that points have of any solid but half-spaces, and of these their origins' [m]."""
     links = np.linalg.norm(chain.T_joint[:, :3, 3], axis=1).sum() + chain.largest_slide.sum()
-    own = [np.linalg.norm(solid.T[:3, 3]) + min(solid.bounding_radius, links) for solid in pairs.solids]
+    sizes = [solid.bounding_radius if np.isfinite(solid.bounding_radius) else 0.0 for solid in pairs.solids]
+    own = [np.linalg.norm(solid.T[:3, 3]) + size for solid, size in zip(pairs.solids, sizes, strict=True)]
     return float(links + max(own, default=0.0))
 
 
