@@ -1,0 +1,248 @@
+"""Closed-form inverse kinematics against forward kinematics, arms of every class made at random."""
+
+from itertools import product
+
+import numpy as np
+import pytest
+import warp as wp
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
+from wsrender_kernels.closed_form import closed_form_kernel
+
+import wsrender as ws
+from tests.reference import closed_form_inverse
+from tests.reference.arms_by_axes import PARALLEL, RELATIONS, axes_of, chain_of, random_arm, reversed_chain
+from wsrender.engine.closed_form import closed_postures, shape_of
+from wsrender.reach.moving_joints import moving_joints
+from wsrender.robots.closed_form import ClosedForm
+from wsrender.robots.reachable_box import reachable_box
+
+COUNT = 4000  # poses of an example
+EXACT, SAME = 1e-9, 1e-6  # residuals [m, 1], and postures [rad, m], where no root is double
+OFF_LIMITS = (0.0, 1e-5, 1e-4, 1e-3, 1e-2)  # shares of ranges
+SLIDES = ("RRP 0", "RRP 1", "RPP 4", "PRP 2", "PPR 4", "PRR 2", "PRR 3", "PPP 4", "RPR 0")
+
+
+def with_slides(case):
+    """An arm whose first three joints are of these kinds; where a slide must lie across an axis, it does."""
+    kinds, relation = case.split()
+    chain = random_arm(RELATIONS[int(relation)], 3, kinds)
+    if kinds in ("PRP", "RPR"):
+        h, o, T_tip = axes_of(chain)
+        h[2] = np.cross(h[1], h[0]) / np.linalg.norm(np.cross(h[1], h[0]))
+        chain = chain_of(h, o, T_tip, chain.lower_limits, chain.upper_limits, chain.joint_is_revolute)
+    return chain
+
+
+def anywhere(chain, count, seed=0):
+    return np.random.default_rng(seed).uniform(chain.lower_limits, chain.upper_limits, (count, chain.n))
+
+
+def near_limits(chain, count, seed=0):
+    """Half of the coordinates stand at or close to a limit."""
+    random = np.random.default_rng(seed)
+    q, shape = anywhere(chain, count, seed), (count, chain.n)
+    off = (chain.upper_limits - chain.lower_limits) * random.choice(OFF_LIMITS, shape)
+    at = np.where(random.integers(0, 2, shape), chain.upper_limits - off, chain.lower_limits + off)
+    return np.where(random.random(shape) < 0.5, at, q)
+
+
+def postures(chain, T, **options):
+    """What is found, all postures (N, 8, n), and which of them there are (N, 8)."""
+    closed = ClosedForm.of(chain)
+    found = closed_postures(closed, T, keep=True, device="cpu", **options)
+    return found, closed.configurations(found.rows[..., :12]), found.rows[..., 12] >= -found.margin
+
+
+def apart(chain, q, others):
+    """Largest difference of any coordinate, hinges by turns, (..., ) [rad, m]."""
+    off = np.abs(q - others)
+    turned = np.abs(np.remainder(off + np.pi, 2 * np.pi) - np.pi)
+    return np.where(chain.revolute, turned, off).max(axis=-1)
+
+
+def check(chain, q, *, alone=True):
+    """Every pose is found to be reached, by the posture that made it among others, which all reach it."""
+    T = chain.poses(q)
+    found, solutions, there = postures(chain, T)
+    assert not (found.slack < -found.margin).any()
+    assert (found.count[found.slack > found.margin] > 0).all()
+    assert ((solutions >= chain.lower_limits) & (solutions <= chain.upper_limits)).all()
+    if alone:
+        nearest = np.where(there, apart(chain, q[:, None], solutions), np.inf).min(axis=1)
+        assert (nearest < SAME).all()
+        assert not found.flags.any()
+    clear = np.nonzero(there & (found.rows[..., 12] > found.margin))
+    assert chain.poses(solutions[clear]) == pytest.approx(T[clear[0]], abs=EXACT)
+
+
+@pytest.mark.parametrize("kind", [*RELATIONS, PARALLEL])
+@settings(max_examples=4, deadline=None, derandomize=True)
+@given(seed=st.integers(0, 2**32 - 1), backwards=st.booleans())
+def test_arms_of_every_class(kind, seed, backwards):
+    chain = random_arm(kind, seed)
+    chain = reversed_chain(chain) if backwards else chain
+    check(chain, anywhere(chain, COUNT, seed))
+    q = near_limits(chain, COUNT, seed)
+    check(chain, q, alone=False)
+    found = closed_postures(ClosedForm.of(chain), chain.poses(q), device="cpu", precision="float32")
+    missed = found.slack < -found.margin  # of which float64 has the last word
+    assert missed.mean() < (0.1 if kind == "general arm" else 1e-3)
+
+
+@pytest.mark.parametrize("case", SLIDES)
+def test_arms_with_slides(case):
+    chain = with_slides(case)
+    check(chain, anywhere(chain, COUNT))
+    check(chain, near_limits(chain, COUNT), alone=False)
+
+
+def at_singular_postures(chain, count):
+    """Coordinates at limits, in the middle, and at multiples of 45°, a little off them or not."""
+    random = np.random.default_rng(0)
+    columns = []
+    for lower, upper, turns in zip(chain.lower_limits, chain.upper_limits, chain.revolute, strict=True):
+        values = [lower, upper, (lower + upper) / 2]
+        values += [a for a in np.arange(-8, 9) * np.pi / 4 if turns and lower <= a <= upper]
+        columns.append(random.choice(values, count))
+    off = random.choice([0.0, 0.0, 1e-12, 1e-9, 1e-7, 1e-5], (count, chain.n)) * random.choice(
+        [-1, 1], (count, chain.n)
+    )
+    return np.clip(np.array(columns).T + off, chain.lower_limits, chain.upper_limits)
+
+
+@pytest.mark.parametrize("name", ["ur5e", "puma560", "gao_6r", "stanford_arm", "slave_5r", "scara"])
+def test_singular_poses_are_not_called_unreachable(name):
+    chain = ws.load_robot(name).chain
+    q = at_singular_postures(chain, 2 * COUNT)
+    check(chain, q, alone=False)
+    found, _, _ = postures(chain, chain.poses(q))
+    if name == "puma560":  # the axes of others' wrists are never quite in line
+        in_line = (np.abs(np.sin(q[:, 4])) < 1e-11) & (found.slack > found.margin)
+        assert in_line.mean() > 0.01
+        assert ((found.flags & 1 > 0) >= in_line).all()
+
+
+def test_a_wrist_in_line_is_reached_where_two_arcs_meet():
+    """Against 20,000 values of joint 4."""
+    chain = random_arm(RELATIONS[0], 1)
+    h, o, T_tip = axes_of(chain)
+    h[4] = np.cross(h[3], [1.0, 0, 0]) / np.linalg.norm(np.cross(h[3], [1.0, 0, 0]))
+    h[5] = h[3]
+    random, sweep = np.random.default_rng(0), np.linspace(0, 1, 20_001)
+    for flipped, _ in product((0.0, np.pi), range(12)):
+        middle, half = random.uniform(-2, 2, 6), np.array([3.0, 3.0, 3.0, *random.uniform(0.1, 1.0, 3)])
+        middle[4] = flipped
+        arm = chain_of(h, o, T_tip, middle - half, middle + half)
+        q = np.tile(middle, (50, 1))
+        q[:, 3] += random.uniform(-3, 3, 50)
+        T = arm.poses(q)
+        found, solutions, there = postures(arm, T)
+        four = middle[3] - half[3] + 2 * half[3] * sweep
+        sign = 1.0 if flipped == 0.0 else -1.0
+        six = sign * (q[:, 3, None] - four) + middle[5]
+        off = np.abs(np.remainder(six - middle[5] + np.pi, 2 * np.pi) - np.pi).min(axis=1)
+        clear = np.abs(off - half[5]) > 1e-3
+        assert ((found.slack > 0) == (off < half[5]))[clear].all()
+        assert (there.any(axis=1) == (off < half[5]))[clear].all()
+        pose, branch = np.nonzero(there)
+        assert (found.flags[pose] == 1).all()
+        assert arm.poses(solutions[pose, branch]) == pytest.approx(T[pose], abs=1e-7)
+
+
+@pytest.mark.parametrize("name", ["ur5e", "puma560", "stanford_arm"])
+def test_postures_are_counted_with_their_windings(name):
+    """Against all postures of the arm without limits, each turned by as many turns as the limits allow."""
+    chain = ws.load_robot(name).chain
+    T = chain.poses(anywhere(chain, COUNT))
+    found, _, _ = postures(chain, T)
+    _, free, there = postures(chain, T, unlimited=True)
+    count = there.astype(int)
+    for k in range(chain.n):
+        turns = np.arange(-4, 5) * 2 * np.pi if chain.revolute[k] else np.zeros(1)
+        values = free[..., k, None] + turns
+        count = count * ((values > chain.lower_limits[k]) & (values < chain.upper_limits[k])).sum(axis=-1)
+    clear = found.slack > 1e-6
+    assert clear.mean() > 0.9
+    doubt = np.abs(np.where(there, found.rows[..., 12], 1)).min(axis=1) < 1e-6
+    agreeing = found.count == count.sum(axis=1)
+    assert agreeing[clear & ~doubt].all()
+
+
+def in_the_box(chain, count):
+    low, high = reachable_box(chain, chain.lower_limits, chain.upper_limits)
+    T = np.tile(np.eye(4), (count, 1, 1))
+    T[:, :3, 3] = np.random.default_rng(0).uniform(low, high, (count, 3))
+    T[:, :3, :3] = Rotation.random(count, random_state=1).as_matrix()
+    return T
+
+
+@pytest.mark.parametrize("name", ["ur5e", "puma560", "spherical"])
+def test_poses_anywhere_against_other_closed_forms(name, precision, device):
+    chain = ws.load_robot(name).chain
+    T = in_the_box(chain, 5 * COUNT)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        if name == "ur5e":
+            solutions = closed_form_inverse.ur5e(T[:, :3, 3], T[:, :3, :3])
+        else:
+            arm = {"puma560": closed_form_inverse.puma560_arm, "spherical": closed_form_inverse.spherical_arm}[name]
+            solutions = closed_form_inverse.with_spherical_wrist(name, arm(T[:, :3, 3]), T[:, :3, :3])
+    limits = chain.lower_limits, chain.upper_limits, chain.revolute
+    truth = closed_form_inverse.within_limits(solutions, *limits).any(axis=1)
+    found = closed_postures(ClosedForm.of(chain), T, device=device, precision=precision)
+    decided = np.abs(found.slack) > found.margin
+    assert decided.mean() > 0.99
+    assert ((found.slack > 0) == truth)[decided].all()
+    assert ((found.count > 0) == truth)[decided].all()
+
+
+def test_axes_and_positions():
+    """What a target leaves open turns freely: the tip's z alone for UR's wrist, nothing but the point for Puma's."""
+    turns = Rotation.from_rotvec(np.random.default_rng(1).uniform(-3, 3, (COUNT, 1)) * [0, 0, 1]).as_matrix()
+    for name, kind in (("ur5e", "axis"), ("puma560", "axis"), ("puma560", "position"), ("stanford_arm", "axis")):
+        chain = ws.load_robot(name).chain
+        T = chain.poses(anywhere(chain, COUNT))
+        T[:, :3, :3] = T[:, :3, :3] @ turns if kind == "axis" else Rotation.random(COUNT, random_state=2).as_matrix()
+        part, kept = moving_joints(chain, axis=kind == "axis")
+        closed = ClosedForm.of(part, kind)
+        found = closed_postures(closed, T, keep=True, device="cpu")
+        assert not (found.slack < -found.margin).any()
+        pose, branch = np.nonzero(found.rows[..., 12] > found.margin)
+        back = part.poses(closed.configurations(found.rows[pose, branch, :12]))
+        columns = [2, 3] if kind == "axis" else [3]
+        assert back[:, :3, columns] == pytest.approx(T[pose][:, :3, columns], abs=EXACT)
+        assert len(kept) == part.n
+
+
+def test_a_pose_is_decided_by_itself():
+    chain = ws.load_robot("puma560").chain
+    closed, T = ClosedForm.of(chain), in_the_box(chain, 5000)
+    whole = closed_postures(closed, T, device="cpu", threads=1)
+    order = np.random.default_rng(0).permutation(len(T))[:1234]
+    part = closed_postures(closed, T[order], keep=True, device="cpu", threads=2)
+    assert (part.slack == whole.slack[order]).all()
+    assert (part.count == whole.count[order]).all() and (part.flags == whole.flags[order]).all()
+
+
+def test_what_is_not_a_number_is_undecided():
+    chain = ws.load_robot("ur5e").chain
+    T = chain.poses(anywhere(chain, 3))
+    T[1, 0, 3] = np.nan
+    found = closed_postures(ClosedForm.of(chain), T, device="cpu")
+    assert not abs(found.slack[1]) > found.margin and found.count[1] == 0
+    assert (found.slack[[0, 2]] > found.margin).all()
+
+
+@pytest.mark.parametrize("name", ["ur5e", "puma560", "stanford_arm"])
+def test_kernels_compile_for_cuda_without_a_gpu(name, tmp_path):
+    shape = shape_of(ClosedForm.of(ws.load_robot(name).chain), "float64", keep=True)
+    module = closed_form_kernel(shape, cuda=True).module
+    wp.compile_aot_module(module, device=None, arch=90, module_dir=str(tmp_path), use_ptx=True)
+    assert list(tmp_path.glob("*.ptx"))
+
+
+def test_no_poses():
+    closed = ClosedForm.of(ws.load_robot("ur5e").chain)
+    found = closed_postures(closed, np.zeros((0, 4, 4)), keep=True, device="cpu")
+    assert found.rows is not None and found.rows.shape == (0, 8, 13) and len(found.slack) == 0
