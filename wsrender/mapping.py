@@ -12,6 +12,7 @@ from scipy.ndimage import distance_transform_edt, map_coordinates
 from scipy.optimize import differential_evolution
 
 from wsrender.errors import ResourceError
+from wsrender.geometry.alpha_shape import AlphaShape
 from wsrender.volume.lattice import LatticeBlock, block_around, check_voxels
 
 MOST_VOXELS = 2**30  # one byte each
@@ -21,6 +22,7 @@ SEARCH_POINTS = 600  # of the slave, in the search over several numbers; the res
 GROWTH, SMALLEST_STEP = 3e-4, 2e-4  # of the scales that makes a move of the offset worth it; steps over the extent
 WAYS = np.array([way for way in np.ndindex(3, 3, 3) if way != (1, 1, 1)]) - 1.0  # of a move: along edges and diagonals
 FIELD_CELLS = 48  # along the mean edge of the field of distances
+SERVED, OUT_OF_REACH = 0, -1  # what a labelled set says of a target; from 1: the constraint that blocks it
 INWARD, OUTWARD, LAST_STEPS = 0.5, 1.2, 71  # factors on the search's result among which the exact test looks
 
 
@@ -97,6 +99,85 @@ class VoxelSet:
     def volume_m3(self) -> float:
         """Volume of the voxels."""
         return int(np.count_nonzero(self.occupied)) * self.block.voxel_size_m**3
+
+
+@dataclass(frozen=True, eq=False)
+class ServedShape:
+    """The part of an alpha shape of labelled positions that lies next to the served ones.
+
+    Of each tetrahedron every point goes with the corner that weighs most, in barycentric coordinates; the ``reasons``
+    (N,) int8 of the shape's points are SERVED, or the number of the constraint that blocks them.
+    """
+
+    shape: AlphaShape
+    reasons: np.ndarray
+
+    def reason(self, points: np.ndarray) -> np.ndarray:
+        """Of each point (N, 3) [m] SERVED, the constraint that blocks it, or OUT_OF_REACH, (N,) int8."""
+        delaunay, found = self.shape.located, np.full(len(points), OUT_OF_REACH, np.int8)
+        inside = np.flatnonzero(self.shape.contains(points))
+        own = delaunay.find_simplex(points[inside])
+        to = delaunay.transform[own]
+        weights = np.einsum("tij,tj->ti", to[:, :3], points[inside] - to[:, 3])
+        weights = np.column_stack([weights, 1 - weights.sum(axis=1)])
+        corner = np.take_along_axis(delaunay.simplices[own], weights.argmax(axis=1)[:, None], axis=1)[:, 0]
+        found[inside] = self.reasons[corner]
+        return found
+
+    def contains(self, points: np.ndarray) -> np.ndarray:
+        """Whether each point (N, 3) [m] is served, (N,) bool."""
+        return self.reason(points) == SERVED
+
+    @property
+    def volume_m3(self) -> float:
+        """Volume of the served part: a corner has a quarter of its tetrahedron."""
+        return float(self.shape.sixfold_m3 @ self._served_corners.mean(axis=1) / 6)
+
+    def served(self) -> AlphaShape:
+        """The tetrahedra of served corners alone."""
+        kept = self.shape.kept.copy()
+        kept[kept] = self._served_corners.all(axis=1)
+        return replace(self.shape, kept=kept)
+
+    @property
+    def _served_corners(self) -> np.ndarray:
+        """Whether the corners of every kept tetrahedron are served, (K, 4)."""
+        return self.reasons[self.shape.delaunay.simplices[self.shape.kept]] == SERVED
+
+
+@dataclass(frozen=True, eq=False)
+class ServedVoxels:
+    """Voxels by what is said of most positions in them; ``reasons`` int8 has the shape of ``block``."""
+
+    block: LatticeBlock
+    reasons: np.ndarray
+
+    @classmethod
+    def of(cls, points: np.ndarray, reasons: np.ndarray, voxel_size_m: float) -> "ServedVoxels":
+        """Voxels of points (N, 3) [m], each SERVED or blocked by a constraint (N,); of a tie, served."""
+        whole = VoxelSet.of(points, voxel_size_m)
+        at = np.ravel_multi_index(tuple(_cells(points, whole.block).T), whole.block.shape)
+        pairs, counts = np.unique(np.stack([at, reasons]), axis=1, return_counts=True)
+        order = np.lexsort((-pairs[1], counts))  # what is written last stays: most positions, then what is served
+        found = np.full(whole.block.shape, OUT_OF_REACH, np.int8)
+        found.ravel()[pairs[0, order]] = pairs[1, order]
+        return cls(whole.block, found)
+
+    def reason(self, points: np.ndarray) -> np.ndarray:
+        """Of each point (N, 3) [m] SERVED, the constraint that blocks it, or OUT_OF_REACH, (N,) int8."""
+        cells = _cells(points, self.block)
+        inside = ((cells >= 0) & (cells < self.block.shape)).all(axis=1)
+        cells[~inside] = 0
+        return np.where(inside, self.reasons[tuple(cells.T)], np.int8(OUT_OF_REACH))
+
+    def contains(self, points: np.ndarray) -> np.ndarray:
+        """Whether each point (N, 3) [m] is served, (N,) bool."""
+        return self.reason(points) == SERVED
+
+    @property
+    def volume_m3(self) -> float:
+        """Volume of the served voxels."""
+        return int(np.count_nonzero(self.reasons == SERVED)) * self.block.voxel_size_m**3
 
 
 def _cells(points: np.ndarray, block: LatticeBlock) -> np.ndarray:

@@ -6,6 +6,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field, StrictBool
 
 from wsrender.documents.arm import Arm, ArmPath
+from wsrender.documents.constraints import Constrained
 from wsrender.documents.document import Document
 from wsrender.documents.format import JobDocument
 from wsrender.documents.mechanism import MechanismSpec
@@ -18,14 +19,18 @@ from wsrender.documents.sampling import BoundaryBiased, Grid, Random, Sampling, 
 MOST_POINTS = 1_000_000
 
 
-class MappedRobot(Arm):
-    """A master or slave, and the configurations whose positions stand for its workspace."""
+class MappedRobot(Constrained, Arm):
+    """A master or slave, and the configurations whose positions stand for its workspace.
+
+    Under constraints positions count that an admitted configuration reaches.
+    """
 
     sampling: Sampling = Sobol(20_000)
     """How its joint space is sampled."""
 
     def conflicts(self) -> Iterator[tuple[str, str]]:
         """(field, message) of every pair of fields that do not go together."""
+        yield from super().conflicts()
         if not isinstance(self.sampling, Grid | Random | Sobol | BoundaryBiased):
             yield "sampling", 'must not be "converge": the positions of one sampling are mapped'
 

@@ -12,7 +12,9 @@ def facts(document: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     """The mapping that was found, or how near the search came."""
     mapping = document["mapping"]
     scale, offset = (", ".join(f"{number:.4g}" for number in mapping[name]) for name in ("scale", "offset_m"))
+    why = ", ".join(f"{count:,} {reason}" for reason, count in mapping.get("reasons", {}).items() if count)
     outside = "all points inside" if mapping["succeeded"] else f"{mapping['failing_points']:,} points outside"
+    outside += f" ({why})" if why else ""
     yield "mapping", f"{outside}; scale {scale}; offset {offset} m; efficiency {mapping['efficiency']:.4g}"
     search = document.get("search") or {"found": True}
     if not search["found"]:

@@ -1,6 +1,6 @@
 """The analysis ``master_slave_mapping``: a slave's workspace in its master's ([WSR] III.D)."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from typing import Any
@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from wsrender.analyses.contract import Analysis, Draft, Settled, Tell
-from wsrender.analyses.cost import DOCUMENT_BYTES, Asks, Cost, pictures_cost
+from wsrender.analyses.cost import DOCUMENT_BYTES, SEARCHED_BYTES, Asks, Cost, pictures_cost
 from wsrender.analyses.execution import Execution
 from wsrender.analyses.headline import no_headline
 from wsrender.analyses.master_slave_mapping.job import (
@@ -25,20 +25,36 @@ from wsrender.engine import sampled_positions
 from wsrender.errors import InputError, ResourceError
 from wsrender.geometry.alpha_shape import AlphaShape
 from wsrender.geometry.surfaces import surface_entry
-from wsrender.mapping import LinearMapping, MeasuredSet, VoxelSet, best_mapping, largest_factor, scale_curve
+from wsrender.mapping import (
+    OUT_OF_REACH,
+    LinearMapping,
+    MeasuredSet,
+    ServedShape,
+    ServedVoxels,
+    VoxelSet,
+    best_mapping,
+    largest_factor,
+    scale_curve,
+)
 from wsrender.mechanisms.hybrid import workspace_points
 from wsrender.notices import Notice
+from wsrender.pipeline.constraints.constraint import Constraint
 from wsrender.pipeline.pipeline import tip_pipeline
 from wsrender.pipeline.sampling import plan_sampling
+from wsrender.reach.served_positions import served_positions
 from wsrender.robot import Robot
+from wsrender.robot.constraints import check_admitted, constraints_of_job, samples_entry
 from wsrender.robots.reachable_box import reachable_box
 from wsrender.volume.lattice import block_around
 from wsrender.volume.table import Table
 
+SIDES = ("master", "slave")
 POSITIONS = {"position": "m", "slave_position": "m"}
 POINTS_PER_S = 1.2e4  # one CPU core, from the configuration to the end of an alpha shape
 SHAPE_BYTES, POINT_BYTES = 3300.0, 350.0  # of a point: while its alpha shape is made, and beside
 FILE_BYTES, FAILING_BYTES = 26.0, 45.0  # of a point; of the slave's, of which some fail
+SEARCHED_PER_S = 3e3  # positions of rejected samples, of one core
+REJECTED = 0.2  # the share of samples for whose positions the estimate expects a search
 SURFACE_BYTES = 700.0  # of an alpha shape's ply and glb, by the square root of its points
 
 Source = Robot | MappedMechanism | np.ndarray
@@ -52,10 +68,10 @@ class MasterSlaveMappingAnalysis(Analysis):
     def prepare(self, device: str, target: str) -> Settled:
         """Raises InputError for points that cannot be read, ResourceError for more points than shapes are made of."""
         counts = [_count(self.job, side, source) for side, source in enumerate(self.sources)]
-        for name, count in zip(("master", "slave"), counts, strict=True):
+        for name, count in zip(SIDES, counts, strict=True):
             if count > MOST_POINTS:
                 raise ResourceError(name, f"has {count:.4g} points; at most {MOST_POINTS:.4g} are mapped")
-        _ = self._voxels
+        _ = self._voxels, self.constraints
         return Settled(device, target, ((0, sum(counts)),))
 
     @cached_property
@@ -69,6 +85,13 @@ class MasterSlaveMappingAnalysis(Analysis):
             return of if isinstance(of, MappedMechanism) else next(robots)
 
         return source(self.job.master), source(self.job.slave)
+
+    @cached_property
+    def constraints(self) -> dict[str, tuple[Constraint, ...]]:
+        """What the configurations of each side must satisfy; raises InputError."""
+        return {
+            name: _constraints(getattr(self.job, name), of, name) for name, of in zip(SIDES, self.sources, strict=True)
+        }
 
     @property
     def samples(self) -> int:
@@ -86,7 +109,9 @@ class MasterSlaveMappingAnalysis(Analysis):
         asks = Asks("slave" if each[1] > each[0] else "master", "take fewer points")
         if self._voxels > shapes:
             asks = Asks("containment.voxel_size_m", voxel_size_m=self.job.containment.voxel_size_m)
-        return Cost(points, shapes + self._voxels, files, points / POINTS_PER_S + seconds, asks)
+        searched = sum(count for name, count in zip(SIDES, each, strict=True) if self.constraints[name])
+        seconds += points / POINTS_PER_S + REJECTED * searched / SEARCHED_PER_S
+        return Cost(points, max(shapes + self._voxels, SEARCHED_BYTES * bool(searched)), files, seconds, asks)
 
     @cached_property
     def _voxels(self) -> float:
@@ -94,21 +119,28 @@ class MasterSlaveMappingAnalysis(Analysis):
 
         Those of a mechanism are counted when its points are known.
         """
-        sides = zip(("master", "slave"), self.sources, strict=True)
+        sides = zip(SIDES, self.sources, strict=True)
         return float(sum(_voxels_of(self.job.containment, name, source) for name, source in sides))
 
     def compute(self, shard: int, execution: Execution, tell: Tell) -> PartialResult:
-        """Points of both robots, the mapping of each offset, and the curve of the best."""
-        master, slave = (self._points(source, side, execution.threads) for side, source in enumerate(self.sources))
-        space, own = (_space(points, self.job.containment) for points in (master, slave))
+        """Points of both robots, the mapping of each offset, and the curve of the best.
+
+        Under constraints the points are the decided ones, with ``master_reasons`` and ``slave_reasons``.
+        """
+        arrays, samples = dict[str, np.ndarray](), {}
+        for side, name in enumerate(SIDES):
+            found, samples[name] = self._points(side, execution.threads)
+            arrays |= {f"{name}{end}": rows for end, rows in found.items()}
+        space, own = (self._space(arrays, name) for name in SIDES)
+        master, slave = (_served(arrays, name) for name in SIDES)
         given = [self._given(np.array(offset)) for offset in self.job.offsets_m]
         found = [self._found(space, master, slave, each) for each in given]
         mappings = [sought or own_scale for sought, own_scale in zip(found, given, strict=True)]
-        tested = [_entry(mapping, space, own, slave) for mapping in mappings]
+        tested = [_entry(mapping, space, own, slave, self.constraints["master"]) for mapping in mappings]
         # What the search found first; of it the largest that succeeds, else the one with most points inside.
         best = max(range(len(tested)), key=lambda k: (found[k] is not None, *_merit(tested[k])))
         about = {"best": best, "offsets": tested, "master_m3": space.volume_m3, "slave_m3": own.volume_m3}
-        arrays = {"master": master, "slave": slave}
+        about["admission"] = {name: entry for name, entry in samples.items() if entry}
         if self.job.search is not None:
             curve = scale_curve(space, slave, _of_scale_one(mappings[best]), _scales(self.job.search))
             arrays |= {"scales": curve.factors, "inside": curve.inside}
@@ -118,19 +150,20 @@ class MasterSlaveMappingAnalysis(Analysis):
 
     def result(self, partial: PartialResult, execution: Execution) -> Draft:
         """The best mapping, the others beside it, the points that fail, and the shapes."""
-        about, master = partial.facts, partial["master"]
+        about, master, slave = partial.facts, *(_served(partial.arrays, name) for name in SIDES)
         best = about["offsets"][about["best"]]
         mapping = LinearMapping(np.array(best["scale"]), self._rotation(), np.array(best["offset_m"]))
-        mapped = mapping.apply(partial["slave"])
-        inside = _space(master, self.job.containment).contains(mapped)
-        meshes = {
-            "master": AlphaShape.of(master, self.job.containment.alpha_m).mesh(),
-            "slave": AlphaShape.of(mapped).mesh(),
-        }
+        mapped, space = mapping.apply(slave), self._space(partial.arrays, "master")
+        inside = space.contains(mapped)
+        shape = (
+            space.served() if isinstance(space, ServedShape) else AlphaShape.of(master, self.job.containment.alpha_m)
+        )
+        meshes = {"master": shape.mesh(), "slave": AlphaShape.of(mapped).mesh()}
         document = {
             "robots": [],
             **self.about_robots(),
             "sampling": {"samples": self.samples},
+            **({"admission": about["admission"]} if about["admission"] else {}),
             "mapping": best,
             "offsets": about["offsets"],
             "volume_m3": {"master": about["master_m3"], "slave": about["slave_m3"], "mapped": best["volume_m3"]},
@@ -144,7 +177,10 @@ class MasterSlaveMappingAnalysis(Analysis):
                 "most_inside": float(partial["inside"][most]),
                 "at_scale": float(partial["scales"][most]),
             }
-        failing = {"position": mapped[~inside], "slave_position": partial["slave"][~inside]}
+        failing = {"position": mapped[~inside], "slave_position": slave[~inside]}
+        if constraints := self.constraints["master"]:
+            names = np.array([_reason(None), "", *map(_reason, constraints)])  # by number, from OUT_OF_REACH
+            failing["reason"] = names[_reasons(space, mapped[~inside]) - OUT_OF_REACH]
         tables = {"failing": Table(failing, POSITIONS), "mapping": _points_table(master, mapped, inside)}
         if "scales" in partial.arrays:
             tables["scales"] = _curve_table(partial, about["slave_m3"])
@@ -156,13 +192,37 @@ class MasterSlaveMappingAnalysis(Analysis):
             meshes=meshes,
         )
 
-    def _points(self, source: Source, side: int, threads: int | None) -> np.ndarray:
+    def _points(self, side: int, threads: int | None) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
+        """Points of a side, "" (N, 3) [m], and under constraints "_reasons" of each, and what became of its samples."""
+        source, name = self.sources[side], SIDES[side]
         if isinstance(source, np.ndarray):
-            return source
+            return {"": source}, {}
         if isinstance(source, MappedMechanism):
-            return workspace_points(source.mechanism, source.count, device=self.device, threads=threads)
+            return {"": workspace_points(source.mechanism, source.count, device=self.device, threads=threads)}, {}
         pipeline = tip_pipeline(source.chain, _sampling(self.job, side), MOST_POINTS)
-        return sampled_positions(pipeline, self.device, threads=threads)
+        if not (constraints := self.constraints[name]):
+            return {"": sampled_positions(pipeline, self.device, threads=threads)}, {}
+        found = served_positions(replace(pipeline, constraints=constraints), self.device, threads)
+        samples = samples_entry(constraints, pipeline.sampling.count, found.rejected)
+        try:
+            check_admitted(samples)
+        except InputError as error:
+            raise error.within(name) from None
+        blocked = {each.name: int((found.reasons == k).sum()) for k, each in enumerate(constraints, 1)}
+        served = int((found.reasons == 0).sum())
+        positions = {"served": served, "blocked": blocked, "undecided": found.undecided}
+        return {"": found.position, "_reasons": found.reasons}, samples["samples"] | {"positions": positions}
+
+    def _space(self, arrays: Mapping[str, np.ndarray], name: str) -> MeasuredSet:
+        """The workspace of a side; under constraints what is served of it."""
+        points, reasons, containment = arrays[name], arrays.get(f"{name}_reasons"), self.job.containment
+        if containment.kind == "alpha_shape":
+            shape = AlphaShape.of(points, containment.alpha_m)
+            return shape if reasons is None else ServedShape(shape, reasons)
+        assert containment.voxel_size_m is not None
+        if reasons is None:
+            return VoxelSet.of(points, containment.voxel_size_m)
+        return ServedVoxels.of(points, reasons, containment.voxel_size_m)
 
     def _rotation(self) -> np.ndarray:
         return self.job.rotation.matrix()[:3, :3] if self.job.rotation else np.eye(3)
@@ -222,25 +282,52 @@ def _count(job: MasterSlaveMappingJob, side: int, source: Source) -> int:
     return plan_sampling(source.chain, _sampling(job, side)).count
 
 
-def _space(points: np.ndarray, containment: Containment) -> MeasuredSet:
-    if containment.kind == "voxels":
-        assert containment.voxel_size_m is not None
-        return VoxelSet.of(points, containment.voxel_size_m)
-    return AlphaShape.of(points, containment.alpha_m)
+def _constraints(side: Any, source: Source, name: str) -> tuple[Constraint, ...]:
+    if not isinstance(source, Robot):
+        return ()
+    try:
+        return constraints_of_job(side, source)
+    except InputError as error:
+        raise error.within(name) from None
 
 
-def _entry(mapping: LinearMapping, space: MeasuredSet, own: MeasuredSet, slave: np.ndarray) -> dict[str, Any]:
+def _served(arrays: Mapping[str, np.ndarray], name: str) -> np.ndarray:
+    """Points (N, 3) [m] of a side that count."""
+    reasons = arrays.get(f"{name}_reasons")
+    return arrays[name] if reasons is None else arrays[name][reasons == 0]
+
+
+def _reasons(space: MeasuredSet, points: np.ndarray) -> np.ndarray:
+    assert isinstance(space, ServedShape | ServedVoxels)
+    return space.reason(points)
+
+
+def _reason(constraint: Constraint | None) -> str:
+    """Why a target fails: a constraint, or none that lets it through."""
+    return "out of reach" if constraint is None else f"blocked by {constraint.name}"
+
+
+def _entry(
+    mapping: LinearMapping, space: MeasuredSet, own: MeasuredSet, slave: np.ndarray, constraints: Sequence[Constraint]
+) -> dict[str, Any]:
     """What the result document says of one mapping.
 
-    ``efficiency`` is the mapping efficiency of [WSR] III.D: volume of the mapped slave over that of the master.
+    ``efficiency`` is the mapping efficiency of [WSR] III.D: volume of the mapped slave over that of the master. Under
+    constraints of the master ``reasons`` counts the failing points by why they fail.
     """
-    inside = space.contains(mapping.apply(slave))
+    mapped = mapping.apply(slave)
+    inside, reasons = space.contains(mapped), {}
+    if constraints:
+        found = _reasons(space, mapped)
+        reasons = {_reason(None): found == OUT_OF_REACH}
+        reasons |= {_reason(each): found == k for k, each in enumerate(constraints, 1)}
     volume = own.volume_m3 * mapping.volume_factor
     return {
         "scale": mapping.scale.tolist(),
         "offset_m": mapping.offset.tolist(),
         "succeeded": bool(inside.all()),
         "failing_points": int(np.count_nonzero(~inside)),
+        **({"reasons": {name: int(rows.sum()) for name, rows in reasons.items()}} if reasons else {}),
         "inside": float(inside.mean()),
         "volume_m3": volume,
         "efficiency": volume / space.volume_m3,
