@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 FAULTS = (InputError, NotConvergedError, NumericalError, MemoryError)  # of a design: it has no value then
-REFINED = ("refined", "headline")  # in pointers to what is read of refined volumes
+REFINED = {"refined", "headline", "free", "blocked", "undecided"}  # in pointers to what is read of refined volumes
 FEW_SAMPLES, FEW_LEVELS = 256, 3  # of a run that shows what a result holds
 
 
@@ -157,7 +157,7 @@ class Evaluator:
     def _inner_job(self, design: np.ndarray) -> Any:
         """The job of a design; volumes are refined only where an objective reads them."""
         job = self.plan.job_of(design)
-        read = any(part in objective.value for objective in self.plan.job.objectives for part in REFINED)
+        read = any(REFINED.intersection(objective.value.split("/")) for objective in self.plan.job.objectives)
         if read or getattr(job, "refined_volume", None) is None:
             return job
         return job.model_copy(update={"refined_volume": None})
