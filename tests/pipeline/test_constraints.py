@@ -8,6 +8,7 @@ import pytest
 import wsrender as ws
 from wsrender.documents.constraints import Constraints
 from wsrender.engine import SweepPlan, configurations, devices_of, evaluate_poses, merge, sweep
+from wsrender.engine.rows import evaluate_samples
 from wsrender.engine.sums import scales_of
 from wsrender.errors import DocumentError, InputError
 from wsrender.pipeline.constraints import registry
@@ -237,6 +238,32 @@ def test_malformed_constraints(choice, message):
 def test_what_cannot_be_added(name, function, message, added):
     with pytest.raises(InputError, match=message):
         ws.register_constraint(name, function)
+
+
+def whole_powers(q, position, axes):
+    x, y = position[0], position[1]
+    return x**-3 / 50 + x**-2 / 20 + y**-1.0 / 10 + x**0 - y**2.0 - x**3 + 30 * (y**9 + x**10 + y**-9 / 1e9) - 0.5
+
+
+def other_powers(q, position, axes):
+    return position[0] ** 0.5 + position[1] ** -1.5 / 50 - 0.5
+
+
+@pytest.mark.parametrize("function", [whole_powers, other_powers])
+def test_powers_of_negative_numbers_are_those_of_numpy(function, precision, device, added):
+    ws.register_constraint("powered", function)
+    robot, (constraint,) = ws.load_robot("scara"), constraints_of(Constraints(powered=True))
+    samples = plan_sampling(robot.chain, ws.Sobol(COUNT))
+    each = Pipeline(Evaluation(robot.chain), samples, (constraint,), kept_rows=frozenset(), precision=precision)
+    q = np.asarray(configurations(each), np.float64)
+    poses = robot.forward_kinematics(q)
+    with np.errstate(invalid="ignore"):
+        margin = function(q.T, poses[:, :3, 3].T, None)
+        host = constraint.host(q, poses)
+    sure, admitted = ~(np.abs(margin) < 1e-3), margin >= 0
+    assert 0.05 < admitted.mean() < 0.95
+    assert ((evaluate_samples(each, device).rejected == 0) == admitted)[sure].all()
+    assert ((host == 0) == admitted).all()
 
 
 @pytest.mark.parametrize("keeps", (frozenset({"base"}), "base_joint"))

@@ -111,12 +111,19 @@ class Expression:
         return apply("absolute", self)
 
     def __pow__(self, exponent):
-        if isinstance(exponent, int) and 0 < exponent <= 8:
-            result = self
-            for _ in range(exponent - 1):
+        """As NumPy's: of a negative number whole powers alone."""
+        if isinstance(exponent, Expression) or exponent != int(exponent):
+            # The kernels' own power of what is negative is 0.
+            return apply("where", self < 0.0, apply("sqrt", self), apply("power", self, exponent))
+        count = abs(int(exponent))
+        if count > 8:
+            size = apply("power", abs(self), float(count))
+            result = apply("where", self < 0.0, -size, size) if count % 2 else size
+        else:
+            result = self if count else 1.0
+            for _ in range(count - 1):
                 result = result * self
-            return result
-        return apply("power", self, exponent)
+        return 1.0 / result if exponent < 0 else result
 
     def __lt__(self, other):
         return apply("less", self, other)
