@@ -1,7 +1,10 @@
 """What jobs ask of a robot's shapes: refusals, margins, excludes and surroundings, in documents and results."""
 
+from contextlib import nullcontext
+
 import numpy as np
 import pytest
+import trimesh
 
 import wsrender as ws
 from tests.collision.robots import drawn, nearest
@@ -11,6 +14,7 @@ from wsrender.documents.constraints import Constraints
 from wsrender.errors import InputError, ResourceError
 from wsrender.robot import as_robot, collisions
 from wsrender.robot.constraints import constraints_for
+from wsrender.robots.model_warning import ModelWarning
 
 ARM = """<mujoco><compiler angle="radian" autolimits="true"/><worldbody>{world}<body name="base">{base}
 <body name="one"><inertial mass="1" pos="0 0 0" diaginertia="1 1 1"/><joint name="a" axis="0 0 1" range="-3 3"/>{one}
@@ -71,6 +75,40 @@ def test_surroundings_that_swallow_the_robot_are_refused():
 )
 def test_choices_that_are_refused(choice, field, message):
     refused(arm(), field, message, **choice)
+
+
+@pytest.mark.parametrize(
+    "item", [ws.Sphere(name="sun", radius_m=1e300), ws.Box(size_m=(1, 1, 1), position_m=(2e9, 0, 0))]
+)
+def test_numbers_that_single_precision_cannot_square_are_refused(item):
+    with pytest.raises(InputError, match=r"has a shape '(sun|box 1)' of a place or size beyond 1e\+09 m") as caught:
+        constraints_for(arm(), None, ws.Environment([item]))
+    assert caught.value.field == "environment"
+
+
+def test_an_environment_without_items_is_refused():
+    with pytest.raises(InputError, match="must not be empty") as caught:
+        constraints_for(arm(), None, ws.Environment([]))
+    assert caught.value.field == "environment.items"
+
+
+def test_results_warn_of_shapes_that_are_odd(tmp_path):
+    trimesh.creation.box((300, 80, 80)).export(tmp_path / "beam.stl")
+    joint = '<joint name="{0}" type="revolute"><parent link="{0}"/><child link="{1}"/><axis xyz="0 0 1"/>{2}</joint>'
+    limit = '<origin xyz="0.3 0 0"/><limit lower="-2" upper="2" effort="1" velocity="1"/>'
+    beam = '<link name="beam"><collision><geometry><mesh filename="beam.stl"/></geometry></collision></link>'
+    joints = joint.format("foot", "beam", limit) + joint.format("beam", "hand", limit)
+    (tmp_path / "arm.urdf").write_text(
+        f'<robot name="arm"><link name="foot"/>{beam}<link name="hand"/>{joints}</robot>'
+    )
+    document = {"analysis": "workspace", "robot": {"path": str(tmp_path / "arm.urdf")}, "refined_volume": None}
+    document |= {"sampling": {"method": "sobol", "count": 64}}
+    found = []
+    for constraints in (None, {"self_collision": True}):
+        with pytest.warns(ModelWarning) if constraints else nullcontext():
+            result = ws.execute(document | {"constraints": constraints})
+        found.append({(each["code"], each["field"]) for each in result.document["warnings"]})
+    assert found[1] - found[0] == {("units_mesh", None), ("no_pairs", "constraints.self_collision")}
 
 
 def test_too_many_pairs_are_refused_before_any_table_is_made(monkeypatch):

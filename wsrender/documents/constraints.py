@@ -163,3 +163,9 @@ class Constrained(Document):
     """What stands around, which the robot's shapes do not enter; null: nothing."""
     gravity_m_s2: Annotated[Vector | None, Field(exclude_if=_is_none)] = None
     """Gravity in the world, whatever the model says [m/s²]; null: 9.81 along -z."""
+
+    @property
+    def asks_for_shapes(self) -> bool:
+        """Whether shapes of the robot keep apart from something."""
+        choice = self.constraints
+        return bool(self.environment or (choice and (choice.self_collision or choice.environment)))

@@ -27,6 +27,7 @@ MOST_PAIRS = 2000  # of both constraints: each may take a table of 256 KiB, and 
 MOST_LISTED = 100 * MOST_PAIRS  # of shapes and what stands around, before those that are excluded: 60 MB
 KINDS: dict[str, Any] = {"mesh": "hull", "plane": "half_space"}  # of shapes, by what solids call them
 
+LARGEST_M = 1e9  # of a shape's place, size and corners: single precision holds products of four such numbers
 FARTHEST = 8.0  # angles [rad] that float32 is trusted with
 ENDLESS = (
     np.pi,
@@ -84,11 +85,17 @@ def _kept_apart(
     standing = _standing(environment) if around else ()
     items = [_still(each, chain) for each in standing]
     solids = tuple(shapes + items)
+    for solid in solids:
+        if not max(np.abs(numbers).max() for numbers in (solid.T, solid.size, solid.points)) <= LARGEST_M:
+            message = f"has a shape {solid.name!r} of a place or size beyond {LARGEST_M:g} m, the largest allowed"
+            raise InputError("environment" if solid in items else f"constraints.{SELF if own else AROUND}", message)
     found = []
     if around:
         still = [k for k, shape in enumerate(bodies.shapes) if shape.surroundings]
         still += range(len(shapes), len(solids))
         if not still:
+            if environment:
+                raise InputError("environment.items", "must not be empty: nothing stands around")
             raise InputError(f"constraints.{AROUND}", "must not be given without an environment: nothing stands around")
         moving = [k for k, solid in enumerate(shapes) if solid.joint != BASE]
         if (count := len(moving) * len(still)) > MOST_LISTED:

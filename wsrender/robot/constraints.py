@@ -6,10 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from wsrender.documents.constraints import Constraints, TorqueChoice
+from wsrender.documents.constraints import Constrained, Constraints, TorqueChoice
 from wsrender.documents.environment import Environment
 from wsrender.documents.robot import matrix_of
 from wsrender.errors import InputError
+from wsrender.notices import Notice
 from wsrender.pipeline.constraints.constraint import Constraint, Structure, in_order
 from wsrender.pipeline.constraints.expression import ExpressionConstraint
 from wsrender.pipeline.constraints.region import Point, Region
@@ -96,6 +97,19 @@ def _torque(robot: Robot, choice: TorqueChoice, gravity: Point, rows: tuple[int,
     inertia = None if choice.payload_inertia_kg_m2 is None else matrix_of(choice.payload_inertia_kg_m2)
     laden = chain.dynamic.carrying(choice.payload_kg, np.array(choice.payload_com_m), inertia)
     return Torque(laden, gravity, choice.acceleration_m_s2, linear if choice.acceleration_m_s2 else ())
+
+
+def notices_of(robot: Robot, job: Any, path: str) -> tuple[Notice, ...]:
+    """What is odd about the robot at ``path`` of a job, and about its shapes where constraints ask for them."""
+    if robot.definition or not (isinstance(job, Constrained) and job.asks_for_shapes):
+        return tuple(each.within(path) for each in robot.notices)
+    bodies = robot.bodies
+    found = tuple(each.within(path) for each in (*robot.notices, *bodies.notices))
+    if len(bodies.pairs) or not (job.constraints and job.constraints.self_collision):
+        return found
+    message = f"self_collision keeps nothing apart: no two shapes of {robot.name} may collide"
+    remedy = "contype, conaffinity and excludes of its model, and which links are neighbours, say which may"
+    return (*found, Notice("no_pairs", message, remedy, "constraints.self_collision"))
 
 
 def samples_entry(constraints: Sequence[Constraint], drawn: int, rejected: np.ndarray) -> dict[str, Any]:

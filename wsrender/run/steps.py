@@ -13,6 +13,7 @@ from wsrender.documents.arm import Arm, ArmPath, dotted
 from wsrender.errors import InputError
 from wsrender.results.result import Result
 from wsrender.robot import Robot, as_robot, robot_of_spec
+from wsrender.robot.constraints import notices_of
 from wsrender.robot.gravity import gravity_notices
 from wsrender.run.usable_robots import usable
 
@@ -38,7 +39,7 @@ def plan(document: Any, robot: Any = None, *, resolved: dict[str, Any] | None = 
         usable(_robot(path, arm, one), arm, path, job) for (path, arm), one in zip(arms.items(), given, strict=True)
     ]
     found = planned(job, *robots, resolved=resolved)
-    of_robots = (n.within(dotted(path)) for path, each in zip(arms, robots, strict=True) for n in each.notices)
+    of_robots = (n for path, each in zip(arms, robots, strict=True) for n in notices_of(each, job, dotted(path)))
     found.notices = (*of_robots, *(n for each in robots for n in gravity_notices(job, each)))
     return found
 
