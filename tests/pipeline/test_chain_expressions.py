@@ -133,7 +133,7 @@ def test_a_leader_on_another_branch_weighs_too(precision, device, added):
     ws.register_constraint("light", lambda q, p, a, g, J: 3.0 - math.absolute(g[2]) + 0.1 * J[0][2])
     q, rejected, twin = swept(robot, "light", precision, device)
     bare = Bare(ARM, ["a", "b", "lead"], "tool", 0.0, np.zeros(3), slopes)
-    margin = 3.0 - bare.efforts(q, GRAVITY)[:, 2] + 0.1 * robot.chain.jacobians(q)[:, 0, 2]
+    margin = 3.0 - np.abs(bare.efforts(q, GRAVITY)[0])[:, 2] + 0.1 * robot.chain.jacobians(q)[:, 0, 2]
     sure = np.abs(margin) > NEAR[precision]
     np.testing.assert_array_equal(rejected[sure], (margin < 0)[sure])
     np.testing.assert_array_equal(twin.host(q, robot.chain.poses(q))[sure], rejected[sure])
