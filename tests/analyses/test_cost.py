@@ -1,9 +1,12 @@
 """What a plan says that its job will take, beside what it took: files, the growth with voxels, and the names."""
 
+import gc
 import importlib
 import tracemalloc
 
+import numpy as np
 import pytest
+import warp as wp
 
 from wsrender import run
 from wsrender.analyses.cost import Asks, Cost, check_memory, in_turn
@@ -83,6 +86,14 @@ LARGE = {
     "orientations": {"mechanism": "stewart_gough", "kind": "orientation", "position_m": [0, 0, 0.55]}
     | {"orientations": {"tilt_deg": 40}},
 }
+MANY = [[0.8 * ((k * s) % 1) - 0.4 for s in (0.618, 0.7549, 0.5698)] for k in range(60_000)]
+TURNED = [[1, 0, 0, 0]] * 4000
+SOLVED = {  # mostly by inverse kinematics
+    "capability": {"robot": "phantom_omni", "directions": 200, "voxel_size_m": 0.05},
+    "capability: float32": {"robot": "puma560", "directions": 1, "voxel_size_m": 0.05, "precision": "float32"},
+    "reachability": {"robot": "ur5e", "points_m": MANY},
+    "reachability: poses": {"robot": "puma560", "points_m": MANY[:4000], "quats_wxyz": TURNED},
+}
 OF_ANALYSIS = {"map": "workspace", "constrained workspace": "workspace", "orientations": "parallel_workspace"}
 
 
@@ -109,6 +120,41 @@ def test_memory_and_samples_are_as_estimated(name):
         tracemalloc.stop()
     assert planned.cost.memory_bytes == pytest.approx(peak, rel=0.3)
     assert done == planned.cost.samples
+
+
+@pytest.fixture
+def traced(monkeypatch):
+    """Arrays of kernels on a CPU come from Python's allocator, so that they are traced."""
+    held = {}
+
+    def allocate(self, size: int) -> int:
+        array = np.empty(size + 64, np.uint8)
+        at = -(-array.ctypes.data // 64) * 64
+        held[at] = array
+        return at
+
+    allocator = type(wp.get_device("cpu").default_allocator)
+    monkeypatch.setattr(allocator, "allocate", allocate)
+    monkeypatch.setattr(allocator, "deallocate", lambda self, at, size: held.pop(at))
+    tracemalloc.start()
+    yield
+    tracemalloc.stop()
+    gc.collect()
+    assert not held
+
+
+@pytest.mark.parametrize("name", SOLVED)
+def test_memory_of_inverse_kinematics_is_as_estimated(name, traced):
+    job = {"analysis": name.partition(":")[0], "device": "cpu"} | SOLVED[name]
+    first = {field: job[field][:100] for field in ("points_m", "quats_wxyz") if field in job}
+    warm = run.plan(job | (first or {"directions": 10, "voxel_size_m": 0.2}))
+    run.finish(warm, run.run_shard(warm, 0, threads=1), threads=1)
+    gc.collect()
+    before = tracemalloc.get_traced_memory()[0]
+    planned = run.plan(job)
+    tracemalloc.reset_peak()
+    run.finish(planned, run.run_shard(planned, 0, threads=1), threads=1)
+    assert planned.cost.memory_bytes == pytest.approx(tracemalloc.get_traced_memory()[1] - before, rel=0.3)
 
 
 @pytest.mark.parametrize("name", ["workspace", "capability", "kinetostatic_field", "planar_boundary"])

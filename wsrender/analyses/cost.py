@@ -6,7 +6,6 @@ from typing import Any
 
 from wsrender.errors import ResourceError
 from wsrender.memory import SHARE, available_bytes
-from wsrender.reach.inverse_solver import MOST_TRIES
 from wsrender.volume.lattice import rounded_up
 
 
@@ -93,10 +92,9 @@ SURFACE_BYTES = 750.0  # ply and glb of the voxels' surface, by the number of vo
 WRITTEN_PER_S = 6e7  # bytes of files
 DECIDED_PER_S = 2e5  # points decided by inverse kinematics on one core, most of them within reach
 SEARCHED_PER_S = 3e3  # targets under constraints, on one core, where many are blocked narrowly
-TRY_BYTES = 220.0  # of a try of inverse kinematics: start, target, what was found, and copies
 REFINED_S = 0.7  # of a refined volume with a tolerance of REFINED_TO, a six-joint arm on one core
 REFINED_TO = 0.01
-REFINED_BYTES = 5e7  # of its points, cells and tries
+REFINED_BYTES = 4e7  # of its points, cells and tries
 SEARCHED_S, SEARCHED_BYTES = 5.0, 2e8  # of a free volume under constraints: with samples, of which it takes starts
 
 
@@ -108,11 +106,6 @@ def pictures_cost(*names: str) -> tuple[float, float]:
 def surface_bytes(voxels: float) -> float:
     """Bytes of the surface of so many voxels, as ply and glb."""
     return SURFACE_BYTES * voxels ** (2 / 3)
-
-
-def solved_bytes(targets: float) -> float:
-    """Bytes that inverse kinematics holds while it decides so many targets."""
-    return TRY_BYTES * min(16.0 * targets, MOST_TRIES)
 
 
 def refined_seconds(tolerance: float | None, searched: bool = False) -> float:

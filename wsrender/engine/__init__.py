@@ -3,7 +3,7 @@
 from wsrender.engine.devices import devices_of, target_of, thread_count
 from wsrender.engine.drawn_configurations import configurations
 from wsrender.engine.index_units import units_of
-from wsrender.engine.inverse import Accuracy, Tries, solve_inverse
+from wsrender.engine.inverse import Accuracy, Tries, solve_inverse, try_bytes
 from wsrender.engine.kinematics import EvaluatedKinematics, evaluate_kinematics, evaluate_poses
 from wsrender.engine.membership import (
     LegTest,
@@ -44,5 +44,6 @@ __all__ = [
     "sweep",
     "target_of",
     "thread_count",
+    "try_bytes",
     "units_of",
 ]

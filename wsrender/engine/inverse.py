@@ -63,6 +63,12 @@ def solve_inverse(
     return Tries(q.astype(np.float64), distance, angle, verdict == REACHED, verdict == STATIONARY)
 
 
+def try_bytes(kind: str, n: int, precision: str) -> tuple[int, int]:
+    """Numbers of a target and start of ``n`` coordinates, and the bytes that `solve_inverse` holds of a try of them."""
+    target, real = TARGET_SIZES[kind], 4 if precision == "float32" else 8
+    return target + n, 8 * (target + n) + real * (target + 3 * n + 2) + 4
+
+
 def _launch(kernel, model, targets, starts, steps, real, device) -> list[np.ndarray]:
     count, n = starts.shape
     q = wp.empty(n * count, dtype=real, device=device)

@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from wsrender.engine import Accuracy, Tries, evaluate_poses, solve_inverse, thread_count
+from wsrender.engine import Accuracy, Tries, evaluate_poses, solve_inverse, thread_count, try_bytes
 from wsrender.reach.evidence import FLATTER, Evidence
 from wsrender.reach.moving_joints import moving_joints
 from wsrender.reach.starts import FURTHER, NEAR, NEAR_LIMITS, Starts, inwards
@@ -14,7 +14,9 @@ from wsrender.robots.kinematics import Kinematics
 from wsrender.robots.reachable_box import reachable_box
 
 BATCH = 1 << 15  # targets that are solved together
-MOST_TRIES = 1 << 18  # held in memory at a time
+MOST_TRIES = 1 << 17  # held in memory at a time, and a launch
+TRIES_EACH = {"position": 1.0, "axis": 2.5, "pose": 24.0}  # of a target at a time, as some take many
+TARGET_ROW = 16  # bytes of every number of a target or a sample: what was asked and what was found
 # Starts between two looks at what they found, by kind of target: a label depends on its target alone.
 LATER = ((FURTHER, 8), (FURTHER, 32), (FURTHER, 64), (FURTHER, 128))
 GROUPS = {
@@ -193,6 +195,14 @@ class InverseSolver:
         turning = self.chain.periodic
         q[:, turning] = np.remainder(q[:, turning] + np.pi, 2 * np.pi) - np.pi
         return q
+
+
+def solved_bytes(targets: float, kind: str, n: int, precision: str = "float64") -> float:
+    """Bytes that are held while so many targets of a ``kind`` are decided for an arm of ``n`` coordinates, about."""
+    row, each = try_bytes(kind, n, precision)
+    together = min(targets, BATCH)
+    tries = min(TRIES_EACH[kind] * together, MOST_TRIES)
+    return each * tries + TARGET_ROW * (row + 5) * (together + SAMPLES[kind])
 
 
 def _groups(kind: str) -> Iterator[tuple[str, int, int]]:

@@ -15,7 +15,6 @@ from wsrender.analyses.cost import (
     Asks,
     Cost,
     pictures_cost,
-    solved_bytes,
     surface_bytes,
 )
 from wsrender.analyses.cost import SEARCHED_BYTES as SEARCH_BYTES
@@ -29,6 +28,7 @@ from wsrender.notices import Notice
 from wsrender.pipeline.constraints.constraint import Constraint
 from wsrender.pipeline.pipeline import tip_pipeline
 from wsrender.reach.capability import (
+    BATCH,
     SAMPLES_PER_CELL,
     SEARCHED_BYTES,
     candidates,
@@ -36,6 +36,7 @@ from wsrender.reach.capability import (
     fibonacci_directions,
     searched_block,
 )
+from wsrender.reach.inverse_solver import solved_bytes
 from wsrender.reach.targets import check_tolerance
 from wsrender.robot.constraints import constraints_of_job
 from wsrender.robots.kinematics import Kinematics
@@ -53,7 +54,8 @@ DIVISIONS = 20  # of the size of a workspace: every voxel has many directions
 FIRST_SAMPLES = 1 << 16
 CONSTRAINED_RATE = 2e3  # pairs under constraints, where many are blocked
 PAIR_BYTES = 2.25  # of a voxel and a direction: its label, whether it is reached, as byte and bit, twice
-CANDIDATE_BYTES = 150  # of a voxel that is decided: its centre, and the configuration that is nearest to it
+CANDIDATE_BYTES = 100  # of a voxel that is decided: its cell, centre and copies, of those that are reached too
+ASKED_BYTES = 200  # of a pair while it is decided: point, direction, and the configuration that is nearest, twice
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -100,7 +102,8 @@ class CapabilityAnalysis(Analysis):
         table = (TABLE_BYTES + BITS_BYTES * np.ceil(self.job.directions / 8)) * voxels
         table += DIRECTION_BYTES * self.job.directions
         files = DOCUMENT_BYTES + drawn + table + VOXEL_BYTES * FILLED * searched + surface_bytes(voxels)
-        memory = max(PAIR_BYTES * pairs + CANDIDATE_BYTES * voxels + solved_bytes(pairs), SEARCHED_BYTES * searched)
+        solved = solved_bytes(pairs, "axis", self.robot.chain.n, self.job.precision) + ASKED_BYTES * min(pairs, BATCH)
+        memory = max(solved + PAIR_BYTES * pairs + CANDIDATE_BYTES * voxels, SEARCHED_BYTES * searched)
         seconds += SAMPLES_PER_CELL * searched / POSITIONS_PER_S + (voxels + pairs) / RATE + files / WRITTEN_PER_S
         if self.constraints:
             memory, seconds = memory + SEARCH_BYTES, seconds + pairs / CONSTRAINED_RATE

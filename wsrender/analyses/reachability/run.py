@@ -16,13 +16,13 @@ from wsrender.analyses.cost import (
     Asks,
     Cost,
     pictures_cost,
-    solved_bytes,
 )
 from wsrender.analyses.estimate import RATE_CPU_CORE
 from wsrender.analyses.execution import Execution
 from wsrender.analyses.partial_result import PartialResult, joined_rows, rows_of_shard
 from wsrender.analyses.reachability.job import ReachabilityJob
 from wsrender.pipeline.constraints.constraint import Constraint
+from wsrender.reach.inverse_solver import solved_bytes
 from wsrender.reach.targets import check_tolerance, reachable
 from wsrender.robot.constraints import constraints_of_job
 from wsrender.volume.table import Table
@@ -57,7 +57,9 @@ class ReachabilityAnalysis(Analysis):
         count, n, listed = len(self.job.points_m), self.robot.chain.n, 3 if self.job.quats_wxyz is None else 7
         drawn, seconds = pictures_cost("targets", "robot")
         files = DOCUMENT_BYTES + drawn + (TABLE_BYTES + 8 * (n + listed - 3) + LISTED_BYTES * listed) * count
-        memory = (LABEL_BYTES + 16 * n + (8 + LISTED_MEMORY) * listed) * count + solved_bytes(count)
+        kind = "position" if self.job.quats_wxyz is None else "pose"
+        solved = solved_bytes(count, kind, n, self.job.precision) + 16 * n * count
+        memory = (8 + LISTED_MEMORY) * listed * count + max(solved, (LABEL_BYTES + 16 * n) * count)
         seconds += count / (DECIDED_PER_S if listed == 3 else POSES_PER_S) + files / WRITTEN_PER_S
         if self.constraints:
             memory, seconds = memory + SEARCHED_BYTES, seconds + count / SEARCHED_PER_S

@@ -21,7 +21,6 @@ from wsrender.analyses.cost import (
     pictures_cost,
     refined_bytes,
     refined_seconds,
-    solved_bytes,
     surface_bytes,
 )
 from wsrender.analyses.estimate import held, kept_bytes, sweep_cost
@@ -42,6 +41,7 @@ from wsrender.indices.index_catalogue import default_statistics, resolve
 from wsrender.pipeline.constraints.constraint import Constraint
 from wsrender.pipeline.pipeline import Pipeline
 from wsrender.pipeline.sampling import SamplingPlan, plan_sampling
+from wsrender.reach.inverse_solver import solved_bytes
 from wsrender.robot import Robot
 from wsrender.robot.constraints import check_admitted, constraints_of_job, samples_entry
 from wsrender.robot.indices import evaluation_of_job
@@ -182,7 +182,7 @@ class WorkspaceAnalysis(Analysis):
         if self.job.voxel_labels:
             expected, block = self._expected
             near = min(27 * voxels, (np.cbrt(expected) + 2) ** 3)
-            labels = LABELLED_BYTES * near + solved_bytes(near) + LABEL_BYTES * block
+            labels = LABELLED_BYTES * near + solved_bytes(near, "position", self.robot.chain.n) + LABEL_BYTES * block
             labels += SEARCHED_BYTES * bool(self.constraints)
         if self.constraints:
             kept += ROWS_HELD * self._picture_bytes
