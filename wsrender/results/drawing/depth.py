@@ -7,7 +7,7 @@ import numpy as np
 from wsrender.results.drawing.camera import Camera
 
 OVERSAMPLING = 2  # pixels looked at per pixel of the picture, each way: edges without steps
-_AT_ONCE = 2_000_000  # pixels × triangles
+_AT_ONCE = 500_000  # pixels × triangles
 _ON_SIDE = 1e-9  # of a triangle's area: a pixel on a common side belongs to both
 _LIFTED = 4  # pixels by which what lies on a surface may be behind it
 
@@ -82,24 +82,22 @@ class DepthBuffer:
         ``corners`` (R, 3, 2) are their pixels, ``near`` (R, 3) how near to the eye these are [m].
         """
         height, width = self.nearest.shape
-        square = np.stack(np.meshgrid(np.arange(side), np.arange(side)), axis=-1).reshape(-1, 2)
-        pixels = low[:, None] + square
-        start, (ab, ac) = corners[:, None, 0], (corners[:, None, k] - corners[:, None, 0] for k in (1, 2))
-        away = pixels + 0.5 - start
+        (column, row), start = (low[:, k, None] + np.arange(side) for k in (0, 1)), corners[:, 0, :, None]
+        x, y = column + 0.5 - start[:, 0], row + 0.5 - start[:, 1]
+        (abx, aby), (acx, acy) = ((corners[:, k] - corners[:, 0]).T[..., None] for k in (1, 2))
         with np.errstate(divide="ignore", invalid="ignore"):
-            area = _cross(ab, ac)
-            u, v = _cross(away, ac) / area, _cross(ab, away) / area
+            area = abx * acy - aby * acx
+            # Places grow evenly along rows and columns.
+            u = (x * (acy / area))[:, None] - (y * (acx / area))[:, :, None]
+            v = (y * (abx / area))[:, :, None] - (x * (aby / area))[:, None]
             inside = (u >= -_ON_SIDE) & (v >= -_ON_SIDE) & (u + v <= 1 + _ON_SIDE)
-        triangle, pixel = np.nonzero(inside & (pixels < [width, height]).all(axis=2))
-        u, v = u[triangle, pixel], v[triangle, pixel]
+        inside &= (column < width)[:, None] & (row < height)[:, :, None]
+        triangle, down, along = np.nonzero(inside)
+        u, v = u[inside], v[inside]
         a, b, c = near[triangle].T
-        depth, cell = a + u * (b - a) + v * (c - a), pixels[triangle, pixel] @ [1, width]
+        depth, cell = a + u * (b - a) + v * (c - a), row[triangle, down] * width + column[triangle, along]
         front = np.flatnonzero(depth > self.nearness.ravel()[cell])
         front = front[np.argsort(depth[front], kind="stable")]  # of one pixel's the nearest is written last
         self.nearness.ravel()[cell[front]] = depth[front]
         self.nearest.ravel()[cell[front]] = rows[triangle[front]]
         self.shares.reshape(-1, 2)[cell[front]] = np.stack([u[front], v[front]], axis=1)
-
-
-def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
