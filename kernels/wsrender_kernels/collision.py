@@ -6,7 +6,8 @@ with the same numbers of coordinates and joints. On CUDA a thread takes a sample
 It labels a sample ADMITTED or with the number of the reason, from 1; a sample with pairs that no test decides is listed
 with a mask of those. ``narrow`` decides listed samples pair by pair: portals of the Minkowski difference (Snethen,
 *XenoCollide*, 2008), certified by a gap along a direction or by a portal that the origin lies behind, each by more than
-what float32 may be off; what is still open then is listed for the same in float64, and at last for the host.
+what float32 may be off; what is still open then is listed for the same in float64, and at last for the host. On the CPU
+a task takes BATCH of them, and GROUP that have a pair in common side by side: a V is so many numbers, on CUDA one.
 """
 
 from typing import Any
@@ -18,6 +19,9 @@ from wsrender_kernels.options import CUDA_OPTIONS, MODULE_OPTIONS, SHORT_OPTIONS
 from wsrender_kernels.sampling import LANES, blocks, sample_space, sampling
 
 PART_LANES = 64
+BATCH, GROUP = 512, 16  # open samples of a task of the narrow phase on the CPU, and of a pair side by side
+STEPS = 40  # of portals
+EDGE, ROW = 8, 8  # cells of directions along the edge of a cube; vertices of a cell are padded to so many
 CAPACITY = 16  # capsules: the scratch is for a multiple of so many
 
 REAL_ARRAYS = ("joints", "solids", "solid_sizes", "vertices", "pair_numbers")  # what the narrow phase computes with
@@ -70,6 +74,26 @@ _SINCOS = """
     };
 """
 
+_KINEMATICS = """    for (int i = 0; i < L; i++) {
+        const real* t = program.joints.data + 15 * i;
+        const real* __restrict S = F + 12 * i * LN; real* __restrict D = F + 12 * (i + 1) * LN;
+        const real* __restrict v = Q + program.sources.data[i] * STRIDE;
+        const real scale = t[12], offset = t[13], turns = t[14];
+        LANE_LOOP {
+            real moved = scale * v[l] + offset, angle = turns * moved, slide = moved - angle, s, c;
+            sincos_of(angle, s, c);
+            for (int k = 0; k < 3; k++) {
+                real X = S[k * LN + l], Y = S[(3 + k) * LN + l], Z = S[(6 + k) * LN + l];
+                real x = X * t[0] + Y * t[3] + Z * t[6], y = X * t[1] + Y * t[4] + Z * t[7];
+                real z = X * t[2] + Y * t[5] + Z * t[8];
+                D[k * LN + l] = c * x + s * y;
+                D[(3 + k) * LN + l] = c * y - s * x;
+                D[(6 + k) * LN + l] = z;
+                D[(9 + k) * LN + l] = S[(9 + k) * LN + l] + X * t[9] + Y * t[10] + Z * t[11] + slide * z;
+            }
+        }
+    }"""
+
 _FILTER = """
 #if defined(__CUDA_ARCH__)
     #define LANE_LOOP for (int l = 0; l < LN; l++)
@@ -78,6 +102,7 @@ _FILTER = """
     #define LANE_LOOP _Pragma("clang loop vectorize(assume_safety) interleave_count(1)") for (int l = 0; l < LN; l++)
     constexpr int LN = @LANES, STRIDE = @BLOCK;
 #endif
+    typedef float real;
     constexpr int N = @N, L = @L, CAP = @CAP, W = @W;
     constexpr float FAR = 1e9f;
 @SINCOS
@@ -100,25 +125,7 @@ _FILTER = """
         const float* __restrict v = Q + i * STRIDE;
         LANE_LOOP { float x = v[l]; inside[l] &= (x >= low - slack && x <= high + slack) ? 1u : 0u; }
     }
-    for (int i = 0; i < L; i++) {
-        const float* t = program.joints.data + 15 * i;
-        const float* __restrict S = F + 12 * i * LN; float* __restrict D = F + 12 * (i + 1) * LN;
-        const float* __restrict v = Q + program.sources.data[i] * STRIDE;
-        const float scale = t[12], offset = t[13], turns = t[14];
-        LANE_LOOP {
-            float moved = scale * v[l] + offset, angle = turns * moved, slide = moved - angle, s, c;
-            sincos_of(angle, s, c);
-            for (int k = 0; k < 3; k++) {
-                float X = S[k * LN + l], Y = S[(3 + k) * LN + l], Z = S[(6 + k) * LN + l];
-                float x = X * t[0] + Y * t[3] + Z * t[6], y = X * t[1] + Y * t[4] + Z * t[7];
-                float z = X * t[2] + Y * t[5] + Z * t[8];
-                D[k * LN + l] = c * x + s * y;
-                D[(3 + k) * LN + l] = c * y - s * x;
-                D[(6 + k) * LN + l] = z;
-                D[(9 + k) * LN + l] = S[(9 + k) * LN + l] + X * t[9] + Y * t[10] + Z * t[11] + slide * z;
-            }
-        }
-    }
+@KINEMATICS
     for (int i = 0; i < program.n_capsules; i++) {
         const float* __restrict S = F + 12 * program.capsule_frame.data[i] * LN; float* __restrict D = C + 6 * i * LN;
         const float* c = program.capsules.data + 6 * i;
@@ -259,189 +266,268 @@ _UNROLLED = """
 _NARROW = """
     typedef @REAL real;
     constexpr int N = @N, L = @L, W = @W;
+#if defined(__CUDA_ARCH__)
+    #define LANE_LOOP for (int l = 0; l < LN; l++)
+    constexpr int LN = 1, STRIDE = 1, GROUP = 1;
+    typedef real V;
+    typedef bool M;
+    auto any = [](M m) { return m; };
+    auto root = [](V x) { return @SQRT(x); };
+    auto whole = [](V x) { return (V)(int)x; };
+#else
+    #define LANE_LOOP _Pragma("clang loop vectorize(assume_safety) interleave_count(1)") for (int l = 0; l < LN; l++)
+    constexpr int LN = @BATCH, STRIDE = @BATCH, GROUP = @GROUP;
+    typedef real V __attribute__((ext_vector_type(@GROUP)));
+    typedef decltype(V() > V()) M;
+    auto any = [](M m) { return __builtin_reduce_or(m) != 0; };
+    auto root = [](V x) { return __builtin_elementwise_sqrt(x); };
+    auto whole = [](V x) { return __builtin_elementwise_trunc(x); };
+#endif
 @TRIGONOMETRY
-    real F[12 * (L + 1)] = {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0};  // rows of the rotation, then the origin
-    for (int i = 0; i < L; i++) {
-        const real* t = program.joints.data + 15 * i; const real* S = F + 12 * i; real* D = F + 12 * (i + 1);
-        real moved = t[12] * q[program.sources.data[i]] + t[13], angle = t[14] * moved, slide = moved - angle, s, c;
-        sincos_of(angle, s, c);
-        for (int k = 0; k < 3; k++) {
-            real X = S[3 * k], Y = S[3 * k + 1], Z = S[3 * k + 2];
-            real x = X * t[0] + Y * t[3] + Z * t[6], y = X * t[1] + Y * t[4] + Z * t[7];
-            real z = X * t[2] + Y * t[5] + Z * t[8];
-            D[3 * k] = c * x + s * y; D[3 * k + 1] = c * y - s * x; D[3 * k + 2] = z;
-            D[9 + k] = S[9 + k] + X * t[9] + Y * t[10] + Z * t[11] + slide * z;
-        }
-    }
+    alignas(64) real frames_[12 * (L + 1) * LN], eps_[LN];
+    real* __restrict F = frames_;
+    const real* __restrict Q = &values.c[0];
+    for (int l = 0; l < LN; l++)
+        for (int k = 0; k < 12; k++) F[k * LN + l] = (k == 0 || k == 4 || k == 8) ? 1.f : 0.f;
+@KINEMATICS
     // What float32 may be off is known within the limits alone.
-    bool inside = true;
-    for (int i = 0; i < N; i++) {
+    for (int l = 0; l < LN; l++) eps_[l] = program.epsilon;
+    for (int i = 0; i < N && sizeof(real) == 4; i++) {
         const float low = program.lower.data[i], high = program.upper.data[i], slack = 4e-6f * (1.f + high - low);
-        inside &= q[i] >= low - slack && q[i] <= high + slack;
+        const real* __restrict v = Q + i * STRIDE;
+        LANE_LOOP { real x = v[l]; eps_[l] = x >= low - slack && x <= high + slack ? eps_[l] : real(1e30f); }
     }
-    const real eps = inside || sizeof(real) == 8 ? program.epsilon : real(1e30);
-    auto dot = [](const real* a, const real* b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; };
-    auto cross = [](const real* a, const real* b, real* o) {
-        real x = a[1] * b[2] - a[2] * b[1], y = a[2] * b[0] - a[0] * b[2], z = a[0] * b[1] - a[1] * b[0];
-        o[0] = x; o[1] = y; o[2] = z;
+    auto dot = [](const V* a, const V* b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; };
+    auto cross = [](const V* a, const V* b, V* o) {
+        o[0] = a[1] * b[2] - a[2] * b[1]; o[1] = a[2] * b[0] - a[0] * b[2]; o[2] = a[0] * b[1] - a[1] * b[0];
     };
-    auto copy = [](real* a, const real* b) { for (int k = 0; k < 3; k++) a[k] = b[k]; };
-    auto unit = [&](real* a) {
-        real length = @SQRT(dot(a, a));
-        if (!(length > 1e-12f)) return false;
-        for (int k = 0; k < 3; k++) a[k] /= length;
-        return true;
+    auto put = [](V* a, M where, const V* b) { for (int k = 0; k < 3; k++) a[k] = where ? b[k] : a[k]; };
+    auto unit = [&](V* a) {
+        V length = root(dot(a, a)), per = real(1.f) / length;
+        for (int k = 0; k < 3; k++) a[k] *= per;
+        return length > real(1e-12f);
     };
-    auto placed = [&](int solid, real* R, real* p) {
-        const real* S = F + 12 * program.solid_frame.data[solid]; const real* t = program.solids.data + 16 * solid;
-        for (int r = 0; r < 3; r++) {
-            const real* row = S + 3 * r;
-            for (int k = 0; k < 3; k++) R[3 * r + k] = row[0] * t[k] + row[1] * t[3 + k] + row[2] * t[6 + k];
-            p[r] = S[9 + r] + S[3 * r] * t[9] + S[3 * r + 1] * t[10] + S[3 * r + 2] * t[11];
-        }
+    auto clamped = [](V x) {
+        x = x < real(1.f) ? x : (V)real(1.f);
+        return x > real(-1.f) ? x : (V)real(-1.f);
     };
-    // Farthest point of a solid along d.
-    auto support = [&](int solid, const real* R, const real* p, real dx, real dy, real dz, real* o) {
-        real lx = R[0] * dx + R[3] * dy + R[6] * dz, ly = R[1] * dx + R[4] * dy + R[7] * dz;
-        real lz = R[2] * dx + R[5] * dy + R[8] * dz;
-        const real* numbers = program.solids.data + 16 * solid;
-        real x, y, z;
-        if (numbers[14] == 1.f) {
-            const real* size = program.solid_sizes.data + 3 * solid;
-            real sx = size[0] * lx, sy = size[1] * ly, sz = size[2] * lz, length = @SQRT(sx * sx + sy * sy + sz * sz);
-            length = length > 1e-12f ? 1.f / length : 0.f;
-            x = size[0] * sx * length; y = size[1] * sy * length; z = size[2] * sz * length;
+    // Farthest point of a solid along d, without its ball, in its own frame.
+    auto support = [&](int solid, const V* d, M live, V* o) {
+        const real* numbers = program.solids.data + 18 * solid;
+        const real* size = program.solid_sizes.data + 3 * solid;
+        if (numbers[14] == 3.f) {
+            for (int k = 0; k < 3; k++) o[k] = d[k] > real(0.f) ? (V)size[k] : (V)(-size[k]);
+        } else if (numbers[14] == 1.f) {
+            V x = size[0] * d[0], y = size[1] * d[1], z = size[2] * d[2], length = root(x * x + y * y + z * z);
+            V per = length > real(1e-12f) ? real(1.f) / length : (V)real(0.f);
+            o[0] = size[0] * x * per; o[1] = size[1] * y * per; o[2] = size[2] * z * per;
         } else {
-            const int first = program.vertex_range.data[2 * solid], count = program.vertex_range.data[2 * solid + 1];
-            const real* VX = program.vertices.data + first; const real* VY = VX + count; const real* VZ = VY + count;
-            int best = 0;
+            // Only those vertices that are farthest along some direction near d: see `collision.supports`.
+            auto size_of = [](V x) { return x > real(0.f) ? x : -x; };
+            V x = size_of(d[0]), y = size_of(d[1]), z = size_of(d[2]);
+            M along_x = (x > y) & (x > z), along_y = !along_x & (y > z);
+            V axis = along_x ? d[0] : (along_y ? d[1] : d[2]);
+            V per = real(0.5f * @EDGE) / (along_x ? x : (along_y ? y : z));
+            V cell = along_x ? (V)real(0.f) : (along_y ? (V)real(2.f) : (V)real(4.f));
+            cell += axis > real(0.f) ? (V)real(1.f) : (V)real(0.f);
+            auto column = [&](V beside) {
+                V at = real(0.5f * @EDGE) + per * beside;
+                at = at > real(0.f) ? at : (V)real(0.f);
+                return whole(at < real(@EDGE - 1) ? at : (V)real(@EDGE - 1));
+            };
+            cell = cell * real(@EDGE) + column(along_x ? d[1] : (along_y ? d[2] : d[0]));
+            cell = cell * real(@EDGE) + column(along_x ? d[2] : (along_y ? d[0] : d[1]));
+            alignas(256) real D[3][GROUP], O[3][GROUP], C[GROUP], on[GROUP];
+            for (int k = 0; k < 3; k++) { *(V*)D[k] = d[k]; *(V*)O[k] = real(0.f); }
+            *(V*)C = cell;
+            *(V*)on = live ? (V)real(1.f) : (V)real(0.f);
+            int list[GROUP], lanes = 0;
+            for (int l = 0; l < GROUP; l++) { list[lanes] = l; lanes += on[l] != 0.f ? 1 : 0; }
+            for (int i = 0; i < lanes; i++) {
+                const int l = list[i];
+                const int* range = program.vertex_range.data + 2 * (@CELLS * solid + (int)C[l]);
+                const int first = range[0], count = range[1];
+                const real* VX = program.vertices.data + first;
+                const real* VY = VX + count; const real* VZ = VY + count;
+                int best = 0;
 #if defined(__CUDA_ARCH__)
-            real most = -1e30f;
-            for (int v = 0; v < count; v++) {
-                real t = VX[v] * lx + VY[v] * ly + VZ[v] * lz;
-                if (t > most) { most = t; best = v; }
-            }
-#else
-            real highest[16]; int which[16];
-            for (int l = 0; l < 16; l++) { highest[l] = -1e30f; which[l] = 0; }
-            for (int v = 0; v < count; v += 16) {
-                #pragma clang loop vectorize(assume_safety)
-                for (int l = 0; l < 16; l++) {
-                    real t = VX[v + l] * lx + VY[v + l] * ly + VZ[v + l] * lz;
-                    bool higher = t > highest[l];
-                    highest[l] = higher ? t : highest[l]; which[l] = higher ? v + l : which[l];
+                real most = -1e30f;
+                for (int v = 0; v < count; v++) {
+                    real t = VX[v] * D[0][l] + VY[v] * D[1][l] + VZ[v] * D[2][l];
+                    if (t > most) { most = t; best = v; }
                 }
-            }
-            real most = -1e30f;
-            for (int l = 0; l < 16; l++) if (highest[l] > most) { most = highest[l]; best = which[l]; }
-#endif
-            x = VX[best]; y = VY[best]; z = VZ[best];
-        }
-        const real radius = numbers[12], disc = numbers[13];
-        if (disc > 0.f) {
-            real h = @SQRT(lx * lx + ly * ly);
-            if (h > 1e-12f) { x += disc * lx / h; y += disc * ly / h; }
-        }
-        if (radius > 0.f) {
-            real h = @SQRT(lx * lx + ly * ly + lz * lz);
-            if (h > 1e-12f) { x += radius * lx / h; y += radius * ly / h; z += radius * lz / h; }
-        }
-        o[0] = R[0] * x + R[1] * y + R[2] * z + p[0];
-        o[1] = R[3] * x + R[4] * y + R[5] * z + p[1];
-        o[2] = R[6] * x + R[7] * y + R[8] * z + p[2];
-    };
-    // 0 apart, 1 touching, 2 open.
-    auto decided = [&](int pair) -> int {
-        const int a = program.solid_pairs.data[2 * pair], b = program.solid_pairs.data[2 * pair + 1];
-        const real margin = program.pair_numbers.data[2 * pair];
-        real RA[9], pA[3], RB[9], pB[3];
-        placed(a, RA, pA); placed(b, RB, pB);
-        if (program.solids.data[16 * a + 14] == 2.f) {
-            real n[3] = {RA[2], RA[5], RA[8]}, lowest[3];
-            support(b, RB, pB, -n[0], -n[1], -n[2], lowest);
-            for (int k = 0; k < 3; k++) lowest[k] -= pA[k];
-            real height = dot(lowest, n) - margin;
-            return height > eps ? 0 : (height < -eps ? 1 : 2);
-        }
-        // Of the Minkowski difference B - A, widened by the margin: farthest point along d.
-        auto farthest = [&](const real* d, real* o) {
-            real x[3], y[3];
-            support(b, RB, pB, d[0], d[1], d[2], y);
-            support(a, RA, pA, -d[0], -d[1], -d[2], x);
-            for (int k = 0; k < 3; k++) o[k] = y[k] - x[k] + margin * d[k];
-        };
-        real v0[3], v1[3], v2[3], v3[3], v4[3], n[3], t1[3], t2[3], e;
-        for (int k = 0; k < 3; k++) { v0[k] = pB[k] - pA[k]; n[k] = -v0[k]; }
-        if (!unit(n)) return 2;
-        farthest(n, v1); e = dot(v1, n); if (e < -eps) return 0;
-        cross(v1, v0, n); if (!unit(n)) return 2;
-        farthest(n, v2); e = dot(v2, n); if (e < -eps) return 0;
-        for (int k = 0; k < 3; k++) { t1[k] = v1[k] - v0[k]; t2[k] = v2[k] - v0[k]; }
-        cross(t1, t2, n); if (!unit(n)) return 2;
-        if (dot(n, v0) > 0.f) { copy(t1, v1); copy(v1, v2); copy(v2, t1); for (int k = 0; k < 3; k++) n[k] = -n[k]; }
-        int it = 0;
-        for (; it < 20; it++) {
-            farthest(n, v3); e = dot(v3, n); if (e < -eps) return 0;
-            cross(v1, v3, t1);
-            if (dot(t1, v0) < 0.f) {
-                copy(v2, v3);
-                for (int k = 0; k < 3; k++) { t1[k] = v1[k] - v0[k]; t2[k] = v3[k] - v0[k]; }
-                cross(t1, t2, n); if (!unit(n)) return 2;
-                continue;
-            }
-            cross(v3, v2, t1);
-            if (dot(t1, v0) < 0.f) {
-                copy(v1, v3);
-                for (int k = 0; k < 3; k++) { t1[k] = v3[k] - v0[k]; t2[k] = v2[k] - v0[k]; }
-                cross(t1, t2, n); if (!unit(n)) return 2;
-                continue;
-            }
-            break;
-        }
-        if (it == 20) return 2;
-        for (it = 0; it < 40; it++) {
-            for (int k = 0; k < 3; k++) { t1[k] = v2[k] - v1[k]; t2[k] = v3[k] - v1[k]; }
-            cross(t1, t2, n); if (!unit(n)) return 2;
-            // All three corners beyond the origin: of a thin portal the normal is known badly.
-            if (wp::min(wp::min(dot(n, v1), dot(n, v2)), dot(n, v3)) > eps) return 1;
-            farthest(n, v4); e = dot(v4, n); if (e < -eps) return 0;
-            if (e - dot(v3, n) < real(@STALLED)) return 2;
-            cross(v4, v0, t1);
-            if (dot(v1, t1) > 0.f) { if (dot(v2, t1) > 0.f) copy(v1, v4); else copy(v3, v4); }
-            else { if (dot(v3, t1) > 0.f) copy(v2, v4); else copy(v1, v4); }
-        }
-        return 2;
-    };
-    const int hit_anyway = labels.data[at];  // a later reason, where an earlier one is open
-    int label = 0, open_reason = 99;
-    unsigned still[W] = {0u};
-    for (int w = 0; w < W && label == 0; w++) {
-        unsigned mask = open_masks.data[(long long)item * W + w], left = 0u;
-        for (int bit = 0; bit < 32 && mask >> bit; bit++) {
-            const int pair = 32 * w + bit;
-            if (!((mask >> bit) & 1u) || pair >= program.n_solid_pairs) continue;
-            const int reason = (int)program.pair_numbers.data[2 * pair + 1] + 1;
-            if (hit_anyway != 0 && reason >= hit_anyway) continue;
-            const int found = decided(pair);
-            if (found == 1 && open_reason >= reason) { label = reason; break; }
-            if (found == 0) continue;
-            left |= 1u << bit;
-            open_reason = open_reason < reason ? open_reason : reason;
-        }
-        still[w] = left;
-    }
-    if (label != 0 || open_reason == 99) {
-        labels.data[at] = (wp::uint8)(label != 0 ? label : hit_anyway);
-        return;
-    }
-#if defined(__CUDA_ARCH__)
-    const int place = atomicAdd(listed.data, 1);
 #else
-    const int place = listed.data[0]++;
+                typedef real Row __attribute__((ext_vector_type(@ROW)));
+                typedef decltype(Row() > Row()) Places;
+                const Places own = {0, 1, 2, 3, 4, 5, 6, 7};
+                Row most = real(-1e30f), vx, vy, vz;
+                Places which = 0;
+                for (int v = 0; v < count; v += @ROW) {
+                    __builtin_memcpy(&vx, VX + v, sizeof(vx));
+                    __builtin_memcpy(&vy, VY + v, sizeof(vy));
+                    __builtin_memcpy(&vz, VZ + v, sizeof(vz));
+                    Row t = vx * D[0][l] + vy * D[1][l] + vz * D[2][l];
+                    which = t > most ? v + own : which;
+                    most = t > most ? t : most;
+                }
+                best = (int)__builtin_reduce_min(most == __builtin_reduce_max(most) ? which : (Places)(count - 1));
 #endif
-    ids.data[place] = at;
-    otherwise.data[place] = (wp::uint8)hit_anyway;
-    for (int w = 0; w < W; w++) masks.data[(long long)place * W + w] = still[w];
+                O[0][l] = VX[best]; O[1][l] = VY[best]; O[2][l] = VZ[best];
+            }
+            for (int k = 0; k < 3; k++) o[k] = *(V*)O[k];
+        }
+        if (numbers[13] > 0.f) {
+            V h = root(d[0] * d[0] + d[1] * d[1]);
+            h = h > real(1e-12f) ? numbers[13] / h : (V)real(0.f);
+            o[0] += h * d[0]; o[1] += h * d[1];
+        }
+    };
+    // Of a pair in as many samples as there are lanes, with frames FA and FB: 0 apart, 1 touching, 2 open.
+    auto decided = [&](int pair, const V* FA, const V* FB, V eps) -> V {
+        const int a = program.solid_pairs.data[2 * pair], b = program.solid_pairs.data[2 * pair + 1];
+        const real* of_a = program.solids.data + 18 * a; const real* of_b = program.solids.data + 18 * b;
+        const real ball = program.pair_numbers.data[2 * pair] + of_a[12] + of_b[12];
+        auto placed = [](const V* S, const real* t, V* R, V* p) {
+            for (int r = 0; r < 3; r++) {
+                for (int k = 0; k < 3; k++) R[3 * r + k] = S[r] * t[k] + S[3 + r] * t[3 + k] + S[6 + r] * t[6 + k];
+                p[r] = S[9 + r] + S[r] * t[9] + S[3 + r] * t[10] + S[6 + r] * t[11];
+            }
+        };
+        V RA[9], pA[3], RB[9], pB[3], R[9], p[3];  // R, p: of b in the frame of a
+        placed(FA, of_a, RA, pA); placed(FB, of_b, RB, pB);
+        for (int k = 0; k < 3; k++) pB[k] -= pA[k];
+        for (int r = 0; r < 3; r++) {
+            for (int k = 0; k < 3; k++) R[3 * r + k] = RA[r] * RB[k] + RA[3 + r] * RB[3 + k] + RA[6 + r] * RB[6 + k];
+            p[r] = RA[r] * pB[0] + RA[3 + r] * pB[1] + RA[6 + r] * pB[2];
+        }
+        const V APART = real(0.f), TOUCHING = real(1.f), OPEN = real(2.f);
+        M live = eps < real(1e29f);
+        if (of_a[14] == 2.f) {
+            V down[3] = {-R[6], -R[7], -R[8]}, lowest[3];
+            support(b, down, live, lowest);
+            V height = p[2] - dot(lowest, down) - ball;
+            return height > eps ? APART : (height < -eps ? TOUCHING : OPEN);
+        }
+        // Of the Minkowski difference B - A, widened by balls and margin: farthest point along d.
+        auto farthest = [&](const V* d, M live, V* o) {
+            V x[3], y[3], l[3], m[3];
+            for (int k = 0; k < 3; k++) { l[k] = R[k] * d[0] + R[3 + k] * d[1] + R[6 + k] * d[2]; m[k] = -d[k]; }
+            support(b, l, live, y);
+            support(a, m, live, x);
+            for (int k = 0; k < 3; k++) o[k] = p[k] + dot(R + 3 * k, y) - x[k] + ball * d[k];
+        };
+        // From the nearest points of two segments within them; where these cross, from their middles.
+        V v0[3], v1[3], v2[3], v3[3], v4[3], n[3], s[3], t[3], u[3], w[3];
+        for (int k = 0; k < 3; k++) { u[k] = of_a[15 + k]; s[k] = of_b[15 + k]; }
+        for (int k = 0; k < 3; k++) w[k] = dot(R + 3 * k, s);
+        V uu = dot(u, u) + real(1e-10f), ww = dot(w, w) + real(1e-10f), uw = dot(u, w), up = dot(u, p), wp = dot(w, p);
+        V at_u = clamped((up * ww - wp * uw) / (uu * ww * real(1.000001f) - uw * uw));
+        V at_w = clamped((at_u * uw - wp) / ww);
+        at_u = clamped((at_w * uw + up) / uu);
+        for (int k = 0; k < 3; k++) v0[k] = p[k] + at_w * w[k] - at_u * u[k];
+        put(v0, dot(v0, v0) < real(1e-6f), p);
+        V found = OPEN, e;
+        auto settle = [&](M where, V as) { found = live & where ? as : found; live = live & !where; };
+        for (int k = 0; k < 3; k++) n[k] = -v0[k];
+        live = live & unit(n);
+        farthest(n, live, v1);
+        settle(dot(v1, n) < -eps, APART);
+        cross(v1, v0, n);
+        live = live & unit(n);
+        if (!any(live)) return found;
+        farthest(n, live, v2);
+        settle(dot(v2, n) < -eps, APART);
+        for (int k = 0; k < 3; k++) { s[k] = v1[k] - v0[k]; t[k] = v2[k] - v0[k]; v3[k] = v0[k]; }
+        cross(s, t, n);
+        live = live & unit(n);
+        M behind = dot(n, v0) > real(0.f), portal = eps < real(0.f);
+        for (int k = 0; k < 3; k++) { s[k] = v1[k]; n[k] = behind ? -n[k] : n[k]; }
+        put(v1, behind, v2);
+        put(v2, behind, s);
+        for (int it = 0; it < @STEPS && any(live); it++) {
+            farthest(n, live, v4);
+            e = dot(v4, n);
+            settle(e < -eps, APART);
+            settle(portal & (e - dot(v3, n) < real(@STALLED)), OPEN);
+            // A portal is sought, one side after the other, then moved outwards.
+            cross(v1, v4, s);
+            cross(v4, v2, t);
+            M beside_2 = !portal & (dot(s, v0) < real(0.f)), beside_1 = !portal & !beside_2 & (dot(t, v0) < real(0.f));
+            cross(v4, v0, s);
+            M one = dot(v1, s) > real(0.f), two = dot(v2, s) > real(0.f), three = dot(v3, s) > real(0.f);
+            put(v1, beside_1 | (portal & ((one & two) | (!one & !three))), v4);
+            put(v2, beside_2 | (portal & !one & three), v4);
+            put(v3, (!portal & !beside_1 & !beside_2) | (portal & one & !two), v4);
+            portal = portal | (!beside_1 & !beside_2);
+            for (int k = 0; k < 3; k++) {
+                s[k] = portal ? v2[k] - v1[k] : v1[k] - v0[k];
+                t[k] = portal ? v3[k] - v1[k] : v2[k] - v0[k];
+            }
+            cross(s, t, n);
+            live = live & unit(n);
+            // All three corners beyond the origin: of a thin portal the normal is known badly.
+            settle(portal & (dot(n, v1) > eps) & (dot(n, v2) > eps) & (dot(n, v3) > eps), TOUCHING);
+        }
+        return found;
+    };
+    int label_[LN], reason_[LN], anyway_[LN], list[LN];
+    unsigned asked_[W * LN], still_[W * LN], any_[W];
+    for (int w = 0; w < W; w++) {
+        any_[w] = 0u;
+        for (int l = 0; l < valid; l++) {
+            asked_[w * LN + l] = open_masks.data[(long long)(item + l) * W + w]; still_[w * LN + l] = 0u;
+            any_[w] |= asked_[w * LN + l];
+        }
+    }
+    for (int l = 0; l < valid; l++) {
+        label_[l] = 0; reason_[l] = 99;
+        anyway_[l] = labels.data[open_ids.data[item + l]];  // a later reason, where an earlier one is open
+    }
+    for (int pair = 0; pair < program.n_solid_pairs; pair++) {
+        const int w = pair >> 5, reason = (int)program.pair_numbers.data[2 * pair + 1] + 1;
+        const unsigned bit = 1u << (pair & 31);
+        if (!(any_[w] & bit)) continue;
+        int count = 0;
+        for (int l = 0; l < valid; l++) {
+            list[count] = l;
+            count += (asked_[w * LN + l] & bit) && label_[l] == 0 && (anyway_[l] == 0 || reason < anyway_[l]) ? 1 : 0;
+        }
+        const int* solids = program.solid_pairs.data + 2 * pair;
+        const real* A = F + 12 * program.solid_frame.data[solids[0]] * LN;
+        const real* B = F + 12 * program.solid_frame.data[solids[1]] * LN;
+        for (int start = 0; start < count; start += GROUP) {
+            alignas(256) real FA[12][GROUP], FB[12][GROUP], eps[GROUP], found[GROUP];
+            for (int l = 0; l < GROUP; l++) {
+                const int from = list[start + l < count ? start + l : start];
+                for (int k = 0; k < 12; k++) { FA[k][l] = A[k * LN + from]; FB[k][l] = B[k * LN + from]; }
+                eps[l] = start + l < count ? eps_[from] : real(1e30f);
+            }
+            *(V*)found = decided(pair, (const V*)FA, (const V*)FB, *(const V*)eps);
+            for (int l = 0; l < GROUP && start + l < count; l++) {
+                const int at = list[start + l];
+                if (found[l] == 0.f) continue;
+                if (found[l] == 1.f && reason_[at] >= reason) { label_[at] = reason; continue; }
+                still_[w * LN + at] |= bit;
+                reason_[at] = reason_[at] < reason ? reason_[at] : reason;
+            }
+        }
+    }
+    for (int l = 0; l < valid; l++) {
+        const int at = open_ids.data[item + l];
+        if (label_[l] != 0 || reason_[l] == 99) {
+            labels.data[at] = (wp::uint8)(label_[l] != 0 ? label_[l] : anyway_[l]);
+            continue;
+        }
+#if defined(__CUDA_ARCH__)
+        const int place = atomicAdd(listed.data, 1);
+#else
+        const int place = listed.data[0]++;
+#endif
+        ids.data[place] = at;
+        otherwise.data[place] = (wp::uint8)anyway_[l];
+        for (int w = 0; w < W; w++) masks.data[(long long)place * W + w] = still_[w * LN + l];
+    }
+    #undef LANE_LOOP
 """
 
 
@@ -452,11 +538,18 @@ def _code(snippet: str, n: int, joints: int, capsules: int, words: int, body: st
     values = {
         "TRIGONOMETRY": _TRIGONOMETRY if exact else _SINCOS,
         "SINCOS": _SINCOS,
+        "KINEMATICS": _KINEMATICS,
         "BODY": body,
         "REAL": "double" if exact else "float",
         "SQRT": "sqrt" if exact else "sqrtf",
+        "EDGE": EDGE,
+        "CELLS": 6 * EDGE**2,
+        "ROW": ROW,
         "STALLED": 1e-12 if exact else 1e-6,  # how much farther a point lies that is no longer farther [m]
         "LANES": PART_LANES,
+        "BATCH": BATCH,
+        "GROUP": GROUP,
+        "STEPS": STEPS,
         "BLOCK": LANES,
         "N": n,
         "L": joints,
@@ -572,16 +665,18 @@ def narrow_kernel(
     prepare, draw = draws.prepare, draws.draw
     own_real = wp.float64 if exact else wp.float32
     Space, Program = sample_space(real, n), program_type(own_real)
-    vec_n = wp.types.vector(n, own_real)
+    size = 1 if cuda else BATCH
+    values_type = wp.types.vector(n * size, own_real)
     u8, i32, u32 = (wp.array(dtype=dtype) for dtype in (wp.uint8, wp.int32, wp.uint32))
     LANE_MASK = wp.int64(LANES - 1)
 
     @wp.func_native(_code(_NARROW, n, joints, 0, words, exact=exact))
     def decide(
-        q: vec_n,
+        values: values_type,
+        valid: wp.int32,
         item: wp.int32,
-        at: wp.int32,
         program: Program,
+        open_ids: i32,
         open_masks: u32,
         labels: u8,
         listed: i32,
@@ -596,6 +691,7 @@ def narrow_kernel(
         program: Program,
         space: Space,
         first: wp.int64,
+        count: wp.int32,
         open_ids: i32,
         open_masks: u32,
         # out
@@ -605,15 +701,16 @@ def narrow_kernel(
         masks: u32,
         otherwise: u8,
     ):
-        item = wp.tid()
-        at = open_ids[item]
-        index = first + wp.int64(at)
-        start = index - (index & LANE_MASK)
-        drawn = draw(space, prepare(space, start), start, wp.int32(index & LANE_MASK))
-        q = vec_n()
-        for i in range(n):
-            q[i] = own_real(drawn[i])
-        decide(q, item, at, program, open_masks, labels, listed, ids, masks, otherwise)
+        item = wp.tid() * size
+        valid = wp.min(size, count - item)
+        values = values_type()
+        for lane in range(size):
+            index = first + wp.int64(open_ids[item + wp.min(lane, valid - 1)])
+            start = index - (index & LANE_MASK)
+            drawn = draw(space, prepare(space, start), start, wp.int32(index & LANE_MASK))
+            for i in range(n):
+                values[i * size + lane] = own_real(drawn[i])
+        decide(values, valid, item, program, open_ids, open_masks, labels, listed, ids, masks, otherwise)
 
     return narrow
 

@@ -14,6 +14,7 @@ from wsrender.collision.certificates import FREE, HIT, MIXED, certificates
 from wsrender.collision.covers import LEVELS, cover, from_segment
 from wsrender.collision.distance import frames_of
 from wsrender.collision.solids import Solid
+from wsrender.collision.supports import EDGE, PAD, supports
 from wsrender.documents.constraints import Constraints
 from wsrender.robot import collisions
 from wsrender.robot.constraints import constraints_for
@@ -186,3 +187,28 @@ def test_levers_are_no_shorter_than_what_random_configurations_have(seed):
             assert lever >= found - 1e-9
             tight.append(lever / found)
     assert min(tight) < 1.02
+
+
+@pytest.mark.parametrize("stretched", [(1, 1, 1), (8, 1, 0.2)])
+def test_cells_of_directions_hold_the_farthest_points(stretched):
+    """Of 200 points few are looked at in each cell, and the farthest is among them, at cells' borders too."""
+    random = np.random.default_rng(0)
+    points = random.normal(size=(200, 3))
+    points *= stretched / np.linalg.norm(points, axis=1, keepdims=True)
+    found = supports(points)
+    directions = random.normal(size=(20_000, 3))
+    directions[::2] /= np.abs(directions[::2]).max(axis=1, keepdims=True)
+    directions[::2] = np.round(directions[::2] * EDGE / 2) * 2 / EDGE
+    axis = np.abs(directions).argmax(axis=1)
+    along, one, two = (directions[np.arange(len(axis)), (axis + k) % 3] for k in range(3))
+    column, row = (np.clip((beside / np.abs(along) + 1) / 2 * EDGE, 0, EDGE - 1).astype(int) for beside in (one, two))
+    cells = ((2 * axis + (along > 0)) * EDGE + column) * EDGE + row
+    for cell, direction in zip(cells, directions, strict=True):
+        height = points @ direction
+        assert height[found[cell]].max() == height.max()
+    assert np.mean([len(each) for each in found]) < 8
+
+
+def test_few_points_are_of_all_directions():
+    points = np.random.default_rng(0).normal(size=(PAD, 3))
+    assert all((each == np.arange(PAD)).all() for each in supports(points))

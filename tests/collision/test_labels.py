@@ -18,12 +18,15 @@ from wsrender.volume.lattice import LatticeBlock
 
 UNSURE = 1e-6  # [m]: MuJoCo's own tolerance
 SELF = Constraints(self_collision=True)
+STONE = np.random.default_rng(0).normal(size=(80, 3))
+STONE *= [0.2, 0.1, 0.05] / np.linalg.norm(STONE, axis=1, keepdims=True)
 AROUND = ws.Environment(
     [
         ws.HalfSpace(name="floor", point_m=(0, 0, -0.4)),
         ws.Box(name="table", size_m=(0.4, 0.3, 0.1), position_m=(0.3, 0.1, 0.1), rpy_deg=(10, 20, 30)),
         ws.Cylinder(name="post", radius_m=0.05, length_m=0.6, position_m=(-0.2, 0.3, 0.0)),
         ws.Mesh(name="wedge", vertices_m=((0, 0, 0), (0.2, 0, 0), (0, 0.3, 0), (0, 0, 0.2)), position_m=(0.1, -0.3, 0)),
+        ws.Mesh(name="stone", vertices_m=tuple(map(tuple, STONE.tolist())), position_m=(0.3, -0.1, 0.3)),
     ]
 )
 

@@ -11,7 +11,8 @@ import numpy as np
 from wsrender.collision.certificates import CELLS, FREE, Certificates, certificates
 from wsrender.collision.covers import LEVELS, Capsules, Cover, cover
 from wsrender.collision.distance import Distances, frames_of
-from wsrender.collision.solids import BASE, Pairs, Solid
+from wsrender.collision.solids import BASE, Pairs
+from wsrender.collision.supports import center_of, core, vertices_by_direction
 from wsrender.robots.chain import Chain
 
 DRAWN = 4096  # configurations over which the levels of covers are chosen
@@ -20,8 +21,7 @@ OPEN_COST = 600.0
 EPSILON = 5e-6  # of the reach, at least 2 m: what positions in float32 may be off [m]
 ABSENT = -1.0  # a squared distance that nothing falls below
 SHORT = 1e-10  # squared length of an axis that is a point [m²]
-PAD = 16  # vertices are padded to lanes of so many
-KIND = {"sphere": 0, "capsule": 0, "cylinder": 0, "box": 0, "hull": 0, "ellipsoid": 1, "half_space": 2}
+KIND = {"sphere": 3, "capsule": 3, "cylinder": 3, "box": 3, "hull": 0, "ellipsoid": 1, "half_space": 2}
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,8 +35,9 @@ class Program:
     ``test_numbers`` (t, 6): squared lengths of both half axes, each with its reciprocal; squared distances below which
     they are near and hit (distances, of planes). ``tables`` (K, 4): pair, two coordinates, first word;
     ``table_numbers`` (K, 4): lowest value and cells per unit of both; ``table_columns`` (K,); ``table_words``.
-    ``solid_frame`` (S,), ``solids`` (S, 16): rotation and translation in its joint, radius, disc, kind, 0;
-    ``solid_sizes`` (S, 3); ``vertices`` (V,): x, y and z in turn; ``vertex_range`` (S, 2); ``solid_pairs`` (P, 2);
+    ``solid_frame`` (S,), ``solids`` (S, 18): rotation and translation in its joint, radius, disc, kind, half a segment
+    within it, about its middle; ``solid_sizes`` (S, 3): half axes of an ellipsoid, else half of what its points span;
+    ``vertices`` (V,), ``vertex_range`` (S, cells, 2): see `vertices_by_direction`; ``solid_pairs`` (P, 2);
     ``pair_numbers`` (P, 2): margin, reason. ``epsilon``: what float32 may be off [m]; ``columns``: cells of a table
     along its first coordinate; ``never``, ``always``: pairs by proof.
     """
@@ -236,7 +237,7 @@ def _packed(
         numbers.append([ranges[0][0], per_unit[0], ranges[1][0], per_unit[1]])
         columns.append(table.labels.shape[1])
         words.append(_words(table.labels))
-    vertices, vertex_range = _vertices(pairs.solids)
+    vertices, vertex_range = vertices_by_direction(pairs.solids)
     placed = [solid.T @ _shift(center_of(solid)) for solid in pairs.solids]  # the narrow phase starts at the origins
     joints = [
         [*T[:3, :3].ravel(), *T[:3, 3], scale, offset, float(turns)]
@@ -262,12 +263,12 @@ def _packed(
         solid_frame=np.array([solid.joint - BASE for solid in pairs.solids], np.int32),
         solids=_d(
             [
-                [*T[:3, :3].ravel(), *T[:3, 3], s.radius, s.disc, KIND[s.kind], 0.0]
+                [*T[:3, :3].ravel(), *T[:3, 3], s.radius, s.disc, KIND[s.kind], *core(s)]
                 for T, s in zip(placed, pairs.solids, strict=True)
             ],
-            16,
+            18,
         ),
-        solid_sizes=_d([solid.size for solid in pairs.solids], 3),
+        solid_sizes=_d([s.size if s.kind == "ellipsoid" else np.ptp(s.points, axis=0) / 2 for s in pairs.solids], 3),
         vertices=vertices,
         vertex_range=vertex_range,
         solid_pairs=_i(pairs.pairs, 2),
@@ -323,23 +324,6 @@ def _words(labels: np.ndarray) -> np.ndarray:
     flat = labels.ravel().astype(np.uint32)
     flat = np.pad(flat, (0, -len(flat) % 16)).reshape(-1, 16)
     return np.bitwise_or.reduce(flat << (2 * np.arange(16, dtype=np.uint32)), axis=1).astype(np.uint32)
-
-
-def _vertices(solids: tuple[Solid, ...]) -> tuple[np.ndarray, np.ndarray]:
-    """All points, x, y and z of each solid in turn, padded by its first; and where they are (S, 2)."""
-    parts, ranges, first = [], [], 0
-    for solid in solids:
-        points = solid.points - center_of(solid)
-        points = np.concatenate([points, np.repeat(points[:1], -len(points) % PAD, axis=0)])
-        ranges.append([first, len(points)])
-        parts.append(points.T.ravel())
-        first += 3 * len(points)
-    return np.concatenate(parts), np.array(ranges, np.int32)
-
-
-def center_of(solid: Solid) -> np.ndarray:
-    """A point inside, (3,) in its own frame."""
-    return solid.points.mean(axis=0)
 
 
 def _shift(by: np.ndarray) -> np.ndarray:

@@ -6,6 +6,7 @@ import numpy as np
 import warp as wp
 from wsrender_kernels.collision import (
     ARRAYS,
+    BATCH,
     CAPACITY,
     REAL_ARRAYS,
     filter_kernel,
@@ -46,6 +47,7 @@ class Collisions:
         self._narrow = [
             narrow_kernel(real, n, joints, self.words, shape.method, cuda, exact) for exact in (False, True)
         ]
+        self._at_a_time = 1 if cuda else BATCH
         self._programs = _on_device(program, pairs, self.words, device)
         self.labels = device_memory(chunk, wp.uint8, device)
         self._otherwise = device_memory(chunk, wp.uint8, device)
@@ -71,8 +73,9 @@ class Collisions:
         for kernel, program in zip(self._narrow, self._programs, strict=True):
             if left[-1]:
                 after[0].zero_()
-                inputs, outputs = [program, space, first, *into[1:]], [self.labels, *after, self._otherwise]
-                launch(loaded(kernel, self.device), dim=left[-1], inputs=inputs, outputs=outputs, device=self.device)
+                inputs = [program, space, first, left[-1], *into[1:]]
+                outputs, dim = [self.labels, *after, self._otherwise], -(-left[-1] // self._at_a_time)
+                launch(loaded(kernel, self.device), dim=dim, inputs=inputs, outputs=outputs, device=self.device)
                 into, after = after, into
             left.append(int(into[0].numpy()[0]) if left[-1] else 0)
         if left[-1]:
