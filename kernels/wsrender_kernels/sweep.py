@@ -88,7 +88,7 @@ class Shape:
 
         ``wsrender_code`` reproduces the rounding of the program's determinant, in its axes.
         """
-        tip_axes = self.keep_orientation or bool(self.constraints)
+        tip_axes = self.keep_orientation or not all(isinstance(each, int) for each in self.constraints)
         return tip_axes or in_base_axes(self.rows) or self.convention == "wsrender_code"
 
     @property
@@ -748,6 +748,11 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
                     keys[LOWEST_ROW + lane] = lowest_key
                 for lane in range(valid):
                     voxel = cells[lane]
+                    if wp.static(CONSTRAINED):  # noqa: SIM102
+                        if voxel == grid.spare:
+                            number = load_count(to.rejections, counts[lane])
+                            store_count(to.rejections, counts[lane], number + wp.int64(1))
+                            continue
                     # Every slot is read and compared alike, count and padding against LOWEST: one SIMD operation.
                     sample = record_type()
                     for k in range(RECORD):
@@ -762,10 +767,6 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
                         for k in range(K):
                             addend[k] = wp.int64(quanta[k * BLOCK + lane])
                         store_sums(to.sums, voxel, load_sums(to.sums, voxel) + addend)
-                if wp.static(CONSTRAINED):
-                    for lane in range(valid):
-                        number = load_count(to.rejections, counts[lane])
-                        store_count(to.rejections, counts[lane], number + wp.int64(1))
 
         if wp.static(INTERLEAVED):
             for lane in range(valid):
