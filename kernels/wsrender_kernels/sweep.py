@@ -80,7 +80,8 @@ class Shape:
     # Warp functions (limits, q, tip, axes) -> 0 admitted | 1 violated, those of the whole chain (model, q, tip, axes),
     # or the label of samples that are rejected
     constraints: tuple[Callable | OfChain | int, ...] = ()
-    limits: int = 0  # numbers of all constraints
+    limits: int = 0  # numbers of all constraints, and then of the indices of the chain
+    chain_values: tuple[tuple[int, Callable], ...] = ()  # indices (model, q) -> value, by their places
 
     @property
     def world_axes(self) -> bool:
@@ -189,6 +190,46 @@ def _given_values(shape: Shape):
 
 
 @factory
+def _chain_values(shape: Shape):
+    """Device functions of indices of the chain: ``(model, q, out) -> out`` with their values, and ``kept(out, found)``.
+
+    The second takes them over what stands in their places among the indices of singular values.
+    """
+    real, output_type = shape.real, wp.types.vector(shape.n_outputs, shape.real)
+    vec_n, found_type = wp.types.vector(shape.n, real), wp.types.vector(shape.n_indices + 2, real)
+    COUNT = len(shape.chain_values)
+    PLACES = wp.types.vector(max(COUNT, 1), wp.int32)(*(place for place, _ in shape.chain_values))
+
+    @wp.func
+    def with_none(model: Any, q: vec_n, out: output_type):
+        return out
+
+    with_values = with_none
+    for place, value in shape.chain_values:
+        with_values = _with_value(value, 3 + place, with_values, vec_n, output_type)
+
+    @wp.func
+    def kept(out: output_type, found: found_type):
+        for g in range(COUNT):
+            found[PLACES[g]] = out[3 + PLACES[g]]
+        return found
+
+    return with_values, kept
+
+
+def _with_value(value: Any, place: int, others: Any, vec_n: Any, output_type: Any):
+    """The same with one index more."""
+
+    @wp.func
+    def with_value(model: Any, q: vec_n, out: output_type):
+        more = others(model, q, out)
+        more[place] = value(model, q)
+        return more
+
+    return with_value
+
+
+@factory
 def _state(shape: Shape) -> SimpleNamespace:
     """Device function ``(model, q, at, stride) -> tip, tip axes (3 x 3), J, M`` from the chain or from given arrays.
 
@@ -276,6 +317,7 @@ def _around_values(shape: Shape) -> SimpleNamespace:
     CONFIGURATION = shape.reduced
     ORIENTATION = CONFIGURATION + n * shape.keep_configuration
     KEEP_CONFIGURATION, KEEP_ORIENTATION = shape.keep_configuration, shape.keep_orientation
+    (with_values, _), VALUED = _chain_values(shape), bool(shape.chain_values)
 
     @wp.func(inline=True)
     def matrices(model: Model, space: Space, block: Any, first: wp.int64, lane: wp.int32):
@@ -293,6 +335,8 @@ def _around_values(shape: Shape) -> SimpleNamespace:
                 out[ORIENTATION + i] = quat[i]
         if wp.static(CONSTRAINED):
             out[REASON] = real(rejection(model, q, tip, axes, first + wp.int64(lane)))
+        if wp.static(VALUED):
+            out = with_values(model, q, out)
         J = penalized(model, q, J)
         return out, kinematic_matrix(model, J), dynamic_matrix(model, J, M), volume_of(J)
 
@@ -438,6 +482,7 @@ def _evaluation(shape: Shape):
         sample_space(real, shape.n),
     )
     FOUND, GIVEN, given_values = shape.n_indices + 2, bool(shape.given_values), _given_values(shape)
+    (_, kept), VALUED = _chain_values(shape), bool(shape.chain_values)
 
     @wp.func(inline=True)
     def evaluate(model: Model, space: Space, block: Any, first: wp.int64, lane: wp.int32):
@@ -445,6 +490,8 @@ def _evaluation(shape: Shape):
         found = indices_of(volume, kinematic_values(A), dynamic_values(B))
         if wp.static(GIVEN):
             found = given_values(model, space, first + wp.int64(lane), found)
+        if wp.static(VALUED):
+            found = kept(out, found)
         for k in range(FOUND):
             out[3 + k] = found[k]
         return out
@@ -480,6 +527,8 @@ def _staged_lanes(shape: Shape):
     sigma_a_type, sigma_b_type = wp.types.vector(ROWS_A, real), wp.types.vector(ROWS_B, real)
     N_OUTPUTS, FOUND, BLOCK, PART = shape.n_outputs, shape.n_indices + 2, LANES, PART_LANES
     GIVEN, given_values = bool(shape.given_values), _given_values(shape)
+    VALUED, VALUES = bool(shape.chain_values), len(shape.chain_values)
+    PLACES = wp.types.vector(max(VALUES, 1), wp.int32)(*(place for place, _ in shape.chain_values))
 
     @wp.func(inline=True)
     def staged_lanes(model: Model, space: Space, block: Any, first: wp.int64, valid: wp.int32):
@@ -519,6 +568,9 @@ def _staged_lanes(shape: Shape):
                 found = indices_of(volumes[lane], sigma_a, sigma_b)
                 if wp.static(GIVEN):
                     found = given_values(model, space, first + wp.int64(wp.min(part + lane, valid - 1)), found)
+                if wp.static(VALUED):
+                    for g in range(VALUES):
+                        found[PLACES[g]] = values[(3 + PLACES[g]) * BLOCK + (part + lane)]
                 place = part + lane  # added up in another order, clang does not see that it is no negative index
                 for k in range(FOUND):
                     values[(3 + k) * BLOCK + place] = found[k]

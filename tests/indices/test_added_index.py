@@ -102,7 +102,13 @@ def test_every_index_of_the_catalogue_says_what_it_is():
     assert [index.name for index in given] == ["clearance", "clearance_lower_bound"]
     assert all(not index.surviving(False) and index.unit == "m" for index in given)
     assert all({"minimum", "mean", "maximum"} < set(index.voxel_statistics) for index in given)
-    for index in (each for each in catalogue().values() if not each.given):
+    joints = [index for index in catalogue().values() if index.of_chain]
+    assert [index.name for index in joints] == [
+        *("joint_limit_margin", "torque_margin", "payload_capacity", "velocity_radius"),
+        *("force_radius", "acceleration_radius", "tip_compliance", "position_error"),
+    ]
+    assert all(index.unit and not index.surviving(False) and not index.has_dynamic_form for index in joints)
+    for index in (each for each in catalogue().values() if each not in (*given, *joints)):
         assert index.symbol and index.source and index.unit and index.needs == ("sigma",), index.name
         assert index.bound is not None and index.surviving(False) == {"base_joint", "trailing_joints"}
         assert index.surviving(True) == {"base_joint"} and index.voxel_statistics == ("count", "maximum")

@@ -53,7 +53,9 @@ class Bare:
         mujoco.mju_quat2Mat(R, spec.compile().site(tip).quat)
         place = spec.compile().site(tip).pos + R.reshape(3, 3) @ at
         if payload:
-            held = site.parent.add_body(pos=place, quat=spec.compile().site(tip).quat, mass=payload, ipos=[0, 0, 0])
+            held = site.parent.add_body(
+                name="payload", pos=place, quat=spec.compile().site(tip).quat, mass=payload, ipos=[0, 0, 0]
+            )
             held.explicitinertial, held.inertia = True, inertia
         self.model, self.tip = spec.compile(), tip
         self.C = np.zeros((self.model.nv, len(joints)))

@@ -26,11 +26,11 @@ def packed_constraints(
 
 
 def device_constraints(
-    constraints: Sequence[Constraint], chain: Kinematics, origin: np.ndarray, precision: str
+    constraints: Sequence[Constraint], chain: Kinematics, origin: np.ndarray, precision: str, after: int = 0
 ) -> dict[str, Any]:
-    """Fields ``constraints`` and ``limits`` of a sweep's shape."""
+    """Fields ``constraints`` and ``limits`` of a sweep's shape; so many numbers of others stand ``after`` theirs."""
     sizes = [len(_numbers(each, chain, origin, precision)) for each in constraints]
-    total, functions, real = sum(sizes), [], REAL[precision]
+    total, functions, real = sum(sizes) + after, [], REAL[precision]
     labels = {each.name: number for number, each in enumerate((*labelling(constraints), *on_host(constraints)), 1)}
     for each, offset in zip(constraints, np.cumsum([0, *sizes]).tolist(), strict=False):
         if each.name in labels:

@@ -76,7 +76,9 @@ def index_source(
     """Body of the device function of these indices, as text: equal texts share a kernel; options are literals in it."""
     length = spectrum_length(n, rows, convention)
     expressions = [
-        0.0 if find(name).given else trace(find(name).function_for(convention, options.get(name)), length, len(rows), n)
+        0.0
+        if find(name).given or find(name).of_chain
+        else trace(find(name).function_for(convention, options.get(name)), length, len(rows), n)
         for name in names
     ]
     return source_of(expressions, ["dynamic" if is_dynamic(name) else "kinematic" for name in names])

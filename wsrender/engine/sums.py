@@ -29,10 +29,10 @@ def scales_of(pipeline: Pipeline) -> np.ndarray:
 def has_own_bound(evaluation: Evaluation, name: str) -> bool:
     """Whether an index's own bound holds: a number does everywhere, a function of the norm where that is known."""
     bound = find(name).bound
-    if find(name).given:
-        return True
-    if not callable(bound):
+    if find(name).given or not callable(bound):
         return bound is not None
+    if find(name).of_chain:
+        return True
     return evaluation.convention == "standard" and not is_dynamic(name) and not evaluation.given_kinematics
 
 

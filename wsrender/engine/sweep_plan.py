@@ -14,6 +14,7 @@ from wsrender_kernels.sampling import LANES
 from wsrender_kernels.sweep import TOTAL_SLOTS, Shape, outputs_type, record_type_of, sums_type_of, sweep_kernel
 from wsrender_kernels.voxels import lattice, lowest
 
+from wsrender.engine.chain_values import device_values, packed_values
 from wsrender.engine.constraint_code import device_constraints, packed_constraints
 from wsrender.engine.devices import thread_count
 from wsrender.engine.drawn_configurations import configurations, device_space, given_space
@@ -82,6 +83,9 @@ class SweepPlan:
     def shape(self) -> Shape:
         """Compile-time part of the kernel."""
         each, rows = self.pipeline, self.pipeline.kept_rows
+        asked = device_constraints(
+            each.constraints, each.evaluation.chain, each.origin, each.precision, len(packed_values(each))
+        )
         return shape_of(
             each,
             base_levels=self.structure.base_levels > 1,
@@ -92,7 +96,8 @@ class SweepPlan:
             keep_rows=rows is not None,
             keep_configuration="configuration" in (rows or ()),
             keep_orientation="orientation" in (rows or ()),
-            **device_constraints(each.constraints, each.evaluation.chain, each.origin, each.precision),
+            **asked,
+            **device_values(each, asked["limits"] - len(packed_values(each))),
         )
 
 
@@ -249,7 +254,7 @@ class Accumulator:
         limits = packed_constraints(
             pipeline.constraints, pipeline.evaluation.chain, pipeline.origin, pipeline.precision
         )
-        self._model = pipeline_model(pipeline, limits, shape)
+        self._model = pipeline_model(pipeline, np.concatenate([limits, packed_values(pipeline)]), shape)
         given = shape.method == "given"
         evaluated = plan.structure.evaluated
         self._run = run_length(evaluated, shape.shared)

@@ -127,7 +127,7 @@ class Index:
     ``function(sigma, m, n, **options)`` gets the m singular values of the task matrix, descending, each a number or
     array, and the values of its ``options``. ``needs`` is ``("sigma",)``, those of J, and then ``dynamic_<name>`` is
     the same of J M⁻¹; or ``("dynamic_sigma",)``, those of J M⁻¹ alone; catalogued ones of ``("clearance",)`` are given
-    by the host. ``unit`` is a text, or follows from the task
+    by the host, those of others are kernels of their own. ``unit`` is a text, or follows from the task
     matrix, as in ``lambda A: A.volume``. ``conventions`` and ``convention_units`` hold what another convention than
     the standard defines differently.
 
@@ -156,6 +156,16 @@ class Index:
     def given(self) -> bool:
         """Whether the host gives its values, by its options: it is no function of singular values."""
         return "clearance" in self.needs
+
+    @property
+    def of_chain(self) -> bool:
+        """Whether kernels compute it of the whole chain, and not as a function of singular values."""
+        return not self.given and not set(self.needs) <= set(SUPPLIED)
+
+    @property
+    def has_dynamic_form(self) -> bool:
+        """Whether there is one of J M⁻¹ beside it."""
+        return not (self.given or self.of_chain or self.dynamic)
 
     @property
     def dynamic(self) -> bool:

@@ -109,6 +109,11 @@ def code_isotropy(sigma, m, n):
     return math.divide(len(s) * code_order_independent_manipulability(sigma, m, n), sum(s[1:], s[0]))
 
 
+def of_chain(sigma, m, n, **options):
+    """Of an index of the whole chain: kernels compute it themselves. Raises InputError."""
+    raise InputError("indices", "must not ask for indices of joints and what they hold: they are those of a serial arm")
+
+
 def given_by_shapes(sigma, m, n, limit_m):
     """Of an index that is no function of singular values: the engine asks the robot's shapes. Raises InputError."""
     raise InputError("indices", "must not ask for clearance: it is that of the shapes of a serial arm")

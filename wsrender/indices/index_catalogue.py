@@ -85,9 +85,71 @@ CLEARANCE = (
     Index("clearance", "d", source="MuJoCo's mj_geomDistance", **_ABOUT),
     Index("clearance_lower_bound", "d_low", source="capsules around the shapes", **_ABOUT),
 )
+_ACCELERATION = Option("acceleration_m_s2", 0.0, "m/s^2", range=(0.0, inf), description="of the tip, in any direction")
+_DIRECTION = Option(
+    "direction", (), kind="numbers", description="in the world, of any length; none: the least over all directions"
+)
+
+
+def _place(name: str, what: str) -> Option:
+    return Option(name, (0.0, 0.0, 0.0), "m", "numbers", length=3, description=f"where {what} is in the tip's frame")
+
+
+def _of_joints(name: str, unit: str, what: str) -> Option:
+    return Option(name, (), unit, "numbers", range=(0.0, inf), description=f"{what} of every joint")
+
+
+_CHAIN: dict[str, Any] = {"function": f.of_chain, "voxel_statistics": ("count", "maximum", "mean", "minimum")}
+CHAIN = (
+    Index(
+        "joint_limit_margin", "δ", source="share of the ranges", range=(0.0, 0.5), unit="1",
+        needs=("configuration", "limits"), bound=0.5, **_CHAIN,
+    ),
+    Index(
+        "torque_margin", "δ_τ", source="Khatib 1987", range=(-1.0, 1.0), unit="1", bound=1.0,
+        needs=("jacobian", "inertia", "gravity", "limits"), **_CHAIN,
+        options=(
+            Option("payload_kg", 0.0, "kg", range=(0.0, inf), description="mass that the tip carries"),
+            _place("payload_com_m", "that mass"),
+            _ACCELERATION,
+        ),
+    ),
+    Index(
+        "payload_capacity", "m", source="static holding capacity", unit="kg",
+        needs=("jacobian", "inertia", "gravity", "limits"), bound=lambda norm, m, n, limit_kg, **_: limit_kg, **_CHAIN,
+        options=(
+            _place("com_m", "the mass"),
+            _ACCELERATION,
+            Option("limit_kg", 100.0, "kg", range=(1e-6, 1e9), description="what larger masses are told as"),
+        ),
+    ),
+    Index(
+        "velocity_radius", "v", source="Yoshikawa 1985; Chiacchio et al. 1997", unit="m/s",
+        needs=("jacobian", "limits"), options=(_DIRECTION,), **_CHAIN,
+    ),
+    Index(
+        "force_radius", "f", source="Chiacchio et al. 1997", unit="N", needs=("jacobian", "gravity", "limits"),
+        bound=lambda norm, m, n, limit_N, **_: limit_N, **_CHAIN,
+        options=(
+            _DIRECTION, Option("limit_N", 1e4, "N", range=(1e-6, 1e12), description="what larger forces are told as")
+        ),
+    ),
+    Index(
+        "acceleration_radius", "a", source="Bowling and Khatib 2005", unit="m/s^2",
+        needs=("jacobian", "inertia", "gravity", "limits"), options=(_DIRECTION,), **_CHAIN,
+    ),
+    Index(
+        "tip_compliance", "c", source="largest eigenvalue of J_v K⁻¹ J_vᵀ", unit="m/N", needs=("jacobian",),
+        options=(_of_joints("joint_stiffness", "N m/rad or N/m", "stiffness"),), **_CHAIN,
+    ),
+    Index(
+        "position_error", "σ_p", source="largest eigenvalue of J_v diag(δ²) J_vᵀ", unit="m", needs=("jacobian",),
+        options=(_of_joints("joint_sigma", "rad or m", "one standard deviation"),), **_CHAIN,
+    ),
+)  # fmt: skip
 KINEMATIC = tuple(index.name for index in SIX)
 DYNAMIC = tuple(DYNAMIC_PREFIX + name for name in KINEMATIC)
-_SHIPPED: dict[str, Index] = {index.name: index for index in (*SIX, *CLEARANCE)}
+_SHIPPED: dict[str, Index] = {index.name: index for index in (*SIX, *CLEARANCE, *CHAIN)}
 _ADDED: dict[str, Index] = {}  # by the user
 
 
@@ -171,8 +233,9 @@ def find(name: str) -> Index:
         names = ", ".join(known)
         allowed = f"allowed: {names}, those of singular values also as dynamic_<name>{left_out(EXTENSIONS)}"
         raise InputError("indices", f"unknown index {name!r}{hint}; {allowed}")
-    if plain != name and (index.dynamic or index.given):
-        why = "is of shapes" if index.given else "is of the accelerations already"
+    if plain != name and not index.has_dynamic_form:
+        why = "is of the accelerations already" if index.dynamic else "is of no singular values"
+        why = "is of shapes" if index.given else why
         raise InputError("indices", f"unknown index {name!r}; {plain!r} {why}")
     return index
 
@@ -180,7 +243,7 @@ def find(name: str) -> Index:
 def names_of(index: Index) -> tuple[str, ...]:
     """Every name by which a job may ask for an index: its own, aliases, and those of its dynamic variant."""
     plain = (index.name, *index.aliases)
-    return plain if index.dynamic or index.given else (*plain, *(DYNAMIC_PREFIX + name for name in plain))
+    return plain if not index.has_dynamic_form else (*plain, *(DYNAMIC_PREFIX + name for name in plain))
 
 
 def resolve(request: str | Sequence[str], has_inertia: bool) -> tuple[str, ...]:

@@ -8,6 +8,7 @@ import numpy as np
 
 from wsrender.indices.index_catalogue import is_dynamic
 from wsrender.notices import Notice
+from wsrender.pipeline.chain_index import ChainIndex
 from wsrender.robots.chain import Chain
 from wsrender.robots.kinematics import Kinematics
 
@@ -17,7 +18,8 @@ class Evaluation:
     """The indices to evaluate and how (the fields of the job document, resolved); without any, the tip's position.
 
     ``rows`` are 0…5 for x y z rx ry rz; ``penalty`` is K or None. ``host_inertia(q: (N, n)) -> (N, n, n)`` replaces the
-    chain's inertia matrix, ``given(q: (N, n)) -> (N,)`` by index what the host gives. ``options``: all values of the
+    chain's inertia matrix, ``given(q: (N, n)) -> (N,)`` by index what the host gives; ``of_chain``: those that kernels
+    compute of the whole chain. ``options``: all values of the
     indices that have any, by index and option.
     """
 
@@ -30,6 +32,7 @@ class Evaluation:
     torque_scaling: bool = False
     host_inertia: Callable[[np.ndarray], np.ndarray] | None = None
     options: Mapping[str, Mapping[str, Any]] = field(default_factory=dict, hash=False)
+    of_chain: Mapping[str, ChainIndex] = field(default_factory=dict, hash=False)
     given: Mapping[str, Callable[[np.ndarray], np.ndarray]] = field(default_factory=dict, hash=False)
     notices: tuple[Notice, ...] = ()  # what to know of the values
 
@@ -42,7 +45,8 @@ class Evaluation:
     def device_chain(self) -> Chain | None:
         """The chain that the kernels evaluate; None where the host computes all kinematics."""
         chain = self.chain.geometry
-        return chain.dynamic if chain and self.dynamic and self.host_inertia is None else chain
+        whole = self.of_chain or (self.dynamic and self.host_inertia is None)
+        return chain.dynamic if chain and whole else chain
 
     @property
     def given_kinematics(self) -> bool:

@@ -16,12 +16,12 @@ from wsrender.pipeline.constraints.expression import ExpressionConstraint
 from wsrender.pipeline.constraints.region import Point, Region
 from wsrender.pipeline.constraints.registry import constraints_of
 from wsrender.pipeline.constraints.torque import Torque
+from wsrender.robot.chain_indices import EFFORTS
 from wsrender.robot.gravity import GRAVITY, gravity_of
 from wsrender.robot.indices import check_inertias, task_rows
 from wsrender.robot.model_robot import Robot
 
 LINEAR = (0, 1, 2)  # rows of a task
-EFFORTS = "robot.effort_limits, MJCF actuatorfrcrange or forcerange, URDF effort, effort_limit of DH rows"
 
 
 def constraints_of_job(job: Any, robot: Robot) -> tuple[Constraint, ...]:

@@ -1,6 +1,6 @@
 """Local indices of a robot: from the words of a job document to an evaluation of the engine."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -21,9 +21,12 @@ from wsrender.documents.quantities import argument, positive, real, sequence
 from wsrender.errors import InputError, MissingInertiaError
 from wsrender.indices.index_catalogue import CONVENTIONS, find, is_dynamic, option_values, resolve
 from wsrender.notices import Notice, warn
+from wsrender.pipeline.constraints.region import Point
 from wsrender.pipeline.evaluation import Evaluation
 from wsrender.pipeline.pipeline import Pipeline
 from wsrender.pipeline.sampling import plan_sampling
+from wsrender.robot.chain_indices import chain_indices_of
+from wsrender.robot.gravity import GRAVITY, gravity_of
 from wsrender.robot.model_robot import Robot, configuration_rows
 from wsrender.robot.user_robot import as_robot
 from wsrender.robots.model_warning import ModelWarning
@@ -47,6 +50,7 @@ def evaluate_indices(
     torque_scaling: bool = False,
     index_options: Mapping[str, Mapping[str, Any]] | None = None,
     inertia: str = "kernel",
+    gravity_m_s2: Point = GRAVITY,
     precision: str = "float64",
     device: str = "auto",
     threads: int | None = None,
@@ -71,7 +75,7 @@ def evaluate_indices(
         inertia=inertia,
         precision=precision,
     )
-    evaluation = _with_clearance(evaluation, robot, None, None)
+    evaluation = _with_clearance(_of_chain(evaluation, robot, gravity_m_s2), robot, None, None)
     rows = configuration_rows(q, robot.chain.n)
     pipeline = Pipeline(evaluation, plan_sampling(robot.chain, rows), kept_rows=frozenset(), precision=precision)
     values = evaluate_samples(pipeline, device, threads=threads).values
@@ -81,8 +85,14 @@ def evaluate_indices(
 def evaluation_of_job(job: IndexChoices, robot: Robot) -> Evaluation:
     """The engine's evaluation of a job's choices for a robot, each checked."""
     choices = {name: getattr(job, name) for name in IndexChoices.model_fields if name != "device"}
-    evaluation = evaluation_of(robot, **choices)
+    evaluation = _of_chain(evaluation_of(robot, **choices), robot, gravity_of(job), getattr(job, "held_joints", ()))
     return _with_clearance(evaluation, robot, getattr(job, "constraints", None), getattr(job, "environment", None))
+
+
+def _of_chain(evaluation: Evaluation, robot: Robot, gravity: Point, held: Collection[str] = ()) -> Evaluation:
+    """With its indices of the whole chain; raises InputError where the robot has not what they take."""
+    options, names, rows = evaluation.options, evaluation.indices, evaluation.rows
+    return replace(evaluation, of_chain=chain_indices_of(robot, options, names, rows, gravity, held))
 
 
 def _with_clearance(
