@@ -13,9 +13,14 @@ from wsrender.volume.volume_data import VolumeData
 from wsrender.volume.voxels import inner_and_outer_counts
 
 
+def plain_means(pipeline: Pipeline, partial: Partial) -> np.ndarray:
+    """Mean of each index over admitted samples, (K,)."""
+    return partial.totals / scales_of(pipeline) / max(partial.admitted, 1)
+
+
 def joint_means(pipeline: Pipeline, partial: Partial) -> np.ndarray:
     """Mean over admitted samples of index / maximum, (K,); 0 where the maximum is 0."""
-    mean = partial.totals / scales_of(pipeline) / max(partial.admitted, 1)
+    mean = plain_means(pipeline, partial)
     return _divided(mean, partial.maximum[3 : 3 + len(mean)].astype(np.float64))
 
 

@@ -82,6 +82,7 @@ class Shape:
     constraints: tuple[Callable | OfChain | int, ...] = ()
     limits: int = 0  # numbers of all constraints, and then of the indices of the chain
     chain_values: tuple[tuple[int, Callable], ...] = ()  # indices (model, q) -> value, by their places
+    cuts: tuple[int, ...] = ()  # places of indices whose values are counted that are cut
 
     @property
     def world_axes(self) -> bool:
@@ -137,6 +138,11 @@ class Shape:
     def record_size(self) -> int:
         """Integers per voxel record: a power of two, so that no record lies across two cache lines."""
         return _power_of_two(self.count_size + self.extremes)
+
+    @property
+    def n_totals(self) -> int:
+        """Totals of all samples: sums of the indices, samples rejected by constraint, values that are cut."""
+        return self.n_indices + len(self.constraints) + len(self.cuts)
 
     @property
     def count_size(self) -> int:
@@ -595,8 +601,9 @@ def outputs_type(shape: Shape):
     """Struct with what a sweep adds to: extremes and totals of all samples, voxel records and sums, rows.
 
     ``extremes`` (2 R,) of the R reduced outputs: largest value and largest complement; ``totals`` (TOTAL_SLOTS * (K +
-    C),): fixed-point sums of the indices, scaled by ``scales`` (K,), and how many samples each of the C constraints
-    rejects, in parts; ``records``, ``sums``: one vector per voxel;
+    C + X),): fixed-point sums of the indices, scaled by ``scales`` (K,), how many samples each of the C constraints
+    rejects, and how many values of the X indices that are ``cut`` reach ``cuts`` (X,), in parts; ``records``, ``sums``:
+    one vector per voxel;
     ``rows_out`` (n_rows * rows_stride,): row r of the chunk's sample s at [r * rows_stride + s], interleaved ones at
     [s * n_rows + r]. With constraints also ``rejections`` (voxels * C,): samples of a voxel that each rejects; and
     ``earliest`` (C,): the number of the first sample that each does.
@@ -613,6 +620,8 @@ def outputs_type(shape: Shape):
         rows_out: wp.array(dtype=real)
         rows_stride: wp.int64
 
+    if shape.cuts:
+        Outputs.__annotations__["cuts"] = wp.array(dtype=real)
     if shape.constraints:
         Outputs.__annotations__["earliest"] = wp.array(dtype=wp.int64)
         if shape.voxels:
@@ -650,6 +659,8 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
     STAGED = shape.many_rows
     CONSTRAINTS, CONSTRAINED = len(shape.constraints), bool(shape.constraints)
     REASON = (shape.n_outputs - 1) * LANES
+    CUTS, CUT_TOTALS = len(shape.cuts), K + len(shape.constraints)
+    CUT_ROWS = wp.types.vector(max(CUTS, 1), wp.int32)(*((3 + place) * LANES for place in shape.cuts))
     ADMITTED = real(0.0)
     LOWEST = bits(lowest(real))
     LOWEST_ROW = REDUCED * LANES
@@ -783,6 +794,16 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
                     if rejected > 0:
                         to.earliest[c] = wp.min(to.earliest[c], start + wp.int64(earliest))
 
+            if wp.static(CUTS > 0):
+                for x in range(CUTS):
+                    cut = wp.int32(0)
+                    for lane in range(BLOCK):
+                        reaches = values[CUT_ROWS[x] + lane] >= to.cuts[x] and lane < valid
+                        if wp.static(CONSTRAINED):
+                            reaches = reaches and values[REASON + lane] == ADMITTED
+                        cut += wp.where(reaches, 1, 0)
+                    to.totals[CUT_TOTALS + x] = to.totals[CUT_TOTALS + x] + wp.int64(cut)
+
             if wp.static(VOXELS):
                 # Touch all target records first: their cache misses then overlap, which halves the time.
                 largest_count = LOWEST
@@ -871,7 +892,8 @@ def _cuda_kernel(shape: Shape) -> wp.Kernel:
     moved_base = kinematics(real, shape.n, shape.sources, shape.plain, shape.world_axes).moved_base
     REDUCED, OUTPUT = shape.reduced, _output_of_row(shape)
     CONSTRAINTS, CONSTRAINED, REASON = len(shape.constraints), bool(shape.constraints), shape.n_outputs - 1
-    TOTALS = K + CONSTRAINTS
+    TOTALS, CUTS, CUT_TOTALS = shape.n_totals, len(shape.cuts), K + CONSTRAINTS
+    CUT_OUTPUTS = wp.types.vector(max(CUTS, 1), wp.int32)(*(3 + place for place in shape.cuts))
     ADMITTED = real(0.0)
     extremes_type, totals_type = wp.types.vector(REDUCED, bits), wp.types.vector(max(TOTALS, 1), wp.int64)
     earliest_type, LAST = wp.types.vector(max(CONSTRAINTS, 1), wp.int64), wp.int64(2**63 - 1)
@@ -959,6 +981,11 @@ def _cuda_kernel(shape: Shape) -> wp.Kernel:
                     if wp.static(CONSTRAINED):
                         quantum = wp.where(admitted, quantum, wp.int64(0))
                     total[k] += quantum
+                for x in range(CUTS):
+                    reaches = out[CUT_OUTPUTS[x]] >= to.cuts[x]
+                    if wp.static(CONSTRAINED):
+                        reaches = reaches and admitted
+                    total[CUT_TOTALS + x] += wp.where(reaches, wp.int64(1), wp.int64(0))
                 if wp.static(VOXELS):
                     voxel = cell(grid, vec3(out[0], out[1], out[2]))
                     if wp.static(CONSTRAINED):  # noqa: SIM102

@@ -9,6 +9,7 @@ from scipy.optimize import linprog
 from scipy.spatial import ConvexHull
 
 import wsrender as ws
+from tests.golden.facts import bits_of
 from tests.pipeline.test_torque import ARM, PLACED, Bare, text_of
 from tests.reference import mujoco_kinematics as by_mujoco
 from wsrender.errors import InputError
@@ -251,6 +252,47 @@ def test_margins_of_joint_limits(precision, device):
     job |= {"indices": ["joint_limit_margin"], "refined_volume": None, "task": ["x", "y"]}
     entry = ws.execute(job | asked).document["indices"]["joint_limit_margin"]
     assert entry["minimum"] == entry["maximum"] == 0.5
+
+
+@pytest.mark.parametrize("constrained", [False, True])
+def test_results_hold_extremes_means_and_the_share_that_is_cut(constrained, precision, device):
+    """Of admitted samples, as the rows say; in voxels least, mean and largest; the same bits by chunks and threads."""
+    names = {
+        "torque_margin": {"payload_kg": 3.0},
+        "payload_capacity": {"limit_kg": 25.0},
+        "force_radius": {"limit_N": 150.0},
+    }
+    half = {"region": {"half_space": {"point_m": [0, 0, 0.2]}}} if constrained else None
+    job = {"analysis": "workspace", "robot": {"library": "ur5e"}, "sampling": {"method": "sobol", "count": 3_000}}
+    job |= {"indices": ["manipulability", *names], "index_options": names, "constraints": half, "refined_volume": None}
+    job |= {"precision": precision, "device": device, "voxel_size_m": 0.2, "keep_map": True, "task": "full"}
+    result = ws.execute(job | {"map_columns": ["configuration"]})
+    rows, entries, volume = result.map, result.document["indices"], result.volume
+    again = ws.evaluate_indices("ur5e", rows.configuration, list(names), index_options=names, task="full")
+    cells = tuple((np.floor(rows.position / 0.2).astype(int) - volume.first_voxel).T)
+    for name, options in names.items():
+        values, entry = rows.indices[name].astype(np.float64), entries[name]
+        np.testing.assert_allclose(values, again[name], rtol=1e-4 if precision == "float32" else 1e-9)
+        assert (entry["minimum"], entry["maximum"]) == (values.min(), values.max())
+        assert entry["mean"] == pytest.approx(values.mean(), rel=1e-6)
+        if name == "torque_margin":
+            assert entry["joint_mean"] is entry["workspace_mean"] is None and "cut_share" not in entry
+        else:
+            cut = options.get("limit_kg", options.get("limit_N"))
+            assert 0 < entry["cut_share"] == (values == cut).mean() < 1
+        total = np.zeros(volume.shape)
+        np.add.at(total, cells, values)
+        held = volume.occupied
+        assert volume.statistics["mean"][name][held] == pytest.approx(total[held] / volume.count[held], rel=1e-5)
+        assert {"minimum", "mean", "maximum"} <= set(volume.statistics)
+    if device == "cpu":
+        assert bits_of(ws.execute(job, threads=1, chunk_size=256)) == bits_of(ws.execute(job, threads=2))
+    q = rows.configuration[:500]
+    listed = job | {"analysis": "indices_at", "configurations": q.tolist(), "constraints": None}
+    for field in ("sampling", "voxel_size_m", "keep_map", "refined_volume"):
+        del listed[field]
+    found = ws.execute(listed).document["indices"]["payload_capacity"]
+    assert found["cut_share"] == (again["payload_capacity"][:500] >= 25).mean()
 
 
 @pytest.mark.parametrize(

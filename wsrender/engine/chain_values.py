@@ -17,7 +17,7 @@ def packed_values(pipeline: Pipeline) -> np.ndarray:
 
 
 def device_values(pipeline: Pipeline, before: int) -> dict[str, Any]:
-    """Field ``chain_values`` of a sweep's shape; so many numbers stand ``before`` theirs."""
+    """Fields ``chain_values`` and ``cuts`` of a sweep's shape; so many numbers stand ``before`` theirs."""
     asked, real = pipeline.evaluation.of_chain, REAL[pipeline.precision]
     sizes = [len(_numbers(each)) for each in asked.values()]
     offsets, total = np.cumsum([before, *sizes]).tolist(), before + sum(sizes)
@@ -25,7 +25,8 @@ def device_values(pipeline: Pipeline, before: int) -> dict[str, Any]:
         (pipeline.evaluation.indices.index(name), _function(each, real, total, offset))
         for (name, each), offset in zip(asked.items(), offsets, strict=False)
     ]
-    return {"chain_values": tuple(functions)}
+    places = pipeline.evaluation.indices.index
+    return {"chain_values": tuple(functions), "cuts": tuple(map(places, pipeline.evaluation.cuts))}
 
 
 def _function(index: ChainIndex, real: Any, total: int, offset: int) -> Callable[..., Any]:

@@ -18,7 +18,8 @@ class Partial:
     ordered integers, ``sums`` (V, K) int64. ``rows`` maps the first sample index of a chunk to its outputs (n_rows,
     samples). ``rejected`` (C,): samples by the first of the plan's constraints that they violate; they count in nothing
     else but ``samples``, and stay in the rows. ``earliest`` (C,): the number of the first of them, NONE where there is
-    none; of the voxels that hold any, sorted by ``blocked_cells`` (B,), how many: ``blocked`` (B, C) int64.
+    none; of the voxels that hold any, sorted by ``blocked_cells`` (B,), how many: ``blocked`` (B, C) int64. ``cut``
+    (X,): of the evaluation's ``cuts``, how many values of admitted samples are cut.
     """
 
     samples: int
@@ -33,6 +34,7 @@ class Partial:
     earliest: np.ndarray = field(default_factory=lambda: np.zeros(0, np.int64))
     blocked_cells: np.ndarray = field(default_factory=lambda: np.zeros(0, np.int64))
     blocked: np.ndarray = field(default_factory=lambda: np.zeros((0, 0), np.int64))
+    cut: np.ndarray = field(default_factory=lambda: np.zeros(0, np.int64))
 
     @property
     def admitted(self) -> int:
@@ -73,6 +75,7 @@ def merge(a: Partial, b: Partial) -> Partial:
         np.minimum(a.earliest, b.earliest),
         blocked_cells,
         added(len(blocked_cells), (blocked_a, a.blocked), (blocked_b, b.blocked)),
+        a.cut + b.cut,
     )
 
 

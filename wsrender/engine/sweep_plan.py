@@ -264,7 +264,7 @@ class Accumulator:
         self._lattice = _device_lattice(slab, pipeline.block, real)
         reduced = shape.reduced
         self._extremes = device_memory(2 * reduced, bits, device)
-        self._totals = device_memory(TOTAL_SLOTS * (shape.n_indices + len(shape.constraints)), wp.int64, device)
+        self._totals = device_memory(TOTAL_SLOTS * shape.n_totals, wp.int64, device)
         self._records = device_memory(voxels * shape.record_size, bits, device)
         self._sums = device_memory(voxels * shape.sums_size, wp.int64, device)
         self._rejections = device_memory(voxels * len(shape.constraints), wp.int64, device)
@@ -278,6 +278,8 @@ class Accumulator:
         outputs.records = as_type(self._records, record_type_of(shape))
         outputs.sums = as_type(self._sums, sums_type_of(shape))
         outputs.rows_out, outputs.rows_stride = wp.empty(0, dtype=real, device=device), chunk
+        if shape.cuts:
+            outputs.cuts = device_array(np.array([*pipeline.evaluation.cuts.values()]), real, device)
         if shape.constraints:
             outputs.earliest = self._earliest
             if slab:
@@ -409,19 +411,21 @@ class Accumulator:
         cells, count, extremes, sums, blocked_cells, blocked = self._occupied()
         weight = self.plan.structure.weight
         totals = self._totals.numpy().reshape(TOTAL_SLOTS, -1).sum(axis=0) * weight
+        of_indices, rejected, cut = np.split(totals, np.cumsum([self.shape.n_indices, len(self.shape.constraints)]))
         held = Partial(
             self._counted * weight,
             self._extremes.numpy().copy(),
-            totals[: self.shape.n_indices],
+            of_indices,
             cells,
             count * weight,
             extremes,
             sums * weight,
             self._rows,
-            totals[self.shape.n_indices :],
+            rejected,
             self._first_samples(),
             blocked_cells,
             blocked * weight,
+            cut,
         )
         self._folded = held if self._folded is None else merge(self._folded, held)
 

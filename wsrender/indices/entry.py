@@ -163,6 +163,11 @@ class Index:
         return not self.given and not set(self.needs) <= set(SUPPLIED)
 
     @property
+    def signed(self) -> bool:
+        """Whether it is no ratio of its largest value, as what is less than nothing has none."""
+        return self.range[0] < 0 and not set(self.needs) <= set(SUPPLIED)
+
+    @property
     def has_dynamic_form(self) -> bool:
         """Whether there is one of J M⁻¹ beside it."""
         return not (self.given or self.of_chain or self.dynamic)

@@ -11,7 +11,7 @@ class ChainIndex:
     """A module of ``wsrender_kernels.chain_indices``, its choices, and its numbers.
 
     ``chain``: the robot's `Chain.dynamic`; the numbers go on with the bodies of the chains ``laden``, which have its
-    joints.
+    joints. ``cut``: what larger values are told as; None: none is.
     """
 
     module: str
@@ -19,3 +19,4 @@ class ChainIndex:
     choices: tuple[Any, ...] = ()
     numbers: tuple[float, ...] = ()
     laden: tuple[Chain, ...] = ()
+    cut: float | None = None

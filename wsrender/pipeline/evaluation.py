@@ -42,6 +42,11 @@ class Evaluation:
         return any(is_dynamic(name) for name in self.indices)
 
     @property
+    def cuts(self) -> dict[str, float]:
+        """Of indices whose larger values are told as another, that."""
+        return {name: each.cut for name, each in self.of_chain.items() if each.cut is not None}
+
+    @property
     def device_chain(self) -> Chain | None:
         """The chain that the kernels evaluate; None where the host computes all kinematics."""
         chain = self.chain.geometry

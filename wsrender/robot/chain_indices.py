@@ -127,7 +127,7 @@ def _payload_capacity(asked: _Asked) -> ChainIndex:
             raise asked.refusal("acceleration_m_s2", "must be 0 where the mass moves out of the task's linear rows")
     numbers = (*asked.gravity, asked.options["limit_kg"], *com, acceleration, *asked.efforts())
     bare = replace(chain, mass=np.zeros_like(chain.mass), with_branches=None).carrying(1.0, np.array(com))
-    return ChainIndex(asked.name, chain, (rows,), numbers, (chain, bare))
+    return ChainIndex(asked.name, chain, (rows,), numbers, (chain, bare), asked.options["limit_kg"])
 
 
 def _velocity_radius(asked: _Asked) -> ChainIndex:
@@ -143,7 +143,7 @@ def _force_radius(asked: _Asked) -> ChainIndex:
     chain, rows = asked.weighing(), asked.linear()
     along = asked.direction(rows)
     numbers = (*asked.gravity, asked.options["limit_N"], *asked.efforts(), *along)
-    return ChainIndex(asked.name, chain, (rows, len(along) > 0), numbers, (chain,))
+    return ChainIndex(asked.name, chain, (rows, len(along) > 0), numbers, (chain,), asked.options["limit_N"])
 
 
 def _acceleration_radius(asked: _Asked) -> ChainIndex:

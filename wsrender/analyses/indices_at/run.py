@@ -89,7 +89,7 @@ class IndicesAtAnalysis(Analysis):
         """
         rows, names = Evaluated(**partial.arrays), self.pipeline.evaluation.indices
         admitted, about, tables = self._admission(rows.rejected)
-        units = units_of(self.pipeline.evaluation)
+        units, cuts = units_of(self.pipeline.evaluation), self.pipeline.evaluation.cuts if admitted.any() else {}
         values = dict(zip(names, np.where(admitted, rows.values, np.nan), strict=True))
         entries = {
             "sampling": {"method": "given", "samples": len(self.q)},
@@ -98,6 +98,7 @@ class IndicesAtAnalysis(Analysis):
                 name: {
                     "maximum": float(v[admitted].max()) if admitted.any() else None,
                     "minimum": float(v[admitted].min()) if admitted.any() else None,
+                    **({"cut_share": float(np.mean(v[admitted] >= v.dtype.type(cuts[name])))} if name in cuts else {}),
                     "unit": units[name],
                 }
                 for name, v in values.items()

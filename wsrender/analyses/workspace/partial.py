@@ -10,7 +10,7 @@ from wsrender.pipeline.pipeline import Pipeline
 
 SWEEP = (
     *("extremes", "totals", "cells", "count", "records", "sums"),
-    *("rejected", "earliest", "blocked_cells", "blocked"),
+    *("rejected", "earliest", "blocked_cells", "blocked", "cut"),
 )
 ROWS = "rows_"
 

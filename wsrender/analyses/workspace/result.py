@@ -19,10 +19,12 @@ from wsrender.global_indices import (
     VoxelVolumes,
     global_isotropy,
     joint_means,
+    plain_means,
     structural_length_index,
     voxel_volumes,
     workspace_mean,
 )
+from wsrender.indices.index_catalogue import find
 from wsrender.notices import Notice
 from wsrender.pipeline.pipeline import Pipeline
 from wsrender.pipeline.sampling import subsample
@@ -190,12 +192,15 @@ def _sampling_entry(job: WorkspaceJob, pipeline: Pipeline, partial: Partial) -> 
 
 def _index_entries(pipeline: Pipeline, partial: Partial, volume: VolumeData, units: dict[str, str]) -> dict[str, Any]:
     high, low, means = partial.maximum, partial.minimum, joint_means(pipeline, partial)
+    plain, cut = plain_means(pipeline, partial), dict(zip(pipeline.evaluation.cuts, partial.cut.tolist(), strict=True))
     return {
         name: {
             "maximum": float(high[3 + k]),
             "minimum": float(low[3 + k]),
-            "joint_mean": float(means[k]),
-            "workspace_mean": workspace_mean(volume, name),
+            **({"mean": float(plain[k])} if find(name).signed or find(name).of_chain else {}),
+            "joint_mean": None if find(name).signed else float(means[k]),
+            "workspace_mean": None if find(name).signed else workspace_mean(volume, name),
+            **({"cut_share": cut[name] / max(partial.admitted, 1)} if name in cut else {}),
             "unit": units[name],
         }
         for k, name in enumerate(pipeline.evaluation.indices)
