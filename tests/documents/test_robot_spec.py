@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from wsrender.documents.constraints import Apart
 from wsrender.documents.robot import DHRow, DHTable, RobotSpec, Transform
 from wsrender.errors import DocumentError
 
@@ -199,6 +200,10 @@ def test_a_tip_carries_a_hundred_shapes_at_most():
     assert len(RobotSpec(library="scara", tool_shapes=[sphere] * 100).tool_shapes) == 100
     with pytest.raises(DocumentError, match="must have at most 100 items"):
         RobotSpec(library="scara", tool_shapes=[sphere] * 101)
+    for read in (lambda pairs: RobotSpec(library="scara", exclude=pairs), lambda pairs: Apart(exclude=pairs)):
+        assert len(read([("a", "b")] * 10_000).exclude) == 10_000
+        with pytest.raises(DocumentError, match="must have at most 10000 items"):
+            read([("a", "b")] * 10_001)
 
 
 @pytest.mark.parametrize(

@@ -93,6 +93,32 @@ def test_a_wrong_answer_is_refused(added):
         ws.register_constraint("region", striped, on_host=True)
 
 
+def test_what_a_function_raises_is_told(added):
+    ws.register_constraint("broken", lambda q, poses: q[:, 9] > 0, on_host=True)
+    with pytest.raises(InputError, match=r"constraints\.broken: its function raised IndexError: index 9"):
+        ws.execute({**JOB, "constraints": {"broken": True}})
+
+
+@pytest.mark.parametrize(
+    ("name", "function", "keeps", "field"),
+    [
+        (3, striped, frozenset(), "name"),
+        (None, striped, frozenset(), "name"),
+        ("", striped, frozenset(), "name"),
+        ("a\n", striped, frozenset(), "name"),
+        ("odd", 7, frozenset(), "function"),
+        ("odd", striped, None, "keeps"),
+        ("odd", striped, "base_joint", "keeps"),
+        ("odd", striped, [["base_joint"]], "keeps"),
+    ],
+)
+@pytest.mark.parametrize("on_host", [True, False])
+def test_what_cannot_be_registered(name, function, keeps, field, on_host, added):
+    with pytest.raises(InputError) as caught:
+        ws.register_constraint(name, function, keeps=keeps, on_host=on_host)
+    assert caught.value.field == field
+
+
 def test_servers_and_other_processes_do_not_know_it(client, tmp_path, added, monkeypatch, capsys):  # noqa: F811
     problem = problem_of(client.post("/v1/jobs", json=JOB), 422, "invalid_document")
     detail = "is a Python function of a process, which jobs of a server cannot ask: give one that can be traced"

@@ -198,6 +198,9 @@ def test_excludes_that_name_nothing():
     with pytest.raises(InputError, match=r"is named 'zebra'; there are floor, ") as caught:
         ws.execute(job | {"sampling": {"method": "random", "count": 9}, "device": "cpu"})
     assert caught.value.field == "robot.exclude.0"
+    shapes = "".join(f"<geom name='s{k}' size='.01'/>" for k in range(20))
+    with pytest.raises(InputError, match=r"is named 'zebra'; there are s0, (\w+, ){8}s8 and 24 more$"):
+        ws.load_robot(arm().replace("<geom", shapes + "<geom", 1), exclude=[("s1", "zebra")])
 
 
 SRDF = """<robot name="arm"><disable_collisions link1="shelf" link2="c" reason="Never"/>

@@ -8,8 +8,8 @@ from pydantic import BeforeValidator, ConfigDict, Field, StrictBool
 
 from wsrender.documents.document import Document
 from wsrender.documents.environment import Bounds, Environment, HalfSpace, Sphere
-from wsrender.documents.quantities import NonNegativeNumber, Number, quoted, real, sequence
-from wsrender.documents.robot import Inertia, ShapePair, least_moment
+from wsrender.documents.quantities import NonNegativeNumber, Number, quoted, real
+from wsrender.documents.robot import Excluded, Inertia, least_moment
 from wsrender.documents.transform import Quaternion, Transform, Vector
 
 _ROTATIONS = ("quat_wxyz", "rpy_deg", "euler_xyz_deg")
@@ -74,7 +74,7 @@ class Apart(Document):
 
     margin_m: NonNegativeNumber = 0.0
     """Least distance [m]; 0: they may touch."""
-    exclude: Annotated[tuple[ShapePair, ...], BeforeValidator(sequence)] = ()
+    exclude: Excluded = ()
     """Pairs of names, of shapes or of bodies for all shapes on them, that may come nearer."""
 
 

@@ -12,7 +12,7 @@ from wsrender.documents.quantities import Name, Number, PositiveNumber, Sha256, 
 from wsrender.documents.shapes import ToolShape
 from wsrender.documents.transform import LARGEST, LengthUnit, Transform, Vector, number_list
 
-MOST_TOOL_SHAPES = 100
+MOST_TOOL_SHAPES, MOST_EXCLUDED = 100, 10_000
 SOURCES = ("library", "dh", "mjcf", "urdf", "model", "path")
 _IN_DEGREES = ("alpha", "theta", "limits")
 
@@ -72,6 +72,7 @@ def _is_empty(value: Any) -> bool:
 
 
 ShapePair = Annotated[tuple[Name, Name], BeforeValidator(_pair)]
+Excluded = Annotated[tuple[ShapePair, ...], BeforeValidator(sequence), Field(max_length=MOST_EXCLUDED)]
 
 
 def matrix_of(inertia: tuple[float, ...]) -> np.ndarray:
@@ -233,7 +234,7 @@ class RobotSpec(Document):
     """Where joints beside the chain stand, by name [rad or m]; others of them at the model's zero."""
     srdf: Annotated[StrictStr | None, Field(min_length=1, exclude_if=_is_none)] = None
     """Text of an SRDF, whose disabled pairs of links do not collide; null: none."""
-    exclude: Annotated[tuple[ShapePair, ...], BeforeValidator(sequence), Field(exclude_if=_is_empty)] = ()
+    exclude: Annotated[Excluded, Field(exclude_if=_is_empty)] = ()
     """Pairs of names of shapes, or of bodies for all shapes on them, that do not collide."""
 
     def conflicts(self) -> Iterator[tuple[str, str]]:

@@ -11,6 +11,7 @@ from wsrender.errors import InputError
 from wsrender.robots.shapes import Shape
 
 Names = tuple[str, str]
+MOST_NAMED = 10  # names that a hint lists
 
 
 def pairs_of(model: mujoco.MjModel, geoms: Sequence[int]) -> np.ndarray:
@@ -79,16 +80,25 @@ def without(pairs: np.ndarray, shapes: Sequence[Shape], excluded: Iterable[Names
 
     Raises InputError, at the entry in ``field``, for a name that is neither.
     """
-    named: dict[str, set[int]] = {}
-    for number, shape in enumerate(shapes):
-        for name in (shape.name, shape.body):
-            named.setdefault(name, set()).add(number)
-    dropped = set()
+    known, dropped = dict.fromkeys(name for shape in shapes for name in (shape.name, shape.body)), set[frozenset[str]]()
     for entry, names in enumerate(excluded):
         for name in names:
-            if name not in named:
-                close = get_close_matches(name, named, n=3)
-                hint = f"did you mean {' or '.join(map(repr, close))}?" if close else f"there are {', '.join(named)}"
-                raise InputError(f"{field}.{entry}", f"no shape, and no body that has one, is named {name!r}; {hint}")
-        dropped |= {frozenset((i, j)) for i in named[names[0]] for j in named[names[1]]}
-    return np.array([pair for pair in pairs.tolist() if frozenset(pair) not in dropped], int).reshape(-1, 2)
+            if name not in known:
+                told = f"no shape, and no body that has one, is named {name!r}; {_hint(name, list(known))}"
+                raise InputError(f"{field}.{entry}", told)
+        dropped.add(frozenset(names))
+
+    def stays(i: int, j: int) -> bool:
+        first, second = shapes[i], shapes[j]
+        return not any(
+            frozenset((a, b)) in dropped for a in (first.name, first.body) for b in (second.name, second.body)
+        )
+
+    return np.array([pair for pair in pairs.tolist() if not dropped or stays(*pair)], int).reshape(-1, 2)
+
+
+def _hint(name: str, known: Sequence[str]) -> str:
+    if close := get_close_matches(name, known, n=3):
+        return f"did you mean {' or '.join(map(repr, close))}?"
+    more = f" and {len(known) - MOST_NAMED} more" if len(known) > MOST_NAMED else ""
+    return f"there are {', '.join(known[:MOST_NAMED])}{more}"

@@ -31,8 +31,12 @@ class HostConstraint:
         return np.zeros(0)
 
     def host(self, q: np.ndarray, frames: np.ndarray) -> np.ndarray:
-        """See `Constraint.host`. Raises InputError where the function answers anything but (N,) bool."""
-        admitted = np.asarray(self.function(q, frames, **dict(self.options)))
+        """See `Constraint.host`. Raises InputError where the function raises, or answers anything but (N,) bool."""
+        try:
+            admitted = np.asarray(self.function(q, frames, **dict(self.options)))
+        except Exception as error:
+            message = f"its function raised {type(error).__name__}: {error}"
+            raise InputError(f"constraints.{self.name}", message) from error
         if admitted.shape != (len(q),) or admitted.dtype != bool:
             found = f"{admitted.dtype} of shape {admitted.shape}"
             message = f"its function must give whether each of {len(q)} configurations is admitted, bool, not {found}"

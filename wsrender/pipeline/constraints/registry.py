@@ -45,8 +45,10 @@ def register_constraint(
     ``on_host``: the function is any, ``function(q, poses, **options)`` of configurations (N, n) [rad or m] and poses of
     the tip in the world (N, 4, 4) to (N,) bool, whether each is admitted; NumPy's pace, and of this process alone.
     """
+    if isinstance(keeps, str) or not isinstance(keeps, Iterable):
+        raise InputError("keeps", f"must be a set of {', '.join(STRUCTURES)}, not {keeps!r}")
+    _check(name, keeps)
     if on_host:
-        _check(name, keeps)
         options = _parameters_of(name, function, 2)[1]
         _ADDED[name] = HostConstraint(name, function, tuple(options.items()), frozenset(keeps))
     else:
@@ -69,10 +71,11 @@ def _checked(constraint: Any) -> ExpressionConstraint:
 
 
 def _check(name: str, keeps: Iterable[str]) -> None:
-    if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]{0,63}", name) or name in (*ORDER, "expression"):
+    known = isinstance(name, str) and re.fullmatch(r"[A-Za-z][A-Za-z0-9_]{0,63}", name)
+    if not known or name in (*ORDER, "expression"):
         raise InputError("name", f"{name!r} is not allowed; an identifier other than {', '.join(ORDER)} is")
-    if unknown := set(keeps) - set(STRUCTURES):
-        raise InputError("keeps", f"{sorted(unknown)} is not allowed; allowed: {', '.join(STRUCTURES)}")
+    if unknown := [each for each in keeps if each not in STRUCTURES]:
+        raise InputError("keeps", f"{unknown} is not allowed; allowed: {', '.join(STRUCTURES)}")
 
 
 def added_constraints() -> dict[str, ExpressionConstraint | HostConstraint]:
@@ -134,7 +137,10 @@ def _corner(sides: tuple[float | None, float | None, float | None], open_side: f
 
 def _parameters_of(name: str, function: Callable[..., Any], first: int = 3) -> tuple[tuple[str, ...], dict[str, float]]:
     """What a constraint's function asks for by name, and its options with their defaults."""
-    parameters = list(inspect.signature(function).parameters.values())[first:]
+    try:
+        parameters = list(inspect.signature(function).parameters.values())[first:]
+    except (TypeError, ValueError) as error:
+        raise InputError("function", f"of {name} must be a function that says its parameters: {error}") from error
     asks = tuple(each.name for each in parameters if each.name in ASKED)
     options = [each for each in parameters if each.name not in ASKED]
     without = [each.name for each in options if not isinstance(each.default, int | float)]
