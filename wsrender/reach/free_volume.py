@@ -150,7 +150,12 @@ def free_volumes(
         progress=progress,
     )
     free = found.volumes[FREE]
-    volumes = {name: each if name == FREE else _less(each, missed(free.high)) for name, each in found.volumes.items()}
+    if not len(
+        own.search.samples[0]
+    ):  # the search starts from nothing that is admitted: that it finds none says little
+        free = replace(free, high=whole, met=False)
+    hides = missed(free.high) if len(own.search.samples[0]) else whole
+    volumes = {name: free if name == FREE else _less(each, hides) for name, each in found.volumes.items()}
     return RefinedVolumes(volumes, found.points, misses, reached.position_m)
 
 
