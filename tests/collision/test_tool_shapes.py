@@ -143,3 +143,9 @@ def test_tools_that_cannot_be_had_name_the_field(shape, field, message):
     with pytest.raises(InputError, match=message) as caught:
         ws.execute(document | {"constraints": {"self_collision": True}})
     assert caught.value.field == f"robot.tool_shapes.1.{field}"
+
+
+def test_a_shape_of_another_kind_is_refused_as_its_document_is():
+    with pytest.raises(InputError, match='must be one of .*, not "half_space"') as caught:
+        ws.load_robot("ur5e", tool_shapes=[ws.HalfSpace()])
+    assert caught.value.field == "tool_shapes.0.shape"

@@ -218,6 +218,7 @@ def test_what_cannot_be_is_refused_when_a_job_is_planned(choice, message, added)
         ({"region": {}}, "constraints.region.box: must be given, or a sphere or a half_space"),
         ({"region": {"box": {"lower_m": [0, 0, 0], "upper_m": [0, 1, 1]}}}, "upper_m: must be above lower_m"),
         ({"region": {"half_space": {"normal": [0, 0, 0]}}}, "normal: must not have length 0"),
+        ({"self_collision": 1}, "constraints.self_collision: must be true, false, null or an object, not 1"),
         ({"mine": "yes"}, "constraints.mine: must be true, false or numbers by option"),
     ],
 )

@@ -102,6 +102,8 @@ class TorqueChoice(Document):
 
 def _apart(value: Any) -> Any:
     """The choice of a constraint that may be given as true."""
+    if value is not None and not isinstance(value, bool | Mapping | Apart | TorqueChoice):
+        raise ValueError("must be true, false, null or an object")
     return {} if value is True else value
 
 

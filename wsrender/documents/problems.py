@@ -81,8 +81,9 @@ def tagged(field: str, tags: Collection[str], left_out: str = "") -> Callable[[A
     allowed = f"must be one of {quoted(tags)}"
 
     def validate(value: Any) -> Any:
-        if isinstance(value, Mapping) and value.get(field) not in tags:
-            found = f", not {shown(value[field])}" if field in value else "; it is required"
+        said = dict(value) if isinstance(value, Mapping | BaseModel) else None
+        if said is not None and said.get(field) not in tags:
+            found = f", not {shown(said[field])}" if field in said else "; it is required"
             raise ValidationError.from_exception_data(field, [located(field, allowed + found + left_out)])
         return value
 
