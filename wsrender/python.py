@@ -491,6 +491,9 @@ def kinetostatic_field(
     *,
     base: str | None = None,
     tip: str | None = None,
+    constraints: Constraints | Mapping[str, Any] | None = None,
+    environment: Environment | Mapping[str, Any] | None = None,
+    gravity_m_s2: Sequence[float] | np.ndarray | None = None,
     field: ForceFieldChoice | Mapping[str, Any] = ForceFieldChoice(),
     voxel_size_m: float | None = None,
     device: str = "auto",
@@ -500,6 +503,10 @@ def kinetostatic_field(
 ) -> Result:
     """The force field of a robot's limits and conditioning over its workspace, as a volume of vectors.
 
+    Under constraints a voxel's forces are those of admitted configurations; the passivity is that of the field itself,
+    wherever a person leads it. The obstacles of the field push the tip, and reject nothing unless they stand in the
+    ``environment`` too.
+
     `force_field` gives the forces of single configurations.
 
     ``robot``: A Robot, what `load_robot` takes, an object with limits and forward_kinematics, or its part of a job
@@ -507,6 +514,9 @@ def kinetostatic_field(
     ``sampling``: Configurations at which the field is evaluated; a voxel holds the mean over those that reach it.
     ``base``: Body, link or site at which the chain starts; None: the world.
     ``tip``: Site, body or link at the end of the chain; None: the site "tool", or else the only end there is.
+    ``constraints``: Which configurations are admitted; None: all.
+    ``environment``: What stands around, which the robot's shapes do not enter; None: nothing.
+    ``gravity_m_s2``: Gravity in the world, whatever the model says [m/s²]; None: 9.81 along -z.
     ``field``: Which forces act.
     ``voxel_size_m``: Edge of a voxel [m]; None: a twenty-fifth of the cube root of the workspace's convex-hull volume.
     ``device``: Where kernels run that find the workspace's boundary: "auto", "cpu", "cuda" or "cuda:N".

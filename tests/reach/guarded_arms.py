@@ -83,14 +83,15 @@ def scara_labels(points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray
         q1 = np.remainder(q1 + np.pi, 2 * np.pi) - np.pi
         there = inside & (np.abs(cosine) <= 1) & (np.abs(q2) <= 2.6) & (np.abs(q1) <= 2.9)
         elbow = FIRST * np.stack([np.cos(q1), np.sin(q1)], axis=1)
-        gap = np.minimum(_distance(np.zeros(2), elbow), _distance(elbow, points[:, :2])) - ROUND - RADIUS
+        gaps = distance_of_column(np.zeros(2), elbow), distance_of_column(elbow, points[:, :2])
+        gap = np.minimum(*gaps) - ROUND - RADIUS
         reach |= there
         free |= there & (gap >= 0)
         margin = np.minimum(margin, np.minimum(np.abs(gap), np.abs(2.9 - np.abs(q1))))
     return reach, free, margin
 
 
-def _distance(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+def distance_of_column(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """Of the column's axis from segments a … b in the plane, (N,)."""
     along = b - a
     t = np.clip(((COLUMN - a) * along).sum(axis=1) / (along**2).sum(axis=1), 0, 1)

@@ -1,6 +1,6 @@
 """What a constrained run says of the samples that it rejects: the first ones, which pairs collide, and what is lost."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -9,9 +9,27 @@ from scipy.special import gammaln
 from wsrender.collision.distance import colliding
 from wsrender.pipeline.constraints.collision import labelling
 from wsrender.pipeline.constraints.constraint import Constraint
+from wsrender.robot.constraints import samples_entry
 
 COUNTED = 20_000  # samples of which it is asked which pairs collide
 TWO_SIDED = 1.96  # standard deviations of a 95 % interval
+
+
+def rejected_rows(
+    constraints: Sequence[Constraint], rejected: np.ndarray, configurations: Callable[[np.ndarray], np.ndarray]
+) -> dict[str, Any]:
+    """The entries ``samples`` and ``rejections`` of N samples that are kept one by one.
+
+    ``rejected`` (N,) int: the number, from 1, of the first constraint that rejects each, or 0; ``configurations`` takes
+    numbers of samples (K,) to configurations (K, n) [rad or m]. The second has the first sample of each reason, and
+    which pairs of shapes collide how often.
+    """
+    about = samples_entry(constraints, len(rejected), np.bincount(rejected, minlength=len(constraints) + 1)[1:])
+    reasons, first = np.unique(rejected, return_index=True)
+    first, rejecting = first[reasons > 0], [constraints[k - 1] for k in reasons[reasons > 0]]
+    counted = np.arange(0, len(rejected), max(-(-len(rejected) // COUNTED), 1))
+    pairs = colliding_pairs(constraints, configurations(counted), rejected[counted])
+    return about | {"rejections": {"first": first_rejected(rejecting, first, configurations(first)), **pairs}}
 
 
 def first_rejected(constraints: Sequence[Constraint], numbers: np.ndarray, q: np.ndarray) -> dict[str, Any]:

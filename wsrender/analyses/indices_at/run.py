@@ -22,10 +22,10 @@ from wsrender.analyses.provenance import index_choices
 from wsrender.engine import Evaluated, evaluate_samples, units_of
 from wsrender.pipeline.pipeline import Pipeline
 from wsrender.pipeline.sampling import plan_sampling
-from wsrender.robot.constraints import constraints_of_job, samples_entry
+from wsrender.robot.constraints import constraints_of_job
 from wsrender.robot.indices import evaluation_of_job
 from wsrender.robot.model_robot import configuration_rows
-from wsrender.robot.rejections import colliding_pairs, first_rejected
+from wsrender.robot.rejections import rejected_rows
 from wsrender.volume.distribution_map import DistributionMap
 from wsrender.volume.table import Table
 
@@ -116,10 +116,5 @@ class IndicesAtAnalysis(Analysis):
         if rejected is None:
             return np.ones(len(self.q), bool), {}, {}
         reasons = np.array(["", *(each.name for each in self.pipeline.constraints)])
-        counts = np.bincount(rejected, minlength=len(reasons))[1:]
-        about = samples_entry(self.pipeline.constraints, len(self.q), counts)
-        numbers, rows = np.unique(rejected, return_index=True)
-        rows, rejecting = rows[numbers > 0], [self.pipeline.constraints[k - 1] for k in numbers[numbers > 0]]
-        pairs = colliding_pairs(self.pipeline.constraints, self.q, rejected)
-        about["rejections"] = {"first": first_rejected(rejecting, rows, self.q[rows]), **pairs}
+        about = rejected_rows(self.pipeline.constraints, rejected, self.q.__getitem__)
         return rejected == 0, about, {"admission": Table({"reason": reasons[rejected]})}

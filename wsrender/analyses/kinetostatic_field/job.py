@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from typing import Literal
 
 from wsrender.documents.arm import Arm
+from wsrender.documents.constraints import Constrained
 from wsrender.documents.format import JobDocument
 from wsrender.documents.kinetostatics import ForceFieldChoice
 from wsrender.documents.options import Device
@@ -11,8 +12,13 @@ from wsrender.documents.quantities import VoxelSize
 from wsrender.documents.sampling import BoundaryBiased, Grid, Random, Sampling, Sobol
 
 
-class KinetostaticFieldJob(Arm, JobDocument):
-    """The force field of a robot's limits and conditioning over its workspace, as a volume of vectors."""
+class KinetostaticFieldJob(Constrained, Arm, JobDocument):
+    """The force field of a robot's limits and conditioning over its workspace, as a volume of vectors.
+
+    Under constraints a voxel's forces are those of admitted configurations; the passivity is that of the field itself,
+    wherever a person leads it. The obstacles of the field push the tip, and reject nothing unless they stand in the
+    ``environment`` too.
+    """
 
     analysis: Literal["kinetostatic_field"] = "kinetostatic_field"
     """Name of the analysis."""
@@ -27,5 +33,6 @@ class KinetostaticFieldJob(Arm, JobDocument):
 
     def conflicts(self) -> Iterator[tuple[str, str]]:
         """(field, message) of every pair of fields that do not go together."""
+        yield from super().conflicts()
         if not isinstance(self.sampling, Grid | Random | Sobol | BoundaryBiased):
             yield "sampling", 'must not be "converge": the field is evaluated on one sampling'

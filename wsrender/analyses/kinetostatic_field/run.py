@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -18,8 +19,12 @@ from wsrender.kinetostatics.characteristic_length import CharacteristicLength
 from wsrender.kinetostatics.force_fields import ForceField, posture_tables
 from wsrender.kinetostatics.passivity import LoopWork, largest_loop_work, stiffness_bound, stiffnesses
 from wsrender.notices import Notice
+from wsrender.pipeline.constraints.constraint import Constraint
 from wsrender.pipeline.pipeline import tip_pipeline
 from wsrender.pipeline.sampling import plan_sampling
+from wsrender.reach.admission import Admission
+from wsrender.robot.constraints import check_admitted, constraints_of_job, samples_entry
+from wsrender.robot.rejections import rejected_rows
 from wsrender.robots.kinematics import Kinematics
 from wsrender.robots.reachable_box import reachable_box
 from wsrender.volume.lattice import LatticeBlock, block_around, default_voxel_size
@@ -70,8 +75,13 @@ class KinetostaticFieldAnalysis(Analysis):
         force_field = ForceField(self.robot, checked)
         count = plan_sampling(chain, job.sampling, MOST_SAMPLES).count
         size = job.voxel_size_m or _voxel_size(force_field, count)
-        _ = _block(chain, size)  # raises where there are too many voxels to be numbered
+        _ = self.constraints, _block(chain, size)  # raises where there are too many voxels to be numbered
         return KinetostaticFieldSettled(device, target, ((0, count),), voxel_size_m=size)
+
+    @cached_property
+    def constraints(self) -> tuple[Constraint, ...]:
+        """What configurations must satisfy; raises InputError."""
+        return constraints_of_job(self.job, self.robot)
 
     @property
     def cost(self) -> Cost:
@@ -93,16 +103,23 @@ class KinetostaticFieldAnalysis(Analysis):
         """Of every voxel: cell (V, 3), number of configurations (V,), sums (V, 6 + scalars), greatest force (V,).
 
         ``stiffness`` (P,) [N/m] at random postures; ``loop`` (5,): most work of closed paths [J], length [m], how many,
-        bound of the work [J], share of paths on which the force is clipped.
+        bound of the work [J], share of paths on which the force is clipped. Under constraints of those configurations
+        that they admit, and ``rejected`` (N,) int8 of all. Raises InputError where they admit none.
         """
         force_field = ForceField(self.robot, self.job.field, self.device, threads=execution.threads)
         pipeline = tip_pipeline(self.robot.chain, self.job.sampling, MOST_SAMPLES)
         drawn = pipeline.sampling.count
         cells, rows = np.empty((drawn, 3), np.int64), np.empty((drawn, 6 + len(SCALARS)))
-        shown = None
+        admission = Admission(self.robot.chain, self.constraints, self.device, execution.threads)
+        rejected, shown = np.zeros(drawn, np.int8), None
         for first in range(0, drawn, CHUNK):
             numbers = np.arange(first, min(first + CHUNK, drawn))
-            for k, q in zip(numbers, configurations(pipeline, numbers), strict=True):
+            chunk = configurations(pipeline, numbers)
+            if self.constraints:
+                rejected[numbers] = admission.rejected(chunk)
+            for k, q in zip(numbers, chunk, strict=True):
+                if rejected[k]:
+                    continue
                 state = force_field.evaluate(q)
                 cells[k] = np.floor(state.posture.position / self.settled.voxel_size_m + ON_FACE)
                 size = np.sqrt(state.force @ state.force)
@@ -110,13 +127,18 @@ class KinetostaticFieldAnalysis(Analysis):
                     shown = q
                 rows[k] = *state.force, *state.torque, size, state.inverse_condition, state.nearness
             tell(int(numbers[-1]) + 1)
+        if self.constraints:
+            counts = np.bincount(rejected, minlength=len(self.constraints) + 1)[1:]
+            check_admitted(samples_entry(self.constraints, drawn, counts))
+            cells, rows = cells[rejected == 0], rows[rejected == 0]
         found, voxel, count = np.unique(cells, axis=0, return_inverse=True, return_counts=True)
         sums = np.stack([np.bincount(voxel.ravel(), column, len(found)) for column in rows.T], axis=1)
         greatest = np.zeros(len(found))
         np.maximum.at(greatest, voxel.ravel(), rows[:, 6])
         loop = largest_loop_work(force_field)
-        shown = configurations(pipeline, np.zeros(1, np.int64))[0] if shown is None else shown
+        shown = configurations(pipeline, np.flatnonzero(rejected == 0)[:1])[0] if shown is None else shown
         arrays = {"shown": shown, "cells": found, "count": count, "sums": sums, "greatest": greatest}
+        arrays |= {"rejected": rejected} if self.constraints else {}
         about = np.array([loop.work_j, loop.length_m, loop.paths, loop.bound_j, loop.clipped])
         return PartialResult(arrays | {"stiffness": stiffnesses(force_field), "loop": about})
 
@@ -129,7 +151,8 @@ class KinetostaticFieldAnalysis(Analysis):
         plain_field = ForceField(self.robot, plain, self.device)
         loop = LoopWork(*partial["loop"].tolist())
         about = {
-            "sampling": {"method": job.sampling.method, "samples": int(count.sum())},
+            "sampling": {"method": job.sampling.method, "samples": self.samples},
+            **self._rejections(partial),
             "voxel_size_m": self.settled.voxel_size_m,
             "kinetostatic_field": {
                 "form": job.field.form,
@@ -154,6 +177,13 @@ class KinetostaticFieldAnalysis(Analysis):
             skeleton=skeleton,
             tables=tables,
         )
+
+    def _rejections(self, partial: PartialResult) -> dict[str, Any]:
+        """What constraints reject; nothing without them."""
+        if not self.constraints:
+            return {}
+        pipeline = tip_pipeline(self.robot.chain, self.job.sampling, MOST_SAMPLES)
+        return rejected_rows(self.constraints, partial["rejected"], lambda numbers: configurations(pipeline, numbers))
 
     def _passivity(self, stiffness: np.ndarray, loop: LoopWork) -> dict[str, Any]:
         """Stiffness beside what the device renders, and the work of closed paths beside what would dissipate it."""
