@@ -1,7 +1,7 @@
 """The format of job and result documents: a number that both carry, and that every reader looks at first."""
 
 from collections.abc import Mapping
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 from pydantic import BeforeValidator, Field, ValidationError, model_validator
 
@@ -29,6 +29,9 @@ def format_problem(value: Any, absent: str = "left out") -> str | None:
 
 class JobDocument(Document):
     """What every job document has; one of another format is refused before anything else is looked at."""
+
+    constraints_elsewhere: ClassVar[str] = ""
+    """Of a job without constraints or surroundings: what takes them, jobs and fields in quotation marks."""
 
     format: Annotated[int, Field(json_schema_extra={"const": FORMAT}), BeforeValidator(integer)] = FORMAT
     """Format of the document. Without it a job takes the defaults of the version that runs it, and fields that had

@@ -42,6 +42,7 @@ _ALLOWED = {
 _WORDED = "problem"  # type of the errors whose message is already in plain words
 _LONGEST_VALUE = 60
 _PLAIN_STEP = re.compile(r'[^."]+')
+_CONSTRAINING = ("constraints", "environment")  # fields that most jobs have
 _TAGS = ("analysis", "method", "shape")  # fields that tell the members of a union apart
 
 
@@ -119,6 +120,8 @@ def _in_words(problem: ErrorDetails, model: type[BaseModel] | None) -> tuple[tup
 def _unknown_field(loc: tuple[int | str, ...], model: type[BaseModel] | None) -> str:
     if model is None or len(loc) != 1:
         return "is not a known field"
+    if loc[0] in _CONSTRAINING and (elsewhere := getattr(model, "constraints_elsewhere", "")):
+        return f"is not taken by this analysis: {elsewhere}"
     fields = list(model.model_fields)
     close = get_close_matches(str(loc[-1]), fields, n=1)
     hint = f"did you mean {close[0]}? " if close else ""

@@ -1,6 +1,6 @@
 """The job ``boundary_patches``: the boundary of an arm that moves in space, in patches."""
 
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import BeforeValidator, Field
 
@@ -19,6 +19,8 @@ class BoundaryPatchesJob(Arm, JobDocument):
     their limits that generate it. With more, they are fitted to points of the boundary that inverse kinematics finds.
     Each is the plane, sphere, cylinder, cone or torus that it is to within the points' error, or else a free form.
     """
+
+    constraints_elsewhere: ClassVar[str] = 'boundaries are those of joint limits alone; "workspace" takes them'
 
     analysis: Literal["boundary_patches"] = "boundary_patches"
     """Name of the analysis."""

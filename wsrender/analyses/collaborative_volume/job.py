@@ -1,7 +1,7 @@
 """The job of the body-elemental algorithm."""
 
 from collections.abc import Iterator, Mapping
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
@@ -33,6 +33,8 @@ Cells = Annotated[tuple[int, int, int], BeforeValidator(_cells)]
 
 class CollaborativeVolumeJob(JobDocument):
     """Volume that two arms reach together, by the body-elemental algorithm, and its true value beside it."""
+
+    constraints_elsewhere: ClassVar[str] = '"shared_workspace" says what is common to arms under them'
 
     analysis: Literal["collaborative_volume"] = "collaborative_volume"
     """Name of the analysis."""

@@ -50,6 +50,12 @@ def _design(value: Any) -> Any:
         raise ValidationError.from_exception_data("design", problems) from None
 
 
+def _linear(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        raise ValueError('must be a list of bounds of the parameters; those of configurations stand in "design"')
+    return value
+
+
 def _pointers(value: Any) -> tuple[str, ...]:
     pointers = (value,) if isinstance(value, str) else tuple(sequence(value))
     if not pointers or not all(isinstance(pointer, str) for pointer in pointers):
@@ -232,6 +238,7 @@ class DesignOptimizationJob(JobDocument):
     """Find parameters of a robot or mechanism at which the result of another analysis is best."""
 
     long_fields: ClassVar[tuple[str, ...]] = ("evaluations",)
+    constraints_elsewhere: ClassVar[str] = 'give them to the "design", where they hold for each'
 
     analysis: Literal["design_optimization"] = "design_optimization"
     """Name of the analysis."""
@@ -239,7 +246,7 @@ class DesignOptimizationJob(JobDocument):
     """The document of another analysis, of which some numbers vary."""
     parameters: Annotated[tuple[DesignParameter, ...], Field(min_length=1, max_length=MOST_PARAMETERS)]
     """The numbers that vary."""
-    constraints: tuple[LinearConstraint, ...] = ()
+    constraints: Annotated[tuple[LinearConstraint, ...], BeforeValidator(_linear)] = ()
     """Linear constraints on the parameters; a sweep leaves out designs that break one."""
     objectives: Annotated[tuple[Objective, ...], Field(min_length=1, max_length=MOST_OBJECTIVES)]
     """What is improved: one value, the weighted sum of several, or with the search "pareto" all of them."""

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterator
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import BeforeValidator, Field
 
@@ -71,6 +71,8 @@ PlaneRows = Annotated[tuple[tuple[float, float], ...], BeforeValidator(_plane_ro
 
 class FiveBarJob(JobDocument):
     """Workspace, conditioning, singularities and aspects of a planar five-bar with two actuated base joints."""
+
+    constraints_elsewhere: ClassVar[str] = 'its links have no bodies; planar arms take them in "workspace"'
 
     analysis: Literal["five_bar"] = "five_bar"
     """Name of the analysis."""

@@ -1,7 +1,7 @@
 """The job of master–slave mapping."""
 
 from collections.abc import Iterator, Mapping
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import BeforeValidator, Field, StrictBool
 
@@ -132,6 +132,8 @@ class MappingSearch(Document):
 
 class MasterSlaveMappingJob(JobDocument):
     """Whether a slave's workspace, scaled, turned and shifted, lies in its master's, and the largest that does."""
+
+    constraints_elsewhere: ClassVar[str] = 'give them to the "master" or the "slave", each has its own'
 
     analysis: Literal["master_slave_mapping"] = "master_slave_mapping"
     """Name of the analysis."""

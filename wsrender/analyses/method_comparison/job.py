@@ -1,7 +1,7 @@
 """The job ``method_comparison``: one workspace of a parallel mechanism by four methods."""
 
 from collections.abc import Iterator
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import BeforeValidator, Field
 
@@ -33,6 +33,8 @@ def _subdivisions(value: Any) -> tuple[int, ...]:
 
 class MethodComparisonJob(JobDocument):
     """Volume, error and time of the four methods of Shah, Narayanan and Krovi (2010), over voxel and mesh sizes."""
+
+    constraints_elsewhere: ClassVar[str] = 'spheres alone bound its mechanisms; arms take them in "workspace"'
 
     analysis: Literal["method_comparison"] = "method_comparison"
     """Name of the analysis."""

@@ -1,7 +1,7 @@
 """The job ``parallel_workspace``: where, and in which orientations, a parallel mechanism holds its platform."""
 
 from collections.abc import Iterator, Mapping
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
@@ -23,6 +23,8 @@ class ParallelWorkspaceJob(JobDocument):
     ``total_orientation``: positions at which all of a set of orientations are reached (Merlet 2006); ``dexterous``: the
     share of a set of orientations that is reached at each position.
     """
+
+    constraints_elsewhere: ClassVar[str] = '"mechanism" has "minimum_leg_distance_m"; arms take them in "workspace"'
 
     analysis: Literal["parallel_workspace"] = "parallel_workspace"
     """Name of the analysis."""

@@ -21,6 +21,7 @@ class PlanarBoundaryJob(Arm, JobDocument):
     """
 
     long_fields: ClassVar[tuple[str, ...]] = ("points_m",)
+    constraints_elsewhere: ClassVar[str] = 'boundaries are those of joint limits alone; "workspace" takes them'
 
     analysis: Literal["planar_boundary"] = "planar_boundary"
     """Name of the analysis."""
