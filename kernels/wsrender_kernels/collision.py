@@ -14,6 +14,7 @@ from typing import Any
 
 import warp as wp
 
+from wsrender_kernels.collision_surfaces import LOOKUPS, TRIANGLES
 from wsrender_kernels.factories import factory
 from wsrender_kernels.options import CUDA_OPTIONS, MODULE_OPTIONS, SHORT_OPTIONS
 from wsrender_kernels.sampling import LANES, blocks, sample_space, sampling
@@ -24,12 +25,22 @@ STEPS = 40  # of portals
 EDGE, ROW = 8, 8  # cells of directions along the edge of a cube; vertices of a cell are padded to so many
 CAPACITY = 16  # capsules: the scratch is for a multiple of so many
 
-REAL_ARRAYS = ("joints", "solids", "solid_sizes", "vertices", "pair_numbers")  # what the narrow phase computes with
+# What the narrow phase computes with.
+REAL_ARRAYS = (
+    "joints",
+    "solids",
+    "solid_sizes",
+    "vertices",
+    "pair_numbers",
+    "nodes",
+    "triangles",
+    "solid_capsules",
+)
 _ARRAYS = {
-    wp.float32: ("lower", "upper", "capsules", "test_numbers", "table_numbers"),
+    wp.float32: ("lower", "upper", "capsules", "test_numbers", "table_numbers", "balls", "grid_numbers"),
     wp.int32: ("sources", "capsule_frame", "pairs", "planes", "tests", "tables", "table_columns", "solid_frame",
-               "vertex_range", "solid_pairs"),
-    wp.uint32: ("table_words", "first_reason"),
+               "vertex_range", "solid_pairs", "lookups", "grid_shapes", "node_links"),
+    wp.uint32: ("table_words", "first_reason", "grid_words"),
 }  # fmt: skip
 ARRAYS = {name: dtype for dtype, names in _ARRAYS.items() for name in names}
 
@@ -44,6 +55,7 @@ def program_type(real: Any):
         n_planes: wp.int32
         n_tables: wp.int32
         n_solid_pairs: wp.int32
+        n_lookups: wp.int32
         columns: wp.int32  # cells of a table along its first coordinate
         epsilon: real
 
@@ -216,6 +228,7 @@ _FILTER = """
             ht[l] = label == 1u ? -1.f : ht[l];
         }
     }
+@LOOKUPS
     for (int l = 0; l < LN; l++) {
         const int lane = part * LN + l;
         if (lane >= valid) break;
@@ -268,15 +281,20 @@ _NARROW = """
     constexpr int N = @N, L = @L, W = @W;
 #if defined(__CUDA_ARCH__)
     #define LANE_LOOP for (int l = 0; l < LN; l++)
-    constexpr int LN = 1, STRIDE = 1, GROUP = 1;
+    constexpr int LN = 1, STRIDE = 1;
+#else
+    #define LANE_LOOP _Pragma("clang loop vectorize(assume_safety) interleave_count(1)") for (int l = 0; l < LN; l++)
+    constexpr int LN = @BATCH, STRIDE = @BATCH;
+#endif
+#if defined(__CUDA_ARCH__) || @SURFACES
+    constexpr int GROUP = 1;
     typedef real V;
     typedef bool M;
     auto any = [](M m) { return m; };
     auto root = [](V x) { return @SQRT(x); };
     auto whole = [](V x) { return (V)(int)x; };
 #else
-    #define LANE_LOOP _Pragma("clang loop vectorize(assume_safety) interleave_count(1)") for (int l = 0; l < LN; l++)
-    constexpr int LN = @BATCH, STRIDE = @BATCH, GROUP = @GROUP;
+    constexpr int GROUP = @GROUP;
     typedef real V __attribute__((ext_vector_type(@GROUP)));
     typedef decltype(V() > V()) M;
     auto any = [](M m) { return __builtin_reduce_or(m) != 0; };
@@ -382,52 +400,12 @@ _NARROW = """
             o[0] += h * d[0]; o[1] += h * d[1];
         }
     };
-    // Of a pair in as many samples as there are lanes, with frames FA and FB: 0 apart, 1 touching, 2 open.
-    auto decided = [&](int pair, const V* FA, const V* FB, V eps) -> V {
-        const int a = program.solid_pairs.data[2 * pair], b = program.solid_pairs.data[2 * pair + 1];
-        const real* of_a = program.solids.data + 18 * a; const real* of_b = program.solids.data + 18 * b;
-        const real ball = program.pair_numbers.data[2 * pair] + of_a[12] + of_b[12];
-        auto placed = [](const V* S, const real* t, V* R, V* p) {
-            for (int r = 0; r < 3; r++) {
-                for (int k = 0; k < 3; k++) R[3 * r + k] = S[r] * t[k] + S[3 + r] * t[3 + k] + S[6 + r] * t[6 + k];
-                p[r] = S[9 + r] + S[r] * t[9] + S[3 + r] * t[10] + S[6 + r] * t[11];
-            }
-        };
-        V RA[9], pA[3], RB[9], pB[3], R[9], p[3];  // R, p: of b in the frame of a
-        placed(FA, of_a, RA, pA); placed(FB, of_b, RB, pB);
-        for (int k = 0; k < 3; k++) pB[k] -= pA[k];
-        for (int r = 0; r < 3; r++) {
-            for (int k = 0; k < 3; k++) R[3 * r + k] = RA[r] * RB[k] + RA[3 + r] * RB[3 + k] + RA[6 + r] * RB[6 + k];
-            p[r] = RA[r] * pB[0] + RA[3 + r] * pB[1] + RA[6 + r] * pB[2];
-        }
-        const V APART = real(0.f), TOUCHING = real(1.f), OPEN = real(2.f);
-        M live = eps < real(1e29f);
-        if (of_a[14] == 2.f) {
-            V down[3] = {-R[6], -R[7], -R[8]}, lowest[3];
-            support(b, down, live, lowest);
-            V height = p[2] - dot(lowest, down) - ball;
-            return height > eps ? APART : (height < -eps ? TOUCHING : OPEN);
-        }
-        // Of the Minkowski difference B - A, widened by balls and margin: farthest point along d.
-        auto farthest = [&](const V* d, M live, V* o) {
-            V x[3], y[3], l[3], m[3];
-            for (int k = 0; k < 3; k++) { l[k] = R[k] * d[0] + R[3 + k] * d[1] + R[6 + k] * d[2]; m[k] = -d[k]; }
-            support(b, l, live, y);
-            support(a, m, live, x);
-            for (int k = 0; k < 3; k++) o[k] = p[k] + dot(R + 3 * k, y) - x[k] + ball * d[k];
-        };
-        // From the nearest points of two segments within them; where these cross, from their middles.
-        V v0[3], v1[3], v2[3], v3[3], v4[3], n[3], s[3], t[3], u[3], w[3];
-        for (int k = 0; k < 3; k++) { u[k] = of_a[15 + k]; s[k] = of_b[15 + k]; }
-        for (int k = 0; k < 3; k++) w[k] = dot(R + 3 * k, s);
-        V uu = dot(u, u) + real(1e-10f), ww = dot(w, w) + real(1e-10f), uw = dot(u, w), up = dot(u, p), wp = dot(w, p);
-        V at_u = clamped((up * ww - wp * uw) / (uu * ww * real(1.000001f) - uw * uw));
-        V at_w = clamped((at_u * uw - wp) / ww);
-        at_u = clamped((at_w * uw + up) / uu);
-        for (int k = 0; k < 3; k++) v0[k] = p[k] + at_w * w[k] - at_u * u[k];
-        put(v0, dot(v0, v0) < real(1e-6f), p);
+    const V APART = real(0.f), TOUCHING = real(1.f), OPEN = real(2.f);
+    // By the farthest points of Minkowski differences, and points v0 in them.
+    auto portal_of = [&](auto farthest, const V* v0, M live, V eps) -> V {
+        V v1[3], v2[3], v3[3], v4[3], n[3], s[3], t[3];
         V found = OPEN, e;
-        auto settle = [&](M where, V as) { found = live & where ? as : found; live = live & !where; };
+        auto settle = [&](M where, V as) { found = (live & where) ? as : found; live = live & !where; };
         for (int k = 0; k < 3; k++) n[k] = -v0[k];
         live = live & unit(n);
         farthest(n, live, v1);
@@ -469,6 +447,51 @@ _NARROW = """
             settle(portal & (dot(n, v1) > eps) & (dot(n, v2) > eps) & (dot(n, v3) > eps), TOUCHING);
         }
         return found;
+    };
+@TRIANGLES    // Of a pair in as many samples as there are lanes, with frames FA and FB: 0 apart, 1 touching, 2 open.
+    auto decided = [&](int pair, const V* FA, const V* FB, V eps) -> V {
+        const int a = program.solid_pairs.data[2 * pair], b = program.solid_pairs.data[2 * pair + 1];
+        const real* of_a = program.solids.data + 18 * a; const real* of_b = program.solids.data + 18 * b;
+        const real ball = program.pair_numbers.data[2 * pair] + of_a[12] + of_b[12];
+        auto placed = [](const V* S, const real* t, V* R, V* p) {
+            for (int r = 0; r < 3; r++) {
+                for (int k = 0; k < 3; k++) R[3 * r + k] = S[r] * t[k] + S[3 + r] * t[3 + k] + S[6 + r] * t[6 + k];
+                p[r] = S[9 + r] + S[r] * t[9] + S[3 + r] * t[10] + S[6 + r] * t[11];
+            }
+        };
+        V RA[9], pA[3], RB[9], pB[3], R[9], p[3];  // R, p: of b in the frame of a
+        placed(FA, of_a, RA, pA); placed(FB, of_b, RB, pB);
+@AGAINST        for (int k = 0; k < 3; k++) pB[k] -= pA[k];
+        for (int r = 0; r < 3; r++) {
+            for (int k = 0; k < 3; k++) R[3 * r + k] = RA[r] * RB[k] + RA[3 + r] * RB[3 + k] + RA[6 + r] * RB[6 + k];
+            p[r] = RA[r] * pB[0] + RA[3 + r] * pB[1] + RA[6 + r] * pB[2];
+        }
+        M live = eps < real(1e29f);
+        if (of_a[14] == 2.f) {
+            V down[3] = {-R[6], -R[7], -R[8]}, lowest[3];
+            support(b, down, live, lowest);
+            V height = p[2] - dot(lowest, down) - ball;
+            return height > eps ? APART : (height < -eps ? TOUCHING : OPEN);
+        }
+        // Of the Minkowski difference B - A, widened by balls and margin: farthest point along d.
+        auto farthest = [&](const V* d, M live, V* o) {
+            V x[3], y[3], l[3], m[3];
+            for (int k = 0; k < 3; k++) { l[k] = R[k] * d[0] + R[3 + k] * d[1] + R[6 + k] * d[2]; m[k] = -d[k]; }
+            support(b, l, live, y);
+            support(a, m, live, x);
+            for (int k = 0; k < 3; k++) o[k] = p[k] + dot(R + 3 * k, y) - x[k] + ball * d[k];
+        };
+        // From the nearest points of two segments within them; where these cross, from their middles.
+        V v0[3], s[3], u[3], w[3];
+        for (int k = 0; k < 3; k++) { u[k] = of_a[15 + k]; s[k] = of_b[15 + k]; }
+        for (int k = 0; k < 3; k++) w[k] = dot(R + 3 * k, s);
+        V uu = dot(u, u) + real(1e-10f), ww = dot(w, w) + real(1e-10f), uw = dot(u, w), up = dot(u, p), wp = dot(w, p);
+        V at_u = clamped((up * ww - wp * uw) / (uu * ww * real(1.000001f) - uw * uw));
+        V at_w = clamped((at_u * uw - wp) / ww);
+        at_u = clamped((at_w * uw + up) / uu);
+        for (int k = 0; k < 3; k++) v0[k] = p[k] + at_w * w[k] - at_u * u[k];
+        put(v0, dot(v0, v0) < real(1e-6f), p);
+        return portal_of(farthest, v0, live, eps);
     };
     int label_[LN], reason_[LN], anyway_[LN], list[LN];
     unsigned asked_[W * LN], still_[W * LN], any_[W];
@@ -534,8 +557,26 @@ _NARROW = """
 _TRIGONOMETRY = "    auto sincos_of = [](double a, double& sine, double& cosine) { sine = sin(a); cosine = cos(a); };\n"
 
 
-def _code(snippet: str, n: int, joints: int, capsules: int, words: int, body: str = "", exact: bool = False) -> str:
+_AGAINST = "        if (of_a[14] == 4.f) return against_surface(pair, a, b, FB, RB, pB, eps);\n"
+
+
+def _code(
+    snippet: str,
+    n: int,
+    joints: int,
+    capsules: int,
+    words: int,
+    body: str = "",
+    exact: bool = False,
+    surfaces: bool = False,
+) -> str:
     values = {
+        "LOOKUPS\n": LOOKUPS if surfaces else "",
+        "TRIANGLES ": TRIANGLES + " " if surfaces else " ",
+        "AGAINST": _AGAINST if surfaces else "",
+        "SURFACES": int(surfaces),
+        "GRAZING": 1e-9 if exact else 1e-4,  # sine of an angle between ray and triangle
+        "BESIDE": 1e-7 if exact else 1e-2,  # share of a triangle from its edges
         "TRIGONOMETRY": _TRIGONOMETRY if exact else _SINCOS,
         "SINCOS": _SINCOS,
         "KINEMATICS": _KINEMATICS,
@@ -572,11 +613,13 @@ def filter_kernel(
     shared: int,
     cuda: bool,
     body: str | None = None,
+    surfaces: bool = False,
 ) -> wp.Kernel:
     """Kernel that labels the samples of a chunk and lists what is open; see the module.
 
     ``capsules``: scratch for so many; ``words``: of a mask of pairs; ``cuda``: a thread takes a sample, not a block;
-    ``body``: of one robot, as `collision_unrolled.unrolled` writes it, for such a thread. Out: ``labels`` (count,),
+    ``body``: of one robot, as `collision_unrolled.unrolled` writes it, for such a thread; ``surfaces``: whether there
+    are any. Out: ``labels`` (count,),
     ``listed`` (1,) how many are, ``ids`` (count,) their numbers in the chunk, ``open_masks`` (count * words,).
     """
     block_of, draws = blocks(real, n, shared), sampling(real, n, method, shared)
@@ -587,7 +630,7 @@ def filter_kernel(
     u8, i32, u32 = (wp.array(dtype=dtype) for dtype in (wp.uint8, wp.int32, wp.uint32))
     BLOCK, LANE_MASK = LANES, wp.int64(LANES - 1)
 
-    code = _code(_FILTER if body is None else _UNROLLED, n, joints, capsules, words, body or "")
+    code = _code(_FILTER if body is None else _UNROLLED, n, joints, capsules, words, body or "", surfaces=surfaces)
 
     @wp.func_native(code)
     def filtered(
@@ -654,12 +697,12 @@ def filter_kernel(
 
 @factory
 def narrow_kernel(
-    real: Any, n: int, joints: int, words: int, method: str, cuda: bool, exact: bool = False
+    real: Any, n: int, joints: int, words: int, method: str, cuda: bool, exact: bool = False, surfaces: bool = False
 ) -> wp.Kernel:
     """Kernel that decides listed samples, one thread each; see the module.
 
     What stays open is listed again: ``ids``, ``masks`` of the pairs that are left, and in ``otherwise`` the label where
-    none of those touches. ``exact``: computed in float64.
+    none of those touches. ``exact``: computed in float64; ``surfaces``: whether there are any.
     """
     draws = sampling(real, n, method)
     prepare, draw = draws.prepare, draws.draw
@@ -670,7 +713,7 @@ def narrow_kernel(
     u8, i32, u32 = (wp.array(dtype=dtype) for dtype in (wp.uint8, wp.int32, wp.uint32))
     LANE_MASK = wp.int64(LANES - 1)
 
-    @wp.func_native(_code(_NARROW, n, joints, 0, words, exact=exact))
+    @wp.func_native(_code(_NARROW, n, joints, 0, words, exact=exact, surfaces=surfaces))
     def decide(
         values: values_type,
         valid: wp.int32,

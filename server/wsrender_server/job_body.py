@@ -140,9 +140,9 @@ def body_schemas() -> dict[str, Any]:
     analyses = {name: ref.rpartition("/")[2] for name, ref in schema["discriminator"]["mapping"].items()}
     _tighten_scene(parts["Scene"])
     _tighten_points(parts["PointSet"], "points", 1)
-    _tighten_points(parts["Mesh"], "vertices_m", 4)
-    parts["Mesh"]["oneOf"] = [{"required": parts["Mesh"].pop("required")}, {"required": ["model"]}]
-    _not_null(parts["Mesh"], "model")
+    shapes = (("Mesh", "vertices_m", 4), ("ConvexMesh", "vertices_m", 4), ("HeightField", "heights_m", 2))
+    for name, values, least in shapes:
+        _tighten_shape(parts[name], values, least)
     options = SubmissionOptions.model_json_schema()["properties"]
     parts["Constraints"]["properties"] |= _added_constraints()
     parts["Constraints"]["additionalProperties"] = False
@@ -233,6 +233,16 @@ def _tighten_points(part: dict[str, Any], name: str, least: int) -> None:
     points = part["properties"][name]
     part["properties"][name] = points["anyOf"][0] | {"minItems": least, "description": points["description"]}
     part["required"] = [name]
+
+
+def _tighten_shape(part: dict[str, Any], name: str, least: int) -> None:
+    """Numbers in the document, or what was uploaded."""
+    always = part.get("required", [])
+    _tighten_points(part, name, least)
+    part["oneOf"] = [{"required": part.pop("required")}, {"required": ["model"]}]
+    if always:
+        part["required"] = always
+    _not_null(part, "model")
 
 
 def _tighten(part: dict[str, Any]) -> None:

@@ -141,7 +141,7 @@ def test_meshes_of_many_corners_are_simplified_outwards():
     points = np.random.default_rng(0).normal(size=(10_000, 3))
     points = points / np.linalg.norm(points, axis=1, keepdims=True) * [0.2, 0.1, 0.05]
     (standing,) = shapes_around((ws.Mesh(vertices_m=points.tolist()),))
-    assert isinstance(standing.shape, ws.Mesh)
+    assert isinstance(standing.shape, ws.ConvexMesh)
     corners = np.array(standing.shape.vertices_m)
     planes = ConvexHull(corners).equations
     assert len(corners) <= 1000
@@ -199,7 +199,7 @@ def test_a_solid_that_is_not_convex(tmp_path, margin, device):
     least = np.where(inside(solid, centers), -1, 1) * near - 0.05 - margin
     assert 0 < (least < 0).sum() < len(q)
     assert not wrong(labels(robot, q, constraints, device=device) > 0, least < 0, least).size
-    (hull,) = constraints_for(robot, choice, ws.Environment([ws.Mesh(tmp_path / "table.stl", **place)]))
+    (hull,) = constraints_for(robot, choice, ws.Environment([ws.ConvexMesh(tmp_path / "table.stl", **place)]))
     assert (labels(robot, q, (hull,)) > 0).sum() > (least < 0).sum()
     items = items_of(around)
     assert len(surfaces(items[0], np.zeros(3), np.ones(3))) == 5

@@ -26,6 +26,9 @@ def test_documents_and_python_say_the_same():
     assert ws.Mesh("fixture.stl", position_m=(0.4, 0, 0)) == ws.Mesh(path="fixture.stl", position_m=(0.4, 0, 0))
 
 
+GROUND = {"shape": "height_field", "size_m": [1, 1]}
+
+
 def test_an_environment_is_written_and_read():
     shapes = [
         ws.HalfSpace(normal=(1, 0, 1)),
@@ -39,6 +42,10 @@ def test_an_environment_is_written_and_read():
         ws.OtherRobot(robot={"library": "ur5e", "placement": {"position_m": (0, 1, 0)}}, configuration=[0] * 6),
         ws.Mesh("a.STL", length_unit_m=0.001),
         ws.Mesh("a.ply", convex=False, tolerance_m=0.01),
+        ws.Mesh("a.ply", convex=True),
+        ws.ConvexMesh("a.obj"),
+        ws.HeightField(heights_m=[[1, 2, 3], [4, 5, 6]], size_m=(2, 1)),
+        ws.HeightField("ground.npy", size_m=(2, 1), length_unit_m=0.001, rpy_deg=(0, 0, 90)),
     ]
     environment = ws.Environment(shapes)
     assert ws.Environment(**json.loads(environment.model_dump_json())) == environment
@@ -69,6 +76,17 @@ def problems(**fields):
         ({"robot": "ur5e", "configuration": "home"}, "configuration", "must be a list of finite numbers"),
         ({"robot": {}, "configuration": [0]}, "robot.library", "is required, or another source"),
         ({}, "shape", "it is required"),
+        ({"shape": "mesh", "vertices_m": CORNERS, "convex": False}, "convex", "must not be false with vertices_m"),
+        ({"shape": "mesh", "path": "a.stl", "tolerance_m": 0.1}, "tolerance_m", 'but with "convex": false'),
+        (GROUND | {"heights_m": [[1, 2], [3]]}, "heights_m", "at least 2 rows of as many numbers"),
+        (GROUND | {"heights_m": [[1, 2]]}, "heights_m", "at least 2 rows of as many numbers"),
+        (GROUND | {"heights_m": []}, "heights_m", "at least 2 rows of as many numbers"),
+        (GROUND | {"heights_m": [[1] * 201] * 200}, "heights_m", "at most 40000 in all"),
+        (GROUND | {"heights_m": [[1, 0], [1, 1]]}, "heights_m.0.1", "must be greater than 0, not 0"),
+        (GROUND | {"size_m": [1]}, "size_m.1", "is required"),
+        (GROUND, "heights_m", 'must be given, or else "path" or "model"'),
+        (GROUND | {"path": "a.png"}, "path", 'must end in .npy, not "a.png"'),
+        (GROUND | {"heights_m": [[1, 1]] * 2, "length_unit_m": 0.001}, "length_unit_m", "heights_m are in metres"),
         (TABLE | {"size_m": [1, 0, 1]}, "size_m.1", "must be greater than 0, not 0"),
         (TABLE | {"size_m": [1, 1, 1, 1]}, "size_m", "must have at most 3 items"),
         (TABLE | {"size_m": 1}, "size_m", "must be a list, not 1"),

@@ -1,5 +1,7 @@
 """Solids as convex pieces, against manifold3d's volumes and rays through the triangles."""
 
+from collections import OrderedDict
+
 import manifold3d
 import numpy as np
 import pytest
@@ -117,3 +119,21 @@ def test_triangles_of_corners_that_are_not_there_are_refused(tmp_path, corner, c
     with pytest.raises(InputError, match="names vertices that it does not have") as caught:
         convex_parts(Mesh(path, convex=convex))
     assert caught.value.field == "path"
+
+
+def test_a_solid_is_cut_once(tmp_path, monkeypatch):
+    vertices, faces = mesh_of(SOLIDS["L"][0])
+    for name in ("a.stl", "b.stl"):
+        trimesh.Trimesh(vertices, faces).export(tmp_path / name)
+    calls = []
+    monkeypatch.setattr(
+        "wsrender.world.convex_pieces.convex_pieces", lambda *given: calls.append(given[2:]) or convex_pieces(*given)
+    )
+    monkeypatch.setattr("wsrender.world.meshes._PIECES", OrderedDict())
+    first, other, coarser = (
+        convex_parts(Mesh(tmp_path / name, convex=False, tolerance_m=tolerance))
+        for name, tolerance in (("a.stl", None), ("b.stl", 0.001), ("b.stl", 0.002))
+    )
+    assert first is other
+    assert len(first) == len(coarser) == 2
+    assert calls == [(0.001, "path"), (0.002, "path")]

@@ -1,11 +1,14 @@
 """Distances of points to shapes, against closed forms."""
 
+import manifold3d
 import numpy as np
 import pytest
 import trimesh
 
 import wsrender as ws
+from tests.world.test_convex_pieces import inside, mesh_of
 from wsrender.errors import InputError
+from wsrender.robot.surroundings import shapes_around
 from wsrender.world.distances import FAR, NearestShape
 
 PLACE = {"position_m": (0.1, -0.2, 0.3), "rpy_deg": (10, 20, 30)}
@@ -83,6 +86,30 @@ def test_far_from_all_is_far():
     for shapes in ([], [ws.Sphere(radius_m=1)]):
         distance, gradient = NearestShape(shapes).at(np.array([2 * FAR, 0, 0]))
         assert distance == FAR and not gradient.any()
+
+
+def test_a_closed_mesh_pushes_as_the_solid_that_it_is(tmp_path):
+    solid = manifold3d.Manifold.sphere(0.3, 24) - manifold3d.Manifold.sphere(0.25, 24).translate((0, 0, 0.1))
+    vertices, faces = mesh_of(solid)
+    vertices = vertices.astype(np.float32).astype(float)
+    trimesh.Trimesh(vertices, faces).export(tmp_path / "bowl.stl")
+    item = ws.Mesh(tmp_path / "bowl.stl", position_m=(1, 0, 0), rpy_deg=(30, 0, 0))
+    shapes = [each.shape for each in shapes_around([item, ws.Sphere(radius_m=0.1, position_m=(2, 0, 0))])]
+    nearest, T = NearestShape(shapes), item.matrix()
+    points = np.random.default_rng(0).uniform(-0.4, 0.4, (60, 3))
+    for point, within in zip(points, inside(solid, points), strict=True):
+        feet = trimesh.triangles.closest_point(vertices[faces], np.tile(point, (len(faces), 1)))
+        away = point - feet[np.linalg.norm(feet - point, axis=1).argmin()]
+        side = -1 if within else 1
+        distance, gradient = nearest.at(T[:3, :3] @ point + T[:3, 3])
+        assert distance == pytest.approx(side * np.linalg.norm(away), abs=1e-9)
+        assert np.allclose(gradient, T[:3, :3] @ away * side / np.linalg.norm(away), atol=1e-6)
+    assert nearest.at(np.array([2, 0, 0.3]))[0] == pytest.approx(0.2, abs=1e-6)
+
+
+def test_too_many_pieces_are_refused():
+    with pytest.raises(InputError, match=r"^items: are 501 shapes and convex pieces; at most 500 may push"):
+        NearestShape([ws.Sphere(radius_m=1)] * 501)
 
 
 @pytest.mark.parametrize("ending", ["stl", "ply", "obj"])

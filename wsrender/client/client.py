@@ -14,7 +14,7 @@ from wsrender.client.job import Job
 from wsrender.client.kinetostatic_stream import KinetostaticStream
 from wsrender.documents.arm import dotted, models_in
 from wsrender.documents.problems import path_text
-from wsrender.documents.shapes import MESH_FILES
+from wsrender.documents.shapes import MEDIA_TYPES
 from wsrender.errors import DocumentError, InputError
 
 PAGE = 100  # jobs in one answer
@@ -68,8 +68,8 @@ class Client:
         """Upload an MJCF or URDF file, or its bytes; the SHA-256 for ``robot: {"model": sha256}``.
 
         Meshes do not travel with it: geometry that needs them is dropped by the server. A mesh (.stl, .obj, .ply) that
-        is a shape by itself is uploaded alike, for ``{"shape": "mesh", "model": sha256}``. Raises InputError, naming
-        ``field``, where the file cannot be read, ModelError where it is no model.
+        is a shape by itself is uploaded alike, for ``{"shape": "mesh", "model": sha256}``, as are heights (.npy).
+        Raises InputError, naming ``field``, where the file cannot be read, ModelError where it is no model.
         """
         text = model if isinstance(model, bytes) else _read(Path(model), field)
         answer = self._connection.request(
@@ -186,7 +186,7 @@ def _items(answer: Any) -> list[dict[str, Any]]:
 
 def _media_type(model: str | Path | bytes) -> str:
     ending = "" if isinstance(model, bytes) else Path(model).suffix.lower()
-    return f"model/{ending[1:]}" if ending in MESH_FILES else "application/xml"
+    return MEDIA_TYPES.get(ending, "application/xml")
 
 
 def _read(path: Path, field: str) -> bytes:

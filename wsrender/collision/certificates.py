@@ -4,11 +4,13 @@ The signed distance changes by no more than its rates times the change of each c
 middle of a box of configurations decides all of it where it exceeds what the box can change (Lipschitz).
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from wsrender.collision.distance import Distances, frames_of
+from wsrender.collision.grids import Lookup
 from wsrender.collision.levers import rates
 from wsrender.collision.solids import Pairs
 from wsrender.robots.chain import Chain
@@ -41,13 +43,18 @@ class Certificates:
     left: tuple[int, ...]
 
 
-def certificates(pairs: Pairs, chain: Chain, distances: Distances) -> Certificates:
-    """What is proven of every pair within the chain's limits, which must be finite."""
+def certificates(
+    pairs: Pairs, chain: Chain, distances: Distances, lookups: Mapping[int, Lookup] | None = None
+) -> Certificates:
+    """What is proven of every pair within the chain's limits, which must be finite.
+
+    ``lookups``: of every pair with a surface, whose distances would take too long.
+    """
     never, always, tables, left = [], [], [], []
     for number in range(len(pairs.pairs)):
-        pair = _Pair(pairs, number, chain, distances)
+        pair = _Pair(pairs, number, chain, distances, (lookups or {}).get(number))
         # Neighbours are so near that their covers always touch; what stands around is hardly ever.
-        most = 0 if pair.round else 1 if pairs.around[pairs.reason[number]] else 2
+        most = 0 if pair.round or pair.lookup else 1 if pairs.around[pairs.reason[number]] else 2
         tabled = len(pair.coordinates) <= most
         if tabled:
             labels = pair.table()
@@ -69,10 +76,10 @@ def certificates(pairs: Pairs, chain: Chain, distances: Distances) -> Certificat
 class _Pair:
     """A pair's distance as a function of the coordinates between its solids."""
 
-    def __init__(self, pairs: Pairs, number: int, chain: Chain, distances: Distances):
+    def __init__(self, pairs: Pairs, number: int, chain: Chain, distances: Distances, lookup: Lookup | None):
         self.a, self.b = (int(k) for k in pairs.pairs[number])
         self.solids, self.margin = pairs.solids, pairs.margin(number)
-        self.chain, self.distances = chain, distances
+        self.chain, self.distances, self.lookup = chain, distances, lookup
         own = rates(chain, self.solids[self.a], self.solids[self.b])
         self.coordinates = tuple(own)
         self.rate = np.array(list(own.values()))
@@ -90,10 +97,15 @@ class _Pair:
         return first, self.coordinates[1] if len(self.coordinates) > 1 else first
 
     def distance(self, values: np.ndarray) -> np.ndarray:
-        """What is left of the distance over the margin (N,) [m], at values (N, c) of the coordinates."""
+        """What is left of the distance over the margin (N,) [m], at values (N, c) of the coordinates.
+
+        Of a surface at least that, or 0.
+        """
         q = np.tile((self.chain.lower_limits + self.chain.upper_limits) / 2, (len(values), 1))
         q[:, list(self.coordinates)] = values
         frames = frames_of(self.chain, q)
+        if self.lookup:
+            return self.lookup.distance(frames[:, self.lookup.joint + 1])
         T_a, T_b = (frames[:, self.solids[k].joint + 1] @ self.solids[k].T for k in (self.a, self.b))
         return self.distances.between(self.a, self.b, T_a, T_b, FAR_M) - self.margin
 

@@ -1,6 +1,6 @@
 """How far solids are from touching: the least signed distance over pairs, and a lower bound of it from capsules."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -8,6 +8,7 @@ import numpy as np
 
 from wsrender.collision.covers import Capsules, outer_cover
 from wsrender.collision.distance import AT_A_TIME, Distances, frames_of
+from wsrender.collision.grids import Lookup
 from wsrender.collision.program import axes_distance
 from wsrender.collision.solids import Pairs
 from wsrender.robots.chain import Chain
@@ -17,12 +18,16 @@ ROUNDING = 1e-6  # what MuJoCo's distances, and those of axes that are nearly pa
 
 @dataclass(frozen=True, eq=False)
 class Clearance:
-    """Distances over ``pairs``, which must have margins of 0, but for those that are proven ``never`` to collide."""
+    """Distances over ``pairs``, which must have margins of 0, but for those that are proven ``never`` to collide.
+
+    ``lookups``: of pairs with surfaces.
+    """
 
     pairs: Pairs
     chain: Chain
     distances: Distances
     never: frozenset[int]
+    lookups: Mapping[int, Lookup]
 
     def least(self, q: np.ndarray, limit_m: float) -> np.ndarray:
         """Least signed distance (N,) [m] at configurations ``q`` (N, n), cut to ± ``limit_m``; by MuJoCo in float64."""
@@ -62,7 +67,8 @@ class Clearance:
     def _covers(self) -> dict[int, tuple[Capsules, Capsules]]:
         """Of every solid but half-spaces one capsule around it, and a few."""
         solids = {int(k) for pair in self._asked for k in self.pairs.pairs[pair]}
-        return {k: outer_cover(self.pairs.solids[k]) for k in solids if self.pairs.solids[k].kind != "half_space"}
+        bounded = [k for k in solids if self.pairs.solids[k].kind not in ("half_space", "surface")]
+        return {k: outer_cover(self.pairs.solids[k]) for k in bounded}
 
     def _bounds(self, frames: np.ndarray) -> np.ndarray:
         """Lower bounds of the signed distances of the pairs that are asked, (P, N) [m]."""
@@ -73,6 +79,10 @@ class Clearance:
         bounds = np.empty((len(self._asked), len(frames)))
         for row, pair in enumerate(self._asked):
             a, b = (int(k) for k in self.pairs.pairs[pair])
+            if pair in self.lookups:
+                known = self.lookups[pair].distance(frames[:, self.lookups[pair].joint + 1])
+                bounds[row] = np.where(known > 0, known, -np.inf)
+                continue
             if self.pairs.solids[a].kind == "half_space":
                 T = self.pairs.solids[a].T
                 bounds[row] = _above(T[:3, 3], T[:3, 2], *placed[b][1])

@@ -1,17 +1,21 @@
-"""Signed distances of solids by MuJoCo, the reference.
+"""Signed distances of solids by MuJoCo, the reference; of surfaces by MuJoCo's from their triangles.
 
 MuJoCo 4.0.0 takes some capsules whose axis passes through a box for free, `mj_geomDistance` and contacts alike: such a
 pair touches here. What it says of depths is never more than they are, which proofs rest on.
 """
 
+import copy
 import threading
 from collections.abc import Sequence
+from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wsrender.collision.covers import from_segment, outer_cover
 from wsrender.collision.solids import Pairs, Solid
 from wsrender.robots.chain import Chain
+from wsrender.robots.triangles import winding_numbers
 
 if TYPE_CHECKING:
     import mujoco
@@ -24,6 +28,7 @@ TYPES = {
     "box": "BOX",
     "hull": "MESH",
     "half_space": "PLANE",
+    "surface": "SPHERE",  # stands for nothing
 }
 PARALLEL = 1e-30  # half an axis across a face that counts as along it [m]
 
@@ -45,6 +50,9 @@ class Distances:
                 mesh = spec.add_mesh(name=f"hull{number}", uservert=solid.points.ravel())
                 mesh.inertia = mujoco.mjtMeshInertia.mjMESH_INERTIA_CONVEX
                 geom.meshname = mesh.name
+        if any(solid.kind == "surface" for solid in solids):
+            spec.add_mesh(name="triangle", uservert=np.eye(4, 3).ravel())
+            spec.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_MESH, meshname="triangle")
         self.solids, self.model = tuple(solids), spec.compile()
         # MuJoCo turns a mesh to its principal axes and moves it to its centre.
         self.own = np.tile(np.eye(4), (len(solids), 1, 1))
@@ -55,9 +63,16 @@ class Distances:
                 mujoco.mju_quat2Mat(R, self.model.mesh_quat[mesh])
                 self.own[number, :3, :3], self.own[number, :3, 3] = R.reshape(3, 3), self.model.mesh_pos[mesh]
         self._local = threading.local()
+        self._capsule = cache(lambda k: outer_cover(self.solids[k])[0])
+        self._triangles = cache(self._triangles_of)
 
     def between(self, a: int, b: int, T_a: np.ndarray, T_b: np.ndarray, limit: float) -> np.ndarray:
-        """Signed distances (N,) [m] of two solids with frames (N, 4, 4) in one frame, cut at ``limit`` > 0."""
+        """Signed distances (N,) [m] of two solids with frames (N, 4, 4) in one frame, cut at ``limit`` > 0.
+
+        Where one overlaps a surface, what is said is negative, and its depth may be more.
+        """
+        if self.solids[a].kind == "surface":
+            return self._from_surface(a, b, np.linalg.inv(T_a) @ T_b, limit)
         from mujoco import mj_geomDistance as distance
 
         data = self._data()
@@ -71,6 +86,52 @@ class Distances:
             turned[a], turned[b] = rotations[i]
             found[i] = distance(model, data, a, b, limit, None)
         return self._deep(a, b, T_a, T_b, found)
+
+    def _from_surface(self, surface: int, b: int, T: np.ndarray, limit: float) -> np.ndarray:
+        """Distances of solid ``b`` at frames (N, 4, 4) in that of a surface."""
+        own, found = self.solids[surface], np.full(len(T), limit)
+        corners, centers, radii = triangles = self._triangles(surface)
+        low, high = own.points[0], own.points[-1]
+        beyond = np.linalg.norm(np.maximum(0, np.maximum(low - T[:, :3, 3], T[:, :3, 3] - high)), axis=1)
+        near = np.flatnonzero(beyond - self.solids[b].bounding_radius < limit)
+        capsule = self._capsule(b)
+        for i in near:
+            ends = [end @ T[i, :3, :3].T + T[i, :3, 3] for end in (capsule.a[0], capsule.b[0])]
+            bounds = from_segment(centers, *ends) - capsule.radius[0] - radii
+            found[i] = self._from_triangles(b, T[i], triangles, bounds, limit)
+        apart = near[found[near] > 0]
+        inside = apart[winding_numbers(corners, T[apart, :3, 3]) > 0.5]
+        found[inside] *= -1
+        return found
+
+    def _triangles_of(self, surface: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Corners (F, 3, 3) of a surface's triangles, with the middle (F, 3) and radius (F,) of a ball around each."""
+        corners = self.solids[surface].corners
+        centers = corners.mean(axis=1)
+        return corners, centers, np.linalg.norm(corners - centers[:, None], axis=2).max(axis=1)
+
+    def _from_triangles(
+        self, b: int, T: np.ndarray, triangles: tuple[np.ndarray, ...], bounds: np.ndarray, limit: float
+    ) -> float:
+        """Least distance of a solid at ``T`` (4, 4) from triangles, which are no nearer than ``bounds`` (F,).
+
+        Where it overlaps one, how deep.
+        """
+        import mujoco
+
+        data, least, own = self._data(), limit, len(self.solids)
+        model, T = self._local.model, T @ self.own[b]
+        vertices = model.mesh_vert[model.mesh_vertadr[model.geom_dataid[own]] :][:4]
+        data.geom_xpos[b], data.geom_xmat[b], data.geom_xmat[own] = T[:3, 3], T[:3, :3].ravel(), np.eye(3).ravel()
+        near = np.flatnonzero(bounds < limit)
+        for k in near[np.argsort(bounds[near])]:
+            if least <= 0 or bounds[k] >= least:
+                break
+            corners, center, radius = (each[k] for each in triangles)
+            vertices[:] = corners[[0, 1, 2, 2]] - center  # which are kept in float32
+            model.geom_rbound[own], data.geom_xpos[own] = radius, center
+            least = min(least, mujoco.mj_geomDistance(model, data, b, own, limit, None))
+        return least
 
     def _deep(self, a: int, b: int, T_a: np.ndarray, T_b: np.ndarray, found: np.ndarray) -> np.ndarray:
         """The same, where a capsule's axis passes through a box at most minus its radius."""
@@ -90,12 +151,17 @@ class Distances:
         if not hasattr(self._local, "data"):
             import mujoco
 
+            # Triangles are written into the model.
+            own = any(solid.kind == "surface" for solid in self.solids)
+            self._local.model = copy.copy(self.model) if own else self.model
             self._local.data = mujoco.MjData(self.model)
         return self._local.data
 
 
 def _size(solid: Solid) -> np.ndarray:
-    return np.array([1.0, 1.0, 1.0]) if solid.kind in ("half_space", "hull") else np.asarray(solid.size, float)
+    if solid.kind in ("half_space", "hull", "surface"):
+        return np.array([1.0, 1.0, 1.0])
+    return np.asarray(solid.size, float)
 
 
 def frames_of(chain: Chain, q: np.ndarray) -> np.ndarray:

@@ -11,9 +11,11 @@ import numpy as np
 from wsrender.collision.certificates import CELLS, FREE, Certificates, certificates
 from wsrender.collision.covers import LEVELS, Capsules, Cover, cover
 from wsrender.collision.distance import Distances, frames_of
-from wsrender.collision.solids import BASE, Pairs
+from wsrender.collision.grids import Grid, Lookup, lookup, reach_of, surface_grid
+from wsrender.collision.solids import BASE, Pairs, Solid
 from wsrender.collision.supports import center_of, core, vertices_by_direction
 from wsrender.robots.chain import Chain
+from wsrender.robots.triangles import tree
 
 DRAWN = 4096  # configurations over which the levels of covers are chosen
 # Of an open pair in the narrow phase, measured in tests of two capsules.
@@ -21,7 +23,7 @@ OPEN_COST = 600.0
 EPSILON = 5e-6  # of the reach, at least 2 m: what positions in float32 may be off [m]
 ABSENT = -1.0  # a squared distance that nothing falls below
 SHORT = 1e-10  # squared length of an axis that is a point [m²]
-KIND = {"sphere": 3, "capsule": 3, "cylinder": 3, "box": 3, "hull": 0, "ellipsoid": 1, "half_space": 2}
+KIND = {"sphere": 3, "capsule": 3, "cylinder": 3, "box": 3, "hull": 0, "ellipsoid": 1, "half_space": 2, "surface": 4}
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,8 +40,13 @@ class Program:
     ``solid_frame`` (S,), ``solids`` (S, 18): rotation and translation in its joint, radius, disc, kind, half a segment
     within it, about its middle; ``solid_sizes`` (S, 3): half axes of an ellipsoid, else half of what its points span;
     ``vertices`` (V,), ``vertex_range`` (S, cells, 2): see `vertices_by_direction`; ``solid_pairs`` (P, 2);
-    ``pair_numbers`` (P, 2): margin, reason. ``epsilon``: what float32 may be off [m]; ``columns``: cells of a table
-    along its first coordinate; ``never``, ``always``: pairs by proof.
+    ``pair_numbers`` (P, 2): margin, reason. Of surfaces: ``lookups`` (Q, 5): pair, grid, joint from 1, first ball,
+    balls; ``balls`` as `Lookup.balls`; ``grid_numbers`` (G, 4): origin and cell; ``grid_shapes`` (G, 4): cells along
+    each axis, first word; ``grid_words``; ``nodes`` and ``node_links`` as `Tree.balls` and `Tree.links`, in the base's
+    frame, of the rows of ``triangles`` (F, 9); a surface's ``vertex_range`` is first of its nodes, first and end;
+    ``solid_capsules`` (S, 7): middle and half axis in its joint and radius of a capsule around a solid that may meet
+    one. ``epsilon``: what float32 may be off [m]; ``columns``: cells of a table along its first coordinate; ``never``,
+    ``always``: pairs by proof.
     """
 
     joints: np.ndarray
@@ -63,6 +70,15 @@ class Program:
     vertex_range: np.ndarray
     solid_pairs: np.ndarray
     pair_numbers: np.ndarray
+    lookups: np.ndarray
+    balls: np.ndarray
+    grid_numbers: np.ndarray
+    grid_shapes: np.ndarray
+    grid_words: np.ndarray
+    nodes: np.ndarray
+    node_links: np.ndarray
+    triangles: np.ndarray
+    solid_capsules: np.ndarray
     epsilon: float
     columns: int
     never: np.ndarray
@@ -75,18 +91,54 @@ class Program:
 
 
 def program(pairs: Pairs, chain: Chain, distances: Distances | None = None) -> Program:
-    """The program of pairs of a chain: proofs, tables and covers are made here, which takes seconds."""
-    known = certificates(pairs, chain, distances or Distances(pairs.solids))
-    covers: dict[int, Cover] = {}
-    alike: dict[tuple[object, ...], Cover] = {}
-    for number in sorted({int(k) for pair in known.left for k in pairs.pairs[pair]}):
-        if (solid := pairs.solids[number]).kind != "half_space":
+    """The program of pairs of a chain: grids, proofs, tables and covers are made here, which takes seconds."""
+    epsilon, covers = EPSILON * max(2.0, _extent(pairs, chain)), _Covers(pairs.solids)
+    lookups = _lookups(pairs, covers, epsilon)
+    known = certificates(pairs, chain, distances or Distances(pairs.solids), lookups)
+    convex = [pair for pair in known.left if pair not in lookups]
+    for number in {int(k) for pair in convex for k in pairs.pairs[pair]}:
+        if pairs.solids[number].kind != "half_space":
+            covers.of(number)
+    chosen = _Chosen(pairs, chain, covers.made)
+    levels = {pair: chosen.levels(pair) for pair in convex}
+    left = {pair: lookups[pair] for pair in known.left if pair in lookups}
+    return _packed(pairs, chain, known, covers.made, levels, left, epsilon)
+
+
+class _Covers:
+    """Covers of solids by number, ``made`` when they are first asked for; those of a form are one."""
+
+    def __init__(self, solids: tuple[Solid, ...]):
+        self.solids, self.made = solids, dict[int, Cover]()
+        self._alike: dict[tuple[object, ...], Cover] = {}
+
+    def of(self, number: int) -> Cover:
+        """The cover of a solid."""
+        if number not in self.made:
+            solid = self.solids[number]
             form = solid.kind, solid.size.tobytes(), solid.points.tobytes()
-            covers[number] = alike[form] = alike.get(form) or cover(solid)
-    chosen = _Chosen(pairs, chain, covers)
-    levels = {pair: chosen.levels(pair) for pair in known.left}
-    epsilon = EPSILON * max(2.0, _extent(pairs, chain))
-    return _packed(pairs, chain, known, covers, levels, epsilon)
+            self.made[number] = self._alike[form] = self._alike.get(form) or cover(solid)
+        return self.made[number]
+
+
+def _lookups(pairs: Pairs, covers: _Covers, epsilon: float) -> dict[int, Lookup]:
+    """By pair with a surface, how its other solid is looked up."""
+    found: dict[int, Lookup] = {}
+    for surface in [k for k, solid in enumerate(pairs.solids) if solid.kind == "surface"]:
+        own = [(k, int(pairs.pairs[k, 1])) for k in np.flatnonzero(pairs.pairs[:, 0] == surface).tolist()]
+        if not own:
+            continue
+        pad = max(reach_of(covers.of(solid), pairs.margin(pair)) for pair, solid in own)
+        grid = surface_grid(_in_base(pairs.solids[surface]), pad)
+        for pair, number in own:
+            solid = pairs.solids[number]
+            found[pair] = lookup(grid, solid.joint, solid.T, covers.of(number), pairs.margin(pair), epsilon)
+    return found
+
+
+def _in_base(surface: Solid) -> np.ndarray:
+    """Corners (F, 3, 3) of a surface's triangles in the base's frame."""
+    return surface.corners @ surface.T[:3, :3].T + surface.T[:3, 3]
 
 
 def _extent(pairs: Pairs, chain: Chain) -> float:
@@ -216,11 +268,12 @@ def _packed(
     known: Certificates,
     covers: dict[int, Cover],
     levels: dict[int, tuple[int, int | None]],
+    lookups: dict[int, Lookup],
     epsilon: float,
 ) -> Program:
     rows = _Rows(pairs, covers)
     pair_rows, plane_rows = [], []
-    for pair in known.left:
+    for pair in levels:
         if pairs.solids[pairs.pairs[pair][0]].kind == "half_space":
             plane_rows.append(_plane_tests(rows, pairs, pair, levels[pair], epsilon))
         else:
@@ -238,6 +291,7 @@ def _packed(
         columns.append(table.labels.shape[1])
         words.append(_words(table.labels))
     vertices, vertex_range = vertices_by_direction(pairs.solids)
+    met = {int(pairs.pairs[pair][1]) for pair in lookups}
     placed = [solid.T @ _shift(center_of(solid)) for solid in pairs.solids]  # the narrow phase starts at the origins
     joints = [
         [*T[:3, :3].ravel(), *T[:3, 3], scale, offset, float(turns)]
@@ -270,7 +324,9 @@ def _packed(
         ),
         solid_sizes=_d([s.size if s.kind == "ellipsoid" else np.ptp(s.points, axis=0) / 2 for s in pairs.solids], 3),
         vertices=vertices,
-        vertex_range=vertex_range,
+        **_surfaces(pairs.solids, vertex_range, {int(pairs.pairs[pair][0]) for pair in lookups}),
+        **_looked_up(lookups),
+        solid_capsules=_d([_capsule(s, covers[k] if k in met else None) for k, s in enumerate(pairs.solids)], 7),
         solid_pairs=_i(pairs.pairs, 2),
         pair_numbers=_d([[pairs.margin(k), pairs.reason[k]] for k in range(len(pairs.pairs))], 2),
         epsilon=epsilon,
@@ -324,6 +380,64 @@ def _words(labels: np.ndarray) -> np.ndarray:
     flat = labels.ravel().astype(np.uint32)
     flat = np.pad(flat, (0, -len(flat) % 16)).reshape(-1, 16)
     return np.bitwise_or.reduce(flat << (2 * np.arange(16, dtype=np.uint32)), axis=1).astype(np.uint32)
+
+
+def _surfaces(solids: tuple[Solid, ...], ranges: np.ndarray, met: set[int]) -> dict[str, np.ndarray]:
+    """The arrays of surfaces' triangles, of those that are ``met``."""
+    nodes, links, triangles = [np.zeros((0, 4))], [np.zeros((0, 3), int)], [np.zeros((0, 3, 3))]
+    ranges, node, triangle = ranges.copy(), 0, 0
+    for number in sorted(met):
+        corners = _in_base(solids[number])
+        own = tree(corners)
+        nodes.append(own.balls)
+        links.append(own.links + np.array([node, triangle, 0]))
+        triangles.append(corners[own.order])
+        ranges[number, 0] = node, node + len(own.balls)
+        node, triangle = node + len(own.balls), triangle + len(corners)
+    return {
+        "vertex_range": ranges,
+        "nodes": _d(np.concatenate(nodes), 4),
+        "node_links": _i(np.concatenate(links), 3),
+        "triangles": _d(np.concatenate(triangles), 9),
+    }
+
+
+def _looked_up(lookups: dict[int, Lookup]) -> dict[str, np.ndarray]:
+    """The arrays of lookups and their grids."""
+    grids: list[Grid] = list({id(each.grid): each.grid for each in lookups.values()}.values())
+    rows, first = [], 0
+    for pair, each in lookups.items():
+        grid = next(k for k, grid in enumerate(grids) if grid is each.grid)
+        rows.append([pair, grid, each.joint - BASE, first, len(each.balls)])
+        first += len(each.balls)
+    words = np.cumsum([0, *(grid.words.size for grid in grids)])
+    return {
+        "lookups": _i(rows, 5),
+        "balls": _f(np.concatenate([np.zeros((0, 5)), *(each.balls for each in lookups.values())]), 5),
+        "grid_numbers": _f([[*grid.origin, grid.cell] for grid in grids], 4),
+        "grid_shapes": _i([[*grid.words.shape, at] for grid, at in zip(grids, words[:-1], strict=True)], 4),
+        "grid_words": np.concatenate([np.zeros(0, np.uint32), *(grid.words.ravel() for grid in grids)]),
+    }
+
+
+def lookups_of(program: Program) -> dict[int, Lookup]:
+    """By pair, the lookups of a program."""
+    found, grids = {}, []
+    numbers, shapes = program.grid_numbers.tolist(), program.grid_shapes.tolist()
+    for (*origin, cell), (*shape, first) in zip(numbers, shapes, strict=True):
+        words = program.grid_words[first : first + np.prod(shape)].reshape(shape)
+        grids.append(Grid(np.array(origin), cell, 0.0, words))
+    for pair, grid, frame, first, count in program.lookups.tolist():
+        found[pair] = Lookup(grids[grid], frame + BASE, program.balls[first : first + count].astype(float))
+    return found
+
+
+def _capsule(solid: Solid, own: Cover | None) -> np.ndarray:
+    """Middle, half axis and radius of one capsule that holds a solid, in the frame of its joint."""
+    if own is None:
+        return np.zeros(7)
+    a, b = (end[0] @ solid.T[:3, :3].T + solid.T[:3, 3] for end in (own.outer[0].a, own.outer[0].b))
+    return np.r_[(a + b) / 2, (b - a) / 2, own.outer[0].radius[0]]
 
 
 def _shift(by: np.ndarray) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""Convex solids that joints carry, and the pairs of them that must not touch."""
+"""Solids that joints carry, all convex but those between surfaces that stand, and the pairs that must not touch."""
 
 import hashlib
 from dataclasses import dataclass
@@ -7,17 +7,18 @@ from typing import Literal
 
 import numpy as np
 
-Kind = Literal["sphere", "capsule", "cylinder", "ellipsoid", "box", "hull", "half_space"]
+Kind = Literal["sphere", "capsule", "cylinder", "ellipsoid", "box", "hull", "half_space", "surface"]
 BASE = -1  # "joint" of what stands with the base
 
 
 @dataclass(frozen=True, eq=False)
 class Solid:
-    """A convex solid in the frame of the joint that carries it.
+    """A solid in the frame of the joint that carries it, convex but of kind "surface".
 
     ``joint``: its number in the chain, BASE where it stands with the base; ``T`` (4, 4): its frame in that joint's
     after the motion, in the base's frame for BASE; ``size`` (3,) [m] as MuJoCo has it: half extents, or radius and half
-    length along z; ``vertices`` (V, 3) [m] of a hull, in its own frame. A half-space is what lies below its z = 0.
+    length along z; ``vertices`` (V, 3) [m] of a hull, in its own frame. A half-space is what lies below its z = 0. A
+    surface stands with the base: what its triangles ``faces`` (F, 3) enclose, by their winding number.
     """
 
     name: str
@@ -26,10 +27,17 @@ class Solid:
     T: np.ndarray
     size: np.ndarray
     vertices: np.ndarray | None = None
+    faces: np.ndarray | None = None
 
     @property
     def points(self) -> np.ndarray:
-        """Points (V, 3) [m] in its own frame; with ``radius`` and ``disc`` around them they span the solid."""
+        """Points (V, 3) [m] in its own frame; with ``radius`` and ``disc`` around them they span the solid.
+
+        Of a surface the corners of a box around it.
+        """
+        if self.kind == "surface" and self.vertices is not None:
+            low, high = self.vertices.min(axis=0), self.vertices.max(axis=0)
+            return low + (high - low) * np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)])
         if self.kind == "hull" and self.vertices is not None:
             return self.vertices
         if self.kind == "box":
@@ -37,6 +45,12 @@ class Solid:
         if self.kind in ("capsule", "cylinder"):
             return np.array([[0, 0, -self.size[1]], [0, 0, self.size[1]]])
         return np.zeros((1, 3))
+
+    @property
+    def corners(self) -> np.ndarray:
+        """Corners (F, 3, 3) [m] of a surface's triangles, in its own frame."""
+        assert self.vertices is not None and self.faces is not None
+        return self.vertices[self.faces]
 
     @property
     def radius(self) -> float:
@@ -111,6 +125,7 @@ class Pairs:
         made = hashlib.sha256(repr((self.margin_m, self.around, self.pairs.tolist(), self.reason.tolist())).encode())
         for solid in self.solids:
             made.update(f"{solid.kind} {solid.joint}".encode())
-            for numbers in (solid.T, solid.size, solid.points):
+            surface = () if solid.faces is None else (solid.vertices, solid.faces)
+            for numbers in (solid.T, solid.size, solid.points, *surface):
                 made.update(np.ascontiguousarray(numbers, np.float64).tobytes())
         return made.hexdigest()

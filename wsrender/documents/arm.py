@@ -9,6 +9,7 @@ from wsrender.documents.document import Document
 from wsrender.documents.quantities import Name
 from wsrender.documents.robot import SOURCES, RobotSpec
 
+OF_FILES = ("mesh", "convex_mesh", "height_field")  # shapes that a file may say
 ArmPath = tuple[str | int, ...]
 """Keys from a job document to an arm in it; empty: the job itself is one."""
 
@@ -63,7 +64,7 @@ def _is_robot(part: dict[str, Any]) -> bool:
 
 def _names_a_file(part: dict[str, Any]) -> bool:
     sources = part.get("path"), part.get("model")
-    return part.get("shape") == "scene" or (part.get("shape") == "mesh" and sources != (None, None))
+    return part.get("shape") == "scene" or (part.get("shape") in OF_FILES and sources != (None, None))
 
 
 def local_paths(document: Any, path: ArmPath = ()) -> Iterator[ArmPath]:

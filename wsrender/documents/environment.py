@@ -16,9 +16,11 @@ from wsrender.documents.robot import XmlText
 from wsrender.documents.shapes import (
     Box,
     Capsule,
+    ConvexMesh,
     Cylinder,
     Ellipsoid,
     HalfSpace,
+    HeightField,
     Mesh,
     Named,
     Placed,
@@ -97,7 +99,7 @@ def _shape(value: Any) -> Any:
     return _tagged(value)
 
 
-Shape = HalfSpace | Box | Sphere | Cylinder | Capsule | Ellipsoid | Mesh
+Shape = HalfSpace | Box | Sphere | Cylinder | Capsule | Ellipsoid | ConvexMesh | Mesh | HeightField
 """One that is a shape itself."""
 _AnyItem = Shape | OtherRobot | Scene
 SHAPES: dict[str, type[Document]] = {each.model_fields["shape"].default: each for each in get_args(_AnyItem)}

@@ -11,11 +11,14 @@ from pydantic import BeforeValidator, Discriminator, Field, StrictBool, Validati
 
 from wsrender.documents.document import Document
 from wsrender.documents.problems import located, tagged
-from wsrender.documents.quantities import Name, PositiveNumber, Sha256, points_of, sequence
+from wsrender.documents.quantities import Name, PositiveNumber, Sha256, numbers_of, points_of, sequence
 from wsrender.documents.transform import LengthUnit, Transform, Vector
 
 MOST_VERTICES = 10_000
+MOST_HEIGHTS = 40_000  # 200 by 200; a file may have as many
 MESH_FILES = (".obj", ".ply", ".stl")
+MEDIA_TYPES = {ending: f"model/{ending[1:]}" for ending in MESH_FILES} | {".npy": "application/x-npy"}
+"""Of files that say a shape, by their endings."""
 
 
 def _points(value: Any) -> tuple[tuple[float, ...], ...] | None:
@@ -27,8 +30,14 @@ def _points(value: Any) -> tuple[tuple[float, ...], ...] | None:
     return points
 
 
-def _is_true(value: Any) -> bool:
-    return value is True
+def _heights(value: Any) -> tuple[tuple[float, ...], ...] | None:
+    if value is None:
+        return None
+    rows = [numbers_of(row) for row in sequence(value)]
+    count = sum(len(row or ()) for row in rows)
+    if len({len(row or ()) for row in rows}) != 1 or min(len(rows), len(rows[0] or ())) < 2 or count > MOST_HEIGHTS:
+        raise ValueError(f"must be at least 2 rows of as many numbers, at least 2, and at most {MOST_HEIGHTS} in all")
+    return tuple(map(tuple, rows))  # type: ignore[arg-type]
 
 
 def _is_none(value: Any) -> bool:
@@ -36,6 +45,7 @@ def _is_none(value: Any) -> bool:
 
 
 Edges = Annotated[tuple[PositiveNumber, PositiveNumber, PositiveNumber], BeforeValidator(sequence)]
+Heights = Annotated[tuple[tuple[PositiveNumber, ...], ...] | None, BeforeValidator(_heights)]
 Points = Annotated[tuple[tuple[float, float, float], ...] | None, BeforeValidator(_points)]
 
 
@@ -143,24 +153,17 @@ class Ellipsoid(Placed):
     """Lengths of its axes along its own x, y, z [m]."""
 
 
-class Mesh(Placed):
-    """The convex hull of points, such as the vertices of a mesh, or a closed mesh; its place is that of their frame."""
+class _OfVertices(Placed):
+    """A shape by points or by the file of a mesh; its place is that of their frame."""
 
-    shape: Literal["mesh"] = "mesh"
-    """mesh."""
     vertices_m: Points = None
-    """Points [x, y, z] in that frame [m]; they must not lie in a plane."""
+    """Points [x, y, z] in that frame, of which the convex hull counts [m]; they must not lie in a plane."""
     path: Name | None = None
-    """A file with the vertices, .stl, .obj or .ply; local runs only."""
+    """A file of triangles, .stl, .obj or .ply; local runs only."""
     model: Annotated[Sha256 | None, Field(exclude_if=_is_none)] = None
     """SHA-256 of such a file that was uploaded to a server, 64 hexadecimal digits."""
     length_unit_m: LengthUnit = 1.0
     """Unit of length of the file in metres: 0.001 of millimetres."""
-    convex: Annotated[StrictBool, Field(exclude_if=_is_true)] = True
-    """Whether it is the convex hull of the vertices; false: the solid that the file's triangles enclose, as convex
-    pieces that hold it and go at most tolerance_m beyond it."""
-    tolerance_m: Annotated[PositiveNumber | None, Field(exclude_if=_is_none)] = None
-    """How far convex pieces may go beyond the solid [m]; null: 0.001."""
 
     def __init__(self, path: Any = None, /, **values: Any):
         Document.__init__(self, **values if path is None else {"path": str(path), **values})
@@ -176,13 +179,72 @@ class Mesh(Placed):
             yield "path", f'must end in {", ".join(MESH_FILES)}, not "{self.path}"'
         if self.vertices_m is not None and self.length_unit_m != 1:
             yield "length_unit_m", 'must be 1 without "path" or "model": vertices_m are in metres'
-        if self.vertices_m is not None and not self.convex:
-            yield "convex", "must be true with vertices_m, which say no triangles"
-        if self.convex and self.tolerance_m is not None:
+
+
+class ConvexMesh(_OfVertices):
+    """The convex hull of points, such as the vertices of a mesh; its place is that of their frame."""
+
+    shape: Literal["convex_mesh"] = "convex_mesh"
+    """convex_mesh."""
+
+
+class Mesh(_OfVertices):
+    """What a closed mesh encloses, or the convex hull of points; its place is that of their frame."""
+
+    shape: Literal["mesh"] = "mesh"
+    """mesh."""
+    convex: Annotated[StrictBool | None, Field(exclude_if=_is_none)] = None
+    """null: of what stands around, the solid that the file's triangles enclose; of vertices_m, and of tools, the convex
+    hull. true: the hull, as a convex_mesh. false: the solid in convex pieces that hold it."""
+    tolerance_m: Annotated[PositiveNumber | None, Field(exclude_if=_is_none)] = None
+    """How far convex pieces may go beyond the solid [m]; null: 0.001."""
+
+    def conflicts(self) -> Iterator[tuple[str, str]]:
+        """(field, message) of every pair of fields that do not go together."""
+        yield from super().conflicts()
+        if self.vertices_m is not None and self.convex is False:
+            yield "convex", "must not be false with vertices_m, which say no triangles"
+        if self.convex is not False and self.tolerance_m is not None:
             yield "tolerance_m", 'must not be given but with "convex": false'
 
 
-_Bounded = Box | Sphere | Cylinder | Capsule | Ellipsoid | Mesh
+class HeightField(Placed):
+    """The ground between heights on a grid and a base below them, as MuJoCo's; its place is that of the base's middle.
+
+    Heights stand at equal steps over the size, corner to corner, the first row at the lowest y, its first at the lowest
+    x. Two triangles span each cell, cut from its corner of lowest x and y to that of highest x and y.
+    """
+
+    shape: Literal["height_field"] = "height_field"
+    """height_field."""
+    size_m: Annotated[tuple[PositiveNumber, PositiveNumber], BeforeValidator(sequence)]
+    """Full lengths along its own x and y [m]."""
+    heights_m: Heights = None
+    """Rows of heights above the base, along x [m], at least 2 of at least 2 positive numbers."""
+    path: Name | None = None
+    """A file with them, .npy; local runs only."""
+    model: Annotated[Sha256 | None, Field(exclude_if=_is_none)] = None
+    """SHA-256 of such a file that was uploaded to a server, 64 hexadecimal digits."""
+    length_unit_m: LengthUnit = 1.0
+    """Unit of length of the file in metres: 0.001 of millimetres."""
+
+    def __init__(self, path: Any = None, /, **values: Any):
+        Document.__init__(self, **values if path is None else {"path": str(path), **values})
+
+    __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
+
+    def conflicts(self) -> Iterator[tuple[str, str]]:
+        """(field, message) of every pair of fields that do not go together."""
+        yield from super().conflicts()
+        if sum(each is not None for each in (self.heights_m, self.path, self.model)) != 1:
+            yield "heights_m", 'must be given, or else "path" or "model": one of them'
+        if self.path is not None and not self.path.lower().endswith(".npy"):
+            yield "path", f'must end in .npy, not "{self.path}"'
+        if self.heights_m is not None and self.length_unit_m != 1:
+            yield "length_unit_m", 'must be 1 without "path" or "model": heights_m are in metres'
+
+
+_Bounded = Box | Sphere | Cylinder | Capsule | Ellipsoid | ConvexMesh | Mesh
 _TAGS = [each.model_fields["shape"].default for each in get_args(_Bounded)]
 ToolShape = Annotated[_Bounded, Discriminator("shape"), BeforeValidator(tagged("shape", _TAGS))]
 """One that a tip may carry."""

@@ -41,11 +41,12 @@ class Collisions:
         real, n, joints, cuda = REAL[pipeline.precision], first.chain.n, len(first.chain.joint_source), device.is_cuda
         self.words = _words(len(pairs.pairs))
         capacity = max(-(-len(program.capsules) // CAPACITY), 1) * CAPACITY
-        body = unrolled(program, self.words) if cuda else None
-        kernel = filter_kernel(real, n, joints, capacity, self.words, shape.method, shape.shared, cuda, body)
+        surfaces = bool(len(program.lookups))
+        body = unrolled(program, self.words) if cuda and not surfaces else None
+        kernel = filter_kernel(real, n, joints, capacity, self.words, shape.method, shape.shared, cuda, body, surfaces)
         self._filter = loaded(kernel, device)
         self._narrow = [
-            narrow_kernel(real, n, joints, self.words, shape.method, cuda, exact) for exact in (False, True)
+            narrow_kernel(real, n, joints, self.words, shape.method, cuda, exact, surfaces) for exact in (False, True)
         ]
         self._at_a_time = 1 if cuda else BATCH
         self._programs = _on_device(program, pairs, self.words, device)
@@ -135,6 +136,6 @@ def _on_device(program: Program, pairs: Pairs, words: int, device: wp.Device) ->
             len(program.planes),
         )
         struct.n_tables, struct.n_solid_pairs = len(program.tables), len(pairs.pairs)
-        struct.columns, struct.epsilon = program.columns, epsilon
+        struct.n_lookups, struct.columns, struct.epsilon = len(program.lookups), program.columns, epsilon
         structs.append(struct)
     return structs[0], structs[1]

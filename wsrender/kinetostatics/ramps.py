@@ -93,7 +93,7 @@ class SurfaceRamp:
 
 
 class ObstacleDistance:
-    """Signed distance of the tip's ball to the nearest obstacle; meshes count as their convex hulls.
+    """Signed distance of the tip's ball to the nearest obstacle.
 
     A point is moved, and the radius of its ball subtracted: directions are then well defined where the ball touches.
     Raises InputError for a mesh that encloses no volume.

@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from wsrender.collision.clearance import Clearance
+from wsrender.collision.program import lookups_of
 from wsrender.collision.solids import BASE, Pairs, Solid
 from wsrender.collision.store import stored_program
 from wsrender.documents.constraints import Apart, Constraints
-from wsrender.documents.environment import Box, Capsule, Cylinder, Ellipsoid, Environment, HalfSpace, Mesh, Sphere
+from wsrender.documents.environment import Box, Capsule, ConvexMesh, Cylinder, Ellipsoid, Environment, HalfSpace, Sphere
 from wsrender.errors import InputError, ResourceError
 from wsrender.pipeline.constraints.collision import CollisionConstraint, labelling
 from wsrender.robot.model_robot import Robot
@@ -18,6 +19,7 @@ from wsrender.robot.surroundings import Standing, shapes_around
 from wsrender.robots.chain import Chain
 from wsrender.robots.pairs import without
 from wsrender.robots.shapes import Shape
+from wsrender.world.surfaces import Surface
 
 if TYPE_CHECKING:
     from wsrender.robots.bodies import Bodies
@@ -25,7 +27,11 @@ if TYPE_CHECKING:
 SELF, AROUND = "self_collision", "environment"
 MOST_PAIRS = 2000  # of both constraints: each may take a table of 256 KiB, and a second to make it
 MOST_LISTED = 100 * MOST_PAIRS  # of shapes and what stands around, before those that are excluded: 60 MB
-KINDS: dict[str, Any] = {"mesh": "hull", "plane": "half_space"}  # of shapes, by what solids call them
+KINDS: dict[str, Any] = {
+    "mesh": "hull",
+    "convex_mesh": "hull",
+    "plane": "half_space",
+}  # of shapes, by what solids call them
 
 LARGEST_M = 1e9  # of a shape's place, size and corners: single precision holds products of four such numbers
 FARTHEST = 8.0  # angles [rad] that float32 is trusted with
@@ -69,7 +75,8 @@ def clearance_of(robot: Robot, choice: Constraints | None, environment: Environm
         raise InputError("indices", f"must not ask for clearance: {error.field} {error.message}") from error
     pairs = Pairs.of(found[0].solids, *((each.pairs, 0.0, each.name == AROUND) for each in found))
     chain, distances = found[0].chain, found[0].distances
-    return Clearance(pairs, chain, distances, frozenset(stored_program(pairs, chain, distances).never.tolist()))
+    program = stored_program(pairs, chain, distances)
+    return Clearance(pairs, chain, distances, frozenset(program.never.tolist()), lookups_of(program))
 
 
 def _kept_apart(
@@ -154,7 +161,7 @@ def _solid(shape: Shape) -> Solid:
 
 def _still(standing: Standing, chain: Chain) -> Solid:
     """A shape of the world as a solid that stands with the base."""
-    shape, size, T, vertices = standing.shape, np.zeros(3), np.eye(4), None
+    shape, size, T, vertices, faces = standing.shape, np.zeros(3), np.eye(4), None, None
     match shape:
         case HalfSpace():
             T[:3, :3], T[:3, 3] = _turned_to(np.array(shape.normal)), shape.point_m
@@ -164,13 +171,15 @@ def _still(standing: Standing, chain: Chain) -> Solid:
             size, T = np.array(shape.size_m) / 2, shape.matrix()
         case Cylinder() | Capsule():
             size[:2], T = (shape.radius_m, shape.length_m / 2), shape.matrix()
-        case Mesh():
+        case ConvexMesh():
             vertices, T = np.array(shape.vertices_m), shape.matrix()
+        case Surface():
+            vertices, faces, T = shape.vertices, shape.faces, shape.matrix()
     kind: Any = KINDS.get(shape.shape, shape.shape)
     T_base: np.ndarray = np.linalg.inv(chain.T_world_base) @ T
     if kind == "half_space":  # its point nearest to the base: what is far costs precision
         T_base[:3, 3] = T_base[:3, 2] * (T_base[:3, 2] @ T_base[:3, 3])
-    return Solid(standing.name, kind, BASE, T_base, size, vertices)
+    return Solid(standing.name, kind, BASE, T_base, size, vertices, faces)
 
 
 def _turned_to(normal: np.ndarray) -> np.ndarray:

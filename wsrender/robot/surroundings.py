@@ -6,13 +6,16 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from scipy.spatial import ConvexHull
 
 from wsrender.documents.environment import (
     Box,
     Capsule,
+    ConvexMesh,
     Cylinder,
     Ellipsoid,
     HalfSpace,
+    HeightField,
     Item,
     Mesh,
     OtherRobot,
@@ -27,6 +30,7 @@ from wsrender.robots import shapes as models
 from wsrender.robots.model_warning import ModelWarning
 from wsrender.robots.plausibility import LENGTH
 from wsrender.world.meshes import convex_parts
+from wsrender.world.surfaces import Surface, surface_of
 
 BEYOND = 1e-6  # rad or m by which a configuration may be beyond a limit: rounding
 
@@ -37,11 +41,11 @@ class Standing:
 
     name: str
     item: str
-    shape: Shape
+    shape: Shape | Surface
 
 
 def shapes_around(items: Iterable[Item]) -> tuple[Standing, ...]:
-    """The shapes of an environment's items, in order; meshes as the corners of their convex parts.
+    """The shapes of an environment's items, in order; meshes as the corners of their convex parts, or as surfaces.
 
     Raises InputError, ModelError, the field from ``items`` on, for what cannot be had.
     """
@@ -54,8 +58,8 @@ def shapes_around(items: Iterable[Item]) -> tuple[Standing, ...]:
                     found += _robot(item, name)
                 case Scene():
                     found += _scene(item, name)
-                case Mesh():
-                    found += _parts(item, name)
+                case ConvexMesh() | Mesh() | HeightField():
+                    found += _solid(item, name)
                 case _:
                     found.append(Standing(name, name, item))
         except InputError as error:
@@ -103,11 +107,20 @@ def _scene(item: Scene, name: str) -> Iterator[Standing]:
         yield Standing(f"{name}/{shape.name}", name, as_document(shape, item.matrix() @ shape.T_frame_shape))
 
 
-def _parts(item: Mesh, name: str) -> Iterator[Standing]:
+def _solid(item: ConvexMesh | Mesh | HeightField, name: str) -> Iterator[Standing]:
+    if isinstance(item, HeightField) or (isinstance(item, Mesh) and item.convex is None and item.vertices_m is None):
+        surface = surface_of(item)
+        if not surface.is_convex:
+            yield Standing(name, name, surface)
+            return
+        parts = [surface.vertices[ConvexHull(surface.vertices).vertices]]
+    else:
+        parts = convex_parts(item)
     place = item.model_dump(include=set(Transform.model_fields))
-    for number, corners in enumerate(convex_parts(item)):
-        part = Mesh(name=item.name, vertices_m=_points(corners), **place)
-        yield Standing(name if item.convex else f"{name}/{number}", name, part)
+    several = isinstance(item, Mesh) and item.convex is False
+    for number, corners in enumerate(parts):
+        part = ConvexMesh(name=item.name, vertices_m=_points(corners), **place)
+        yield Standing(f"{name}/{number}" if several else name, name, part)
 
 
 def _points(vertices: np.ndarray) -> Any:
@@ -134,4 +147,4 @@ def as_document(shape: models.Shape, T: np.ndarray) -> Shape:
             return Box(size_m=edges, **place)
         case "ellipsoid":
             return Ellipsoid(size_m=edges, **place)
-    return Mesh(vertices_m=_points(shape.vertices), **place)
+    return ConvexMesh(vertices_m=_points(shape.vertices), **place)

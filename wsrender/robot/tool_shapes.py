@@ -2,11 +2,11 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from wsrender.documents.shapes import Box, Capsule, Cylinder, Ellipsoid, Mesh, Sphere, ToolShape
+from wsrender.documents.shapes import Box, Capsule, ConvexMesh, Cylinder, Ellipsoid, Mesh, Sphere, ToolShape
 from wsrender.documents.transform import Transform
 from wsrender.errors import InputError
 
@@ -40,15 +40,17 @@ def _attached(shape: ToolShape, name: str) -> "Iterator[Shape]":
             size = np.array(shape.size_m) / 2
         case Cylinder() | Capsule():
             size[:2] = shape.radius_m, shape.length_m / 2
-    own = Shape(name, BODY, shape.shape, -1, T, size, ATTACHED, False, np.array(GREY))
-    if not isinstance(shape, Mesh):
+    kind: Any = "mesh" if shape.shape == "convex_mesh" else shape.shape
+    own = Shape(name, BODY, kind, -1, T, size, ATTACHED, False, np.array(GREY))
+    if not isinstance(shape, ConvexMesh | Mesh):
         yield own
         return
     import trimesh
 
     from wsrender.world.meshes import convex_parts
 
+    several = isinstance(shape, Mesh) and shape.convex is False
     for number, corners in enumerate(convex_parts(shape)):
         hull = trimesh.convex.convex_hull(corners)
-        called = name if shape.convex else f"{name}/{number}"
+        called = f"{name}/{number}" if several else name
         yield replace(own, name=called, vertices=np.array(hull.vertices), faces=np.array(hull.faces, np.int32))

@@ -1,4 +1,4 @@
-"""Distance of a point to shapes: to half-spaces in closed form, to all others by MuJoCo's geometry."""
+"""Distance of a point to shapes: to half-spaces and triangles in closed form, to all others by MuJoCo's geometry."""
 
 import math
 from collections.abc import Sequence
@@ -7,24 +7,30 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from wsrender.documents.environment import Box, Capsule, Cylinder, Ellipsoid, HalfSpace, Mesh, Shape, Sphere
+from wsrender.documents.environment import Box, Capsule, ConvexMesh, Cylinder, Ellipsoid, HalfSpace, Mesh, Shape, Sphere
 from wsrender.documents.robot import Transform
 from wsrender.errors import InputError
 from wsrender.robots.compiled_model import MUJOCO_ERRORS, quiet
+from wsrender.robots.triangles import closest_points, winding_numbers
 from wsrender.world.meshes import hull_vertices
+from wsrender.world.surfaces import Surface
 
 FAR = 1e3  # [m] beyond which MuJoCo need not look
 POINT = 1e-6  # radius of the ball that stands for a point [m]: MuJoCo has none without
+MOST_SOLIDS = 500  # each is looked at in every step of a stream
 CLOSE = 1e-12  # [m] from the surface within which its side has no direction
 
 
 class NearestShape:
-    """Signed distance of a point to the nearest of shapes; meshes count as their convex hulls.
+    """Signed distance of a point to the nearest of shapes; meshes count as their convex hulls, surfaces as they are.
 
-    Raises InputError for a mesh that encloses no volume, its field below ``items``.
+    Raises InputError for a mesh that encloses no volume, its field below ``items``, and for more than MOST_SOLIDS.
     """
 
-    def __init__(self, shapes: Sequence[Shape]):
+    def __init__(self, shapes: Sequence[Shape | Surface]):
+        if len(shapes) > MOST_SOLIDS:
+            raise InputError("items", f"are {len(shapes)} shapes and convex pieces; at most {MOST_SOLIDS} may push")
+        self._surfaces = [_Triangles(shape) for shape in shapes if isinstance(shape, Surface)]
         planes = [shape for shape in shapes if isinstance(shape, HalfSpace)]
         normals = np.array([shape.normal for shape in planes]).reshape(-1, 3)
         self._normals = normals / np.linalg.norm(normals, axis=1, keepdims=True)
@@ -38,6 +44,8 @@ class NearestShape:
     def at(self, position: np.ndarray) -> tuple[float, np.ndarray]:
         """(distance [m] of ``position`` (3,), its gradient (3,)); negative inside, `FAR` and zeros far from all."""
         distance, gradient = self._to_solids(position)
+        for surface in self._surfaces:
+            distance, gradient = min((distance, gradient), surface.at(position), key=lambda each: each[0])
         if len(self._normals):
             heights = self._normals @ position - self._offsets
             lowest = int(heights.argmin())
@@ -61,7 +69,28 @@ class NearestShape:
         return distance, gradient
 
 
-def _compiled(shapes: Sequence[Shape]) -> mujoco.MjModel:
+class _Triangles:
+    """The triangles of a surface, with a ball around each."""
+
+    def __init__(self, surface: Surface):
+        vertices = surface.vertices @ surface.T[:3, :3].T + surface.T[:3, 3]
+        self.corners = vertices[surface.faces]
+        self.centers = self.corners.mean(axis=1)
+        self.radii = np.linalg.norm(self.corners - self.centers[:, None], axis=2).max(axis=1)
+
+    def at(self, position: np.ndarray) -> tuple[float, np.ndarray]:
+        """See `NearestShape.at`."""
+        away = np.linalg.norm(self.centers - position, axis=1)
+        near = self.corners[away - self.radii <= (away + self.radii).min()]
+        feet = closest_points(near, np.tile(position, (len(near), 1)))
+        distances = np.linalg.norm(position - feet, axis=1)
+        k = int(distances.argmin())
+        side = -1 if winding_numbers(self.corners, position[None])[0] > 0.5 else 1
+        gradient = (position - feet[k]) * (side / distances[k]) if distances[k] > CLOSE else np.zeros(3)
+        return side * float(distances[k]), gradient
+
+
+def _compiled(shapes: Sequence[Shape | Surface]) -> mujoco.MjModel:
     """A model whose first geom is the point, and the others all shapes but half-spaces."""
     spec = mujoco.MjSpec()
     spec.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_SPHERE, size=[POINT, 0, 0])
@@ -77,7 +106,7 @@ def _compiled(shapes: Sequence[Shape]) -> mujoco.MjModel:
         raise InputError("items", f"are refused by MuJoCo: {error}") from error
 
 
-def _add(spec: Any, shape: Shape, number: int) -> None:
+def _add(spec: Any, shape: Shape | Surface, number: int) -> None:
     add, kinds = spec.worldbody.add_geom, mujoco.mjtGeom
     match shape:
         case Sphere():
@@ -90,7 +119,7 @@ def _add(spec: Any, shape: Shape, number: int) -> None:
             add(type=kinds.mjGEOM_CYLINDER, size=[shape.radius_m, shape.length_m / 2, 0], **_place(shape))
         case Capsule():
             add(type=kinds.mjGEOM_CAPSULE, size=[shape.radius_m, shape.length_m / 2, 0], **_place(shape))
-        case Mesh():
+        case ConvexMesh() | Mesh():
             mesh = spec.add_mesh(name=f"shape{number}")
             mesh.uservert = hull_vertices(shape).ravel().tolist()
             add(type=kinds.mjGEOM_MESH, meshname=mesh.name, **_place(shape))

@@ -1,5 +1,7 @@
 """The vertices of meshes, of which the convex hull counts."""
 
+import hashlib
+from collections import OrderedDict
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -8,30 +10,38 @@ import numpy as np
 import trimesh
 from scipy.spatial import ConvexHull, QhullError
 
-from wsrender.documents.environment import Mesh
+from wsrender.documents.shapes import ConvexMesh, Mesh
 from wsrender.errors import InputError, ModelError
 from wsrender.robots import mesh_files
 from wsrender.robots.hulls import LEAST_M3, MOST_VERTICES, simplified
 from wsrender.robots.uploaded import uploaded_content
 
 TOLERANCE_M = 1e-3
+KEPT = 32  # solids in pieces, by content: what takes seconds is done once in a process
+_PIECES: OrderedDict[str, list[np.ndarray]] = OrderedDict()
 
 
-def convex_parts(mesh: Mesh) -> list[np.ndarray]:
+def convex_parts(mesh: ConvexMesh | Mesh) -> list[np.ndarray]:
     """Corners (V, 3) [m] of the convex parts of a mesh, in its own frame: its hull, or the pieces of a solid.
 
     A hull of many corners is simplified outwards, as those of robots are. Raises InputError as `hull_vertices` and
     `convex_pieces` do, and where no hull of fewer corners is near enough.
     """
-    if mesh.convex:
+    if isinstance(mesh, ConvexMesh) or mesh.convex is not False:
         return [_simple_hull(mesh)]
     from wsrender.world.convex_pieces import convex_pieces
 
     field, tolerance_m = "path" if mesh.model is None else "model", mesh.tolerance_m or TOLERANCE_M
-    return convex_pieces(*triangles_of(mesh), tolerance_m, field)
+    vertices, faces = triangles_of(mesh)
+    key = hashlib.sha256(b"".join([vertices.tobytes(), faces.tobytes(), np.float64(tolerance_m).tobytes()])).hexdigest()
+    if (found := _PIECES.get(key)) is None:
+        found = _PIECES[key] = convex_pieces(vertices, faces, tolerance_m, field)
+        while len(_PIECES) > KEPT:
+            _PIECES.popitem(last=False)
+    return found
 
 
-def _simple_hull(mesh: Mesh) -> np.ndarray:
+def _simple_hull(mesh: ConvexMesh | Mesh) -> np.ndarray:
     vertices = hull_vertices(mesh)
     if len(vertices) <= MOST_VERTICES:
         return vertices
@@ -42,7 +52,7 @@ def _simple_hull(mesh: Mesh) -> np.ndarray:
     return simpler
 
 
-def hull_vertices(mesh: Mesh) -> np.ndarray:
+def hull_vertices(mesh: ConvexMesh | Mesh) -> np.ndarray:
     """Corners (V, 3) [m] of the convex hull of a mesh, in its own frame.
 
     Raises InputError, naming the field, where its vertices lie in a plane, and where its file cannot be read.
@@ -60,7 +70,7 @@ def hull_vertices(mesh: Mesh) -> np.ndarray:
     return vertices[hull.vertices]
 
 
-def triangles_of(mesh: Mesh) -> mesh_files.Triangles:
+def triangles_of(mesh: ConvexMesh | Mesh) -> mesh_files.Triangles:
     """Vertices (V, 3) [m] and faces (F, 3) of the file of a mesh. Raises InputError where it cannot be read."""
     if mesh.model is not None:
         content = uploaded_content(mesh.model, "model")

@@ -3,11 +3,22 @@
 import numpy as np
 import trimesh
 
-from wsrender.documents.environment import Box, Capsule, Cylinder, Ellipsoid, HalfSpace, Mesh, Sphere
+from wsrender.documents.environment import (
+    Box,
+    Capsule,
+    ConvexMesh,
+    Cylinder,
+    Ellipsoid,
+    HalfSpace,
+    HeightField,
+    Mesh,
+    Sphere,
+)
 from wsrender.documents.robot import Transform
 from wsrender.world.meshes import hull_vertices
+from wsrender.world.surfaces import Surface, surface_of
 
-Solid = Sphere | Box | Cylinder | Capsule | Ellipsoid | Mesh
+Solid = Sphere | Box | Cylinder | Capsule | Ellipsoid | ConvexMesh | Mesh | HeightField | Surface
 """A shape that is bounded."""
 
 # Faces of a box whose corners are numbered by the bits x y z, outward.
@@ -27,6 +38,10 @@ def triangles(shape: Solid) -> tuple[np.ndarray, np.ndarray]:
     """
     if isinstance(shape, Box):
         return _box(np.array(shape.size_m), shape.matrix())
+    if isinstance(shape, HeightField):
+        shape = surface_of(shape)
+    if isinstance(shape, Surface):
+        return _placed(shape.vertices, shape.T), shape.faces
     mesh = _mesh(shape)
     T = Transform(position_m=shape.position_m).matrix() if isinstance(shape, Sphere) else shape.matrix()
     return _placed(np.asarray(mesh.vertices), T), np.asarray(mesh.faces)
@@ -63,7 +78,7 @@ def _frame(normal: np.ndarray) -> np.ndarray:
     return np.stack([x, np.cross(z, x), z], axis=1)
 
 
-def _mesh(shape: Sphere | Cylinder | Capsule | Ellipsoid | Mesh) -> trimesh.Trimesh:
+def _mesh(shape: Sphere | Cylinder | Capsule | Ellipsoid | ConvexMesh | Mesh) -> trimesh.Trimesh:
     """A shape in its own frame."""
     match shape:
         case Sphere():

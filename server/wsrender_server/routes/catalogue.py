@@ -8,7 +8,7 @@ from pydantic import Field
 
 from wsrender.analyses.jobs import job_schema
 from wsrender.analyses.registry import job_classes
-from wsrender.documents.shapes import MESH_FILES
+from wsrender.documents.shapes import MEDIA_TYPES
 from wsrender.robots import library
 from wsrender_server.admission import check_model, decoded_model
 from wsrender_server.auth import Reader, Submitter
@@ -18,7 +18,7 @@ from wsrender_server.routes.files import has_it
 from wsrender_server.routes.job_views import Page, View
 
 XML_TYPES = ("application/xml", "text/xml")
-MESH_TYPES = tuple(f"model/{ending[1:]}" for ending in MESH_FILES)
+SHAPE_TYPES = tuple(MEDIA_TYPES.values())
 
 router = APIRouter(prefix="/v1")
 
@@ -102,8 +102,8 @@ def list_robots(principal: Reader) -> Page[RobotView]:
 
 async def _uploaded_body(request: Request) -> tuple[str, bytes]:
     media_type = request.headers.get("content-type", "").partition(";")[0].strip().lower()
-    if media_type not in XML_TYPES + MESH_TYPES:
-        allowed = ", ".join(("application/xml", *MESH_TYPES))
+    if media_type not in XML_TYPES + SHAPE_TYPES:
+        allowed = ", ".join(("application/xml", *SHAPE_TYPES))
         raise HttpProblem(415, f"the body must be {allowed}, not {media_type or 'of no type'}")
     return media_type, await request.body()
 
@@ -113,7 +113,7 @@ _MODEL_BODY = {
         "required": True,
         "content": {
             "application/xml": {"schema": {"type": "string"}, "example": "<mujoco><worldbody/></mujoco>"},
-            **{media_type: {"schema": {"type": "string", "format": "binary"}} for media_type in MESH_TYPES},
+            **{media_type: {"schema": {"type": "string", "format": "binary"}} for media_type in SHAPE_TYPES},
         },
     }
 }
@@ -138,14 +138,14 @@ def upload_model(
 ) -> ModelView:
     """MJCF or URDF text, root element `<mujoco>` or `<robot>`, without document types, entities or outside files.
 
-    Or an STL, OBJ or PLY mesh, for `{"shape": "mesh", "model": sha256}`. Either is read by the jobs that name it;
-    meshes of a model do not travel with it.
+    Or an STL, OBJ or PLY mesh, for `{"shape": "mesh", "model": sha256}`, or heights in an NPY file, for a
+    `height_field`. Each is read by the jobs that name it; meshes of a model do not travel with it.
     """
     media_type, text = body
     if media_type in XML_TYPES:
         check_model("document", decoded_model(text))
     elif not text:
-        raise HttpProblem(409, "the mesh is empty", "invalid_model")
+        raise HttpProblem(409, "the file is empty", "invalid_model")
     sha256 = server.store.put_model(principal.owner, text)
     response.headers["Location"] = f"/v1/models/{sha256}"
     return ModelView(sha256=sha256, bytes=len(text), href=f"/v1/models/{sha256}")

@@ -1,5 +1,6 @@
 """Scenes, robots and meshes in files that a client uploads: the server counts what a local run counts."""
 
+import numpy as np
 import trimesh
 
 import wsrender as ws
@@ -13,13 +14,18 @@ PENDULUM = """<mujoco><worldbody><body><joint name="a" axis="0 1 0" range="-90 9
 
 def test_files_of_what_stands_around_travel(client, tmp_path):
     scene, other, mesh = tmp_path / "cell.xml", tmp_path / "other.xml", tmp_path / "part.stl"
+    bowl, ground = tmp_path / "bowl.obj", tmp_path / "ground.npy"
     scene.write_text(CELL)
     other.write_text(PENDULUM)
     trimesh.creation.box((0.2, 0.2, 0.2)).export(mesh)
+    trimesh.creation.annulus(0.2, 0.25, 0.1).export(bowl)
+    np.save(ground, [[1, 20, 1], [3, 4, 5]])
     items = [
         ws.Scene(scene, name="cell"),
         ws.OtherRobot(robot={"path": str(other), "placement": {"position_m": (0.5, 0.5, 0)}}, configuration=[0.5]),
         ws.Mesh(mesh, position_m=(0.4, -0.4, 0.3), convex=False),
+        ws.Mesh(bowl, position_m=(0.5, 0.3, 0.1)),
+        ws.HeightField(ground, size_m=(1, 1), position_m=(0.2, -0.6, -0.2), length_unit_m=0.01),
     ]
     tool = {"shape": "mesh", "path": str(mesh), "position_m": [0, 0, 0.1]}
     document = {

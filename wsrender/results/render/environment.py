@@ -10,6 +10,7 @@ from wsrender.documents import environment as world
 from wsrender.errors import InputError
 from wsrender.results.render.scene import Color, DrawnSurface
 from wsrender.robot.surroundings import shapes_around
+from wsrender.world.surfaces import Surface
 from wsrender.world.triangles import plate, triangles
 
 TABLE_TOP = 0.04  # thickness of a table's top and legs [m]
@@ -79,12 +80,12 @@ class Floor:
 
 @dataclass(frozen=True)
 class Standing:
-    """A robot, a scene or a mesh in parts: its shapes, read once, and what a legend calls it."""
+    """A robot, a scene, a mesh or a height field: its shapes, read once, and what a legend calls it."""
 
     kind: str
-    stands: tuple[world.Shape, ...]
+    stands: tuple[world.Shape | Surface, ...]
 
-    def shapes(self) -> tuple[world.Shape, ...]:
+    def shapes(self) -> tuple[world.Shape | Surface, ...]:
         """Its shapes in the world."""
         return self.stands
 
@@ -110,9 +111,9 @@ def items_of(environment: "Iterable[Item] | world.Environment") -> list[Item]:
     """The items of an environment. Raises InputError for what is none, or has no shapes."""
     items: list[Any] = list(environment.items if isinstance(environment, world.Environment) else environment)
     for k, item in enumerate(items):
-        if isinstance(item, world.OtherRobot | world.Scene) or (isinstance(item, world.Mesh) and not item.convex):
+        if isinstance(item, world.OtherRobot | world.Scene | world.Mesh | world.HeightField):
             try:
-                items[k] = Standing(item.shape, tuple(each.shape for each in shapes_around([item])))
+                items[k] = Standing(item.shape.replace("_", " "), tuple(each.shape for each in shapes_around([item])))
             except InputError as error:
                 raise error.at(error.field.replace("items.0", f"environment.{k}", 1)) from None
             continue
@@ -140,7 +141,7 @@ def surfaces(item: Item, lower: np.ndarray, upper: np.ndarray) -> list[DrawnSurf
     return [DrawnSurface(*mesh, color(item)) for mesh in meshes]
 
 
-def _shapes(item: Item) -> "Sequence[world.Shape]":
+def _shapes(item: Item) -> "Sequence[world.Shape | Surface]":
     return item.shapes() if isinstance(item, Box | Table | Floor | Standing) else [item]
 
 
