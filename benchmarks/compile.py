@@ -22,7 +22,7 @@ from throughput import plan_of
 from wsrender_kernels.pointwise import configuration_kernel
 
 import wsrender as ws
-from wsrender.engine import devices_of
+from wsrender.engine import SweepPlan, devices_of
 from wsrender.engine.kernel_cache import loaded
 from wsrender.engine.sweep_plan import Accumulator
 
@@ -71,7 +71,7 @@ def measured(joints: list[int], device: str) -> dict[str, tuple[float, float | N
         for precision in ("float32", "float64"):
             for work, fields in WORKS.items():
                 plan = plan_of(robot, precision, device, robot=document, **fields)
-                plan = replace(plan, block=None, statistics=frozenset())
+                plan = SweepPlan(replace(plan, block=None, statistics=frozenset()))
                 started = time.perf_counter()
                 accumulator = Accumulator(plan, plan.shape, None, target, 256)
                 seconds = time.perf_counter() - started
