@@ -1,5 +1,6 @@
 """The only host code that talks to Warp: devices, packing, chunking, launches and partial results."""
 
+from wsrender.engine.closed_form import CLOSED_MARGIN, ClosedPostures, closed_postures
 from wsrender.engine.devices import devices_of, target_of, thread_count
 from wsrender.engine.drawn_configurations import configurations
 from wsrender.engine.index_units import units_of
@@ -19,7 +20,9 @@ from wsrender.engine.slabs import fitted
 from wsrender.engine.sweep_plan import SweepPlan, sweep
 
 __all__ = [
+    "CLOSED_MARGIN",
     "Accuracy",
+    "ClosedPostures",
     "Evaluated",
     "EvaluatedKinematics",
     "LegTest",
@@ -27,6 +30,7 @@ __all__ = [
     "Partial",
     "SweepPlan",
     "Tries",
+    "closed_postures",
     "configurations",
     "count_orientations",
     "count_orientations_at",

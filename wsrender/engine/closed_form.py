@@ -22,6 +22,7 @@ from wsrender.engine.kernel_cache import launch, loaded
 from wsrender.robots.closed_form import ClosedForm
 from wsrender.robots.closed_form.numbers import packed
 
+CLOSED_MARGIN = MARGIN[wp.float64]  # slack below which nothing is decided in float64
 BATCH, KEPT_BATCH = 1 << 18, 1 << 14  # poses of a launch: their postures take 832 bytes each
 LEAST_SHARE = 1 << 10  # poses that are worth a thread
 
@@ -30,10 +31,10 @@ LEAST_SHARE = 1 << 10  # poses that are worth a thread
 class ClosedPostures:
     """Of N poses: ``count`` (N,) int32 of postures within the limits, windings apart; ``slack`` (N,) float64.
 
-    Above the ``margin`` a pose is reached, below minus it is not, else undecided. ``flags`` (N,) int32: bits of FAMILY
-    (joints 4 and 6 share what only their sum tells) and DOUBTFUL (another singular posture). ``rows`` (N, 8, 13), where
-    they are kept: cosines and sines of the solved joints and the slack of each posture, which is one where it is not below
-    minus the margin: joints beside it stand outside limits, or the nearest that exists is stored.
+    Above the ``margin`` a pose is reached, below minus it is not, else undecided; what float32 finds unreachable
+    float64 must confirm. ``flags`` (N,) int32: bits of FAMILY (joints 4 and 6 share what only their sum tells) and
+    DOUBTFUL (another singular posture). ``rows`` (N, 8, 13), where they are kept: cosines and sines of the solved
+    joints, and the slack of each posture: below minus the margin it is none, but the nearest, or outside the limits.
     """
 
     count: np.ndarray

@@ -2,6 +2,7 @@
 
 A target is free where a solution is admitted. It is blocked where many solutions were found, from starts of all kinds,
 and every one was rejected: evidence of a search, no proof; where an admitted sample lies near, the search is longer.
+Where a closed form knows all configurations of a pose, and each was rejected, it is a proof.
 Else it is unreachable or undecided as without constraints, or undecided because too few solutions were found.
 
 Near what is free it walks too: an admitted sample is moved towards the target, part of the way and all of it, from
@@ -22,8 +23,9 @@ from wsrender.documents.sampling import Sobol
 from wsrender.engine import Tries, configurations
 from wsrender.pipeline.pipeline import tip_pipeline
 from wsrender.reach.admission import Admission
+from wsrender.reach.closed_labels import ClosedLabels
 from wsrender.reach.evidence import REACHABLE, UNDECIDED
-from wsrender.reach.inverse_solver import BATCH, InverseSolver, parts_of
+from wsrender.reach.inverse_solver import BATCH, MOST_TRIES, VERIFIED, InverseSolver, parts_of
 from wsrender.reach.starts import EPS, inwards, towards_limits
 
 BLOCKED = 2  # beside the labels of evidence
@@ -38,6 +40,9 @@ LATER = ((NEAR, 8, 32), (FURTHER, 0, 32), (FURTHER, 32, FURTHER_SAMPLES))
 # reach, else after all starts.
 CLEARLY_BLOCKED, NARROWLY, BLOCKED_AFTER_ALL = 24, 0.1, 8
 
+# Constraints that see where links are, not how often a joint has turned.
+TURN_FREE = {"region", "leg_distance", "orientation", "environment", "self_collision", "torque"}
+
 # Walks: of so many samples, in so many steps, of which each tries these shares of the way, each after changes of all
 # coordinates by these deviations [rad, or reaches for slides].
 WALKS, STEPS, SHARES, DEVIATIONS = 8, 16, (1.0, 0.4, 0.1), (0.01, 0.03, 0.1, 0.3)
@@ -50,7 +55,8 @@ class Admissible:
 
     ``q`` (N, n): admitted, else rejected, else nearest; ``distance_m``, ``angle_rad`` (N,): what is left there to the
     target; ``label`` (N,) int8, BLOCKED among them; ``rejected`` (N, C): solutions that each of the constraints was the
-    first to reject; ``near_m`` (N,): how near an admitted sample is, by the residual that tries reduce.
+    first to reject; ``near_m`` (N,): how near an admitted sample is, by the residual that tries reduce; ``proven`` (N,)
+    bool: the target is known to be out of reach, or to be blocked.
     """
 
     q: np.ndarray
@@ -59,6 +65,7 @@ class Admissible:
     label: np.ndarray
     rejected: np.ndarray
     near_m: np.ndarray
+    proven: np.ndarray
 
     @property
     def reason(self) -> np.ndarray:
@@ -109,16 +116,14 @@ class AdmissibleSearch:
 
     def _decide(self, position: np.ndarray, orientation: np.ndarray | None) -> Admissible:
         found = self._nothing(self.solver.features(position, orientation))
+        if (closed := self.solver.closed) and self.solver.kind == "pose":
+            out = closed.unreachable(position, orientation)
+            self._solved(found, np.flatnonzero(out), position, orientation)
+            for part in parts_of(found.pending, MOST_TRIES // VERIFIED):
+                self._all_postures(found, closed, part, position, orientation)
         for source, first, last in FIRST:
             self._search(found, found.pending, source, first, last, position, orientation)
-        rest = found.pending
-        solved = self.solver.solve(position[rest], _some(orientation, rest))
-        # What was reached once is reached, whatever the other search says.
-        missed = (solved.label != REACHABLE) & ~found.rejected[rest].any(axis=1)
-        at = rest[missed]
-        found.q[at], found.label[at] = solved.q[missed], solved.label[missed]
-        found.distance_m[at], found.angle_rad[at] = solved.distance_m[missed], solved.angle_rad[missed]
-        self._tried(found, rest[~missed], solved.q[~missed, None], position, orientation)
+        self._solved(found, found.pending, position, orientation)
         clearly = found.near_m > NARROWLY * self.solver.chain.reach
         for source, first, last in LATER:
             self._search(found, found.pending, source, first, last, position, orientation)
@@ -130,6 +135,45 @@ class AdmissibleSearch:
         found.label[self._rejected(found, BLOCKED_AFTER_ALL)] = BLOCKED
         return found
 
+    def _solved(
+        self, found: Admissible, rest: np.ndarray, position: np.ndarray, orientation: np.ndarray | None
+    ) -> None:
+        """Take what the solver says of targets ``rest`` (P,)."""
+        solved = self.solver.solve(position[rest], _some(orientation, rest))
+        # What was reached once is reached, whatever the other search says.
+        missed = (solved.label != REACHABLE) & ~found.rejected[rest].any(axis=1)
+        at = rest[missed]
+        found.q[at], found.label[at], found.proven[at] = solved.q[missed], solved.label[missed], solved.proven[missed]
+        found.distance_m[at], found.angle_rad[at] = solved.distance_m[missed], solved.angle_rad[missed]
+        self._tried(found, rest[~missed], solved.q[~missed, None], position, orientation)
+
+    def _all_postures(
+        self,
+        found: Admissible,
+        closed: ClosedLabels,
+        at: np.ndarray,
+        position: np.ndarray,
+        orientation: np.ndarray | None,
+    ) -> None:
+        """Try all postures of poses ``at`` (P,): where there are no others, and none is admitted, they are blocked."""
+        q, slack, whole = closed.postures(position[at], _some(orientation, at))
+        targets = np.repeat(at, slack.shape[1])
+        tries = self.solver.tries(q.reshape(len(targets), -1), position[targets], _some(orientation, targets))
+        found.take(at, tries, self._reasons(tries))
+        solved = tries.reached.reshape(slack.shape)
+        all_rejected = whole & (solved | (slack < 0)).all(axis=1) & (found.label[at] == UNDECIDED)
+        if self._turns_matter:
+            return
+        found.label[at[all_rejected]] = BLOCKED
+        found.proven[at[all_rejected]] = True
+
+    @cached_property
+    def _turns_matter(self) -> bool:
+        """Whether joints turn further than once, and a constraint may see how far."""
+        chain = self.solver.whole
+        turns = chain.upper_limits - chain.lower_limits > 2 * np.pi * (1 + 1e-9)
+        return bool((chain.revolute & turns).any()) and not TURN_FREE.issuperset(self.admission.names)
+
     def _nothing(self, features: np.ndarray) -> Admissible:
         """What is known before any try of targets with ``features`` (N, f)."""
         count = len(features)
@@ -140,6 +184,7 @@ class AdmissibleSearch:
             np.full(count, UNDECIDED, np.int8),
             np.zeros((count, len(self.admission.names)), np.int32),
             self._tree.query(features, eps=EPS)[0] if self._tree else np.full(count, np.inf),
+            np.zeros(count, bool),
         )
 
     @staticmethod

@@ -7,6 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from wsrender.engine import Accuracy, Tries, evaluate_poses, solve_inverse, thread_count, try_bytes
+from wsrender.reach.closed_labels import ClosedLabels
 from wsrender.reach.evidence import FLATTER, Evidence
 from wsrender.reach.moving_joints import moving_joints
 from wsrender.reach.starts import FURTHER, NEAR, NEAR_LIMITS, Starts, inwards
@@ -17,6 +18,7 @@ BATCH = 1 << 15  # targets that are solved together
 MOST_TRIES = 1 << 17  # held in memory at a time, and a launch
 TRIES_EACH = {"position": 1.0, "axis": 2.5, "pose": 24.0}  # of a target at a time, as some take many
 TARGET_ROW = 16  # bytes of every number of a target or a sample: what was asked and what was found
+VERIFIED = 1 << 14  # targets whose postures are held in memory at a time
 # Starts between two looks at what they found, by kind of target: a label depends on its target alone.
 LATER = ((FURTHER, 8), (FURTHER, 32), (FURTHER, 64), (FURTHER, 128))
 GROUPS = {
@@ -35,7 +37,7 @@ class Solutions:
     """Configurations (N, n) nearest to the targets, what is left to them, and labels (N,) int8.
 
     ``distance_m``, ``angle_rad`` (N,): residuals. ``proven`` (N,) bool: the target lies outside a sphere and a box
-    that hold every position of the chain.
+    that hold every position of the chain, or a closed form has no configuration that reaches it.
     """
 
     q: np.ndarray
@@ -72,6 +74,7 @@ class InverseSolver:
         self.accuracy = Accuracy(position_m, angle_rad, length_m or chain.reach / 2 or 1.0)
         self._workers = thread_count(threads)
         self._execution = {"precision": precision, "device": device, "threads": threads}
+        self.closed = ClosedLabels.of(self.chain, kind, self.accuracy, device, threads)
 
     def solve(
         self,
@@ -94,7 +97,12 @@ class InverseSolver:
 
     def _solve(self, position: np.ndarray, orientation: np.ndarray | None) -> Solutions:
         targets = _targets(position, orientation)
-        search = Evidence(self.chain, self.kind, self.accuracy, self._out_of_reach(position))
+        proven = self._out_of_reach(position)
+        if self.closed:
+            proven |= self.closed.unreachable(position, orientation)
+        search = Evidence(self.chain, self.kind, self.accuracy, proven)
+        if self.closed:
+            self._verify(search, self.closed, targets, position, orientation)
         for source, first, last in _groups(self.kind):
             each = last - first
             for part in parts_of(search.pending, each):
@@ -107,6 +115,22 @@ class InverseSolver:
         q = np.tile((self.whole.lower_limits + self.whole.upper_limits) / 2, (len(targets), 1))
         q[:, self._kept] = self._within_a_turn(search.q)
         return Solutions(q, search.distance, search.angle, search.label, search.proven)
+
+    def _verify(
+        self,
+        search: Evidence,
+        closed: ClosedLabels,
+        targets: np.ndarray,
+        position: np.ndarray,
+        orientation: np.ndarray | None,
+    ) -> None:
+        """Try what may be reached from the posture with the largest slack: it is there but for rounding."""
+        at = np.flatnonzero(~search.proven)
+        for part in parts_of(at, MOST_TRIES // VERIFIED):
+            some = None if orientation is None else orientation[part]
+            q, slack, _ = closed.postures(position[part], some)
+            tries = self._tries(targets[part], q[np.arange(len(part)), np.argmax(slack, axis=1)])
+            search.record(part, tries, self._residual(tries)[:, None])
 
     def tries(self, starts: np.ndarray, position: np.ndarray, orientation: np.ndarray | None = None) -> Tries:
         """One try from each configuration (N, n) to its target; joints that do not move it keep their values."""
@@ -132,6 +156,8 @@ class InverseSolver:
 
         So it is where hinges that turn for ever reach the target, or come nearest with a slide at its end.
         """
+        if self.closed and self.chain.revolute.all():
+            return ~self.closed.unreachable(position, orientation, unlimited=True)
         targets = _targets(position, orientation)
         parts = parts_of(np.arange(len(targets)), WITHOUT_LIMITS)
         return np.concatenate([np.zeros(0, bool), *(self._held(q[part], targets[part]) for part in parts)])

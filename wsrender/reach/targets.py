@@ -29,16 +29,19 @@ NAMES = LABELS | {BLOCKED: "blocked"}
 class Reachability:
     """What inverse kinematics found of N targets.
 
-    ``configurations`` (N, n) [rad or m]: those that reach the target, or come nearest; joints that do not matter stand
-    in the middle of their range. ``residual_m``, ``residual_rad`` (N,): what is left to the target; 0 rad where no
-    orientation was asked. ``labels`` (N,): "reachable", "unreachable" or "undecided". ``reasons`` (N,): of unreachable
-    targets "out of reach" (no configuration, limits or not) or "joint limits" (hinges without limits would reach it,
-    or come nearest with a slide at its end); of undecided ones "too close to the tolerance" or "search not
-    conclusive"; else "".
+    ``configurations`` (N, n) [rad or m]: those that reach the target, or come nearest (where it is proven that none
+    does, nearer than those about them); joints that do not matter stand in the middle of their range. ``residual_m``,
+    ``residual_rad`` (N,): what is left to the target; 0 rad where no orientation was asked. ``labels`` (N,):
+    "reachable", "unreachable" or "undecided". ``reasons`` (N,): of unreachable targets "out of reach" (no
+    configuration, limits or not) or "joint limits" (hinges without limits would reach it, or come nearest with a slide
+    at its end); of undecided ones "too close to the tolerance" or "search not conclusive"; else "".
 
     Under C constraints a label may be "blocked" too, by the constraint that is its reason: configurations that reach
     the target were found, and all were rejected, ``rejected`` (N, C) int32 by each first; None without constraints.
     Those of ``configurations`` that reach a target are then admitted, of blocked targets they are not.
+
+    ``proven`` (N,) bool: that a target is unreachable, or blocked, is proven: by a closed form, up to its margin, or
+    since it lies outside what holds every position; else it is the search's evidence.
     """
 
     configurations: np.ndarray
@@ -46,6 +49,7 @@ class Reachability:
     residual_rad: np.ndarray
     labels: np.ndarray
     reasons: np.ndarray
+    proven: np.ndarray
     rejected: np.ndarray | None = None
 
 
@@ -67,8 +71,9 @@ def reachable(
     """Decide which ``points`` (N, 3) [m], or poses with ``orientations`` (N, 4) quat_wxyz, the end effector reaches.
 
     ``robot`` is a Robot, a user-defined robot or what `load_robot` takes.
-    Positions and orientations are in the world frame. Every target is tried from many starts within the joint limits
-    (`InverseSolver`); "unreachable" needs a proof or consistent evidence, else the label is "undecided". A label
+    Positions and orientations are in the world frame. Where the arm has a closed form it decides, but for targets
+    near a boundary or a singular pose; those, and targets of other arms, are tried from many starts within the joint
+    limits (`InverseSolver`); "unreachable" needs a proof or consistent evidence, else the label is "undecided". A label
     depends on its target and ``seed`` alone. ``characteristic_length_m`` makes an angle comparable to a distance
     while both shrink (default: half the reach). ``progress``: called with the targets decided. ``constraints``: those
     of `wsrender.robot.constraints.constraints_for`, which must admit the configurations.
@@ -100,7 +105,14 @@ def reachable(
         reasons = reasons_of(solver, found, position, axes)
     labels = np.array([NAMES[label] for label in found.label.tolist()], dtype="<U11")
     rejected = found.rejected if isinstance(found, Admissible) else None
-    return Reachability(found.q, found.distance_m, found.angle_rad, labels, reasons, rejected)
+    proven = found.proven & np.isin(found.label, (UNREACHABLE, BLOCKED))
+    return Reachability(found.q, found.distance_m, found.angle_rad, labels, reasons, proven, rejected)
+
+
+def evidence_of(chain: Kinematics, with_orientation: bool) -> str:
+    """What decides targets of a chain: "closed form (…), margin …", and a search where that leaves them open."""
+    closed = InverseSolver(chain, kind="pose" if with_orientation else "position").closed
+    return closed.evidence if closed else "search"
 
 
 def check_tolerance(chain: Kinematics, position_tolerance_m: float, precision: str) -> None:

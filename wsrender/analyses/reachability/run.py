@@ -23,7 +23,7 @@ from wsrender.analyses.partial_result import PartialResult, joined_rows, rows_of
 from wsrender.analyses.reachability.job import ReachabilityJob
 from wsrender.pipeline.constraints.constraint import Constraint
 from wsrender.reach.inverse_solver import solved_bytes
-from wsrender.reach.targets import check_tolerance, reachable
+from wsrender.reach.targets import check_tolerance, evidence_of, reachable
 from wsrender.robot.constraints import constraints_of_job
 from wsrender.volume.table import Table
 
@@ -98,6 +98,8 @@ class ReachabilityAnalysis(Analysis):
             "count": len(labels),
             **{name: int((labels == name).sum()) for name in names},
             "reasons": {str(name): int((reasons == name).sum()) for name in np.unique(reasons) if name},
+            "proven": int(partial["proven"].sum()),
+            "evidence": evidence_of(self.robot.chain, self.job.quats_wxyz is not None),
             "largest_residual_of_reachable_m": float(partial["residual_m"][reached].max(initial=0.0)),
             "largest_residual_of_reachable_rad": float(partial["residual_rad"][reached].max(initial=0.0)),
         }
@@ -112,6 +114,7 @@ class ReachabilityAnalysis(Analysis):
         columns |= {
             "label": partial["labels"],
             "reason": partial["reasons"],
+            "proven": partial["proven"],
             "residual_m": partial["residual_m"],
             "residual_rad": partial["residual_rad"],
         }

@@ -18,23 +18,28 @@ FREE = {"pose": 0, "axis": 1, "position": 3}  # freedoms that targets of a kind 
 class ClosedForm:
     """All configurations of a ``chain`` that reach targets of a ``kind``: "pose", "axis" (the tip's z) or "position".
 
-    ``solved`` says how: the chain's joints, in what order, and joints that it does not have, held or free.
+    ``solved`` says how: the chain's joints, in what order, and joints that it does not have, held or free. The chain
+    stands in a world whose origin is at ``origin`` (3,) [m].
     """
 
     chain: Chain
+    origin: np.ndarray
     kind: str
     solved: SolvedClass
 
     @classmethod
     def of(cls, chain: Kinematics, kind: str = "pose") -> "ClosedForm | None":
         """The closed form of a chain, from its axes; None where it has none of those that are known here."""
-        axes = Axes.of(chain.geometry) if chain.geometry else None
-        if chain.geometry is None or axes is None or len(axes.axes) + FREE[kind] > JOINTS:
+        if chain.geometry is None:
+            return None
+        near = chain.geometry.relative_to(chain.origin)
+        axes = Axes.of(near)
+        if axes is None or len(axes.axes) + FREE[kind] > JOINTS:
             return None
         if FREE[kind]:
             axes = axes.free(list(axes.T_tip[:3, [2, 0, 1][: FREE[kind]]].T))
         solved = solved_class(axes)
-        return None if solved is None else cls(chain.geometry, kind, solved)
+        return None if solved is None else cls(near, chain.origin, kind, solved)
 
     @property
     def name(self) -> str:
@@ -51,6 +56,8 @@ class ClosedForm:
 
     def targets(self, T: np.ndarray) -> np.ndarray:
         """Poses (N, 4, 4) in the world as those that are solved for, (N, 12): rotation by rows, position [reach]."""
+        T = T.copy()
+        T[:, :3, 3] -= self.origin
         T = np.linalg.inv(self.chain.T_world_base) @ T
         if self.solved.axes.reversed:
             T = np.linalg.inv(T)
