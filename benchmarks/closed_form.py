@@ -1,0 +1,134 @@
+"""Closed-form inverse kinematics beside EAIK, ssik and the numerical solver, side by side in one run.
+
+    python benchmarks/closed_form.py [--device cpu] [--poses 262144] [--repeats 5]
+
+Poses made by forward kinematics, all postures of each with limits and windings, one thread; the solver finds one
+configuration. Every repeat takes all cases in turn; rates are of the least times, ratios of the rates. EAIK and ssik
+are in the extra test-models; what is not installed is left out. Aims: 75 times EAIK's rate for the same arm in float64
+or more, for the quartic of a general arm 45 times that for the UR5e.
+"""
+
+import argparse
+import importlib
+import time
+from collections.abc import Callable
+
+import numpy as np
+import warp as wp
+from wsrender_kernels.closed_form import FIELDS, LANES, closed_form_kernel
+
+import wsrender as ws
+from wsrender.engine import devices_of
+from wsrender.engine.closed_form import shape_of
+from wsrender.engine.evaluation import REAL, device_array
+from wsrender.engine.kernel_cache import launch, loaded
+from wsrender.reach import InverseSolver
+from wsrender.robots.chain import Chain
+from wsrender.robots.closed_form import ClosedForm
+from wsrender.robots.closed_form.numbers import packed
+
+SSIK = {"ur5e": "universal_robots.ur5e_ik", "puma560": "unimation.puma560_ik"}
+FEW, FEWER = 4096, 256  # poses for the solver and EAIK, and for ssik
+GENERAL = [(0.1, 70, 0.2), (0.4, 40, 0.1), (0.15, -80, 0.05), (0.0, 90, 0.35), (0.0, -90, 0.0), (0.0, 0, 0.1)]
+
+Work = tuple[int, Callable[[], object]]  # poses, and what solves them
+
+
+def arms() -> dict[str, Chain]:
+    """Chains by name; of `general` no two of the first three axes meet or are parallel."""
+    rows = [ws.DHRow(a=a, alpha_deg=alpha, d=d, limits_deg=(-170, 170)) for a, alpha, d in GENERAL]
+    table = ws.DHTable(convention="standard", rows=tuple(rows), name="general")
+    robots = [*map(ws.load_robot, ("ur5e", "puma560", "gao_6r", "stanford_arm")), ws.load_robot(table)]
+    return {robot.name: chain for robot in robots if (chain := robot.chain.geometry)}
+
+
+def kernel(closed: ClosedForm, T: np.ndarray, precision: str, device: wp.Device) -> Work:
+    """A launch, its poses on the device."""
+    real, count = REAL[precision], len(T) // LANES * LANES
+    compiled = loaded(closed_form_kernel(shape_of(closed, precision, keep=False), device.is_cuda), device)
+    numbers = device_array(packed(closed.numbers(), FIELDS), real, device)
+    targets = device_array(closed.targets(T[:count]).T.ravel(), real, device)
+    postures, flags = (wp.empty(count, dtype=wp.int32, device=device) for _ in range(2))  # type: ignore[arg-type]
+    slack, kept = wp.empty(count, dtype=real, device=device), wp.empty(0, dtype=real, device=device)
+    dim = count if device.is_cuda else count // LANES
+
+    def run() -> None:
+        inputs, outputs = [count, numbers, targets], [postures, slack, flags, kept]
+        launch(compiled, dim=dim, inputs=inputs, outputs=outputs, device=device)
+        wp.synchronize_device(device)
+
+    return count, run
+
+
+def eaik(chain: Chain, T: np.ndarray) -> Work:
+    """EAIK for the same axes; without limits and windings."""
+    from eaik.IK_HP import HPRobot  # pyright: ignore[reportMissingImports]
+
+    frames = chain.frames(np.zeros((1, chain.n)))[0]
+    points = np.vstack([np.zeros(3), frames[:, :3, 3]])
+    peer = HPRobot(frames[:-1, :3, 2], np.diff(points, axis=0))
+    poses = T[:FEW].copy()
+    poses[:, :3, :3] = poses[:, :3, :3] @ frames[-1, :3, :3].T
+    listed = list(poses)
+    return len(listed), lambda: peer.IK_batched(listed, 1)
+
+
+def ssik(name: str, seed: int = 0) -> Work:
+    """Ssik's module for the arm, with limits and windings, its own poses."""
+    module = importlib.import_module(f"ssik.prebuilt.{SSIK[name]}")
+    q = np.random.default_rng(seed).uniform(*np.transpose(module._JOINT_LIMITS), (FEWER, 6))
+    poses = [module.fk(row) for row in q]
+    return FEWER, lambda: [module.solve(T) for T in poses]
+
+
+def solver(chain: Chain, T: np.ndarray) -> Work:
+    """The numerical solver alone: it finds one configuration."""
+    made = InverseSolver(chain, kind="pose", position_m=1e-5, angle_rad=1e-5, device="cpu", threads=1)
+    made.closed = None
+    return FEW, lambda: made.solve(T[:FEW, :3, 3], T[:FEW, :3, :3])
+
+
+def cases_of(name: str, chain: Chain, count: int, device: wp.Device) -> dict[str, Work]:
+    """Work by what does it."""
+    T = chain.poses(np.random.default_rng(0).uniform(chain.lower_limits, chain.upper_limits, (count, chain.n)))
+    closed = ClosedForm.of(chain)
+    assert closed
+    cases = {precision: kernel(closed, T, precision, device) for precision in ("float64", "float32")}
+    if chain.joint_is_revolute.all() and name != "general":
+        try:
+            cases["EAIK"] = eaik(chain, T)
+        except ImportError:
+            print("EAIK is not installed")
+    if name in SSIK:
+        try:
+            cases["ssik"] = ssik(name)
+        except ImportError:
+            print("ssik is not installed")
+    return cases | {"solver": solver(chain, T)}
+
+
+def main() -> None:
+    """Measure and print."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])  # type: ignore[union-attr]
+    parser.add_argument("--device", default="cpu")
+    parser.add_argument("--poses", type=int, default=1 << 18)
+    parser.add_argument("--repeats", type=int, default=5)
+    arguments = parser.parse_args()
+    device = devices_of(arguments.device)[0]
+    work = {name: cases_of(name, chain, arguments.poses, device) for name, chain in arms().items()}
+    least = {(name, case): np.inf for name, cases in work.items() for case in cases}
+    for repeat in range(arguments.repeats + 1):
+        for name, case in least:
+            started = time.perf_counter()
+            work[name][case][1]()
+            if repeat:  # the first is not warm
+                least[name, case] = min(least[name, case], time.perf_counter() - started)
+    rates = {(name, case): work[name][case][0] / seconds for (name, case), seconds in least.items()}
+    print("| arm | by | poses/s | float64 is so many times | of EAIK's rate for the UR5e |\n|---|---|--:|--:|--:|")
+    for (name, case), rate in rates.items():
+        beside = rate / rates["ur5e", "EAIK"] if ("ur5e", "EAIK") in rates else np.nan
+        print(f"| {name} | {case} | {rate:,.0f} | {rates[name, 'float64'] / rate:.1f} | {beside:.1f} |")
+
+
+if __name__ == "__main__":
+    main()
