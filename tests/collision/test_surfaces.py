@@ -18,9 +18,12 @@ from wsrender.collision.program import lookups_of, program
 from wsrender.collision.solids import BASE, Solid
 from wsrender.documents.constraints import Constraints
 from wsrender.errors import InputError
+from wsrender.results.render.environment import items_of, surfaces
 from wsrender.robot.constraints import constraints_for
+from wsrender.robot.surroundings import shapes_around
 from wsrender.robots.triangles import ground
 from wsrender.world.surfaces import surface_of
+from wsrender.world.triangles import triangles
 
 ball, cube = manifold3d.Manifold.sphere, manifold3d.Manifold.cube
 BOWL = ball(0.3, 32) - ball(0.28, 32) - cube((1, 1, 1)).translate((-0.5, -0.5, 0))
@@ -259,3 +262,29 @@ def test_heights_of_a_file_are_those_of_the_document(tmp_path):
     file = ws.HeightField(tmp_path / "ground.npy", size_m=(0.8, 0.6), length_unit_m=0.001)
     said = ws.HeightField(heights_m=HEIGHTS.tolist(), size_m=(0.8, 0.6))
     assert np.allclose(surface_of(file).vertices, surface_of(said).vertices)
+
+
+def test_the_ground_of_a_scene_is_the_item_of_its_heights():
+    """In millimetres, at a place, with what MuJoCo makes of its heights: the lowest at the top of the base."""
+    rise, base = HEIGHTS - HEIGHTS.min(), 0.04
+    elevation = " ".join(f"{value:.9g}" for value in rise[::-1].ravel())  # as it is read, y upwards
+    text = f"""<mujoco><asset><hfield name="hills" nrow="7" ncol="9" elevation="{elevation}"
+        size="400 300 {1000 * rise.max():.9g} {1000 * base}"/></asset><worldbody>
+        <geom name="ground" type="hfield" hfield="hills" pos="100 0 200" euler="0 0 90"/></worldbody></mujoco>"""
+    (found,) = shapes_around([ws.Scene(mjcf=text, name="cell", length_unit_m=0.001, position_m=(0, 0, 1))])
+    assert (found.name, found.item) == ("cell/ground", "cell")
+    place = {"position_m": (0.1, 0, 1.2 - base), "rpy_deg": (0, 0, 90)}
+    item = ws.HeightField(heights_m=(rise + base).tolist(), size_m=(0.8, 0.6), **place)
+    vertices, faces = triangles(item)
+    own, own_faces = triangles(found.shape)
+    assert np.allclose(own, vertices, atol=1e-6)
+    assert np.array_equal(own_faces, faces)
+    assert len(surfaces(items_of([item])[0], np.zeros(3), np.ones(3))) == 1
+
+
+def test_a_height_field_must_not_move():
+    text = """<mujoco><asset><hfield name="hills" nrow="2" ncol="2" elevation="1 2 3 4" size="1 1 1 .1"/></asset>
+        <worldbody><body><joint range="-1 1"/><inertial mass="1" pos="0 0 0" diaginertia="1 1 1"/>
+        <geom type="hfield" hfield="hills"/><geom size=".1"/></body></worldbody></mujoco>"""
+    with pytest.raises(InputError, match="must not move"):
+        constraints_for(ws.load_robot(text), None, ws.Environment([ws.HalfSpace(point_m=(0, 0, -3))]))

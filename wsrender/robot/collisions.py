@@ -31,6 +31,7 @@ KINDS: dict[str, Any] = {
     "mesh": "hull",
     "convex_mesh": "hull",
     "plane": "half_space",
+    "hfield": "surface",
 }  # of shapes, by what solids call them
 
 LARGEST_M = 1e9  # of a shape's place, size and corners: single precision holds products of four such numbers
@@ -154,9 +155,9 @@ def _limited(chain: Chain) -> Chain:
 
 def _solid(shape: Shape) -> Solid:
     kind: Any = KINDS.get(shape.kind, shape.kind)
-    return Solid(
-        shape.name, kind, shape.frame, shape.T_frame_shape, shape.size, shape.vertices if kind == "hull" else None
-    )
+    vertices = shape.vertices if kind in ("hull", "surface") else None
+    faces = shape.faces if kind == "surface" else None
+    return Solid(shape.name, kind, shape.frame, shape.T_frame_shape, shape.size, vertices, faces)
 
 
 def _still(standing: Standing, chain: Chain) -> Solid:

@@ -127,7 +127,7 @@ def _points(vertices: np.ndarray) -> Any:
     return tuple(map(tuple, vertices.tolist()))
 
 
-def as_document(shape: models.Shape, T: np.ndarray) -> Shape:
+def as_document(shape: models.Shape, T: np.ndarray) -> Shape | Surface:
     """A robot's shape, its frame at ``T`` (4, 4) in the world [m], in the words of an environment."""
     radius, half, _ = shape.size
     placed = transform_of(T)
@@ -147,4 +147,6 @@ def as_document(shape: models.Shape, T: np.ndarray) -> Shape:
             return Box(size_m=edges, **place)
         case "ellipsoid":
             return Ellipsoid(size_m=edges, **place)
+        case "hfield":
+            return Surface(shape.vertices, shape.faces, T)
     return ConvexMesh(vertices_m=_points(shape.vertices), **place)

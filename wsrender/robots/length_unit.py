@@ -26,6 +26,8 @@ def to_metres(spec: mujoco.MjSpec, unit_m: float) -> None:
         item.pos, item.size, item.fromto = item.pos * unit_m, item.size * unit_m, item.fromto * unit_m
     for mesh in spec.meshes:
         mesh.scale = mesh.scale * unit_m  # vertices are shifted by refpos, and then scaled
+    for hfield in spec.hfields:
+        hfield.size = hfield.size * unit_m
     for equality in spec.equalities:
         if equality.type == mujoco.mjtEq.mjEQ_JOINT:
             _scale_coupling(spec, equality, unit_m)

@@ -12,7 +12,7 @@ MOST_MADE = 1_000_000  # vertices of meshes that MuJoCo makes by itself
 # Sections that neither kinematics nor inertia depend on; several of them could read files.
 _SCENERY = ("option", "size", "visual", "statistic", "custom", "extension", "deformable", "contact",
             "sensor", "keyframe")  # fmt: skip
-_DROPPED = {"camera", "light", "texture", "material", "hfield", "skin", "plugin"}
+_DROPPED = {"camera", "light", "texture", "material", "skin", "plugin"}
 _REFUSED = {
     "include": "includes are refused where no folder is known to read them from: inline the file, by putting what is "
     "inside its <mujoco> element in the place of <include>, or load the model by its path where it stands",
@@ -24,7 +24,7 @@ _REFUSED = {
 _NUMERIC = {
     "pos", "quat", "axis", "axisangle", "xyaxes", "zaxis", "euler", "range", "ref", "size", "fromto", "mass",
     "diaginertia", "fullinertia", "armature", "polycoef", "gear", "ctrlrange", "forcerange", "density",
-    "actuatorfrcrange", "anchor", "relpose", "vertex", "scale", "refpos", "refquat", "boundmass",
+    "actuatorfrcrange", "anchor", "relpose", "vertex", "elevation", "scale", "refpos", "refquat", "boundmass",
     "boundinertia", "settotalmass", "offset", "coef", "margin", "springref", "damping", "stiffness", "params",
 }  # fmt: skip
 
@@ -78,7 +78,8 @@ def _clean(element: Element, field: str) -> None:
     for child in list(element):
         if child.tag in _REFUSED and not (child.tag == "model" and element.tag != "asset"):
             raise ModelError(field, _REFUSED[child.tag])
-        if child.tag in _DROPPED:
+        of_file = child.tag == "hfield" and ("file" in child.attrib or "elevation" not in child.attrib)
+        if child.tag in _DROPPED or of_file:
             element.remove(child)
         else:
             _clean(child, field)

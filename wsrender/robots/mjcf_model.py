@@ -115,8 +115,11 @@ def _keep_geometry(
         if file and id(geom) in wanted and file not in contents:
             contents[file] = read_mesh(file)
         there = geom.meshname in files and (not file or contents.get(file) is not None)
+        there |= geom.type == mujoco.mjtGeom.mjGEOM_HFIELD and spec.hfield(geom.hfieldname) is not None
         if id(geom) in wanted and not there and purpose == "collision":
             what = f"its file {file!r} is not there, or is too large" if file else "there are no shapes of its kind"
+            if geom.type == mujoco.mjtGeom.mjGEOM_HFIELD:
+                what = "heights are read from the attribute elevation alone; give them so, or as an item height_field"
             raise ModelError(field, f"geom {geom.name!r} of body {geom.parent.name!r} may collide, but {what}")
         if id(geom) not in wanted or not there:
             spec.delete(geom)
