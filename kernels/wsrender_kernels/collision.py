@@ -38,8 +38,8 @@ REAL_ARRAYS = (
 )
 _ARRAYS = {
     wp.float32: ("lower", "upper", "capsules", "test_numbers", "table_numbers", "balls", "grid_numbers"),
-    wp.int32: ("sources", "capsule_frame", "pairs", "planes", "tests", "tables", "table_columns", "solid_frame",
-               "vertex_range", "solid_pairs", "lookups", "grid_shapes", "node_links"),
+    wp.int32: ("sources", "capsule_frame", "capsule_axis", "pairs", "planes", "tests", "tables", "table_columns",
+               "solid_frame", "vertex_range", "solid_pairs", "lookups", "grid_shapes", "node_links"),
     wp.uint32: ("table_words", "first_reason", "grid_words"),
 }  # fmt: skip
 ARRAYS = {name: dtype for dtype, names in _ARRAYS.items() for name in names}
@@ -56,6 +56,7 @@ def program_type(real: Any):
         n_tables: wp.int32
         n_solid_pairs: wp.int32
         n_lookups: wp.int32
+        root: wp.int32  # lowest frame that a solid is in: all others are taken from it
         columns: wp.int32  # cells of a table along its first coordinate
         epsilon: real
 
@@ -86,7 +87,9 @@ _SINCOS = """
     };
 """
 
-_KINEMATICS = """    for (int i = 0; i < L; i++) {
+_KINEMATICS = """    for (int l = 0; l < LN; l++)
+        for (int k = 0; k < 12; k++) F[(12 * program.root + k) * LN + l] = (k == 0 || k == 4 || k == 8) ? 1.f : 0.f;
+    for (int i = program.root; i < L; i++) {
         const real* t = program.joints.data + 15 * i;
         const real* __restrict S = F + 12 * i * LN; real* __restrict D = F + 12 * (i + 1) * LN;
         const real* __restrict v = Q + program.sources.data[i] * STRIDE;
@@ -116,20 +119,18 @@ _FILTER = """
 #endif
     typedef float real;
     constexpr int N = @N, L = @L, CAP = @CAP, W = @W;
-    constexpr float FAR = 1e9f;
 @SINCOS
-    alignas(64) float frames_[12 * (L + 1) * LN], capsules_[6 * CAP * LN], near_[LN], hit_[2 * LN];
-    alignas(64) unsigned masks_[W * LN], inside_[LN];
-    float* __restrict F = frames_; float* __restrict C = capsules_; float* __restrict nr = near_;
+    alignas(64) float frames_[12 * (L + 1) * LN], capsules_[6 * CAP * LN];
+    alignas(64) unsigned masks_[W * LN], inside_[LN], hit_[2 * LN];
+    float* __restrict F = frames_; float* __restrict C = capsules_;
     unsigned* __restrict masks = masks_; unsigned* __restrict inside = inside_;
     const float* __restrict q = &values.c[0];
     for (int part = 0; part * LN < valid; part++) {
     const float* __restrict Q = q + part * LN;
     for (int l = 0; l < LN; l++) {
         inside[l] = 1u;
-        for (int k = 0; k < 12; k++) F[k * LN + l] = (k == 0 || k == 4 || k == 8) ? 1.f : 0.f;
         for (int w = 0; w < W; w++) masks[w * LN + l] = 0u;
-        hit_[l] = FAR; hit_[LN + l] = FAR;
+        hit_[l] = 0u; hit_[LN + l] = 0u;
     }
     for (int i = 0; i < N; i++) {
         // Tables and proofs hold within the limits alone.
@@ -141,74 +142,77 @@ _FILTER = """
     for (int i = 0; i < program.n_capsules; i++) {
         const float* __restrict S = F + 12 * program.capsule_frame.data[i] * LN; float* __restrict D = C + 6 * i * LN;
         const float* c = program.capsules.data + 6 * i;
-        LANE_LOOP for (int k = 0; k < 3; k++) {
-            float X = S[k * LN + l], Y = S[(3 + k) * LN + l], Z = S[(6 + k) * LN + l];
-            D[k * LN + l] = S[(9 + k) * LN + l] + X * c[0] + Y * c[1] + Z * c[2];
-            D[(3 + k) * LN + l] = X * c[3] + Y * c[4] + Z * c[5];
-        }
+        LANE_LOOP for (int k = 0; k < 3; k++)
+            D[k * LN + l] = S[(9 + k) * LN + l] + S[k * LN + l] * c[0] + S[(3 + k) * LN + l] * c[1]
+                + S[(6 + k) * LN + l] * c[2];
+        if (program.capsule_axis.data[i] >= 0) continue;
+        LANE_LOOP for (int k = 0; k < 3; k++)
+            D[(3 + k) * LN + l] = S[k * LN + l] * c[3] + S[(3 + k) * LN + l] * c[4] + S[(6 + k) * LN + l] * c[5];
     }
+    // Most axes are those of their frames.
+    auto axis_of = [&](int capsule) -> const float* {
+        const int row = program.capsule_axis.data[capsule];
+        return row < 0 ? C + (6 * capsule + 3) * LN : F + row * LN;
+    };
     for (int p = 0; p < program.n_pairs; p++) {
         const int* row = program.pairs.data + 4 * p;
         const int pair = row[0], balls = row[1] + row[2], end = balls + row[3];
-        float* __restrict ht = hit_ + (int)program.pair_numbers.data[2 * pair + 1] * LN;
-        for (int l = 0; l < LN; l++) nr[l] = FAR;
+        unsigned* __restrict ht = hit_ + (int)program.pair_numbers.data[2 * pair + 1] * LN;
+        unsigned* __restrict mask = masks + (pair >> 5) * LN; const unsigned bit = 1u << (pair & 31);
         for (int i = row[1]; i < balls; i++) {
             const float* __restrict A = C + 6 * program.tests.data[2 * i] * LN;
             const float* __restrict B = C + 6 * program.tests.data[2 * i + 1] * LN;
-            const float near2 = program.test_numbers.data[6 * i + 4], hit2 = program.test_numbers.data[6 * i + 5];
+            const float near2 = program.test_numbers.data[4 * i + 2], hit2 = program.test_numbers.data[4 * i + 3];
             LANE_LOOP {
                 float r0 = A[l] - B[l], r1 = A[LN + l] - B[LN + l], r2 = A[2 * LN + l] - B[2 * LN + l];
-                float d2 = r0 * r0 + r1 * r1 + r2 * r2, x = d2 - near2, y = d2 - hit2;
-                nr[l] = x < nr[l] ? x : nr[l];
-                ht[l] = y < ht[l] ? y : ht[l];
+                float d2 = r0 * r0 + r1 * r1 + r2 * r2;
+                mask[l] |= d2 < near2 ? bit : 0u;
+                ht[l] |= d2 < hit2 ? 1u : 0u;
             }
         }
         for (int i = balls; i < end; i++) {
-            const float* __restrict A = C + 6 * program.tests.data[2 * i] * LN;
-            const float* __restrict B = C + 6 * program.tests.data[2 * i + 1] * LN;
-            const float* t = program.test_numbers.data + 6 * i;
-            const float ia = t[1], e = t[2], ie = t[3], near2 = t[4], hit2 = t[5], ae = t[0] * e * 1.000001f;
+            const int a = program.tests.data[2 * i], b = program.tests.data[2 * i + 1];
+            const float* __restrict A = C + 6 * a * LN; const float* __restrict G = axis_of(a);
+            const float* __restrict B = C + 6 * b * LN; const float* __restrict H = axis_of(b);
+            const float* t = program.test_numbers.data + 4 * i;
+            const float most_s = t[0], most_w = t[1], near2 = t[2], hit2 = t[3];
             LANE_LOOP {
                 float r0 = A[l] - B[l], r1 = A[LN + l] - B[LN + l], r2 = A[2 * LN + l] - B[2 * LN + l];
-                float g0 = A[3 * LN + l], g1 = A[4 * LN + l], g2 = A[5 * LN + l];
-                float h0 = B[3 * LN + l], h1 = B[4 * LN + l], h2 = B[5 * LN + l];
+                float g0 = G[l], g1 = G[LN + l], g2 = G[2 * LN + l], h0 = H[l], h1 = H[LN + l], h2 = H[2 * LN + l];
                 float b = g0 * h0 + g1 * h1 + g2 * h2, c = g0 * r0 + g1 * r1 + g2 * r2, f = h0 * r0 + h1 * r1 + h2 * r2;
-                float s = (b * f - c * e) / (ae - b * b);
-                s = s < 1.f ? s : 1.f; s = s > -1.f ? s : -1.f;
-                float w = (b * s + f) * ie;
-                w = w < 1.f ? w : 1.f; w = w > -1.f ? w : -1.f;
-                s = (b * w - c) * ia;
-                s = s < 1.f ? s : 1.f; s = s > -1.f ? s : -1.f;
+                float s = (b * f - c) / (1.000001f - b * b);
+                s = s < most_s ? s : most_s; s = s > -most_s ? s : -most_s;
+                float w = b * s + f;
+                w = w < most_w ? w : most_w; w = w > -most_w ? w : -most_w;
+                s = b * w - c;
+                s = s < most_s ? s : most_s; s = s > -most_s ? s : -most_s;
                 r0 += g0 * s - h0 * w; r1 += g1 * s - h1 * w; r2 += g2 * s - h2 * w;
-                float d2 = r0 * r0 + r1 * r1 + r2 * r2, x = d2 - near2, y = d2 - hit2;
-                nr[l] = x < nr[l] ? x : nr[l];
-                ht[l] = y < ht[l] ? y : ht[l];
+                float d2 = r0 * r0 + r1 * r1 + r2 * r2;
+                mask[l] |= d2 < near2 ? bit : 0u;
+                ht[l] |= d2 < hit2 ? 1u : 0u;
             }
         }
-        unsigned* __restrict mask = masks + (pair >> 5) * LN; const unsigned bit = 1u << (pair & 31);
-        LANE_LOOP mask[l] |= nr[l] < 0.f ? bit : 0u;
     }
     for (int p = 0; p < program.n_planes; p++) {
         const int* row = program.planes.data + 3 * p;
         const int pair = row[0];
-        float* __restrict ht = hit_ + (int)program.pair_numbers.data[2 * pair + 1] * LN;
-        for (int l = 0; l < LN; l++) nr[l] = FAR;
+        unsigned* __restrict ht = hit_ + (int)program.pair_numbers.data[2 * pair + 1] * LN;
+        unsigned* __restrict mask = masks + (pair >> 5) * LN; const unsigned bit = 1u << (pair & 31);
         for (int i = row[1]; i < row[1] + row[2]; i++) {
-            const float* __restrict A = C + 6 * program.tests.data[2 * i] * LN;
-            const float* __restrict B = C + 6 * program.tests.data[2 * i + 1] * LN;
-            const float near1 = program.test_numbers.data[6 * i + 4], hit1 = program.test_numbers.data[6 * i + 5];
+            const int a = program.tests.data[2 * i], b = program.tests.data[2 * i + 1];
+            const float* __restrict A = C + 6 * a * LN; const float* __restrict G = axis_of(a);
+            const float* __restrict B = C + 6 * b * LN; const float* __restrict H = axis_of(b);
+            const float* t = program.test_numbers.data + 4 * i;
+            const float most = t[1], near1 = t[2], hit1 = t[3];
             LANE_LOOP {
-                float n0 = A[3 * LN + l], n1 = A[4 * LN + l], n2 = A[5 * LN + l];
+                float n0 = G[l], n1 = G[LN + l], n2 = G[2 * LN + l];
                 float h = (B[l] - A[l]) * n0 + (B[LN + l] - A[LN + l]) * n1 + (B[2 * LN + l] - A[2 * LN + l]) * n2;
-                float along = B[3 * LN + l] * n0 + B[4 * LN + l] * n1 + B[5 * LN + l] * n2;
+                float along = most * (H[l] * n0 + H[LN + l] * n1 + H[2 * LN + l] * n2);
                 h -= along > 0.f ? along : -along;
-                float x = h - near1, y = h - hit1;
-                nr[l] = x < nr[l] ? x : nr[l];
-                ht[l] = y < ht[l] ? y : ht[l];
+                mask[l] |= h < near1 ? bit : 0u;
+                ht[l] |= h < hit1 ? 1u : 0u;
             }
         }
-        unsigned* __restrict mask = masks + (pair >> 5) * LN; const unsigned bit = 1u << (pair & 31);
-        LANE_LOOP mask[l] |= nr[l] < 0.f ? bit : 0u;
     }
     for (int k = 0; k < program.n_tables; k++) {
         const int* t = program.tables.data + 4 * k; const float* n = program.table_numbers.data + 4 * k;
@@ -216,7 +220,7 @@ _FILTER = """
         const unsigned* __restrict words = program.table_words.data + t[3];
         const int columns = program.table_columns.data[k], pair = t[0];
         const float last_u = (float)(program.columns - 1), last_v = (float)(columns - 1);
-        float* __restrict ht = hit_ + (int)program.pair_numbers.data[2 * pair + 1] * LN;
+        unsigned* __restrict ht = hit_ + (int)program.pair_numbers.data[2 * pair + 1] * LN;
         unsigned* __restrict mask = masks + (pair >> 5) * LN; const unsigned bit = 1u << (pair & 31);
         LANE_LOOP {
             float x = (u[l] - n[0]) * n[1], y = (v[l] - n[2]) * n[3];
@@ -225,7 +229,7 @@ _FILTER = """
             int cell = (int)x * columns + (int)y;
             unsigned label = (words[cell >> 4] >> ((cell & 15) * 2)) & 3u;
             mask[l] |= label == 2u ? bit : 0u;
-            ht[l] = label == 1u ? -1.f : ht[l];
+            ht[l] |= label == 1u ? 1u : 0u;
         }
     }
 @LOOKUPS
@@ -236,7 +240,7 @@ _FILTER = """
         unsigned first = 0u, any = 0u;
         for (int w = 0; w < W; w++) any |= masks[w * LN + l];
         for (int w = 0; w < W; w++) first |= masks[w * LN + l] & program.first_reason.data[w];
-        const bool hit_first = hit_[l] < 0.f, hit_second = hit_[LN + l] < 0.f;
+        const bool hit_first = hit_[l] != 0u, hit_second = hit_[LN + l] != 0u;
         int label = hit_first ? 1 : (hit_second ? 2 : 0);
         bool open = hit_first ? false : (hit_second ? first != 0u : any != 0u);
         if (!inside[l]) { open = true; label = 0; }
@@ -256,7 +260,7 @@ _FILTER = """
 
 _UNROLLED = """
 @SINCOS
-    auto clamped = [](float x) { return wp::max(wp::min(x, 1.f), -1.f); };
+    auto clamped = [](float x, float most) { return wp::max(wp::min(x, most), -most); };
     const float* q = &values.c[0];
 @BODY
     unsigned any = 0u, first = 0u;
@@ -305,8 +309,6 @@ _NARROW = """
     alignas(64) real frames_[12 * (L + 1) * LN], eps_[LN];
     real* __restrict F = frames_;
     const real* __restrict Q = &values.c[0];
-    for (int l = 0; l < LN; l++)
-        for (int k = 0; k < 12; k++) F[k * LN + l] = (k == 0 || k == 4 || k == 8) ? 1.f : 0.f;
 @KINEMATICS
     // What float32 may be off is known within the limits alone.
     for (int l = 0; l < LN; l++) eps_[l] = program.epsilon;
@@ -444,7 +446,9 @@ _NARROW = """
             cross(s, t, n);
             live = live & unit(n);
             // All three corners beyond the origin: of a thin portal the normal is known badly.
-            settle(portal & (dot(n, v1) > eps) & (dot(n, v2) > eps) & (dot(n, v3) > eps), TOUCHING);
+            V one_way = dot(n, v1), other = dot(n, v2), third = dot(n, v3);
+            one_way = one_way < other ? one_way : other;
+            settle(portal & ((one_way < third ? one_way : third) > eps), TOUCHING);
         }
         return found;
     };

@@ -13,8 +13,8 @@ LOOKUPS = """
         const float e0 = (float)(n[0] - 1), e1 = (float)(n[1] - 1), e2 = (float)(n[2] - 1);
         const int pair = row[0], s0 = n[1] * n[2], s1 = n[2];
         const float* __restrict S = F + 12 * row[2] * LN;
-        float* __restrict ht = hit_ + (int)program.pair_numbers.data[2 * pair + 1] * LN;
-        for (int l = 0; l < LN; l++) nr[l] = FAR;
+        unsigned* __restrict ht = hit_ + (int)program.pair_numbers.data[2 * pair + 1] * LN;
+        unsigned* __restrict mask = masks + (pair >> 5) * LN; const unsigned bit = 1u << (pair & 31);
         for (int i = 0; i < row[4]; i++, b += 5) {
             const float c0 = b[0], c1 = b[1], c2 = b[2], free = b[3], touch = b[4];
             LANE_LOOP {
@@ -25,13 +25,11 @@ LOOKUPS = """
                 y = y > 0.f ? y : 0.f; y = y < e1 ? y : e1;
                 z = z > 0.f ? z : 0.f; z = z < e2 ? z : e2;
                 unsigned word = words[(int)x * s0 + (int)y * s1 + (int)z];
-                float low = (float)(short)(word & 65535u), high = (float)(short)(word >> 16), near = low - free;
-                nr[l] = near < nr[l] ? near : nr[l];
-                ht[l] = high < touch ? -1.f : ht[l];
+                float low = (float)(short)(word & 65535u), high = (float)(short)(word >> 16);
+                mask[l] |= low <= free ? bit : 0u;
+                ht[l] |= high < touch ? 1u : 0u;
             }
         }
-        unsigned* __restrict mask = masks + (pair >> 5) * LN; const unsigned bit = 1u << (pair & 31);
-        LANE_LOOP mask[l] |= nr[l] <= 0.f ? bit : 0u;
     }
 """
 

@@ -37,7 +37,7 @@ class _Written:
 
     def __init__(self, program: Any):
         self.program, self.lines = program, []
-        self._frames: set[int] = {0}
+        self._frames: set[int] = {program.root}
         self._capsules: set[int] = set()
 
     def add(self, line: str) -> None:
@@ -45,13 +45,13 @@ class _Written:
 
     def axes(self, frame: int, row: int) -> list[str]:
         """Row of a frame's rotation."""
-        return [f"{axis}{frame}_{row}" if frame else _f(axis == "xyz"[row]) for axis in "xyz"]
+        return [_f(axis == "xyz"[row]) if frame == self.program.root else f"{axis}{frame}_{row}" for axis in "xyz"]
 
     def origin(self, frame: int, row: int) -> str:
-        return f"o{frame}_{row}" if frame else "0.f"
+        return "0.f" if frame == self.program.root else f"o{frame}_{row}"
 
     def frame(self, number: int) -> None:
-        """Frame of joint ``number`` - 1, 0 the base."""
+        """Frame of joint ``number`` - 1, 0 the base; all are taken from the program's root."""
         if number in self._frames:
             return
         self._frames.add(number)
@@ -71,7 +71,7 @@ class _Written:
             self.add(f"float y{j}_{row} = c{j} * v{j}_{row} - s{j} * u{j}_{row}, o{j}_{row} = {at}{slide};")
 
     def capsule(self, number: int) -> None:
-        """Middle m and half axis h of a capsule."""
+        """Middle m and unit axis h of a capsule."""
         if number in self._capsules:
             return
         self._capsules.add(number)
@@ -97,17 +97,16 @@ class _Written:
             a, b = self.program.tests[test].tolist()
             self.capsule(a)
             self.capsule(b)
-            aa, ia, e, ie, near, hit = self.program.test_numbers[test]
+            most_s, most_w, near, hit = self.program.test_numbers[test]
             lines = [f"float r{k} = m{a}_{k} - m{b}_{k};" for k in range(3)]
             if test in capsules:
                 dots = {"b": (f"h{a}_", f"h{b}_"), "c": (f"h{a}_", "r"), "f": (f"h{b}_", "r")}
                 for name, (first, second) in dots.items():
                     lines.append(f"float {name} = {' + '.join(f'{first}{k} * {second}{k}' for k in range(3))};")
-                ae = aa * e * np.float32(1.000001)
                 lines += [
-                    f"float s = clamped((b * f - c * {_f(e)}) / ({_f(ae)} - b * b));",
-                    f"float w = clamped((b * s + f) * {_f(ie)});",
-                    f"s = clamped((b * w - c) * {_f(ia)});",
+                    f"float s = clamped((b * f - c) / (1.000001f - b * b), {_f(most_s)});",
+                    f"float w = clamped(b * s + f, {_f(most_w)});",
+                    f"s = clamped(b * w - c, {_f(most_s)});",
                     *(f"r{k} += h{a}_{k} * s - h{b}_{k} * w;" for k in range(3)),
                 ]
             self.add("{ " + " ".join([*lines, "float d2 = r0 * r0 + r1 * r1 + r2 * r2;"]))
@@ -121,8 +120,9 @@ class _Written:
             self.capsule(b)
             height = " + ".join(f"(m{b}_{k} - m{a}_{k}) * h{a}_{k}" for k in range(3))
             along = " + ".join(f"h{b}_{k} * h{a}_{k}" for k in range(3))
-            self.add(f"{{ float d = {height} - wp::abs({along});")
-            self.verdict(pair, *self.program.test_numbers[test, 4:], "d", -np.inf)
+            _, most, near, hit = self.program.test_numbers[test]
+            self.add(f"{{ float d = {height} - {_f(most)} * wp::abs({along});")
+            self.verdict(pair, near, hit, "d", -np.inf)
             self.add("}")
 
     def table(self, number: int) -> None:

@@ -19,10 +19,11 @@ from wsrender.robots.triangles import tree
 
 DRAWN = 4096  # configurations over which the levels of covers are chosen
 # Of an open pair in the narrow phase, measured in tests of two capsules.
-OPEN_COST = 600.0
+OPEN_COST = 200.0
 EPSILON = 5e-6  # of the reach, at least 2 m: what positions in float32 may be off [m]
 ABSENT = -1.0  # a squared distance that nothing falls below
-SHORT = 1e-10  # squared length of an axis that is a point [m²]
+SHORT = 1e-10  # squared length of an axis that is a point [m²], or length of half of one [m]
+ALIGNED = 1e-9  # of a unit vector's coordinates
 KIND = {"sphere": 3, "capsule": 3, "cylinder": 3, "box": 3, "hull": 0, "ellipsoid": 1, "half_space": 2, "surface": 4}
 
 
@@ -31,11 +32,12 @@ class Program:
     """Arrays of the kernels: float32, int32, uint32 (``table_words``), and float64 what the narrow phase computes with.
 
     ``joints`` (L, 15): rotation (9) and translation (3) before the motion, scale, offset, 1 where it turns;
-    ``sources`` (L,); ``lower``, ``upper`` (n,). ``capsules`` (C, 6): middle and half axis in the frame of
-    ``capsule_frame`` (C,), 0 of the base. ``pairs`` (T, 4): pair, first test, tests of spheres, of capsules; then
+    ``sources`` (L,); ``lower``, ``upper`` (n,). ``capsules`` (C, 6): middle and unit axis in the frame of
+    ``capsule_frame`` (C,), 0 of the base; ``capsule_axis`` (C,): where this is an axis of the frame, 12 times the
+    frame's number plus 0, 3 or 6, else -1. ``pairs`` (T, 4): pair, first test, tests of spheres, of capsules; then
     ``planes`` (U, 3): pair, first test, tests; ``tests`` (t, 2): capsules, or half-space's capsule and capsule;
-    ``test_numbers`` (t, 6): squared lengths of both half axes, each with its reciprocal; squared distances below which
-    they are near and hit (distances, of planes). ``tables`` (K, 4): pair, two coordinates, first word;
+    ``test_numbers`` (t, 4): half lengths of both axes; squared distances below which they are near and hit (distances,
+    of planes). ``tables`` (K, 4): pair, two coordinates, first word;
     ``table_numbers`` (K, 4): lowest value and cells per unit of both; ``table_columns`` (K,); ``table_words``.
     ``solid_frame`` (S,), ``solids`` (S, 18): rotation and translation in its joint, radius, disc, kind, half a segment
     within it, about its middle; ``solid_sizes`` (S, 3): half axes of an ellipsoid, else half of what its points span;
@@ -55,6 +57,7 @@ class Program:
     upper: np.ndarray
     capsules: np.ndarray
     capsule_frame: np.ndarray
+    capsule_axis: np.ndarray
     pairs: np.ndarray
     planes: np.ndarray
     tests: np.ndarray
@@ -83,6 +86,11 @@ class Program:
     columns: int
     never: np.ndarray
     always: np.ndarray
+
+    @property
+    def root(self) -> int:
+        """The lowest frame that a solid of any pair is in."""
+        return int(self.solid_frame[self.solid_pairs].min(initial=len(self.sources)))
 
     @property
     def n_bytes(self) -> int:
@@ -232,7 +240,7 @@ class _Rows:
     def __init__(self, pairs: Pairs, covers: dict[int, Cover]):
         self.solids, self.covers = pairs.solids, covers
         self.numbers: dict[tuple[int, str, int, int], int] = {}
-        self.capsules: list[tuple[int, np.ndarray, float]] = []
+        self.capsules: list[tuple[int, np.ndarray, float, float]] = []  # frame, numbers, half length, radius
         self.tests: list[tuple[int, int]] = []
         self.test_numbers: list[list[float]] = []
 
@@ -246,7 +254,9 @@ class _Rows:
             key = (solid, side, level, k)
             if key not in self.numbers:
                 middle = own.T[:3, :3] @ ((a + b) / 2) + own.T[:3, 3]
-                self._add(key, own.joint, np.r_[middle, own.T[:3, :3] @ ((b - a) / 2)], float(radius))
+                half = own.T[:3, :3] @ ((b - a) / 2)
+                half *= -1 if half[np.abs(half).argmax()] < 0 else 1
+                self._add(key, own.joint, middle, half, float(radius))
             found.append(self.numbers[key])
         return found
 
@@ -254,12 +264,14 @@ class _Rows:
         """Number of the row that holds a point of a half-space's border and its normal."""
         key, own = (solid, "plane", 0, 0), self.solids[solid]
         if key not in self.numbers:
-            self._add(key, own.joint, np.r_[own.T[:3, 3], own.T[:3, 2]], 0.0)
+            self._add(key, own.joint, own.T[:3, 3], own.T[:3, 2], 0.0)
         return self.numbers[key]
 
-    def _add(self, key: tuple[int, str, int, int], joint: int, numbers: np.ndarray, radius: float) -> None:
+    def _add(self, key: tuple[int, str, int, int], joint: int, middle: np.ndarray, half: np.ndarray, r: float) -> None:
         self.numbers[key] = len(self.capsules)
-        self.capsules.append((joint - BASE, numbers, radius))
+        length = float(np.linalg.norm(half))
+        axis = half / length if length > SHORT else np.array([1.0, 0.0, 0.0])
+        self.capsules.append((joint - BASE, np.r_[middle, axis], length if length > SHORT else 0.0, r))
 
 
 def _packed(
@@ -304,12 +316,13 @@ def _packed(
         sources=np.array(chain.joint_source, np.int32),
         lower=np.array(chain.lower_limits, np.float32),
         upper=np.array(chain.upper_limits, np.float32),
-        capsules=_f([numbers for _, numbers, _ in rows.capsules], 6),
-        capsule_frame=np.array([frame for frame, _, _ in rows.capsules], np.int32),
+        capsules=_f([numbers for _, numbers, *_ in rows.capsules], 6),
+        capsule_frame=np.array([frame for frame, *_ in rows.capsules], np.int32),
+        capsule_axis=np.array([_axis_of_frame(frame, numbers[3:]) for frame, numbers, *_ in rows.capsules], np.int32),
         pairs=_i(pair_rows, 4),
         planes=_i(plane_rows, 3),
         tests=_i(rows.tests, 2),
-        test_numbers=_f(rows.test_numbers, 6),
+        test_numbers=_f(rows.test_numbers, 4),
         tables=_i(table_rows, 4),
         table_numbers=_f(numbers, 4),
         table_columns=np.array(columns, np.int32),
@@ -346,12 +359,13 @@ def _capsule_tests(rows: _Rows, pairs: Pairs, pair: int, levels: tuple[int, int 
             continue
         for i in rows.of(a, side, level):
             for k in rows.of(b, side, level):
-                sum_ = rows.capsules[i][2] + rows.capsules[k][2] + margin
-                squares = [max(float(rows.capsules[c][1][3:] @ rows.capsules[c][1][3:]), SHORT) for c in (i, k)]
+                sum_, lengths = (
+                    rows.capsules[i][3] + rows.capsules[k][3] + margin,
+                    [rows.capsules[c][2] for c in (i, k)],
+                )
                 near = (sum_ + epsilon) ** 2 if side == "outer" else ABSENT
                 hit = max(sum_ - epsilon, 0.0) ** 2 if side == "inner" or exact else ABSENT
-                balls = all(square <= SHORT for square in squares)
-                found.append((not balls, (i, k), [squares[0], 1 / squares[0], squares[1], 1 / squares[1], near, hit]))
+                found.append((any(lengths), (i, k), [*lengths, near, hit]))
     found.sort(key=lambda each: each[0])
     first, balls = len(rows.tests), sum(not each[0] for each in found)
     rows.tests += [each[1] for each in found]
@@ -367,12 +381,21 @@ def _plane_tests(rows: _Rows, pairs: Pairs, pair: int, levels: tuple[int, int | 
         if level is None:
             continue
         for k in rows.of(b, side, level):
-            radius = rows.capsules[k][2] + margin
+            _, _, length, own_radius = rows.capsules[k]
+            radius = own_radius + margin
             near = radius + epsilon if side == "outer" else -np.inf
             hit = radius - epsilon if side == "inner" or exact else -np.inf
             rows.tests.append((plane, k))
-            rows.test_numbers.append([0.0, 0.0, 0.0, 0.0, near, hit])
+            rows.test_numbers.append([0.0, length, near, hit])
     return [pair, first, len(rows.tests) - first]
+
+
+def _axis_of_frame(frame: int, axis: np.ndarray) -> int:
+    """Where a kernel has a frame's axis that is ``axis`` (3,), but for what nobody measures; else -1."""
+    for k in range(3):
+        if np.abs(axis - np.eye(3)[k]).max() < ALIGNED:
+            return 12 * frame + 3 * k
+    return -1
 
 
 def _words(labels: np.ndarray) -> np.ndarray:

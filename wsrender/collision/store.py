@@ -19,7 +19,7 @@ from wsrender.robots.chain import Chain
 
 FOLDER = "WSRENDER_CACHE_DIR"  # environment variable
 LIMIT_BYTES = 2**30  # of all programs; those not used for longest go first
-MADE = 11  # how programs are made: counted up with every change of certificates, covers or arrays
+MADE = 12  # how programs are made: counted up with every change of certificates, covers or arrays
 
 
 _LATEST: dict[str, Program] = {}  # of this process

@@ -91,6 +91,9 @@ class Collisions:
         q = drawn_or_given(self.pipeline, first + open_.astype(np.int64))
         found = blocked_by(self.pairs, self.distances, self.chain, q, bits.astype(bool))
         found = np.where(found > 0, found, fetched(self._otherwise, 0, count))
+        if not self.device.is_cuda:
+            self.labels.numpy()[open_] = found
+            return
         inputs = [device_array(open_, wp.int32, self.device), device_array(found, wp.uint8, self.device)]
         put = loaded(put_kernel(), self.device)
         launch(put, dim=count, inputs=inputs, outputs=[self.labels], device=self.device)
@@ -136,6 +139,7 @@ def _on_device(program: Program, pairs: Pairs, words: int, device: wp.Device) ->
             len(program.planes),
         )
         struct.n_tables, struct.n_solid_pairs = len(program.tables), len(pairs.pairs)
-        struct.n_lookups, struct.columns, struct.epsilon = len(program.lookups), program.columns, epsilon
+        struct.root, struct.n_lookups = program.root, len(program.lookups)
+        struct.columns, struct.epsilon = program.columns, epsilon
         structs.append(struct)
     return structs[0], structs[1]
