@@ -49,7 +49,7 @@ def supports(points: np.ndarray) -> list[np.ndarray]:
             height, left = points @ corners.T, np.arange(len(points))
             for others in (np.r_[height.argmax(axis=0), height.sum(axis=1).argmax()], None):
                 before = height[left if others is None else others]
-                left = left[~(before > height[left][:, None]).all(axis=2).any(axis=1)]
+                left = left[~np.any(np.all(before > height[left][:, None], axis=2), axis=1)]
             found.append(left)
     return found
 
