@@ -286,9 +286,11 @@ _NARROW = """
 #if defined(__CUDA_ARCH__)
     #define LANE_LOOP for (int l = 0; l < LN; l++)
     constexpr int LN = 1, STRIDE = 1;
+    #define ONCE
 #else
     #define LANE_LOOP _Pragma("clang loop vectorize(assume_safety) interleave_count(1)") for (int l = 0; l < LN; l++)
     constexpr int LN = @BATCH, STRIDE = @BATCH;
+    #define ONCE __attribute__((noinline))  // compiled once, not seven times
 #endif
 #if defined(__CUDA_ARCH__) || @SURFACES
     constexpr int GROUP = 1;
@@ -332,7 +334,7 @@ _NARROW = """
         return x > real(-1.f) ? x : (V)real(-1.f);
     };
     // Farthest point of a solid along d, without its ball, in its own frame.
-    auto support = [&](int solid, const V* d, M live, V* o) {
+    auto support = [&](int solid, const V* d, M live, V* o) ONCE {
         const real* numbers = program.solids.data + 18 * solid;
         const real* size = program.solid_sizes.data + 3 * solid;
         if (numbers[14] == 3.f) {
@@ -555,6 +557,7 @@ _NARROW = """
         for (int w = 0; w < W; w++) masks.data[(long long)place * W + w] = still_[w * LN + l];
     }
     #undef LANE_LOOP
+    #undef ONCE
 """
 
 
