@@ -10,9 +10,11 @@ import pytest
 import wsrender as ws
 from tests.collision.robots import drawn
 from tests.collision.test_labels import AROUND, SELF, labels
+from wsrender.collision.distance import colliding
 from wsrender.documents.constraints import Constraints
 from wsrender.engine import SweepPlan, configurations, devices_of, evaluated_of, merge, sweep
 from wsrender.engine.sweep_plan import Accumulator
+from wsrender.errors import InputError
 from wsrender.pipeline.evaluation import Evaluation
 from wsrender.pipeline.pipeline import Pipeline
 from wsrender.pipeline.sampling import plan_sampling
@@ -217,3 +219,27 @@ def test_each_of_several_robots_says_what_it_rejects():
     job = {"analysis": "robot_comparison", "robots": [arm | {"name": name} for name in ("left", "right")]}
     result = ws.execute(job | {"constraints": {"self_collision": True}, "refined_volume": None, "voxel_size_m": 0.2})
     assert all("self_collision" in robot["rejections"]["first"] for robot in result.document["robots"])
+
+
+def nested(links, span):
+    """A ball on the base, and another at the end of links as long as ``span`` together, no longer than both radii."""
+    body = '<geom name="hand" type="sphere" size="0.1"/><site name="tip"/>'
+    for k in range(links):
+        place = f'<inertial mass="1" pos="0 0 0" diaginertia="1 1 1"/><joint name="j{k}" axis="0 1 0" range="-1 1"/>'
+        body = f'<body name="b{k}">{place}<body pos="{span / links} 0 0">{body}</body></body>'
+    base = f'<body name="base"><geom name="foot" type="sphere" size="0.1"/>{body}</body>'
+    return f'<mujoco><compiler angle="radian" autolimits="true"/><worldbody>{base}</worldbody></mujoco>'
+
+
+def test_pairs_that_touch_always_without_a_proof_are_named():
+    robot = ws.load_robot(nested(4, 0.19999), tip="tip")
+    with pytest.raises(InputError, match=r"rejected by self_collision 64.*exclude = \[\['foot', 'hand'\]\] lets"):
+        ws.analyze(robot, ws.Sobol(64), constraints={"self_collision": True}, refined_volume=None)
+
+
+def test_pairs_nearer_than_a_margin_are_counted_though_they_do_not_touch():
+    robot = ws.load_robot(nested(2, 0.25), tip="tip")
+    (constraint,) = constraints_for(robot, Constraints(self_collision={"margin_m": 0.03}))
+    q = drawn(robot, 200)
+    near = colliding(constraint.own, constraint.distances, constraint.chain, q)[:, 0]
+    assert (near == (0.25 * np.cos(q[:, 1] / 2) < 0.2 + 0.03)).all() and 0 < near.sum() < len(q)

@@ -118,11 +118,3 @@ def samples_entry(constraints: Sequence[Constraint], drawn: int, rejected: np.nd
         return {}
     reasons = {each.name: int(number) for each, number in zip(constraints, rejected, strict=True)}
     return {"samples": {"drawn": drawn, "admitted": drawn - sum(reasons.values()), "rejected": reasons}}
-
-
-def check_admitted(samples: dict[str, Any]) -> None:
-    """Raises InputError where the constraints of a `samples_entry` admit nothing."""
-    if samples and not samples["samples"]["admitted"]:
-        entry = samples["samples"]
-        by = ", ".join(f"{name} {number}" for name, number in entry["rejected"].items() if number)
-        raise InputError("constraints", f"admit none of {entry['drawn']} samples (rejected by {by}): widen them")

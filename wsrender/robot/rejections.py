@@ -7,11 +7,13 @@ import numpy as np
 from scipy.special import gammaln
 
 from wsrender.collision.distance import colliding
+from wsrender.errors import InputError
 from wsrender.pipeline.constraints.collision import labelling
 from wsrender.pipeline.constraints.constraint import Constraint
 from wsrender.robot.constraints import samples_entry
 
 COUNTED = 20_000  # samples of which it is asked which pairs collide
+TRIED = 256  # configurations of which it is asked which pairs are too near in all
 TWO_SIDED = 1.96  # standard deviations of a 95 % interval
 
 
@@ -61,6 +63,30 @@ def colliding_pairs(constraints: Sequence[Constraint], q: np.ndarray, rejected: 
             found += [{"constraint": each.name, "shapes": names, "samples": number}] * (number > 0)
     found.sort(key=lambda pair: -pair["samples"])
     return {"pairs": {"counted": len(q), "colliding": found}}
+
+
+def always_near(constraints: Sequence[Constraint]) -> list[tuple[str, list[str]]]:
+    """Constraints and names of pairs of shapes that are too near in each of TRIED configurations, drawn at random."""
+    found = []
+    for each in labelling(constraints):
+        low, high = each.chain.lower_limits, each.chain.upper_limits
+        q = low + np.random.default_rng(0).random((TRIED, len(low))) * (high - low)
+        near = colliding(each.own, each.distances, each.chain, q).all(axis=0)
+        found += [(each.name, [each.solids[k].name for k in pair]) for pair in each.own.pairs[near]]
+    return found
+
+
+def check_admitted(samples: dict[str, Any], constraints: Sequence[Constraint]) -> None:
+    """Raises InputError where ``constraints`` admit none of a `samples_entry`; it names pairs that always touch."""
+    if not samples or samples["samples"]["admitted"]:
+        return
+    entry, near, remedies = samples["samples"], always_near(constraints), ["widen them"]
+    for reason in dict.fromkeys(name for name, _ in near):
+        pairs = [pair for name, pair in near if name == reason]
+        remedies.append(f"constraints.{reason}.exclude = {pairs} lets what is too near in all {TRIED} tried at random")
+    by = ", ".join(f"{name} {number}" for name, number in entry["rejected"].items() if number)
+    message = f"admit none of {entry['drawn']} samples (rejected by {by}): {'; '.join(remedies)}"
+    raise InputError("constraints", message)
 
 
 def lost_voxels(

@@ -23,8 +23,8 @@ from wsrender.pipeline.constraints.constraint import Constraint
 from wsrender.pipeline.pipeline import tip_pipeline
 from wsrender.pipeline.sampling import plan_sampling
 from wsrender.reach.admission import Admission
-from wsrender.robot.constraints import check_admitted, constraints_of_job, samples_entry
-from wsrender.robot.rejections import rejected_rows
+from wsrender.robot.constraints import constraints_of_job, samples_entry
+from wsrender.robot.rejections import check_admitted, rejected_rows
 from wsrender.robots.kinematics import Kinematics
 from wsrender.robots.reachable_box import reachable_box
 from wsrender.volume.lattice import LatticeBlock, block_around, default_voxel_size
@@ -129,7 +129,7 @@ class KinetostaticFieldAnalysis(Analysis):
             tell(int(numbers[-1]) + 1)
         if self.constraints:
             counts = np.bincount(rejected, minlength=len(self.constraints) + 1)[1:]
-            check_admitted(samples_entry(self.constraints, drawn, counts))
+            check_admitted(samples_entry(self.constraints, drawn, counts), self.constraints)
             cells, rows = cells[rejected == 0], rows[rejected == 0]
         found, voxel, count = np.unique(cells, axis=0, return_inverse=True, return_counts=True)
         sums = np.stack([np.bincount(voxel.ravel(), column, len(found)) for column in rows.T], axis=1)

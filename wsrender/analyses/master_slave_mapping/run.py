@@ -43,7 +43,8 @@ from wsrender.pipeline.pipeline import tip_pipeline
 from wsrender.pipeline.sampling import plan_sampling
 from wsrender.reach.served_positions import served_positions
 from wsrender.robot import Robot
-from wsrender.robot.constraints import check_admitted, constraints_of_job, samples_entry
+from wsrender.robot.constraints import constraints_of_job, samples_entry
+from wsrender.robot.rejections import check_admitted
 from wsrender.robots.reachable_box import reachable_box
 from wsrender.volume.lattice import block_around
 from wsrender.volume.table import Table
@@ -205,7 +206,7 @@ class MasterSlaveMappingAnalysis(Analysis):
         found = served_positions(replace(pipeline, constraints=constraints), self.device, threads)
         samples = samples_entry(constraints, pipeline.sampling.count, found.rejected)
         try:
-            check_admitted(samples)
+            check_admitted(samples, constraints)
         except InputError as error:
             raise error.within(name) from None
         blocked = {each.name: int((found.reasons == k).sum()) for k, each in enumerate(constraints, 1)}

@@ -31,8 +31,8 @@ from wsrender.pipeline.sampling import subsample
 from wsrender.reach.holes import share_of_holes, share_unseen
 from wsrender.reach.voxel_labels import counts
 from wsrender.robot import Robot
-from wsrender.robot.constraints import check_admitted, samples_entry
-from wsrender.robot.rejections import colliding_pairs, first_rejected, lost_voxels, moved_means
+from wsrender.robot.constraints import samples_entry
+from wsrender.robot.rejections import check_admitted, colliding_pairs, first_rejected, lost_voxels, moved_means
 from wsrender.volume.distribution_map import DistributionMap
 from wsrender.volume.volume_data import VolumeData
 
@@ -45,7 +45,7 @@ def workspace_draft(job: WorkspaceJob, robot: Robot, found: WorkspacePartial, th
 
     pipeline, partial, refined = found.pipeline, found.sweep, found.refined
     samples = samples_entry(pipeline.constraints, partial.samples, partial.rejected)
-    check_admitted(samples)
+    check_admitted(samples, pipeline.constraints)
     evaluation = pipeline.evaluation
     units = units_of(evaluation)
     volume = volume_data(pipeline, partial, units)

@@ -43,8 +43,9 @@ from wsrender.pipeline.pipeline import Pipeline
 from wsrender.pipeline.sampling import SamplingPlan, plan_sampling
 from wsrender.reach.inverse_solver import solved_bytes
 from wsrender.robot import Robot
-from wsrender.robot.constraints import check_admitted, constraints_of_job, samples_entry
+from wsrender.robot.constraints import constraints_of_job, samples_entry
 from wsrender.robot.indices import evaluation_of_job
+from wsrender.robot.rejections import check_admitted
 from wsrender.volume.lattice import LatticeBlock, expected_voxels, voxel_of
 from wsrender.volume.volume_data import VolumeData
 
@@ -336,7 +337,7 @@ class WorkspaceAnalysis(Analysis):
 
             how = {"threads": execution.threads, "chunk_size": execution.chunk_size}
             partial = sweep(pipeline, 0, count, devices_of(self.device), progress=report, **how)
-            check_admitted(samples_entry(pipeline.constraints, count, partial.rejected))
+            check_admitted(samples_entry(pipeline.constraints, count, partial.rejected), pipeline.constraints)
             value = self._global_value(pipeline, partial, position, sampling.by)
             sequence.append({"per_joint": levels, "samples": count, "value": value})
             if len(sequence) > 1 and abs(value - sequence[-2]["value"]) <= sampling.tolerance:
