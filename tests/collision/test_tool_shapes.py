@@ -146,6 +146,6 @@ def test_tools_that_cannot_be_had_name_the_field(shape, field, message):
 
 
 def test_a_shape_of_another_kind_is_refused_as_its_document_is():
-    with pytest.raises(InputError, match='must be one of .*, not "half_space"') as caught:
+    with pytest.raises(InputError, match=r'must be one of .*, not "half_space"') as caught:
         ws.load_robot("ur5e", tool_shapes=[ws.HalfSpace()])
     assert caught.value.field == "tool_shapes.0.shape"
