@@ -60,12 +60,15 @@ class ClosedLabels:
         whole = clear & (found.flags == 0) & (found.slack > found.margin)
         return self.form.configurations(found.rows[..., :12]), slack, whole
 
-    def _found(self, position: np.ndarray, orientation: np.ndarray | None, **options: bool) -> ClosedPostures:
+    def _found(
+        self, position: np.ndarray, orientation: np.ndarray | None, *, keep: bool = False, unlimited: bool = False
+    ) -> ClosedPostures:
         T = np.tile(np.eye(4), (len(position), 1, 1))
         T[:, :3, 3] = position
         if orientation is not None:
             T[:, :3, :3] = orientation if orientation.ndim == 3 else _with_z(orientation)
-        return closed_postures(self.form, T, device=self.device, threads=self.threads, **options)
+        device, threads = self.device, self.threads
+        return closed_postures(self.form, T, keep=keep, unlimited=unlimited, device=device, threads=threads)
 
 
 def _with_z(axes: np.ndarray) -> np.ndarray:
