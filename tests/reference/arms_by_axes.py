@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from wsrender.robots.chain import Chain
+from wsrender.robots.joint_space import unlimited
 
 WRIST, PARALLEL = "spherical wrist", "three parallel axes"
 RELATIONS = (
@@ -38,7 +39,8 @@ def chain_of(directions, points, T_tip, lower, upper, revolute=None):
         lower_limits=np.array(lower, float),
         upper_limits=np.array(upper, float),
         periodic=np.zeros(n, bool),
-        effort_limits=None,
+        efforts=unlimited(n),
+        velocity_limits=np.full(n, np.inf),
         joint_is_revolute=np.ones(n, bool) if revolute is None else np.array(revolute, bool),
         joint_source=np.arange(n),
         joint_scale=np.ones(n),
