@@ -81,7 +81,7 @@ def test_summaries_tell_of_a_task_that_the_arm_cannot_do():
     """A planar arm does not move along z: all indices of x, y, z are 0."""
     options = {"indices": "kinematic", "voxel_size_m": 0.05}
     flat, whole = (ws.analyze(planar_arm(), ws.Grid(20), task=task, **options) for task in ("linear", ["x", "y"]))
-    assert "all indices are 0: the task has a direction" in flat.summary()
+    assert "all indices and global isotropy are 0: the task has a direction" in flat.summary()
     assert [("task_without_motion" in codes(result)) for result in (flat, whole)] == [True, False]
     assert repr(whole).startswith("<Result workspace: ") and "400 samples (grid)" in repr(whole)
 

@@ -175,7 +175,7 @@ def _index_notices(pipeline: Pipeline, partial: Partial) -> Iterator[Notice]:
     if not partial.maximum[3 : 3 + len(pipeline.evaluation.indices)].any():
         yield Notice(
             "task_without_motion",
-            "all indices are 0: the task has a direction in which the arm cannot move",
+            "all indices and global isotropy are 0: the task has a direction in which the arm cannot move",
             "choose other rows, such as x, y",
             "task",
         )
