@@ -23,7 +23,7 @@ from wsrender.analyses.design_optimization.job import (
     ParetoSearch,
 )
 from wsrender.analyses.master_slave_mapping.job import Containment, MappingSearch
-from wsrender.documents.constraints import Constraints
+from wsrender.documents.constraints import ArmsConstraints, Constraints
 from wsrender.documents.document import Document
 from wsrender.documents.environment import Environment
 from wsrender.documents.kinetostatics import ForceFieldChoice
@@ -286,7 +286,7 @@ def shared_workspace(
     robots: Sequence[RobotLike],
     sampling: SamplingLike | Sequence[SamplingLike | None] | None = None,
     *,
-    constraints: Constraints | Mapping[str, Any] | None = None,
+    constraints: ArmsConstraints | Mapping[str, Any] | None = None,
     environment: Environment | Mapping[str, Any] | None = None,
     gravity_m_s2: Sequence[float] | np.ndarray | None = None,
     indices: Literal["kinematic", "dynamic", "all"] | list[str] | tuple[str, ...] = "kinematic",
@@ -314,7 +314,8 @@ def shared_workspace(
         document; the arms of one model are loaded with other base and tip.
     ``sampling``: How joint spaces are sampled, one for all robots or a list of one for each; None: 2^20 Sobol samples,
         of a robot that is a Python class 2^16.
-    ``constraints``: Which configurations are admitted; None: all.
+    ``constraints``: Which configurations of every robot are admitted, and in which two of them may be together; None:
+        all.
     ``environment``: What stands around, which the robot's shapes do not enter; None: nothing.
     ``gravity_m_s2``: Gravity in the world, whatever the model says [m/s²]; None: 9.81 along -z.
     ``indices``: Local indices: "kinematic", "dynamic", "all", or a list of names.
@@ -331,7 +332,8 @@ def shared_workspace(
         so small that one of them is left with holes.
     ``max_samples``: Largest number of samples that each robot may take.
     ``refined_volume``: Relative tolerance of the refined volumes that any and that at least two robots reach [1], at
-        every value of a scan too: by inverse kinematics, each with a 95 % interval. None: none.
+        every value of a scan too: by inverse kinematics, each with a 95 % interval; under constraints of what is free,
+        beside what they block. None: none.
     ``scan``: A coordinate of a robot's placement to vary; gives shared volume against it. None: none.
     ``names``: What the result calls the robots; None: as their models.
     ``progress``: True shows a bar on work of more than a second; or a function (done, total, message).
@@ -408,6 +410,9 @@ def collaborative_volume(
     left: SourceLike,
     right: SourceLike,
     *,
+    constraints: ArmsConstraints | Mapping[str, Any] | None = None,
+    environment: Environment | Mapping[str, Any] | None = None,
+    gravity_m_s2: Sequence[float] | np.ndarray | None = None,
     samples: int = 200_000,
     seeds: int = 10,
     seed: int = 0,
@@ -427,6 +432,10 @@ def collaborative_volume(
         of a job document.
     ``right``: The arm whose largest x ends the box: a Robot, what `load_robot` takes, points (N, 3) [m], or the part of
         a job document.
+    ``constraints``: Which configurations of both robots are admitted, and which of the true volume's they may be in
+        together; None: all.
+    ``environment``: What stands around, which the robot's shapes do not enter; None: nothing.
+    ``gravity_m_s2``: Gravity in the world, whatever the model says [m/s²]; None: 9.81 along -z.
     ``samples``: Random configurations of each robot.
     ``seeds``: Runs, with the seeds seed, seed + 1, …; points give the same in each, so that one is enough for two sets.
     ``seed``: Seed of the first run.
@@ -434,7 +443,7 @@ def collaborative_volume(
     ``refinements``: Refinements of the boundary cells, d: gives V₀ … V_d.
     ``neighbours``: Neighbours that make a boundary cell: 4 in its layer of constant z, or 6.
     ``refined_volume``: Relative tolerance of the true volume that both robots reach [1], by inverse kinematics: 0.01 if
-        it is not given for two robots. None: none.
+        it is not given for two robots; under constraints of what is free. None: none.
     ``max_samples``: Largest number of configurations of all runs together.
     ``device``: Where the kernels run: "auto" (a GPU if there is one), "cpu", "cuda" or "cuda:N".
     ``progress``: True shows a bar on work of more than a second; or a function (done, total, message).

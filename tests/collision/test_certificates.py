@@ -177,7 +177,7 @@ def test_levers_are_no_shorter_than_what_random_configurations_have(seed):
     bodies = robot.bodies
     chain, q, tight = bodies.chain, drawn(robot, 3000), []
     frames = frames_of(chain, q)
-    for solid in map(collisions._solid, bodies.shapes):
+    for solid in map(collisions.solid_of, bodies.shapes):
         for joint in np.flatnonzero(chain.joint_is_revolute).tolist():
             T = np.linalg.inv(frames[:, joint + 1]) @ frames[:, solid.joint + 1] @ solid.T
             points = np.einsum("nij,pj->npi", T[:, :3, :3], solid.points) + T[:, None, :3, 3]

@@ -20,7 +20,11 @@ from wsrender.robot.constraints import constraints_for
 
 
 def measured(guarded, **options):
-    return free_measures(guarded.robot.chain, guarded.constraints, **{"tolerance": 0.01, "device": "cpu"} | options)
+    return free_of(guarded.robot.chain, guarded.constraints, **{"tolerance": 0.01, "device": "cpu"} | options)
+
+
+def free_of(chain, constraints, tolerance, **options):
+    return free_measures([chain], [constraints], {"": 1}, tolerance, **options)[""]
 
 
 def holds(measure, exact):
@@ -61,7 +65,7 @@ def test_what_each_of_two_constraints_blocks():
     """A region that ends at x = .5 m, whatever the posture, and of the rest what is below the floor."""
     guarded, end = arms.two_links(), 0.5
     region = constraints_for(guarded.robot, Constraints(region={"box": {"upper_m": [end, None, None]}}), None)
-    found = free_measures(guarded.robot.chain, (*region, *guarded.constraints), 0.01)
+    found = free_of(guarded.robot.chain, (*region, *guarded.constraints), 0.01)
     x, z = np.meshgrid(*[np.linspace(-2, 2, 4001) * arms.LINK] * 2, indexing="ij")
     disc, above = np.hypot(x, z) <= 2 * arms.LINK, z >= arms.FLOOR + arms.RADIUS
     cell = (arms.LINK / 1000) ** 2
@@ -98,7 +102,7 @@ def test_a_search_that_misses_all_has_intervals_that_documents_hold(monkeypatch,
     monkeypatch.setattr(FreeSet, "found_later", lambda *_: FalseNegatives(1, 1))
     robot = arms.two_links().robot
     region = {"sphere": {"position_m": [center, 0, 0], "radius_m": 0.2}}
-    found = free_measures(robot.chain, constraints_for(robot, Constraints(region=region), None), 0.05)
+    found = free_of(robot.chain, constraints_for(robot, Constraints(region=region), None), 0.05)
     json.dumps({name: asdict(each) for name, each in found.items()}, allow_nan=False)
     assert found["blocked"].ci95[0] == 0 and found["free"].ci95[1] >= np.pi * 4 * arms.LINK**2
 

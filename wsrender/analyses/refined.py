@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from wsrender.pipeline.constraints.constraint import Constraint
 from wsrender.pipeline.constraints.region import Region
@@ -12,13 +12,15 @@ from wsrender.reach.measure_refinement import (
     free_measures,
     refined_measure,
     refined_measures,
-    unmeasured,
 )
 from wsrender.reach.volume_estimate import Event
 from wsrender.reach.voxel_labels import label_voxels
 from wsrender.robots.kinematics import Kinematics
 from wsrender.volume.measure import UNITS
 from wsrender.volume.volume_data import VolumeData
+
+if TYPE_CHECKING:
+    from wsrender.robot.arms_collision import ArmsApart
 
 Progress = Callable[[int, int, str], None]
 VOLUME, VOXELS = "refined volume", "labels of voxels"  # what is going on
@@ -52,7 +54,12 @@ def refined(
     options = {"seed": seed, "device": device, "threads": threads, "progress": _named(progress, VOLUME)}
     if not others:
         return measure_entry(refined_measure(chain, tolerance, region=region, **options), tolerance)
-    found = free_measures(chain, others, tolerance, region=region, **options)
+    found = free_measures([chain], [others], {FREE: 1}, tolerance, region=region, **options)
+    return _free_entry(found[FREE], tolerance)
+
+
+def _free_entry(found: Mapping[str, RefinedMeasure], tolerance: float) -> dict[str, Any]:
+    """The entry of what is free, with ``parts``."""
     return measure_entry(found[FREE], tolerance) | {"parts": _parts(found)}
 
 
@@ -91,17 +98,23 @@ def refined_together(
     device: str,
     progress: Progress | None,
     threads: int | None,
-    constraints: Sequence[Constraint] = (),
+    constraints: Sequence[Sequence[Constraint]],
+    apart: "Mapping[tuple[int, int], ArmsApart]",
 ) -> dict[str, dict[str, Any]]:
-    """Entries of what so many of several placed chains reach, by event; see `refined`."""
-    region, others = divided(constraints)
-    if others:
-        unknown = ", ".join(each.name for each in others)
-        reason = f"inverse kinematics of several robots does not know the constraint {unknown}: only samples do"
-        return {name: measure_entry(unmeasured(chains, reason), tolerance) for name in events}
-    options = {"device": device, "threads": threads, "progress": _named(progress, VOLUME), "region": region}
-    found = refined_measures(chains, events, tolerance, **options)
-    return {name: measure_entry(measure, tolerance) for name, measure in found.items()}
+    """Entries of what so many of several placed chains reach, by event; see `refined`.
+
+    ``constraints`` of each chain have the same names. ``apart``: arms, by their places, that must keep apart where two
+    reach a point together.
+    """
+    options = {"device": device, "threads": threads, "progress": _named(progress, VOLUME)}
+    divisions = [divided(each) for each in constraints]
+    region, others = divisions[0][0], [each for _, each in divisions]
+    if not others[0] and not apart:
+        found = refined_measures(chains, events, tolerance, region=region, **options)
+        return {name: measure_entry(measure, tolerance) for name, measure in found.items()}
+    least = {name: event.least for name, event in events.items()}
+    free = free_measures(chains, others, least, tolerance, apart=apart, region=region, **options)
+    return {name: _free_entry(found, tolerance) for name, found in free.items()}
 
 
 def measure_entry(found: RefinedMeasure, tolerance: float) -> dict[str, Any]:
@@ -137,7 +150,7 @@ def by_measure(measure: dict[str, Any] | None, entry: Any) -> dict[str, Any]:
 
 def volume_entry(measure: dict[str, Any]) -> dict[str, Any]:
     """A `measure_entry` as a volume [m³]: 0 of what is flat, or stays on a surface or curve."""
-    entry = {name: value for name, value in measure.items() if name not in ("quantity", "unit", "reason")}
+    entry = {name: value for name, value in measure.items() if name not in ("quantity", "unit", "reason", "parts")}
     solid = measure["quantity"] == "volume" and measure["value"] is not None
     return entry if solid else entry | {"value": 0.0, "ci95": [0.0, 0.0], "met": True, "undecided": 0.0}
 

@@ -2,8 +2,8 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from itertools import count
-from typing import Any
+from itertools import combinations, count
+from typing import TYPE_CHECKING, Any
 
 from wsrender.analyses.composed import Part, PartialParts, part_of
 from wsrender.analyses.contract import Settled
@@ -16,13 +16,16 @@ from wsrender.analyses.cost import (
 )
 from wsrender.analyses.execution import Execution
 from wsrender.analyses.registry import job_classes, planned
-from wsrender.documents.arm import dotted
-from wsrender.documents.constraints import Constrained
+from wsrender.documents.arm import Arm, dotted
+from wsrender.documents.constraints import ArmsConstraints, Constrained
 from wsrender.documents.options import IndexChoices
 from wsrender.documents.several_robots import PlacedRobot
 from wsrender.errors import InputError
 from wsrender.results.result import Result
 from wsrender.robot import Robot
+
+if TYPE_CHECKING:
+    from wsrender.robot.arms_collision import ArmsApart
 
 
 @dataclass(eq=False)
@@ -119,9 +122,30 @@ def workspace_job(job: Any, arm: PlacedRobot, refined_volume: float | None = Non
     """The workspace job of one robot of a job of several."""
     shared = (*IndexChoices.model_fields, *Constrained.model_fields, "voxel_size_m", "max_samples")
     choices = {name: getattr(job, name) for name in shared}
+    if isinstance(job.constraints, ArmsConstraints):
+        choices["constraints"] = job.constraints.of_each
     choices["voxel_statistics"] = ("count", "maximum")  # what robots are compared by
     own = {"robot": arm.robot, "base": arm.base, "tip": arm.tip, "sampling": arm.sampling}
     return job_classes()["workspace"](**choices, **own, refined_volume=refined_volume)
+
+
+def arms_apart_of(
+    choice: Any, arms: Sequence[Arm], robots: Sequence[Robot], names: Sequence[str]
+) -> "dict[tuple[int, int], ArmsApart]":
+    """What keeps robots apart, by their places, where a job's constraints ask for it. Raises InputError."""
+    if choice is None or choice.arms_collision is None:
+        return {}
+    from wsrender.robot.arms_collision import arms_apart
+
+    return {
+        (i, k): arms_apart(
+            (robots[i], robots[k]),
+            (names[i], names[k]),
+            choice.arms_collision,
+            one_model=arms[i].robot == arms[k].robot,
+        )
+        for i, k in combinations(range(len(robots)), 2)
+    }
 
 
 def robot_names(arms: tuple[PlacedRobot, ...], robots: tuple[Robot, ...]) -> list[str]:

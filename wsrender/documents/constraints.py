@@ -156,6 +156,21 @@ class Constraints(Document):
         return {name: options if isinstance(options, dict) else {} for name, options in acting.items()}
 
 
+class ArmsConstraints(Constraints):
+    """Those of several arms: what every arm must satisfy by itself, and what they must together."""
+
+    arms_collision: Annotated[Apart | None, _switch(Apart), Field(exclude_if=_is_none)] = None
+    """Two arms that reach a point together keep apart from each other, in configurations that all else admits; names
+    of shapes and bodies are led by that of their arm and a stroke. true: they may touch; null: they are not asked
+    for."""
+
+    @property
+    def of_each(self) -> Constraints:
+        """Those of an arm by itself."""
+        given = {name: getattr(self, name) for name in self.model_fields_set - {"arms_collision"}}
+        return Constraints.model_construct(**given)
+
+
 class Constrained(Document):
     """The field of every arm whose configurations may be constrained."""
 

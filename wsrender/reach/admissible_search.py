@@ -70,6 +70,8 @@ class Admissible:
     @property
     def reason(self) -> np.ndarray:
         """Of blocked targets the constraint, from 1, that rejected most solutions, else 0, (N,) int64."""
+        if not self.rejected.shape[1]:
+            return np.zeros(len(self.label), np.int64)
         return np.where(self.label == BLOCKED, 1 + self.rejected.argmax(axis=1), 0)
 
     @property
@@ -212,6 +214,18 @@ class AdmissibleSearch:
             else:
                 starts = np.tile(self._further[first:last], (len(part), 1, 1))
             self._tried(found, part, starts, position, orientation)
+
+    def solutions(self, position: np.ndarray, first: int, last: int) -> tuple[np.ndarray, np.ndarray]:
+        """Configurations (N, s, n) from the admitted samples nearest to positions (N, 3), ``first`` … ``last`` - 1.
+
+        And whether each is admitted and reaches its position, (N, s) bool; s is 0 where no sample is admitted.
+        """
+        if not self._tree:
+            return np.zeros((len(position), 0, self.solver.whole.n)), np.zeros((len(position), 0), bool)
+        starts = self._near(self.solver.features(position), first, last)
+        P, s, n = starts.shape
+        tries = self.solver.tries(starts.reshape(-1, n), np.repeat(position, s, axis=0))
+        return tries.q.reshape(P, s, n), (tries.reached & (self._reasons(tries) == 0)).reshape(P, s)
 
     def blocked_wrongly(self, found: Admissible, position: np.ndarray) -> int:
         """How many of the blocked positions a LONGER search, of other changes, finds free; their labels are lost."""

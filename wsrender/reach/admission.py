@@ -33,6 +33,8 @@ class Admission:
     def rejected(self, q: np.ndarray) -> np.ndarray:
         """The number, from 1, of the first constraint that rejects configurations (N, n), or 0, (N,) int8."""
         threads = 1 if len(q) < WORTH_THREADS else self.threads
+        if not self.constraints:
+            return np.zeros(len(q), np.int8)
         found = evaluate_samples(self._pipeline(q), self.device, threads=threads).rejected
         assert found is not None
         return found
@@ -41,8 +43,8 @@ class Admission:
         """Those of ``count`` Sobol samples that are admitted, (N, n) [rad or m], and their positions (N, 3) [m]."""
         pipeline = self._pipeline(Sobol(count, seed=seed), frozenset({"configuration"}), "float32")
         found = evaluate_samples(pipeline, self.device, threads=self.threads)
-        assert found.q is not None and found.rejected is not None
-        admitted = found.rejected == 0
+        assert found.q is not None
+        admitted = slice(None) if found.rejected is None else found.rejected == 0
         return found.q[admitted].astype(np.float64), found.position[admitted].astype(np.float64)
 
     def _pipeline(self, sampling: object, kept: frozenset[str] = frozenset(), precision: str = "float64") -> Pipeline:

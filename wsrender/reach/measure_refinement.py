@@ -5,6 +5,7 @@ Where the end effector stays on a curved surface or curve there is none; the res
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,12 +13,16 @@ from wsrender.pipeline.constraints.constraint import Constraint
 from wsrender.pipeline.constraints.region import Region
 from wsrender.reach.admission import Admission
 from wsrender.reach.dimension import FLAT, TipSet, tip_set
-from wsrender.reach.free_volume import ALL_BLOCKED, FREE, free_volumes
+from wsrender.reach.free_volume import ALL_BLOCKED, FREE, FreeSet, free_volumes
+from wsrender.reach.pair_search import PairSearch
 from wsrender.reach.reached_set import FalseNegatives, ReachedSet, tolerance_m
 from wsrender.reach.volume_estimate import Event, VolumeEstimate
 from wsrender.reach.volume_refinement import RefinedVolumes, by_the_origin, decided_volumes
 from wsrender.robots.kinematics import Kinematics
 from wsrender.volume.measure import QUANTITIES, UNITS
+
+if TYPE_CHECKING:
+    from wsrender.robot.arms_collision import ArmsApart
 
 CURVED = {0: "the tip does not move", 1: "the tip stays on a curve", 2: "the tip stays on a surface"}
 # Points that are decided at most: so many over the square of the tolerance, and never more than the most. Solid arms
@@ -39,8 +44,9 @@ class RefinedMeasure:
     set has none, and ``reason`` says why; where too few chains have one to share, why ``value`` is 0; else it is "".
     ``met``: whether the interval is as narrow as asked. ``undecided``: how much inverse kinematics left open, in the
     same unit. ``points``: how many it decided. ``position_tolerance_m``: the largest residual that counted as reached.
-    ``false_negatives``: of every chain; of one under constraints two, positions of admitted samples, and random ones
-    that a longer search was tried on too. ``undecided_ci95``: the interval of what was left open.
+    ``false_negatives``: of every chain; of each under constraints two, positions of admitted samples, and random ones
+    that a longer search was tried on too; then of arms that keep apart such random ones. ``undecided_ci95``: the
+    interval of what was left open.
     """
 
     quantity: str
@@ -72,42 +78,56 @@ def refined_measure(
 
 
 def free_measures(
-    chain: Kinematics,
-    constraints: Sequence[Constraint],
+    chains: Sequence[Kinematics],
+    constraints: Sequence[Sequence[Constraint]],
+    least: Mapping[str, int],
     tolerance: float,
     *,
+    apart: "Mapping[tuple[int, int], ArmsApart] | None" = None,
     seed: int = 0,
     device: str = "cpu",
     threads: int | None = None,
     progress: Callable[[int, int], None] | None = None,
     region: Region | None = None,
-) -> dict[str, RefinedMeasure]:
-    """What the end effector reaches in configurations that ``constraints`` admit, to a relative ``tolerance``.
+) -> dict[str, dict[str, RefinedMeasure]]:
+    """What so many of the placed ``chains`` reach in configurations that each one's ``constraints`` admit.
 
-    By name: FREE, ALL_BLOCKED, where it is reached in others alone, and of that what each constraint blocks; see
-    `free_volumes`. Options as in `refined_measures`.
+    ``least`` by name: how many at least, to a relative ``tolerance``. Of each by part: FREE, ALL_BLOCKED, where they
+    reach it in others alone, and of that what each constraint blocks, which have the same names for all chains; see
+    `free_volumes`. ``apart``: chains, by their places, of which two must stand apart where two reach a point together.
+    Options as in `refined_measures`.
     """
-    own = chain.placed(np.eye(4))
-    own = own.relative_to(own.origin)
-    filled = tip_set(own, threads)
-    quantity = QUANTITIES[max(filled.span, 1)]
-    T_world_own = _own_frame([own], filled)
-    if reason := _without_measure([filled], T_world_own):
-        nothing = _without(quantity, reason, tolerance_m(own), 1)
-        return dict.fromkeys((FREE, ALL_BLOCKED, *(each.name for each in constraints)), nothing)
+    space = _Space.of(chains, threads)
+    parts = (FREE, ALL_BLOCKED, *(each.name for each in constraints[0]))
+    if space.reason:
+        nothing = _without(space.quantity, space.reason, max(map(tolerance_m, space.chains)), len(chains))
+        return {name: dict.fromkeys(parts, nothing) for name in least}
     how = {"seed": seed, "device": device, "threads": threads}
-    reached = ReachedSet.within(own, filled, T_world_own, filled.dimension, chain.T_world_base, region, **how)
+    sets = {}
+    for k in space.filling:
+        base = chains[k].T_world_base
+        filled = space.chains[k], space.sets[k], space.T_world_own, space.dimension, base, region
+        reached = ReachedSet.within(*filled, **how)
+        sets[k] = FreeSet(reached, Admission(chains[k], constraints[k], device, threads))
+    numbers = list(sets)
     found = free_volumes(
-        reached,
-        Admission(chain, constraints, device, threads),
+        list(sets.values()),
+        least,
         tolerance,
+        pairs={
+            (numbers.index(i), numbers.index(k)): PairSearch(sets[i].search, sets[k].search, each)
+            for (i, k), each in (apart or {}).items()
+            if i in sets and k in sets
+        },
         seed=seed,
         max_points=most_points(tolerance),
         progress=progress,
     )
-    return {
-        name: _measure(quantity, estimate, "", found, found.false_negatives) for name, estimate in found.volumes.items()
-    }
+    measures: dict[str, dict[str, RefinedMeasure]] = {name: {} for name in least}
+    for (name, part), estimate in found.volumes.items():
+        reason = "" if least[name] <= len(sets) else LESS[space.dimension]
+        measures[name][part] = _measure(space.quantity, estimate, reason, found, found.false_negatives)
+    return measures
 
 
 def refined_measures(
@@ -128,21 +148,16 @@ def refined_measures(
     False and the interval as wide as it must be. ``progress``: called with the points decided and about how many there
     will be. ``region``: positions elsewhere in the world do not count.
     """
-    bases = [chain.T_world_base for chain in chains]
-    chains = by_the_origin(chains)
-    sets = [tip_set(chain, threads) for chain in chains]
-    highest = max(filled.dimension for filled in sets)
-    filling = [k for k, filled in enumerate(sets) if filled.dimension == highest]
-    quantity = QUANTITIES[max(max(sets[k].span for k in filling), 1)]
-    T_world_own = _own_frame([chains[k] for k in filling], sets[filling[0]])
-    if reason := _without_measure([sets[k] for k in filling], T_world_own):
-        nothing = _without(quantity, reason, max(map(tolerance_m, chains)), len(chains))
+    space = _Space.of(chains, threads)
+    if space.reason:
+        nothing = _without(space.quantity, space.reason, max(map(tolerance_m, space.chains)), len(chains))
         return dict.fromkeys(events, nothing)
+    filling = space.filling
     found = decided_volumes(
-        [chains[k] for k in filling],
-        [sets[k] for k in filling],
-        T_world_own,
-        highest,
+        [space.chains[k] for k in filling],
+        [space.sets[k] for k in filling],
+        space.T_world_own,
+        space.dimension,
         events,
         tolerance,
         seed=seed,
@@ -151,14 +166,43 @@ def refined_measures(
         threads=threads,
         progress=progress,
         region=region,
-        bases=[bases[k] for k in filling],
+        bases=[chains[k].T_world_base for k in filling],
     )
     tried = dict(zip(filling, found.false_negatives, strict=True))
     misses = tuple(tried.get(k, FalseNegatives(0, 0)) for k in range(len(chains)))
-    reasons = {name: "" if event.least <= len(filling) else LESS[highest] for name, event in events.items()}
+    reasons = {name: "" if event.least <= len(filling) else LESS[space.dimension] for name, event in events.items()}
     return {
-        name: _measure(quantity, estimate, reasons[name], found, misses) for name, estimate in found.volumes.items()
+        name: _measure(space.quantity, estimate, reasons[name], found, misses)
+        for name, estimate in found.volumes.items()
     }
+
+
+@dataclass(frozen=True, eq=False)
+class _Space:
+    """Where chains are measured: near the origin, in the space of the first ``dimension`` axes of a frame.
+
+    ``filling``: places of those whose positions have that many dimensions, the most; ``reason``: why they have no
+    measure together, or "".
+    """
+
+    chains: list[Kinematics]
+    sets: list[TipSet]
+    filling: list[int]
+    dimension: int
+    quantity: str
+    T_world_own: np.ndarray
+    reason: str
+
+    @classmethod
+    def of(cls, chains: Sequence[Kinematics], threads: int | None) -> "_Space":
+        own = by_the_origin(chains)
+        sets = [tip_set(chain, threads) for chain in own]
+        highest = max(filled.dimension for filled in sets)
+        filling = [k for k, filled in enumerate(sets) if filled.dimension == highest]
+        quantity = QUANTITIES[max(max(sets[k].span for k in filling), 1)]
+        T_world_own = _own_frame([own[k] for k in filling], sets[filling[0]])
+        reason = _without_measure([sets[k] for k in filling], T_world_own)
+        return cls(own, sets, filling, highest, quantity, T_world_own, reason)
 
 
 def most_points(tolerance: float) -> int:
@@ -185,11 +229,6 @@ def _without_measure(sets: list[TipSet], T_world_own: np.ndarray) -> str:
     beside = [filled.thickness_m(T_world_own, dimension) for filled in sets]
     own = [filled.thickness_m(filled.T_world_own, dimension) for filled in sets]
     return APART[dimension] if (np.array(beside) > np.array(own) + slack).any() else ""
-
-
-def unmeasured(chains: Sequence[Kinematics], reason: str) -> RefinedMeasure:
-    """No volume of what chains reach, for a reason."""
-    return _without("volume", reason, max(map(tolerance_m, chains)), len(chains))
 
 
 def _without(quantity: str, reason: str, position_m: float, chains: int) -> RefinedMeasure:

@@ -14,6 +14,7 @@ Cells have one, two or three indices: the volume of a set in a plane is its area
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import product
+from typing import Any
 
 import numpy as np
 
@@ -33,11 +34,17 @@ PURE_SHARE = 0.4  # of the half width that strata without any variance may take 
 
 @dataclass(frozen=True)
 class Event:
-    """Points inside at least ``least`` and at most ``most`` of the sets; ``precise``: to the tolerance asked."""
+    """Points inside at least ``least`` and at most ``most`` of the sets; ``precise``: to the tolerance asked.
+
+    ``sets``: the first of those that are meant, and the one after them; None: all. ``reaching``: at least so many sets
+    must reach into a stratum; None: ``least``.
+    """
 
     least: int
     most: int
     precise: bool = True
+    sets: tuple[int, int] | None = None
+    reaching: int | None = None
 
 
 @dataclass(frozen=True)
@@ -59,7 +66,7 @@ class VolumeEstimate:
 class VolumeEstimates:
     """Estimates by event, and the number of points decided for them (pilots included)."""
 
-    volumes: dict[str, VolumeEstimate]
+    volumes: dict[Any, VolumeEstimate]
     points: int
 
 
@@ -92,7 +99,7 @@ def estimate_volumes(
     membership: Membership,
     strata: Iterable[np.ndarray],
     cell_edge_m: float,
-    events: Mapping[str, Event],
+    events: Mapping[Any, Event],
     tolerance: float,
     *,
     sets: Sequence[int] | None = None,
@@ -135,7 +142,7 @@ class _Estimation:
                 return VolumeEstimates(volumes, self.points)
             self._narrow(volumes)
 
-    def _narrow(self, volumes: dict[str, VolumeEstimate]) -> None:
+    def _narrow(self, volumes: dict[Any, VolumeEstimate]) -> None:
         """Take more points, or cut strata, as the widest of the intervals needs it."""
         needed = np.ceil(np.max([self._needed(k, v) for k, v in enumerate(volumes.values())], axis=0))
         missing = np.maximum(needed - [s.count for s in self.strata], 0)
@@ -170,7 +177,7 @@ class _Estimation:
         agreeing = np.cbrt(pure**2) * QUANTILE**2 * np.sqrt(np.cbrt(pure**2).sum()) / (PURE_SHARE * half)
         return np.maximum(neyman, agreeing)
 
-    def _volumes(self) -> dict[str, VolumeEstimate]:
+    def _volumes(self) -> dict[Any, VolumeEstimate]:
         return {name: self._volume(k, event) for k, (name, event) in enumerate(self.events.items())}
 
     def _volume(self, k: int, event: Event) -> VolumeEstimate:
@@ -186,7 +193,7 @@ class _Estimation:
         fewer, more = _deviation(here, possibly - surely, count)
         value, hidden = (least + most) / 2, self.missed(most)
         above += hidden
-        if event.most < max(e.most for e in self.events.values()):
+        if event.most < max(e.most for e in self.events.values() if e.sets == event.sets):
             below -= hidden  # a point missed by one set may count for this event wrongly
         below = max(below, 0.0)
         met = bool(above - below <= 2 * self.tolerance * (value or size.sum()))
@@ -196,7 +203,8 @@ class _Estimation:
 
     def _may_happen(self, event: int) -> np.ndarray:
         """Whether enough sets reach into every stratum, (S,) bool."""
-        least = list(self.events.values())[event].least
+        asked = list(self.events.values())[event]
+        least = asked.least if asked.reaching is None else asked.reaching
         return np.array([s.sets >= least for s in self.strata])
 
     def _add(self, stratum: _Stratum, count: int) -> None:
@@ -209,11 +217,13 @@ class _Estimation:
 
     def _happens(self, labels: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Whether each event surely or possibly happens at points with these labels, (N, E) bool each."""
-        inside, undecided = (labels == 1).sum(axis=1), (labels < 0).sum(axis=1)
-        most = inside + undecided
-        events = self.events.values()
-        surely = [(inside >= e.least) & (most <= e.most) for e in events]
-        possibly = [(most >= e.least) & (inside <= e.most) for e in events]
+        surely, possibly = [], []
+        for e in self.events.values():
+            own = labels[:, slice(*(e.sets or (None,)))]
+            inside = (own == 1).sum(axis=1)
+            most = inside + (own < 0).sum(axis=1)
+            surely.append((inside >= e.least) & (most <= e.most))
+            possibly.append((most >= e.least) & (inside <= e.most))
         return np.stack(surely, axis=1), np.stack(possibly, axis=1)
 
     def _sort(self, stratum: _Stratum) -> None:

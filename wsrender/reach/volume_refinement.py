@@ -8,6 +8,7 @@ a plane or on a line the same gives areas and lengths.
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -28,7 +29,7 @@ class RefinedVolumes:
     ``position_m``: the largest residual that counted as reached [m].
     """
 
-    volumes: dict[str, VolumeEstimate]
+    volumes: dict[Any, VolumeEstimate]
     points: int
     false_negatives: tuple[FalseNegatives, ...]
     position_m: float
@@ -121,7 +122,7 @@ def decided_volumes(
         decided = [each.decided_among(points, own[at] > 0) for each, own in zip(solid, classes, strict=True)]
         return np.stack([label for label, _ in decided], axis=1), np.stack([far for _, far in decided], axis=1)
 
-    strata, reaching = _strata(classes, min(event.least for event in events.values()))
+    strata, reaching = strata_of(classes, min(event.least for event in events.values()))
     found = estimate_volumes(
         membership,
         [cells + block.first_voxel[:dimension] for cells in strata],
@@ -137,7 +138,7 @@ def decided_volumes(
     return RefinedVolumes(found.volumes, found.points, tuple(misses), position_m)
 
 
-def _strata(classes: Sequence[np.ndarray], least: int) -> tuple[list[np.ndarray], list[int]]:
+def strata_of(classes: Sequence[np.ndarray], least: int) -> tuple[list[np.ndarray], list[int]]:
     """Cells (M, d) of the same classes, whichever set has which, and how many sets may hold anything of them.
 
     Without those of which fewer than ``least`` sets may: it is their number alone that events ask for.

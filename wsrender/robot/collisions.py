@@ -58,7 +58,7 @@ def collision_constraints(
     if own is None and not around:
         return ()
     found = _kept_apart(robot, own, around, environment)
-    _refuse_always(found)
+    refuse_always(found)
     return found
 
 
@@ -87,9 +87,9 @@ def _kept_apart(
     environment: Environment | None,
 ) -> tuple[CollisionConstraint, ...]:
     """The constraints of the robot's surroundings and of its own shapes, of which at least one is asked for."""
-    bodies = _bodies(robot, SELF if own else AROUND)
-    chain = _limited(bodies.chain)
-    shapes = [_solid(shape) for shape in bodies.shapes]
+    bodies = robot_bodies(robot, SELF if own else AROUND)
+    chain = limited(bodies.chain)
+    shapes = [solid_of(shape) for shape in bodies.shapes]
     standing = _standing(environment) if around else ()
     items = [_still(each, chain) for each in standing]
     solids = tuple(shapes + items)
@@ -116,7 +116,7 @@ def _kept_apart(
         pairs = _pairs(bodies.pairs.tolist(), bodies.shapes, own, SELF)
         found.append(CollisionConstraint(SELF, chain, solids, pairs, own.margin_m))
     for constraint in found:
-        if constraint.margin_m > (size := _size(bodies)):
+        if constraint.margin_m > (size := size_of(bodies)):
             message = f"must be at most the robot's size, {size:.3g} m, not {constraint.margin_m:g}"
             raise InputError(f"constraints.{constraint.name}.margin_m", message)
     if (count := sum(len(constraint.pairs) for constraint in found)) > MOST_PAIRS:
@@ -125,7 +125,8 @@ def _kept_apart(
     return tuple(found)
 
 
-def _bodies(robot: Robot, name: str) -> "Bodies":
+def robot_bodies(robot: Robot, name: str) -> "Bodies":
+    """What a constraint of that name keeps apart. Raises InputError for a robot without shapes that may collide."""
     field = f"constraints.{name}"
     if robot.definition:
         raise InputError(field, "is not available for a robot that is defined by a class: it has no shapes")
@@ -143,8 +144,8 @@ def _standing(environment: Environment | None) -> tuple[Standing, ...]:
         raise error.within("environment") from None
 
 
-def _limited(chain: Chain) -> Chain:
-    """The chain with ends where it has none that tables can hold: see ENDLESS."""
+def limited(chain: Chain) -> Chain:
+    """A chain with ends where it has none that tables can hold: see ENDLESS."""
     ends, source = np.where(chain.revolute, *ENDLESS), chain.joint_source
     limits = np.stack([chain.lower_limits, chain.upper_limits])
     moved = np.where(chain.joint_is_revolute, np.abs(chain.joint_scale * limits[:, source] + chain.joint_offset), 0)
@@ -153,7 +154,8 @@ def _limited(chain: Chain) -> Chain:
     return replace(chain, lower_limits=np.where(held, limits[0], -ends), upper_limits=np.where(held, limits[1], ends))
 
 
-def _solid(shape: Shape) -> Solid:
+def solid_of(shape: Shape) -> Solid:
+    """A robot's shape as a solid."""
     kind: Any = KINDS.get(shape.kind, shape.kind)
     vertices = shape.vertices if kind in ("hull", "surface") else None
     faces = shape.faces if kind == "surface" else None
@@ -195,18 +197,20 @@ def _pairs(pairs: Sequence[Sequence[int]], shapes: Sequence[Shape], choice: Apar
     return without(np.array(pairs, int).reshape(-1, 2), shapes, choice.exclude, f"constraints.{name}.exclude")
 
 
-def _size(bodies: "Bodies") -> float:
+def size_of(bodies: "Bodies") -> float:
     """Upper bound of how far the robot's shapes are from its first joint [m]."""
     chain = bodies.chain
     links = (
         np.linalg.norm(chain.T_joint[1:, :3, 3], axis=1).sum()
         + np.where(np.isfinite(chain.largest_slide), chain.largest_slide, 0.0).sum()
     )
-    own = [np.linalg.norm(s.T_frame_shape[:3, 3]) + _solid(s).bounding_radius for s in bodies.shapes if s.frame != BASE]
+    own = [
+        np.linalg.norm(s.T_frame_shape[:3, 3]) + solid_of(s).bounding_radius for s in bodies.shapes if s.frame != BASE
+    ]
     return float(links + max(own))
 
 
-def _refuse_always(constraints: tuple[CollisionConstraint, ...]) -> None:
+def refuse_always(constraints: tuple[CollisionConstraint, ...]) -> None:
     """Raises InputError for pairs that are proven to collide in every configuration."""
     first, *_ = labelling(constraints)
     together = Pairs.of(first.solids, *(each.group for each in constraints))

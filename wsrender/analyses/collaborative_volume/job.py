@@ -1,11 +1,12 @@
 """The job of the body-elemental algorithm."""
 
 from collections.abc import Iterator, Mapping
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
 from wsrender.documents.arm import Arm, ArmPath
+from wsrender.documents.constraints import ArmsConstraints, Constrained
 from wsrender.documents.format import JobDocument
 from wsrender.documents.options import Device
 from wsrender.documents.point_sets import PointSet, is_point_set
@@ -31,10 +32,8 @@ ArmOrPoints = Annotated[Arm | PointSet, BeforeValidator(_source)]
 Cells = Annotated[tuple[int, int, int], BeforeValidator(_cells)]
 
 
-class CollaborativeVolumeJob(JobDocument):
+class CollaborativeVolumeJob(Constrained, JobDocument):
     """Volume that two arms reach together, by the body-elemental algorithm, and its true value beside it."""
-
-    constraints_elsewhere: ClassVar[str] = '"shared_workspace" says what is common to arms under them'
 
     analysis: Literal["collaborative_volume"] = "collaborative_volume"
     """Name of the analysis."""
@@ -54,9 +53,12 @@ class CollaborativeVolumeJob(JobDocument):
     """Refinements of the boundary cells, d: gives V₀ … V_d."""
     neighbours: Annotated[Literal[4, 6], BeforeValidator(integer)] = 4
     """Neighbours that make a boundary cell: 4 in its layer of constant z, or 6."""
+    constraints: ArmsConstraints | None = None  # pyright: ignore[reportIncompatibleVariableOverride]
+    """Which configurations of both robots are admitted, and which of the true volume's they may be in together; null:
+    all."""
     refined_volume: RelativeTolerance | None = None
     """Relative tolerance of the true volume that both robots reach [1], by inverse kinematics: 0.01 if it is not given
-    for two robots. null: none."""
+    for two robots; under constraints of what is free. null: none."""
     max_samples: Count = 10_000_000_000
     """Largest number of configurations of all runs together."""
     device: Device = "auto"
@@ -85,5 +87,9 @@ class CollaborativeVolumeJob(JobDocument):
         """(field, message) of every pair of fields that do not go together."""
         if self.refined_volume is not None and len(self.arms()) < 2:
             yield "refined_volume", "must be null: points are no robots, whose inverse kinematics decides"
+        if len(self.arms()) < 2:
+            for name in ("constraints", "environment"):
+                if getattr(self, name) is not None:
+                    yield name, "must be null: points have no configurations that are admitted or not"
         if (total := self.samples * self.seeds * len(self.arms())) > self.max_samples:
             yield "samples", f"makes {total:.4g} configurations, above max_samples = {self.max_samples:.4g}"

@@ -2,7 +2,7 @@
 
 import math
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -13,16 +13,26 @@ from wsrender.analyses.estimate import RATE_CPU_CORE
 from wsrender.analyses.execution import Execution
 from wsrender.analyses.headline import headline_of, no_headline
 from wsrender.analyses.partial_result import PartialResult, joined_rows, rows_of_shard
-from wsrender.analyses.refined import Progress, refined_together, volume_entry
+from wsrender.analyses.refined import Progress, divided, refined_together, volume_entry
+from wsrender.analyses.several_robots import arms_apart_of
 from wsrender.documents.point_sets import PointSet
 from wsrender.documents.sampling import Random
-from wsrender.engine import sampled_positions
+from wsrender.engine import evaluate_samples, sampled_positions
 from wsrender.multi import body_elements
-from wsrender.pipeline.pipeline import tip_pipeline
+from wsrender.pipeline.constraints.constraint import Constraint
+from wsrender.pipeline.evaluation import Evaluation
+from wsrender.pipeline.pipeline import Pipeline, tip_pipeline
+from wsrender.pipeline.sampling import plan_sampling
 from wsrender.reach import Event
 from wsrender.robot import Robot
+from wsrender.robot.constraints import check_admitted, constraints_of_job, samples_entry
+from wsrender.volume.measure import UNITS
 from wsrender.volume.table import Table
 
+if TYPE_CHECKING:
+    from wsrender.robot.arms_collision import ArmsApart
+
+SIDES = ("left", "right")
 POINT_BYTES = 165.0  # of two arms: positions, places in the box, cells
 POSITIONS_PER_S = 2e6  # of one CPU core
 BIASED = 'the body-elemental volume is biased; "refined_volume" gives the true one of two robots'
@@ -36,7 +46,7 @@ class CollaborativeVolumeAnalysis(Analysis):
 
     def prepare(self, device: str, target: str) -> Settled:
         """Raises InputError for points that cannot be read."""
-        _ = self.sources
+        _ = self.sources, self.constraints, self.apart
         return Settled(device, target, ((0, max(self._samples, 1)),), self._of_a_run or None)
 
     @cached_property
@@ -45,6 +55,16 @@ class CollaborativeVolumeAnalysis(Analysis):
         robots, (left, right) = iter(self.robots), (self.job.left, self.job.right)
         left_points = left.array() if isinstance(left, PointSet) else next(robots)
         return left_points, right.array() if isinstance(right, PointSet) else next(robots)
+
+    @cached_property
+    def constraints(self) -> list[tuple[Constraint, ...]]:
+        """What each robot must satisfy by itself; tables of collisions are made here."""
+        return [constraints_of_job(self.job, robot) for robot in self.robots]
+
+    @cached_property
+    def apart(self) -> "dict[tuple[int, int], ArmsApart]":
+        """What keeps the two apart, if asked."""
+        return arms_apart_of(self.job.constraints, list(self.job.arms().values()), self.robots, SIDES)
 
     @property
     def _of_a_run(self) -> int:
@@ -61,9 +81,11 @@ class CollaborativeVolumeAnalysis(Analysis):
         """Samples, the points of one run with its cells, and the true volume where it is asked for."""
         samples = float(self._samples)
         drawn, seconds = pictures_cost("refinements")
-        seconds += samples / POSITIONS_PER_S + refined_seconds(self.job.refined_volume) * bool(len(self.robots) == 2)
+        searched = bool(self.apart) or any(divided(each)[1] for each in self.constraints)
+        refined = refined_seconds(self.job.refined_volume, searched)
+        seconds += samples / POSITIONS_PER_S + refined * bool(len(self.robots) == 2)
         points, cells = POINT_BYTES * self._points, _cell_bytes(self.job)
-        memory = max(points + cells, refined_bytes(self.job.refined_volume))
+        memory = max(points + cells, refined_bytes(self.job.refined_volume, searched))
         asks = Asks("samples" if points > cells else "refinements", "take fewer samples, refinements or cells")
         return Cost(samples, memory, DOCUMENT_BYTES + drawn, seconds, asks)
 
@@ -74,7 +96,7 @@ class CollaborativeVolumeAnalysis(Analysis):
 
     def compute(self, shard: int, execution: Execution, tell: Tell) -> PartialResult:
         """V₀ … V_d of every seed of the shard; of points alone of all."""
-        job, done, rows, cells = self.job, 0, [], []
+        job, done, rows, cells, rejected = self.job, 0, [], [], []
         first, count = self.shards[shard]
         runs = range(job.seeds)
         if self._of_a_run:
@@ -85,8 +107,8 @@ class CollaborativeVolumeAnalysis(Analysis):
             for side, source in enumerate(self.sources):
                 if isinstance(source, Robot):
                     sampling = Random(job.samples, seed=(2 * seed + side) % 2**63)
-                    pipeline = tip_pipeline(source.chain, sampling)
-                    source = sampled_positions(pipeline, self.device, threads=execution.threads)
+                    source, of_each = self._positions(side, sampling, execution)
+                    rejected.append(of_each)
                     done += job.samples
                 points.append(source)
                 tell(done)
@@ -94,7 +116,26 @@ class CollaborativeVolumeAnalysis(Analysis):
             found = body_elements(left, right, job.cells, job.refinements, job.neighbours)
             rows.append(found.volumes_m3)
             cells.append([np.count_nonzero(found.collaborative), np.count_nonzero(found.boundary)])
-        return rows_of_shard(first, {"volumes": np.array(rows), "cells": np.array(cells)})
+        found = {"volumes": np.array(rows), "cells": np.array(cells)}
+        if any(self.constraints):
+            found["rejected"] = np.array(rejected).reshape(len(rows), len(self.robots), -1)
+        return rows_of_shard(first, found)
+
+    def _positions(self, side: int, sampling: Random, execution: Execution) -> tuple[np.ndarray, np.ndarray]:
+        """Positions (N, 3) [m] of those of a side's samples that are admitted, and how many each constraint rejects."""
+        robot = self.sources[side]
+        assert isinstance(robot, Robot)
+        if not any(self.constraints):
+            found = sampled_positions(tip_pipeline(robot.chain, sampling), self.device, threads=execution.threads)
+            return found, np.zeros(0, np.int64)
+        constraints = self.constraints[side]
+        plan = plan_sampling(robot.chain, sampling)
+        pipeline = Pipeline(Evaluation(robot.chain), plan, constraints, kept_rows=frozenset(), precision="float32")
+        found = evaluate_samples(pipeline, self.device, threads=execution.threads)
+        assert found.rejected is not None
+        counts = np.bincount(found.rejected, minlength=len(constraints) + 1)
+        check_admitted(samples_entry(constraints, sampling.count, counts[1:]))
+        return found.position[found.rejected == 0].astype(np.float64), counts[1:]
 
     def merge(self, a: PartialResult, b: PartialResult) -> PartialResult:
         """The runs of both, in the order of their seeds."""
@@ -110,7 +151,8 @@ class CollaborativeVolumeAnalysis(Analysis):
         chains, tolerance = [robot.chain for robot in self.robots], self.job.refined_volume
         assert tolerance is not None
         events = {"true": Event(2, 2)}
-        return refined_together(chains, events, tolerance, self.device, progress, execution.threads)["true"]
+        options = self.device, progress, execution.threads, self.constraints, self.apart
+        return refined_together(chains, events, tolerance, *options)["true"]
 
     def with_refinements(self, partial: PartialResult, refinements: list[Any]) -> PartialResult:
         """With the true volume."""
@@ -122,9 +164,10 @@ class CollaborativeVolumeAnalysis(Analysis):
         mean, variance = volumes.mean(axis=0), _variance(volumes)
         measure = partial.facts.get("refined")
         true = None if measure is None else volume_entry(measure)
-        about = {
+        about: dict[str, Any] = {
             "robots": [],
             **self.about_robots(),
+            **self._samples_entry(partial),
             "sampling": {"method": "random", "samples": self._samples, "seed": job.seed},
             "refinements": [
                 {
@@ -141,8 +184,19 @@ class CollaborativeVolumeAnalysis(Analysis):
             },
             "volume_m3": {"body_elemental": float(mean[-1]), "true": true},
         }
+        if measure is not None and measure["value"] is not None and "parts" in measure:
+            name = f"{measure['quantity']}_{UNITS[measure['quantity']]}"
+            about[name] = about.get(name, {}) | measure["parts"]
         tables = {"refinements": _curve(mean, variance, true), "seeds": _seeds(job.seed, volumes)}
         return Draft(about, no_headline(BIASED) if measure is None else headline_of(measure), tables=tables)
+
+    def _samples_entry(self, partial: PartialResult) -> dict[str, Any]:
+        """Of both robots under constraints: configurations of all runs drawn, admitted, and rejected by reason."""
+        if not any(self.constraints):
+            return {}
+        drawn, rejected = self.job.samples * self.job.seeds, partial["rejected"].sum(axis=0)
+        each = zip(SIDES, self.constraints, rejected, strict=True)
+        return {"samples": {side: samples_entry(of_side, drawn, by)["samples"] for side, of_side, by in each}}
 
 
 def _cell_bytes(job: CollaborativeVolumeJob) -> float:

@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from typing import Literal
 
+from wsrender.documents.constraints import ArmsConstraints
 from wsrender.documents.quantities import RelativeTolerance
 from wsrender.documents.several_robots import PlacedRobot, PlacementScan, SeveralRobotsJob
 
@@ -12,9 +13,12 @@ class SharedWorkspaceJob(SeveralRobotsJob):
 
     analysis: Literal["shared_workspace"] = "shared_workspace"
     """Name of the analysis."""
+    constraints: ArmsConstraints | None = None  # pyright: ignore[reportIncompatibleVariableOverride]
+    """Which configurations of every robot are admitted, and in which two of them may be together; null: all."""
     refined_volume: RelativeTolerance | None = 0.01
     """Relative tolerance of the refined volumes that any and that at least two robots reach [1], at every value of a
-    scan too: by inverse kinematics, each with a 95 % interval. null: none."""
+    scan too: by inverse kinematics, each with a 95 % interval; under constraints of what is free, beside what they
+    block. null: none."""
     scan: PlacementScan | None = None
     """A coordinate of a robot's placement to vary; gives shared volume against it. null: none."""
 

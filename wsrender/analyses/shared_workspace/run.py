@@ -1,6 +1,6 @@
 """The analysis ``shared_workspace``: what several robots reach together."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -23,16 +23,17 @@ from wsrender.analyses.cost import (
 from wsrender.analyses.execution import Execution
 from wsrender.analyses.headline import NOT_ASKED, headline_of, no_headline
 from wsrender.analyses.partial_result import PartialResult
-from wsrender.analyses.refined import by_measure, refined_together
+from wsrender.analyses.refined import by_measure, divided, refined_together
 from wsrender.analyses.registry import planned
 from wsrender.analyses.several_result import common_entries, notices_of_each, sampling_path, skeletons
-from wsrender.analyses.several_robots import SeveralPlans, SeveralSettled, plan_several, workspace_job
+from wsrender.analyses.several_robots import SeveralPlans, SeveralSettled, arms_apart_of, plan_several, workspace_job
 from wsrender.analyses.shared_workspace.job import SharedWorkspaceJob
 from wsrender.analyses.volume_notices import occupied_differs, tolerance_not_met
 from wsrender.documents.several_robots import PlacementScan
 from wsrender.multi import NUMBER, PRODUCT, reached_by, scanned_volumes, shared_volume, volume_by_number
 from wsrender.notices import Notice
 from wsrender.reach import Event
+from wsrender.robot import Robot
 from wsrender.volume.lattice import block_of_all
 from wsrender.volume.measure import TABLE_UNITS
 from wsrender.volume.table import Table
@@ -41,6 +42,7 @@ from wsrender.volume.volume_data import VolumeData
 if TYPE_CHECKING:
     import trimesh
 
+    from wsrender.robot.arms_collision import ArmsApart
 
 TOGETHER = "what the robots reach together is measured, not what each does: robot_comparison measures that"
 # Of a voxel of the block of all: samples, number and products of indices; of each robot samples and indices;
@@ -61,6 +63,7 @@ class SharedWorkspaceAnalysis(Composed):
     def prepare(self, device: str, target: str) -> SeveralSettled:
         """Raises InputError, MissingInertiaError, ResourceError."""
         several = self.several = plan_several(self.job, self.robots)
+        _ = self._apart(self.robots)
         return several.settled(several.samples + sum(plan.samples for plan in self.scanned))
 
     @cached_property
@@ -92,14 +95,17 @@ class SharedWorkspaceAnalysis(Composed):
     @property
     def cost(self) -> Cost:
         """Samples, bytes and seconds."""
-        several, tolerance = self.several, self.job.refined_volume
+        several, tolerance, asked = self.several, self.job.refined_volume, self.job.constraints
+        searched = bool(divided(several.plans[0].constraints)[1]) or bool(asked and asked.arms_collision)
         swept = in_turn([several.swept_cost, *(plan.swept_cost for plan in self.scanned)])
         (voxels, products), dense = self._block, self._dense_bytes
-        memory = self._bits + max(swept.memory_bytes, several.kept_bytes + max(dense, refined_bytes(tolerance)))
+        memory = self._bits + max(
+            swept.memory_bytes, several.kept_bytes + max(dense, refined_bytes(tolerance, searched))
+        )
         drawn, seconds = pictures_cost("slices", "product", "surface")
         volumes = sum(plan.volume_bytes for plan in several.plans)
         files = DOCUMENT_BYTES + drawn + volumes + FILLED * voxels * (SHARED_BYTES + 4 * products)
-        seconds += swept.seconds + refined_seconds(tolerance) * len(several.plans) * (1 + len(self.scanned))
+        seconds += swept.seconds + refined_seconds(tolerance, searched) * len(several.plans) * (1 + len(self.scanned))
         seconds += dense / DENSE_PER_S + files / WRITTEN_PER_S
         asks = Asks("voxel_size_m", voxel_size_m=several.plans[0].voxel_size_m)
         return Cost(swept.samples, memory, files, seconds, asks)
@@ -135,16 +141,21 @@ class SharedWorkspaceAnalysis(Composed):
 
     def refinement(self, number: int, progress: Progress | None, execution: Execution) -> dict[str, Any]:
         """The refined volumes as the robots stand (0), or at a value of the scan."""
-        robots = zip(self.robots, self.job.robots, strict=True)
-        chains = [robot.chain.held(arm.sampling.locked) for robot, arm in robots]
+        plans = list(self.several.plans)
         if self.job.scan is not None and number:
-            moved, T_world_base = self.job.scan.robot, self.scanned[number - 1].robot.chain.T_world_base
-            chains[moved] = chains[moved].placed(T_world_base)
+            plans[self.job.scan.robot] = self.scanned[number - 1]
+        robots = [plan.robot for plan in plans]
+        chains = [robot.chain.held(arm.sampling.locked) for robot, arm in zip(robots, self.job.robots, strict=True)]
         tolerance, device = self.job.refined_volume, self.several.plans[0].device
         assert tolerance is not None
         events = {"any": Event(1, len(chains)), "shared": Event(2, len(chains))}
-        constraints = self.several.plans[0].pipeline.constraints
-        return refined_together(chains, events, tolerance, device, progress, execution.threads, constraints)
+        constraints = [plan.pipeline.constraints for plan in plans]
+        options = device, progress, execution.threads, constraints, self._apart(robots)
+        return refined_together(chains, events, tolerance, *options)
+
+    def _apart(self, robots: Sequence[Robot]) -> "dict[tuple[int, int], ArmsApart]":
+        """What keeps the robots apart where they stand; tables of collisions are made here."""
+        return arms_apart_of(self.job.constraints, self.job.robots, robots, self.several.names)
 
     def with_refinements(self, partial: PartialParts, refinements: list[Any]) -> "SharedPartial":
         """With the refined volumes."""
@@ -167,10 +178,10 @@ class SharedWorkspaceAnalysis(Composed):
             **_measured_together(common_entries(self.several, results)),
             **measures,
             "volume_m3": {
+                **measures["volume_m3"],
                 "any": any_m3,
                 "shared": shared_m3,
                 "exactly": {str(k): float(by_number[k]) for k in range(1, len(by_number))},
-                "refined": refined,
             },
             "shared_ratio": _ratio(known) if known else shared_m3 / any_m3,
             "shared_ratio_volume": "refined" if known else "occupied",

@@ -14,7 +14,7 @@ Structure = Literal["base_joint", "trailing_joints"]
 """What a grid repeats: every level of the first joint, and of last joints whose axes pass through the tip."""
 STRUCTURES: tuple[Structure, ...] = ("base_joint", "trailing_joints")
 
-ORDER = ("region", "leg_distance", "orientation", "environment", "self_collision", "torque")
+ORDER = ("region", "leg_distance", "orientation", "environment", "self_collision", "torque", "arms_collision")
 """The first that a configuration violates is the reason why it is rejected; others follow by name."""
 
 

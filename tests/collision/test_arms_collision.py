@@ -1,0 +1,134 @@
+"""Two arms against each other: labels of pairs of configurations, and what is refused."""
+
+import mujoco
+import numpy as np
+import pytest
+
+import wsrender as ws
+from tests.collision.robots import drawn, random_text
+from wsrender.collision.distance import Distances
+from wsrender.documents.constraints import Apart
+from wsrender.errors import DocumentError, InputError
+from wsrender.reach.admission import Admission
+from wsrender.robot.arms_collision import arms_apart
+from wsrender.robot.collisions import solid_of
+from wsrender.robots.library import find
+
+AHEAD = ws.Transform(position_m=(0, 0, 0.15))  # of the flange
+BESIDE = ws.Transform(position_m=(0.55, 0.1, 0.05), rpy_deg=(0, 0, 170))
+NAMES = ("left", "right")
+
+
+def two_ur5e(tool: ws.Transform | None = AHEAD):
+    return ws.load_robot("ur5e", tool=tool), ws.load_robot("ur5e", tool=tool, placement=BESIDE)
+
+
+def labels(robots, q, **choice) -> np.ndarray:
+    apart = arms_apart(robots, NAMES, Apart(**choice))
+    return Admission(apart.chain, (apart.constraint,)).rejected(apart.configurations(*q)) > 0
+
+
+def test_labels_are_those_of_a_scene_with_both():
+    """MuJoCo's contacts of two UR5e, as they are in their file, in one scene, at 20,000 pairs of configurations."""
+    robots = two_ur5e()
+    scene = mujoco.MjSpec()
+    for name, robot in zip(NAMES, robots, strict=True):
+        T, quat = robot.chain.T_world_base, np.zeros(4)
+        mujoco.mju_mat2Quat(quat, T[:3, :3].ravel())
+        scene.attach(
+            mujoco.MjSpec.from_file(str(find("ur5e"))),
+            frame=scene.worldbody.add_frame(pos=T[:3, 3], quat=quat),
+            prefix=f"{name}/",
+        )
+    model = scene.compile()
+    data, q = mujoco.MjData(model), [drawn(robot, 20_000, seed) for seed, robot in enumerate(robots)]
+    at = [[model.joint(f"{side}/{name}").qposadr[0] for name in robots[0].joint_names] for side in NAMES]
+    first = np.array([model.body(model.geom_bodyid[geom]).name.startswith("left/") for geom in range(model.ngeom)])
+    found = np.zeros(len(q[0]), bool)
+    for i in range(len(found)):
+        data.qpos[at[0]], data.qpos[at[1]] = q[0][i], q[1][i]
+        mujoco.mj_kinematics(model, data)
+        mujoco.mj_collision(model, data)
+        found[i] = (first[data.contact.geom[:, 0]] != first[data.contact.geom[:, 1]]).any()
+    assert 0.05 < found.mean() < 0.5
+    np.testing.assert_array_equal(labels(robots, q), found)
+
+
+@pytest.mark.parametrize("margin_m", [0.0, 0.05])
+def test_labels_of_random_arms_by_the_distances_of_their_shapes(margin_m):
+    """Of slides and hinges, with any contact bits: by the poses that each robot says of its own shapes."""
+    found, tested = [], 0
+    for seed in (3, 4, 8):
+        placed = ws.Transform(position_m=(0.4, 0.3, -0.2), rpy_deg=(20, 50, 80))
+        robots = (
+            ws.load_robot(random_text(seed, 4), tip="tip", tool=ws.Transform(position_m=(0, 0, 2))),
+            ws.load_robot(random_text(seed + 20, 3), tip="tip", placement=placed),
+        )
+        q = [drawn(robot, 1500, seed) for robot in robots]
+        shapes = [robot.bodies.shapes for robot in robots]
+        poses = [robot.bodies.poses(each) for robot, each in zip(robots, q, strict=True)]
+        distances = Distances([solid_of(shape) for own in shapes for shape in own])
+        near = np.zeros(1500, bool)
+        for i, a in enumerate(shapes[0]):
+            for k, b in enumerate(shapes[1]):
+                if max(a.frame, b.frame) >= 0:
+                    far = distances.between(i, len(shapes[0]) + k, poses[0][:, i], poses[1][:, k], margin_m + 0.01)
+                    near |= far < margin_m
+                    tested += 1
+        np.testing.assert_array_equal(labels(robots, q, margin_m=margin_m), near)
+        found.append(near.mean())
+    assert tested > 20 and max(found) > 0.1 and min(found) < 0.9
+
+
+CROSSED = """<mujoco><compiler angle="radian"/><worldbody><body name="trunk">
+  <geom name="trunk" type="sphere" size=".1"/>
+  <body name="l"><inertial mass="1" pos="0 0 0" diaginertia="1 1 1"/><joint name="l" axis="0 0 1" range="-1 1"/>
+    <geom name="l" type="capsule" size=".02" fromto="0 0 0 .3 0 0"/><site name="l_tip" pos=".4 0 0"/></body>
+  <body name="r" pos="0 .2 0"><inertial mass="1" pos="0 0 0" diaginertia="1 1 1"/>
+    <joint name="r" axis="0 0 1" range="-1 1"/>
+    <geom name="r" type="capsule" size=".02" fromto="0 0 0 .3 0 0"/><site name="r_tip" pos=".4 0 0"/></body>
+</body></worldbody></mujoco>"""
+
+
+def test_arms_of_one_model_against_each_other_alone():
+    """The trunk of both is no shape of the other arm: the left capsule starts in it."""
+    robots = [ws.load_robot(CROSSED, tip=f"{side}_tip") for side in "lr"]
+    apart = arms_apart(robots, NAMES, Apart(), one_model=True).constraint
+    assert [[apart.solids[k].name for k in pair] for pair in apart.pairs] == [["left/l", "right/r"]]
+    q = np.array([[1.0, -1.0], [-1.0, 1.0], [0.0, 0.0], [0.5, 0.4]])
+    elbow = [np.stack([0.3 * np.cos(q[:, k]), 0.3 * np.sin(q[:, k]) + 0.2 * k], axis=1) for k in (0, 1)]
+    assert np.linalg.norm(elbow[0] - elbow[1], axis=1)[1] > 0.04
+    both = arms_apart(robots, NAMES, Apart(), one_model=True)
+    found = Admission(both.chain, (both.constraint,)).rejected(both.configurations(q[:, :1], q[:, 1:]))
+    assert found.tolist() == [1, 0, 0, 0]
+    with pytest.raises(InputError, match="both arms have the joints l"):
+        arms_apart((robots[0], robots[0]), NAMES, Apart(), one_model=True)
+
+
+@pytest.mark.parametrize(
+    ("choice", "tool", "message"),
+    [
+        ({}, None, "would admit nothing: left/link5/1 and right/link5/1; .* meet wherever the tips do; give"),
+        ({"margin_m": 0.31}, AHEAD, "left/link6/0 and right/link6/0 meet wherever .*exclude = "),
+        ({"margin_m": 20}, AHEAD, "margin_m: must be at most the robots' size, 3.06 m, not 20"),
+        ({"exclude": [["left/nothing", "right/link6"]]}, AHEAD, "exclude.0: no shape, and no body .* 'left/nothing'"),
+    ],
+    ids=["tips in shapes", "tips too near", "margin", "exclude"],
+)
+def test_refused(choice, tool, message):
+    with pytest.raises(InputError, match=f"constraints.arms_collision.*{message}"):
+        arms_apart(two_ur5e(tool), NAMES, Apart(**choice))
+
+
+def test_what_meets_wherever_tips_do_may_be_excluded():
+    wrists = [[f"left/{a}", f"right/{b}"] for a in ("link5", "link6") for b in ("link5", "link6")]
+    assert len(arms_apart(two_ur5e(None), NAMES, Apart.model_validate({"exclude": wrists})).constraint.pairs) > 20
+
+
+def test_jobs_of_one_arm_and_of_points_refuse_it():
+    asked = {"constraints": {"arms_collision": True}}
+    with pytest.raises(InputError, match="arms_collision: unknown constraint"):
+        ws.execute({"analysis": "workspace", "robot": {"library": "ur5e"}, **asked})
+    points = {"left": {"robot": "ur5e"}, "right": {"points": [[0, 0, 0]]}}
+    with pytest.raises(DocumentError, match="constraints: must be null: points have no configurations"):
+        ws.execute({"analysis": "collaborative_volume", **points, **asked})
