@@ -31,7 +31,7 @@ def test_constraints_are_taken_or_refused_by_what_takes_them(analysis, field):
         parse_job(document)
     ((named, message),) = refusal.value.problems
     others = re.findall(r'"(\w+)"', message.split(", not {")[0])
-    own = set(job_classes()[analysis].model_fields) | {"minimum_leg_distance_m"}
+    own = set(job_classes()[analysis].model_fields) | {"bodies"}
     assert named == field and others
     assert all(takes(name, field) if name in job_classes() else name in own for name in others), message
 

@@ -7,10 +7,10 @@ from pydantic import BeforeValidator, Field
 
 from wsrender.documents.arm import Arm, ArmPath
 from wsrender.documents.document import Document
-from wsrender.documents.environment import Bounds
+from wsrender.documents.environment import Bounds, Environment
 from wsrender.documents.legs import Interval, Leg, Lengths, Link, SerialJoint, SerialJoints, SerialLeg
 from wsrender.documents.problems import shown
-from wsrender.documents.quantities import Name, PositiveNumber, points_of, quoted, real, sequence
+from wsrender.documents.quantities import Name, NonNegativeNumber, PositiveNumber, points_of, quoted, real, sequence
 from wsrender.documents.robot import Transform, Vector
 
 WORKING_MODES = ("++", "+-", "-+", "--")
@@ -43,6 +43,27 @@ class Region(Bounds):
     """A box in the base frame that the origin of the platform does not leave; null: no side there [m]."""
 
 
+class MechanismBodies(Document):
+    """Solids of a mechanism, which keep apart from each other and from what stands around, at every pose."""
+
+    link_radius_m: PositiveNumber
+    """Radius of links and cranks, capsules along them [m]; those of legs that share a joint may touch."""
+    platform: Environment | None = None
+    """Shapes that the platform carries, in its frame; null: none."""
+    platform_gap_m: PositiveNumber | None = None
+    """How much of a link, next to its joint at the platform, may touch the platform's shapes [m]; null: all of it."""
+    environment: Environment | None = None
+    """What stands around, in the world; null: nothing."""
+    margin_m: NonNegativeNumber = 0.0
+    """Least distance [m]; 0: bodies may touch."""
+
+    def conflicts(self) -> Iterator[tuple[str, str]]:
+        """(field, message) of every pair of fields that do not go together."""
+        shapes = self.platform.items if self.platform else ()
+        if any(item.shape == "half_space" for item in shapes):
+            yield "platform", "must not have half-spaces: a platform ends somewhere"
+
+
 class _Mechanism(Document):
     placement: Transform | None = None
     """The base frame in the world; null: they coincide."""
@@ -56,10 +77,26 @@ class _Mechanism(Document):
     """A pose of the platform in the base frame, which it must reach; null: none."""
     minimum_leg_distance_m: PositiveNumber | None = None
     """Least distance of the links of legs that do not share a joint [m]; null: they may cross."""
+    bodies: Annotated[MechanismBodies | None, Field(exclude_if=lambda value: value is None)] = None
+    """Solids that keep apart; null: there are none."""
 
     def serial_legs(self) -> dict[ArmPath, Arm]:
         """The legs that are robots, by path; none of a mechanism of the library."""
         return {}
+
+    def conflicts(self) -> Iterator[tuple[str, str]]:
+        """(field, message) of every pair of fields that do not go together."""
+        if self.bodies is None:
+            return
+        if self.before or self.after:
+            yield "bodies", "must be null with serial joints before or after: what these carry has no bodies"
+        if self.serial_legs():
+            yield "bodies", 'must be null with legs of the type "serial": they are no straight links'
+        if self.minimum_leg_distance_m is not None:
+            yield (
+                "minimum_leg_distance_m",
+                "must be null with bodies: their links keep apart by themselves",
+            )
 
 
 _UPPER_HALF = Region(lower_m=(None, None, 0.0))
@@ -151,6 +188,7 @@ class LegsMechanism(_Mechanism):
 
     def conflicts(self) -> Iterator[tuple[str, str]]:
         """(field, message) of every pair of fields that do not go together."""
+        yield from super().conflicts()
         if self.serial_legs() and self.minimum_leg_distance_m is not None:
             yield "minimum_leg_distance_m", 'must be null with legs of the type "serial": they are no straight links'
         deltas = sum(leg.type == "delta" for leg in self.legs)

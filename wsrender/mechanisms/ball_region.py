@@ -59,6 +59,8 @@ def ball_region(mechanism: Mechanism, rotation: np.ndarray) -> BallRegion:
     """
     if mechanism.constraints:
         raise InputError("minimum_leg_distance_m", "must be null: else not only spheres bound the workspace")
+    if mechanism.bodies:
+        raise InputError("bodies", "must be null: else not only spheres bound the workspace")
     for leg in mechanism.numeric:
         raise InputError(f"legs.{leg.number}", "is solved numerically: what bounds the workspace is unknown")
     shift = mechanism.platform @ rotation.T

@@ -7,7 +7,7 @@ B = (e - b)·(a × u), C = (|e - b|² + r² - l²) / 2r; θ = atan2(B, A) ± aco
 Merlet, *Parallel Robots*, 2006, chapter 3.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from itertools import product
 
 import numpy as np
@@ -46,6 +46,10 @@ class LegSolutions:
     inside: np.ndarray
     clear: np.ndarray
     level: np.ndarray
+
+    def at(self, rows: np.ndarray) -> "LegSolutions":
+        """Of some of the poses alone."""
+        return LegSolutions(*(getattr(self, each.name)[rows] for each in fields(self)))
 
     @property
     def feasible(self) -> np.ndarray:

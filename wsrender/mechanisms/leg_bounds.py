@@ -22,7 +22,7 @@ def proves_all(mechanism: Mechanism) -> bool:
     kinds = np.array(mechanism.kinds)
     turning = (mechanism.base_cone_cosine > -1) & (kinds != "UPS")
     free = not turning.any() and not (mechanism.platform_cone_cosine > -1).any()
-    return free and not mechanism.constraints and not mechanism.numeric
+    return free and not mechanism.constraints and not mechanism.numeric and mechanism.bodies is None
 
 
 def surely_unreached(mechanism: Mechanism, poses: np.ndarray, within_m: np.ndarray) -> np.ndarray:

@@ -9,6 +9,7 @@ import numpy as np
 from wsrender.documents.legs import ClosedFormLeg, Cone, DeltaLeg, Leg, PUSLeg, RUSLeg, SerialLeg, UPSLeg
 from wsrender.documents.mechanism import Delta, LegsMechanism, MechanismSpec, SixPUS, StewartGough
 from wsrender.documents.robot import Transform
+from wsrender.mechanisms.bodies import Bodies, bodies_of
 from wsrender.mechanisms.serial_leg import NumericLeg, numeric_leg
 from wsrender.pipeline.constraints.leg_distance import LegDistance
 from wsrender.robot import Robot
@@ -28,7 +29,7 @@ class Mechanism:
     ``platform_cone_…`` at the platform. What a kind of leg does not have is 0.
     ``region_lower``, ``region_upper`` (3,): box of the platform's origin, infinite where it has no side.
     ``constraints``: of `LegDistance`, where two legs may not come closer. ``T_world_base`` (4, 4). ``home`` (4, 4): a
-    pose that is reached, in the base frame, or None.
+    pose that is reached, in the base frame, or None. ``bodies``: solids that keep apart, or None.
     """
 
     name: str
@@ -52,6 +53,7 @@ class Mechanism:
     T_world_base: np.ndarray
     home: np.ndarray | None
     numeric: tuple[NumericLeg, ...] = ()
+    bodies: Bodies | None = None
 
     @property
     def n(self) -> int:
@@ -124,13 +126,19 @@ def mechanism_of(spec: MechanismSpec, robots: Sequence[Robot] | None = None) -> 
         T_world_base=(spec.placement or Transform()).matrix(),
         home=spec.home.matrix() if spec.home else None,
         numeric=tuple(numeric_leg(k, leg, robot) for (k, leg), robot in zip(serial, given, strict=True)),
+        bodies=bodies_of(spec.bodies, (spec.placement or Transform()).matrix(), _apart(legs)),
     )
 
 
 def _constraints(least_m: float | None, legs: Sequence[ClosedFormLeg]) -> tuple[LegDistance, ...]:
     """That legs keep a distance, if asked; those that share an end, or a rail, may touch."""
-    pairs = [(a, b) for a, b in combinations(range(len(legs)), 2) if not _share_an_end(legs[a], legs[b])]
-    return (LegDistance(least_m, tuple(pairs)),) if least_m and pairs else ()
+    pairs = _apart(legs)
+    return (LegDistance(least_m, pairs),) if least_m and pairs else ()
+
+
+def _apart(legs: Sequence[ClosedFormLeg]) -> tuple[tuple[int, int], ...]:
+    """Pairs of legs that share neither an end nor a rail."""
+    return tuple((a, b) for a, b in combinations(range(len(legs)), 2) if not _share_an_end(legs[a], legs[b]))
 
 
 def _share_an_end(a: ClosedFormLeg, b: ClosedFormLeg) -> bool:

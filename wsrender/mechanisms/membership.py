@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from wsrender.engine import LegTest, OrientationCounts, count_orientations, count_orientations_at, joined, poses_reached
-from wsrender.mechanisms.inverse_kinematics import fault_text, inverse_kinematics
+from wsrender.mechanisms.inverse_kinematics import LegSolutions, fault_text, inverse_kinematics
 from wsrender.mechanisms.mechanism import Mechanism
 from wsrender.reach.evidence import REACHABLE, UNDECIDED, UNREACHABLE
 from wsrender.robots.reachable_box import reachable_box as box_of_chain
@@ -30,7 +30,7 @@ def leg_test(mechanism: Mechanism, precision: str = "float64") -> LegTest:
 
 def _by_pose(mechanism: Mechanism) -> bool:
     """Whether poses are asked one by one, not by the kernels of lattices."""
-    return bool(mechanism.numeric) or _joint_branches(mechanism)
+    return bool(mechanism.numeric) or _joint_branches(mechanism) or mechanism.bodies is not None
 
 
 def _joint_branches(mechanism: Mechanism) -> bool:
@@ -168,6 +168,8 @@ def poses_labelled(
         if _joint_branches(mechanism):
             some = np.flatnonzero(fits)
             fits[some] = inverse_kinematics(mechanism, poses[some]).feasible
+        some = np.flatnonzero(fits)
+        fits[some] = bodies_apart(mechanism, poses[some])
     else:
         fits = inverse_kinematics(mechanism, poses).inside
     labels = np.where(fits, REACHABLE, UNREACHABLE).astype(np.int8)
@@ -180,14 +182,37 @@ def poses_labelled(
     return labels, asked
 
 
+def bodies_apart(mechanism: Mechanism, poses: np.ndarray) -> np.ndarray:
+    """Whether the bodies keep apart at platform poses (N, 4, 4), base frame, on some branch of the legs, (N,) bool."""
+    if mechanism.bodies is None:
+        return np.ones(len(poses), bool)
+    apart = np.zeros(len(poses), bool)
+    for branch in mechanism.on_each_branch():
+        left = np.flatnonzero(~apart)
+        legs = inverse_kinematics(branch, poses[left])
+        left, legs = left[legs.feasible], legs.at(legs.feasible)
+        apart[left] = mechanism.bodies.collisions(_segments(branch, legs), poses[left])[0] == 0
+    return apart
+
+
+def _segments(mechanism: Mechanism, legs: LegSolutions) -> list[dict[str, np.ndarray]]:
+    """The links of legs, towards the platform, and cranks, (N, 2, 3) [m] each."""
+    links = np.stack([legs.elbows, legs.joints], axis=2)
+    cranks = np.stack([np.broadcast_to(mechanism.base, legs.elbows.shape), legs.elbows], axis=2)
+    return [
+        {"link": links[:, k]} | ({"crank": cranks[:, k]} if crank > 0 else {})
+        for k, crank in enumerate(mechanism.crank)
+    ]
+
+
 def rejections(mechanism: Mechanism, poses: np.ndarray, labels: np.ndarray, **options: Any) -> tuple[int, int]:
     """How many poses the legs reach by themselves, and how many of these the ``labels`` (N,) do not.
 
     0 of a mechanism without constraints; ``options`` of `poses_labelled`.
     """
-    if not mechanism.constraints:
+    if not mechanism.constraints and not mechanism.bodies:
         return 0, 0
-    fitting = poses_labelled(replace(mechanism, constraints=()), poses, **options)[0] == REACHABLE
+    fitting = poses_labelled(replace(mechanism, constraints=(), bodies=None), poses, **options)[0] == REACHABLE
     return int(fitting.sum()), int((fitting & (labels != REACHABLE)).sum())
 
 
@@ -206,6 +231,11 @@ def orientations_labelled(
 def fault_at(mechanism: Mechanism, pose: np.ndarray) -> str:
     """What keeps the mechanism from a platform pose (4, 4), base frame, in words; empty where nothing does."""
     fault = fault_text(mechanism, inverse_kinematics(mechanism, pose[None]), 0)
+    if not fault and not bodies_apart(mechanism, pose[None])[0]:
+        legs = inverse_kinematics(mechanism, pose[None])
+        assert mechanism.bodies
+        found, names = mechanism.bodies.collisions(_segments(mechanism, legs), pose[None])
+        return f"collision: {names[found[0] - 1]} come too near"
     faults: Iterable[str] = (leg.reason(pose) for leg in mechanism.numeric)
     return fault or next((text for text in faults if text), "")
 

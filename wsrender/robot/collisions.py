@@ -91,7 +91,7 @@ def _kept_apart(
     chain = limited(bodies.chain)
     shapes = [solid_of(shape) for shape in bodies.shapes]
     standing = _standing(environment) if around else ()
-    items = [_still(each, chain) for each in standing]
+    items = [standing_solid(each, chain.T_world_base) for each in standing]
     solids = tuple(shapes + items)
     for solid in solids:
         if not max(np.abs(numbers).max() for numbers in (solid.T, solid.size, solid.points)) <= LARGEST_M:
@@ -162,8 +162,8 @@ def solid_of(shape: Shape) -> Solid:
     return Solid(shape.name, kind, shape.frame, shape.T_frame_shape, shape.size, vertices, faces)
 
 
-def _still(standing: Standing, chain: Chain) -> Solid:
-    """A shape of the world as a solid that stands with the base."""
+def standing_solid(standing: Standing, T_world_base: np.ndarray) -> Solid:
+    """A shape of the world as a solid that stands with a base (4, 4)."""
     shape, size, T, vertices, faces = standing.shape, np.zeros(3), np.eye(4), None, None
     match shape:
         case HalfSpace():
@@ -179,7 +179,7 @@ def _still(standing: Standing, chain: Chain) -> Solid:
         case Surface():
             vertices, faces, T = shape.vertices, shape.faces, shape.matrix()
     kind: Any = KINDS.get(shape.shape, shape.shape)
-    T_base: np.ndarray = np.linalg.inv(chain.T_world_base) @ T
+    T_base: np.ndarray = np.linalg.inv(T_world_base) @ T
     if kind == "half_space":  # its point nearest to the base: what is far costs precision
         T_base[:3, 3] = T_base[:3, 2] * (T_base[:3, 2] @ T_base[:3, 3])
     return Solid(standing.name, kind, BASE, T_base, size, vertices, faces)

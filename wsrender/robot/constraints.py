@@ -112,7 +112,7 @@ def notices_of(robot: Robot, job: Any, path: str) -> tuple[Notice, ...]:
     return (*found, Notice("no_pairs", message, remedy, "constraints.self_collision"))
 
 
-def samples_entry(constraints: Sequence[Constraint], drawn: int, rejected: np.ndarray) -> dict[str, Any]:
+def samples_entry(constraints: Sequence[Any], drawn: int, rejected: np.ndarray) -> dict[str, Any]:
     """The entry ``samples`` of a constrained run: drawn, admitted, and by reason rejected; none of any other."""
     if not constraints:
         return {}

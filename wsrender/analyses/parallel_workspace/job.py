@@ -24,7 +24,7 @@ class ParallelWorkspaceJob(JobDocument):
     share of a set of orientations that is reached at each position.
     """
 
-    constraints_elsewhere: ClassVar[str] = '"mechanism" has "minimum_leg_distance_m"; arms take them in "workspace"'
+    constraints_elsewhere: ClassVar[str] = 'bodies and what stands around are "bodies" of the "mechanism"'
 
     analysis: Literal["parallel_workspace"] = "parallel_workspace"
     """Name of the analysis."""

@@ -18,7 +18,7 @@ from wsrender.mechanisms.hybrid import Variant, from_middle, middle
 from wsrender.mechanisms.inverse_kinematics import inverse_kinematics
 from wsrender.mechanisms.jacobians import DETERMINANTS
 from wsrender.mechanisms.mechanism import Mechanism
-from wsrender.mechanisms.membership import fault_at, in_base_frame, in_world
+from wsrender.mechanisms.membership import bodies_apart, fault_at, in_base_frame, in_world
 from wsrender.pipeline.sampling import subsample
 from wsrender.robot.constraints import samples_entry
 from wsrender.volume.distribution_map import DistributionMap
@@ -310,6 +310,8 @@ def skeleton_at(
 
 def _legs_at(mechanism: Mechanism, pose: np.ndarray) -> np.ndarray:
     """The legs at a reached pose (4, 4), base frame, (L, K, 3) [m]; shorter ones stay at the platform's middle."""
+    if mechanism.bodies:
+        mechanism = next(each for each in mechanism.on_each_branch() if bodies_apart(each, pose[None])[0])
     legs = inverse_kinematics(mechanism, pose[None])
     lines = [np.stack(line) for line in zip(mechanism.base, legs.elbows[0], legs.joints[0], strict=True)]
     lines += [leg.skeleton(pose) for leg in mechanism.numeric]
@@ -324,7 +326,9 @@ def _undecided(plan: "ParallelWorkspaceAnalysis", poses: int) -> dict[str, int]:
 
 def _samples(plan: "ParallelWorkspaceAnalysis", constrained: np.ndarray) -> dict[str, Any]:
     """Poses that the legs reach by themselves, and what constraints leave of them; nothing without constraints."""
-    return samples_entry(plan.mechanism.constraints, int(constrained[0]), constrained[1:])
+    mechanism = plan.mechanism
+    asked = (*mechanism.constraints, *([mechanism.bodies] if mechanism.bodies else []))
+    return samples_entry(asked, int(constrained[0]), constrained[1:])
 
 
 def _sample(volume: VolumeData | None) -> DistributionMap | None:

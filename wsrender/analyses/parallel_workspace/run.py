@@ -44,7 +44,7 @@ from wsrender.mechanisms.hybrid import Variant, added, count_union, middle, vari
 from wsrender.mechanisms.inverse_kinematics import inverse_kinematics
 from wsrender.mechanisms.jacobians import CONDITION_NUMBERS, DETERMINANTS, check_square, pose_indices
 from wsrender.mechanisms.mechanism import Mechanism
-from wsrender.mechanisms.membership import count_lattice, fault_at, in_base_frame, orientations_labelled
+from wsrender.mechanisms.membership import bodies_apart, count_lattice, fault_at, in_base_frame, orientations_labelled
 from wsrender.mechanisms.orientations import OrientationSet, orientation_set, random_orientations
 from wsrender.mechanisms.serial_search import SerialSearch, serial_search
 from wsrender.reach.evidence import REACHABLE, UNDECIDED, UNREACHABLE
@@ -56,6 +56,7 @@ Arrays = dict[str, np.ndarray]
 
 RATE_CPU_CORE, RATE_GPU = 1.6e8, 4e8  # poses per second, rounded down from benchmarks/parallel.py
 INDEX_BYTES = 750  # of a voxel while its indices are computed: its pose, Jacobians and their inverses
+APART_PER_S = 1e3  # poses of six legs, a platform and two things around: of one core
 INDICES_PER_S = 8e4  # voxels whose indices are computed
 POSE_BYTES, SHARE_BYTES = 75, 4.4e7  # of an orientation at a point; of the estimate of their share
 BOUNDARY_BYTES = 3.3e6  # of the mesh of an exact boundary
@@ -144,6 +145,7 @@ class ParallelWorkspaceAnalysis(Analysis):
         poses, threads = float(sum(count for _, count in self.shards)), thread_count()
         rate = RATE_GPU if self.target.startswith("cuda") else RATE_CPU_CORE * threads
         seconds = poses / rate + poses * len(self.mechanism.numeric) / (RATE_NUMERIC_CORE * threads)
+        seconds += self._reached * bool(self.mechanism.bodies) / APART_PER_S
         drawn, drawing = pictures_cost("slices", "robot", "targets")
         kept = (8 + 12 * self._columns) * self._reached + surface_bytes(self._reached)
         seconds += self._reached * bool(self.names) / INDICES_PER_S + drawing + refined_seconds(self.job.refined_volume)
@@ -307,7 +309,8 @@ class ParallelWorkspaceAnalysis(Analysis):
         for mechanism in every:
             rows = np.arange(len(cells))
             if len(every) > 1:
-                rows = np.flatnonzero(inverse_kinematics(mechanism, poses).feasible)
+                feasible = inverse_kinematics(mechanism, poses).feasible
+                rows = np.flatnonzero(feasible & bodies_apart(mechanism, poses))
             hybrid = variant.composed if len(self.variants) > 1 else None
             length = self.job.characteristic_length_m
             yield rows, pose_indices(mechanism, poses[rows], self.names, self.rows, length, hybrid, self.options)

@@ -1,0 +1,283 @@
+"""Bodies of mechanisms that keep apart, against MuJoCo's distances of a scene made anew for every pose."""
+
+import mujoco
+import numpy as np
+import pytest
+import trimesh
+from scipy.spatial.transform import Rotation
+
+import wsrender as ws
+from wsrender.collision.solids import BASE, Solid
+from wsrender.documents.legs import DeltaLeg
+from wsrender.documents.mechanism import Delta, LegsMechanism, StewartGough
+from wsrender.errors import DocumentError, InputError
+from wsrender.mechanisms.bodies import Bodies
+from wsrender.mechanisms.inverse_kinematics import inverse_kinematics
+from wsrender.mechanisms.mechanism import mechanism_of
+from wsrender.mechanisms.membership import fault_at, poses_labelled
+
+PLACED = {"position_m": [1.0, -2.0, 0.5], "rpy_deg": [10, -5, 30]}
+POST = {"shape": "box", "name": "post", "size_m": [0.1, 0.1, 2], "position_m": [0.45, 0.25, 0.5]}
+PLATE = {"shape": "cylinder", "name": "plate", "radius_m": 0.3, "length_m": 0.04, "position_m": [0, 0, 0.06]}
+THIN, ENDLESS = {"bodies": {"link_radius_m": 0.01}}, {"items": [{"shape": "half_space"}]}
+RADIUS, GAP, MARGIN = 0.02, 0.06, 0.01
+
+
+def placed(shape):
+    """A shape of the base frame in the world."""
+    T = ws.Transform(**PLACED).matrix()
+    quat = Rotation.from_matrix(T[:3, :3]).as_quat(scalar_first=True).tolist()
+    return shape | {"position_m": (T[:3, :3] @ shape["position_m"] + T[:3, 3]).tolist(), "quat_wxyz": quat}
+
+
+def least_distance(capsules, solids):
+    """Of all pairs (name a, name b) that are asked: solids as (group, geom arguments), capsules (group, ends, r)."""
+    spec = mujoco.MjSpec()
+    groups = []
+    for group, ends in capsules:
+        spec.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_CAPSULE, size=[RADIUS, 0, 0], fromto=np.ravel(ends))
+        groups.append(group)
+    for group, geom in solids:
+        spec.worldbody.add_geom(**geom)
+        groups.append(group)
+    model = spec.compile()
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    pairs = [(a, b) for a in range(len(groups)) for b in range(a) if groups[a] != groups[b]]
+    return min(mujoco.mj_geomDistance(model, data, a, b, 1.0, None) for a, b in pairs)
+
+
+def geom(kind, size, T):
+    quat = Rotation.from_matrix(T[:3, :3]).as_quat(scalar_first=True)
+    return {"type": getattr(mujoco.mjtGeom, f"mjGEOM_{kind}"), "size": size, "pos": T[:3, 3], "quat": quat}
+
+
+def random_poses(count, low, high, turn, seed=0):
+    rng = np.random.default_rng(seed)
+    poses = np.tile(np.eye(4), (count, 1, 1))
+    poses[:, :3, 3] = rng.uniform(low, high, (count, 3))
+    poses[:, :3, :3] = Rotation.from_rotvec(rng.uniform(-turn, turn, (count, 3))).as_matrix()
+    return poses
+
+
+def at(position):
+    T = np.eye(4)
+    T[:3, 3] = position
+    return T
+
+
+def compared(mechanism, poses, distances):
+    """Labels against least distances (N,), none of them near the margin; how many are blocked."""
+    labels = poses_labelled(mechanism, poses, device="cpu")[0] == 1
+    assert np.abs(distances - MARGIN).min() > 1e-7
+    np.testing.assert_array_equal(labels, distances > MARGIN)
+    return int((~labels).sum())
+
+
+def test_a_stewart_platform_with_a_plate_beside_a_post():
+    bodies = {
+        "link_radius_m": RADIUS,
+        "platform": {"items": [PLATE]},
+        "platform_gap_m": GAP,
+        "environment": {"items": [placed(POST)]},
+        "margin_m": MARGIN,
+    }
+    spec = StewartGough(length_m=(0.45, 0.9), placement=PLACED, bodies=bodies)
+    mechanism = mechanism_of(spec)
+    poses = random_poses(1500, [-0.25, -0.25, 0.4], [0.25, 0.25, 0.7], 0.6)
+    alone = mechanism_of(StewartGough(length_m=(0.45, 0.9)))
+    poses = poses[poses_labelled(alone, poses, device="cpu")[0] == 1][:250]
+    distances = np.full(len(poses), np.inf)
+    for n, T in enumerate(poses):
+        ends = np.stack([mechanism.base, mechanism.platform @ T[:3, :3].T + T[:3, 3]], axis=1)
+        post, plate = (
+            geom("BOX", [0.05, 0.05, 1], at(POST["position_m"])),
+            geom("CYLINDER", [0.3, 0.02, 0], T @ at([0, 0, 0.06])),
+        )
+        legs = [(k, line) for k, line in enumerate(ends)]
+        distances[n] = min(
+            least_distance(legs, [("post", post)]), least_distance([], [("post", post), ("plate", plate)])
+        )
+        for k, (base, joint) in legs:
+            short = joint - GAP * (joint - base) / np.linalg.norm(joint - base)
+            distances[n] = min(distances[n], least_distance([(k, (base, short))], [("plate", plate)]))
+    assert 40 < compared(mechanism, poses, distances) < len(poses) - 40
+
+
+def test_cranks_and_links_of_a_delta():
+    """With a ball below and one beside a crank; at the angles that inverse kinematics has."""
+    balls = [{"shape": "sphere", "radius_m": 0.1, "position_m": p} for p in ([0.15, 0.1, -0.55], [0.3, 0.13, -0.1])]
+    spec = Delta(bodies={"link_radius_m": RADIUS, "environment": {"items": balls}, "margin_m": MARGIN})
+    mechanism = mechanism_of(spec)
+    poses = random_poses(900, [-0.3, -0.3, -0.9], [0.3, 0.3, -0.5], 0.0)
+    poses = poses[poses_labelled(mechanism_of(Delta()), poses, device="cpu")[0] == 1][:150]
+    angles, distances = inverse_kinematics(mechanism_of(Delta()), poses).values, []
+    for T, turned in zip(poses, angles, strict=True):
+        capsules = []
+        for k, angle in enumerate(turned):
+            out = np.array([np.cos(2 * np.pi * k / 3), np.sin(2 * np.pi * k / 3), 0])
+            elbow = 0.2 * out + 0.235 * (np.cos(angle) * out - np.sin(angle) * np.array([0, 0, 1]))
+            capsules += [(k, (0.2 * out, elbow)), (k, (elbow, T[:3, 3] + 0.05 * out))]
+        distances.append(
+            least_distance(capsules, [("ball", geom("SPHERE", [0.1, 0, 0], at(b["position_m"]))) for b in balls[:1]])
+        )
+        distances[-1] = min(
+            distances[-1], least_distance(capsules, [("ball", geom("SPHERE", [0.1, 0, 0], at(balls[1]["position_m"])))])
+        )
+    assert 20 < compared(mechanism, poses, np.array(distances)) < len(poses) - 20
+
+
+def delta_legs(branch):
+    """Legs of a delta whose cranks turn all the way, the first on a branch."""
+    azimuth = 2 * np.pi * np.arange(3) / 3
+    directions = np.stack([np.cos(azimuth), np.sin(azimuth), np.zeros(3)], axis=1)
+    lengths = {"crank_m": 0.235, "link_m": 0.8, "angle_deg": [-180, 179]}
+    return [
+        DeltaLeg(
+            base_m=0.2 * n,
+            platform_m=0.05 * n,
+            axis=[-n[1], n[0], 0],
+            zero=n,
+            branch="minus" if k else branch,
+            **lengths,
+        )
+        for k, n in enumerate(directions)
+    ]
+
+
+FAR_LINE, AWAY, CRANK = [[5, 0, 0], [6, 0, 0]], [[0, -3, -1], [0, -3, 1]], [[0, 0, -1], [0, 1, -1]]
+TOUCHING = {  # legs, gap, balls (radius .1) of the platform and around: what collides where the number is a bit less
+    "the link of leg 1 and the link of leg 2": lambda d: ([AWAY, [[d, -3, 0], [d, -3, 1]]], None, [], []),
+    "the link of leg 1 and own": lambda d: ([[[0, 0, -1], [0, 0, 0]], FAR_LINE], d + 0.08, [[0, 0, 0]], []),
+    "own and other": lambda d: ([FAR_LINE, FAR_LINE], None, [[0, 0, 0]], [[d + 0.16, 0, 0]]),
+    "the link of leg 1 and other": lambda d: ([[[0, 0, -1], [0, 0, 1]], FAR_LINE], None, [], [[d + 0.08, 0, 0]]),
+    "the crank of leg 2 and other": lambda d: ([FAR_LINE, FAR_LINE], None, [], [[0, 0.5, -1.08 - d]]),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("pair", TOUCHING)
+def test_each_kind_of_pair_touches_where_it_does(pair):
+    """Two capsules of .02 m at a margin of .01 m from .05 m on; the others have one, or none, and balls of .1 m."""
+    for d, expected in ((0.05 - 1e-6, pair), (0.05 + 1e-6, "")):
+        links, gap, own, other = TOUCHING[pair](d)
+        ball = np.array([0.1, 0, 0])
+        solids = [
+            tuple(Solid(name, "sphere", BASE, at(place), ball) for place in places)
+            for name, places in (("own", own), ("other", other))
+        ]
+        bodies = Bodies(0.02, 0.01, gap, *solids, ((0, 1),) if pair.endswith("leg 2") else ())
+        legs = [{"link": np.array([line], float)} for line in links]
+        legs[1]["crank"] = np.array([CRANK], float)
+        found, names = bodies.collisions(legs, np.eye(4)[None])
+        assert (names[found[0] - 1] if found[0] else "") == expected
+
+
+def test_legs_on_either_branch_take_the_one_that_is_free():
+    """A ball around the elbow of one branch leaves the other."""
+
+    def delta(branch, items):
+        bodies = {"link_radius_m": 0.01, "environment": {"items": items}}
+        return mechanism_of(LegsMechanism(legs=delta_legs(branch), bodies=bodies))
+
+    pose = at([0, 0, -0.7])[None]
+    elbows = {branch: inverse_kinematics(delta(branch, []), pose).elbows[0, 0] for branch in ("minus", "plus")}
+    balls = {b: {"shape": "sphere", "radius_m": 0.03, "position_m": e.tolist()} for b, e in elbows.items()}
+    reached = {
+        (branch, blocked): bool(
+            poses_labelled(delta(branch, [balls[b] for b in blocked]), pose, device="cpu")[0][0] == 1
+        )
+        for branch in ("minus", "plus", "either")
+        for blocked in (("minus",), ("plus",), ("minus", "plus"))
+    }
+    assert [key for key, free in reached.items() if free] == [
+        ("minus", ("plus",)), ("plus", ("minus",)), ("either", ("minus",)), ("either", ("plus",)),
+    ]  # fmt: skip
+
+
+def test_a_job_counts_what_collides_and_names_it():
+    ceiling = {"items": [{"shape": "half_space", "name": "ceiling", "point_m": [0, 0, 0.6], "normal": [0, 0, -1]}]}
+    hexapod = {"library": "stewart_gough", "length_m": [0.5, 0.8]}
+    bodies = {"link_radius_m": 0.02, "environment": ceiling}
+    job = {"voxel_size_m": 0.05, "device": "cpu", "refined_volume": 0.2}
+    free = ws.parallel_workspace(hexapod, **job).document
+    under = ws.parallel_workspace(hexapod | {"bodies": bodies}, **job)
+    # The joints, on the platform at z, stay .02 m below the ceiling.
+    heights = (under.volume.voxels.at[2] + under.volume.first_voxel[2] + 0.5) * 0.05
+    assert heights.max() < 0.58 and under.document["samples"]["admitted"] == under.volume.n_occupied
+    samples = under.document["samples"]
+    assert samples["drawn"] == samples["admitted"] + samples["rejected"]["collision"]
+    assert samples["drawn"] * 0.05**3 == pytest.approx(free["volume_m3"]["occupied"])
+    assert 0 < under.document["headline"]["value"] < free["headline"]["value"] and "samples" not in free
+    mechanism = mechanism_of(StewartGough(length_m=(0.5, 0.8), bodies=bodies))
+    assert fault_at(mechanism, at([0, 0, 0.55])) == ""
+    assert fault_at(mechanism, at([0, 0, 0.59])) == "collision: the link of leg 1 and ceiling come too near"
+
+
+def test_indices_are_those_of_branches_that_keep_apart():
+    """With a ball around the elbow of one branch those of the mechanism on the other alone."""
+    position = {"lower_m": [-0.03, -0.03, -0.73], "upper_m": [0.03, 0.03, -0.67]}
+
+    def centers(branch, items):
+        legs = [leg.model_dump(exclude_none=True) for leg in delta_legs(branch)]
+        mechanism = {
+            "legs": legs,
+            "region": position,
+            "bodies": {"link_radius_m": 0.01, "environment": {"items": items}},
+        }
+        return ws.parallel_workspace(
+            mechanism,
+            voxel_size_m=0.02,
+            indices=["inverse_condition_number"],
+            task="linear",
+            device="cpu",
+            refined_volume=None,
+        ).volume.voxels.statistics["maximum"]["inverse_condition_number"]
+
+    elbow = inverse_kinematics(mechanism_of(LegsMechanism(legs=delta_legs("minus"))), at([0, 0, -0.7])[None]).elbows[
+        0, 0
+    ]
+    ball = [{"shape": "sphere", "radius_m": 0.06, "position_m": elbow.tolist()}]
+    np.testing.assert_allclose(centers("either", ball), centers("plus", []), rtol=1e-6)
+    assert np.abs(centers("either", []) - centers("plus", [])).max() > 1e-3
+
+
+def test_exact_boundaries_refuse_bodies():
+    bodies = {"link_radius_m": 0.02}
+    with pytest.raises(InputError, match="else not only spheres bound") as error:
+        ws.parallel_workspace({"library": "stewart_gough", "bodies": bodies}, method="exact")
+    assert error.value.field == "mechanism.bodies"
+    with pytest.raises(InputError, match="else not only spheres bound"):
+        ws.method_comparison({"library": "six_pus", "bodies": bodies})
+
+
+def test_shapes_that_are_not_convex_are_refused(tmp_path):
+    """An L of two boxes, as one closed mesh; its hull is taken."""
+    outline = np.array([[0, 0], [2, 0], [2, 1], [1, 1], [1, 2], [0, 2]], float)
+    solid = trimesh.creation.extrude_triangulation(outline, [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 5]], 1.0)
+    solid.export(tmp_path / "corner.stl")
+    around = {"shape": "mesh", "path": str(tmp_path / "corner.stl")}
+    for convex in (None, True):
+        bodies = {"link_radius_m": 0.01, "environment": {"items": [around | {"convex": convex}]}}
+        if convex:
+            assert mechanism_of(Delta(bodies=bodies)).bodies
+            continue
+        with pytest.raises(InputError, match="must be convex, which mesh 1") as error:
+            mechanism_of(Delta(bodies=bodies))
+        assert error.value.field == "mechanism.bodies"
+
+
+@pytest.mark.parametrize(
+    ("mechanism", "field"),
+    [
+        ({"library": "master_4dof"} | THIN, "bodies"),
+        ({"library": "delta", "minimum_leg_distance_m": 0.1} | THIN, "minimum_leg_distance_m"),
+        ({"legs": [{"type": "serial", "robot": "ur5e"}]} | THIN, "bodies"),
+        ({"library": "delta", "bodies": THIN["bodies"] | {"platform": ENDLESS}}, "bodies.platform"),
+        ({"library": "delta", "bodies": {"link_radius_m": 0}}, "bodies.link_radius_m"),
+        ({"library": "delta", "bodies": {}}, "bodies.link_radius_m"),
+    ],
+)
+def test_what_has_no_bodies(mechanism, field):
+    with pytest.raises(DocumentError) as error:
+        ws.parallel_workspace(mechanism)
+    assert [name for name, _ in error.value.problems] == [f"mechanism.{field}"]
