@@ -25,7 +25,8 @@ from wsrender.pipeline.pipeline import Pipeline, tip_pipeline
 from wsrender.pipeline.sampling import plan_sampling
 from wsrender.reach import Event
 from wsrender.robot import Robot
-from wsrender.robot.constraints import check_admitted, constraints_of_job, samples_entry
+from wsrender.robot.constraints import constraints_of_job, samples_entry
+from wsrender.robot.rejections import check_admitted
 from wsrender.volume.measure import UNITS
 from wsrender.volume.table import Table
 
