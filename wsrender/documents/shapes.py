@@ -248,3 +248,16 @@ _Bounded = Box | Sphere | Cylinder | Capsule | Ellipsoid | ConvexMesh | Mesh
 _TAGS = [each.model_fields["shape"].default for each in get_args(_Bounded)]
 ToolShape = Annotated[_Bounded, Discriminator("shape"), BeforeValidator(tagged("shape", _TAGS))]
 """One that a tip may carry."""
+
+
+def half_sizes(shape: _Bounded) -> tuple[float, float, float]:
+    """Radius and half length, or half edges [m], as MuJoCo has them; zeros of a mesh."""
+    match shape:
+        case Sphere():
+            return shape.radius_m, 0.0, 0.0
+        case Box() | Ellipsoid():
+            x, y, z = shape.size_m
+            return x / 2, y / 2, z / 2
+        case Cylinder() | Capsule():
+            return shape.radius_m, shape.length_m / 2, 0.0
+    return 0.0, 0.0, 0.0

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from wsrender.documents.shapes import Box, Capsule, ConvexMesh, Cylinder, Ellipsoid, Mesh, Sphere, ToolShape
+from wsrender.documents.shapes import ConvexMesh, Mesh, Sphere, ToolShape, half_sizes
 from wsrender.documents.transform import Transform
 from wsrender.errors import InputError
 
@@ -31,17 +31,9 @@ def attached(shapes: Sequence[ToolShape]) -> "tuple[Shape, ...]":
 def _attached(shape: ToolShape, name: str) -> "Iterator[Shape]":
     from wsrender.robots.shapes import ATTACHED, Shape
 
-    size = np.zeros(3)
     T = Transform(position_m=shape.position_m).matrix() if isinstance(shape, Sphere) else shape.matrix()
-    match shape:
-        case Sphere():
-            size[0] = shape.radius_m
-        case Box() | Ellipsoid():
-            size = np.array(shape.size_m) / 2
-        case Cylinder() | Capsule():
-            size[:2] = shape.radius_m, shape.length_m / 2
     kind: Any = "mesh" if shape.shape == "convex_mesh" else shape.shape
-    own = Shape(name, BODY, kind, -1, T, size, ATTACHED, False, np.array(GREY))
+    own = Shape(name, BODY, kind, -1, T, np.array(half_sizes(shape)), ATTACHED, False, np.array(GREY))
     if not isinstance(shape, ConvexMesh | Mesh):
         yield own
         return

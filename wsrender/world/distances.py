@@ -7,8 +7,9 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from wsrender.documents.environment import Box, Capsule, ConvexMesh, Cylinder, Ellipsoid, HalfSpace, Mesh, Shape, Sphere
+from wsrender.documents.environment import ConvexMesh, HalfSpace, Mesh, Shape, Sphere
 from wsrender.documents.robot import Transform
+from wsrender.documents.shapes import half_sizes
 from wsrender.errors import InputError
 from wsrender.robots.compiled_model import MUJOCO_ERRORS, quiet
 from wsrender.robots.triangles import closest_points, winding_numbers
@@ -107,22 +108,16 @@ def _compiled(shapes: Sequence[Shape | Surface]) -> mujoco.MjModel:
 
 
 def _add(spec: Any, shape: Shape | Surface, number: int) -> None:
-    add, kinds = spec.worldbody.add_geom, mujoco.mjtGeom
-    match shape:
-        case Sphere():
-            add(type=kinds.mjGEOM_SPHERE, size=[shape.radius_m, 0, 0], pos=shape.position_m)
-        case Box():
-            add(type=kinds.mjGEOM_BOX, size=[edge / 2 for edge in shape.size_m], **_place(shape))
-        case Ellipsoid():
-            add(type=kinds.mjGEOM_ELLIPSOID, size=[edge / 2 for edge in shape.size_m], **_place(shape))
-        case Cylinder():
-            add(type=kinds.mjGEOM_CYLINDER, size=[shape.radius_m, shape.length_m / 2, 0], **_place(shape))
-        case Capsule():
-            add(type=kinds.mjGEOM_CAPSULE, size=[shape.radius_m, shape.length_m / 2, 0], **_place(shape))
-        case ConvexMesh() | Mesh():
-            mesh = spec.add_mesh(name=f"shape{number}")
-            mesh.uservert = hull_vertices(shape).ravel().tolist()
-            add(type=kinds.mjGEOM_MESH, meshname=mesh.name, **_place(shape))
+    if isinstance(shape, HalfSpace | Surface):
+        return
+    place = {"pos": shape.position_m} if isinstance(shape, Sphere) else _place(shape)
+    kind = "mesh" if isinstance(shape, ConvexMesh) else shape.shape
+    geom = {"type": getattr(mujoco.mjtGeom, f"mjGEOM_{kind.upper()}"), "size": half_sizes(shape), **place}
+    if isinstance(shape, ConvexMesh | Mesh):
+        mesh = spec.add_mesh(name=f"shape{number}")
+        mesh.uservert = hull_vertices(shape).ravel().tolist()
+        geom["meshname"] = mesh.name
+    spec.worldbody.add_geom(**geom)
 
 
 def _place(pose: Transform) -> dict[str, list[float]]:
