@@ -267,9 +267,15 @@ def test_powers_of_negative_numbers_are_those_of_numpy(function, precision, devi
     assert ((host == 0) == admitted).all()
 
 
-@pytest.mark.parametrize("keeps", (frozenset({"base"}), "base_joint"))
-def test_structures_that_a_constraint_may_keep(keeps, added):
-    with pytest.raises(InputError, match=r"keeps: .* is not allowed; allowed: base_joint, trailing_joints"):
+@pytest.mark.parametrize(
+    "keeps, message",
+    (
+        (frozenset({"base"}), r"keeps: .* is not allowed; allowed: base_joint, trailing_joints"),
+        ("base_joint", "keeps: must be a set of base_joint, trailing_joints, not 'base_joint'"),
+    ),
+)
+def test_structures_that_a_constraint_may_keep(keeps, message, added):
+    with pytest.raises(InputError, match=message):
         ws.register_constraint("mine", lambda q, position, axes: q[0], keeps=keeps)
 
 

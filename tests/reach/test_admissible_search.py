@@ -24,10 +24,14 @@ def searched(near_m, solutions):
 
     chain = SimpleNamespace(n=1, reach=1.0)
     nothing = SimpleNamespace(
-        q=np.zeros((1, 1)), label=np.full(1, UNDECIDED), distance_m=np.ones(1), angle_rad=np.ones(1)
+        q=np.zeros((1, 1)),
+        label=np.full(1, UNDECIDED),
+        distance_m=np.ones(1),
+        angle_rad=np.ones(1),
+        proven=np.zeros(1, bool),
     )
     solver = SimpleNamespace(
-        chain=chain, whole=chain, seed=0, tries=tries, features=lambda position, orientation: position,
+        chain=chain, whole=chain, seed=0, closed=None, tries=tries, features=lambda position, orientation: position,
         features_at=lambda q: np.tile([near_m, 0.0, 0.0], (len(q), 1)), solve=lambda *_: nothing,
     )  # fmt: skip
     admission = SimpleNamespace(names=("some",), rejected=lambda q: np.ones(len(q), np.int8))

@@ -55,7 +55,7 @@ def test_a_scara_beside_a_column():
 def test_where_no_sample_is_admitted_nothing_is_known():
     guarded = arms.two_links()
     away = constraints_for(guarded.robot, Constraints(region={"box": {"lower_m": [9, None, None]}}), None)
-    found = free_measures(guarded.robot.chain, away, 0.01)
+    found = free_of(guarded.robot.chain, away, 0.01)
     whole = np.pi * 4 * arms.LINK**2
     assert found["free"].value == 0 and not found["free"].met
     assert found["free"].ci95[0] == 0 and found["free"].ci95[1] >= whole and found["blocked"].ci95[0] == 0

@@ -33,11 +33,6 @@ class ClosedLabels:
             tolerance = max(tolerance, accuracy.angle_rad)
         return cls(form, TOLERANCES * tolerance, device, threads)
 
-    @property
-    def evidence(self) -> str:
-        """What decides, as results say it."""
-        return f"closed form ({self.form.name}), margin {CLOSED_MARGIN:.0e}".replace("e-0", "e-")
-
     def unreachable(
         self, position: np.ndarray, orientation: np.ndarray | None, *, unlimited: bool = False
     ) -> np.ndarray:
@@ -69,6 +64,11 @@ class ClosedLabels:
             T[:, :3, :3] = orientation if orientation.ndim == 3 else _with_z(orientation)
         device, threads = self.device, self.threads
         return closed_postures(self.form, T, keep=keep, unlimited=unlimited, device=device, threads=threads)
+
+
+def evidence(form: ClosedForm) -> str:
+    """What decides, as results say it."""
+    return f"closed form ({form.name}), margin {CLOSED_MARGIN:.0e}".replace("e-0", "e-")
 
 
 def _with_z(axes: np.ndarray) -> np.ndarray:

@@ -11,6 +11,7 @@ from wsrender.reach.closed_labels import ClosedLabels
 from wsrender.reach.evidence import FLATTER, Evidence
 from wsrender.reach.moving_joints import moving_joints
 from wsrender.reach.starts import FURTHER, NEAR, NEAR_LIMITS, Starts, inwards
+from wsrender.robots.closed_form import ClosedForm
 from wsrender.robots.kinematics import Kinematics
 from wsrender.robots.reachable_box import reachable_box
 
@@ -19,6 +20,10 @@ MOST_TRIES = 1 << 17  # held in memory at a time, and a launch
 TRIES_EACH = {"position": 1.0, "axis": 2.5, "pose": 24.0}  # of a target at a time, as some take many
 TARGET_ROW = 16  # bytes of every number of a target or a sample: what was asked and what was found
 VERIFIED = 1 << 14  # targets whose postures are held in memory at a time
+POSTURES_BYTES, CLOSED_BYTES = (
+    2000.0,
+    300.0,
+)  # of a target whose postures are held, and of one that a closed form decides
 # Starts between two looks at what they found, by kind of target: a label depends on its target alone.
 LATER = ((FURTHER, 8), (FURTHER, 32), (FURTHER, 64), (FURTHER, 128))
 GROUPS = {
@@ -68,9 +73,7 @@ class InverseSolver:
         threads: int | None = None,
     ):
         self.whole, self.kind, self.seed = chain, kind, seed
-        self.chain, self._kept = chain, np.arange(chain.n)
-        if kind != "pose" and chain.geometry:  # where axes are, functions do not say
-            self.chain, self._kept = moving_joints(chain.geometry, axis=kind == "axis")
+        self.chain, self._kept = _that_matter(chain, kind)
         self.accuracy = Accuracy(position_m, angle_rad, length_m or chain.reach / 2 or 1.0)
         self._workers = thread_count(threads)
         self._execution = {"precision": precision, "device": device, "threads": threads}
@@ -223,10 +226,24 @@ class InverseSolver:
         return q
 
 
-def solved_bytes(targets: float, kind: str, n: int, precision: str = "float64") -> float:
-    """Bytes that are held while so many targets of a ``kind`` are decided for an arm of ``n`` coordinates, about."""
-    row, each = try_bytes(kind, n, precision)
+def closed_form_of(chain: Kinematics, kind: str) -> ClosedForm | None:
+    """What decides targets of a ``kind`` before any search; None for a chain without a closed form."""
+    return ClosedForm.of(_that_matter(chain, kind)[0], kind)
+
+
+def _that_matter(chain: Kinematics, kind: str) -> tuple[Kinematics, np.ndarray]:
+    """The chain without last joints that do not change a ``kind`` of target, and which coordinates it keeps (m,)."""
+    if kind == "pose" or not chain.geometry:  # where axes are, functions do not say
+        return chain, np.arange(chain.n)
+    return moving_joints(chain.geometry, axis=kind == "axis")
+
+
+def solved_bytes(targets: float, kind: str, chain: Kinematics, precision: str = "float64") -> float:
+    """Bytes that are held while so many targets of a ``kind`` are decided for an arm, about."""
+    row, each = try_bytes(kind, chain.n, precision)
     together = min(targets, BATCH)
+    if closed_form_of(chain, kind):
+        return POSTURES_BYTES * min(targets, VERIFIED) + CLOSED_BYTES * together
     tries = min(TRIES_EACH[kind] * together, MOST_TRIES)
     return each * tries + TARGET_ROW * (row + 5) * (together + SAMPLES[kind])
 

@@ -37,7 +37,7 @@ def served_positions(pipeline: Pipeline, device: str = "cpu", threads: int | Non
     counts = np.bincount(reasons, minlength=len(constraints) + 1)[1:]
     at, decided = np.flatnonzero(reasons), np.ones(len(reasons), bool)
     if len(at):
-        solver = InverseSolver(chain, device=device, threads=threads)
+        solver = InverseSolver(chain, seed=pipeline.sampling.seed, device=device, threads=threads)
         search = AdmissibleSearch(solver, Admission(chain, constraints, device, threads)).decide(position[at])
         reasons[at] = search.reason
         decided[at] = (search.label == REACHABLE) | (search.label == BLOCKED)

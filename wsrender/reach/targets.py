@@ -12,8 +12,9 @@ from wsrender.errors import InputError
 from wsrender.pipeline.constraints.constraint import Constraint
 from wsrender.reach.admissible_search import BLOCKED, Admissible, AdmissibleSearch
 from wsrender.reach.admission import Admission
+from wsrender.reach.closed_labels import evidence
 from wsrender.reach.evidence import CLEARLY, LABELS, UNDECIDED, UNREACHABLE
-from wsrender.reach.inverse_solver import InverseSolver, Solutions
+from wsrender.reach.inverse_solver import InverseSolver, Solutions, closed_form_of
 from wsrender.robot import as_robot
 from wsrender.robots.kinematics import Kinematics
 from wsrender.tolerances import TOLERANCES
@@ -111,8 +112,8 @@ def reachable(
 
 def evidence_of(chain: Kinematics, with_orientation: bool) -> str:
     """What decides targets of a chain: "closed form (…), margin …", and a search where that leaves them open."""
-    closed = InverseSolver(chain, kind="pose" if with_orientation else "position").closed
-    return closed.evidence if closed else "search"
+    form = closed_form_of(chain, "pose" if with_orientation else "position")
+    return evidence(form) if form else "search"
 
 
 def check_tolerance(chain: Kinematics, position_tolerance_m: float, precision: str) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 
 from wsrender.documents.environment import ConvexMesh, HalfSpace, Mesh, Shape, Sphere
 from wsrender.documents.robot import Transform
-from wsrender.documents.shapes import half_sizes
+from wsrender.documents.shapes import HeightField, half_sizes
 from wsrender.errors import InputError
 from wsrender.robots.compiled_model import MUJOCO_ERRORS, quiet
 from wsrender.robots.triangles import closest_points, winding_numbers
@@ -110,6 +110,7 @@ def _compiled(shapes: Sequence[Shape | Surface]) -> mujoco.MjModel:
 def _add(spec: Any, shape: Shape | Surface, number: int) -> None:
     if isinstance(shape, HalfSpace | Surface):
         return
+    assert not isinstance(shape, HeightField)  # whose surface is asked instead
     place = {"pos": shape.position_m} if isinstance(shape, Sphere) else _place(shape)
     kind = "mesh" if isinstance(shape, ConvexMesh) else shape.shape
     geom = {"type": getattr(mujoco.mjtGeom, f"mjGEOM_{kind.upper()}"), "size": half_sizes(shape), **place}

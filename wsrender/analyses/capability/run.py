@@ -102,7 +102,7 @@ class CapabilityAnalysis(Analysis):
         table = (TABLE_BYTES + BITS_BYTES * np.ceil(self.job.directions / 8)) * voxels
         table += DIRECTION_BYTES * self.job.directions
         files = DOCUMENT_BYTES + drawn + table + VOXEL_BYTES * FILLED * searched + surface_bytes(voxels)
-        solved = solved_bytes(pairs, "axis", self.robot.chain.n, self.job.precision) + ASKED_BYTES * min(pairs, BATCH)
+        solved = solved_bytes(pairs, "axis", self.robot.chain, self.job.precision) + ASKED_BYTES * min(pairs, BATCH)
         memory = max(solved + PAIR_BYTES * pairs + CANDIDATE_BYTES * voxels, SEARCHED_BYTES * searched)
         seconds += SAMPLES_PER_CELL * searched / POSITIONS_PER_S + (voxels + pairs) / RATE + files / WRITTEN_PER_S
         if self.constraints:

@@ -135,7 +135,7 @@ class CollaborativeVolumeAnalysis(Analysis):
         found = evaluate_samples(pipeline, self.device, threads=execution.threads)
         assert found.rejected is not None
         counts = np.bincount(found.rejected, minlength=len(constraints) + 1)
-        check_admitted(samples_entry(constraints, sampling.count, counts[1:]))
+        check_admitted(samples_entry(constraints, sampling.count, counts[1:]), constraints)
         return found.position[found.rejected == 0].astype(np.float64), counts[1:]
 
     def merge(self, a: PartialResult, b: PartialResult) -> PartialResult:

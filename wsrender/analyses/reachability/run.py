@@ -58,7 +58,7 @@ class ReachabilityAnalysis(Analysis):
         drawn, seconds = pictures_cost("targets", "robot")
         files = DOCUMENT_BYTES + drawn + (TABLE_BYTES + 8 * (n + listed - 3) + LISTED_BYTES * listed) * count
         kind = "position" if self.job.quats_wxyz is None else "pose"
-        solved = solved_bytes(count, kind, n, self.job.precision) + 16 * n * count
+        solved = solved_bytes(count, kind, self.robot.chain, self.job.precision) + 16 * n * count
         memory = (8 + LISTED_MEMORY) * listed * count + max(solved, (LABEL_BYTES + 16 * n) * count)
         seconds += count / (DECIDED_PER_S if listed == 3 else POSES_PER_S) + files / WRITTEN_PER_S
         if self.constraints:

@@ -183,7 +183,7 @@ class WorkspaceAnalysis(Analysis):
         if self.job.voxel_labels:
             expected, block = self._expected
             near = min(27 * voxels, (np.cbrt(expected) + 2) ** 3)
-            labels = LABELLED_BYTES * near + solved_bytes(near, "position", self.robot.chain.n) + LABEL_BYTES * block
+            labels = LABELLED_BYTES * near + solved_bytes(near, "position", self.robot.chain) + LABEL_BYTES * block
             labels += SEARCHED_BYTES * bool(self.constraints)
         if self.constraints:
             kept += ROWS_HELD * self._picture_bytes

@@ -8,11 +8,9 @@ import numpy as np
 
 from wsrender.collision.distance import Distances, blocked_by
 from wsrender.collision.solids import BASE, Pairs, Solid
-from wsrender.pipeline.constraints.constraint import Structure
+from wsrender.pipeline.constraints.constraint import LABELLED, Structure
 from wsrender.robots.chain import Chain
 from wsrender.robots.kinematics import Kinematics
-
-LABELLED = "labelled"  # device side of constraints that label samples before the sweep
 
 
 @dataclass(frozen=True, eq=False)

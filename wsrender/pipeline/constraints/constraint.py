@@ -17,6 +17,9 @@ STRUCTURES: tuple[Structure, ...] = ("base_joint", "trailing_joints")
 ORDER = ("region", "leg_distance", "orientation", "environment", "self_collision", "torque", "arms_collision")
 """The first that a configuration violates is the reason why it is rejected; others follow by name."""
 
+LABELLED = "labelled"
+"""Device side of constraints that label samples before the sweep."""
+
 
 @runtime_checkable
 class Constraint(Protocol):

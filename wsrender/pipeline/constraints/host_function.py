@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 
 from wsrender.errors import InputError
-from wsrender.pipeline.constraints.collision import LABELLED
-from wsrender.pipeline.constraints.constraint import Structure
+from wsrender.pipeline.constraints.constraint import LABELLED, Structure
 from wsrender.robots.kinematics import Kinematics
 
 
