@@ -40,8 +40,8 @@ def entries(notices: Iterable[Notice]) -> list[dict[str, Any]]:
 
 def warn(notices: Iterable[Notice], category: type[Warning]) -> None:
     """One warning per notice, at the line of the caller: that of the first frame outside these packages."""
-    frame = sys._getframe(1)
-    while frame.f_back is not None and frame.f_globals.get("__name__", "").partition(".")[0] in OWN_PACKAGES:
+    frame, passed = sys._getframe(1), (*OWN_PACKAGES, "functools")  # of cached properties
+    while frame.f_back is not None and frame.f_globals.get("__name__", "").partition(".")[0] in passed:
         frame = frame.f_back
     module, registry = frame.f_globals.get("__name__"), frame.f_globals.setdefault("__warningregistry__", {})
     for notice in notices:

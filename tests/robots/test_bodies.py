@@ -216,6 +216,10 @@ def test_pairs_that_an_srdf_disables(tmp_path, as_file):
     whole = pairs_in(ws.load_robot(arm()).pairs)
     assert [pair for pair in whole if pair not in pairs] == [{"egg", "shelf"}]
     assert robot.spec is not None and robot.spec.srdf == SRDF  # a job document holds it
+    touching = {"self_collision": True}  # which refuses a job that has asked for shapes
+    with pytest.warns(ModelWarning, match="names 1 links") as caught, pytest.raises(InputError, match="in every conf"):
+        ws.workspace(ws.load_robot(arm(), srdf=SRDF), ws.Random(1000), constraints=touching)
+    assert [each.filename for each in caught if each.category is ModelWarning] == [__file__]
 
 
 @pytest.mark.parametrize(
