@@ -12,6 +12,8 @@ SEED = 12345
 SMALL = {name: job | {"seed": SEED} for name, job in SMALL_JOBS.items()}
 SAMPLING = {"method": "sobol", "count": 512, "seed": SEED}
 WORKSPACE = SMALL_JOBS["workspace"] | {"robot": "spherical", "sampling": SAMPLING}  # which fills a volume
+MASTER = job_of("master_slave_mapping")["master"] | {"sampling": SAMPLING}
+BLOCKED = MASTER | {"constraints": {"region": {"box": {"lower_m": [0.1, None, None]}}}}
 MAPPING_SEARCH = {"scale": [0.1, 2], "offset_m": [[-0.1, 0.1]] * 3, "seed": SEED}
 
 
@@ -28,6 +30,7 @@ DRAWING = {  # what draws, and jobs for which it does
         "capability": SMALL["capability"],
         "refined volume": WORKSPACE | {"voxel_labels": False},
         "labels": WORKSPACE | {"refined_volume": None},
+        "mapping": job_of("master_slave_mapping") | {"master": BLOCKED},
     },
     ("wsrender.reach.volume_refinement", "estimate_volumes"): {"refined volume": WORKSPACE},
     ("wsrender.analyses.parallel_workspace.refined", "estimate_volumes"): {"legs": SMALL["parallel_workspace"]},
