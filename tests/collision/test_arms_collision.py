@@ -120,6 +120,24 @@ def test_refused(choice, tool, message):
         arms_apart(two_ur5e(tool), NAMES, Apart(**choice))
 
 
+def test_height_fields_of_the_other_arm_are_refused():
+    """They stand with a base, which moves in the chain of both."""
+    text = random_text(3, 2).replace(
+        "<worldbody>",
+        """<asset><hfield name="hills" nrow="2" ncol="2"
+        elevation="1 2 3 4" size="1 1 1 .1"/></asset><worldbody><body name="table" pos="0 0 -3"><geom name="ground"
+        type="hfield" hfield="hills"/></body>""",
+    )
+    tool = ws.Transform(position_m=(0, 0, 2))
+    robots = [ws.load_robot(each, tip="tip", tool=tool) for each in (text, random_text(23, 2))]
+    with pytest.raises(InputError, match="exclude: must list all pairs of left/ground: arms keep"):
+        arms_apart(robots, NAMES, Apart())
+    bodies = dict.fromkeys(f"right/{shape.body}" for shape in robots[1].bodies.shapes)
+    excluded = [["left/ground", body] for body in bodies]
+    pairs = arms_apart(robots, NAMES, Apart.model_validate({"exclude": excluded})).constraint.pairs
+    assert len(pairs) and 0 not in pairs
+
+
 def test_what_meets_wherever_tips_do_may_be_excluded():
     wrists = [[f"left/{a}", f"right/{b}"] for a in ("link5", "link6") for b in ("link5", "link6")]
     assert len(arms_apart(two_ur5e(None), NAMES, Apart.model_validate({"exclude": wrists})).constraint.pairs) > 20

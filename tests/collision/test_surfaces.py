@@ -125,6 +125,21 @@ def test_distances_from_a_surface_are_those_of_its_triangles(kind):
     assert (found[apart] <= closest(vertices, faces, T[apart, :3, 3]) + 1e-9).all()
 
 
+def test_a_hull_is_on_its_own_side_of_a_surface_wherever_its_origin_is():
+    """As of a tool's mesh in the coordinates of its drawing: a closed form, for boxes."""
+    block, part = trimesh.creation.box((1, 1, 1)), trimesh.creation.box((0.1, 0.1, 0.1))
+    surface = Solid("s", "surface", BASE, np.eye(4), np.zeros(3), np.array(block.vertices), np.array(block.faces))
+    for middle, expected in (((0.9, 0, 0), 0.35), ((0.2, 0, 0), -0.25)):
+        hull = Solid("h", "hull", 0, np.eye(4), np.zeros(3), np.array(part.vertices) + middle)
+        T = np.tile(np.eye(4), (2, 1, 1))
+        T[1, :3, :3] = ws.Transform(rpy_deg=(0, 0, 90)).matrix()[:3, :3]
+        found = Distances([surface, hull]).between(0, 1, np.tile(np.eye(4), (2, 1, 1)), T, 0.5)
+        assert found == pytest.approx([expected] * 2, abs=1e-6)
+        T[:, :3, 3] = -2 * (T[:, :3, :3] @ middle)  # the same beyond the block's middle, its origin outside
+        found = Distances([surface, hull]).between(0, 1, np.tile(np.eye(4), (2, 1, 1)), T, 0.5)
+        assert found == pytest.approx([expected] * 2, abs=1e-6)
+
+
 def test_labels_of_a_height_field_are_those_of_mujocos(device):
     """MuJoCo's own pipeline: its contacts with prisms under the same triangles."""
     robot, text = ws.load_robot(random_text(6, 4)), random_text(6, 4)

@@ -14,6 +14,7 @@ import numpy as np
 
 from wsrender.collision.covers import from_segment, outer_cover
 from wsrender.collision.solids import Pairs, Solid
+from wsrender.collision.supports import center_of
 from wsrender.robots.chain import Chain
 from wsrender.robots.triangles import winding_numbers
 
@@ -91,7 +92,7 @@ class Distances:
         """Distances of solid ``b`` at frames (N, 4, 4) in that of a surface."""
         own, found = self.solids[surface], np.full(len(T), limit)
         corners, centers, radii = triangles = self._triangles(surface)
-        low, high = own.points[0], own.points[-1]
+        low, *_, high = own.points
         beyond = np.linalg.norm(np.maximum(0, np.maximum(low - T[:, :3, 3], T[:, :3, 3] - high)), axis=1)
         near = np.flatnonzero(beyond - self.solids[b].bounding_radius < limit)
         capsule = self._capsule(b)
@@ -100,7 +101,8 @@ class Distances:
             bounds = from_segment(centers, *ends) - capsule.radius[0] - radii
             found[i] = self._from_triangles(b, T[i], triangles, bounds, limit)
         apart = near[found[near] > 0]
-        inside = apart[winding_numbers(corners, T[apart, :3, 3]) > 0.5]
+        middles = T[apart, :3, :3] @ center_of(self.solids[b]) + T[apart, :3, 3]
+        inside = apart[winding_numbers(corners, middles) > 0.5]
         found[inside] *= -1
         return found
 

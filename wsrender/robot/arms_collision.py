@@ -50,7 +50,7 @@ def arms_apart(robots: Sequence[Robot], names: Sequence[str], choice: Apart, *, 
     Every shape that moves with a joint of one against all of the other, whatever their contact bits; of two arms of
     ``one_model`` against those that move. Tables are made here, in seconds, where they are not on disk yet. Raises
     InputError for a robot without shapes, joints that both arms share, names that name nothing, a margin beyond both
-    robots, and pairs that meet in every configuration, or wherever the tips do.
+    robots, height fields, and pairs that meet in every configuration, or wherever the tips do.
     """
     field = f"constraints.{ARMS}"
     a, b = (robot_bodies(robot, ARMS) for robot in robots)
@@ -71,6 +71,9 @@ def arms_apart(robots: Sequence[Robot], names: Sequence[str], choice: Apart, *, 
             f"{field}.margin_m", f"must be at most the robots' size, {size:.3g} m, not {choice.margin_m:g}"
         )
     solids = (*(_of_first(shape, a.chain) for shape in of_a), *(_of_second(shape, a.chain, b.chain) for shape in of_b))
+    if fields := [solid.name for k, solid in enumerate(solids) if solid.kind == "surface" and k in pairs]:
+        message = f"must list all pairs of {', '.join(fields)}: arms keep apart from no height field of the other"
+        raise InputError(f"{field}.exclude", message)
     constraint = CollisionConstraint(ARMS, chain, solids, pairs, choice.margin_m)
     refuse_always((constraint,))
     _refuse_where_tips_meet(constraint, [_from_tip(robots[0], a, of_a), _from_tip(robots[1], b, of_b)])
