@@ -1,7 +1,10 @@
 """Proofs, tables and covers against MuJoCo and random search; the folder of programs."""
 
+import ast
+import shutil
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -146,6 +149,35 @@ def test_who_makes_the_same_program_is_waited_for(tmp_path, monkeypatch):
         assert np.array_equal(each.solid_pairs, planned[number].own.pairs)
 
 
+def imported(module: Path, found: set[Path]) -> set[Path]:
+    """A module with all that it imports of this package."""
+    if module not in found:
+        found.add(module)
+        for node in ast.walk(ast.parse(module.read_text())):
+            if isinstance(node, ast.ImportFrom) and node.module and node.module.startswith("wsrender."):
+                own = store.PACKAGE.parent.joinpath(*node.module.split("."))
+                for path in (own.with_suffix(".py"), *(own / f"{each.name}.py" for each in node.names)):
+                    if path.exists():
+                        imported(path, found)
+    return found
+
+
+def test_a_program_belongs_to_the_sources_that_make_it(tmp_path, monkeypatch):
+    """To every module that they import: a changed byte of any makes another."""
+    makers = imported(store.PACKAGE / "collision" / "program.py", set())
+    names = sorted(path.relative_to(store.PACKAGE) for path in makers)
+    for name in names:
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        shutil.copy(store.PACKAGE / name, tmp_path / name)
+    monkeypatch.setattr(store, "PACKAGE", tmp_path)
+    hashed = store._sources.__wrapped__
+    found = [hashed(), hashed()]
+    for name in names:
+        (tmp_path / name).write_bytes((tmp_path / name).read_bytes() + b"#")
+        found.append(hashed())
+    assert len(set(found)) == len(found) - 1 == len(names) + 1 > 10
+
+
 def test_a_program_belongs_to_all_that_it_is_made_of(monkeypatch):
     robot = ws.load_robot(random_text(1, 3))
     (one,) = constraints_for(robot, Constraints(self_collision=True))
@@ -159,7 +191,7 @@ def test_a_program_belongs_to_all_that_it_is_made_of(monkeypatch):
     keys = {store._key(each.own, each.chain) for each in (one, *others)}
     assert len(keys) == 1 + len(others)
     assert len({one, *others}) == 1 + len(others) - 2  # limits change no label
-    monkeypatch.setattr(store, "MADE", store.MADE + 1)
+    monkeypatch.setattr(store, "_sources", lambda: "others")
     assert store._key(one.own, one.chain) not in keys
 
 

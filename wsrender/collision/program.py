@@ -4,7 +4,7 @@ Tests are certified: two solids are apart where all capsules around them are, an
 What neither says is open for this pair, and goes on to the narrow phase.
 """
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -91,11 +91,6 @@ class Program:
     def root(self) -> int:
         """The lowest frame that a solid of any pair is in."""
         return int(self.solid_frame[self.solid_pairs].min(initial=len(self.sources)))
-
-    @property
-    def n_bytes(self) -> int:
-        """Bytes of its arrays."""
-        return sum(value.nbytes for field in fields(self) if isinstance(value := getattr(self, field.name), np.ndarray))
 
 
 def program(pairs: Pairs, chain: Chain, distances: Distances | None = None) -> Program:

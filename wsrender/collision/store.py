@@ -1,8 +1,9 @@
-"""Programs on disk, by the content of robot, surroundings and limits: what takes seconds is done once."""
+"""Programs on disk, by the content of robot, surroundings, limits and sources: what takes seconds is done once."""
 
 import hashlib
 import os
 from dataclasses import fields
+from functools import cache
 from io import BytesIO
 from pathlib import Path
 from zipfile import BadZipFile
@@ -19,7 +20,16 @@ from wsrender.robots.chain import Chain
 
 FOLDER = "WSRENDER_CACHE_DIR"  # environment variable
 LIMIT_BYTES = 2**30  # of all programs; those not used for longest go first
-MADE = 12  # how programs are made: counted up with every change of certificates, covers or arrays
+PACKAGE = Path(__file__).parents[1]
+MAKERS = (  # modules by which programs are made
+    "collision/*.py",
+    "content.py",
+    "robots/chain.py",
+    "robots/joint_space.py",
+    "robots/kinematics.py",
+    "robots/reachable_box.py",
+    "robots/triangles.py",
+)
 
 
 _LATEST: dict[str, Program] = {}  # of this process
@@ -54,7 +64,7 @@ def _from_folder(key: str, pairs: Pairs, chain: Chain, distances: Distances) -> 
 
 
 def _key(pairs: Pairs, chain: Chain) -> str:
-    made = hashlib.sha256(f"{MADE} {mujoco.__version__} {pairs.digest}".encode())
+    made = hashlib.sha256(f"{_sources()} {mujoco.__version__} {pairs.digest}".encode())
     names = (
         "T_joint",
         "joint_is_revolute",
@@ -67,6 +77,15 @@ def _key(pairs: Pairs, chain: Chain) -> str:
     for name in names:
         made.update(np.ascontiguousarray(getattr(chain, name), np.float64).tobytes())
     return made.hexdigest()[:32]
+
+
+@cache
+def _sources() -> str:
+    """Of all that programs are made by: who changes it finds none that was made before."""
+    made = hashlib.sha256()
+    for path in sorted(path for pattern in MAKERS for path in PACKAGE.glob(pattern)):
+        made.update(hashlib.sha256(path.read_bytes()).digest())
+    return made.hexdigest()
 
 
 def _read(path: Path) -> Program | None:
