@@ -188,6 +188,14 @@ def test_a_program_belongs_to_all_that_it_is_made_of(monkeypatch):
     names = ("lower_limits", "upper_limits", "joint_scale", "joint_offset", "T_joint")
     others += [replace(one, chain=replace(one.chain, **{name: getattr(one.chain, name) + 1e-9})) for name in names]
     others.append(replace(one, chain=replace(one.chain, joint_is_revolute=~one.chain.joint_is_revolute)))
+    others.append(replace(one, chain=replace(one.chain, joint_source=one.chain.joint_source[::-1])))
+    ground = replace(solid, kind="surface", vertices=np.random.default_rng(0).random((9, 3)), faces=np.arange(9))
+    for vertices, faces in (
+        (ground.vertices, ground.faces),
+        (ground.vertices[[0, 1, 2, 3, 5, 4, 6, 7, 8]], ground.faces),
+    ):
+        others.append(replace(one, solids=(replace(ground, vertices=vertices, faces=faces), *one.solids[1:])))
+    others.append(replace(one, solids=(replace(ground, faces=ground.faces[::-1]), *one.solids[1:])))
     keys = {store._key(each.own, each.chain) for each in (one, *others)}
     assert len(keys) == 1 + len(others)
     assert len({one, *others}) == 1 + len(others) - 2  # limits change no label
