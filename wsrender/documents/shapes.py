@@ -7,6 +7,7 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, ClassVar, Literal, get_args
 
+import numpy as np
 from pydantic import BeforeValidator, Discriminator, Field, StrictBool, ValidationError, model_validator
 
 from wsrender.documents.document import Document
@@ -111,6 +112,10 @@ class Sphere(Named):
     """Its centre in the world [m]; center_m says the same."""
     radius_m: PositiveNumber
     """Its radius [m]."""
+
+    def matrix(self) -> np.ndarray:
+        """Its frame in the world, as those of other shapes; turned as the world."""
+        return Transform(position_m=self.position_m).matrix()
 
 
 class Box(Placed):

@@ -12,6 +12,7 @@ from wsrender.collision.solids import BASE, Pairs, Solid
 from wsrender.collision.store import stored_program
 from wsrender.documents.constraints import Apart, Constraints
 from wsrender.documents.environment import Box, Capsule, ConvexMesh, Cylinder, Ellipsoid, Environment, HalfSpace, Sphere
+from wsrender.documents.shapes import half_sizes
 from wsrender.errors import InputError, ResourceError
 from wsrender.pipeline.constraints.collision import CollisionConstraint, labelling
 from wsrender.robot.model_robot import Robot
@@ -168,12 +169,8 @@ def standing_solid(standing: Standing, T_world_base: np.ndarray) -> Solid:
     match shape:
         case HalfSpace():
             T[:3, :3], T[:3, 3] = _turned_to(np.array(shape.normal)), shape.point_m
-        case Sphere():
-            size[0], T[:3, 3] = shape.radius_m, shape.position_m
-        case Box() | Ellipsoid():
-            size, T = np.array(shape.size_m) / 2, shape.matrix()
-        case Cylinder() | Capsule():
-            size[:2], T = (shape.radius_m, shape.length_m / 2), shape.matrix()
+        case Sphere() | Box() | Ellipsoid() | Cylinder() | Capsule():
+            size, T = np.array(half_sizes(shape)), shape.matrix()
         case ConvexMesh():
             vertices, T = np.array(shape.vertices_m), shape.matrix()
         case Surface():

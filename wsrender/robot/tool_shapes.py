@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from wsrender.documents.shapes import ConvexMesh, Mesh, Sphere, ToolShape, half_sizes
-from wsrender.documents.transform import Transform
+from wsrender.documents.shapes import ConvexMesh, Mesh, ToolShape, half_sizes
 from wsrender.errors import InputError
 
 if TYPE_CHECKING:
@@ -31,9 +30,8 @@ def attached(shapes: Sequence[ToolShape]) -> "tuple[Shape, ...]":
 def _attached(shape: ToolShape, name: str) -> "Iterator[Shape]":
     from wsrender.robots.shapes import ATTACHED, Shape
 
-    T = Transform(position_m=shape.position_m).matrix() if isinstance(shape, Sphere) else shape.matrix()
     kind: Any = "mesh" if shape.shape == "convex_mesh" else shape.shape
-    own = Shape(name, BODY, kind, -1, T, np.array(half_sizes(shape)), ATTACHED, False, np.array(GREY))
+    own = Shape(name, BODY, kind, -1, shape.matrix(), np.array(half_sizes(shape)), ATTACHED, False, np.array(GREY))
     if not isinstance(shape, ConvexMesh | Mesh):
         yield own
         return

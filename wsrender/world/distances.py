@@ -7,8 +7,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from wsrender.documents.environment import ConvexMesh, HalfSpace, Mesh, Shape, Sphere
-from wsrender.documents.robot import Transform
+from wsrender.documents.environment import ConvexMesh, HalfSpace, Mesh, Shape
 from wsrender.documents.shapes import HeightField, half_sizes
 from wsrender.errors import InputError
 from wsrender.robots.compiled_model import MUJOCO_ERRORS, quiet
@@ -111,9 +110,12 @@ def _add(spec: Any, shape: Shape | Surface, number: int) -> None:
     if isinstance(shape, HalfSpace | Surface):
         return
     assert not isinstance(shape, HeightField)  # whose surface is asked instead
-    place = {"pos": shape.position_m} if isinstance(shape, Sphere) else _place(shape)
     kind = "mesh" if isinstance(shape, ConvexMesh) else shape.shape
-    geom = {"type": getattr(mujoco.mjtGeom, f"mjGEOM_{kind.upper()}"), "size": half_sizes(shape), **place}
+    geom = {
+        "type": getattr(mujoco.mjtGeom, f"mjGEOM_{kind.upper()}"),
+        "size": half_sizes(shape),
+        **_place(shape.matrix()),
+    }
     if isinstance(shape, ConvexMesh | Mesh):
         mesh = spec.add_mesh(name=f"shape{number}")
         mesh.uservert = hull_vertices(shape).ravel().tolist()
@@ -121,7 +123,7 @@ def _add(spec: Any, shape: Shape | Surface, number: int) -> None:
     spec.worldbody.add_geom(**geom)
 
 
-def _place(pose: Transform) -> dict[str, list[float]]:
-    T, quat_wxyz = pose.matrix(), np.empty(4)
+def _place(T: np.ndarray) -> dict[str, list[float]]:
+    quat_wxyz = np.empty(4)
     mujoco.mju_mat2Quat(quat_wxyz, T[:3, :3].ravel())
     return {"pos": T[:3, 3].tolist(), "quat": quat_wxyz.tolist()}

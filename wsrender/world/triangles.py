@@ -14,7 +14,6 @@ from wsrender.documents.environment import (
     Mesh,
     Sphere,
 )
-from wsrender.documents.robot import Transform
 from wsrender.world.meshes import hull_vertices
 from wsrender.world.surfaces import Surface, surface_of
 
@@ -43,8 +42,7 @@ def triangles(shape: Solid) -> tuple[np.ndarray, np.ndarray]:
     if isinstance(shape, Surface):
         return _placed(shape.vertices, shape.T), shape.faces
     mesh = _mesh(shape)
-    T = Transform(position_m=shape.position_m).matrix() if isinstance(shape, Sphere) else shape.matrix()
-    return _placed(np.asarray(mesh.vertices), T), np.asarray(mesh.faces)
+    return _placed(np.asarray(mesh.vertices), shape.matrix()), np.asarray(mesh.faces)
 
 
 def plate(half_space: HalfSpace, lower: np.ndarray, upper: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
