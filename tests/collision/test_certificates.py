@@ -12,7 +12,7 @@ import pytest
 import wsrender as ws
 from tests.collision.robots import drawn, random_text
 from wsrender.collision import certificates as certified
-from wsrender.collision import levers, store
+from wsrender.collision import grids, levers, store
 from wsrender.collision.certificates import FREE, HIT, MIXED, certificates
 from wsrender.collision.covers import LEVELS, cover, from_segment
 from wsrender.collision.distance import frames_of
@@ -147,6 +147,30 @@ def test_who_makes_the_same_program_is_waited_for(tmp_path, monkeypatch):
     assert sorted(made) == sorted({each.own.digest for each in planned})
     for number, each in found:
         assert np.array_equal(each.solid_pairs, planned[number].own.pairs)
+
+
+@pytest.mark.parametrize("kind", SOLIDS)
+def test_balls_that_are_looked_up_hold_the_cover_and_lie_within_it(kind):
+    """Whose capsules hold the solid, and lie within it; of a grid whose border is near, upper bounds end there."""
+    solid, margin, epsilon, random = SOLIDS[kind], 0.01, 1e-5, np.random.default_rng(0)
+    own, grid = cover(solid), grids.Grid(np.zeros(3), 0.001, 1.0, np.zeros((1, 1, 1), np.uint32))
+    T = ws.Transform(position_m=(0.1, 0.2, 0.3), rpy_deg=(10, 20, 30)).matrix()
+    balls = grids.lookup(grid, 0, T, own, margin, epsilon).balls
+    centers, (free, touch) = (balls[:, :3] - T[:3, 3]) @ T[:3, :3], balls[:, 3:].T * grid.quantum
+    level, d = 0 if own.exact else grids.LEVEL, random.normal(size=(2000, 3))
+    d /= np.linalg.norm(d, axis=1, keepdims=True)
+    for a, b, radius in zip(own.outer[level].a, own.outer[level].b, own.outer[level].radius, strict=True):
+        points = a + random.random((2000, 1)) * (b - a) + radius * d
+        away = np.linalg.norm(points[:, None] - centers, axis=2)
+        assert (away - (free - margin - epsilon)).min(axis=1).max() < 1e-12
+    within, inner = touch > 0, own.outer[0] if own.exact else own.inner[level]
+    for center, radius in zip(centers[within], touch[within] - margin + epsilon, strict=True):
+        depths = inner.radius - np.array(
+            [from_segment(center[None], a, b)[0] for a, b in zip(inner.a, inner.b, strict=True)]
+        )
+        assert depths.max() == pytest.approx(radius, abs=1e-12)
+    near = grids.lookup(replace(grid, pad=0.005), 0, T, own, margin, epsilon).balls
+    assert (near[within, 4] * grid.quantum).tolist() == pytest.approx([0.005] * within.sum())
 
 
 def imported(module: Path, found: set[Path]) -> set[Path]:
