@@ -37,6 +37,18 @@ def test_random_primitives_among_boxes_and_meshes(seed, limit):
     assert least.min() < 0
 
 
+def test_random_primitives_over_hilly_ground():
+    """Whose pairs are bounded by lookups in its grid, those with the others by capsules."""
+    heights = np.random.default_rng(0).uniform(0.05, 0.3, (5, 6)).tolist()
+    ground = ws.HeightField(heights_m=heights, size_m=(0.8, 0.6), position_m=(0.1, 0.05, -0.1), rpy_deg=(0, 30, 0))
+    robot = ws.load_robot(random_text(6, 4))
+    clearance, q = clearance_of(robot, None, ws.Environment([ground])), drawn(robot, 150)
+    assert 0 < len(clearance.lookups) < len(clearance.pairs.pairs)
+    least, bound = clearance.least(q, 0.25), clearance.lower_bound(q, 0.25)
+    assert np.array_equal(least, nearest(clearance, q, 0.25)) and (bound <= least).all()
+    assert least.min() < 0 < bound.max()
+
+
 def test_the_lower_bound_of_deep_solids_is_that_of_the_wholes():
     """What lies where the capsules around two parts of a box meet is not as deep in either as it is in the box."""
     block = ws.Environment([ws.Box(name="block", size_m=(1.2, 0.7, 0.7), position_m=(0.9, 0, 0))])

@@ -14,8 +14,9 @@ from tests.world.test_convex_pieces import SOLIDS, inside, mesh_of
 from wsrender.collision.solids import BASE, Pairs
 from wsrender.collision.store import stored_program
 from wsrender.documents.constraints import Constraints
-from wsrender.errors import InputError
+from wsrender.errors import InputError, ResourceError
 from wsrender.results.render.environment import items_of, surfaces
+from wsrender.robot import collisions
 from wsrender.robot.constraints import constraints_for
 from wsrender.robot.surroundings import shapes_around
 
@@ -125,6 +126,20 @@ def test_robots_and_scenes_that_cannot_be_had_name_the_field(item, field, messag
     with pytest.raises(InputError, match=message) as caught:
         constraints_for(ws.load_robot("ur5e"), None, ws.Environment([ws.HalfSpace(point_m=(0, 0, -1)), item]))
     assert caught.value.field == f"environment.items.1.{field}"
+
+
+def test_too_many_pairs_to_look_at_are_refused(monkeypatch):
+    """Before any is listed, or those that are excluded are left out."""
+    balls = ws.Environment([ws.Sphere(radius_m=0.1, position_m=(9, 0, 0))] * 3)
+    monkeypatch.setattr(collisions, "MOST_LISTED", 3 * moving_shapes(arm()) - 1)
+    with pytest.raises(ResourceError, match=r"constraints\.environment: would look at \d+ pairs of shapes, more than"):
+        constraints_for(arm(), None, balls)
+    monkeypatch.setattr(collisions, "MOST_LISTED", 3 * moving_shapes(arm()))
+    assert constraints_for(arm(), None, balls)
+
+
+def moving_shapes(robot) -> int:
+    return sum(shape.frame != BASE for shape in robot.bodies.shapes)
 
 
 def test_all_of_an_item_may_be_let_off():
