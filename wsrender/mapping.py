@@ -133,6 +133,11 @@ class ServedShape:
         """Volume of the served part: a corner has a quarter of its tetrahedron."""
         return float(self.shape.sixfold_m3 @ self._served_corners.mean(axis=1) / 6)
 
+    @property
+    def holds_served(self) -> bool:
+        """Whether some tetrahedron has served corners alone."""
+        return bool(self._served_corners.all(axis=1).any())
+
     def served(self) -> AlphaShape:
         """The tetrahedra of served corners alone."""
         kept = self.shape.kept.copy()
@@ -173,6 +178,11 @@ class ServedVoxels:
     def contains(self, points: np.ndarray) -> np.ndarray:
         """Whether each point (N, 3) [m] is served, (N,) bool."""
         return self.reason(points) == SERVED
+
+    @property
+    def holds_served(self) -> bool:
+        """Whether some voxel is served."""
+        return bool((self.reasons == SERVED).any())
 
     @property
     def volume_m3(self) -> float:

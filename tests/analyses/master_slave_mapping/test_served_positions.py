@@ -127,3 +127,26 @@ def test_errors_name_the_side(side):
             job | {side: {"robot": "spherical", "sampling": {"method": "sobol", "count": 64}, "constraints": nowhere}}
         )
     assert error.value.field == f"{side}.constraints"
+
+
+@pytest.mark.parametrize("containment", [{}, {"kind": "voxels", "voxel_size_m": 0.3}], ids=["shape", "voxels"])
+@pytest.mark.parametrize("side", ["master", "slave"])
+def test_served_positions_among_blocked_ones_enclose_nothing(side, containment):
+    """The three of 512 that a ball admits make no tetrahedron, and are nowhere most of those in a voxel."""
+    other = {"points": [[0, 0, 0], *(0.05 * np.eye(3)).tolist()]}
+    ball = {"region": {"sphere": {"radius_m": 0.2, "position_m": [0.5, 0, 0]}}}
+    arm = {"robot": "ur5e", "sampling": {"method": "sobol", "count": 512}, "constraints": ball}
+    job = {"analysis": "master_slave_mapping", "master": other, "slave": other, side: arm, "containment": containment}
+    with pytest.raises(InputError, match="leave 3 of 512 positions, scattered among blocked ones") as error:
+        execute(job | {"device": "cpu"})
+    assert error.value.field == f"{side}.constraints"
+
+
+@pytest.mark.parametrize("side", ["master", "slave"])
+def test_points_that_enclose_nothing_name_their_side(side):
+    flat, solid = {"points": [[0, 0, 0], [1, 0, 0], [0, 1, 0]]}, {"points": np.eye(4, 3).tolist()}
+    for containment in ({}, {"kind": "voxels", "voxel_size_m": 0.3}):
+        job = {"analysis": "master_slave_mapping", "master": solid, "slave": solid, side: flat}
+        with pytest.raises(InputError, match="are 3 points in a plane") as error:
+            execute(job | {"containment": containment})
+        assert error.value.field == f"{side}.points"

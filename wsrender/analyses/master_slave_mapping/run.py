@@ -156,10 +156,11 @@ class MasterSlaveMappingAnalysis(Analysis):
         mapping = LinearMapping(np.array(best["scale"]), self._rotation(), np.array(best["offset_m"]))
         mapped, space = mapping.apply(slave), self._space(partial.arrays, "master")
         inside = space.contains(mapped)
-        shape = (
-            space.served() if isinstance(space, ServedShape) else AlphaShape.of(master, self.job.containment.alpha_m)
-        )
-        meshes = {"master": shape.mesh(), "slave": AlphaShape.of(mapped).mesh()}
+        if isinstance(space, ServedShape):
+            shape = space.served()
+        else:
+            shape = space if isinstance(space, AlphaShape) else _shape(master, "master")
+        meshes = {"master": shape.mesh(), "slave": _shape(mapped, "slave").mesh()}
         document = {
             "robots": [],
             **self.about_robots(),
@@ -217,13 +218,17 @@ class MasterSlaveMappingAnalysis(Analysis):
     def _space(self, arrays: Mapping[str, np.ndarray], name: str) -> MeasuredSet:
         """The workspace of a side; under constraints what is served of it."""
         points, reasons, containment = arrays[name], arrays.get(f"{name}_reasons"), self.job.containment
-        if containment.kind == "alpha_shape":
-            shape = AlphaShape.of(points, containment.alpha_m)
-            return shape if reasons is None else ServedShape(shape, reasons)
-        assert containment.voxel_size_m is not None
+        size = containment.voxel_size_m
         if reasons is None:
-            return VoxelSet.of(points, containment.voxel_size_m)
-        return ServedVoxels.of(points, reasons, containment.voxel_size_m)
+            return VoxelSet.of(points, size) if size else _shape(points, name, containment.alpha_m)
+        if size:
+            space = ServedVoxels.of(points, reasons, size)
+        else:
+            space = ServedShape(_shape(points, name, containment.alpha_m), reasons)
+        if not space.holds_served:
+            message = f"leave {int((reasons == 0).sum())} of {len(points)} positions, scattered among blocked ones"
+            raise InputError(f"{name}.constraints", f"{message}: widen them, or take more samples")
+        return space
 
     def _rotation(self) -> np.ndarray:
         return self.job.rotation.matrix()[:3, :3] if self.job.rotation else np.eye(3)
@@ -290,6 +295,14 @@ def _constraints(side: Any, source: Source, name: str) -> tuple[Constraint, ...]
         return constraints_of_job(side, source)
     except InputError as error:
         raise error.within(name) from None
+
+
+def _shape(points: np.ndarray, name: str, alpha_m: float | None = None) -> AlphaShape:
+    """The alpha shape of points (N, 3) [m] of a side, which errors name."""
+    try:
+        return AlphaShape.of(points, alpha_m)
+    except InputError as error:
+        raise (error.within(name) if error.field == "points" else error) from None
 
 
 def _served(arrays: Mapping[str, np.ndarray], name: str) -> np.ndarray:
