@@ -64,7 +64,7 @@ def test_what_two_arms_reach_apart_without_other_constraints():
     options = {"samples": 1000, "seeds": 1, "cells": (2, 2, 2), "refined_volume": 0.05, "device": "cpu"}
     result = ws.collaborative_volume(left, right, constraints={"arms_collision": True}, **options)
     exact, area = arms.areas(wall=False), result.document["area_m2"]
-    assert holds(area["free"], exact["apart"], 0.11 * exact["apart"]) and "samples" not in result.document
+    assert holds(area["free"], exact["apart"], 0.11 * exact["apart"]) and "admission" not in result.document
     blocked = area["blocked"]["by"]["arms_collision"]
     assert area["blocked"]["value"] == blocked["value"] and holds(blocked, exact["reached"] - exact["apart"], 0.1)
     assert result.document["headline"]["ci95"] == area["free"]["ci95"]

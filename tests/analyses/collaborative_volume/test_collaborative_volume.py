@@ -126,17 +126,21 @@ def test_malformed_jobs(fields, message):
         ws.execute(job(**fields))
 
 
-def test_the_points_of_constrained_arms_are_those_that_are_admitted():
+def test_the_points_of_constrained_arms_are_those_that_are_admitted(tmp_path):
     """Half of what both reach lies behind a wall; where all does, that is said."""
     sides, seen = {"left": {"robot": "phantom_omni"}, "right": {"robot": "phantom_omni"}}, {}
     for name, lower in (("all", -9.0), ("half", 0.0)):
         constraints = {"region": {"box": {"lower_m": [None, lower, None]}}}
         document = job(**sides, samples=20_000, seeds=2, cells=[10] * 3, constraints=constraints, refined_volume=None)
-        seen[name] = ws.execute(document).document
+        result = ws.execute(document)
+        seen[name] = result.document
+    result.save(tmp_path)
+    assert (tmp_path / "plots" / "refinements.png").stat().st_size
+    assert result.plot.title.endswith("admitted by region") and "admitted of left " in result.summary()
     for side in ("left", "right"):
-        half = seen["half"]["samples"][side]
+        half = seen["half"]["admission"][side]
         assert half["drawn"] == 2 * 20_000 == half["admitted"] + half["rejected"]["region"]
-        assert 0.3 < half["admitted"] / half["drawn"] < 0.7 and not seen["all"]["samples"][side]["rejected"]["region"]
+        assert 0.3 < half["admitted"] / half["drawn"] < 0.7 and not seen["all"]["admission"][side]["rejected"]["region"]
     volume = [seen[name]["refinements"][3]["mean_m3"] for name in ("half", "all")]
     assert 0.3 * volume[1] < volume[0] < 0.7 * volume[1]
     document["constraints"]["region"]["box"]["lower_m"] = [None, 9.0, None]

@@ -79,6 +79,7 @@ def test_failing_targets_have_their_reason():
     np.testing.assert_allclose(failing["slave_position"], targets[:16])
     assert result.document["mapping"]["reasons"] == {"out of reach": 8, "blocked by environment": 8}
     assert "(8 out of reach, 8 blocked by environment)" in result.summary()
+    assert result.plot.title.endswith("admitted by environment") and "admitted of master " in result.summary()
     samples = result.document["admission"]["master"]
     assert samples["drawn"] == COUNT == samples["admitted"] + samples["rejected"]["environment"]
     assert samples["positions"]["served"] + samples["positions"]["blocked"]["environment"] == COUNT

@@ -168,7 +168,7 @@ class CollaborativeVolumeAnalysis(Analysis):
         about: dict[str, Any] = {
             "robots": [],
             **self.about_robots(),
-            **self._samples_entry(partial),
+            **self._admission(partial),
             "sampling": {"method": "random", "samples": self._samples, "seed": job.seed},
             "refinements": [
                 {
@@ -191,13 +191,13 @@ class CollaborativeVolumeAnalysis(Analysis):
         tables = {"refinements": _curve(mean, variance, true), "seeds": _seeds(job.seed, volumes)}
         return Draft(about, no_headline(BIASED) if measure is None else headline_of(measure), tables=tables)
 
-    def _samples_entry(self, partial: PartialResult) -> dict[str, Any]:
+    def _admission(self, partial: PartialResult) -> dict[str, Any]:
         """Of both robots under constraints: configurations of all runs drawn, admitted, and rejected by reason."""
         if not any(self.constraints):
             return {}
         drawn, rejected = self.job.samples * self.job.seeds, partial["rejected"].sum(axis=0)
         each = zip(SIDES, self.constraints, rejected, strict=True)
-        return {"samples": {side: samples_entry(of_side, drawn, by)["samples"] for side, of_side, by in each}}
+        return {"admission": {side: samples_entry(of_side, drawn, by)["samples"] for side, of_side, by in each}}
 
 
 def _cell_bytes(job: CollaborativeVolumeJob) -> float:

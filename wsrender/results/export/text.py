@@ -26,8 +26,8 @@ def sampling_text(document: dict[str, Any]) -> str:
     if "samples" in sampling:
         method = f" ({method_text(sampling['method'])})" if "method" in sampling else ""
         parts.append(f"{sampling['samples']:,} samples{method}")
-    if samples := document.get("samples"):
-        parts.append(f"admitted by {', '.join(samples['rejected'])}")
+    if constraints := dict.fromkeys(name for _, samples in _admissions(document) for name in samples["rejected"]):
+        parts.append(f"admitted by {', '.join(constraints)}")
     return " · ".join([*parts, *presentation_of(document).title(document)])
 
 
@@ -44,12 +44,20 @@ def summary_text(document: dict[str, Any]) -> str:
     return "\n".join([sampling_text(document), *head, *facts, *table, *_difference_table(document)])
 
 
+def _admissions(document: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
+    """What constraints admit, by name: of all samples, or of those of each side of a job."""
+    if samples := document.get("samples"):
+        yield "admitted samples", samples
+    for side, samples in document.get("admission", {}).items():
+        yield f"admitted of {side}", samples
+
+
 def _facts(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
     headline = document.get("headline") or {}
-    if samples := document.get("samples"):
-        reasons = ", ".join(f"{name} {number:,}" for name, number in samples["rejected"].items())
-        yield "admitted samples", f"{samples['admitted']:,} of {samples['drawn']:,}; rejected by {reasons}"
-        yield from _rejections(document.get("rejections") or {})
+    for name, samples in _admissions(document):
+        reasons = ", ".join(f"{reason} {number:,}" for reason, number in samples["rejected"].items())
+        yield name, f"{samples['admitted']:,} of {samples['drawn']:,}; rejected by {reasons}"
+    yield from _rejections(document.get("rejections") or {})
     if flat := document.get("flat"):
         yield from _flat(flat, headline)
     else:
