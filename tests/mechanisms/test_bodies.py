@@ -7,6 +7,8 @@ import trimesh
 from scipy.spatial.transform import Rotation
 
 import wsrender as ws
+from wsrender.analyses.cost import refined_seconds
+from wsrender.analyses.parallel_workspace.run import APART_PER_S
 from wsrender.collision.solids import BASE, Solid
 from wsrender.documents.legs import DeltaLeg
 from wsrender.documents.mechanism import Delta, LegsMechanism, StewartGough
@@ -15,6 +17,7 @@ from wsrender.mechanisms.bodies import Bodies
 from wsrender.mechanisms.inverse_kinematics import inverse_kinematics
 from wsrender.mechanisms.mechanism import mechanism_of
 from wsrender.mechanisms.membership import fault_at, poses_labelled
+from wsrender.run import finish, plan, run_shard
 
 PLACED = {"position_m": [1.0, -2.0, 0.5], "rpy_deg": [10, -5, 30]}
 POST = {"shape": "box", "name": "post", "size_m": [0.1, 0.1, 2], "position_m": [0.45, 0.25, 0.5]}
@@ -211,6 +214,18 @@ def test_a_job_counts_what_collides_and_names_it():
     mechanism = mechanism_of(StewartGough(length_m=(0.5, 0.8), bodies=bodies))
     assert fault_at(mechanism, at([0, 0, 0.55])) == ""
     assert fault_at(mechanism, at([0, 0, 0.59])) == "collision: the link of leg 1 and ceiling come too near"
+
+
+def test_the_estimate_counts_the_points_of_a_refined_volume(monkeypatch):
+    """Of which bodies are asked; each takes as long as one of a voxel that is reached."""
+    bodies = {"link_radius_m": 0.02, "environment": {"items": [POST]}}
+    job = {"analysis": "parallel_workspace", "mechanism": {"library": "stewart_gough", "bodies": bodies}}
+    planned = plan(job | {"voxel_size_m": 0.15, "refined_volume": 0.05})
+    partial, asked, collisions = run_shard(planned, 0), [], Bodies.collisions
+    monkeypatch.setattr(Bodies, "collisions", lambda own, *of: (asked.append(len(of[1])), collisions(own, *of))[1])
+    finish(planned, partial)
+    without = plan(job | {"voxel_size_m": 0.15, "refined_volume": None}).cost.seconds + refined_seconds(0.05)
+    assert planned.cost.seconds - without == pytest.approx(sum(asked) / APART_PER_S, rel=0.5)
 
 
 def test_indices_are_those_of_branches_that_keep_apart():

@@ -57,6 +57,7 @@ Arrays = dict[str, np.ndarray]
 RATE_CPU_CORE, RATE_GPU = 1.6e8, 4e8  # poses per second, rounded down from benchmarks/parallel.py
 INDEX_BYTES = 750  # of a voxel while its indices are computed: its pose, Jacobians and their inverses
 APART_PER_S = 1e3  # poses of six legs, a platform and two things around: of one core
+APART_POINTS = 4.0  # of a refined volume, those that legs reach by themselves: over the square of the tolerance
 INDICES_PER_S = 8e4  # voxels whose indices are computed
 POSE_BYTES, SHARE_BYTES = 75, 4.4e7  # of an orientation at a point; of the estimate of their share
 BOUNDARY_BYTES = 3.3e6  # of the mesh of an exact boundary
@@ -145,7 +146,9 @@ class ParallelWorkspaceAnalysis(Analysis):
         poses, threads = float(sum(count for _, count in self.shards)), thread_count()
         rate = RATE_GPU if self.target.startswith("cuda") else RATE_CPU_CORE * threads
         seconds = poses / rate + poses * len(self.mechanism.numeric) / (RATE_NUMERIC_CORE * threads)
-        seconds += self._reached * bool(self.mechanism.bodies) / APART_PER_S
+        if self.mechanism.bodies:
+            refined = APART_POINTS / self.job.refined_volume**2 if self.job.refined_volume else 0.0
+            seconds += (self._reached + refined) / APART_PER_S
         drawn, drawing = pictures_cost("slices", "robot", "targets")
         kept = (8 + 12 * self._columns) * self._reached + surface_bytes(self._reached)
         seconds += self._reached * bool(self.names) / INDICES_PER_S + drawing + refined_seconds(self.job.refined_volume)
