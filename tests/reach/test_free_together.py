@@ -1,10 +1,13 @@
 """What two arms reach together, under constraints of each and apart from each other, against closed forms."""
 
 import numpy as np
+import pytest
 
 import wsrender as ws
 from tests.reach import two_arms as arms
+from wsrender.analyses.execution import Execution
 from wsrender.documents.constraints import Apart
+from wsrender.errors import InputError
 from wsrender.reach.admissible_search import BLOCKED, AdmissibleSearch
 from wsrender.reach.admission import Admission
 from wsrender.reach.evidence import REACHABLE, UNDECIDED
@@ -12,6 +15,7 @@ from wsrender.reach.inverse_solver import InverseSolver
 from wsrender.reach.pair_search import PairSearch
 from wsrender.robot.arms_collision import arms_apart
 from wsrender.robot.constraints import constraints_for
+from wsrender.run import plan
 
 
 def loaded():
@@ -57,6 +61,17 @@ def test_areas_that_are_shared_freely_and_apart():
     # One arm reaches a point alone, wherever the other is: equal arms whose wall is the same.
     alone = area["refined"]["any"]["parts"]
     assert "arms_collision" not in alone["blocked"]["by"] and area["refined"]["any"]["value"] > exact["free"]
+
+
+def test_values_of_a_scan_at_which_arms_never_keep_apart_are_named():
+    """At x = 0 their first links turn about one axis; where the robots stand they keep apart."""
+    robots = [{"robot": each, "sampling": {"method": "sobol", "count": 64}} for each in arms.both()]
+    job = {"analysis": "shared_workspace", "robots": robots, "voxel_size_m": 0.1, "device": "cpu"}
+    scan = {"axis": "x", "values": [arms.BESIDE, 0.0]}
+    planned = plan(job | {"scan": scan, "constraints": {"arms_collision": {"margin_m": 0.01}}})
+    with pytest.raises(InputError, match=r"admit nothing: .*robot_2/first collide .*\(at scan\.values\.1\)") as error:
+        planned.refinement(2, None, Execution())
+    assert error.value.field == "constraints.arms_collision"
 
 
 def test_what_two_arms_reach_apart_without_other_constraints():

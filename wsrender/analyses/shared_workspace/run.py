@@ -30,6 +30,7 @@ from wsrender.analyses.several_robots import SeveralPlans, SeveralSettled, arms_
 from wsrender.analyses.shared_workspace.job import SharedWorkspaceJob
 from wsrender.analyses.volume_notices import occupied_differs, tolerance_not_met
 from wsrender.documents.several_robots import PlacementScan
+from wsrender.errors import InputError
 from wsrender.multi import NUMBER, PRODUCT, reached_by, scanned_volumes, shared_volume, volume_by_number
 from wsrender.notices import Notice
 from wsrender.reach import Event
@@ -150,12 +151,20 @@ class SharedWorkspaceAnalysis(Composed):
         assert tolerance is not None
         events = {"any": Event(1, len(chains)), "shared": Event(2, len(chains))}
         constraints = [plan.pipeline.constraints for plan in plans]
-        options = device, progress, execution.threads, constraints, self._apart(robots)
+        options = device, progress, execution.threads, constraints, self._apart(robots, number)
         return refined_together(chains, events, tolerance, *options)
 
-    def _apart(self, robots: Sequence[Robot]) -> "dict[tuple[int, int], ArmsApart]":
-        """What keeps the robots apart where they stand; tables of collisions are made here."""
-        return arms_apart_of(self.job.constraints, self.job.robots, robots, self.several.names)
+    def _apart(self, robots: Sequence[Robot], number: int = 0) -> "dict[tuple[int, int], ArmsApart]":
+        """What keeps the robots apart where they stand; tables of collisions are made here.
+
+        Raises InputError; it names the value of the scan where ``number`` is not 0.
+        """
+        try:
+            return arms_apart_of(self.job.constraints, self.job.robots, robots, self.several.names)
+        except InputError as error:
+            if not number:
+                raise
+            raise InputError(error.field, f"{error.message} (at scan.values.{number - 1})") from None
 
     def with_refinements(self, partial: PartialParts, refinements: list[Any]) -> "SharedPartial":
         """With the refined volumes."""
@@ -178,10 +187,10 @@ class SharedWorkspaceAnalysis(Composed):
             **_measured_together(common_entries(self.several, results)),
             **measures,
             "volume_m3": {
-                **measures["volume_m3"],
                 "any": any_m3,
                 "shared": shared_m3,
                 "exactly": {str(k): float(by_number[k]) for k in range(1, len(by_number))},
+                **measures["volume_m3"],
             },
             "shared_ratio": _ratio(known) if known else shared_m3 / any_m3,
             "shared_ratio_volume": "refined" if known else "occupied",
