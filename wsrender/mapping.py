@@ -85,12 +85,12 @@ class VoxelSet:
             raise ResourceError("voxel_size_m", f"{voxel_size_m} makes {block.size:.3g} voxels; 2^30 are allowed")
         check_voxels(block, 1)
         occupied = np.zeros(block.shape, bool)
-        occupied[tuple(_cells(points, block).T)] = True
+        occupied[tuple(block.places(points).T)] = True
         return cls(block, occupied)
 
     def contains(self, points: np.ndarray) -> np.ndarray:
         """Whether the voxel of each point (N, 3) [m] is in the set, (N,) bool."""
-        cells = _cells(points, self.block)
+        cells = self.block.places(points)
         inside = ((cells >= 0) & (cells < self.block.shape)).all(axis=1)
         cells[~inside] = 0
         return inside & self.occupied[tuple(cells.T)]
@@ -131,7 +131,8 @@ class ServedShape:
     @property
     def volume_m3(self) -> float:
         """Volume of the served part: a corner has a quarter of its tetrahedron."""
-        return float(self.shape.sixfold_m3 @ self._served_corners.mean(axis=1) / 6)
+        # No product of BLAS, whose sum depends on its threads.
+        return float((self.shape.sixfold_m3 * self._served_corners.mean(axis=1)).sum() / 6)
 
     @property
     def holds_served(self) -> bool:
@@ -161,7 +162,7 @@ class ServedVoxels:
     def of(cls, points: np.ndarray, reasons: np.ndarray, voxel_size_m: float) -> "ServedVoxels":
         """Voxels of points (N, 3) [m], each SERVED or blocked by a constraint (N,); of a tie, served."""
         whole = VoxelSet.of(points, voxel_size_m)
-        at = np.ravel_multi_index(tuple(_cells(points, whole.block).T), whole.block.shape)
+        at = np.ravel_multi_index(tuple(whole.block.places(points).T), whole.block.shape)
         pairs, counts = np.unique(np.stack([at, reasons]), axis=1, return_counts=True)
         order = np.lexsort((-pairs[1], counts))  # what is written last stays: most positions, then what is served
         found = np.full(whole.block.shape, OUT_OF_REACH, np.int8)
@@ -170,7 +171,7 @@ class ServedVoxels:
 
     def reason(self, points: np.ndarray) -> np.ndarray:
         """Of each point (N, 3) [m] SERVED, the constraint that blocks it, or OUT_OF_REACH, (N,) int8."""
-        cells = _cells(points, self.block)
+        cells = self.block.places(points)
         inside = ((cells >= 0) & (cells < self.block.shape)).all(axis=1)
         cells[~inside] = 0
         return np.where(inside, self.reasons[tuple(cells.T)], np.int8(OUT_OF_REACH))
@@ -188,10 +189,6 @@ class ServedVoxels:
     def volume_m3(self) -> float:
         """Volume of the served voxels."""
         return int(np.count_nonzero(self.reasons == SERVED)) * self.block.voxel_size_m**3
-
-
-def _cells(points: np.ndarray, block: LatticeBlock) -> np.ndarray:
-    return np.floor(points / block.voxel_size_m).astype(np.int64) - np.array(block.first_voxel)
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,8 +12,8 @@ SEED = 12345
 SMALL = {name: job | {"seed": SEED} for name, job in SMALL_JOBS.items()}
 SAMPLING = {"method": "sobol", "count": 512, "seed": SEED}
 WORKSPACE = SMALL_JOBS["workspace"] | {"robot": "spherical", "sampling": SAMPLING}  # which fills a volume
-MASTER = job_of("master_slave_mapping")["master"] | {"sampling": SAMPLING}
-BLOCKED = MASTER | {"constraints": {"region": {"box": {"lower_m": [0.1, None, None]}}}}
+UPRIGHT = {"orientation": {"toward": [0, 0, 1], "within_deg": 120}}  # which rejects some of every arm's samples
+UPRIGHT_SIDE = {"robot": "spherical", "sampling": SAMPLING, "constraints": UPRIGHT}
 MAPPING_SEARCH = {"scale": [0.1, 2], "offset_m": [[-0.1, 0.1]] * 3, "seed": SEED}
 
 
@@ -30,9 +30,12 @@ DRAWING = {  # what draws, and jobs for which it does
         "capability": SMALL["capability"],
         "refined volume": WORKSPACE | {"voxel_labels": False},
         "labels": WORKSPACE | {"refined_volume": None},
-        "mapping": job_of("master_slave_mapping") | {"master": BLOCKED},
+        "free volume": WORKSPACE | {"voxel_labels": False, "constraints": UPRIGHT},
+        "labels under constraints": WORKSPACE | {"refined_volume": None, "constraints": UPRIGHT},
+        "mapping": job_of("master_slave_mapping") | {"master": UPRIGHT_SIDE, "search": None},
     },
     ("wsrender.reach.volume_refinement", "estimate_volumes"): {"refined volume": WORKSPACE},
+    ("wsrender.reach.free_volume", "estimate_volumes"): {"free volume": WORKSPACE | {"constraints": UPRIGHT}},
     ("wsrender.analyses.parallel_workspace.refined", "estimate_volumes"): {"legs": SMALL["parallel_workspace"]},
     ("wsrender.analyses.parallel_workspace.run", "random_orientations"): {
         "orientations": job_of("parallel_workspace.orientation") | {"seed": SEED}

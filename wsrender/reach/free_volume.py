@@ -15,7 +15,6 @@ from wsrender.reach.reached_set import (
     SAMPLES_PER_TEST,
     FalseNegatives,
     ReachedSet,
-    chosen_evenly,
     hidden_share,
     tests_of,
 )
@@ -66,7 +65,7 @@ class FreeSet:
         """
         d = self.reached.dimension
         reach = self.reached.classes(block, 1)
-        cells = self._cells(block, self.search.samples[1])
+        cells = block.places(self.search.samples[1][:, :d])
         occupied = np.zeros(reach.shape, bool)
         occupied[tuple(cells[((cells >= 0) & (cells < reach.shape)).all(axis=1)].T)] = True
         number = neighbours_and_itself(occupied).astype(np.int64)
@@ -78,14 +77,10 @@ class FreeSet:
     def false_negatives(self, block: LatticeBlock, tests: int) -> FalseNegatives:
         """The search tried on positions of admitted samples that are none of its starts, from as many cells."""
         q, _ = self.search.admission.samples(SAMPLES_PER_TEST * tests, (self.reached.solver.seed + 1) % 2**63)
-        positions = sampled_positions(tip_pipeline(self.reached.solver.whole, q))[:, : self.reached.dimension]
-        inside = positions[self.reached.outside(positions) == 0]
-        positions = inside if len(inside) >= tests else positions
-        cells = self._cells(block, positions)
-        numbers = np.ravel_multi_index(tuple(cells.T), block.shape[: self.reached.dimension])
-        chosen = chosen_evenly(np.asarray(numbers), self.reached.seed)[:tests]
-        label = self.search.decide(self.reached.padded(positions[chosen])).label
-        return FalseNegatives(len(chosen), int(((label == UNREACHABLE) | (label == BLOCKED)).sum()))
+        positions = sampled_positions(tip_pipeline(self.reached.solver.whole, q))
+        targets = self.reached.targets(positions, block, tests)
+        label = self.search.decide(targets).label
+        return FalseNegatives(len(targets), int(((label == UNREACHABLE) | (label == BLOCKED)).sum()))
 
     def found_later(self, classes: np.ndarray, block: LatticeBlock, tests: int) -> FalseNegatives:
         """The search tried beside a longer one, at random points of the cells near what is free."""
@@ -96,10 +91,6 @@ class FreeSet:
         free = int((found.label == REACHABLE).sum())
         missed = self.search.blocked_wrongly(found, points)
         return FalseNegatives(free + missed, missed)
-
-    def _cells(self, block: LatticeBlock, positions: np.ndarray) -> np.ndarray:
-        d = self.reached.dimension
-        return np.floor(positions[:, :d] / block.voxel_size_m).astype(np.int64) - block.first_voxel[:d]
 
 
 def _points_of(classes: np.ndarray, block: LatticeBlock, count: int, random: np.random.Generator) -> np.ndarray:
@@ -147,9 +138,7 @@ class Together:
 
     def decided(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Of points (N, d) whether they are that deep for each event, and about how far from it; see `FreeSet`."""
-        d, edge = points.shape[1], self.block.voxel_size_m
-        cells = np.floor(points / edge).astype(np.int64) - self.block.first_voxel[:d]
-        at = tuple(np.clip(cells, 0, np.array(self.classes[0].shape) - 1).T)
+        at = tuple(np.clip(self.block.places(points), 0, np.array(self.classes[0].shape) - 1).T)
         labels = np.zeros((len(self.sets), len(points), len(self.sets[0].names) + 1), np.int8)
         far = np.full((len(self.sets), len(points)), np.inf)
         for k, (each, own) in enumerate(zip(self.sets, self.classes, strict=True)):

@@ -15,7 +15,7 @@ from wsrender.pipeline.pipeline import tip_pipeline
 from wsrender.reach.cover import covered_cells
 from wsrender.reach.dimension import TipSet
 from wsrender.reach.evidence import UNREACHABLE
-from wsrender.reach.inverse_solver import InverseSolver, Solutions
+from wsrender.reach.inverse_solver import InverseSolver
 from wsrender.reach.occupied_cells import occupied_cells
 from wsrender.reach.starts import inwards, towards_limits
 from wsrender.reach.volume_estimate import QUANTILE, wilson
@@ -133,13 +133,9 @@ class ReachedSet:
         """
         label, far = np.full(len(points), UNREACHABLE, np.int8), self.outside(points)
         inside = far == 0
-        found = self._solved(points[inside])
+        found = self.solver.solve(self.padded(points[inside]))
         label[inside], far[inside] = found.label, found.distance_m
         return label, far
-
-    def _solved(self, points: np.ndarray) -> Solutions:
-        """What the solver finds of points (N, d), wherever the region is."""
-        return self.solver.solve(self.padded(points))
 
     def padded(self, points: np.ndarray) -> np.ndarray:
         """Points (N, d) in the world, (N, 3)."""
@@ -188,20 +184,24 @@ class ReachedSet:
         return classes
 
     def false_negatives(self, block: LatticeBlock, tests: int = TESTS) -> FalseNegatives:
-        """The solver tried on positions of samples that are none of its starts, from as many cells as there are.
-
-        In the region, unless so few samples lie there that they say nothing of it.
-        """
+        """The solver tried on positions of samples that are none of its starts; see `targets`."""
         if not self.solid:
             return FalseNegatives(0, 0)
-        positions = self._positions(SAMPLES_PER_TEST * tests)[:, : self.dimension]
+        targets = self.targets(self._positions(SAMPLES_PER_TEST * tests), block, tests)
+        labels = self.solver.solve(targets).label
+        return FalseNegatives(len(targets), int((labels == UNREACHABLE).sum()))
+
+    def targets(self, positions: np.ndarray, block: LatticeBlock, tests: int) -> np.ndarray:
+        """So many (M, 3), or fewer, of positions (N, 3) [m], from as many cells as there are.
+
+        In the region, unless so few lie there that they say nothing of it.
+        """
+        positions = positions[:, : self.dimension]
         inside = positions[self.outside(positions) == 0]
         positions = inside if len(inside) >= tests else positions
-        cells = np.floor(positions / block.voxel_size_m).astype(np.int64) - block.first_voxel[: self.dimension]
-        numbers = np.ravel_multi_index(tuple(cells.T), block.shape[: self.dimension])
-        chosen = chosen_evenly(np.asarray(numbers), self.seed)[:tests]
-        labels = self._solved(positions[chosen]).label
-        return FalseNegatives(len(chosen), int((labels == UNREACHABLE).sum()))
+        places = tuple(block.places(positions).T)
+        numbers = np.ravel_multi_index(places, block.shape[: self.dimension])
+        return self.padded(positions[chosen_evenly(np.asarray(numbers), self.seed)[:tests]])
 
     def _positions(self, count: int) -> np.ndarray:
         """Positions (N, 3), shuffled, of a Sobol set of another seed than the solver's, half of it next to limits."""

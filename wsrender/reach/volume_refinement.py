@@ -117,8 +117,7 @@ def decided_volumes(
     hidden = hidden_share(misses)
 
     def membership(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        cells = np.floor(points / block.voxel_size_m).astype(np.int64) - block.first_voxel[:dimension]
-        at = tuple(np.clip(cells, 0, np.array(classes[0].shape) - 1).T)
+        at = tuple(np.clip(block.places(points), 0, np.array(classes[0].shape) - 1).T)
         decided = [each.decided_among(points, own[at] > 0) for each, own in zip(solid, classes, strict=True)]
         return np.stack([label for label, _ in decided], axis=1), np.stack([far for _, far in decided], axis=1)
 

@@ -62,6 +62,13 @@ class LatticeBlock:
         x, y, z = (first - at for first, at in zip(self.first_voxel, self.origin_voxel, strict=True))
         return x, y, z
 
+    def places(self, points: np.ndarray) -> np.ndarray:
+        """Indices (N, d) int64, in the block, of the voxels that hold points (N, d) [m]; d: of the first axes.
+
+        Of points beside the block they are negative, or above its shape.
+        """
+        return np.floor(points / self.voxel_size_m).astype(np.int64) - self.first_voxel[: points.shape[1]]
+
     def centers(self, cells: np.ndarray) -> np.ndarray:
         """Centres (N, 3) [m] of voxels by their numbers (N,) in the block, z fastest."""
         at = np.stack(np.unravel_index(cells, self.shape), axis=1)

@@ -60,6 +60,13 @@ def test_targets_go_with_the_positions_around_them(positions, kind):
         assert space.volume_m3 < 0.99 * space.shape.volume_m3 and space.served().volume_m3 < space.volume_m3
 
 
+def test_a_shape_of_served_positions_alone_has_its_bits(positions):
+    """Summed in the same order, whatever the threads: those of BLAS change the last bits of its products."""
+    for count in range(1000, 4000, 500):
+        shape = AlphaShape.of(positions.position[:count])
+        assert ServedShape(shape, np.zeros(count, np.int8)).volume_m3 == shape.volume_m3
+
+
 def test_most_positions_of_a_voxel_say_what_it_is():
     at = np.repeat([[0.5, 0.5, 0.5], [1.5, 0.5, 0.5], [2.5, 0.5, 0.5]], [3, 2, 3], axis=0)
     space = ServedVoxels.of(at, np.array([0, 2, 2, 0, 1, 0, 0, 1], np.int8), 1.0)
