@@ -1,58 +1,18 @@
 """The job ``reachability``: which of given targets a robot reaches."""
 
-from collections.abc import Iterator
-from typing import Annotated, ClassVar, Literal
-
-from pydantic import BeforeValidator, Field
+from typing import Literal
 
 from wsrender.documents.arm import Arm
 from wsrender.documents.constraints import Constrained
 from wsrender.documents.format import JobDocument
-from wsrender.documents.options import Device
-from wsrender.documents.quantities import Number, PositiveNumber, Seed, real, rows_of
-
-SMALLEST_LENGTH = 1e-6  # of a quaternion that says a rotation
+from wsrender.documents.targets import Targets
 
 
-Points = Annotated[tuple[tuple[Number, Number, Number], ...], Field(min_length=1), rows_of(3)]
-Quaternions = Annotated[tuple[tuple[Number, Number, Number, Number], ...], Field(min_length=1), rows_of(4)]
-
-
-class ReachabilityJob(Constrained, Arm, JobDocument):
+class ReachabilityJob(Targets, Constrained, Arm, JobDocument):
     """Which of given targets a robot reaches within its joint limits, by inverse kinematics from many starts.
 
     Under constraints a target is reachable where a configuration is admitted, and blocked where all were rejected.
     """
 
-    long_fields: ClassVar[tuple[str, ...]] = ("points_m", "quats_wxyz")
-
     analysis: Literal["reachability"] = "reachability"
     """Name of the analysis."""
-    points_m: Points
-    """Positions of the targets in the world frame, rows of x, y, z [m]."""
-    quats_wxyz: Quaternions | None = None
-    """Orientations of the targets, a quaternion w, x, y, z for each point; null: any orientation will do."""
-    position_tolerance_m: PositiveNumber = 1e-5
-    """Largest distance to a target that counts as reached [m]."""
-    angle_tolerance_rad: Annotated[float, Field(gt=0, le=3.14), BeforeValidator(real)] = 1e-5
-    """Largest angle to a target's orientation that counts as reached [rad]."""
-    characteristic_length_m: PositiveNumber | None = None
-    """Length that makes an angle comparable to a distance while both shrink [m]; null: half the reach."""
-    seed: Seed = 0
-    """Seed of the starts."""
-    precision: Literal["float32", "float64"] = "float64"
-    """Floating-point type of the kernels."""
-    device: Device = "auto"
-    """Where the kernels run: "auto" (a GPU if there is one), "cpu", "cuda" or "cuda:N"."""
-
-    def conflicts(self) -> Iterator[tuple[str, str]]:
-        """(field, message) of every pair of fields that do not go together."""
-        yield from super().conflicts()
-        if self.quats_wxyz is None:
-            return
-        if len(self.quats_wxyz) != len(self.points_m):
-            yield "quats_wxyz", f"must have as many rows as points_m, {len(self.points_m)}, not {len(self.quats_wxyz)}"
-        for k, quat in enumerate(self.quats_wxyz):
-            if sum(x * x for x in quat) < SMALLEST_LENGTH**2:
-                yield "quats_wxyz", f"must not have length 0: row {k} says no rotation"
-                return
