@@ -14,7 +14,7 @@ from wsrender_kernels.closed_form import closed_form_kernel
 import wsrender as ws
 from tests.reference import closed_form_inverse
 from tests.reference.arms_by_axes import PARALLEL, RELATIONS, axes_of, chain_of, random_arm, reversed_chain
-from wsrender.engine.closed_form import closed_postures, shape_of
+from wsrender.engine.closed_form import closed_postures, placed_slacks, shape_of
 from wsrender.reach.moving_joints import moving_joints
 from wsrender.robots.closed_form import ClosedForm
 from wsrender.robots.reachable_box import reachable_box
@@ -225,6 +225,22 @@ def test_a_pose_is_decided_by_itself():
     part = closed_postures(closed, T[order], keep=True, device="cpu", threads=2)
     assert (part.slack == whole.slack[order]).all()
     assert (part.count == whole.count[order]).all() and (part.flags == whole.flags[order]).all()
+
+
+@pytest.mark.parametrize("backwards", [False, True])
+def test_moved_bases_reach_what_is_moved_the_other_way(backwards):
+    chain = random_arm(RELATIONS[0], 5)
+    chain = reversed_chain(chain) if backwards else chain
+    closed, bases = ClosedForm.of(chain), np.tile(np.eye(4), (1500, 1, 1))
+    assert closed.solved.axes.reversed == backwards
+    bases[:, :3, :3] = Rotation.random(1500, random_state=1).as_matrix()
+    bases[:, :3, 3] = np.random.default_rng(2).uniform(-0.5, 0.5, (1500, 3))
+    T = chain.poses(anywhere(chain, 3))
+    found = placed_slacks(closed, bases, T, device="cpu", threads=2)
+    for pose, slack in zip(T, found, strict=True):
+        moved = chain.T_world_base @ np.linalg.inv(bases) @ pose
+        assert np.abs(slack - closed_postures(closed, moved, device="cpu").slack).max() < 1e-8
+    assert 0.02 < (found > 0).mean() < 0.98
 
 
 def test_what_is_not_a_number_is_undecided():

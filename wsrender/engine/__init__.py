@@ -1,6 +1,6 @@
 """The only host code that talks to Warp: devices, packing, chunking, launches and partial results."""
 
-from wsrender.engine.closed_form import CLOSED_MARGIN, ClosedPostures, closed_postures
+from wsrender.engine.closed_form import CLOSED_MARGIN, ClosedPostures, closed_postures, placed_slacks
 from wsrender.engine.devices import devices_of, target_of, thread_count
 from wsrender.engine.drawn_configurations import configurations
 from wsrender.engine.index_units import units_of
@@ -42,6 +42,7 @@ __all__ = [
     "fitted",
     "joined",
     "merge",
+    "placed_slacks",
     "poses_reached",
     "sampled_positions",
     "solve_inverse",

@@ -2,6 +2,7 @@
 
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import warp as wp
@@ -65,12 +66,44 @@ def closed_postures(
 
     def run(numbered: tuple[int, slice]) -> list[np.ndarray]:
         number, batch = numbered
-        return _launch(kernel, numbers, closed.targets(T[batch]), keep, real, workers[number % len(workers)])
+        return _Launcher(kernel, closed.targets(T[batch]), keep, real, workers[number % len(workers)]).solve(numbers)
 
     with ThreadPoolExecutor(len(workers)) as pool:
         parts = [np.concatenate(part) for part in zip(*pool.map(run, enumerate(batches)), strict=True)]
     count, slack, flags = parts[:3]
     return ClosedPostures(count, slack.astype(np.float64), flags, MARGIN[real], parts[3] if keep else None)
+
+
+def placed_slacks(
+    closed: ClosedForm,
+    T_world_base: np.ndarray,
+    T_world_tip: np.ndarray,
+    *,
+    device: str = "auto",
+    threads: int | None = None,
+) -> np.ndarray:
+    """Slacks (K, P) of poses (K, 4, 4) from bases (P, 4, 4), both in the world, as in `ClosedPostures` of float64.
+
+    Poses of moved bases are made on the device: a launch solves for one pose from many bases, which go there once.
+    """
+    devices = devices_of(device)
+    workers = devices if devices[0].is_cuda else devices * thread_count(threads)
+    size = min(BATCH, max(LEAST_SHARE, -(-len(T_world_base) // len(workers))))
+    kernel = loaded(closed_form_kernel(shape_of(closed, "float64", False), devices[0].is_cuda), *devices)
+    numbers = [packed(closed.numbers_to(T), FIELDS) for T in T_world_tip]
+    found = np.empty((len(T_world_tip), len(T_world_base)))
+
+    def run(numbered: tuple[int, slice]) -> None:
+        number, batch = numbered
+        device = workers[number % len(workers)]
+        solver = _Launcher(kernel, closed.bases(T_world_base[batch]), False, wp.float64, device)
+        for k, each in enumerate(numbers):
+            found[k, batch] = solver.solve(each)[1]
+
+    batches = [slice(first, first + size) for first in range(0, len(T_world_base), size)]
+    with ThreadPoolExecutor(len(workers)) as pool:
+        list(pool.map(run, enumerate(batches)))
+    return found
 
 
 def shape_of(closed: ClosedForm, precision: str, keep: bool) -> ClosedFormShape:
@@ -81,20 +114,29 @@ def shape_of(closed: ClosedForm, precision: str, keep: bool) -> ClosedFormShape:
     return ClosedFormShape(REAL[precision], solved.arm, (first, second, third), solved.first, squares, keep)
 
 
-def _launch(kernel, numbers, targets, keep, real, device) -> list[np.ndarray]:
-    count = len(targets)
-    whole = -(-count // LANES) * LANES
-    rows = np.zeros((TARGET_ROWS, whole))
-    rows[:, :count] = targets.T
-    postures, flags = (wp.empty(whole, dtype=wp.int32, device=device) for _ in range(2))  # type: ignore[arg-type]
-    slack = wp.empty(whole, dtype=real, device=device)
-    kept = wp.full(BRANCHES * POSTURE_ROWS * whole if keep else 0, -4.0, dtype=real, device=device)
-    if count:
-        inputs = [whole, device_array(numbers, real, device), device_array(rows.ravel(), real, device)]
-        dim = whole if device.is_cuda else whole // LANES
-        launch(kernel, dim=dim, inputs=inputs, outputs=[postures, slack, flags, kept], device=device)
-    found = [postures.numpy()[:count], slack.numpy()[:count], flags.numpy()[:count]]
-    if keep:
-        by_branch = kept.numpy().reshape(BRANCHES, POSTURE_ROWS, whole)[:, :, :count]
-        found.append(by_branch.transpose(2, 0, 1).astype(np.float64))
-    return found
+class _Launcher:
+    """Solves for rows (N, 12) on a device, with the numbers of an arm; the rows are moved there once."""
+
+    def __init__(self, kernel: wp.Kernel, targets: np.ndarray, keep: bool, real: Any, device: wp.Device):
+        self.kernel, self.count, self.keep, self.real, self.device = kernel, len(targets), keep, real, device
+        self.whole = whole = -(-self.count // LANES) * LANES
+        rows = np.zeros((TARGET_ROWS, whole))
+        rows[:, : self.count] = targets.T
+        self.rows = device_array(rows.ravel(), real, device)
+        integers = (wp.empty(whole, dtype=wp.int32, device=device) for _ in range(2))  # type: ignore[arg-type]
+        self.postures, self.flags = integers
+        self.slack = wp.empty(whole, dtype=real, device=device)
+        self.kept = wp.full(BRANCHES * POSTURE_ROWS * whole if keep else 0, -4.0, dtype=real, device=device)
+
+    def solve(self, numbers: np.ndarray) -> list[np.ndarray]:
+        """Counts, slacks, flags (N,), and the rows (N, 8, 13) where they are kept; valid until it solves again."""
+        if self.count:
+            inputs = [self.whole, device_array(numbers, self.real, self.device), self.rows]
+            dim = self.whole if self.device.is_cuda else self.whole // LANES
+            outputs = [self.postures, self.slack, self.flags, self.kept]
+            launch(self.kernel, dim=dim, inputs=inputs, outputs=outputs, device=self.device)
+        found = [array.numpy()[: self.count] for array in (self.postures, self.slack, self.flags)]
+        if self.keep:
+            by_branch = self.kept.numpy().reshape(BRANCHES, POSTURE_ROWS, self.whole)[:, :, : self.count]
+            found.append(by_branch.transpose(2, 0, 1).astype(np.float64))
+        return found

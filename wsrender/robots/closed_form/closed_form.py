@@ -63,6 +63,23 @@ class ClosedForm:
             T = np.linalg.inv(T)
         return np.concatenate([T[:, :3, :3].reshape(-1, 9), T[:, :3, 3] / self.solved.axes.reach], axis=1)
 
+    def bases(self, T_world_base: np.ndarray) -> np.ndarray:
+        """Where the base stands, (N, 4, 4) in the world, as rows (N, 12) that kernels take in place of `targets`."""
+        R, p = T_world_base[:, :3, :3], T_world_base[:, :3, 3] / self.solved.axes.reach
+        if not self.solved.axes.reversed:
+            R, p = R.transpose(0, 2, 1), -np.einsum("nji,nj->ni", R, p)
+        return np.concatenate([R.reshape(-1, 9), p], axis=1)
+
+    def numbers_to(self, T_world_tip: np.ndarray) -> dict[str, float]:
+        """What kernels take that solve for one pose (4, 4) in the world from any of the `bases`, by name."""
+        numbers, name = self.numbers(), "base" if self.solved.axes.reversed else "tool"
+        T, scaled = np.eye(4), T_world_tip.copy()
+        values = np.array([numbers[f"{name}{k}"] for k in range(12)])
+        T[:3, :3], T[:3, 3] = values[:9].reshape(3, 3), values[9:]
+        scaled[:3, 3] /= self.solved.axes.reach
+        T = T @ np.linalg.inv(scaled) if self.solved.axes.reversed else scaled @ T
+        return numbers | {f"{name}{k}": x for k, x in enumerate([*T[:3, :3].ravel(), *T[:3, 3]])}
+
     def configurations(self, rows: np.ndarray) -> np.ndarray:
         """Configurations (..., n) of what kernels give of postures, (..., 12), moved into the limits."""
         chain, axes, zero = self.chain, self.solved.axes, zeros(self.solved)
