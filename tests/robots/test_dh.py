@@ -104,6 +104,12 @@ def test_a_slides_capsule_reaches_the_link_before_wherever_it_stands():
         assert (min(heights), max(heights)) == pytest.approx((slide - 0.5, slide + 0.3))  # its middle is at slide + 0.1
 
 
+def test_links_too_short_for_a_capsule_have_none():
+    rows = [{"a": 0.3}, {"a": 1e-8, "d": 1e-7}, {"a": 1e-5}]
+    bodies = load_robot(table(rows, "standard").model_copy(update={"link_radius": 0.1})).bodies
+    assert [shape.body for shape in bodies.shapes] == ["link1", "link3"]
+
+
 def test_a_radius_is_in_the_unit_of_the_table():
     rows = [{"a": 300.0}, {"a": 200.0}]
     robot = load_robot(table(rows, "standard").model_copy(update={"link_radius": 20.0}), length_unit_m=0.001)

@@ -17,6 +17,7 @@ _COMPILER = {"angle": "radian", "autolimits": "true", "boundmass": NEGLIGIBLE, "
 # 0.0016 rad, and their common normal would meet the axes at a place that means nothing, metres away.
 PARALLEL = 2e-3  # sine of the angle between the axes
 
+SHORTEST = 1e-6  # of a capsule, in the table's unit: MuJoCo refuses some that are shorter
 COINCIDENT = 1e-9  # m: a common normal shorter than this has no direction of its own
 
 
@@ -90,7 +91,7 @@ def _add_capsules(mujoco: ElementTree.Element, links: list[_Link], radius: float
     for k, link in enumerate(links):
         lines = ((0.0, 0.0, 0.0), link.next_joint), ((0.0, 0.0, link.rod[0]), (0.0, 0.0, link.rod[1]))
         for start, end in lines:
-            if math.dist(start, end) > COINCIDENT:
+            if math.dist(start, end) > SHORTEST:
                 capsule = {"type": "capsule", "size": _text(radius), "fromto": _text(*start, *end), "mass": "0"}
                 ElementTree.SubElement(link.body, "geom", capsule)
         way = 0.0  # along the chain, from this link to the later one
