@@ -1,5 +1,6 @@
 """Labels of collisions against MuJoCo's own: all equal, wherever its distance says anything."""
 
+import mujoco
 import numpy as np
 import pytest
 
@@ -68,6 +69,35 @@ def test_random_primitives_with_margins_and_surroundings(seed, device):
     expected = np.where(least[0] < 0, 1, np.where(least[1] < 0, 2, 0))
     assert not wrong(found, expected, np.min(np.abs(least), axis=0)).size
     assert [each.name for each in constraints] == ["environment", "self_collision"]
+
+
+PALLETISER = """<mujoco><compiler angle="radian"/><worldbody><body name="post">
+    <geom type="cylinder" size=".1 .2" pos=".1 0 -.15"/>
+    <body name="arm" pos="0 0 .1"><joint name="a" axis="0 1 0" ref=".1" range="-1.5 1.5"/>
+      <geom type="capsule" size=".03" fromto="0 0 0 0 0 .5"/>
+      <body name="forearm" pos="0 0 .5"><joint name="b" axis="0 1 0" range="-2 2"/>
+        <geom type="capsule" size=".03" fromto="-.1 0 0 .5 0 0"/><site name="tool" pos=".5 0 0"/></body></body>
+    <body name="bar" pos="-.15 .04 .1"><joint name="p" axis="0 1 0"/>
+      <geom type="capsule" size=".02" fromto="0 0 .05 0 0 .5"/>
+      <body name="rod" pos="0 0 .5"><joint name="r" axis="0 1 .3"/>
+        <geom type="capsule" size=".02" fromto="0 0 0 .3 0 0"/></body></body></body></worldbody>
+  <equality><joint joint1="p" joint2="a" polycoef="0 1 0 0 0"/>
+    <joint joint1="r" joint2="b" polycoef=".2 -.5 0 0 0"/></equality></mujoco>"""
+
+
+def test_bars_beside_the_arm_that_follow_its_joints(device):
+    robot, model = ws.load_robot(PALLETISER), mujoco.MjModel.from_xml_string(PALLETISER)
+    (constraint,) = constraints_for(robot, SELF)
+    q, data = drawn(robot, 4_000), mujoco.MjData(model)
+    distance, bars = np.empty(len(q)), np.zeros(len(q), bool)
+    for i, (a, b) in enumerate(q):
+        data.qpos[:] = a, b, a - 0.1, 0.2 - 0.5 * b
+        mujoco.mj_forward(model, data)
+        distance[i] = min((contact.dist for contact in data.contact), default=1.0)
+        bars[i] = any(contact.geom.max() > 2 for contact in data.contact)
+    found = labels(robot, q, (constraint,), device=device) > 0
+    assert not wrong(found, distance < 0, distance).size
+    assert 200 < bars.sum() < found.sum() < 3_800
 
 
 def test_configurations_on_the_boundary_of_every_pair(device):

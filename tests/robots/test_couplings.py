@@ -106,6 +106,33 @@ def test_followers_off_the_chain_are_held_where_their_leader_puts_them():
     check(text, lambda v: {"f": 0.8}, ("a", "b", "c", "d"))
 
 
+def test_followers_off_the_chain_move_with_their_leader_on_it():
+    """One finger follows a joint far up the arm, the other the first finger; what they weigh is where they are."""
+    text = arm(follow("f", "b", "0.2 -1.5 0 0 0") + follow("g", "f", "0 2 0 0 0"))
+
+    def dependent(v):
+        f = 0.1 + 0.2 - 1.5 * (v["b"] - 0.3)
+        return {"f": f, "g": 2 * (f - 0.1)}
+
+    chain = check(text, dependent, ("a", "b", "c", "d"))
+    assert list(chain.dynamic.joint_source) == [0, 1, 2, 3, 1, 1, 1, 1]
+    robot, q = robot_of_spec(RobotSpec(mjcf=text)), np.full((1, 4), 0.3)
+    expected = reference.inertia_matrix(chain.dynamic, q[0])
+    np.testing.assert_allclose(robot.inertia_matrix(q, method="mujoco")[0], expected, atol=1e-12)
+
+
+def test_followers_off_the_chain_that_are_not_linear_stand_still_and_are_told():
+    """What else follows moves all the same."""
+    text = arm(follow("f", "b", "0 -1.5 1 0 0") + follow("g", "b", "0 2 0 0 0"))
+    with pytest.warns(ModelWarning, match="higher degree; .* off it, what they carry stands still"):
+        robot = robots.load_mjcf(text)
+    assert list(robot.chain.dynamic.joint_source) == [0, 1, 2, 3, 1, 1]
+    (told,) = [notice for notice in robot.notices if notice.code == "followers_off_chain"]
+    assert told.message.startswith("joint 'f' follows")
+    with pytest.raises(ModelError, match="joint 'f' follows another joint by a polynomial of higher degree"):
+        _ = robot.bodies
+
+
 def test_polynomials_off_the_chain_are_evaluated():
     text = arm(follow("g", "", "0.5 0 0 0 0") + follow("f", "g", "0 1 2 0 0"))
     check(text, lambda v: {"g": 0.5, "f": 0.1 + 0.5 + 0.5}, ("a", "b", "c", "d"))

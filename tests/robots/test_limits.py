@@ -146,6 +146,14 @@ def test_limits_of_efforts_and_speeds_that_are_given():
             robots.load_mjcf(text, **{field: {"c": 1}})
 
 
+def test_followers_beside_the_chain_hold_and_limit_their_leader_too():
+    text = coupled(-2, 'actuatorfrcrange="-1 3" range="-.1 .1"').replace("<body pos", '<site name="tool"/><body pos')
+    chain = robots.load_mjcf(text, tip="tool", velocity_limits={"b": 6}).chain
+    assert chain.joint_names == ("a",) and len(chain.joint_source) == 1
+    assert chain.efforts[:, 0].tolist() == [-6, 2] and chain.velocity_limits.tolist() == [3]
+    assert chain.periodic[0]  # its own range does not narrow that of the arm
+
+
 def test_speeds_of_an_mjcf():
     text = arm('range="0 500"', kind="slide").replace(
         "<worldbody>", '<custom><numeric name="velocity_limits" data="{}"/></custom><worldbody>'

@@ -66,7 +66,7 @@ def _for_robot(each: Constraint, robot: Robot, gravity: Point) -> Constraint:
         raise InputError(f"constraints.{each.name}", f"takes g, and the model of {robot.name} lacks masses or inertias")
     if each.asks:
         if chain.with_branches is not None and "frames" in each.asks:
-            message = "takes frames, and joints of this robot follow a joint on another branch"
+            message = "takes frames, and joints of this robot follow or lead a joint on another branch"
             raise InputError(f"constraints.{each.name}", message)
         keeps = frozenset[Structure]() if chain.with_branches is not None else each.keeps
         each = replace(each, chain=chain.dynamic, gravity=gravity, keeps=keeps)

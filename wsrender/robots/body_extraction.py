@@ -96,7 +96,10 @@ class BodySource:
 
     def _moving_aside(self, model: mujoco.MjModel) -> list[Drive]:
         """Leaders and followers off the path, each of which moves with a coordinate of the chain."""
-        aside = [*self.aside, *branches.followers_aside(model, self.couplings, self.leaders, self.drives)]
+        followers, refused = branches.followers_aside(model, self.couplings, self.leaders, self.drives)
+        if refused:
+            raise refused[0]
+        aside = [*self.aside, *followers]
         moving = branches.moving_bodies(model, aside, self.base)
         if len(moving) < len(aside):
             names = ", ".join(joint_name(model, drive.joint) for drive in aside if drive not in moving)

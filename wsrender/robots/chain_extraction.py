@@ -46,7 +46,8 @@ def extract(
 
     The chain is read from MuJoCo's own kinematics with its joints at ``qpos0``; everything else is held at its
     reference, or at ``qpos0`` too, followers where their leaders put them, and its mass belongs to the joint that
-    carries it. Joints held by a coupling become part of the fixed links; a leader on another branch is a coordinate.
+    carries it. Joints held by a coupling become part of the fixed links; a leader on another branch is a coordinate,
+    and what follows a coordinate there moves its bodies.
     Raises ModelError, InputError for a reference of what does not stand still, or efforts and speeds of what does.
     """
     model, limits = compiled.model, given.limits
@@ -58,17 +59,19 @@ def extract(
     aside = branches.leaders_aside(model, leaders, drives)
     _refuse_leaders(compiled, aside, limits, field)
     met = [*bodies, *(int(model.jnt_bodyid[drive.joint]) for drive in aside)]
-    moving = [*drives, *branches.moving_bodies(model, aside, base_frame)]
-    carrier = carriers(model, [drive.joint for drive in moving])
+    carrier = carriers(model, [drive.joint for drive in (*drives, *branches.moving_bodies(model, aside, base_frame))])
     refuse_loops(model, carrier, field)
+    following, still = _followers_aside(compiled, couplings, leaders, drives, limits)
+    moving = [*drives, *branches.moving_bodies(model, [*aside, *following], base_frame)]
+    carrier = carriers(model, [drive.joint for drive in moving])
     for body, fault in compiled.inertia_faults.items():
         if carrier[body] >= 0:
             raise ModelError(field, fault)
     qpos = couplings.reference_qpos(_off_chain(model, couplings, leaders, drives, given.reference))
     geometry = Geometry.at_reference(model, moving, qpos, base_frame, tip_frame)
-    driven, n = [*drives, *aside], len(leaders)
+    driven, n = [*drives, *aside, *following], len(leaders)
     _refuse_unknown(model, driven, given)
-    lower, upper, periodic, notices = coordinate_limits(model, driven, leaders, limits, field)
+    lower, upper, periodic, notices = coordinate_limits(model, [*drives, *aside], leaders, limits, field)
     names = tuple(joint_name(model, leader) for leader in leaders)
     chain = Chain(
         name=name, base_frame=base_frame.name, tip_frame=tip_frame.name, joint_names=names,
@@ -89,11 +92,11 @@ def extract(
         model, chain, source_hash, joints, dofs, qpos,
         notices=(
             *compiled.notices, *_limit_notices(compiled, limits), *_notes_off_chain(compiled, met),
-            *notices, *(gripper_notices(model, tip_frame, drives) if tip is None else ()),
+            *notices, *still, *(gripper_notices(model, tip_frame, drives) if tip is None else ()),
         ),
         gravity=compiled.gravity,
-        leaders=tuple((int(model.jnt_qposadr[drive.joint]), drive.source) for drive in aside),
-        branches=tuple((int(model.jnt_dofadr[drive.joint]), drive.source) for drive in moving[len(drives) :]),
+        aside=(*aside, *following),
+        branches=tuple(moving[len(drives) :]),
         body_source=BodySource(
             compiled.with_geometry, chain, base_frame, tip_frame, couplings, qpos, leaders, drives, aside, field
         ),
@@ -198,6 +201,22 @@ def _refuse_leaders(
             raise ModelError(field, f"{fault} (it leads a joint of the chain)")
 
 
+def _followers_aside(
+    compiled: CompiledModel,
+    couplings: Couplings,
+    leaders: list[int],
+    drives: list[Drive],
+    limits: Mapping[str, tuple[float, float]],
+) -> tuple[list[Drive], tuple[Notice, ...]]:
+    """Joints off the path that follow a coordinate and can be known to, and that others stand still."""
+    found, refused = branches.followers_aside(compiled.model, couplings, leaders, drives)
+    can = [drive for drive in found if not _fault(compiled, int(compiled.model.jnt_bodyid[drive.joint]), limits)]
+    if not refused:
+        return can, ()
+    told = f"{_some([error.message for error in refused])}; off it, what they carry stands still"
+    return can, (Notice("followers_off_chain", told, "make them linear if they carry much", "robot"),)
+
+
 def _fault(compiled: CompiledModel, body: int, limits: Mapping[str, tuple[float, float]]) -> str:
     """What forbids a chain through the joints of a body; empty for nothing, or nothing that ``limits`` do not mend."""
     faults = [fault for fault in compiled.joint_faults if fault.body == body]
@@ -210,8 +229,12 @@ def _notes_off_chain(compiled: CompiledModel, bodies: list[int]) -> list[Notice]
     faults = [fault.message for fault in compiled.joint_faults if fault.body not in bodies]
     if not faults:
         return []
-    more = f", and {len(faults) - MOST_NOTED} more" if len(faults) > MOST_NOTED else ""
-    return [Notice("joints_off_chain", f"off the chain, where it stands still: {'; '.join(faults[:MOST_NOTED])}{more}")]
+    return [Notice("joints_off_chain", f"off the chain, where it stands still: {_some(faults)}")]
+
+
+def _some(told: list[str]) -> str:
+    more = f", and {len(told) - MOST_NOTED} more" if len(told) > MOST_NOTED else ""
+    return "; ".join(told[:MOST_NOTED]) + more
 
 
 def _limit_notices(compiled: CompiledModel, limits: Mapping[str, tuple[float, float]]) -> list[Notice]:

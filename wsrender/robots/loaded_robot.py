@@ -9,6 +9,7 @@ from wsrender.notices import Notice
 from wsrender.robots.bodies import Bodies
 from wsrender.robots.body_extraction import BodySource
 from wsrender.robots.chain import Chain
+from wsrender.robots.limits import Drive
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,8 +30,8 @@ class LoadedRobot:
     body_source: BodySource
     gravity: tuple[float, ...] | None = None  # (3,) [m/s²] that the model states
     notices: tuple[Notice, ...] = ()  # what was odd about the model
-    leaders: tuple[tuple[int, int], ...] = ()  # off the path: address in ``qpos``, coordinate
-    branches: tuple[tuple[int, int], ...] = ()  # those of them that move a body: address in ``qvel``, coordinate
+    aside: tuple[Drive, ...] = ()  # off the path: leaders, and what follows coordinates
+    branches: tuple[Drive, ...] = ()  # those of them that move a body
 
     @property
     def bodies(self) -> Bodies:
@@ -51,14 +52,16 @@ class LoadedRobot:
     def moving(self) -> tuple[np.ndarray, np.ndarray]:
         """Addresses (D,) in ``qvel`` of all that moves, and C (D, n) with M(q) = Cᵀ M_dof C over them.
 
-        Those are the joints of the chain, then leaders on other branches.
+        Those are the joints of the chain, then those on other branches.
         """
-        rows = np.eye(self.chain.n)[[coordinate for _, coordinate in self.branches]]
-        dofs = np.array([dof for dof, _ in self.branches], int)
+        rows = np.zeros((len(self.branches), self.chain.n))
+        for row, drive in zip(rows, self.branches, strict=True):
+            row[drive.source] = drive.scale
+        dofs = self.model.jnt_dofadr[[drive.joint for drive in self.branches]]
         return np.concatenate([self.dof_addresses, dofs]), np.concatenate([self.coupling, rows])
 
     def set_configuration(self, data: mujoco.MjData, q: np.ndarray) -> None:
-        """Writes configuration ``q`` (n,) [rad or m] to ``data.qpos``, coupled joints and leaders included.
+        """Writes configuration ``q`` (n,) [rad or m] to ``data.qpos``, coupled joints on all branches included.
 
         Everything else takes its reference; velocities are left alone.
         """
@@ -66,5 +69,6 @@ class LoadedRobot:
         displacement = chain.joint_scale * np.asarray(q)[chain.joint_source] + chain.joint_offset
         data.qpos[:] = self.reference_qpos
         data.qpos[self.qpos_addresses] = self.model.qpos0[self.qpos_addresses] + displacement
-        for address, coordinate in self.leaders:
-            data.qpos[address] = q[coordinate]
+        for drive in self.aside:
+            address = self.model.jnt_qposadr[drive.joint]
+            data.qpos[address] = self.model.qpos0[address] + drive.scale * q[drive.source] + drive.offset
