@@ -55,6 +55,7 @@ if TYPE_CHECKING:
     from wsrender.pipeline.constraints.expression import ExpressionConstraint
     from wsrender.pipeline.constraints.registry import register_constraint
     from wsrender.python import (
+        all_postures,
         analyze,
         boundary_patches,
         capability,
@@ -72,7 +73,7 @@ if TYPE_CHECKING:
         shared_workspace,
         workspace,
     )
-    from wsrender.reach import Reachability, reachable
+    from wsrender.reach import Postures, Reachability, postures, reachable
     from wsrender.results.export.formats import Format, register_format
     from wsrender.results.presentation import Picture, register_picture
     from wsrender.results.result import Result
@@ -114,6 +115,7 @@ __all__ = [
     "Option",
     "OtherRobot",
     "Picture",
+    "Postures",
     "QuotaError",
     "Random",
     "Reachability",
@@ -130,6 +132,7 @@ __all__ = [
     "WaitTimeoutError",
     "WsrenderError",
     "__version__",
+    "all_postures",
     "analyze",
     "boundary_patches",
     "capability",
@@ -148,6 +151,7 @@ __all__ = [
     "method_comparison",
     "parallel_workspace",
     "planar_boundary",
+    "postures",
     "reachability",
     "reachable",
     "register_constraint",
@@ -171,6 +175,7 @@ _NAMES_OF_MODULE = {
     "wsrender.pipeline.constraints.expression": ("ExpressionConstraint",),
     "wsrender.pipeline.constraints.registry": ("register_constraint",),
     "wsrender.python": (
+        "all_postures",
         "analyze",
         "boundary_patches",
         "capability",
@@ -188,7 +193,7 @@ _NAMES_OF_MODULE = {
         "shared_workspace",
         "workspace",
     ),
-    "wsrender.reach": ("Reachability", "reachable"),
+    "wsrender.reach": ("Postures", "Reachability", "postures", "reachable"),
     "wsrender.results.result": ("Result",),
     "wsrender.robot": ("Robot", "evaluate_indices", "load_robot"),
     "wsrender.run": ("execute",),

@@ -229,6 +229,73 @@ def reachability(
     ...
 
 
+@runs("postures")
+def all_postures(
+    robot: RobotLike,
+    position_m: Sequence[Sequence[float] | np.ndarray] | np.ndarray,
+    *,
+    base: str | None = None,
+    tip: str | None = None,
+    constraints: Constraints | Mapping[str, Any] | None = None,
+    environment: Environment | Mapping[str, Any] | None = None,
+    gravity_m_s2: Sequence[float] | np.ndarray | None = None,
+    indices: Literal["kinematic", "dynamic", "all"] | list[str] | tuple[str, ...] = (),
+    index_options: Mapping[str, Mapping[str, bool | int | float | Sequence[float] | np.ndarray]] = {},
+    task: Literal["linear", "angular", "full"] | Sequence[Literal["x", "y", "z", "rx", "ry", "rz"]] = "linear",
+    characteristic_length_m: float = 1.0,
+    convention: Literal["standard", "table_1", "wsrender_code"] = "standard",
+    joint_limit_penalty: float | None = None,
+    torque_scaling: bool = False,
+    inertia: Literal["kernel", "mujoco"] = "kernel",
+    precision: Literal["float32", "float64"] = "float64",
+    device: str = "auto",
+    quat_wxyz: Sequence[Sequence[float] | np.ndarray] | np.ndarray | None = None,
+    windings: int = 1,
+    starts: int = 512,
+    seed: int = 0,
+    progress: Progress | bool | None = None,
+    threads: int | None = None,
+    chunk_size: int | None = None,
+) -> Result:
+    """All configurations of given poses: every posture, windings counted apart.
+
+    Arms with a closed form give all there are; of others those that a search finds. Constraints and environment say of
+    each posture whether it is free.
+
+    `postures` is the quick form, which gives arrays.
+
+    ``robot``: A Robot, what `load_robot` takes, an object with limits and forward_kinematics, or its part of a job
+        document.
+    ``position_m``: Positions of the tip in the world frame, rows of x, y, z, or a single one [m].
+    ``base``: Body, link or site at which the chain starts; None: the world.
+    ``tip``: Site, body or link at the end of the chain; None: the site "tool", or else the only end there is.
+    ``constraints``: Which configurations are admitted; None: all.
+    ``environment``: What stands around, which the robot's shapes do not enter; None: nothing.
+    ``gravity_m_s2``: Gravity in the world, whatever the model says [m/s²]; None: 9.81 along -z.
+    ``indices``: Local indices of every configuration: "kinematic", "dynamic", "all", or a list of names; empty: none.
+    ``index_options``: Options of the indices that have any: {index: {option: value}}.
+    ``task``: Rows of the Jacobian, in base axes: "linear", "angular", "full", or a list from x y z rx ry rz.
+    ``characteristic_length_m``: Length that divides the linear rows of a task that mixes linear and angular rows [m].
+    ``convention``: Which definition of the indices: the standard one, Table I of the WSRender paper, or its program.
+    ``joint_limit_penalty``: K of the joint-limit penalisation [1]; None or False: off; True: 10.
+    ``torque_scaling``: Whether dynamic indices scale every joint by its largest effort [N m or N].
+    ``inertia``: What evaluates the joint-space inertia: the kernels, or MuJoCo itself.
+    ``precision``: Floating-point type of the indices; postures are computed in double.
+    ``device``: Where the kernels run: "auto" (a GPU if there is one), "cpu", "cuda" or "cuda:N".
+    ``quat_wxyz``: Orientations, a quaternion w, x, y, z of unit length for each position; None: any orientation will
+        do.
+    ``windings``: How many configurations of a posture are listed that differ by whole turns of hinges; all are counted.
+    ``starts``: Starts of the search for postures of a pose, where no closed form knows them all.
+    ``seed``: Seed of the starts.
+    ``progress``: True shows a bar on work of more than a second; or a function (done, total, message).
+    ``threads``: Threads of the CPU; None: all cores. They change no bit of the result.
+    ``chunk_size``: Samples of a launch; None: by memory. It changes no bit of the result.
+
+    Raises DocumentError, InputError, ModelError, ResourceError, NumericalError, NotConvergedError.
+    """
+    ...
+
+
 @runs("capability")
 def capability(
     robot: RobotLike,

@@ -19,6 +19,7 @@ from wsrender.run.partial_files import load_partial, save_partial
 DIVISIBLE = {
     "workspace",
     "reachability",
+    "postures",
     "capability",
     "shared_workspace",
     "robot_comparison",

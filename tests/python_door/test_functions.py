@@ -14,7 +14,7 @@ import pytest
 import wsrender as ws
 from tests.golden.facts import bits_of
 from tests.golden.files import analyses, job_of
-from tests.python_door.write import PATH, module_text
+from tests.python_door.write import PATH, function_name, module_text
 from wsrender import python
 from wsrender.analyses.registry import job_classes
 from wsrender.documents.document import Document
@@ -35,7 +35,7 @@ EVERY = pytest.mark.parametrize("analysis", analyses())
 
 
 def function_of(analysis):
-    return getattr(python, {"workspace": "analyze"}.get(analysis, analysis))
+    return getattr(python, function_name(analysis))
 
 
 def parameters_of(analysis):
@@ -81,7 +81,7 @@ def test_names_that_were_there_stay():
     for function, names in positional.items():
         parameters = inspect.signature(function).parameters.values()
         assert [each.name for each in parameters if each.kind is each.POSITIONAL_OR_KEYWORD] == names
-    assert ws.exact_boundary and ws.reachable and ws.evaluate_indices
+    assert ws.exact_boundary and ws.reachable and ws.evaluate_indices and ws.postures
 
 
 @EVERY

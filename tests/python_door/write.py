@@ -13,12 +13,13 @@ from wsrender.documents.document import Document
 
 PATH = Path(wsrender.__file__).parent / "python.py"
 WIDTH = 120
-FUNCTIONS = {"workspace": "analyze"}
+FUNCTIONS = {"workspace": "analyze", "postures": "all_postures"}
 """Functions that are not called like their analysis."""
 NOTES = {
     "workspace": "A robot that is a Python class is sampled by Sobol(2**16) by default.",
     "indices_at": "`evaluate_indices` is the quick form, which gives arrays.",
     "reachability": "`reachable` is the quick form, which gives labels and arrays.",
+    "postures": "`postures` is the quick form, which gives arrays.",
     "kinetostatic_field": "`force_field` gives the forces of single configurations.",
     "boundary_patches": (
         "The result has tables ``patches``, ``edges``, ``corners`` and the mesh ``patches``; its document the volume. "

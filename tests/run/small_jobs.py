@@ -54,6 +54,14 @@ SMALL_JOBS = {
         "precision": "float32",
         "device": "cpu",
     },
+    "postures": {
+        "analysis": "postures",
+        "robot": "ur5e",
+        "position_m": [[0.4, 0.2, 0.3]],
+        "quat_wxyz": [[0, 0, 1, 0]],
+        "indices": ["manipulability"],
+        "device": "cpu",
+    },
     "capability": {
         "analysis": "capability",
         "robot": "scara",

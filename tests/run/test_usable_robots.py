@@ -43,6 +43,7 @@ def every_analysis(model, **robot):
         "workspace": one,
         "indices_at": {**one, "configurations": [[0, 0, 0]]},
         "reachability": {**one, "points_m": [[0.1, 0, 0]]},
+        "postures": {**one, "position_m": [[0.1, 0, 0]]},
         "capability": {**one, "voxel_size_m": 0.2},
         "shared_workspace": {"robots": [library, one], "voxel_size_m": 0.1},
         "robot_comparison": {"robots": [library, one]},

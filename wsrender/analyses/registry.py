@@ -42,6 +42,7 @@ _ROWS = {
     "workspace": _own("workspace", "WorkspaceJob", "WorkspaceAnalysis", None),
     "indices_at": _own("indices_at", "IndicesAtJob", "IndicesAtAnalysis", None),
     "reachability": _own("reachability", "ReachabilityJob", "ReachabilityAnalysis"),
+    "postures": _own("postures", "PosturesJob", "PosturesAnalysis"),
     "capability": _own("capability", "CapabilityJob", "CapabilityAnalysis"),
     "shared_workspace": _own("shared_workspace", "SharedWorkspaceJob", "SharedWorkspaceAnalysis"),
     "robot_comparison": _own("robot_comparison", "RobotComparisonJob", "RobotComparisonAnalysis"),

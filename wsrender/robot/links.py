@@ -42,25 +42,45 @@ def link_shapes(robot: Robot, q: Any) -> list[LinkShape]:
     return [_placed(shape, T) for shape, T in zip(bodies.shapes, poses, strict=True)]
 
 
+def bodies_in(robot: Robot, q: Any) -> "trimesh.Trimesh | None":
+    """The shapes that may collide at configurations ``q`` (K, n), round ones coarse, as one mesh in the world [m].
+
+    Its attribute ``surface`` of triangles is the row of ``q``. None for a model without shapes or a Python class.
+    """
+    import trimesh
+
+    if robot.definition or not robot.bodies.shapes:
+        return None
+    bodies, parts = robot.bodies, []
+    own = [(mesh, k) for k, mesh in enumerate(_mesh(shape, coarse=True) for shape in bodies.shapes)]
+    for row, poses in enumerate(bodies.poses(configuration_rows(q, robot.chain.n))):
+        for mesh, k in own:
+            vertices = mesh.vertices @ poses[k, :3, :3].T + poses[k, :3, 3]
+            number = np.full(len(mesh.faces), row, np.int32)
+            parts.append(trimesh.Trimesh(vertices, mesh.faces, face_attributes={"surface": number}, process=False))
+    return trimesh.util.concatenate(parts)
+
+
 def _placed(shape: "Shape", T: np.ndarray) -> LinkShape:
     mesh = _mesh(shape)
     red, green, blue = (float(part) for part in shape.rgba[:3])
     return LinkShape(mesh.vertices @ T[:3, :3].T + T[:3, 3], np.asarray(mesh.faces), (red, green, blue))
 
 
-def _mesh(shape: "Shape") -> "trimesh.Trimesh":
+def _mesh(shape: "Shape", coarse: bool = False) -> "trimesh.Trimesh":
     """A shape in its own frame."""
     import trimesh
 
+    halvings, sides = (2, 12) if coarse else (3, None)
     a, b, c = shape.size.tolist()
     if shape.kind == "sphere":
-        return trimesh.creation.icosphere(3, a)
+        return trimesh.creation.icosphere(halvings, a)
     if shape.kind == "capsule":
-        return _centered(trimesh.creation.capsule(2 * b, a))
+        return _centered(trimesh.creation.capsule(2 * b, a, count=sides and (sides, sides)))
     if shape.kind == "cylinder":
-        return trimesh.creation.cylinder(a, 2 * b)
+        return trimesh.creation.cylinder(a, 2 * b, sections=sides)
     if shape.kind == "ellipsoid":
-        ball = trimesh.creation.icosphere(3)
+        ball = trimesh.creation.icosphere(halvings)
         ball.apply_scale((a, b, c))
         return ball
     if shape.kind == "box":

@@ -1,0 +1,90 @@
+"""The analysis ``postures``: a job document in, tables of postures and poses out."""
+
+import numpy as np
+import pytest
+
+import wsrender as ws
+from tests.run.journeys import from_the_command_line
+from wsrender.run import execute, merge, plan, run_shard
+
+FLOOR = {"items": [{"shape": "half_space", "name": "floor"}]}
+POSES = {
+    "position_m": [[0.4, 0.2, 0.3], [1.5, 0, 0], [0.1, 0.4, 0.4]],
+    "quat_wxyz": [[0, 1, 0, 0]] * 2 + [[1, 0, 0, 0]],
+}
+JOB = {"analysis": "postures", "robot": "ur5e", **POSES, "device": "cpu"}
+
+
+def test_tables_say_what_python_says():
+    result = execute(JOB | {"environment": FLOOR, "indices": ["manipulability", "clearance"], "windings": 3})
+    robot = ws.load_robot("ur5e")
+    found = ws.postures(robot, *POSES.values(), environment=FLOOR, device="cpu")
+    table, poses = result.tables["postures"], result.tables["poses"]
+    first = table["winding"] == 0
+    q = np.stack([table[f"q_{name}"] for name in robot.joint_names], axis=1)
+    assert (q[first] == found.configurations).all() and (table["pose"][first] == found.pose).all()
+    assert (table["reason"][first] == found.reasons).all() and set(found.reasons) == {"", "environment"}
+    assert (table["windings"][first] == found.windings).all() and np.bincount(table["winding"]).tolist() == [16, 16, 16]
+    for k in np.unique(table["pose"]):
+        assert table["posture"][first & (table["pose"] == k)].tolist() == list(range((found.pose == k).sum()))
+        rows = np.flatnonzero(table["pose"] == k)[:3]
+        turns = np.diff(q[rows], axis=0) / (2 * np.pi)
+        assert turns == pytest.approx(np.round(turns), abs=1e-12) and np.abs(turns).sum(axis=1).min() > 0.9
+    values = ws.evaluate_indices(robot, q, ["manipulability"])["manipulability"]
+    assert table["manipulability"] == pytest.approx(values, rel=1e-12)
+    assert ((table["clearance"] > 0) == (table["reason"] == "")).all()
+    assert poses["postures"].tolist() == [8, 0, 8] and poses["configurations"].tolist() == [256, 0, 256]
+    assert poses["free"].tolist() == [int(((found.pose == k) & (found.reasons == "")).sum()) for k in range(3)]
+    assert poses["complete"].all() and poses["position"].tolist() == POSES["position_m"]
+    entry = result.document["postures"]
+    assert (entry["poses"], entry["reached"], entry["postures"], entry["configurations"]) == (3, 2, 16, 512)
+    assert entry["free"] == poses["free"].sum() and entry["complete"] == 3 and entry["listed"] == 48
+    assert entry["largest_residual_m"] <= 1e-9 and entry["evidence"].startswith("closed form (three parallel axes)")
+    free = table["reason"] == ""
+    assert result.document["indices"]["clearance"]["maximum"] == table["clearance"][free].max()
+
+
+def test_one_pose_may_be_given_alone():
+    one = execute(JOB | {"position_m": POSES["position_m"][0], "quat_wxyz": POSES["quat_wxyz"][0]})
+    assert one.document["job"]["position_m"] == [POSES["position_m"][0]]
+    assert (
+        one.document["postures"]["postures"] == 8 and execute(one.document["job"]).document["postures"]["postures"] == 8
+    )
+
+
+def test_from_the_command_line_and_back(tmp_path, capsys):
+    result = from_the_command_line(JOB, tmp_path)
+    assert len(result.tables["postures"]) == 16 and len(result.meshes["bodies"].faces) > 1000
+    assert "16; 512 with windings" in capsys.readouterr().out
+    assert result.plot.postures() is not None
+
+
+def test_shards_in_any_order_are_one_run():
+    job = JOB | {"robot": "franka_panda", "starts": 16}
+    whole, plans = plan(job), plan(job).division(1, 3)
+    divided = plan(job, resolved=plans.entry())
+    parts = [run_shard(divided, k) for k in (2, 0, 1)]
+    joined, alone = merge(divided, merge(divided, parts[0], parts[1]), parts[2]), run_shard(whole, 0)
+    assert len(plans.shards) == 3 and len(alone["pose"]) > 3
+    assert all((joined[name] == array).all() for name, array in alone.arrays.items())
+
+
+def test_more_starts_find_more_and_seeds_matter():
+    counts = [execute(JOB | {"robot": "franka_panda", "starts": n}).document["postures"]["postures"] for n in (1, 32)]
+    assert counts[0] < counts[1]
+
+
+@pytest.mark.parametrize(
+    ("change", "field", "message"),
+    [
+        ({"quat_wxyz": [[1, 1, 0, 0]] * 3}, "quat_wxyz", "must be of unit length: row 0 has length 1.41421"),
+        ({"quat_wxyz": [[1, 0, 0, 0]]}, "quat_wxyz", "must have as many rows as position_m, 3, not 1"),
+        ({"position_m": [[0, 0]]}, "position_m", "rows of 3 numbers"),
+        ({"position_m": []}, "position_m", "at least 1"),
+        ({"windings": 0}, "windings", "1"),
+        ({"indices": ["no_such"]}, "indices", "no_such"),
+    ],
+)
+def test_bad_jobs_are_refused_by_name(change, field, message):
+    with pytest.raises((ws.DocumentError, ws.InputError), match=f"{field}.*{message}"):
+        plan(JOB | change)

@@ -1,0 +1,192 @@
+"""All postures of a pose: against closed forms of the tests, other searches, brute force over turns, and MuJoCo."""
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+from scipy.spatial.transform import Rotation
+
+import wsrender as ws
+from tests.collision.robots import collides
+from tests.reference import closed_form_inverse
+from wsrender.reach.posture_sets import MOST_OF_FAMILIES, PostureSolver
+from wsrender.robot.links import link_shapes
+
+FLOOR = {"items": [{"shape": "half_space", "name": "floor", "point_m": [0, 0, 0.05]}]}
+GUARDED = {"self_collision": True, "environment": {"exclude": [["floor", "link1/0"]]}}
+LINKS = ((0.1, -80, 0.3), (0.4, 20, 0.1), (0.15, 70, 0), (0.1, 60, 0.35), (0.05, -70, 0.1), (0, 0, 0.1))
+GENERAL = ws.DHTable(
+    convention="standard",
+    name="general",
+    rows=[{"a": a, "alpha_deg": alpha, "d": d, "limits_deg": [-170, 170]} for a, alpha, d in LINKS],
+)
+
+
+def drawn(chain, count, seed=0):
+    low, high = chain.lower_limits, chain.upper_limits
+    return low + np.random.default_rng(seed).random((count, chain.n)) * (high - low)
+
+
+def solved(chain, T, **options):
+    return PostureSolver(chain, device="cpu", **options).solve(T)
+
+
+def apart(chain, q, others):
+    """Largest difference of a coordinate to each of ``others`` (K, n), whole turns left out, (K,)."""
+    off = np.abs(q - others)
+    return np.where(chain.revolute, np.abs(np.remainder(off + np.pi, 2 * np.pi) - np.pi), off).max(axis=1, initial=0)
+
+
+def nearest(chain, q, found):
+    """Of each configuration (N, n) the distance to the nearest posture of its pose, (N,)."""
+    return np.array([apart(chain, row, found[found.pose == k]).min(initial=9) for k, row in enumerate(q)])
+
+
+@pytest.mark.parametrize("name", ["ur5e", "puma560", "scara", "stanford_arm", "slave_5r", "gao_6r"])
+def test_the_generating_configuration_is_among_the_postures(name):
+    chain = ws.load_robot(name).chain
+    q = drawn(chain, 200)
+    limit = np.arange(len(q)) % chain.n
+    q[:50, :] = np.where(np.arange(chain.n) == limit[:50, None], chain.upper_limits, q[:50])  # a joint at its limit
+    T = chain.poses(q)
+    found = solved(chain, T)
+    regular = np.linalg.svd(chain.jacobians(q), compute_uv=False)[:, -1] > 1e-3
+    assert nearest(chain, q, found)[regular].max() < 1e-6 and regular.mean() > 0.8
+    assert ((found.configurations >= chain.lower_limits) & (found.configurations <= chain.upper_limits)).all()
+    back = chain.poses(found.configurations)
+    assert np.linalg.norm(back[:, :3, 3] - T[found.pose, :3, 3], axis=1).max() <= 1e-9
+    turn = Rotation.from_matrix(back[:, :3, :3].transpose(0, 2, 1) @ T[found.pose, :3, :3]).magnitude()
+    assert turn.max() <= 1e-9 and found.residual_rad == pytest.approx(turn, abs=1e-14)
+    assert found.complete[regular].mean() > 0.9
+    for k in range(len(q)):
+        own = found[found.pose == k]
+        assert all(apart(chain, row, np.delete(own, i, 0)).min(initial=9) > 1e-6 for i, row in enumerate(own))
+
+
+def test_postures_and_windings_of_a_ur_are_those_of_another_closed_form():
+    """Of Hawkins's; turns by trying all."""
+    chain = ws.load_robot("ur5e").chain
+    T = chain.poses(drawn(chain, 100, seed=1))
+    found = solved(chain, T)
+    with np.errstate(invalid="ignore"):
+        theirs = closed_form_inverse.ur5e(T[:, :3, 3], T[:, :3, :3])
+    turns = 2 * np.pi * np.arange(-2, 3)[:, None]
+    for k in range(len(T)):
+        rows = theirs[k][np.isfinite(theirs[k]).all(axis=1)]
+        own = np.flatnonzero(found.pose == k)
+        assert len(own) == len(rows) and all(apart(chain, q, found[own]).min() < 1e-6 for q in rows)
+        for i in own:
+            q = found[i] + turns
+            count = ((q >= chain.lower_limits) & (q <= chain.upper_limits)).sum(axis=0).prod()
+            assert found.windings[i] == count
+    assert found.count == found.windings.sum() and found.windings.max() == 32
+
+
+def test_windings_are_listed_one_after_the_other():
+    found = ws.postures("ur5e", [0.4, 0.2, 0.3], [0, 1, 0, 0], device="cpu")
+    assert np.asarray(found).shape == (8, 6) and len(found) == 8 and found.count == 256
+    chain = ws.load_robot("ur5e").chain
+    all_of_them = np.array(list(found.wound()))
+    assert len(np.unique(np.round(all_of_them, 6), axis=0)) == 256
+    assert (np.abs(all_of_them) <= chain.upper_limits).all()
+    assert chain.poses(all_of_them)[:, :3, 3] == pytest.approx(np.tile([0.4, 0.2, 0.3], (256, 1)), abs=1e-9)
+    assert (next(found.wound(3)) == found[3]).all()
+
+
+@pytest.mark.parametrize("name", ["puma560", "ur5e"])
+def test_a_search_finds_what_a_closed_form_knows(name):
+    chain = ws.load_robot(name).chain
+    T = chain.poses(drawn(chain, 40, seed=2))
+    known, solver = solved(chain, T), PostureSolver(chain, device="cpu")
+    solver.form = None
+    found = solver.solve(T)
+    assert (found.pose == known.pose).all() and not found.complete.any() and known.complete.mean() > 0.9
+    assert all(apart(chain, q, found[found.pose == k]).min() < 1e-6 for q, k in zip(known, known.pose, strict=True))
+    assert solver.evidence == "search from 512 starts a pose, sampled, not proven complete"
+
+
+def test_an_arm_without_a_closed_form_is_searched():
+    robot = ws.load_robot(GENERAL)
+    assert robot.closed_form is None
+    q = drawn(robot.chain, 30, seed=3)
+    found = solved(robot.chain, robot.chain.poses(q))
+    assert nearest(robot.chain, q, found).max() < 1e-6
+    assert np.bincount(found.pose).mean() > 2 and not found.complete.any() and not found.family.any()
+    fewer = solved(robot.chain, robot.chain.poses(q), starts=4)
+    assert len(fewer) < len(found)
+    assert (solved(robot.chain, robot.chain.poses(q), seed=1).configurations == found.configurations).mean() < 1
+
+
+def straight_elbow(chain, q):
+    """The value of joint 3 at which the determinant of the Jacobian changes its sign."""
+
+    def determinant(value):
+        return np.linalg.det(chain.jacobians(np.array([[*q[:2], value, *q[3:]]]))[0])
+
+    values = np.linspace(chain.lower_limits[2], chain.upper_limits[2], 50)
+    signs = np.sign([determinant(value) for value in values])
+    k = int(np.argmax(signs[1:] != signs[:-1]))
+    return brentq(determinant, values[k], values[k + 1], xtol=1e-15)
+
+
+def test_singular_postures_are_flagged():
+    """A wrist in line is a family; an elbow that is straight is not; either is nearly singular."""
+    chain = ws.load_robot("puma560").chain
+    q = np.array([[0.3, -0.7, 0.5, 0.4, 0.0, 0.2], [0.3, -0.7, 0.5, 0.4, 0.7, 0.2]])
+    found = solved(chain, chain.poses(q))
+    own = [np.argmin(np.where(found.pose == k, apart(chain, q[k], found.configurations), 9)) for k in (0, 1)]
+    in_line = found.family & (found.pose == 0)
+    assert in_line.any() and (np.abs(np.sin(found[in_line][:, 4])) < 1e-6).all()
+    assert (found.sigma_min[in_line] < 1e-8).all() and found.doubtful[in_line].all() and not found.complete[0]
+    assert not found.family[own[1]] and not found.doubtful[own[1]] and found.sigma_min[own[1]] > 1e-3
+    assert found.complete[1] and in_line.sum() <= MOST_OF_FAMILIES
+    q[1, 2] = straight_elbow(chain, q[1])
+    for off in (0.0, 1e-6):  # on the fold, and where two postures are too near to tell them apart
+        T = chain.poses(q[1:] + off * np.eye(6)[2])
+        elbow = solved(chain, T)
+        near = apart(chain, q[1], elbow.configurations) < 1e-3
+        assert near.sum() == 1 and elbow.doubtful[near].all() and not elbow.family[near].any()
+
+
+def test_what_constraints_block_is_what_mujoco_says():
+    robot, quat = ws.load_robot("ur5e"), Rotation.random(6, random_state=4).as_quat(scalar_first=True)
+    points = np.random.default_rng(5).uniform([-0.5, -0.5, 0.1], [0.5, 0.5, 0.5], (6, 3))
+    found = ws.postures(robot, points, quat, constraints=GUARDED, environment=FLOOR, device="cpu")
+    hit = collides(robot, found.configurations)
+    moving = [k for k, shape in enumerate(robot.bodies.shapes) if shape.name != "link1/0"]
+    lowest = np.array([min(link_shapes(robot, q)[k].vertices[:, 2].min() for k in moving) for q in found])
+    assert len(found) > 20 and set(found.reasons) == {"", "environment", "self_collision"}
+    assert (hit[found.reasons == "self_collision"]).all() and not hit[found.reasons == ""].any()
+    clear = np.abs(lowest - 0.05) > 2e-3
+    assert ((found.reasons == "environment") == (lowest < 0.05))[clear].all() and clear.mean() > 0.9
+    free = ws.postures(robot, points, quat, device="cpu")
+    assert (free.configurations == found.configurations).all() and (free.reasons == "").all()
+
+
+def test_positions_alone():
+    """Three joints put the centre of a Puma's wrist on a point in four ways."""
+    robot = ws.load_robot("puma560")
+    chain, held = robot.chain, robot.held(dict.fromkeys(robot.joint_names[3:], 0.4))
+    points = chain.poses(np.hstack([drawn(chain, 30, seed=6)[:, :3], np.full((30, 3), 0.4)]))[:, :3, 3]
+    found = ws.postures(held, points, device="cpu")
+    assert held.chain.poses(found.configurations)[:, :3, 3] == pytest.approx(points[found.pose], abs=1e-9)
+    assert set(np.bincount(found.pose)) <= {1, 2, 3, 4} and (found.configurations[:, 3:] == 0.4).all()
+
+
+@pytest.mark.parametrize(
+    ("position", "quat", "field", "message"),
+    [
+        ([[0, 0, 0.5]], [[1, 1, 0, 0]], "quat_wxyz", "row 0 has length 1.41421; unit length is needed"),
+        ([[0, 0, 0.5]], [[1, 0, 0, 0]] * 2, "quat_wxyz", "has 2 rows for 1 of position_m"),
+        ([0, np.nan, 0.5], [1, 0, 0, 0], "position_m", "row 0 has a value that is not finite"),
+        ([0, 0.5], [1, 0, 0, 0], "position_m", "shape"),
+    ],
+)
+def test_bad_poses_are_refused_by_name(position, quat, field, message):
+    with pytest.raises(ws.InputError, match=message) as refusal:
+        ws.postures("ur5e", position, quat)
+    assert refusal.value.field == field
+
+
+def test_no_postures():
+    found = ws.postures("ur5e", [5, 0, 0], [1, 0, 0, 0], device="cpu")
+    assert np.asarray(found).shape == (0, 6) and found.count == 0 and found.complete.all() and not list(found.wound())

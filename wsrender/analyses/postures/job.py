@@ -1,0 +1,71 @@
+"""The job ``postures``: all configurations of given poses."""
+
+import math
+from collections.abc import Callable, Iterator
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import BeforeValidator, Field
+
+from wsrender.documents.arm import Arm
+from wsrender.documents.constraints import Constrained
+from wsrender.documents.format import JobDocument
+from wsrender.documents.options import IndexChoices, IndicesOrNone
+from wsrender.documents.quantities import Number, Seed, integer, rows_of, sequence
+
+UNIT = 1e-3  # largest error of a quaternion's length
+
+
+def _one_or_rows(width: int) -> BeforeValidator:
+    """Rows of so many numbers, or a single one."""
+    rows: Callable[[Any], Any] = rows_of(width).func  # type: ignore[assignment]
+
+    def given(value: Any) -> Any:
+        listed = sequence(value)
+        return rows([listed] if listed and not hasattr(listed[0], "__len__") else listed)
+
+    single = tuple[tuple([Number] * width)]  # type: ignore[valid-type]
+    return BeforeValidator(given, json_schema_input_type=tuple[single, ...] | single)
+
+
+Points = Annotated[tuple[tuple[Number, Number, Number], ...], Field(min_length=1), _one_or_rows(3)]
+Quaternions = Annotated[tuple[tuple[Number, Number, Number, Number], ...], Field(min_length=1), _one_or_rows(4)]
+
+
+class PosturesJob(IndexChoices, Constrained, Arm, JobDocument):
+    """All configurations of given poses: every posture, windings counted apart.
+
+    Arms with a closed form give all there are; of others those that a search finds. Constraints and environment say of
+    each posture whether it is free.
+    """
+
+    long_fields: ClassVar[tuple[str, ...]] = ("position_m", "quat_wxyz")
+
+    analysis: Literal["postures"] = "postures"
+    """Name of the analysis."""
+    position_m: Points
+    """Positions of the tip in the world frame, rows of x, y, z, or a single one [m]."""
+    quat_wxyz: Quaternions | None = None
+    """Orientations, a quaternion w, x, y, z of unit length for each position; null: any orientation will do."""
+    windings: Annotated[int, Field(ge=1, le=4096), BeforeValidator(integer)] = 1
+    """How many configurations of a posture are listed that differ by whole turns of hinges; all are counted."""
+    starts: Annotated[int, Field(ge=1, le=65536), BeforeValidator(integer)] = 512
+    """Starts of the search for postures of a pose, where no closed form knows them all."""
+    indices: IndicesOrNone = ()
+    """Local indices of every configuration: "kinematic", "dynamic", "all", or a list of names; empty: none."""
+    seed: Seed = 0
+    """Seed of the starts."""
+    precision: Literal["float32", "float64"] = "float64"
+    """Floating-point type of the indices; postures are computed in double."""
+
+    def conflicts(self) -> Iterator[tuple[str, str]]:
+        """(field, message) of every pair of fields that do not go together."""
+        yield from super().conflicts()
+        if self.quat_wxyz is None:
+            return
+        if len(self.quat_wxyz) != len(self.position_m):
+            rows = f"{len(self.position_m)}, not {len(self.quat_wxyz)}"
+            yield "quat_wxyz", f"must have as many rows as position_m, {rows}"
+        for k, quat in enumerate(self.quat_wxyz):
+            if abs((length := math.hypot(*quat)) - 1) > UNIT:
+                yield "quat_wxyz", f"must be of unit length: row {k} has length {length:.6g}"
+                return

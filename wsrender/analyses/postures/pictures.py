@@ -1,0 +1,50 @@
+"""An arm in the postures of one pose, each in a colour."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
+
+from wsrender.results.drawing.faces import NUMBER, Faces
+from wsrender.results.drawing.faces_of_surface import shaded
+from wsrender.results.drawing.result_plots import ResultPlots
+from wsrender.results.drawing.style import Heading, paper_style
+from wsrender.results.drawing.view import new_view
+
+# Okabe and Ito 2008 with two greys.
+_COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#595959", "#b8a800")
+
+
+@paper_style()
+def arms_in_postures(
+    skeletons: np.ndarray, labels: Sequence[str], bodies: Faces | None = None, *, title: Heading | str = ""
+) -> Figure:
+    """Arms (K, L+2, 3) [m] with a label each, as bodies, which are numbered by arm, where they are known."""
+    points = skeletons.reshape(-1, 3) if bodies is None else np.concatenate([skeletons.reshape(-1, 3), bodies.vertices])
+    figure, view = new_view(points, title, "world")
+    if bodies is not None:
+        view.add_surface(*shaded(bodies, view.space.camera))
+    for arm, color in zip(skeletons if bodies is None else (), _COLORS, strict=False):
+        view.add_line(arm, color="white", lw=3.2, solid_capstyle="round", zorder=5)
+        view.add_line(arm, color=color, lw=2.0, solid_capstyle="round", zorder=6)
+        view.add_marks(arm, color=color, marker="o", ms=3, zorder=6)
+    view.add_marks(skeletons[0, -1:], marker="*", ms=13, mfc="#c8102e", mec="white", mew=0.7, zorder=9)
+    handles = [Patch(facecolor=color, label=label) for color, label in zip(_COLORS, labels, strict=False)]
+    view.axes.legend(handles=handles, loc="upper right", frameon=False, fontsize=8)
+    return figure
+
+
+def postures(plot: ResultPlots) -> Figure:
+    """The postures of the first pose that has any, each with what blocks it."""
+    table, arms, mesh = plot.tables["postures"], plot.skeleton, plot.meshes.get("bodies")
+    assert arms is not None
+    shown = np.flatnonzero((table["winding"] == 0) & (table["pose"] == table["pose"][0]))[: len(arms)]
+    reasons = table["reason"][shown] if "reason" in table.columns else np.full(len(shown), "")
+    labels = [f"posture {k}{f', blocked by {reason}' if reason else ''}" for k, reason in enumerate(reasons)]
+    bodies = None
+    if mesh is not None and NUMBER in mesh.face_attributes:
+        number = np.asarray(mesh.face_attributes[NUMBER]).astype(int)
+        colors = {k: tuple(int(color[i : i + 2], 16) / 255 for i in (1, 3, 5)) for k, color in enumerate(_COLORS)}
+        bodies = Faces(np.asarray(mesh.vertices), np.asarray(mesh.faces), number, {}, colors)  # type: ignore[arg-type]
+    return arms_in_postures(arms, labels, bodies, title=plot.heading("other"))

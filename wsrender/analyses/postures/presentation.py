@@ -1,0 +1,31 @@
+"""How postures are shown."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from wsrender.results.presentation import Picture, Presentation
+
+_HERE = f"{__name__.rpartition('.')[0]}.pictures"
+
+
+def facts(document: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    """How many postures there are, how many are free, and what says that they are all."""
+    found = document["postures"]
+    free = f", {found['free']:,} free" if "free" in found else ""
+    yield "poses reached", f"{found['reached']:,} of {found['poses']:,}"
+    yield "postures", f"{found['postures']:,}{free}; {found['configurations']:,} with windings"
+    yield "complete", f"{found['complete']:,} of {found['poses']:,} poses: {found['evidence']}"
+
+
+PRESENTATION = Presentation(
+    (
+        Picture(
+            "postures",
+            f"{_HERE}:postures",
+            "The arm in the postures of one pose",
+            needs=("skeleton", "tables.postures"),
+            uses=("meshes",),
+        ),
+    ),
+    facts,
+)

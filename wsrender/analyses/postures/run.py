@@ -1,0 +1,211 @@
+"""The analysis ``postures``: all configurations of given poses, and what is said of each."""
+
+from functools import cached_property
+from itertools import islice
+from typing import Any
+
+import numpy as np
+
+from wsrender.analyses.contract import Analysis, Draft, Settled, Tell
+from wsrender.analyses.cost import (
+    DOCUMENT_BYTES,
+    LISTED_BYTES,
+    LISTED_MEMORY,
+    WRITTEN_PER_S,
+    Asks,
+    Cost,
+    pictures_cost,
+)
+from wsrender.analyses.estimate import RATE_CPU_CORE
+from wsrender.analyses.execution import Execution
+from wsrender.analyses.partial_result import PartialResult
+from wsrender.analyses.postures.job import PosturesJob
+from wsrender.analyses.provenance import index_choices
+from wsrender.engine import evaluate_samples, units_of
+from wsrender.pipeline.constraints.constraint import Constraint
+from wsrender.pipeline.evaluation import Evaluation
+from wsrender.pipeline.pipeline import Pipeline
+from wsrender.pipeline.sampling import plan_sampling
+from wsrender.reach.posture_sets import BATCH, PostureSolver, poses_of
+from wsrender.robot.constraints import constraints_of_job
+from wsrender.robot.indices import evaluation_of_job
+from wsrender.robot.links import bodies_in
+from wsrender.robot.rejections import rejected_rows
+from wsrender.volume.table import Table
+
+CLOSED_PER_S, TRIES_PER_S = 5e3, 3e4  # poses with all their postures, and tries of searches, of one CPU core
+EXPECTED = 8  # postures of a pose
+ROW_BYTES = 60  # of a posture in the table beside its configuration and indices
+TRY_BYTES = 600  # of a try and its target
+DRAWN = 8  # postures in pictures, of the first pose that has any
+MESH_BYTES = 1e6  # of their bodies, as ply and glb
+OF_POSTURES = ("pose", "number", "winding", "windings", "q", "sigma_min", "family", "doubtful", "residual_m",
+               "residual_rad", "rejected", "values")  # fmt: skip
+OF_POSES = ("asked", "complete", "found", "configurations")
+
+
+class PosturesAnalysis(Analysis):
+    """A planned ``postures`` job: its samples are the poses."""
+
+    effort = RATE_CPU_CORE / CLOSED_PER_S
+    job: PosturesJob
+
+    def prepare(self, device: str, target: str) -> Settled:
+        """Raises InputError for constraints and indices that are not for such a robot."""
+        _ = self.constraints, self.evaluation
+        return Settled(device, target, ((0, len(self.job.position_m)),), shard_unit=1)
+
+    @cached_property
+    def constraints(self) -> tuple[Constraint, ...]:
+        """What free postures satisfy; raises InputError."""
+        return constraints_of_job(self.job, self.robot)
+
+    @cached_property
+    def evaluation(self) -> Evaluation:
+        """What is computed of every configuration; raises InputError."""
+        return evaluation_of_job(self.job, self.robot) if self.job.indices else Evaluation(self.robot.chain)
+
+    @cached_property
+    def solver(self) -> PostureSolver:
+        """What finds postures."""
+        job = self.job
+        options = {"with_orientation": job.quat_wxyz is not None, "starts": job.starts, "seed": job.seed}
+        return PostureSolver(self.robot.chain, **options, device=self.device)
+
+    @property
+    def cost(self) -> Cost:
+        """Poses, their postures and the search for those that no closed form knows."""
+        count, n = len(self.job.position_m), self.robot.chain.n
+        listed = 3 if self.job.quat_wxyz is None else 7
+        rows = EXPECTED * self.job.windings * count
+        row = ROW_BYTES + 8 * (n + len(self.evaluation.indices))
+        drawn, seconds = pictures_cost("postures")
+        files = DOCUMENT_BYTES + drawn + MESH_BYTES + row * rows + LISTED_BYTES * listed * count
+        tries = 0 if self.solver.form else self.job.starts
+        memory = LISTED_MEMORY * listed * count + 4 * row * rows + min(count, BATCH) * (2000 + TRY_BYTES * tries)
+        seconds += count / CLOSED_PER_S + count * tries / TRIES_PER_S + files / WRITTEN_PER_S
+        return Cost(count, memory, files, seconds, Asks("position_m", "take fewer"))
+
+    def compute(self, shard: int, execution: Execution, tell: Tell) -> PartialResult:
+        """The shard's postures: arrays OF_POSTURES, a row for each configuration that is listed, and OF_POSES."""
+        first, count = self.shards[shard]
+        own, quat = slice(first, first + count), self.job.quat_wxyz
+        T = poses_of(self.job.position_m[own], None if quat is None else quat[own])
+        self.solver.threads = execution.threads
+        found = self.solver.solve(T, tell)
+        wound = [list(islice(found.wound(k), self.job.windings)) for k in range(len(found))]
+        each = [len(rows) for rows in wound]
+        q = np.array([row for rows in wound for row in rows]).reshape(-1, self.robot.chain.n)
+        per_pose = np.bincount(found.pose, minlength=count)
+        number = np.arange(len(found)) - np.repeat(np.cumsum(per_pose) - per_pose, per_pose)
+        names = ("windings", "sigma_min", "family", "doubtful", "residual_m", "residual_rad")
+        rejected, values = self._evaluated(q, execution)
+        return PartialResult(
+            {
+                "pose": np.repeat(found.pose + first, each),
+                "number": np.repeat(number, each),
+                "winding": np.concatenate([np.zeros(0, int), *map(np.arange, each)]),
+                **{name: np.repeat(getattr(found, name), each) for name in names},
+                "q": q,
+                "rejected": rejected,
+                "values": values,
+                "asked": np.arange(first, first + count),
+                "complete": found.complete,
+                "found": per_pose,
+                "configurations": np.bincount(found.pose, found.windings, minlength=count).astype(np.int64),
+            }
+        )
+
+    def _evaluated(self, q: np.ndarray, execution: Execution) -> tuple[np.ndarray, np.ndarray]:
+        """The number, from 1, of the constraint that rejects ``q`` (K, n), or 0, (K,); and indices (K, I)."""
+        rejected, values = np.zeros(len(q), np.int8), np.zeros((len(q), len(self.evaluation.indices)))
+        if not len(q) or not (self.constraints or self.evaluation.indices):
+            return rejected, values
+        plan = plan_sampling(self.robot.chain, q)
+        pipeline = Pipeline(
+            self.evaluation, plan, self.constraints, kept_rows=frozenset(), precision=self.job.precision
+        )
+        rows = evaluate_samples(pipeline, self.device, threads=execution.threads)
+        rejected = rejected if rows.rejected is None else rows.rejected
+        return rejected, np.array(rows.values, np.float64).reshape(-1, len(q)).T
+
+    def merge(self, a: PartialResult, b: PartialResult) -> PartialResult:
+        """The postures of both, in the order of their poses."""
+        joined = {}
+        for names in (OF_POSTURES, OF_POSES):
+            order = np.argsort(np.concatenate([a[names[0]], b[names[0]]]), kind="stable")
+            joined |= {name: np.concatenate([a[name], b[name]])[order] for name in names}
+        return PartialResult(joined)
+
+    def result(self, partial: PartialResult, execution: Execution) -> Draft:
+        """Tables ``postures``, a row for each configuration that is listed, and ``poses``, in the order asked.
+
+        The mesh ``bodies`` and the skeletons are of the first pose that has a posture.
+        """
+        first = partial["winding"] == 0
+        residuals = (float(partial[name].max(initial=0.0)) for name in ("residual_m", "residual_rad"))
+        found: dict[str, Any] = {
+            "poses": len(partial["asked"]),
+            "reached": int((partial["found"] > 0).sum()),
+            "postures": int(partial["found"].sum()),
+            "configurations": int(partial["configurations"].sum()),
+            "listed": len(first),
+            "most_of_a_pose": int(partial["found"].max(initial=0)),
+            "families": int(partial["family"][first].sum()),
+            "doubtful": int(partial["doubtful"][first].sum()),
+            "complete": int(partial["complete"].sum()),
+            "evidence": self.solver.evidence,
+            **dict(zip(("largest_residual_m", "largest_residual_rad"), residuals, strict=True)),
+        }
+        entries: dict[str, Any] = {"postures": found}
+        if self.constraints:
+            found["free"] = int((partial["rejected"][first] == 0).sum())
+            entries |= rejected_rows(self.constraints, partial["rejected"], partial["q"].__getitem__)
+        if self.job.indices:
+            entries |= {"indices": self._extremes(partial), "choices": index_choices(self.job, self.evaluation)}
+        shown = np.flatnonzero(first & (partial["pose"] == partial["pose"][:1]))[:DRAWN] if len(first) else []
+        bodies = bodies_in(self.robot, partial["q"][shown]) if len(shown) else None
+        return Draft(
+            entries,
+            notices=self.evaluation.notices,
+            tables={"postures": self._postures(partial), "poses": self._poses(partial)},
+            skeleton=self.robot.skeleton(partial["q"][shown]) if len(shown) else None,
+            meshes={} if bodies is None else {"bodies": bodies},
+        )
+
+    def _extremes(self, partial: PartialResult) -> dict[str, Any]:
+        """Of each index over the configurations that are free."""
+        units, free = units_of(self.evaluation), partial["values"][partial["rejected"] == 0]
+        return {
+            name: {
+                "maximum": float(values.max()) if len(values) else None,
+                "minimum": float(values.min()) if len(values) else None,
+                "unit": units[name],
+            }
+            for name, values in zip(self.evaluation.indices, free.T, strict=True)
+        }
+
+    def _postures(self, partial: PartialResult) -> Table:
+        names = ("windings", "family", "doubtful", "sigma_min", "residual_m", "residual_rad")
+        columns = {"pose": partial["pose"], "posture": partial["number"], "winding": partial["winding"]}
+        columns |= {name: partial[name] for name in names}
+        units = {"residual_m": "m", "residual_rad": "rad"}
+        if self.constraints:
+            reasons = np.array(["", *(each.name for each in self.constraints)])
+            columns["reason"] = reasons[partial["rejected"]]
+        for name, values in zip(self.evaluation.indices, partial["values"].T, strict=True):
+            columns[name], units[name] = values, units_of(self.evaluation)[name]
+        chain = self.robot.chain
+        for name, values, turns in zip(chain.joint_names, partial["q"].T, chain.revolute, strict=True):
+            columns[f"q_{name}"], units[f"q_{name}"] = values, "rad" if turns else "m"
+        return Table(columns, units)
+
+    def _poses(self, partial: PartialResult) -> Table:
+        columns = {"position": np.array(self.job.position_m)}
+        if self.job.quat_wxyz is not None:
+            columns["quat_wxyz"] = np.array(self.job.quat_wxyz)
+        columns |= {"postures": partial["found"], "configurations": partial["configurations"]}
+        if self.constraints:
+            free = (partial["winding"] == 0) & (partial["rejected"] == 0)
+            columns["free"] = np.bincount(partial["pose"][free], minlength=len(partial["asked"]))
+        return Table({**columns, "complete": partial["complete"]}, {"position": "m"})

@@ -1,0 +1,269 @@
+"""All postures of poses: from a closed form where the arm has one, else those that a search finds."""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, fields, replace
+from itertools import product
+from typing import Any
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from wsrender.documents.constraints import Constraints
+from wsrender.documents.environment import Environment
+from wsrender.documents.sampling import Sobol
+from wsrender.engine import Accuracy, closed_postures, configurations, solve_inverse
+from wsrender.errors import InputError
+from wsrender.pipeline.constraints.constraint import Constraint
+from wsrender.pipeline.pipeline import tip_pipeline
+from wsrender.reach.admission import Admission
+from wsrender.reach.closed_labels import evidence
+from wsrender.reach.inverse_solver import parts_of
+from wsrender.reach.posture_solver import NEARLY_SINGULAR, TURN, PoseHolder
+from wsrender.reach.starts import towards_limits
+from wsrender.reach.targets import rotations, rows_of
+from wsrender.robot import as_robot
+from wsrender.robot.constraints import constraints_for
+from wsrender.robots.closed_form import ClosedForm
+from wsrender.robots.kinematics import Kinematics
+
+STARTS = 512  # of the search for postures of a pose
+NEAR = 1e-4  # slack within which a posture that seems outside limits or not there is looked at: folds, rounding
+BATCH = 1 << 13  # poses whose postures are held at a time
+MOST_OF_FAMILIES = 16  # postures of a pose that stand for families, whose members have no number
+NEARLY = 1e-5  # m and rad: a try that ends so near is taken further
+ANYHOW = Rotation.from_rotvec([0.9, -1.3, 0.4]).as_matrix()  # an orientation at which no free wrist stands in line
+UNIT = 1e-3  # largest error of a quaternion's length
+
+
+@dataclass(frozen=True, eq=False)
+class Postures:
+    """K postures of N poses; as an array they are their ``configurations`` (K, n) [rad or m].
+
+    ``pose`` (K,) int: the pose, ascending, that each holds to 1e-9 m and rad, within the limits. ``windings`` (K,) int:
+    how many configurations it stands for, which differ by whole turns of hinges; `wound` lists them. ``sigma_min``
+    (K,): smallest singular value of the Jacobian, lengths over the reach. ``family`` (K,) bool: the arm can move from
+    it while the tip stays, and a few such stand for all; ``doubtful`` (K,) bool: nearly singular. ``residual_m``,
+    ``residual_rad`` (K,): to the pose. ``reasons`` (K,) text: the constraint that blocks it, "" of a free one.
+
+    ``complete`` (N,) bool: by a closed form no other posture exists; else others were not found. ``evidence``: what
+    says so. ``least_turns``, ``most_turns`` (K, n) int: by how many whole turns hinges may be moved.
+    """
+
+    configurations: np.ndarray
+    pose: np.ndarray
+    windings: np.ndarray
+    sigma_min: np.ndarray
+    family: np.ndarray
+    doubtful: np.ndarray
+    residual_m: np.ndarray
+    residual_rad: np.ndarray
+    reasons: np.ndarray
+    complete: np.ndarray
+    evidence: str
+    least_turns: np.ndarray
+    most_turns: np.ndarray
+
+    def __len__(self) -> int:
+        return len(self.configurations)
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> np.ndarray:
+        return np.array(self.configurations, dtype=dtype)
+
+    def __iter__(self) -> Iterator[np.ndarray]:
+        return iter(self.configurations)
+
+    def __getitem__(self, k: Any) -> np.ndarray:
+        return self.configurations[k]
+
+    @property
+    def count(self) -> int:
+        """Configurations of all postures, windings counted apart."""
+        return int(self.windings.sum())
+
+    def wound(self, k: int | None = None) -> Iterator[np.ndarray]:
+        """The configurations (n,) [rad or m] of a posture by number, or of all, one after the other."""
+        for row in range(len(self)) if k is None else [k]:
+            ends = zip(self.least_turns[row], self.most_turns[row], strict=True)
+            for turns in product(*(sorted(range(a, b + 1), key=abs) for a, b in ends)):
+                yield self.configurations[row] + TURN * np.array(turns)
+
+
+class PostureSolver:
+    """All postures of poses of one chain, or of positions that any orientation will do for.
+
+    ``starts``: of the search, for a pose of an arm without a closed form, or where that is in doubt; they depend on
+    ``seed`` alone.
+    """
+
+    def __init__(
+        self,
+        chain: Kinematics,
+        *,
+        with_orientation: bool = True,
+        starts: int = STARTS,
+        seed: int = 0,
+        device: str = "auto",
+        threads: int | None = None,
+    ):
+        self.whole, self.origin = chain, chain.origin
+        self.holder = PoseHolder(chain.relative_to(chain.origin), 6 if with_orientation else 3)
+        self.form = ClosedForm.of(chain, "pose" if with_orientation else "position")
+        self.starts, self.seed, self.device, self.threads = starts, seed, device, threads
+
+    @property
+    def evidence(self) -> str:
+        """What postures rest on."""
+        search = f"search from {self.starts} starts a pose, sampled, not proven complete"
+        return f"{evidence(self.form)}; where that is in doubt {search}" if self.form else search
+
+    def solve(
+        self,
+        T: np.ndarray,
+        progress: Callable[[int], None] | None = None,
+        constraints: Sequence[Constraint] = (),
+    ) -> Postures:
+        """Of poses (N, 4, 4) in the world; ``progress``: called with the poses done."""
+        parts = []
+        for first in range(0, max(len(T), 1), BATCH):
+            parts.append(self._solve(T[first : first + BATCH], first))
+            if progress:
+                progress(min(first + BATCH, len(T)))
+        found = Postures(**{f.name: _joined(f.name, parts) for f in fields(Postures)})
+        if not constraints or not len(found):
+            return found
+        admission = Admission(self.whole, constraints, self.device, self.threads)
+        names = np.array(["", *admission.names])
+        return replace(found, reasons=names[admission.rejected(found.configurations)])
+
+    def _solve(self, T: np.ndarray, first: int) -> Postures:
+        near, holder = T.copy(), self.holder
+        near[:, :3, 3] -= self.origin
+        pose, q, complete = self._closed(T, near)
+        for part in parts_of(np.flatnonzero(~complete), self.starts):
+            more, found = self._searched(T, part)
+            found, _ = holder.polished(found, near[more])
+            order = np.lexsort([*np.round(found, 6).T[::-1], more])
+            pose, q = np.concatenate([pose, more[order]]), np.concatenate([q, found[order]])
+        order = np.argsort(pose, kind="stable")
+        pose, q = pose[order], q[order]
+        left = holder.errors(q, near[pose])
+        held = np.flatnonzero(holder.holds(left))
+        kept = held[holder.distinct(pose[held], q[held], near)]
+        pose, q, left = pose[kept], q[kept], left[kept]
+        sigma, redundant = holder.sigma_min(q), len(holder.moving) > holder.freedoms
+        family = np.zeros(len(q), bool)
+        at = np.flatnonzero((sigma < NEARLY_SINGULAR) | redundant)
+        family[at] = holder.families(q[at], near[pose[at]])
+        of_pose = np.cumsum(family) - np.searchsorted(np.flatnonzero(family), np.searchsorted(pose, pose))
+        kept = ~family | (of_pose <= MOST_OF_FAMILIES)
+        pose, q, left, sigma, family = (rows[kept] for rows in (pose, q, left, sigma, family))
+        least, most = holder.turns(q)
+        return Postures(
+            q,
+            pose + first,
+            (most - least + 1).prod(axis=1),
+            sigma,
+            family,
+            sigma < NEARLY_SINGULAR,
+            np.linalg.norm(left[:, :3], axis=1),
+            np.linalg.norm(left[:, 3:], axis=1),
+            np.full(len(q), ""),
+            complete,
+            self.evidence,
+            least,
+            most,
+        )
+
+    def _closed(self, T: np.ndarray, near: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Pose, ascending, and configuration of a closed form's postures; and whether there are no others, (N,) bool.
+
+        That is not known of singular poses, whose postures are families or more than their branches tell.
+        """
+        if self.form is None:
+            return np.zeros(0, int), np.zeros((0, self.whole.n)), np.zeros(len(T), bool)
+        asked = T.copy()
+        if self.holder.rows == 3:
+            asked[:, :3, :3] = ANYHOW
+        found = closed_postures(self.form, asked, keep=True, device=self.device, threads=self.threads)
+        assert found.rows is not None
+        pose, branch = np.nonzero(found.rows[..., 12] > -NEAR)
+        q, _ = self.holder.polished(self.form.configurations(found.rows[pose, branch, :12]), near[pose])
+        singular = self.holder.sigma_min(q) < NEARLY_SINGULAR
+        return pose, q, (found.flags == 0) & (np.bincount(pose[singular], minlength=len(T)) == 0)
+
+    def _searched(self, T: np.ndarray, at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Pose and configuration of what tries for poses ``at`` (P,) come to."""
+        chain, kind = self.whole, self.holder.rows
+        columns = [3] if kind == 3 else [3, 0, 1, 2]
+        targets = T[at][:, :3, columns].transpose(0, 2, 1).reshape(len(at), -1)
+        anywhere = configurations(tip_pipeline(chain, Sobol(self.starts, seed=self.seed)))
+        anywhere[1::2] = towards_limits(chain, anywhere[1::2])
+        accuracy = Accuracy(NEARLY, NEARLY, self.holder.length / 2)
+        tries = solve_inverse(
+            chain,
+            np.repeat(targets, self.starts, axis=0),
+            np.tile(anywhere, (len(at), 1)),
+            accuracy,
+            device=self.device,
+            threads=self.threads,
+        )
+        return np.repeat(at, self.starts)[tries.reached], tries.q[tries.reached]
+
+
+def postures(
+    robot: Any,
+    position_m: Any,
+    quat_wxyz: Any = None,
+    *,
+    constraints: Constraints | Mapping[str, Any] | None = None,
+    environment: Environment | Mapping[str, Any] | None = None,
+    starts: int = STARTS,
+    seed: int = 0,
+    device: str = "auto",
+    threads: int | None = None,
+) -> Postures:
+    """All configurations of a pose ``position_m`` (3,) [m], ``quat_wxyz`` (4,) in the world, or of N, a row each.
+
+    ``robot`` is a Robot, a user-defined robot or what `load_robot` takes. Without ``quat_wxyz`` any orientation will
+    do. ``constraints`` and ``environment`` are those of a job document, or their parts of one: they say of each posture
+    whether it is free. ``starts``: of the search for postures of a pose, where no closed form knows them all.
+
+    Raises InputError, DocumentError, ModelError.
+    """
+    subject = as_robot(robot)
+    T = poses_of(position_m, quat_wxyz)
+    choice, around = (
+        kind(**given) if isinstance(given, Mapping) else given
+        for kind, given in ((Constraints, constraints), (Environment, environment))
+    )
+    solver = PostureSolver(
+        subject.chain,
+        with_orientation=quat_wxyz is not None,
+        starts=starts,
+        seed=seed,
+        device=device,
+        threads=threads,
+    )
+    return solver.solve(T, constraints=constraints_for(subject, choice, around))
+
+
+def poses_of(position_m: Any, quat_wxyz: Any = None) -> np.ndarray:
+    """Poses (N, 4, 4) of positions (N, 3) [m] and quaternions (N, 4) of unit length. Raises InputError."""
+    position = rows_of(position_m, 3, "position_m")
+    T = np.tile(np.eye(4), (len(position), 1, 1))
+    T[:, :3, 3] = position
+    if quat_wxyz is not None:
+        quat = rows_of(quat_wxyz, 4, "quat_wxyz")
+        if len(quat) != len(position):
+            raise InputError("quat_wxyz", f"has {len(quat)} rows for {len(position)} of position_m")
+        length = np.linalg.norm(quat, axis=1)
+        if (off := np.abs(length - 1) > UNIT).any():
+            row = int(np.argmax(off))
+            raise InputError("quat_wxyz", f"row {row} has length {length[row]:.6g}; unit length is needed")
+        T[:, :3, :3] = rotations(quat, len(position))
+    return T
+
+
+def _joined(name: str, parts: Sequence[Postures]) -> Any:
+    values = [getattr(part, name) for part in parts]
+    return values[0] if name == "evidence" else np.concatenate(values)

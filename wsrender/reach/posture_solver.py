@@ -1,0 +1,178 @@
+"""Configurations that hold a pose to the last digits: corrected on the true chain, told apart, and what they are."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from wsrender.robots.kinematics import Kinematics
+
+EXACT = 1e-9  # m and rad: a configuration holds a pose
+SETTLED = 1e-13  # m/reach and rad: what is left is rounding
+STEPS = 40  # near a double root each halves what is left of the joints
+SAME = 1e-6  # rad and reaches: closer postures are one
+CLOSE = 1e-3  # they may be one, if the pose holds between them
+NEARLY_SINGULAR = 1e-3  # sigma_min below which joints move a thousand times as far as the pose
+ASIDE = 1e-2  # rad and reaches: how far a family is followed to see whether it is one
+TURN = 2 * np.pi
+
+
+@dataclass(frozen=True, eq=False)
+class PoseHolder:
+    """Holds poses with a ``chain`` near the world's origin: whole ones, or positions alone (``rows`` 3, not 6)."""
+
+    chain: Kinematics
+    rows: int
+
+    @property
+    def length(self) -> float:
+        """What lengths are divided by [m]: the reach."""
+        return float(self.chain.reach) if np.isfinite(self.chain.reach) and self.chain.reach > 0 else 1.0
+
+    @property
+    def scale(self) -> np.ndarray:
+        """What a step of 1 moves each coordinate by (n,) [rad or m]."""
+        return np.where(self.chain.revolute, 1.0, self.length)
+
+    def errors(self, q: np.ndarray, T: np.ndarray) -> np.ndarray:
+        """What is left to poses ``T`` (M, 4, 4) at ``q`` (M, n), (M, 6): metres, then a rotation vector, in the world.
+
+        Of positions no rotation is left.
+        """
+        at = self.chain.poses(q)
+        left = np.zeros((len(q), 6))
+        left[:, :3] = T[:, :3, 3] - at[:, :3, 3]
+        if self.rows == 6 and len(q):
+            turn = T[:, :3, :3] @ at[:, :3, :3].transpose(0, 2, 1)
+            left[:, 3:] = Rotation.from_matrix(turn).as_rotvec()
+        return left
+
+    @property
+    def moving(self) -> np.ndarray:
+        """Coordinates (m,) that nothing holds."""
+        return np.flatnonzero(self.chain.lower_limits < self.chain.upper_limits)
+
+    def jacobians(self, q: np.ndarray) -> np.ndarray:
+        """Jacobians (M, rows, m) of the `moving` coordinates without units: lengths, of slides too, over the reach."""
+        J = (self.chain.jacobians(q)[:, : self.rows] * self.scale)[..., self.moving]
+        J[:, :3] /= self.length
+        return J
+
+    def polished(self, q: np.ndarray, T: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Configurations within the limits that hold ``T`` best, from near ones ``q`` (M, n), and `errors` there.
+
+        Steps of Levenberg's with the squared error as damping, which converge at double roots too (Yamashita,
+        Fukushima 2001).
+        """
+        q = self._within(q)
+        left = self.errors(q, T)
+        best, least = q.copy(), self._sizes(left)
+        at = np.flatnonzero(least > SETTLED)
+        for _ in range(STEPS):
+            if not len(at):
+                break
+            scaled = left[at, : self.rows].copy()
+            scaled[:, :3] /= self.length
+            J = self.jacobians(q[at])
+            moved = q[at] + self._along(_step(J, scaled))
+            held = np.abs(self._within(moved) - moved)[:, self.moving] > TURN * 1e-12
+            held &= ~self.chain.periodic[self.moving]
+            blocked = np.flatnonzero(held.any(axis=1))
+            J[blocked] *= ~held[blocked, None]
+            moved[blocked] = q[at[blocked]] + self._along(_step(J[blocked], scaled[blocked]))
+            q[at] = self._within(moved)
+            left[at] = self.errors(q[at], T[at])
+            size = self._sizes(left[at])
+            better = size < least[at]
+            best[at[better]], least[at[better]] = q[at[better]], size[better]
+            at = at[(size > SETTLED) & (better | (size > EXACT))]
+        return best, self.errors(best, T)
+
+    def holds(self, left: np.ndarray) -> np.ndarray:
+        """Whether `errors` (M, 6) are none to the tolerance, (M,) bool."""
+        return (np.linalg.norm(left[:, :3], axis=1) <= EXACT) & (np.linalg.norm(left[:, 3:], axis=1) <= EXACT)
+
+    def distances(self, a: np.ndarray, b: np.ndarray) -> np.ndarray:
+        """Largest difference of any coordinate [rad or reaches], turns apart; (…, n) to (…)."""
+        apart = np.abs(a - b) / self.scale
+        turned = np.abs(np.remainder(apart + np.pi, TURN) - np.pi)
+        return np.where(self.chain.revolute, turned, apart).max(axis=-1)
+
+    def distinct(self, pose: np.ndarray, q: np.ndarray, T: np.ndarray) -> np.ndarray:
+        """Which (K,) of postures ``q`` (M, n) of poses by number ``pose`` (M,), ascending, are not an earlier one.
+
+        Closer ones than SAME are one, and those between which the pose ``T`` (N, 4, 4) holds.
+        """
+        dropped = np.zeros(len(q), bool)
+        # Rows of one pose stand together: each is compared with those a few rows further on.
+        for ahead in range(1, int(np.bincount(pose).max(initial=1))):
+            first = np.arange(len(q) - ahead)
+            first = first[(pose[first] == pose[first + ahead]) & ~dropped[first] & ~dropped[first + ahead]]
+            apart = self.distances(q[first], q[first + ahead])
+            same = apart < SAME
+            near = np.flatnonzero((apart < CLOSE) & ~same)
+            middle = q[first[near]] + self._turned(q[first[near] + ahead] - q[first[near]]) / 2
+            same[near] = self.holds(self.errors(middle, T[pose[first[near]]]))
+            dropped[first[same] + ahead] = True
+        return np.flatnonzero(~dropped)
+
+    @cached_property
+    def freedoms(self) -> int:
+        """Freedoms of the pose that the joints move: the rank of the Jacobian at most configurations."""
+        chain = self.chain
+        low, high = (np.where(np.isfinite(ends), ends, 0.0) for ends in (chain.lower_limits, chain.upper_limits))
+        q = low + np.random.default_rng(0).random((8, chain.n)) * (high - low)
+        s = np.linalg.svd(self.jacobians(q), compute_uv=False)
+        return int((s > 1e-9 * s.max(initial=1e-300)).sum(axis=1).max())
+
+    def sigma_min(self, q: np.ndarray) -> np.ndarray:
+        """Smallest singular value (M,) of the Jacobian, of those that are not always 0, lengths over the reach."""
+        if not len(q):
+            return np.zeros(0)
+        return np.linalg.svd(self.jacobians(q), compute_uv=False)[:, max(self.freedoms, 1) - 1]
+
+    def families(self, q: np.ndarray, T: np.ndarray) -> np.ndarray:
+        """Whether the arm can move from postures ``q`` (M, n) while the tip stays, within the limits, (M,) bool."""
+        _, _, V = np.linalg.svd(self.jacobians(q), full_matrices=True)
+        free = self._along(V[:, -1])
+        found = np.zeros(len(q), bool)
+        for way in (ASIDE, -ASIDE):
+            moved, left = self.polished(q + way * free, T)
+            found |= self.holds(left) & (self.distances(moved, q) > abs(way) / 4)
+        return found
+
+    def turns(self, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Least and largest whole turns (M, n) int that hinges may be moved by within the limits; 0 of others."""
+        chain = self.chain
+        hinged = chain.revolute & ~chain.periodic
+        with np.errstate(invalid="ignore"):
+            least = np.ceil((chain.lower_limits - q - EXACT) / TURN)
+            most = np.floor((chain.upper_limits - q + EXACT) / TURN)
+        return np.where(hinged, least, 0).astype(int), np.where(hinged, most, 0).astype(int)
+
+    def _along(self, step: np.ndarray) -> np.ndarray:
+        """Steps (M, m) of the `moving` coordinates as those of configurations (M, n) [rad or m]."""
+        whole = np.zeros((len(step), self.chain.n))
+        whole[:, self.moving] = step
+        return whole * self.scale
+
+    def _turned(self, by: np.ndarray) -> np.ndarray:
+        """Differences (M, n) without whole turns."""
+        return np.where(self.chain.revolute, np.remainder(by + np.pi, TURN) - np.pi, by)
+
+    def _within(self, q: np.ndarray) -> np.ndarray:
+        chain = self.chain
+        inside = np.clip(q, chain.lower_limits, chain.upper_limits)
+        return np.where(chain.periodic, np.remainder(q + np.pi, TURN) - np.pi, inside)
+
+    def _sizes(self, left: np.ndarray) -> np.ndarray:
+        return np.maximum(np.linalg.norm(left[:, :3], axis=1) / self.length, np.linalg.norm(left[:, 3:], axis=1))
+
+
+def _step(J: np.ndarray, left: np.ndarray) -> np.ndarray:
+    """Levenberg's step (M, m) for what is left (M, rows), at most 0.2."""
+    U, s, V = np.linalg.svd(J, full_matrices=False)
+    damped = s / (s**2 + np.einsum("mr,mr->m", left, left)[:, None] + 1e-30)
+    step = (V.transpose(0, 2, 1) @ (damped[..., None] * (U.transpose(0, 2, 1) @ left[..., None])))[..., 0]
+    return step * np.minimum(1.0, 0.2 / np.maximum(np.abs(step).max(axis=1, keepdims=True, initial=0.0), 1e-300))
