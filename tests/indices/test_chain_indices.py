@@ -191,6 +191,16 @@ def test_along_a_direction_it_is_what_linear_programs_find(index, precision, dev
         np.testing.assert_allclose(found, expected, rtol=1e-7 if precision == "float64" else 1e-4)
 
 
+@pytest.mark.parametrize("index", ["velocity_radius", "force_radius", "acceleration_radius"])
+def test_a_direction_may_have_any_length(index):
+    case = Case("ur5e")
+    q, along = case.configurations(3), np.array([1.0, -2.0, 0.5])
+    expected = case.values(q, index, "float64", "cpu", direction=along)
+    for length in (1e-300, 1e-7, 1e9, 1e300):
+        found = case.values(q, index, "float64", "cpu", direction=length * along)
+        np.testing.assert_allclose(found, expected, rtol=1e-12)
+
+
 @pytest.mark.parametrize(("name", "task"), [("ur5e", "linear"), ("arm", "linear"), ("franka_panda", ("x", "z"))])
 def test_forces_are_held_in_every_direction_and_no_larger_ones(name, task, precision, device):
     case, rows, random = Case(name), ROWS[task], np.random.default_rng(1)
@@ -313,16 +323,23 @@ def test_results_hold_extremes_means_and_the_share_that_is_cut(constrained, prec
         ),
         ("scara", "torque_margin", {}, r"indices: torque_margin needs link inertias, which the model of scara"),
         ("ur5e", "force_radius", {"task": "angular"}, r"task: must have linear rows for force_radius"),
-        ("ur5e", "force_radius", {"direction": [0, 0]}, r"index_options.force_radius.direction: must have 3 numbers"),
+        ("ur5e", "force_radius", {"direction": [1, 2]}, r"index_options.force_radius.direction: must .*not \[1\.0, 2"),
+        ("ur5e", "force_radius", {"direction": [0, 0, 0]}, r"direction: must have 3 numbers, not all 0, or none,"),
         (
             "ur5e",
             "force_radius",
             {"task": ["x"], "direction": [1, 1, 0]},
             r"direction: must lie within the task's linear",
         ),
-        ("ur5e", "payload_capacity", {"task": ["x"], "acceleration_m_s2": 1}, r"acceleration_m_s2: must be 0 where"),
+        (
+            "ur5e",
+            "payload_capacity",
+            {"task": ["x"], "acceleration_m_s2": 1},
+            r"acceleration_m_s2: must be 0 .*not 1\.0$",
+        ),
         ("ur5e", "payload_capacity", {"limit_kg": 0}, r"index_options.payload_capacity.limit_kg: must be"),
         ("ur5e", "tip_compliance", {}, r"joint_stiffness: must have 6 numbers greater than 0, of joint1, joint2"),
+        ("ur5e", "position_error", {"joint_sigma": [1e300] * 6}, r"joint_sigma: must be 0 … 1e\+15 rad or m"),
         ("ur5e", "position_error", {"joint_sigma": [0] * 6}, r"joint_sigma: must have 6 numbers greater than 0"),
         (
             "ur5e",
@@ -337,6 +354,31 @@ def test_what_a_robot_lacks_is_told_by_its_field(robot, index, options, message)
     job = {"analysis": "indices_at", "robot": robot, "configurations": [[0.1] * ws.load_robot(robot).chain.n]}
     with pytest.raises((InputError, ws.MissingInertiaError), match=message):
         ws.execute(job | {"indices": [index], "index_options": {index: options} if options else {}} | task)
+
+
+def test_directions_lie_in_the_task_but_for_rounding():
+    asked = {"indices": ["force_radius"], "task": ["x"]}
+    for aside, refused in ((1e-12, False), (1e-6, True)):
+        options = {"index_options": {"force_radius": {"direction": [1, aside, 0]}}}
+        if refused:
+            with pytest.raises(InputError, match="must lie within the task's linear"):
+                ws.evaluate_indices("ur5e", np.full(6, 0.1), **asked, **options)
+        else:
+            assert ws.evaluate_indices("ur5e", np.full(6, 0.1), **asked, **options)["force_radius"] > 0
+
+
+def test_a_mass_beside_a_tip_that_stays_in_a_plane_may_leave_it():
+    link = {"mass": 1.0, "center_of_mass": [-0.1, 0, 0.02], "inertia": [0.01] * 3, "effort_limit": 50.0}
+    rows = [{"a": 0.5, "alpha": 1.5, **link}, {**link}]
+    robot = ws.load_robot(ws.DHTable(convention="standard", rows=rows))
+    asked = {"indices": ["payload_capacity"], "task": ["x", "y"]}
+    for com in ([0, 0, 0.0], [0.1, 0, 0]):
+        options = {"payload_capacity": {"com_m": com, "acceleration_m_s2": 0.1}}
+        if any(com):
+            with pytest.raises(InputError, match="where the mass moves out of the task"):
+                ws.evaluate_indices(robot, [0.3, 0.2], **asked, index_options=options)
+        else:
+            ws.evaluate_indices(robot, [0.3, 0.2], **asked, index_options=options)
 
 
 def test_arms_of_a_class_and_mechanisms_have_none():

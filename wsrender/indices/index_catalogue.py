@@ -96,7 +96,7 @@ def _place(name: str, what: str) -> Option:
 
 
 def _of_joints(name: str, unit: str, what: str) -> Option:
-    return Option(name, (), unit, "numbers", range=(0.0, inf), description=f"{what} of every joint")
+    return Option(name, (), unit, "numbers", range=(0.0, 1e15), description=f"{what} of every joint")
 
 
 _CHAIN: dict[str, Any] = {"function": f.of_chain, "voxel_statistics": ("count", "maximum", "mean", "minimum")}

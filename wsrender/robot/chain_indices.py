@@ -61,8 +61,9 @@ class _Asked:
         given = np.array(self.options["direction"])
         if not len(given):
             return given
-        if len(given) != 3 or not 1e-6 < np.linalg.norm(given) < 1e6:
+        if len(given) != 3 or not given.any():
             raise self.refusal("direction", "must have 3 numbers, not all 0, or none")
+        given = given / np.abs(given).max()  # whose square neither overflows nor vanishes
         found = self.chain.T_world_base[:3, :3].T @ given / np.linalg.norm(given)
         if np.linalg.norm(np.delete(found, rows)) > OUT_OF_TASK:
             raise self.refusal("direction", "must lie within the task's linear rows, which are in base axes")
@@ -77,7 +78,8 @@ class _Asked:
         return given
 
     def refusal(self, option: str, why: str) -> InputError:
-        return InputError(f"index_options.{self.name}.{option}", f"{why}, not {list(np.ravel(self.options[option]))}")
+        given = np.array(self.options[option]).tolist()
+        return InputError(f"index_options.{self.name}.{option}", f"{why}, not {given}")
 
 
 def chain_indices_of(
@@ -126,7 +128,7 @@ def _payload_capacity(asked: _Asked) -> ChainIndex:
         if np.abs(chain.placed(np.eye(4), tool).jacobians(q)[:, others]).max() > STILL * max(chain.reach, 1.0):
             raise asked.refusal("acceleration_m_s2", "must be 0 where the mass moves out of the task's linear rows")
     numbers = (*asked.gravity, asked.options["limit_kg"], *com, acceleration, *asked.efforts())
-    bare = replace(chain, mass=np.zeros_like(chain.mass), with_branches=None).carrying(1.0, np.array(com))
+    bare = replace(chain, mass=np.zeros_like(chain.mass)).carrying(1.0, np.array(com))
     return ChainIndex(asked.name, chain, (rows,), numbers, (chain, bare), asked.options["limit_kg"])
 
 
