@@ -217,6 +217,24 @@ def test_axes_and_positions():
         assert len(kept) == part.n
 
 
+HELD = [("franka_panda", (6,)), ("franka_panda", (1, 4, 5)), ("kuka_iiwa14", (0,)), ("kuka_iiwa14", (2,))]
+
+
+@pytest.mark.parametrize(("name", "held"), HELD)
+def test_joints_may_be_held_anywhere(name, held):
+    """Far from 0, at either end or between."""
+    chain, random = ws.load_robot(name).chain, np.random.default_rng(sum(held))
+    for _ in range(4):
+        values = {k: random.uniform(chain.lower_limits[k], chain.upper_limits[k]) for k in held}
+        arm = chain.held({chain.joint_names[k]: value for k, value in values.items()})
+        q = anywhere(arm, 200)
+        found, solutions, there = postures(arm, arm.poses(q))
+        pose, branch = np.nonzero(there)
+        assert not (found.slack < -found.margin).any()
+        assert (solutions[pose, branch][:, list(held)] == [values[k] for k in held]).all()
+        assert (np.where(there, apart(arm, q[:, None], solutions), 9.0).min(axis=1) < SAME).all()
+
+
 def test_a_pose_is_decided_by_itself():
     chain = ws.load_robot("puma560").chain
     closed, T = ClosedForm.of(chain), in_the_box(chain, 5000)

@@ -49,7 +49,7 @@ class Axis:
         if not self.revolute:
             T[:3, 3] = by * h
             return T
-        K = np.cross(np.eye(3), -h)
+        K = np.cross(h, np.eye(3)).T  # columns h × e
         T[:3, :3] += np.sin(by) * K + (1 - np.cos(by)) * K @ K
         T[:3, 3] = self.point - T[:3, :3] @ self.point
         return T
