@@ -57,6 +57,7 @@ if TYPE_CHECKING:
     from wsrender.python import (
         all_postures,
         analyze,
+        base_placement,
         boundary_patches,
         capability,
         collaborative_volume,
@@ -134,6 +135,7 @@ __all__ = [
     "__version__",
     "all_postures",
     "analyze",
+    "base_placement",
     "boundary_patches",
     "capability",
     "collaborative_volume",
@@ -177,6 +179,7 @@ _NAMES_OF_MODULE = {
     "wsrender.python": (
         "all_postures",
         "analyze",
+        "base_placement",
         "boundary_patches",
         "capability",
         "collaborative_volume",

@@ -30,6 +30,7 @@ from wsrender.documents.kinetostatics import ForceFieldChoice
 from wsrender.documents.mechanism import Delta, LegsMechanism, Master4DOF, SixPUS, StewartGough
 from wsrender.documents.options import AlphaShapeSurface, IsoSurface
 from wsrender.documents.orientations import EulerRanges, TiltRanges
+from wsrender.documents.placements import PlacementSpace
 from wsrender.documents.sampling import BoundaryBiased, Sobol
 from wsrender.documents.several_robots import PlacementScan
 from wsrender.documents.transform import Transform
@@ -463,6 +464,68 @@ def robot_comparison(
     ``refined_volume``: Half width of the 95 % interval of each robot's volume, area or length by inverse kinematics,
         relative to it [1]; None: none is computed.
     ``names``: What the result calls the robots; None: as their models.
+    ``progress``: True shows a bar on work of more than a second; or a function (done, total, message).
+    ``threads``: Threads of the CPU; None: all cores. They change no bit of the result.
+    ``chunk_size``: Samples of a launch; None: by memory. It changes no bit of the result.
+
+    Raises DocumentError, InputError, ModelError, ResourceError, NumericalError, NotConvergedError.
+    """
+    ...
+
+
+@runs("base_placement")
+def base_placement(
+    robot: RobotLike,
+    points_m: Sequence[Sequence[float] | np.ndarray] | np.ndarray,
+    quats_wxyz: Sequence[Sequence[float] | np.ndarray] | np.ndarray | None = None,
+    *,
+    base: str | None = None,
+    tip: str | None = None,
+    constraints: Constraints | Mapping[str, Any] | None = None,
+    environment: Environment | Mapping[str, Any] | None = None,
+    gravity_m_s2: Sequence[float] | np.ndarray | None = None,
+    position_tolerance_m: float = 1e-05,
+    angle_tolerance_rad: float = 1e-05,
+    characteristic_length_m: float | None = None,
+    seed: int = 0,
+    precision: Literal["float32", "float64"] = "float64",
+    device: str = "auto",
+    weights: Sequence[float] | np.ndarray | None = None,
+    over: PlacementSpace | Mapping[str, Any],
+    mounting: Literal["floor", "wall", "ceiling"] = "floor",
+    use_symmetry: bool = True,
+    progress: Progress | bool | None = None,
+    threads: int | None = None,
+    chunk_size: int | None = None,
+) -> Result:
+    """Where the base of a robot stands best: which targets it serves from every placement of a space.
+
+    A target is served from a placement where the robot reaches it, under constraints with a configuration that they
+    admit. The best placement serves targets of the largest weight; of several it is the one that stands farthest, in
+    steps, from those that serve less. Targets, constraints and environment stand in the world.
+
+    ``robot``: A Robot, what `load_robot` takes, an object with limits and forward_kinematics, or its part of a job
+        document.
+    ``points_m``: Positions of the targets in the world frame, rows of x, y, z [m].
+    ``quats_wxyz``: Orientations of the targets, a quaternion w, x, y, z for each point; None: any orientation will do.
+    ``base``: Body, link or site at which the chain starts; None: the world.
+    ``tip``: Site, body or link at the end of the chain; None: the site "tool", or else the only end there is.
+    ``constraints``: Which configurations are admitted; None: all.
+    ``environment``: What stands around, which the robot's shapes do not enter; None: nothing.
+    ``gravity_m_s2``: Gravity in the world, whatever the model says [m/s²]; None: 9.81 along -z.
+    ``position_tolerance_m``: Largest distance to a target that counts as reached [m].
+    ``angle_tolerance_rad``: Largest angle to a target's orientation that counts as reached [rad].
+    ``characteristic_length_m``: Length that makes an angle comparable to a distance while both shrink [m]; None: half
+        the reach.
+    ``seed``: Seed of the starts.
+    ``precision``: Floating-point type of the kernels.
+    ``device``: Where the kernels run: "auto" (a GPU if there is one), "cpu", "cuda" or "cuda:N".
+    ``weights``: What each target counts; None: 1 each.
+    ``over``: Where the base may stand. ``robot.placement`` is how it stands in the frame that is placed.
+    ``mounting``: How the base is mounted in the frame that is placed, before ``robot.placement``: its z is that frame's
+        z on the floor, its x on a wall, its -z under a ceiling.
+    ``use_symmetry``: Whether targets are decided for one yaw alone where others change nothing but the first joint's
+        value.
     ``progress``: True shows a bar on work of more than a second; or a function (done, total, message).
     ``threads``: Threads of the CPU; None: all cores. They change no bit of the result.
     ``chunk_size``: Samples of a launch; None: by memory. It changes no bit of the result.

@@ -23,6 +23,7 @@ DIVISIBLE = {
     "capability",
     "shared_workspace",
     "robot_comparison",
+    "base_placement",
     "collaborative_volume",
     "parallel_workspace",
     "method_comparison",

@@ -27,6 +27,7 @@ DRAWING = {  # what draws, and jobs for which it does
     ("wsrender.reach.occupied_cells", "Sobol"): {"capability": SMALL["capability"], "refined volume": WORKSPACE},
     SOLVER: {
         "reachability": SMALL["reachability"],
+        "placements": SMALL["base_placement"],
         "capability": SMALL["capability"],
         "refined volume": WORKSPACE | {"voxel_labels": False},
         "labels": WORKSPACE | {"refined_volume": None},

@@ -15,7 +15,7 @@ from wsrender.analyses.registry import job_classes
 DOCUMENTS = Path(__file__).parent / "documents"
 FOLDERS = Path(__file__).parent / "folders"
 
-UNSAVED = frozenset({"postures"})  # analyses of which no version has saved a result
+UNSAVED = frozenset({"base_placement", "postures"})  # analyses of which no version has saved a result
 
 
 def analyses() -> list[str]:

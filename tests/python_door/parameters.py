@@ -10,6 +10,7 @@ from wsrender.analyses.registry import job_classes
 FIRST = {
     "workspace": ("robot", "sampling", "indices", "task"),
     "indices_at": ("robot", "configurations"),
+    "base_placement": ("robot", "points_m", "quats_wxyz"),
     "reachability": ("robot", "points_m", "quats_wxyz"),
     "kinetostatic_field": ("robot", "sampling"),
     "planar_boundary": ("robot", "sampling"),

@@ -80,6 +80,7 @@ PICTURES = {
     "comparison": (1.4e5, 0.4),
     "targets": (1.1e5, 0.12),
     "postures": (2.5e5, 0.4),
+    "placements": (4.5e4, 0.2),
     "mapping": (2.2e5, 0.3),
     "scales": (9.0e4, 0.15),
     "refinements": (5.0e4, 0.1),

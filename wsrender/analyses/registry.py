@@ -46,6 +46,7 @@ _ROWS = {
     "capability": _own("capability", "CapabilityJob", "CapabilityAnalysis"),
     "shared_workspace": _own("shared_workspace", "SharedWorkspaceJob", "SharedWorkspaceAnalysis"),
     "robot_comparison": _own("robot_comparison", "RobotComparisonJob", "RobotComparisonAnalysis"),
+    "base_placement": _own("base_placement", "BasePlacementJob", "BasePlacementAnalysis"),
     "collaborative_volume": _own("collaborative_volume", "CollaborativeVolumeJob", "CollaborativeVolumeAnalysis"),
     "master_slave_mapping": _own("master_slave_mapping", "MasterSlaveMappingJob", "MasterSlaveMappingAnalysis"),
     "kinetostatic_field": _own("kinetostatic_field", "KinetostaticFieldJob", "KinetostaticFieldAnalysis"),

@@ -13,8 +13,10 @@ stand where they stood in the start.
 """
 
 from collections.abc import Callable
+from copy import copy
 from dataclasses import dataclass, fields
 from functools import cached_property
+from typing import Self
 
 import numpy as np
 from scipy.spatial import KDTree
@@ -111,10 +113,21 @@ class AdmissibleSearch:
         parts = []
         for first in range(0, max(len(position), 1), BATCH):
             batch = slice(first, first + BATCH)
-            parts.append(self._decide(position[batch], _some(orientation, batch)))
+            parts.append(self._among(batch)._decide(position[batch], _some(orientation, batch)))
             if progress:
                 progress(min(first + BATCH, len(position)))
         return Admissible(*(np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(Admissible)))
+
+    def prepare(self) -> None:
+        """Draw the samples that all targets start from, which copies share."""
+        _ = self._tree
+
+    def _among(self, batch: slice) -> Self:
+        """The search of a batch of the targets."""
+        self.prepare()
+        search = copy(self)
+        search.admission = self.admission.among(batch)
+        return search
 
     def _decide(self, position: np.ndarray, orientation: np.ndarray | None) -> Admissible:
         found = self._nothing(self.solver.features(position, orientation))
@@ -161,7 +174,7 @@ class AdmissibleSearch:
         q, slack, whole = closed.postures(position[at], _some(orientation, at))
         targets = np.repeat(at, slack.shape[1])
         tries = self.solver.tries(q.reshape(len(targets), -1), position[targets], _some(orientation, targets))
-        found.take(at, tries, self._reasons(tries))
+        found.take(at, tries, self._reasons(tries, targets))
         solved = tries.reached.reshape(slack.shape)
         all_rejected = whole & (solved | (slack < 0)).all(axis=1) & (found.label[at] == UNDECIDED)
         if self._turns_matter:
@@ -224,8 +237,9 @@ class AdmissibleSearch:
             return np.zeros((len(position), 0, self.solver.whole.n)), np.zeros((len(position), 0), bool)
         starts = self._near(self.solver.features(position), first, last)
         P, s, n = starts.shape
-        tries = self.solver.tries(starts.reshape(-1, n), np.repeat(position, s, axis=0))
-        return tries.q.reshape(P, s, n), (tries.reached & (self._reasons(tries) == 0)).reshape(P, s)
+        of = np.repeat(np.arange(P), s)
+        tries = self.solver.tries(starts.reshape(-1, n), position[of])
+        return tries.q.reshape(P, s, n), (tries.reached & (self._reasons(tries, of) == 0)).reshape(P, s)
 
     def blocked_wrongly(self, found: Admissible, position: np.ndarray) -> int:
         """How many of the blocked positions a LONGER search, of other changes, finds free; their labels are lost."""
@@ -255,7 +269,7 @@ class AdmissibleSearch:
             targets = T[:, :, None] + np.array(SHARES)[:, None] * way[:, :, None]
             targets = np.broadcast_to(targets[:, :, :, None], (*starts.shape[:-1], 3))
             tries = self.solver.tries(starts.reshape(-1, n), targets.reshape(-1, 3))
-            reasons = self._reasons(tries)
+            reasons = self._reasons(tries, np.repeat(at, W * S * D))
             shape = (len(at), W, S * D)
             admitted = (tries.reached & (reasons == 0)).reshape(shape)
             # All of the way comes first, so that the first that is admitted is the farthest.
@@ -285,13 +299,13 @@ class AdmissibleSearch:
             return
         targets = np.repeat(at, starts.shape[1])
         tries = self.solver.tries(starts.reshape(len(targets), -1), position[targets], _some(orientation, targets))
-        found.take(at, tries, self._reasons(tries))
+        found.take(at, tries, self._reasons(tries, targets))
 
-    def _reasons(self, tries: Tries) -> np.ndarray:
-        """What rejects those tries (T,) that reached their targets, 0: nothing."""
+    def _reasons(self, tries: Tries, targets: np.ndarray) -> np.ndarray:
+        """What rejects those tries (T,) that reached their ``targets``, by number, 0: nothing."""
         reasons = np.zeros(len(tries.q), np.int8)
         if tries.reached.any():
-            reasons[tries.reached] = self.admission.rejected(tries.q[tries.reached])
+            reasons[tries.reached] = self.admission.rejected(tries.q[tries.reached], targets[tries.reached])
         return reasons
 
     def _near(self, features: np.ndarray, first: int, last: int) -> np.ndarray:

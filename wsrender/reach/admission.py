@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 
@@ -30,8 +31,15 @@ class Admission:
         """The constraints' names: reason k, from 1, is that of the k-th."""
         return tuple(each.name for each in self.constraints)
 
-    def rejected(self, q: np.ndarray) -> np.ndarray:
-        """The number, from 1, of the first constraint that rejects configurations (N, n), or 0, (N,) int8."""
+    def among(self, batch: slice) -> Self:
+        """The same for a batch of targets."""
+        return self
+
+    def rejected(self, q: np.ndarray, targets: np.ndarray | None = None) -> np.ndarray:
+        """The number, from 1, of the first constraint that rejects configurations (N, n), or 0, (N,) int8.
+
+        ``targets`` (N,): which each reaches, for what is asked of one in another way than of the next.
+        """
         threads = 1 if len(q) < WORTH_THREADS else self.threads
         if not self.constraints:
             return np.zeros(len(q), np.int8)

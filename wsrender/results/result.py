@@ -304,6 +304,8 @@ def _files(
 def _table_files(name: str, data: DistributionMap | Table, formats: tuple[str, ...]) -> Iterator[Artifact]:
     units = columns_of(data).column_units()
     frame = "world" if isinstance(data, DistributionMap) else None
+    if isinstance(data, Table) and data.grid:
+        frame, formats = data.grid.frame, tuple({*formats, "npz"})
     return _files("table", name, data, formats, (len(data), len(units)), units, frame)
 
 

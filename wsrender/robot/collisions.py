@@ -18,6 +18,7 @@ from wsrender.pipeline.constraints.collision import CollisionConstraint, labelli
 from wsrender.robot.model_robot import Robot
 from wsrender.robot.surroundings import Standing, shapes_around
 from wsrender.robots.chain import Chain
+from wsrender.robots.moving_base import MovingBase
 from wsrender.robots.pairs import without
 from wsrender.robots.shapes import Shape
 from wsrender.world.surfaces import Surface
@@ -35,6 +36,8 @@ KINDS: dict[str, Any] = {
     "hfield": "surface",
 }  # of shapes, by what solids call them
 
+STANDING = ("half_space", "surface")  # kinds that no joint carries
+
 LARGEST_M = 1e9  # of a shape's place, size and corners: single precision holds products of four such numbers
 FARTHEST = 8.0  # angles [rad] that float32 is trusted with
 ENDLESS = (
@@ -44,7 +47,7 @@ ENDLESS = (
 
 
 def collision_constraints(
-    robot: Robot, choice: Constraints | None, environment: Environment | None
+    robot: Robot, choice: Constraints | None, environment: Environment | None, base: MovingBase | None = None
 ) -> tuple[CollisionConstraint, ...]:
     """What ``choice`` asks of the robot's shapes; an environment is kept out of, unless it is only drawn.
 
@@ -58,7 +61,7 @@ def collision_constraints(
         around = Apart()
     if own is None and not around:
         return ()
-    found = _kept_apart(robot, own, around, environment)
+    found = _kept_apart(robot, own, around, environment, base)
     refuse_always(found)
     return found
 
@@ -86,11 +89,17 @@ def _kept_apart(
     own: Apart | None,
     around: Apart | Literal[False] | None,
     environment: Environment | None,
+    base: MovingBase | None = None,
 ) -> tuple[CollisionConstraint, ...]:
-    """The constraints of the robot's surroundings and of its own shapes, of which at least one is asked for."""
+    """The constraints of the robot's surroundings and of its own shapes, of which at least one is asked for.
+
+    Where the ``base`` moves, its coordinates come before those of the chain.
+    """
     bodies = robot_bodies(robot, SELF if own else AROUND)
-    chain = limited(bodies.chain)
+    chain = limited(base.carrying(bodies.chain) if base else bodies.chain)
     shapes = [solid_of(shape) for shape in bodies.shapes]
+    if base:
+        shapes = [_carried(solid, base) for solid in shapes]
     standing = _standing(environment) if around else ()
     items = [standing_solid(each, chain.T_world_base) for each in standing]
     solids = tuple(shapes + items)
@@ -106,7 +115,7 @@ def _kept_apart(
             if environment:
                 raise InputError("environment.items", "must not be empty: nothing stands around")
             raise InputError(f"constraints.{AROUND}", "must not be given without an environment: nothing stands around")
-        moving = [k for k, solid in enumerate(shapes) if solid.joint != BASE]
+        moving = [k for k, shape in enumerate(bodies.shapes) if shape.frame != BASE]
         if (count := len(moving) * len(still)) > MOST_LISTED:
             message = f"would look at {count} pairs of shapes, more than {MOST_LISTED}: give fewer shapes"
             raise ResourceError(f"constraints.{AROUND}", message)
@@ -124,6 +133,17 @@ def _kept_apart(
         message = f"would keep {count} pairs of shapes apart, more than {MOST_PAIRS}: exclude some"
         raise ResourceError(f"constraints.{found[0].name}", message)
     return tuple(found)
+
+
+def _carried(solid: Solid, base: MovingBase) -> Solid:
+    """A robot's solid in the frames of a chain that begins with the joints of its base."""
+    joints = len(base.varying)
+    if solid.joint != BASE:
+        return replace(solid, joint=solid.joint + joints)
+    if joints and solid.kind in STANDING:
+        message = f"of a base that moves must stand in the job: the robot's file has {solid.name!r} in its world"
+        raise InputError("environment", message)
+    return replace(solid, joint=joints - 1, T=base.base_on_last @ solid.T) if joints else solid
 
 
 def robot_bodies(robot: Robot, name: str) -> "Bodies":

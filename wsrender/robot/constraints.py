@@ -20,6 +20,7 @@ from wsrender.robot.chain_indices import EFFORTS
 from wsrender.robot.gravity import GRAVITY, gravity_of
 from wsrender.robot.indices import check_inertias, task_rows
 from wsrender.robot.model_robot import Robot
+from wsrender.robots.moving_base import MovingBase
 
 LINEAR = (0, 1, 2)  # rows of a task
 
@@ -39,8 +40,11 @@ def constraints_for(
     gravity: Point = GRAVITY,
     rows: tuple[int, ...] = LINEAR,
     precision: str = "float64",
+    base: MovingBase | None = None,
 ) -> tuple[Constraint, ...]:
     """The constraints for a robot, in what stands around it, with a task's ``rows``.
+
+    Those of shapes are for configurations that begin with the coordinates of its ``base``, if one moves.
 
     Raises InputError for one that is unknown, or not for such a robot.
     """
@@ -50,7 +54,7 @@ def constraints_for(
     if environment or (choice and (choice.self_collision or choice.environment)):
         from wsrender.robot.collisions import collision_constraints
 
-        constraints = in_order((*constraints, *collision_constraints(robot, choice, environment)))
+        constraints = in_order((*constraints, *collision_constraints(robot, choice, environment, base)))
     return tuple(_for_robot(each, robot, gravity) for each in constraints)
 
 

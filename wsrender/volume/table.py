@@ -7,15 +7,32 @@ import numpy as np
 from wsrender.errors import InputError
 
 
+@dataclass(frozen=True)
+class Grid:
+    """Cells that the rows of a table stand for, those of the last axis first.
+
+    ``axes``: the columns of their centres; ``origin``: the lower corner of the first, ``step``: their edges, in the
+    units of these columns; ``shape``: how many along each axis; ``frame``: that of the coordinates.
+    """
+
+    axes: tuple[str, ...]
+    origin: tuple[float, ...]
+    step: tuple[float, ...]
+    shape: tuple[int, ...]
+    frame: str = "world"
+
+
 @dataclass(frozen=True, eq=False)
 class Table:
     """Columns of one length N, each (N,) or (N, k), of numbers, truth values or text; units by column ("1": none).
 
-    Raises InputError, naming the column, where its shape is not that of the others.
+    ``grid``: what cells the rows are, if they are any; such a table is a map, and saved as arrays of the grid's shape
+    too. Raises InputError, naming the column, where its shape is not that of the others.
     """
 
     columns: dict[str, np.ndarray]
     units: dict[str, str] = field(default_factory=dict)
+    grid: Grid | None = None
 
     def __post_init__(self):
         for name, column in self.columns.items():

@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from typing import Any
 
 import numpy as np
@@ -10,7 +10,7 @@ import numpy as np
 from wsrender.errors import InputError
 from wsrender.results.export.names import unique_names
 from wsrender.volume.distribution_map import DistributionMap
-from wsrender.volume.table import Table
+from wsrender.volume.table import Grid, Table
 
 DESCRIPTION = "wsrender"  # name of the description in a file, so no column may be called so
 POSITION = ("x", "y", "z")
@@ -112,6 +112,7 @@ class TableColumns:
     columns: dict[str, tuple[str, ...]]
     wide: tuple[str, ...] = ()
     units: dict[str, str] = field(default_factory=dict)
+    grid: Grid | None = None
 
     @classmethod
     def of(cls, table: Table) -> "TableColumns":
@@ -122,7 +123,7 @@ class TableColumns:
         for name, column in table.columns.items():
             wanted = [f"{name}_{k}" for k in range(column.shape[1])] if name in wide else [name]
             columns[name] = tuple(unique_names(wanted, "column", taken).values())
-        return cls(columns, wide, dict(table.units))
+        return cls(columns, wide, dict(table.units), table.grid)
 
     def names(self) -> list[str]:
         """All column names, in the order of the file."""
@@ -134,13 +135,17 @@ class TableColumns:
 
     def to_json(self) -> str:
         """The description stored in a file, from which ``described`` restores it."""
-        return json.dumps({"table": self.columns, "wide": self.wide, "units": self.units})
+        grid = {"grid": asdict(self.grid)} if self.grid else {}
+        return json.dumps({"table": self.columns, "wide": self.wide, "units": self.units, **grid})
 
     @classmethod
     def described(cls, data: dict[str, Any]) -> "TableColumns":
         """The columns that a description says; KeyError, TypeError or ValueError where it is none."""
         columns = {name: tuple(parts) for name, parts in data["table"].items()}
-        return cls(columns, tuple(data["wide"]), dict(data["units"]))
+        if grid := data.get("grid"):
+            axes, origin, step, shape = (tuple(grid[name]) for name in ("axes", "origin", "step", "shape"))
+            grid = Grid(axes, origin, step, shape, grid["frame"])
+        return cls(columns, tuple(data["wide"]), dict(data["units"]), grid)
 
     def arrays(self, table: Table) -> dict[str, np.ndarray]:
         """Every column of the file as an array (N,)."""
@@ -156,7 +161,7 @@ class TableColumns:
             values = block(parts) if parts else np.empty((0, 0))
             values = values.astype(str) if values.dtype == object else values  # Parquet's text
             columns[name] = values if name in self.wide else values[:, 0]
-        return Table(columns, dict(self.units))
+        return Table(columns, dict(self.units), self.grid)
 
 
 def columns_of(data: DistributionMap | Table) -> MapColumns | TableColumns:

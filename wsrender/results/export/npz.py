@@ -22,9 +22,12 @@ from wsrender.volume.volume_data import VolumeData
 
 
 def write_table_npz(data: DistributionMap | Table, path: str | Path) -> None:
-    """Write a map or table as one array (N,) per column, named as in Parquet."""
-    columns = columns_of(data)
-    _write(path, columns.to_json(), arrays_by_column(data, columns).items())
+    """Write a map or table as one array (N,) per column, named as in Parquet; of cells in the shape of their grid."""
+    columns, shape = columns_of(data), (len(data),)
+    if isinstance(data, Table) and data.grid:
+        shape = data.grid.shape
+    arrays = ((name, array.reshape(shape)) for name, array in arrays_by_column(data, columns).items())
+    _write(path, columns.to_json(), arrays)
 
 
 def read_table_npz(path: str | Path) -> DistributionMap | Table:
@@ -34,7 +37,7 @@ def read_table_npz(path: str | Path) -> DistributionMap | Table:
     missing = set(columns.names()) - set(arrays)
     if missing:
         raise InputError(Path(path).name, f"lacks the arrays {', '.join(sorted(missing))}")
-    return columns.restored(lambda names: np.stack([arrays[name] for name in names], axis=1))
+    return columns.restored(lambda names: np.stack([arrays[name].ravel() for name in names], axis=1))
 
 
 def write_volume_npz(volume: VolumeData, path: str | Path) -> None:

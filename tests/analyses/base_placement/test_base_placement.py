@@ -1,0 +1,259 @@
+"""The analysis ``base_placement`` against all configurations in closed form, placement by placement."""
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+import wsrender as ws
+from tests.reference import closed_form_inverse as closed_form
+from tests.reference.published_robots import dh_table
+from tests.run.journeys import from_the_command_line
+from wsrender.analyses.jobs import parse_job
+from wsrender.documents.constraints import Apart
+from wsrender.documents.placements import COORDINATES, mounted, placed
+from wsrender.robot.collisions import _kept_apart
+from wsrender.robot.constraints import constraints_for
+from wsrender.run import execute, plan
+
+DOWN = [0.0, 1.0, 0.0, 0.0]
+POST = {"shape": "box", "name": "post", "size_m": [0.1, 0.1, 1.0], "position_m": [0.35, 0.3, 0.5]}
+FLOOR = {"shape": "half_space", "name": "floor", "point_m": [0, 0, -0.05]}
+RING = [[0.1 + 0.15 * np.cos(k), 0.15 * np.sin(k), 0.3] for k in range(6)]
+
+
+def job(robot, points, quats=None, **fields):
+    """A job document; a robot may be a table."""
+    robot = robot if isinstance(robot, str | dict) else {"dh": robot.model_dump(mode="json", exclude_none=True)}
+    targets = {"points_m": np.asarray(points).tolist()}
+    targets |= {} if quats is None else {"quats_wxyz": np.asarray(quats).tolist()}
+    return {"analysis": "base_placement", "robot": robot, "device": "cpu"} | targets | fields
+
+
+def labels_of(result):
+    """Of every placement and target, (P, K) text: served, undecided, the constraint that blocks it, or unreachable."""
+    table, count = result.tables["placements"], len(result.document["job"]["points_m"])
+    found = np.full((len(table), count), "unreachable", dtype="<U20")
+    for name, bits in table.columns.items():
+        if name.endswith("_bits"):
+            mask = np.unpackbits(bits, axis=1, count=count, bitorder="little").astype(bool)
+            assert (found[mask] == "unreachable").all()
+            found[mask] = name.removesuffix("_bits").removeprefix("blocked_")
+    return found
+
+
+def bases_of(document):
+    """Poses (P, 4, 4) of the bases of all placements."""
+    parsed = parse_job(document)
+    numbers = np.arange(parsed.over.count)
+    own = np.eye(4) if parsed.robot.placement is None else parsed.robot.placement.matrix()
+    return placed(parsed.over.coordinates(numbers)) @ mounted(parsed.mounting) @ own
+
+
+def seen_from(bases, points, quats):
+    """Positions (P, K, 3) and rotations (P, K, 3, 3) of targets in the frames of bases."""
+    R, p = bases[:, None, :3, :3].swapaxes(-1, -2), bases[:, None, :3, 3]
+    turned = Rotation.from_quat(quats, scalar_first=True).as_matrix()
+    return (R @ (np.asarray(points) - p)[..., None])[..., 0], R @ turned
+
+
+def solutions_of(name, positions, rotations):
+    with np.errstate(invalid="ignore"):
+        if name == "ur5e":
+            return closed_form.ur5e(positions, rotations)
+        return closed_form.with_spherical_wrist(name, closed_form.puma560_arm(positions), rotations)
+
+
+SPACES = {
+    "floor": {"over": {"x_m": [-0.9, 0.9, 0.3], "y_m": [-0.6, 0.6, 0.3], "yaw_deg": [0, 360, 60]}},
+    "wall": {"mounting": "wall", "over": {"x_m": [-0.8, -0.2, 0.2], "z_m": [0, 0.9, 0.3], "yaw_deg": [-60, 60, 20]}},
+    "tilted": {"over": {"y_m": [-0.8, 0.8, 0.4], "z_m": 0.1, "roll_deg": [0, 90, 30], "pitch_deg": [-40, 40, 40]}},
+    "placed": {"mounting": "ceiling", "over": {"x_m": [-0.6, 0.6, 0.3], "z_m": 0.9, "yaw_deg": [0, 360, 45]}},
+}
+
+
+@pytest.mark.parametrize("space", SPACES)
+@pytest.mark.parametrize("name", ["ur5e", "puma560"])
+def test_labels_are_those_of_all_configurations(name, space):
+    table, random = dh_table(name), np.random.default_rng(3)
+    quats = np.concatenate([np.tile(DOWN, (6, 1)), Rotation.random(6, random_state=4).as_quat(scalar_first=True)])
+    points = np.concatenate([RING, random.uniform([-0.3, -0.3, 0], [0.4, 0.3, 0.6], (6, 3))])
+    document = job(table, points, quats, **SPACES[space])
+    if space == "placed":
+        document["robot"]["placement"] = {"position_m": [0.05, 0.02, 0.1], "rpy_deg": [5, 10, 15]}
+    result = execute(document)
+    robot, bases = ws.load_robot(table), bases_of(document)
+    positions, rotations = seen_from(bases, points, quats)
+    solutions = solutions_of(name, positions.reshape(-1, 3), rotations.reshape(-1, 3, 3))
+    within = closed_form.within_limits(solutions, robot.lower_limits, robot.upper_limits, robot.chain.revolute)
+    expected = np.where(within.any(axis=1), "served", "unreachable").reshape(len(bases), -1)
+    found = labels_of(result)
+    assert (found == expected).mean() == 1.0
+    assert 0.05 < (expected == "served").mean() < 0.95
+    about, served = result.document["placements"], (expected == "served").sum(axis=1)
+    assert (result.tables["placements"]["served"] == served).all()
+    assert about["labels"]["served"] == served.sum() and about["most_served"] == served.max()
+    assert about["serving_all"] == (served == 12).sum() and about["labels"]["undecided"] == 0
+    best = result.document["best"]
+    assert best["served"] == served.max() == served[best["placement"]]
+    assert np.array(best["T_world_base"]) == pytest.approx(bases[best["placement"]], abs=1e-12)
+
+
+def test_points_of_two_links():
+    """Any orientation will do: an annulus, in a height that the slide reaches."""
+    rows = [{"a": 0.4, "limits_deg": [-180, 180]}, {"a": 0.3, "limits_deg": [-180, 180]}]
+    table = ws.DHTable(convention="standard", rows=rows)
+    points = np.random.default_rng(0).uniform([-0.5, -0.5, 0], [0.5, 0.5, 0], (9, 3))
+    document = job(table, points, over={"x_m": [-0.6, 0.6, 0.1], "y_m": [-0.6, 0.6, 0.15], "yaw_deg": [0, 90, 45]})
+    far = np.linalg.norm(points - bases_of(document)[:, None, :3, 3], axis=2)
+    expected = np.where((far > 0.1) & (far < 0.7), "served", "unreachable")
+    near = np.minimum(np.abs(far - 0.1), np.abs(far - 0.7)) < 1e-4
+    assert ((labels_of(execute(document)) == expected) | near).all() and near.mean() < 0.01
+
+
+def test_what_blocks_is_what_stands_in_the_world():
+    """Every posture of a Puma of capsules in closed form, with MuJoCo's distances of the robot placed there."""
+    table = dh_table("puma560").model_copy(update={"link_radius": 0.04})
+    over = {"x_m": [-0.6, 0.9, 0.5], "y_m": [-0.5, 0.5, 0.5], "yaw_deg": [-90, 90, 90]}
+    points = np.concatenate([np.array(RING) + np.array([0, 0, up]) for up in (0, 0.2, -0.2)])
+    quats, around = np.tile(DOWN, (18, 1)), {"items": [FLOOR, POST | {"size_m": [0.25, 0.25, 1.0]}]}
+    document = job(table, points, quats, over=over, environment=around)
+    found, bases = labels_of(execute(document)), bases_of(document)
+    chosen = np.arange(len(bases))[1::4]
+    expected = np.empty_like(found[chosen])
+    for k, base in enumerate(bases[chosen]):
+        robot = ws.load_robot(table, placement=base)
+        (apart,) = _kept_apart(robot, None, Apart(), ws.Environment(around["items"]))
+        positions, rotations = seen_from(base[None], points, quats)
+        solutions = solutions_of("puma560", positions[0], rotations[0])
+        inside = closed_form.within_limits(solutions, robot.lower_limits, robot.upper_limits, robot.chain.revolute)
+        admitted = np.zeros(inside.shape, bool)
+        admitted[inside] = apart.host(solutions[inside], np.zeros((0, 4, 4))) == 0
+        expected[k] = np.select([admitted.any(axis=1), inside.any(axis=1)], ["served", "environment"], "unreachable")
+    decided = found[chosen] != "undecided"
+    assert (found[chosen] == expected)[decided].all() and decided.mean() > 0.99
+    assert min((expected == name).sum() for name in ("served", "environment", "unreachable")) > 3
+
+
+GUARDED = {"environment": {"items": [FLOOR, POST]}, "constraints": {"self_collision": True, "torque": True}}
+TURNED = {"x_m": [-0.8, 0.8, 0.4], "y_m": [-0.4, 0.8, 0.4], "yaw_deg": [0, 360, 60]}
+
+
+@pytest.mark.parametrize("guarded", [{}, GUARDED])
+@pytest.mark.parametrize("kind", ["poses", "points"])
+def test_symmetry_changes_nothing(kind, guarded):
+    points = RING[:2] if kind == "points" else RING
+    document = job("ur5e", points, None if kind == "points" else [DOWN] * 6, over=TURNED, **guarded)
+    with_it, without = (execute(document | {"use_symmetry": use}) for use in (True, False))
+    assert (with_it.document["placements"]["alike"], without.document["placements"]["alike"]) == (6, 1)
+    assert (labels_of(with_it) == labels_of(without)).all()
+    assert with_it.document["best"] == without.document["best"]
+
+
+LIMITED = {"library": "ur5e", "limits_deg": {"joint1": [-170, 170]}}
+LEANING = {"library": "ur5e", "placement": {"rpy_deg": [10, 0, 0]}}
+ASIDE = {"library": "ur5e", "placement": {"position_m": [0.1, 0, 0]}}
+SIDEWAYS = {"gravity_m_s2": [1, 0, -9.7], "constraints": {"torque": True}}
+REASONS = {
+    "limits": (LIMITED, {}),
+    "an axis that leans": (LEANING, {}),
+    "an axis aside": (ASIDE, {}),
+    "a wall": ("ur5e", {"mounting": "wall"}),
+    "roll": ("ur5e", {"over": TURNED | {"roll_deg": [0, 20, 10]}}),
+    "gravity": ("ur5e", SIDEWAYS),
+}
+
+
+@pytest.mark.parametrize("reason", REASONS)
+def test_symmetry_is_used_only_where_it_is_exact(reason):
+    robot, fields = REASONS[reason]
+    assert plan(job(robot, RING, [DOWN] * 6, **({"over": TURNED} | fields)))._alike == 1
+    assert plan(job("ur5e", RING, [DOWN] * 6, over=TURNED, mounting="ceiling"))._alike == 6
+
+
+def test_the_best_placement_serves_the_largest_weight_far_from_the_edge():
+    over = {"x_m": [-0.9, 0.9, 0.1], "y_m": [-0.9, 0.9, 0.1], "yaw_deg": [0, 360, 90]}
+    points = [*RING, [1.6, 0.9, 0.3]]  # the last one cannot be served with the others
+    light = execute(job("ur5e", points, [DOWN] * 7, over=over))
+    heavy = execute(job("ur5e", points, [DOWN] * 7, over=over, weights=[1] * 6 + [100]))
+    assert light.document["best"]["served"] == 6 and light.tables["targets"]["label"][-1] == "unreachable"
+    served = labels_of(heavy) == "served"
+    weight = served @ np.array([1] * 6 + [100])
+    assert heavy.document["best"]["weight"] == weight.max() > 100
+    assert heavy.tables["targets"]["label"][-1] == "reachable"
+    # All eight cells around the best one serve as much.
+    table = light.tables["placements"]
+    best = light.document["best"]
+    close = np.abs(table["x_m"] - best["x_m"]) < 0.15, np.abs(table["y_m"] - best["y_m"]) < 0.15
+    assert (table["served"][close[0] & close[1]] == 6).all()
+
+
+def test_the_targets_are_reached_from_the_best_placement():
+    result = execute(job("ur5e", RING, [DOWN] * 6, over=TURNED, **GUARDED))
+    robot = ws.load_robot("ur5e", placement=np.array(result.document["best"]["T_world_base"]))
+    table = result.tables["targets"]
+    q = np.stack([table[f"q_{name}"] for name in robot.joint_names], axis=1)
+    assert (table["label"] == "reachable").all()
+    pose = robot.forward_kinematics(q, device="cpu")
+    assert np.abs(pose[:, :3, 3] - RING).max() < 1e-5 and np.abs(pose[:, 2, 2] + 1).max() < 1e-9
+    parsed = parse_job(result.document["job"])
+    for each in constraints_for(robot, parsed.constraints, parsed.environment):
+        assert not each.host(q, pose).any()
+
+
+def test_a_map_says_where_its_cells_are(tmp_path):
+    document = job(
+        "ur5e", RING, [DOWN] * 6, over={"x_m": [-1, 1, 0.25], "y_m": [-0.5, 0.5, 0.5], "yaw_deg": [0, 90, 45]}
+    )
+    result = from_the_command_line(document, tmp_path)
+    cells = result.tables["placement_map"]
+    assert (cells.grid.axes, cells.grid.origin, cells.grid.step) == (("x_m", "y_m"), (-1.0, -0.5), (0.25, 0.5))
+    assert (cells.grid.shape, cells.grid.frame) == ((8, 2), "world")
+    served = (labels_of(result) == "served").sum(axis=1).reshape(8, 2, 3)
+    assert (cells["served"].reshape(8, 2) == served.max(axis=-1)).all()
+    assert (cells["serving_all"].reshape(8, 2) == (served == 6).sum(axis=-1)).all()
+    with np.load(tmp_path / "out" / "placement_map.npz") as file:
+        assert file["served"].shape == (8, 2) and (file["served"] == served.max(axis=-1)).all()
+        assert '"origin": [-1.0, -0.5]' in str(file["wsrender"])
+    assert (tmp_path / "out" / "plots" / "placements.png").exists()
+
+
+def test_no_placement_serves_a_target():
+    result = execute(job("ur5e", [[9, 9, 9]], over={"x_m": [0, 1, 0.5]}))
+    assert result.document["best"] is None and "targets" not in result.tables
+    assert result.document["headline"]["reason"] == "no placement serves a target"
+
+
+def test_one_placement_alone():
+    result = execute(job("ur5e", RING, [DOWN] * 6, over={"x_m": -0.4}, environment={"items": [FLOOR]}))
+    assert result.document["placements"]["count"] == 1 and result.document["best"]["served"] == 6
+    assert "placement_map" not in result.tables
+
+
+REFUSED = {
+    "over": ({"over": {"x_m": [0, 10, 0.001], "y_m": [0, 10, 0.001]}}, "not 10000 × 10000 = 100,000,000"),
+    "over.x_m": ({"over": {"x_m": [0, 1]}}, "must be a number, or"),
+    "weights": ({"weights": [1, 2]}, "must have as many numbers as points_m has rows, 6"),
+    "mounting": ({"mounting": "wall", "over": {"roll_deg": 3}}, 'must be "floor" where over.roll_deg tilts'),
+    "constraints.torque": (
+        {"constraints": {"torque": True}, "over": {"pitch_deg": [0, 30, 10]}},
+        "must not be given where over.pitch_deg is a range",
+    ),
+}
+
+
+@pytest.mark.parametrize("field", REFUSED)
+def test_what_cannot_be_asked_is_refused(field):
+    fields, message = REFUSED[field]
+    with pytest.raises(ws.DocumentError) as refusal:
+        parse_job(job("ur5e", RING, [DOWN] * 6, **({"over": {}} | fields)))
+    assert [name for name, _ in refusal.value.problems] == [field] and message in refusal.value.problems[0][1]
+
+
+def test_a_constraint_of_ones_own_is_refused():
+    ws.register_constraint("own_reach", lambda q, position, axes: position[0])
+    with pytest.raises(ws.InputError, match=r"constraints\.own_reach: is not available here"):
+        plan(job("ur5e", RING, over={}, constraints={"own_reach": True}))
+
+
+def test_coordinates_stand_in_the_document():
+    assert set(COORDINATES) <= execute(job("ur5e", RING, over={"x_m": -0.4})).document["best"].keys()

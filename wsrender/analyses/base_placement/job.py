@@ -1,0 +1,52 @@
+"""The job ``base_placement``: where the base of a robot stands best for given targets."""
+
+from collections.abc import Iterator
+from typing import Annotated, ClassVar, Literal
+
+from pydantic import Field, StrictBool
+
+from wsrender.documents.arm import Arm
+from wsrender.documents.constraints import Constrained
+from wsrender.documents.format import JobDocument
+from wsrender.documents.placements import ANGLES, Mounting, PlacementSpace
+from wsrender.documents.quantities import PositiveNumber
+from wsrender.documents.targets import Targets
+
+MOST_PLACEMENTS = 50_000_000
+
+
+class BasePlacementJob(Targets, Constrained, Arm, JobDocument):
+    """Where the base of a robot stands best: which targets it serves from every placement of a space.
+
+    A target is served from a placement where the robot reaches it, under constraints with a configuration that they
+    admit. The best placement serves targets of the largest weight; of several it is the one that stands farthest, in
+    steps, from those that serve less. Targets, constraints and environment stand in the world.
+    """
+
+    long_fields: ClassVar[tuple[str, ...]] = (*Targets.long_fields, "weights")
+
+    analysis: Literal["base_placement"] = "base_placement"
+    """Name of the analysis."""
+    weights: Annotated[tuple[PositiveNumber, ...], Field(min_length=1)] | None = None
+    """What each target counts; null: 1 each."""
+    over: PlacementSpace
+    """Where the base may stand. ``robot.placement`` is how it stands in the frame that is placed."""
+    mounting: Mounting = "floor"
+    """How the base is mounted in the frame that is placed, before ``robot.placement``: its z is that frame's z on the
+    floor, its x on a wall, its -z under a ceiling."""
+    use_symmetry: StrictBool = True
+    """Whether targets are decided for one yaw alone where others change nothing but the first joint's value."""
+
+    def conflicts(self) -> Iterator[tuple[str, str]]:
+        """(field, message) of every pair of fields that do not go together."""
+        yield from super().conflicts()
+        if self.weights is not None and len(self.weights) != len(self.points_m):
+            yield "weights", f"must have as many numbers as points_m has rows, {len(self.points_m)}"
+        if self.over.count > MOST_PLACEMENTS:
+            shape = " × ".join(str(size) for size in self.over.shape if size > 1)
+            yield "over", f"must have at most {MOST_PLACEMENTS:,} placements, not {shape} = {self.over.count:,}"
+        tilted = [name for name in ANGLES[:2] if getattr(self.over, name) != 0]
+        if tilted and self.mounting != "floor":
+            yield "mounting", f'must be "floor" where over.{tilted[0]} tilts the base'
+        if self.constraints and self.constraints.torque and set(tilted) & set(self.over.ranges):
+            yield "constraints.torque", f"must not be given where over.{tilted[0]} is a range: gravity would turn"

@@ -1,0 +1,183 @@
+"""Targets of an arm whose base stands elsewhere: which of them it reaches from where.
+
+Targets are moved against the base instead. Where the arm has a closed form, their poses are made on the device, and all
+postures are known; what is near a boundary, and targets of other arms, are tried from many starts (`InverseSolver`).
+Under constraints a target is served where a configuration is admitted: of all postures, or else of a search.
+"""
+
+from collections.abc import Sequence
+from copy import copy
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Self
+
+import numpy as np
+
+from wsrender.engine import CLOSED_MARGIN, evaluate_samples, placed_slacks
+from wsrender.pipeline.constraints.constraint import Constraint
+from wsrender.pipeline.evaluation import Evaluation
+from wsrender.pipeline.pipeline import Pipeline
+from wsrender.pipeline.sampling import plan_sampling
+from wsrender.reach.admissible_search import BLOCKED, TURN_FREE, AdmissibleSearch
+from wsrender.reach.admission import WORTH_THREADS, Admission
+from wsrender.reach.evidence import REACHABLE, UNDECIDED, UNREACHABLE
+from wsrender.reach.inverse_solver import BATCH, VERIFIED, InverseSolver
+from wsrender.robots.chain import Chain
+from wsrender.robots.moving_base import MovingBase
+
+
+@dataclass(frozen=True, eq=False)
+class PlacedAdmission(Admission):
+    """What constraints say of configurations that reach targets from bases that stand at ``values`` (N, m) of joints.
+
+    ``moved``: constraints of the chain ``on_base``, whose coordinates those of the base lead; they are asked first.
+    """
+
+    moved: Sequence[Constraint] = ()
+    on_base: Chain | None = None
+    values: np.ndarray = field(default_factory=lambda: np.zeros((0, 0)))
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Those of all constraints, in the order in which they are asked."""
+        return tuple(each.name for each in (*self.moved, *self.constraints))
+
+    def among(self, batch: slice | np.ndarray) -> Self:
+        """The same for a batch of targets."""
+        return replace(self, values=self.values[batch])
+
+    def rejected(self, q: np.ndarray, targets: np.ndarray | None = None) -> np.ndarray:
+        """As `Admission.rejected`; ``targets`` (N,): from whose bases."""
+        assert targets is not None
+        found = np.zeros(len(q), np.int8)
+        if self.moved and self.on_base and len(q):
+            rows = np.hstack([self.values[targets], q])
+            plan = plan_sampling(self.on_base, rows)
+            pipeline = Pipeline(Evaluation(self.on_base), plan, tuple(self.moved), kept_rows=frozenset())
+            threads = 1 if len(q) < WORTH_THREADS else self.threads
+            labels = evaluate_samples(pipeline, self.device, threads=threads).rejected
+            assert labels is not None
+            found[:] = labels
+        left = np.flatnonzero(found == 0)
+        if self.constraints and len(left):
+            own = super().rejected(q[left])
+            found[left] = np.where(own > 0, own + len(self.moved), 0)
+        return found
+
+    def samples(self, count: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
+        """Those that no base that stands somewhere rejects, as `Admission.samples`."""
+        return Admission(self.chain, self.constraints, self.device, self.threads).samples(count, seed)
+
+
+class Placements:
+    """Decides K targets, poses (K, 4, 4) in the world, from bases of the chain of a ``solver``.
+
+    ``base``: where bases may stand; ``admission``: of the constraints, None without. The chain of the solver stands
+    where gravity is that of all bases.
+    """
+
+    def __init__(
+        self, solver: InverseSolver, base: MovingBase, T_world_tip: np.ndarray, admission: PlacedAdmission | None
+    ):
+        self.solver, self.base, self.admission = solver, base, admission
+        self._origin = np.array(base.lower[:3])  # near what stands far from the world's
+        self._targets = T_world_tip.copy()
+        self._targets[:, :3, 3] -= self._origin
+
+    def decide(self, coordinates: np.ndarray, T_world_frame: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Labels (P, K) int8 of `reach.evidence`, or BLOCKED, and by which constraint, from 1, (P, K) int8.
+
+        ``coordinates`` (P, 6) [m and rad] of the frames ``T_world_frame`` (P, 4, 4) that carry bases.
+        """
+        P, K = len(coordinates), len(self._targets)
+        bases = self._bases(T_world_frame)
+        label, reason = np.full((P, K), UNDECIDED, np.int8), np.zeros((P, K), np.int8)
+        if closed := self.solver.closed:
+            slack, margin = self._slacks(bases).T, CLOSED_MARGIN + closed.margin
+            label[slack < -margin] = UNREACHABLE
+            if self.admission is None:
+                label[slack > margin] = REACHABLE
+        rest = np.flatnonzero(label.ravel() == UNDECIDED)
+        for first in range(0, len(rest), BATCH):
+            at = rest[first : first + BATCH]
+            label.ravel()[at], reason.ravel()[at], _ = self._decided(at, bases, coordinates)
+        return label, reason
+
+    def configurations(
+        self, coordinates: np.ndarray, T_world_frame: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Of one placement, (1, …) as above, labels and reasons (K,), and configurations (K, n) [rad or m].
+
+        Of served targets one that serves them, of others the nearest that was looked at.
+        """
+        return self._decided(np.arange(len(self._targets)), self._bases(T_world_frame), coordinates)
+
+    def _bases(self, T_world_frame: np.ndarray) -> np.ndarray:
+        """Bases (P, 4, 4), seen from the origin."""
+        bases = T_world_frame @ self.base.T_frame_base
+        bases[:, :3, 3] -= self._origin
+        return bases
+
+    def _slacks(self, bases: np.ndarray) -> np.ndarray:
+        closed = self.solver.closed
+        assert closed
+        return placed_slacks(closed.form, bases, self._targets, device=closed.device, threads=closed.threads)
+
+    def _decided(
+        self, at: np.ndarray, bases: np.ndarray, coordinates: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Labels, reasons (N,) and configurations (N, n) of pairs of a base and a target, by number (N,)."""
+        place, target = np.divmod(at, len(self._targets))
+        T = self.solver.whole.T_world_base @ np.linalg.inv(bases[place]) @ self._targets[target]
+        position, orientation = T[:, :3, 3], T[:, :3, :3] if self.solver.kind == "pose" else None
+        if self.admission is None:
+            solved = self.solver.solve(position, orientation)
+            return solved.label, np.zeros(len(at), np.int8), solved.q
+        admission = replace(self.admission, values=self.base.configurations(coordinates[place]))
+        label, reason = np.full(len(at), UNDECIDED, np.int8), np.zeros(len(at), np.int8)
+        q = np.zeros((len(at), self.solver.whole.n))
+        if orientation is not None and self.solver.closed and not self._turns_matter:
+            for first in range(0, len(at), VERIFIED):
+                part = slice(first, first + VERIFIED)
+                found = self._of_postures(admission.among(part), position[part], orientation[part])
+                label[part], reason[part], q[part] = found
+        left = np.flatnonzero(label == UNDECIDED)
+        if len(left):
+            search = copy(self._search)
+            search.admission = admission.among(left)
+            found = search.decide(position[left], None if orientation is None else orientation[left])
+            label[left], reason[left], q[left] = found.label, found.reason, found.q
+        return label, reason, q
+
+    def _of_postures(
+        self, admission: PlacedAdmission, position: np.ndarray, orientation: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Labels, reasons and configurations of poses (N,) all of whose postures are known; of others UNDECIDED."""
+        assert self.solver.closed
+        q, slack, whole = self.solver.closed.postures(position, orientation)
+        there = whole[:, None] & (slack > 0)
+        pose, _ = np.nonzero(there)
+        rejected = np.zeros(slack.shape, np.int8)
+        rejected[there] = admission.rejected(q[there], pose)
+        free = (there & (rejected == 0)).any(axis=1)
+        label = np.where(free, REACHABLE, np.where(whole, BLOCKED, UNDECIDED)).astype(np.int8)
+        times = [(rejected == k + 1).sum(axis=1) for k in range(len(admission.names))]
+        best = np.argmax(np.where(there & (rejected == 0), 8.0, 0.0) + slack, axis=1)
+        reason = np.where(label == BLOCKED, 1 + np.argmax(times, axis=0), 0).astype(np.int8)
+        return label, reason, q[np.arange(len(q)), best]
+
+    @property
+    def _turns_matter(self) -> bool:
+        """Whether joints turn further than once, and a constraint may see how far: postures leave turns out."""
+        chain = self.solver.whole
+        assert self.admission
+        turns = chain.revolute & (chain.upper_limits - chain.lower_limits > 2 * np.pi * (1 + 1e-9))
+        return bool(turns.any()) and not TURN_FREE.issuperset(self.admission.names)
+
+    @cached_property
+    def _search(self) -> AdmissibleSearch:
+        """What the searches of all pairs have in common: where they start."""
+        assert self.admission
+        search = AdmissibleSearch(self.solver, self.admission)
+        search.prepare()
+        return search
