@@ -253,6 +253,7 @@ def all_postures(
     quat_wxyz: Sequence[Sequence[float] | np.ndarray] | np.ndarray | None = None,
     windings: int = 1,
     starts: int = 512,
+    curve_step: float = 0.05,
     seed: int = 0,
     progress: Progress | bool | None = None,
     threads: int | None = None,
@@ -260,8 +261,8 @@ def all_postures(
 ) -> Result:
     """All configurations of given poses: every posture, windings counted apart.
 
-    Arms with a closed form give all there are; of others those that a search finds. Constraints and environment say of
-    each posture whether it is free.
+    Arms with a closed form give all there are; of others those that a search finds; of arms with a joint more than the
+    pose has freedoms, curves of them. Constraints and environment say of each posture whether it is free.
 
     `postures` is the quick form, which gives arrays.
 
@@ -287,6 +288,7 @@ def all_postures(
         do.
     ``windings``: How many configurations of a posture are listed that differ by whole turns of hinges; all are counted.
     ``starts``: Starts of the search for postures of a pose, where no closed form knows them all.
+    ``curve_step``: Between points of self-motions: largest change of a joint, about [rad, reaches].
     ``seed``: Seed of the starts.
     ``progress``: True shows a bar on work of more than a second; or a function (done, total, message).
     ``threads``: Threads of the CPU; None: all cores. They change no bit of the result.

@@ -1,5 +1,7 @@
 """All postures of a pose: against closed forms of the tests, other searches, brute force over turns, and MuJoCo."""
 
+from itertools import permutations
+
 import numpy as np
 import pytest
 from scipy.optimize import brentq
@@ -90,6 +92,15 @@ def test_windings_are_listed_one_after_the_other():
     assert (np.abs(all_of_them) <= chain.upper_limits).all()
     assert chain.poses(all_of_them)[:, :3, 3] == pytest.approx(np.tile([0.4, 0.2, 0.3], (256, 1)), abs=1e-9)
     assert (next(found.wound(3)) == found[3]).all()
+
+
+def test_a_limit_is_a_limit():
+    """A micrometre's turn beyond it is no posture, what rounding puts there is."""
+    chain = ws.load_robot("ur5e").chain
+    q = drawn(chain, 40, seed=8)
+    for beyond, there in ((1e-6, False), (1e-10, True)):
+        q[:, 2] = chain.upper_limits[2] + beyond
+        assert ((nearest(chain, q, solved(chain, chain.poses(q))) < 1e-5) == there).mean() > 0.9
 
 
 @pytest.mark.parametrize("name", ["puma560", "ur5e"])
@@ -190,3 +201,75 @@ def test_bad_poses_are_refused_by_name(position, quat, field, message):
 def test_no_postures():
     found = ws.postures("ur5e", [5, 0, 0], [1, 0, 0, 0], device="cpu")
     assert np.asarray(found).shape == (0, 6) and found.count == 0 and found.complete.all() and not list(found.wound())
+
+
+def along(curve, q):
+    """Least distances of configurations (M, n) from a curve, hinges without turns: of its points, and of chords."""
+    points = np.concatenate([curve.configurations, curve.configurations[:1]]) if curve.closed else curve.configurations
+    dense = np.concatenate([points[:-1] + t * np.diff(points, axis=0) for t in np.linspace(0, 1, 9)] + [points[-1:]])
+    return np.array([np.abs(dense - row).max(axis=1).min() for row in q])
+
+
+@pytest.mark.parametrize("name", ["franka_panda", "kuka_iiwa14"])
+def test_no_posture_of_a_redundant_arm_is_off_its_self_motions(name):
+    """Every point holds the pose; a dense sweep of the last joint finds postures on the curves alone."""
+    chain = ws.load_robot(name).chain
+    q = drawn(chain, 2, seed=9)
+    T = chain.poses(q)
+    found = solved(chain, T, starts=64)
+    assert found.family.all() and not found.complete.any() and all(found.curves) and len(found) >= 4
+    assert f"at 128 values of {chain.joint_names[-1]}" in found.evidence and "not proven" in found.evidence
+    for posture, curve, pose in zip(found, found.curves, found.pose, strict=True):
+        back = chain.poses(curve.configurations)
+        assert np.abs(back - T[pose]).max() <= 1e-8 and curve.pose == pose
+        within = (curve.configurations >= chain.lower_limits) & (curve.configurations <= chain.upper_limits)
+        assert within.all() and along(curve, posture[None])[0] < 1e-9
+        steps = np.abs(np.diff(curve.configurations, axis=0)).max(axis=1)
+        assert steps.max() < 0.08
+        ends = curve.configurations[[0, -1]]
+        at_limit = np.minimum(ends - chain.lower_limits, chain.upper_limits - ends).min(axis=1) < 1e-9
+        assert curve.closed or curve.singular or at_limit.all()
+    for k in range(len(q)):
+        own = [curve for curve in found.curves if curve.pose == k]
+        assert min(along(curve, q[[k]])[0] for curve in own) < 0.01
+        for value in np.random.default_rng(k).uniform(chain.lower_limits[-1], chain.upper_limits[-1], 60):
+            arm = chain.held({chain.joint_names[-1]: value})
+            swept = solved(arm, T[[k]]).configurations
+            assert all(min(along(curve, row[None])[0] for curve in own) < 0.01 for row in swept)
+    apart_from_each_other = [
+        np.median(along(a, b.configurations)) for a, b in permutations(found.curves, 2) if a.pose == b.pose
+    ]
+    assert min(apart_from_each_other) > 0.02
+
+
+def test_self_motions_close_where_nothing_stops_them():
+    """An arm in a plane that holds a point is a linkage of four bars: two closed curves where the shortest and the
+    longest are together shorter than the others (Grashof 1883), else one."""
+    arm = ws.load_robot(ws.DHTable(convention="standard", name="planar", rows=[{"a": a} for a in (0.4, 0.3, 0.2)]))
+    assert arm.chain.periodic.all()
+    for point, count in (([0.3, 0.1, 0.0], 2), ([0.8, 0.1, 0.0], 1), ([0.05, 0.0, 0.0], 2), ([0.15, 0.0, 0.0], 1)):
+        bars = sorted([0.4, 0.3, 0.2, np.linalg.norm(point)])
+        assert (bars[0] + bars[3] < bars[1] + bars[2]) == (count == 2)
+        found = ws.postures(arm, point, device="cpu", starts=32)
+        assert len(found) == count and found.family.all() and not found.complete.any()
+        for curve in found.curves:
+            at = arm.chain.poses(curve.configurations)[:, :3, 3]
+            assert curve.closed and np.abs(at - point).max() <= 1e-8
+            gap = np.remainder(curve.configurations[0] - curve.configurations[-1] + np.pi, 2 * np.pi) - np.pi
+            assert np.linalg.norm(gap) < 0.07
+    fine, coarse = (ws.postures(arm, point, device="cpu", starts=32, curve_step=step) for step in (0.05, 0.2))
+    assert 3 < sum(map(len, fine.curves)) / sum(map(len, coarse.curves)) < 5
+
+
+def test_points_of_self_motions_say_what_blocks_them():
+    robot = ws.load_robot("franka_panda")
+    T = robot.chain.poses(drawn(robot.chain, 1, seed=9))
+    quat = Rotation.from_matrix(T[0, :3, :3]).as_quat(scalar_first=True)
+    low = {"region": {"half_space": {"point_m": [0, 0, T[0, 2, 3] + 0.1], "normal": [0, 0, -1]}}}
+    found = ws.postures(robot, T[0, :3, 3], quat, constraints=low, starts=16, device="cpu")
+    outside = {"region": {"half_space": {"point_m": [0, 0, T[0, 2, 3] - 0.1], "normal": [0, 0, -1]}}}
+    beyond = ws.postures(robot, T[0, :3, 3], quat, constraints=outside, starts=16, device="cpu")
+    for result, reasons in ((found, [{""}, {"region"}]), (beyond, [{""}, {"region"}])):
+        told = {reason for curve in result.curves for reason in curve.reasons}
+        assert told == set(result.reasons) and told in reasons
+    assert set(found.reasons) != set(beyond.reasons)

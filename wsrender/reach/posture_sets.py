@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
+from functools import cached_property
 from itertools import product
 from typing import Any
 
@@ -10,6 +11,7 @@ from scipy.spatial.transform import Rotation
 
 from wsrender.documents.constraints import Constraints
 from wsrender.documents.environment import Environment
+from wsrender.documents.quantities import argument, positive
 from wsrender.documents.sampling import Sobol
 from wsrender.engine import Accuracy, closed_postures, configurations, solve_inverse
 from wsrender.errors import InputError
@@ -18,7 +20,8 @@ from wsrender.pipeline.pipeline import tip_pipeline
 from wsrender.reach.admission import Admission
 from wsrender.reach.closed_labels import evidence
 from wsrender.reach.inverse_solver import parts_of
-from wsrender.reach.posture_solver import NEARLY_SINGULAR, TURN, PoseHolder
+from wsrender.reach.posture_solver import NEARLY_SINGULAR, SAME, TURN, PoseHolder
+from wsrender.reach.self_motions import STEP, SelfMotion, self_motions
 from wsrender.reach.starts import towards_limits
 from wsrender.reach.targets import rotations, rows_of
 from wsrender.robot import as_robot
@@ -28,7 +31,8 @@ from wsrender.robots.kinematics import Kinematics
 
 STARTS = 512  # of the search for postures of a pose
 NEAR = 1e-4  # slack within which a posture that seems outside limits or not there is looked at: folds, rounding
-BATCH = 1 << 13  # poses whose postures are held at a time
+BATCH, REDUNDANT_BATCH = 1 << 13, 1 << 6  # poses whose postures, or those on self-motions, are held at a time
+SWEPT = 128  # values of a free joint at which self-motions are looked for
 MOST_OF_FAMILIES = 16  # postures of a pose that stand for families, whose members have no number
 NEARLY = 1e-5  # m and rad: a try that ends so near is taken further
 ANYHOW = Rotation.from_rotvec([0.9, -1.3, 0.4]).as_matrix()  # an orientation at which no free wrist stands in line
@@ -47,6 +51,8 @@ class Postures:
 
     ``complete`` (N,) bool: by a closed form no other posture exists; else others were not found. ``evidence``: what
     says so. ``least_turns``, ``most_turns`` (K, n) int: by how many whole turns hinges may be moved.
+    ``curves``: the self-motion that each posture stands for, of arms with one joint more than the pose has freedoms and
+    of families of one freedom; else None. Windings are then of the joints that stand still along it.
     """
 
     configurations: np.ndarray
@@ -62,6 +68,7 @@ class Postures:
     evidence: str
     least_turns: np.ndarray
     most_turns: np.ndarray
+    curves: tuple[SelfMotion | None, ...]
 
     def __len__(self) -> int:
         return len(self.configurations)
@@ -83,16 +90,14 @@ class Postures:
     def wound(self, k: int | None = None) -> Iterator[np.ndarray]:
         """The configurations (n,) [rad or m] of a posture by number, or of all, one after the other."""
         for row in range(len(self)) if k is None else [k]:
-            ends = zip(self.least_turns[row], self.most_turns[row], strict=True)
-            for turns in product(*(sorted(range(a, b + 1), key=abs) for a, b in ends)):
-                yield self.configurations[row] + TURN * np.array(turns)
+            yield from _wound(self.configurations[row], self.least_turns[row], self.most_turns[row])
 
 
 class PostureSolver:
     """All postures of poses of one chain, or of positions that any orientation will do for.
 
-    ``starts``: of the search, for a pose of an arm without a closed form, or where that is in doubt; they depend on
-    ``seed`` alone.
+    ``curve_step``: between points of self-motions [rad or reaches]. ``starts``: of the search, for a pose of an arm
+    without a closed form, or where that is in doubt; they depend on ``seed`` alone.
     """
 
     def __init__(
@@ -101,6 +106,7 @@ class PostureSolver:
         *,
         with_orientation: bool = True,
         starts: int = STARTS,
+        curve_step: float = STEP,
         seed: int = 0,
         device: str = "auto",
         threads: int | None = None,
@@ -108,12 +114,20 @@ class PostureSolver:
         self.whole, self.origin = chain, chain.origin
         self.holder = PoseHolder(chain.relative_to(chain.origin), 6 if with_orientation else 3)
         self.form = ClosedForm.of(chain, "pose" if with_orientation else "position")
-        self.starts, self.seed, self.device, self.threads = starts, seed, device, threads
+        self.starts, self.curve_step, self.seed = starts, curve_step, seed
+        self.device, self.threads = device, threads
 
     @property
     def evidence(self) -> str:
         """What postures rest on."""
         search = f"search from {self.starts} starts a pose, sampled, not proven complete"
+        if self.redundant:
+            sweep = (
+                f"closed form at {SWEPT} values of {self.whole.joint_names[self.free_joint]}, "
+                if self.free_joint is not None
+                else ""
+            )
+            return f"{sweep}self-motions in steps of {self.curve_step:g}, {search}"
         return f"{evidence(self.form)}; where that is in doubt {search}" if self.form else search
 
     def solve(
@@ -124,21 +138,26 @@ class PostureSolver:
     ) -> Postures:
         """Of poses (N, 4, 4) in the world; ``progress``: called with the poses done."""
         parts = []
-        for first in range(0, max(len(T), 1), BATCH):
-            parts.append(self._solve(T[first : first + BATCH], first))
+        batch = REDUNDANT_BATCH if self.redundant else BATCH
+        for first in range(0, max(len(T), 1), batch):
+            parts.append(self._solve(T[first : first + batch], first))
             if progress:
-                progress(min(first + BATCH, len(T)))
+                progress(min(first + batch, len(T)))
         found = Postures(**{f.name: _joined(f.name, parts) for f in fields(Postures)})
         if not constraints or not len(found):
             return found
         admission = Admission(self.whole, constraints, self.device, self.threads)
         names = np.array(["", *admission.names])
-        return replace(found, reasons=names[admission.rejected(found.configurations)])
+        curves = [
+            curve and replace(curve, reasons=names[admission.rejected(curve.configurations)]) for curve in found.curves
+        ]
+        reasons = names[admission.rejected(found.configurations)]
+        return replace(found, reasons=reasons, curves=tuple(curves))
 
     def _solve(self, T: np.ndarray, first: int) -> Postures:
         near, holder = T.copy(), self.holder
         near[:, :3, 3] -= self.origin
-        pose, q, complete = self._closed(T, near)
+        pose, q, complete = self._swept(T, near) if self.redundant else self._closed(T, near)
         for part in parts_of(np.flatnonzero(~complete), self.starts):
             more, found = self._searched(T, part)
             found, _ = holder.polished(found, near[more])
@@ -146,24 +165,33 @@ class PostureSolver:
             pose, q = np.concatenate([pose, more[order]]), np.concatenate([q, found[order]])
         order = np.argsort(pose, kind="stable")
         pose, q = pose[order], q[order]
-        left = holder.errors(q, near[pose])
-        held = np.flatnonzero(holder.holds(left))
+        held = np.flatnonzero(holder.holds(holder.errors(q, near[pose])))
         kept = held[holder.distinct(pose[held], q[held], near)]
-        pose, q, left = pose[kept], q[kept], left[kept]
-        sigma, redundant = holder.sigma_min(q), len(holder.moving) > holder.freedoms
-        family = np.zeros(len(q), bool)
-        at = np.flatnonzero((sigma < NEARLY_SINGULAR) | redundant)
+        pose, q = pose[kept], q[kept]
+        family = np.full(len(q), self.redundant)
+        at = np.flatnonzero((holder.sigma_min(q) < NEARLY_SINGULAR) & ~family)
         family[at] = holder.families(q[at], near[pose[at]])
-        of_pose = np.cumsum(family) - np.searchsorted(np.flatnonzero(family), np.searchsorted(pose, pose))
-        kept = ~family | (of_pose <= MOST_OF_FAMILIES)
-        pose, q, left, sigma, family = (rows[kept] for rows in (pose, q, left, sigma, family))
+        line = family & (holder.nullity(q) == 1)
+        number = np.cumsum(family) - np.searchsorted(np.flatnonzero(family), np.searchsorted(pose, pose))
+        few = ~line & (~family | (number <= MOST_OF_FAMILIES))
+        curves = self_motions(holder, pose[line], q[line], near, self.curve_step)
+        pose = np.concatenate([pose[few], [curve.pose for curve in curves]]).astype(int)
+        q = np.concatenate([q[few], *(curve.configurations[[len(curve) // 2]] for curve in curves)])
+        family = np.concatenate([family[few], np.ones(len(curves), bool)])
         least, most = holder.turns(q)
+        for k, curve in enumerate(curves, int(few.sum())):
+            moves = np.ptp(curve.configurations, axis=0) > SAME * holder.scale
+            least[k, moves] = most[k, moves] = 0
+        all_curves = [None] * int(few.sum()) + [replace(curve, pose=curve.pose + first) for curve in curves]
+        order = np.argsort(pose, kind="stable")
+        pose, q, least, most = pose[order], q[order], least[order], most[order]
+        left, sigma = holder.errors(q, near[pose]), holder.sigma_min(q)
         return Postures(
             q,
             pose + first,
             (most - least + 1).prod(axis=1),
             sigma,
-            family,
+            family[order],
             sigma < NEARLY_SINGULAR,
             np.linalg.norm(left[:, :3], axis=1),
             np.linalg.norm(left[:, 3:], axis=1),
@@ -172,7 +200,34 @@ class PostureSolver:
             self.evidence,
             least,
             most,
+            tuple(all_curves[k] for k in order),
         )
+
+    @cached_property
+    def redundant(self) -> bool:
+        """Whether more joints move than the pose has freedoms."""
+        return len(self.holder.moving) > self.holder.freedoms
+
+    @cached_property
+    def free_joint(self) -> int | None:
+        """The first or last joint of a redundant arm that leaves the others a closed form wherever it is held."""
+        holder, chain = self.holder, self.whole
+        if not self.redundant or holder.rows == 3 or len(holder.moving) != holder.freedoms + 1:
+            return None
+        ends = (int(holder.moving[-1]), int(holder.moving[0]))
+        middle = chain.within(0.41)  # no closed form that is there in a special configuration alone
+        return next((k for k in ends if ClosedForm.of(chain.held({chain.joint_names[k]: middle[k]}))), None)
+
+    def _swept(self, T: np.ndarray, near: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """As `_closed`, at SWEPT values of the free joint; that there are no others is not known."""
+        pose, q = [np.zeros(0, int)], [np.zeros((0, self.whole.n))]
+        if (k := self.free_joint) is not None:
+            low, high = self.whole.lower_limits[k], self.whole.upper_limits[k]
+            for value in low + (np.arange(SWEPT) + 0.5) / SWEPT * (high - low):
+                arm = self.whole.held({self.whole.joint_names[k]: float(value)})
+                more, found, _ = PostureSolver(arm, device=self.device, threads=self.threads)._closed(T, near)
+                pose, q = [*pose, more], [*q, found]
+        return np.concatenate(pose), np.concatenate(q), np.zeros(len(T), bool)
 
     def _closed(self, T: np.ndarray, near: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Pose, ascending, and configuration of a closed form's postures; and whether there are no others, (N,) bool.
@@ -218,6 +273,7 @@ def postures(
     constraints: Constraints | Mapping[str, Any] | None = None,
     environment: Environment | Mapping[str, Any] | None = None,
     starts: int = STARTS,
+    curve_step: float = STEP,
     seed: int = 0,
     device: str = "auto",
     threads: int | None = None,
@@ -226,20 +282,20 @@ def postures(
 
     ``robot`` is a Robot, a user-defined robot or what `load_robot` takes. Without ``quat_wxyz`` any orientation will
     do. ``constraints`` and ``environment`` are those of a job document, or their parts of one: they say of each posture
-    whether it is free. ``starts``: of the search for postures of a pose, where no closed form knows them all.
+    whether it is free. ``starts``: of the search for postures of a pose, where no closed form knows them all;
+    ``curve_step``: between points of self-motions [rad or reaches].
 
     Raises InputError, DocumentError, ModelError.
     """
     subject = as_robot(robot)
     T = poses_of(position_m, quat_wxyz)
-    choice, around = (
-        kind(**given) if isinstance(given, Mapping) else given
-        for kind, given in ((Constraints, constraints), (Environment, environment))
-    )
+    choice = Constraints(**constraints) if isinstance(constraints, Mapping) else constraints
+    around = Environment(**environment) if isinstance(environment, Mapping) else environment
     solver = PostureSolver(
         subject.chain,
         with_orientation=quat_wxyz is not None,
         starts=starts,
+        curve_step=argument("curve_step", positive, curve_step),
         seed=seed,
         device=device,
         threads=threads,
@@ -264,6 +320,14 @@ def poses_of(position_m: Any, quat_wxyz: Any = None) -> np.ndarray:
     return T
 
 
+def _wound(q: np.ndarray, least: np.ndarray, most: np.ndarray) -> Iterator[np.ndarray]:
+    """A configuration (n,) moved by all whole turns from ``least`` to ``most`` (n,), itself first."""
+    for turns in product(*(sorted(range(a, b + 1), key=abs) for a, b in zip(least, most, strict=True))):
+        yield q + TURN * np.array(turns)
+
+
 def _joined(name: str, parts: Sequence[Postures]) -> Any:
     values = [getattr(part, name) for part in parts]
+    if name == "curves":
+        return tuple(curve for curves in values for curve in curves)
     return values[0] if name == "evidence" else np.concatenate(values)

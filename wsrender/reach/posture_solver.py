@@ -14,6 +14,7 @@ STEPS = 40  # near a double root each halves what is left of the joints
 SAME = 1e-6  # rad and reaches: closer postures are one
 CLOSE = 1e-3  # they may be one, if the pose holds between them
 NEARLY_SINGULAR = 1e-3  # sigma_min below which joints move a thousand times as far as the pose
+SINGULAR = 1e-6  # a singular value that counts as 0: the pose holds within EXACT a thousandth of a radian aside
 ASIDE = 1e-2  # rad and reaches: how far a family is followed to see whether it is one
 TURN = 2 * np.pi
 
@@ -59,8 +60,10 @@ class PoseHolder:
         J[:, :3] /= self.length
         return J
 
-    def polished(self, q: np.ndarray, T: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def polished(self, q: np.ndarray, T: np.ndarray, frozen: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
         """Configurations within the limits that hold ``T`` best, from near ones ``q`` (M, n), and `errors` there.
+
+        ``frozen`` (M, n) bool: coordinates that stay.
 
         Steps of Levenberg's with the squared error as damping, which converge at double roots too (Yamashita,
         Fukushima 2001).
@@ -75,12 +78,14 @@ class PoseHolder:
             scaled = left[at, : self.rows].copy()
             scaled[:, :3] /= self.length
             J = self.jacobians(q[at])
-            moved = q[at] + self._along(_step(J, scaled))
+            if frozen is not None:
+                J *= ~frozen[at][:, None, self.moving]
+            moved = q[at] + self.along(_step(J, scaled))
             held = np.abs(self._within(moved) - moved)[:, self.moving] > TURN * 1e-12
             held &= ~self.chain.periodic[self.moving]
             blocked = np.flatnonzero(held.any(axis=1))
             J[blocked] *= ~held[blocked, None]
-            moved[blocked] = q[at[blocked]] + self._along(_step(J[blocked], scaled[blocked]))
+            moved[blocked] = q[at[blocked]] + self.along(_step(J[blocked], scaled[blocked]))
             q[at] = self._within(moved)
             left[at] = self.errors(q[at], T[at])
             size = self._sizes(left[at])
@@ -132,10 +137,14 @@ class PoseHolder:
             return np.zeros(0)
         return np.linalg.svd(self.jacobians(q), compute_uv=False)[:, max(self.freedoms, 1) - 1]
 
+    def nullity(self, q: np.ndarray) -> np.ndarray:
+        """Freedoms (M,) int of the joints at ``q`` (M, n) that do not move the pose."""
+        s = np.linalg.svd(self.jacobians(q), compute_uv=False) if len(q) else np.zeros((0, 0))
+        return len(self.moving) - (s > SINGULAR).sum(axis=1)
+
     def families(self, q: np.ndarray, T: np.ndarray) -> np.ndarray:
         """Whether the arm can move from postures ``q`` (M, n) while the tip stays, within the limits, (M,) bool."""
-        _, _, V = np.linalg.svd(self.jacobians(q), full_matrices=True)
-        free = self._along(V[:, -1])
+        free = self.along(self.null_vectors(q))
         found = np.zeros(len(q), bool)
         for way in (ASIDE, -ASIDE):
             moved, left = self.polished(q + way * free, T)
@@ -151,11 +160,19 @@ class PoseHolder:
             most = np.floor((chain.upper_limits - q + EXACT) / TURN)
         return np.where(hinged, least, 0).astype(int), np.where(hinged, most, 0).astype(int)
 
-    def _along(self, step: np.ndarray) -> np.ndarray:
+    def along(self, step: np.ndarray) -> np.ndarray:
         """Steps (M, m) of the `moving` coordinates as those of configurations (M, n) [rad or m]."""
         whole = np.zeros((len(step), self.chain.n))
         whole[:, self.moving] = step
         return whole * self.scale
+
+    def null_vectors(self, q: np.ndarray) -> np.ndarray:
+        """Unit vectors (M, m) of the `moving` coordinates along which the pose changes least."""
+        return np.linalg.svd(self.jacobians(q), full_matrices=True)[2][:, -1]
+
+    def difference(self, by: np.ndarray) -> np.ndarray:
+        """Differences (M, n) [rad or m] of hinges without limits within half a turn."""
+        return np.where(self.chain.periodic, np.remainder(by + np.pi, TURN) - np.pi, by)
 
     def _turned(self, by: np.ndarray) -> np.ndarray:
         """Differences (M, n) without whole turns."""

@@ -58,7 +58,9 @@ def bodies_in(robot: Robot, q: Any) -> "trimesh.Trimesh | None":
             vertices = mesh.vertices @ poses[k, :3, :3].T + poses[k, :3, 3]
             number = np.full(len(mesh.faces), row, np.int32)
             parts.append(trimesh.Trimesh(vertices, mesh.faces, face_attributes={"surface": number}, process=False))
-    return trimesh.util.concatenate(parts)
+    whole = trimesh.util.concatenate(parts)
+    assert isinstance(whole, trimesh.Trimesh)
+    return whole
 
 
 def _placed(shape: "Shape", T: np.ndarray) -> LinkShape:

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 import wsrender as ws
 from tests.run.journeys import from_the_command_line
@@ -69,9 +70,34 @@ def test_shards_in_any_order_are_one_run():
     assert all((joined[name] == array).all() for name, array in alone.arrays.items())
 
 
+def test_self_motions_are_a_table():
+    poses = {"position_m": [[0.4, 0.2, 0.4]], "quat_wxyz": [[0, 1, 0, 0]]}
+    result = execute(JOB | poses | {"robot": "franka_panda", "starts": 16, "curve_step": 0.1})
+    found = ws.postures("franka_panda", *poses.values(), device="cpu", starts=16, curve_step=0.1)
+    table = result.tables["self_motions"]
+    q = np.stack([table[f"q_{name}"] for name in ws.load_robot("franka_panda").joint_names], axis=1)
+    assert (q == np.concatenate([curve.configurations for curve in found.curves])).all()
+    assert np.bincount(table["posture"]).tolist() == [len(curve) for curve in found.curves]
+    assert result.document["postures"]["self_motions"] == {"count": len(found), "closed": 0}
+    assert not table["closed"].any() and (np.diff(table["point"])[np.diff(table["posture"]) == 0] == 1).all()
+    assert "self-motions" in result.summary() and "of a self-motion" in labels(result.plot.postures())
+
+
+def labels(figure):
+    return " ".join(text.get_text() for text in figure.axes[0].get_legend().get_texts())
+
+
 def test_more_starts_find_more_and_seeds_matter():
-    counts = [execute(JOB | {"robot": "franka_panda", "starts": n}).document["postures"]["postures"] for n in (1, 32)]
-    assert counts[0] < counts[1]
+    """Of an arm without a closed form."""
+    rows = [{"a": 0.3, "alpha_deg": alpha, "d": 0.1, "limits_deg": [-170, 170]} for alpha in (80, 20, 70, -60, 50, 0)]
+    dh = {"convention": "standard", "name": "general", "rows": rows}
+    T = ws.load_robot(ws.DHTable(**dh)).chain.poses(np.array([[0.3, -0.4, 0.8, 1.0, 0.7, 0.2]]))[0]
+    quat = Rotation.from_matrix(T[:3, :3]).as_quat(scalar_first=True)
+    job = JOB | {"robot": {"dh": dh}, "position_m": T[:3, 3].tolist(), "quat_wxyz": quat.tolist()}
+    few, many, other = (execute(job | change) for change in ({"starts": 4}, {}, {"starts": 4, "seed": 1}))
+    q = [result.tables["postures"]["q_joint1"].tolist() for result in (few, many, other)]
+    assert len(q[0]) < len(q[1]) and q[0] != q[2] and not many.tables["poses"]["complete"].any()
+    assert few.document["provenance"]["seed"] == 0 and other.document["provenance"]["seed"] == 1
 
 
 @pytest.mark.parametrize(

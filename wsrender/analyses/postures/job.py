@@ -10,7 +10,7 @@ from wsrender.documents.arm import Arm
 from wsrender.documents.constraints import Constrained
 from wsrender.documents.format import JobDocument
 from wsrender.documents.options import IndexChoices, IndicesOrNone
-from wsrender.documents.quantities import Number, Seed, integer, rows_of, sequence
+from wsrender.documents.quantities import Number, PositiveNumber, Seed, integer, rows_of, sequence
 
 UNIT = 1e-3  # largest error of a quaternion's length
 
@@ -34,7 +34,8 @@ Quaternions = Annotated[tuple[tuple[Number, Number, Number, Number], ...], Field
 class PosturesJob(IndexChoices, Constrained, Arm, JobDocument):
     """All configurations of given poses: every posture, windings counted apart.
 
-    Arms with a closed form give all there are; of others those that a search finds. Constraints and environment say of
+    Arms with a closed form give all there are; of others those that a search finds; of arms with a joint more than the
+    pose has freedoms, curves of them. Constraints and environment say of
     each posture whether it is free.
     """
 
@@ -50,6 +51,8 @@ class PosturesJob(IndexChoices, Constrained, Arm, JobDocument):
     """How many configurations of a posture are listed that differ by whole turns of hinges; all are counted."""
     starts: Annotated[int, Field(ge=1, le=65536), BeforeValidator(integer)] = 512
     """Starts of the search for postures of a pose, where no closed form knows them all."""
+    curve_step: PositiveNumber = 0.05
+    """Between points of self-motions: largest change of a joint, about [rad, reaches]."""
     indices: IndicesOrNone = ()
     """Local indices of every configuration: "kinematic", "dynamic", "all", or a list of names; empty: none."""
     seed: Seed = 0

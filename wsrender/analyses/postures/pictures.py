@@ -41,7 +41,12 @@ def postures(plot: ResultPlots) -> Figure:
     assert arms is not None
     shown = np.flatnonzero((table["winding"] == 0) & (table["pose"] == table["pose"][0]))[: len(arms)]
     reasons = table["reason"][shown] if "reason" in table.columns else np.full(len(shown), "")
-    labels = [f"posture {k}{f', blocked by {reason}' if reason else ''}" for k, reason in enumerate(reasons)]
+    motions = plot.tables.get("self_motions")
+    moving = set() if motions is None else set(motions["posture"][motions["pose"] == table["pose"][0]].tolist())
+    labels = [
+        f"posture {k}{', of a self-motion' if k in moving else ''}{f', blocked by {reason}' if reason else ''}"
+        for k, reason in enumerate(reasons)
+    ]
     bodies = None
     if mesh is not None and NUMBER in mesh.face_attributes:
         number = np.asarray(mesh.face_attributes[NUMBER]).astype(int)

@@ -14,6 +14,8 @@ def facts(document: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     free = f", {found['free']:,} free" if "free" in found else ""
     yield "poses reached", f"{found['reached']:,} of {found['poses']:,}"
     yield "postures", f"{found['postures']:,}{free}; {found['configurations']:,} with windings"
+    if (curves := found["self_motions"])["count"]:
+        yield "self-motions", f"{curves['count']:,}, {curves['closed']:,} of them closed"
     yield "complete", f"{found['complete']:,} of {found['poses']:,} poses: {found['evidence']}"
 
 

@@ -26,7 +26,7 @@ from wsrender.pipeline.constraints.constraint import Constraint
 from wsrender.pipeline.evaluation import Evaluation
 from wsrender.pipeline.pipeline import Pipeline
 from wsrender.pipeline.sampling import plan_sampling
-from wsrender.reach.posture_sets import BATCH, PostureSolver, poses_of
+from wsrender.reach.posture_sets import BATCH, REDUNDANT_BATCH, Postures, PostureSolver, poses_of
 from wsrender.robot.constraints import constraints_of_job
 from wsrender.robot.indices import evaluation_of_job
 from wsrender.robot.links import bodies_in
@@ -35,12 +35,14 @@ from wsrender.volume.table import Table
 
 CLOSED_PER_S, TRIES_PER_S = 5e3, 3e4  # poses with all their postures, and tries of searches, of one CPU core
 EXPECTED = 8  # postures of a pose
+POINTS, POINTS_PER_S = 800, 1e3  # of the self-motions of a pose, and how many are followed by one CPU core
 ROW_BYTES = 60  # of a posture in the table beside its configuration and indices
 TRY_BYTES = 600  # of a try and its target
 DRAWN = 8  # postures in pictures, of the first pose that has any
 MESH_BYTES = 1e6  # of their bodies, as ply and glb
 OF_POSTURES = ("pose", "number", "winding", "windings", "q", "sigma_min", "family", "doubtful", "residual_m",
                "residual_rad", "rejected", "values")  # fmt: skip
+OF_CURVES = ("curve_pose", "curve_posture", "point", "closed", "singular", "points", "blocked")
 OF_POSES = ("asked", "complete", "found", "configurations")
 
 
@@ -70,6 +72,7 @@ class PosturesAnalysis(Analysis):
         """What finds postures."""
         job = self.job
         options = {"with_orientation": job.quat_wxyz is not None, "starts": job.starts, "seed": job.seed}
+        options["curve_step"] = job.curve_step
         return PostureSolver(self.robot.chain, **options, device=self.device)
 
     @property
@@ -81,9 +84,14 @@ class PosturesAnalysis(Analysis):
         row = ROW_BYTES + 8 * (n + len(self.evaluation.indices))
         drawn, seconds = pictures_cost("postures")
         files = DOCUMENT_BYTES + drawn + MESH_BYTES + row * rows + LISTED_BYTES * listed * count
-        tries = 0 if self.solver.form else self.job.starts
-        memory = LISTED_MEMORY * listed * count + 4 * row * rows + min(count, BATCH) * (2000 + TRY_BYTES * tries)
-        seconds += count / CLOSED_PER_S + count * tries / TRIES_PER_S + files / WRITTEN_PER_S
+        redundant, batch = self.solver.redundant, REDUNDANT_BATCH if self.solver.redundant else BATCH
+        tries = 0 if self.solver.form and not redundant else self.job.starts
+        points = POINTS * count * 0.05 / self.job.curve_step if redundant else 0.0
+        files += (ROW_BYTES + 8 * n) * points
+        memory = (
+            LISTED_MEMORY * listed * count + 4 * row * (rows + points) + min(count, batch) * (2000 + TRY_BYTES * tries)
+        )
+        seconds += count / CLOSED_PER_S + count * tries / TRIES_PER_S + points / POINTS_PER_S + files / WRITTEN_PER_S
         return Cost(count, memory, files, seconds, Asks("position_m", "take fewer"))
 
     def compute(self, shard: int, execution: Execution, tell: Tell) -> PartialResult:
@@ -102,6 +110,7 @@ class PosturesAnalysis(Analysis):
         rejected, values = self._evaluated(q, execution)
         return PartialResult(
             {
+                **self._curves(found, number, first, execution),
                 "pose": np.repeat(found.pose + first, each),
                 "number": np.repeat(number, each),
                 "winding": np.concatenate([np.zeros(0, int), *map(np.arange, each)]),
@@ -115,6 +124,23 @@ class PosturesAnalysis(Analysis):
                 "configurations": np.bincount(found.pose, found.windings, minlength=count).astype(np.int64),
             }
         )
+
+    def _curves(self, found: Postures, number: np.ndarray, first: int, execution: Execution) -> dict[str, np.ndarray]:
+        """Arrays OF_CURVES: a row for each point of each self-motion."""
+        own = [(k, curve) for k, curve in enumerate(found.curves) if curve is not None]
+        each = [len(curve) for _, curve in own]
+        n = self.robot.chain.n
+        points = np.concatenate([np.zeros((0, n)), *(curve.configurations for _, curve in own)])
+        at = np.array([k for k, _ in own], int)
+        return {
+            "curve_pose": np.repeat(found.pose[at] + first, each),
+            "curve_posture": np.repeat(number[at], each),
+            "point": np.concatenate([np.zeros(0, int), *map(np.arange, each)]),
+            "closed": np.repeat(np.array([curve.closed for _, curve in own], bool), each),
+            "singular": np.repeat(np.array([curve.singular for _, curve in own], bool), each),
+            "points": points,
+            "blocked": self._evaluated(points, execution)[0],
+        }
 
     def _evaluated(self, q: np.ndarray, execution: Execution) -> tuple[np.ndarray, np.ndarray]:
         """The number, from 1, of the constraint that rejects ``q`` (K, n), or 0, (K,); and indices (K, I)."""
@@ -132,7 +158,7 @@ class PosturesAnalysis(Analysis):
     def merge(self, a: PartialResult, b: PartialResult) -> PartialResult:
         """The postures of both, in the order of their poses."""
         joined = {}
-        for names in (OF_POSTURES, OF_POSES):
+        for names in (OF_POSTURES, OF_CURVES, OF_POSES):
             order = np.argsort(np.concatenate([a[names[0]], b[names[0]]]), kind="stable")
             joined |= {name: np.concatenate([a[name], b[name]])[order] for name in names}
         return PartialResult(joined)
@@ -151,6 +177,10 @@ class PosturesAnalysis(Analysis):
             "configurations": int(partial["configurations"].sum()),
             "listed": len(first),
             "most_of_a_pose": int(partial["found"].max(initial=0)),
+            "self_motions": {
+                "count": int((partial["point"] == 0).sum()),
+                "closed": int(partial["closed"][partial["point"] == 0].sum()),
+            },
             "families": int(partial["family"][first].sum()),
             "doubtful": int(partial["doubtful"][first].sum()),
             "complete": int(partial["complete"].sum()),
@@ -168,7 +198,11 @@ class PosturesAnalysis(Analysis):
         return Draft(
             entries,
             notices=self.evaluation.notices,
-            tables={"postures": self._postures(partial), "poses": self._poses(partial)},
+            tables={
+                "postures": self._postures(partial),
+                **({"self_motions": self._self_motions(partial)} if len(partial["point"]) else {}),
+                "poses": self._poses(partial),
+            },
             skeleton=self.robot.skeleton(partial["q"][shown]) if len(shown) else None,
             meshes={} if bodies is None else {"bodies": bodies},
         )
@@ -191,14 +225,30 @@ class PosturesAnalysis(Analysis):
         columns |= {name: partial[name] for name in names}
         units = {"residual_m": "m", "residual_rad": "rad"}
         if self.constraints:
-            reasons = np.array(["", *(each.name for each in self.constraints)])
-            columns["reason"] = reasons[partial["rejected"]]
+            columns["reason"] = self._reasons[partial["rejected"]]
         for name, values in zip(self.evaluation.indices, partial["values"].T, strict=True):
             columns[name], units[name] = values, units_of(self.evaluation)[name]
+        joints, of_joints = self._joints(partial["q"])
+        return Table(columns | joints, units | of_joints)
+
+    def _self_motions(self, partial: PartialResult) -> Table:
+        columns = {"pose": partial["curve_pose"], "posture": partial["curve_posture"], "point": partial["point"]}
+        columns |= {name: partial[name] for name in ("closed", "singular")}
+        if self.constraints:
+            columns["reason"] = self._reasons[partial["blocked"]]
+        joints, units = self._joints(partial["points"])
+        return Table(columns | joints, units)
+
+    @property
+    def _reasons(self) -> np.ndarray:
+        return np.array(["", *(each.name for each in self.constraints)])
+
+    def _joints(self, q: np.ndarray) -> tuple[dict[str, np.ndarray], dict[str, str]]:
+        """Columns of configurations (K, n), and their units."""
         chain = self.robot.chain
-        for name, values, turns in zip(chain.joint_names, partial["q"].T, chain.revolute, strict=True):
-            columns[f"q_{name}"], units[f"q_{name}"] = values, "rad" if turns else "m"
-        return Table(columns, units)
+        names = [f"q_{name}" for name in chain.joint_names]
+        units = ["rad" if turns else "m" for turns in chain.revolute]
+        return dict(zip(names, q.T, strict=True)), dict(zip(names, units, strict=True))
 
     def _poses(self, partial: PartialResult) -> Table:
         columns = {"position": np.array(self.job.position_m)}
