@@ -311,6 +311,7 @@ def capability(
     voxel_size_m: float | None = None,
     directions: int = 100,
     approach_axis: Literal["x", "y", "z", "-x", "-y", "-z"] = "z",
+    rolls: int | None = None,
     dexterous_threshold: float = 1.0,
     position_tolerance_m: float = 1e-05,
     angle_tolerance_rad: float = 0.001,
@@ -336,6 +337,8 @@ def capability(
     ``voxel_size_m``: Edge of a voxel [m]; None: a twentieth of the cube root of the workspace's convex-hull volume.
     ``directions``: Number of approach directions, spread evenly over the sphere.
     ``approach_axis``: Axis of the tip frame that points along the direction; the turn about it is free.
+    ``rolls``: In how many turns about every direction, spread evenly, postures are counted, of arms with a closed form;
+        None: they are not.
     ``dexterous_threshold``: Least reachability index of the dexterous workspace [1].
     ``position_tolerance_m``: Largest distance to a voxel's centre that counts as reached [m].
     ``angle_tolerance_rad``: Largest angle to a direction that counts as reached [rad].

@@ -2,11 +2,13 @@
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 import wsrender as ws
 from tests.reference import closed_form_inverse as closed_form
 from tests.reference.published_robots import dh_table
 from wsrender.reach.capability import capability, fibonacci_directions
+from wsrender.reach.posture_counts import turned_frames
 from wsrender.robot.constraints import constraints_for
 from wsrender.run import execute, finish, plan, run_shard
 from wsrender.run.partial_files import load_partial, save_partial
@@ -188,3 +190,56 @@ def test_directions_between_a_floor_and_a_box_in_closed_form():
     assert (free & ~found).sum() <= 0.002 * free.size + undecided
     assert blocked == result.document["capability"]["blocked_pairs"]["environment"]
     assert abs(blocked - (reach & ~free).sum()) <= 0.004 * free.size + undecided
+
+
+def test_postures_are_counted_at_every_voxel():
+    """Of a Puma, against another closed form; of poses of another axis too."""
+    robot = ws.load_robot("puma560")
+    job = {
+        "analysis": "capability",
+        "robot": "puma560",
+        "voxel_size_m": 0.4,
+        "directions": 6,
+        "rolls": 3,
+        "device": "cpu",
+    }
+    for axis in ("z", "-x"):
+        result = execute(job | {"approach_axis": axis})
+        table = result.tables["capability"]
+        R = turned_frames(fibonacci_directions(6), 3)
+        assert R[::3, :, 2] == pytest.approx(fibonacci_directions(6)) and np.linalg.det(R) == pytest.approx(1)
+        if axis == "-x":  # along the direction
+            R = np.stack([-R[:, :, 2], R[:, :, 0], -R[:, :, 1]], axis=2)
+        points, poses = np.repeat(table["position"], len(R), axis=0), np.tile(R, (len(table), 1, 1))
+        with np.errstate(invalid="ignore"):
+            arm = closed_form.puma560_arm(points)
+            solutions = closed_form.with_spherical_wrist("puma560", arm, poses)
+        there = within(robot, solutions).reshape(len(table), len(R), -1).sum(axis=2)
+        assert table["postures_mean"] == pytest.approx(there.mean(axis=1)) and 0.5 < there.mean() < 4
+        assert (table["postures_most"] == there.max(axis=1)).all()
+    entry = result.document["capability"]["postures"]
+    assert (entry["poses_of_a_voxel"], entry["most"]) == (18, there.max()) and entry["mean"] == pytest.approx(
+        there.mean()
+    )
+    assert np.nansum(result.volume.statistics["mean"]["postures"]) == pytest.approx(there.mean(axis=1).sum(), rel=1e-5)
+    assert "postures of a pose" in result.summary()
+
+
+def within(robot, solutions):
+    return closed_form.within_limits(solutions, robot.lower_limits, robot.upper_limits, robot.chain.revolute)
+
+
+def test_free_postures_are_counted_under_constraints():
+    floor = {"items": [{"shape": "half_space", "name": "floor", "point_m": [0, 0, -0.05]}]}
+    job = {"analysis": "capability", "robot": "ur5e", "voxel_size_m": 0.5, "directions": 4, "rolls": 2, "device": "cpu"}
+    result = execute(job | {"environment": floor})
+    table, R = result.tables["capability"], turned_frames(fibonacci_directions(4), 2)
+    quat = np.tile(Rotation.from_matrix(R).as_quat(scalar_first=True), (len(table), 1))
+    found = ws.postures("ur5e", np.repeat(table["position"], 8, axis=0), quat, environment=floor, device="cpu")
+    free = np.bincount(found.pose[found.reasons == ""], minlength=len(quat)).reshape(-1, 8)
+    assert (free.mean(axis=1) == table["postures_mean"]).all() and (found.reasons != "").sum() > 20
+
+
+def test_postures_of_arms_without_a_closed_form_are_not_counted():
+    with pytest.raises(ws.InputError, match="rolls: must be null: franka_panda has no closed form"):
+        plan(JOB | {"robot": "franka_panda", "rolls": 2})

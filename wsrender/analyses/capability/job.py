@@ -1,6 +1,6 @@
 """The job ``capability``: from which directions the end effector can approach each voxel."""
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field
 
@@ -11,6 +11,14 @@ from wsrender.documents.options import Device
 from wsrender.documents.quantities import PositiveNumber, Seed, VoxelSize, integer, real
 
 LARGEST_SET = 10_000
+
+
+def _is_none(value: Any) -> bool:
+    return value is None
+
+
+def _whole(value: Any) -> int | None:
+    return None if value is None else integer(value)
 
 
 class CapabilityJob(Constrained, Arm, JobDocument):
@@ -28,6 +36,9 @@ class CapabilityJob(Constrained, Arm, JobDocument):
     """Number of approach directions, spread evenly over the sphere."""
     approach_axis: Literal["x", "y", "z", "-x", "-y", "-z"] = "z"
     """Axis of the tip frame that points along the direction; the turn about it is free."""
+    rolls: Annotated[int | None, Field(ge=1, le=64, exclude_if=_is_none), BeforeValidator(_whole)] = None
+    """In how many turns about every direction, spread evenly, postures are counted, of arms with a closed form; null:
+    they are not."""
     dexterous_threshold: Annotated[float, Field(gt=0, le=1), BeforeValidator(real)] = 1.0
     """Least reachability index of the dexterous workspace [1]."""
     position_tolerance_m: PositiveNumber = 1e-5

@@ -27,7 +27,9 @@ from wsrender.engine import sampled_positions
 from wsrender.notices import Notice
 from wsrender.pipeline.constraints.constraint import Constraint
 from wsrender.pipeline.pipeline import tip_pipeline
+from wsrender.reach.admission import Admission
 from wsrender.reach.capability import (
+    AXES,
     BATCH,
     SAMPLES_PER_CELL,
     SEARCHED_BYTES,
@@ -37,6 +39,7 @@ from wsrender.reach.capability import (
     searched_block,
 )
 from wsrender.reach.inverse_solver import solved_bytes
+from wsrender.reach.posture_counts import closed_form_for_counts, posture_counts, turned_frames
 from wsrender.reach.targets import check_tolerance
 from wsrender.robot.constraints import constraints_of_job
 from wsrender.robots.kinematics import Kinematics
@@ -53,6 +56,8 @@ POSITIONS_PER_S = 2e6  # of one CPU core
 DIVISIONS = 20  # of the size of a workspace: every voxel has many directions
 FIRST_SAMPLES = 1 << 16
 CONSTRAINED_RATE = 2e3  # pairs under constraints, where many are blocked
+COUNTED_PER_S, CONSTRAINED_COUNTS = 4e5, 20  # poses whose postures are counted on one core; how much slower if tested
+COUNT_BYTES = 4  # of a pose, the number of its postures
 PAIR_BYTES = 2.25  # of a voxel and a direction: its label, whether it is reached, as byte and bit, twice
 CANDIDATE_BYTES = 100  # of a voxel that is decided: its cell, centre and copies, of those that are reached too
 ASKED_BYTES = 200  # of a pair while it is decided: point, direction, and the configuration that is nearest, twice
@@ -81,6 +86,8 @@ class CapabilityAnalysis(Analysis):
         job, chain = self.job, self.robot.chain
         check_tolerance(chain, job.position_tolerance_m, job.precision)
         _ = self.constraints
+        if job.rolls:
+            closed_form_for_counts(chain)
         positions = _positions(chain)
         size = job.voxel_size_m or default_voxel_size(positions, divisions=DIVISIONS)
         voxels = expected_voxels(positions, size)
@@ -105,6 +112,9 @@ class CapabilityAnalysis(Analysis):
         solved = solved_bytes(pairs, "axis", self.robot.chain, self.job.precision) + ASKED_BYTES * min(pairs, BATCH)
         memory = max(solved + PAIR_BYTES * pairs + CANDIDATE_BYTES * voxels, SEARCHED_BYTES * searched)
         seconds += SAMPLES_PER_CELL * searched / POSITIONS_PER_S + (voxels + pairs) / RATE + files / WRITTEN_PER_S
+        if job_rolls := self.job.rolls:
+            seconds += pairs * job_rolls / COUNTED_PER_S * (CONSTRAINED_COUNTS if self.constraints else 1)
+            memory += COUNT_BYTES * pairs * job_rolls
         if self.constraints:
             memory, seconds = memory + SEARCH_BYTES, seconds + pairs / CONSTRAINED_RATE
         return Cost(pairs, memory, files, seconds, Asks("voxel_size_m", voxel_size_m=self.settled.voxel_size_m))
@@ -133,6 +143,14 @@ class CapabilityAnalysis(Analysis):
         rows = {"cells": found.cells, "bits": np.packbits(found.reached, axis=1), "undecided": found.undecided}
         if found.blocked is not None:
             rows["blocked"] = found.blocked
+        if job.rolls:
+            admission = Admission(chain, self.constraints, self.device, execution.threads) if self.constraints else None
+            rotations = turned_frames(fibonacci_directions(job.directions), job.rolls) @ np.transpose(
+                AXES[job.approach_axis]
+            )
+            points, options = (found.cells + 0.5) * size, {"device": self.device, "threads": execution.threads}
+            counts = posture_counts(chain, points, rotations, admission, **options)
+            rows |= {"postures": counts.sum(axis=1), "most": counts.max(axis=1, initial=0)}
         return rows_of_shard(first, rows)
 
     def merge(self, a: PartialResult, b: PartialResult) -> PartialResult:
@@ -166,6 +184,15 @@ class CapabilityAnalysis(Analysis):
             names, blocked = [each.name for each in self.constraints], partial["blocked"]
             entry["blocked_pairs"] = dict(zip(names, blocked.sum(axis=0).tolist(), strict=True))
             columns |= {f"blocked_{name}": column for name, column in zip(names, blocked.T, strict=True)}
+        if job.rolls:
+            poses = job.directions * job.rolls
+            mean = partial["postures"] / poses
+            entry["postures"] = {
+                "poses_of_a_voxel": poses,
+                "mean": float(mean.mean()) if len(cells) else 0.0,
+                "most": int(partial["most"].max(initial=0)),
+            }
+            columns |= {"postures_mean": mean, "postures_most": partial["most"]}
         directions = {"direction": fibonacci_directions(job.directions), "voxels": reached.sum(axis=0)}
         chain = self.robot.chain
         return Draft(
@@ -175,18 +202,27 @@ class CapabilityAnalysis(Analysis):
                 f"{entry['dexterous_volume_m3']:.4g} m³ from {100 * job.dexterous_threshold:.4g} % of the directions"
             ),
             _notices(entry),
-            volume=self._volume(cells, reached),
+            volume=self._volume(partial, reached),
             tables={"capability": Table(columns, {"position": "m"}), "directions": Table(directions)},
             skeleton=self.robot.skeleton((chain.lower_limits + chain.upper_limits) / 2),
         )
 
-    def _volume(self, cells: np.ndarray, reached: np.ndarray) -> VolumeData | None:
-        """``count``: directions reached; "fraction" of "approach_directions": the index; None: nothing is reached."""
+    def _volume(self, partial: PartialResult, reached: np.ndarray) -> VolumeData | None:
+        """``count``: directions reached; "fraction" of "approach_directions": the index; None: nothing is reached.
+
+        Where they are counted, "mean" and "maximum" of "postures" over the poses of a voxel.
+        """
+        cells, rolls = partial["cells"], self.job.rolls
         if not len(cells):
             return None
         statistics = {"fraction": {"approach_directions": reached.mean(axis=1).astype(np.float32)}}
+        units = {"approach_directions": "1"}
+        if rolls:
+            mean = (partial["postures"] / (self.job.directions * rolls)).astype(np.float32)
+            statistics |= {"mean": {"postures": mean}, "maximum": {"postures": partial["most"].astype(np.float32)}}
+            units["postures"] = "1"
         first, voxels = Voxels.at_places(cells, reached.sum(axis=1), statistics)
-        return VolumeData.of_voxels(self.settled.voxel_size_m, first, voxels, {"approach_directions": "1"})
+        return VolumeData.of_voxels(self.settled.voxel_size_m, first, voxels, units)
 
 
 def _notices(entry: dict[str, Any]) -> Iterator[Notice]:
