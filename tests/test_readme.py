@@ -2,12 +2,14 @@
 
 import re
 from pathlib import Path
+from shutil import copytree
 
 import wsrender as ws
 from wsrender.analyses.jobs import parse_job
 from wsrender.analyses.registry import job_classes
 
-README = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8")
+CLONE = Path(__file__).parents[1]
+README = (CLONE / "README.md").read_text(encoding="utf-8")
 
 
 def blocks(language):
@@ -16,6 +18,7 @@ def blocks(language):
 
 def test_python_example(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
+    copytree(CLONE / "docs" / "examples", tmp_path / "docs" / "examples")
     example = "\n".join(blocks("python"))
     names = {}
     exec(compile(example, "README.md", "exec"), names)

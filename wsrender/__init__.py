@@ -48,6 +48,7 @@ if TYPE_CHECKING:
     )
     from wsrender.documents.robot import DHRow, DHTable, Transform
     from wsrender.documents.sampling import BoundaryBiased, Converge, Grid, Random, Sobol
+    from wsrender.documents.target_lists import Criterion, Target, TargetTable
     from wsrender.geometry.planar.exact_boundary import exact_boundary
     from wsrender.indices import Index, Option, math, register_index
     from wsrender.kinetostatics import ForceField, force_field
@@ -89,6 +90,7 @@ __all__ = [
     "Client",
     "Converge",
     "ConvexMesh",
+    "Criterion",
     "Cylinder",
     "DHRow",
     "DHTable",
@@ -129,6 +131,8 @@ __all__ = [
     "ServerError",
     "Sobol",
     "Sphere",
+    "Target",
+    "TargetTable",
     "Transform",
     "WaitTimeoutError",
     "WsrenderError",
@@ -216,6 +220,7 @@ _NAMES_OF_MODULE = {
     ),
     "wsrender.documents.robot": ("DHRow", "DHTable", "Transform"),
     "wsrender.documents.sampling": ("BoundaryBiased", "Converge", "Grid", "Random", "Sobol"),
+    "wsrender.documents.target_lists": ("Criterion", "Target", "TargetTable"),
 }
 _MODULE_OF_NAME = {name: module for module, names in _NAMES_OF_MODULE.items() for name in names}
 _MODULES = {"math": "wsrender.indices.math", "run": "wsrender.run"}

@@ -33,6 +33,7 @@ from wsrender.documents.orientations import EulerRanges, TiltRanges
 from wsrender.documents.placements import PlacementSpace
 from wsrender.documents.sampling import BoundaryBiased, Sobol
 from wsrender.documents.several_robots import PlacementScan
+from wsrender.documents.target_lists import Criterion, Target, TargetTable
 from wsrender.documents.transform import Transform
 from wsrender.run.from_python import runs
 
@@ -181,7 +182,7 @@ def indices_at(
 @runs("reachability")
 def reachability(
     robot: RobotLike,
-    points_m: Sequence[Sequence[float] | np.ndarray] | np.ndarray,
+    points_m: Sequence[Sequence[float] | np.ndarray] | np.ndarray | None = None,
     quats_wxyz: Sequence[Sequence[float] | np.ndarray] | np.ndarray | None = None,
     *,
     base: str | None = None,
@@ -195,6 +196,8 @@ def reachability(
     seed: int = 0,
     precision: Literal["float32", "float64"] = "float64",
     device: str = "auto",
+    targets: str | Sequence[Target | Mapping[str, Any]] | TargetTable | Mapping[str, Any] | None = None,
+    criteria: Sequence[Criterion | Mapping[str, Any]] = (),
     progress: Progress | bool | None = None,
     threads: int | None = None,
     chunk_size: int | None = None,
@@ -207,7 +210,7 @@ def reachability(
 
     ``robot``: A Robot, what `load_robot` takes, an object with limits and forward_kinematics, or its part of a job
         document.
-    ``points_m``: Positions of the targets in the world frame, rows of x, y, z [m].
+    ``points_m``: Positions of the targets in the world frame, rows of x, y, z [m]; None: targets are given.
     ``quats_wxyz``: Orientations of the targets, a quaternion w, x, y, z for each point; None: any orientation will do.
     ``base``: Body, link or site at which the chain starts; None: the world.
     ``tip``: Site, body or link at the end of the chain; None: the site "tool", or else the only end there is.
@@ -221,6 +224,9 @@ def reachability(
     ``seed``: Seed of the starts.
     ``precision``: Floating-point type of the kernels.
     ``device``: Where the kernels run: "auto" (a GPU if there is one), "cpu", "cuda" or "cuda:N".
+    ``targets``: Instead of points_m and quats_wxyz: targets with names, weights, free axes and tolerances of their own,
+        one by one, or as a table in a file, {"path": "holes.csv"}.
+    ``criteria``: What the targets must fulfil for the result to pass.
     ``progress``: True shows a bar on work of more than a second; or a function (done, total, message).
     ``threads``: Threads of the CPU; None: all cores. They change no bit of the result.
     ``chunk_size``: Samples of a launch; None: by memory. It changes no bit of the result.

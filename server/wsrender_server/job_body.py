@@ -146,6 +146,9 @@ def body_schemas() -> dict[str, Any]:
     options = SubmissionOptions.model_json_schema()["properties"]
     parts["Constraints"]["properties"] |= _added_constraints()
     parts["Constraints"]["additionalProperties"] = False
+    del parts["TargetTable"]["properties"]["path"]
+    _not_null(parts["TargetTable"], "model")
+    parts["TargetTable"]["required"] = ["model"]
     for part in parts.values():
         _tighten(part)
     for model in analyses.values():

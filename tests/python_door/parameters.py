@@ -18,7 +18,7 @@ FIRST = {
     "robot_comparison": ("robots", "sampling"),
 }
 """Parameters before the star; of other analyses those without a default."""
-WIDER = {"mechanism": "str", "scale": "float"}
+WIDER = {"mechanism": "str", "targets": "str", "scale": "float"}
 """What fields take beside their type, by their validators."""
 
 

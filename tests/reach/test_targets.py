@@ -224,3 +224,56 @@ def test_no_targets():
     found = ws.reachable(ws.load_robot("puma560"), np.zeros((0, 3)), device="cpu")
     assert found.configurations.shape == (0, 6)
     assert len(found.labels) == 0
+
+
+def table(folder, text):
+    (folder / "t.csv").write_text(text)
+    return folder / "t.csv"
+
+
+def test_free_axes_of_a_table(tmp_path):
+    """Poses that are turned about an axis of the tip are out of a narrow wrist's reach, but for their free axis."""
+    robot = ws.load_robot("puma560", limits={"joint4": (-1, 1), "joint5": (-1, 1), "joint6": (-0.3, 0.3)})
+    T = forward(robot, 60, seed=4)
+    spin = Rotation.random(60, random_state=2).as_rotvec()[:, :1]
+    for k, axis in enumerate("xyz"):
+        turned = Rotation.from_matrix(T[:, :3, :3]) * Rotation.from_rotvec(spin * np.eye(3)[k])
+        quat = turned.as_quat(scalar_first=True)
+        rows = [",".join(map(repr, [*p.tolist(), *q.tolist()])) for p, q in zip(T[:, :3, 3], quat, strict=True)]
+        text = "\n".join(["x_m,y_m,z_m,qw,qx,qy,qz,free_axis", *(f"{row},{axis}" for row in rows)])
+        found = ws.reachable(robot, table(tmp_path, text), device="cpu")
+        back = robot.forward_kinematics(found.configurations, device="cpu")[:, :3, :3]
+        kept = np.einsum("ni,ni->n", back[:, :, k], turned.as_matrix()[:, :, k])
+        assert (found.labels == "reachable").all() and (np.arccos(np.clip(kept, -1, 1)) < 1e-4).all()
+        assert found.residual_m.max() < 1e-5
+        assert (ws.reachable(robot, T[:, :3, 3], quat, device="cpu").labels == "unreachable").mean() > 0.2
+
+
+def test_rows_of_a_table_keep_their_order_and_their_own_tolerances(tmp_path):
+    robot = ws.load_robot("ur5e")
+    far = robot.chain.center + np.array([robot.chain.reach + 0.01, 0, 0])
+    rows = ["x_m,y_m,z_m,position_tolerance_m,qw,qx,qy,qz"]
+    beyond = ",".join(map(repr, far.tolist()))
+    reach = ws.reachable(robot, [far], device="cpu").residual_m[0]
+    rows += [f"{beyond},,,,,", "0.4,0.2,0.3,,0,1,0,0", f"{beyond},{reach * 1.01},,,,", "0.4,0.2,0.3,,,,,"]
+    found = ws.reachable(robot, table(tmp_path, "\n".join(rows)), device="cpu")
+    assert found.labels.tolist() == ["unreachable", "reachable", "reachable", "reachable"]
+    pose = ws.reachable(robot, [[0.4, 0.2, 0.3]], [[0, 1, 0, 0]], device="cpu")
+    assert np.array_equal(found.configurations[1], pose.configurations[0])
+    with pytest.raises(ws.InputError, match="must not be given beside a table"):
+        ws.reachable(robot, str(tmp_path / "t.csv"), [[1, 0, 0, 0]])
+
+
+def test_millimetres_of_a_table_are_noticed(tmp_path):
+    points = table(tmp_path, "x_m,y_m,z_m\n400,200,300\n300,0,500\n0.1,0,0.2\n")
+    with pytest.raises(ws.InputError, match=r"length_unit_m: half of the targets are .* millimetres\? 0.001 converts"):
+        ws.reachable("ur5e", points, device="cpu")
+    assert ws.reachable("ur5e", ws.TargetTable(points, length_unit_m=0.001), device="cpu").labels[0] == "reachable"
+    as_metres = ws.reachable("ur5e", ws.TargetTable(points, length_unit_m=1), device="cpu")
+    assert as_metres.labels.tolist() == ["unreachable", "unreachable", "reachable"]
+
+
+def test_too_many_kinds_of_targets_are_refused(tmp_path):
+    rows = ["x_m,y_m,z_m,position_tolerance_m", *(f"0.4,0,0.3,{1e-4 + k * 1e-6}" for k in range(101))]
+    with pytest.raises(ws.InputError, match="101 combinations of tolerances and free axes; allowed: 100"):
+        ws.reachable("ur5e", table(tmp_path, "\n".join(rows)), device="cpu")

@@ -31,7 +31,10 @@ SERVER_COMMANDS = ("serve", "worker", "keys", "database", "demo")
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Run the command line; exits with 0, 2 for a wrong input, 1 for any other fault."""
+    """Run the command line; exits with 0, 2 for a wrong input, 1 for any other fault.
+
+    3: the result is there, and what its criteria ask for is not fulfilled, or not decided.
+    """
     arguments = list(sys.argv[1:] if arguments is None else arguments)
     command = next((argument for argument in arguments if not argument.startswith("-")), None)
     command_line(command)(arguments, prog_name="wsrender")

@@ -13,6 +13,7 @@ from wsrender.errors import InputError, MissingExtraError, WsrenderError
 
 WRONG_INPUT = 2
 OTHER_FAULT = 1
+NOT_PASSED = 3
 INTERRUPTED = 130
 
 

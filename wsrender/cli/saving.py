@@ -6,6 +6,7 @@ from typing import Annotated, Any
 import typer
 from rich.console import Console
 
+from wsrender.cli.faults import NOT_PASSED
 from wsrender.errors import InputError
 from wsrender.results.export.formats import asked, check_asked, one_of
 
@@ -23,7 +24,10 @@ def check_output(output: Path, formats: list[str] | None) -> None:
 
 
 def save_and_report(result: Any, output: Path, formats: list[str] | None) -> None:
-    """Save a result; print its summary and the files written."""
+    """Save a result; print its summary and the files written.
+
+    Ends the command with exit code NOT_PASSED where the result has criteria that are not all fulfilled.
+    """
     from wsrender.results.export.artifacts import DOCUMENT
 
     result.save(output, formats=tuple(formats or ()))
@@ -32,6 +36,8 @@ def save_and_report(result: Any, output: Path, formats: list[str] | None) -> Non
     sizes = {each["name"]: each["bytes"] for each in result.document["artifacts"]}
     for name, size in ({DOCUMENT: (output / DOCUMENT).stat().st_size} | sizes).items():
         console.print(f"{output / name}  {_size(size)}")
+    if result.document.get("verdict", "pass") != "pass":
+        raise typer.Exit(NOT_PASSED)
 
 
 def _size(count: float) -> str:

@@ -12,9 +12,10 @@ import httpx2
 from wsrender.client.connection import Connection
 from wsrender.client.job import Job
 from wsrender.client.kinetostatic_stream import KinetostaticStream
-from wsrender.documents.arm import dotted, models_in
+from wsrender.documents.arm import TARGETS, dotted, models_in
 from wsrender.documents.problems import path_text
 from wsrender.documents.shapes import MEDIA_TYPES
+from wsrender.documents.target_lists import TABLE_TYPES
 from wsrender.errors import DocumentError, InputError
 
 PAGE = 100  # jobs in one answer
@@ -68,7 +69,8 @@ class Client:
         """Upload an MJCF or URDF file, or its bytes; the SHA-256 for ``robot: {"model": sha256}``.
 
         Meshes do not travel with it: geometry that needs them is dropped by the server. A mesh (.stl, .obj, .ply) that
-        is a shape by itself is uploaded alike, for ``{"shape": "mesh", "model": sha256}``, as are heights (.npy).
+        is a shape by itself is uploaded alike, for ``{"shape": "mesh", "model": sha256}``, as are heights (.npy) and
+        tables of targets (.csv, .parquet, .npy), for ``"targets": {"model": sha256}``.
         Raises InputError, naming ``field``, where the file cannot be read, ModelError where it is no model.
         """
         text = model if isinstance(model, bytes) else _read(Path(model), field)
@@ -149,6 +151,8 @@ class Client:
         if not isinstance(job, Mapping) and not hasattr(job, "model_dump"):
             raise InputError("job", f"must be a job document (dict) or a typed job, not {type(job).__name__}")
         document = _plain(job)
+        if isinstance(document.get(TARGETS), str):
+            document[TARGETS] = {"path": document[TARGETS]}
         for path, robot in models_in(document):
             if isinstance(robot.get("path"), str):
                 robot["model"] = self.upload_model(robot.pop("path"), dotted(path, "path"))
@@ -186,7 +190,7 @@ def _items(answer: Any) -> list[dict[str, Any]]:
 
 def _media_type(model: str | Path | bytes) -> str:
     ending = "" if isinstance(model, bytes) else Path(model).suffix.lower()
-    return MEDIA_TYPES.get(ending, "application/xml")
+    return (MEDIA_TYPES | TABLE_TYPES).get(ending, "application/xml")
 
 
 def _read(path: Path, field: str) -> bytes:

@@ -9,6 +9,7 @@ from wsrender.documents.document import Document
 from wsrender.documents.quantities import Name
 from wsrender.documents.robot import SOURCES, RobotSpec
 
+TARGETS = "targets"  # the field whose table is a file
 OF_FILES = ("mesh", "convex_mesh", "height_field")  # shapes that a file may say
 ArmPath = tuple[str | int, ...]
 """Keys from a job document to an arm in it; empty: the job itself is one."""
@@ -51,7 +52,9 @@ def models_in(document: Any, path: ArmPath = ()) -> Iterator[tuple[ArmPath, dict
     """(path, part) of everything in a canonical document that a model or a file says: robots, scenes, meshes."""
     items = document.items() if isinstance(document, dict) else enumerate(document)
     for key, value in items:
-        if isinstance(value, dict) and ((key == "robot" and _is_robot(value)) or _names_a_file(value)):
+        if isinstance(value, dict) and (
+            key == TARGETS or (key == "robot" and _is_robot(value)) or _names_a_file(value)
+        ):
             yield (*path, key), value
         if isinstance(value, dict | list):
             yield from models_in(value, (*path, key))

@@ -40,7 +40,7 @@ class Targets(Document):
     def conflicts(self) -> Iterator[tuple[str, str]]:
         """(field, message) of every pair of fields that do not go together."""
         yield from super().conflicts()
-        if self.quats_wxyz is None:
+        if self.quats_wxyz is None or self.points_m is None:  # of jobs that take other targets
             return
         if len(self.quats_wxyz) != len(self.points_m):
             yield "quats_wxyz", f"must have as many rows as points_m, {len(self.points_m)}, not {len(self.quats_wxyz)}"

@@ -1,20 +1,23 @@
 """Whether a robot reaches given targets, with what configuration, or why not."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from os import PathLike, fspath
 from typing import Any
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from wsrender.documents.quantities import argument, positive
-from wsrender.errors import InputError
+from wsrender.documents.target_lists import AXES, TargetTable
+from wsrender.errors import DocumentError, InputError
 from wsrender.pipeline.constraints.constraint import Constraint
 from wsrender.reach.admissible_search import BLOCKED, Admissible, AdmissibleSearch
 from wsrender.reach.admission import Admission
 from wsrender.reach.closed_labels import evidence
 from wsrender.reach.evidence import CLEARLY, LABELS, UNDECIDED, UNREACHABLE
 from wsrender.reach.inverse_solver import InverseSolver, Solutions, closed_form_of
+from wsrender.reach.target_list import TargetList, check_unit, target_list
 from wsrender.robot import as_robot
 from wsrender.robots.kinematics import Kinematics
 from wsrender.tolerances import TOLERANCES
@@ -24,6 +27,8 @@ POSITION_TOLERANCE_M, ANGLE_TOLERANCE_RAD = 1e-5, 1e-5
 JOINT_LIMITS, OUT_OF_REACH = "joint limits", "out of reach"
 TOO_CLOSE, INCONCLUSIVE = "too close to the tolerance", "search not conclusive"
 NAMES = LABELS | {BLOCKED: "blocked"}
+POSITION, POSE = -2, -1  # what a target asks for
+MOST_KINDS = 100  # combinations of tolerances and free axes of a list, each of which sets up a search of its own
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,23 +87,129 @@ def reachable(
     Raises InputError, ModelError.
     """
     subject = as_robot(robot)
+    options = {
+        "characteristic_length_m": characteristic_length_m
+        and argument("characteristic_length_m", positive, characteristic_length_m),
+        "seed": seed,
+        "precision": precision,
+        "device": device,
+        "threads": threads,
+        "constraints": constraints,
+    }
+    tolerances = (
+        argument("position_tolerance_m", positive, position_tolerance_m),
+        argument("angle_tolerance_rad", positive, angle_tolerance_rad),
+    )
+    if isinstance(points, str | PathLike | TargetTable):
+        if orientations is not None:
+            raise InputError("orientations", "must not be given beside a table of targets, which says its own")
+        table = points if isinstance(points, TargetTable) else _table(fspath(points))
+        targets = target_list(table, "points")
+        check_unit(targets, table, subject.chain.center, subject.chain.reach)
+        return reachable_targets(subject.chain, targets, tolerances, progress=progress, **options)
     position = rows_of(points, 3, "points")
     axes = None if orientations is None else rotations(orientations, len(position))
-    position_tolerance_m = argument("position_tolerance_m", positive, position_tolerance_m)
-    check_tolerance(subject.chain, position_tolerance_m, precision)
+    return _decided(subject.chain, position, axes, tolerances, progress=progress, **options)
+
+
+def _table(path: str) -> TargetTable:
+    try:
+        return TargetTable(path)
+    except DocumentError as error:
+        raise InputError("points", f"must be points or a table of targets, which {error.problems[0][1]}") from None
+
+
+def reachable_targets(
+    chain: Kinematics,
+    targets: TargetList,
+    tolerances: tuple[float, float] = (POSITION_TOLERANCE_M, ANGLE_TOLERANCE_RAD),
+    *,
+    progress: Callable[[int], None] | None = None,
+    **options: Any,
+) -> Reachability:
+    """Decide targets of a list, those alike together; ``tolerances`` [m, rad] of those without their own.
+
+    A label depends on its target alone, with the other ``options`` of `reachable`. Raises InputError.
+    """
+    own = np.where(np.isnan(targets.tolerances), tolerances, targets.tolerances)
+    rows = np.column_stack([_asked(targets), own])
+    kinds = rows[:1] if (rows == rows[0]).all() else np.unique(rows, axis=0)
+    if len(kinds) > MOST_KINDS:
+        message = f"have {len(kinds)} combinations of tolerances and free axes; allowed: {MOST_KINDS}"
+        raise InputError("targets", message)
+    parts, order = [], [np.flatnonzero((rows == kind).all(axis=1)) for kind in kinds]
+    for (asks, *tolerance), at in zip(kinds.tolist(), order, strict=True):
+        turned, axes, done = chain, None, sum(map(len, order[: len(parts)]))
+        if asks != POSITION:
+            axes = Rotation.from_quat(targets.quat_wxyz[at], scalar_first=True).as_matrix()
+            if asks != POSE:
+                turned, axes = _with_axis(chain, int(asks)), axes[:, :, int(asks)]
+        tell = None if progress is None else lambda decided, before=done: progress(before + decided)
+        parts.append(_decided(turned, targets.position[at], axes, tolerance, held=chain, progress=tell, **options))
+    if len(parts) == 1:
+        return parts[0]
+    back = np.argsort(np.concatenate(order), kind="stable")
+    columns: dict[str, Any] = {name: [getattr(part, name) for part in parts] for name in vars(parts[0])}
+    known = {name: np.concatenate(values)[back] for name, values in columns.items() if values[0] is not None}
+    return Reachability(**known)
+
+
+def _with_axis(chain: Kinematics, axis: int) -> Kinematics:
+    """The chain with an axis of its tip as z."""
+    turn = np.eye(4)
+    turn[:3, :3] = np.roll(np.eye(3), 2 - axis, axis=1)
+    return chain if axis == 2 else chain.placed(T_tip_tool=chain.T_tip_tool @ turn)
+
+
+def with_margin(chain: Kinematics, margin_rad: float, margin_m: float, field: str) -> Kinematics:
+    """The chain within limits that keep a margin to its own; hinges without limits have none to keep.
+
+    Raises InputError, naming the ``field``, where a joint has no such room.
+    """
+    margin = np.where(chain.periodic, 0.0, np.where(chain.revolute, margin_rad, margin_m))
+    lower, upper = chain.lower_limits + margin, chain.upper_limits - margin
+    if (narrow := (margin > 0) & (lower > upper)).any():
+        k = int(np.argmax(narrow))
+        end, unit = ("joint_margin_deg", "°") if chain.revolute[k] else ("joint_margin_m", " m")
+        most = (chain.upper_limits[k] - chain.lower_limits[k]) / 2
+        most = np.rad2deg(most) if chain.revolute[k] else most
+        raise InputError(f"{field}.{end}", f"must be at most {most:.4g}{unit}: {chain.joint_names[k]} has no more room")
+    return replace(chain, lower_limits=lower, upper_limits=upper) if margin.any() else chain
+
+
+def _decided(
+    chain: Kinematics,
+    position: np.ndarray,
+    axes: np.ndarray | None,
+    tolerances: Sequence[float],
+    *,
+    characteristic_length_m: float | None = None,
+    seed: int = 0,
+    precision: str = "float64",
+    device: str = "auto",
+    threads: int | None = None,
+    progress: Callable[[int], None] | None = None,
+    constraints: Sequence[Constraint] = (),
+    held: Kinematics | None = None,
+) -> Reachability:
+    """Targets of one kind; ``axes``: none, directions (N, 3) of the tip's z, or rotations (N, 3, 3).
+
+    ``held``: the chain that the constraints are about, where it is not the same.
+    """
+    check_tolerance(chain, tolerances[0], precision)
     solver = InverseSolver(
-        subject.chain,
-        kind="position" if axes is None else "pose",
-        position_m=position_tolerance_m,
-        angle_rad=argument("angle_tolerance_rad", positive, angle_tolerance_rad),
-        length_m=characteristic_length_m and argument("characteristic_length_m", positive, characteristic_length_m),
+        chain,
+        kind="position" if axes is None else "axis" if axes.ndim == 2 else "pose",
+        position_m=tolerances[0],
+        angle_rad=tolerances[1],
+        length_m=characteristic_length_m,
         seed=seed,
         precision=precision,
         device=device,
         threads=threads,
     )
     if constraints:
-        search = AdmissibleSearch(solver, Admission(subject.chain, constraints, device, threads))
+        search = AdmissibleSearch(solver, Admission(held or chain, constraints, device, threads))
         found = search.decide(position, axes, progress)
         reasons = admissible_reasons(search, found, position, axes)
     else:
@@ -110,10 +221,21 @@ def reachable(
     return Reachability(found.q, found.distance_m, found.angle_rad, labels, reasons, proven, rejected)
 
 
-def evidence_of(chain: Kinematics, with_orientation: bool) -> str:
-    """What decides targets of a chain: "closed form (…), margin …", and a search where that leaves them open."""
-    form = closed_form_of(chain, "pose" if with_orientation else "position")
-    return evidence(form) if form else "search"
+def evidence_of(chain: Kinematics, targets: TargetList) -> str:
+    """What decides targets: "closed form (…), margin …", and a search where that leaves them open; of each kind."""
+    found = []
+    for asks in np.unique(_asked(targets)).tolist():
+        whole = asks in (POSITION, POSE)
+        kind = "axis" if not whole else "pose" if asks == POSE else "position"
+        form = closed_form_of(chain if whole else _with_axis(chain, asks), kind)
+        found.append(evidence(form) if form else "search")
+    return "; ".join(dict.fromkeys(found))
+
+
+def _asked(targets: TargetList) -> np.ndarray:
+    """What each target asks for, (N,) int64: POSITION, POSE, or the number of the axis of the tip that may turn."""
+    axis = sum(k * (targets.free_axis == name) for k, name in enumerate(AXES))
+    return np.where(targets.oriented, np.where(targets.free_axis == "", POSE, axis), POSITION)
 
 
 def check_tolerance(chain: Kinematics, position_tolerance_m: float, precision: str) -> None:

@@ -9,6 +9,7 @@ from pydantic import Field
 from wsrender.analyses.jobs import job_schema
 from wsrender.analyses.registry import job_classes
 from wsrender.documents.shapes import MEDIA_TYPES
+from wsrender.documents.target_lists import TABLE_TYPES
 from wsrender.robots import library
 from wsrender_server.admission import check_model, decoded_model
 from wsrender_server.auth import Reader, Submitter
@@ -18,7 +19,7 @@ from wsrender_server.routes.files import has_it
 from wsrender_server.routes.job_views import Page, View
 
 XML_TYPES = ("application/xml", "text/xml")
-SHAPE_TYPES = tuple(MEDIA_TYPES.values())
+FILE_TYPES = tuple(dict.fromkeys([*MEDIA_TYPES.values(), *TABLE_TYPES.values()]))
 
 router = APIRouter(prefix="/v1")
 
@@ -102,8 +103,8 @@ def list_robots(principal: Reader) -> Page[RobotView]:
 
 async def _uploaded_body(request: Request) -> tuple[str, bytes]:
     media_type = request.headers.get("content-type", "").partition(";")[0].strip().lower()
-    if media_type not in XML_TYPES + SHAPE_TYPES:
-        allowed = ", ".join(("application/xml", *SHAPE_TYPES))
+    if media_type not in XML_TYPES + FILE_TYPES:
+        allowed = ", ".join(("application/xml", *FILE_TYPES))
         raise HttpProblem(415, f"the body must be {allowed}, not {media_type or 'of no type'}")
     return media_type, await request.body()
 
@@ -113,14 +114,14 @@ _MODEL_BODY = {
         "required": True,
         "content": {
             "application/xml": {"schema": {"type": "string"}, "example": "<mujoco><worldbody/></mujoco>"},
-            **{media_type: {"schema": {"type": "string", "format": "binary"}} for media_type in SHAPE_TYPES},
+            **{media_type: {"schema": {"type": "string", "format": "binary"}} for media_type in FILE_TYPES},
         },
     }
 }
 
 
 @router.post(
-    "/models", tags=["models"], summary="Upload a model or a mesh", status_code=201, response_model=ModelView,
+    "/models", tags=["models"], summary="Upload a model, a mesh or a table", status_code=201, response_model=ModelView,
     responses={
         201: {
             "headers": {"Location": {"description": "The model.", "schema": {"type": "string"}}},
@@ -138,8 +139,9 @@ def upload_model(
 ) -> ModelView:
     """MJCF or URDF text, root element `<mujoco>` or `<robot>`, without document types, entities or outside files.
 
-    Or an STL, OBJ or PLY mesh, for `{"shape": "mesh", "model": sha256}`, or heights in an NPY file, for a
-    `height_field`. Each is read by the jobs that name it; meshes of a model do not travel with it.
+    Or an STL, OBJ or PLY mesh, for `{"shape": "mesh", "model": sha256}`, heights in an NPY file, for a `height_field`,
+    or a table of targets, CSV, Parquet or NPY, for `"targets": {"model": sha256}`. Each is read by the jobs that name
+    it; meshes of a model do not travel with it.
     """
     media_type, text = body
     if media_type in XML_TYPES:

@@ -221,6 +221,19 @@ def test_files_of_what_stands_around_are_uploaded(server, client, tmp_path):
     assert not list(local_paths(sent))
 
 
+@pytest.mark.parametrize("given", [str, ws.TargetTable, lambda path: {"path": str(path)}])
+def test_tables_of_targets_are_uploaded(given, server, client, tmp_path):
+    table = tmp_path / "holes.csv"
+    table.write_text("x_m,y_m,z_m\n0,0,0\n")
+    server.answer("POST", "/v1/models", says({"sha256": "ab" * 32}, 201))
+    server.answer("POST", "/v1/jobs", says(JOB, 202))
+    client.submit({"analysis": "reachability", "robot": "ur5e", "targets": given(table)})
+    upload, submission = server.requests
+    assert (upload.content, upload.headers["content-type"]) == (table.read_bytes(), "text/csv")
+    sent = json.loads(submission.content)
+    assert sent["targets"]["model"] == "ab" * 32 and not list(local_paths(sent))
+
+
 def test_files_of_several_robots_are_uploaded(server, client, tmp_path):
     """Wherever in the document they are; the document that was given stays as it is."""
     arms = [tmp_path / f"{name}.urdf" for name in ("left", "right")]

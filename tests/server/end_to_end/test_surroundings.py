@@ -1,5 +1,7 @@
 """Scenes, robots and meshes in files that a client uploads: the server counts what a local run counts."""
 
+import hashlib
+
 import numpy as np
 import trimesh
 
@@ -10,6 +12,22 @@ CELL = """<mujoco><worldbody><geom name="floor" type="plane" size="1 1 1" pos="0
 <geom name="wall" type="box" size=".02 1 1" pos="-.5 0 0"/></worldbody></mujoco>"""
 PENDULUM = """<mujoco><worldbody><body><joint name="a" axis="0 1 0" range="-90 90"/>
 <geom type="capsule" size=".05" fromto="0 0 0 0 0 .4"/></body></worldbody></mujoco>"""
+
+
+def test_a_table_of_targets_travels(client, tmp_path):
+    """Labels, names and verdict are those of a local run, in as many shards as the server makes."""
+    table = tmp_path / "holes.csv"
+    table.write_text("name,x_m,y_m,z_m,weight\na,0.4,0.2,0.3,3\nb,2,0,0,1\n")
+    document = {"analysis": "reachability", "robot": "ur5e", "targets": {"path": str(table)}, "device": "cpu"}
+    document["criteria"] = [{"least_share": 0.75, "joint_margin_deg": 5}, {"least_share": 0.8}]
+    local = ws.execute(document)
+    result = client.submit(document).wait(timeout=PATIENCE_S).result()
+    assert result.document["criteria"] == local.document["criteria"]
+    assert result.document["verdict"] == local.document["verdict"] == "fail"
+    sha256 = hashlib.sha256(table.read_bytes()).hexdigest()
+    assert result.document["provenance"]["targets_sha256"] == sha256
+    assert result.tables["targets"]["name"].tolist() == ["a", "b"]
+    assert np.array_equal(result.tables["targets"]["q_joint1"], local.tables["targets"]["q_joint1"])
 
 
 def test_files_of_what_stands_around_travel(client, tmp_path):

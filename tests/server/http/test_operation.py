@@ -5,15 +5,19 @@ import re
 import sqlite3
 from contextlib import closing
 
+import numpy as np
+import pyarrow as pa
 import pytest
 import structlog
 import trimesh
+from pyarrow import parquet
 from wsrender_server.jobs.faults import DiskFull, StoreUnavailable
 
 from tests.server.http.idle_server import DOCUMENT, problem_of
 from wsrender import __version__
 from wsrender.analyses.jobs import job_schema
 from wsrender.analyses.registry import job_classes
+from wsrender.documents.target_lists import TABLE_TYPES
 from wsrender.robots import library
 
 MODEL = {"content": "<mujoco/>", "headers": {"Content-Type": "application/xml"}}
@@ -223,6 +227,37 @@ def test_meshes_are_read_where_jobs_are_planned(client):
     (error,) = problem_of(found[1], 409, "invalid_input")["errors"]
     assert error["pointer"] == "#/environment/items/0/model" and "cannot be read as a mesh" in error["detail"]
     problem_of(client.post("/v1/models", content=b"", headers={"Content-Type": "model/stl"}), 409, "invalid_model")
+
+
+@pytest.mark.parametrize(("ending", "media_type"), TABLE_TYPES.items())
+def test_tables_of_targets(client, ending, media_type, tmp_path):
+    """Read where jobs are planned; what is wrong with one is said by row and column, and none is opened by its path."""
+    path = tmp_path / f"t{ending}"
+    if ending == ".npy":
+        np.save(path, [[0.4, 0.2, 0.3], [0, np.nan, 0]])
+    elif ending == ".csv":
+        path.write_text("x_m,y_m,z_m\n0.4,0.2,0.3\n0,nan,0\n")
+    else:
+        parquet.write_table(pa.table({"x_m": [0.4, 0], "y_m": [0.2, np.nan], "z_m": [0.3, 0]}), path)
+    document = {"analysis": "reachability", "robot": "ur5e"}
+    wrong, right = path.read_bytes(), b"x_m,y_m,z_m,name\n0.4,0.2,0.3,a\n"
+    found = []
+    for content, kind in ((right, "text/csv"), (wrong, media_type)):
+        answer = client.post("/v1/models", content=content, headers={"Content-Type": kind})
+        assert answer.status_code == 201, answer.text
+        job = document | {"targets": {"model": answer.json()["sha256"]}, "criteria": [{"least_share": 0.5}]}
+        found.append(client.post("/v1/jobs:validate", json=job))
+        while found[-1].json().get("code") == "planning":
+            found[-1] = client.post("/v1/jobs:validate", json=job)
+    assert found[0].status_code == 200 and found[0].json()["samples"] == 1, found[0].text
+    (error,) = problem_of(found[1], 409, "invalid_input")["errors"]
+    assert error["pointer"] == "#/targets/model"
+    assert "row 2, column y_m: must be a finite number" in error["detail"]
+    local = client.post("/v1/jobs", json=document | {"targets": {"path": str(path)}})
+    (error,) = problem_of(local, 422, "invalid_document")["errors"]
+    assert error["pointer"] == "#/targets/path" and "is for local runs only" in error["detail"]
+    unknown = client.post("/v1/jobs", json=document | {"targets": {"model": "0" * 64}})
+    assert problem_of(unknown, 404, "model_not_found")["errors"][0]["pointer"] == "#/targets/model"
 
 
 def _raises(error):

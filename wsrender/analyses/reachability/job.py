@@ -5,10 +5,10 @@ from typing import Literal
 from wsrender.documents.arm import Arm
 from wsrender.documents.constraints import Constrained
 from wsrender.documents.format import JobDocument
-from wsrender.documents.targets import Targets
+from wsrender.documents.target_lists import ListedTargets
 
 
-class ReachabilityJob(Targets, Constrained, Arm, JobDocument):
+class ReachabilityJob(ListedTargets, Constrained, Arm, JobDocument):
     """Which of given targets a robot reaches within its joint limits, by inverse kinematics from many starts.
 
     Under constraints a target is reachable where a configuration is admitted, and blocked where all were rejected.

@@ -41,7 +41,8 @@ def labelled_targets(
     arms = np.empty((0, 2, 3)) if skeleton is None else np.asarray(skeleton, float)[:1]
     figure, view = new_view(np.concatenate([position, arms.reshape(-1, 3)]), title, frame)
     if "quat_wxyz" in targets.columns and len(targets) <= _AXES:
-        _draw_axes(view, position, targets["quat_wxyz"])
+        oriented = np.isfinite(targets["quat_wxyz"]).all(axis=1)
+        _draw_axes(view, position[oriented], targets["quat_wxyz"][oriented])
     for arm in arms:
         draw_arm(view, arm)
     handles = arm_handles() if len(arms) else []

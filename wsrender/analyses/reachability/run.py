@@ -1,6 +1,8 @@
 """The analysis ``reachability``: labels, configurations and residuals of given targets."""
 
+import math
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -21,10 +23,13 @@ from wsrender.analyses.estimate import RATE_CPU_CORE
 from wsrender.analyses.execution import Execution
 from wsrender.analyses.partial_result import PartialResult, joined_rows, rows_of_shard
 from wsrender.analyses.reachability.job import ReachabilityJob
+from wsrender.documents.target_lists import TargetTable
 from wsrender.pipeline.constraints.constraint import Constraint
 from wsrender.reach.inverse_solver import solved_bytes
-from wsrender.reach.targets import check_tolerance, evidence_of, reachable
+from wsrender.reach.target_list import TargetList, check_unit, listed_targets, target_list
+from wsrender.reach.targets import Reachability, check_tolerance, evidence_of, reachable_targets, with_margin
 from wsrender.robot.constraints import constraints_of_job
+from wsrender.robots.kinematics import Kinematics
 from wsrender.volume.table import Table
 
 POSES_PER_S = 1.2e4  # of one core, where many are unreachable
@@ -32,6 +37,9 @@ TABLE_BYTES = 60  # of a target in the table beside its configuration
 LABEL_BYTES = 220  # of a target: its label and reason as text, residuals, and copies
 LABELS = ("reachable", "blocked", "unreachable", "undecided")
 DRAWN = 3  # configurations in the picture of the robot
+FAIL, UNDECIDED, PASS = "fail", "undecided", "pass"
+VERDICTS = (FAIL, UNDECIDED, PASS)  # the first that a criterion has is the job's
+ROUNDING = 1e-12  # relative, of a share's sums of weights
 
 
 class ReachabilityAnalysis(Analysis):
@@ -41,40 +49,83 @@ class ReachabilityAnalysis(Analysis):
     job: ReachabilityJob
 
     def prepare(self, device: str, target: str) -> Settled:
-        """Raises InputError for a tolerance below what is computed."""
+        """Raises InputError for a tolerance below what is computed, a table that cannot be read, and no room."""
         check_tolerance(self.robot.chain, self.job.position_tolerance_m, self.job.precision)
-        _ = self.constraints
-        return Settled(device, target, ((0, len(self.job.points_m)),), shard_unit=1)
+        _ = self.constraints, self.margins
+        return Settled(device, target, ((0, len(self.targets)),), shard_unit=1)
 
     @cached_property
     def constraints(self) -> tuple[Constraint, ...]:
         """What configurations must satisfy; raises InputError."""
         return constraints_of_job(self.job, self.robot)
 
+    @cached_property
+    def targets(self) -> TargetList:
+        """The targets; raises InputError for a table that cannot be read."""
+        job = self.job
+        if job.targets is None:
+            quats = None if job.quats_wxyz is None else np.array(job.quats_wxyz)
+            return listed_targets(np.array(job.points_m), quats)
+        found = target_list(job.targets)
+        if isinstance(job.targets, TargetTable):
+            check_unit(found, job.targets, self.robot.chain.center, self.robot.chain.reach)
+        return found
+
+    @cached_property
+    def margins(self) -> dict[int, Kinematics]:
+        """The arm within the limits of each criterion, by number, that asks for a margin; raises InputError."""
+        chains = {
+            k: with_margin(self.robot.chain, np.deg2rad(each.joint_margin_deg), each.joint_margin_m, f"criteria.{k}")
+            for k, each in enumerate(self.job.criteria)
+        }
+        return {k: chain for k, chain in chains.items() if chain is not self.robot.chain}
+
     @property
     def cost(self) -> Cost:
         """Targets, what is known of each, and the table."""
-        count, n, listed = len(self.job.points_m), self.robot.chain.n, 3 if self.job.quats_wxyz is None else 7
+        count, n, oriented = len(self.targets), self.robot.chain.n, bool(self.targets.oriented.any())
+        width = 7 if oriented else 3
+        listed = width if self.targets.sha256 is None else 0
         drawn, seconds = pictures_cost("targets", "robot")
-        files = DOCUMENT_BYTES + drawn + (TABLE_BYTES + 8 * (n + listed - 3) + LISTED_BYTES * listed) * count
-        kind = "position" if self.job.quats_wxyz is None else "pose"
+        files = DOCUMENT_BYTES + drawn + (TABLE_BYTES + 8 * (n + width - 3) + LISTED_BYTES * listed) * count
+        kind = "pose" if oriented else "position"
         solved = solved_bytes(count, kind, self.robot.chain, self.job.precision) + 16 * n * count
-        memory = (8 + LISTED_MEMORY) * listed * count + max(solved, (LABEL_BYTES + 16 * n) * count)
-        seconds += count / (DECIDED_PER_S if listed == 3 else POSES_PER_S) + files / WRITTEN_PER_S
+        memory = (8 * width + LISTED_MEMORY * listed) * count + max(solved, (LABEL_BYTES + 16 * n) * count)
+        each = count / (POSES_PER_S if oriented else DECIDED_PER_S)
         if self.constraints:
-            memory, seconds = memory + SEARCHED_BYTES, seconds + count / SEARCHED_PER_S
+            memory, each = memory + SEARCHED_BYTES, each + count / SEARCHED_PER_S
+        seconds += each * (1 + len(self.margins)) + files / WRITTEN_PER_S
         return Cost(count, memory, files, seconds, Asks("points_m", "take fewer"))
 
     def compute(self, shard: int, execution: Execution, tell: Tell) -> PartialResult:
-        """The shard's targets decided: arrays of `Reachability` by name."""
-        job, (first, count) = self.job, self.shards[shard]
-        own = slice(first, first + count)
-        found = reachable(
-            self.robot,
-            job.points_m[own],
-            None if job.quats_wxyz is None else job.quats_wxyz[own],
-            position_tolerance_m=job.position_tolerance_m,
-            angle_tolerance_rad=job.angle_tolerance_rad,
+        """The shard's targets decided: arrays of `Reachability` by name, and labels by criterion that has a margin.
+
+        Of targets that are reached with a margin, the configuration found keeps that of the last such criterion.
+        """
+        first, count = self.shards[shard]
+        targets = self.targets.part(slice(first, first + count))
+        found = self._decided(self.robot.chain, targets, execution, tell)
+        rows = {name: value for name, value in vars(found).items() if value is not None}
+        labels = {}
+        for k, chain in self.margins.items():
+            at = np.flatnonzero(np.isin(found.labels, ("reachable", "undecided")))
+            inner = self._decided(chain, targets.part(at), execution)
+            labels[f"criterion_{k + 1}"] = found.labels.copy()
+            labels[f"criterion_{k + 1}"][at] = inner.labels
+            kept = inner.labels == "reachable"
+            rows["labels"][at[kept]], rows["reasons"][at[kept]] = "reachable", ""  # whatever was undecided
+            for name in ("configurations", "residual_m", "residual_rad"):
+                rows[name][at[kept]] = getattr(inner, name)[kept]
+        return rows_of_shard(first, rows | labels)
+
+    def _decided(
+        self, chain: Kinematics, targets: TargetList, execution: Execution, tell: Tell | None = None
+    ) -> Reachability:
+        job = self.job
+        return reachable_targets(
+            chain,
+            targets,
+            (job.position_tolerance_m, job.angle_tolerance_rad),
             characteristic_length_m=job.characteristic_length_m,
             seed=job.seed,
             precision=job.precision,
@@ -83,7 +134,6 @@ class ReachabilityAnalysis(Analysis):
             progress=tell,
             constraints=self.constraints,
         )
-        return rows_of_shard(first, {name: rows for name, rows in vars(found).items() if rows is not None})
 
     def merge(self, a: PartialResult, b: PartialResult) -> PartialResult:
         """The targets of both, in the order asked."""
@@ -99,18 +149,45 @@ class ReachabilityAnalysis(Analysis):
             **{name: int((labels == name).sum()) for name in names},
             "reasons": {str(name): int((reasons == name).sum()) for name in np.unique(reasons) if name},
             "proven": int(partial["proven"].sum()),
-            "evidence": evidence_of(self.robot.chain, self.job.quats_wxyz is not None),
+            "evidence": evidence_of(self.robot.chain, self.targets),
             "largest_residual_of_reachable_m": float(partial["residual_m"][reached].max(initial=0.0)),
             "largest_residual_of_reachable_rad": float(partial["residual_rad"][reached].max(initial=0.0)),
         }
+        if self.job.targets is not None:
+            weight = self.targets.weight
+            counts["share"] = {name: share_of(weight, labels == name) for name in names}
         q = partial["configurations"][reached][:DRAWN]
         skeleton = self.robot.skeleton(q) if len(q) else None
-        return Draft({"targets": counts}, tables={"targets": self._table(partial)}, skeleton=skeleton)
+        origin = {} if self.targets.sha256 is None else {"targets_sha256": self.targets.sha256}
+        entries = {"targets": counts, **self._verdicts(partial)}
+        return Draft(entries, provenance=origin, tables={"targets": self._table(partial)}, skeleton=skeleton)
+
+    def _verdicts(self, partial: PartialResult) -> dict[str, Any]:
+        """The entries ``criteria`` and ``verdict`` of a job with criteria."""
+        weight, entries = self.targets.weight, []
+        for k, each in enumerate(self.job.criteria):
+            labels = partial[f"criterion_{k + 1}"] if k in self.margins else partial["labels"]
+            reached, open_ = labels == "reachable", labels == "undecided"
+            entries.append(
+                each.model_dump()
+                | {
+                    "reached": int(reached.sum()),
+                    "share": share_of(weight, reached),
+                    "undecided_share": share_of(weight, open_),
+                    "verdict": verdict(each.least_share, weight, reached, open_),
+                }
+            )
+        found = {entry["verdict"] for entry in entries}
+        return {"criteria": entries, "verdict": next(v for v in VERDICTS if v in found)} if entries else {}
 
     def _table(self, partial: PartialResult) -> Table:
-        columns = {"position": np.array(self.job.points_m)}
-        if self.job.quats_wxyz is not None:
-            columns["quat_wxyz"] = np.array(self.job.quats_wxyz)
+        targets = self.targets
+        columns = {"position": targets.position}
+        if targets.oriented.any():
+            columns["quat_wxyz"] = targets.quat_wxyz
+        if self.job.targets is not None:
+            columns = {"name": targets.name, "weight": targets.weight, **columns}
+            columns |= {"free_axis": targets.free_axis} if (targets.free_axis != "").any() else {}
         columns |= {
             "label": partial["labels"],
             "reason": partial["reasons"],
@@ -121,6 +198,7 @@ class ReachabilityAnalysis(Analysis):
         if self.constraints:
             rejected = partial["rejected"].T
             columns |= {f"rejected_{each.name}": row for each, row in zip(self.constraints, rejected, strict=True)}
+        columns |= {f"criterion_{k + 1}": partial[f"criterion_{k + 1}"] for k in self.margins}
         chain = self.robot.chain
         for name, values in zip(chain.joint_names, partial["configurations"].T, strict=True):
             columns[f"q_{name}"] = values
@@ -128,3 +206,14 @@ class ReachabilityAnalysis(Analysis):
         kinds = zip(chain.joint_names, chain.revolute, strict=True)
         units |= {f"q_{name}": "rad" if revolute else "m" for name, revolute in kinds}
         return Table(columns, units)
+
+
+def share_of(weight: np.ndarray, which: np.ndarray) -> float:
+    """Share of the weight (N,) that some (N,) bool have, its sums exact."""
+    return math.fsum(weight[which]) / math.fsum(weight)
+
+
+def verdict(least: float, weight: np.ndarray, reached: np.ndarray, undecided: np.ndarray) -> str:
+    """What targets of a weight (N,) say of a least share: "pass", "fail", or "undecided" where undecided ones count."""
+    enough = [share_of(weight, which) >= least * (1 - ROUNDING) for which in (reached, reached | undecided)]
+    return PASS if enough[0] else UNDECIDED if enough[1] else FAIL
