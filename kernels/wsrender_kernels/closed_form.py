@@ -120,13 +120,35 @@ def closed_form_kernel(shape: ClosedFormShape, cuda: bool) -> wp.Kernel:
 def body(shape: ClosedFormShape) -> str:
     """C++ of one task."""
     arm = {"nested": _nested, "general": _general, "parallel": _three_parallel}[shape.arm](shape)
-    real = "float" if shape.real is wp.float32 else "double"
+    return f"""{closed_form_prelude(shape.real)}#ifndef __CUDA_ARCH__
+    #pragma clang loop vectorize(assume_safety) interleave_count(1)
+    for (int lane = 0; lane < {LANES}; lane++) {{
+        const int at = task * {LANES} + lane;
+    #else
+    {{
+        const int at = task;
+    #endif
+        int found = 0, flag = 0, branch = 0, n1 = 1, n2 = 1, n3 = 1, n4 = 1, n5 = 1, n6 = 1;
+        real best = -4;
+        {target_in_frame()}
+        const real squared = px * px + py * py + pz * pz, around = px * px + py * py;
+        {arm}
+        postures.data[at] = found;
+        slack.data[at] = best;
+        flags.data[at] = flag;
+    }}
+    """
+
+
+def closed_form_prelude(precision: type) -> str:
+    """What the body of a task begins with: numbers of the arm by name, and slacks of joints."""
+    real = "float" if precision is wp.float32 else "double"
     names = "\n".join(f"const real {name} = numbers.data[{k}];" for k, name in enumerate(FIELDS) if not _of_arc(name))
     first_arc = FIELDS.index(f"{ARC[0]}1")
     return f"""
     typedef {real} real;
     const real ONE = 1, ZERO = 0, TINY = {"1e-30f" if real == "float" else "1e-200"};
-    const real margin = {MARGIN[shape.real]}, singular = {SINGULAR[shape.real]};
+    const real margin = {MARGIN[precision]}, singular = {SINGULAR[precision]};
     #define LARGER(a, b) ((a) > (b) ? (a) : (b))
     #define SMALLER(a, b) ((a) < (b) ? (a) : (b))
     #define SIZE(a) ((a) < ZERO ? -(a) : (a))
@@ -154,23 +176,6 @@ def body(shape: ClosedFormShape) -> str:
         n = slack >= -margin ? 1 : 0;
         return slack;
     }};
-    #ifndef __CUDA_ARCH__
-    #pragma clang loop vectorize(assume_safety) interleave_count(1)
-    for (int lane = 0; lane < {LANES}; lane++) {{
-        const int at = task * {LANES} + lane;
-    #else
-    {{
-        const int at = task;
-    #endif
-        int found = 0, flag = 0, branch = 0, n1 = 1, n2 = 1, n3 = 1, n4 = 1, n5 = 1, n6 = 1;
-        real best = -4;
-        {_target()}
-        const real squared = px * px + py * py + pz * pz, around = px * px + py * py;
-        {arm}
-        postures.data[at] = found;
-        slack.data[at] = best;
-        flags.data[at] = flag;
-    }}
     """
 
 
@@ -178,7 +183,7 @@ def _of_arc(name: str) -> bool:
     return name.rstrip("12345678") in ARC
 
 
-def _target() -> str:
+def target_in_frame() -> str:
     """The rotation A and the centre p of the last axes, in the frame of axis 1."""
     lines = [f"const real t{k} = targets.data[{k} * count + at];" for k in range(TARGET_ROWS)]
     for r in range(3):
@@ -359,10 +364,10 @@ def _posture(shape: ClosedFormShape) -> str:
     stored = ["stored_c1", "stored_s1", "stored_c2", "stored_s2", "stored_c3", "stored_s3"]
     stored += ["(family ? sign * m0 : c4)", "(family ? sign * m1 : s4)", "c5", "s5"]
     stored += ["(family ? (v2 > ZERO ? 4 : -4) : c6)", "(family ? ZERO : s6)", "(first_of_family ? plain : real(-4))"]
-    return "\n".join(lines) + _wrist(last + _store(shape, stored))
+    return "\n".join(lines) + wrist_postures(last + _store(shape, stored))
 
 
-def _wrist(last: str) -> str:
+def wrist_postures(last: str) -> str:
     """Both postures of a wrist: v is the column of axis 6, m that of x, seen from the link before it; then ``last``."""
     text = """
         // Rz(q4) Rx(alpha4) Rz(q5) Rx(alpha5) Rz(q6): its last column tells q5, then q4; the first q6.
@@ -442,7 +447,7 @@ def _three_parallel(shape: ClosedFormShape) -> str:
         }
     """
     stored = ["stored_c1", "stored_s1", "c2", "s2", "c3", "s3", "c4_", "s4_", "c5", "s5", "c6", "s6", "plain"]
-    return head + _wrist(last.replace("STORE", _store(shape, stored))) + "}"
+    return head + wrist_postures(last.replace("STORE", _store(shape, stored))) + "}"
 
 
 def _general(shape: ClosedFormShape) -> str:

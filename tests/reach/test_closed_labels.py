@@ -144,4 +144,6 @@ def test_constraints_that_see_turns_leave_proofs_to_none():
 def test_evidence_names_the_closed_form():
     assert evidence_of(ws.load_robot("ur5e").chain, True) == "closed form (three parallel axes), margin 1e-7"
     assert evidence_of(ws.load_robot("ur5e").chain, False) == "search"
-    assert evidence_of(ws.load_robot("franka_panda").chain, True) == "search"
+    searched = "ball search along joint 7 over a closed form (spherical shoulder, axes 6 and 5 intersecting)"
+    assert evidence_of(ws.load_robot("franka_panda").chain, True) == f"{searched}, margin 1e-7"
+    assert evidence_of(ws.load_robot("franka_panda").chain, False) == "search"

@@ -19,16 +19,17 @@ from tests.reference.arms_by_axes import (
     reversed_chain,
     slid_along_axes,
 )
-from wsrender.robots.closed_form import ClosedForm
+from tests.reference.redundant_arms import redundant_arm
+from wsrender.robots.closed_form import ClosedForm, FreeJointForm
 
 LIBRARY = {
     "articulated": "spherical wrist, axes 1 and 2 intersecting",
     "cartesian": "spherical wrist, PPP arm",
     "cylindrical": "spherical wrist, RPP arm",
     "dvrk_mtm": "spherical wrist, axes 1 and 2 intersecting",
-    "franka_panda": None,
+    "franka_panda": "ball search along joint 7 over a closed form (spherical shoulder, axes 6 and 5 intersecting)",
     "gao_6r": "spherical wrist, axes 2 and 3 parallel",
-    "kuka_iiwa14": None,
+    "kuka_iiwa14": "ball search along joint 7 over a closed form (spherical shoulder, axes 6 and 5 intersecting)",
     "phantom_omni": "spherical wrist, axes 1 and 2 intersecting",
     "puma560": "spherical wrist, axes 1 and 2 intersecting",
     "scara": "shoulder of one axis, RPR arm",  # its slide lies across, not along, the hinges before it
@@ -128,7 +129,7 @@ def test_a_hinge_and_a_slide_along_it_move_the_same_way_in_either_order():
 
 def test_held_joints_are_left_out():
     seven = ws.load_robot("kuka_iiwa14")
-    assert seven.closed_form is None
+    assert ClosedForm.of(seven.chain) is None
     assert seven.held({seven.joint_names[2]: 0.4}).closed_form == "spherical wrist, axes 1 and 2 intersecting"
     assert seven.held({seven.joint_names[6]: 0.4}).closed_form is not None
     assert ws.load_robot("ur5e").held({"wrist_3_joint": 1.0}).closed_form == "three parallel axes"
@@ -151,3 +152,27 @@ def test_coupled_joints_and_arms_of_other_kinds_have_none():
     chain = ws.load_robot("ur5e").chain
     assert class_of(replace(chain, joint_scale=np.array([1.0, 1, 1, 1, 1, 2]))) is None
     assert class_of(replace(chain, joint_source=np.array([0, 1, 2, 3, 4, 4]))) is None
+
+
+def along(chain, kind="pose"):
+    form = FreeJointForm.of(chain, kind)
+    return form and form.name.removeprefix("ball search along ")
+
+
+def test_searches_along_a_free_joint():
+    """At either end, before two joints related so that one equation holds the third alone, and an orthogonal wrist."""
+    for kind, told in zip(RELATIONS[:2], ("intersecting", "parallel"), strict=True):
+        arm = redundant_arm(kind, 1)
+        assert along(arm) == f"joint 1 over a closed form (spherical wrist, axes 2 and 3 {told})"
+        assert along(reversed_chain(arm)) == f"joint 7 over a closed form (spherical shoulder, axes 6 and 5 {told})"
+        assert along(shifted(arm, 5, 4e-6, beside=6)) is None
+        assert along(tilted(arm, 5, 1e-6)) is None
+        assert along(replace(arm, joint_scale=np.array([1.0, 1, 1, 1, 1, 1, 2]))) is None
+        assert along(replace(arm, joint_is_revolute=np.arange(7) > 0)) is None
+    for kind in RELATIONS[2:]:
+        assert along(redundant_arm(kind, 1)) is None
+    panda = ws.load_robot("franka_panda")
+    assert along(panda.held({panda.joint_names[1]: 0.4}).chain) is None
+    assert along(ws.load_robot("ur5e").chain) is None
+    joint = along(replace(panda.held({panda.joint_names[6]: 0.4}).chain), "axis")
+    assert joint == "the turn about the tip's axis over a closed form (spherical shoulder, axes 6 and 5 intersecting)"

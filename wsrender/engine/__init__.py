@@ -3,6 +3,7 @@
 from wsrender.engine.closed_form import CLOSED_MARGIN, ClosedPostures, closed_postures, placed_slacks
 from wsrender.engine.devices import devices_of, target_of, thread_count
 from wsrender.engine.drawn_configurations import configurations
+from wsrender.engine.free_joint import search_free_joint
 from wsrender.engine.index_units import units_of
 from wsrender.engine.inverse import Accuracy, Tries, solve_inverse, try_bytes
 from wsrender.engine.kinematics import EvaluatedKinematics, evaluate_kinematics, evaluate_poses
@@ -45,6 +46,7 @@ __all__ = [
     "placed_slacks",
     "poses_reached",
     "sampled_positions",
+    "search_free_joint",
     "solve_inverse",
     "sweep",
     "target_of",

@@ -27,6 +27,7 @@ from wsrender.pipeline.pipeline import tip_pipeline
 from wsrender.reach.admission import Admission
 from wsrender.reach.closed_labels import ClosedLabels
 from wsrender.reach.evidence import REACHABLE, UNDECIDED
+from wsrender.reach.free_joint_labels import FreeJointLabels
 from wsrender.reach.inverse_solver import BATCH, MOST_TRIES, VERIFIED, InverseSolver, parts_of
 from wsrender.reach.starts import EPS, inwards, towards_limits
 
@@ -165,7 +166,7 @@ class AdmissibleSearch:
     def _all_postures(
         self,
         found: Admissible,
-        closed: ClosedLabels,
+        closed: ClosedLabels | FreeJointLabels,
         at: np.ndarray,
         position: np.ndarray,
         orientation: np.ndarray | None,

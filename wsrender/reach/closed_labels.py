@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from wsrender.engine import CLOSED_MARGIN, Accuracy, ClosedPostures, closed_postures
-from wsrender.robots.closed_form import ClosedForm
+from wsrender.robots.closed_form import ClosedForm, FreeJointForm
 from wsrender.robots.kinematics import Kinematics
 
 TOLERANCES = 10  # a target within so many tolerances of one whose label is another's is left to a search
@@ -58,17 +58,23 @@ class ClosedLabels:
     def _found(
         self, position: np.ndarray, orientation: np.ndarray | None, *, keep: bool = False, unlimited: bool = False
     ) -> ClosedPostures:
-        T = np.tile(np.eye(4), (len(position), 1, 1))
-        T[:, :3, 3] = position
-        if orientation is not None:
-            T[:, :3, :3] = orientation if orientation.ndim == 3 else _with_z(orientation)
-        device, threads = self.device, self.threads
+        T, device, threads = poses_of(position, orientation), self.device, self.threads
         return closed_postures(self.form, T, keep=keep, unlimited=unlimited, device=device, threads=threads)
 
 
-def evidence(form: ClosedForm) -> str:
+def evidence(form: ClosedForm | FreeJointForm) -> str:
     """What decides, as results say it."""
-    return f"closed form ({form.name}), margin {CLOSED_MARGIN:.0e}".replace("e-0", "e-")
+    name = f"closed form ({form.name})" if isinstance(form, ClosedForm) else form.name
+    return f"{name}, margin {CLOSED_MARGIN:.0e}".replace("e-0", "e-")
+
+
+def poses_of(position: np.ndarray, orientation: np.ndarray | None) -> np.ndarray:
+    """Poses (N, 4, 4) of targets (N, 3) [m]: any that have the directions (N, 3) of z or the rotations (N, 3, 3)."""
+    T = np.tile(np.eye(4), (len(position), 1, 1))
+    T[:, :3, 3] = position
+    if orientation is not None:
+        T[:, :3, :3] = orientation if orientation.ndim == 3 else _with_z(orientation)
+    return T
 
 
 def _with_z(axes: np.ndarray) -> np.ndarray:

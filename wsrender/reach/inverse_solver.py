@@ -9,9 +9,10 @@ import numpy as np
 from wsrender.engine import Accuracy, Tries, evaluate_poses, solve_inverse, thread_count, try_bytes
 from wsrender.reach.closed_labels import ClosedLabels
 from wsrender.reach.evidence import FLATTER, Evidence
+from wsrender.reach.free_joint_labels import FreeJointLabels
 from wsrender.reach.moving_joints import moving_joints
 from wsrender.reach.starts import FURTHER, NEAR, NEAR_LIMITS, Starts, inwards
-from wsrender.robots.closed_form import ClosedForm
+from wsrender.robots.closed_form import ClosedForm, FreeJointForm
 from wsrender.robots.kinematics import Kinematics
 from wsrender.robots.reachable_box import reachable_box
 
@@ -77,7 +78,7 @@ class InverseSolver:
         self.accuracy = Accuracy(position_m, angle_rad, length_m or chain.reach / 2 or 1.0)
         self._workers = thread_count(threads)
         self._execution = {"precision": precision, "device": device, "threads": threads}
-        self.closed = ClosedLabels.of(self.chain, kind, self.accuracy, device, threads)
+        self.closed = self._closed_labels(device, threads)
 
     def solve(
         self,
@@ -122,7 +123,7 @@ class InverseSolver:
     def _verify(
         self,
         search: Evidence,
-        closed: ClosedLabels,
+        closed: ClosedLabels | FreeJointLabels,
         targets: np.ndarray,
         position: np.ndarray,
         orientation: np.ndarray | None,
@@ -204,6 +205,11 @@ class InverseSolver:
         low, high = reachable_box(chain, chain.lower_limits, chain.upper_limits)
         return far | (position < low - slack).any(axis=1) | (position > high + slack).any(axis=1)
 
+    def _closed_labels(self, device: str, threads: int | None) -> ClosedLabels | FreeJointLabels | None:
+        closed = ClosedLabels.of(self.chain, self.kind, self.accuracy, device, threads)
+        along = None if closed else FreeJointForm.of(self.chain, self.kind)
+        return FreeJointLabels(along, self.accuracy, device, threads) if along else closed
+
     @cached_property
     def _starts(self) -> Starts:
         return Starts(self.chain, self._features_at, count=SAMPLES[self.kind], seed=self.seed, workers=self._workers)
@@ -226,9 +232,10 @@ class InverseSolver:
         return q
 
 
-def closed_form_of(chain: Kinematics, kind: str) -> ClosedForm | None:
+def closed_form_of(chain: Kinematics, kind: str) -> ClosedForm | FreeJointForm | None:
     """What decides targets of a ``kind`` before any search; None for a chain without a closed form."""
-    return ClosedForm.of(_that_matter(chain, kind)[0], kind)
+    part = _that_matter(chain, kind)[0]
+    return ClosedForm.of(part, kind) or FreeJointForm.of(part, kind)
 
 
 def _that_matter(chain: Kinematics, kind: str) -> tuple[Kinematics, np.ndarray]:

@@ -25,7 +25,7 @@ from wsrender.robots import (
     load_urdf,
     xml_source,
 )
-from wsrender.robots.closed_form import ClosedForm
+from wsrender.robots.closed_form import ClosedForm, FreeJointForm
 from wsrender.robots.kinematics import Kinematics
 from wsrender.robots.model_warning import ModelWarning
 from wsrender.robots.plausibility import NO_LIMITS
@@ -124,9 +124,10 @@ class Robot:
         """The class of arms that closed-form inverse kinematics solves this one by, in words; None: of none.
 
         Told by the axes, joints that are held left out: "spherical wrist, axes 2 and 3 parallel", "three parallel
-        axes", "SCARA", "planar arm"; a spherical "shoulder" is a wrist at the base.
+        axes", "SCARA", "planar arm"; a spherical "shoulder" is a wrist at the base. Of seven joints, where six have one
+        wherever the one at an end stands: "ball search along joint 7 over a closed form (…)".
         """
-        closed = ClosedForm.of(self.chain)
+        closed = ClosedForm.of(self.chain) or FreeJointForm.of(self.chain)
         return closed and closed.name
 
     @property

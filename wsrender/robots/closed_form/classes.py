@@ -11,6 +11,7 @@ other's; else, with three hinges, they are a quartic.
 """
 
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -74,6 +75,15 @@ def solved_class(axes: Axes) -> SolvedClass | None:
             return solved
         found = found or solved
     return found
+
+
+def shoulder_and_wrist(axes: Axes) -> SolvedClass | None:
+    """Six hinges, seen from their base, of which an equation holds joint 3 alone, before an orthogonal wrist."""
+    hinges = all(axis.revolute for axis in axes.axes)
+    solved = _spherical_wrist(axes, len(axes.axes)) if hinges else None
+    if solved is None or solved.arm != "nested" or solved.first != 3:
+        return None
+    return solved if np.abs(np.cos(solved.links.alpha[3:5])).max() < SAME else None
 
 
 def _spherical_wrist(axes: Axes, moving: int) -> SolvedClass | None:
@@ -190,7 +200,9 @@ def _name(axes: Axes, moving: int, relation: str, kind: str = "") -> str:
 
 def _relation(axes: Axes, links: Links) -> str:
     """How the first three axes lie to each other, by the numbers that the chain's joints have from its base."""
-    names = ("6 and 5", "5 and 4") if axes.reversed else ("1 and 2", "2 and 3")
+    places = (6, 5, 4) if axes.reversed else (1, 2, 3)
+    numbers = [k if a.coordinate is None else a.coordinate + 1 for k, a in zip(places, axes.axes, strict=False)]
+    names = [f"{first} and {second}" for first, second in pairwise(numbers)]
     for i in (0, 1):
         if abs(np.sin(links.alpha[i])) < SAME:
             return f"axes {names[i]} parallel"

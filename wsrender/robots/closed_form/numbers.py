@@ -66,7 +66,7 @@ def limit_numbers(solved: SolvedClass, unlimited: bool = False) -> dict[str, flo
     found: dict[str, float] = {}
     halves, middles = np.zeros(6), np.zeros(6)
     for k, axis in enumerate(axes):
-        lower, upper = _ends(axis, unlimited)
+        lower, upper = ends_of(axis, unlimited)
         if axis.revolute:
             middles[k], halves[k] = (lower + upper) / 2 + zero[k], (upper - lower) / 2
             found |= _arc(k + 1, middles[k], halves[k])
@@ -90,7 +90,8 @@ def packed(numbers: Mapping[str, float], fields: tuple[str, ...]) -> np.ndarray:
     return np.array([numbers.get(name, 0.0) for name in fields])
 
 
-def _ends(axis: Axis, unlimited: bool) -> tuple[float, float]:
+def ends_of(axis: Axis, unlimited: bool) -> tuple[float, float]:
+    """The least and the largest displacement of a joint; ``unlimited``: of the chain's hinges a turn."""
     if axis.revolute and ((unlimited and axis.coordinate is not None) or not np.isfinite(axis.upper - axis.lower)):
         return -np.pi, np.pi
     return axis.lower, axis.upper
