@@ -44,6 +44,7 @@ def every_analysis(model, **robot):
         "indices_at": {**one, "configurations": [[0, 0, 0]]},
         "reachability": {**one, "points_m": [[0.1, 0, 0]]},
         "postures": {**one, "position_m": [[0.1, 0, 0]]},
+        "base_placement": {**one, "points_m": [[0.1, 0, 0]], "over": {"x_m": [0, 1, 0.5]}},
         "capability": {**one, "voxel_size_m": 0.2},
         "shared_workspace": {"robots": [library, one], "voxel_size_m": 0.1},
         "robot_comparison": {"robots": [library, one]},
