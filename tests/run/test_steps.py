@@ -5,9 +5,11 @@ from functools import reduce
 
 import numpy as np
 import pytest
+import trimesh
 
 import wsrender as ws
 from tests.run.simple_robots import PLANAR, planar_arm
+from wsrender.collision import store
 from wsrender.run import execute, finish, merge, plan, run_shard
 from wsrender.run.steps import Progress
 
@@ -83,6 +85,23 @@ def test_progress_ends_at_the_total():
     assert calls[0] == (0, 1, "planning")
     assert calls[-1] == (8100, 8100, "finishing")
     assert all(0 <= done <= total for done, total, _ in calls)
+
+
+def test_tables_of_collisions_tell_how_far_they_are(tmp_path, monkeypatch):
+    monkeypatch.setenv(store.FOLDER, str(tmp_path))
+    monkeypatch.setattr(store, "_LATEST", {})
+    trimesh.creation.annulus(0.1, 0.2, 0.1).export(tmp_path / "ring.stl")
+    ring = {"items": [{"shape": "mesh", "path": str(tmp_path / "ring.stl"), "position_m": [0, 0, -0.5]}]}
+    asked = {"analysis": "indices_at", "robot": "franka_panda", "configurations": [[0.0] * 7], "environment": ring}
+    calls = []
+    execute(asked | {"constraints": {"self_collision": True}}, lambda *call: calls.append(call))
+    told = [call[:2] for call in calls if call[2] == "collision tables"]
+    assert told[0] == (0, 1)  # the grid of the mesh, then pairs
+    pairs = told[-1][1]
+    assert pairs > 30 and told[1:] == [(done, pairs) for done in range(pairs)]
+    calls.clear()
+    execute(asked | {"constraints": {"self_collision": True}}, lambda *call: calls.append(call))
+    assert all(message != "collision tables" for *_, message in calls)  # they are made
 
 
 @pytest.mark.parametrize("chunk_size", [0, -1, 1.5, "many"])

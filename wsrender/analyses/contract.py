@@ -17,6 +17,7 @@ from wsrender.analyses.partial_result import PartialResult, Refinements, plain
 from wsrender.analyses.piece import Piece
 from wsrender.analyses.provenance import job_entry, provenance, robot_entry
 from wsrender.analyses.settled_device import settled_device
+from wsrender.collision.asked import noted
 from wsrender.documents.format import FORMAT
 from wsrender.notices import Notice, entries
 from wsrender.results.result import Result
@@ -94,6 +95,7 @@ class Analysis(Costed, ABC):
     settled: Any  # of the class `settles`
     resumes: ClassVar[bool] = False  # `compute` goes on from the file ``execution.checkpoint``, with the same result
     effort: ClassVar[float] = 1.0  # a sample's time in those of a sweep
+    programs: dict[str, Any]  # of collisions, by key: what planning has asked for
     notices: tuple[Notice, ...] = ()  # of the robots, where `wsrender.run.steps` has loaded them
 
     def __init__(self, job: Any, *robots: Robot, resolved: Mapping[str, Any] | None = None):
@@ -104,7 +106,8 @@ class Analysis(Costed, ABC):
         """
         self.job, self.robots = job, robots
         device = settled_device(self.asked_device, resolved)
-        self.settled = self.prepare(*device) if resolved is None else self.settles.of(resolved)
+        with noted() as self.programs:
+            self.settled = self.prepare(*device) if resolved is None else self.settles.of(resolved)
         if resolved is None:
             self.check_memory()
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from wsrender.collision.asked import counted
 from wsrender.collision.distance import Distances, frames_of
 from wsrender.collision.grids import Lookup
 from wsrender.collision.levers import rates
@@ -51,7 +52,7 @@ def certificates(
     ``lookups``: of every pair with a surface, whose distances would take too long.
     """
     never, always, tables, left = [], [], [], []
-    for number in range(len(pairs.pairs)):
+    for number in counted(range(len(pairs.pairs))):
         pair = _Pair(pairs, number, chain, distances, (lookups or {}).get(number))
         # Neighbours are so near that their covers always touch; what stands around is hardly ever.
         most = 0 if pair.round or pair.lookup else 1 if pairs.around[pairs.reason[number]] else 2

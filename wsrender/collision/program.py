@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from wsrender.collision.asked import counted
 from wsrender.collision.certificates import CELLS, FREE, Certificates, certificates
 from wsrender.collision.covers import LEVELS, Capsules, Cover, cover
 from wsrender.collision.distance import Distances, frames_of
@@ -88,6 +89,11 @@ class Program:
     always: np.ndarray
 
     @property
+    def nbytes(self) -> int:
+        """Bytes of all arrays."""
+        return sum(value.nbytes for value in vars(self).values() if isinstance(value, np.ndarray))
+
+    @property
     def root(self) -> int:
         """The lowest frame that a solid of any pair is in."""
         return int(self.solid_frame[self.solid_pairs].min(initial=len(self.sources)))
@@ -127,7 +133,8 @@ class _Covers:
 def _lookups(pairs: Pairs, covers: _Covers, epsilon: float) -> dict[int, Lookup]:
     """By pair with a surface, how its other solid is looked up."""
     found: dict[int, Lookup] = {}
-    for surface in [k for k, solid in enumerate(pairs.solids) if solid.kind == "surface"]:
+    surfaces = [k for k, solid in enumerate(pairs.solids) if solid.kind == "surface"]
+    for surface in counted(surfaces):
         own = [(k, int(pairs.pairs[k, 1])) for k in np.flatnonzero(pairs.pairs[:, 0] == surface).tolist()]
         if not own:
             continue

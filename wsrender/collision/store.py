@@ -2,6 +2,7 @@
 
 import hashlib
 import os
+from collections.abc import Mapping
 from dataclasses import fields
 from functools import cache
 from io import BytesIO
@@ -13,6 +14,7 @@ import numpy as np
 import platformdirs
 from filelock import FileLock
 
+from wsrender.collision import asked
 from wsrender.collision.distance import Distances
 from wsrender.collision.program import Program, program
 from wsrender.collision.solids import Pairs
@@ -34,6 +36,7 @@ MAKERS = (  # modules by which programs are made
 
 _LATEST: dict[str, Program] = {}  # of this process
 KEPT = 8
+_given: Path | None = None
 
 
 def stored_program(pairs: Pairs, chain: Chain, distances: Distances) -> Program:
@@ -44,10 +47,26 @@ def stored_program(pairs: Pairs, chain: Chain, distances: Distances) -> Program:
         for old in list(_LATEST)[: 1 - KEPT]:
             _LATEST.pop(old, None)  # another thread may have
         _LATEST[key] = found
+    asked.note(key, found)
     return found
 
 
+def take_from(folder: Path | None) -> None:
+    """Programs that this process needs are looked for in ``folder`` first, where another has `put` them."""
+    global _given
+    _given = folder
+
+
+def put(programs: Mapping[str, Program], folder: Path) -> None:
+    """Write programs by their keys, for other processes to `take_from`."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for key, each in programs.items():
+        _write(folder / f"{key}.npz", each)
+
+
 def _from_folder(key: str, pairs: Pairs, chain: Chain, distances: Distances) -> Program:
+    if _given and (found := _read(_given / f"{key}.npz")):
+        return found
     folder = Path(os.environ.get(FOLDER) or platformdirs.user_cache_path("wsrender", appauthor=False)) / "collision"
     path = folder / f"{key}.npz"
     try:

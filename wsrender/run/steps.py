@@ -9,6 +9,7 @@ from wsrender.analyses.contract import Analysis, Progress
 from wsrender.analyses.execution import Execution
 from wsrender.analyses.jobs import parse_job
 from wsrender.analyses.registry import planned
+from wsrender.collision.asked import told_to
 from wsrender.documents.arm import Arm, ArmPath, dotted
 from wsrender.errors import InputError
 from wsrender.results.result import Result
@@ -121,7 +122,8 @@ def execute(
     started = time.perf_counter()
     if progress:
         progress(0, 1, "planning")
-    settled = plan(document, robot)
+    with told_to(progress):
+        settled = plan(document, robot)
     total = settled.samples
     planned_at = time.perf_counter()
 

@@ -25,7 +25,7 @@ class Attempt:
     futures: dict[tuple[Step, int], Future] = field(default_factory=dict)
     step: Step = Step.PLAN
     done: dict[int, int] = field(default_factory=dict)  # samples done by shard; of a refinement, points decided
-    decided: tuple[int, int] = (0, 0)  # points of the last step, and about how many there will be
+    decided: tuple[int, int] = (0, 0)  # tables of the first step, points of the last, and about how many there will be
     kept: int = 0  # samples that an earlier run of the server had done
     losses: int = 0
     started: float = 0.0
@@ -68,7 +68,7 @@ class Attempt:
 
     def begin_shards(self, files: DataFolder) -> list[int]:
         """Enter the step of the shards; those that are to be computed."""
-        self.step, self.started, self.stale = Step.SHARD, time.monotonic(), True
+        self.step, self.started, self.stale, self.decided = Step.SHARD, time.monotonic(), True, (0, 0)
         missing = self.missing(files)
         self.kept = self.samples_done
         # Refinements take long: they begin early, yet not before any sample.
@@ -86,7 +86,7 @@ class Attempt:
         self.stale = True
 
     def refined(self, done: int, total: int) -> None:
-        """The last step has decided so many points, of about so many."""
+        """The last step has decided so many points, or the first made so many tables, of about so many."""
         self.decided, self.stale = (done, total), True
 
     def progress(self) -> Progress:
@@ -111,6 +111,8 @@ class Attempt:
         """What is going on; once all is ``sampled``, how many points inverse kinematics has decided since."""
         decided, expected = self.decided
         refined = sum(done for shard, done in self.done.items() if not self.shards[shard][1])
+        if self.step == Step.PLAN and expected:
+            return f"planning: {decided:,} of {expected:,} collision tables"
         if self.step == Step.FINISH and decided:
             return f"finishing: {decided:,} of about {expected:,} points decided by inverse kinematics"
         if self.step == Step.SHARD and sampled and refined:

@@ -5,6 +5,7 @@
     models/<sha256>                       uploaded models
     partials/<computation>/<shard>.npz    partial results of unfinished computations
     partials/…/<shard>.checkpoint         what a shard needs to go on where it was stopped
+    partials/…/programs/<key>.npz         of collisions, made by the planner for all
     results/<computation>/<sha256>        artifacts, the result document among them
     scratch/                              files being written; emptied at start
 """

@@ -28,8 +28,8 @@ _plans: "OrderedDict[str, Any]" = OrderedDict()
 def start(settings: Settings, threads: int, gauges: "ctypes.Array[ctypes.c_int64]") -> None:
     """Set up a kernel process; ``gauges`` (3,), shared with the worker.
 
-    They hold the process id, the samples done of the shard or the points that the last step has decided, and how many
-    of these there will be.
+    They hold the process id, the samples done of the shard, the points that the last step has decided or the
+    collision tables that the first has made, and how many of these there will be.
     """
     settle_in()
     if hasattr(os, "nice"):  # not on Windows
@@ -63,8 +63,17 @@ def run(task: Task) -> Any:
 
 
 def _plan(task: Task) -> dict[str, Any]:
-    started = time.perf_counter()
-    plan = _planned(task)
+    from wsrender.collision.asked import told_to
+    from wsrender.collision.store import put
+
+    started, gauges = time.perf_counter(), _state["gauges"]
+
+    def report(done: int, total: int, message: str) -> None:
+        gauges[1], gauges[2] = done, total
+
+    with told_to(report):
+        plan = _planned(task)
+    put(plan.programs, _programs(task))
     samples = max(plan.cost.samples, plan.samples)
     if samples > _state["max_samples"]:
         allowed = _state["max_samples"]
@@ -165,15 +174,21 @@ def partial_name(shard: int) -> str:
 
 
 def _planned(task: Task) -> Any:
-    """The plan of a computation, made once per process."""
+    """The plan of a computation, made once per process; programs of collisions are those that the first has made."""
+    from wsrender.collision.store import take_from
     from wsrender.run import plan
 
+    take_from(_programs(task))
     key = f"{task.token}:{len(task.resolved['shards']) if task.resolved else 0}"
     if key not in _plans:
         _plans[key] = plan(task.document, resolved=task.resolved)
         while len(_plans) > KEPT_PLANS:
             _plans.popitem(last=False)
     return _plans[key]
+
+
+def _programs(task: Task) -> Path:
+    return _files().partials(task.computation) / "programs"
 
 
 def _files() -> DataFolder:

@@ -52,7 +52,7 @@ def run_task(task: Task) -> Outcome:
     worker = get_worker()
 
     def report(done: int, total: int) -> None:
-        news = {"decided": (done, total)} if task.step == Step.FINISH else {"shard": task.shard, "done": done}
+        news = {"shard": task.shard, "done": done} if task.step == Step.SHARD else {"decided": (done, total)}
         worker.log_event(TOPIC, {"token": task.token, **news})
 
     worker.log_event(TOPIC, {"token": task.token, "step": str(task.step)})

@@ -5,6 +5,7 @@ from wsrender_server.jobs.attempt import Attempt
 from wsrender_server.jobs.files import DataFolder
 from wsrender_server.jobs.records import ComputationRecord, ComputationState
 from wsrender_server.jobs.steps import partial_name
+from wsrender_server.jobs.task import Step
 
 SHARDS = [[0, 10], [10, 10], [20, 10], [30, 0], [30, 0]]  # the last two are refinements
 
@@ -49,3 +50,13 @@ def test_of_a_search_the_most_samples_are_the_total_and_of_what_iterates_nothing
     progress = attempt.progress()
     assert (progress.samples_done, progress.samples_total) == (10, total)
     assert progress.fraction == pytest.approx(0.99 * 10 / 120 if total else 0)
+
+
+def test_planning_tells_how_many_tables_are_made(files):
+    attempt, _ = begun(files)
+    attempt.step = Step.PLAN
+    attempt.refined(3, 21)
+    assert attempt.progress().message == "planning: 3 of 21 collision tables"
+    attempt.begin_shards(files)
+    attempt.step = Step.FINISH
+    assert attempt.progress().message == "finishing"
