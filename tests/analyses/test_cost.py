@@ -10,6 +10,7 @@ import warp as wp
 
 from wsrender import run
 from wsrender.analyses.cost import Asks, Cost, check_memory, in_turn
+from wsrender.collision import store
 from wsrender.errors import ResourceError
 
 SAMPLING = {"method": "random", "count": 4096, "seed": 1}
@@ -155,6 +156,38 @@ def test_memory_of_inverse_kinematics_is_as_estimated(name, traced):
     tracemalloc.reset_peak()
     run.finish(planned, run.run_shard(planned, 0, threads=1), threads=1)
     assert planned.cost.memory_bytes == pytest.approx(tracemalloc.get_traced_memory()[1] - before, rel=0.3)
+
+
+BOXES = '<geom type="box" size=".05 .1 .02" euler=".1 .3 0"/><geom type="box" size=".05 .1 .02" pos=".1 .1 .05"/>'
+TABLED = f"""<mujoco><compiler angle="radian"/><worldbody><body><joint axis="0 0 1" range="-3 3"/>{BOXES}
+  <body pos=".3 0 0"><joint axis="0 1 0" range="-2.5 2.5"/>
+  <body pos=".2 0 0"><joint axis="0 1 .2" range="-2.5 2.5"/>{BOXES}
+  <site name="tool" pos=".3 0 .1"/></body></body></body></worldbody></mujoco>"""
+
+
+@pytest.mark.parametrize("analysis", ["workspace", "indices_at"])
+def test_tables_of_collisions_are_counted(analysis, traced, monkeypatch):
+    """What they take beside the same job without them: of three pairs 256 KiB each, on the host and for one thread."""
+    monkeypatch.setenv("WSRENDER_THREADS", "1")
+    drawn = {"sampling": SAMPLING, "voxel_size_m": 0.1} | PLAIN
+    asked = drawn if analysis == "workspace" else {"configurations": [[0.1 * k, 0, 0] for k in range(20)]}
+    job = {"analysis": analysis, "device": "cpu", "robot": {"mjcf": TABLED}} | asked
+    taken, told = [], []
+    for fields in ({}, {"constraints": {"self_collision": True}}):
+        run.finish(warm := run.plan(job | fields), run.run_shard(warm, 0))
+        store._LATEST.clear()
+        del warm
+        tracemalloc.clear_traces()
+        planned = run.plan(job | fields)
+        tracemalloc.reset_peak()
+        run.finish(planned, run.run_shard(planned, 0))
+        taken.append(tracemalloc.get_traced_memory()[1])
+        told.append(planned.cost.memory_bytes)
+    (program,) = planned.programs.values()
+    assert len(program.tables) == 3 and planned.program_bytes > 6 * 2**18
+    assert np.diff(told) == pytest.approx(np.diff(taken), rel=0.3)
+    if analysis == "workspace":
+        assert planned.swept_cost.memory_bytes > planned.program_bytes
 
 
 @pytest.mark.parametrize("name", ["workspace", "capability", "kinetostatic_field", "planar_boundary"])

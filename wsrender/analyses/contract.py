@@ -19,6 +19,8 @@ from wsrender.analyses.provenance import job_entry, provenance, robot_entry
 from wsrender.analyses.settled_device import settled_device
 from wsrender.collision.asked import noted
 from wsrender.documents.format import FORMAT
+from wsrender.engine import thread_count
+from wsrender.engine.sweep_plan import CHUNK_LEAST
 from wsrender.notices import Notice, entries
 from wsrender.results.result import Result
 from wsrender.robot import Robot
@@ -118,6 +120,12 @@ class Analysis(Costed, ABC):
     def check_memory(self) -> None:
         """Whether what the job takes of memory can be taken; raises ResourceError."""
         check_memory(self.cost)
+
+    @property
+    def program_bytes(self) -> float:
+        """Of memory for the `programs` of collisions: here, and for every thread of the CPU that labels samples."""
+        threads = min(thread_count(), -(-self.samples // CHUNK_LEAST)) if self.device == "cpu" else 0
+        return float((1 + threads) * sum(each.nbytes for each in self.programs.values()))
 
     @property
     @abstractmethod

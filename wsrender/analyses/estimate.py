@@ -4,7 +4,7 @@ import math
 from typing import Any
 
 from wsrender.analyses.cost import Asks, Cost
-from wsrender.engine import SweepPlan, fitted, thread_count
+from wsrender.engine import SweepPlan, fitted, label_bytes, thread_count
 from wsrender.pipeline.pipeline import Pipeline
 
 # Samples per second of one CPU core and one GPU for six kinematic indices in float32 with voxels, rounded
@@ -34,7 +34,8 @@ def sweep_cost(pipeline: Pipeline, devices: list[Any], voxels: float) -> Cost:
     rows, kept = map_bytes(pipeline), kept_bytes(pipeline, voxels)
     seconds = samples / plan.structure.weight / rate + (records + 2 * kept) / RECORDS_PER_S
     # What is kept of the voxels is gathered in parts, and joined; so are the rows.
-    memory = max(records + 2 * kept + rows, (2 + 3 / plan.shape.n_rows) * rows + 2 * kept)
+    labels = label_bytes(plan, workers)
+    memory = max(records + 2 * kept + rows + labels, (2 + 3 / plan.shape.n_rows) * rows + 2 * kept)
     asks = Asks("voxel_size_m", voxel_size_m=pipeline.block and pipeline.block.voxel_size_m)
     if 2 * rows > records + 2 * kept:
         asks = Asks("keep_map", "take fewer samples or columns, or keep no map")

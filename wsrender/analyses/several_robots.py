@@ -48,7 +48,8 @@ class SeveralPlans:
         refined_memory, refined_time = zip(*(plan.refined_cost for plan in self.plans), strict=True)
         files = DOCUMENT_BYTES * len(self.plans) + drawn + sum(plan.volume_bytes for plan in self.plans)
         seconds += swept.seconds + sum(refined_time) + files / WRITTEN_PER_S
-        memory = max(swept.memory_bytes, self.kept_bytes + max(refined_memory))
+        later = self.kept_bytes + max(refined_memory) + max(plan.program_bytes for plan in self.plans)
+        memory = max(swept.memory_bytes, later)
         return Cost(swept.samples, memory, files, seconds, swept.asks)
 
     @property

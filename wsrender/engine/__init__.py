@@ -18,7 +18,7 @@ from wsrender.engine.membership import (
 from wsrender.engine.partial import Partial, merge
 from wsrender.engine.rows import Evaluated, evaluate_samples, evaluated_of, sampled_positions
 from wsrender.engine.slabs import fitted
-from wsrender.engine.sweep_plan import SweepPlan, sweep
+from wsrender.engine.sweep_plan import SweepPlan, label_bytes, sweep
 
 __all__ = [
     "CLOSED_MARGIN",
@@ -42,6 +42,7 @@ __all__ = [
     "evaluated_of",
     "fitted",
     "joined",
+    "label_bytes",
     "merge",
     "placed_slacks",
     "poses_reached",

@@ -206,6 +206,18 @@ def _chunk_size(plan: SweepPlan, size: int, device: wp.Device) -> int:
     return -(-size // LANES) * LANES
 
 
+def label_bytes(plan: SweepPlan, devices: list[wp.Device]) -> float:
+    """Of the host's memory for labels of samples, and lists of those that are open, while all of a plan are swept."""
+    pipeline = plan.pipeline
+    if devices[0].is_cuda or not labelling(pipeline.constraints):
+        return 0.0
+    from wsrender.engine.collision import bytes_per_sample
+
+    count = pipeline.sampling.count // plan.structure.multiplicity
+    chunk = _chunk_size(plan, _fair_share(count, devices), devices[0])
+    return float(min(len(devices), -(-count // chunk)) * chunk * bytes_per_sample(pipeline))
+
+
 def _chunks(first: int, count: int, chunk: int) -> Iterator[tuple[int, int]]:
     for start in range(first, first + count, chunk):
         yield start, min(chunk, first + count - start)

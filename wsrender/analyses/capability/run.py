@@ -116,7 +116,7 @@ class CapabilityAnalysis(Analysis):
             seconds += pairs * job_rolls / COUNTED_PER_S * (CONSTRAINED_COUNTS if self.constraints else 1)
             memory += COUNT_BYTES * pairs * job_rolls
         if self.constraints:
-            memory, seconds = memory + SEARCH_BYTES, seconds + pairs / CONSTRAINED_RATE
+            memory, seconds = memory + SEARCH_BYTES + self.program_bytes, seconds + pairs / CONSTRAINED_RATE
         return Cost(pairs, memory, files, seconds, Asks("voxel_size_m", voxel_size_m=self.settled.voxel_size_m))
 
     def compute(self, shard: int, execution: Execution, tell: Tell) -> PartialResult:

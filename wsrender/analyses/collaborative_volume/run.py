@@ -86,7 +86,7 @@ class CollaborativeVolumeAnalysis(Analysis):
         refined = refined_seconds(self.job.refined_volume, searched)
         seconds += samples / POSITIONS_PER_S + refined * bool(len(self.robots) == 2)
         points, cells = POINT_BYTES * self._points, _cell_bytes(self.job)
-        memory = max(points + cells, refined_bytes(self.job.refined_volume, searched))
+        memory = max(points + cells, refined_bytes(self.job.refined_volume, searched)) + self.program_bytes
         asks = Asks("samples" if points > cells else "refinements", "take fewer samples, refinements or cells")
         return Cost(samples, memory, DOCUMENT_BYTES + drawn, seconds, asks)
 

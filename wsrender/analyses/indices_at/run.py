@@ -19,7 +19,15 @@ from wsrender.analyses.execution import Execution
 from wsrender.analyses.indices_at.job import IndicesAtJob
 from wsrender.analyses.partial_result import PartialResult
 from wsrender.analyses.provenance import index_choices
-from wsrender.engine import Evaluated, evaluate_samples, units_of
+from wsrender.engine import (
+    Evaluated,
+    SweepPlan,
+    devices_of,
+    evaluate_samples,
+    label_bytes,
+    thread_count,
+    units_of,
+)
 from wsrender.pipeline.pipeline import Pipeline
 from wsrender.pipeline.sampling import plan_sampling
 from wsrender.robot.constraints import constraints_of_job
@@ -70,7 +78,8 @@ class IndicesAtAnalysis(Analysis):
         numbers = float(len(self.q) * (3 + 6 + len(self.pipeline.evaluation.indices)))
         drawn, seconds = pictures_cost("histogram", "scatter")
         files = DOCUMENT_BYTES + drawn + self.q.nbytes + width * numbers + LISTED_BYTES * self.q.size
-        memory = self.q.nbytes + (width + 4) * numbers + LISTED_MEMORY * self.q.size
+        memory = self.q.nbytes + (width + 4) * numbers + LISTED_MEMORY * self.q.size + self.program_bytes
+        memory += label_bytes(SweepPlan(self.pipeline), devices_of(self.device) * thread_count())
         seconds += len(self.q) / ROWS_PER_S + files / WRITTEN_PER_S
         return Cost(len(self.q), memory, files, seconds, Asks("configurations", "take fewer"))
 

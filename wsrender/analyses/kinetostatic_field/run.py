@@ -97,7 +97,7 @@ class KinetostaticFieldAnalysis(Analysis):
         asks = Asks("voxel_size_m", voxel_size_m=self.settled.voxel_size_m)
         if rows > volume:
             asks = Asks("sampling", "take fewer samples")
-        return Cost(count, rows + volume, files, seconds, asks)
+        return Cost(count, rows + volume + self.program_bytes, files, seconds, asks)
 
     def compute(self, shard: int, execution: Execution, tell: Tell) -> PartialResult:
         """Of every voxel: cell (V, 3), number of configurations (V,), sums (V, 6 + scalars), greatest force (V,).

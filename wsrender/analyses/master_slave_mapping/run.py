@@ -112,7 +112,8 @@ class MasterSlaveMappingAnalysis(Analysis):
             asks = Asks("containment.voxel_size_m", voxel_size_m=self.job.containment.voxel_size_m)
         searched = sum(count for name, count in zip(SIDES, each, strict=True) if self.constraints[name])
         seconds += points / POINTS_PER_S + REJECTED * searched / SEARCHED_PER_S
-        return Cost(points, max(shapes + self._voxels, SEARCHED_BYTES * bool(searched)), files, seconds, asks)
+        memory = max(shapes + self._voxels, SEARCHED_BYTES * bool(searched)) + self.program_bytes
+        return Cost(points, memory, files, seconds, asks)
 
     @cached_property
     def _voxels(self) -> float:

@@ -93,7 +93,7 @@ class ReachabilityAnalysis(Analysis):
         memory = (8 * width + LISTED_MEMORY * listed) * count + max(solved, (LABEL_BYTES + 16 * n) * count)
         each = count / (POSES_PER_S if oriented else DECIDED_PER_S)
         if self.constraints:
-            memory, each = memory + SEARCHED_BYTES, each + count / SEARCHED_PER_S
+            memory, each = memory + SEARCHED_BYTES + self.program_bytes, each + count / SEARCHED_PER_S
         seconds += each * (1 + len(self.margins)) + files / WRITTEN_PER_S
         return Cost(count, memory, files, seconds, Asks("points_m", "take fewer"))
 

@@ -100,9 +100,8 @@ class SharedWorkspaceAnalysis(Composed):
         searched = bool(divided(several.plans[0].constraints)[1]) or bool(asked and asked.arms_collision)
         swept = in_turn([several.swept_cost, *(plan.swept_cost for plan in self.scanned)])
         (voxels, products), dense = self._block, self._dense_bytes
-        memory = self._bits + max(
-            swept.memory_bytes, several.kept_bytes + max(dense, refined_bytes(tolerance, searched))
-        )
+        later = several.kept_bytes + max(dense, refined_bytes(tolerance, searched)) + self.program_bytes
+        memory = self._bits + max(swept.memory_bytes, later)
         drawn, seconds = pictures_cost("slices", "product", "surface")
         volumes = sum(plan.volume_bytes for plan in several.plans)
         files = DOCUMENT_BYTES + drawn + volumes + FILLED * voxels * (SHARED_BYTES + 4 * products)

@@ -169,8 +169,9 @@ class WorkspaceAnalysis(Analysis):
 
     @property
     def swept_cost(self) -> Cost:
-        """Of the sweep alone."""
-        return sweep_cost(self.pipeline, devices_of(self.device), self._held)
+        """Of the sweep alone, with what labels its samples."""
+        swept = sweep_cost(self.pipeline, devices_of(self.device), self._held)
+        return replace(swept, memory_bytes=swept.memory_bytes + self.program_bytes)
 
     @property
     def kept_bytes(self) -> float:
@@ -186,7 +187,7 @@ class WorkspaceAnalysis(Analysis):
             labels = LABELLED_BYTES * near + solved_bytes(near, "position", self.robot.chain) + LABEL_BYTES * block
             labels += SEARCHED_BYTES * bool(self.constraints)
         if self.constraints:
-            kept += ROWS_HELD * self._picture_bytes
+            kept += ROWS_HELD * self._picture_bytes + self.program_bytes
         return float(max(swept.memory_bytes, kept + self.refined_cost[0] + labels))
 
     @property
