@@ -1,5 +1,7 @@
 """Two arms against each other: labels of pairs of configurations, and what is refused."""
 
+import re
+
 import mujoco
 import numpy as np
 import pytest
@@ -12,7 +14,9 @@ from wsrender.errors import DocumentError, InputError
 from wsrender.reach.admission import Admission
 from wsrender.robot.arms_collision import arms_apart
 from wsrender.robot.collisions import solid_of
+from wsrender.robot.constraints import constraints_for
 from wsrender.robots.library import find
+from wsrender.robots.pairs import meet
 
 AHEAD = ws.Transform(position_m=(0, 0, 0.15))  # of the flange
 BESIDE = ws.Transform(position_m=(0.55, 0.1, 0.05), rpy_deg=(0, 0, 170))
@@ -78,6 +82,76 @@ def test_labels_of_random_arms_by_the_distances_of_their_shapes(margin_m):
         np.testing.assert_array_equal(labels(robots, q, margin_m=margin_m), near)
         found.append(near.mean())
     assert tested > 20 and max(found) > 0.1 and min(found) < 0.9
+
+
+def with_bits(text: str, seed: int) -> str:
+    """The same with other contact bits, and no boxes, in which MuJoCo misses some capsules."""
+    random = np.random.default_rng(seed)
+    text = re.sub(r'contype="1"', lambda _: f'contype="{random.integers(4)}"', text.replace('"box"', '"ellipsoid"'))
+    return re.sub(r'conaffinity="1"', lambda _: f'conaffinity="{random.integers(1, 4)}"', text)
+
+
+@pytest.mark.parametrize("seed", [3, 6])
+def test_contact_bits_between_arms_and_with_a_scene_are_mujocos(seed, device):
+    """Contacts in a model of both arms and what stands around, each compiled with bits of its own."""
+    texts = [with_bits(random_text(each, 3), each) for each in (seed, seed + 20)]
+    geom = '<geom type="sphere" size=".12" pos="{}" contype="{}" conaffinity="{}"/>'
+    stones = (".45 .2 .1", 1, 0), ("-.45 .2 .1", 0, 2), (".1 -.5 .1", 2, 1), (".1 .5 -.2", 2, 0), (".2 0 .5", 1, 2)
+    cell = "".join(geom.format(*each) for each in stones)
+    cell = f"<mujoco><worldbody>{cell}</worldbody></mujoco>"
+    T = {"position_m": (0.3, 0.2, -0.1), "quat_wxyz": (1, 0, 0, 0)}
+    tool = ws.Transform(position_m=(0, 0, 2))
+    robots = [
+        ws.load_robot(text, tip="tip", tool=own, placement=placed)
+        for text, own, placed in zip(texts, (tool, None), (None, ws.Transform(**T)), strict=True)
+    ]
+    spec = mujoco.MjSpec()
+    for name, text, at in zip((*NAMES, "cell"), (*texts, cell), ((0, 0, 0), T["position_m"], (0, 0, 0)), strict=True):
+        frame = spec.worldbody.add_frame(pos=at)
+        spec.attach(mujoco.MjSpec.from_string(text), frame=frame, prefix=f"{name}/")
+    model = spec.compile()
+    model.geom_margin[:] = 0
+    data, q = mujoco.MjData(model), [drawn(robot, 2000, seed + k) for k, robot in enumerate(robots)]
+    names = [model.body(model.geom_bodyid[k]).name or model.geom(k).name for k in range(model.ngeom)]
+    side = np.array([0 if name.startswith("left") else 1 if name.startswith("right") else 2 for name in names])
+    met = np.ones((2000, 3, 3))
+    for i in range(2000):
+        data.qpos[:] = np.concatenate([q[0][i], q[1][i]])
+        mujoco.mj_kinematics(model, data)
+        mujoco.mj_collision(model, data)
+        for contact in data.contact:
+            a, b = sorted(side[contact.geom])
+            met[i, a, b] = min(met[i, a, b], contact.dist)
+    apart = arms_apart(robots, NAMES, Apart())
+    shapes = [robot.bodies.shapes for robot in robots]
+    assert any(not meet(a.bits, b.bits) for a in shapes[0] for b in shapes[1])
+    expected = met[:, 0, 1]
+    found = labels(robots, q)
+    assert not ((found != (expected < 0)) & (np.abs(expected) > 1e-6)).any()
+    assert len(apart.constraint.pairs) and found.any()
+    around, blocked = ws.Environment([ws.Scene(mjcf=cell, name="cell")]), 0
+    for k, robot in enumerate(robots):
+        constraints, expected = constraints_for(robot, None, around), met[:, k, 2]
+        found = Admission(robot.chain, constraints, device).rejected(q[k]) > 0
+        assert not ((found != (expected < 0)) & (np.abs(expected) > 1e-6)).any()
+        blocked += found.sum()
+    assert 0 < blocked < 4000
+
+
+def test_arms_whose_contact_bits_never_meet_are_refused():
+    one, other = (f'<geom type="sphere" size=".1" contype="{bit}" conaffinity="{bit}"/>' for bit in (1, 2))
+    arms = [
+        ws.load_robot(
+            f"<mujoco><worldbody><body><joint range='-1 1' limited='true'/>{geom}</body></worldbody></mujoco>"
+        )
+        for geom in (one, other)
+    ]
+    with pytest.raises(InputError, match=r"constraints\.arms_collision: would keep nothing apart: contype"):
+        arms_apart(arms, NAMES, Apart())
+    scene = ws.Scene(mjcf=f"<mujoco><worldbody>{other}</worldbody></mujoco>")
+    with pytest.raises(InputError, match=r"constraints\.environment: would keep nothing apart: contype"):
+        constraints_for(arms[0], None, ws.Environment([scene]))
+    assert constraints_for(arms[0], None, ws.Environment([scene, ws.Sphere(radius_m=0.1, position_m=(9, 0, 0))]))
 
 
 CROSSED = """<mujoco><compiler angle="radian"/><worldbody><body name="trunk">

@@ -83,6 +83,28 @@ def test_what_stands_still_in_a_scene(seed, device):
     assert not wrong(labels(robot, q, constraints, device=device) > 0, least < 0, least).size
 
 
+def test_the_world_of_the_robots_own_file_is_met_as_mujoco_does():
+    """By contact bits, pairs and excludes; what the tip carries has MuJoCo's default bits."""
+    sphere = '<geom name="{}" size=".1" contype="{}" conaffinity="{}"/>'
+    away = sphere.replace("geom", 'geom pos="9 0 0"')
+    world = "".join(away.format(*each) for each in (("wall", 1, 1), ("seen", 2, 2), ("paired", 4, 4)))
+    text = f"""<mujoco><worldbody>{world}<body name="a"><joint range="-1 1" limited="true"/>{sphere.format("one", 2, 0)}
+      <body name="b"><joint range="-1 1" limited="true"/>{sphere.format("two", 1, 1)}</body></body></worldbody>
+      <contact><pair geom1="one" geom2="paired"/><exclude body1="b" body2="world"/></contact></mujoco>"""
+    robot = ws.load_robot(text, tool_shapes=[ws.Sphere(name="grip", radius_m=0.1, position_m=(1, 0, 0))])
+    (constraint,) = constraints_for(robot, Constraints(environment={"margin_m": 0.01}))
+    own = [constraint.solids[k].name for k in constraint.pairs.ravel()]
+    model = robot.bodies.model
+    model.geom_margin[:] = model.pair_margin[:] = model.body_margin[:] = 100
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    contacts = [sorted(model.geom(geom).name for geom in contact.geom) for contact in data.contact]
+    fixed = {"wall", "seen", "paired"}
+    expected = sorted(pair for pair in contacts if len(fixed.intersection(pair)) == 1)
+    found = sorted(sorted(pair) for pair in zip(own[::2], own[1::2], strict=True))
+    assert found == sorted([*expected, ["grip", "wall"]]) and expected == [["one", "paired"], ["one", "seen"]]
+
+
 def test_a_scene_of_files_is_the_scene_of_its_text(tmp_path):
     (tmp_path / "parts").mkdir()
     trimesh.creation.box((0.1, 0.2, 0.3)).export(tmp_path / "parts" / "box.stl")

@@ -15,11 +15,19 @@ from wsrender.collision.solids import BASE, Solid
 from wsrender.documents.constraints import Apart
 from wsrender.errors import InputError, ResourceError
 from wsrender.pipeline.constraints.collision import CollisionConstraint
-from wsrender.robot.collisions import MOST_PAIRS, limited, refuse_always, robot_bodies, size_of, solid_of
+from wsrender.robot.collisions import (
+    MOST_PAIRS,
+    NEVER_MEET,
+    limited,
+    refuse_always,
+    robot_bodies,
+    size_of,
+    solid_of,
+)
 from wsrender.robot.model_robot import Robot
 from wsrender.robots.bodies import Bodies
 from wsrender.robots.chain import Chain
-from wsrender.robots.pairs import without
+from wsrender.robots.pairs import meet, without
 from wsrender.robots.shapes import Shape
 
 ARMS = "arms_collision"
@@ -47,7 +55,7 @@ class ArmsApart:
 def arms_apart(robots: Sequence[Robot], names: Sequence[str], choice: Apart, *, one_model: bool = False) -> ArmsApart:
     """Two robots that keep apart, whose shapes ``choice`` calls by the robot's name, a stroke, and their own.
 
-    Every shape that moves with a joint of one against all of the other, whatever their contact bits; of two arms of
+    Every shape that moves with a joint of one against all of the other whose contact bits it meets; of two arms of
     ``one_model`` against those that move. Tables are made here, in seconds, where they are not on disk yet. Raises
     InputError for a robot without shapes, joints that both arms share, names that name nothing, a margin beyond both
     robots, height fields, and pairs that meet in every configuration, or wherever the tips do.
@@ -61,6 +69,9 @@ def arms_apart(robots: Sequence[Robot], names: Sequence[str], choice: Apart, *, 
     of_a, of_b = (_own(name, bodies) for name, bodies in zip(names, (a, b), strict=True))
     moves = [np.array([shape.frame != BASE for shape in own]) for own in (of_a, of_b)]
     asked = moves[0][:, None] & moves[1] if one_model else moves[0][:, None] | moves[1]
+    asked &= np.array([[meet(one.bits, other.bits) for other in of_b] for one in of_a], bool).reshape(asked.shape)
+    if not asked.any():
+        raise InputError(field, NEVER_MEET)
     pairs = without(np.argwhere(asked) + np.array([0, len(of_a)]), (*of_a, *of_b), choice.exclude, f"{field}.exclude")
     if len(pairs) > MOST_PAIRS:
         raise ResourceError(

@@ -19,7 +19,7 @@ from wsrender.robot.model_robot import Robot
 from wsrender.robot.surroundings import Standing, shapes_around
 from wsrender.robots.chain import Chain
 from wsrender.robots.moving_base import MovingBase
-from wsrender.robots.pairs import without
+from wsrender.robots.pairs import meet, without
 from wsrender.robots.shapes import Shape
 from wsrender.world.surfaces import Surface
 
@@ -38,6 +38,10 @@ KINDS: dict[str, Any] = {
 
 STANDING = ("half_space", "surface")  # kinds that no joint carries
 
+NEVER_MEET = (
+    "would keep nothing apart: contype and conaffinity of the robot's shapes have no bit in common with those of what "
+    "they are to keep apart from"
+)
 LARGEST_M = 1e9  # of a shape's place, size and corners: single precision holds products of four such numbers
 FARTHEST = 8.0  # angles [rad] that float32 is trusted with
 ENDLESS = (
@@ -120,7 +124,10 @@ def _kept_apart(
             message = f"would look at {count} pairs of shapes, more than {MOST_LISTED}: give fewer shapes"
             raise ResourceError(f"constraints.{AROUND}", message)
         named = (*bodies.shapes, *(replace(bodies.shapes[0], name=each.name, body=each.item) for each in standing))
-        pairs = _pairs([(k, item) for k in moving for item in still], named, around, AROUND)
+        meeting = [pair for pair in _meeting(bodies, standing) if pair[0] in moving]
+        if moving and not meeting:
+            raise InputError(f"constraints.{AROUND}", NEVER_MEET)
+        pairs = _pairs(meeting, named, around, AROUND)
         found.append(CollisionConstraint(AROUND, chain, solids, pairs, around.margin_m))
     if own:
         pairs = _pairs(bodies.pairs.tolist(), bodies.shapes, own, SELF)
@@ -144,6 +151,17 @@ def _carried(solid: Solid, base: MovingBase) -> Solid:
         message = f"of a base that moves must stand in the job: the robot's file has {solid.name!r} in its world"
         raise InputError("environment", message)
     return replace(solid, joint=joints - 1, T=base.base_on_last @ solid.T) if joints else solid
+
+
+def _meeting(bodies: "Bodies", standing: Sequence[Standing]) -> list[tuple[int, int]]:
+    """Shapes of the robot with those of its model's world and of what stands around that MuJoCo tests them against."""
+    still, found = [shape.surroundings for shape in bodies.shapes], list[tuple[int, int]]()
+    with_world = {(a, b) if still[b] else (b, a) for a, b in bodies.around.tolist()}
+    for k, shape in enumerate(bodies.shapes):
+        found += [(k, item) for item in range(len(still)) if (k, item) in with_world]
+        bits = ((number, each.bits) for number, each in enumerate(standing, len(still)))
+        found += [(k, number) for number, of in bits if of is None or meet(shape.bits, of)]
+    return found
 
 
 def robot_bodies(robot: Robot, name: str) -> "Bodies":

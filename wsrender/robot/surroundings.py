@@ -37,11 +37,15 @@ BEYOND = 1e-6  # rad or m by which a configuration may be beyond a limit: roundi
 
 @dataclass(frozen=True)
 class Standing:
-    """A shape that stands in the world; ``name``: its own, or item/shape; ``item``: the name of its item."""
+    """A shape that stands in the world; ``name``: its own, or item/shape; ``item``: the name of its item.
+
+    ``bits``: contype and conaffinity of what a model has; None: it meets everything.
+    """
 
     name: str
     item: str
     shape: Shape | Surface
+    bits: tuple[int, int] | None = None
 
 
 def shapes_around(items: Iterable[Item]) -> tuple[Standing, ...]:
@@ -80,7 +84,7 @@ def _robot(item: OtherRobot, name: str) -> Iterator[Standing]:
     if not bodies.shapes:
         raise InputError("robot", f"{robot.name} has no shapes that may collide")
     for shape, T in zip(bodies.shapes, bodies.poses(q)[0], strict=True):
-        yield Standing(f"{name}/{shape.name}", name, as_document(shape, T))
+        yield Standing(f"{name}/{shape.name}", name, as_document(shape, T), shape.bits)
 
 
 def _loaded(item: OtherRobot) -> Robot:
@@ -104,7 +108,8 @@ def _scene(item: Scene, name: str) -> Iterator[Standing]:
     else:
         shapes = uploaded_scene(str(item.model), item.length_unit_m)
     for shape in shapes:
-        yield Standing(f"{name}/{shape.name}", name, as_document(shape, item.matrix() @ shape.T_frame_shape))
+        placed = as_document(shape, item.matrix() @ shape.T_frame_shape)
+        yield Standing(f"{name}/{shape.name}", name, placed, shape.bits)
 
 
 def _solid(item: ConvexMesh | Mesh | HeightField, name: str) -> Iterator[Standing]:

@@ -1,6 +1,6 @@
 """Bodies of a robot: its shapes in the frames of a chain, and which of them may collide."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import mujoco
 import numpy as np
@@ -17,7 +17,7 @@ class Bodies:
     ``chain`` has the coordinates of the robot's own. Where leaders or followers on other branches move bodies, it has
     their joints too, each undone after what it carries: see `Chain.dynamic`. ``pairs`` (P, 2) int are places in
     ``shapes`` of two that may collide, within the robot: shapes of the world of the model's file are its surroundings,
-    in no pair. Off the chain, everything is at its reference.
+    in no pair but those of ``around`` (A, 2). Off the chain, everything is at its reference.
     """
 
     model: mujoco.MjModel
@@ -27,6 +27,7 @@ class Bodies:
     reference_qpos: np.ndarray  # (nq,) [rad or m]
     addresses: np.ndarray  # (L,) int: where ``qpos`` has each joint of the chain, -1 for one that undoes another
     notices: tuple[Notice, ...] = ()
+    around: np.ndarray = field(default_factory=lambda: np.zeros((0, 2), int))
 
     def placed_as(self, chain: Chain) -> "Bodies":
         """The same, its base, tool and limits those of another copy of the robot's chain."""

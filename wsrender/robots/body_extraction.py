@@ -60,10 +60,11 @@ class BodySource:
         own = np.array([not shape.surroundings for shape in shapes], bool)
         with_shapes = {shape.body for shape in shapes}
         disabled = [names for names in self.disabled if with_shapes.issuperset(names)]
+        around = pairs[own[pairs].sum(axis=1) == 1]
         pairs = without(pairs[own[pairs].all(axis=1)], shapes, disabled, "srdf")
         pairs = without(pairs, shapes, self.excluded, "exclude")
         notices = (*bodies.notices, *self._unknown(bodies.model), *long_shapes(self.chain, shapes))
-        return replace(bodies, pairs=pairs, notices=notices)
+        return replace(bodies, pairs=pairs, notices=notices, around=around)
 
     def _unknown(self, model: mujoco.MjModel) -> list[Notice]:
         known = {model.body(body).name for body in range(model.nbody)}

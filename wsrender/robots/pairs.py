@@ -60,9 +60,14 @@ def collides(model: mujoco.MjModel) -> list[int]:
     return np.flatnonzero(bits).tolist()
 
 
+def meet(first: tuple[int, int], second: tuple[int, int]) -> bool:
+    """Whether contype of one and conaffinity of the other have a bit in common."""
+    return bool(first[0] & second[1] or second[0] & first[1])
+
+
 def _meet(model: mujoco.MjModel, first: int, second: int) -> bool:
     types, affinities = model.geom_contype, model.geom_conaffinity
-    return bool(types[first] & affinities[second] or types[second] & affinities[first])
+    return meet((int(types[first]), int(affinities[first])), (int(types[second]), int(affinities[second])))
 
 
 def _rigid_or_adjacent(model: mujoco.MjModel, first: int, second: int) -> bool:

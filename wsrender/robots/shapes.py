@@ -42,6 +42,7 @@ class Shape:
     geom: int  # its number in the compiled model, or ATTACHED
     surroundings: bool  # it belongs to the world of the model's file, not to the robot
     rgba: np.ndarray  # (4,) 0 … 1
+    bits: tuple[int, int] = (1, 1)  # contype and conaffinity, which are 1 by default
     vertices: np.ndarray = field(default_factory=_none)
     faces: np.ndarray = field(default_factory=lambda: np.zeros((0, 3), np.int32))
 
@@ -66,7 +67,7 @@ def shape_of(
     size = model.geom_size[geom].copy() if kind not in ("mesh", "hfield") else np.zeros(3)
     return Shape(
         name, body_name(model, body), kind, frame, T_frame_shape, size, geom, body == 0,
-        rgba.astype(float), vertices, faces,
+        rgba.astype(float), (int(model.geom_contype[geom]), int(model.geom_conaffinity[geom])), vertices, faces,
     )  # fmt: skip
 
 
