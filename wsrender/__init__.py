@@ -50,6 +50,7 @@ if TYPE_CHECKING:
     from wsrender.documents.sampling import BoundaryBiased, Converge, Grid, Random, Sobol
     from wsrender.documents.target_lists import Criterion, Target, TargetTable
     from wsrender.geometry.planar.exact_boundary import exact_boundary
+    from wsrender.geometry.polytopes import Polytope, polytope
     from wsrender.indices import Index, Option, math, register_index
     from wsrender.kinetostatics import ForceField, force_field
     from wsrender.mechanisms.five_bar import FiveBar
@@ -118,6 +119,7 @@ __all__ = [
     "Option",
     "OtherRobot",
     "Picture",
+    "Polytope",
     "Postures",
     "QuotaError",
     "Random",
@@ -157,6 +159,7 @@ __all__ = [
     "method_comparison",
     "parallel_workspace",
     "planar_boundary",
+    "polytope",
     "postures",
     "reachability",
     "reachable",
@@ -178,6 +181,7 @@ _NAMES_OF_MODULE = {
     "wsrender.kinetostatics": ("ForceField", "force_field"),
     "wsrender.mechanisms.five_bar": ("FiveBar",),
     "wsrender.geometry.planar.exact_boundary": ("exact_boundary",),
+    "wsrender.geometry.polytopes": ("Polytope", "polytope"),
     "wsrender.pipeline.constraints.expression": ("ExpressionConstraint",),
     "wsrender.pipeline.constraints.registry": ("register_constraint",),
     "wsrender.python": (

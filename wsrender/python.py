@@ -144,6 +144,7 @@ def indices_at(
     inertia: Literal["kernel", "mujoco"] = "kernel",
     precision: Literal["float32", "float64"] = "float64",
     device: str = "auto",
+    polytopes: Sequence[Literal["velocity", "force", "acceleration"]] = (),
     progress: Progress | bool | None = None,
     threads: int | None = None,
     chunk_size: int | None = None,
@@ -170,6 +171,8 @@ def indices_at(
     ``inertia``: What evaluates the joint-space inertia: the kernels, or MuJoCo itself.
     ``precision``: Floating-point type of the kernels.
     ``device``: Where the kernels run: "auto" (a GPU if there is one), "cpu", "cuda" or "cuda:N".
+    ``polytopes``: Polytopes of the tip at each of at most 20 configurations, as meshes: "velocity", "force",
+        "acceleration"; in the linear rows of the task, and in float64.
     ``progress``: True shows a bar on work of more than a second; or a function (done, total, message).
     ``threads``: Threads of the CPU; None: all cores. They change no bit of the result.
     ``chunk_size``: Samples of a launch; None: by memory. It changes no bit of the result.

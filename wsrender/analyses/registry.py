@@ -40,7 +40,7 @@ def _own(name: str, job: str, run: str, presentation: str | None = "PRESENTATION
 
 _ROWS = {
     "workspace": _own("workspace", "WorkspaceJob", "WorkspaceAnalysis", None),
-    "indices_at": _own("indices_at", "IndicesAtJob", "IndicesAtAnalysis", None),
+    "indices_at": _own("indices_at", "IndicesAtJob", "IndicesAtAnalysis"),
     "reachability": _own("reachability", "ReachabilityJob", "ReachabilityAnalysis"),
     "postures": _own("postures", "PosturesJob", "PosturesAnalysis"),
     "capability": _own("capability", "CapabilityJob", "CapabilityAnalysis"),

@@ -20,8 +20,8 @@ STILL, POSTURES = 1e-12, 4  # of the reach: what moves less, in this many postur
 
 
 @dataclass(frozen=True)
-class _Asked:
-    """An index that is asked for of a robot, with its options; it is refused where the robot has not what it takes."""
+class ChainAsked:
+    """What is asked for by name of a robot, with options; it is refused where the robot has not what it takes."""
 
     name: str
     robot: Robot
@@ -32,6 +32,7 @@ class _Asked:
 
     @property
     def chain(self) -> Chain:
+        """The chain that all of what moves is in."""
         if (chain := self.robot.chain.geometry) is None:
             raise InputError("indices", f"{self.name} is not available for a robot that is defined by a class")
         return chain.dynamic
@@ -48,6 +49,13 @@ class _Asked:
             told = f"{self.name} needs torque limits, which {self.robot.name} lacks of {', '.join(missing)} ({EFFORTS})"
             raise InputError("indices", told)
         return np.abs(self.chain.efforts).ravel()
+
+    def speeds(self) -> np.ndarray:
+        """Largest speeds (n,)."""
+        if missing := self.chain.unlimited_velocities:
+            told = f"{self.name} needs speeds, which {self.robot.name} lacks of {', '.join(missing)} ({VELOCITIES})"
+            raise InputError("indices", told)
+        return self.chain.velocity_limits
 
     def weighing(self) -> Chain:
         """The chain with what it weighs."""
@@ -78,6 +86,7 @@ class _Asked:
         return given
 
     def refusal(self, option: str, why: str) -> InputError:
+        """The error of an option, with what was given."""
         given = np.array(self.options[option]).tolist()
         return InputError(f"index_options.{self.name}.{option}", f"{why}, not {given}")
 
@@ -95,13 +104,13 @@ def chain_indices_of(
     ``held``: joints that the job holds at a value. Raises InputError for what the robot lacks.
     """
     return {
-        name: _INDICES[name](_Asked(name, robot, options.get(name, {}), rows, gravity, held))
+        name: _INDICES[name](ChainAsked(name, robot, options.get(name, {}), rows, gravity, held))
         for name in names
         if name in _INDICES
     }
 
 
-def _joint_limit_margin(asked: _Asked) -> ChainIndex:
+def _joint_limit_margin(asked: ChainAsked) -> ChainIndex:
     chain = asked.chain
     ends = np.stack([chain.lower_limits, chain.upper_limits])
     counts = np.isfinite(ends).all(axis=0) & ~chain.periodic & (ends[0] < ends[1])
@@ -111,14 +120,14 @@ def _joint_limit_margin(asked: _Asked) -> ChainIndex:
     return ChainIndex(asked.name, chain, (), (*lower, *upper, *per_range))
 
 
-def _torque_margin(asked: _Asked) -> ChainIndex:
+def _torque_margin(asked: ChainAsked) -> ChainIndex:
     chain, acceleration = asked.weighing(), asked.options["acceleration_m_s2"]
     laden = chain.carrying(asked.options["payload_kg"], np.array(asked.options["payload_com_m"]))
     rows = asked.linear() if acceleration else ()
     return ChainIndex(asked.name, chain, (rows,), (*asked.gravity, acceleration, *asked.efforts()), (laden,))
 
 
-def _payload_capacity(asked: _Asked) -> ChainIndex:
+def _payload_capacity(asked: ChainAsked) -> ChainIndex:
     chain, acceleration, com = asked.weighing(), asked.options["acceleration_m_s2"], asked.options["com_m"]
     rows = asked.linear() if acceleration else ()
     if acceleration and (others := [row for row in LINEAR_ROWS if row not in rows]):
@@ -132,38 +141,35 @@ def _payload_capacity(asked: _Asked) -> ChainIndex:
     return ChainIndex(asked.name, chain, (rows,), numbers, (chain, bare), asked.options["limit_kg"])
 
 
-def _velocity_radius(asked: _Asked) -> ChainIndex:
+def _velocity_radius(asked: ChainAsked) -> ChainIndex:
     chain, rows = asked.chain, asked.linear()
-    if missing := chain.unlimited_velocities:
-        told = f"{asked.name} needs speeds, which {asked.robot.name} lacks of {', '.join(missing)} ({VELOCITIES})"
-        raise InputError("indices", told)
-    along = asked.direction(rows)
-    return ChainIndex(asked.name, chain, (rows, len(along) > 0), (*chain.velocity_limits, *along))
+    speeds, along = asked.speeds(), asked.direction(rows)
+    return ChainIndex(asked.name, chain, (rows, len(along) > 0), (*speeds, *along))
 
 
-def _force_radius(asked: _Asked) -> ChainIndex:
+def _force_radius(asked: ChainAsked) -> ChainIndex:
     chain, rows = asked.weighing(), asked.linear()
     along = asked.direction(rows)
     numbers = (*asked.gravity, asked.options["limit_N"], *asked.efforts(), *along)
     return ChainIndex(asked.name, chain, (rows, len(along) > 0), numbers, (chain,), asked.options["limit_N"])
 
 
-def _acceleration_radius(asked: _Asked) -> ChainIndex:
+def _acceleration_radius(asked: ChainAsked) -> ChainIndex:
     chain, rows = asked.weighing(), asked.linear()
     along = asked.direction(rows)
     return ChainIndex(asked.name, chain, (rows, len(along) > 0), (*asked.gravity, *asked.efforts(), *along), (chain,))
 
 
-def _tip_compliance(asked: _Asked) -> ChainIndex:
+def _tip_compliance(asked: ChainAsked) -> ChainIndex:
     weights = 1 / np.sqrt(asked.of_joints("joint_stiffness"))
     return ChainIndex("weighted_norm", asked.chain, (asked.linear(), True), tuple(weights))
 
 
-def _position_error(asked: _Asked) -> ChainIndex:
+def _position_error(asked: ChainAsked) -> ChainIndex:
     return ChainIndex("weighted_norm", asked.chain, (asked.linear(), False), tuple(asked.of_joints("joint_sigma")))
 
 
-_INDICES: dict[str, Callable[[_Asked], ChainIndex]] = {
+_INDICES: dict[str, Callable[[ChainAsked], ChainIndex]] = {
     "joint_limit_margin": _joint_limit_margin,
     "torque_margin": _torque_margin,
     "payload_capacity": _payload_capacity,

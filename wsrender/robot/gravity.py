@@ -30,6 +30,9 @@ def gravity_notices(job: Any, robot: Robot) -> Iterator[Notice]:
 def _asks_for_gravity(job: Any) -> bool:
     choice, indices = getattr(job, "constraints", None), getattr(job, "indices", ())
     by_constraints = choice and (choice.torque or any("g" in getattr(c, "asks", ()) for c in constraints_of(choice)))
-    return bool(by_constraints) or any(
-        "gravity" in find(name).needs for name in indices if not isinstance(indices, str)
+    by_polytopes = any(kind != "velocity" for kind in getattr(job, "polytopes", ()))
+    return (
+        bool(by_constraints)
+        or by_polytopes
+        or any("gravity" in find(name).needs for name in indices if not isinstance(indices, str))
     )

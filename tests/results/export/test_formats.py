@@ -244,8 +244,8 @@ def test_conversions_are_between_formats_of_one_kind():
     assert can == {
         "parquet": ["npz", "csv", "mat"],
         "vtkhdf": ["npz", "csv", "mat", "vti"],
-        "glb": ["ply", "stl"],
-        "ply": ["glb", "stl"],
+        "glb": ["ply", "stl", "obj"],
+        "ply": ["glb", "stl", "obj"],
         **{suffix: [] for suffix in ("npy", "dxf", "svg", "png", "json")},
     }
 

@@ -63,7 +63,7 @@ def test_glb_has_y_up_and_metres(tower, tmp_path):
     assert asset["version"] == "2.0" and asset["extras"]["up"] == "+Y" and asset["extras"]["unit"] == "m"
 
 
-@pytest.mark.parametrize("ending", ["glb", "ply", "stl"])
+@pytest.mark.parametrize("ending", ["glb", "ply", "stl", "obj"])
 def test_what_is_read_back_stands_as_it_stood(tower, tmp_path, ending):
     before = tower.vertices.copy()
     write_mesh(tower, tmp_path / f"tower.{ending}")

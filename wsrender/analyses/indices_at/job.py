@@ -1,11 +1,31 @@
 """The job ``indices_at``: local indices at given configurations."""
 
-from typing import ClassVar, Literal
+from collections.abc import Iterator
+from typing import Annotated, Any, ClassVar, Literal, get_args
+
+from pydantic import BeforeValidator, Field
 
 from wsrender.documents.arm import Arm
 from wsrender.documents.constraints import Constrained
 from wsrender.documents.format import JobDocument
 from wsrender.documents.options import Configurations, IndexChoices
+from wsrender.documents.quantities import distinct, sequence
+
+MOST_DRAWN = 20  # configurations whose polytopes are made
+Kind = Literal["velocity", "force", "acceleration"]
+
+
+def _kinds(value: Any) -> tuple[Any, ...]:
+    """The kinds in one order, so that equal jobs have equal documents; what is none of them is refused as it is."""
+    asked = distinct(found) if (found := sequence(value)) else ()
+    return tuple(sorted(asked, key=lambda kind: get_args(Kind).index(kind) if kind in get_args(Kind) else -1))
+
+
+def _is_empty(value: Any) -> bool:
+    return not value
+
+
+Polytopes = Annotated[tuple[Kind, ...], Field(exclude_if=_is_empty), BeforeValidator(_kinds)]
 
 
 class IndicesAtJob(IndexChoices, Constrained, Arm, JobDocument):
@@ -17,8 +37,17 @@ class IndicesAtJob(IndexChoices, Constrained, Arm, JobDocument):
     """Name of the analysis."""
     configurations: Configurations
     """Rows of joint values [rad or m], one per joint from base to tip."""
+    polytopes: Polytopes = ()
+    """Polytopes of the tip at each of at most 20 configurations, as meshes: "velocity", "force", "acceleration"; in the
+    linear rows of the task, and in float64."""
     precision: Literal["float32", "float64"] = "float64"
     """Floating-point type of the kernels."""
+
+    def conflicts(self) -> Iterator[tuple[str, str]]:
+        """(field, message) of every pair of fields that do not go together."""
+        yield from super().conflicts()
+        if self.polytopes and len(self.configurations) > MOST_DRAWN:
+            yield "polytopes", f"must not be given with {len(self.configurations)} configurations; {MOST_DRAWN} at most"
 
     @property
     def needs_ranges(self) -> bool:

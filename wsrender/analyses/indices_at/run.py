@@ -28,9 +28,11 @@ from wsrender.engine import (
     thread_count,
     units_of,
 )
+from wsrender.geometry.polytopes import LIMIT_N, Polytope, polytopes
 from wsrender.pipeline.pipeline import Pipeline
 from wsrender.pipeline.sampling import plan_sampling
 from wsrender.robot.constraints import constraints_of_job
+from wsrender.robot.gravity import gravity_of
 from wsrender.robot.indices import evaluation_of_job
 from wsrender.robot.model_robot import configuration_rows
 from wsrender.robot.rejections import rejected_rows
@@ -38,6 +40,7 @@ from wsrender.volume.distribution_map import DistributionMap
 from wsrender.volume.table import Table
 
 ROWS_PER_S = 4e5  # of one CPU core
+POLYTOPE_BYTES, POLYTOPES_PER_S = 12_000, 50  # two files of a mesh and rows of tables; of one CPU core
 
 
 class IndicesAtAnalysis(Analysis):
@@ -51,6 +54,8 @@ class IndicesAtAnalysis(Analysis):
     def prepare(self, device: str, target: str) -> Settled:
         """Raises InputError for configurations of the wrong length."""
         _ = self.pipeline
+        for kind in self.job.polytopes:
+            self._polytopes(kind, self.q[:1])
         return Settled(device, target, ((0, len(self.q)),))
 
     @cached_property
@@ -80,6 +85,10 @@ class IndicesAtAnalysis(Analysis):
         files = DOCUMENT_BYTES + drawn + self.q.nbytes + width * numbers + LISTED_BYTES * self.q.size
         memory = self.q.nbytes + (width + 4) * numbers + LISTED_MEMORY * self.q.size + self.program_bytes
         memory += label_bytes(SweepPlan(self.pipeline), devices_of(self.device) * thread_count())
+        if self.job.polytopes:
+            shown, drawing = pictures_cost("surface", "robot")
+            made = len(self.job.polytopes) * len(self.q)
+            files, seconds = files + shown + POLYTOPE_BYTES * made, seconds + drawing + made / POLYTOPES_PER_S
         seconds += len(self.q) / ROWS_PER_S + files / WRITTEN_PER_S
         return Cost(len(self.q), memory, files, seconds, Asks("configurations", "take fewer"))
 
@@ -118,7 +127,20 @@ class IndicesAtAnalysis(Analysis):
         sample = found.only(admitted) if tables else None
         origin = {"pipeline": str(self.pipeline)}
         notices = self.pipeline.evaluation.notices
-        return Draft(entries, notices=notices, provenance=origin, map=found, sample=sample, tables=tables)
+        kept = {"notices": notices, "provenance": origin, "map": found, "sample": sample}
+        if not self.job.polytopes:
+            return Draft(entries, tables=tables, **kept)
+        rows = np.flatnonzero(admitted)
+        of = {kind: self._polytopes(kind, self.q[rows]) for kind in self.job.polytopes}
+        made = [(int(k), each) for found in of.values() for k, each in zip(rows, found, strict=True)]
+        meshes = {f"{each.kind}_polytope_{k}": each.mesh() for k, each in made if each.dimension > 1}
+        skeleton = self.robot.skeleton(self.q[rows]) if len(rows) else None
+        return Draft(entries, tables=tables | tables_of(made), meshes=meshes, skeleton=skeleton, **kept)
+
+    def _polytopes(self, kind: str, q: np.ndarray) -> list[Polytope]:
+        """Those of a kind at configurations (N, n); raises InputError for what the robot lacks."""
+        limit: Any = self.job.index_options.get("force_radius", {}).get("limit_N", LIMIT_N)
+        return polytopes(self.robot, q, kind, self.pipeline.evaluation.rows, gravity_of(self.job), limit)
 
     def _admission(self, rejected: np.ndarray | None) -> tuple[np.ndarray, dict[str, Any], dict[str, Table]]:
         """Which rows are admitted (N,) bool, what the document says of it, and the table of reasons."""
@@ -127,3 +149,30 @@ class IndicesAtAnalysis(Analysis):
         reasons = np.array(["", *(each.name for each in self.pipeline.constraints)])
         about = rejected_rows(self.pipeline.constraints, rejected, self.q.__getitem__)
         return rejected == 0, about, {"admission": Table({"reason": reasons[rejected]})}
+
+
+def tables_of(made: list[tuple[int, Polytope]]) -> dict[str, Table]:
+    """Tables of polytopes, each with the row of its configuration: what they are, their vertices, and their facets."""
+    rows, each = np.array([k for k, _ in made], np.int64), [polytope for _, polytope in made]
+    kinds, units = np.array([p.kind for p in each], "<U12"), np.array([p.unit for p in each], "<U6")
+
+    def table(values: dict[str, list[np.ndarray]], counts: list[int]) -> Table:
+        columns = {"configuration": np.repeat(rows, counts), "kind": np.repeat(kinds, counts)}
+        columns |= {name: np.concatenate([*parts]) for name, parts in values.items()}
+        return Table(columns | {"unit": np.repeat(units, counts)})
+
+    facts = {
+        "dimension": np.array([p.dimension for p in each], np.int64),
+        "radius": np.array([p.radius for p in each]),
+        "volume": np.array([p.volume for p in each]),
+        "mesh_m_per_unit": np.array([p.fitting_scale for p in each]),
+    }
+    none, none4 = np.zeros((0, 3)), np.zeros((0, 4))
+    vertices, facets = [none, *(p.vertices for p in each)], [none4, *(p.facets for p in each)]
+    return {
+        "polytopes": table({name: [value] for name, value in facts.items()}, [1] * len(each)),
+        "polytope_vertices": table({"vertex": vertices}, [len(p.vertices) for p in each]),
+        "polytope_facets": table(
+            {"normal": [f[:, :3] for f in facets], "offset": [f[:, 3] for f in facets]}, [len(p.facets) for p in each]
+        ),
+    }

@@ -114,6 +114,7 @@ _ROWS = [
          written="always", frame=GLB_FRAME),
     _own("ply", "mesh", "model/ply", "meshes:write_mesh", "meshes:read_ply", "trimesh", written="kept"),
     _own("stl", "mesh", "model/stl", "meshes:write_mesh", "meshes:read_stl", "trimesh"),
+    _own("obj", "mesh", "model/obj", "meshes:write_mesh", "meshes:read_obj", "trimesh"),
     _own("npy", "skeleton", "application/x-npy", "skeleton:write_skeleton", "skeleton:read_skeleton", written="kept"),
     _own("dxf", "drawing", "image/vnd.dxf", "drawings:write_dxf", None, "ezdxf", written="always"),
     _own("svg", "drawing", "image/svg+xml", "drawings:write_svg", None, written="always"),

@@ -1,10 +1,10 @@
-"""Meshes ↔ PLY, GLB and STL files.
+"""Meshes ↔ PLY, GLB, STL and OBJ files.
 
-PLY and STL hold the world frame as it is, z up. GLB follows glTF 2.0, where +Y is up: a point (x, y, z) stands there as
-(x, z, −y), turned by −90° about x. Lengths are metres everywhere.
+PLY, STL and OBJ hold the world frame as it is, z up. GLB follows glTF 2.0, where +Y is up: a point (x, y, z) stands
+there as (x, z, −y), turned by −90° about x. Lengths are metres everywhere.
 
-Vertices are written in single precision. Of a mesh far from the world's origin, where that would lose its digits, PLY
-holds double precision and GLB moves a node; STL cannot.
+Vertices are written in single precision, of OBJ with eight decimals. Of a mesh far from the world's origin, where that
+would lose its digits, PLY holds double precision and GLB moves a node; STL cannot.
 """
 
 import io
@@ -29,7 +29,7 @@ _T_GLTF_WORLD = np.array([[1.0, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0,
 
 
 def write_mesh(mesh: trimesh.Trimesh, path: str | Path) -> None:
-    """Write a mesh [m, world frame] in the format of the file name (.ply, .glb or .stl).
+    """Write a mesh [m, world frame] in the format of the file name (.ply, .glb, .stl or .obj).
 
     Raises InputError for another name, and for .stl of a mesh that is far from the world's origin.
     """
@@ -77,7 +77,7 @@ def read_mesh(path: str | Path, ending: str | None = None) -> trimesh.Trimesh:
     return mesh
 
 
-read_glb, read_ply, read_stl = (partial(read_mesh, ending=ending) for ending in ("glb", "ply", "stl"))
+read_glb, read_ply, read_stl, read_obj = (partial(read_mesh, ending=ending) for ending in ("glb", "ply", "stl", "obj"))
 
 
 def _origin(mesh: trimesh.Trimesh) -> np.ndarray:
