@@ -263,6 +263,7 @@ def all_postures(
     windings: int = 1,
     starts: int = 512,
     curve_step: float = 0.05,
+    aspects: bool = False,
     seed: int = 0,
     progress: Progress | bool | None = None,
     threads: int | None = None,
@@ -298,6 +299,7 @@ def all_postures(
     ``windings``: How many configurations of a posture are listed that differ by whole turns of hinges; all are counted.
     ``starts``: Starts of the search for postures of a pose, where no closed form knows them all.
     ``curve_step``: Between points of self-motions: largest change of a joint, about [rad, reaches].
+    ``aspects``: Whether it is told which listed configurations of a pose connect without a singular one on the way.
     ``seed``: Seed of the starts.
     ``progress``: True shows a bar on work of more than a second; or a function (done, total, message).
     ``threads``: Threads of the CPU; None: all cores. They change no bit of the result.

@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable, Iterator
 from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import BeforeValidator, Field
+from pydantic import BeforeValidator, Field, StrictBool
 
 from wsrender.documents.arm import Arm
 from wsrender.documents.constraints import Constrained
@@ -53,6 +53,8 @@ class PosturesJob(IndexChoices, Constrained, Arm, JobDocument):
     """Starts of the search for postures of a pose, where no closed form knows them all."""
     curve_step: PositiveNumber = 0.05
     """Between points of self-motions: largest change of a joint, about [rad, reaches]."""
+    aspects: StrictBool = False
+    """Whether it is told which listed configurations of a pose connect without a singular one on the way."""
     indices: IndicesOrNone = ()
     """Local indices of every configuration: "kinematic", "dynamic", "all", or a list of names; empty: none."""
     seed: Seed = 0

@@ -16,6 +16,10 @@ def facts(document: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     yield "postures", f"{found['postures']:,}{free}; {found['configurations']:,} with windings"
     if (curves := found["self_motions"])["count"]:
         yield "self-motions", f"{curves['count']:,}, {curves['closed']:,} of them closed"
+    if aspects := found.get("aspects"):
+        cuspidal = f"{aspects['cuspidal_poses']:,} poses with two postures in one aspect"
+        yield "aspects", f"up to {aspects['most_of_a_pose']} of a pose; {cuspidal} (cuspidal)"
+        yield "aspects proven", f"{aspects['proven']:,} of {found['poses']:,} poses: {aspects['evidence']}"
     yield "complete", f"{found['complete']:,} of {found['poses']:,} poses: {found['evidence']}"
 
 

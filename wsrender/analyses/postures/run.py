@@ -22,10 +22,12 @@ from wsrender.analyses.partial_result import PartialResult
 from wsrender.analyses.postures.job import PosturesJob
 from wsrender.analyses.provenance import index_choices
 from wsrender.engine import evaluate_samples, units_of
+from wsrender.errors import InputError
 from wsrender.pipeline.constraints.constraint import Constraint
 from wsrender.pipeline.evaluation import Evaluation
 from wsrender.pipeline.pipeline import Pipeline
 from wsrender.pipeline.sampling import plan_sampling
+from wsrender.reach.aspects import AspectFinder
 from wsrender.reach.posture_sets import BATCH, REDUNDANT_BATCH, Postures, PostureSolver, poses_of
 from wsrender.robot.constraints import constraints_of_job
 from wsrender.robot.indices import evaluation_of_job
@@ -36,14 +38,15 @@ from wsrender.volume.table import Table
 CLOSED_PER_S, TRIES_PER_S = 5e3, 3e4  # poses with all their postures, and tries of searches, of one CPU core
 EXPECTED = 8  # postures of a pose
 POINTS, POINTS_PER_S = 800, 1e3  # of the self-motions of a pose, and how many are followed by one CPU core
+ASPECTS_S, ASPECTS_PER_S, ASPECTS_BYTES = 2.0, 200.0, 2e8  # of a grid of cells, and poses whose aspects are told
 ROW_BYTES = 60  # of a posture in the table beside its configuration and indices
 TRY_BYTES = 600  # of a try and its target
 DRAWN = 8  # postures in pictures, of the first pose that has any
 MESH_BYTES = 1e6  # of their bodies, as ply and glb
 OF_POSTURES = ("pose", "number", "winding", "windings", "q", "sigma_min", "family", "doubtful", "residual_m",
-               "residual_rad", "rejected", "values")  # fmt: skip
+               "residual_rad", "rejected", "values", "aspect")  # fmt: skip
 OF_CURVES = ("curve_pose", "curve_posture", "point", "closed", "singular", "points", "blocked")
-OF_POSES = ("asked", "complete", "found", "configurations")
+OF_POSES = ("asked", "aspects", "proven", "cuspidal", "complete", "found", "configurations")
 
 
 class PosturesAnalysis(Analysis):
@@ -54,7 +57,7 @@ class PosturesAnalysis(Analysis):
 
     def prepare(self, device: str, target: str) -> Settled:
         """Raises InputError for constraints and indices that are not for such a robot."""
-        _ = self.constraints, self.evaluation
+        _ = self.constraints, self.evaluation, self.job.aspects and self.finder
         return Settled(device, target, ((0, len(self.job.position_m)),), shard_unit=1)
 
     @cached_property
@@ -73,7 +76,17 @@ class PosturesAnalysis(Analysis):
         job = self.job
         options = {"with_orientation": job.quat_wxyz is not None, "starts": job.starts, "seed": job.seed}
         options["curve_step"] = job.curve_step
-        return PostureSolver(self.robot.chain, **options, device=self.device)
+        return PostureSolver(self.robot.chain, **options)
+
+    @cached_property
+    def finder(self) -> AspectFinder:
+        """What tells aspects; raises InputError for an arm whose singular configurations part nothing."""
+        finder = AspectFinder(self.solver.holder, self.solver.form)
+        if not finder.square:
+            moving, freedoms = len(finder.holder.moving), finder.holder.freedoms
+            message = f"must be false: {moving} joints move, and the pose has {freedoms} freedoms"
+            raise InputError("aspects", f"{message}; singular configurations part nothing")
+        return finder
 
     @property
     def cost(self) -> Cost:
@@ -87,10 +100,12 @@ class PosturesAnalysis(Analysis):
         redundant, batch = self.solver.redundant, REDUNDANT_BATCH if self.solver.redundant else BATCH
         tries = 0 if self.solver.form and not redundant else self.job.starts
         points = POINTS * count * 0.05 / self.job.curve_step if redundant else 0.0
+        seconds += ASPECTS_S + count / ASPECTS_PER_S if self.job.aspects else 0.0
         files += (ROW_BYTES + 8 * n) * points
         memory = (
             LISTED_MEMORY * listed * count + 4 * row * (rows + points) + min(count, batch) * (2000 + TRY_BYTES * tries)
         )
+        memory += ASPECTS_BYTES if self.job.aspects else 0.0
         seconds += count / CLOSED_PER_S + count * tries / TRIES_PER_S + points / POINTS_PER_S + files / WRITTEN_PER_S
         return Cost(count, memory, files, seconds, Asks("position_m", "take fewer"))
 
@@ -99,7 +114,7 @@ class PosturesAnalysis(Analysis):
         first, count = self.shards[shard]
         own, quat = slice(first, first + count), self.job.quat_wxyz
         T = poses_of(self.job.position_m[own], None if quat is None else quat[own])
-        self.solver.threads = execution.threads
+        self.solver.device, self.solver.threads = self.device, execution.threads
         found = self.solver.solve(T, tell)
         wound = [list(islice(found.wound(k), self.job.windings)) for k in range(len(found))]
         each = [len(rows) for rows in wound]
@@ -108,10 +123,14 @@ class PosturesAnalysis(Analysis):
         number = np.arange(len(found)) - np.repeat(np.cumsum(per_pose) - per_pose, per_pose)
         names = ("windings", "sigma_min", "family", "doubtful", "residual_m", "residual_rad")
         rejected, values = self._evaluated(q, execution)
+        pose = np.repeat(found.pose, each)
+        aspect, of_pose = self._aspects(q, pose, np.repeat(number, each), count)
         return PartialResult(
             {
                 **self._curves(found, number, first, execution),
-                "pose": np.repeat(found.pose + first, each),
+                "pose": pose + first,
+                "aspect": aspect,
+                **of_pose,
                 "number": np.repeat(number, each),
                 "winding": np.concatenate([np.zeros(0, int), *map(np.arange, each)]),
                 **{name: np.repeat(getattr(found, name), each) for name in names},
@@ -124,6 +143,23 @@ class PosturesAnalysis(Analysis):
                 "configurations": np.bincount(found.pose, found.windings, minlength=count).astype(np.int64),
             }
         )
+
+    def _aspects(
+        self, q: np.ndarray, pose: np.ndarray, number: np.ndarray, count: int
+    ) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+        """Of configurations the aspect's number in its pose (K,); of each pose how many, and whether that is proven.
+
+        A pose shows an arm as cuspidal where two of its postures stand in one aspect.
+        """
+        aspect = np.full(len(q), -1)
+        aspects, proven, cuspidal = np.zeros(count, int), np.zeros(count, bool), np.zeros(count, bool)
+        for k in np.unique(pose) if self.job.aspects else ():
+            own = np.flatnonzero(pose == k)
+            aspect[own], proven[k] = self.finder.numbered(q[own])
+            aspects[k] = aspect[own].max() + 1
+            of = np.stack([aspect[own], number[own]], axis=1)
+            cuspidal[k] = len(np.unique(of, axis=0)) > len(np.unique(aspect[own]))
+        return aspect, {"aspects": aspects, "proven": proven, "cuspidal": cuspidal}
 
     def _curves(self, found: Postures, number: np.ndarray, first: int, execution: Execution) -> dict[str, np.ndarray]:
         """Arrays OF_CURVES: a row for each point of each self-motion."""
@@ -188,6 +224,13 @@ class PosturesAnalysis(Analysis):
             **dict(zip(("largest_residual_m", "largest_residual_rad"), residuals, strict=True)),
         }
         entries: dict[str, Any] = {"postures": found}
+        if self.job.aspects:
+            found["aspects"] = {
+                "most_of_a_pose": int(partial["aspects"].max(initial=0)),
+                "proven": int(partial["proven"].sum()),
+                "cuspidal_poses": int(partial["cuspidal"].sum()),
+                "evidence": self.finder.evidence,
+            }
         if self.constraints:
             found["free"] = int((partial["rejected"][first] == 0).sum())
             entries |= rejected_rows(self.constraints, partial["rejected"], partial["q"].__getitem__)
@@ -222,6 +265,7 @@ class PosturesAnalysis(Analysis):
     def _postures(self, partial: PartialResult) -> Table:
         names = ("windings", "family", "doubtful", "sigma_min", "residual_m", "residual_rad")
         columns = {"pose": partial["pose"], "posture": partial["number"], "winding": partial["winding"]}
+        columns |= {"aspect": partial["aspect"]} if self.job.aspects else {}
         columns |= {name: partial[name] for name in names}
         units = {"residual_m": "m", "residual_rad": "rad"}
         if self.constraints:
@@ -258,4 +302,7 @@ class PosturesAnalysis(Analysis):
         if self.constraints:
             free = (partial["winding"] == 0) & (partial["rejected"] == 0)
             columns["free"] = np.bincount(partial["pose"][free], minlength=len(partial["asked"]))
+        if self.job.aspects:
+            told = {"aspects": "aspects", "aspects_proven": "proven", "cuspidal": "cuspidal"}
+            columns |= {name: partial[array] for name, array in told.items()}
         return Table({**columns, "complete": partial["complete"]}, {"position": "m"})
