@@ -7,7 +7,8 @@ It labels a sample ADMITTED or with the number of the reason, from 1; a sample w
 with a mask of those. ``narrow`` decides listed samples pair by pair: portals of the Minkowski difference (Snethen,
 *XenoCollide*, 2008), certified by a gap along a direction or by a portal that the origin lies behind, each by more than
 what float32 may be off; what is still open then is listed for the same in float64, and at last for the host. On the CPU
-a task takes BATCH of them, and GROUP that have a pair in common side by side: a V is so many numbers, on CUDA one.
+a task takes BATCH of them, a pair of each in turn, and GROUP whose solids are of the same kinds side by side: a V is so
+many numbers, on CUDA one.
 """
 
 from typing import Any
@@ -20,7 +21,7 @@ from wsrender_kernels.options import CUDA_OPTIONS, MODULE_OPTIONS, SHORT_OPTIONS
 from wsrender_kernels.sampling import LANES, blocks, sample_space, sampling
 
 PART_LANES = 64
-BATCH, GROUP = 512, 16  # open samples of a task of the narrow phase on the CPU, and of a pair side by side
+BATCH, GROUP = 512, 16  # open samples of a task of the narrow phase on the CPU, and side by side
 STEPS = 40  # of portals
 EDGE, ROW = 8, 8  # cells of directions along the edge of a cube; vertices of a cell are padded to so many
 CAPACITY = 16  # capsules: the scratch is for a multiple of so many
@@ -39,7 +40,8 @@ REAL_ARRAYS = (
 _ARRAYS = {
     wp.float32: ("lower", "upper", "capsules", "test_numbers", "table_numbers", "balls", "grid_numbers"),
     wp.int32: ("sources", "capsule_frame", "capsule_axis", "pairs", "planes", "tests", "tables", "table_columns",
-               "solid_frame", "vertex_range", "solid_pairs", "lookups", "grid_shapes", "node_links"),
+               "solid_frame", "vertex_range", "solid_pairs", "pair_kinds", "pair_ranks", "lookups", "grid_shapes",
+               "node_links"),
     wp.uint32: ("table_words", "first_reason", "grid_words"),
 }  # fmt: skip
 ARRAYS = {name: dtype for dtype, names in _ARRAYS.items() for name in names}
@@ -287,10 +289,12 @@ _NARROW = """
     #define LANE_LOOP for (int l = 0; l < LN; l++)
     constexpr int LN = 1, STRIDE = 1;
     #define ONCE
+    #define LOWEST(bits) (__ffs(bits) - 1)
 #else
     #define LANE_LOOP _Pragma("clang loop vectorize(assume_safety) interleave_count(1)") for (int l = 0; l < LN; l++)
     constexpr int LN = @BATCH, STRIDE = @BATCH;
     #define ONCE __attribute__((noinline))  // compiled once, not seven times
+    #define LOWEST(bits) __builtin_ctz(bits)
 #endif
 #if defined(__CUDA_ARCH__) || @SURFACES
     constexpr int GROUP = 1;
@@ -333,13 +337,38 @@ _NARROW = """
         x = x < real(1.f) ? x : (V)real(1.f);
         return x > real(-1.f) ? x : (V)real(-1.f);
     };
-    // Farthest point of a solid along d, without its ball, in its own frame.
-    auto support = [&](int solid, const V* d, M live, V* o) ONCE {
-        const real* numbers = program.solids.data + 18 * solid;
-        const real* size = program.solid_sizes.data + 3 * solid;
-        if (numbers[14] == 3.f) {
-            for (int k = 0; k < 3; k++) o[k] = d[k] > real(0.f) ? (V)size[k] : (V)(-size[k]);
-        } else if (numbers[14] == 1.f) {
+    // Solids of one kind, one for each lane: rows of solids and solid_sizes.
+    struct Solids { int kind, number[GROUP]; V own[18], size[3]; };
+    auto solids_of = [&](const int* pairs, int side) {
+        Solids found;
+        bool same = true;
+        for (int l = 0; l < GROUP; l++) {
+            found.number[l] = program.solid_pairs.data[2 * pairs[l] + side];
+            same &= found.number[l] == found.number[0];
+        }
+        const real* own = program.solids.data + 18 * found.number[0];
+        const real* size = program.solid_sizes.data + 3 * found.number[0];
+        for (int k = 0; k < 18; k++) found.own[k] = own[k];
+        for (int k = 0; k < 3; k++) found.size[k] = size[k];
+        found.kind = (int)own[14];
+        if (same) return found;
+        alignas(256) real rows[21][GROUP];
+        for (int l = 0; l < GROUP; l++) {
+            own = program.solids.data + 18 * found.number[l];
+            size = program.solid_sizes.data + 3 * found.number[l];
+            for (int k = 0; k < 18; k++) rows[k][l] = own[k];
+            for (int k = 0; k < 3; k++) rows[18 + k][l] = size[k];
+        }
+        for (int k = 0; k < 18; k++) found.own[k] = *(V*)rows[k];
+        for (int k = 0; k < 3; k++) found.size[k] = *(V*)rows[18 + k];
+        return found;
+    };
+    // Farthest points of solids along d, without their balls, in their own frames.
+    auto support = [&](const Solids& solid, const V* d, M live, V* o) ONCE {
+        const V* size = solid.size;
+        if (solid.kind == 3) {
+            for (int k = 0; k < 3; k++) o[k] = d[k] > real(0.f) ? size[k] : -size[k];
+        } else if (solid.kind == 1) {
             V x = size[0] * d[0], y = size[1] * d[1], z = size[2] * d[2], length = root(x * x + y * y + z * z);
             V per = length > real(1e-12f) ? real(1.f) / length : (V)real(0.f);
             o[0] = size[0] * x * per; o[1] = size[1] * y * per; o[2] = size[2] * z * per;
@@ -367,7 +396,7 @@ _NARROW = """
             for (int l = 0; l < GROUP; l++) { list[lanes] = l; lanes += on[l] != 0.f ? 1 : 0; }
             for (int i = 0; i < lanes; i++) {
                 const int l = list[i];
-                const int* range = program.vertex_range.data + 2 * (@CELLS * solid + (int)C[l]);
+                const int* range = program.vertex_range.data + 2 * (@CELLS * solid.number[l] + (int)C[l]);
                 const int first = range[0], count = range[1];
                 const real* VX = program.vertices.data + first;
                 const real* VY = VX + count; const real* VZ = VY + count;
@@ -398,9 +427,9 @@ _NARROW = """
             }
             for (int k = 0; k < 3; k++) o[k] = *(V*)O[k];
         }
-        if (numbers[13] > 0.f) {
+        if (any(solid.own[13] > real(0.f))) {
             V h = root(d[0] * d[0] + d[1] * d[1]);
-            h = h > real(1e-12f) ? numbers[13] / h : (V)real(0.f);
+            h = h > real(1e-12f) ? solid.own[13] / h : (V)real(0.f);
             o[0] += h * d[0]; o[1] += h * d[1];
         }
     };
@@ -454,12 +483,12 @@ _NARROW = """
         }
         return found;
     };
-@TRIANGLES    // Of a pair in as many samples as there are lanes, with frames FA and FB: 0 apart, 1 touching, 2 open.
-    auto decided = [&](int pair, const V* FA, const V* FB, V eps) -> V {
-        const int a = program.solid_pairs.data[2 * pair], b = program.solid_pairs.data[2 * pair + 1];
-        const real* of_a = program.solids.data + 18 * a; const real* of_b = program.solids.data + 18 * b;
-        const real ball = program.pair_numbers.data[2 * pair] + of_a[12] + of_b[12];
-        auto placed = [](const V* S, const real* t, V* R, V* p) {
+@TRIANGLES    // Of as many pairs as there are lanes, with frames FA and FB of solids: 0 apart, 1 touching, 2 open.
+    auto decided = [&](const int* pairs, V margin, const V* FA, const V* FB, V eps) -> V {
+        const Solids a = solids_of(pairs, 0), b = solids_of(pairs, 1);
+        const V* of_a = a.own; const V* of_b = b.own;
+        const V ball = margin + of_a[12] + of_b[12];
+        auto placed = [](const V* S, const V* t, V* R, V* p) {
             for (int r = 0; r < 3; r++) {
                 for (int k = 0; k < 3; k++) R[3 * r + k] = S[r] * t[k] + S[3 + r] * t[3 + k] + S[6 + r] * t[6 + k];
                 p[r] = S[9 + r] + S[r] * t[9] + S[3 + r] * t[10] + S[6 + r] * t[11];
@@ -473,7 +502,7 @@ _NARROW = """
             p[r] = RA[r] * pB[0] + RA[3 + r] * pB[1] + RA[6 + r] * pB[2];
         }
         M live = eps < real(1e29f);
-        if (of_a[14] == 2.f) {
+        if (a.kind == 2) {
             V down[3] = {-R[6], -R[7], -R[8]}, lowest[3];
             support(b, down, live, lowest);
             V height = p[2] - dot(lowest, down) - ball;
@@ -499,44 +528,57 @@ _NARROW = """
         put(v0, dot(v0, v0) < real(1e-6f), p);
         return portal_of(farthest, v0, live, eps);
     };
-    int label_[LN], reason_[LN], anyway_[LN], list[LN];
-    unsigned asked_[W * LN], still_[W * LN], any_[W];
-    for (int w = 0; w < W; w++) {
-        any_[w] = 0u;
-        for (int l = 0; l < valid; l++) {
-            asked_[w * LN + l] = open_masks.data[(long long)(item + l) * W + w]; still_[w * LN + l] = 0u;
-            any_[w] |= asked_[w * LN + l];
-        }
-    }
+    int label_[LN], reason_[LN], anyway_[LN], next_[LN], list[LN], pair_[LN], sorted_[LN];
+    unsigned still_[W * LN];
     for (int l = 0; l < valid; l++) {
-        label_[l] = 0; reason_[l] = 99;
+        label_[l] = next_[l] = 0; reason_[l] = 99; list[l] = l;
         anyway_[l] = labels.data[open_ids.data[item + l]];  // a later reason, where an earlier one is open
     }
-    for (int pair = 0; pair < program.n_solid_pairs; pair++) {
-        const int w = pair >> 5, reason = (int)program.pair_numbers.data[2 * pair + 1] + 1;
-        const unsigned bit = 1u << (pair & 31);
-        if (!(any_[w] & bit)) continue;
-        int count = 0;
-        for (int l = 0; l < valid; l++) {
-            list[count] = l;
-            count += (asked_[w * LN + l] & bit) && label_[l] == 0 && (anyway_[l] == 0 || reason < anyway_[l]) ? 1 : 0;
+    for (int k = 0; k < W * LN; k++) still_[k] = 0u;
+    for (int left = valid, count; left; left = count) {
+        int starts[GROUP > 1 ? 32 * W + 1 : 1] = {0};
+        count = 0;
+        for (int i = 0; i < left; i++) {
+            const int l = list[i];
+            if (label_[l] != 0) continue;
+            const unsigned* asked = open_masks.data + (long long)(item + l) * W;
+            int w = next_[l] >> 5;
+            unsigned bits = w < W ? asked[w] & (~0u << (next_[l] & 31)) : 0u;
+            while (!bits && ++w < W) bits = asked[w];
+            if (!bits) continue;
+            const int pair = 32 * w + LOWEST(bits);
+            if (pair >= program.n_solid_pairs) continue;
+            if (anyway_[l] != 0 && (int)program.pair_numbers.data[2 * pair + 1] + 1 >= anyway_[l]) continue;
+            next_[l] = pair + 1;
+            list[count++] = l; pair_[l] = pair;
+            if (GROUP > 1) starts[program.pair_ranks.data[pair] + 1]++;
         }
-        const int* solids = program.solid_pairs.data + 2 * pair;
-        const real* A = F + 12 * program.solid_frame.data[solids[0]] * LN;
-        const real* B = F + 12 * program.solid_frame.data[solids[1]] * LN;
-        for (int start = 0; start < count; start += GROUP) {
-            alignas(256) real FA[12][GROUP], FB[12][GROUP], eps[GROUP], found[GROUP];
+        if (GROUP > 1) {
+            for (int k = 0; k < 32 * W; k++) starts[k + 1] += starts[k];
+            for (int i = 0; i < count; i++) sorted_[starts[program.pair_ranks.data[pair_[list[i]]]]++] = list[i];
+        }
+        const int* order = GROUP > 1 ? sorted_ : list;
+        for (int start = 0, lanes; start < count; start += lanes) {
+            alignas(256) real FA[12][GROUP], FB[12][GROUP], eps[GROUP], margin[GROUP], found[GROUP];
+            int pairs[GROUP];
+            auto kinds = [&](int at) { return program.pair_kinds.data[pair_[order[at]]]; };
+            for (lanes = 1; lanes < GROUP && start + lanes < count && kinds(start + lanes) == kinds(start);) lanes++;
             for (int l = 0; l < GROUP; l++) {
-                const int from = list[start + l < count ? start + l : start];
-                for (int k = 0; k < 12; k++) { FA[k][l] = A[k * LN + from]; FB[k][l] = B[k * LN + from]; }
-                eps[l] = start + l < count ? eps_[from] : real(1e30f);
+                const int from = order[l < lanes ? start + l : start];
+                pairs[l] = pair_[from];
+                const int* solids = program.solid_pairs.data + 2 * pairs[l];
+                const real* A = F + 12 * program.solid_frame.data[solids[0]] * LN + from;
+                const real* B = F + 12 * program.solid_frame.data[solids[1]] * LN + from;
+                for (int k = 0; k < 12; k++) { FA[k][l] = A[k * LN]; FB[k][l] = B[k * LN]; }
+                margin[l] = program.pair_numbers.data[2 * pairs[l]];
+                eps[l] = l < lanes ? eps_[from] : real(1e30f);
             }
-            *(V*)found = decided(pair, (const V*)FA, (const V*)FB, *(const V*)eps);
-            for (int l = 0; l < GROUP && start + l < count; l++) {
-                const int at = list[start + l];
+            *(V*)found = decided(pairs, *(const V*)margin, (const V*)FA, (const V*)FB, *(const V*)eps);
+            for (int l = 0; l < lanes; l++) {
+                const int at = order[start + l], reason = (int)program.pair_numbers.data[2 * pairs[l] + 1] + 1;
                 if (found[l] == 0.f) continue;
                 if (found[l] == 1.f && reason_[at] >= reason) { label_[at] = reason; continue; }
-                still_[w * LN + at] |= bit;
+                still_[(pairs[l] >> 5) * LN + at] |= 1u << (pairs[l] & 31);
                 reason_[at] = reason_[at] < reason ? reason_[at] : reason;
             }
         }
@@ -558,13 +600,14 @@ _NARROW = """
     }
     #undef LANE_LOOP
     #undef ONCE
+    #undef LOWEST
 """
 
 
 _TRIGONOMETRY = "    auto sincos_of = [](double a, double& sine, double& cosine) { sine = sin(a); cosine = cos(a); };\n"
 
 
-_AGAINST = "        if (of_a[14] == 4.f) return against_surface(pair, a, b, FB, RB, pB, eps);\n"
+_AGAINST = "        if (a.kind == 4) return against_surface(margin, a.number[0], b, FB, RB, pB, eps);\n"
 
 
 def _code(

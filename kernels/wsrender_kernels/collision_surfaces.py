@@ -70,12 +70,13 @@ TRIANGLES = """
         return OPEN;
     };
     // Of a surface and a solid in the frame S, itself turned by RB and moved to pB.
-    auto against_surface = [&](int pair, int a, int b, const real* S, const real* RB, const real* pB, real eps) {
+    auto against_surface = [&](real margin, int a, const Solids& b, const real* S, const real* RB, const real* pB,
+                               real eps) {
         if (!(eps < real(1e29f))) return OPEN;
         const int* range = program.vertex_range.data + 2 * @CELLS * a;
         const int first = range[0], end = range[1];
-        const real* c = program.solid_capsules.data + 7 * b;
-        const real margin = program.pair_numbers.data[2 * pair], ball = margin + program.solids.data[18 * b + 12];
+        const real* c = program.solid_capsules.data + 7 * b.number[0];
+        const real ball = margin + b.own[12];
         real m[3], axis[3];
         for (int k = 0; k < 3; k++) {
             m[k] = S[9 + k] + S[k] * c[0] + S[3 + k] * c[1] + S[6 + k] * c[2];

@@ -43,6 +43,7 @@ class Program:
     ``solid_frame`` (S,), ``solids`` (S, 18): rotation and translation in its joint, radius, disc, kind, half a segment
     within it, about its middle; ``solid_sizes`` (S, 3): half axes of an ellipsoid, else half of what its points span;
     ``vertices`` (V,), ``vertex_range`` (S, cells, 2): see `vertices_by_direction`; ``solid_pairs`` (P, 2);
+    ``pair_kinds`` (P,): the same number where both solids are of the same kinds; ``pair_ranks`` (P,): by them;
     ``pair_numbers`` (P, 2): margin, reason. Of surfaces: ``lookups`` (Q, 5): pair, grid, joint from 1, first ball,
     balls; ``balls`` as `Lookup.balls`; ``grid_numbers`` (G, 4): origin and cell; ``grid_shapes`` (G, 4): cells along
     each axis, first word; ``grid_words``; ``nodes`` and ``node_links`` as `Tree.balls` and `Tree.links`, in the base's
@@ -73,6 +74,8 @@ class Program:
     vertices: np.ndarray
     vertex_range: np.ndarray
     solid_pairs: np.ndarray
+    pair_kinds: np.ndarray
+    pair_ranks: np.ndarray
     pair_numbers: np.ndarray
     lookups: np.ndarray
     balls: np.ndarray
@@ -305,6 +308,7 @@ def _packed(
         columns.append(table.labels.shape[1])
         words.append(_words(table.labels))
     vertices, vertex_range = vertices_by_direction(pairs.solids)
+    kinds = np.array([KIND[solid.kind] for solid in pairs.solids])[pairs.pairs] @ (len(KIND), 1)
     met = {int(pairs.pairs[pair][1]) for pair in lookups}
     placed = [solid.T @ _shift(center_of(solid)) for solid in pairs.solids]  # the narrow phase starts at the origins
     joints = [
@@ -343,6 +347,8 @@ def _packed(
         **_looked_up(lookups),
         solid_capsules=_d([_capsule(s, covers[k] if k in met else None) for k, s in enumerate(pairs.solids)], 7),
         solid_pairs=_i(pairs.pairs, 2),
+        pair_kinds=kinds.astype(np.int32),
+        pair_ranks=kinds.argsort(kind="stable").argsort().astype(np.int32),
         pair_numbers=_d([[pairs.margin(k), pairs.reason[k]] for k in range(len(pairs.pairs))], 2),
         epsilon=epsilon,
         columns=CELLS,
