@@ -6,28 +6,36 @@ Poses made by forward kinematics, all postures of each with limits and windings,
 configuration. Every repeat takes all cases in turn; rates are of the least times, ratios of the rates. EAIK and ssik
 are in the extra test-models; what is not installed is left out. Aims: 75 times EAIK's rate for the same arm in float64
 or more, for the quartic of a general arm 45 times that for the UR5e.
+
+Of arms of seven hinges labels alone: a search in balls beside the solver, of poses made and of poses anywhere in the
+box that holds the workspace. Aims, for the Panda: 25 and 150 times the solver of version 0.1.0.
 """
 
 import argparse
 import importlib
 import time
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 import warp as wp
+from scipy.spatial.transform import Rotation
 from wsrender_kernels.closed_form import FIELDS, LANES, closed_form_kernel
 
 import wsrender as ws
-from wsrender.engine import devices_of
+from wsrender.engine import devices_of, search_free_joint
 from wsrender.engine.closed_form import shape_of
 from wsrender.engine.evaluation import REAL, device_array
 from wsrender.engine.kernel_cache import launch, loaded
 from wsrender.reach import InverseSolver
 from wsrender.robots.chain import Chain
-from wsrender.robots.closed_form import ClosedForm
+from wsrender.robots.closed_form import ClosedForm, FreeJointForm
 from wsrender.robots.closed_form.numbers import packed
+from wsrender.robots.kinematics import Kinematics
+from wsrender.robots.reachable_box import reachable_box
 
 SSIK = {"ur5e": "universal_robots.ur5e_ik", "puma560": "unimation.puma560_ik"}
+NEAR = {"position_m": 1e-5, "angle_rad": 1e-5}
 FEW, FEWER = 4096, 256  # poses for the solver and EAIK, and for ssik
 GENERAL = [(0.1, 70, 0.2), (0.4, 40, 0.1), (0.15, -80, 0.05), (0.0, 90, 0.35), (0.0, -90, 0.0), (0.0, 0, 0.1)]
 
@@ -81,9 +89,9 @@ def ssik(name: str, seed: int = 0) -> Work:
     return FEWER, lambda: [module.solve(T) for T in poses]
 
 
-def solver(chain: Chain, T: np.ndarray) -> Work:
+def solver(chain: Kinematics, T: np.ndarray) -> Work:
     """The numerical solver alone: it finds one configuration."""
-    made = InverseSolver(chain, kind="pose", position_m=1e-5, angle_rad=1e-5, device="cpu", threads=1)
+    made = InverseSolver(chain, kind="pose", device="cpu", threads=1, **NEAR)
     made.closed = None
     return FEW, lambda: made.solve(T[:FEW, :3, 3], T[:FEW, :3, :3])
 
@@ -107,6 +115,48 @@ def cases_of(name: str, chain: Chain, count: int, device: wp.Device) -> dict[str
     return cases | {"solver": solver(chain, T)}
 
 
+def redundant_cases(count: int, device: str) -> dict[tuple[str, str], Work]:
+    """Labels of arms of seven hinges, by arm and what is done of which poses."""
+    cases = {}
+    for name in ("franka_panda", "kuka_iiwa14"):
+        chain = ws.load_robot(name).chain
+        form = FreeJointForm.of(chain)
+        assert form and chain.geometry
+        made, random = chain.poses(uniform(chain.lower_limits, chain.upper_limits, count)), made_anywhere(chain, count)
+        for told, T in (("made", made), ("anywhere", random)):
+            cases[name, f"balls, {told}"] = (
+                count,
+                partial(search_free_joint, form, T, device=device, threads=1, **NEAR),
+            )
+            cases[name, f"solver, {told}"] = solver(chain, T)
+    return cases
+
+
+def uniform(lower: np.ndarray, upper: np.ndarray, count: int) -> np.ndarray:
+    """Points (N, k) of a box."""
+    return np.random.default_rng(0).uniform(lower, upper, (count, len(lower)))
+
+
+def made_anywhere(chain: Kinematics, count: int) -> np.ndarray:
+    """Poses (N, 4, 4) whose positions lie in the box that holds the workspace, turned in any way."""
+    T = np.tile(np.eye(4), (count, 1, 1))
+    T[:, :3, 3] = uniform(*reachable_box(chain, chain.lower_limits, chain.upper_limits), count)
+    T[:, :3, :3] = Rotation.random(count, random_state=1).as_matrix()
+    return T
+
+
+def least_times(work: dict[tuple[str, str], Work], repeats: int) -> dict[tuple[str, str], float]:
+    """Poses per second by case, all cases in turn."""
+    least = dict.fromkeys(work, np.inf)
+    for repeat in range(repeats + 1):
+        for case, (_, run) in work.items():
+            started = time.perf_counter()
+            run()
+            if repeat:  # the first is not warm
+                least[case] = min(least[case], time.perf_counter() - started)
+    return {case: work[case][0] / seconds for case, seconds in least.items()}
+
+
 def main() -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])  # type: ignore[union-attr]
@@ -115,19 +165,17 @@ def main() -> None:
     parser.add_argument("--repeats", type=int, default=5)
     arguments = parser.parse_args()
     device = devices_of(arguments.device)[0]
-    work = {name: cases_of(name, chain, arguments.poses, device) for name, chain in arms().items()}
-    least = {(name, case): np.inf for name, cases in work.items() for case in cases}
-    for repeat in range(arguments.repeats + 1):
-        for name, case in least:
-            started = time.perf_counter()
-            work[name][case][1]()
-            if repeat:  # the first is not warm
-                least[name, case] = min(least[name, case], time.perf_counter() - started)
-    rates = {(name, case): work[name][case][0] / seconds for (name, case), seconds in least.items()}
+    by_arm = {name: cases_of(name, chain, arguments.poses, device) for name, chain in arms().items()}
+    work = {(name, case): each for name, cases in by_arm.items() for case, each in cases.items()}
+    rates = least_times(work, arguments.repeats)
     print("| arm | by | poses/s | float64 is so many times | of EAIK's rate for the UR5e |\n|---|---|--:|--:|--:|")
     for (name, case), rate in rates.items():
         beside = rate / rates["ur5e", "EAIK"] if ("ur5e", "EAIK") in rates else np.nan
         print(f"| {name} | {case} | {rate:,.0f} | {rates[name, 'float64'] / rate:.1f} | {beside:.1f} |")
+    rates = least_times(redundant_cases(arguments.poses, arguments.device), arguments.repeats)
+    print("| arm | labels of poses | poses/s |\n|---|---|--:|")
+    for (name, case), rate in rates.items():
+        print(f"| {name} | {case} | {rate:,.0f} |")
 
 
 if __name__ == "__main__":

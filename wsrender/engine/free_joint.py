@@ -83,7 +83,7 @@ def _launch(kernel, numbers, search, form, T, device) -> list[np.ndarray]:
     count, real = len(T), REAL["float64"]
     state, balls = (wp.empty(count, dtype=wp.int32, device=device) for _ in range(2))  # type: ignore[arg-type]
     at = wp.empty(count, dtype=real, device=device)
-    given = [device_array(values, real, device) for values in (numbers, form.targets(T).T.ravel())]
+    given = [device_array(values, real, device) for values in (numbers, form.targets(T).ravel())]
     dim = count if device.is_cuda else -(-count // POSES)
     launch(kernel, dim=dim, inputs=[count, *search, *given], outputs=[state, at, balls], device=device)
     return [state.numpy(), at.numpy(), balls.numpy()]

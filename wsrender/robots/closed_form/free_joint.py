@@ -59,29 +59,29 @@ class FreeJointForm:
         """
         found = self._geometry | limit_numbers(self.solved, unlimited)
         frame, middle, reach = self._frame, self._middle(unlimited), self.solved.axes.reach
-        lower, upper = ends_of(self.free, unlimited)
-        turned = np.eye(4)
+        back, world, (lower, upper) = (
+            self.solved.axes.reversed,
+            self.rest.chain.T_world_base,
+            ends_of(self.free, unlimited),
+        )
+        turned, tool = np.eye(4), _matrix("tool", found, reach)
         turned[:2, :2] = [[np.cos(middle), np.sin(middle)], [-np.sin(middle), np.cos(middle)]]
-        inverse = turned @ np.linalg.inv(frame)
-        found |= {f"base{k}": x for k, x in enumerate([*inverse[:3, :3].ravel(), *inverse[:3, 3] / reach])}
+        # Seen from the tip the base is behind the wrist's centre.
+        base = turned @ np.linalg.inv(frame if back else world @ frame)
+        found |= _named("base", base, reach) | _named("tool", world @ tool if back else tool, reach)
         found |= {"half": min((upper - lower) / 2, np.pi)} | self._band(unlimited)
         # The wrist's centre is off by what the tip is, and by its turn about the tip: seen from there its own distance.
-        arm = np.linalg.norm([found[f"tool{k}"] for k in (9, 10, 11)])
-        back = self.solved.axes.reversed
         near = max(position_m / reach, 1e-13)  # rounding
-        held = np.linalg.norm(frame[:3, 3]) / reach if back else arm
+        held = np.linalg.norm((frame if back else tool)[:3, 3]) / reach
         return found | {"near": near + angle_rad * held, "near_by": angle_rad * back, "near_turn": angle_rad}
 
     @cached_property
     def _geometry(self) -> dict[str, float]:
         """Those of the others, and how the free joint's frame lies to theirs."""
         found, reach = geometry_numbers(self.solved), self.solved.axes.reach
-        base = np.array([found[f"base{k}"] for k in range(12)])
-        link = np.eye(4)
-        link[:3, :3], link[:3, 3] = base[:9].reshape(3, 3), base[9:] * reach
-        link = link @ self._frame
+        link = _matrix("base", found, reach) @ self._frame
         R, p = link[:3, :3], link[:3, 3] / reach
-        found |= {f"link{k}": x for k, x in enumerate([*R.ravel(), *p])}
+        found |= _named("link", link, reach)
         for k, equation in enumerate(self.solved.equations, 1):
             turn = (2 * equation.squares * R.T @ p + equation.left[2] * R[2])[:2]
             found |= {f"turn{k}_x": turn[0], f"turn{k}_y": turn[1], f"turn{k}_size": np.hypot(*turn)}
@@ -117,13 +117,12 @@ class FreeJointForm:
         return {"right1_low": values.min(), "right1_high": values.max()}
 
     def targets(self, T: np.ndarray) -> np.ndarray:
-        """Poses (N, 4, 4) in the world as kernels take them, (N, 12): rotation by rows, position [reach]."""
-        base = self.rest.chain.T_world_base
-        R, p = base[:3, :3].T @ T[:, :3, :3], (T[:, :3, 3] - self.rest.origin - base[:3, 3]) @ base[:3, :3]
-        if self.solved.axes.reversed:
-            R = R.transpose(0, 2, 1)
-            p = -np.einsum("nij,nj->ni", R, p)
-        return np.concatenate([R.reshape(-1, 9), p / self.solved.axes.reach], axis=1)
+        """Poses (N, 4, 4) in the world as kernels take them, (12, N): rotation by rows, position [reach]."""
+        rows, p = np.empty((12, len(T))), T[:, :3, 3] - self.rest.origin
+        R = T[:, :3, :3].transpose(0, 2, 1) if self.solved.axes.reversed else T[:, :3, :3]
+        rows[:9] = R.reshape(-1, 9).T
+        rows[9:] = (-np.einsum("nij,nj->in", R, p) if self.solved.axes.reversed else p.T) / self.solved.axes.reach
+        return rows
 
     def standing(self, T: np.ndarray, at: np.ndarray) -> np.ndarray:
         """Poses (N, 4, 4) that the others must reach where the free joint stands ``at`` (N,), as kernels say [rad]."""
@@ -147,3 +146,15 @@ class FreeJointForm:
             value = np.clip(value, chain.lower_limits[coordinate], chain.upper_limits[coordinate])
             q[..., coordinate] = value.reshape(-1, *[1] * (q.ndim - 2))
         return q
+
+
+def _named(name: str, T: np.ndarray, reach: float) -> dict[str, float]:
+    """A motion (4, 4) [m] as kernels take it: rotation by rows, position [reach]."""
+    return {f"{name}{k}": x for k, x in enumerate([*T[:3, :3].ravel(), *T[:3, 3] / reach])}
+
+
+def _matrix(name: str, numbers: dict[str, float], reach: float) -> np.ndarray:
+    """The motion (4, 4) [m] of such numbers."""
+    T, values = np.eye(4), np.array([numbers[f"{name}{k}"] for k in range(12)])
+    T[:3, :3], T[:3, 3] = values[:9].reshape(3, 3), values[9:] * reach
+    return T
