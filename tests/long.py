@@ -15,11 +15,17 @@ from typing import Any
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from tests.collision import many_labels
+from tests.engine import free_joint_sweeps
 from tests.reach import near_limits
 from tests.robots import model_packages
 
 # By name: a module with ``PARTS``, functions by name that return figures, and ``violations(figures by part)``.
-PIECES = {"near_limits": near_limits, "model_packages": model_packages, "collision_labels": many_labels}
+PIECES = {
+    "near_limits": near_limits,
+    "model_packages": model_packages,
+    "collision_labels": many_labels,
+    "free_joint": free_joint_sweeps,
+}
 
 
 def main() -> int:

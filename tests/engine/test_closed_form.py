@@ -172,11 +172,11 @@ def test_postures_are_counted_with_their_windings(name):
     assert agreeing[clear & ~doubt].all()
 
 
-def in_the_box(chain, count):
+def in_the_box(chain, count, seed=0):
     low, high = reachable_box(chain, chain.lower_limits, chain.upper_limits)
     T = np.tile(np.eye(4), (count, 1, 1))
-    T[:, :3, 3] = np.random.default_rng(0).uniform(low, high, (count, 3))
-    T[:, :3, :3] = Rotation.random(count, random_state=1).as_matrix()
+    T[:, :3, 3] = np.random.default_rng(seed).uniform(low, high, (count, 3))
+    T[:, :3, :3] = Rotation.random(count, random_state=seed + 1).as_matrix()
     return T
 
 

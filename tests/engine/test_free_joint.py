@@ -9,6 +9,7 @@ from scipy.spatial.transform import Rotation
 from wsrender_kernels.free_joint import free_joint_kernel
 
 import wsrender as ws
+from tests.engine import free_joint_sweeps
 from tests.engine.test_closed_form import anywhere, in_the_box, near_limits
 from tests.reference.redundant_arms import RANDOM_ARMS, swept, with_limits
 from wsrender.engine import closed_postures, free_joint, search_free_joint
@@ -187,3 +188,10 @@ def test_kernels_compile_for_cuda_without_a_gpu(name, tmp_path):
         free_joint_kernel(shape, cuda=True).module, device=None, arch=90, module_dir=str(tmp_path), use_ptx=True
     )
     assert list(tmp_path.glob("*.ptx"))
+
+
+def test_violations_of_long_sweeps():
+    fine, refuted = free_joint_sweeps.Figures(undecided=1e-3), free_joint_sweeps.Figures(refuted=1)
+    figures = {"a": fine, "b": refuted, "c": free_joint_sweeps.Figures(unreachable=2, undecided=2e-3)}
+    assert free_joint_sweeps.violations({"a": fine}) == []
+    assert [told.split(":")[0] for told in free_joint_sweeps.violations(figures)] == ["b", "c", "c"]
