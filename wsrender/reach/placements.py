@@ -20,7 +20,6 @@ from wsrender.pipeline.pipeline import Pipeline
 from wsrender.pipeline.sampling import plan_sampling
 from wsrender.reach.admissible_search import BLOCKED, TURN_FREE, AdmissibleSearch
 from wsrender.reach.admission import WORTH_THREADS, Admission
-from wsrender.reach.closed_labels import ClosedLabels
 from wsrender.reach.evidence import REACHABLE, UNDECIDED, UNREACHABLE
 from wsrender.reach.inverse_solver import BATCH, VERIFIED, InverseSolver
 from wsrender.robots.chain import Chain
@@ -93,9 +92,8 @@ class Placements:
         P, K = len(coordinates), len(self._targets)
         bases = self._bases(T_world_frame)
         label, reason = np.full((P, K), UNDECIDED, np.int8), np.zeros((P, K), np.int8)
-        closed = self.solver.closed
-        if isinstance(closed, ClosedLabels):
-            slack, margin = self._slacks(closed, bases).T, CLOSED_MARGIN + closed.margin
+        if closed := self.solver.closed:
+            slack, margin = self._slacks(bases).T, CLOSED_MARGIN + closed.margin
             label[slack < -margin] = UNREACHABLE
             if self.admission is None:
                 label[slack > margin] = REACHABLE
@@ -120,7 +118,9 @@ class Placements:
         bases[:, :3, 3] -= self._origin
         return bases
 
-    def _slacks(self, closed: ClosedLabels, bases: np.ndarray) -> np.ndarray:
+    def _slacks(self, bases: np.ndarray) -> np.ndarray:
+        closed = self.solver.closed
+        assert closed
         return placed_slacks(closed.form, bases, self._targets, device=closed.device, threads=closed.threads)
 
     def _decided(

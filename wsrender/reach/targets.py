@@ -227,14 +227,9 @@ def evidence_of(chain: Kinematics, targets: TargetList) -> str:
     for asks in np.unique(_asked(targets)).tolist():
         whole = asks in (POSITION, POSE)
         kind = "axis" if not whole else "pose" if asks == POSE else "position"
-        found.append(evidence_of_kind(chain if whole else _with_axis(chain, asks), kind))
+        form = closed_form_of(chain if whole else _with_axis(chain, asks), kind)
+        found.append(evidence(form) if form else "search")
     return "; ".join(dict.fromkeys(found))
-
-
-def evidence_of_kind(chain: Kinematics, kind: str) -> str:
-    """What decides targets of a ``kind``: "position", "axis" or "pose"."""
-    form = closed_form_of(chain, kind)
-    return evidence(form) if form else "search"
 
 
 def _asked(targets: TargetList) -> np.ndarray:
