@@ -12,7 +12,7 @@ from wsrender.pipeline.constraints.expression import ExpressionConstraint
 from wsrender.reach import InverseSolver
 from wsrender.reach.admission import Admission
 from wsrender.reach.evidence import REACHABLE, UNDECIDED, UNREACHABLE
-from wsrender.reach.targets import evidence_of
+from wsrender.reach.targets import evidence_for
 from wsrender.robot.constraints import constraints_for
 from wsrender.robots.closed_form import ClosedForm
 
@@ -142,8 +142,8 @@ def test_constraints_that_see_turns_leave_proofs_to_none():
 
 
 def test_evidence_names_the_closed_form():
-    assert evidence_of(ws.load_robot("ur5e").chain, True) == "closed form (three parallel axes), margin 1e-7"
-    assert evidence_of(ws.load_robot("ur5e").chain, False) == "search"
+    assert evidence_for(ws.load_robot("ur5e").chain, "pose") == "closed form (three parallel axes), margin 1e-7"
+    assert evidence_for(ws.load_robot("ur5e").chain, "position") == "search"
     searched = "ball search along joint 7 over a closed form (spherical shoulder, axes 6 and 5 intersecting)"
-    assert evidence_of(ws.load_robot("franka_panda").chain, True) == f"{searched}, margin 1e-7"
-    assert evidence_of(ws.load_robot("franka_panda").chain, False) == "search"
+    assert evidence_for(ws.load_robot("franka_panda").chain, "pose") == f"{searched}, margin 1e-7"
+    assert evidence_for(ws.load_robot("franka_panda").chain, "position") == "search"

@@ -6,6 +6,7 @@ import numpy as np
 
 from wsrender.engine import Accuracy, closed_postures, search_free_joint
 from wsrender.reach.closed_labels import poses_of
+from wsrender.reach.evidence import REACHABLE, UNDECIDED, UNREACHABLE
 from wsrender.robots.closed_form import FreeJointForm
 
 
@@ -18,11 +19,17 @@ class FreeJointLabels:
     device: str
     threads: int | None
 
+    def labels(self, position: np.ndarray, orientation: np.ndarray | None, *, unlimited: bool = False) -> np.ndarray:
+        """What is certain of targets, else UNDECIDED, (N,) int8; ``unlimited``: as if no limit held hinges."""
+        found = self._search(poses_of(position, orientation), unlimited=unlimited)
+        certain = [found.reached, found.unreachable]
+        return np.select(certain, [REACHABLE, UNREACHABLE], UNDECIDED).astype(np.int8)
+
     def unreachable(
         self, position: np.ndarray, orientation: np.ndarray | None, *, unlimited: bool = False
     ) -> np.ndarray:
         """Whether targets are proven to be out of reach, (N,) bool; ``unlimited``: even if no limit held hinges."""
-        return self._search(poses_of(position, orientation), unlimited=unlimited).unreachable
+        return self.labels(position, orientation, unlimited=unlimited) == UNREACHABLE
 
     def postures(
         self, position: np.ndarray, orientation: np.ndarray | None

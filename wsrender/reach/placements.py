@@ -1,7 +1,8 @@
 """Targets of an arm whose base stands elsewhere: which of them it reaches from where.
 
 Targets are moved against the base instead. Where the arm has a closed form, their poses are made on the device, and all
-postures are known; what is near a boundary, and targets of other arms, are tried from many starts (`InverseSolver`).
+postures are known; one of seven joints may be searched along one of them. What is near a boundary, and targets of other
+arms, are tried from many starts (`InverseSolver`).
 Under constraints a target is served where a configuration is admitted: of all postures, or else of a search.
 """
 
@@ -20,6 +21,7 @@ from wsrender.pipeline.pipeline import Pipeline
 from wsrender.pipeline.sampling import plan_sampling
 from wsrender.reach.admissible_search import BLOCKED, TURN_FREE, AdmissibleSearch
 from wsrender.reach.admission import WORTH_THREADS, Admission
+from wsrender.reach.closed_labels import ClosedLabels
 from wsrender.reach.evidence import REACHABLE, UNDECIDED, UNREACHABLE
 from wsrender.reach.inverse_solver import BATCH, VERIFIED, InverseSolver
 from wsrender.robots.chain import Chain
@@ -92,11 +94,18 @@ class Placements:
         P, K = len(coordinates), len(self._targets)
         bases = self._bases(T_world_frame)
         label, reason = np.full((P, K), UNDECIDED, np.int8), np.zeros((P, K), np.int8)
-        if closed := self.solver.closed:
-            slack, margin = self._slacks(bases).T, CLOSED_MARGIN + closed.margin
+        closed = self.solver.closed
+        if isinstance(closed, ClosedLabels):
+            slack, margin = self._slacks(closed, bases).T, CLOSED_MARGIN + closed.margin
             label[slack < -margin] = UNREACHABLE
             if self.admission is None:
                 label[slack > margin] = REACHABLE
+        elif closed:
+            for first in range(0, P * K, BATCH):
+                at = np.arange(first, min(first + BATCH, P * K))
+                certain = closed.labels(*self._seen_from(at, bases))
+                there = (certain == UNREACHABLE) | ((certain == REACHABLE) & (self.admission is None))
+                label.ravel()[at[there]] = certain[there]
         rest = np.flatnonzero(label.ravel() == UNDECIDED)
         for first in range(0, len(rest), BATCH):
             at = rest[first : first + BATCH]
@@ -118,25 +127,23 @@ class Placements:
         bases[:, :3, 3] -= self._origin
         return bases
 
-    def _slacks(self, bases: np.ndarray) -> np.ndarray:
-        closed = self.solver.closed
-        assert closed
+    def _slacks(self, closed: ClosedLabels, bases: np.ndarray) -> np.ndarray:
         return placed_slacks(closed.form, bases, self._targets, device=closed.device, threads=closed.threads)
 
     def _decided(
         self, at: np.ndarray, bases: np.ndarray, coordinates: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Labels, reasons (N,) and configurations (N, n) of pairs of a base and a target, by number (N,)."""
-        place, target = np.divmod(at, len(self._targets))
-        T = self.solver.whole.T_world_base @ np.linalg.inv(bases[place]) @ self._targets[target]
-        position, orientation = T[:, :3, 3], T[:, :3, :3] if self.solver.kind == "pose" else None
+        place = at // len(self._targets)
+        position, orientation = self._seen_from(at, bases)
         if self.admission is None:
             solved = self.solver.solve(position, orientation)
             return solved.label, np.zeros(len(at), np.int8), solved.q
         admission = replace(self.admission, values=self.base.configurations(coordinates[place]))
         label, reason = np.full(len(at), UNDECIDED, np.int8), np.zeros(len(at), np.int8)
         q = np.zeros((len(at), self.solver.whole.n))
-        if orientation is not None and self.solver.closed and not self._turns_matter:
+        whole = isinstance(self.solver.closed, ClosedLabels)
+        if orientation is not None and whole and not self._turns_matter:
             for first in range(0, len(at), VERIFIED):
                 part = slice(first, first + VERIFIED)
                 found = self._of_postures(admission.among(part), position[part], orientation[part])
@@ -148,6 +155,12 @@ class Placements:
             found = search.decide(position[left], None if orientation is None else orientation[left])
             label[left], reason[left], q[left] = found.label, found.reason, found.q
         return label, reason, q
+
+    def _seen_from(self, at: np.ndarray, bases: np.ndarray) -> tuple[np.ndarray, np.ndarray | None]:
+        """Positions (N, 3) and, of poses, rotations (N, 3, 3) of pairs by number (N,), seen from the solver's."""
+        place, target = np.divmod(at, len(self._targets))
+        T = self.solver.whole.T_world_base @ np.linalg.inv(bases[place]) @ self._targets[target]
+        return T[:, :3, 3], T[:, :3, :3] if self.solver.kind == "pose" else None
 
     def _of_postures(
         self, admission: PlacedAdmission, position: np.ndarray, orientation: np.ndarray

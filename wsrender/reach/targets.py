@@ -227,9 +227,14 @@ def evidence_of(chain: Kinematics, targets: TargetList) -> str:
     for asks in np.unique(_asked(targets)).tolist():
         whole = asks in (POSITION, POSE)
         kind = "axis" if not whole else "pose" if asks == POSE else "position"
-        form = closed_form_of(chain if whole else _with_axis(chain, asks), kind)
-        found.append(evidence(form) if form else "search")
+        found.append(evidence_for(chain if whole else _with_axis(chain, asks), kind))
     return "; ".join(dict.fromkeys(found))
+
+
+def evidence_for(chain: Kinematics, kind: str) -> str:
+    """What decides targets of a ``kind``, and a search where that leaves them open."""
+    form = closed_form_of(chain, kind)
+    return evidence(form) if form else "search"
 
 
 def _asked(targets: TargetList) -> np.ndarray:

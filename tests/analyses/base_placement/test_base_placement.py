@@ -98,6 +98,28 @@ def test_labels_are_those_of_all_configurations(name, space):
     assert np.array(best["T_world_base"]) == pytest.approx(bases[best["placement"]], abs=1e-12)
 
 
+@pytest.mark.parametrize("blocked", [False, True])
+def test_an_arm_of_seven_joints_is_searched_along_one(blocked):
+    """As its targets are labelled one by one, seen from each base."""
+    robot = ws.load_robot("franka_panda")
+    quats = np.concatenate([np.tile(DOWN, (3, 1)), Rotation.random(5, random_state=4).as_quat(scalar_first=True)])
+    points = np.random.default_rng(3).uniform([-0.4, -0.3, -0.3 * blocked], [0.4, 0.3, 0.5 - 0.4 * blocked], (8, 3))
+    over = {"x_m": [-0.9, 0.9, 0.6], "y_m": [-0.6, 0.6, 0.6], "yaw_deg": [0, 360, 120]}
+    lower = FLOOR | {"point_m": [0, 0, -0.1]}
+    around = {"environment": {"items": [lower]}} if blocked else {}
+    document = job("franka_panda", points, quats, over=over, **around)
+    result, bases = execute(document), bases_of(document)
+    positions, rotations = seen_from(bases, points, quats)
+    turned = Rotation.from_matrix(rotations.reshape(-1, 3, 3)).as_quat(scalar_first=True)
+    limits = constraints_for(robot, None, ws.Environment(items=[lower])) if blocked else ()
+    expected = ws.reachable(robot, positions.reshape(-1, 3), turned, device="cpu", constraints=limits).labels
+    names = {"reachable": "served", "blocked": "environment"}
+    expected = np.array([names.get(label, label) for label in expected]).reshape(len(bases), -1)
+    assert (labels_of(result) == expected).mean() > (0.98 if blocked else 0.9999)
+    assert min((expected == label).mean() for label in ("served", "unreachable")) > 0.1
+    assert ((expected == "environment").mean() > 0.02) == blocked
+
+
 def test_points_of_two_links():
     """Any orientation will do: an annulus, in a height that the slide reaches."""
     rows = [{"a": 0.4, "limits_deg": [-180, 180]}, {"a": 0.3, "limits_deg": [-180, 180]}]

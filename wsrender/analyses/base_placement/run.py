@@ -32,16 +32,17 @@ from wsrender.reach.admissible_search import BLOCKED
 from wsrender.reach.evidence import REACHABLE, UNDECIDED
 from wsrender.reach.inverse_solver import InverseSolver, closed_form_of
 from wsrender.reach.placements import PlacedAdmission, Placements
-from wsrender.reach.targets import NAMES, check_tolerance, evidence_of, rotations
+from wsrender.reach.targets import NAMES, check_tolerance, evidence_for, rotations
 from wsrender.robot import Robot
 from wsrender.robot.constraints import constraints_for
 from wsrender.robot.gravity import gravity_of
 from wsrender.robot.model_robot import transform_of
+from wsrender.robots.closed_form import ClosedForm
 from wsrender.robots.moving_base import MovingBase
 from wsrender.volume.table import Table
 
 PAIRS = 1 << 20  # of placements and targets that are decided together
-CLOSED_PER_S, POSTURES_PER_S, POSES_PER_S = 1.5e7, 4e5, 1.2e4  # pairs of one core
+CLOSED_PER_S, POSTURES_PER_S, BALLS_PER_S, POSES_PER_S = 1.5e7, 4e5, 3e5, 1.2e4  # pairs of one core
 PAIR_BYTES = 40  # while they are decided
 OF_THE_WORLD = ("region", "orientation", "environment")  # constraints that see where the base stands
 IN_DEGREES = np.array([1.0] * 3 + [np.pi / 180] * 3)
@@ -149,10 +150,13 @@ class BasePlacementAnalysis(Analysis):
     @property
     def _rate(self) -> float:
         """Pairs a second of one core, about."""
-        closed = closed_form_of(self.robot.chain, self._kind) is not None
+        form = closed_form_of(self.robot.chain, self._kind)
+        closed = isinstance(form, ClosedForm)
         if self._constrained:
             return POSTURES_PER_S if closed and self._kind == "pose" else SEARCHED_PER_S
-        return CLOSED_PER_S if closed else DECIDED_PER_S if self._kind == "position" else POSES_PER_S
+        if form:
+            return CLOSED_PER_S if closed else BALLS_PER_S
+        return DECIDED_PER_S if self._kind == "position" else POSES_PER_S
 
     @property
     def _kind(self) -> str:
@@ -237,7 +241,7 @@ class BasePlacementAnalysis(Analysis):
         found = PlacementMap(self.job, {name: partial[name] for name in self._names_of_bits})
         about = found.entry | {
             "alike": self._alike,
-            "evidence": evidence_of(self.robot.chain, self._kind == "pose"),
+            "evidence": evidence_for(self.robot.chain, self._kind),
         }
         tables = {"placements": found.table} | ({"placement_map": found.map} if self.job.over.ranges else {})
         if (best := found.best) is None:
