@@ -6,10 +6,10 @@ arms of a class. On the CPU a task takes LANES poses side by side, on CUDA a thr
 No angle is computed: joints are (cosine, sine), limits are arcs. Of a hinge that may turn by h to both sides of a
 middle, the slack at t from the middle is sin(h - |t|), above 0 within the limits, about radians beside them; that of a
 slide is in reaches. Discriminants, below 0 where a branch does not exist, are slacks too. A slack counts less where
-small motions of the pose move joints far: it is multiplied by a lever, the least of the discriminants and squared
-distances that roots and angles before it come from, about the squared smallest singular value. Hence the slack of a
-pose, the largest of all its branches, says how far the pose is from where its label changes, and is about 0 near
-singular poses, where joints may stand anywhere: they are undecided.
+small motions of the pose move joints far: it is multiplied by a lever for each root and length that angles before it
+are divided by, as a joint that depends on another moves by the product of both. Hence the slack of a pose, the largest
+of all its branches, says how far the pose is from where its label changes, and is about 0 near singular poses, where
+joints may stand anywhere: they are undecided.
 
 First three joints: Pieper 1968, by the two equations of `wsrender.robots.closed_form.classes`; the quartic of general
 ones is a pencil of conics (Richter-Gebert 2011, 11.3). Three parallel axes: Hawkins 2013.
@@ -25,14 +25,16 @@ from wsrender_kernels.options import CUDA_OPTIONS, LONG_OPTIONS
 
 LANES = 16
 BRANCHES = 8
-POSTURE_ROWS = 13  # cosines and sines of six hinges (of slides the displacement and 0), and the slack
+# Cosines and sines of six hinges (of slides the displacement and 0), the slack without levers, and how sure that is: of
+# a posture that counts its lever, of others the slack with levers.
+POSTURE_ROWS = 14
 TARGET_ROWS = 12  # rotation, row by row, and position
 # Slack within which a posture is taken for one within limits that exists: rounding, near folds.
 MARGIN = {wp.float32: 2e-5, wp.float64: 1e-7}
 # Squared sine between axes 4 and 6 at which only the sum or difference of their angles counts.
 SINGULAR = {wp.float32: 1e-8, wp.float64: 1e-20}
 # A lever counts less than 1 where joints move five times as far as the pose.
-STEEP = 25
+STEEP = 5
 FAMILY, DOUBTFUL = 1, 2  # flags
 ARC = ("middle_c", "middle_s", "sine", "cosine", "narrow", "least", "turns", "lower", "upper")
 
@@ -152,8 +154,8 @@ def closed_form_prelude(precision: type) -> str:
     #define LARGER(a, b) ((a) > (b) ? (a) : (b))
     #define SMALLER(a, b) ((a) < (b) ? (a) : (b))
     #define SIZE(a) ((a) < ZERO ? -(a) : (a))
-    #define LEVER(a) SMALLER({STEEP} * LARGER(a, ZERO), ONE)
     #define ROOT(a) wp::sqrt(LARGER(a, ZERO))
+    #define LEVER(a) SMALLER({STEEP} * (a), ONE)
     // An axis turned back by a joint, and by the angle to the axis before it.
     #define TURNED(x, y, c, s) {{ const real t_ = c * x + s * y; y = c * y - s * x; x = t_; }}
     #define TILTED(y, z, c, s) {{ const real t_ = c * y + s * z; z = c * z - s * y; y = t_; }}
@@ -207,8 +209,9 @@ def _nested(shape: ClosedFormShape) -> str:
             *first(shape, 1, "first", None),
             *second(shape, 2, "second", "first"),
             """
-            const real exists = SMALLER(first_exists, LEVER(first_exists) * second_exists);
-            const real roots = SMALLER(first_exists, second_exists), sure_roots = roots;
+            const real lever1 = LEVER(first_sure), lever_roots = lever1 * LEVER(second_sure);
+            const real exists = SMALLER(first_exists, lever1 * second_exists);
+            const real roots = SMALLER(first_there, second_there);
             """,
             _posture(shape),
             "}}",
@@ -228,7 +231,8 @@ def _joint_1(shape: ClosedFormShape, k: int, name: str, known: str | None) -> It
         yield f"""
         const real {name}_at = {name}_value * {e}_left_scale;
         const real {name}_root = around - {name}_at * {name}_at;
-        const real {name}_exists = {name}_root * {e}_left_weight, {name}_half = ROOT({name}_root);
+        const real {name}_there = {name}_root * {e}_left_weight, {name}_half = ROOT({name}_root);
+        const real {name}_exists = {name}_there * {e}_left_weight, {name}_sure = {name}_half * {e}_left_weight;
         #pragma unroll
         for (int b_{name} = 0; b_{name} < 2; b_{name}++) {{
             const real side = b_{name} ? -{name}_half : {name}_half;
@@ -254,7 +258,8 @@ def _joint_3(shape: ClosedFormShape, k: int, name: str, known: str | None) -> It
         yield f"""
         const real {name}_at = {name}_value * {e}_right_scale;
         const real {name}_root = ONE - {name}_at * {name}_at;
-        const real {name}_exists = {name}_root * {e}_right_weight, {name}_half = ROOT({name}_root);
+        const real {name}_there = {name}_root * {e}_right_weight, {name}_half = ROOT({name}_root);
+        const real {name}_exists = {name}_there * {e}_right_weight, {name}_sure = {name}_half * {e}_right_weight;
         #pragma unroll
         for (int b_{name} = 0; b_{name} < 2; b_{name}++) {{
             const real side = b_{name} ? -{name}_half : {name}_half;
@@ -271,7 +276,7 @@ def _slide_roots(name: str, squares: int, slope: str, displacement: str) -> str:
     """Loop over the roots of squares * D² + slope * D = value."""
     if not squares:
         return f"""
-        const real {name}_exists = ONE;
+        const real {name}_there = ONE, {name}_exists = ONE, {name}_sure = SIZE({slope});
         #pragma unroll
         for (int b_{name} = 0; b_{name} < 1; b_{name}++) {{
             const real {displacement} = {name}_value / ({slope});
@@ -279,6 +284,7 @@ def _slide_roots(name: str, squares: int, slope: str, displacement: str) -> str:
     return f"""
     const real {name}_middle = -({slope}) / 2, {name}_root = {name}_middle * {name}_middle + {name}_value;
     const real {name}_exists = SMALLER({name}_root, ONE), {name}_half = ROOT({name}_root);
+    const real {name}_there = {name}_exists, {name}_sure = {name}_half;
     #pragma unroll
     for (int b_{name} = 0; b_{name} < 2; b_{name}++) {{
         const real {displacement} = {name}_middle + (b_{name} ? -{name}_half : {name}_half);
@@ -297,13 +303,12 @@ def _posture(shape: ClosedFormShape) -> str:
     lines = [
         "const real gx = X - a1, gy = ca1 * Y + sa1 * Z;",
         "const real fx = fx0 + fxc * c3 + fxs * s3, fy = fy0 + fyc * c3 + fys * s3;",
-        "real sure = sure_roots;",
+        "real lever = lever_roots;",
     ]
     if shape.revolute[0]:
         lines += [
             "const real i1 = ONE / LARGER(around, TINY);",
             "const real c1 = (px * X + py * Y) * i1, s1 = (py * X - px * Y) * i1;",
-            "sure = SMALLER(sure, around);",
             "const real slack1 = hinge(1, c1, s1, n1), stored_c1 = c1, stored_s1 = s1;",
         ]
     else:
@@ -315,7 +320,7 @@ def _posture(shape: ClosedFormShape) -> str:
         lines += [
             "const real turned = fx * fx + fy * fy, i2 = ONE / LARGER(turned, TINY);",
             "const real c2 = (fx * gx + fy * gy) * i2, s2 = (fx * gy - fy * gx) * i2;",
-            "sure = SMALLER(sure, turned);",
+            "lever *= LEVER(wp::sqrt(turned));",
             "const real slack2 = hinge(2, c2, s2, n2), stored_c2 = c2, stored_s2 = s2;",
         ]
     else:
@@ -336,7 +341,7 @@ def _posture(shape: ClosedFormShape) -> str:
         ]
     lines.append(
         """
-        const real arm_slack = SMALLER(SMALLER(slack1, slack2), slack3), lever = LEVER(sure);
+        const real arm_slack = SMALLER(SMALLER(slack1, slack2), slack3);
         real v0 = A02, v1 = A12, v2 = A22, m0 = A00, m1 = A10, m2 = A20;
         ROTATED(v, c1, s1, 1) ROTATED(m, c1, s1, 1)
         ROTATED(v, c2, s2, 2) ROTATED(m, c2, s2, 2)
@@ -349,21 +354,27 @@ def _posture(shape: ClosedFormShape) -> str:
         const real sign = c5 < ZERO ? -ONE : ONE;
         const real both = hinge(v2 > ZERO ? 7 : 8, sign * m0, sign * m1, n_sum);
         const real slack4 = hinge(4, c4, s4, n4), slack5 = hinge(5, c5, s5, n5), slack6 = hinge(6, c6, s6, n6);
-        const real turned46 = SMALLER(slack4, slack6), sure6 = LEVER(SMALLER(across, root5));
+        const real turned46 = SMALLER(slack4, slack6), lever6 = lever * LEVER(ROOT(SMALLER(across, root5)));
         const real wrist = family ? lever * SMALLER(slack5, both)
-            : SMALLER(lever * root5, SMALLER(lever, sure6) * SMALLER(slack5, turned46));
+            : SMALLER(lever * root5, lever6 * SMALLER(slack5, turned46));
         const real whole = SMALLER(SMALLER(exists, lever * arm_slack), wrist);
         const real plain = SMALLER(SMALLER(roots, arm_slack), family ? SMALLER(slack5, both)
             : SMALLER(root5, SMALLER(slack5, turned46)));
         const bool first_of_family = !(family && b_wrist), counted = plain >= -margin && first_of_family;
         best = LARGER(best, whole);
         found += counted ? n1 * n2 * n3 * n5 * (family ? 1 : n4 * n6) : 0;
-        const bool doubtful = SMALLER(lever, family ? ONE : sure6) < singular;
+        const real least = family ? lever : lever6;
+        const bool doubtful = least * least < singular;
         flag |= counted ? (family ? FAMILY_ : 0) | (doubtful ? DOUBTFUL_ : 0) : 0;
     """
     stored = ["stored_c1", "stored_s1", "stored_c2", "stored_s2", "stored_c3", "stored_s3"]
     stored += ["(family ? sign * m0 : c4)", "(family ? sign * m1 : s4)", "c5", "s5"]
-    stored += ["(family ? (v2 > ZERO ? 4 : -4) : c6)", "(family ? ZERO : s6)", "(first_of_family ? plain : real(-4))"]
+    stored += [
+        "(family ? (v2 > ZERO ? 4 : -4) : c6)",
+        "(family ? ZERO : s6)",
+        "(first_of_family ? plain : real(-4))",
+        "(first_of_family ? (counted ? (family ? ZERO : lever6) : whole) : real(-4))",
+    ]
     return "\n".join(lines) + wrist_postures(last + _store(shape, stored))
 
 
@@ -392,7 +403,8 @@ def _store(shape: ClosedFormShape, rows: list[str]) -> str:
     if not shape.keep:
         return ""
     lines = [f"place[{r} * count] = {value};" for r, value in enumerate(rows)]
-    return "{ real* place = kept.data + branch * (13 * count) + at; branch++;" + "\n".join(lines) + "}"
+    place = f"real* place = kept.data + branch * ({POSTURE_ROWS} * count) + at; branch++;"
+    return "\n".join(["{", place, *lines, "}"])
 
 
 def _three_parallel(shape: ClosedFormShape) -> str:
@@ -401,7 +413,7 @@ def _three_parallel(shape: ClosedFormShape) -> str:
         head = """
         const real in_plane = (ca1 * pz - plane) / sa1, root1 = around - in_plane * in_plane, half1 = ROOT(root1);
         const real exists1 = root1 * (sa1 * sa1), i1 = ONE / LARGER(around, TINY);
-        const real sure1 = LEVER(SMALLER(exists1, around));
+        const real sure1 = LEVER(half1 * SIZE(sa1));
         #pragma unroll
         for (int b_one = 0; b_one < 2; b_one++) {
             const real X = b_one ? -half1 : half1, Y = in_plane, Z = pz;
@@ -410,7 +422,7 @@ def _three_parallel(shape: ClosedFormShape) -> str:
         """
     else:
         head = """
-        const real exists1 = ONE, sure1 = ONE;
+        const real exists1 = ONE, sure1 = LEVER(SIZE(ca1));
         {
             const real D1 = pz - (plane + sa1 * py) / ca1;
             const real X = px, Y = py, Z = pz - D1, c1 = turn_c1, s1 = turn_s1;
@@ -425,9 +437,10 @@ def _three_parallel(shape: ClosedFormShape) -> str:
         const real slack5 = hinge(5, c5, s5, n5), slack6 = hinge(6, c6, s6, n6);
         const real ux = gx - (c4 * a4 - s4 * b4), uy = gy - (s4 * a4 + c4 * b4), far = ux * ux + uy * uy;
         const real i23 = ONE / (2 * a2 * a3), c3 = (far - a2 * a2 - a3 * a3) * i23;
-        const real root3 = ONE - c3 * c3, half3 = ROOT(root3), exists3 = root3 * weight3, iu = ONE / LARGER(far, TINY);
-        const real sure5 = SMALLER(sure1, LEVER(SMALLER(across, root5)));
-        const real sure3 = SMALLER(sure5, LEVER(SMALLER(exists3, far)));
+        const real root3 = ONE - c3 * c3, half3 = ROOT(root3), iu = ONE / LARGER(far, TINY);
+        const real there3 = root3 * weight3, exists3 = there3 * weight3;
+        const real lever5 = sure1 * LEVER(ROOT(SMALLER(across, root5)));
+        const real lever3 = lever5 * LEVER(ROOT(SMALLER(exists3, far)));
         #pragma unroll
         for (int b_three = 0; b_three < 2; b_three++) {
             const real s3 = b_three ? -half3 : half3, along = a2 + a3 * c3, aside = a3 * s3;
@@ -435,18 +448,20 @@ def _three_parallel(shape: ClosedFormShape) -> str:
             const real c23 = c2 * c3 - s2 * s3, s23 = s2 * c3 + c2 * s3;
             const real c4_ = c4 * c23 + s4 * s23, s4_ = s4 * c23 - c4 * s23;
             const real slack234 = SMALLER(SMALLER(hinge(2, c2, s2, n2), hinge(3, c3, s3, n3)), hinge(4, c4_, s4_, n4));
-            const real wrist = SMALLER(SMALLER(slack5, slack6), exists3);
+            const real wrist = SMALLER(slack5, slack6);
             const real whole = SMALLER(SMALLER(exists1, sure1 * SMALLER(slack1, root5)),
-                SMALLER(sure5 * wrist, sure3 * slack234));
-            const real plain = SMALLER(SMALLER(SMALLER(exists1, slack1), SMALLER(root5, wrist)), slack234);
+                SMALLER(lever5 * SMALLER(wrist, exists3), lever3 * slack234));
+            const real roots = SMALLER(SMALLER(exists1, root5), there3);
+            const real plain = SMALLER(SMALLER(roots, slack1), SMALLER(wrist, slack234));
             const bool counted = plain >= -margin;
             best = LARGER(best, whole);
             found += counted ? n1 * n2 * n3 * n4 * n5 * n6 : 0;
-            flag |= counted && sure3 < singular ? DOUBTFUL_ : 0;
+            flag |= counted && lever3 * lever3 < singular ? DOUBTFUL_ : 0;
             STORE
         }
     """
     stored = ["stored_c1", "stored_s1", "c2", "s2", "c3", "s3", "c4_", "s4_", "c5", "s5", "c6", "s6", "plain"]
+    stored.append("(counted ? lever3 : whole)")
     return head + wrist_postures(last.replace("STORE", _store(shape, stored))) + "}"
 
 
@@ -456,20 +471,25 @@ def _general(shape: ClosedFormShape) -> str:
         """
         // x' Q x = 0 for x = (c3, s3, 1): X² + Y² less what they are.
         const real v1_ = squared + e1_lz * pz + e1_l0, v2_ = e2_lz * pz + e2_l0;
+        const real told = SMALLER(SMALLER(e1_lx * e1_lx, e2_ly * e2_ly), ONE);
         // (X, Y) = (right - value) / left: e1 holds X alone, e2 Y alone.
         const real lx_ = ONE / e1_lx, ly_ = ONE / e2_ly;
         const real Xc = e1_rc * lx_, Xs = e1_rs * lx_, X0 = -v1_ * lx_;
         const real Yc = e2_rc * ly_, Ys = e2_rs * ly_, Y0 = -v2_ * ly_;
         const real q00 = Xc * Xc + Yc * Yc, q01 = Xc * Xs + Yc * Ys, q11 = Xs * Xs + Ys * Ys;
         const real q02 = Xc * X0 + Yc * Y0, q12 = Xs * X0 + Ys * Y0, q22 = X0 * X0 + Y0 * Y0 - around;
+        // (X, Y) runs about (X0, Y0), at most so far from it, and must meet the circle of joint 1.
+        const real middle_ = ROOT(q22 + around), far_ = ROOT(q00 + q11), joint1 = ROOT(around);
+        const real none_meet = SMALLER(far_ - SIZE(middle_ - joint1), ZERO) * ROOT(told);
         """
         + _CONICS
         + """
                 const real X = Xc * c3 + Xs * s3 + X0, Y = Yc * c3 + Ys * s3 + Y0, Z = pz, D1 = ZERO, D3 = ZERO;
-                // Where Newton's steps have not come to rest nothing is certain.
-                const real settled = SIZE(off) < margin ? ONE : (SIZE(off) < real(1e-3) ? ZERO : -SIZE(off));
-                const real exists = SMALLER(line, settled);
-                const real roots = exists, sure_roots = SMALLER(line, slope * slope);
+                // Where Newton's steps have not come to rest nothing is certain, but that circles apart do not meet.
+                const real settled = SIZE(off) < margin * LARGER(SIZE(slope), ONE) ? ONE : none_meet;
+                const real exists = SMALLER(line * told, settled);
+                const real roots = SMALLER(line, settled);
+                const real lever_roots = LEVER(SMALLER(ROOT(exists), SIZE(slope))) * LEVER(joint1);
         """
         + _posture(shape)
         + "}}"

@@ -281,4 +281,4 @@ def test_kernels_compile_for_cuda_without_a_gpu(name, tmp_path):
 def test_no_poses():
     closed = ClosedForm.of(ws.load_robot("ur5e").chain)
     found = closed_postures(closed, np.zeros((0, 4, 4)), keep=True, device="cpu")
-    assert found.rows is not None and found.rows.shape == (0, 8, 13) and len(found.slack) == 0
+    assert found.rows is not None and found.rows.shape == (0, 8, 14) and len(found.slack) == 0

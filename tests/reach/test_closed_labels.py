@@ -5,14 +5,15 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import wsrender as ws
-from tests.engine.test_closed_form import anywhere, in_the_box, near_limits
+from tests.engine.test_closed_form import anywhere, at_singular_postures, in_the_box, near_limits, with_slides
 from tests.reference import closed_form_inverse
+from tests.reference.arms_by_axes import PARALLEL, RELATIONS, random_arm
 from wsrender.engine import closed_postures
 from wsrender.pipeline.constraints.expression import ExpressionConstraint
 from wsrender.reach import InverseSolver
 from wsrender.reach.admission import Admission
 from wsrender.reach.evidence import REACHABLE, UNDECIDED, UNREACHABLE
-from wsrender.reach.targets import evidence_for
+from wsrender.reach.targets import evidence_of
 from wsrender.robot.constraints import constraints_for
 from wsrender.robots.closed_form import ClosedForm
 
@@ -77,6 +78,45 @@ def test_a_pose_within_the_tolerance_is_no_proof():
     assert found.proven[exact.slack < -2e-4].all() and not found.proven[exact.slack > -1e-4].any()
 
 
+ARMS = {kind: lambda kind=kind: random_arm(kind, 1) for kind in [*RELATIONS, PARALLEL]} | {
+    "ill-conditioned quartic": lambda: random_arm(RELATIONS[4], 16),
+    "slide between hinges": lambda: with_slides("RPR 0"),
+    **{name: lambda name=name: ws.load_robot(name).chain for name in ("ur5e", "puma560", "stanford_arm", "scara")},
+    **{f"{name} from 0": lambda name=name: from_0(name) for name in ("ur5e", "articulated")},
+}
+
+
+def from_0(name):
+    """Limits where the elbow is straight and wrists are in line."""
+    robot = ws.load_robot(name)
+    return ws.load_robot(name, limits=dict.fromkeys(robot.joint_names, (0, 2))).chain
+
+
+@pytest.mark.parametrize("arm", ARMS)
+def test_nothing_within_the_tolerances_of_a_reached_pose_is_proven_out_of_reach(arm):
+    """At limits and singular poses, by moves of all sizes: slack is lost in proportion to them, and by little."""
+    chain, random = ARMS[arm](), np.random.default_rng(3)
+    T = chain.poses(np.concatenate([near_limits(chain, 40_000, 3), at_singular_postures(chain, 10_000)]))
+    for tolerance in (1e-3, 1e-5, 1e-7):
+        decided = solver(chain, position_m=tolerance, angle_rad=tolerance).closed
+        assert decided.margin < 600 * tolerance
+        for _ in range(3):
+            away, about = (random.normal(size=(len(T), 3)) for _ in range(2))
+            away, about = (tolerance * v / np.linalg.norm(v, axis=1, keepdims=True) for v in (away, about))
+            turned = Rotation.from_rotvec(about).as_matrix() @ T[:, :3, :3]
+            assert not decided.unreachable(T[:, :3, 3] + away, turned).any()
+
+
+@pytest.mark.parametrize(("name", "margin"), [("ur5e", 8), ("puma560", 40), ("gao_6r", 50), ("stanford_arm", 30)])
+def test_few_proofs_are_given_up_for_the_tolerances(name, margin):
+    """Of poses without a posture 0.3 % at most are not proven; margins in tolerances."""
+    chain = ws.load_robot(name).chain
+    T = in_the_box(chain, 50_000)
+    decided, found = solver(chain).closed, closed_postures(ClosedForm.of(chain), T, device="cpu")
+    assert decided.margin < margin * 1e-5
+    assert decided.unreachable(T[:, :3, 3], T[:, :3, :3])[found.count == 0].mean() > 0.997
+
+
 @pytest.mark.parametrize("name", ["ur5e", "puma560"])
 def test_reasons_are_those_of_arms_that_turn_for_ever(name):
     robot = ws.load_robot(name)
@@ -91,6 +131,23 @@ def test_reasons_are_those_of_arms_that_turn_for_ever(name):
     for reason, expected in (("joint limits", free.slack > 1e-3), ("out of reach", free.slack < -1e-3)):
         assert (missed & expected).sum() > 100
         assert (found.reasons[missed & expected] == reason).all()
+
+
+def test_no_limit_holds_what_is_just_out_of_reach():
+    """Straight arms and positions less than the margin beyond them: no proof, but no limit is the reason either."""
+    chain = ws.load_robot("puma560").chain
+    solving = solver(chain, "position", position_m=1e-6)
+    low, high = chain.lower_limits, chain.upper_limits
+    q = np.random.default_rng(2).uniform(low, high, (200, chain.n))
+    elbow = np.linspace(low[2], high[2], 20_001)
+    at = np.tile(q[0], (len(elbow), 1))
+    at[:, 2] = elbow
+    shoulder = chain.frames(q[:1])[0, 1, :3, 3]
+    q[:, 2] = elbow[np.argmax(np.linalg.norm(chain.poses(at)[:, :3, 3] - shoulder, axis=1))]
+    position = chain.poses(q)[:, :3, 3]
+    position += 4e-6 * (position - shoulder) / np.linalg.norm(position - shoulder, axis=1, keepdims=True)
+    assert (solving.closed.labels(position, None, unlimited=True) == UNDECIDED).all()
+    assert not solving.held_by_limits(q, position).any()
 
 
 def test_a_base_far_from_the_origin():
@@ -135,15 +192,15 @@ def test_constraints_that_see_turns_leave_proofs_to_none():
     turned = (ExpressionConstraint("turned", lambda q, position, axes: q[0] - 5.3),)
     assert not ws.reachable(robot, T[:, :3, 3], quat, device="cpu", constraints=turned).proven.any()
     narrow = ws.load_robot("ur5e", limits=dict.fromkeys(robot.joint_names, (-3.1, 3.1)))
-    T = narrow.chain.poses(anywhere(narrow.chain, 30))
+    T = narrow.chain.poses(anywhere(narrow.chain, 60))
     quat = Rotation.from_matrix(T[:, :3, :3]).as_quat(scalar_first=True)
     found = ws.reachable(narrow, T[:, :3, 3], quat, device="cpu", constraints=turned)
     assert (found.labels == "blocked").all() and found.proven.mean() > 0.9
 
 
 def test_evidence_names_the_closed_form():
-    assert evidence_for(ws.load_robot("ur5e").chain, "pose") == "closed form (three parallel axes), margin 1e-7"
-    assert evidence_for(ws.load_robot("ur5e").chain, "position") == "search"
+    assert evidence_of(ws.load_robot("ur5e").chain, "pose") == "closed form (three parallel axes), margin 1e-7"
+    assert evidence_of(ws.load_robot("ur5e").chain, "position") == "search"
     searched = "ball search along joint 7 over a closed form (spherical shoulder, axes 6 and 5 intersecting)"
-    assert evidence_for(ws.load_robot("franka_panda").chain, "pose") == f"{searched}, margin 1e-7"
-    assert evidence_for(ws.load_robot("franka_panda").chain, "position") == "search"
+    assert evidence_of(ws.load_robot("franka_panda").chain, "pose") == f"{searched}, margin 1e-7"
+    assert evidence_of(ws.load_robot("franka_panda").chain, "position") == "search"

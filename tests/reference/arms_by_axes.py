@@ -127,6 +127,9 @@ def random_arm(kind, seed, kinds="RRR"):
             h[2] = random.choice([-1, 1]) * h[1]
         elif kind == RELATIONS[3]:
             o[2] = o[1] + random.uniform(-0.3, 0.3) * h[1]
+        else:  # beside arms whose first axes meet the quartic of general ones has no digits: no closed form
+            while abs((o[1] - o[0]) @ np.cross(h[0], h[1])) < 0.02:
+                o[1] = random.uniform(-0.5, 0.5, 3)
         h[3] = direction(random)
         h[4] = across(random, h[3])
         h[5] = across(random, h[4])

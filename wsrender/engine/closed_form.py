@@ -24,7 +24,7 @@ from wsrender.robots.closed_form import ClosedForm
 from wsrender.robots.closed_form.numbers import packed
 
 CLOSED_MARGIN = MARGIN[wp.float64]  # slack below which nothing is decided in float64
-BATCH, KEPT_BATCH = 1 << 18, 1 << 14  # poses of a launch: their postures take 832 bytes each
+BATCH, KEPT_BATCH = 1 << 18, 1 << 14  # poses of a launch: their postures take 896 bytes each
 LEAST_SHARE = 1 << 10  # poses that are worth a thread
 
 
@@ -34,8 +34,10 @@ class ClosedPostures:
 
     Above the ``margin`` a pose is reached, below minus it is not, else undecided; what float32 finds unreachable
     float64 must confirm. ``flags`` (N,) int32: bits of FAMILY (joints 4 and 6 share what only their sum tells) and
-    DOUBTFUL (another singular posture). ``rows`` (N, 8, 13), where they are kept: cosines and sines of the solved
-    joints, and the slack of each posture: below minus the margin it is none, but the nearest, or outside the limits.
+    DOUBTFUL (another singular posture). ``rows`` (N, 8, 14), where they are kept: cosines and sines of the solved
+    joints; the slack of each posture without its levers: below minus the margin it is none, but the nearest, or outside
+    the limits; and how sure that is: the lever of a posture, else the slack with levers, both about 0 where little
+    motions of the pose change much.
     """
 
     count: np.ndarray
@@ -129,7 +131,7 @@ class _Launcher:
         self.kept = wp.full(BRANCHES * POSTURE_ROWS * whole if keep else 0, -4.0, dtype=real, device=device)
 
     def solve(self, numbers: np.ndarray) -> list[np.ndarray]:
-        """Counts, slacks, flags (N,), and the rows (N, 8, 13) where they are kept; valid until it solves again."""
+        """Counts, slacks, flags (N,), and the rows (N, 8, 14) where they are kept; valid until it solves again."""
         if self.count:
             inputs = [self.whole, device_array(numbers, self.real, self.device), self.rows]
             dim = self.whole if self.device.is_cuda else self.whole // LANES

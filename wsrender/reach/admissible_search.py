@@ -172,12 +172,12 @@ class AdmissibleSearch:
         orientation: np.ndarray | None,
     ) -> None:
         """Try all postures of poses ``at`` (P,): where there are no others, and none is admitted, they are blocked."""
-        q, slack, whole = closed.postures(position[at], _some(orientation, at))
+        q, slack, none, alone = closed.postures(position[at], _some(orientation, at))
         targets = np.repeat(at, slack.shape[1])
         tries = self.solver.tries(q.reshape(len(targets), -1), position[targets], _some(orientation, targets))
         found.take(at, tries, self._reasons(tries, targets))
         solved = tries.reached.reshape(slack.shape)
-        all_rejected = whole & (solved | (slack < 0)).all(axis=1) & (found.label[at] == UNDECIDED)
+        all_rejected = (none | (solved & alone)).all(axis=1) & solved.any(axis=1) & (found.label[at] == UNDECIDED)
         if self._turns_matter:
             return
         found.label[at[all_rejected]] = BLOCKED

@@ -20,30 +20,29 @@ class FreeJointLabels:
     threads: int | None
 
     def labels(self, position: np.ndarray, orientation: np.ndarray | None, *, unlimited: bool = False) -> np.ndarray:
-        """What is certain of targets, else UNDECIDED, (N,) int8; ``unlimited``: as if no limit held hinges."""
+        """What is certain of targets, else UNDECIDED, (N,) int8; ``unlimited``: as if hinges had no limits."""
         found = self._search(poses_of(position, orientation), unlimited=unlimited)
-        certain = [found.reached, found.unreachable]
-        return np.select(certain, [REACHABLE, UNREACHABLE], UNDECIDED).astype(np.int8)
+        return np.select([found.reached, found.unreachable], [REACHABLE, UNREACHABLE], UNDECIDED).astype(np.int8)
 
-    def unreachable(
-        self, position: np.ndarray, orientation: np.ndarray | None, *, unlimited: bool = False
-    ) -> np.ndarray:
-        """Whether targets are proven to be out of reach, (N,) bool; ``unlimited``: even if no limit held hinges."""
-        return self.labels(position, orientation, unlimited=unlimited) == UNREACHABLE
+    def unreachable(self, position: np.ndarray, orientation: np.ndarray | None) -> np.ndarray:
+        """Whether targets are proven to be out of reach, (N,) bool."""
+        return self.labels(position, orientation) == UNREACHABLE
 
     def postures(
         self, position: np.ndarray, orientation: np.ndarray | None
-    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """Postures (N, 8, n) [rad] and their slacks (N, 8), all those where the free joint stands as in the best found.
 
-        Whether they are all there are, (N,) bool, is False: there are families of them.
+        None is known to be no posture, or to be alone, (N, 8) bool: there are families of them.
         """
         T = poses_of(position, orientation)
         at = self._search(T).at
         standing = self.form.standing(T, at)
         found = closed_postures(self.form.rest, standing, keep=True, device=self.device, threads=self.threads)
         assert found.rows is not None
-        return self.form.configurations(found.rows[..., :12], at), found.rows[..., 12], np.zeros(len(T), bool)
+        slack = found.rows[..., 12]
+        no = np.zeros(slack.shape, bool)
+        return self.form.configurations(found.rows[..., :12], at), slack, no, no
 
     def _search(self, T: np.ndarray, *, unlimited: bool = False):
         near = {"position_m": self.accuracy.position_m, "angle_rad": self.accuracy.angle_rad}

@@ -8,7 +8,7 @@ import numpy as np
 
 from wsrender.engine import Accuracy, Tries, evaluate_poses, solve_inverse, thread_count, try_bytes
 from wsrender.reach.closed_labels import ClosedLabels
-from wsrender.reach.evidence import FLATTER, Evidence
+from wsrender.reach.evidence import FLATTER, REACHABLE, UNDECIDED, Evidence
 from wsrender.reach.free_joint_labels import FreeJointLabels
 from wsrender.reach.moving_joints import moving_joints
 from wsrender.reach.starts import FURTHER, NEAR, NEAR_LIMITS, Starts, inwards
@@ -21,10 +21,8 @@ MOST_TRIES = 1 << 17  # held in memory at a time, and a launch
 TRIES_EACH = {"position": 1.0, "axis": 2.5, "pose": 24.0}  # of a target at a time, as some take many
 TARGET_ROW = 16  # bytes of every number of a target or a sample: what was asked and what was found
 VERIFIED = 1 << 14  # targets whose postures are held in memory at a time
-POSTURES_BYTES, CLOSED_BYTES = (
-    2000.0,
-    300.0,
-)  # of a target whose postures are held, and of one that a closed form decides
+# Of a target whose postures are held, and of one that a closed form decides.
+POSTURES_BYTES, CLOSED_BYTES = 2000.0, 300.0
 # Starts between two looks at what they found, by kind of target: a label depends on its target alone.
 LATER = ((FURTHER, 8), (FURTHER, 32), (FURTHER, 64), (FURTHER, 128))
 GROUPS = {
@@ -132,7 +130,7 @@ class InverseSolver:
         at = np.flatnonzero(~search.proven)
         for part in parts_of(at, MOST_TRIES // VERIFIED):
             some = None if orientation is None else orientation[part]
-            q, slack, _ = closed.postures(position[part], some)
+            q, slack, _, _ = closed.postures(position[part], some)
             tries = self._tries(targets[part], q[np.arange(len(part)), np.argmax(slack, axis=1)])
             search.record(part, tries, self._residual(tries)[:, None])
 
@@ -160,11 +158,13 @@ class InverseSolver:
 
         So it is where hinges that turn for ever reach the target, or come nearest with a slide at its end.
         """
+        targets, label = _targets(position, orientation), np.full(len(position), UNDECIDED, np.int8)
         if self.closed and self.chain.revolute.all():
-            return ~self.closed.unreachable(position, orientation, unlimited=True)
-        targets = _targets(position, orientation)
-        parts = parts_of(np.arange(len(targets)), WITHOUT_LIMITS)
-        return np.concatenate([np.zeros(0, bool), *(self._held(q[part], targets[part]) for part in parts)])
+            label = self.closed.labels(position, orientation, unlimited=True)
+        held = label == REACHABLE
+        for part in parts_of(np.flatnonzero(label == UNDECIDED), WITHOUT_LIMITS):
+            held[part] = self._held(q[part], targets[part])
+        return held
 
     def _held(self, q: np.ndarray, targets: np.ndarray) -> np.ndarray:
         further = np.tile(self._starts.further(0, WITHOUT_LIMITS - 1), (len(targets), 1, 1))

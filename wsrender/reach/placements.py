@@ -14,7 +14,7 @@ from typing import Self
 
 import numpy as np
 
-from wsrender.engine import CLOSED_MARGIN, evaluate_samples, placed_slacks
+from wsrender.engine import evaluate_samples, placed_slacks
 from wsrender.pipeline.constraints.constraint import Constraint
 from wsrender.pipeline.evaluation import Evaluation
 from wsrender.pipeline.pipeline import Pipeline
@@ -96,10 +96,10 @@ class Placements:
         label, reason = np.full((P, K), UNDECIDED, np.int8), np.zeros((P, K), np.int8)
         closed = self.solver.closed
         if isinstance(closed, ClosedLabels):
-            slack, margin = self._slacks(closed, bases).T, CLOSED_MARGIN + closed.margin
-            label[slack < -margin] = UNREACHABLE
+            slack = self._slacks(closed, bases).T
+            label[slack < -closed.margin] = UNREACHABLE
             if self.admission is None:
-                label[slack > margin] = REACHABLE
+                label[slack > closed.margin] = REACHABLE
         elif closed:
             for first in range(0, P * K, BATCH):
                 at = np.arange(first, min(first + BATCH, P * K))
@@ -167,8 +167,9 @@ class Placements:
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Labels, reasons and configurations of poses (N,) all of whose postures are known; of others UNDECIDED."""
         assert self.solver.closed
-        q, slack, whole = self.solver.closed.postures(position, orientation)
-        there = whole[:, None] & (slack > 0)
+        q, slack, none, alone = self.solver.closed.postures(position, orientation)
+        whole = np.all(none | alone, axis=1) & np.any(alone, axis=1)
+        there = alone & whole[:, None]
         pose, _ = np.nonzero(there)
         rejected = np.zeros(slack.shape, np.int8)
         rejected[there] = admission.rejected(q[there], pose)

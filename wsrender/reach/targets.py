@@ -221,20 +221,20 @@ def _decided(
     return Reachability(found.q, found.distance_m, found.angle_rad, labels, reasons, proven, rejected)
 
 
-def evidence_of(chain: Kinematics, targets: TargetList) -> str:
-    """What decides targets: "closed form (…), margin …", and a search where that leaves them open; of each kind."""
+def evidence_of(chain: Kinematics, kind: str) -> str:
+    """What decides targets of a kind: "closed form (…), margin …", and a search where that leaves them open."""
+    form = closed_form_of(chain, kind)
+    return evidence(form) if form else "search"
+
+
+def evidence_of_targets(chain: Kinematics, targets: TargetList) -> str:
+    """What decides targets, of each kind."""
     found = []
     for asks in np.unique(_asked(targets)).tolist():
         whole = asks in (POSITION, POSE)
         kind = "axis" if not whole else "pose" if asks == POSE else "position"
-        found.append(evidence_for(chain if whole else _with_axis(chain, asks), kind))
+        found.append(evidence_of(chain if whole else _with_axis(chain, asks), kind))
     return "; ".join(dict.fromkeys(found))
-
-
-def evidence_for(chain: Kinematics, kind: str) -> str:
-    """What decides targets of a ``kind``, and a search where that leaves them open."""
-    form = closed_form_of(chain, kind)
-    return evidence(form) if form else "search"
 
 
 def _asked(targets: TargetList) -> np.ndarray:

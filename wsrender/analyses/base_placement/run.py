@@ -32,7 +32,7 @@ from wsrender.reach.admissible_search import BLOCKED
 from wsrender.reach.evidence import REACHABLE, UNDECIDED
 from wsrender.reach.inverse_solver import InverseSolver, closed_form_of
 from wsrender.reach.placements import PlacedAdmission, Placements
-from wsrender.reach.targets import NAMES, check_tolerance, evidence_for, rotations
+from wsrender.reach.targets import NAMES, check_tolerance, evidence_of, rotations
 from wsrender.robot import Robot
 from wsrender.robot.constraints import constraints_for
 from wsrender.robot.gravity import gravity_of
@@ -241,7 +241,7 @@ class BasePlacementAnalysis(Analysis):
         found = PlacementMap(self.job, {name: partial[name] for name in self._names_of_bits})
         about = found.entry | {
             "alike": self._alike,
-            "evidence": evidence_for(self.robot.chain, self._kind),
+            "evidence": evidence_of(self.robot.chain, self._kind),
         }
         tables = {"placements": found.table} | ({"placement_map": found.map} if self.job.over.ranges else {})
         if (best := found.best) is None:

@@ -27,7 +27,7 @@ from wsrender.documents.target_lists import TargetTable
 from wsrender.pipeline.constraints.constraint import Constraint
 from wsrender.reach.inverse_solver import solved_bytes
 from wsrender.reach.target_list import TargetList, check_unit, listed_targets, target_list
-from wsrender.reach.targets import Reachability, check_tolerance, evidence_of, reachable_targets, with_margin
+from wsrender.reach.targets import Reachability, check_tolerance, evidence_of_targets, reachable_targets, with_margin
 from wsrender.robot.constraints import constraints_of_job
 from wsrender.robots.kinematics import Kinematics
 from wsrender.volume.table import Table
@@ -149,7 +149,7 @@ class ReachabilityAnalysis(Analysis):
             **{name: int((labels == name).sum()) for name in names},
             "reasons": {str(name): int((reasons == name).sum()) for name in np.unique(reasons) if name},
             "proven": int(partial["proven"].sum()),
-            "evidence": evidence_of(self.robot.chain, self.targets),
+            "evidence": evidence_of_targets(self.robot.chain, self.targets),
             "largest_residual_of_reachable_m": float(partial["residual_m"][reached].max(initial=0.0)),
             "largest_residual_of_reachable_rad": float(partial["residual_rad"][reached].max(initial=0.0)),
         }
