@@ -140,6 +140,23 @@ def test_whole_turns_cross_singularities_or_do_not():
     assert number[3] != number[0] and number[5] != number[0]
 
 
+def test_neighbours_and_turns_of_outer_joints_connect():
+    """Of a spherical wrist; and of three hinges alone, whose postures are all apart, which is proven."""
+    chain = ws.load_robot("puma560").chain
+    _, finder = finders(chain)
+    q = np.array([[0.3, -1.0, 0.8, -0.5, 0.9, 0.2]])
+    number, proven = finder.numbered(np.concatenate([q, q + 0.05, q + 0.9 * np.eye(6)[3], q * [-1, 1, 1, 1, 1, 1]]))
+    assert proven and (number == 0).all()
+    rows = [{"a": 0, "alpha_deg": -90}, {"a": 0.4, "d": 0.2}, {"a": 0.3}]
+    arm = ws.load_robot(ws.DHTable(convention="standard", name="elbow", rows=rows)).chain
+    solver, alone = finders(arm, with_orientation=False)
+    found = solver.solve(arm.poses(drawn(arm, 20)))
+    assert np.bincount(found.pose).max() == 4
+    for k in range(20):
+        number, proven = alone.numbered(found[found.pose == k])
+        assert proven and len(set(number)) == len(number)
+
+
 def test_limits_part_aspects():
     """A joint that may not pass between two regions of one sign keeps them apart; wide limits join them."""
     wide = orthogonal(1, 2, 1.5, 1)

@@ -14,6 +14,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from scipy.ndimage import label as components
@@ -103,7 +104,7 @@ class AspectFinder:
             if len(own) < 2:
                 continue
             nodes = np.concatenate([q[own], random[np.sign(self._determinants(random)) == sign]])
-            _, near = KDTree(nodes / holder.scale).query(nodes / holder.scale, k=min(NEIGHBOURS, len(nodes)))
+            near: Any = KDTree(nodes / holder.scale).query(nodes / holder.scale, k=min(NEIGHBOURS, len(nodes)))[1]
             a = np.concatenate(
                 [np.repeat(np.arange(len(nodes)), near.shape[1]), np.repeat(np.arange(len(own)), len(own))]
             )
@@ -130,12 +131,13 @@ class AspectFinder:
         """Axes of three hinges and what is behind, and the point that they move."""
         geometry = self.holder.chain.geometry
         axes = None if geometry is None else Axes.of(geometry)
-        if axes is None:
+        if axes is None or len(axes.axes) != self.holder.rows:
             return None
-        if self.holder.rows == 3 and len(axes.axes) == 3:
+        solved = self.form and self.form.solved
+        if solved and solved.arm in ("nested", "general") and (self.holder.rows == 6 or not solved.axes.reversed):
+            found = solved.axes, solved.axes.axes[3].point
+        elif self.holder.rows == 3:
             found = axes, axes.T_tip[:3, 3]
-        elif self.form and self.form.solved.arm in ("nested", "general") and len(axes.axes) == 6:
-            found = self.form.solved.axes, self.form.solved.axes.axes[3].point
         else:
             return None
         return found if all(axis.revolute for axis in found[0].axes[:3]) else None
@@ -146,9 +148,10 @@ class AspectFinder:
             return None
         axes, point = self._solved
         solved, periodic = self.form and self.form.solved, self.holder.chain.periodic
-        if solved is None or solved.arm != "nested" or solved.axes.axes[:3] != axes.axes[:3]:
+        if solved is None or solved.arm != "nested" or solved.axes is not axes:
             return SignedPlane(axes.axes[:3], point, periodic)
-        first, third = (solved.equations[:: -1 if solved.first == 3 else 1]) if solved.equations else ()
+        one, other = solved.equations
+        first, third = (other, one) if solved.first == 3 else (one, other)
         turn, (c, s) = zeros(solved)[2], third.right
         elbow = Sine(solved.axes.axes[2], c * np.sin(turn) - s * np.cos(turn), c * np.cos(turn) + s * np.sin(turn))
         side = solved.links.base[:3, :3] @ [-first.left[1], first.left[0], 0.0]
@@ -179,8 +182,8 @@ class Sine:
     """A factor cosine * cos d + sine * sin d of the displacement d of one hinge."""
 
     axis: Axis
-    cosine: float
-    sine: float
+    cosine: Any
+    sine: Any
 
     def between(self, q: np.ndarray) -> np.ndarray:
         """Of configurations (K, n) between which zeros, by number, each stands, (K,) int.
@@ -246,7 +249,7 @@ class ParallelAxes:
 
 
 def certain(
-    function: Callable[[np.ndarray], np.ndarray], slopes: np.ndarray, a: np.ndarray, b: np.ndarray, sign: float
+    function: Callable[[np.ndarray], np.ndarray], slopes: np.ndarray, a: np.ndarray, b: np.ndarray, sign: Any
 ) -> bool:
     """Whether a function is certainly of a sign along the straight way from ``a`` to ``b`` (k,).
 
@@ -381,7 +384,8 @@ def displacements(axis: Axis, q: np.ndarray) -> np.ndarray:
 
 def _components(cells: np.ndarray, neighbours: np.ndarray, wrapped: list[bool]) -> np.ndarray:
     """Number from 1 of the component of each cell, 0 of none; along ``wrapped`` axes the last is next to the first."""
-    found, count = components(cells, neighbours)
+    labelled: Any = components(cells, neighbours)
+    found, count = labelled
     diagonal = bool(neighbours[0, 0])
     pairs = []
     for axis in (0, 1):
