@@ -256,7 +256,13 @@ def test_self_motions_close_where_nothing_stops_them():
             at = arm.chain.poses(curve.configurations)[:, :3, 3]
             assert curve.closed and np.abs(at - point).max() <= 1e-8
             gap = np.remainder(curve.configurations[0] - curve.configurations[-1] + np.pi, 2 * np.pi) - np.pi
-            assert np.linalg.norm(gap) < 0.07
+            assert np.linalg.norm(gap) < 0.07 and gap @ (curve.configurations[1] - curve.configurations[0]) > 0
+    with pytest.raises(ws.InputError, match=r"curve_step: 0\.3 is not allowed"):
+        ws.postures(arm, point, curve_step=0.3)
+    long = PostureSolver(arm.chain, with_orientation=False, starts=32, curve_step=1.2, device="cpu")
+    T = np.tile(np.eye(4), (1, 1, 1))
+    T[0, :3, 3] = [0.3, 0.1, 0.0]
+    assert len(long.solve(T)) == 2  # steps are shortened where the curve bends
     fine, coarse = (ws.postures(arm, point, device="cpu", starts=32, curve_step=step) for step in (0.05, 0.2))
     assert 3 < sum(map(len, fine.curves)) / sum(map(len, coarse.curves)) < 5
 

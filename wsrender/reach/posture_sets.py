@@ -32,6 +32,7 @@ from wsrender.robots.kinematics import Kinematics
 STARTS = 512  # of the search for postures of a pose
 NEAR = 1e-4  # slack within which a posture that seems outside limits or not there is looked at: folds, rounding
 BATCH, REDUNDANT_BATCH = 1 << 13, 1 << 6  # poses whose postures, or those on self-motions, are held at a time
+LARGEST_STEP = 0.2  # rad and reaches: longer steps could leave a curve for another
 SWEPT = 128  # values of a free joint at which self-motions are looked for
 MOST_OF_FAMILIES = 16  # postures of a pose that stand for families, whose members have no number
 NEARLY = 1e-5  # m and rad: a try that ends so near is taken further
@@ -291,11 +292,13 @@ def postures(
     T = poses_of(position_m, quat_wxyz)
     choice = Constraints(**constraints) if isinstance(constraints, Mapping) else constraints
     around = Environment(**environment) if isinstance(environment, Mapping) else environment
+    if argument("curve_step", positive, curve_step) > LARGEST_STEP:
+        raise InputError("curve_step", f"{curve_step:g} is not allowed; {LARGEST_STEP:g} rad or reaches at most")
     solver = PostureSolver(
         subject.chain,
         with_orientation=quat_wxyz is not None,
         starts=starts,
-        curve_step=argument("curve_step", positive, curve_step),
+        curve_step=curve_step,
         seed=seed,
         device=device,
         threads=threads,

@@ -10,7 +10,7 @@ from wsrender.documents.arm import Arm
 from wsrender.documents.constraints import Constrained
 from wsrender.documents.format import JobDocument
 from wsrender.documents.options import IndexChoices, IndicesOrNone
-from wsrender.documents.quantities import Number, PositiveNumber, Seed, integer, rows_of, sequence
+from wsrender.documents.quantities import Number, Seed, integer, real, rows_of, sequence
 
 UNIT = 1e-3  # largest error of a quaternion's length
 
@@ -51,7 +51,7 @@ class PosturesJob(IndexChoices, Constrained, Arm, JobDocument):
     """How many configurations of a posture are listed that differ by whole turns of hinges; all are counted."""
     starts: Annotated[int, Field(ge=1, le=65536), BeforeValidator(integer)] = 512
     """Starts of the search for postures of a pose, where no closed form knows them all."""
-    curve_step: PositiveNumber = 0.05
+    curve_step: Annotated[float, Field(gt=0, le=0.2), BeforeValidator(real)] = 0.05
     """Between points of self-motions: largest change of a joint, about [rad, reaches]."""
     aspects: StrictBool = False
     """Whether it is told which listed configurations of a pose connect without a singular one on the way."""
