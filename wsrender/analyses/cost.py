@@ -75,6 +75,7 @@ PICTURES = {
     "posture": (1.6e5, 0.2),
     "admission": (6.0e4, 0.25),
     "share": (8.0e4, 0.25),
+    "labels": (6.0e4, 0.25),
     "field": (2.0e4, 1.3),  # without its arrows
     "product": (9.0e4, 0.2),
     "comparison": (1.4e5, 0.4),

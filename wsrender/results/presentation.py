@@ -97,6 +97,7 @@ _ROWS = (
             where=lambda plot: bool(plot.samples.indices)),
     Picture("admission", _PLOTS + "admission", "Voxels that are free, and those without an admitted sample",
             ("volumes.admission",)),
+    Picture("labels", _PLOTS + "labels", "Voxels by whether their centres are reached", ("volumes.reachability",)),
     Picture("share", _PLOTS + "share", "Share of the samples that constraints admit", ("volumes.admission",)),
     *(Picture(name, _PLOTS + "curves", _CAPTIONS.get(name, ""), (f"tables.{name}",), options={"table": name})
       for name in CURVES),

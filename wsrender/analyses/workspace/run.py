@@ -194,8 +194,8 @@ class WorkspaceAnalysis(Analysis):
     def cost(self) -> Cost:
         """Of the sweep, and of the refined measure, labels, files and pictures."""
         job, swept, (voxels, block) = self.job, self.swept_cost, self._expected
-        of_constraints = ("admission", "share") if self.constraints else ()
-        drawn, seconds = pictures_cost("slices", "scatter", "histogram", "robot", *of_constraints)
+        more = [*(("admission", "share") if self.constraints else ()), *(["labels"] if job.voxel_labels else [])]
+        drawn, seconds = pictures_cost("slices", "scatter", "histogram", "robot", *more)
         files = swept.file_bytes + self._picture_bytes + drawn + DOCUMENT_BYTES + surface_bytes(voxels)
         files += self.volume_bytes
         if self.constraints:  # of each voxel samples drawn, admitted and rejected by each, and a share

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from wsrender.errors import InputError
-from wsrender.results.drawing.admission import blocked_planes
+from wsrender.results.drawing.admission import blocked_planes, label_planes
 from wsrender.results.drawing.distribution import histogram
 from wsrender.results.drawing.faces import Faces, faces_of
 from wsrender.results.drawing.faces_of_surface import surface_faces
@@ -122,6 +122,10 @@ class ResultPlots:
     def admission(self, at: tuple[float | None, float | None, float | None] = (None, None, None)) -> Figure:
         """Planes of the voxels that constraints leave free, and of those that they block, by the reason."""
         return blocked_planes(self.volumes["admission"], at=at, title=self.heading("volume"))
+
+    def labels(self, at: tuple[float | None, float | None, float | None] = (None, None, None)) -> Figure:
+        """Planes of the voxels by whether their centres are reached, and under constraints what blocks them."""
+        return label_planes(self.volumes["reachability"], at=at, title=self.heading("volume"))
 
     def share(self, at: tuple[float | None, float | None, float | None] = (None, None, None)) -> Figure:
         """Planes of the share of samples in each voxel that constraints admit."""
