@@ -66,6 +66,13 @@ def fibonacci_directions(count: int) -> np.ndarray:
     return np.stack([r * np.cos(angle), r * np.sin(angle), z], axis=1)
 
 
+def approaching(chain: Kinematics, approach_axis: str) -> Kinematics:
+    """The chain with a tip whose z is its ``approach_axis``."""
+    turned = np.eye(4)
+    turned[:3, :3] = AXES[approach_axis]
+    return chain.placed(T_tip_tool=chain.T_tip_tool @ turned)
+
+
 def capability(
     chain: Kinematics,
     voxel_size_m: float,
@@ -100,9 +107,7 @@ def capability(
     )
     cells, points = cells[reached], points[reached]
 
-    turned = np.eye(4)
-    turned[:3, :3] = AXES[approach_axis]
-    solver = InverseSolver(chain.placed(T_tip_tool=chain.T_tip_tool @ turned), kind="axis", **accuracy, **execution)
+    solver = InverseSolver(approaching(chain, approach_axis), kind="axis", **accuracy, **execution)
     search = AdmissibleSearch(solver, admission) if admission else None
     labels = np.zeros((len(cells), len(directions)), np.int8)
     blocked = np.zeros((len(cells), len(constraints)), np.int64)

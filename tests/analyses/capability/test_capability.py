@@ -192,6 +192,14 @@ def test_directions_between_a_floor_and_a_box_in_closed_form():
     assert abs(blocked - (reach & ~free).sum()) <= 0.004 * free.size + undecided
 
 
+@pytest.mark.parametrize(("axis", "closed"), [("z", True), ("x", False)])
+def test_the_document_says_what_decided(axis, closed):
+    """A Puma's last joint turns about z: it is left out, and five joints have a closed form."""
+    job = {"analysis": "capability", "robot": "puma560", "voxel_size_m": 0.8, "directions": 12, "device": "cpu"}
+    found = execute({**job, "approach_axis": axis}).document["capability"]["evidence"]
+    assert found == ("closed form (spherical wrist, axes 1 and 2 intersecting), margin 1e-7" if closed else "search")
+
+
 def test_postures_are_counted_at_every_voxel():
     """Of a Puma, against another closed form; of poses of another axis too."""
     robot = ws.load_robot("puma560")
