@@ -15,7 +15,7 @@ from typing import Any
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from tests.collision import many_labels
-from tests.engine import free_joint_sweeps
+from tests.engine import closed_form_poses, free_joint_sweeps
 from tests.reach import near_limits
 from tests.robots import model_packages
 
@@ -25,6 +25,7 @@ PIECES = {
     "model_packages": model_packages,
     "collision_labels": many_labels,
     "free_joint": free_joint_sweeps,
+    "closed_form_poses": closed_form_poses,
 }
 
 
