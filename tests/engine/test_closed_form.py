@@ -125,6 +125,40 @@ def test_singular_poses_are_not_called_unreachable(name):
         assert ((found.flags & 1 > 0) >= in_line).all()
 
 
+def wrist_in_line(q):
+    q[4] = 0.0
+
+
+def center_on_axis_1(q):
+    q[2] = np.pi - 2 * q[1]
+
+
+def center_on_axis_2(q):
+    q[2] = np.pi
+
+
+@pytest.mark.parametrize(
+    ("name", "singular"),
+    [("ur5e", wrist_in_line), ("puma560", wrist_in_line)]
+    + [("articulated", singular) for singular in (wrist_in_line, center_on_axis_1, center_on_axis_2)],
+)
+def test_families_of_arms_with_narrow_limits_are_not_called_unreachable(name, singular):
+    """A joint is free there: the posture that made a pose, or comes close to it, is one of many."""
+    chain, random = ws.load_robot(name).chain, np.random.default_rng(0)
+    for off in [0.0, 1e-12, 1e-9, 1e-7, 1e-5, 1e-3] * 20:
+        middle = random.uniform(-np.pi, np.pi, 6)
+        singular(middle)
+        below, above = random.uniform(0.0, 0.3, (2, 6))
+        q = random.uniform(middle - below, middle + above, (100, 6))
+        for row in q:
+            singular(row)
+        low, high = np.minimum(middle - below, q.min(axis=0)), np.maximum(middle + above, q.max(axis=0))
+        arm = replace(chain, lower_limits=low, upper_limits=high)
+        q = np.clip(q + off * random.normal(size=q.shape), low, high)
+        found = closed_postures(ClosedForm.of(arm), arm.poses(q), device="cpu")
+        assert not (found.slack < -found.margin).any()
+
+
 def test_a_wrist_in_line_is_reached_where_two_arcs_meet():
     """Against 20,000 values of joint 4."""
     chain = random_arm(RELATIONS[0], 1)
