@@ -3,7 +3,7 @@
 import math
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any, Literal
 
@@ -11,7 +11,9 @@ from wsrender.documents.options import STATISTICS
 from wsrender.documents.problems import shown
 from wsrender.documents.quantities import integer, real, sequence
 from wsrender.errors import InputError
+from wsrender.indices.chain_expression import MOST_JOINTS, NEEDED, Expressed, of_index, taken
 from wsrender.indices.expression import trace
+from wsrender.indices.functions import of_chain
 from wsrender.indices.units import UnitRule
 
 Value = bool | int | float | tuple[float, ...]
@@ -125,11 +127,12 @@ class Index:
     """A local index: a named function of what it ``needs`` and of nothing else.
 
     ``function(sigma, m, n, **options)`` gets the m singular values of the task matrix, descending, each a number or
-    array, and the values of its ``options``. ``needs`` is ``("sigma",)``, those of J, and then ``dynamic_<name>`` is
+    array, and the values of its ``options``; or it takes by name what else it is a function of, as `register_index`
+    says, and ``needs`` follows from that. Else ``needs`` is ``("sigma",)``, those of J, and then ``dynamic_<name>`` is
     the same of J M⁻¹; or ``("dynamic_sigma",)``, those of J M⁻¹ alone; catalogued ones of ``("clearance",)`` are given
-    by the host, those of others are kernels of their own. ``unit`` is a text, or follows from the task
-    matrix, as in ``lambda A: A.volume``. ``conventions`` and ``convention_units`` hold what another convention than
-    the standard defines differently.
+    by the host, those of others are kernels of their own. ``unit`` is a text, or follows from the task matrix, as in
+    ``lambda A: A.volume``. ``conventions`` and ``convention_units`` hold what another convention than the standard
+    defines differently.
 
     ``bound`` is the largest absolute value, for the fixed-point sums: a number, or for σ of J in the standard
     convention ``bound(norm, m, n, **options)`` of an upper bound of the task matrix's Frobenius norm; None: twice the
@@ -163,6 +166,11 @@ class Index:
         return not self.given and not set(self.needs) <= set(SUPPLIED)
 
     @property
+    def expressed(self) -> Expressed:
+        """The function of a user's index of the chain, as the engine traces it; raises InputError."""
+        return of_index(self.name, self.function, tuple(option.name for option in self.options))
+
+    @property
     def signed(self) -> bool:
         """Whether it is no ratio of its largest value, as what is less than nothing has none."""
         return self.range[0] < 0 and not set(self.needs) <= set(SUPPLIED)
@@ -179,7 +187,7 @@ class Index:
 
     def function_for(self, convention: str, options: Mapping[str, Any] | None = None) -> Callable[..., Any]:
         """The function ``(sigma, m, n)`` in a convention, with these options or their defaults."""
-        function = self.conventions.get(convention, self.function)
+        function = self.conventions.get(convention, of_chain if taken(self.function) else self.function)
         if not self.options:
             return function
         return partial(function, **{option.name: option.default for option in self.options} | dict(options or {}))
@@ -196,18 +204,27 @@ class Index:
 
 
 def checked(index: Index) -> Index:
-    """The index; InputError names the field of an entry that cannot be used."""
+    """The index, with what it needs; InputError names the field of an entry that cannot be used."""
     if not _NAME.fullmatch(index.name) or index.name.startswith(DYNAMIC_PREFIX):
         allowed = f"an identifier not starting with {DYNAMIC_PREFIX!r} is"
         raise InputError("name", f"{index.name!r} is not allowed; {allowed}")
-    _check_needs(index)
+    names = taken(index.function)
+    if names is None:
+        _check_needs(index)
+    else:
+        index = replace(index, needs=tuple(dict.fromkeys(NEEDED[each] for each in names if each in NEEDED)))
     _check_bound(index)
     _check_lists(index)
-    names = [option.name for option in index.options]
-    if len(set(names)) < len(names):
-        raise InputError("options", f"{index.name} has two of one name: {', '.join(names)}")
+    options = [option.name for option in index.options]
+    if len(set(options)) < len(options):
+        raise InputError("options", f"{index.name} has two of one name: {', '.join(options)}")
+    if names and (others := [option for option in index.options if option.kind not in ("number", "integer")]):
+        kind, name = others[0].kind, others[0].name
+        raise InputError("options", f"{name} of {index.name} is of kind {kind}; a function of the chain takes numbers")
     try:
-        for m in (3, 6):
+        if names is not None:
+            index.expressed.traced(MOST_JOINTS, MOST_JOINTS)
+        for m in (3, 6) if names is None else ():
             trace(index.function_for("standard"), m, m, 6)
     except Exception as error:
         raise InputError("function", f"{index.name} cannot be compiled: {error}") from error

@@ -171,7 +171,15 @@ def register_index(
 
     ``function(sigma, m, n)`` gets the m singular values of the task matrix, descending, each a number or array, and
     its options by name; it may use arithmetic, Python's ``sum`` and ``wsrender.math``. The dynamic variant is
-    ``dynamic_<name>``. The other arguments are those of `Index`. Registered so, an index is known to this process;
+    ``dynamic_<name>``.
+
+    Or it is of the whole chain, and its parameters say of what, the first of them too: ``q``, the joint values [rad or
+    m]; ``J[row][joint]``, linear then angular rows at the tip in the world; ``M[i][j]``, the joint-space inertia;
+    ``g``, what the joints take against gravity [N m or N]; ``limits.lower``, ``.upper`` and ``.effort``, infinite where
+    there is none; ``frames[i].position`` and ``.axes`` of joint i in the world; ``position`` and ``axes`` of the tip;
+    and its options, which are numbers then. Only what is taken is computed.
+
+    The other arguments are those of `Index`. Registered so, an index is known to this process;
     the entry-point group ``wsrender.indices`` adds those of an installed package to all. Raises InputError where the
     name is not an identifier or taken, the function uses anything else, or another field is not allowed.
     """
@@ -182,7 +190,7 @@ def register_index(
     if (existing := _known(name)) is not None and existing.name not in _ADDED:
         raise InputError("name", f"{name!r} is taken by the catalogue ({existing.source})")
     _ADDED[name] = checked(index)
-    return index
+    return _ADDED[name]
 
 
 @cache
@@ -192,8 +200,8 @@ def _extensions() -> dict[str, Index]:
 
     def add(_: str, indices: Any) -> None:
         new: dict[str, Index] = {}
-        for index in [indices] if isinstance(indices, Index) else indices:
-            if checked(index).name in _SHIPPED | found | new:
+        for index in map(checked, [indices] if isinstance(indices, Index) else indices):
+            if index.name in _SHIPPED | found | new:
                 raise InputError("name", f"there is an index {index.name!r} already")
             new[index.name] = index
         found.update(new)

@@ -9,6 +9,7 @@ import numpy as np
 from wsrender.indices.index_catalogue import is_dynamic
 from wsrender.notices import Notice
 from wsrender.pipeline.chain_index import ChainIndex
+from wsrender.pipeline.constraints.expression import ExpressionIndex
 from wsrender.robots.chain import Chain
 from wsrender.robots.kinematics import Kinematics
 
@@ -32,7 +33,7 @@ class Evaluation:
     torque_scaling: bool = False
     host_inertia: Callable[[np.ndarray], np.ndarray] | None = None
     options: Mapping[str, Mapping[str, Any]] = field(default_factory=dict, hash=False)
-    of_chain: Mapping[str, ChainIndex] = field(default_factory=dict, hash=False)
+    of_chain: Mapping[str, ChainIndex | ExpressionIndex] = field(default_factory=dict, hash=False)
     given: Mapping[str, Callable[[np.ndarray], np.ndarray]] = field(default_factory=dict, hash=False)
     notices: tuple[Notice, ...] = ()  # what to know of the values
 

@@ -7,8 +7,10 @@ from typing import Any
 import numpy as np
 
 from wsrender.errors import InputError, MissingInertiaError
+from wsrender.indices.index_catalogue import find
 from wsrender.indices.units import LINEAR_ROWS
 from wsrender.pipeline.chain_index import ChainIndex
+from wsrender.pipeline.constraints.expression import ExpressionIndex
 from wsrender.pipeline.constraints.region import Point
 from wsrender.robot.model_robot import Robot
 from wsrender.robots.chain import Chain
@@ -98,16 +100,35 @@ def chain_indices_of(
     rows: tuple[int, ...],
     gravity: Point,
     held: Collection[str] = (),
-) -> dict[str, ChainIndex]:
+) -> dict[str, ChainIndex | ExpressionIndex]:
     """Those of indices ``names`` that are of the whole chain, at a task's ``rows`` and in gravity (3,) [m/s²].
 
     ``held``: joints that the job holds at a value. Raises InputError for what the robot lacks.
     """
     return {
-        name: _INDICES[name](ChainAsked(name, robot, options.get(name, {}), rows, gravity, held))
+        name: _INDICES.get(name, _expressed)(ChainAsked(name, robot, options.get(name, {}), rows, gravity, held))
         for name in names
-        if name in _INDICES
+        if find(name).of_chain
     }
+
+
+def _expressed(asked: ChainAsked) -> ExpressionIndex:
+    """The index of a function of users."""
+    index, given = find(asked.name), asked.options
+    function = index.expressed
+    options = tuple((name, float(given[name])) for name in function.options)
+    chain, plain = asked.weighing() if {"g", "M"} & set(function.asks) else asked.chain, asked.robot.chain.geometry
+    if "frames" in function.asks and plain is not None and plain.with_branches is not None:
+        message = f"{asked.name} takes frames, and joints of {asked.robot.name} follow a joint on another branch"
+        raise InputError("indices", message)
+    try:
+        function.traced(chain.n, len(chain.joint_source))
+    except InputError as error:
+        message = f"{asked.name} takes a joint that {asked.robot.name}, with {chain.n}, does not have"
+        raise InputError("indices", message) from error
+    return ExpressionIndex(
+        asked.name, function.function, options, asks=function.asks, chain=chain, gravity=asked.gravity
+    )
 
 
 def _joint_limit_margin(asked: ChainAsked) -> ChainIndex:

@@ -66,8 +66,9 @@ def _for_robot(each: Constraint, robot: Robot, gravity: Point) -> Constraint:
         raise InputError(f"constraints.{each.name}", "is not available for a robot that is defined by a class")
     if not isinstance(each, ExpressionConstraint):
         return each
-    if "g" in each.asks and not robot.has_inertia:
-        raise InputError(f"constraints.{each.name}", f"takes g, and the model of {robot.name} lacks masses or inertias")
+    if not robot.has_inertia and (weighing := [name for name in ("g", "M") if name in each.asks]):
+        message = f"takes {weighing[0]}, and the model of {robot.name} lacks masses or inertias"
+        raise InputError(f"constraints.{each.name}", message)
     if each.asks:
         if chain.with_branches is not None and "frames" in each.asks:
             message = "takes frames, and joints of this robot follow or lead a joint on another branch"

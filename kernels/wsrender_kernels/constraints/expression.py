@@ -6,7 +6,9 @@ import warp as wp
 
 from wsrender_kernels.factories import factory
 from wsrender_kernels.gravity import gravity_pulls
-from wsrender_kernels.kinematics import JOINT_STRIDE, kinematics
+from wsrender_kernels.inertia import inertia
+from wsrender_kernels.kinematics import JOINT_STRIDE, frames_type, kinematics
+from wsrender_kernels.loads import bodies_among
 
 
 @factory
@@ -56,33 +58,61 @@ def expression_of_chain(
     size: int,
     offset: int,
 ):
-    """The same of the whole chain, ``(model, q, tip, axes)``; its inputs go on with what it ``asks`` for.
+    """The same of the whole chain, ``(model, q, tip, axes)``; of the inputs of `inputs_of_chain`."""
+    inputs_of = inputs_of_chain(real, own, n, sources, plain, asks, options, size, offset)
+    forward = kinematics(real, n, sources, plain, True).forward
+    vec_n, vec3, mat33 = wp.types.vector(n, real), wp.types.vector(3, real), wp.types.matrix((3, 3), real)
+    ZERO = own(0.0)
+
+    @wp.func
+    def violated(model: Any, q: vec_n, tip: vec3, axes: mat33):
+        _tip, _x, _y, _z, frames = forward(model.chain, q)
+        inputs = inputs_of(model, q, tip, axes, frames)
+        found = margin(inputs, inputs)
+        return wp.where(found[0] >= ZERO, 0, 1)
+
+    return violated
+
+
+@factory
+def inputs_of_chain(
+    real,
+    own,
+    n: int,
+    sources: tuple[int, ...],
+    plain: bool,
+    asks: tuple[str, ...],
+    options: int,
+    size: int,
+    offset: int,
+):
+    """Device function ``(model, q, tip, axes, frames) -> inputs``: those of `expression`, and then what is asked for.
 
     ``frames``: of every joint its position (3,) and axes, as those of the tip; ``J`` (6 n,), row by row; ``g`` (n,);
-    ``limits`` (3 n,): lower, upper, of effort. The numbers go on with those limits, gravity in the world (3,), of every
-    joint cosine and sine of the angle by which its frame is turned back from that of `forward`, and `pack_inertia`.
+    ``limits`` (3 n,): lower, upper, of effort; ``M`` (n n,), row by row. The numbers go on with those limits, gravity
+    in the world (3,), of every joint cosine and sine of the angle by which its frame is turned back from that of
+    `forward`, and `pack_inertia`.
     """
     L, LEFT = len(sources), 3 + options
     LIMITS = offset + 2 * LEFT
     GRAVITY = LIMITS + 3 * n
     TURNS = GRAVITY + 3
     BODIES = TURNS + 2 * L
-    sizes = {"frames": 12 * L, "J": 6 * n, "g": n, "limits": 3 * n}
+    sizes = {"frames": 12 * L, "J": 6 * n, "g": n, "limits": 3 * n, "M": n * n}
     starts, at = dict.fromkeys(sizes, 0), n + 12 + options
     for name in asks:
         starts[name], at = at, at + sizes[name]
-    AT_FRAMES, AT_J, AT_G, AT_LIMITS = starts.values()
-    ASKS_FRAMES, ASKS_J, ASKS_G, ASKS_LIMITS = (name in asks for name in sizes)
-    kin = kinematics(real, n, sources, plain, True)
-    forward, jacobian = kin.forward, kin.jacobian
+    AT_FRAMES, AT_J, AT_G, AT_LIMITS, AT_M = starts.values()
+    ASKS_FRAMES, ASKS_J, ASKS_G, ASKS_LIMITS, ASKS_M = (name in asks for name in sizes)
+    jacobian = kinematics(real, n, sources, plain, True).jacobian
+    inertia_matrix, bodies_of = inertia(real, n, sources, plain).inertia_matrix, bodies_among(real, L, size, BODIES)
     weights = gravity_pulls(real, n, sources, plain, size, GRAVITY, BODIES)
     vec_n, vec3, mat33 = wp.types.vector(n, real), wp.types.vector(3, real), wp.types.matrix((3, 3), real)
-    inputs_type, own3 = wp.types.vector(at, own), wp.types.vector(3, own)
-    ZERO, POSITION, AXES, OPTIONS, STRIDE, B = own(0.0), n, n + 3, n + 12, JOINT_STRIDE, L * JOINT_STRIDE
+    inputs_type, own3, Frames = wp.types.vector(at, own), wp.types.vector(3, own), frames_type(real, L)
+    POSITION, AXES, OPTIONS, STRIDE, B = n, n + 3, n + 12, JOINT_STRIDE, L * JOINT_STRIDE
 
     @wp.func
-    def violated(model: Any, q: vec_n, tip: vec3, axes: mat33):
-        _tip, _x, _y, _z, frames = forward(model.chain, q)
+    def inputs_of(model: Any, q: vec_n, tip: vec3, axes: mat33, frames: Frames):
         inputs = inputs_type()
         for i in range(n):
             inputs[i] = own(q[i])
@@ -129,7 +159,11 @@ def expression_of_chain(
         if wp.static(ASKS_LIMITS):
             for k in range(wp.static(3 * n)):
                 inputs[AT_LIMITS + k] = own(model.limits[LIMITS + k])
-        found = margin(inputs, inputs)
-        return wp.where(found[0] >= ZERO, 0, 1)
+        if wp.static(ASKS_M):
+            M = inertia_matrix(model.chain, bodies_of(model.limits), frames)
+            for i in range(n):
+                for j in range(n):
+                    inputs[AT_M + n * i + j] = own(M[i, j])
+        return inputs
 
-    return violated
+    return inputs_of

@@ -1,12 +1,11 @@
 """What a constraint is: a name, a device function or an expression, and a float64 twin of it."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Literal, NamedTuple, Protocol, runtime_checkable
+from typing import Any, Literal, Protocol, runtime_checkable
 
 import numpy as np
 
-from wsrender.indices.expression import Expression, trace
+from wsrender.indices.chain_expression import Expressed
 from wsrender.robots.chain import Chain
 from wsrender.robots.kinematics import Kinematics
 
@@ -66,75 +65,6 @@ class OfChain:
     module: str
     choices: tuple[Any, ...]
     chain: Chain
-
-
-class Frame(NamedTuple):
-    """Where a joint stands in the world after its motion: x, y, z [m], and three axes of three numbers, z its own."""
-
-    position: Any
-    axes: Any
-
-
-class JointLimits(NamedTuple):
-    """Of n joints: of their values [rad or m], and of what they take [N m or N], infinite where there is none."""
-
-    lower: Any
-    upper: Any
-    effort: Any
-
-
-ASKED = ("frames", "J", "g", "limits")
-
-
-@dataclass(frozen=True)
-class Expressed:
-    """A function of arithmetic and `wsrender.math` alone: a configuration is admitted where it is 0 or more.
-
-    ``function(q, position, axes, **asks, **options)``: ``q``, joint values [rad or m]; ``position``, x, y, z of the tip
-    in the world [m]; ``axes``, its three axes in the world, three numbers each; the named ``options``, whose values are
-    the last numbers of `Constraint.pack`, after the origin. ``asks``, of ASKED: ``frames``, a `Frame` of each of the
-    chain's joints; ``J``, six rows of n, linear then angular, at the tip in the world; ``g``, what the joints take to
-    hold the arm against gravity, n [N m or N]; ``limits``, `JointLimits`.
-    """
-
-    function: Callable[..., Any]
-    options: tuple[str, ...] = ()
-    asks: tuple[str, ...] = ()
-
-    def traced(self, n: int, joints: int) -> Expression | float:
-        """The function for ``n`` joint values, of inputs q, position, axes, options, asks, one after the other.
-
-        Raises InputError where it takes a joint beyond them, TypeError for what cannot be traced.
-        """
-        return trace(self._of, self.inputs(n, joints), n, joints)
-
-    def inputs(self, n: int, joints: int) -> int:
-        """How many inputs there are; a chain may have more joints than values."""
-        return n + 12 + len(self.options) + sum(_sizes(n, joints)[name] for name in self.asks)
-
-    def _of(self, inputs: tuple[Any, ...], n: int, joints: int) -> Any:
-        axes = [inputs[n + 3 + 3 * k : n + 6 + 3 * k] for k in range(3)]
-        at, sizes = n + 12 + len(self.options), _sizes(n, joints)
-        options, more = dict(zip(self.options, inputs[n + 12 : at], strict=True)), dict[str, Any]()
-        for name in self.asks:
-            more[name] = _arranged(name, inputs[at : at + sizes[name]], n)
-            at += sizes[name]
-        return self.function(inputs[:n], inputs[n : n + 3], axes, **more, **options)
-
-
-def _sizes(n: int, joints: int) -> dict[str, int]:
-    return dict(zip(ASKED, (12 * joints, 6 * n, n, 3 * n), strict=True))
-
-
-def _arranged(name: str, numbers: tuple[Any, ...], n: int) -> Any:
-    """One of ASKED from its numbers."""
-    if name == "g":
-        return numbers
-    width = 3 if name == "frames" else n
-    rows = [numbers[k : k + width] for k in range(0, len(numbers), width)]
-    if name == "frames":
-        return [Frame(rows[k], rows[k + 1 : k + 4]) for k in range(0, len(rows), 4)]
-    return rows if name == "J" else JointLimits(*rows)
 
 
 def asks_for_chain(constraint: Constraint) -> bool:

@@ -6,10 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from wsrender.pipeline.constraints.constraint import Expressed, Frame, JointLimits, Structure
+from wsrender.indices.chain_expression import Expressed, Frame, JointLimits
+from wsrender.pipeline.constraints.constraint import Structure
 from wsrender.pipeline.constraints.region import Point
 from wsrender.robots.chain import Chain
-from wsrender.robots.dynamics import gravity_torques
+from wsrender.robots.dynamics import gravity_torques, inertia_matrices
 from wsrender.robots.kinematics import Kinematics
 
 
@@ -46,11 +47,15 @@ class ExpressionConstraint:
         most = np.full(self.chain.n, np.inf) if efforts is None else efforts
         return JointLimits(self.chain.lower_limits, self.chain.upper_limits, most)
 
+    def values(self, q: np.ndarray, frames: np.ndarray) -> np.ndarray:
+        """The function at configurations (N, n) with tip poses (N, 4, 4), (N,); NumPy evaluates it itself."""
+        asked = {name: self._asked(name, q) for name in self.asks}
+        found = self.function(list(q.T), *_pose(frames), **asked, **dict(self.options))
+        return np.broadcast_to(np.asarray(found, np.float64), len(q))
+
     def host(self, q: np.ndarray, frames: np.ndarray) -> np.ndarray:
         """See `Constraint.host`; NumPy evaluates the function itself."""
-        asked = {name: self._asked(name, q) for name in self.asks}
-        margin = self.function(list(q.T), *_pose(frames), **asked, **dict(self.options))
-        return np.where(np.broadcast_to(margin, len(q)) >= 0, 0, 1).astype(np.int8)
+        return np.where(self.values(q, frames) >= 0, 0, 1).astype(np.int8)
 
     def _asked(self, name: str, q: np.ndarray) -> Any:
         assert self.chain is not None
@@ -60,9 +65,18 @@ class ExpressionConstraint:
             return self.limits
         if name == "g":
             return list(gravity_torques(self.chain, q, np.array(self.gravity)).T)
+        if name == "M":
+            return inertia_matrices(self.chain, q).transpose(1, 2, 0)
         return self.chain.jacobians(q).transpose(1, 2, 0)
 
 
 def _pose(T: np.ndarray) -> tuple[list[Any], list[Any]]:
     """Position and axes of frames (N, 4, 4): numbers (N,) each."""
     return [T[:, row, 3] for row in range(3)], [[T[:, row, k] for row in range(3)] for k in range(3)]
+
+
+@dataclass(frozen=True)
+class ExpressionIndex(ExpressionConstraint):
+    """An index of users: the value of such a function, with the same chain, gravity and options."""
+
+    cut: float | None = None

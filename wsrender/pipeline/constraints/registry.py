@@ -15,14 +15,14 @@ from wsrender.documents.constraints import Constraints, OrientationChoice, Regio
 from wsrender.documents.problems import path_text
 from wsrender.errors import InputError
 from wsrender.extensions import left_out, load
-from wsrender.pipeline.constraints.constraint import ASKED, ORDER, STRUCTURES, Constraint, Structure, in_order
+from wsrender.indices.chain_expression import ASKED, MOST_JOINTS
+from wsrender.pipeline.constraints.constraint import ORDER, STRUCTURES, Constraint, Structure, in_order
 from wsrender.pipeline.constraints.expression import ExpressionConstraint
 from wsrender.pipeline.constraints.host_function import HostConstraint
 from wsrender.pipeline.constraints.orientation import Orientation
 from wsrender.pipeline.constraints.region import Point, Region
 
 EXTENSIONS = "wsrender.constraints"  # entry points, loaded when a job names one
-MOST_JOINTS = 1000  # that a function may ask for; whether a robot has them is seen when a job is planned
 _ADDED: dict[str, ExpressionConstraint | HostConstraint] = {}  # by the user
 
 
@@ -35,8 +35,8 @@ def register_constraint(
     [rad or m]; ``position``, x, y, z of the tip in the world [m]; ``axes``, its three axes in the world, three numbers
     each; ``options``, numbers with defaults, which a job may give. It may use arithmetic and ``wsrender.math``. By name
     it may ask for more: ``frames[i].position`` and ``.axes`` of joint i, as those of the tip; ``J[row][joint]``, linear
-    then angular rows at the tip in the world; ``g``, what the joints take against gravity [N m or N]; ``limits.lower``,
-    ``.upper`` and ``.effort``, infinite where there is none.
+    then angular rows at the tip in the world; ``g``, what the joints take against gravity [N m or N]; ``M[i][j]``, the
+    joint-space inertia; ``limits.lower``, ``.upper`` and ``.effort``, infinite where there is none.
     ``keeps``: what of a grid repeats its answers, so that fewer are asked: "base_joint" where the first joint's value
     changes none, "trailing_joints" where the values of last joints do not whose axes pass through the tip. Raises
     InputError where the name is not an identifier or taken, for another structure, or where the function uses anything
