@@ -7,6 +7,7 @@ from shutil import copytree
 import wsrender as ws
 from wsrender.analyses.jobs import parse_job
 from wsrender.analyses.registry import job_classes
+from wsrender.indices import index_catalogue
 
 CLONE = Path(__file__).parents[1]
 README = (CLONE / "README.md").read_text(encoding="utf-8")
@@ -18,6 +19,7 @@ def blocks(language):
 
 def test_python_example(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(index_catalogue, "_ADDED", {})
     copytree(CLONE / "docs" / "examples", tmp_path / "docs" / "examples")
     example = "\n".join(blocks("python"))
     names = {}
