@@ -16,6 +16,7 @@ import importlib
 import time
 from collections.abc import Callable
 from functools import partial
+from typing import Any
 
 import numpy as np
 import warp as wp
@@ -35,7 +36,7 @@ from wsrender.robots.kinematics import Kinematics
 from wsrender.robots.reachable_box import reachable_box
 
 SSIK = {"ur5e": "universal_robots.ur5e_ik", "puma560": "unimation.puma560_ik"}
-NEAR = {"position_m": 1e-5, "angle_rad": 1e-5}
+NEAR: dict[str, Any] = {"position_m": 1e-5, "angle_rad": 1e-5}
 FEW, FEWER = 4096, 256  # poses for the solver and EAIK, and for ssik
 GENERAL = [(0.1, 70, 0.2), (0.4, 40, 0.1), (0.15, -80, 0.05), (0.0, 90, 0.35), (0.0, -90, 0.0), (0.0, 0, 0.1)]
 
@@ -141,7 +142,7 @@ def made_anywhere(chain: Kinematics, count: int) -> np.ndarray:
     """Poses (N, 4, 4) whose positions lie in the box that holds the workspace, turned in any way."""
     T = np.tile(np.eye(4), (count, 1, 1))
     T[:, :3, 3] = uniform(*reachable_box(chain, chain.lower_limits, chain.upper_limits), count)
-    T[:, :3, :3] = Rotation.random(count, random_state=1).as_matrix()
+    T[:, :3, :3] = Rotation.random(count, rng=1).as_matrix()
     return T
 
 

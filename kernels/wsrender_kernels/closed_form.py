@@ -185,9 +185,9 @@ def _of_arc(name: str) -> bool:
     return name.rstrip("12345678") in ARC
 
 
-def target_in_frame() -> str:
-    """The rotation A and the centre p of the last axes, in the frame of axis 1."""
-    lines = [f"const real t{k} = targets.data[{k} * count + at];" for k in range(TARGET_ROWS)]
+def target_in_frame(rows: list[str] | None = None) -> str:
+    """The rotation A and the centre p of the last axes, in the frame of axis 1; ``rows``: what declares t0 to t11."""
+    lines = rows or [f"const real t{k} = targets.data[{k} * count + at];" for k in range(TARGET_ROWS)]
     for r in range(3):
         lines += [
             f"const real u{r}{c} = base{3 * r} * t{c} + base{3 * r + 1} * t{3 + c} + base{3 * r + 2} * t{6 + c};"

@@ -15,6 +15,7 @@ joint 5; joints 4 and 6, at an angle of whose axes the sine is s, move by no mor
 """
 
 from dataclasses import dataclass
+from itertools import product
 
 import warp as wp
 
@@ -41,16 +42,18 @@ FREE_FIELDS = (
     *("right1_low", "right1_high"),  # of what equation 1's right side is within joint 3's limits
     "half",  # of the free joint's range, which 0 is the middle of [rad]
     *("right2_size", "f_size"),  # how far equation 2's right side and the centre before joint 2 are moved by joint 3
+    *("origin0", "origin1", "origin2", "scale"),  # where the chain's world begins [m], and 1 / reach
     *("near", "near_by", "near_turn"),  # a pose's centre is off by near + near_by times its distance, and turned
 )
 
 
 @dataclass(frozen=True)
 class FreeJointShape:
-    """The compile-time part: whether each of the two equations holds squares."""
+    """The compile-time part: whether each of the two equations holds squares, and the arm is solved from its tip."""
 
     real: type
     squares: tuple[int, int]
+    backwards: bool
 
 
 @factory
@@ -58,7 +61,7 @@ def free_joint_kernel(shape: FreeJointShape, cuda: bool) -> wp.Kernel:
     """Kernel of a class.
 
     In: ``count`` poses, the ``most`` balls of a pose, below what width they are not halved [rad], ``numbers`` of the
-    arm (FREE_FIELDS), ``targets`` (TARGET_ROWS * count,), row r of pose i at [r * count + i]. Out, (count,) each:
+    arm (FREE_FIELDS), ``poses`` (16 * count,), their matrices by rows, in the world. Out, (count,) each:
     ``state``; ``at``, the free joint from the middle of its range [rad] at the best posture found; ``balls``.
     """
     real = shape.real
@@ -71,7 +74,7 @@ def free_joint_kernel(shape: FreeJointShape, cuda: bool) -> wp.Kernel:
         most: wp.int32,
         narrow: real,
         numbers: reals,
-        targets: reals,
+        poses: reals,
         state: integers,
         at: reals,
         balls: integers,
@@ -84,13 +87,13 @@ def free_joint_kernel(shape: FreeJointShape, cuda: bool) -> wp.Kernel:
         most: wp.int32,
         narrow: real,
         numbers: wp.array(dtype=real),
-        targets: wp.array(dtype=real),
+        poses: wp.array(dtype=real),
         # out
         state: wp.array(dtype=wp.int32),
         at: wp.array(dtype=real),
         balls: wp.array(dtype=wp.int32),
     ):
-        block(wp.tid(), count, most, narrow, numbers, targets, state, at, balls)
+        block(wp.tid(), count, most, narrow, numbers, poses, state, at, balls)
 
     return free_joint
 
@@ -113,7 +116,7 @@ def body(shape: FreeJointShape) -> str:
     const int last = SMALLER((task + 1) * chunk, count);
     int next = task * chunk, busy = 0;
     real c[9][lanes], x[lanes], w[lanes], off[lanes], size[lanes], radius[lanes], best[lanes], bound[lanes];
-    {_SEARCH}
+    {_SEARCH.replace("TARGET", target_in_frame(_rows(shape.backwards)))}
     for (int lane = 0; lane < lanes; lane++) {{
         x[lane] = w[lane] = off[lane] = size[lane] = radius[lane] = ZERO;
         for (int k = 0; k < 9; k++) c[k][lane] = ZERO;
@@ -134,7 +137,18 @@ def body(shape: FreeJointShape) -> str:
         }}
         for (int lane = 0; lane < lanes; lane++) if (search[lane].pose >= 0) advance(lane);
     }}
-    """.replace("TARGET", target_in_frame())
+    """
+
+
+def _rows(backwards: bool) -> list[str]:
+    """A pose as the arm is solved for it, from its tip the inverse: rotation by rows, then position [reach]."""
+    rows = [f"const real d{r} = (poses.data[16 * pose + {4 * r + 3}] - origin{r}) * scale;" for r in range(3)]
+    for r, c in product(range(3), range(3)):
+        rows.append(f"const real t{3 * r + c} = poses.data[16 * pose + {4 * c + r if backwards else 4 * r + c}];")
+    for r in range(3):
+        back = f"-(t{3 * r} * d0 + t{3 * r + 1} * d1 + t{3 * r + 2} * d2)"
+        rows.append(f"const real t{9 + r} = {back if backwards else f'd{r}'};")
+    return rows
 
 
 # What is known of a lane's pose, and the ball that comes next. Halves of a root are numbered by depth and path, whose
@@ -214,7 +228,6 @@ _SEARCH = f"""
         s.pose = pose, s.most = -4;
         real sized;
         {{
-            const int at = pose;
             TARGET
             c[0][lane] = A00, c[1][lane] = A10, c[2][lane] = A20, c[3][lane] = A02, c[4][lane] = A12, c[5][lane] = A22;
             c[6][lane] = px, c[7][lane] = py, c[8][lane] = pz;

@@ -63,11 +63,13 @@ def search_free_joint(
     state, at, balls = np.full(len(T), UNDECIDED), np.zeros(len(T)), np.zeros(len(T), int)
     for search in SEARCHES:
         rest = np.flatnonzero(state == UNDECIDED)
-        size = min(BATCH, max(LEAST_SHARE, -(-len(rest) // len(workers))))
+        least = LEAST_SHARE * SEARCHES[0][0] // search[0]
+        size = min(BATCH, max(least, -(-len(rest) // len(workers))))
         parts = [rest[first : first + size] for first in range(0, len(rest), size)]
-        solve = partial(_launch, kernel, numbers, search, form)
+        solve = partial(_launch, kernel, numbers, search)
+        poses = (T if len(part) == len(T) else T[part] for part in parts)
         with ThreadPoolExecutor(len(workers)) as pool:
-            for part, found in zip(parts, pool.map(solve, (T[part] for part in parts), cycle(workers)), strict=True):
+            for part, found in zip(parts, pool.map(solve, poses, cycle(workers)), strict=True):
                 state[part], at[part] = found[:2]
                 balls[part] += found[2]
     return FreeJointSearch(state == REACHED, state == UNREACHABLE, at, balls)
@@ -76,14 +78,14 @@ def search_free_joint(
 def kernel_shape(form: FreeJointForm) -> FreeJointShape:
     """The compile-time part of the kernel."""
     first, second = form.solved.equations
-    return FreeJointShape(wp.float64, (first.squares, second.squares))
+    return FreeJointShape(wp.float64, (first.squares, second.squares), form.solved.axes.reversed)
 
 
-def _launch(kernel, numbers, search, form, T, device) -> list[np.ndarray]:
+def _launch(kernel, numbers, search, T, device) -> list[np.ndarray]:
     count, real = len(T), REAL["float64"]
     state, balls = (wp.empty(count, dtype=wp.int32, device=device) for _ in range(2))  # type: ignore[arg-type]
     at = wp.empty(count, dtype=real, device=device)
-    given = [device_array(values, real, device) for values in (numbers, form.targets(T).ravel())]
+    given = [device_array(values, real, device) for values in (numbers, T.ravel())]
     dim = count if device.is_cuda else -(-count // POSES)
     launch(kernel, dim=dim, inputs=[count, *search, *given], outputs=[state, at, balls], device=device)
     return [state.numpy(), at.numpy(), balls.numpy()]

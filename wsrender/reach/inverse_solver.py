@@ -41,7 +41,8 @@ class Solutions:
     """Configurations (N, n) nearest to the targets, what is left to them, and labels (N,) int8.
 
     ``distance_m``, ``angle_rad`` (N,): residuals. ``proven`` (N,) bool: the target lies outside a sphere and a box
-    that hold every position of the chain, or a closed form has no configuration that reaches it.
+    that hold every position of the chain, or a closed form, or a search along a joint of one, has no configuration that
+    reaches it.
     """
 
     q: np.ndarray

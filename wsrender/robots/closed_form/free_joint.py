@@ -69,6 +69,7 @@ class FreeJointForm:
         # Seen from the tip the base is behind the wrist's centre.
         base = turned @ np.linalg.inv(frame if back else world @ frame)
         found |= _named("base", base, reach) | _named("tool", world @ tool if back else tool, reach)
+        found |= {f"origin{k}": x for k, x in enumerate(self.rest.origin)} | {"scale": 1 / reach}
         found |= {"half": min((upper - lower) / 2, np.pi)} | self._band(unlimited)
         # The wrist's centre is off by what the tip is, and by its turn about the tip: seen from there its own distance.
         near = max(position_m / reach, 1e-13)  # rounding
@@ -115,14 +116,6 @@ class FreeJointForm:
             at = np.array([lower, upper, *extremes[(extremes > lower) & (extremes < upper)]])
         values = right[0] * np.cos(at) + right[1] * np.sin(at)
         return {"right1_low": values.min(), "right1_high": values.max()}
-
-    def targets(self, T: np.ndarray) -> np.ndarray:
-        """Poses (N, 4, 4) in the world as kernels take them, (12, N): rotation by rows, position [reach]."""
-        rows, p = np.empty((12, len(T))), T[:, :3, 3] - self.rest.origin
-        R = T[:, :3, :3].transpose(0, 2, 1) if self.solved.axes.reversed else T[:, :3, :3]
-        rows[:9] = R.reshape(-1, 9).T
-        rows[9:] = (-np.einsum("nij,nj->in", R, p) if self.solved.axes.reversed else p.T) / self.solved.axes.reach
-        return rows
 
     def standing(self, T: np.ndarray, at: np.ndarray) -> np.ndarray:
         """Poses (N, 4, 4) that the others must reach where the free joint stands ``at`` (N,), as kernels say [rad]."""
