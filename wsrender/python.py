@@ -509,6 +509,9 @@ def base_placement(
     weights: Sequence[float] | np.ndarray | None = None,
     over: PlacementSpace | Mapping[str, Any],
     mounting: Literal["floor", "wall", "ceiling"] = "floor",
+    index: str | None = None,
+    index_options: Mapping[str, Mapping[str, bool | int | float | Sequence[float] | np.ndarray]] = {},
+    refine: bool = True,
     use_symmetry: bool = True,
     progress: Progress | bool | None = None,
     threads: int | None = None,
@@ -517,8 +520,9 @@ def base_placement(
     """Where the base of a robot stands best: which targets it serves from every placement of a space.
 
     A target is served from a placement where the robot reaches it, under constraints with a configuration that they
-    admit. The best placement serves targets of the largest weight; of several it is the one that stands farthest, in
-    steps, from those that serve less. Targets, constraints and environment stand in the world.
+    admit. The best placement serves targets of the largest weight; of several it is the one whose least ``index`` over
+    the targets is best, or without one that which stands farthest, in steps, from those that serve less. Targets,
+    constraints and environment stand in the world.
 
     ``robot``: A Robot, what `load_robot` takes, an object with limits and forward_kinematics, or its part of a job
         document.
@@ -540,6 +544,10 @@ def base_placement(
     ``over``: Where the base may stand. ``robot.placement`` is how it stands in the frame that is placed.
     ``mounting``: How the base is mounted in the frame that is placed, before ``robot.placement``: its z is that frame's
         z on the floor, its x on a wall, its -z under a ceiling.
+    ``index``: Local index, as ``indices_at`` has them, whose least value over the targets that are served, each at its
+        best posture, tells placements apart that serve as much; None: none.
+    ``index_options``: Options of the index, if it has any: {index: {option: value}}.
+    ``refine``: Whether the best placement is refined between the cells, and its tolerance found.
     ``use_symmetry``: Whether targets are decided for one yaw alone where others change nothing but the first joint's
         value.
     ``progress``: True shows a bar on work of more than a second; or a function (done, total, message).

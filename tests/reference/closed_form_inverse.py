@@ -114,7 +114,11 @@ def ur5e(positions, rotations):
 
 
 def _standard(row, values):
-    return np.array([step("standard", row.a, row.alpha, row.d, row.theta + value) for value in values])
+    at_zero, T = step("standard", row.a, row.alpha, row.d, row.theta), np.tile(np.eye(4), (len(values), 1, 1))
+    T[:, 0, 0] = T[:, 1, 1] = np.cos(values)
+    T[:, 1, 0] = np.sin(values)
+    T[:, 0, 1] = -T[:, 1, 0]
+    return T @ at_zero
 
 
 def _inverse(T):

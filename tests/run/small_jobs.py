@@ -67,6 +67,7 @@ SMALL_JOBS = {
         "robot": "scara",
         "points_m": [[0.2, 0.1, 0.0], [9.0, 0.0, 0.0]],
         "over": {"x_m": [-0.5, 0.5, 0.25], "yaw_deg": [0, 90, 45]},
+        "refine": False,
         "seed": 3,
         "precision": "float32",
         "device": "cpu",

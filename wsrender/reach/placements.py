@@ -6,7 +6,7 @@ arms, are tried from many starts (`InverseSolver`).
 Under constraints a target is served where a configuration is admitted: of all postures, or else of a search.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from copy import copy
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -26,6 +26,8 @@ from wsrender.reach.evidence import REACHABLE, UNDECIDED, UNREACHABLE
 from wsrender.reach.inverse_solver import BATCH, VERIFIED, InverseSolver
 from wsrender.robots.chain import Chain
 from wsrender.robots.moving_base import MovingBase
+
+Value = Callable[[np.ndarray, np.ndarray], np.ndarray]
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,30 +73,50 @@ class PlacedAdmission(Admission):
         return Admission(self.chain, self.constraints, self.device, self.threads).samples(count, seed)
 
 
+@dataclass(frozen=True, eq=False)
+class Decided:
+    """What is known of pairs of a placement and a target, all of one shape.
+
+    ``label``: of `reach.evidence`, or BLOCKED, int8; ``reason``: the constraint, from 1, that blocks, int8; ``value``:
+    the largest at the configurations that serve a target, NaN where it is not served, or none was asked for.
+    """
+
+    label: np.ndarray
+    reason: np.ndarray
+    value: np.ndarray
+
+
 class Placements:
     """Decides K targets, poses (K, 4, 4) in the world, from bases of the chain of a ``solver``.
 
-    ``base``: where bases may stand; ``admission``: of the constraints, None without. The chain of the solver stands
+    ``base``: where bases may stand; ``admission``: of the constraints, None without. ``value`` is largest at the best
+    posture, of configurations (N, n) on bases at (N, m); None: no value is asked for. The chain of the solver stands
     where gravity is that of all bases.
     """
 
     def __init__(
-        self, solver: InverseSolver, base: MovingBase, T_world_tip: np.ndarray, admission: PlacedAdmission | None
+        self,
+        solver: InverseSolver,
+        base: MovingBase,
+        T_world_tip: np.ndarray,
+        admission: PlacedAdmission | None,
+        value: Value | None = None,
     ):
-        self.solver, self.base, self.admission = solver, base, admission
+        self.solver, self.base, self.value = solver, base, value
+        self.admission = admission or (None if value is None else PlacedAdmission(solver.whole, ()))
         self._origin = np.array(base.lower[:3])  # near what stands far from the world's
         self._targets = T_world_tip.copy()
         self._targets[:, :3, 3] -= self._origin
 
-    def decide(self, coordinates: np.ndarray, T_world_frame: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Labels (P, K) int8 of `reach.evidence`, or BLOCKED, and by which constraint, from 1, (P, K) int8.
+    def decide(self, coordinates: np.ndarray, T_world_frame: np.ndarray) -> Decided:
+        """What is known of all targets, (P, K), from frames ``T_world_frame`` (P, 4, 4) that carry bases.
 
-        ``coordinates`` (P, 6) [m and rad] of the frames ``T_world_frame`` (P, 4, 4) that carry bases.
+        ``coordinates`` (P, 6) [m and rad]: where these are, as the ``base`` has them.
         """
         P, K = len(coordinates), len(self._targets)
         bases = self._bases(T_world_frame)
-        label, reason = np.full((P, K), UNDECIDED, np.int8), np.zeros((P, K), np.int8)
-        closed = self.solver.closed
+        found = Decided(np.full((P, K), UNDECIDED, np.int8), np.zeros((P, K), np.int8), np.full((P, K), np.nan))
+        label, closed = found.label, self.solver.closed
         if isinstance(closed, ClosedLabels):
             slack = self._slacks(closed, bases).T
             label[slack < -closed.margin] = UNREACHABLE
@@ -109,15 +131,14 @@ class Placements:
         rest = np.flatnonzero(label.ravel() == UNDECIDED)
         for first in range(0, len(rest), BATCH):
             at = rest[first : first + BATCH]
-            label.ravel()[at], reason.ravel()[at], _ = self._decided(at, bases, coordinates)
-        return label, reason
+            part, _ = self._decided(at, bases, coordinates)
+            label.ravel()[at], found.reason.ravel()[at], found.value.ravel()[at] = part.label, part.reason, part.value
+        return found
 
-    def configurations(
-        self, coordinates: np.ndarray, T_world_frame: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Of one placement, (1, …) as above, labels and reasons (K,), and configurations (K, n) [rad or m].
+    def configurations(self, coordinates: np.ndarray, T_world_frame: np.ndarray) -> tuple[Decided, np.ndarray]:
+        """Of one placement, (1, …) as above, what is known (K,), and configurations (K, n) [rad or m].
 
-        Of served targets one that serves them, of others the nearest that was looked at.
+        Of served targets the best that was found, of others the nearest that was looked at.
         """
         return self._decided(np.arange(len(self._targets)), self._bases(T_world_frame), coordinates)
 
@@ -130,31 +151,33 @@ class Placements:
     def _slacks(self, closed: ClosedLabels, bases: np.ndarray) -> np.ndarray:
         return placed_slacks(closed.form, bases, self._targets, device=closed.device, threads=closed.threads)
 
-    def _decided(
-        self, at: np.ndarray, bases: np.ndarray, coordinates: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Labels, reasons (N,) and configurations (N, n) of pairs of a base and a target, by number (N,)."""
+    def _decided(self, at: np.ndarray, bases: np.ndarray, coordinates: np.ndarray) -> tuple[Decided, np.ndarray]:
+        """Of pairs of a base and a target, by number (N,), and configurations (N, n)."""
         place = at // len(self._targets)
         position, orientation = self._seen_from(at, bases)
+        found = Decided(np.full(len(at), UNDECIDED, np.int8), np.zeros(len(at), np.int8), np.full(len(at), np.nan))
+        q = np.zeros((len(at), self.solver.whole.n))
         if self.admission is None:
             solved = self.solver.solve(position, orientation)
-            return solved.label, np.zeros(len(at), np.int8), solved.q
+            found.label[:], q[:] = solved.label, solved.q
+            return found, q
         admission = replace(self.admission, values=self.base.configurations(coordinates[place]))
-        label, reason = np.full(len(at), UNDECIDED, np.int8), np.zeros(len(at), np.int8)
-        q = np.zeros((len(at), self.solver.whole.n))
         whole = isinstance(self.solver.closed, ClosedLabels)
         if orientation is not None and whole and not self._turns_matter:
             for first in range(0, len(at), VERIFIED):
                 part = slice(first, first + VERIFIED)
-                found = self._of_postures(admission.among(part), position[part], orientation[part])
-                label[part], reason[part], q[part] = found
-        left = np.flatnonzero(label == UNDECIDED)
+                of, q[part] = self._of_postures(admission.among(part), position[part], orientation[part])
+                found.label[part], found.reason[part], found.value[part] = of.label, of.reason, of.value
+        left = np.flatnonzero(found.label == UNDECIDED)
         if len(left):
             search = copy(self._search)
             search.admission = admission.among(left)
-            found = search.decide(position[left], None if orientation is None else orientation[left])
-            label[left], reason[left], q[left] = found.label, found.reason, found.q
-        return label, reason, q
+            of = search.decide(position[left], None if orientation is None else orientation[left])
+            found.label[left], found.reason[left], q[left] = of.label, of.reason, of.q
+            served = left[of.label == REACHABLE]
+            if self.value and len(served):
+                found.value[served] = self.value(q[served], admission.values[served])
+        return found, q
 
     def _seen_from(self, at: np.ndarray, bases: np.ndarray) -> tuple[np.ndarray, np.ndarray | None]:
         """Positions (N, 3) and, of poses, rotations (N, 3, 3) of pairs by number (N,), seen from the solver's."""
@@ -164,8 +187,8 @@ class Placements:
 
     def _of_postures(
         self, admission: PlacedAdmission, position: np.ndarray, orientation: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Labels, reasons and configurations of poses (N,) all of whose postures are known; of others UNDECIDED."""
+    ) -> tuple[Decided, np.ndarray]:
+        """Of poses (N,) all of whose postures are known, and the best of these; others stay UNDECIDED."""
         assert self.solver.closed
         q, slack, none, alone = self.solver.closed.postures(position, orientation)
         whole = np.all(none | alone, axis=1) & np.any(alone, axis=1)
@@ -173,12 +196,16 @@ class Placements:
         pose, _ = np.nonzero(there)
         rejected = np.zeros(slack.shape, np.int8)
         rejected[there] = admission.rejected(q[there], pose)
-        free = (there & (rejected == 0)).any(axis=1)
+        admitted = there & (rejected == 0)
+        free, good = admitted.any(axis=1), np.where(admitted, slack, -np.inf)
+        if self.value and admitted.any():
+            good[admitted] = self.value(q[admitted], admission.values[np.nonzero(admitted)[0]])
         label = np.where(free, REACHABLE, np.where(whole, BLOCKED, UNDECIDED)).astype(np.int8)
-        times = [(rejected == k + 1).sum(axis=1) for k in range(len(admission.names))]
-        best = np.argmax(np.where(there & (rejected == 0), 8.0, 0.0) + slack, axis=1)
+        times = [(rejected == k + 1).sum(axis=1) for k in range(len(admission.names))] or [np.zeros(len(q))]
         reason = np.where(label == BLOCKED, 1 + np.argmax(times, axis=0), 0).astype(np.int8)
-        return label, reason, q[np.arange(len(q)), best]
+        best = np.where(free, good.argmax(axis=1), slack.argmax(axis=1))
+        value = np.where(free & (self.value is not None), good.max(axis=1), np.nan)
+        return Decided(label, reason, value), q[np.arange(len(q)), best]
 
     @property
     def _turns_matter(self) -> bool:

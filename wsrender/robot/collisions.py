@@ -70,16 +70,19 @@ def collision_constraints(
     return found
 
 
-def clearance_of(robot: Robot, choice: Constraints | None, environment: Environment | None) -> Clearance:
+def clearance_of(
+    robot: Robot, choice: Constraints | None, environment: Environment | None, base: MovingBase | None = None
+) -> Clearance:
     """Distances of the robot's own shapes, and from its environment unless that is only drawn.
 
-    Pairs that constraints exclude do not count. Raises InputError where the robot has no shapes.
+    Pairs that constraints exclude do not count; configurations begin with the coordinates of a ``base`` that moves.
+    Raises InputError where the robot has no shapes.
     """
     own = (choice.self_collision if choice else None) or Apart()
     around = choice.environment if choice else None
     around = Apart() if around is None and environment is not None else around
     try:
-        found = _kept_apart(robot, own, around, environment)
+        found = _kept_apart(robot, own, around, environment, base)
     except InputError as error:
         raise InputError("indices", f"must not ask for clearance: {error.field} {error.message}") from error
     pairs = Pairs.of(found[0].solids, *((each.pairs, 0.0, each.name == AROUND) for each in found))

@@ -26,7 +26,7 @@ def job(robot, points, quats=None, **fields):
     robot = robot if isinstance(robot, str | dict) else {"dh": robot.model_dump(mode="json", exclude_none=True)}
     targets = {"points_m": np.asarray(points).tolist()}
     targets |= {} if quats is None else {"quats_wxyz": np.asarray(quats).tolist()}
-    return {"analysis": "base_placement", "robot": robot, "device": "cpu"} | targets | fields
+    return {"analysis": "base_placement", "robot": robot, "device": "cpu", "refine": False} | targets | fields
 
 
 def labels_of(result):
@@ -94,8 +94,8 @@ def test_labels_are_those_of_all_configurations(name, space):
     assert about["labels"]["served"] == served.sum() and about["most_served"] == served.max()
     assert about["serving_all"] == (served == 12).sum() and about["labels"]["undecided"] == 0
     best = result.document["best"]
-    assert best["served"] == served.max() == served[best["placement"]]
-    assert np.array(best["T_world_base"]) == pytest.approx(bases[best["placement"]], abs=1e-12)
+    assert best["served"] == served.max() == served[best["cell"]["placement"]]
+    assert np.array(best["T_world_base"]) == pytest.approx(bases[best["cell"]["placement"]], abs=1e-12)
 
 
 @pytest.mark.parametrize("blocked", [False, True])
@@ -174,14 +174,13 @@ def test_symmetry_changes_nothing(kind, guarded):
 LIMITED = {"library": "ur5e", "limits_deg": {"joint1": [-170, 170]}}
 LEANING = {"library": "ur5e", "placement": {"rpy_deg": [10, 0, 0]}}
 ASIDE = {"library": "ur5e", "placement": {"position_m": [0.1, 0, 0]}}
-SIDEWAYS = {"gravity_m_s2": [1, 0, -9.7], "constraints": {"torque": True}}
 REASONS = {
     "limits": (LIMITED, {}),
     "an axis that leans": (LEANING, {}),
     "an axis aside": (ASIDE, {}),
     "a wall": ("ur5e", {"mounting": "wall"}),
     "roll": ("ur5e", {"over": TURNED | {"roll_deg": [0, 20, 10]}}),
-    "gravity": ("ur5e", SIDEWAYS),
+    "an index": ("ur5e", {"index": "joint_limit_margin"}),
 }
 
 
@@ -260,6 +259,7 @@ REFUSED = {
         {"constraints": {"torque": True}, "over": {"pitch_deg": [0, 30, 10]}},
         "must not be given where over.pitch_deg is a range",
     ),
+    "index_options": ({"index_options": {"clearance": {"limit_m": 1}}}, 'must not be given without "index"'),
 }
 
 
@@ -271,6 +271,34 @@ def test_what_cannot_be_asked_is_refused(field):
     assert [name for name, _ in refusal.value.problems] == [field] and message in refusal.value.problems[0][1]
 
 
+def test_torque_sees_yaw_where_gravity_leans():
+    document = job("ur5e", RING, over=TURNED, gravity_m_s2=[1, 0, -9.7])
+    with pytest.raises(
+        ws.DocumentError, match=r"constraints\.torque: must not be given where over\.yaw_deg is a range"
+    ):
+        parse_job(document | {"constraints": {"torque": True}})
+    with pytest.raises(ws.InputError, match=r"index: must not be torque_margin where over\.yaw_deg is a range"):
+        plan(document | {"index": "torque_margin"})
+
+
+@pytest.mark.parametrize(
+    ("index", "options", "message"),
+    [
+        ("speed", {}, "index: "),
+        ("velocity_radius", {}, "velocity_limits"),
+        (
+            "force_radius",
+            {"direction": [0, 0, 1]},
+            r"index_options\.force_radius\.direction: must not be given where over",
+        ),
+    ],
+)
+def test_indices_that_cannot_be_asked_are_refused(index, options, message):
+    robot = {"library": "ur5e", "velocity_limits": {}} if index == "velocity_radius" else "ur5e"
+    with pytest.raises(ws.InputError, match=message):
+        plan(job(robot, RING, over=TURNED, index=index, index_options={index: options} if options else {}))
+
+
 def test_a_constraint_of_ones_own_is_refused():
     ws.register_constraint("own_reach", lambda q, position, axes: position[0])
     with pytest.raises(ws.InputError, match=r"constraints\.own_reach: is not available here"):
@@ -279,3 +307,108 @@ def test_a_constraint_of_ones_own_is_refused():
 
 def test_coordinates_stand_in_the_document():
     assert set(COORDINATES) <= execute(job("ur5e", RING, over={"x_m": -0.4})).document["best"].keys()
+
+
+def best_values(name, bases, points, quats, value, robot):
+    """Of every base and target the largest value of all configurations in closed form; NaN where there is none."""
+    positions, rotations = seen_from(bases, points, quats)
+    solutions = solutions_of(name, positions.reshape(-1, 3), rotations.reshape(-1, 3, 3))
+    inside = closed_form.within_limits(solutions, robot.lower_limits, robot.upper_limits, robot.chain.revolute)
+    values = np.full(inside.shape, -np.inf)
+    values[inside] = value(solutions[inside])
+    best = values.max(axis=1).reshape(len(bases), -1)
+    return np.where(np.isfinite(best), best, np.nan)
+
+
+def margin_of(robot):
+    """The least share of a range between a joint and its limits, each as many turns off as is best."""
+    low, high = robot.lower_limits, robot.upper_limits
+
+    def margin(q):
+        middle = (low + high) / 2
+        off = np.abs(np.remainder(q - middle + np.pi, 2 * np.pi) - np.pi)
+        return (0.5 - off / (high - low)).min(axis=1)
+
+    return margin
+
+
+def manipulability_of(robot):
+    return lambda q: ws.evaluate_indices(robot, q, ["manipulability"], device="cpu")["manipulability"]
+
+
+@pytest.mark.parametrize(("index", "value"), [("joint_limit_margin", margin_of), ("manipulability", manipulability_of)])
+def test_the_score_is_the_least_of_the_best(index, value):
+    over = {"x_m": [-1.25, 1.25, 0.5], "y_m": [-0.6, 0.6, 0.4], "yaw_deg": [0, 360, 120]}
+    document = job("ur5e", RING, [DOWN] * 6, over=over, index=index)
+    result, robot, bases = execute(document), ws.load_robot("ur5e"), bases_of(document)
+    values = best_values("ur5e", bases, RING, [DOWN] * 6, value(robot), robot)
+    none = np.isnan(values).all(axis=1)
+    least = np.where(none, np.nan, np.nan_to_num(values, nan=np.inf).min(axis=1))
+    assert result.tables["placements"][index] == pytest.approx(least, abs=1e-7, nan_ok=True)
+    assert none.any() and not none.all()
+    served, best = (~np.isnan(values)).sum(axis=1), result.document["best"]
+    assert best[index] == pytest.approx(least[served == served.max()].max(), abs=1e-7)
+    assert result.tables["targets"][index].min() == pytest.approx(best[index], abs=1e-9)
+
+
+def test_smaller_compliance_is_better():
+    options = {"tip_compliance": {"joint_stiffness": [1e4] * 6}}
+    document = job("ur5e", RING, [DOWN] * 6, over=TURNED, index="tip_compliance", index_options=options)
+    result = execute(document)
+    table = result.tables["placements"]
+    least = table["tip_compliance"][table["served"] == 6].min()
+    assert result.document["best"]["tip_compliance"] == pytest.approx(least, rel=1e-8) and least > 0
+
+
+REFINED = {"over": {"x_m": [-0.9, 0.9, 0.3], "y_m": [-0.6, 0.6, 0.3], "yaw_deg": [0, 360, 120]}, "refine": True}
+
+
+@pytest.mark.parametrize("index", [None, "joint_limit_margin"])
+def test_the_best_placement_is_no_worse_than_its_cell_and_tolerant(index):
+    """Ten thousand placements inside the ball, and as many within the angle, serve all by closed forms; beyond, not."""
+    document = job("ur5e", RING[::2], [DOWN] * 3, **REFINED, index=index)
+    best, robot = execute(document).document["best"], ws.load_robot("ur5e")
+    base, tolerance = np.array(best["T_world_base"]), best["tolerance"]
+    coordinates = np.array([[best[name] for name in COORDINATES]])
+    assert base == pytest.approx(placed(coordinates)[0], abs=1e-12)
+    assert np.all(np.abs(coordinates[0, :2]) <= [0.9, 0.6]) and best["served"] == best["cell"]["served"] == 3
+    if index:
+        values = best_values("ur5e", base[None], RING[::2], [DOWN] * 3, margin_of(robot), robot)
+        assert best[index] == pytest.approx(values.min(), abs=1e-7) and best[index] > best["cell"][index]
+    random = np.random.default_rng(5)
+    by = random.normal(size=(10_000, 3))
+    by *= (random.random((10_000, 1)) ** (1 / 3)) / np.linalg.norm(by, axis=1, keepdims=True)
+
+    def serves(shift, turn):
+        bases = np.tile(base, (len(by), 1, 1))
+        bases[:, :3, 3] += shift * by
+        bases[:, :3, :3] = Rotation.from_rotvec(turn * by).as_matrix() @ base[:3, :3]
+        return ~np.isnan(best_values("ur5e", bases, RING[::2], [DOWN] * 3, lambda q: q[:, 0], robot)).any(axis=1)
+
+    shift, turn = tolerance["translation_m"], tolerance["rotation_rad"]
+    assert 1e-5 < shift < 0.5 and 1e-5 < turn < np.pi / 4
+    # Targets count as reached from 1e-5 m and rad beyond; with the elbow straight, as here, that is a long way aside.
+    near, least = 5e-5, 0.999 if index else 1.0
+    assert min(serves(shift - near, 0).mean(), serves(0, turn - near).mean()) >= least
+    assert not serves(1.2 * shift, 0).all() and not serves(0, 1.2 * turn).all()
+
+
+def test_tolerance_among_what_stands_around():
+    """MuJoCo's distances at every posture of a hundred placements inside."""
+    table = dh_table("puma560").model_copy(update={"link_radius": 0.04})
+    around = {"items": [POST]}
+    document = job(table, RING[:3], [DOWN] * 3, over={"x_m": [-0.5, -0.1, 0.2]}, environment=around, refine=True)
+    best = execute(document).document["best"]
+    base, shift = np.array(best["T_world_base"]), best["tolerance"]["translation_m"]
+    assert best["served"] == 3 and shift > 0.005
+    by = np.random.default_rng(1).normal(size=(40, 3))
+    for each in shift * by / np.linalg.norm(by, axis=1, keepdims=True):
+        moved = base.copy()
+        moved[:3, 3] += each
+        robot = ws.load_robot(table, placement=moved)
+        (apart,) = _kept_apart(robot, None, Apart(), ws.Environment(around["items"]))
+        solutions = solutions_of("puma560", *(part[0] for part in seen_from(moved[None], RING[:3], [DOWN] * 3)))
+        inside = closed_form.within_limits(solutions, robot.lower_limits, robot.upper_limits, robot.chain.revolute)
+        admitted = np.zeros(inside.shape, bool)
+        admitted[inside] = apart.host(solutions[inside], np.zeros((0, 4, 4))) == 0
+        assert admitted.any(axis=1).all()

@@ -7,18 +7,29 @@ import numpy as np
 from scipy.ndimage import distance_transform_edt
 
 from wsrender.analyses.base_placement.job import BasePlacementJob
+from wsrender.analyses.base_placement.score import Score
 from wsrender.documents.placements import ANGLES, COORDINATES, TURN
+from wsrender.reach.evidence import REACHABLE
+from wsrender.reach.placements import Decided
 from wsrender.volume.table import Grid, Table
 
 UNITS = {name: "deg" if name in ANGLES else "m" for name in COORDINATES}
+DIGITS = 9
+IN_DEGREES = np.array([1.0] * 3 + [np.pi / 180] * 3)
+_COUNTED = ("served", "weight")
 BLOCK = 1 << 18  # placements whose bits are told apart at a time
 
 
 class PlacementMap:
-    """The placements of a job by number, with the ``bits`` (P, B) uint8 of what is known of each target, by name."""
+    """The placements of a job by number, with the ``bits`` (P, B) uint8 of what is known of each target, by name.
 
-    def __init__(self, job: BasePlacementJob, bits: dict[str, np.ndarray]):
-        self.job, self.over, self.bits = job, job.over, bits
+    ``score``: the index by which those are told apart that serve as much, of values ``scores`` (P,); None: none.
+    """
+
+    def __init__(
+        self, job: BasePlacementJob, bits: dict[str, np.ndarray], score: Score | None, scores: np.ndarray | None
+    ):
+        self.job, self.over, self.bits, self.score, self.scores = job, job.over, bits, score, scores
         self.served = np.bitwise_count(bits["served"]).sum(axis=1, dtype=np.int32)
 
     @cached_property
@@ -26,7 +37,7 @@ class PlacementMap:
         """Of the targets that each placement serves, (P,)."""
         if self.job.weights is None:
             return self.served.astype(np.float64)
-        weights, bits = np.array(self.job.weights), self.bits["served"]
+        weights, bits = weights_of(self.job), self.bits["served"]
         blocks = (bits[k : k + BLOCK] for k in range(0, len(bits), BLOCK))
         return np.concatenate([_unpacked(block, len(weights)) @ weights for block in blocks])
 
@@ -57,33 +68,55 @@ class PlacementMap:
         """A row for each placement, yaw first, x last."""
         coordinates = self.over.coordinates(np.arange(self.over.count))
         columns = {name: coordinates[:, COORDINATES.index(name)] for name in self.over.ranges}
-        columns |= {"served": self.served} | ({"weight": self.weight} if self.job.weights else {})
+        columns |= self._values(slice(None))
         columns |= {f"{name}_bits": bits for name, bits in self.bits.items()}
-        return Table(columns, {name: UNITS[name] for name in self.over.ranges})
+        return Table(columns, self._units)
+
+    def _values(self, numbers: Any) -> dict[str, np.ndarray]:
+        """What placements serve, by number."""
+        found = {"served": self.served[numbers]} | ({"weight": self.weight[numbers]} if self.job.weights else {})
+        if self.score and self.scores is not None:
+            found[self.score.name] = self.score.sign * self.scores[numbers]
+        return found
+
+    @property
+    def _units(self) -> dict[str, str]:
+        score = {self.score.name: self.score.unit} if self.score else {}
+        return {name: UNITS[name] for name in self.over.ranges} | score
 
     @property
     def map(self) -> Table:
         """Over the first two ranges, in each cell the best of all placements, and how many are as good as any."""
         axes = list(self.over.ranges)[:2]
         shape = self._sizes[: len(axes)]
-        weight = self.weight.reshape(*shape, -1)
-        best = np.argmax(weight, axis=-1).ravel()
-        each = np.arange(len(best)) * weight.shape[-1] + best
+        order = self._order.reshape(*shape, -1)
+        best = np.argmax(order, axis=-1).ravel()
+        each = np.arange(len(best)) * order.shape[-1] + best
         coordinates = self.over.coordinates(each)
         columns = {name: coordinates[:, COORDINATES.index(name)] for name in self.over.ranges}
-        columns |= {"served": self.served[each]} | ({"weight": self.weight[each]} if self.job.weights else {})
+        columns |= self._values(each)
         columns["serving_all"] = (self.served.reshape(*shape, -1) == len(self.job.points_m)).sum(axis=-1).ravel()
         steps = [self.over.ranges[name][2] for name in axes]
         origin = [self.over.values(name)[0] - step / 2 for name, step in zip(axes, steps, strict=True)]
         grid = Grid(tuple(axes), tuple(map(float, origin)), tuple(steps), tuple(shape))
-        return Table(columns, {name: UNITS[name] for name in self.over.ranges}, grid)
+        return Table(columns, self._units, grid)
+
+    @cached_property
+    def _order(self) -> np.ndarray:
+        """Ranks of the placements (P,): by weight, then by the score; equal ones have one rank."""
+        if self.scores is None:
+            return self.weight
+        rank = np.zeros(len(self.weight), np.int64)
+        for values in (told_apart(self.scores), self.weight):
+            rank = rank + np.unique(values, return_inverse=True)[1] * (rank.max() + 1)
+        return rank
 
     @property
     def best(self) -> int | None:
-        """The placement of the largest weight that is farthest, in steps, from those of less; None: none serves any."""
+        """The best placement that is farthest, in steps, from those that are not; None: none serves any."""
         if not self.served.any():
             return None
-        best = (self.weight == self.weight.max()).reshape(self._sizes or [1])
+        best = (self._order == self._order.max()).reshape(self._sizes or [1])
         around = [(size // 2 + 1, size // 2 + 1) if self._whole_turn(name) else (1, 1)
                   for name, size in zip(self.over.ranges, self._sizes, strict=True)]  # fmt: skip
         for axis, (name, pad) in enumerate(zip(self.over.ranges, around, strict=True)):
@@ -98,6 +131,13 @@ class PlacementMap:
         covered = self.over.shape[COORDINATES.index(name)] * self.over.ranges[name][2]
         return name in ANGLES and abs(covered - TURN) < 1e-6
 
+    def entry_at(self, coordinates: np.ndarray, found: Decided) -> dict[str, Any]:
+        """Coordinates (6,) [m and °] of any placement, and what it serves."""
+        served = found.label == REACHABLE
+        entry = dict(zip(COORDINATES, coordinates.tolist(), strict=True)) | {"served": int(served.sum())}
+        entry["weight"] = float(weights_of(self.job)[served].sum())
+        return entry | ({self.score.name: float(self.score.sign * np.nanmin(found.value))} if self.score else {})
+
     def entry_of(self, number: int) -> dict[str, Any]:
         """Coordinates of a placement, and what it serves."""
         coordinates = self.over.coordinates(np.array([number]))[0]
@@ -106,8 +146,26 @@ class PlacementMap:
             **dict(zip(COORDINATES, coordinates.tolist(), strict=True)),
             "served": int(self.served[number]),
             "weight": float(self.weight[number]),
+            **{name: float(value[0]) for name, value in self._values([number]).items() if name not in _COUNTED},
         }
+
+
+def told_apart(scores: np.ndarray) -> np.ndarray:
+    """Scores (N,) that only differ where more than rounding does, relative to the largest; NaN is the least."""
+    size = np.abs(scores[np.isfinite(scores)]).max(initial=0.0) or 1.0
+    return np.nan_to_num(np.round(scores / size, DIGITS), nan=-np.inf)
+
+
+def weights_of(job: BasePlacementJob) -> np.ndarray:
+    """What each target counts, (K,)."""
+    return np.array(job.weights or (1.0,) * len(job.points_m))
 
 
 def _unpacked(bits: np.ndarray, count: int) -> np.ndarray:
     return np.unpackbits(bits, axis=1, count=count, bitorder="little")
+
+
+def least_value(value: np.ndarray) -> np.ndarray:
+    """Of every placement the least value (P,) over the targets (P, K) that it serves; NaN where it serves none."""
+    least = np.nan_to_num(value, nan=np.inf).min(axis=1)
+    return np.where(np.isfinite(least), least, np.nan)

@@ -1,11 +1,16 @@
 """The analysis ``base_placement``: labels of every placement and target, their map, and the best placement."""
 
+from dataclasses import replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from wsrender.analyses.base_placement.job import BasePlacementJob
-from wsrender.analyses.base_placement.result import PlacementMap
+from wsrender.analyses.base_placement.refined import refined
+from wsrender.analyses.base_placement.result import IN_DEGREES, PlacementMap, least_value
+from wsrender.analyses.base_placement.score import Score
 from wsrender.analyses.contract import Analysis, Draft, Settled, Tell
 from wsrender.analyses.cost import (
     DECIDED_PER_S,
@@ -29,10 +34,12 @@ from wsrender.errors import InputError
 from wsrender.pipeline.constraints.collision import CollisionConstraint
 from wsrender.pipeline.constraints.constraint import Constraint
 from wsrender.reach.admissible_search import BLOCKED
+from wsrender.reach.closed_labels import ClosedLabels
 from wsrender.reach.evidence import REACHABLE, UNDECIDED
 from wsrender.reach.inverse_solver import InverseSolver, closed_form_of
-from wsrender.reach.placements import PlacedAdmission, Placements
+from wsrender.reach.placements import Decided, PlacedAdmission, Placements
 from wsrender.reach.targets import NAMES, check_tolerance, evidence_of, rotations
+from wsrender.reach.tolerance import largest_ball
 from wsrender.robot import Robot
 from wsrender.robot.constraints import constraints_for
 from wsrender.robot.gravity import gravity_of
@@ -45,9 +52,12 @@ PAIRS = 1 << 20  # of placements and targets that are decided together
 CLOSED_PER_S, POSTURES_PER_S, BALLS_PER_S, POSES_PER_S = 1.5e7, 4e5, 3e5, 1.2e4  # pairs of one core
 PAIR_BYTES = 40  # while they are decided
 OF_THE_WORLD = ("region", "orientation", "environment")  # constraints that see where the base stands
-IN_DEGREES = np.array([1.0] * 3 + [np.pi / 180] * 3)
+LARGEST_TURN = np.pi / 4  # by which tolerances turn the base
+SHIFTS, FEW_SHIFTS = 1024, 128  # of the base that are tried at a time; few where inverse kinematics searches
+TRIED = 20_000  # placements around the best one
 TURNS_ALIKE = 1e-9  # sine, and distance in reaches, of an axis from the base's
 DRAWN = 3
+Both = tuple[tuple[Constraint, ...], tuple[Constraint, ...]]
 
 
 class BasePlacementAnalysis(Analysis):
@@ -63,7 +73,7 @@ class BasePlacementAnalysis(Analysis):
     def prepare(self, device: str, target: str) -> Settled:
         """Raises InputError for a tolerance below what is computed, and for constraints that cannot be asked."""
         check_tolerance(self.robot.chain, self.job.position_tolerance_m, self.job.precision)
-        _ = self.constraints
+        _ = self.constraints, self.score
         return Settled(
             device, target, ((0, self.job.over.count * self._targets),), shard_unit=self._targets * self._alike
         )
@@ -81,8 +91,8 @@ class BasePlacementAnalysis(Analysis):
 
     @cached_property
     def standing(self) -> Robot:
-        """The robot where roll and pitch are those of its placements, at the world's origin."""
-        tilt = np.array([[0.0, 0.0, 0.0, *self.job.over.limits[0][3:5], 0.0]])
+        """The robot at the world's origin, turned as its placements are, at the first angles of ranges."""
+        tilt = np.array([[0.0, 0.0, 0.0, *self.job.over.limits[0][3:]]])
         return self._robot_at(placed(tilt)[0])
 
     def _robot_at(self, T_world_frame: np.ndarray) -> Robot:
@@ -92,11 +102,14 @@ class BasePlacementAnalysis(Analysis):
         return self.robot.placed(where)
 
     @cached_property
-    def constraints(self) -> tuple[tuple[Constraint, ...], tuple[Constraint, ...]]:
+    def constraints(self) -> Both:
         """Constraints that see where the base stands, of a chain that begins with its joints, and the others.
 
         Raises InputError.
         """
+        return self._constraints(self.base)
+
+    def _constraints(self, base: MovingBase) -> Both:
         choice, gravity = self.job.constraints or Constraints.model_construct(), gravity_of(self.job)
         if choice.added:
             name = next(iter(choice.added))
@@ -106,11 +119,16 @@ class BasePlacementAnalysis(Analysis):
         given = {name: getattr(choice, name) for name in choice.model_fields_set}
         world = {name: value for name, value in given.items() if name in OF_THE_WORLD}
         own = {name: value for name, value in given.items() if name not in OF_THE_WORLD}
-        around = (Constraints.model_construct(**world), self.job.environment)
+        seen, around = Constraints.model_construct(**world), self.job.environment
         return (
-            constraints_for(self.standing, *around, gravity=gravity, base=self.base),
+            constraints_for(self.standing, seen, around, gravity=gravity, base=base),
             constraints_for(self.standing, Constraints.model_construct(**own), gravity=gravity),
         )
+
+    @cached_property
+    def score(self) -> Score | None:
+        """What tells placements apart that serve as much; raises InputError."""
+        return Score.of(self.job, self.standing, self.base) if self.job.index else None
 
     @property
     def _constrained(self) -> bool:
@@ -135,7 +153,8 @@ class BasePlacementAnalysis(Analysis):
         T = self.standing.chain.T_world_base @ chain.T_joint[0]
         along = np.hypot(*T[:2, 2]) < TURNS_ALIKE and np.hypot(*T[:2, 3]) < TURNS_ALIKE * chain.reach
         free = chain.periodic[0] or chain.upper_limits[0] - chain.lower_limits[0] >= 2 * np.pi * (1 - 1e-12)
-        return yaws if along and free and chain.joint_source[0] == 0 and self._blind else 1
+        blind = self._blind and (self.score is None or self.score.survives)
+        return yaws if along and free and chain.joint_source[0] == 0 and blind else 1
 
     @property
     def _blind(self) -> bool:
@@ -152,7 +171,7 @@ class BasePlacementAnalysis(Analysis):
         """Pairs a second of one core, about."""
         form = closed_form_of(self.robot.chain, self._kind)
         closed = isinstance(form, ClosedForm)
-        if self._constrained:
+        if self._constrained or self.score:
             return POSTURES_PER_S if closed and self._kind == "pose" else SEARCHED_PER_S
         if form:
             return CLOSED_PER_S if closed else BALLS_PER_S
@@ -167,18 +186,20 @@ class BasePlacementAnalysis(Analysis):
         """Pairs, a bit of each label, and the table of placements."""
         over, K = self.job.over, self._targets
         bits = -(-K // 8) * (2 + len(self.names))
-        rows = over.count * (8.0 * len(over.ranges) + 12 + bits)
+        rows = over.count * (8.0 * (len(over.ranges) + bool(self.score)) + 12 + bits)
         drawn, seconds = pictures_cost("placements", "robot")
         files = DOCUMENT_BYTES + drawn + rows + 7 * LISTED_BYTES * K
         memory = 2 * rows + 8.0 * over.count + PAIR_BYTES * min(PAIRS, over.count * K) + 7 * LISTED_MEMORY * K
         memory += SEARCHED_BYTES if self._constrained else 0
-        seconds += over.count * K / self._alike / self._rate + files / WRITTEN_PER_S
+        tried = over.count / self._alike + (TRIED if self.job.refine else 0)
+        seconds += tried * K / self._rate + files / WRITTEN_PER_S
         return Cost(over.count * K, memory, files, seconds, Asks("over", "take larger steps"))
 
     def compute(self, shard: int, execution: Execution, tell: Tell) -> PartialResult:
         """Of every placement of the shard bits (B,) uint8, target k that of byte k // 8 and weight 2^(k % 8).
 
-        ``served``, ``undecided``, and by constraint ``blocked_<name>``: that it rejected most configurations.
+        ``served``, ``undecided``, and by constraint ``blocked_<name>``: that it rejected most configurations. With an
+        index ``score`` (P,), its least value over the targets that are served; NaN where none is.
         """
         (first, count), K = self.shards[shard], self._targets
         start, end = first // K, (first + count) // K
@@ -186,15 +207,35 @@ class BasePlacementAnalysis(Analysis):
         search, parts = self._placements(execution.threads), []
         for begin in range(start, end, each):
             numbers = np.arange(begin, min(begin + each, end))
-            label, reason = self._decided(search, numbers[:: self._alike])
-            parts.append([np.repeat(bits, self._alike, axis=0) for bits in self._bits(label, reason)])
+            found = self._decided(search, numbers[:: self._alike])
+            parts.append([np.repeat(rows, self._alike, axis=0) for rows in self._rows(found)])
             tell((int(numbers[-1]) + 1) * K - first)
         arrays = [np.concatenate(part) for part in zip(*parts, strict=True)]
-        return rows_of_shard(first, dict(zip(self._names_of_bits, arrays, strict=True)))
+        names = [*self._names_of_bits, *(["score"] if self.score else [])]
+        return rows_of_shard(first, dict(zip(names, arrays, strict=True)))
 
     def _placements(self, threads: int | None) -> Placements:
+        """What decides all targets from placements of the job."""
+        value = self.score and replace(self.score, device=self.device, threads=threads)
+        admission = self._admission(self.base, self.constraints, threads)
+        return Placements(self._solver(threads), self.base, self._poses, admission, value)
+
+    def _around(self, T_world_base: np.ndarray, served: np.ndarray, threads: int | None) -> Placements:
+        """What decides ``served`` targets (K,) bool from bases that are moved from one, and turned about its origin.
+
+        Coordinates are those of the origin in the world, and angles by which the base is turned.
+        """
+        shifts, T = np.full(3, self.standing.chain.reach), T_world_base.copy()
+        ends = np.array([*shifts, *([1.5 * LARGEST_TURN] * 3)])
+        middle = np.array([*T[:3, 3], 0.0, 0.0, 0.0])
+        T[:3, 3] = 0.0
+        base = MovingBase(middle - ends, middle + ends, T)
+        admission = self._admission(base, self._constraints(base) if self._constrained else ((), ()), threads)
+        return Placements(self._solver(threads), base, self._poses[served], admission)
+
+    def _solver(self, threads: int | None) -> InverseSolver:
         job, chain = self.job, self.standing.chain
-        solver = InverseSolver(
+        return InverseSolver(
             chain,
             kind=self._kind,
             position_m=job.position_tolerance_m,
@@ -205,21 +246,25 @@ class BasePlacementAnalysis(Analysis):
             device=self.device,
             threads=threads,
         )
-        T = np.tile(np.eye(4), (self._targets, 1, 1))
-        T[:, :3, 3] = job.points_m
-        if job.quats_wxyz is not None:
-            T[:, :3, :3] = rotations(job.quats_wxyz, len(T))
-        return Placements(solver, self.base, T, self._admission(threads))
 
-    def _admission(self, threads: int | None) -> PlacedAdmission | None:
-        if not self._constrained:
+    @cached_property
+    def _poses(self) -> np.ndarray:
+        """Of the targets in the world, (K, 4, 4)."""
+        T = np.tile(np.eye(4), (self._targets, 1, 1))
+        T[:, :3, 3] = self.job.points_m
+        if self.job.quats_wxyz is not None:
+            T[:, :3, :3] = rotations(self.job.quats_wxyz, len(T))
+        return T
+
+    def _admission(self, base: MovingBase, constraints: Both, threads: int | None) -> PlacedAdmission | None:
+        moved, own = constraints
+        if not (moved or own):
             return None
-        moved, own = self.constraints
         chain = self.standing.chain
-        on_base = self.base.carrying(chain.geometry) if chain.geometry else None
+        on_base = base.carrying(chain.geometry) if chain.geometry else None
         return PlacedAdmission(chain, own, self.device, threads, moved, on_base)
 
-    def _decided(self, search: Placements, numbers: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def _decided(self, search: Placements, numbers: np.ndarray) -> Decided:
         coordinates = self.job.over.coordinates(numbers)
         return search.decide(coordinates * IN_DEGREES, placed(coordinates))
 
@@ -227,10 +272,11 @@ class BasePlacementAnalysis(Analysis):
     def _names_of_bits(self) -> list[str]:
         return ["served", "undecided", *(f"blocked_{name}" for name in self.names)]
 
-    def _bits(self, label: np.ndarray, reason: np.ndarray) -> list[np.ndarray]:
-        blocked = [(label == BLOCKED) & (reason == k + 1) for k in range(len(self.names))]
-        masks = [label == REACHABLE, label == UNDECIDED, *blocked]
-        return [np.packbits(mask, axis=1, bitorder="little") for mask in masks]
+    def _rows(self, found: Decided) -> list[np.ndarray]:
+        blocked = [(found.label == BLOCKED) & (found.reason == k + 1) for k in range(len(self.names))]
+        masks = [found.label == REACHABLE, found.label == UNDECIDED, *blocked]
+        rows = [np.packbits(mask, axis=1, bitorder="little") for mask in masks]
+        return [*rows, least_value(found.value)] if self.score else rows
 
     def merge(self, a: PartialResult, b: PartialResult) -> PartialResult:
         """The placements of both, in their order."""
@@ -238,7 +284,9 @@ class BasePlacementAnalysis(Analysis):
 
     def result(self, partial: PartialResult, execution: Execution) -> Draft:
         """The tables ``placements``, their ``placement_map``, and ``targets`` as the best one serves them."""
-        found = PlacementMap(self.job, {name: partial[name] for name in self._names_of_bits})
+        scores = partial["score"] if self.score else None
+        bits = {name: partial[name] for name in self._names_of_bits}
+        found = PlacementMap(self.job, bits, self.score, scores)
         about = found.entry | {
             "alike": self._alike,
             "evidence": evidence_of(self.robot.chain, self._kind),
@@ -247,28 +295,56 @@ class BasePlacementAnalysis(Analysis):
         if (best := found.best) is None:
             nothing = no_headline("no placement serves a target")
             return Draft({"placements": about, "best": None}, nothing, tables=tables)
+        search = self._placements(execution.threads)
         coordinates = self.job.over.coordinates(np.array([best]))
-        label, reason, q = self._placements(execution.threads).configurations(
-            coordinates * IN_DEGREES, placed(coordinates)
-        )
+        if self.job.refine:
+            coordinates = refined(self.job, search, coordinates[0])[None]
+        of, q = search.configurations(coordinates * IN_DEGREES, placed(coordinates))
         robot = self._robot_at(placed(coordinates)[0])
-        entry = found.entry_of(best) | {"T_world_base": robot.chain.T_world_base.tolist()}
-        tables["targets"] = self._targets_table(label, reason, q)
-        reached = q[label == REACHABLE][:DRAWN]
+        entry = {"T_world_base": robot.chain.T_world_base.tolist(), "cell": found.entry_of(best)}
+        entry = found.entry_at(coordinates[0], of) | entry
+        if self.job.refine:
+            entry["tolerance"] = self._tolerance(robot.chain.T_world_base, of.label == REACHABLE, execution.threads)
+        tables["targets"] = self._targets_table(of, q)
+        reached = q[of.label == REACHABLE][:DRAWN]
         skeleton = robot.skeleton(reached) if len(reached) else None
         return Draft({"placements": about, "best": entry}, tables=tables, skeleton=skeleton)
 
-    def _targets_table(self, label: np.ndarray, reason: np.ndarray, q: np.ndarray) -> Table:
+    def _tolerance(self, T_world_base: np.ndarray, served: np.ndarray, threads: int | None) -> dict[str, Any]:
+        """How far the base may stand elsewhere, or turned about any axis, and serve the same (DEFINITIONS 18)."""
+        search, middle = self._around(T_world_base, served, threads), np.zeros(6)
+        middle[:3] = T_world_base[:3, 3]
+        count = SHIFTS if isinstance(search.solver.closed, ClosedLabels) else FEW_SHIFTS
+
+        def serves(coordinates: np.ndarray) -> np.ndarray:
+            found = search.decide(coordinates, placed(coordinates / IN_DEGREES))
+            return (found.label == REACHABLE).all(axis=1)
+
+        def shifted(by: np.ndarray) -> np.ndarray:
+            return serves(middle + np.hstack([by, np.zeros_like(by)]))
+
+        def turned(by: np.ndarray) -> np.ndarray:
+            angles = Rotation.from_rotvec(by).as_euler("xyz")
+            return serves(middle + np.hstack([np.zeros_like(by), angles]))
+
+        seed, reach = self.job.seed, float(self.standing.chain.reach)
+        entry: dict[str, Any] = {"translation_m": largest_ball(shifted, reach, count, seed)}
+        entry["rotation_rad"] = None if "torque" in self.names else largest_ball(turned, LARGEST_TURN, count, seed)
+        return entry | {"largest": {"translation_m": reach, "rotation_rad": LARGEST_TURN}}
+
+    def _targets_table(self, found: Decided, q: np.ndarray) -> Table:
         """A row for each target as the best placement serves it, in the order asked."""
         job, chain = self.job, self.robot.chain
         columns = {"position": np.array(job.points_m)}
         columns |= {} if job.quats_wxyz is None else {"quat_wxyz": np.array(job.quats_wxyz)}
         columns |= {} if job.weights is None else {"weight": np.array(job.weights)}
         columns |= {
-            "label": np.array([NAMES[each] for each in label.tolist()], "<U11"),
-            "reason": np.array(["", *self.names])[np.where(label == BLOCKED, reason, 0)],
+            "label": np.array([NAMES[each] for each in found.label.tolist()], "<U11"),
+            "reason": np.array(["", *self.names])[np.where(found.label == BLOCKED, found.reason, 0)],
         }
+        columns |= {self.score.name: self.score.sign * found.value} if self.score else {}
         columns |= {f"q_{name}": values for name, values in zip(chain.joint_names, q.T, strict=True)}
         kinds = zip(chain.joint_names, chain.revolute, strict=True)
-        units = {"position": "m"} | {f"q_{name}": "rad" if revolute else "m" for name, revolute in kinds}
+        units = {"position": "m"} | ({self.score.name: self.score.unit} if self.score else {})
+        units |= {f"q_{name}": "rad" if revolute else "m" for name, revolute in kinds}
         return Table(columns, units)

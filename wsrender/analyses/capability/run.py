@@ -41,7 +41,7 @@ from wsrender.reach.capability import (
 )
 from wsrender.reach.inverse_solver import solved_bytes
 from wsrender.reach.posture_counts import closed_form_for_counts, posture_counts, turned_frames
-from wsrender.reach.targets import check_tolerance, evidence_for
+from wsrender.reach.targets import check_tolerance, evidence_of
 from wsrender.robot.constraints import constraints_of_job
 from wsrender.robots.kinematics import Kinematics
 from wsrender.volume.lattice import default_voxel_size, expected_voxels
@@ -167,7 +167,7 @@ class CapabilityAnalysis(Analysis):
             "method": "inverse kinematics at the centres of voxels",
             "directions": job.directions,
             "approach_axis": job.approach_axis,
-            "evidence": evidence_for(approaching(self.robot.chain, job.approach_axis), "axis"),
+            "evidence": evidence_of(approaching(self.robot.chain, job.approach_axis), "axis"),
             "voxels": len(cells),
             "mean_index": float(index.mean()) if len(cells) else 0.0,
             "maximum_index": float(index.max(initial=0.0)),
