@@ -15,6 +15,7 @@ from typing import Any
 
 import warp as wp
 
+from wsrender_kernels.collision_crowd import AT_ONCE, CROWD
 from wsrender_kernels.collision_surfaces import LOOKUPS, TRIANGLES
 from wsrender_kernels.factories import factory
 from wsrender_kernels.options import CUDA_OPTIONS, MODULE_OPTIONS, SHORT_OPTIONS
@@ -24,7 +25,7 @@ PART_LANES = 64
 BATCH, GROUP = 512, 16  # open samples of a task of the narrow phase on the CPU, and side by side
 STEPS = 40  # of portals
 EDGE, ROW = 8, 8  # cells of directions along the edge of a cube; vertices of a cell are padded to so many
-CAPACITY = 16  # capsules: the scratch is for a multiple of so many
+CAPACITY = 16  # capsules, and balls of a crowd: the scratch is for a multiple of so many
 
 # What the narrow phase computes with.
 REAL_ARRAYS = (
@@ -38,11 +39,12 @@ REAL_ARRAYS = (
     "solid_capsules",
 )
 _ARRAYS = {
-    wp.float32: ("lower", "upper", "capsules", "test_numbers", "table_numbers", "balls", "grid_numbers"),
+    wp.float32: ("lower", "upper", "capsules", "test_numbers", "table_numbers", "balls", "grid_numbers",
+                 "crowd_numbers", "crowd_balls"),
     wp.int32: ("sources", "capsule_frame", "capsule_axis", "pairs", "planes", "tests", "tables", "table_columns",
                "solid_frame", "vertex_range", "solid_pairs", "pair_kinds", "pair_ranks", "lookups", "grid_shapes",
-               "node_links"),
-    wp.uint32: ("table_words", "first_reason", "grid_words"),
+               "node_links", "crowd_shape", "crowd_rows", "crowd_pairs"),
+    wp.uint32: ("table_words", "first_reason", "grid_words", "crowd_words", "crowd_sets"),
 }  # fmt: skip
 ARRAYS = {name: dtype for dtype, names in _ARRAYS.items() for name in names}
 
@@ -58,6 +60,8 @@ def program_type(real: Any):
         n_tables: wp.int32
         n_solid_pairs: wp.int32
         n_lookups: wp.int32
+        n_crowd_rows: wp.int32
+        crowd_set_words: wp.int32
         root: wp.int32  # lowest frame that a solid is in: all others are taken from it
         columns: wp.int32  # cells of a table along its first coordinate
         epsilon: real
@@ -235,6 +239,7 @@ _FILTER = """
         }
     }
 @LOOKUPS
+@CROWD
     for (int l = 0; l < LN; l++) {
         const int lane = part * LN + l;
         if (lane >= valid) break;
@@ -619,9 +624,12 @@ def _code(
     body: str = "",
     exact: bool = False,
     surfaces: bool = False,
+    crowd: int = 0,
 ) -> str:
     values = {
         "LOOKUPS\n": LOOKUPS if surfaces else "",
+        "CROWD\n": CROWD if crowd else "",
+        "CROWD_BALLS": crowd,
         "TRIANGLES ": TRIANGLES + " " if surfaces else " ",
         "AGAINST": _AGAINST if surfaces else "",
         "SURFACES": int(surfaces),
@@ -633,6 +641,7 @@ def _code(
         "BODY": body,
         "REAL": "double" if exact else "float",
         "SQRT": "sqrt" if exact else "sqrtf",
+        "AT_ONCE": AT_ONCE,
         "EDGE": EDGE,
         "CELLS": 6 * EDGE**2,
         "ROW": ROW,
@@ -664,12 +673,13 @@ def filter_kernel(
     cuda: bool,
     body: str | None = None,
     surfaces: bool = False,
+    crowd: int = 0,
 ) -> wp.Kernel:
     """Kernel that labels the samples of a chunk and lists what is open; see the module.
 
     ``capsules``: scratch for so many; ``words``: of a mask of pairs; ``cuda``: a thread takes a sample, not a block;
     ``body``: of one robot, as `collision_unrolled.unrolled` writes it, for such a thread; ``surfaces``: whether there
-    are any. Out: ``labels`` (count,),
+    are any; ``crowd``: scratch for so many balls of one. Out: ``labels`` (count,),
     ``listed`` (1,) how many are, ``ids`` (count,) their numbers in the chunk, ``open_masks`` (count * words,).
     """
     block_of, draws = blocks(real, n, shared), sampling(real, n, method, shared)
@@ -680,7 +690,8 @@ def filter_kernel(
     u8, i32, u32 = (wp.array(dtype=dtype) for dtype in (wp.uint8, wp.int32, wp.uint32))
     BLOCK, LANE_MASK = LANES, wp.int64(LANES - 1)
 
-    code = _code(_FILTER if body is None else _UNROLLED, n, joints, capsules, words, body or "", surfaces=surfaces)
+    snippet = _FILTER if body is None else _UNROLLED
+    code = _code(snippet, n, joints, capsules, words, body or "", surfaces=surfaces, crowd=crowd)
 
     @wp.func_native(code)
     def filtered(

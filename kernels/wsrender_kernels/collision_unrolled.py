@@ -16,7 +16,7 @@ def unrolled(program: Any, words: int) -> str | None:
 
     ``program``: a `wsrender.collision.program.Program`.
     """
-    if len(program.tests) > MOST_TESTS:
+    if program.pairs[:, 2:].sum() + program.planes[:, 2].sum() > MOST_TESTS:
         return None
     written = _Written(program)
     for i, (low, high) in enumerate(zip(program.lower, program.upper, strict=True)):

@@ -11,6 +11,7 @@ import numpy as np
 from wsrender.collision.asked import counted
 from wsrender.collision.certificates import CELLS, FREE, Certificates, certificates
 from wsrender.collision.covers import LEVELS, Capsules, Cover, cover
+from wsrender.collision.crowd import Crowd, crowd, crowded
 from wsrender.collision.distance import Distances, frames_of
 from wsrender.collision.grids import Grid, Lookup, lookup, reach_of, surface_grid
 from wsrender.collision.solids import BASE, Pairs, Solid
@@ -21,6 +22,7 @@ from wsrender.robots.triangles import tree
 DRAWN = 4096  # configurations over which the levels of covers are chosen
 # Of an open pair in the narrow phase, measured in tests of two capsules.
 OPEN_COST = 200.0
+NAMED_COST = 10.0  # of a test of one sample by itself, likewise
 EPSILON = 5e-6  # of the reach, at least 2 m: what positions in float32 may be off [m]
 ABSENT = -1.0  # a squared distance that nothing falls below
 SHORT = 1e-10  # squared length of an axis that is a point [m²], or length of half of one [m]
@@ -49,7 +51,11 @@ class Program:
     each axis, first word; ``grid_words``; ``nodes`` and ``node_links`` as `Tree.balls` and `Tree.links`, in the base's
     frame, of the rows of ``triangles`` (F, 9); a surface's ``vertex_range`` is first of its nodes, first and end;
     ``solid_capsules`` (S, 7): middle and half axis in its joint and radius of a capsule around a solid that may meet
-    one. ``epsilon``: what float32 may be off [m]; ``columns``: cells of a table along its first coordinate; ``never``,
+    one. Of a `Crowd`: ``crowd_numbers`` (4,): origin and cell; ``crowd_shape`` (3,);
+    ``crowd_words``; ``crowd_sets`` (K, W); ``crowd_rows`` (M, 3) of those that move: joint from 1, first ball, balls;
+    ``crowd_balls`` (B, 4); ``crowd_pairs`` (M * 32 W, 5) of each with each that stands: pair or -1, first test and
+    number outside, the same inside. With it the first ``alone`` of ``pairs`` and ``moving`` capsules are enough.
+    ``epsilon``: what float32 may be off [m]; ``columns``: cells of a table along its first coordinate; ``never``,
     ``always``: pairs by proof.
     """
 
@@ -86,7 +92,16 @@ class Program:
     node_links: np.ndarray
     triangles: np.ndarray
     solid_capsules: np.ndarray
+    crowd_numbers: np.ndarray
+    crowd_shape: np.ndarray
+    crowd_words: np.ndarray
+    crowd_sets: np.ndarray
+    crowd_rows: np.ndarray
+    crowd_balls: np.ndarray
+    crowd_pairs: np.ndarray
     epsilon: float
+    moving: int
+    alone: int
     columns: int
     never: np.ndarray
     always: np.ndarray
@@ -114,7 +129,9 @@ def program(pairs: Pairs, chain: Chain, distances: Distances | None = None) -> P
     chosen = _Chosen(pairs, chain, covers.made)
     levels = {pair: chosen.levels(pair) for pair in convex}
     left = {pair: lookups[pair] for pair in known.left if pair in lookups}
-    return _packed(pairs, chain, known, covers.made, levels, left, epsilon)
+    named = {pair: chosen.levels(pair, NAMED_COST) for pair in crowded(pairs, convex)}
+    many = crowd(pairs, named, covers.made, _links(chain), epsilon) if named else None
+    return _packed(pairs, chain, known, covers.made, levels, left, many, named, epsilon)
 
 
 class _Covers:
@@ -156,10 +173,14 @@ def _in_base(surface: Solid) -> np.ndarray:
 
 def _extent(pairs: Pairs, chain: Chain) -> float:
     """Upper bound of the coordinates that points have of any solid but half-spaces, and of these their origins' [m]."""
-    links = np.linalg.norm(chain.T_joint[:, :3, 3], axis=1).sum() + chain.largest_slide.sum()
     sizes = [solid.bounding_radius if np.isfinite(solid.bounding_radius) else 0.0 for solid in pairs.solids]
     own = [np.linalg.norm(solid.T[:3, 3]) + size for solid, size in zip(pairs.solids, sizes, strict=True)]
-    return float(links + max(own, default=0.0))
+    return _links(chain) + float(max(own, default=0.0))
+
+
+def _links(chain: Chain) -> float:
+    """Upper bound of how far the origins of joints are from the base's [m]."""
+    return float(np.linalg.norm(chain.T_joint[:, :3, 3], axis=1).sum() + chain.largest_slide.sum())
 
 
 class _Chosen:
@@ -171,39 +192,49 @@ class _Chosen:
         self.frames = frames_of(chain, chain.lower_limits + drawn * (chain.upper_limits - chain.lower_limits))
         self._placed: dict[tuple[int, str, int], tuple[np.ndarray, np.ndarray, np.ndarray]] = {}
 
-    def levels(self, pair: int) -> tuple[int, int | None]:
-        """Levels of the covers outside and inside with the least expected cost; None: none inside."""
+    def levels(self, pair: int, alone: float = 0.0) -> tuple[int, int | None]:
+        """Levels of the covers outside and inside with the least expected cost; None: none inside.
+
+        ``alone``: what a test costs where it is made of those samples alone in which the solids are near; 0: of all.
+        """
         a, b = self.pairs.pairs[pair]
         margin = self.pairs.margin(pair)
         exact = all(self.pairs.solids[k].kind == "half_space" or self.covers[k].exact for k in (a, b))
         if exact:
             return 0, 0
         tests, close = self._below(a, b, "outer", 0, margin)
-        if OPEN_COST * close.mean() <= tests:
+        if (not alone and OPEN_COST * close.mean() <= tests) or not close.any():
             return 0, None
-        near = [self._below(a, b, "outer", level, margin) for level in range(len(LEVELS))]
-        hit = [self._below(a, b, "inner", level, margin) for level in range(len(LEVELS))]
+        near_at = np.flatnonzero(close) if alone else np.arange(DRAWN)
+        share = len(near_at) / DRAWN
+        first, open_cost = alone * share or 1.0, OPEN_COST * share
+        near = [self._below(a, b, "outer", level, margin, near_at) for level in range(len(LEVELS))]
+        hit = [self._below(a, b, "inner", level, margin, near_at) for level in range(len(LEVELS))]
         choices = []
         for outer, (tests, close) in enumerate(near):
-            choices.append((tests + OPEN_COST * close.mean(), outer, None))
+            second = first * close.mean() if alone else 1.0
+            choices.append((first * tests + open_cost * close.mean(), outer, None))
             choices += [
-                (tests + more + OPEN_COST * (close & ~touching).mean(), outer, inner)
+                (first * tests + second * more + open_cost * (close & ~touching).mean(), outer, inner)
                 for inner, (more, touching) in enumerate(hit)
             ]
         _, outer, inner = min(choices, key=lambda each: each[0])
         return outer, inner
 
-    def _below(self, a: int, b: int, side: str, level: int, margin: float) -> tuple[int, np.ndarray]:
-        """Number of tests, and where (N,) any of them is below the sum of radii."""
-        below, tests = np.zeros(DRAWN, bool), 0
-        middle_b, half_b, radius_b = self._capsules(b, side, level)
+    def _below(
+        self, a: int, b: int, side: str, level: int, margin: float, at: np.ndarray | None = None
+    ) -> tuple[int, np.ndarray]:
+        """Number of tests, and at which (N,) configurations any of them is below the sum of radii."""
+        at = np.arange(DRAWN) if at is None else at
+        below, tests = np.zeros(len(at), bool), 0
+        middle_b, half_b, radius_b = self._capsules(b, side, level, at)
         if self.pairs.solids[a].kind == "half_space":
             T = self.pairs.solids[a].T
             for k in range(len(radius_b)):
                 height = (middle_b[:, k] - T[:3, 3]) @ T[:3, 2]
                 below |= height - np.abs(half_b[:, k] @ T[:3, 2]) < radius_b[k] + margin
             return len(radius_b), below
-        middle_a, half_a, radius_a = self._capsules(a, side, level)
+        middle_a, half_a, radius_a = self._capsules(a, side, level, at)
         for i in range(len(radius_a)):
             for k in range(len(radius_b)):
                 apart = axes_distance(middle_a[:, i], half_a[:, i], middle_b[:, k], half_b[:, k])
@@ -211,7 +242,7 @@ class _Chosen:
                 tests += 1
         return tests, below
 
-    def _capsules(self, solid: int, side: str, level: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def _capsules(self, solid: int, side: str, level: int, at: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Middles and half axes (N, C, 3) in the base's frame, radii (C,)."""
         level = 0 if self.covers[solid].exact else level
         key = (solid, side, level)
@@ -222,7 +253,8 @@ class _Chosen:
             R = T[:, :3, :3]
             middle = np.einsum("nij,cj->nci", R, (capsules.a + capsules.b) / 2) + T[:, None, :3, 3]
             self._placed[key] = middle, np.einsum("nij,cj->nci", R, (capsules.b - capsules.a) / 2), capsules.radius
-        return self._placed[key]
+        middle, half, radius = self._placed[key]
+        return middle[at], half[at], radius
 
 
 def axes_distance(middle_a: np.ndarray, half_a: np.ndarray, middle_b: np.ndarray, half_b: np.ndarray) -> np.ndarray:
@@ -286,6 +318,8 @@ def _packed(
     covers: dict[int, Cover],
     levels: dict[int, tuple[int, int | None]],
     lookups: dict[int, Lookup],
+    many: Crowd | None,
+    named: dict[int, tuple[int, int | None]],
     epsilon: float,
 ) -> Program:
     rows = _Rows(pairs, covers)
@@ -293,8 +327,16 @@ def _packed(
     for pair in levels:
         if pairs.solids[pairs.pairs[pair][0]].kind == "half_space":
             plane_rows.append(_plane_tests(rows, pairs, pair, levels[pair], epsilon))
-        else:
+        elif pair not in named:
             pair_rows.append(_capsule_tests(rows, pairs, pair, levels[pair], epsilon))
+    beside: set[int] = set()
+    for pair, (outer, inner) in named.items():
+        for side, level in (("outer", outer), ("inner", inner)):
+            if level is not None:
+                beside.update(rows.of(int(pairs.pairs[pair][1]), side, level))
+    moving, alone = len(rows.capsules), len(pair_rows)
+    crowd_rows = _crowd(many, rows, pairs, named, epsilon)
+    pair_rows += [_capsule_tests(rows, pairs, pair, levels[pair], epsilon) for pair in named]
     tables = [table for table in known.tables if not (table.labels == FREE).all()]
     words, numbers, columns, table_rows = [], [], [], []
     for table in tables:
@@ -322,9 +364,18 @@ def _packed(
         sources=np.array(chain.joint_source, np.int32),
         lower=np.array(chain.lower_limits, np.float32),
         upper=np.array(chain.upper_limits, np.float32),
+        **crowd_rows,
+        moving=moving,
+        alone=alone,
         capsules=_f([numbers for _, numbers, *_ in rows.capsules], 6),
         capsule_frame=np.array([frame for frame, *_ in rows.capsules], np.int32),
-        capsule_axis=np.array([_axis_of_frame(frame, numbers[3:]) for frame, numbers, *_ in rows.capsules], np.int32),
+        capsule_axis=np.array(
+            [
+                -1 if number in beside else _axis_of_frame(frame, numbers[3:])
+                for number, (frame, numbers, *_) in enumerate(rows.capsules)
+            ],
+            np.int32,
+        ),
         pairs=_i(pair_rows, 4),
         planes=_i(plane_rows, 3),
         tests=_i(rows.tests, 2),
@@ -360,25 +411,67 @@ def _packed(
 def _capsule_tests(rows: _Rows, pairs: Pairs, pair: int, levels: tuple[int, int | None], epsilon: float) -> list[int]:
     """Tests of a pair, those of two balls first; its row."""
     a, b = (int(k) for k in pairs.pairs[pair])
-    margin, exact = pairs.margin(pair), rows.covers[a].exact and rows.covers[b].exact
+    exact = rows.covers[a].exact and rows.covers[b].exact
     found = []
     for side, level in (("outer", levels[0]), ("inner", None if exact else levels[1])):
         if level is None:
             continue
-        for i in rows.of(a, side, level):
-            for k in rows.of(b, side, level):
-                sum_, lengths = (
-                    rows.capsules[i][3] + rows.capsules[k][3] + margin,
-                    [rows.capsules[c][2] for c in (i, k)],
-                )
-                near = (sum_ + epsilon) ** 2 if side == "outer" else ABSENT
-                hit = max(sum_ - epsilon, 0.0) ** 2 if side == "inner" or exact else ABSENT
-                found.append((any(lengths), (i, k), [*lengths, near, hit]))
+        for ends, numbers in _between(rows, pairs, pair, side, level, epsilon):
+            found.append((any(numbers[:2]), ends, numbers))
     found.sort(key=lambda each: each[0])
     first, balls = len(rows.tests), sum(not each[0] for each in found)
     rows.tests += [each[1] for each in found]
     rows.test_numbers += [each[2] for each in found]
     return [pair, first, balls, len(found) - balls]
+
+
+def _between(
+    rows: _Rows, pairs: Pairs, pair: int, side: str, level: int, epsilon: float
+) -> list[tuple[tuple[int, int], list[float]]]:
+    """Tests of the capsules outside or inside of a pair."""
+    a, b = (int(k) for k in pairs.pairs[pair])
+    exact, found = rows.covers[a].exact and rows.covers[b].exact, []
+    for i in rows.of(a, side, level):
+        for k in rows.of(b, side, level):
+            sum_ = rows.capsules[i][3] + rows.capsules[k][3] + pairs.margin(pair)
+            near = (sum_ + epsilon) ** 2 if side == "outer" else ABSENT
+            hit = max(sum_ - epsilon, 0.0) ** 2 if side == "inner" or exact else ABSENT
+            found.append(((i, k), [rows.capsules[i][2], rows.capsules[k][2], near, hit]))
+    return found
+
+
+def _crowd(
+    many: Crowd | None, rows: _Rows, pairs: Pairs, named: dict[int, tuple[int, int | None]], epsilon: float
+) -> dict[str, np.ndarray]:
+    """The arrays of a crowd; its tests are added to the rows."""
+    if many is None:
+        no_rows = {f"crowd_{name}": _i([], width) for name, width in (("shape", 3), ("rows", 3), ("pairs", 5))}
+        no_words = {f"crowd_{name}": np.zeros((0, 1), np.uint32) for name in ("words", "sets")}
+        return {**no_rows, **no_words, "crowd_numbers": _f([], 4), "crowd_balls": _f([], 4)}
+    bits = {solid: bit for bit, solid in enumerate(many.solids)}
+    of_pairs = np.full((len(many.balls), 32 * many.sets.shape[1], 5), -1, np.int32)
+    places = {solid: row for row, solid in enumerate(many.balls)}
+    for pair, (outer, inner) in named.items():
+        a, b = (int(k) for k in pairs.pairs[pair])
+        exact, first = rows.covers[a].exact and rows.covers[b].exact, len(rows.tests)
+        tests = _between(rows, pairs, pair, "outer", outer, epsilon)
+        within = [] if exact or inner is None else _between(rows, pairs, pair, "inner", inner, epsilon)
+        rows.tests += [ends for ends, _ in tests + within]
+        rows.test_numbers += [numbers for _, numbers in tests + within]
+        of_inner = (first, len(tests)) if exact else (first + len(tests), len(within))
+        of_pairs[places[b], bits[a]] = pair, first, len(tests), *of_inner
+    counts = [len(own) for own in many.balls.values()]
+    frames = [pairs.solids[solid].joint - BASE for solid in many.balls]
+    firsts = np.cumsum([0, *counts])[:-1]
+    return {
+        "crowd_numbers": _f([*many.grid.origin, many.grid.cell], 4)[0],
+        "crowd_shape": np.array(many.grid.words.shape, np.int32),
+        "crowd_words": many.grid.words.ravel(),
+        "crowd_sets": many.sets,
+        "crowd_rows": _i(np.column_stack([frames, firsts, counts]), 3),
+        "crowd_balls": _f(np.concatenate(list(many.balls.values())), 4),
+        "crowd_pairs": of_pairs.reshape(-1, 5),
+    }
 
 
 def _plane_tests(rows: _Rows, pairs: Pairs, pair: int, levels: tuple[int, int | None], epsilon: float) -> list[int]:

@@ -7,6 +7,7 @@ from dataclasses import fields
 from functools import cache
 from io import BytesIO
 from pathlib import Path
+from typing import Any
 from zipfile import BadZipFile
 
 import mujoco
@@ -111,11 +112,13 @@ def _read(path: Path) -> Program | None:
     """The program of a file, which is used from now on; None where there is none, or it cannot be read."""
     try:
         with path.open("rb") as file, np.load(file, allow_pickle=False) as arrays:
-            values = {field.name: arrays[field.name] for field in fields(Program)}
+            values: dict[str, Any] = {field.name: arrays[field.name] for field in fields(Program)}
         os.utime(path)
     except (OSError, KeyError, ValueError, BadZipFile):
         return None
-    return Program(**values | {"epsilon": float(values["epsilon"]), "columns": int(values["columns"])})
+    values |= {name: int(values[name]) for name in ("columns", "moving", "alone")}
+    values["epsilon"] = float(values["epsilon"])
+    return Program(**values)
 
 
 def _write(path: Path, found: Program) -> None:

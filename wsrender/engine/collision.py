@@ -40,16 +40,19 @@ class Collisions:
         self.chain, self.distances = first.chain, first.distances
         real, n, joints, cuda = REAL[pipeline.precision], first.chain.n, len(first.chain.joint_source), device.is_cuda
         self.words = _words(len(pairs.pairs))
-        capacity = max(-(-len(program.capsules) // CAPACITY), 1) * CAPACITY
+        crowd = 0 if cuda else -(-len(program.crowd_balls) // CAPACITY) * CAPACITY
+        capacity = max(-(-_sizes(program, bool(crowd))[0] // CAPACITY), 1) * CAPACITY
         surfaces = bool(len(program.lookups))
         body = unrolled(program, self.words) if cuda and not surfaces else None
-        kernel = filter_kernel(real, n, joints, capacity, self.words, shape.method, shape.shared, cuda, body, surfaces)
+        kernel = filter_kernel(
+            real, n, joints, capacity, self.words, shape.method, shape.shared, cuda, body, surfaces, crowd
+        )
         self._filter = loaded(kernel, device)
         self._narrow = [
             narrow_kernel(real, n, joints, self.words, shape.method, cuda, exact, surfaces) for exact in (False, True)
         ]
         self._at_a_time = 1 if cuda else BATCH
-        self._programs = _on_device(program, pairs, self.words, device)
+        self._programs = _on_device(program, pairs, self.words, device, bool(crowd))
         self.labels = device_memory(chunk, wp.uint8, device)
         self._otherwise = device_memory(chunk, wp.uint8, device)
         # What is open after one pass goes into the next: two lists in turn.
@@ -117,8 +120,13 @@ def _words(pairs: int) -> int:
     return max(-(-pairs // 32), 1)
 
 
-def _on_device(program: Program, pairs: Pairs, words: int, device: wp.Device) -> tuple[Any, Any]:
-    """The program for float32, and for the narrow phase in float64."""
+def _sizes(program: Program, crowd: bool) -> tuple[int, int]:
+    """Numbers of capsules and pairs that the filter takes one by one."""
+    return (program.moving, program.alone) if crowd else (len(program.capsules), len(program.pairs))
+
+
+def _on_device(program: Program, pairs: Pairs, words: int, device: wp.Device, crowd: bool = False) -> tuple[Any, Any]:
+    """The program for float32, and for the narrow phase in float64; ``crowd``: whether the filter looks up in one."""
     first_reason = np.zeros(words * 32, bool)
     first_reason[: len(pairs.pairs)] = pairs.reason == 0
     values = {"first_reason": np.packbits(first_reason, bitorder="little").view(np.uint32)}
@@ -133,11 +141,9 @@ def _on_device(program: Program, pairs: Pairs, words: int, device: wp.Device) ->
         struct = program_type(real)()
         for name, value in [*arrays.items(), *((name, array(name, real)) for name in REAL_ARRAYS)]:
             setattr(struct, name, value)
-        struct.n_capsules, struct.n_pairs, struct.n_planes = (
-            len(program.capsules),
-            len(program.pairs),
-            len(program.planes),
-        )
+        struct.n_capsules, struct.n_pairs = _sizes(program, crowd)
+        struct.n_planes = len(program.planes)
+        struct.n_crowd_rows, struct.crowd_set_words = len(program.crowd_rows), program.crowd_sets.shape[1]
         struct.n_tables, struct.n_solid_pairs = len(program.tables), len(pairs.pairs)
         struct.root, struct.n_lookups = program.root, len(program.lookups)
         struct.columns, struct.epsilon = program.columns, epsilon
