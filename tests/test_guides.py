@@ -9,18 +9,42 @@ import pytest
 GUIDES = Path(__file__).parents[1] / "docs" / "guides"
 
 
-def test_an_arm_on_a_table_beside_another_arm(tmp_path):
-    """With few samples, and without the free volume."""
-    path = GUIDES / "two_arms_on_a_table.py"
-    spec = importlib.util.spec_from_file_location(path.stem, path)
+def guide_of(name):
+    """The guide's script as a module, and what the guide says."""
+    path = GUIDES / f"{name}.py"
+    spec = importlib.util.spec_from_file_location(name, path)
     guide = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(guide)
+    return guide, path.with_suffix(".md").read_text(encoding="utf-8")
+
+
+def test_an_arm_on_a_table_beside_another_arm(tmp_path):
+    """With few samples, and without the free volume."""
+    guide, text = guide_of("two_arms_on_a_table")
     result = guide.analysed(samples=60_000, tolerance=None, device="cpu")
     samples, pairs = result.document["samples"], result.document["rejections"]["pairs"]["colliding"]
-    (percent,) = re.findall(r"samples only (\d+) % are admitted", path.with_suffix(".md").read_text(encoding="utf-8"))
+    (percent,) = re.findall(r"samples only (\d+) % are admitted", text)
     assert 100 * samples["admitted"] / samples["drawn"] == pytest.approx(int(percent), abs=1)
     assert all(samples["rejected"][name] for name in ("environment", "self_collision"))
     shapes = {shape.partition("/")[0] for pair in pairs for shape in pair["shapes"]}
     assert {"table", "neighbour"} <= shapes
+    guide.drawn(result, tmp_path / "picture.png")
+    assert (tmp_path / "picture.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_where_to_put_an_arm(tmp_path):
+    """Without looking between the cells; the place that is told is at least as good as the best cell."""
+    guide, text = guide_of("where_to_put_an_arm")
+    result = guide.placed(refine=False, device="cpu")
+    found, best = result.document["placements"], result.document["best"]
+    (percent,) = re.findall(r"(\d+) % of the cells", text)
+    assert f"Of {found['count']:,} placements {found['serving_all']:,} serve all ten" in text
+    assert 100 * found["serving_all"] / found["count"] == pytest.approx(int(percent), abs=0.5)
+    assert found["alike"] == 12 and best["served"] == found["most_served"] == 10
+    x, y = (float(number.replace("−", "-")) for number in re.findall(r"[xy] = (−?[\d.]+) m", text))
+    value, of_cell = (float(number) for number in re.findall(r"(0\.3\d+)", text))
+    assert best["minimum_singular_value"] == pytest.approx(of_cell, abs=5e-4)
+    there = guide.placed(refine=False, device="cpu", over={"x_m": x, "y_m": y}).document["best"]
+    assert there["served"] == 10 and there["minimum_singular_value"] == pytest.approx(value, abs=1e-3)
     guide.drawn(result, tmp_path / "picture.png")
     assert (tmp_path / "picture.png").read_bytes().startswith(b"\x89PNG")
