@@ -34,7 +34,8 @@ def searched(near_m, solutions):
         chain=chain, whole=chain, seed=0, closed=None, tries=tries, features=lambda position, orientation: position,
         features_at=lambda q: np.tile([near_m, 0.0, 0.0], (len(q), 1)), solve=lambda *_: nothing,
     )  # fmt: skip
-    admission = SimpleNamespace(names=("some",), rejected=lambda q: np.ones(len(q), np.int8))
+    admission = SimpleNamespace(names=("some",), rejected=lambda q, targets: np.ones(len(q), np.int8))
+    admission.among = lambda batch: admission
     search = AdmissibleSearch(solver, admission)
     search.__dict__ |= {"samples": (np.zeros((64, 1)), np.zeros((64, 3))), "_further": np.zeros((128, 1))}
     return search.decide(np.zeros((1, 3)), np.zeros((1, 3))).label[0], len(asked)
