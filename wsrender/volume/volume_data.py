@@ -10,6 +10,8 @@ from wsrender.volume.voxels import Values, Voxels
 
 KEPT = 1 << 26  # numbers in all arrays of a volume that are kept once they are made
 
+VOXEL_LABELS = "reachability"  # what the volume of voxels by whether their centres are reached is called
+
 
 class VolumeData:
     """A block of the world lattice, cropped to the occupied voxels.

@@ -34,7 +34,7 @@ from wsrender.robot import Robot
 from wsrender.robot.constraints import samples_entry
 from wsrender.robot.rejections import check_admitted, colliding_pairs, first_rejected, lost_voxels, moved_means
 from wsrender.volume.distribution_map import DistributionMap
-from wsrender.volume.volume_data import VolumeData
+from wsrender.volume.volume_data import VOXEL_LABELS, VolumeData
 
 PICTURE_SAMPLES = 100_000
 
@@ -104,7 +104,7 @@ def workspace_draft(job: WorkspaceJob, robot: Robot, found: WorkspacePartial, th
         volume=volume,
         skeleton=_shown_arms(pipeline, robot, sample),
         meshes=meshes,
-        volumes={name: each for name, each in {"reachability": labels, "admission": admission}.items() if each},
+        volumes={name: each for name, each in {VOXEL_LABELS: labels, "admission": admission}.items() if each},
     )
 
 

@@ -23,7 +23,7 @@ from wsrender.results.drawing.warned import Kind, heading
 from wsrender.results.presentation import Picture, all_pictures, picture_of, pictures_of
 from wsrender.volume.distribution_map import DistributionMap
 from wsrender.volume.table import Table
-from wsrender.volume.volume_data import VolumeData
+from wsrender.volume.volume_data import VOXEL_LABELS, VolumeData
 
 if TYPE_CHECKING:
     import trimesh
@@ -125,7 +125,7 @@ class ResultPlots:
 
     def labels(self, at: tuple[float | None, float | None, float | None] = (None, None, None)) -> Figure:
         """Planes of the voxels by whether their centres are reached, and under constraints what blocks them."""
-        return label_planes(self.volumes["reachability"], at=at, title=self.heading("volume"))
+        return label_planes(self.volumes[VOXEL_LABELS], at=at, title=self.heading("volume"))
 
     def share(self, at: tuple[float | None, float | None, float | None] = (None, None, None)) -> Figure:
         """Planes of the share of samples in each voxel that constraints admit."""
