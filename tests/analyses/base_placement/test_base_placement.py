@@ -236,6 +236,10 @@ def test_a_map_says_where_its_cells_are(tmp_path):
         assert file["served"].shape == (8, 2) and (file["served"] == served.max(axis=-1)).all()
         assert '"origin": [-1.0, -0.5]' in str(file["wsrender"])
     assert (tmp_path / "out" / "plots" / "placements.png").exists()
+    figure = result.plot.placements()
+    figure.draw_without_rendering()
+    (legend,), (axes, _) = figure.legends, figure.axes
+    assert len(legend.legend_handles) == 2 and not legend.get_window_extent().overlaps(axes.get_tightbbox())
 
 
 def test_no_placement_serves_a_target():

@@ -14,7 +14,7 @@ from wsrender.volume.table import Table
 _NONE = "#f2f2f0"  # cells that serve nothing
 _MARK = "#d55e00"
 _MOST_COLORS = 12  # whole numbers that have a colour each
-_LONGEST, _SHORTEST, _BAR = 4.4, 1.6, 1.3  # edges of the map, and room beside it [in]
+_LONGEST, _SHORTEST, _BAR, _LEGEND = 4.4, 1.6, 1.3, 0.3  # edges of the map, room beside and below it [in]
 
 
 @paper_style()
@@ -39,7 +39,8 @@ def placement_map(
     ends = [(low, low + size * step) for low, size, step in zip(grid.origin, grid.shape, grid.step, strict=True)]
     same = cells.units[grid.axes[0]] == cells.units[grid.axes[1]]
     width, height = _size(ends, same)
-    figure = new_figure(width + _BAR + 0.7, height + 0.6, title)
+    below = _LEGEND if best or targets is not None else 0.0
+    figure = new_figure(width + _BAR + 0.7, height + 0.6 + below, title)
     axes = figure.subplots()
     top = max(float(values.max()), 1.0)
     norm = BoundaryNorm(np.arange(0.5, top + 1), 256) if name == "served" and top <= _MOST_COLORS else None
@@ -59,18 +60,20 @@ def placement_map(
         getattr(axes, f"set_{axis}label")(_label(column, cells))
     axes.set_xlim(*ends[0])
     axes.set_ylim(*ends[1])
+    if below:
+        _legend(figure)
     return figure
 
 
 def _curve(cells: Table, name: str, best: tuple[float, ...] | None, title: Heading | str) -> Figure:
     assert cells.grid
     (column,) = cells.grid.axes
-    figure = new_figure(5.6, 2.6, title)
+    figure = new_figure(5.6, 2.6 + (_LEGEND if best else 0.0), title)
     axes = figure.subplots()
     axes.step(cells[column], cells[name], where="mid", color=color_map()(0.3), lw=1.6)
     if best:
         axes.axvline(best[0], color=_MARK, lw=1.2, label="best placement")
-        axes.legend(frameon=False, fontsize=8)
+        _legend(figure)
     axes.set_xlabel(_label(column, cells))
     axes.set_ylabel("Targets served" if name == "served" else "Weight of the targets served")
     axes.set_ylim(bottom=0)
@@ -97,8 +100,11 @@ def _mark(axes: Axes, best: tuple[float, ...] | None, targets: np.ndarray | None
         axes.plot(*targets.T, ls="", marker="o", ms=4.5, mfc="none", mec=INK, mew=1.0, label="targets", zorder=3)
     if best:
         axes.plot(*best, ls="", marker="*", ms=13, mfc=_MARK, mec="white", mew=0.9, label="best placement", zorder=4)
-    if best or targets is not None:
-        axes.legend(loc="upper left", fontsize=8, framealpha=0.85)
+
+
+def _legend(figure: Figure) -> None:
+    """Below the axes, where it hides nothing."""
+    figure.legend(loc="outside lower center", ncols=2, frameon=False, fontsize=8)
 
 
 def placements(plot: ResultPlots) -> Figure:
