@@ -492,7 +492,7 @@ def robot_comparison(
 @runs("base_placement")
 def base_placement(
     robot: RobotLike,
-    points_m: Sequence[Sequence[float] | np.ndarray] | np.ndarray,
+    points_m: Sequence[Sequence[float] | np.ndarray] | np.ndarray | None = None,
     quats_wxyz: Sequence[Sequence[float] | np.ndarray] | np.ndarray | None = None,
     *,
     base: str | None = None,
@@ -506,6 +506,7 @@ def base_placement(
     seed: int = 0,
     precision: Literal["float32", "float64"] = "float64",
     device: str = "auto",
+    targets: str | Sequence[Target | Mapping[str, Any]] | TargetTable | Mapping[str, Any] | None = None,
     weights: Sequence[float] | np.ndarray | None = None,
     over: PlacementSpace | Mapping[str, Any],
     mounting: Literal["floor", "wall", "ceiling"] = "floor",
@@ -526,7 +527,7 @@ def base_placement(
 
     ``robot``: A Robot, what `load_robot` takes, an object with limits and forward_kinematics, or its part of a job
         document.
-    ``points_m``: Positions of the targets in the world frame, rows of x, y, z [m].
+    ``points_m``: Positions of the targets in the world frame, rows of x, y, z [m]; None: targets are given.
     ``quats_wxyz``: Orientations of the targets, a quaternion w, x, y, z for each point; None: any orientation will do.
     ``base``: Body, link or site at which the chain starts; None: the world.
     ``tip``: Site, body or link at the end of the chain; None: the site "tool", or else the only end there is.
@@ -540,7 +541,9 @@ def base_placement(
     ``seed``: Seed of the starts.
     ``precision``: Floating-point type of the kernels.
     ``device``: Where the kernels run: "auto" (a GPU if there is one), "cpu", "cuda" or "cuda:N".
-    ``weights``: What each target counts; None: 1 each.
+    ``targets``: Instead of points_m and quats_wxyz: targets with names, weights, free axes and tolerances of their own,
+        one by one, or as a table in a file, {"path": "holes.csv"}.
+    ``weights``: What each of points_m counts; None: 1 each.
     ``over``: Where the base may stand. ``robot.placement`` is how it stands in the frame that is placed.
     ``mounting``: How the base is mounted in the frame that is placed, before ``robot.placement``: its z is that frame's
         z on the floor, its x on a wall, its -z under a ceiling.

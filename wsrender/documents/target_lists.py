@@ -31,10 +31,6 @@ def _is_none(value: Any) -> bool:
     return value is None
 
 
-def _is_empty(value: Any) -> bool:
-    return not value
-
-
 class Target(Document):
     """A point, or a pose of the tip, in the world."""
 
@@ -125,11 +121,13 @@ class Criterion(Document):
     """Room to either limit that all slides keep at once [m]."""
 
 
-Criteria = Annotated[tuple[Criterion, ...], Field(max_length=16), BeforeValidator(sequence)]
+Criteria = Annotated[
+    tuple[Criterion, ...], Field(max_length=16, exclude_if=lambda value: not value), BeforeValidator(sequence)
+]
 
 
 class ListedTargets(Targets):
-    """Targets as a job has them that takes lists and tables too, with what is asked of them."""
+    """Targets as a job has them that takes lists and tables too."""
 
     long_fields: ClassVar[tuple[str, ...]] = (*Targets.long_fields, "targets")
 
@@ -138,8 +136,6 @@ class ListedTargets(Targets):
     targets: Annotated[ListOrTable | None, Field(exclude_if=_is_none)] = None
     """Instead of points_m and quats_wxyz: targets with names, weights, free axes and tolerances of their own, one by
     one, or as a table in a file, {"path": "holes.csv"}."""
-    criteria: Annotated[Criteria, Field(exclude_if=_is_empty)] = ()
-    """What the targets must fulfil for the result to pass."""
 
     def conflicts(self) -> Iterator[tuple[str, str]]:
         """(field, message) of every pair of fields that do not go together."""

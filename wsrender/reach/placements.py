@@ -163,7 +163,7 @@ class Placements:
             return found, q
         admission = replace(self.admission, values=self.base.configurations(coordinates[place]))
         whole = isinstance(self.solver.closed, ClosedLabels)
-        if orientation is not None and whole and not self._turns_matter:
+        if orientation is not None and self.solver.kind == "pose" and whole and not self._turns_matter:
             for first in range(0, len(at), VERIFIED):
                 part = slice(first, first + VERIFIED)
                 of, q[part] = self._of_postures(admission.among(part), position[part], orientation[part])
@@ -180,10 +180,13 @@ class Placements:
         return found, q
 
     def _seen_from(self, at: np.ndarray, bases: np.ndarray) -> tuple[np.ndarray, np.ndarray | None]:
-        """Positions (N, 3) and, of poses, rotations (N, 3, 3) of pairs by number (N,), seen from the solver's."""
+        """Positions (N, 3) and orientations, as `InverseSolver.solve` has them, of pairs by number (N,).
+
+        Seen from the solver's.
+        """
         place, target = np.divmod(at, len(self._targets))
         T = self.solver.whole.T_world_base @ np.linalg.inv(bases[place]) @ self._targets[target]
-        return T[:, :3, 3], T[:, :3, :3] if self.solver.kind == "pose" else None
+        return T[:, :3, 3], {"position": None, "axis": T[:, :3, 2], "pose": T[:, :3, :3]}[self.solver.kind]
 
     def _of_postures(
         self, admission: PlacedAdmission, position: np.ndarray, orientation: np.ndarray
@@ -222,3 +225,37 @@ class Placements:
         search = AdmissibleSearch(self.solver, self.admission)
         search.prepare()
         return search
+
+
+@dataclass(frozen=True, eq=False)
+class PlacementsOfKinds:
+    """As `Placements`, of K targets of several kinds: each of ``parts`` decides those ``at`` (M,) their numbers."""
+
+    parts: Sequence[Placements]
+    at: Sequence[np.ndarray]
+
+    @property
+    def closed(self) -> bool:
+        """Whether closed forms know all postures of all targets."""
+        return all(isinstance(part.solver.closed, ClosedLabels) for part in self.parts)
+
+    def decide(self, coordinates: np.ndarray, T_world_frame: np.ndarray) -> Decided:
+        """As `Placements.decide`."""
+        return self._joined([part.decide(coordinates, T_world_frame) for part in self.parts])
+
+    def configurations(self, coordinates: np.ndarray, T_world_frame: np.ndarray) -> tuple[Decided, np.ndarray]:
+        """As `Placements.configurations`."""
+        found = [part.configurations(coordinates, T_world_frame) for part in self.parts]
+        return self._joined([of for of, _ in found]), np.concatenate([q for _, q in found])[self._back]
+
+    def _joined(self, found: list[Decided]) -> Decided:
+        if len(found) == 1:
+            return found[0]
+        names = ("label", "reason", "value")
+        return Decided(
+            *(np.concatenate([getattr(of, name) for of in found], axis=-1)[..., self._back] for name in names)
+        )
+
+    @cached_property
+    def _back(self) -> np.ndarray:
+        return np.argsort(np.concatenate(self.at), kind="stable")

@@ -2,7 +2,7 @@
 
 import csv
 import hashlib
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from io import BytesIO, StringIO
 from itertools import islice
@@ -24,6 +24,7 @@ from wsrender.documents.target_lists import (
     TEXTS,
     TOLERANCES,
     UNIT,
+    ListedTargets,
     Target,
     TargetTable,
 )
@@ -70,6 +71,30 @@ class TargetList:
         """Which say an orientation, (N,) bool."""
         return np.isfinite(self.quat_wxyz[:, 0])
 
+    def columns(self, listed: bool) -> Columns:
+        """What a table of results says they are; names, weights and free axes only of ``listed`` ones."""
+        found = {"name": self.name, "weight": self.weight} if listed else {}
+        found |= {"position": self.position} | ({"quat_wxyz": self.quat_wxyz} if self.oriented.any() else {})
+        return found | ({"free_axis": self.free_axis} if (self.free_axis != "").any() else {})
+
+    @property
+    def provenance(self) -> dict[str, str]:
+        """The file that says them."""
+        return {} if self.sha256 is None else {"targets_sha256": self.sha256}
+
+
+def targets_of_job(job: ListedTargets, center: Callable[[np.ndarray], np.ndarray], reach: float) -> TargetList:
+    """The targets of a job; ``center``: of positions (N, 3) where an arm that may reach them stands.
+
+    Raises InputError for a table that cannot be read, or that looks like millimetres.
+    """
+    if job.targets is None:
+        return listed_targets(np.array(job.points_m), None if job.quats_wxyz is None else np.array(job.quats_wxyz))
+    found = target_list(job.targets)
+    if isinstance(job.targets, TargetTable):
+        check_unit(found, job.targets, center(found.position), reach)
+    return found
+
 
 def target_list(targets: tuple[Target, ...] | TargetTable, field: str = "targets") -> TargetList:
     """The targets of a job document. Raises InputError, naming row and column, for a file that says something else."""
@@ -92,7 +117,10 @@ def listed_targets(position: np.ndarray, quat_wxyz: np.ndarray | None = None) ->
 
 
 def check_unit(found: TargetList, table: TargetTable, center: np.ndarray, reach: float) -> None:
-    """InputError where half of the targets are so far from an arm that they are probably millimetres."""
+    """InputError where half of the targets are so far from an arm that they are probably millimetres.
+
+    ``center``: (3,), or (N, 3) where it may stand elsewhere for each.
+    """
     if table.length_unit_m is not None or not np.isfinite(reach):
         return
     distance = float(np.median(np.linalg.norm(found.position - center, axis=1)))

@@ -131,27 +131,63 @@ def reachable_targets(
 
     A label depends on its target alone, with the other ``options`` of `reachable`. Raises InputError.
     """
+    parts, done, kinds = [], 0, kinds_of(chain, targets, tolerances)
+    for each in kinds:
+        tell = None if progress is None else lambda decided, before=done: progress(before + decided)
+        asked = targets.position[each.at], each.orientation
+        parts.append(_decided(each.chain, *asked, each.tolerances, held=chain, progress=tell, **options))
+        done += len(each.at)
+    if len(parts) == 1:
+        return parts[0]
+    back = np.argsort(np.concatenate([each.at for each in kinds]), kind="stable")
+    columns: dict[str, Any] = {name: [getattr(part, name) for part in parts] for name in vars(parts[0])}
+    known = {name: np.concatenate(values)[back] for name, values in columns.items() if values[0] is not None}
+    return Reachability(**known)
+
+
+@dataclass(frozen=True, eq=False)
+class Kind:
+    """Targets of a list that ask for the same, which are decided together.
+
+    ``at`` (M,): which; ``name``: "position", "axis" or "pose", as `InverseSolver` has them; ``chain``: with the axis
+    about which the tip may turn as its z; ``T_world_tip`` (M, 4, 4) of that tip; ``tolerances`` [m, rad].
+    """
+
+    at: np.ndarray
+    name: str
+    chain: Kinematics
+    T_world_tip: np.ndarray
+    tolerances: tuple[float, float]
+
+    @property
+    def orientation(self) -> np.ndarray | None:
+        """What orientation they ask for, as `InverseSolver.solve` has it."""
+        R = self.T_world_tip[:, :3, :3]
+        return {"position": None, "axis": R[:, :, 2], "pose": R}[self.name]
+
+
+def kinds_of(chain: Kinematics, targets: TargetList, tolerances: tuple[float, float]) -> list[Kind]:
+    """Targets by what they ask for; ``tolerances`` [m, rad] of those without their own. Raises InputError."""
     own = np.where(np.isnan(targets.tolerances), tolerances, targets.tolerances)
     rows = np.column_stack([_asked(targets), own])
     kinds = rows[:1] if (rows == rows[0]).all() else np.unique(rows, axis=0)
     if len(kinds) > MOST_KINDS:
         message = f"have {len(kinds)} combinations of tolerances and free axes; allowed: {MOST_KINDS}"
         raise InputError("targets", message)
-    parts, order = [], [np.flatnonzero((rows == kind).all(axis=1)) for kind in kinds]
-    for (asks, *tolerance), at in zip(kinds.tolist(), order, strict=True):
-        turned, axes, done = chain, None, sum(map(len, order[: len(parts)]))
-        if asks != POSITION:
-            axes = Rotation.from_quat(targets.quat_wxyz[at], scalar_first=True).as_matrix()
-            if asks != POSE:
-                turned, axes = _with_axis(chain, int(asks)), axes[:, :, int(asks)]
-        tell = None if progress is None else lambda decided, before=done: progress(before + decided)
-        parts.append(_decided(turned, targets.position[at], axes, tolerance, held=chain, progress=tell, **options))
-    if len(parts) == 1:
-        return parts[0]
-    back = np.argsort(np.concatenate(order), kind="stable")
-    columns: dict[str, Any] = {name: [getattr(part, name) for part in parts] for name in vars(parts[0])}
-    known = {name: np.concatenate(values)[back] for name, values in columns.items() if values[0] is not None}
-    return Reachability(**known)
+    return [_kind(chain, targets, int(asks), np.flatnonzero((rows == (asks, *tolerance)).all(axis=1)), tolerance)
+            for asks, *tolerance in kinds.tolist()]  # fmt: skip
+
+
+def _kind(chain: Kinematics, targets: TargetList, asks: int, at: np.ndarray, tolerance: list[float]) -> Kind:
+    T, accuracy = np.tile(np.eye(4), (len(at), 1, 1)), (tolerance[0], tolerance[1])
+    T[:, :3, 3] = targets.position[at]
+    if asks == POSITION:
+        return Kind(at, "position", chain, T, accuracy)
+    T[:, :3, :3] = Rotation.from_quat(targets.quat_wxyz[at], scalar_first=True).as_matrix()
+    if asks == POSE:
+        return Kind(at, "pose", chain, T, accuracy)
+    T[:, :3, :3] = np.roll(T[:, :3, :3], 2 - asks, axis=2)
+    return Kind(at, "axis", _with_axis(chain, asks), T, accuracy)
 
 
 def _with_axis(chain: Kinematics, axis: int) -> Kinematics:

@@ -30,6 +30,21 @@ def test_a_table_of_targets_travels(client, tmp_path):
     assert np.array_equal(result.tables["targets"]["q_joint1"], local.tables["targets"]["q_joint1"])
 
 
+def test_a_table_travels_to_placements(client, tmp_path):
+    """Free axes, names and hash too, in as many shards as the server makes."""
+    table = tmp_path / "holes.csv"
+    header = "name,x_m,y_m,z_m,roll_deg,pitch_deg,yaw_deg,free_axis,weight"
+    table.write_text(f"{header}\na,0.4,0.2,0.3,180,0,0,z,3\nb,2,0,0.2,180,0,0,,1\n")
+    document = {"analysis": "base_placement", "robot": "ur5e", "targets": {"path": str(table)}, "device": "cpu"}
+    document |= {"over": {"x_m": [-1, 1, 0.1], "y_m": [-1, 1, 0.1]}, "refine": False}
+    local, result = ws.execute(document), client.submit(document).wait(timeout=PATIENCE_S).result()
+    assert result.document["best"] == local.document["best"] and result.document["best"]["weight"] == 3
+    sha256 = hashlib.sha256(table.read_bytes()).hexdigest()
+    assert result.document["provenance"]["targets_sha256"] == sha256
+    assert result.tables["targets"]["name"].tolist() == ["a", "b"]
+    assert np.array_equal(result.tables["placements"]["served_bits"], local.tables["placements"]["served_bits"])
+
+
 def test_files_of_what_stands_around_travel(client, tmp_path):
     scene, other, mesh = tmp_path / "cell.xml", tmp_path / "other.xml", tmp_path / "part.stl"
     bowl, ground = tmp_path / "bowl.obj", tmp_path / "ground.npy"

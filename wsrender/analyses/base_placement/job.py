@@ -11,12 +11,12 @@ from wsrender.documents.format import JobDocument
 from wsrender.documents.options import IndexOptions
 from wsrender.documents.placements import ANGLES, Mounting, PlacementSpace
 from wsrender.documents.quantities import Name, PositiveNumber
-from wsrender.documents.targets import Targets
+from wsrender.documents.target_lists import ListedTargets
 
 MOST_PLACEMENTS = 50_000_000
 
 
-class BasePlacementJob(Targets, Constrained, Arm, JobDocument):
+class BasePlacementJob(ListedTargets, Constrained, Arm, JobDocument):
     """Where the base of a robot stands best: which targets it serves from every placement of a space.
 
     A target is served from a placement where the robot reaches it, under constraints with a configuration that they
@@ -25,12 +25,12 @@ class BasePlacementJob(Targets, Constrained, Arm, JobDocument):
     constraints and environment stand in the world.
     """
 
-    long_fields: ClassVar[tuple[str, ...]] = (*Targets.long_fields, "weights")
+    long_fields: ClassVar[tuple[str, ...]] = (*ListedTargets.long_fields, "weights")
 
     analysis: Literal["base_placement"] = "base_placement"
     """Name of the analysis."""
     weights: Annotated[tuple[PositiveNumber, ...], Field(min_length=1)] | None = None
-    """What each target counts; null: 1 each."""
+    """What each of points_m counts; null: 1 each."""
     over: PlacementSpace
     """Where the base may stand. ``robot.placement`` is how it stands in the frame that is placed."""
     mounting: Mounting = "floor"
@@ -49,7 +49,9 @@ class BasePlacementJob(Targets, Constrained, Arm, JobDocument):
     def conflicts(self) -> Iterator[tuple[str, str]]:
         """(field, message) of every pair of fields that do not go together."""
         yield from super().conflicts()
-        if self.weights is not None and len(self.weights) != len(self.points_m):
+        if self.weights is not None and self.points_m is None:
+            yield "weights", 'must not be given without "points_m": targets say their own weights'
+        elif self.weights is not None and self.points_m and len(self.weights) != len(self.points_m):
             yield "weights", f"must have as many numbers as points_m has rows, {len(self.points_m)}"
         if self.index_options and self.index is None:
             yield "index_options", 'must not be given without "index"'

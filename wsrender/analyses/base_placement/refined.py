@@ -5,16 +5,18 @@ from itertools import product
 import numpy as np
 
 from wsrender.analyses.base_placement.job import BasePlacementJob
-from wsrender.analyses.base_placement.result import IN_DEGREES, least_value, told_apart, weights_of
+from wsrender.analyses.base_placement.result import IN_DEGREES, least_value, told_apart
 from wsrender.documents.placements import ANGLES, COORDINATES, TURN, placed
 from wsrender.reach.evidence import REACHABLE
-from wsrender.reach.placements import Placements
+from wsrender.reach.placements import PlacementsOfKinds
 
 HALVINGS, STEPS = 7, 6  # of the steps of the ranges, and moves with each
 
 
-def refined(job: BasePlacementJob, search: Placements, start: np.ndarray) -> np.ndarray:
+def refined(job: BasePlacementJob, weights: np.ndarray, search: PlacementsOfKinds, start: np.ndarray) -> np.ndarray:
     """Coordinates (6,) [m and °] within the ranges that serve no less than those at the ``start``, by no worse a score.
+
+    ``weights`` (K,): what targets count.
 
     A pattern search (Hooke and Jeeves 1961): of all neighbours at the step's distance, diagonal ones too, the best, or
     half the step where none is better.
@@ -29,7 +31,7 @@ def refined(job: BasePlacementJob, search: Placements, start: np.ndarray) -> np.
     for _ in range(HALVINGS):
         for _ in range(STEPS):
             around = _within(job, place + pattern * step)
-            weight, score = _measured(job, search, around)
+            weight, score = _measured(weights, search, around)
             best = np.lexsort((-np.arange(len(around)), score, weight))[-1]
             if best == 0:
                 break
@@ -38,10 +40,10 @@ def refined(job: BasePlacementJob, search: Placements, start: np.ndarray) -> np.
     return place
 
 
-def _measured(job: BasePlacementJob, search: Placements, coordinates: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _measured(weights: np.ndarray, search: PlacementsOfKinds, coordinates: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Weight and score of placements (N, 6)."""
     found = search.decide(coordinates * IN_DEGREES, placed(coordinates))
-    return (found.label == REACHABLE) @ weights_of(job), told_apart(least_value(found.value))
+    return (found.label == REACHABLE) @ weights, told_apart(least_value(found.value))
 
 
 def _within(job: BasePlacementJob, coordinates: np.ndarray) -> np.ndarray:

@@ -23,28 +23,35 @@ BLOCK = 1 << 18  # placements whose bits are told apart at a time
 class PlacementMap:
     """The placements of a job by number, with the ``bits`` (P, B) uint8 of what is known of each target, by name.
 
-    ``score``: the index by which those are told apart that serve as much, of values ``scores`` (P,); None: none.
+    ``weights`` (K,): what targets count; ``score``: the index by which those are told apart that serve as much, of
+    values ``scores`` (P,); None: none.
     """
 
     def __init__(
-        self, job: BasePlacementJob, bits: dict[str, np.ndarray], score: Score | None, scores: np.ndarray | None
+        self,
+        job: BasePlacementJob,
+        weights: np.ndarray,
+        bits: dict[str, np.ndarray],
+        score: Score | None,
+        scores: np.ndarray | None,
     ):
-        self.job, self.over, self.bits, self.score, self.scores = job, job.over, bits, score, scores
+        self.over, self.weights, self.bits, self.score, self.scores = job.over, weights, bits, score, scores
+        self.weighted = job.weights is not None or bool((weights != 1).any())
         self.served = np.bitwise_count(bits["served"]).sum(axis=1, dtype=np.int32)
 
     @cached_property
     def weight(self) -> np.ndarray:
         """Of the targets that each placement serves, (P,)."""
-        if self.job.weights is None:
+        if not self.weighted:
             return self.served.astype(np.float64)
-        weights, bits = weights_of(self.job), self.bits["served"]
+        weights, bits = self.weights, self.bits["served"]
         blocks = (bits[k : k + BLOCK] for k in range(0, len(bits), BLOCK))
         return np.concatenate([_unpacked(block, len(weights)) @ weights for block in blocks])
 
     @property
     def entry(self) -> dict[str, Any]:
         """How many there are, and how many pairs of a placement and a target have which label and reason."""
-        K = len(self.job.points_m)
+        K = len(self.weights)
         totals = {name: int(np.bitwise_count(bits).sum(dtype=np.int64)) for name, bits in self.bits.items()}
         blocked = {name.removeprefix("blocked_"): n for name, n in totals.items() if name.startswith("blocked_")}
         decided = totals["served"] + totals["undecided"] + sum(blocked.values())
@@ -74,7 +81,7 @@ class PlacementMap:
 
     def _values(self, numbers: Any) -> dict[str, np.ndarray]:
         """What placements serve, by number."""
-        found = {"served": self.served[numbers]} | ({"weight": self.weight[numbers]} if self.job.weights else {})
+        found = {"served": self.served[numbers]} | ({"weight": self.weight[numbers]} if self.weighted else {})
         if self.score and self.scores is not None:
             found[self.score.name] = self.score.sign * self.scores[numbers]
         return found
@@ -95,7 +102,7 @@ class PlacementMap:
         coordinates = self.over.coordinates(each)
         columns = {name: coordinates[:, COORDINATES.index(name)] for name in self.over.ranges}
         columns |= self._values(each)
-        columns["serving_all"] = (self.served.reshape(*shape, -1) == len(self.job.points_m)).sum(axis=-1).ravel()
+        columns["serving_all"] = (self.served.reshape(*shape, -1) == len(self.weights)).sum(axis=-1).ravel()
         steps = [self.over.ranges[name][2] for name in axes]
         origin = [self.over.values(name)[0] - step / 2 for name, step in zip(axes, steps, strict=True)]
         grid = Grid(tuple(axes), tuple(map(float, origin)), tuple(steps), tuple(shape))
@@ -135,7 +142,7 @@ class PlacementMap:
         """Coordinates (6,) [m and °] of any placement, and what it serves."""
         served = found.label == REACHABLE
         entry = dict(zip(COORDINATES, coordinates.tolist(), strict=True)) | {"served": int(served.sum())}
-        entry["weight"] = float(weights_of(self.job)[served].sum())
+        entry["weight"] = float(self.weights[served].sum())
         return entry | ({self.score.name: float(self.score.sign * np.nanmin(found.value))} if self.score else {})
 
     def entry_of(self, number: int) -> dict[str, Any]:
@@ -154,11 +161,6 @@ def told_apart(scores: np.ndarray) -> np.ndarray:
     """Scores (N,) that only differ where more than rounding does, relative to the largest; NaN is the least."""
     size = np.abs(scores[np.isfinite(scores)]).max(initial=0.0) or 1.0
     return np.nan_to_num(np.round(scores / size, DIGITS), nan=-np.inf)
-
-
-def weights_of(job: BasePlacementJob) -> np.ndarray:
-    """What each target counts, (K,)."""
-    return np.array(job.weights or (1.0,) * len(job.points_m))
 
 
 def _unpacked(bits: np.ndarray, count: int) -> np.ndarray:

@@ -34,11 +34,11 @@ from wsrender.errors import InputError
 from wsrender.pipeline.constraints.collision import CollisionConstraint
 from wsrender.pipeline.constraints.constraint import Constraint
 from wsrender.reach.admissible_search import BLOCKED
-from wsrender.reach.closed_labels import ClosedLabels
 from wsrender.reach.evidence import REACHABLE, UNDECIDED
 from wsrender.reach.inverse_solver import InverseSolver, closed_form_of
-from wsrender.reach.placements import Decided, PlacedAdmission, Placements
-from wsrender.reach.targets import NAMES, check_tolerance, evidence_of, rotations
+from wsrender.reach.placements import Decided, PlacedAdmission, Placements, PlacementsOfKinds
+from wsrender.reach.target_list import TargetList, targets_of_job
+from wsrender.reach.targets import NAMES, Kind, check_tolerance, evidence_of_targets, kinds_of
 from wsrender.reach.tolerance import largest_ball
 from wsrender.robot import Robot
 from wsrender.robot.constraints import constraints_for
@@ -72,15 +72,29 @@ class BasePlacementAnalysis(Analysis):
 
     def prepare(self, device: str, target: str) -> Settled:
         """Raises InputError for a tolerance below what is computed, and for constraints that cannot be asked."""
-        check_tolerance(self.robot.chain, self.job.position_tolerance_m, self.job.precision)
-        _ = self.constraints, self.score
-        return Settled(
-            device, target, ((0, self.job.over.count * self._targets),), shard_unit=self._targets * self._alike
-        )
+        for kind in self._kinds:
+            check_tolerance(self.robot.chain, kind.tolerances[0], self.job.precision)
+        _, K = (self.constraints, self.score), len(self.targets)
+        return Settled(device, target, ((0, self.job.over.count * K),), shard_unit=K * self._alike)
 
-    @property
-    def _targets(self) -> int:
-        return len(self.job.points_m)
+    @cached_property
+    def targets(self) -> TargetList:
+        """The targets, with their weights; raises InputError for a table that cannot be read."""
+        chain, (lower, upper) = self.robot.chain, self.job.over.limits
+        aside = np.linalg.norm(chain.center)
+        found = targets_of_job(
+            self.job, lambda position: np.clip(position, lower[:3] - aside, upper[:3] + aside), chain.reach
+        )
+        return found if self.job.weights is None else replace(found, weight=np.array(self.job.weights))
+
+    @cached_property
+    def _kinds(self) -> list[Kind]:
+        """Targets by what they ask for, of the robot where it stands."""
+        return self._kinds_of(self.targets)
+
+    def _kinds_of(self, targets: TargetList) -> list[Kind]:
+        tolerances = self.job.position_tolerance_m, self.job.angle_tolerance_rad
+        return kinds_of(self.standing.chain, targets, tolerances)
 
     @cached_property
     def base(self) -> MovingBase:
@@ -169,22 +183,23 @@ class BasePlacementAnalysis(Analysis):
     @property
     def _rate(self) -> float:
         """Pairs a second of one core, about."""
-        form = closed_form_of(self.robot.chain, self._kind)
+        rates = [self._rate_of(kind) for kind in self._kinds]
+        seconds = sum(len(kind.at) / rate for kind, rate in zip(self._kinds, rates, strict=True))
+        return rates[0] if len(rates) == 1 else len(self.targets) / seconds
+
+    def _rate_of(self, kind: Kind) -> float:
+        form = closed_form_of(kind.chain, kind.name)
         closed = isinstance(form, ClosedForm)
         if self._constrained or self.score:
-            return POSTURES_PER_S if closed and self._kind == "pose" else SEARCHED_PER_S
+            return POSTURES_PER_S if closed and kind.name == "pose" else SEARCHED_PER_S
         if form:
             return CLOSED_PER_S if closed else BALLS_PER_S
-        return DECIDED_PER_S if self._kind == "position" else POSES_PER_S
-
-    @property
-    def _kind(self) -> str:
-        return "position" if self.job.quats_wxyz is None else "pose"
+        return DECIDED_PER_S if kind.name == "position" else POSES_PER_S
 
     @property
     def cost(self) -> Cost:
         """Pairs, a bit of each label, and the table of placements."""
-        over, K = self.job.over, self._targets
+        over, K = self.job.over, len(self.targets)
         bits = -(-K // 8) * (2 + len(self.names))
         rows = over.count * (8.0 * (len(over.ranges) + bool(self.score)) + 12 + bits)
         drawn, seconds = pictures_cost("placements", "robot")
@@ -201,7 +216,7 @@ class BasePlacementAnalysis(Analysis):
         ``served``, ``undecided``, and by constraint ``blocked_<name>``: that it rejected most configurations. With an
         index ``score`` (P,), its least value over the targets that are served; NaN where none is.
         """
-        (first, count), K = self.shards[shard], self._targets
+        (first, count), K = self.shards[shard], len(self.targets)
         start, end = first // K, (first + count) // K
         each = self._alike * max(1, PAIRS // (K * self._alike))
         search, parts = self._placements(execution.threads), []
@@ -214,13 +229,13 @@ class BasePlacementAnalysis(Analysis):
         names = [*self._names_of_bits, *(["score"] if self.score else [])]
         return rows_of_shard(first, dict(zip(names, arrays, strict=True)))
 
-    def _placements(self, threads: int | None) -> Placements:
+    def _placements(self, threads: int | None) -> PlacementsOfKinds:
         """What decides all targets from placements of the job."""
         value = self.score and replace(self.score, device=self.device, threads=threads)
         admission = self._admission(self.base, self.constraints, threads)
-        return Placements(self._solver(threads), self.base, self._poses, admission, value)
+        return self._deciding(self._kinds, self.base, admission, threads, value)
 
-    def _around(self, T_world_base: np.ndarray, served: np.ndarray, threads: int | None) -> Placements:
+    def _around(self, T_world_base: np.ndarray, served: np.ndarray, threads: int | None) -> PlacementsOfKinds:
         """What decides ``served`` targets (K,) bool from bases that are moved from one, and turned about its origin.
 
         Coordinates are those of the origin in the world, and angles by which the base is turned.
@@ -231,30 +246,32 @@ class BasePlacementAnalysis(Analysis):
         T[:3, 3] = 0.0
         base = MovingBase(middle - ends, middle + ends, T)
         admission = self._admission(base, self._constraints(base) if self._constrained else ((), ()), threads)
-        return Placements(self._solver(threads), base, self._poses[served], admission)
+        return self._deciding(self._kinds_of(self.targets.part(served)), base, admission, threads)
 
-    def _solver(self, threads: int | None) -> InverseSolver:
-        job, chain = self.job, self.standing.chain
+    def _deciding(
+        self,
+        kinds: list[Kind],
+        base: MovingBase,
+        admission: PlacedAdmission | None,
+        threads: int | None,
+        value: Score | None = None,
+    ) -> PlacementsOfKinds:
+        parts = [Placements(self._solver(kind, threads), base, kind.T_world_tip, admission, value) for kind in kinds]
+        return PlacementsOfKinds(parts, [kind.at for kind in kinds])
+
+    def _solver(self, kind: Kind, threads: int | None) -> InverseSolver:
+        job = self.job
         return InverseSolver(
-            chain,
-            kind=self._kind,
-            position_m=job.position_tolerance_m,
-            angle_rad=job.angle_tolerance_rad,
+            kind.chain,
+            kind=kind.name,
+            position_m=kind.tolerances[0],
+            angle_rad=kind.tolerances[1],
             length_m=job.characteristic_length_m,
             seed=job.seed,
             precision=job.precision,
             device=self.device,
             threads=threads,
         )
-
-    @cached_property
-    def _poses(self) -> np.ndarray:
-        """Of the targets in the world, (K, 4, 4)."""
-        T = np.tile(np.eye(4), (self._targets, 1, 1))
-        T[:, :3, 3] = self.job.points_m
-        if self.job.quats_wxyz is not None:
-            T[:, :3, :3] = rotations(self.job.quats_wxyz, len(T))
-        return T
 
     def _admission(self, base: MovingBase, constraints: Both, threads: int | None) -> PlacedAdmission | None:
         moved, own = constraints
@@ -264,7 +281,7 @@ class BasePlacementAnalysis(Analysis):
         on_base = base.carrying(chain.geometry) if chain.geometry else None
         return PlacedAdmission(chain, own, self.device, threads, moved, on_base)
 
-    def _decided(self, search: Placements, numbers: np.ndarray) -> Decided:
+    def _decided(self, search: PlacementsOfKinds, numbers: np.ndarray) -> Decided:
         coordinates = self.job.over.coordinates(numbers)
         return search.decide(coordinates * IN_DEGREES, placed(coordinates))
 
@@ -286,19 +303,21 @@ class BasePlacementAnalysis(Analysis):
         """The tables ``placements``, their ``placement_map``, and ``targets`` as the best one serves them."""
         scores = partial["score"] if self.score else None
         bits = {name: partial[name] for name in self._names_of_bits}
-        found = PlacementMap(self.job, bits, self.score, scores)
+        found = PlacementMap(self.job, self.targets.weight, bits, self.score, scores)
         about = found.entry | {
             "alike": self._alike,
-            "evidence": evidence_of(self.robot.chain, self._kind),
+            "evidence": evidence_of_targets(self.robot.chain, self.targets),
         }
         tables = {"placements": found.table} | ({"placement_map": found.map} if self.job.over.ranges else {})
         if (best := found.best) is None:
             nothing = no_headline("no placement serves a target")
-            return Draft({"placements": about, "best": None}, nothing, tables=tables)
+            return Draft(
+                {"placements": about, "best": None}, nothing, provenance=self.targets.provenance, tables=tables
+            )
         search = self._placements(execution.threads)
         coordinates = self.job.over.coordinates(np.array([best]))
         if self.job.refine:
-            coordinates = refined(self.job, search, coordinates[0])[None]
+            coordinates = refined(self.job, self.targets.weight, search, coordinates[0])[None]
         of, q = search.configurations(coordinates * IN_DEGREES, placed(coordinates))
         robot = self._robot_at(placed(coordinates)[0])
         entry = {"T_world_base": robot.chain.T_world_base.tolist(), "cell": found.entry_of(best)}
@@ -308,13 +327,14 @@ class BasePlacementAnalysis(Analysis):
         tables["targets"] = self._targets_table(of, q)
         reached = q[of.label == REACHABLE][:DRAWN]
         skeleton = robot.skeleton(reached) if len(reached) else None
-        return Draft({"placements": about, "best": entry}, tables=tables, skeleton=skeleton)
+        entries = {"placements": about, "best": entry}
+        return Draft(entries, provenance=self.targets.provenance, tables=tables, skeleton=skeleton)
 
     def _tolerance(self, T_world_base: np.ndarray, served: np.ndarray, threads: int | None) -> dict[str, Any]:
         """How far the base may stand elsewhere, or turned about any axis, and serve the same (DEFINITIONS 18)."""
         search, middle = self._around(T_world_base, served, threads), np.zeros(6)
         middle[:3] = T_world_base[:3, 3]
-        count = SHIFTS if isinstance(search.solver.closed, ClosedLabels) else FEW_SHIFTS
+        count = SHIFTS if search.closed else FEW_SHIFTS
 
         def serves(coordinates: np.ndarray) -> np.ndarray:
             found = search.decide(coordinates, placed(coordinates / IN_DEGREES))
@@ -335,9 +355,8 @@ class BasePlacementAnalysis(Analysis):
     def _targets_table(self, found: Decided, q: np.ndarray) -> Table:
         """A row for each target as the best placement serves it, in the order asked."""
         job, chain = self.job, self.robot.chain
-        columns = {"position": np.array(job.points_m)}
-        columns |= {} if job.quats_wxyz is None else {"quat_wxyz": np.array(job.quats_wxyz)}
-        columns |= {} if job.weights is None else {"weight": np.array(job.weights)}
+        columns = self.targets.columns(job.targets is not None)
+        columns |= {} if job.weights is None else {"weight": self.targets.weight}
         columns |= {
             "label": np.array([NAMES[each] for each in found.label.tolist()], "<U11"),
             "reason": np.array(["", *self.names])[np.where(found.label == BLOCKED, found.reason, 0)],

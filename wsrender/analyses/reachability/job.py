@@ -5,7 +5,7 @@ from typing import Literal
 from wsrender.documents.arm import Arm
 from wsrender.documents.constraints import Constrained
 from wsrender.documents.format import JobDocument
-from wsrender.documents.target_lists import ListedTargets
+from wsrender.documents.target_lists import Criteria, ListedTargets
 
 
 class ReachabilityJob(ListedTargets, Constrained, Arm, JobDocument):
@@ -16,3 +16,5 @@ class ReachabilityJob(ListedTargets, Constrained, Arm, JobDocument):
 
     analysis: Literal["reachability"] = "reachability"
     """Name of the analysis."""
+    criteria: Criteria = ()
+    """What the targets must fulfil for the result to pass."""

@@ -23,10 +23,9 @@ from wsrender.analyses.estimate import RATE_CPU_CORE
 from wsrender.analyses.execution import Execution
 from wsrender.analyses.partial_result import PartialResult, joined_rows, rows_of_shard
 from wsrender.analyses.reachability.job import ReachabilityJob
-from wsrender.documents.target_lists import TargetTable
 from wsrender.pipeline.constraints.constraint import Constraint
 from wsrender.reach.inverse_solver import solved_bytes
-from wsrender.reach.target_list import TargetList, check_unit, listed_targets, target_list
+from wsrender.reach.target_list import TargetList, targets_of_job
 from wsrender.reach.targets import Reachability, check_tolerance, evidence_of_targets, reachable_targets, with_margin
 from wsrender.robot.constraints import constraints_of_job
 from wsrender.robots.kinematics import Kinematics
@@ -62,14 +61,8 @@ class ReachabilityAnalysis(Analysis):
     @cached_property
     def targets(self) -> TargetList:
         """The targets; raises InputError for a table that cannot be read."""
-        job = self.job
-        if job.targets is None:
-            quats = None if job.quats_wxyz is None else np.array(job.quats_wxyz)
-            return listed_targets(np.array(job.points_m), quats)
-        found = target_list(job.targets)
-        if isinstance(job.targets, TargetTable):
-            check_unit(found, job.targets, self.robot.chain.center, self.robot.chain.reach)
-        return found
+        chain = self.robot.chain
+        return targets_of_job(self.job, lambda position: chain.center, chain.reach)
 
     @cached_property
     def margins(self) -> dict[int, Kinematics]:
@@ -158,9 +151,10 @@ class ReachabilityAnalysis(Analysis):
             counts["share"] = {name: share_of(weight, labels == name) for name in names}
         q = partial["configurations"][reached][:DRAWN]
         skeleton = self.robot.skeleton(q) if len(q) else None
-        origin = {} if self.targets.sha256 is None else {"targets_sha256": self.targets.sha256}
         entries = {"targets": counts, **self._verdicts(partial)}
-        return Draft(entries, provenance=origin, tables={"targets": self._table(partial)}, skeleton=skeleton)
+        return Draft(
+            entries, provenance=self.targets.provenance, tables={"targets": self._table(partial)}, skeleton=skeleton
+        )
 
     def _verdicts(self, partial: PartialResult) -> dict[str, Any]:
         """The entries ``criteria`` and ``verdict`` of a job with criteria."""
@@ -181,14 +175,7 @@ class ReachabilityAnalysis(Analysis):
         return {"criteria": entries, "verdict": next(v for v in VERDICTS if v in found)} if entries else {}
 
     def _table(self, partial: PartialResult) -> Table:
-        targets = self.targets
-        columns = {"position": targets.position}
-        if targets.oriented.any():
-            columns["quat_wxyz"] = targets.quat_wxyz
-        if self.job.targets is not None:
-            columns = {"name": targets.name, "weight": targets.weight, **columns}
-            columns |= {"free_axis": targets.free_axis} if (targets.free_axis != "").any() else {}
-        columns |= {
+        columns = self.targets.columns(self.job.targets is not None) | {
             "label": partial["labels"],
             "reason": partial["reasons"],
             "proven": partial["proven"],
