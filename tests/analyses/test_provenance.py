@@ -17,12 +17,15 @@ PRECISIONS = {
     "indices_at": "float32",
     "reachability": "float32",
     "capability": "float32",
+    "base_placement": "float32",
     "parallel_workspace": "float32",
     "design_optimization": "float32",
 }
 SEEDS = {
     "workspace": 0,
     "reachability": 3,
+    "base_placement": 3,
+    "postures": 9,
     "capability": 4,
     "collaborative_volume": 5,
     "parallel_workspace": 6,

@@ -148,7 +148,7 @@ def test_outputs_that_cannot_be_saved_are_refused_before_the_run(wsrender, execu
     code, _, err = wsrender("run", "ur5e", "-o", str(occupied))
     assert (code, err) == (2, f"error: --output: must be a folder, not the file {occupied}\n")
     code, _, err = wsrender("run", "ur5e", "-o", str(tmp_path), "--format", "pickle")
-    allowed = "allowed: npz, csv, mat, vti, stl, svg"
+    allowed = "allowed: npz, csv, mat, vti, stl, obj, svg"
     assert (code, err) == (2, f"error: --format: 'pickle' is not a format that can be added; {allowed}\n")
 
 

@@ -92,14 +92,15 @@ def test_shards_in_any_order_change_no_bit(planned, local):
 
 
 @pytest.mark.parametrize("wanted", [1, 1000])
-def test_a_server_divides_as_the_analysis_says(wanted, planned, monkeypatch):
+def test_a_server_divides_as_the_analysis_says(wanted, planned, monkeypatch, tmp_path):
     """However few samples a shard shall have: all samples, each once, then what is refined."""
-    monkeypatch.setattr(steps, "_state", {"shard_samples": wanted, "max_samples": 10**10, "gauges": [0, 0, 0]})
+    state = {"shard_samples": wanted, "max_samples": 10**10, "gauges": [0, 0, 0], "files": DataFolder(tmp_path)}
+    monkeypatch.setattr(steps, "_state", state)
     monkeypatch.setattr(steps, "_plans", type(steps._plans)())
     several = set()
-    for name in golden_names():
-        whole = planned(name)
-        resolved = steps.run(Task(Step.PLAN, name, name, job_of(name)))["resolved"]
+    for number, name in enumerate(golden_names()):
+        whole, own = planned(name), f"{number:x}"
+        resolved = steps.run(Task(Step.PLAN, own, own, job_of(name)))["resolved"]
         shards = resolved["shards"]
         ends = [0, *(first + count for first, count in shards)]
         several |= {name.partition(".")[0]} if len(shards) > 1 else set()

@@ -62,7 +62,7 @@ def test_every_format_is_read_back(analysis, saved):
         if path.parent == saved(analysis) and data is not None and path.suffix in READERS:
             READERS[path.suffix](path, data, isinstance(data, VolumeData))
             read += 1
-        elif path.suffix in (".ply", ".glb", ".stl"):
+        elif path.suffix in (".ply", ".glb", ".stl", ".obj"):
             assert len(trimesh.load_mesh(path).faces) == len(read_mesh(path.with_suffix(".ply")).faces) > 0
         else:
             assert path.suffix in (".png", ".svg", ".dxf", ".npy", ".csv", ".parquet", ".vtkhdf", ".vti"), path

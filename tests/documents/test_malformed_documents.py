@@ -180,7 +180,7 @@ MALFORMED = [
     (job(inertia="mj"), "inertia", 'must be "kernel" or "mujoco", not "mj"'),
     # targets
     (to(points_m=[]), "points_m", "must have at least 1 item"),
-    (to(points_m=None), "points_m", "must be a list, not null"),
+    (to(points_m=None), "points_m", 'must be given, or else "targets": one of the two'),
     (to(points_m=[[0, 1]]), "points_m", "must hold rows of 3 numbers; row 0 has 2"),
     (to(points_m=[[0, 1, "2"]]), "points_m", "must be a number"),
     (to(quats_wxyz=[[1, 0, 0, 0], [1, 0, 0, 0]]), "quats_wxyz", "must have as many rows as points_m, 1, not 2"),

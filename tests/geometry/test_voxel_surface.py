@@ -87,8 +87,8 @@ def test_errors_name_the_fault(tmp_path):
         occupied_surface(volume, "x", fraction=1.5)
     with pytest.raises(InputError, match="no occupied voxel"):
         occupied_surface(volume_of(np.zeros((2, 2, 2))))
-    with pytest.raises(InputError, match=r"must end in \.glb, \.ply or \.stl"):
-        write_mesh(occupied_surface(volume), tmp_path / "mesh.obj")
+    with pytest.raises(InputError, match=r"must end in \.glb, \.ply, \.stl or \.obj"):
+        write_mesh(occupied_surface(volume), tmp_path / "mesh.off")
 
 
 def ball_of_values(size=0.1, half=8):

@@ -60,6 +60,7 @@ SMALL_JOBS = {
         "position_m": [[0.4, 0.2, 0.3]],
         "quat_wxyz": [[0, 0, 1, 0]],
         "indices": ["manipulability"],
+        "seed": 9,
         "device": "cpu",
     },
     "base_placement": {

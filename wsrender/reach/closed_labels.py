@@ -16,6 +16,7 @@ from wsrender.robots.kinematics import Kinematics
 # little is a number of the arm: SURE times the most that SAMPLES lost, most at limits, which moved and turned by STEP
 # [reach, rad]. Forty times as many lost up to 1.8 times as much, of arms with a quartic 2.9 times.
 SAMPLES, STEP, SURE = 1 << 14, 1e-5, 4.0
+TOGETHER = 1 << 11  # of them, for memory
 ALONE = 0.1  # rad: bound of what joints of a posture move where the pose does within the tolerances; mostly a tenth
 
 
@@ -46,13 +47,16 @@ class ClosedLabels:
     def _lost(self, moved: float = 0.0, turned: float = 0.0) -> float:
         """The most slack that reached poses lose where they move by such multiples of STEP [m, rad], over STEP."""
         chain, random = self.form.chain, np.random.default_rng(0)
-        T = chain.poses(
-            towards_limits(chain, random.uniform(chain.lower_limits, chain.upper_limits, (SAMPLES, chain.n)))
-        )
-        T[:, :3, 3] += self.form.origin + STEP * moved * _directions(random)
-        T[:, :3, :3] = Rotation.from_rotvec(STEP * turned * _directions(random)).as_matrix() @ T[:, :3, :3]
-        found = closed_postures(self.form, T, device="cpu", threads=self.threads)
-        return max(0.0, float(-found.slack.min()) - CLOSED_MARGIN) / STEP
+        q = towards_limits(chain, random.uniform(chain.lower_limits, chain.upper_limits, (SAMPLES, chain.n)))
+        shift, turn = STEP * moved * _directions(random), STEP * turned * _directions(random)
+        most = CLOSED_MARGIN
+        for part in (slice(first, first + TOGETHER) for first in range(0, SAMPLES, TOGETHER)):
+            T = chain.poses(q[part])
+            T[:, :3, 3] += self.form.origin + shift[part]
+            T[:, :3, :3] = Rotation.from_rotvec(turn[part]).as_matrix() @ T[:, :3, :3]
+            found = closed_postures(self.form, T, device="cpu", threads=self.threads)
+            most = max(most, float(-found.slack.min()))
+        return (most - CLOSED_MARGIN) / STEP
 
     def labels(self, position: np.ndarray, orientation: np.ndarray | None, *, unlimited: bool = False) -> np.ndarray:
         """What is certain of targets, else UNDECIDED, (N,) int8; ``unlimited``: as if hinges had no limits."""

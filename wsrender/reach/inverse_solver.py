@@ -22,7 +22,7 @@ TRIES_EACH = {"position": 1.0, "axis": 2.5, "pose": 24.0}  # of a target at a ti
 TARGET_ROW = 16  # bytes of every number of a target or a sample: what was asked and what was found
 VERIFIED = 1 << 14  # targets whose postures are held in memory at a time
 # Of a target whose postures are held, and of one that a closed form decides.
-POSTURES_BYTES, CLOSED_BYTES = 2000.0, 300.0
+POSTURES_BYTES, CLOSED_BYTES = 1850.0, 300.0
 # Starts between two looks at what they found, by kind of target: a label depends on its target alone.
 LATER = ((FURTHER, 8), (FURTHER, 32), (FURTHER, 64), (FURTHER, 128))
 GROUPS = {

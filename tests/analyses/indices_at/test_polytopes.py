@@ -52,11 +52,11 @@ def test_forces_are_cut_as_their_index_is():
 
 
 def test_rejected_configurations_have_none():
-    kept = {"constraints": {"region": {"half_space": {"point_m": [0, 0, 0.33]}}}, "polytopes": ["acceleration"]}
+    kept = {"constraints": {"region": {"half_space": {"point_m": [0, 0, 0.45]}}}, "polytopes": ["acceleration"]}
     tips = ws.load_robot("ur5e").forward_kinematics(Q)[:, 2, 3]
-    assert tips[0] > 0.33 > tips[1] or tips[1] > 0.33 > tips[0]
+    assert tips[0] > 0.45 > tips[1] or tips[1] > 0.45 > tips[0]
     result = execute(JOB | kept)
-    (admitted,) = np.flatnonzero(tips > 0.33)
+    (admitted,) = np.flatnonzero(tips > 0.45)
     assert result.tables["polytopes"]["configuration"].tolist() == [admitted]
     assert list(result.meshes) == [f"acceleration_polytope_{admitted}"] and len(result.skeleton) == 1
     none = execute(JOB | kept | {"constraints": {"region": {"half_space": {"point_m": [0, 0, 9]}}}})
