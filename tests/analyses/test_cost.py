@@ -244,7 +244,7 @@ OTHERS = {
 def test_what_does_not_fit_is_refused_when_it_is_planned(name, monkeypatch):
     """Before anything is taken, with the field that asks for it; some beside little free memory."""
     fields, field = BIG[name]
-    free = 10_000_000 if fields else 300_000
+    free = 10_000_000 if fields else 250_000
     monkeypatch.setattr(importlib.import_module("wsrender.analyses.cost"), "available_bytes", lambda: free)
     base = LARGE.get(name) or JOBS.get(name) or OTHERS[name]
     with pytest.raises(ResourceError, match=r"GiB are free: (take|choose)") as caught:

@@ -70,7 +70,7 @@ def test_refused_voxels_name_bytes_and_the_smallest_that_fits(monkeypatch):
 def test_labels_of_voxels_are_counted(monkeypatch):
     """The job without them fits."""
     module = importlib.import_module("wsrender.analyses.cost")
-    monkeypatch.setattr(module, "available_bytes", lambda: 30_000_000)
+    monkeypatch.setattr(module, "available_bytes", lambda: 28_000_000)
     job = at_size("workspace", 0.006) | {"refined_volume": None}
     assert run.plan(job).shards
     with pytest.raises(ResourceError, match=r"voxel_size_m: makes a job of .* GiB of memory; 0.0 GiB are free: choose"):
