@@ -8,9 +8,9 @@ import wsrender as ws
 from tests.engine.test_closed_form import anywhere, at_singular_postures, in_the_box, near_limits, with_slides
 from tests.reference import closed_form_inverse
 from tests.reference.arms_by_axes import PARALLEL, RELATIONS, random_arm
-from wsrender.engine import closed_postures
+from wsrender.engine import CLOSED_MARGIN, closed_postures
 from wsrender.pipeline.constraints.expression import ExpressionConstraint
-from wsrender.reach import InverseSolver
+from wsrender.reach import InverseSolver, closed_labels
 from wsrender.reach.admission import Admission
 from wsrender.reach.evidence import REACHABLE, UNDECIDED, UNREACHABLE
 from wsrender.reach.targets import evidence_of
@@ -105,6 +105,18 @@ def test_nothing_within_the_tolerances_of_a_reached_pose_is_proven_out_of_reach(
             away, about = (tolerance * v / np.linalg.norm(v, axis=1, keepdims=True) for v in (away, about))
             turned = Rotation.from_rotvec(about).as_matrix() @ T[:, :3, :3]
             assert not decided.unreachable(T[:, :3, 3] + away, turned).any()
+
+
+def test_what_an_arm_loses_is_measured_once(monkeypatch):
+    """Margins of all its solvers go by it, in proportion to their tolerances."""
+    measured, real = [], closed_labels.closed_postures
+    monkeypatch.setattr(closed_labels, "closed_postures", lambda *args, **kw: measured.append(1) or real(*args, **kw))
+    chain = ws.load_robot("ur5e", limits={"joint3": (-2.0, 1.2345)}).chain
+    margins = [solver(chain, position_m=scale * 1e-5, angle_rad=scale * 1e-5).closed.margin for scale in (1, 2)]
+    assert len(measured) == 2 * closed_labels.SAMPLES / closed_labels.TOGETHER
+    assert margins[1] - CLOSED_MARGIN == pytest.approx(2 * (margins[0] - CLOSED_MARGIN))
+    other = ws.load_robot("ur5e", limits={"joint3": (-1.0, 1.2345)}).chain
+    assert solver(other).closed.margin != margins[0]
 
 
 @pytest.mark.parametrize(("name", "margin"), [("ur5e", 8), ("puma560", 40), ("gao_6r", 50), ("stanford_arm", 30)])

@@ -1,7 +1,7 @@
 """What closed forms say of targets before any search."""
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -9,6 +9,7 @@ from scipy.spatial.transform import Rotation
 from wsrender.engine import CLOSED_MARGIN, Accuracy, ClosedPostures, closed_postures
 from wsrender.reach.evidence import REACHABLE, UNDECIDED, UNREACHABLE
 from wsrender.reach.starts import towards_limits
+from wsrender.robots.chain import Chain
 from wsrender.robots.closed_form import ClosedForm, FreeJointForm
 from wsrender.robots.kinematics import Kinematics
 
@@ -40,23 +41,10 @@ class ClosedLabels:
     @cached_property
     def margin(self) -> float:
         """Slack that a target lacks at most which is reached within the tolerances."""
-        reach, accuracy = self.form.solved.axes.reach, self.accuracy
-        margin = CLOSED_MARGIN + SURE * self._lost(moved=reach) * accuracy.position_m / reach
-        return margin + (SURE * self._lost(turned=1.0) * accuracy.angle_rad if self.form.kind != "position" else 0.0)
-
-    def _lost(self, moved: float = 0.0, turned: float = 0.0) -> float:
-        """The most slack that reached poses lose where they move by such multiples of STEP [m, rad], over STEP."""
-        chain, random = self.form.chain, np.random.default_rng(0)
-        q = towards_limits(chain, random.uniform(chain.lower_limits, chain.upper_limits, (SAMPLES, chain.n)))
-        shift, turn = STEP * moved * _directions(random), STEP * turned * _directions(random)
-        most = CLOSED_MARGIN
-        for part in (slice(first, first + TOGETHER) for first in range(0, SAMPLES, TOGETHER)):
-            T = chain.poses(q[part])
-            T[:, :3, 3] += self.form.origin + shift[part]
-            T[:, :3, :3] = Rotation.from_rotvec(turn[part]).as_matrix() @ T[:, :3, :3]
-            found = closed_postures(self.form, T, device="cpu", threads=self.threads)
-            most = max(most, float(-found.slack.min()))
-        return (most - CLOSED_MARGIN) / STEP
+        form, accuracy = self.form, self.accuracy
+        moved, turned = _lost(form.chain, form.kind, self.threads)
+        margin = CLOSED_MARGIN + SURE * moved * accuracy.position_m / form.solved.axes.reach
+        return margin + (SURE * turned * accuracy.angle_rad if form.kind != "position" else 0.0)
 
     def labels(self, position: np.ndarray, orientation: np.ndarray | None, *, unlimited: bool = False) -> np.ndarray:
         """What is certain of targets, else UNDECIDED, (N,) int8; ``unlimited``: as if hinges had no limits."""
@@ -102,6 +90,29 @@ def poses_of(position: np.ndarray, orientation: np.ndarray | None) -> np.ndarray
     if orientation is not None:
         T[:, :3, :3] = orientation if orientation.ndim == 3 else _with_z(orientation)
     return T
+
+
+@lru_cache(maxsize=256)
+def _lost(chain: Chain, kind: str, threads: int | None) -> tuple[float, float]:
+    """The most slack that reached poses lose where they move by STEP, and where they turn by it, over STEP.
+
+    A number of the chain: kept for all solvers of it, whatever their tolerances. Its origin is not far away.
+    """
+    form, random = ClosedForm.of(chain, kind), np.random.default_rng(0)
+    assert form
+    q = towards_limits(chain, random.uniform(chain.lower_limits, chain.upper_limits, (SAMPLES, chain.n)))
+    shift, turn = STEP * form.solved.axes.reach * _directions(random), STEP * _directions(random)
+    most = np.full(2, CLOSED_MARGIN)
+    for part in (slice(first, first + TOGETHER) for first in range(0, SAMPLES, TOGETHER)):
+        moved = chain.poses(q[part])
+        turned = moved.copy()
+        moved[:, :3, 3] += shift[part]
+        turned[:, :3, :3] = Rotation.from_rotvec(turn[part]).as_matrix() @ turned[:, :3, :3]
+        for k, T in enumerate((moved, turned)):
+            found = closed_postures(form, T, device="cpu", threads=threads)
+            most[k] = max(most[k], float(-found.slack.min()))
+    lost = (most - CLOSED_MARGIN) / STEP
+    return float(lost[0]), float(lost[1])
 
 
 def _directions(random: np.random.Generator) -> np.ndarray:
