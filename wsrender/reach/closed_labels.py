@@ -15,7 +15,8 @@ from wsrender.robots.kinematics import Kinematics
 
 # What may be reached within the tolerances is no proof. How much slack reached poses lose at most where they move a
 # little is a number of the arm: SURE times the most that SAMPLES lost, most at limits, which moved and turned by STEP
-# [reach, rad]. Forty times as many lost up to 1.8 times as much, of arms with a quartic 2.9 times.
+# [reach, rad], or by the tolerances where they are larger: of arms that are singular everywhere slack falls with the
+# square of a move. Forty times as many lost up to 1.8 times as much, of arms with a quartic 2.9 times.
 SAMPLES, STEP, SURE = 1 << 14, 1e-5, 4.0
 TOGETHER = 1 << 11  # of them, for memory
 ALONE = 0.1  # rad: bound of what joints of a posture move where the pose does within the tolerances; mostly a tenth
@@ -42,9 +43,9 @@ class ClosedLabels:
     def margin(self) -> float:
         """Slack that a target lacks at most which is reached within the tolerances."""
         form, accuracy = self.form, self.accuracy
-        moved, turned = _lost(form.chain, form.kind, self.threads)
-        margin = CLOSED_MARGIN + SURE * moved * accuracy.position_m / form.solved.axes.reach
-        return margin + (SURE * turned * accuracy.angle_rad if form.kind != "position" else 0.0)
+        near = (accuracy.position_m / form.solved.axes.reach, accuracy.angle_rad * (form.kind != "position"))
+        lost = [_lost(form.chain, form.kind, step, self.threads) for step in {STEP, max(STEP, *near)}]
+        return CLOSED_MARGIN + SURE * float(np.max(lost, axis=0) @ near)
 
     def labels(self, position: np.ndarray, orientation: np.ndarray | None, *, unlimited: bool = False) -> np.ndarray:
         """What is certain of targets, else UNDECIDED, (N,) int8; ``unlimited``: as if hinges had no limits."""
@@ -93,25 +94,27 @@ def poses_of(position: np.ndarray, orientation: np.ndarray | None) -> np.ndarray
 
 
 @lru_cache(maxsize=256)
-def _lost(chain: Chain, kind: str, threads: int | None) -> tuple[float, float]:
-    """The most slack that reached poses lose where they move by STEP, and where they turn by it, over STEP.
+def _lost(chain: Chain, kind: str, step: float, threads: int | None) -> tuple[float, float]:
+    """The most slack that reached poses lose where they move by a step [reach], and turn by it [rad], over the step.
 
-    A number of the chain: kept for all solvers of it, whatever their tolerances. Its origin is not far away.
+    A number of the chain, at any turn that targets leave open: kept for all its solvers. Its origin is not far away.
     """
     form, random = ClosedForm.of(chain, kind), np.random.default_rng(0)
     assert form
     q = towards_limits(chain, random.uniform(chain.lower_limits, chain.upper_limits, (SAMPLES, chain.n)))
-    shift, turn = STEP * form.solved.axes.reach * _directions(random), STEP * _directions(random)
+    shift, turn = step * form.solved.axes.reach * _directions(random), step * _directions(random)
+    opened = _open_turns(kind, random)
     most = np.full(2, CLOSED_MARGIN)
     for part in (slice(first, first + TOGETHER) for first in range(0, SAMPLES, TOGETHER)):
         moved = chain.poses(q[part])
+        moved[:, :3, :3] = moved[:, :3, :3] @ opened[part]
         turned = moved.copy()
         moved[:, :3, 3] += shift[part]
         turned[:, :3, :3] = Rotation.from_rotvec(turn[part]).as_matrix() @ turned[:, :3, :3]
         for k, T in enumerate((moved, turned)):
             found = closed_postures(form, T, device="cpu", threads=threads)
             most[k] = max(most[k], float(-found.slack.min()))
-    lost = (most - CLOSED_MARGIN) / STEP
+    lost = (most - CLOSED_MARGIN) / step
     return float(lost[0]), float(lost[1])
 
 
@@ -119,6 +122,15 @@ def _directions(random: np.random.Generator) -> np.ndarray:
     """Unit vectors (SAMPLES, 3)."""
     vectors = random.normal(size=(SAMPLES, 3))
     return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
+
+
+def _open_turns(kind: str, random: np.random.Generator) -> np.ndarray:
+    """Turns (SAMPLES, 3, 3) of the tip that targets of a kind leave open."""
+    if kind == "pose":
+        return np.tile(np.eye(3), (SAMPLES, 1, 1))
+    if kind == "axis":
+        return Rotation.from_rotvec(random.uniform(-np.pi, np.pi, (SAMPLES, 1)) * [0, 0, 1]).as_matrix()
+    return Rotation.random(SAMPLES, rng=random).as_matrix()
 
 
 def _with_z(axes: np.ndarray) -> np.ndarray:
