@@ -39,7 +39,11 @@ def test_a_result_holds_them_in_tables_meshes_and_a_picture(tmp_path):
         offset = (mesh.vertices - found.position) / table["mesh_m_per_unit"][row]
         assert offset == pytest.approx(found.vertices, abs=1e-5 * np.abs(found.vertices).max())
     assert (tmp_path / "out" / "plots" / "polytopes.png").read_bytes().startswith(b"\x89PNG")
-    assert result.plot.polytopes(configuration=1) is not None
+    (first, second) = result.plot.polytopes(configuration=1).legends[0].get_texts()
+    scale = table["mesh_m_per_unit"][(table["kind"].astype(str) == "force") & (table["configuration"] == 1)]
+    radius = ws.polytope(robot, Q[1], "force", gravity_m_s2=(0, 1, -3)).radius
+    assert first.get_text().startswith("velocity: radius ") and 1 / scale[0] > 1000
+    assert second.get_text() == f"force: radius {radius:.0f} N,\n1 m stands for {round(1 / scale[0], -1):,.0f} N"
     with pytest.raises(ws.InputError, match="configuration: 2 has no mesh of a polytope; 0, 1 have"):
         result.plot.polytopes(configuration=2)
 

@@ -84,7 +84,18 @@ def test_self_motions_are_a_table():
 
 
 def labels(figure):
-    return " ".join(text.get_text() for text in figure.axes[0].get_legend().get_texts())
+    return " ".join(text.get_text() for text in figure.legends[0].get_texts())
+
+
+def test_pictures_and_summaries_say_that_they_show_some():
+    """Of a continuum 16 postures are listed, of which 8 are drawn."""
+    result = execute(JOB | {"position_m": [0.4, 0.2, 0.4], "quat_wxyz": None})
+    figure = result.plot.postures()
+    assert figure.legends[0].get_title().get_text() == "8 of 16 postures"
+    assert labels(figure).startswith("posture 0 posture 1 ") and len(figure.legends[0].get_texts()) == 8
+    assert "16, of which 16 stand for families" in result.summary()
+    one = execute(JOB | {"position_m": POSES["position_m"][0], "quat_wxyz": POSES["quat_wxyz"][0]})
+    assert one.plot.postures().legends[0].get_title().get_text() == "" and "families" not in one.summary()
 
 
 def test_more_starts_find_more_and_seeds_matter():

@@ -173,3 +173,8 @@ def test_constraints_block_targets_of_a_list():
 def test_wrong_documents(fields, message):
     with pytest.raises(ws.DocumentError, match=message):
         plan(JOB | fields)
+
+
+def test_room_to_the_limits_is_told_with_its_units():
+    result = execute(JOB | {"points_m": [NEAR], "criteria": [{"least_share": 0.5, **MARGIN}]})
+    assert "50 % reached with 10° and 0.02 m to the limits needed" in result.summary()

@@ -10,8 +10,8 @@ from wsrender.results.drawing.faces import Faces
 from wsrender.results.drawing.faces_of_surface import shaded
 from wsrender.results.drawing.result_plots import ResultPlots
 from wsrender.results.drawing.stick_figure import draw_arm
-from wsrender.results.drawing.style import paper_style
-from wsrender.results.drawing.view import new_view
+from wsrender.results.drawing.style import paper_style, three_digits
+from wsrender.results.drawing.view import add_legend, new_view
 
 # Okabe and Ito 2008
 _COLORS = {"velocity": (0.0, 0.447, 0.698), "force": (0.835, 0.369, 0.0), "acceleration": (0.0, 0.62, 0.451)}
@@ -40,8 +40,8 @@ def polytopes(plot: ResultPlots, configuration: int | None = None) -> Figure:
         at = (table["configuration"] == k) & (table["kind"].astype(str) == kind)
         radius, scale = table["radius"][at][0], 1 / table["mesh_m_per_unit"][at][0]
         unit = pretty_unit(str(table["unit"][at][0]))
-        label = f"{kind}: radius {radius:.3g} {unit}, 1 m stands for {scale:.3g} {unit}"
+        label = f"{kind}: radius {three_digits(radius)} {unit},\n1 m stands for {three_digits(scale)} {unit}"
         handles.append(Patch(color=color, alpha=_VEIL, label=label))
     draw_arm(view, arm)
-    view.axes.legend(handles=handles, loc="upper left", frameon=False, fontsize=8)
+    add_legend(figure, handles)
     return figure

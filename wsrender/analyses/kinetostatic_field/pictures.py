@@ -14,7 +14,7 @@ from scipy.spatial import ConvexHull
 
 from wsrender.errors import InputError
 from wsrender.results.drawing.result_plots import ResultPlots
-from wsrender.results.drawing.style import GREY, INK, Heading, paper_style
+from wsrender.results.drawing.style import GREY, INK, Heading, paper_style, three_digits
 from wsrender.results.drawing.view import BAR, View, inches, new_view
 from wsrender.volume.table import Table
 
@@ -108,8 +108,8 @@ def _handles(ellipsoids: Table) -> list[Any]:
     velocity, force = float(ellipsoids["velocity"].max()), float(ellipsoids["force"].max())
     rendered = ellipsoids.columns.get("rendered_force", np.zeros(3))
     handles: list[Any] = [
-        Patch(facecolor=VELOCITY, alpha=0.5, label=f"velocity: up to {velocity:.3g} m/s at |q̇| = 1"),
-        Patch(facecolor=FORCE, alpha=0.5, label=f"force: up to {force:.3g} N at |τ| = 1 (cut at 10 : 1)"),
+        Patch(facecolor=VELOCITY, alpha=0.5, label=f"velocity: up to {three_digits(velocity)} m/s at |q̇| = 1"),
+        Patch(facecolor=FORCE, alpha=0.5, label=f"force: up to {three_digits(force)} N at |τ| = 1 (cut at 10 : 1)"),
     ]
     if rendered.any():
         label = f"rendered force, {np.linalg.norm(rendered):.2g} N"

@@ -10,7 +10,7 @@ from wsrender.results.drawing.faces import NUMBER, Faces
 from wsrender.results.drawing.faces_of_surface import shaded
 from wsrender.results.drawing.result_plots import ResultPlots
 from wsrender.results.drawing.style import Heading, paper_style
-from wsrender.results.drawing.view import new_view
+from wsrender.results.drawing.view import add_legend, new_view
 
 # Okabe and Ito 2008 with two greys.
 _COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#595959", "#b8a800")
@@ -18,7 +18,12 @@ _COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#5
 
 @paper_style()
 def arms_in_postures(
-    skeletons: np.ndarray, labels: Sequence[str], bodies: Faces | None = None, *, title: Heading | str = ""
+    skeletons: np.ndarray,
+    labels: Sequence[str],
+    bodies: Faces | None = None,
+    *,
+    title: Heading | str = "",
+    legend_title: str | None = None,
 ) -> Figure:
     """Arms (K, L+2, 3) [m] with a label each, as bodies, which are numbered by arm, where they are known."""
     points = skeletons.reshape(-1, 3) if bodies is None else np.concatenate([skeletons.reshape(-1, 3), bodies.vertices])
@@ -31,7 +36,7 @@ def arms_in_postures(
         view.add_marks(arm, color=color, marker="o", ms=3, zorder=6)
     view.add_marks(skeletons[0, -1:], marker="*", ms=13, mfc="#c8102e", mec="white", mew=0.7, zorder=9)
     handles = [Patch(facecolor=color, label=label) for color, label in zip(_COLORS, labels, strict=False)]
-    view.axes.legend(handles=handles, loc="upper right", frameon=False, fontsize=8)
+    add_legend(figure, handles, legend_title)
     return figure
 
 
@@ -39,7 +44,8 @@ def postures(plot: ResultPlots) -> Figure:
     """The postures of the first pose that has any, each with what blocks it."""
     table, arms, mesh = plot.tables["postures"], plot.skeleton, plot.meshes.get("bodies")
     assert arms is not None
-    shown = np.flatnonzero((table["winding"] == 0) & (table["pose"] == table["pose"][0]))[: len(arms)]
+    found = np.flatnonzero((table["winding"] == 0) & (table["pose"] == table["pose"][0]))
+    shown = found[: len(arms)]
     reasons = table["reason"][shown] if "reason" in table.columns else np.full(len(shown), "")
     motions = plot.tables.get("self_motions")
     moving = set() if motions is None else set(motions["posture"][motions["pose"] == table["pose"][0]].tolist())
@@ -52,4 +58,5 @@ def postures(plot: ResultPlots) -> Figure:
         number = np.asarray(mesh.face_attributes[NUMBER]).astype(int)
         colors = {k: tuple(int(color[i : i + 2], 16) / 255 for i in (1, 3, 5)) for k, color in enumerate(_COLORS)}
         bodies = Faces(np.asarray(mesh.vertices), np.asarray(mesh.faces), number, {}, colors)  # type: ignore[arg-type]
-    return arms_in_postures(arms, labels, bodies, title=plot.heading("other"))
+    some = f"{len(shown)} of {len(found)} postures" if len(shown) < len(found) else None
+    return arms_in_postures(arms, labels, bodies, title=plot.heading("other"), legend_title=some)

@@ -11,9 +11,10 @@ _HERE = f"{__name__.rpartition('.')[0]}.pictures"
 def facts(document: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     """How many postures there are, how many are free, and what says that they are all."""
     found = document["postures"]
+    some = f", of which {found['families']:,} stand for families" if found["families"] else ""
     free = f", {found['free']:,} free" if "free" in found else ""
     yield "poses reached", f"{found['reached']:,} of {found['poses']:,}"
-    yield "postures", f"{found['postures']:,}{free}; {found['configurations']:,} with windings"
+    yield "postures", f"{found['postures']:,}{some}{free}; {found['configurations']:,} with windings"
     if (curves := found["self_motions"])["count"]:
         yield "self-motions", f"{curves['count']:,}, {curves['closed']:,} of them closed"
     if aspects := found.get("aspects"):

@@ -6,7 +6,7 @@ from typing import Any
 
 from wsrender.results.presentation import Picture, Presentation
 
-_ROOM, _AND = {"joint_margin_deg": "°", "joint_margin_m": "m"}, " and "
+_ROOM, _AND = {"joint_margin_deg": "°", "joint_margin_m": " m"}, " and "
 _HERE = f"{__name__.rpartition('.')[0]}.pictures"
 
 
@@ -16,7 +16,7 @@ def facts(document: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
         if name in document["targets"]:
             yield f"{name} targets", f"{document['targets'][name]:,}"
     for k, each in enumerate(document.get("criteria", ()), 1):
-        room = [f"{each[name]:g} {unit}" for name, unit in _ROOM.items() if each[name]]
+        room = [f"{each[name]:g}{unit}" for name, unit in _ROOM.items() if each[name]]
         asked = f"{_percent(each['least_share'])} reached{f' with {_AND.join(room)} to the limits' if room else ''}"
         open_ = f", {_percent(each['undecided_share'])} undecided" if each["undecided_share"] else ""
         yield f"criterion {k}", f"{each['verdict']}: {_percent(each['share'])}{open_}; {asked} needed"

@@ -64,6 +64,11 @@ def _warning_lines(text: str, letters: int) -> list[str]:
     return textwrap.wrap(f"Warning: {text}", letters, max_lines=2, placeholder=" …")
 
 
+def three_digits(value: float) -> str:
+    """A number with three significant digits, large ones with commas and without a power of ten."""
+    return f"{float(f'{value:.3g}'):,.15g}".replace("-", "−")
+
+
 def color_map() -> Colormap:
     """Viridis; colour-blind safe, and monotonous in print."""
     return mpl.colormaps[COLOR_MAP]

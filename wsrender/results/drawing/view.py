@@ -128,6 +128,12 @@ def add_view(
     return view
 
 
+def add_legend(figure: Figure, handles: Sequence[Any], title: str | None = None) -> None:
+    """A legend where the colour bar of `new_view` would be, beside the box and not on it."""
+    place: dict[str, Any] = {"loc": "upper right", "bbox_to_anchor": (1.0, 0.94)}
+    figure.legend(handles=handles, title=title, frameon=False, fontsize=8, title_fontsize=8, **place)
+
+
 def write_labels(axes: Axes, space: SeenBox) -> None:
     """The numbers of the box and the names of its axes, in axes in half heights of the picture."""
     for label in space.labels():
