@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import warp as wp
-from wsrender_kernels.collision import CAPACITY, filter_kernel
+from wsrender_kernels.collision import CAPACITY, filter_kernel, narrow_kernel
 from wsrender_kernels.collision_unrolled import MOST_TESTS, unrolled
 
 import wsrender as ws
@@ -88,6 +88,17 @@ def test_the_filter_written_for_one_robot_decides_nothing_beyond_the_limits():
     assert 0.4 < beyond.mean() < 0.6
     assert open_[beyond].all() and not found[beyond].any() and (masks[beyond] == 2**32 - 1).all()
     assert not open_[~beyond].all()
+
+
+@pytest.mark.parametrize("name", ["filter", "narrow", "exact"])
+def test_kernels_compile_for_cuda_without_a_gpu(name, tmp_path):
+    """With surfaces, whose text is beside that of all others."""
+    if name == "filter":
+        kernel = filter_kernel(wp.float32, 6, 6, CAPACITY, 2, "random", 0, True, surfaces=True)
+    else:
+        kernel = narrow_kernel(wp.float32, 6, 6, 2, "random", True, name == "exact", surfaces=True)
+    wp.compile_aot_module(kernel.module, device=None, arch=90, module_dir=str(tmp_path), use_ptx=True)
+    assert list(tmp_path.glob("*.ptx"))
 
 
 def test_what_rounding_decides_is_asked_of_mujoco():

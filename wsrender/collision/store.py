@@ -114,7 +114,7 @@ def _read(path: Path) -> Program | None:
         with path.open("rb") as file, np.load(file, allow_pickle=False) as arrays:
             values: dict[str, Any] = {field.name: arrays[field.name] for field in fields(Program)}
         os.utime(path)
-    except (OSError, KeyError, ValueError, BadZipFile):
+    except (OSError, EOFError, KeyError, ValueError, BadZipFile):
         return None
     values |= {name: int(values[name]) for name in ("columns", "moving", "alone")}
     values["epsilon"] = float(values["epsilon"])

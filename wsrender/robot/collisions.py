@@ -122,7 +122,7 @@ def _kept_apart(
             if environment:
                 raise InputError("environment.items", "must not be empty: nothing stands around")
             raise InputError(f"constraints.{AROUND}", "must not be given without an environment: nothing stands around")
-        moving = [k for k, shape in enumerate(bodies.shapes) if shape.frame != BASE]
+        moving = {k for k, shape in enumerate(bodies.shapes) if shape.frame != BASE}
         if (count := len(moving) * len(still)) > MOST_LISTED:
             message = f"would look at {count} pairs of shapes, more than {MOST_LISTED}: give fewer shapes"
             raise ResourceError(f"constraints.{AROUND}", message)
