@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from wsrender_kernels.collision_crowd import AT_ONCE
 
 import wsrender as ws
 from tests.collision.robots import drawn, nearest
@@ -168,3 +169,18 @@ def test_balls_hold_the_solids_and_their_margins():
         points = along + own.radius * around + own.disc * disc
         away = np.linalg.norm((points @ own.T[:3, :3].T + own.T[:3, 3])[:, None] - balls[:, :3], axis=2)
         assert (away <= balls[:, 3] * quantum - margin - program.epsilon + 1e-6).any(axis=1).all()
+
+
+ROD = """<mujoco><compiler angle="radian"/><worldbody><body><joint axis="0 1 1" range="-3 3" limited="true"/>
+  <body><joint axis="0 0 1" range="-2 2" limited="true"/><joint axis="0 1 0" range="-2 2" limited="true"/><site name="tip" pos="2 0 0"/>
+  <geom type="capsule" fromto="0 0 0 2 0 0" size=".004"/><geom type="capsule" fromto="0 0 0 -1 0 0" size=".02"/>
+  </body></body></worldbody></mujoco>"""
+
+
+def test_a_long_rod_has_as_many_balls_as_the_kernel_holds():
+    robot = ws.load_robot(ROD, tip="tip")
+    constraints = constraints_for(robot, None, many(robot, 12, 2, 0.5))
+    found, (with_cells, _) = both_ways(robot, constraints, 1 << 12)
+    assert with_cells.program.crowd_rows[:, 2].max() == AT_ONCE
+    np.testing.assert_array_equal(*found)
+    assert 0.02 < (found[0] > 0).mean() < 0.98
