@@ -32,6 +32,20 @@ def test_no_configuration_refutes_what_is_proven(name):
             assert alone.proven.mean() < found.proven.mean() - 0.1
 
 
+@pytest.mark.parametrize(("moved", "turned"), [(1e-3, 0.0), (0.0, 2e-3)])
+@pytest.mark.parametrize("name", ARMS)
+def test_nothing_within_the_tolerances_of_a_reached_pose_is_proven_out_of_reach(name, moved, turned):
+    chain, random = ws.load_robot(name).chain, np.random.default_rng(5)
+    T = chain.poses(near_limits(chain, 4000, 5))
+    away, about = (random.normal(size=(len(T), 3)) for _ in range(2))
+    away, about = (size * v / np.linalg.norm(v, axis=1, keepdims=True) for size, v in ((moved, away), (turned, about)))
+    T[:, :3, 3] += away
+    T[:, :3, :3] = Rotation.from_rotvec(about).as_matrix() @ T[:, :3, :3]
+    for share, proven in ((1.0, False), (0.01, True)):
+        near = {"position_m": max(share * moved, 1e-7), "angle_rad": max(share * turned, 1e-7)}
+        assert solver(chain, **near).closed.unreachable(T[:, :3, 3], T[:, :3, :3]).any() == proven
+
+
 @pytest.mark.parametrize("name", ARMS)
 def test_poses_at_limits_are_reached(name):
     chain = ws.load_robot(name).chain
