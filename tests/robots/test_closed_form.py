@@ -20,6 +20,7 @@ from tests.reference.arms_by_axes import (
     slid_along_axes,
 )
 from tests.reference.redundant_arms import redundant_arm
+from wsrender.reach.moving_joints import moving_joints
 from wsrender.robots.closed_form import ClosedForm, FreeJointForm
 
 LIBRARY = {
@@ -132,6 +133,8 @@ def test_held_joints_are_left_out():
     assert ClosedForm.of(seven.chain) is None
     assert seven.held({seven.joint_names[2]: 0.4}).closed_form == "spherical wrist, axes 1 and 2 intersecting"
     assert seven.held({seven.joint_names[6]: 0.4}).closed_form is not None
+    without_fifth = ClosedForm.of(moving_joints(seven.held({seven.joint_names[4]: 0.4}).chain, axis=True)[0], "axis")
+    assert without_fifth.name == "spherical shoulder, axes 7 and 6 intersecting"
     assert ws.load_robot("ur5e").held({"wrist_3_joint": 1.0}).closed_form == "three parallel axes"
 
 

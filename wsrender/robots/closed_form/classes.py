@@ -200,8 +200,11 @@ def _name(axes: Axes, moving: int, relation: str, kind: str = "") -> str:
 
 def _relation(axes: Axes, links: Links) -> str:
     """How the first three axes lie to each other, by the numbers that the chain's joints have from its base."""
-    places = (6, 5, 4) if axes.reversed else (1, 2, 3)
-    numbers = [k if a.coordinate is None else a.coordinate + 1 for k, a in zip(places, axes.axes, strict=False)]
+    step, numbers = -1 if axes.reversed else 1, []
+    number = next(a.coordinate + 1 - step * (i + 1) for i, a in enumerate(axes.axes) if a.coordinate is not None)
+    for axis in axes.axes[:3]:  # a joint that the chain does not have is numbered after the one before
+        number = number + step if axis.coordinate is None else axis.coordinate + 1
+        numbers.append(number)
     names = [f"{first} and {second}" for first, second in pairwise(numbers)]
     for i in (0, 1):
         if abs(np.sin(links.alpha[i])) < SAME:
