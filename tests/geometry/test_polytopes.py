@@ -6,7 +6,8 @@ from scipy.optimize import linprog
 
 import wsrender as ws
 from tests.indices.test_chain_indices import CASES, ROWS, WALL, Case
-from wsrender.geometry.polytopes import polytopes
+from wsrender.geometry.polytopes import LIMIT_N, polytopes
+from wsrender.indices.index_catalogue import find
 from wsrender.robots.dynamics import gravity_torques, inertia_matrices
 
 KINDS = ("velocity", "force", "acceleration")
@@ -68,6 +69,11 @@ def test_radii_are_those_of_the_indices(name, task, kind):
     found = [ws.polytope(case.robot, row, kind, task, gravity_m_s2=case.gravity).radius for row in q]
     np.testing.assert_allclose(found, expected, rtol=1e-9, atol=1e-9 * expected.max())
     assert (expected > 0).any() or (name, kind) == ("arm", "force")
+
+
+def test_forces_are_cut_where_the_index_is_by_default():
+    (limit,) = (option.default for option in find("force_radius").options if option.name == "limit_N")
+    assert limit == LIMIT_N
 
 
 def test_a_flat_polytope_is_a_polygon():

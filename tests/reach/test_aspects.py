@@ -157,6 +157,20 @@ def test_neighbours_and_turns_of_outer_joints_connect():
         assert proven and len(set(number)) == len(number)
 
 
+def test_next_to_a_stretched_elbow_ways_lead_to_its_own_side():
+    """Of cells that the zero of the elbow's sine crosses, whichever side of it is the nearer one."""
+    chain = ws.load_robot("puma560").chain
+    _, finder = finders(chain)
+    q = np.tile([0.3, -1.0, 0.8, -0.5, 0.9, 0.2], (5, 1))
+    elbow = finder._plane.elbow
+    zeros = np.arctan2(-elbow.cosine, elbow.sine) + np.pi * np.arange(-2, 3)
+    zeros = (zeros - elbow.axis.offset) * elbow.axis.sign
+    (zero,) = zeros[(chain.lower_limits[2] < zeros) & (zeros < chain.upper_limits[2])]
+    q[:, 2] = zero + np.array([-0.2, -1e-5, 1e-5, 2e-4, 0.2])
+    number, proven = finder.numbered(q)
+    assert proven and number.tolist() == [0, 0, 1, 1, 1]
+
+
 def test_limits_part_aspects():
     """A joint that may not pass between two regions of one sign keeps them apart; wide limits join them."""
     wide = orthogonal(1, 2, 1.5, 1)
@@ -220,6 +234,10 @@ def test_a_job_tells_aspects():
         entry["cuspidal_poses"] == poses["cuspidal"].sum() > 0 and entry["proven"] == poses["aspects_proven"].sum() > 0
     )
     assert "two postures in one aspect (cuspidal)" in result.summary()
+    wound = {"robot": "ur5e", "position_m": [[0.4, 0.2, 0.3]], "quat_wxyz": [[0, 1, 0, 0]], "windings": 8}
+    turns = ws.execute(job | wound)
+    assert turns.tables["postures"]["winding"].max() == 7 and not turns.tables["poses"]["cuspidal"].any()
+    assert turns.tables["poses"]["aspects"][0] < len(turns.tables["postures"])  # turns of a posture share one
     assert "aspect" not in ws.execute(job | {"aspects": False}).tables["postures"].columns
     with pytest.raises(ws.InputError, match="aspects: must be false: 7 joints move, and the pose has 6 freedoms"):
         ws.execute({**job, "robot": "franka_panda", "quat_wxyz": [[1, 0, 0, 0]] * 12})

@@ -115,6 +115,15 @@ def test_a_search_finds_what_a_closed_form_knows(name):
     assert solver.evidence == "search from 512 starts a pose, sampled, not proven complete"
 
 
+def test_positions_at_right_angles_are_decided():
+    """The wrist that is thought at the tip of three hinges stands in line nowhere, so that no pose is in doubt."""
+    rows = [{"a": 0, "alpha_deg": -90}, {"a": 0.4, "d": 0.2}, {"a": 0.3}]
+    chain = ws.load_robot(ws.DHTable(convention="standard", name="elbow", rows=rows)).chain
+    angles = np.meshgrid([0, np.pi / 2, 0.5], [-np.pi / 2, 0, 0.4], [np.pi / 2, 0.7, -1])
+    found = solved(chain, chain.poses(np.reshape(angles, (3, -1)).T), with_orientation=False)
+    assert found.complete.all() and (np.bincount(found.pose) == 4).all()
+
+
 def test_an_arm_without_a_closed_form_is_searched():
     robot = ws.load_robot(GENERAL)
     assert robot.closed_form is None

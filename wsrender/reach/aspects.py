@@ -310,6 +310,9 @@ class SignedPlane:
         near = inner[low[0] : low[0] + 2 * WAYS_IN + 1, low[1] : low[1] + 2 * WAYS_IN + 1]
         at = np.argwhere(near > 0)
         centers = self._low + (at + low + 0.5) * self._width
+        if self.elbow is not None:  # a way over its zero is none
+            beside = self.elbow.number(centers[:, 1]) == self.elbow.number(x[1:])
+            at, centers = at[beside], centers[beside]
         for k in np.argsort(np.linalg.norm(centers - x, axis=1))[: 4 * WAYS_IN : 4]:
             if certain(self.values, self._slopes, x, centers[k], sign):
                 return int(near[tuple(at[k])])
