@@ -8,6 +8,7 @@ import wsrender as ws
 from tests.reference import closed_form_inverse as closed_form
 from tests.reference.published_robots import dh_table
 from tests.run.journeys import from_the_command_line
+from wsrender.analyses.base_placement.result import PlacementMap
 from wsrender.analyses.jobs import parse_job
 from wsrender.documents.constraints import Apart
 from wsrender.documents.placements import COORDINATES, mounted, placed
@@ -207,6 +208,17 @@ def test_the_best_placement_serves_the_largest_weight_far_from_the_edge():
     best = light.document["best"]
     close = np.abs(table["x_m"] - best["x_m"]) < 0.15, np.abs(table["y_m"] - best["y_m"]) < 0.15
     assert (table["served"][close[0] & close[1]] == 6).all()
+
+
+@pytest.mark.parametrize("index", [None, "joint_limit_margin"])
+def test_sums_of_weights_that_only_rounding_tells_apart_are_one(index):
+    """0.1 + 0.2 is more than 0.3 in floating point: of placements that serve either the innermost is best."""
+    served = [[1, 1, 0], [0, 0, 1], [0, 0, 1], [1, 1, 0], [0, 0, 1], [1, 0, 0]]
+    bits = {"served": np.packbits(served, axis=1, bitorder="little"), "undecided": np.zeros((6, 1), np.uint8)}
+    parsed = parse_job(job("ur5e", RING[:3], over={"x_m": [0, 6, 1]}, weights=[0.1, 0.2, 0.3], index=index))
+    score = plan(parsed).score
+    found = PlacementMap(parsed, np.array(parsed.weights), bits, score, np.ones(6) if score else None)
+    assert len(np.unique(found.weight[:5])) == 2 and found.best == 2
 
 
 def test_the_targets_are_reached_from_the_best_placement():

@@ -43,7 +43,7 @@ def refined(job: BasePlacementJob, weights: np.ndarray, search: PlacementsOfKind
 def _measured(weights: np.ndarray, search: PlacementsOfKinds, coordinates: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Weight and score of placements (N, 6)."""
     found = search.decide(coordinates * IN_DEGREES, placed(coordinates))
-    return (found.label == REACHABLE) @ weights, told_apart(least_value(found.value))
+    return told_apart((found.label == REACHABLE) @ weights), told_apart(least_value(found.value))
 
 
 def _within(job: BasePlacementJob, coordinates: np.ndarray) -> np.ndarray:

@@ -8,7 +8,7 @@ from scipy.ndimage import distance_transform_edt
 
 from wsrender.analyses.base_placement.job import BasePlacementJob
 from wsrender.analyses.base_placement.score import Score
-from wsrender.documents.placements import ANGLES, COORDINATES, TURN
+from wsrender.documents.placements import ANGLES, COORDINATES, TURN, PlacementSpace
 from wsrender.reach.evidence import REACHABLE
 from wsrender.reach.placements import Decided
 from wsrender.volume.table import Grid, Table
@@ -17,7 +17,7 @@ UNITS = {name: "deg" if name in ANGLES else "m" for name in COORDINATES}
 DIGITS = 9
 IN_DEGREES = np.array([1.0] * 3 + [np.pi / 180] * 3)
 _COUNTED = ("served", "weight")
-BLOCK = 1 << 18  # placements whose bits are told apart at a time
+BLOCK = 1 << 20  # pairs of a placement and a target whose bits are told apart at a time
 
 
 class PlacementMap:
@@ -45,7 +45,8 @@ class PlacementMap:
         if not self.weighted:
             return self.served.astype(np.float64)
         weights, bits = self.weights, self.bits["served"]
-        blocks = (bits[k : k + BLOCK] for k in range(0, len(bits), BLOCK))
+        each = max(1, BLOCK // len(weights))
+        blocks = (bits[k : k + each] for k in range(0, len(bits), each))
         return np.concatenate([_unpacked(block, len(weights)) @ weights for block in blocks])
 
     @property
@@ -111,10 +112,11 @@ class PlacementMap:
     @cached_property
     def _order(self) -> np.ndarray:
         """Ranks of the placements (P,): by weight, then by the score; equal ones have one rank."""
+        weight = told_apart(self.weight) if self.weighted else self.weight
         if self.scores is None:
-            return self.weight
-        rank = np.zeros(len(self.weight), np.int64)
-        for values in (told_apart(self.scores), self.weight):
+            return weight
+        rank = np.zeros(len(weight), np.int64)
+        for values in (told_apart(self.scores), weight):
             rank = rank + np.unique(values, return_inverse=True)[1] * (rank.max() + 1)
         return rank
 
@@ -124,19 +126,13 @@ class PlacementMap:
         if not self.served.any():
             return None
         best = (self._order == self._order.max()).reshape(self._sizes or [1])
-        around = [(size // 2 + 1, size // 2 + 1) if self._whole_turn(name) else (1, 1)
-                  for name, size in zip(self.over.ranges, self._sizes, strict=True)]  # fmt: skip
-        for axis, (name, pad) in enumerate(zip(self.over.ranges, around, strict=True)):
-            pads = [pad if k == axis else (0, 0) for k in range(best.ndim)]
-            best = np.pad(best, pads, mode="wrap") if self._whole_turn(name) else np.pad(best, pads)
+        frames = framed(self.over)
+        for axis, (name, (before, _, after)) in enumerate(zip(self.over.ranges, frames, strict=True)):
+            pads = [(before, after) if k == axis else (0, 0) for k in range(best.ndim)]
+            best = np.pad(best, pads, mode="wrap") if _whole_turn(self.over, name) else np.pad(best, pads)
         depth = np.ones(best.shape) if best.all() else distance_transform_edt(best)
-        inner = tuple(slice(before, size - after) for (before, after), size in zip(around, best.shape, strict=False))
+        inner = tuple(slice(before, before + size) for before, size, _ in frames)
         return int(np.argmax(np.asarray(depth)[inner]))
-
-    def _whole_turn(self, name: str) -> bool:
-        """Whether the last value of a coordinate stands beside the first."""
-        covered = self.over.shape[COORDINATES.index(name)] * self.over.ranges[name][2]
-        return name in ANGLES and abs(covered - TURN) < 1e-6
 
     def entry_at(self, coordinates: np.ndarray, found: Decided) -> dict[str, Any]:
         """Coordinates (6,) [m and °] of any placement, and what it serves."""
@@ -155,6 +151,22 @@ class PlacementMap:
             "weight": float(self.weight[number]),
             **{name: float(value[0]) for name, value in self._values([number]).items() if name not in _COUNTED},
         }
+
+
+def framed(over: PlacementSpace) -> list[tuple[int, int, int]]:
+    """Of each range (before, size, after): how many values stand there while depths are found, and beside them.
+
+    Beside those of a whole turn stand these themselves, a half at either end; beside others nothing, which is worse.
+    """
+    sizes = {name: over.shape[COORDINATES.index(name)] for name in over.ranges}
+    beside = {name: size // 2 + 1 if _whole_turn(over, name) else 1 for name, size in sizes.items()}
+    return [(beside[name], size, beside[name]) for name, size in sizes.items()]
+
+
+def _whole_turn(over: PlacementSpace, name: str) -> bool:
+    """Whether the last value of a coordinate stands beside the first."""
+    covered = over.shape[COORDINATES.index(name)] * over.ranges[name][2]
+    return name in ANGLES and abs(covered - TURN) < 1e-6
 
 
 def told_apart(scores: np.ndarray) -> np.ndarray:
