@@ -17,6 +17,9 @@ SAMPLING = {"method": "random", "count": 4096, "seed": 1}
 ARM = {"robot": "phantom_omni", "sampling": SAMPLING}
 REGION = {"box": {"lower_m": [None, -0.25, None]}}  # which leaves most of what the arm reaches
 POINTS = [[0.8 * ((k * s) % 1) - 0.4 for s in (0.618, 0.7549, 0.5698)] for k in range(100)]
+RING = [[0.1 + 0.15 * np.cos(k), 0.15 * np.sin(k), 0.3] for k in range(6)]
+PLACED = {"robot": "ur5e", "points_m": RING, "quats_wxyz": [[0, 1, 0, 0]] * 6, "refine": False}
+OVER = {"x_m": [-0.9, 0.9, 0.1], "y_m": [-0.9, 0.9, 0.1]}
 JOBS = {
     "workspace": ARM | {"refined_volume": None},
     "labelled workspace": ARM | {"refined_volume": None, "voxel_labels": True, "voxel_size_m": 0.04},
@@ -27,6 +30,7 @@ JOBS = {
     "master_slave_mapping": {"master": ARM, "slave": ARM, "search": {}},
     "kinetostatic_field": ARM | {"sampling": {"method": "sobol", "count": 1024}},
     "reachability": {"robot": "phantom_omni", "points_m": POINTS},
+    "base_placement": PLACED | {"over": OVER | {"yaw_deg": [0, 360, 20]}},
     "shared_workspace": {"robots": [ARM, ARM | {"name": "other"}], "refined_volume": None},
     "robot_comparison": {"robots": [ARM, ARM | {"name": "other"}], "refined_volume": None},
 }
@@ -83,6 +87,9 @@ LARGE = {
     "robot_comparison": ARMS | {"voxel_size_m": 0.005},
     "collaborative_volume": SIDES | PLAIN | {"samples": 200_000, "seeds": 1},
     "planar_boundary": PLANAR,
+    "base_placement": PLACED | {"over": {"x_m": [-0.9, 0.9, 0.01], "y_m": [-0.9, 0.9, 0.01]}},
+    "base_placement: of one yaw": PLACED | {"over": OVER | {"z_m": [0, 0.4, 0.1], "yaw_deg": [0, 360, 5]}},
+    "base_placement: by an index": PLACED | {"over": OVER | {"yaw_deg": [0, 360, 6]}, "index": "manipulability"},
     "parallel_workspace": {"mechanism": "six_pus", "voxel_size_m": 0.02} | PLAIN,
     "orientations": {"mechanism": "stewart_gough", "kind": "orientation", "position_m": [0, 0, 0.55]}
     | {"orientations": {"tilt_deg": 40}},
@@ -94,6 +101,8 @@ SOLVED = {  # mostly by inverse kinematics
     "capability: float32": {"robot": "puma560", "directions": 1, "voxel_size_m": 0.05, "precision": "float32"},
     "reachability": {"robot": "ur5e", "points_m": MANY},
     "reachability: poses": {"robot": "puma560", "points_m": MANY[:4000], "quats_wxyz": TURNED},
+    "base_placement: points": {"robot": "ur5e", "points_m": RING * 8, "over": OVER, "refine": False},
+    "base_placement: seven joints": PLACED | {"robot": "franka_panda", "over": OVER | {"yaw_deg": [0, 360, 30]}},
 }
 OF_ANALYSIS = {"map": "workspace", "constrained workspace": "workspace", "orientations": "parallel_workspace"}
 
@@ -101,7 +110,7 @@ OF_ANALYSIS = {"map": "workspace", "constrained workspace": "workspace", "orient
 @pytest.mark.parametrize("name", LARGE)
 def test_memory_and_samples_are_as_estimated(name):
     """Of jobs of which arrays are most; what is traced are the arrays of the host, those of kernels on a CPU too."""
-    analysis = OF_ANALYSIS.get(name, name)
+    analysis = OF_ANALYSIS.get(name, name.partition(":")[0])
     small = JOBS.get(name, {}) or LARGE[name]
     warm = run.plan({"analysis": analysis} | small)
     run.finish(warm, run.run_shard(warm, 0, threads=1), threads=1)
@@ -222,6 +231,7 @@ BIG = {
     "kinetostatic_field": ({"voxel_size_m": 1e-5}, "voxel_size_m"),
     "indices_at": ({}, "configurations"),
     "reachability": ({}, "points_m"),
+    "base_placement": ({"over": {"x_m": [-1, 1, 1e-3], "y_m": [-1, 1, 1e-3]}}, "over"),
     "shared_workspace": ({"voxel_size_m": 1e-3}, "voxel_size_m"),
     "robot_comparison": ({"voxel_size_m": 1e-3}, "voxel_size_m"),
     "collaborative_volume": ({"samples": 10**7}, "samples"),

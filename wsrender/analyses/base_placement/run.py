@@ -1,5 +1,6 @@
 """The analysis ``base_placement``: labels of every placement and target, their map, and the best placement."""
 
+import math
 from dataclasses import replace
 from functools import cached_property
 from typing import Any
@@ -9,7 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from wsrender.analyses.base_placement.job import BasePlacementJob
 from wsrender.analyses.base_placement.refined import refined
-from wsrender.analyses.base_placement.result import IN_DEGREES, PlacementMap, least_value
+from wsrender.analyses.base_placement.result import IN_DEGREES, PlacementMap, framed, least_value
 from wsrender.analyses.base_placement.score import Score
 from wsrender.analyses.contract import Analysis, Draft, Settled, Tell
 from wsrender.analyses.cost import (
@@ -35,7 +36,7 @@ from wsrender.pipeline.constraints.collision import CollisionConstraint
 from wsrender.pipeline.constraints.constraint import Constraint
 from wsrender.reach.admissible_search import BLOCKED
 from wsrender.reach.evidence import REACHABLE, UNDECIDED
-from wsrender.reach.inverse_solver import InverseSolver, closed_form_of
+from wsrender.reach.inverse_solver import BATCH, InverseSolver, closed_form_of, solved_bytes
 from wsrender.reach.placements import Decided, PlacedAdmission, Placements, PlacementsOfKinds
 from wsrender.reach.target_list import TargetList, targets_of_job
 from wsrender.reach.targets import NAMES, Kind, check_tolerance, evidence_of_targets, kinds_of
@@ -50,7 +51,10 @@ from wsrender.volume.table import Table
 
 PAIRS = 1 << 20  # of placements and targets that are decided together
 CLOSED_PER_S, POSTURES_PER_S, BALLS_PER_S, POSES_PER_S = 1.5e7, 4e5, 3e5, 1.2e4  # pairs of one core
-PAIR_BYTES = 40  # while they are decided
+PLACE_BYTES, PAIR_BYTES = 550, 25  # of a placement, and of a pair, while they are decided
+COORDINATES_BYTES, ROW_BYTES = 144, 62  # of a placement while tables are made of it, and in what is kept of these
+BALL_BYTES = 400  # of a pair that is searched along a joint
+DEPTH_BYTES = 16  # of a cell and a range while its distance from those that are worse is found
 OF_THE_WORLD = ("region", "orientation", "environment")  # constraints that see where the base stands
 LARGEST_TURN = np.pi / 4  # by which tolerances turn the base
 SHIFTS, FEW_SHIFTS = 1024, 128  # of the base that are tried at a time; few where inverse kinematics searches
@@ -204,11 +208,36 @@ class BasePlacementAnalysis(Analysis):
         rows = over.count * (8.0 * (len(over.ranges) + bool(self.score)) + 12 + bits)
         drawn, seconds = pictures_cost("placements", "robot")
         files = DOCUMENT_BYTES + drawn + rows + 7 * LISTED_BYTES * K
-        memory = 2 * rows + 8.0 * over.count + PAIR_BYTES * min(PAIRS, over.count * K) + 7 * LISTED_MEMORY * K
-        memory += SEARCHED_BYTES if self._constrained else 0
+        kept = over.count * (bits + 8.0 * bool(self.score))
+        tables = max(COORDINATES_BYTES * over.count, ROW_BYTES * over.count + self._depth_bytes)
+        memory = kept + max(kept + self._decided_bytes, tables) + 7 * LISTED_MEMORY * K
         tried = over.count / self._alike + (TRIED if self.job.refine else 0)
         seconds += tried * K / self._rate + files / WRITTEN_PER_S
         return Cost(over.count * K, memory, files, seconds, Asks("over", "take larger steps"))
+
+    @property
+    def _decided_bytes(self) -> float:
+        """Of memory while placements are decided, as many as are at a time."""
+        K, places = len(self.targets), self.job.over.count / self._alike
+        together = min(places, max(1, PAIRS // (K * self._alike)))
+        if self._constrained or self.score:
+            solved = SEARCHED_BYTES + self.program_bytes
+        else:
+            solved = max(self._solved_bytes(kind, together) for kind in self._kinds)
+        return (PLACE_BYTES + PAIR_BYTES * K) * together + solved
+
+    def _solved_bytes(self, kind: Kind, places: float) -> float:
+        """Of memory for targets of a kind that a search decides, from so many placements."""
+        form, pairs = closed_form_of(kind.chain, kind.name), places * len(kind.at)
+        if form:
+            return 0.0 if isinstance(form, ClosedForm) else BALL_BYTES * min(pairs, BATCH)
+        return solved_bytes(pairs, kind.name, kind.chain, self.job.precision)
+
+    @property
+    def _depth_bytes(self) -> float:
+        """Of memory while the best placement is found that is farthest from those that are worse."""
+        cells = math.prod(before + size + after for before, size, after in framed(self.job.over))
+        return cells * DEPTH_BYTES * len(self.job.over.ranges)
 
     def compute(self, shard: int, execution: Execution, tell: Tell) -> PartialResult:
         """Of every placement of the shard bits (B,) uint8, target k that of byte k // 8 and weight 2^(k % 8).
