@@ -35,6 +35,7 @@ DRAWING = {  # what draws, and jobs for which it does
         "labels under constraints": WORKSPACE | {"refined_volume": None, "constraints": UPRIGHT},
         "mapping": job_of("master_slave_mapping") | {"master": UPRIGHT_SIDE, "search": None},
     },
+    ("wsrender.analyses.base_placement.run", "largest_ball"): {"tolerance": SMALL["base_placement"] | {"refine": True}},
     ("wsrender.reach.volume_refinement", "estimate_volumes"): {"refined volume": WORKSPACE},
     ("wsrender.reach.free_volume", "estimate_volumes"): {"free volume": WORKSPACE | {"constraints": UPRIGHT}},
     ("wsrender.analyses.parallel_workspace.refined", "estimate_volumes"): {"legs": SMALL["parallel_workspace"]},

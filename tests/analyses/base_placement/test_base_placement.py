@@ -415,6 +415,13 @@ def test_the_best_placement_is_no_worse_than_its_cell_and_tolerant(index):
     assert not served(1.2 * shift, 0).all() and not served(0, 1.2 * turn).all()
 
 
+def test_under_torque_limits_only_a_translation_is_tolerated():
+    """Gravity would turn in the base's frame."""
+    fields = {"over": {"x_m": -0.4}, "constraints": {"torque": True}, "refine": True}
+    tolerance = execute(job("ur5e", RING[:1], [DOWN], **fields)).document["best"]["tolerance"]
+    assert tolerance["rotation_rad"] is None and 0 < tolerance["translation_m"] < 1
+
+
 def test_tolerance_among_what_stands_around():
     """MuJoCo's distances at every posture of a hundred placements inside."""
     table = dh_table("puma560").model_copy(update={"link_radius": 0.04})
