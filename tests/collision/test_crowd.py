@@ -172,15 +172,17 @@ def test_balls_hold_the_solids_and_their_margins():
 
 
 ROD = """<mujoco><compiler angle="radian"/><worldbody><body><joint axis="0 1 1" range="-3 3" limited="true"/>
-  <body><joint axis="0 0 1" range="-2 2" limited="true"/><joint axis="0 1 0" range="-2 2" limited="true"/><site name="tip" pos="2 0 0"/>
+  <body><joint axis="0 0 1" range="-2 2" limited="true"/><joint axis="0 1 0" range="-2 2" limited="true"/>
+  <site name="tip" pos="2 0 0"/>
   <geom type="capsule" fromto="0 0 0 2 0 0" size=".004"/><geom type="capsule" fromto="0 0 0 -1 0 0" size=".02"/>
   </body></body></worldbody></mujoco>"""
 
 
 def test_a_long_rod_has_as_many_balls_as_the_kernel_holds():
     robot = ws.load_robot(ROD, tip="tip")
-    constraints = constraints_for(robot, None, many(robot, 12, 2, 0.5))
+    constraints = constraints_for(robot, None, many(robot, 12, 2, 0.5, ("sphere", "capsule")))
     found, (with_cells, _) = both_ways(robot, constraints, 1 << 12)
     assert with_cells.program.crowd_rows[:, 2].max() == AT_ONCE
     np.testing.assert_array_equal(*found)
     assert 0.02 < (found[0] > 0).mean() < 0.98
+    assert with_cells.decided[0] > 0.99 * (1 << 12)  # by covers that are the solids themselves
