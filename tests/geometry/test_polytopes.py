@@ -113,7 +113,7 @@ def test_meshes_are_closed_and_stand_at_the_tip(tmp_path):
 
 def test_what_the_robot_lacks_is_named():
     robot = ws.load_robot("ur5e")
-    with pytest.raises(ws.InputError, match="the polytope of velocity needs speeds, which ur5e lacks of joint1"):
+    with pytest.raises(ws.InputError, match="kind: the polytope of velocity needs speeds, which ur5e lacks of joint1"):
         ws.polytope(robot, [0] * 6)
     with pytest.raises(ws.InputError, match="kind: 'power' is not allowed; velocity, force, acceleration are"):
         ws.polytope(robot, [0] * 6, "power")

@@ -122,12 +122,19 @@ def polytope(
 
 
 def polytopes(
-    robot: Robot, q: np.ndarray, kind: str, rows: tuple[int, ...], gravity: Point = GRAVITY, limit_N: float = LIMIT_N
+    robot: Robot,
+    q: np.ndarray,
+    kind: str,
+    rows: tuple[int, ...],
+    gravity: Point = GRAVITY,
+    limit_N: float = LIMIT_N,
+    *,
+    field: str = "kind",
 ) -> list[Polytope]:
-    """Those of configurations (N, n), at a task's ``rows``. Raises as `polytope`."""
+    """Those of configurations (N, n), at a task's ``rows``. Raises as `polytope`, naming the ``field`` that asks."""
     if kind not in UNITS:
-        raise InputError("kind", f"{kind!r} is not allowed; {', '.join(UNITS)} are")
-    asked = ChainAsked(f"the polytope of {kind}", robot, {}, rows, gravity, ())
+        raise InputError(field, f"{kind!r} is not allowed; {', '.join(UNITS)} are")
+    asked = ChainAsked(f"the polytope of {kind}", robot, {}, rows, gravity, field=field)
     chain, linear = (asked.chain if kind == "velocity" else asked.weighing()), asked.linear()
     R = chain.T_world_base[:3, :3]
     base = R[:, list(linear)]  # the task's axes in the world

@@ -30,13 +30,14 @@ class ChainAsked:
     options: Mapping[str, Any]
     rows: tuple[int, ...]
     gravity: Point
-    held: Collection[str]
+    held: Collection[str] = ()
+    field: str = "indices"
 
     @property
     def chain(self) -> Chain:
         """The chain that all of what moves is in."""
         if (chain := self.robot.chain.geometry) is None:
-            raise InputError("indices", f"{self.name} is not available for a robot that is defined by a class")
+            raise InputError(self.field, f"{self.name} is not available for a robot that is defined by a class")
         return chain.dynamic
 
     def linear(self) -> tuple[int, ...]:
@@ -49,21 +50,21 @@ class ChainAsked:
         """Limits back and forth (2 n,)."""
         if missing := self.chain.unlimited_efforts:
             told = f"{self.name} needs torque limits, which {self.robot.name} lacks of {', '.join(missing)} ({EFFORTS})"
-            raise InputError("indices", told)
+            raise InputError(self.field, told)
         return np.abs(self.chain.efforts).ravel()
 
     def speeds(self) -> np.ndarray:
         """Largest speeds (n,)."""
         if missing := self.chain.unlimited_velocities:
             told = f"{self.name} needs speeds, which {self.robot.name} lacks of {', '.join(missing)} ({VELOCITIES})"
-            raise InputError("indices", told)
+            raise InputError(self.field, told)
         return self.chain.velocity_limits
 
     def weighing(self) -> Chain:
         """The chain with what it weighs."""
         if not self.robot.has_inertia:
             told = f"{self.name} needs link inertias, which the model of {self.robot.name} does not have"
-            raise MissingInertiaError("indices", told)
+            raise MissingInertiaError(self.field, told)
         return self.chain
 
     def direction(self, rows: tuple[int, ...]) -> np.ndarray:

@@ -75,7 +75,7 @@ def test_jobs_without_them_are_what_they_were():
 
 def test_what_cannot_be_made_is_refused_before_anything_runs():
     bare = JOB | {"robot": "ur5e", "polytopes": ["velocity"]}
-    with pytest.raises(ws.InputError, match="the polytope of velocity needs speeds"):
+    with pytest.raises(ws.InputError, match="polytopes: the polytope of velocity needs speeds"):
         plan(bare)
     with pytest.raises(ws.DocumentError, match="polytopes: must not be given with 21 configurations; 20 at most"):
         plan(JOB | {"configurations": [Q[0]] * 21, "polytopes": ["force"]})

@@ -140,7 +140,8 @@ class IndicesAtAnalysis(Analysis):
     def _polytopes(self, kind: str, q: np.ndarray) -> list[Polytope]:
         """Those of a kind at configurations (N, n); raises InputError for what the robot lacks."""
         limit: Any = self.job.index_options.get("force_radius", {}).get("limit_N", LIMIT_N)
-        return polytopes(self.robot, q, kind, self.pipeline.evaluation.rows, gravity_of(self.job), limit)
+        rows = self.pipeline.evaluation.rows
+        return polytopes(self.robot, q, kind, rows, gravity_of(self.job), limit, field="polytopes")
 
     def _admission(self, rejected: np.ndarray | None) -> tuple[np.ndarray, dict[str, Any], dict[str, Table]]:
         """Which rows are admitted (N,) bool, what the document says of it, and the table of reasons."""
