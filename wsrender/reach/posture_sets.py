@@ -13,6 +13,7 @@ from wsrender.documents.constraints import Constraints
 from wsrender.documents.environment import Environment
 from wsrender.documents.quantities import argument, positive
 from wsrender.documents.sampling import Sobol
+from wsrender.documents.target_lists import UNIT
 from wsrender.engine import Accuracy, closed_postures, configurations, solve_inverse
 from wsrender.errors import InputError
 from wsrender.pipeline.constraints.constraint import Constraint
@@ -37,7 +38,6 @@ SWEPT = 128  # values of a free joint at which self-motions are looked for
 MOST_OF_FAMILIES = 16  # postures of a pose that stand for families, whose members have no number
 NEARLY = 1e-5  # m and rad: a try that ends so near is taken further
 ANYHOW = Rotation.from_rotvec([0.9, -1.3, 0.4]).as_matrix()  # an orientation at which no free wrist stands in line
-UNIT = 1e-3  # largest error of a quaternion's length
 
 
 @dataclass(frozen=True, eq=False)

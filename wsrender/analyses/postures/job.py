@@ -11,8 +11,7 @@ from wsrender.documents.constraints import Constrained
 from wsrender.documents.format import JobDocument
 from wsrender.documents.options import IndexChoices, IndicesOrNone
 from wsrender.documents.quantities import Number, Seed, integer, real, rows_of, sequence
-
-UNIT = 1e-3  # largest error of a quaternion's length
+from wsrender.documents.target_lists import UNIT
 
 
 def _one_or_rows(width: int) -> BeforeValidator:
