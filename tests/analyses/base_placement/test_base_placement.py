@@ -1,5 +1,7 @@
 """The analysis ``base_placement`` against all configurations in closed form, placement by placement."""
 
+from functools import reduce
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
@@ -15,7 +17,7 @@ from wsrender.documents.placements import COORDINATES, mounted, placed
 from wsrender.pipeline.constraints import registry
 from wsrender.robot.collisions import _kept_apart
 from wsrender.robot.constraints import constraints_for
-from wsrender.run import execute, plan
+from wsrender.run import execute, plan, run_shard
 
 DOWN = [0.0, 1.0, 0.0, 0.0]
 POST = {"shape": "box", "name": "post", "size_m": [0.1, 0.1, 1.0], "position_m": [0.35, 0.3, 0.5]}
@@ -219,6 +221,25 @@ def test_sums_of_weights_that_only_rounding_tells_apart_are_one(index):
     score = plan(parsed).score
     found = PlacementMap(parsed, np.array(parsed.weights), bits, score, np.ones(6) if score else None)
     assert len(np.unique(found.weight[:5])) == 2 and found.best == 2
+
+
+def test_a_whole_turn_goes_on_at_its_other_end():
+    """All but the fourth yaw serve: of five around the end the middle one is best, of three before it the second."""
+    for yaw, best in (([0, 360, 60], 0), ([0, 300, 50], 1)):
+        parsed = parse_job(job("ur5e", RING[:1], over={"yaw_deg": yaw}))
+        served = np.ones((parsed.over.count, 1), np.uint8)
+        served[3] = 0
+        bits = {"served": served, "undecided": np.zeros_like(served)}
+        assert PlacementMap(parsed, np.ones(1), bits, None, None).best == best
+
+
+def test_shards_hold_all_placements_that_are_alike():
+    whole = plan(job("ur5e", RING, [DOWN] * 6, over=TURNED))
+    divided = whole.settled_as(whole.division(1.0, 7))
+    assert len(divided.shards) > 3 and all(first % (6 * whole._alike) == 0 for first, _ in divided.shards)
+    parts = [run_shard(divided, shard) for shard in range(len(divided.shards))]
+    served = [part["served"] for part in (run_shard(whole, 0), reduce(divided.merge, reversed(parts)))]
+    assert np.array_equal(*served)
 
 
 def test_the_targets_are_reached_from_the_best_placement():
