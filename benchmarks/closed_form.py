@@ -8,7 +8,8 @@ are in the extra test-models; what is not installed is left out. Aims: 75 times 
 or more, for the quartic of a general arm 45 times that for the UR5e.
 
 Of arms of seven hinges labels alone: a search in balls beside the solver, of poses made and of poses anywhere in the
-box that holds the workspace. Aims, for the Panda: 25 and 150 times the solver of version 0.1.0.
+box that holds the workspace. Aims, for the Panda: 25 and 150 times the solver of version 0.1.0. Of open arms of six the
+same, aims 10 and 25 times, and sets of all postures beside ssik's, aim 40 times.
 """
 
 import argparse
@@ -24,21 +25,46 @@ from scipy.spatial.transform import Rotation
 from wsrender_kernels.closed_form import FIELDS, LANES, closed_form_kernel
 
 import wsrender as ws
-from wsrender.engine import devices_of, search_free_joint
+from wsrender.engine import devices_of, open_wrist_postures, search_free_joint, search_open_wrist
 from wsrender.engine.closed_form import shape_of
 from wsrender.engine.evaluation import REAL, device_array
 from wsrender.engine.kernel_cache import launch, loaded
 from wsrender.reach import InverseSolver
 from wsrender.robots.chain import Chain
-from wsrender.robots.closed_form import ClosedForm, FreeJointForm
+from wsrender.robots.closed_form import ClosedForm, FreeJointForm, OpenWristForm
 from wsrender.robots.closed_form.numbers import packed
 from wsrender.robots.kinematics import Kinematics
 from wsrender.robots.reachable_box import reachable_box
 
-SSIK = {"ur5e": "universal_robots.ur5e_ik", "puma560": "unimation.puma560_ik"}
+SSIK = {
+    "ur5e": "universal_robots.ur5e_ik",
+    "puma560": "unimation.puma560_ik",
+    "crx10ia": "fanuc.crx10ia_ik",
+    "xarm6": "ufactory.xarm6_ik",
+}
 NEAR: dict[str, Any] = {"position_m": 1e-5, "angle_rad": 1e-5}
+ARRAYS = 1 << 21  # poses in arrays
 FEW, FEWER = 4096, 256  # poses for the solver and EAIK, and for ssik
 GENERAL = [(0.1, 70, 0.2), (0.4, 40, 0.1), (0.15, -80, 0.05), (0.0, 90, 0.35), (0.0, -90, 0.0), (0.0, 0, 0.1)]
+# Open arms: a [m], alpha [°], d [m], theta [°], and the limits [°] of every joint.
+OPEN = {
+    "crx10ia": [
+        (0, 90, 0.245, 0, (-190, 190)),
+        (0.54, 180, 0, 90, (-179.9, 179.9)),
+        (0, 90, 0, 180, (-71, 251)),
+        (0, 90, -0.54, 180, (-190, 190)),
+        (0, 90, 0.15, 180, (-179.9, 179.9)),
+        (0, 0, -0.16, 0, (-225, 225)),
+    ],
+    "xarm6": [
+        (0, 90, 0.267, 0, (-360, 360)),
+        (0.289487, 0, 0, 100.6501, (-118, 120)),
+        (-0.0775, 90, 0, -100.6501, (-225, 11)),
+        (0, 90, 0.3425, 180, (-360, 360)),
+        (-0.076, 90, 0, 180, (-97, 180)),
+        (0, 0, -0.097, 0, (-360, 360)),
+    ],
+}
 
 Work = tuple[int, Callable[[], object]]  # poses, and what solves them
 
@@ -85,7 +111,8 @@ def eaik(chain: Chain, T: np.ndarray) -> Work:
 def ssik(name: str, seed: int = 0) -> Work:
     """Ssik's module for the arm, with limits and windings, its own poses."""
     module = importlib.import_module(f"ssik.prebuilt.{SSIK[name]}")
-    q = np.random.default_rng(seed).uniform(*np.transpose(module._JOINT_LIMITS), (FEWER, 6))
+    limits = [ends or (-np.pi, np.pi) for ends in module._JOINT_LIMITS]
+    q = np.random.default_rng(seed).uniform(*np.transpose(limits), (FEWER, 6))
     poses = [module.fk(row) for row in q]
     return FEWER, lambda: [module.solve(T) for T in poses]
 
@@ -133,6 +160,43 @@ def redundant_cases(count: int, device: str) -> dict[tuple[str, str], Work]:
     return cases
 
 
+def array_cases(device: str) -> dict[tuple[str, str], Work]:
+    """Labels alone, arrays in and out, and what the kernel does of it, by arm and which poses."""
+    cases, count = {}, ARRAYS
+    for name in ("ur5e", "puma560"):
+        chain = ws.load_robot(name).chain
+        own = InverseSolver(chain, kind="pose", device=device, threads=1, **NEAR)
+        assert own.closed
+        made, random = chain.poses(uniform(chain.lower_limits, chain.upper_limits, count)), made_anywhere(chain, count)
+        for told, T in (("made", made), ("anywhere", random)):
+            poses = T[:, :3, 3].copy(), Rotation.from_matrix(T[:, :3, :3]).as_quat(scalar_first=True)
+            cases[name, f"arrays, {told}"] = count, partial(own.labels, *poses)
+            cases[name, f"arrays, {told}: kernel"] = count, partial(own.closed.labels_by_quaternions, *poses)
+    return cases
+
+
+def open_cases(count: int, device: str) -> dict[tuple[str, str], Work]:
+    """Labels and sets of open arms of six hinges, by arm and what is done of which poses."""
+    cases = {}
+    for name, rows in OPEN.items():
+        joints = [ws.DHRow(a=a, alpha_deg=A, d=d, theta_deg=t, limits_deg=ends) for a, A, d, t, ends in rows]
+        chain = ws.load_robot(ws.DHTable(convention="standard", rows=tuple(joints), name=name)).chain
+        form = OpenWristForm.of(chain)
+        assert form and chain.geometry
+        made, random = chain.poses(uniform(chain.lower_limits, chain.upper_limits, count)), made_anywhere(chain, count)
+        for told, T in (("made", made), ("anywhere", random)):
+            search = partial(search_open_wrist, form, T, device=device, threads=1, **NEAR)
+            cases[name, f"balls, {told}"] = count, search
+            cases[name, f"solver, {told}"] = solver(chain, T)
+        some = made[: max(1, count // 16)]
+        cases[name, "sets, made"] = len(some), partial(open_wrist_postures, form, some, device=device, threads=1)
+        try:
+            cases[name, "ssik, made"] = ssik(name)
+        except ImportError:
+            print("ssik is not installed")
+    return cases
+
+
 def uniform(lower: np.ndarray, upper: np.ndarray, count: int) -> np.ndarray:
     """Points (N, k) of a box."""
     return np.random.default_rng(0).uniform(lower, upper, (count, len(lower)))
@@ -173,7 +237,9 @@ def main() -> None:
     for (name, case), rate in rates.items():
         beside = rate / rates["ur5e", "EAIK"] if ("ur5e", "EAIK") in rates else np.nan
         print(f"| {name} | {case} | {rate:,.0f} | {rates[name, 'float64'] / rate:.1f} | {beside:.1f} |")
-    rates = least_times(redundant_cases(arguments.poses, arguments.device), arguments.repeats)
+    along = redundant_cases(arguments.poses, arguments.device) | open_cases(arguments.poses, arguments.device)
+    along |= array_cases(arguments.device)
+    rates = least_times(along, arguments.repeats)
     print("| arm | labels of poses | poses/s |\n|---|---|--:|")
     for (name, case), rate in rates.items():
         print(f"| {name} | {case} | {rate:,.0f} |")

@@ -48,7 +48,24 @@ def rows(count: int) -> list:
     return [[(k * s) % 1 for s in (0.61, 0.75, 0.56, 0.33, 0.47, 0.29)] for k in range(count)]
 
 
+def down(count: int, listed: bool = False) -> dict:
+    """Poses of a tip that looks down, in the fields of a list of targets or of one analysis of poses."""
+    names = ("points_m", "quats_wxyz") if listed else ("position_m", "quat_wxyz")
+    return dict(zip(names, (points(count), [[0, 1, 0, 0]] * count), strict=True))
+
+
+def two_arms(robot: str, over: dict) -> dict:
+    """Two arms of a kind, and where either may stand."""
+    return {side: {"robot": robot, "over": over} for side in ("first", "second")}
+
+
 PLAIN = {"refined_volume": None}
+LIMITED = {"library": "ur5e", "velocity_limits": {f"joint{k}": 3.1 for k in range(1, 7)}}
+PLACES = {"x_m": [-0.6, 0.6, 0.05], "y_m": [-0.6, 0.6, 0.05], "yaw_deg": [0, 360, 15]}
+TARGET = {"position_m": [0.1, 0, 0.3], "quat_wxyz": [0, 1, 0, 0]}
+SIZES = ((0.1, 70, 0.2), (0.4, 40, 0.1), (0.15, -80, 0.05), (0, 90, 0.35), (0.1, -90, 0.1), (0.05, 20, 0.1))
+ROWS = [{"a": a, "alpha_deg": alpha, "d": d, "limits_deg": [-180, 180]} for a, alpha, d in SIZES]
+GENERAL = {"dh": {"convention": "standard", "rows": ROWS}}  # without a closed form
 PLANE = {"sampling": {"method": "random", "count": 100_000, "locked": {"joint4": 0.0}}}
 DESIGN = {"analysis": "parallel_workspace", "mechanism": {"library": "six_pus"}, "method": "exact"}
 BALL = [{"limits_deg": [-90, 90]}, {"alpha_deg": 90, "limits_deg": [60, 150]}]
@@ -91,6 +108,31 @@ JOBS = {
         "small": {"robot": "phantom_omni", "configurations": rows(1000)},
         "large": {"robot": "ur5e", "configurations": rows(500_000)},
         "all": {"robot": "puma560", "configurations": rows(300_000), "indices": "all", "precision": "float32"},
+        "polytopes": {"robot": LIMITED, "configurations": rows(20), "polytopes": ["velocity", "force"]},
+    },
+    "postures": {
+        "small": {"robot": "puma560", **down(50)},
+        "default": {"robot": "ur5e", **down(20_000)},
+        "positions": {"robot": "phantom_omni", "position_m": points(300)},
+        "families": {"robot": "ur5e", "position_m": points(100)},
+        "searched": {"robot": GENERAL, **down(1000)},
+        "aspects": {"robot": "ur5e", **down(300), "aspects": True},
+        "self-motions": {"robot": "franka_panda", **down(20)},
+    },
+    "base_placement": {
+        "small": {"robot": "puma560", **down(4, listed=True), "over": PLACES | {"x_m": [-0.6, 0.6, 0.3]}},
+        "default": {"robot": "ur5e", **down(20, listed=True), "over": PLACES},
+        "scored": {"robot": "ur5e", **down(20, listed=True), "over": PLACES, "index": "manipulability"},
+        "positions": {"robot": "phantom_omni", "points_m": points(20), "over": PLACES},
+    },
+    "inverse_reachability": {
+        "small": {"robot": "puma560", "target": TARGET, "over": PLACES | {"x_m": [-0.6, 0.6, 0.3]}},
+        "default": {"robot": "ur5e", "target": TARGET, "over": PLACES},
+        "voxels": {"robot": "ur5e", "target": TARGET, "over": PLACES | {"z_m": [-0.6, 0.6, 0.05]}},
+    },
+    "two_arm_placement": {
+        "small": {**down(4, listed=True), **two_arms("puma560", PLACES | {"x_m": [-0.6, 0.6, 0.3]})},
+        "default": {**down(20, listed=True), **two_arms("ur5e", PLACES | {"yaw_deg": 0})},
     },
     "reachability": {
         "small": {"robot": "phantom_omni", "points_m": points(500)},

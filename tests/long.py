@@ -2,7 +2,7 @@
 
 python tests/long.py                           # what there is
 python tests/long.py NAME [PART]               # a piece, or one of its parts
-python tests/long.py --minutes 6 --choice TEXT # as many parts of all pieces as fit, another choice for every text
+python tests/long.py [NAME] --minutes 6 --choice TEXT # as many parts as fit, of all pieces or one, in an order of TEXT
 """
 
 import argparse
@@ -15,9 +15,12 @@ from typing import Any
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from tests.collision import many_labels
-from tests.engine import closed_form_poses, free_joint_sweeps
-from tests.reach import near_limits
+from tests.engine import closed_form_poses, free_joint_sweeps, open_wrist_poses
+from tests.reach import near_limits, posture_peers, refutations, self_motion_sweeps
 from tests.robots import model_packages
+from tests.server import soak
+from tests.server.hostile import collection
+from tests.viewer import largest_picture
 
 # By name: a module with ``PARTS``, functions by name that return figures, and ``violations(figures by part)``.
 PIECES = {
@@ -26,6 +29,13 @@ PIECES = {
     "collision_labels": many_labels,
     "free_joint": free_joint_sweeps,
     "closed_form_poses": closed_form_poses,
+    "posture_peers": posture_peers,
+    "self_motions": self_motion_sweeps,
+    "open_wrist_poses": open_wrist_poses,
+    "refutations": refutations,
+    "hostile": collection,
+    "soak": soak,
+    "largest_picture": largest_picture,
 }
 
 
@@ -33,7 +43,7 @@ def main() -> int:
     """Run a piece; 1 where it is violated."""
     arguments = _parser().parse_args()
     if arguments.minutes is not None:
-        return _measured(_chosen(arguments.choice), 60 * arguments.minutes)
+        return _measured(_chosen(arguments.choice, arguments.piece), 60 * arguments.minutes)
     if not arguments.piece:
         for name, piece in PIECES.items():
             print(f"{name}: {piece.__doc__}\n  " + "; ".join(piece.PARTS))
@@ -56,9 +66,14 @@ def _measured(parts: list[tuple[str, str]], seconds: float = float("inf")) -> in
     return 1 if found else 0
 
 
-def _chosen(text: str) -> list[tuple[str, str]]:
-    """All parts of all pieces, in an order that follows from the text."""
-    parts = [(name, part) for name, piece in PIECES.items() for part in piece.PARTS]
+def _chosen(text: str, only: str | None = None) -> list[tuple[str, str]]:
+    """All parts of all pieces but those that are too long, or of one, in an order that follows from the text."""
+    parts = [
+        (name, part)
+        for name, piece in PIECES.items()
+        for part in piece.PARTS
+        if only in (None, name) and part not in getattr(piece, "TOO_LONG", ())
+    ]
     random.Random(text).shuffle(parts)
     return parts
 
@@ -67,7 +82,7 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("piece", nargs="?", choices=PIECES)
     parser.add_argument("parts", nargs="*", metavar="part")
-    parser.add_argument("--minutes", type=float, help="begin no part after so many minutes, of all pieces")
+    parser.add_argument("--minutes", type=float, help="begin no part after so many minutes")
     parser.add_argument("--choice", default="", help="a text that the order of the parts follows from")
     return parser
 

@@ -4,7 +4,10 @@ import importlib.util
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
+
+from wsrender.analyses.jobs import parse_job
 
 GUIDES = Path(__file__).parents[1] / "docs" / "guides"
 
@@ -48,3 +51,26 @@ def test_where_to_put_an_arm(tmp_path):
     assert there["served"] == 10 and there["minimum_singular_value"] == pytest.approx(value, abs=1e-3)
     guide.drawn(result, tmp_path / "picture.png")
     assert (tmp_path / "picture.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_the_viewer(tmp_path):
+    """Its pictures are there in both themes, small; the jobs behind them are valid, and a picture can be made again."""
+    pytest.importorskip("playwright", reason="needs Playwright for Python and a Chromium")
+    image = pytest.importorskip("PIL.Image")
+    guide, text = guide_of("viewer")
+    folder, names = GUIDES / "viewer", [each.name for each in guide.SHOWN]
+    found = {path.name: path for path in folder.iterdir()}
+    assert found.keys() == {f"{name}_{theme}.png" for name in names for theme in guide.THEMES}
+    for path in found.values():
+        assert path.stat().st_size <= guide.MOST_BYTES
+        with image.open(path) as picture:
+            assert picture.size == (1280, 720)
+    told = re.findall(r"\(viewer/(\w+)_(?:light|dark)\.png\)", text)
+    assert sorted(told) == sorted(names) and len(names) == 10
+    for job in guide.JOBS.values():
+        parse_job(job)
+    guide.draw(tmp_path, ["form"])
+    for theme in guide.THEMES:
+        with image.open(tmp_path / f"form_{theme}.png") as picture:
+            seen = np.asarray(picture.convert("L"))
+        assert (np.median(seen) > 128) == (theme == "light") and seen.std() > 5

@@ -32,6 +32,7 @@ from wsrender.version import __version__
 if TYPE_CHECKING:
     from wsrender import run
     from wsrender.client import Client
+    from wsrender.documents.array_files import ArrayFile
     from wsrender.documents.environment import (
         Box,
         Capsule,
@@ -46,9 +47,9 @@ if TYPE_CHECKING:
         Scene,
         Sphere,
     )
-    from wsrender.documents.robot import DHRow, DHTable, Transform
+    from wsrender.documents.robot import DHRow, DHTable, MountJoint, Transform
     from wsrender.documents.sampling import BoundaryBiased, Converge, Grid, Random, Sobol
-    from wsrender.documents.target_lists import Criterion, Target, TargetTable
+    from wsrender.documents.target_lists import Criterion, Target, TargetTable, TargetVolume
     from wsrender.geometry.planar.exact_boundary import exact_boundary
     from wsrender.geometry.polytopes import Polytope, polytope
     from wsrender.indices import Index, Option, math, register_index
@@ -66,6 +67,7 @@ if TYPE_CHECKING:
         design_optimization,
         five_bar,
         indices_at,
+        inverse_reachability,
         kinetostatic_field,
         master_slave_mapping,
         method_comparison,
@@ -74,9 +76,11 @@ if TYPE_CHECKING:
         reachability,
         robot_comparison,
         shared_workspace,
+        two_arm_placement,
         workspace,
     )
-    from wsrender.reach import Postures, Reachability, postures, reachable
+    from wsrender.reach import Postures, Reachability, postures, reachable, reachable_labels
+    from wsrender.results.configurations import configuration_of
     from wsrender.results.export.formats import Format, register_format
     from wsrender.results.presentation import Picture, register_picture
     from wsrender.results.result import Result
@@ -85,6 +89,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "AccessError",
+    "ArrayFile",
     "BoundaryBiased",
     "Box",
     "Capsule",
@@ -113,6 +118,7 @@ __all__ = [
     "MissingExtraError",
     "MissingInertiaError",
     "ModelError",
+    "MountJoint",
     "NotConvergedError",
     "NotFoundError",
     "NumericalError",
@@ -135,6 +141,7 @@ __all__ = [
     "Sphere",
     "Target",
     "TargetTable",
+    "TargetVolume",
     "Transform",
     "WaitTimeoutError",
     "WsrenderError",
@@ -145,6 +152,7 @@ __all__ = [
     "boundary_patches",
     "capability",
     "collaborative_volume",
+    "configuration_of",
     "design_optimization",
     "evaluate_indices",
     "exact_boundary",
@@ -152,6 +160,7 @@ __all__ = [
     "five_bar",
     "force_field",
     "indices_at",
+    "inverse_reachability",
     "kinetostatic_field",
     "load_robot",
     "master_slave_mapping",
@@ -163,6 +172,7 @@ __all__ = [
     "postures",
     "reachability",
     "reachable",
+    "reachable_labels",
     "register_constraint",
     "register_format",
     "register_index",
@@ -170,6 +180,7 @@ __all__ = [
     "robot_comparison",
     "run",
     "shared_workspace",
+    "two_arm_placement",
     "workspace",
 ]
 
@@ -194,6 +205,7 @@ _NAMES_OF_MODULE = {
         "design_optimization",
         "five_bar",
         "indices_at",
+        "inverse_reachability",
         "kinetostatic_field",
         "master_slave_mapping",
         "method_comparison",
@@ -202,9 +214,11 @@ _NAMES_OF_MODULE = {
         "reachability",
         "robot_comparison",
         "shared_workspace",
+        "two_arm_placement",
         "workspace",
     ),
-    "wsrender.reach": ("Postures", "Reachability", "postures", "reachable"),
+    "wsrender.reach": ("Postures", "Reachability", "postures", "reachable", "reachable_labels"),
+    "wsrender.results.configurations": ("configuration_of",),
     "wsrender.results.result": ("Result",),
     "wsrender.robot": ("Robot", "evaluate_indices", "load_robot"),
     "wsrender.run": ("execute",),
@@ -222,9 +236,10 @@ _NAMES_OF_MODULE = {
         "Scene",
         "Sphere",
     ),
-    "wsrender.documents.robot": ("DHRow", "DHTable", "Transform"),
+    "wsrender.documents.robot": ("DHRow", "DHTable", "MountJoint", "Transform"),
     "wsrender.documents.sampling": ("BoundaryBiased", "Converge", "Grid", "Random", "Sobol"),
-    "wsrender.documents.target_lists": ("Criterion", "Target", "TargetTable"),
+    "wsrender.documents.array_files": ("ArrayFile",),
+    "wsrender.documents.target_lists": ("Criterion", "Target", "TargetTable", "TargetVolume"),
 }
 _MODULE_OF_NAME = {name: module for module, names in _NAMES_OF_MODULE.items() for name in names}
 _MODULES = {"math": "wsrender.indices.math", "run": "wsrender.run"}

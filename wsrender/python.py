@@ -23,6 +23,8 @@ from wsrender.analyses.design_optimization.job import (
     ParetoSearch,
 )
 from wsrender.analyses.master_slave_mapping.job import Containment, MappingSearch
+from wsrender.analyses.two_arm_placement.job import ArmOnBase, HandOver
+from wsrender.documents.array_files import ArrayFile
 from wsrender.documents.constraints import ArmsConstraints, Constraints
 from wsrender.documents.document import Document
 from wsrender.documents.environment import Environment
@@ -30,10 +32,10 @@ from wsrender.documents.kinetostatics import ForceFieldChoice
 from wsrender.documents.mechanism import Delta, LegsMechanism, Master4DOF, SixPUS, StewartGough
 from wsrender.documents.options import AlphaShapeSurface, IsoSurface
 from wsrender.documents.orientations import EulerRanges, TiltRanges
-from wsrender.documents.placements import PlacementSpace
+from wsrender.documents.placements import PlacementSpace, TableEdge
 from wsrender.documents.sampling import BoundaryBiased, Sobol
 from wsrender.documents.several_robots import PlacementScan
-from wsrender.documents.target_lists import Criterion, Target, TargetTable
+from wsrender.documents.target_lists import Criterion, Target, TargetTable, TargetVolume
 from wsrender.documents.transform import Transform
 from wsrender.run.from_python import runs
 
@@ -67,6 +69,7 @@ def analyze(
     voxel_size_m: float | None = None,
     voxel_statistics: Sequence[Literal["count", "maximum", "mean", "minimum"]] | None = None,
     refined_volume: float | None = 0.01,
+    best_sample: str | None = None,
     voxel_labels: bool = False,
     surfaces: Sequence[
         Literal["marching_cubes", "convex_hull"] | AlphaShapeSurface | IsoSurface | Mapping[str, Any]
@@ -107,6 +110,8 @@ def analyze(
     ``refined_volume``: Half width of the headline's 95 % interval, relative to it [1]: of the volume that inverse
         kinematics finds reachable, of a planar workspace the area, of a line the length; under constraints of what it
         finds free, beside what they block; None: none is computed.
+    ``best_sample``: An index of the job: of every voxel the number of the sample with its largest value is kept, of
+        equal ones the smallest; `configuration_of` has its configuration. None: none is kept.
     ``voxel_labels``: Whether every voxel is labelled reachable, unreachable or undecided by inverse kinematics; under
         constraints reachable in configurations that they admit, or blocked by one where others are found.
     ``surfaces``: Meshes of the workspace, each with its volume: "marching_cubes" of the voxels, "convex_hull" and
@@ -127,7 +132,7 @@ def analyze(
 @runs("indices_at")
 def indices_at(
     robot: RobotLike,
-    configurations: Sequence[Sequence[float] | np.ndarray] | np.ndarray,
+    configurations: Sequence[Sequence[float] | np.ndarray] | np.ndarray | str | ArrayFile | Mapping[str, Any],
     *,
     base: str | None = None,
     tip: str | None = None,
@@ -155,7 +160,8 @@ def indices_at(
 
     ``robot``: A Robot, what `load_robot` takes, an object with limits and forward_kinematics, or its part of a job
         document.
-    ``configurations``: Rows of joint values [rad or m], (N, n), one per joint from base to tip.
+    ``configurations``: Rows of joint values [rad or m], (N, n), one per joint from base to tip; or a .npy, Parquet or
+        CSV file of them, with columns in that order or named as the joints.
     ``base``: Body, link or site at which the chain starts; None: the world.
     ``tip``: Site, body or link at the end of the chain; None: the site "tool", or else the only end there is.
     ``constraints``: Which configurations are admitted; None: all.
@@ -199,7 +205,7 @@ def reachability(
     seed: int = 0,
     precision: Literal["float32", "float64"] = "float64",
     device: str = "auto",
-    targets: str | Sequence[Target | Mapping[str, Any]] | TargetTable | Mapping[str, Any] | None = None,
+    targets: str | Sequence[Target | Mapping[str, Any]] | TargetTable | TargetVolume | Mapping[str, Any] | None = None,
     criteria: Sequence[Criterion | Mapping[str, Any]] = (),
     progress: Progress | bool | None = None,
     threads: int | None = None,
@@ -228,7 +234,7 @@ def reachability(
     ``precision``: Floating-point type of the kernels.
     ``device``: Where the kernels run: "auto" (a GPU if there is one), "cpu", "cuda" or "cuda:N".
     ``targets``: Instead of points_m and quats_wxyz: targets with names, weights, free axes and tolerances of their own,
-        one by one, or as a table in a file, {"path": "holes.csv"}.
+        one by one, or as a table in a file, {"path": "holes.csv"}; or a volume to cover by points at a step.
     ``criteria``: What the targets must fulfil for the result to pass.
     ``progress``: True shows a bar on work of more than a second; or a function (done, total, message).
     ``threads``: Threads of the CPU; None: all cores. They change no bit of the result.
@@ -260,6 +266,7 @@ def all_postures(
     precision: Literal["float32", "float64"] = "float64",
     device: str = "auto",
     quat_wxyz: Sequence[Sequence[float] | np.ndarray] | np.ndarray | None = None,
+    free_axis: Literal["x", "y", "z"] | None = None,
     windings: int = 1,
     starts: int = 512,
     curve_step: float = 0.05,
@@ -296,6 +303,7 @@ def all_postures(
     ``device``: Where the kernels run: "auto" (a GPU if there is one), "cpu", "cuda" or "cuda:N".
     ``quat_wxyz``: Orientations, a quaternion w, x, y, z of unit length for each position; None: any orientation will
         do.
+    ``free_axis``: Axis of the tip about which it may turn as it likes; None: none.
     ``windings``: How many configurations of a posture are listed that differ by whole turns of hinges; all are counted.
     ``starts``: Starts of the search for postures of a pose, where no closed form knows them all.
     ``curve_step``: Between points of self-motions: largest change of a joint, about [rad, reaches].
@@ -491,7 +499,7 @@ def robot_comparison(
 
 @runs("base_placement")
 def base_placement(
-    robot: RobotLike,
+    robot: RobotLike | None = None,
     points_m: Sequence[Sequence[float] | np.ndarray] | np.ndarray | None = None,
     quats_wxyz: Sequence[Sequence[float] | np.ndarray] | np.ndarray | None = None,
     *,
@@ -506,14 +514,18 @@ def base_placement(
     seed: int = 0,
     precision: Literal["float32", "float64"] = "float64",
     device: str = "auto",
-    targets: str | Sequence[Target | Mapping[str, Any]] | TargetTable | Mapping[str, Any] | None = None,
+    targets: str | Sequence[Target | Mapping[str, Any]] | TargetTable | TargetVolume | Mapping[str, Any] | None = None,
+    robots: Sequence[RobotLike] | None = None,
     weights: Sequence[float] | np.ndarray | None = None,
     over: PlacementSpace | Mapping[str, Any],
-    mounting: Literal["floor", "wall", "ceiling"] = "floor",
-    index: str | None = None,
+    mounting: Literal["floor", "wall", "ceiling"] | TableEdge | Mapping[str, Any] = "floor",
+    index: str | list[str] | tuple[str, ...] | None = None,
     index_options: Mapping[str, Mapping[str, bool | int | float | Sequence[float] | np.ndarray]] = {},
+    pareto: bool = False,
     refine: bool = True,
     use_symmetry: bool = True,
+    criteria: Sequence[Criterion | Mapping[str, Any]] = (),
+    names: Sequence[str | None] | None = None,
     progress: Progress | bool | None = None,
     threads: int | None = None,
     chunk_size: int | None = None,
@@ -523,10 +535,11 @@ def base_placement(
     A target is served from a placement where the robot reaches it, under constraints with a configuration that they
     admit. The best placement serves targets of the largest weight; of several it is the one whose least ``index`` over
     the targets is best, or without one that which stands farthest, in steps, from those that serve less. Targets,
-    constraints and environment stand in the world.
+    constraints and environment stand in the world. Of several ``robots`` each is placed by itself, and the result says
+    which does best where.
 
     ``robot``: A Robot, what `load_robot` takes, an object with limits and forward_kinematics, or its part of a job
-        document.
+        document; None: robots are given.
     ``points_m``: Positions of the targets in the world frame, rows of x, y, z [m]; None: targets are given.
     ``quats_wxyz``: Orientations of the targets, a quaternion w, x, y, z for each point; None: any orientation will do.
     ``base``: Body, link or site at which the chain starts; None: the world.
@@ -542,17 +555,142 @@ def base_placement(
     ``precision``: Floating-point type of the kernels.
     ``device``: Where the kernels run: "auto" (a GPU if there is one), "cpu", "cuda" or "cuda:N".
     ``targets``: Instead of points_m and quats_wxyz: targets with names, weights, free axes and tolerances of their own,
-        one by one, or as a table in a file, {"path": "holes.csv"}.
+        one by one, or as a table in a file, {"path": "holes.csv"}; or a volume to cover by points at a step.
+    ``robots``: The robots, placed by `load_robot(…, placement=…)`, each as one robot elsewhere, or its part of a job
+        document; the arms of one model are loaded with other base and tip; None: robot is given.
     ``weights``: What each of points_m counts; None: 1 each.
     ``over``: Where the base may stand. ``robot.placement`` is how it stands in the frame that is placed.
     ``mounting``: How the base is mounted in the frame that is placed, before ``robot.placement``: its z is that frame's
-        z on the floor, its x on a wall, its -z under a ceiling.
+        z on the floor, its x on a wall, its -z under a ceiling; on the edge of a table as on the floor, and only near
+        that edge.
     ``index``: Local index, as ``indices_at`` has them, whose least value over the targets that are served, each at its
-        best posture, tells placements apart that serve as much; None: none.
+        best posture, tells placements apart that serve as much; None: none. Of two, the objectives of ``pareto``, the
+        first does.
     ``index_options``: Options of the index, if it has any: {index: {option: value}}.
+    ``pareto``: Whether the Pareto set of two objectives is found, the weight served and the least ``index``: the
+        placements that no other beats in one of them without being worse in the other. Of two indices these are the
+        objectives, each at its own best postures, among the placements that serve the largest weight.
     ``refine``: Whether the best placement is refined between the cells, and its tolerance found.
     ``use_symmetry``: Whether targets are decided for one yaw alone where others change nothing but the first joint's
         value.
+    ``criteria``: What the targets must fulfil from the best placement for the result to pass.
+    ``names``: What the result calls the robots; None: as their models.
+    ``progress``: True shows a bar on work of more than a second; or a function (done, total, message).
+    ``threads``: Threads of the CPU; None: all cores. They change no bit of the result.
+    ``chunk_size``: Samples of a launch; None: by memory. It changes no bit of the result.
+
+    Raises DocumentError, InputError, ModelError, ResourceError, NumericalError, NotConvergedError.
+    """
+    ...
+
+
+@runs("inverse_reachability")
+def inverse_reachability(
+    robot: RobotLike,
+    target: Target | Mapping[str, Any],
+    over: PlacementSpace | Mapping[str, Any],
+    *,
+    base: str | None = None,
+    tip: str | None = None,
+    constraints: Constraints | Mapping[str, Any] | None = None,
+    environment: Environment | Mapping[str, Any] | None = None,
+    gravity_m_s2: Sequence[float] | np.ndarray | None = None,
+    object_frame: Transform | Mapping[str, Any] | None = None,
+    mounting: Literal["floor", "wall", "ceiling"] = "floor",
+    use_symmetry: bool = True,
+    position_tolerance_m: float = 1e-05,
+    angle_tolerance_rad: float = 1e-05,
+    characteristic_length_m: float | None = None,
+    seed: int = 0,
+    precision: Literal["float32", "float64"] = "float64",
+    device: str = "auto",
+    progress: Progress | bool | None = None,
+    threads: int | None = None,
+    chunk_size: int | None = None,
+) -> Result:
+    """From which base poses of a space a robot reaches one target: a map over x and y, or a volume over x, y and z.
+
+    What ``base_placement`` decides of one target, kept base by base. Target, constraints and environment stand in the
+    world.
+
+    ``robot``: A Robot, what `load_robot` takes, an object with limits and forward_kinematics, or its part of a job
+        document.
+    ``target``: The pose of the tip, or point, that is to be reached.
+    ``over``: Where the base may stand. ``robot.placement`` is how it stands in the frame that is placed. Of ranges in
+        x, y and z the cells are voxels: of one step, which divides their lower ends.
+    ``base``: Body, link or site at which the chain starts; None: the world.
+    ``tip``: Site, body or link at the end of the chain; None: the site "tool", or else the only end there is.
+    ``constraints``: Which configurations are admitted; None: all.
+    ``environment``: What stands around, which the robot's shapes do not enter; None: nothing.
+    ``gravity_m_s2``: Gravity in the world, whatever the model says [m/s²]; None: 9.81 along -z.
+    ``object_frame``: Frame in the world in which the target is given, such as that of a part; None: the world itself.
+    ``mounting``: How the base is mounted in the frame that is placed, before ``robot.placement``: its z is that frame's
+        z on the floor, its x on a wall, its -z under a ceiling.
+    ``use_symmetry``: Whether one yaw alone is decided where others change nothing but the first joint's value.
+    ``position_tolerance_m``: Largest distance to the target that counts as reached [m].
+    ``angle_tolerance_rad``: Largest angle to the target's orientation that counts as reached [rad].
+    ``characteristic_length_m``: Length that makes an angle comparable to a distance while both shrink [m]; None: half
+        the reach.
+    ``seed``: Seed of the starts.
+    ``precision``: Floating-point type of the kernels.
+    ``device``: Where the kernels run: "auto" (a GPU if there is one), "cpu", "cuda" or "cuda:N".
+    ``progress``: True shows a bar on work of more than a second; or a function (done, total, message).
+    ``threads``: Threads of the CPU; None: all cores. They change no bit of the result.
+    ``chunk_size``: Samples of a launch; None: by memory. It changes no bit of the result.
+
+    Raises DocumentError, InputError, ModelError, ResourceError, NumericalError, NotConvergedError.
+    """
+    ...
+
+
+@runs("two_arm_placement")
+def two_arm_placement(
+    points_m: Sequence[Sequence[float] | np.ndarray] | np.ndarray | None = None,
+    quats_wxyz: Sequence[Sequence[float] | np.ndarray] | np.ndarray | None = None,
+    *,
+    constraints: ArmsConstraints | Mapping[str, Any] | None = None,
+    environment: Environment | Mapping[str, Any] | None = None,
+    gravity_m_s2: Sequence[float] | np.ndarray | None = None,
+    position_tolerance_m: float = 1e-05,
+    angle_tolerance_rad: float = 1e-05,
+    characteristic_length_m: float | None = None,
+    seed: int = 0,
+    precision: Literal["float32", "float64"] = "float64",
+    device: str = "auto",
+    targets: str | Sequence[Target | Mapping[str, Any]] | TargetTable | TargetVolume | Mapping[str, Any] | None = None,
+    first: ArmOnBase | Mapping[str, Any],
+    second: ArmOnBase | Mapping[str, Any],
+    hand_over: HandOver | Mapping[str, Any] | None = None,
+    progress: Progress | bool | None = None,
+    threads: int | None = None,
+    chunk_size: int | None = None,
+) -> Result:
+    """Which of two arms serves which targets, and where they stand so that one or the other serves most of them.
+
+    Either base stands in one place or anywhere in a space. Of pairs of placements that serve the same weight that is
+    best of which both arms serve most. At the targets the arms are taken to work in turn: nothing is said of collisions
+    of one with the other. With ``hand_over`` pairs of placements from which there is a pose that both can hold at once
+    come before those without, and of pairs that serve the same weight that is best which offers most of these poses.
+    Targets, constraints, which either arm must satisfy, and environment stand in the world.
+
+    ``points_m``: Positions of the targets in the world frame, rows of x, y, z [m]; None: targets are given.
+    ``quats_wxyz``: Orientations of the targets, a quaternion w, x, y, z for each point; None: any orientation will do.
+    ``constraints``: Which configurations of both arms are admitted, and which of a hand-over's they may be in together;
+        None: all.
+    ``environment``: What stands around, which the robot's shapes do not enter; None: nothing.
+    ``gravity_m_s2``: Gravity in the world, whatever the model says [m/s²]; None: 9.81 along -z.
+    ``position_tolerance_m``: Largest distance to a target that counts as reached [m].
+    ``angle_tolerance_rad``: Largest angle to a target's orientation that counts as reached [rad].
+    ``characteristic_length_m``: Length that makes an angle comparable to a distance while both shrink [m]; None: half
+        the reach.
+    ``seed``: Seed of the starts.
+    ``precision``: Floating-point type of the kernels.
+    ``device``: Where the kernels run: "auto" (a GPU if there is one), "cpu", "cuda" or "cuda:N".
+    ``targets``: Instead of points_m and quats_wxyz: targets with names, weights, free axes and tolerances of their own,
+        one by one, or as a table in a file, {"path": "holes.csv"}; or a volume to cover by points at a step.
+    ``first``: One arm, and where it may stand.
+    ``second``: The other.
+    ``hand_over``: Poses at which the arms may hand something over; None: none is asked for.
     ``progress``: True shows a bar on work of more than a second; or a function (done, total, message).
     ``threads``: Threads of the CPU; None: all cores. They change no bit of the result.
     ``chunk_size``: Samples of a launch; None: by memory. It changes no bit of the result.

@@ -59,6 +59,10 @@ FIELDS = (
 )
 
 
+WORLD_FIELDS = (*FIELDS, "origin0", "origin1", "origin2", "scale")  # where the chain's world begins [m], and 1 / reach
+REACHABLE, UNREACHABLE, UNDECIDED = 1, 0, -1  # labels
+
+
 @dataclass(frozen=True)
 class ClosedFormShape:
     """The compile-time part of a class.
@@ -119,25 +123,112 @@ def closed_form_kernel(shape: ClosedFormShape, cuda: bool) -> wp.Kernel:
     return closed_form
 
 
-def body(shape: ClosedFormShape) -> str:
-    """C++ of one task."""
+@factory
+def closed_labels_kernel(shape: ClosedFormShape, backwards: bool, oriented: bool, cuda: bool) -> wp.Kernel:
+    """Kernel of a class that labels poses as users have them; ``backwards``: it is solved from its tip.
+
+    In: ``numbers`` of the arm (WORLD_FIELDS), the slack ``least`` below which nothing is reached, ``positions``
+    (3 * count,) in the world [m], and where they are ``oriented`` ``quaternions`` (4 * count,), w first, of any length
+    but 0; count is at least LANES. Out: ``labels`` (count,).
+    """
+    real = shape.real
+    reals, bytes_ = wp.array(dtype=real), wp.array(dtype=wp.int8)
+
+    @wp.func_native(_labels_body(shape, backwards, oriented))
+    def block(
+        task: wp.int32,
+        count: wp.int32,
+        least: real,
+        numbers: reals,
+        positions: reals,
+        quaternions: reals,
+        labels: bytes_,
+    ): ...
+
+    @wp.kernel(module="unique", module_options=CUDA_OPTIONS if cuda else LONG_OPTIONS, enable_backward=False)
+    def closed_labels(
+        # in
+        count: wp.int32,
+        least: real,
+        numbers: wp.array(dtype=real),
+        positions: wp.array(dtype=real),
+        quaternions: wp.array(dtype=real),
+        # out
+        labels: wp.array(dtype=wp.int8),
+    ):
+        block(wp.tid(), count, least, numbers, positions, quaternions, labels)
+
+    return closed_labels
+
+
+def _labels_body(shape: ClosedFormShape, backwards: bool, oriented: bool) -> str:
+    """C++ of one task; the last takes the last LANES poses, some of which the one before it takes too."""
+    own = [f"const real {name} = numbers.data[{k}];" for k, name in enumerate(WORLD_FIELDS) if k >= len(FIELDS)]
+    own.append(f"const int begin = SMALLER(task * {LANES}, count - {LANES});")
+    turn, rotation = quaternion_rows("quaternions.data", "at") if oriented else ([], list("100010001"))
+    position = [f"positions.data[3 * at + {r}]" for r in range(3)]
+    rows = [*turn, *rows_of_pose(rotation, position, backwards, "moved")]
+    store = f"labels.data[at] = best > margin ? {REACHABLE} : best < least ? {UNREACHABLE} : {UNDECIDED};"
+    return body(shape, before="\n".join([*own, ""]), first="begin", rows=rows, store=store)
+
+
+def quaternion_rows(data: str, at: str) -> tuple[list[str], list[str]]:
+    """What declares quaternion ``at`` of ``data``, of any length but 0, and its rotation's nine entries by rows."""
+    names = ", ".join(f"q{name} = {data}[4 * {at} + {k}]" for k, name in enumerate("wxyz"))
+    lines = [f"const real {names};", "const real two = 2 / (qw * qw + qx * qx + qy * qy + qz * qz);"]
+    entries = [
+        *("ONE - two * (qy * qy + qz * qz)", "two * (qx * qy - qw * qz)", "two * (qx * qz + qw * qy)"),
+        *("two * (qx * qy + qw * qz)", "ONE - two * (qx * qx + qz * qz)", "two * (qy * qz - qw * qx)"),
+        *("two * (qx * qz - qw * qy)", "two * (qy * qz + qw * qx)", "ONE - two * (qx * qx + qy * qy)"),
+    ]
+    return lines, entries
+
+
+def rows_of_pose(rotation: list[str], position: list[str], backwards: bool, moved: str = "d") -> list[str]:
+    """What declares t0 to t11, rotation by rows and position [reach], of a pose in the world; from the tip its inverse.
+
+    ``rotation``: nine entries by rows; ``position`` [m], three; ``moved``: a name that is free there.
+    """
+    rows = []
+    for r in range(3):
+        for c in range(3):
+            rows.append(f"const real t{3 * c + r if backwards else 3 * r + c} = {rotation[3 * r + c]};")
+        rows.append(f"const real {moved}{r} = ({position[r]} - origin{r}) * scale;")
+    for r in range(3):
+        back = f"-(t{3 * r} * {moved}0 + t{3 * r + 1} * {moved}1 + t{3 * r + 2} * {moved}2)"
+        rows.append(f"const real t{9 + r} = {back if backwards else f'{moved}{r}'};")
+    return rows
+
+
+_STORED = """postures.data[at] = found;
+        slack.data[at] = best;
+        flags.data[at] = flag;"""
+
+
+def body(
+    shape: ClosedFormShape,
+    *,
+    before: str = "",
+    first: str = f"task * {LANES}",
+    rows: list[str] | None = None,
+    store: str = _STORED,
+) -> str:
+    """C++ of one task: what comes ``before`` its lanes, the ``first`` pose, `target_in_frame`'s rows, what is kept."""
     arm = {"nested": _nested, "general": _general, "parallel": _three_parallel}[shape.arm](shape)
-    return f"""{closed_form_prelude(shape.real)}#ifndef __CUDA_ARCH__
+    return f"""{closed_form_prelude(shape.real)}{before}#ifndef __CUDA_ARCH__
     #pragma clang loop vectorize(assume_safety) interleave_count(1)
     for (int lane = 0; lane < {LANES}; lane++) {{
-        const int at = task * {LANES} + lane;
+        const int at = {first} + lane;
     #else
     {{
         const int at = task;
     #endif
         int found = 0, flag = 0, branch = 0, n1 = 1, n2 = 1, n3 = 1, n4 = 1, n5 = 1, n6 = 1;
         real best = -4;
-        {target_in_frame()}
+        {target_in_frame(rows)}
         const real squared = px * px + py * py + pz * pz, around = px * px + py * py;
         {arm}
-        postures.data[at] = found;
-        slack.data[at] = best;
-        flags.data[at] = flag;
+        {store}
     }}
     """
 
@@ -151,9 +242,16 @@ def closed_form_prelude(precision: type) -> str:
     typedef {real} real;
     const real ONE = 1, ZERO = 0, TINY = {"1e-30f" if real == "float" else "1e-200"};
     const real margin = {MARGIN[precision]}, singular = {SINGULAR[precision]};
+    #ifdef __CUDA_ARCH__
+    {_extremes(real)}
+    #define LARGER(a, b) larger(a, b)
+    #define SMALLER(a, b) smaller(a, b)
+    #define SIZE(a) ::fabs(a)
+    #else
     #define LARGER(a, b) ((a) > (b) ? (a) : (b))
     #define SMALLER(a, b) ((a) < (b) ? (a) : (b))
     #define SIZE(a) ((a) < ZERO ? -(a) : (a))
+    #endif
     #define ROOT(a) wp::sqrt(LARGER(a, ZERO))
     #define LEVER(a) SMALLER({STEEP} * (a), ONE)
     // An axis turned back by a joint, and by the angle to the axis before it.
@@ -166,7 +264,7 @@ def closed_form_prelude(precision: type) -> str:
         const real* arc = arcs + {len(ARC)} * (joint - 1);
         const real along = c * arc[0] + s * arc[1], aside = s * arc[0] - c * arc[1];
         const real within = arc[2] * along - arc[3] * SIZE(aside);
-        const real slack = arc[4] > ZERO ? SMALLER(within, along) : LARGER(within, along);
+        const real both = SMALLER(within, along), either = LARGER(within, along), slack = arc[4] > ZERO ? both : either;
         n = (int)arc[6] + (slack >= -margin ? 1 : 0);
         return LARGER(slack, arc[5]);
     }};
@@ -179,6 +277,20 @@ def closed_form_prelude(precision: type) -> str:
         return slack;
     }};
     """
+
+
+def _extremes(real: str) -> str:
+    """The larger and the smaller of two on CUDA: of float32 one instruction, where a choice is two of half the rate.
+
+    As with a choice what is not a number stays one, and its pose undecided.
+    """
+    found = []
+    for name, instruction, sign in (("larger", "max", ">"), ("smaller", "min", "<")):
+        chosen = f"a {sign} b ? a : b"
+        asked = f'real c; asm("{instruction}.NaN.f32 %0, %1, %2;" : "=f"(c) : "f"(a), "f"(b)); return c;'
+        lines = asked if real == "float" else f"return {chosen};"
+        found.append(f"auto {name} = [](real a, real b) -> real {{ {lines} }};")
+    return " ".join(found)
 
 
 def _of_arc(name: str) -> bool:
@@ -354,7 +466,7 @@ def _posture(shape: ClosedFormShape) -> str:
         const real sign = c5 < ZERO ? -ONE : ONE;
         const real both = hinge(v2 > ZERO ? 7 : 8, sign * m0, sign * m1, n_sum);
         const real slack4 = hinge(4, c4, s4, n4), slack5 = hinge(5, c5, s5, n5), slack6 = hinge(6, c6, s6, n6);
-        const real turned46 = SMALLER(slack4, slack6), lever6 = lever * LEVER(ROOT(SMALLER(across, root5)));
+        const real turned46 = SMALLER(slack4, slack6), lever6 = lever * LEVER(sine5);
         const real wrist = family ? lever * SMALLER(slack5, both)
             : SMALLER(lever * root5, lever6 * SMALLER(slack5, turned46));
         const real whole = SMALLER(SMALLER(exists, lever * arm_slack), wrist);
@@ -383,13 +495,16 @@ def wrist_postures(last: str) -> str:
     text = """
         // Rz(q4) Rx(alpha4) Rz(q5) Rx(alpha5) Rz(q6): its last column tells q5, then q4; the first q6.
         const real across = v0 * v0 + v1 * v1, c45 = ca4 * ca5, s45 = sa4 * sa5;
-        const real root5 = across + (s45 * s45 - c45 * c45 - ONE) + 2 * c45 * v2;
-        const real is45 = ONE / s45, c5 = (c45 - v2) * is45, half5 = ROOT(root5) * SIZE(is45);
+        // x4² is what y4² leaves of the angle between axes 4 and 6, as certain as that where they are almost in line;
+        // -4 is the least, but for a centre so close to axis 1 that joint 1 does not come out as a turn.
+        const real is45 = ONE / s45, c5 = (c45 - v2) * is45, y4 = -ca4 * c5 * sa5 - sa4 * ca5;
+        const real left5 = (across - y4 * y4) * (sa4 * sa4), root5 = LARGER(left5, real(-4));
+        const real sine5 = ROOT(root5), half5 = sine5 * SIZE(is45);
         const real i46 = ONE / LARGER(across, TINY);
         #pragma unroll
         for (int b_wrist = 0; b_wrist < 2; b_wrist++) {
             const real s5 = b_wrist ? -half5 : half5;
-            const real x4 = s5 * sa5, y4 = -ca4 * c5 * sa5 - sa4 * ca5;
+            const real x4 = s5 * sa5;
             const real c4 = (x4 * v0 + y4 * v1) * i46, s4 = (x4 * v1 - y4 * v0) * i46;
             const real y0 = c4 * m0 + s4 * m1, y1 = c4 * m1 - s4 * m0;
             const real z1 = ca4 * y1 + sa4 * m2, z2 = ca4 * m2 - sa4 * y1;
@@ -439,8 +554,8 @@ def _three_parallel(shape: ClosedFormShape) -> str:
         const real i23 = ONE / (2 * a2 * a3), c3 = (far - a2 * a2 - a3 * a3) * i23;
         const real root3 = ONE - c3 * c3, half3 = ROOT(root3), iu = ONE / LARGER(far, TINY);
         const real there3 = root3 * weight3, exists3 = there3 * weight3;
-        const real lever5 = sure1 * LEVER(ROOT(SMALLER(across, root5)));
-        const real lever3 = lever5 * LEVER(ROOT(SMALLER(exists3, far)));
+        // Where links 2 and 3, of one length, lie on each other, the sine of joint 3 is as small as the way left to 4.
+        const real lever5 = sure1 * LEVER(sine5), lever3 = lever5 * LEVER(half3 * weight3);
         #pragma unroll
         for (int b_three = 0; b_three < 2; b_three++) {
             const real s3 = b_three ? -half3 : half3, along = a2 + a3 * c3, aside = a3 * s3;
@@ -471,7 +586,7 @@ def _general(shape: ClosedFormShape) -> str:
         """
         // x' Q x = 0 for x = (c3, s3, 1): X² + Y² less what they are.
         const real v1_ = squared + e1_lz * pz + e1_l0, v2_ = e2_lz * pz + e2_l0;
-        const real told = SMALLER(SMALLER(e1_lx * e1_lx, e2_ly * e2_ly), ONE);
+        const real told = SMALLER(SMALLER(e1_lx * e1_lx, e2_ly * e2_ly), ONE), told_root = ROOT(told);
         // (X, Y) = (right - value) / left: e1 holds X alone, e2 Y alone.
         const real lx_ = ONE / e1_lx, ly_ = ONE / e2_ly;
         const real Xc = e1_rc * lx_, Xs = e1_rs * lx_, X0 = -v1_ * lx_;
@@ -480,7 +595,7 @@ def _general(shape: ClosedFormShape) -> str:
         const real q02 = Xc * X0 + Yc * Y0, q12 = Xs * X0 + Ys * Y0, q22 = X0 * X0 + Y0 * Y0 - around;
         // (X, Y) runs about (X0, Y0), at most so far from it, and must meet the circle of joint 1.
         const real middle_ = ROOT(q22 + around), far_ = ROOT(q00 + q11), joint1 = ROOT(around);
-        const real none_meet = SMALLER(far_ - SIZE(middle_ - joint1), ZERO) * ROOT(told);
+        const real none_meet = SMALLER(far_ - SIZE(middle_ - joint1), ZERO) * told_root;
         """
         + _CONICS
         + """
@@ -489,7 +604,8 @@ def _general(shape: ClosedFormShape) -> str:
                 const real settled = SIZE(off) < margin * LARGER(SIZE(slope), ONE) ? ONE : none_meet;
                 const real exists = SMALLER(line * told, settled);
                 const real roots = SMALLER(line, settled);
-                const real lever_roots = LEVER(SMALLER(ROOT(exists), SIZE(slope))) * LEVER(joint1);
+                const real half_ = settled < ONE ? ZERO : across_ * told_root;
+                const real lever_roots = LEVER(SMALLER(half_, SIZE(slope))) * LEVER(joint1);
         """
         + _posture(shape)
         + "}}"

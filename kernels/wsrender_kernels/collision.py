@@ -22,6 +22,7 @@ from wsrender_kernels.options import CUDA_OPTIONS, MODULE_OPTIONS, SHORT_OPTIONS
 from wsrender_kernels.sampling import LANES, blocks, sample_space, sampling
 
 PART_LANES = 64
+TOGETHER = 32  # lanes of the filter that a far pair is left early for
 BATCH, GROUP = 512, 16  # open samples of a task of the narrow phase on the CPU, and side by side
 STEPS = 40  # of portals
 EDGE, ROW = 8, 8  # cells of directions along the edge of a cube; vertices of a cell are padded to so many
@@ -118,12 +119,21 @@ _KINEMATICS = """    for (int l = 0; l < LN; l++)
 _FILTER = """
 #if defined(__CUDA_ARCH__)
     #define LANE_LOOP for (int l = 0; l < LN; l++)
-    constexpr int LN = 1, STRIDE = 1;
+    constexpr int LN = 1, STRIDE = 1, GROUP = 1;
+    typedef float V;
+    typedef unsigned U;
+    auto any = [](bool m) { return m; };
 #else
     #define LANE_LOOP _Pragma("clang loop vectorize(assume_safety) interleave_count(1)") for (int l = 0; l < LN; l++)
-    constexpr int LN = @LANES, STRIDE = @BLOCK;
+    constexpr int LN = @LANES, STRIDE = @BLOCK, GROUP = @TOGETHER;
+    typedef float V __attribute__((ext_vector_type(@TOGETHER)));
+    typedef unsigned U __attribute__((ext_vector_type(@TOGETHER)));
+    auto any = [](auto m) { return __builtin_reduce_or(m) != 0; };
 #endif
     typedef float real;
+    auto of = [](const float* row, int at) { return *(const V*)(row + at); };
+    auto clamped = [](V x, float most) { x = x < most ? x : most; return x > -most ? x : -most; };
+    auto set = [](unsigned* to, auto where, unsigned bit) { U& old = *(U*)to; old |= where ? (U)bit : (U)0u; };
     constexpr int N = @N, L = @L, CAP = @CAP, W = @W;
 @SINCOS
     alignas(64) float frames_[12 * (L + 1) * LN], capsules_[6 * CAP * LN];
@@ -160,42 +170,37 @@ _FILTER = """
         const int row = program.capsule_axis.data[capsule];
         return row < 0 ? C + (6 * capsule + 3) * LN : F + row * LN;
     };
+    // GROUP lanes at a time: where middles are mostly far apart, those of all often are.
     for (int p = 0; p < program.n_pairs; p++) {
-        const int* row = program.pairs.data + 4 * p;
-        const int pair = row[0], balls = row[1] + row[2], end = balls + row[3];
+        const int* row = program.pairs.data + 3 * p;
+        const int pair = row[0], end = row[1] + row[2];
         unsigned* __restrict ht = hit_ + (int)program.pair_numbers.data[2 * pair + 1] * LN;
         unsigned* __restrict mask = masks + (pair >> 5) * LN; const unsigned bit = 1u << (pair & 31);
-        for (int i = row[1]; i < balls; i++) {
-            const float* __restrict A = C + 6 * program.tests.data[2 * i] * LN;
-            const float* __restrict B = C + 6 * program.tests.data[2 * i + 1] * LN;
-            const float near2 = program.test_numbers.data[4 * i + 2], hit2 = program.test_numbers.data[4 * i + 3];
-            LANE_LOOP {
-                float r0 = A[l] - B[l], r1 = A[LN + l] - B[LN + l], r2 = A[2 * LN + l] - B[2 * LN + l];
-                float d2 = r0 * r0 + r1 * r1 + r2 * r2;
-                mask[l] |= d2 < near2 ? bit : 0u;
-                ht[l] |= d2 < hit2 ? 1u : 0u;
-            }
-        }
-        for (int i = balls; i < end; i++) {
+        for (int i = row[1]; i < end; i++) {
             const int a = program.tests.data[2 * i], b = program.tests.data[2 * i + 1];
             const float* __restrict A = C + 6 * a * LN; const float* __restrict G = axis_of(a);
             const float* __restrict B = C + 6 * b * LN; const float* __restrict H = axis_of(b);
-            const float* t = program.test_numbers.data + 4 * i;
-            const float most_s = t[0], most_w = t[1], near2 = t[2], hit2 = t[3];
-            LANE_LOOP {
-                float r0 = A[l] - B[l], r1 = A[LN + l] - B[LN + l], r2 = A[2 * LN + l] - B[2 * LN + l];
-                float g0 = G[l], g1 = G[LN + l], g2 = G[2 * LN + l], h0 = H[l], h1 = H[LN + l], h2 = H[2 * LN + l];
-                float b = g0 * h0 + g1 * h1 + g2 * h2, c = g0 * r0 + g1 * r1 + g2 * r2, f = h0 * r0 + h1 * r1 + h2 * r2;
-                float s = (b * f - c) / (1.000001f - b * b);
-                s = s < most_s ? s : most_s; s = s > -most_s ? s : -most_s;
-                float w = b * s + f;
-                w = w < most_w ? w : most_w; w = w > -most_w ? w : -most_w;
-                s = b * w - c;
-                s = s < most_s ? s : most_s; s = s > -most_s ? s : -most_s;
-                r0 += g0 * s - h0 * w; r1 += g1 * s - h1 * w; r2 += g2 * s - h2 * w;
-                float d2 = r0 * r0 + r1 * r1 + r2 * r2;
-                mask[l] |= d2 < near2 ? bit : 0u;
-                ht[l] |= d2 < hit2 ? 1u : 0u;
+            const float* t = program.test_numbers.data + 5 * i;
+            const float most_s = t[0], most_w = t[1], near2 = t[2], hit2 = t[3], far2 = t[4];
+            for (int l = 0; l < LN; l += GROUP) {
+                V r0 = of(A, l) - of(B, l), r1 = of(A, LN + l) - of(B, LN + l);
+                V r2 = of(A, 2 * LN + l) - of(B, 2 * LN + l);
+                if (far2 > 0.f && !any(r0 * r0 + r1 * r1 + r2 * r2 < far2)) continue;
+                if (most_s > 0.f) {
+                    V g0 = of(G, l), g1 = of(G, LN + l), g2 = of(G, 2 * LN + l), c = g0 * r0 + g1 * r1 + g2 * r2;
+                    if (most_w > 0.f) {
+                        V h0 = of(H, l), h1 = of(H, LN + l), h2 = of(H, 2 * LN + l);
+                        V b = g0 * h0 + g1 * h1 + g2 * h2, f = h0 * r0 + h1 * r1 + h2 * r2;
+                        V w = clamped(b * clamped((b * f - c) / (1.000001f - b * b), most_s) + f, most_w);
+                        r0 -= h0 * w; r1 -= h1 * w; r2 -= h2 * w;
+                        c -= b * w;
+                    }
+                    V s = clamped(-c, most_s);
+                    r0 += g0 * s; r1 += g1 * s; r2 += g2 * s;
+                }
+                V d2 = r0 * r0 + r1 * r1 + r2 * r2;
+                set(mask + l, d2 < near2, bit);
+                set(ht + l, d2 < hit2, 1u);
             }
         }
     }
@@ -208,7 +213,7 @@ _FILTER = """
             const int a = program.tests.data[2 * i], b = program.tests.data[2 * i + 1];
             const float* __restrict A = C + 6 * a * LN; const float* __restrict G = axis_of(a);
             const float* __restrict B = C + 6 * b * LN; const float* __restrict H = axis_of(b);
-            const float* t = program.test_numbers.data + 4 * i;
+            const float* t = program.test_numbers.data + 5 * i;
             const float most = t[1], near1 = t[2], hit1 = t[3];
             LANE_LOOP {
                 float n0 = G[l], n1 = G[LN + l], n2 = G[2 * LN + l];
@@ -240,25 +245,27 @@ _FILTER = """
     }
 @LOOKUPS
 @CROWD
-    for (int l = 0; l < LN; l++) {
-        const int lane = part * LN + l;
-        if (lane >= valid) break;
-        const int at = offset + lane;
-        unsigned first = 0u, any = 0u;
-        for (int w = 0; w < W; w++) any |= masks[w * LN + l];
-        for (int w = 0; w < W; w++) first |= masks[w * LN + l] & program.first_reason.data[w];
-        const bool hit_first = hit_[l] != 0u, hit_second = hit_[LN + l] != 0u;
-        int label = hit_first ? 1 : (hit_second ? 2 : 0);
-        bool open = hit_first ? false : (hit_second ? first != 0u : any != 0u);
-        if (!inside[l]) { open = true; label = 0; }
-        labels.data[at] = (wp::uint8)label;
-        if (!open) continue;
+    alignas(64) unsigned label_[LN], open_[LN];
+    for (int l = 0; l < LN; l++) label_[l] = open_[l] = 0u;
+    for (int w = 0; w < W; w++) {
+        const unsigned first = program.first_reason.data[w];
+        const unsigned* __restrict mask = masks + w * LN;
+        LANE_LOOP open_[l] |= (hit_[LN + l] ? mask[l] & first : mask[l]);
+    }
+    LANE_LOOP {
+        label_[l] = !inside[l] ? 0u : (hit_[l] ? 1u : (hit_[LN + l] ? 2u : 0u));
+        open_[l] = !inside[l] ? 1u : (hit_[l] ? 0u : open_[l]);
+    }
+    const int some = valid - part * LN < LN ? valid - part * LN : LN, at = offset + part * LN;
+    for (int l = 0; l < some; l++) labels.data[at + l] = (wp::uint8)label_[l];
+    for (int l = 0; l < some; l++) {
+        if (!open_[l]) continue;
 #if defined(__CUDA_ARCH__)
         const int place = atomicAdd(listed.data, 1);
 #else
         const int place = listed.data[0]++;
 #endif
-        ids.data[place] = at;
+        ids.data[place] = at + l;
         for (int w = 0; w < W; w++) open_masks.data[(long long)place * W + w] = inside[l] ? masks[w * LN + l] : ~0u;
     }
     }
@@ -649,6 +656,7 @@ def _code(
         "LANES": PART_LANES,
         "BATCH": BATCH,
         "GROUP": GROUP,
+        "TOGETHER": TOGETHER,
         "STEPS": STEPS,
         "BLOCK": LANES,
         "N": n,

@@ -1,7 +1,7 @@
 """Many solids that stand, in the snippet of the filter of `collision`: balls of moving solids are looked up in cells.
 
 A cell says how near the nearest is, and which are near at all. Only pairs with those are tested, sample by sample. On
-CUDA all pairs are tested, by code that is written out.
+CUDA all pairs are tested: by code that is written out, or beside surfaces and beyond `MOST_TESTS` by what reads data.
 """
 
 AT_ONCE = 32  # balls of a solid, at most
@@ -47,7 +47,7 @@ CROWD = """
         const int* ends = program.tests.data + 2 * test;
         const float* A = program.capsules.data + 6 * ends[0]; const float* B = C + 6 * ends[1] * LN + l;
         const float* G = A + 3; const float* H = B + 3 * LN;
-        const float* t = program.test_numbers.data + 4 * test;
+        const float* t = program.test_numbers.data + 5 * test;
         float r0 = A[0] - B[0], r1 = A[1] - B[LN], r2 = A[2] - B[2 * LN];
         float g0 = G[0], g1 = G[1], g2 = G[2], h0 = H[0], h1 = H[LN], h2 = H[2 * LN];
         float b = g0 * h0 + g1 * h1 + g2 * h2, c = g0 * r0 + g1 * r1 + g2 * r2, f = h0 * r0 + h1 * r1 + h2 * r2;
@@ -80,9 +80,9 @@ CROWD = """
                     if (hit_[l] | *hit) continue;
                     bool open = false, touching = false;
                     for (int i = own[1]; i < own[1] + own[2] && !open; i++)
-                        open = between(i, l) < program.test_numbers.data[4 * i + 2];
+                        open = between(i, l) < program.test_numbers.data[5 * i + 2];
                     for (int i = own[3]; i < own[3] + own[4] && open && !touching; i++)
-                        touching = between(i, l) < program.test_numbers.data[4 * i + 3];
+                        touching = between(i, l) < program.test_numbers.data[5 * i + 3];
                     if (touching) *hit = 1u;
                     else if (open) masks[(pair >> 5) * LN + l] |= 1u << (pair & 31);
                 }

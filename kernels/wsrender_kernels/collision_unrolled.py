@@ -16,14 +16,14 @@ def unrolled(program: Any, words: int) -> str | None:
 
     ``program``: a `wsrender.collision.program.Program`.
     """
-    if program.pairs[:, 2:].sum() + program.planes[:, 2].sum() > MOST_TESTS:
+    if program.pairs[:, 2].sum() + program.planes[:, 2].sum() > MOST_TESTS:
         return None
     written = _Written(program)
     for i, (low, high) in enumerate(zip(program.lower, program.upper, strict=True)):
         slack = np.float32(4e-6) * (np.float32(1) + high - low)
         written.add(f"inside &= q[{i}] >= {_f(low - slack)} && q[{i}] <= {_f(high + slack)};")
-    for pair, first, balls, capsules in program.pairs.tolist():
-        written.capsule_tests(pair, range(first, first + balls), range(first + balls, first + balls + capsules))
+    for pair, first, count in program.pairs.tolist():
+        written.capsule_tests(pair, range(first, first + count))
     for pair, first, count in program.planes.tolist():
         written.plane_tests(pair, range(first, first + count))
     for table in range(len(program.tables)):
@@ -92,14 +92,14 @@ class _Written:
         if hit > least:
             self.add(f"hit[{int(self.program.pair_numbers[pair, 1])}] |= {value} - {_f(hit)} < 0.f;")
 
-    def capsule_tests(self, pair: int, balls: range, capsules: range) -> None:
-        for test in (*balls, *capsules):
+    def capsule_tests(self, pair: int, tests: range) -> None:
+        for test in tests:
             a, b = self.program.tests[test].tolist()
             self.capsule(a)
             self.capsule(b)
-            most_s, most_w, near, hit = self.program.test_numbers[test]
+            most_s, most_w, near, hit, _ = self.program.test_numbers[test]
             lines = [f"float r{k} = m{a}_{k} - m{b}_{k};" for k in range(3)]
-            if test in capsules:
+            if most_s + most_w > 0:
                 dots = {"b": (f"h{a}_", f"h{b}_"), "c": (f"h{a}_", "r"), "f": (f"h{b}_", "r")}
                 for name, (first, second) in dots.items():
                     lines.append(f"float {name} = {' + '.join(f'{first}{k} * {second}{k}' for k in range(3))};")
@@ -120,7 +120,7 @@ class _Written:
             self.capsule(b)
             height = " + ".join(f"(m{b}_{k} - m{a}_{k}) * h{a}_{k}" for k in range(3))
             along = " + ".join(f"h{b}_{k} * h{a}_{k}" for k in range(3))
-            _, most, near, hit = self.program.test_numbers[test]
+            _, most, near, hit, _ = self.program.test_numbers[test]
             self.add(f"{{ float d = {height} - {_f(most)} * wp::abs({along});")
             self.verdict(pair, near, hit, "d", -np.inf)
             self.add("}")

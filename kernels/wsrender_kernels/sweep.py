@@ -83,6 +83,7 @@ class Shape:
     limits: int = 0  # numbers of all constraints, and then of the indices of the chain
     chain_values: tuple[tuple[int, Callable], ...] = ()  # indices (model, q) -> value, by their places
     cuts: tuple[int, ...] = ()  # places of indices whose values are counted that are cut
+    best: int | None = None  # place of the index of whose maximum a voxel keeps the sample
 
     @property
     def world_axes(self) -> bool:
@@ -162,7 +163,8 @@ class Shape:
     @property
     def bytes_per_voxel(self) -> int:
         """Bytes of one voxel's record, its 64-bit sums, and its rejected samples by constraint."""
-        return self.record_size * (4 if self.real is wp.float32 else 8) + 8 * (self.sums_size + len(self.constraints))
+        kept = self.sums_size + len(self.constraints) + (self.best is not None)
+        return self.record_size * (4 if self.real is wp.float32 else 8) + 8 * kept
 
 
 def _power_of_two(size: int) -> int:
@@ -606,7 +608,10 @@ def outputs_type(shape: Shape):
     one vector per voxel;
     ``rows_out`` (n_rows * rows_stride,): row r of the chunk's sample s at [r * rows_stride + s], interleaved ones at
     [s * n_rows + r]. With constraints also ``rejections`` (voxels * C,): samples of a voxel that each rejects; and
-    ``earliest`` (C,): the number of the first sample that each does.
+    ``earliest`` (C,): the number of the first sample that each does. ``best`` (voxels,): the number of the sample with
+    a voxel's maximum of one index, the smallest among equals; that of evaluated sample e at level l of the base joint
+    is l ``level_stride`` + e ``weight``. On CUDA a value and a number exceed one atomic operation: the kernel finds
+    maxima first, and numbers when it runs once more as the ``second``, by the same code, thus the same bits.
     """
     real, bits = shape.real, bits_type(shape.real)
     record_type, sums_type = record_type_of(shape), sums_type_of(shape)
@@ -622,6 +627,9 @@ def outputs_type(shape: Shape):
 
     if shape.cuts:
         Outputs.__annotations__["cuts"] = wp.array(dtype=real)
+    if shape.best is not None:
+        Outputs.__annotations__ |= {"best": wp.array(dtype=wp.int64), "second": wp.int32}
+        Outputs.__annotations__ |= {"level_stride": wp.int64, "weight": wp.int64}
     if shape.constraints:
         Outputs.__annotations__["earliest"] = wp.array(dtype=wp.int64)
         if shape.voxels:
@@ -667,6 +675,7 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
     LEAST_SUM = wp.int64(-(2**62) - 2**61)
     NARROW, HALF, LOWER_HALF, FROM_UPPER = real is wp.float32, bits(15), bits(2**15 - 1), wp.int64(2**15)
     KEY_ROW, KEY_MASK = _record_keys(shape)
+    BEST, BEST_SLOT = shape.best is not None, shape.count_size + (shape.best or 0)
     BLOCK = LANES
     load_record, store_record = memory(record_type).load, memory(record_type).store
     load_sums, store_sums = memory(sums_type).load, memory(sums_type).store
@@ -831,6 +840,12 @@ def _cpu_kernel(shape: Shape) -> wp.Kernel:
                     for k in range(RECORD):
                         sample[k] = keys[KEY_ROW[k] * BLOCK + lane] ^ KEY_MASK[k]
                     record = load_record(to.records, voxel)
+                    if wp.static(BEST):
+                        number = wide(level) * to.level_stride + (start + wide(lane)) * to.weight
+                        highest = record[BEST_SLOT]
+                        key = sample[BEST_SLOT]
+                        if key > highest or (key == highest and number < load_count(to.best, voxel)):
+                            store_count(to.best, voxel, number)
                     for k in range(RECORD):
                         record[k] = wp.max(record[k], sample[k])
                     record[0] += bits(1)  # no carry: see FOLD_AFTER of the engine
@@ -906,6 +921,7 @@ def _cuda_kernel(shape: Shape) -> wp.Kernel:
     LOWEST = bits(lowest(real))
     LANE_MASK = wp.int64(LANES - 1)
     COUNT = shape.record_size // shape.count_size
+    BEST, BEST_OUTPUT, BEST_SLOT = shape.best is not None, 3 + (shape.best or 0), FIRST_MAXIMUM + (shape.best or 0)
     add, raise_to = cuda_atomics(wp.int64).add, cuda_atomics(bits).raise_to
     store_row, load_record = memory(real).store, memory(record_type_of(shape)).load
 
@@ -936,6 +952,9 @@ def _cuda_kernel(shape: Shape) -> wp.Kernel:
         sums: wp.array(dtype=wp.int64),
     ):
         thread = wp.tid()
+        one = wp.int64(1)
+        if wp.static(BEST):
+            one -= wp.int64(to.second)  # what has been counted is not counted again
         largest = extremes_type()
         smallest = extremes_type()
         total = totals_type()
@@ -990,13 +1009,16 @@ def _cuda_kernel(shape: Shape) -> wp.Kernel:
                     voxel = cell(grid, vec3(out[0], out[1], out[2]))
                     if wp.static(CONSTRAINED):  # noqa: SIM102
                         if not admitted:
-                            add(to.rejections, voxel * CONSTRAINTS + wp.int32(out[REASON]) - 1, wp.int64(1))
+                            add(to.rejections, voxel * CONSTRAINTS + wp.int32(out[REASON]) - 1, one)
                             voxel = grid.spare
                     if voxel != grid.spare:
                         at = voxel * RECORD
-                        add(counts, voxel * COUNT, wp.int64(1))
+                        add(counts, voxel * COUNT, one)
                         # Extremes only grow: a value that an old reading already covers needs no atomic operation.
                         seen = load_record(to.records, voxel)
+                        if wp.static(BEST):  # noqa: SIM102
+                            if to.second != 0 and ordered(out[BEST_OUTPUT]) == seen[BEST_SLOT]:
+                                wp.atomic_min(to.best, voxel, wide(level) * to.level_stride + index * to.weight)
                         for k in range(K):
                             key = ordered(out[3 + k])
                             if wp.static(MAXIMUM):  # noqa: SIM102 - compiled out before seen is indexed
@@ -1007,7 +1029,7 @@ def _cuda_kernel(shape: Shape) -> wp.Kernel:
                                     raise_to(records, at + FIRST_MINIMUM + k, ~key)
                             if wp.static(SUMS):
                                 quantum = wp.int64(quantized(out[3 + k], to.scales[k]))
-                                add(sums, voxel * SUMS_SIZE + k, quantum)
+                                add(sums, voxel * SUMS_SIZE + k, one * quantum)
             if wp.static(ROWS):
                 for row in range(N_ROWS):
                     at_row = row * wp.int32(to.rows_stride) + wp.int32(offset)
@@ -1024,7 +1046,7 @@ def _cuda_kernel(shape: Shape) -> wp.Kernel:
                     wp.atomic_max(to.extremes, 2 * r + 1, ~smallest[r])
             slot = (thread % TOTAL_SLOTS) * TOTALS
             for k in range(TOTALS):
-                wp.atomic_add(to.totals, slot + k, total[k])
+                wp.atomic_add(to.totals, slot + k, one * total[k])
             if wp.static(CONSTRAINED):
                 for c in range(CONSTRAINTS):
                     wp.atomic_min(to.earliest, c, earliest[c])

@@ -1,31 +1,47 @@
 """What a submitted job or robot model must fulfil; nothing here runs native code on strangers' models."""
 
-import json
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
-from functools import cache
+import asyncio
+import gc
+import uuid
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, replace
+from functools import cache, partial
 from itertools import repeat
-from typing import Any
+from pathlib import Path
+from typing import Any, TypeVar
 
 from defusedxml import DefusedXmlException
+from pydantic import TypeAdapter
+from starlette.concurrency import run_in_threadpool
 
-from wsrender.analyses.jobs import canonical_json, parse_job
+from wsrender.analyses.jobs import job_schema, parse_job
 from wsrender.documents.arm import Arm, ArmPath, dotted, local_paths, models_in
 from wsrender.documents.constraints import Constraints
 from wsrender.documents.document import Document
 from wsrender.documents.problems import MOST_PROBLEMS
+from wsrender.documents.reading import read_document
 from wsrender.documents.sampling import Converge, Grid
-from wsrender.errors import DocumentError, InputError, ModelError, ResourceError
+from wsrender.errors import DocumentError, InputError, ModelError, ResourceError, WsrenderError
 from wsrender.indices.index_catalogue import find, option_values, resolve
 from wsrender.pipeline.constraints.host_function import on_host
 from wsrender.pipeline.constraints.registry import constraints_of
+from wsrender.results.view import Edited
 from wsrender.robots import library, mjcf, xml_source
+from wsrender_server.job_body import LONGEST_HERE, SubmissionOptions, check_size, read_body, refused
+from wsrender_server.jobs.child_process import give_back_memory
+from wsrender_server.jobs.documents import CanonicalDocument, uploads_in
+from wsrender_server.jobs.files import write_durably
 from wsrender_server.jobs.store import JobStore
 from wsrender_server.problems import HttpProblem, pointer, problem_of_error, refusal
+from wsrender_server.side_process import SideProcess
+
+Found = TypeVar("Found")
 
 ROOTS = ("mujoco", "robot")
 LOCAL_ONLY = "is for local runs only; upload the file and name it by model, or send text or points"
 BEYOND_LIMITS = 10**18  # samples
+LONGEST_S = 60.0  # that a long body may take
+EDITED: TypeAdapter[Edited] = TypeAdapter(Edited)
 
 
 def check_model(field: str, text: str, prefix: str = "") -> str:
@@ -68,42 +84,59 @@ def refuse_paths(document: Any) -> None:
 
 
 @dataclass(frozen=True)
-class Admission:
-    """Admits the documents of one owner, whatever their analysis."""
+class Admitted:
+    """A submission that is right as far as can be told without its models."""
 
-    store: JobStore
-    owner: str
-    max_samples: int
-    prefix: str
+    document: CanonicalDocument
+    options: SubmissionOptions
+    prefix: str = ""
     """Where in the body the document is, as a JSON pointer; empty: it is the body."""
+    written: Path | None = None
+    """File of a long document's text."""
 
-    def canonical(self, document: Mapping[str, Any]) -> dict[str, Any]:
-        """The canonical document, all defaults present.
+    def discard(self) -> None:
+        """Remove the file, where nobody has taken it."""
+        if self.written is not None:
+            self.written.unlink(missing_ok=True)
 
-        Raises DocumentError, ModelError, InputError for a wrong document; HttpProblem 404 for a model that the owner
-        did not upload, 409 for text that is no XML; ResourceError for more samples than allowed.
-        """
-        job = parse_job(document)
-        plain = job.model_dump(mode="json")
-        refuse_paths(plain)
-        self.check_models(plain)
-        arms = job.arms()
-        for path, part in ({(): job} | arms).items():
-            _check_indices(part, path)
-            _check_constraints(part, path)
-            self._check_samples(part, path, job)
-        total = sum(least_samples(each.sampling, each) for each in job.sweeps())
-        if total > self.max_samples:
-            message = f"have at least {total:.4g} samples together; this server allows {self.max_samples:.4g}"
-            raise ResourceError("sampling", message)
-        return json.loads(canonical_json(job))
 
-    def check_models(self, document: Any) -> None:
-        """Raises DocumentError, ModelError or HttpProblem for models that the owner cannot have."""
-        for path, model in models_in(document):
-            self._check_model(model, path)
+def admit(text: bytes, max_samples: int) -> Admitted:
+    """The submission of a body.
 
-    def _check_model(self, model: Mapping[str, Any], path: ArmPath) -> None:
+    Raises DocumentError, ModelError, InputError for a wrong document; HttpProblem 400 for text that is no JSON, 409 for
+    a document that keeps to its schema but contradicts itself, and for a model that is no XML; ResourceError for more
+    samples than allowed.
+    """
+    check_size(text)
+    body = read_body(text)
+    try:
+        document = canonical(body.document, max_samples, body.prefix)
+    except DocumentError as error:
+        raise refused(error, text, "JobSubmission", body.prefix) from None
+    return Admitted(document, body.options, body.prefix)
+
+
+def canonical(document: Mapping[str, Any], max_samples: int, prefix: str = "") -> CanonicalDocument:
+    """The canonical document, all defaults present; raises as `admit`. ``prefix``: where in the body it is."""
+    job = parse_job(document)
+    plain = job.model_dump(mode="json")
+    refuse_paths(plain)
+    check_models(plain, prefix)
+    arms = job.arms()
+    for path, part in ({(): job} | arms).items():
+        _check_indices(part, path)
+        _check_constraints(part, path)
+        _check_samples(part, path, job, max_samples)
+    total = sum(least_samples(each.sampling, each) for each in job.sweeps())
+    if total > max_samples:
+        message = f"have at least {total:.4g} samples together; this server allows {max_samples:.4g}"
+        raise ResourceError("sampling", message)
+    return CanonicalDocument.of(plain)
+
+
+def check_models(document: Any, prefix: str = "") -> None:
+    """Raises DocumentError, ModelError or HttpProblem for models that cannot be had, or are not harmless text."""
+    for path, model in models_in(document):
         if model.get("library") is not None:
             try:
                 library.find(model["library"])
@@ -111,27 +144,131 @@ class Admission:
                 raise DocumentError([(dotted(path, "library"), error.message)]) from None
         for name in ("mjcf", "urdf"):
             if model.get(name) is not None:
-                check_model(dotted(path, name), model[name], self.prefix)
-        if (sha256 := model.get("model")) is not None and self.store.get_model(self.owner, sha256) is None:
+                check_model(dotted(path, name), model[name], prefix)
+
+
+def check_uploads(store: JobStore, owner: str, uploads: Iterable[tuple[str, str]], prefix: str = "") -> None:
+    """Raises HttpProblem 404 for what the owner did not upload: (dotted path, SHA-256) of each."""
+    for path, sha256 in uploads:
+        if store.get_model(owner, sha256) is None:
             raise HttpProblem(
                 404,
                 f"you have uploaded no model {sha256}",
                 "model_not_found",
-                errors=[(pointer(dotted(path, "model"), self.prefix), "is no model that you uploaded")],
+                errors=[(pointer(path, prefix), "is no model that you uploaded")],
             )
 
-    def _check_samples(self, part: Document, path: ArmPath, job: Document) -> None:
-        sampling = getattr(part, "sampling", None)
-        if sampling is None:
-            return
-        samples = least_samples(sampling, part)
-        limits = {"this server allows": self.max_samples}
-        if not isinstance(sampling, Converge):  # which stops by itself where a grid would be too large
-            limits["max_samples is"] = getattr(part, "max_samples", getattr(job, "max_samples", BEYOND_LIMITS))
-        for who, limit in limits.items():
-            if samples > limit:
-                message = f"has at least {samples:.4g} samples; {who} {limit:.4g}"
-                raise ResourceError(dotted(path, "sampling"), message)
+
+def uploads_of_edited(text: bytes) -> list[tuple[str, str]]:
+    """What the body of an edited robot or environment names of uploads: (dotted path, SHA-256); raises as `admit`."""
+    check_size(text)
+    try:
+        document = read_document(text, EDITED).model_dump(mode="json")
+        refuse_paths(document)
+        check_models(document)
+    except DocumentError as error:
+        raise refused(error, text, "Edited", "") from None
+    return [*uploads_in(document)]
+
+
+class Admissions:
+    """Reads bodies: short bodies in a thread, long ones in a child process, one after another.
+
+    A body of 15 MB may become a gigabyte of lists, and holds Python's lock for seconds.
+    """
+
+    def __init__(self, store: JobStore, process: SideProcess, max_samples: int):
+        self._store = store
+        self._process = process
+        self._max_samples = max_samples
+        self._warming: asyncio.Task[Any] | None = None
+
+    async def of(self, owner: str, text: bytes) -> Admitted:
+        """The submission of a body; raises as `admit` and `check_uploads`. ``discard`` it in the end."""
+        if len(text) <= LONGEST_HERE:
+            found = await run_in_threadpool(admit, text, self._max_samples)
+        else:
+            scratch = self._store.files.root / "scratch"
+            found = await self._process.run(_admit_aside, text, self._max_samples, scratch, timeout_s=LONGEST_S)
+        if isinstance(found, dict):
+            raise refusal(found, found["status"])
+        try:
+            uploads = found.document.uploads
+            await run_in_threadpool(check_uploads, self._store, owner, uploads, found.prefix)
+        except BaseException:
+            found.discard()
+            raise
+        return found
+
+    async def check_edited(self, owner: str, text: bytes) -> None:
+        """Check the body of a robot or an environment that is edited; raises as `uploads_of_edited`."""
+        await run_in_threadpool(check_uploads, self._store, owner, await self.read(uploads_of_edited, text))
+
+    async def read(self, function: Callable[[bytes], Found], text: bytes) -> Found:
+        """What a module-level function, which returns no dict, reads in a body: in the child where that is long.
+
+        Raises HttpProblem for whatever the function refuses there.
+        """
+        if len(text) <= LONGEST_HERE:
+            return await run_in_threadpool(function, text)
+        found = await self._process.run(_read_aside, function, text, timeout_s=LONGEST_S)
+        if isinstance(found, dict):
+            raise refusal(found, found["status"])
+        return found
+
+    def warm_up(self) -> None:
+        """Start the child, so that the first long body need not wait for it; called on the event loop."""
+        self._warming = asyncio.create_task(self._process.run(job_schema))
+        self._warming.add_done_callback(lambda task: task.cancelled() or task.exception())  # the body will tell
+
+    def close(self) -> None:
+        """End the child."""
+        self._process.close()
+
+
+def _admit_aside(text: bytes, max_samples: int, scratch: Path) -> Admitted | dict[str, Any]:
+    """The submission of a long body, its document written to a file, or the problem document of what is wrong."""
+
+    def admitted() -> Admitted:
+        found = admit(text, max_samples)
+        if found.document.is_short:
+            return found
+        path = scratch / f"{uuid.uuid4().hex}.json"
+        write_durably(path, (found.document.text or "").encode())
+        return replace(found, document=replace(found.document, text=None), written=path)
+
+    return _aside(admitted)
+
+
+def _read_aside(function: Callable[[bytes], Found], text: bytes) -> Found | dict[str, Any]:
+    """What a function reads in a long body, or the problem document of what is wrong."""
+    return _aside(partial(function, text))
+
+
+def _aside(read: Callable[[], Found]) -> Found | dict[str, Any]:
+    """What reading a long body gives, or the problem document of what is wrong; its memory is given back."""
+    gc.disable()  # millions of lists hold no cycles, and looking for some takes as long as all the rest
+    try:
+        return read()
+    except (HttpProblem, WsrenderError) as error:
+        return problem_of_error(error)
+    finally:
+        gc.enable()
+        give_back_memory()
+
+
+def _check_samples(part: Document, path: ArmPath, job: Document, max_samples: int) -> None:
+    sampling = getattr(part, "sampling", None)
+    if sampling is None:
+        return
+    samples = least_samples(sampling, part)
+    limits = {"this server allows": max_samples}
+    if not isinstance(sampling, Converge):  # which stops by itself where a grid would be too large
+        limits["max_samples is"] = getattr(part, "max_samples", getattr(job, "max_samples", BEYOND_LIMITS))
+    for who, limit in limits.items():
+        if samples > limit:
+            message = f"has at least {samples:.4g} samples; {who} {limit:.4g}"
+            raise ResourceError(dotted(path, "sampling"), message)
 
 
 def least_samples(sampling: Any, part: Document) -> int:

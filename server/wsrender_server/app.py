@@ -7,18 +7,21 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from fastapi import Depends, FastAPI, Request
+from fastapi import Depends, FastAPI
 from fastapi.openapi.docs import get_swagger_ui_html
 from fastapi.openapi.utils import get_openapi
 from fastapi.routing import APIRoute
 from starlette.concurrency import run_in_threadpool
 from starlette.convertors import StringConvertor, register_url_convertor
-from starlette.responses import JSONResponse, RedirectResponse, Response
+from starlette.responses import FileResponse, JSONResponse, Response
 from starlette.routing import compile_path
 from starlette.staticfiles import StaticFiles
 
 from wsrender import __version__
+from wsrender.results.view.manifest import MANIFEST
 from wsrender_server.auth import Authenticator, check_binding
+from wsrender_server.connections import BodyLayer
+from wsrender_server.hosts import HostLayer, address
 from wsrender_server.job_body import body_schemas
 from wsrender_server.jobs.service import JobService
 from wsrender_server.logs import configure_logs
@@ -29,6 +32,23 @@ from wsrender_server.requests import RequestLayer
 from wsrender_server.settings import Settings
 
 STATIC = Path(__file__).parent / "static"
+# Everything comes from the server itself; styles are set by the page's own script, which no policy forbids.
+VIEWER_POLICY = {
+    "default-src": "'none'",
+    "script-src": "'self'",
+    "style-src": "'self'",
+    "img-src": "'self' blob: data:",
+    "connect-src": "'self'",
+    "frame-ancestors": "'none'",
+    "base-uri": "'none'",
+    "form-action": "'none'",
+}
+VIEWER_HEADERS = {
+    "Content-Security-Policy": "; ".join(f"{name} {sources}" for name, sources in VIEWER_POLICY.items()),
+    "Cache-Control": "no-cache",
+    "Referrer-Policy": "no-referrer",
+    "X-Frame-Options": "DENY",
+}
 DESCRIPTION = """Workspace analysis of robotic manipulators. Submit a job document, follow the job, fetch its result.
 
 Errors are problem documents (RFC 9457) with a stable `code`, JSON pointers to the bad fields, and `retryable`."""
@@ -42,11 +62,26 @@ class _IdConvertor(StringConvertor):
 
 register_url_convertor("id", _IdConvertor())
 # After the convertor is known: routes are compiled when their modules are imported.
-from wsrender_server.routes import artifacts, catalogue, events, keys, kinetostatic_stream, operation  # noqa: E402
+from wsrender_server.routes import (  # noqa: E402
+    artifacts,
+    catalogue,
+    events,
+    keys,
+    kinetostatic_stream,
+    operation,
+    view,
+    view_session,
+)
 from wsrender_server.routes import jobs as job_routes  # noqa: E402
 
 KEY_PATHS = {route.path_format for route in keys.router.routes if isinstance(route, APIRoute)}
-ROUTERS = [module.router for module in (job_routes, events, artifacts, catalogue, keys, kinetostatic_stream, operation)]
+ROUTERS = [
+    module.router
+    for module in (
+        *(job_routes, events, artifacts, view, view_session),
+        *(catalogue, keys, kinetostatic_stream, operation),
+    )
+]
 
 
 def create_app(settings: Settings, jobs: Jobs | None = None) -> FastAPI:
@@ -81,6 +116,7 @@ def create_app(settings: Settings, jobs: Jobs | None = None) -> FastAPI:
     for router in ROUTERS:
         app.include_router(router)
     _add_documentation(app)
+    _add_viewer(app)
     app.state.methods_by_path = [
         (compile_path(route.path)[0], route.methods)
         for router in ROUTERS
@@ -88,6 +124,8 @@ def create_app(settings: Settings, jobs: Jobs | None = None) -> FastAPI:
         if isinstance(route, APIRoute)
     ]
     answer_errors(app)
+    app.add_middleware(BodyLayer, timeout_s=settings.read_timeout_s)
+    app.add_middleware(HostLayer, settings=settings)
     app.add_middleware(RequestLayer, metrics=parts.metrics, max_body_bytes=settings.max_body_bytes)
     document = cache(lambda keys_needed: _openapi(app, keys_needed))
     app.openapi = lambda: document(authenticator.required)
@@ -103,8 +141,10 @@ async def _life(app: FastAPI) -> AsyncIterator[None]:
     finally:
         await run_in_threadpool(parts.jobs.stop)
         await run_in_threadpool(parts.streams.close)
+        await run_in_threadpool(parts.view_sessions.close)
         await run_in_threadpool(parts.side_process.close)
         await run_in_threadpool(parts.estimates.close)
+        await run_in_threadpool(parts.admissions.close)
 
 
 def _add_documentation(app: FastAPI) -> None:
@@ -113,21 +153,38 @@ def _add_documentation(app: FastAPI) -> None:
 
     @app.get("/openapi.json", include_in_schema=False)
     async def openapi() -> Response:
-        return JSONResponse(app.openapi())
+        servers = {"servers": [{"url": address("")}]} if address("") else {}
+        return JSONResponse(app.openapi() | servers)
 
     @app.get("/docs", include_in_schema=False)
     async def docs() -> Response:
         return get_swagger_ui_html(
-            openapi_url="../openapi.json",
+            openapi_url="openapi.json",
             title="wsrender",
             swagger_js_url="docs/files/swagger-ui-bundle.js",
             swagger_css_url="docs/files/swagger-ui.css",
             swagger_favicon_url="docs/files/favicon-32x32.png",
         )
 
+
+def _add_viewer(app: FastAPI) -> None:
+    """The page at ``/``, whose files are at ``/viewer``; it names them relatively, so that it works behind a prefix."""
+    app.mount("/viewer", _ViewerFiles(directory=STATIC / "viewer"), name="viewer")
+
     @app.get("/", include_in_schema=False)
-    async def home(request: Request) -> Response:
-        return RedirectResponse("docs")
+    async def home() -> Response:
+        app.state.parts.views.warm()
+        return FileResponse(STATIC / "viewer" / "index.html", headers=VIEWER_HEADERS)
+
+
+class _ViewerFiles(StaticFiles):
+    """The files of the page, with its headers."""
+
+    def file_response(self, *arguments: Any, **options: Any) -> Response:
+        """A file, or 304 where the client has it."""
+        response = super().file_response(*arguments, **options)
+        response.headers.update(VIEWER_HEADERS)
+        return response
 
 
 def _openapi(app: FastAPI, keys_needed: bool) -> dict[str, Any]:
@@ -142,6 +199,7 @@ def _openapi(app: FastAPI, keys_needed: bool) -> dict[str, Any]:
     )
     schemas = document["components"]["schemas"]
     schemas |= body_schemas()
+    schemas |= _view_schemas()
     schemas["Problem"] = Problem.model_json_schema(ref_template="#/components/schemas/{model}")
     schemas |= schemas["Problem"].pop("$defs", {})
     for unused in ("HTTPValidationError", "ValidationError"):
@@ -152,3 +210,10 @@ def _openapi(app: FastAPI, keys_needed: bool) -> dict[str, Any]:
         for operation in (operation for path in document["paths"].values() for operation in path.values()):
             operation.pop("security", None)
     return document
+
+
+def _view_schemas() -> dict[str, Any]:
+    """The manifest of a view."""
+    found = MANIFEST.json_schema(ref_template="#/components/schemas/View{model}")
+    parts = {f"View{name}": part for name, part in found.pop("$defs").items()}
+    return {**parts, "Manifest": found}

@@ -1,33 +1,35 @@
 """Who asks, and what they may: API keys with scopes, or one local user where no key exists."""
 
+import asyncio
 import hashlib
-import ipaddress
-import re
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from time import monotonic
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Never
 
 from fastapi import Depends, Request, Security
 from fastapi.security import HTTPAuthorizationCredentials, HTTPBearer
+from starlette.concurrency import run_in_threadpool
 from starlette.requests import HTTPConnection
 
 from wsrender.errors import InputError
+from wsrender_server.hosts import host_of, is_loopback
+from wsrender_server.jobs.faults import StoreUnavailable
 from wsrender_server.jobs.store import JobStore
 from wsrender_server.problems import HttpProblem
 from wsrender_server.settings import Settings
 
-Scope = Literal["read", "submit", "admin"]
-# What a key with a scope may do; the right "admin" is that to manage keys.
+Scope = Literal["read", "submit", "priority", "admin"]
+# What a key with a scope may do; the right "admin" is that to manage keys, "priority" that to go before others' jobs.
 GRANTS: dict[str, frozenset[str]] = {
     "read": frozenset({"read"}),
     "submit": frozenset({"read", "submit"}),
-    "admin": frozenset({"read", "submit", "admin"}),
+    "priority": frozenset({"read", "submit", "priority"}),
+    "admin": frozenset({"read", "submit", "priority", "admin"}),
 }
-LOCAL_NAMES = ("localhost", "ip6-localhost")
 SHORTEST_SECRET = 16  # characters
-_HOST = re.compile(r"(\[[0-9A-Fa-f:.]+\]|[A-Za-z0-9._-]+)(?::[0-9]{1,5})?")  # of a header: name or address, port
 
 
 @dataclass(frozen=True)
@@ -38,8 +40,9 @@ class Principal:
     rights: frozenset[str]
 
 
-LOCAL_USER = Principal("local", GRANTS["submit"])  # the first key is made by the command line
+LOCAL_USER = Principal("local", GRANTS["priority"])  # the first key is made by the command line
 LOOK_AGAIN_S = 0.5  # for the first key
+REVOKED_S = 1.0  # between looks whether a stream's key was revoked
 
 
 class Authenticator:
@@ -50,6 +53,7 @@ class Authenticator:
         self._file_keys = {} if settings.api_key_file is None else read_key_file(settings.api_key_file)
         self._required = bool(self._file_keys)
         self._looked = -LOOK_AGAIN_S
+        self._admitted: dict[str, tuple[float, bool]] = {}  # keys that streams asked about, and when
 
     @property
     def required(self) -> bool:
@@ -70,6 +74,18 @@ class Authenticator:
             return known
         key = self._store.find_key(secret)
         return None if key is None else Principal(key.id, _rights(key.scopes))
+
+    def admits(self, principal: Principal) -> bool:
+        """Whether whoever was let in would be let in again: their key may have been revoked half a second ago."""
+        if principal is LOCAL_USER:
+            return not self.required
+        if principal in self._file_keys.values():
+            return True
+        looked, admitted = self._admitted.get(principal.owner, (-LOOK_AGAIN_S, True))
+        if monotonic() - looked >= LOOK_AGAIN_S:
+            looked, admitted = monotonic(), self._store.is_live(principal.owner)
+            self._admitted[principal.owner] = looked, admitted
+        return admitted
 
 
 def read_key_file(path: Path) -> dict[str, Principal]:
@@ -92,7 +108,7 @@ def read_key_file(path: Path) -> dict[str, Principal]:
             raise InputError(
                 "api_key_file",
                 f"{path}, line {number}: must be a secret of at least {SHORTEST_SECRET} characters, then if you like "
-                "a name and scopes from read,submit,admin",
+                f"a name and scopes from {','.join(GRANTS)}",
             )
         digest = _digest(secret)
         principals[digest] = Principal(f"file:{name or digest[:16]}", _rights(scopes.split(",")))
@@ -110,14 +126,6 @@ def check_binding(host: str, has_keys: bool) -> None:
         f"{host} can be reached from other machines, and there is no API key; make one (wsrender keys create) or give "
         "--api-key-file, or listen on 127.0.0.1",
     )
-
-
-def is_loopback(host: str) -> bool:
-    """Whether an address or name can only be reached from this machine."""
-    try:
-        return ipaddress.ip_address(host.strip("[]")).is_loopback
-    except ValueError:
-        return host.lower().rstrip(".") in LOCAL_NAMES
 
 
 def needs(right: Scope) -> Callable[..., Principal]:
@@ -142,6 +150,23 @@ def entitled(connection: HTTPConnection, secret: str | None, right: Scope) -> Pr
     return asking
 
 
+async def until_revoked(connection: HTTPConnection, principal: Principal) -> Never:
+    """Wait beside a stream, for as long as its key is one; raises HttpProblem 401 then."""
+    authenticator: Authenticator = connection.app.state.authenticator
+    while True:
+        with suppress(StoreUnavailable):  # which says nothing of the key
+            if not await run_in_threadpool(authenticator.admits, principal):
+                raise _unauthorized("the API key was revoked", 'Bearer error="invalid_token"')
+        await asyncio.sleep(REVOKED_S)
+
+
+def check_priority(principal: Principal, priority: int, pointer: str) -> None:
+    """Raise HttpProblem 403 for a priority above the usual 0 where the key has no such scope."""
+    if priority > 0 and "priority" not in principal.rights:
+        detail = f"a priority of {priority} needs a key with the scope 'priority'; without it 0 is the highest"
+        raise HttpProblem(403, detail, "insufficient_scope", errors=[(pointer, detail)])
+
+
 _bearer = HTTPBearer(scheme_name="api_key", description="An API key (`wsrender keys create`).", auto_error=False)
 Reader = Annotated[Principal, Depends(needs("read"))]
 Submitter = Annotated[Principal, Depends(needs("submit"))]
@@ -163,10 +188,10 @@ def _asking(connection: HTTPConnection, secret: str | None) -> Principal:
 
 def _check_host(connection: HTTPConnection) -> None:
     """Without a key only names of this machine count: a web page must not reach it by a name of its own."""
-    host = connection.headers.get("host", "")
-    name = _HOST.fullmatch(host)
-    if name is None or not is_loopback(name[1]):
-        raise HttpProblem(403, f"without an API key the server answers to localhost only, not {host}", "wrong_host")
+    host = host_of(connection.headers)
+    if not is_loopback(host) and host.lower() not in connection.app.state.parts.settings.allowed_hosts:
+        given = connection.headers.get("host", "")
+        raise HttpProblem(403, f"without an API key the server answers to localhost only, not {given}", "wrong_host")
 
 
 def _unauthorized(detail: str, challenge: str) -> HttpProblem:

@@ -1,5 +1,6 @@
 """Commands of the server: ``wsrender serve | worker | keys | database | demo``."""
 
+import json
 import os
 import signal
 import subprocess
@@ -9,6 +10,7 @@ import threading
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import closing, contextmanager, nullcontext
+from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -17,11 +19,13 @@ from pydantic import ValidationError
 
 from wsrender.cli.faults import one_line_faults
 from wsrender.errors import InputError, NotFoundError
-from wsrender_server.settings import Settings
+from wsrender_server.gpus import present_gpus
+from wsrender_server.jobs.files import DataFolder, keep_private
+from wsrender_server.settings import PREFIX, Settings
 
 app = typer.Typer(no_args_is_help=True)
-keys = typer.Typer(no_args_is_help=True, help="Create, list and revoke API keys.")
-database = typer.Typer(no_args_is_help=True, help="The database of jobs.")
+keys = typer.Typer(no_args_is_help=True, help="Create, list and revoke API keys.", callback=keep_private)
+database = typer.Typer(no_args_is_help=True, help="The database of jobs.", callback=keep_private)
 app.add_typer(keys, name="keys")
 app.add_typer(database, name="database")
 
@@ -66,6 +70,7 @@ def serve(
 
     Every option can be given by an environment variable as well, such as WSRENDER_PORT; server/README.md lists more.
     """
+    keep_private()
     with one_line_faults():
         settings = settings_of(**locals())
 
@@ -76,10 +81,16 @@ def serve(
         _say_where(settings)
 
         from wsrender_server.app import create_app  # takes a second: after what may be wrong
+        from wsrender_server.parts import Parts
 
         app = create_app(settings)
-        on_stop = app.state.parts.store.changes.close
-        serve_until_stopped(app, listener, lambda url: typer.echo(f"wsrender {READY}{url}"), on_stop)
+        parts: Parts = app.state.parts
+
+        def announce(url: str) -> None:
+            typer.echo(f"wsrender {READY}{url}")
+            parts.admissions.warm_up()
+
+        serve_until_stopped(app, settings, listener, announce, parts.store.changes.close)
 
 
 @app.command()
@@ -89,15 +100,20 @@ def worker(
     gpus: Annotated[
         str | None, typer.Option(help='"all", or numbers such as 0,1: one process per GPU. Default: one process.')
     ] = None,
+    name: Annotated[str | None, typer.Option(help="What the scheduler calls it, without --gpus. [its address]")] = None,
     tls_ca_file: CaFile = None,
     tls_cert_file: CertFile = None,
     tls_key_file: KeyFile = None,
 ) -> None:
     """Compute for a Dask scheduler; the data folder must be the server's, shared between the machines."""
+    keep_private()
     with one_line_faults():
         settings = settings_of(**locals())
         if settings.scheduler is None:
             raise InputError("--scheduler", "must be given, such as tls://lab:8786")
+        if name is not None and gpus is not None:
+            raise InputError("--name", "is for one worker; leave out --gpus, or start a worker for each GPU")
+        DataFolder(settings.data_dir)  # looks who else may read it
         _say_where(settings)
         stop = threading.Event()
         for number in (signal.SIGTERM, signal.SIGINT):
@@ -107,14 +123,63 @@ def worker(
         else:
             from wsrender_server.jobs.worker import serve_scheduler
 
-            serve_scheduler(settings, lambda: typer.echo(f"wsrender worker joined {settings.scheduler}"), stop)
+            serve_scheduler(settings, lambda: typer.echo(f"wsrender worker joined {settings.scheduler}"), stop, name)
+
+
+@app.command()
+def doctor(
+    host: Annotated[str | None, typer.Option(help="Address to listen on.")] = None,
+    port: Annotated[int | None, typer.Option(help="Port to listen on.")] = None,
+    data_dir: DataDir = None,
+    api_key_file: Annotated[Path | None, typer.Option(help="API keys, one to a line.")] = None,
+    database: Database = None,
+    scheduler: Scheduler = None,
+    tls_ca_file: CaFile = None,
+    tls_cert_file: CertFile = None,
+    tls_key_file: KeyFile = None,
+    as_json: Annotated[bool, typer.Option("--json", help="As JSON.")] = False,
+) -> None:
+    """Check whether a server can run here: what is wrong, and the command that mends it. Changes nothing."""
+    with one_line_faults():
+        from wsrender_server.doctor import findings
+
+        found = list(findings(settings_of(**locals())))
+        if as_json:
+            typer.echo(json.dumps([{**asdict(each), "ok": not each.remedy} for each in found], indent=2))
+        else:
+            for each in found:
+                typer.echo(f"{'wrong' if each.remedy else 'ok   '}  {each.check}: {each.found}")
+                if each.remedy:
+                    typer.echo(f"         {each.remedy}")
+        if any(each.remedy for each in found):
+            raise typer.Exit(1)
+
+
+@app.command("settings")
+def list_settings(as_json: Annotated[bool, typer.Option("--json", help="As JSON.")] = False) -> None:
+    """List the server's settings: variable, value, where that comes from, meaning. Passwords are hidden."""
+    with one_line_faults():
+        settings = settings_of()
+        rows = []
+        for name, field in Settings.model_fields.items():
+            variable, value = PREFIX + name.upper(), getattr(settings, name)
+            text = settings.database_place if name == "database" and value else settings.model_dump(mode="json")[name]
+            source = "environment" if variable in {each.upper() for each in os.environ} else "default"
+            meaning = " ".join((field.description or "").split())
+            rows.append({"variable": variable, "value": text, "source": source, "meaning": meaning})
+        if as_json:
+            typer.echo(json.dumps(rows, indent=2))
+        else:
+            for row in rows:
+                shown = "" if row["value"] is None else row["value"]
+                typer.echo(f"{row['variable']}={shown}  ({row['source']})\n    {row['meaning']}")
 
 
 @keys.command("create")
 def create_key(
     name: Annotated[str, typer.Option(help="Whose key it is.")] = "unnamed",
     scope: Annotated[
-        list[str] | None, typer.Option(help="read, submit or admin; repeatable. [read and submit]")
+        list[str] | None, typer.Option(help="read, submit, priority or admin; repeatable. [read and submit]")
     ] = None,
     data_dir: DataDir = None,
     database: Database = None,
@@ -128,7 +193,7 @@ def create_key(
             key, secret = store.create_key(name, *([scope] if scope else []))
         typer.echo(secret)
         typer.echo(
-            f"key {key.id} of {name}: keep it now, it is never shown again; servers on {_database_of(settings)} "
+            f"key {key.id} of {name}: keep it now, it is never shown again; servers on {settings.database_place} "
             "ask for keys from now on",
             err=True,
         )
@@ -147,7 +212,7 @@ def list_keys(data_dir: DataDir = None, database: Database = None) -> None:
         with _existing_store(settings) as store:
             found = [] if store is None else store.list_keys()
         if store is None:
-            typer.echo(f"there is no database at {_database_of(settings)}, so there are no keys", err=True)
+            typer.echo(f"there is no database at {settings.database_place}, so there are no keys", err=True)
         for key in found:
             revoked = "" if key.revoked_at is None else f"{key.revoked_at:%Y-%m-%d %H:%M}"
             table.add_row(key.id, key.name, " ".join(key.scopes), f"{key.created_at:%Y-%m-%d %H:%M}", revoked)
@@ -164,7 +229,7 @@ def revoke_key(
         with _existing_store(settings) as store:
             revoked = None if store is None else store.revoke_key(id)
         if revoked is None:
-            raise NotFoundError(f"there is no key {id} in {_database_of(settings)}")
+            raise NotFoundError(f"there is no key {id} in {settings.database_place}")
         typer.echo(f"key {id} is revoked")
 
 
@@ -178,6 +243,83 @@ def upgrade_database(data_dir: DataDir = None, database: Database = None) -> Non
         settings = settings_of(**locals())
         upgrade(open_database(settings.database_url))
         typer.echo("the database is up to date")
+
+
+@database.command("check")
+def check_database(
+    repair: Annotated[
+        bool, typer.Option("--repair", help="Expire results whose files are lost, remove files that nothing names.")
+    ] = False,
+    data_dir: DataDir = None,
+    database: Database = None,
+) -> None:
+    """Read every file that the database lists, and the database itself; a server may run meanwhile."""
+    with one_line_faults():
+        from wsrender_server.jobs import backups
+        from wsrender_server.jobs.retention import Retention
+
+        settings = settings_of(**locals())
+        with _needed_store(settings) as store:
+            retention = Retention(store, settings)
+            checked = backups.check(store, retention)
+            for finding in checked.findings:
+                typer.echo(finding.text)
+            for stray in checked.strays:
+                typer.echo(f"{stray.id} ({stray.bytes} bytes) is not needed: {stray.reason}")
+            typer.echo(f"{checked.files} files, {checked.bytes} bytes, are as they were written")
+            if repair:
+                backups.repair(store, retention, checked)
+                typer.echo("results that are lost have expired, and can be retried; files without a name are removed")
+        if checked.findings and not repair:
+            raise InputError("database", f"{len(checked.findings)} findings; --repair lets lost results expire")
+
+
+@database.command("prune")
+def prune_database(
+    dry_run: Annotated[bool, typer.Option("--dry-run", help="Say what would go, and remove nothing.")] = False,
+    data_dir: DataDir = None,
+    database: Database = None,
+) -> None:
+    """Remove what the settings WSRENDER_KEEP_… keep no longer, as a server does every minute."""
+    with one_line_faults():
+        from wsrender_server.jobs.retention import Retention
+
+        settings = settings_of(**locals())
+        with _needed_store(settings) as store:
+            retention = Retention(store, settings)
+            removals = retention.due() if dry_run else retention.sweep()
+        for each in removals:
+            typer.echo(f"{each.what} {each.id} of {each.owner or 'nobody'}, {each.bytes} bytes: {each.reason}")
+        size = sum(each.bytes for each in removals)
+        typer.echo(f"{len(removals)} things, {size} bytes, {'would go' if dry_run else 'are gone'}")
+
+
+@database.command("backup")
+def back_up_database(
+    folder: Annotated[Path, typer.Argument(help="A new folder.")], data_dir: DataDir = None, database: Database = None
+) -> None:
+    """Copy database, results and models into a folder, while the server runs."""
+    with one_line_faults():
+        from wsrender_server.jobs.backups import back_up
+
+        with _needed_store(settings_of(data_dir=data_dir, database=database)) as store:
+            files, lost = back_up(store, folder)
+        for name in lost:
+            typer.echo(f"not there, or damaged: {name}; its jobs are expired in the backup", err=True)
+        typer.echo(f"{folder} holds the database and {files} files")
+
+
+@database.command("restore")
+def restore_database(
+    folder: Annotated[Path, typer.Argument(help="A backup.")], data_dir: DataDir = None, database: Database = None
+) -> None:
+    """Fill an empty data folder, and an empty database of either kind, from a backup."""
+    with one_line_faults():
+        from wsrender_server.jobs.backups import restore
+
+        settings = settings_of(data_dir=data_dir, database=database)
+        files = restore(settings, folder)
+        typer.echo(f"{settings.database_place} and {files} files in {settings.data_dir} are as in the backup")
 
 
 @app.command()
@@ -224,13 +366,13 @@ def _existing_store(settings: Settings) -> Iterator[Any]:
         yield store
 
 
-def _database_of(settings: Settings) -> str:
-    """Where the database is, without a password."""
-    if settings.database_file is not None:
-        return str(settings.database_file)
-    from sqlalchemy import make_url
-
-    return make_url(settings.database_url).render_as_string()
+@contextmanager
+def _needed_store(settings: Settings) -> Iterator[Any]:
+    """The store for as long as it is needed. Raises NotFoundError where there is none."""
+    with _existing_store(settings) as store:
+        if store is None:
+            raise NotFoundError(f"there is no database at {settings.database_place}")
+        yield store
 
 
 def _say_where(settings: Settings) -> None:
@@ -250,7 +392,7 @@ def _work_on(gpus: str, settings: Settings, stop: threading.Event) -> None:
 
 def gpu_numbers(choice: str) -> list[str]:
     """The GPUs that ``choice`` names: "all", or numbers separated by commas. Raises InputError."""
-    present = _present_gpus()
+    present = present_gpus()
     if choice == "all":
         if not present:
             raise InputError("--gpus", "this machine has no NVIDIA GPU, or nvidia-smi does not see it")
@@ -282,12 +424,3 @@ def run_workers(gpus: Sequence[str], arguments: Sequence[str], stop: threading.E
 def _start_worker(gpu: str, arguments: Sequence[str]) -> subprocess.Popen[bytes]:
     environment = {**os.environ, "CUDA_DEVICE_ORDER": "PCI_BUS_ID", "CUDA_VISIBLE_DEVICES": gpu}
     return subprocess.Popen([sys.executable, "-m", "wsrender", "worker", *arguments], env=environment)
-
-
-def _present_gpus() -> list[str]:
-    """Numbers of the GPUs in the order of their bus, asked without starting CUDA here."""
-    query = ["nvidia-smi", "--query-gpu=index", "--format=csv,noheader"]
-    try:
-        return subprocess.run(query, capture_output=True, text=True, check=True, timeout=30).stdout.split()
-    except (OSError, subprocess.SubprocessError):
-        return []

@@ -1,6 +1,7 @@
 """Artifacts in other formats, slices and plots on request, made in the side process."""
 
 import asyncio
+import math
 import os
 import tempfile
 import uuid
@@ -112,6 +113,36 @@ def slice_values(
         "at_m": float((first[normal] + layer + 0.5) * size),
         "name": name,
     }
+
+
+def voxel_values(volume_file: str, at: tuple[float, float, float]) -> dict[str, Any]:
+    """What the voxel that holds the point ``at`` (3,) [m] holds: ``cell``, ``center_m``, ``count`` and ``values``.
+
+    Raises InputError for a point outside the volume.
+    """
+    import h5py
+
+    with h5py.File(volume_file, "r") as file:
+        root: Any = file["VTKHDF"]
+        size, first = float(root.attrs["Spacing"][0]), np.asarray(root.attrs["first_voxel"])
+        cell = np.floor(np.array(at) / size + 1e-9).astype(np.int64) - first
+        cells = root["CellData"]
+        if (cell < 0).any() or (cell >= cells["count"].shape[::-1]).any():
+            low, high = first * size, (first + cells["count"].shape[::-1]) * size
+            box = ", ".join(f"{a:g} … {b:g}" for a, b in zip(low, high, strict=True))
+            raise InputError("x", f"the point {', '.join(f'{each:g}' for each in at)} is outside the volume, {box} m")
+        x, y, z = cell.tolist()
+        values = []
+        for data in cells.values():
+            told = [("statistic", "index", "")] if "statistic" in data.attrs else []
+            told = [("vector", "vector", axis) for axis in AXES] if "vector" in data.attrs else told
+            for (statistic, name, axis), number in zip(told, np.atleast_1d(data[z, y, x]).tolist(), strict=False):
+                unit = str(data.attrs["unit"])
+                known = {"name": str(data.attrs[name]), "statistic": axis or str(data.attrs[statistic]), "unit": unit}
+                values.append({**known, "value": number if math.isfinite(number) else None})
+        count = int(cells["count"][z, y, x])
+    center = (first + cell + 0.5) * size
+    return {"cell": (x, y, z), "center_m": tuple(center.tolist()), "count": count, "values": values}
 
 
 def _array_name(cells: Any, index: str | None, statistic: str | None) -> str:

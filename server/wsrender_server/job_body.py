@@ -2,7 +2,8 @@
 
 import copy
 import json
-from collections.abc import Mapping
+from collections import Counter
+from collections.abc import AsyncIterator, Mapping
 from dataclasses import dataclass
 from functools import cache
 from itertools import islice
@@ -20,6 +21,7 @@ from wsrender.indices import catalogue
 from wsrender.indices.index_catalogue import names_of
 from wsrender.pipeline.constraints.host_function import on_host
 from wsrender.pipeline.constraints.registry import added_constraints
+from wsrender.results.view import Edited
 from wsrender.robots import library
 from wsrender_server.jobs.store import HIGHEST_PRIORITY, LONGEST_TEXT, MOST_LABELS
 from wsrender_server.problems import HttpProblem, pointer, problem_of_error, refusal
@@ -28,6 +30,10 @@ JSON_TYPES = ("application/json", "text/json")
 LABEL_KEY = r"^[A-Za-z0-9][A-Za-z0-9._/-]{0,62}$"
 LABEL_VALUE = rf"^[^\x00-\x1f\x7f]{{0,{LONGEST_TEXT}}}$"
 LARGEST_CHECKED = 1 << 16  # bytes
+LONGEST_HERE = 1 << 18  # bytes of a body that is read in this process
+MOST_HELD, MOST_HELD_OF_OWNER = 4, 2  # longer bodies at a time: who sends slowly never holds all places
+# Of a body: values weigh some 30 bytes each once they are read, lists and objects 100.
+MOST_VALUES, MOST_CONTAINERS = 8_000_000, 2_000_000
 ROBOT = "#/$defs/RobotSpec"
 # Lists that hold nothing twice, and what else their schema says.
 LISTS: dict[str, dict[str, int]] = {
@@ -49,7 +55,7 @@ class SubmissionOptions(BaseModel):
     labels: Labels = Field(default={}, examples=[{"study": "wrist-1"}])
     """Free text to find the job by."""
     priority: Annotated[int, Field(ge=-HIGHEST_PRIORITY, le=HIGHEST_PRIORITY), BeforeValidator(integer)] = 0
-    """Jobs of larger priority go first."""
+    """Jobs of larger priority go first; above 0 it needs a key with the scope priority."""
     timeout_s: Annotated[float, Field(gt=0, le=1e7), BeforeValidator(real)] | None = None
     """Longest time that the job may run [s]; null: the server's default."""
 
@@ -63,6 +69,18 @@ class JobBody:
     document: Mapping[str, Any]
     options: SubmissionOptions
     prefix: str
+
+
+def check_size(text: bytes) -> None:
+    """Raise HttpProblem 413 for a body of too many values, lists and objects; nothing is read yet."""
+    containers = text.count(b"[") + text.count(b"{")
+    for what, count, most in (
+        ("values", text.count(b",") + containers, MOST_VALUES),
+        ("lists and objects", containers, MOST_CONTAINERS),
+    ):
+        if count > most:
+            detail = f"the body may hold {most:,} {what}, not about {count:,}"
+            raise HttpProblem(413, detail, "too_many_values", errors=[("#", detail)])
 
 
 def read_body(text: bytes) -> JobBody:
@@ -121,34 +139,77 @@ def _validator(name: str) -> Any:
     return Draft202012Validator({"$ref": f"#/components/schemas/{name}", "components": {"schemas": body_schemas()}})
 
 
-async def json_body(request: Request) -> bytes:
-    """The body of a request that must be JSON; raises HttpProblem 415 for another media type."""
+def _check_type(request: Request) -> None:
+    """Raise HttpProblem 415 for another media type than JSON."""
     media_type = request.headers.get("content-type", "").partition(";")[0].strip().lower()
     if media_type not in JSON_TYPES:
         raise HttpProblem(415, f"the body must be application/json, not {media_type or 'of no type'}")
-    return await request.body()
+
+
+class Places:
+    """Places of long bodies, of which no owner has all; taken and given back on the event loop."""
+
+    def __init__(self, most: int = MOST_HELD, most_of_owner: int = MOST_HELD_OF_OWNER):
+        self._most, self._most_of_owner = most, most_of_owner
+        self.taken: Counter[str] = Counter()
+
+    def take(self, owner: str) -> bool:
+        """Whether there was a place, which is the owner's now."""
+        if self.taken.total() >= self._most or self.taken[owner] >= self._most_of_owner:
+            return False
+        self.taken[owner] += 1
+        return True
+
+    def give_back(self, owner: str) -> None:
+        """Let others have a place."""
+        self.taken -= Counter([owner])
+
+
+async def job_body(request: Request) -> AsyncIterator[bytes]:
+    """A body of JSON, else HttpProblem 415; of long ones few are held at a time: HttpProblem 429 for another."""
+    _check_type(request)
+    places: Places = request.app.state.parts.long_bodies
+    owner = getattr(request.state, "owner", "")  # who asks is looked at first
+    pieces, size, has_place = [], 0, False
+    try:
+        async for piece in request.stream():
+            size += len(piece)
+            if size > LONGEST_HERE and not has_place:
+                has_place = places.take(owner)
+                if not has_place:
+                    raise HttpProblem(429, "too many long bodies are being read", "busy", retryable=True)
+            pieces.append(piece)
+        body = b"".join(pieces)
+        pieces.clear()
+        yield body
+    finally:
+        if has_place:
+            places.give_back(owner)
 
 
 def body_schemas() -> dict[str, Any]:
     """Schemas for OpenAPI's components: every part of a job document, ``JobDocument`` and ``JobSubmission``.
 
-    They are stricter than ``wsrender schema`` where JSON Schema can say what a server additionally refuses.
+    ``Edited`` is what the page shows before there is a job. They are stricter than ``wsrender schema`` where JSON
+    Schema can say what a server additionally refuses.
     """
     schema = copy.deepcopy(job_schema())
     parts: dict[str, Any] = schema.pop("$defs")
     _tighten_robot(parts["RobotSpec"])
     analyses = {name: ref.rpartition("/")[2] for name, ref in schema["discriminator"]["mapping"].items()}
     _tighten_scene(parts["Scene"])
-    _tighten_points(parts["PointSet"], "points", 1)
-    shapes = (("Mesh", "vertices_m", 4), ("ConvexMesh", "vertices_m", 4), ("HeightField", "heights_m", 2))
-    for name, values, least in shapes:
-        _tighten_shape(parts[name], values, least)
+    uploads = (("Mesh", "vertices_m", 4), ("ConvexMesh", "vertices_m", 4), ("HeightField", "heights_m", 2))
+    for name, values, least in (*uploads, ("PointSet", "points", 1)):
+        _tighten_listed(parts[name], values, least)
     options = SubmissionOptions.model_json_schema()["properties"]
     parts["Constraints"]["properties"] |= _added_constraints()
     parts["Constraints"]["additionalProperties"] = False
-    del parts["TargetTable"]["properties"]["path"]
-    _not_null(parts["TargetTable"], "model")
-    parts["TargetTable"]["required"] = ["model"]
+    parts["Edited"] = Edited.model_json_schema(ref_template="#/$defs/{model}")
+    del parts["Edited"]["$defs"]
+    for name in ("TargetTable", "ArrayFile"):
+        del parts[name]["properties"]["path"]
+        _not_null(parts[name], "model")
+        parts[name]["required"] = ["model"]
     for part in parts.values():
         _tighten(part)
     for model in analyses.values():
@@ -230,22 +291,13 @@ def _not_null(part: dict[str, Any], name: str) -> None:
     part["properties"][name] = field["anyOf"][0] | {"description": field["description"]}
 
 
-def _tighten_points(part: dict[str, Any], name: str, least: int) -> None:
-    """Points in the document, so many at least: a server reads no files."""
+def _tighten_listed(part: dict[str, Any], name: str, least: int) -> None:
+    """So many numbers in the document at least, or what was uploaded; no paths."""
     del part["properties"]["path"]
-    points = part["properties"][name]
-    part["properties"][name] = points["anyOf"][0] | {"minItems": least, "description": points["description"]}
-    part["required"] = [name]
-
-
-def _tighten_shape(part: dict[str, Any], name: str, least: int) -> None:
-    """Numbers in the document, or what was uploaded."""
-    always = part.get("required", [])
-    _tighten_points(part, name, least)
-    part["oneOf"] = [{"required": part.pop("required")}, {"required": ["model"]}]
-    if always:
-        part["required"] = always
-    _not_null(part, "model")
+    for each in (name, "model"):
+        _not_null(part, each)
+    part["properties"][name]["minItems"] = least
+    part["oneOf"] = [{"required": [name]}, {"required": ["model"]}]
 
 
 def _tighten(part: dict[str, Any]) -> None:
@@ -255,6 +307,8 @@ def _tighten(part: dict[str, Any]) -> None:
         if schema.get("$ref") == ROBOT:
             robots = [_ref("RobotSpec"), {"enum": library.names()}]
             properties[name] = {"anyOf": robots, "description": schema["description"]}
+        elif _ref("RobotSpec") in schema.get("anyOf", []):
+            schema["anyOf"].append({"enum": library.names()})
         if name == "index_options":
             schema |= {"properties": _index_options(), "additionalProperties": False}
         for choice in [schema, *schema.get("anyOf", [])] if name in LISTS else []:

@@ -37,8 +37,8 @@ class LocalServer:
 
         Raises ServerConnectionError with the end of its log where it does not come up.
         """
-        self.data_dir.mkdir(parents=True, exist_ok=True)
-        with self.log.open("a") as log:
+        self.data_dir.mkdir(mode=0o700, parents=True, exist_ok=True)
+        with os.fdopen(os.open(self.log, os.O_WRONLY | os.O_APPEND | os.O_CREAT, 0o600), "a") as log:
             self.process = subprocess.Popen(
                 [*self._command, "--port", str(self._port)],
                 stdout=subprocess.PIPE,

@@ -1,12 +1,14 @@
 """Metrics for Prometheus."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from http import HTTPMethod
 
 from prometheus_client import CollectorRegistry, Counter, Gauge, Histogram, generate_latest
 
 from wsrender_server.jobs.records import QueueSummary, WorkerRecord
 
 MEDIA_TYPE = "text/plain; version=0.0.4; charset=utf-8"
+METHODS = frozenset(HTTPMethod)
 SECONDS = (0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0, 2.5, 5.0, 10.0, 60.0)
 
 
@@ -30,15 +32,35 @@ class Metrics:
         self.jobs = Gauge("wsrender_jobs", "Jobs by state.", ("state",), registry=self.registry)
         self.computations = Gauge("wsrender_computations", "Computations by state.", ("state",), registry=self.registry)
         self.workers = Gauge("wsrender_workers", "Workers by activity.", ("activity",), registry=self.registry)
+        self.kept = Gauge("wsrender_kept_bytes", "Bytes of results and models.", ("what",), registry=self.registry)
+        self.removed = Counter(
+            "wsrender_retention_removed", "What retention has removed.", ("what",), registry=self.registry
+        )
+        self.freed = Counter("wsrender_retention_freed_bytes", "Bytes that it has freed.", registry=self.registry)
+        self._told = dict.fromkeys(("job", "result", "model", "files", "bytes"), 0)  # of what retention has removed
         self.free_disk = Gauge("wsrender_free_disk_bytes", "Free disk of the data folder.", registry=self.registry)
 
     def answered(self, method: str, route: str, status: int, seconds: float) -> None:
-        """Count a request."""
+        """Count a request; methods that HTTP does not know are one: each would be a line for ever."""
+        method = method if method in METHODS else "other"
         self.requests.labels(method, route, str(status)).inc()
         self.seconds.labels(method, route).observe(seconds)
 
-    def text(self, queue: QueueSummary, workers: Iterable[WorkerRecord], free_bytes: int) -> bytes:
-        """All metrics in Prometheus' text format."""
+    def text(
+        self,
+        queue: QueueSummary,
+        workers: Iterable[WorkerRecord],
+        free_bytes: int,
+        kept: Mapping[str, int],
+        removed: Mapping[str, int],
+    ) -> bytes:
+        """All metrics in Prometheus' text format; ``removed`` counts things by kind, and ``bytes``."""
+        for what, size in kept.items():
+            self.kept.labels(what).set(size)
+        for what, told in self._told.items():
+            counter = self.freed if what == "bytes" else self.removed.labels(what)
+            counter.inc(removed.get(what, 0) - told)
+            self._told[what] = removed.get(what, 0)
         for state, count in queue.jobs.items():
             self.jobs.labels(state).set(count)
         self.computations.labels("waiting").set(queue.waiting)

@@ -5,13 +5,20 @@ from typing import Annotated, Protocol
 
 from fastapi import Depends, Request
 
+from wsrender_server.admission import Admissions
 from wsrender_server.conversions import ConvertedFiles
+from wsrender_server.job_body import Places
 from wsrender_server.jobs.records import WorkerRecord
 from wsrender_server.jobs.store import JobStore
 from wsrender_server.metrics import Metrics
 from wsrender_server.settings import Settings
 from wsrender_server.side_process import Estimates, SideProcess
 from wsrender_server.streams.sessions import Streams
+from wsrender_server.streams.view_sessions import ViewSessions
+from wsrender_server.views import Views
+
+PLANNERS = 2  # one owner never has them all
+MOST_ADMISSION_BYTES = 4 * 2**30  # that reading a body may take
 
 
 class Jobs(Protocol):
@@ -29,6 +36,11 @@ class Jobs(Protocol):
 
     def workers(self) -> list[WorkerRecord]:
         """The workers that answer."""
+        ...
+
+    @property
+    def waits_for(self) -> str:
+        """What jobs that are queued wait for."""
         ...
 
     @property
@@ -52,11 +64,19 @@ class Parts:
     def __post_init__(self):
         self.store = self.jobs.store
         self.metrics = Metrics()
-        limits = self.settings.max_memory_bytes, self.store.files.models
-        self.side_process = SideProcess(*limits)
-        self.estimates = Estimates(SideProcess(*limits))  # of its own: a plan may take long
+        settings, models = self.settings, self.store.files.models
+        self.side_process = SideProcess(settings.max_memory_bytes, models)
+        # Of their own: a plan may take long.
+        planning = min(settings.max_planning_memory_bytes, settings.max_memory_bytes)
+        planners = [SideProcess(planning, models) for _ in range(PLANNERS)]
+        self.estimates = Estimates(planners, settings.max_planning_s)
+        admission = SideProcess(min(settings.max_memory_bytes, MOST_ADMISSION_BYTES), models)
+        self.admissions = Admissions(self.store, admission, settings.max_samples)
+        self.long_bodies = Places()
         self.streams = Streams(self.settings, self.store.files.models)
+        self.view_sessions = ViewSessions(self.settings, self.store.files.models)
         self.converted = ConvertedFiles(self.store.files, self.side_process)
+        self.views = Views(self.store.files, self.side_process)
 
 
 def _parts(request: Request) -> Parts:

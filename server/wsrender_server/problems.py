@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from http import HTTPStatus
 from typing import Any
 
+import structlog
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from pydantic import BaseModel, ConfigDict, Field
@@ -32,10 +33,13 @@ from wsrender_server.jobs.faults import (
     InvalidTransition,
     JobFault,
     QueueFull,
+    QuotaExceeded,
+    ResultExpired,
     StoreUnavailable,
 )
-from wsrender_server.jobs.files import FULL
+from wsrender_server.jobs.files import is_full
 
+log = structlog.get_logger("wsrender.http")
 MEDIA_TYPE = "application/problem+json"
 TRY_AGAIN_S = 5
 BODILESS = ("GET", "HEAD", "DELETE")  # methods
@@ -104,6 +108,8 @@ ANSWERS: dict[type[BaseException], Answer] = {
     IdempotencyConflict: Answer(422, "The idempotency key was used with another body"),
     InvalidTransition: Answer(409, "The job's state does not allow that"),
     QueueFull: Answer(429, "Too many unfinished jobs", retryable=True),
+    QuotaExceeded: Answer(409, "The quota is used up"),
+    ResultExpired: Answer(409, "The result is no longer kept"),
     StoreUnavailable: Answer(503, "The database does not answer", retryable=True),
     DiskFull: Answer(503, "The disk is full", retryable=True),
     EngineUnavailable: Answer(503, "No worker answers", retryable=True),
@@ -118,6 +124,7 @@ CODES = {
     404: "not_found",
     405: "method_not_allowed",
     406: "not_acceptable",
+    408: "request_timeout",
     413: "body_too_large",
     415: "unsupported_media_type",
     416: "range_not_satisfiable",
@@ -177,8 +184,12 @@ def problem_of_error(error: BaseException, prefix: str | None = "") -> dict[str,
         return problem(
             error.status, code, error.detail, title=title, retryable=error.retryable, errors=errors, **error.extra
         )
-    if isinstance(error, OSError) and error.errno in FULL:
+    if isinstance(error, OSError) and is_full(error):
         return problem_of_error(DiskFull("the server's disk is full; nothing was changed"))
+    if isinstance(error, StoreUnavailable) and error.__cause__ is not None:
+        # What a driver says names host and user of the database: for the log, not for whoever asks.
+        log.warning("database unavailable", error=str(error))
+        error = StoreUnavailable("the database does not answer; nothing was changed")
     answer = next((ANSWERS[kind] for kind in type(error).__mro__ if kind in ANSWERS), None)
     if answer is None:
         return problem(500, "internal_error", "The server failed; its logs say more under the request id.")
@@ -323,5 +334,5 @@ def problem_responses(*statuses: int) -> dict[int | str, dict[str, Any]]:
             "content": content,
             **({"headers": retry} if status in (429, 503) else {}),
         }
-        for status in sorted({*statuses, 400, 422, 500, 503})
+        for status in sorted({*statuses, 400, 403, 422, 500, 503})
     }

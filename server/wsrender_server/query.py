@@ -1,5 +1,6 @@
 """Query parameters: what a route does not declare is refused, never ignored; names of formats are the table's."""
 
+import re
 from collections import Counter
 from collections.abc import Callable, Iterator
 from typing import Any
@@ -68,3 +69,22 @@ class OneOf:
             choices = one_of(f"'{each}'" for each in sorted(self._suffixes()))
             raise PydanticCustomError("format", "Input should be {choices}", {"choices": choices})
         return suffix
+
+
+class Identifier:
+    """Marks text that is an id of so many hexadecimal digits; what is no id is the id of nothing: ``absent()``, 404."""
+
+    def __init__(self, digits: int, absent: Callable[[], HttpProblem]):
+        self._pattern = f"^[0-9a-f]{{{digits}}}$"
+        self._absent = absent
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.no_info_after_validator_function(self._checked, handler(source))
+
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        return {"type": "string", "pattern": self._pattern}
+
+    def _checked(self, text: str) -> str:
+        if re.fullmatch(self._pattern, text) is None:
+            raise self._absent()
+        return text

@@ -8,11 +8,14 @@ import json
 import multiprocessing
 import os
 import threading
-from collections.abc import Callable
+from collections import Counter
+from collections.abc import Callable, Iterable
 from concurrent.futures import TimeoutError as FutureTimeoutError
+from functools import partial
 from multiprocessing.sharedctypes import RawArray
 from pathlib import Path
 from typing import Any
+from weakref import WeakValueDictionary
 
 from pebble import ProcessExpired, ProcessFuture, ProcessPool
 
@@ -22,6 +25,7 @@ from wsrender_server.jobs.child_process import resident_bytes, settle_in
 from wsrender_server.problems import HttpProblem, problem_of_error, refusal
 
 MOST_WAITING = 32
+MOST_WAITING_OF_OWNER = 16
 LOOK_S = 0.1
 TASKS_PER_CHILD = 200  # what Python and native libraries do not give back goes with the child
 PATIENCE_S = 5.0  # the first plan of a kind of robot compiles kernels
@@ -118,22 +122,36 @@ def _guarded(function: Callable[..., Any], arguments: tuple[Any, ...]) -> tuple[
 
 
 class Estimates:
-    """Plans documents; what takes longer than a request should goes on, and answers when it is asked for again."""
+    """Plans documents; what takes longer than a request should goes on, and answers when it is asked for again.
 
-    def __init__(self, process: SideProcess):
-        self._process = process
-        self._tasks: dict[str, asyncio.Task[Estimated]] = {}
+    An owner has one of the ``processes`` at a time, and owners have them in turn: whatever one of them asks for, others
+    are answered.
+    """
 
-    async def of(self, document: dict[str, Any]) -> Estimated:
-        """Samples, bytes and seconds of a canonical document.
+    def __init__(self, processes: Iterable[SideProcess], longest_s: float):
+        self._processes = tuple(processes)
+        self._longest_s = longest_s
+        self._idle: asyncio.LifoQueue[SideProcess] = asyncio.LifoQueue()  # one that has worked is warm
+        for process in reversed(self._processes):
+            self._idle.put_nowait(process)
+        self._turns: WeakValueDictionary[str, asyncio.Lock] = WeakValueDictionary()
+        self._waiting: Counter[str] = Counter()
+        self._tasks: dict[tuple[str, str], asyncio.Task[Estimated]] = {}
 
-        Raises HttpProblem 409 for whatever planning refuses, and, retryable, while planning goes on.
+    async def of(self, owner: str, sha256: str, document: str) -> Estimated:
+        """Samples, bytes and seconds of the text of a canonical document of an owner's, with its hash.
+
+        Raises HttpProblem 409 for whatever planning refuses, and, retryable, while planning goes on; 429 where many of
+        the owner's wait.
         """
-        key = json.dumps(document, sort_keys=True)
+        key = owner, sha256
         task = self._tasks.get(key)
         if task is None:
-            task = self._tasks[key] = asyncio.create_task(self._process.run(planned, document, timeout_s=TIMEOUT_S))
-            task.add_done_callback(lambda done: done.cancelled() or done.exception())  # nobody may ask again
+            if self._waiting[owner] >= MOST_WAITING_OF_OWNER:
+                raise HttpProblem(429, "too many of your jobs wait to be planned", "busy", retryable=True)
+            self._waiting[owner] += 1
+            task = self._tasks[key] = asyncio.create_task(self._planned(owner, document))
+            task.add_done_callback(partial(self._ended, owner))
             for old in list(self._tasks)[:-MOST_KEPT]:
                 del self._tasks[old]
         await asyncio.wait({task}, timeout=PATIENCE_S)
@@ -143,14 +161,28 @@ class Estimates:
         self._tasks.pop(key, None)
         return task.result()
 
+    async def _planned(self, owner: str, document: str) -> Estimated:
+        async with self._turns.setdefault(owner, asyncio.Lock()):
+            process = await self._idle.get()  # first come, first served, and of an owner one comes at a time
+            try:
+                return await process.run(planned, document, timeout_s=min(self._longest_s, TIMEOUT_S))
+            finally:
+                self._idle.put_nowait(process)
+
+    def _ended(self, owner: str, task: asyncio.Task[Estimated]) -> None:
+        self._waiting -= Counter([owner])
+        if not task.cancelled():
+            task.exception()  # nobody may ask again
+
     def close(self) -> None:
-        """Stop the process."""
-        self._process.close()
+        """Stop the processes."""
+        for process in self._processes:
+            process.close()
 
 
-def planned(document: dict[str, Any]) -> Estimated:
+def planned(document: str) -> Estimated:
     """The estimate of a plan; None for what the analysis does not estimate. Raises what planning raises."""
     from wsrender.run import plan
 
-    found = plan(document)
+    found = plan(json.loads(document))  # which may be longer than what a body may have
     return {"samples": float(found.samples), "bytes": None, "seconds": None} | found.estimate

@@ -3,6 +3,7 @@
 import gc
 import importlib
 import tracemalloc
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,7 +12,9 @@ import warp as wp
 from wsrender import run
 from wsrender.analyses.cost import Asks, Cost, check_memory, in_turn
 from wsrender.collision import store
+from wsrender.engine import inverse
 from wsrender.errors import ResourceError
+from wsrender.reach import targets
 
 SAMPLING = {"method": "random", "count": 4096, "seed": 1}
 ARM = {"robot": "phantom_omni", "sampling": SAMPLING}
@@ -19,7 +22,10 @@ REGION = {"box": {"lower_m": [None, -0.25, None]}}  # which leaves most of what 
 POINTS = [[0.8 * ((k * s) % 1) - 0.4 for s in (0.618, 0.7549, 0.5698)] for k in range(100)]
 RING = [[0.1 + 0.15 * np.cos(k), 0.15 * np.sin(k), 0.3] for k in range(6)]
 PLACED = {"robot": "ur5e", "points_m": RING, "quats_wxyz": [[0, 1, 0, 0]] * 6, "refine": False}
+BOTH = {name: PLACED[name] for name in ("points_m", "quats_wxyz")}
+TARGET = {"robot": "ur5e", "target": {"position_m": [0.1, 0, 0.3], "quat_wxyz": [0, 1, 0, 0]}}
 OVER = {"x_m": [-0.9, 0.9, 0.1], "y_m": [-0.9, 0.9, 0.1]}
+GENERAL = ((0.1, 70, 0.2), (0.4, 40, 0.1), (0.15, -80, 0.05), (0, 90, 0.35), (0.1, -90, 0.1), (0.05, 20, 0.1))
 JOBS = {
     "workspace": ARM | {"refined_volume": None},
     "labelled workspace": ARM | {"refined_volume": None, "voxel_labels": True, "voxel_size_m": 0.04},
@@ -31,6 +37,14 @@ JOBS = {
     "kinetostatic_field": ARM | {"sampling": {"method": "sobol", "count": 1024}},
     "reachability": {"robot": "phantom_omni", "points_m": POINTS},
     "base_placement": PLACED | {"over": OVER | {"yaw_deg": [0, 360, 20]}},
+    "base_placement: two objectives": PLACED | {"over": OVER, "index": "manipulability", "pareto": True},
+    "base_placement: arms": {"robots": [{"robot": "ur5e"}, {"robot": "puma560"}], "points_m": RING, "refine": False}
+    | {"quats_wxyz": [[0, 1, 0, 0]] * 6, "over": OVER | {"yaw_deg": [0, 360, 20]}},
+    "inverse_reachability": TARGET | {"over": OVER | {"yaw_deg": [0, 360, 20]}},
+    "two_arm_placement": BOTH
+    | {"first": {"robot": "ur5e", "over": OVER}, "second": {"robot": "puma560", "over": OVER}},
+    "postures": {"robot": "ur5e", "position_m": POINTS, "quat_wxyz": [[0, 1, 0, 0]] * 100},
+    "postures: positions": {"robot": "puma560", "position_m": POINTS},
     "shared_workspace": {"robots": [ARM, ARM | {"name": "other"}], "refined_volume": None},
     "robot_comparison": {"robots": [ARM, ARM | {"name": "other"}], "refined_volume": None},
 }
@@ -89,19 +103,49 @@ LARGE = {
     "planar_boundary": PLANAR,
     "base_placement": PLACED | {"over": {"x_m": [-0.9, 0.9, 0.01], "y_m": [-0.9, 0.9, 0.01]}},
     "base_placement: of one yaw": PLACED | {"over": OVER | {"z_m": [0, 0.4, 0.1], "yaw_deg": [0, 360, 5]}},
-    "base_placement: by an index": PLACED | {"over": OVER | {"yaw_deg": [0, 360, 6]}, "index": "manipulability"},
+    "base_placement: arms": JOBS["base_placement: arms"]
+    | {"over": {"x_m": [-0.9, 0.9, 0.01], "y_m": [-0.9, 0.9, 0.01]}},
+    "base_placement: by an index": PLACED
+    | {"over": OVER | {"yaw_deg": [0, 360, 6]}, "index": "manipulability", "pareto": True},
+    "two_arm_placement": BOTH
+    | {side: {"robot": "ur5e", "over": OVER | {"yaw_deg": [0, 360, 6]}} for side in ("first", "second")},
+    "two_arm_placement: hand-overs": BOTH
+    | {side: {"robot": "ur5e", "over": OVER | {"yaw_deg": 0}} for side in ("first", "second")}
+    | {"hand_over": {"points_m": RING, "orientations": 400}},
+    "inverse_reachability": TARGET | {"over": {"x_m": [-0.9, 0.9, 0.01], "y_m": [-0.9, 0.9, 0.01]}},
+    "inverse_reachability: voxels": TARGET | {"over": OVER | {"z_m": [-1, 1, 0.1], "yaw_deg": [0, 360, 5]}},
     "parallel_workspace": {"mechanism": "six_pus", "voxel_size_m": 0.02} | PLAIN,
     "orientations": {"mechanism": "stewart_gough", "kind": "orientation", "position_m": [0, 0, 0.55]}
     | {"orientations": {"tilt_deg": 40}},
 }
 MANY = [[0.8 * ((k * s) % 1) - 0.4 for s in (0.618, 0.7549, 0.5698)] for k in range(60_000)]
 TURNED = [[1, 0, 0, 0]] * 4000
+SPUN = np.random.default_rng(0).normal(size=(5000, 4))
+SPUN = (SPUN / np.linalg.norm(SPUN, axis=1, keepdims=True)).tolist()
+OPEN = ((0.1, -80, 0.3), (0.4, 20, 0.1), (0.15, 70, 0), (0.1, 60, 0.35), (0.05, -70, 0.1), (0, 0, 0.1))
+SEARCHED = [{"a": a, "alpha_deg": A, "d": d, "limits_deg": [-170, 170]} for a, A, d in OPEN]
+SEARCHED = {"dh": {"convention": "standard", "rows": SEARCHED}}
+
+
+def postures(robot, count: int, turned: bool = True, **fields) -> dict:
+    """Of so many poses, or positions."""
+    return {"robot": robot, "position_m": MANY[:count]} | ({"quat_wxyz": SPUN[:count]} if turned else {}) | fields
+
+
 SOLVED = {  # mostly by inverse kinematics
     "capability": {"robot": "phantom_omni", "directions": 200, "voxel_size_m": 0.05},
     "capability: float32": {"robot": "puma560", "directions": 1, "voxel_size_m": 0.05, "precision": "float32"},
     "reachability": {"robot": "ur5e", "points_m": MANY},
     "reachability: poses": {"robot": "puma560", "points_m": MANY[:4000], "quats_wxyz": TURNED},
     "base_placement: points": {"robot": "ur5e", "points_m": RING * 8, "over": OVER, "refine": False},
+    "postures": postures("ur5e", 5000),
+    "postures: windings": postures("ur5e", 1000, windings=16),
+    "postures: positions": postures("puma560", 2000, turned=False),
+    "postures: searched": postures(SEARCHED, 200, starts=256),
+    "postures: families": postures("franka_panda", 40, turned=False),
+    "postures: curves": postures("ur5e", 40, free_axis="z"),
+    "postures: aspects": postures("puma560", 50, aspects=True),
+    "postures: ways": postures(SEARCHED, 10, starts=64, aspects=True),
     "base_placement: seven joints": PLACED | {"robot": "franka_panda", "over": OVER | {"yaw_deg": [0, 360, 30]}},
 }
 OF_ANALYSIS = {"map": "workspace", "constrained workspace": "workspace", "orientations": "parallel_workspace"}
@@ -149,6 +193,8 @@ def traced(monkeypatch):
     tracemalloc.start()
     yield
     tracemalloc.stop()
+    targets._kept_solver.cache_clear()  # those of the last robots
+    inverse._model.cache_clear()
     gc.collect()
     assert not held
 
@@ -156,7 +202,9 @@ def traced(monkeypatch):
 @pytest.mark.parametrize("name", SOLVED)
 def test_memory_of_inverse_kinematics_is_as_estimated(name, traced):
     job = {"analysis": name.partition(":")[0], "device": "cpu"} | SOLVED[name]
-    first = {field: job[field][:100] for field in ("points_m", "quats_wxyz") if field in job}
+    few = 2 if name.startswith("postures") else 100
+    listed = ("points_m", "quats_wxyz", "position_m", "quat_wxyz")
+    first = {field: job[field][:few] for field in listed if field in job}
     warm = run.plan(job | (first or {"directions": 10, "voxel_size_m": 0.2}))
     run.finish(warm, run.run_shard(warm, 0, threads=1), threads=1)
     gc.collect()
@@ -232,6 +280,7 @@ BIG = {
     "indices_at": ({}, "configurations"),
     "reachability": ({}, "points_m"),
     "base_placement": ({"over": {"x_m": [-1, 1, 1e-3], "y_m": [-1, 1, 1e-3]}}, "over"),
+    "inverse_reachability": ({"over": {"x_m": [-1, 1, 1e-3], "y_m": [-1, 1, 1e-3]}}, "over"),
     "shared_workspace": ({"voxel_size_m": 1e-3}, "voxel_size_m"),
     "robot_comparison": ({"voxel_size_m": 1e-3}, "voxel_size_m"),
     "collaborative_volume": ({"samples": 10**7}, "samples"),
@@ -296,6 +345,38 @@ def test_refined_volumes_and_labels_are_counted():
     labelled = run.plan(job("workspace", voxel_labels=True)).cost
     for field in ("seconds", "memory_bytes", "file_bytes"):
         assert getattr(labelled, field) > getattr(plain, field)
+
+
+def test_postures_cost_what_the_arm_makes_of_them():
+    """Positions that a closed form solves are neither searched nor followed; curves and cells are counted."""
+    down = {"position_m": MANY[:300], "quat_wxyz": [[0, 1, 0, 0]] * 300}
+    points = {"position_m": MANY[:300]}
+
+    def cost(robot: Any, **fields) -> Cost:
+        return run.plan({"analysis": "postures", "device": "cpu", "robot": robot} | fields).cost
+
+    solved, searched = cost("phantom_omni", **points), cost("ur5e", **points)
+    assert solved.seconds < 1.5 and solved.memory_bytes < 5e6 and solved.file_bytes < 1e6  # .55 s, .9 MB, .34 MB
+    assert 4 < searched.seconds - solved.seconds < 12  # 6.8 s
+    rows = [{"a": a, "alpha_deg": A, "d": d, "limits_deg": [-180, 180]} for a, A, d in GENERAL]
+    tried = cost({"dh": {"convention": "standard", "rows": rows}}, **down)
+    assert 0.4 < tried.seconds - solved.seconds < 2.4  # .8 s: tries of poses mostly end nowhere, or in the same few
+    curves = cost("franka_panda", **down)
+    finer = cost("franka_panda", **down, curve_step=0.025)
+    assert finer.seconds > 1.5 * curves.seconds and finer.file_bytes > 1.5 * curves.file_bytes
+    for robot, cells in (("ur5e", False), ("puma560", True)):
+        told, plain = cost(robot, **down, aspects=True), cost(robot, **down)
+        assert (told.memory_bytes - plain.memory_bytes > 5e7) == cells
+        assert (told.seconds - plain.seconds > 1) == cells
+    wound = cost("puma560", **down, windings=64), cost("ur5e", **down, windings=64)
+    assert wound[0].file_bytes < 0.1 * wound[1].file_bytes  # joints of less than a turn have no other windings
+
+
+def test_what_is_tried_around_a_placement_is_counted():
+    small = JOBS["base_placement"]
+    plain, refined = (run.plan({"analysis": "base_placement"} | small | {"refine": r}).cost for r in (False, True))
+    assert 1 < refined.seconds - plain.seconds < 4  # 2.1 to 2.7 s
+    assert refined.memory_bytes > plain.memory_bytes
 
 
 def test_of_parts_in_turn_the_largest_memory_counts():

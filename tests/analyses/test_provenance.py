@@ -18,6 +18,8 @@ PRECISIONS = {
     "reachability": "float32",
     "capability": "float32",
     "base_placement": "float32",
+    "inverse_reachability": "float32",
+    "two_arm_placement": "float32",
     "parallel_workspace": "float32",
     "design_optimization": "float32",
 }
@@ -25,6 +27,8 @@ SEEDS = {
     "workspace": 0,
     "reachability": 3,
     "base_placement": 3,
+    "inverse_reachability": 6,
+    "two_arm_placement": 11,
     "postures": 9,
     "capability": 4,
     "collaborative_volume": 5,

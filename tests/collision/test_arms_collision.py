@@ -10,12 +10,15 @@ import wsrender as ws
 from tests.collision.robots import drawn, random_text
 from wsrender.collision.distance import Distances
 from wsrender.documents.constraints import Apart
+from wsrender.documents.placements import IN_DEGREES, placed
 from wsrender.errors import DocumentError, InputError
 from wsrender.reach.admission import Admission
 from wsrender.robot.arms_collision import arms_apart
 from wsrender.robot.collisions import solid_of
 from wsrender.robot.constraints import constraints_for
+from wsrender.robot.model_robot import transform_of
 from wsrender.robots.library import find
+from wsrender.robots.moving_base import MovingBase
 from wsrender.robots.pairs import meet
 
 AHEAD = ws.Transform(position_m=(0, 0, 0.15))  # of the flange
@@ -56,6 +59,38 @@ def test_labels_are_those_of_a_scene_with_both():
         found[i] = (first[data.contact.geom[:, 0]] != first[data.contact.geom[:, 1]]).any()
     assert 0.05 < found.mean() < 0.5
     np.testing.assert_array_equal(labels(robots, q), found)
+
+
+def test_labels_of_arms_whose_bases_move_are_those_of_arms_that_stand_there():
+    """Of two Pandas on floors that slide and turn, beside arms placed there, and their bases by distances."""
+    alone, random = [ws.load_robot("franka_panda", tool=AHEAD)] * 2, np.random.default_rng(2)
+    stands = ws.Transform(position_m=(0.1, 0, 0.05), rpy_deg=(0, 10, 0)).matrix()
+    ends = np.array([[0.4, 0.4, 0, 0, 0, 0.5], [0.3, 0, 0, 0.4, 0, 3.0]])  # which coordinates vary
+    bases = [
+        MovingBase(middle - end, middle + end, stands) for middle, end in zip(np.eye(6)[:2] * 0.3, ends, strict=True)
+    ]
+    apart = arms_apart(alone, NAMES, Apart(), bases=bases)
+    together, found = Admission(apart.chain, (apart.constraint,)), []
+    for seed in range(4):
+        places = [base.lower + random.random(6) * (base.upper - base.lower) for base in bases]
+        if seed == 0:  # one stands on the other
+            places[0][:2] = places[1][:2]
+        q = [drawn(robot, 400, 2 * seed + k) for k, robot in enumerate(alone)]
+        T = [placed(np.array([place / IN_DEGREES]))[0] @ stands for place in places]
+        robots = [robot.placed(transform_of(each) or ws.Transform()) for robot, each in zip(alone, T, strict=True)]
+        values = [
+            np.tile(base.configurations(place[None]), (400, 1)) for base, place in zip(bases, places, strict=True)
+        ]
+        own = together.rejected(apart.configurations(*map(np.hstack, zip(values, q, strict=True)))) > 0
+        still = [[k for k, shape in enumerate(robot.bodies.shapes) if shape.frame < 0] for robot in robots]
+        poses = [robot.bodies.poses(q[0][:1])[:, which] for robot, which in zip(robots, still, strict=True)]
+        solids = [solid_of(robot.bodies.shapes[k]) for robot, which in zip(robots, still, strict=True) for k in which]
+        beside = np.ndindex(len(still[0]), len(still[1]))
+        far = [Distances(solids).between(i, len(still[0]) + k, poses[0][:, i], poses[1][:, k], 1.0) for i, k in beside]
+        expected = labels(robots, q) | (np.min(far) < 0)
+        found.append(expected.mean())
+        np.testing.assert_array_equal(own, expected)
+    assert max(found) == 1 and 0.05 < min(found) < 0.9
 
 
 @pytest.mark.parametrize("margin_m", [0.0, 0.05])

@@ -1,6 +1,7 @@
 """Proofs, tables and covers against MuJoCo and random search; the folder of programs."""
 
 import ast
+import io
 import shutil
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
@@ -117,9 +118,13 @@ def test_programs_are_made_once(tmp_path, monkeypatch):
     assert len(made) == 1
     assert np.array_equal(first.test_numbers, again.test_numbers)
     assert first.epsilon == again.epsilon
+    store.put({}, tmp_path / "none")
+    assert not (tmp_path / "none").exists()
     (path,) = (tmp_path / "collision").glob("*.npz")
-    for left in (100, 0):  # as a full disk leaves it, and a lost one
-        path.write_bytes(path.read_bytes()[:left])
+    foreign = io.BytesIO()
+    np.save(foreign, np.zeros(3))  # a single array is read without an error
+    for left in (path.read_bytes()[:100], b"", foreign.getvalue()):  # as a full disk leaves it, a lost one
+        path.write_bytes(left)
         made.clear()
         planned()
         assert len(made) == 1

@@ -147,6 +147,14 @@ def test_bounds_are_the_largest_that_hold():
     assert (np.abs(low - expected)[(low < NOTHING) & (expected < NOTHING)] <= 1).all() and unsure.mean() < 0.7
 
 
+@pytest.mark.parametrize(("count", "crowd"), [(7, False), (8, True)])
+def test_eight_solids_are_a_crowd(count, crowd):
+    robot = ws.load_robot("ur5e")
+    (constraint,) = constraints_for(robot, Constraints(environment=True), many(robot, count, 3, kinds=("box",)))
+    program = stored_program(constraint.own, constraint.chain, constraint.distances)
+    assert (len(program.crowd_rows) > 0) == crowd
+
+
 def own_pairs(constraint, program):
     """The pairs of a program that are looked up."""
     return constraint.own.pairs[np.unique(program.crowd_pairs[program.crowd_pairs[:, 0] >= 0, 0])]

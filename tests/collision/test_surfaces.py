@@ -256,13 +256,13 @@ def test_meshes_that_enclose_nothing_name_the_field(tmp_path, change, message):
 @pytest.mark.parametrize(
     ("array", "message"),
     [
-        (np.ones((3, 3, 3)), r"has the shape \(3, 3, 3\); it must hold at least 2 rows"),
+        (np.ones((3, 3, 3)), r"has the shape \(3, 3, 3\) of float64; it must hold at least 2 rows"),
         (np.ones((1, 3)), "at least 2 rows"),
         (np.ones((201, 200)), "at most 40000 in all"),
         (np.ones((640, 501)), "has 2565248 bytes; it must hold"),  # which are not read
         (np.array([[1.0, 1], [1, -1]]), "not positive"),
         (np.array([[1.0, 1], [1, np.nan]]), "not positive"),
-        (np.array([[{}, 1], [1, 1]]), "cannot be read as an array of NumPy"),
+        (np.array([[{}, 1], [1, 1]]), r"has the shape \(2, 2\) of object; it must hold"),
         (np.array([["a", "b"]] * 2), "it must hold"),
     ],
 )

@@ -6,6 +6,7 @@ from functools import reduce
 
 import pytest
 from wsrender_server.jobs import steps
+from wsrender_server.jobs.documents import CanonicalDocument
 from wsrender_server.jobs.files import DataFolder
 from wsrender_server.jobs.task import Step, Task
 
@@ -24,6 +25,8 @@ DIVISIBLE = {
     "shared_workspace",
     "robot_comparison",
     "base_placement",
+    "inverse_reachability",
+    "two_arm_placement",
     "collaborative_volume",
     "parallel_workspace",
     "method_comparison",
@@ -88,7 +91,14 @@ def test_shards_in_any_order_change_no_bit(planned, local):
             rounds.add(name)
         assert bits_of(finish(divided, merged)) == bits_of(local(name)), name
         assert len(planned(name).shards) == 1
-    assert rounds == {"design_optimization.pareto"}
+    refined = {name for name in found if getattr(planned(name).job, "refined_volume", None)}
+    assert rounds == {"design_optimization.pareto"} | {n for n in refined if n.startswith("parallel_workspace")}
+    assert "parallel_workspace" in rounds
+
+
+def sent(name):
+    """The golden job as a task has it."""
+    return CanonicalDocument("", name, "cpu", (), (), json.dumps(job_of(name)))
 
 
 @pytest.mark.parametrize("wanted", [1, 1000])
@@ -100,7 +110,7 @@ def test_a_server_divides_as_the_analysis_says(wanted, planned, monkeypatch, tmp
     several = set()
     for number, name in enumerate(golden_names()):
         whole, own = planned(name), f"{number:x}"
-        resolved = steps.run(Task(Step.PLAN, own, own, job_of(name)))["resolved"]
+        resolved = steps.run(Task(Step.PLAN, own, own, sent(name)))["resolved"]
         shards = resolved["shards"]
         ends = [0, *(first + count for first, count in shards)]
         several |= {name.partition(".")[0]} if len(shards) > 1 else set()
@@ -123,8 +133,9 @@ def test_a_server_merges_shards_and_refinements(planned, local, monkeypatch, tmp
     monkeypatch.setattr(steps, "_state", {**state, "files": files})
     rounds = []
     names = {"a": "shared_workspace.refined", "b": "robot_comparison", "c": "design_optimization.pareto"}
+    names["d"] = "parallel_workspace"  # whose refined volume follows from its samples
     for own, name in names.items():
-        task = Task(Step.PLAN, own, own, job_of(name), seconds={})
+        task = Task(Step.PLAN, own, own, sent(name), seconds={})
         found = steps.run(task)
         while isinstance(found, dict):
             task = replace(task, resolved=json.loads(json.dumps(found["resolved"])))
@@ -135,7 +146,8 @@ def test_a_server_merges_shards_and_refinements(planned, local, monkeypatch, tmp
             found = steps.run(replace(task, step=Step.FINISH))
         document = json.loads(files.artifact(own, found[0]["sha256"]).read_text())
         assert lasting(document) == lasting(json.loads(json.dumps(local(name).document))), name
-    assert [rounds.count(name) for name in names.values()][:2] == [1, 1] and rounds.count(names["c"]) > 1
+    counts = [rounds.count(name) for name in names.values()]
+    assert (*counts[:2], counts[3]) == (1, 1, 2) and counts[2] > 1
 
 
 def lasting(document):

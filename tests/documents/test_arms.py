@@ -25,6 +25,15 @@ def test_robots_anywhere_in_a_document_are_found():
     assert [dotted(path, "path") for path in found][1] == "robots.1.robot.path"
 
 
+def test_files_of_arrays_are_found():
+    """Points and configurations, wherever they are; none where a document lists the numbers."""
+    upload = {"model": "0" * 64}
+    document = {"left": upload, "right": {"points": [[0, 0, 0]], "path": None}, "master": {"robot": {"library": "a"}}}
+    document |= {"configurations": {"path": "q.npy"}, "evaluations": {"path": "e.csv"}}
+    assert [path for path, _ in models_in(document)] == [("left",), ("master", "robot"), ("configurations",)]
+    assert [*models_in({"configurations": [[0, 1]], "locked": {"left": 0.5}})] == []
+
+
 def test_a_number_of_a_robot_is_no_robot():
     assert list(models_in({"scan": {"robot": 1, "axis": "x"}, "robots": []})) == []
 

@@ -17,6 +17,14 @@ def test_what_is_no_list_of_points_is_refused(points):
         PointSet(points=points)
 
 
+@pytest.mark.parametrize(
+    "fields", [{}, {"points": [[0, 0, 0]], "model": "0" * 64}, {"path": "a.npy", "model": "0" * 64}]
+)
+def test_points_are_given_once(fields):
+    with pytest.raises(DocumentError, match='points: must be given, or else "path" or "model": one of them'):
+        PointSet(**fields)
+
+
 def test_points_from_arrays_and_lists_are_equal():
     rows = [[1, 2, 3.5], [0, -1, 1e-3]]
     assert PointSet(points=rows).points == PointSet(points=np.array(rows)).points == tuple(map(tuple, rows))

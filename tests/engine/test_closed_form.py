@@ -13,7 +13,7 @@ from wsrender_kernels.closed_form import closed_form_kernel
 
 import wsrender as ws
 from tests.reference import closed_form_inverse
-from tests.reference.arms_by_axes import PARALLEL, RELATIONS, axes_of, chain_of, random_arm, reversed_chain
+from tests.reference.arms_by_axes import PARALLEL, RELATIONS, axes_of, chain_of, frame, random_arm, reversed_chain
 from wsrender.engine.closed_form import closed_postures, placed_slacks, shape_of
 from wsrender.reach.moving_joints import moving_joints
 from wsrender.robots.closed_form import ClosedForm
@@ -156,6 +156,57 @@ def test_families_of_arms_with_narrow_limits_are_not_called_unreachable(name, si
         arm = replace(chain, lower_limits=low, upper_limits=high)
         q = np.clip(q + off * random.normal(size=q.shape), low, high)
         found = closed_postures(ClosedForm.of(arm), arm.poses(q), device="cpu")
+        assert not (found.slack < -found.margin).any()
+
+
+def in_line(chain, count, seed=0):
+    """Joint 5 at a multiple of a half turn, or 1e-4 to 1e-16 rad beside it; the others anywhere, or at limits."""
+    random = np.random.default_rng(seed)
+    q = np.where(random.random((count, 6)) < 0.7, anywhere(chain, count, seed), near_limits(chain, count, seed + 1))
+    turns = np.pi * np.arange(-4, 5)
+    turns = turns[(turns >= chain.lower_limits[4]) & (turns <= chain.upper_limits[4])]
+    off = random.choice([0.0, 0.0, *10.0 ** -np.arange(4, 17)], count) * random.choice([-1, 1], count)
+    q[:, 4] = random.choice(turns, count) + off
+    return np.clip(q, chain.lower_limits, chain.upper_limits)
+
+
+def arm_in_line(kind, tilt, seed):
+    """Axis 6 is in line with axis 4 where joint 5, by ``tilt`` to both, stands at 0."""
+    chain, random = random_arm(kind, seed), np.random.default_rng(seed)
+    h, o, T_tip = axes_of(chain)
+    h[4] = np.cos(tilt) * h[3] + np.sin(tilt) * frame(h[3], np.zeros(3))[:3, 0]
+    h[5] = h[3]
+    middle, half = random.uniform(-1, 1, 6), random.choice([0.4, 1.0, 2.0, 3.0, 3.5, 6.2], 6)
+    middle[4] = 0.0
+    return chain_of(h, o, T_tip, middle - half, middle + half)
+
+
+@pytest.mark.parametrize("tilt", [np.pi / 2, np.pi / 2 - 1e-10, 1.1, 0.6])
+@pytest.mark.parametrize("kind", [*RELATIONS[:4], PARALLEL])
+def test_wrists_in_line_are_not_called_unreachable(kind, tilt):
+    """Where joint 5 is known to the root of rounding alone, joint 4 may come out as anything."""
+    for seed in range(4):
+        chain = arm_in_line(kind, tilt, seed)
+        form, T = ClosedForm.of(chain), chain.poses(in_line(chain, COUNT, seed))
+        found = closed_postures(form, T, device="cpu")
+        assert not (found.slack < -found.margin).any()
+        single = closed_postures(form, T, device="cpu", precision="float32")
+        assert (single.slack < -single.margin).mean() < 1e-3
+
+
+def test_centers_on_axis_1_of_general_arms_are_not_called_unreachable():
+    """Joint 1 comes out as anything there, and the wrist with it."""
+    for seed in (39, 69, 76):  # of 80: these have such poses
+        h, o, T_tip = axes_of(random_arm(RELATIONS[4], seed))
+        random = np.random.default_rng(seed)
+        o[3:] = o[0] + random.uniform(-0.5, 0.5) * h[0]
+        middle, half = random.uniform(-1, 1, 6) * [1, 0, 0, 1, 1, 1], random.choice([0.4, 1.0, 2.0, 3.0, 3.5], 6)
+        chain = chain_of(h, o, T_tip, middle - half, middle + half)
+        q = np.where(random.random((COUNT, 6)) < 0.5, anywhere(chain, COUNT), near_limits(chain, COUNT))
+        q[:, 1:3] = 0.0
+        off = random.choice([0.0, 0.0, *10.0 ** -np.arange(4, 17)], (COUNT, 1)) * random.normal(size=q.shape)
+        T = chain.poses(np.clip(q + off, chain.lower_limits, chain.upper_limits))
+        found = closed_postures(ClosedForm.of(chain), T, device="cpu")
         assert not (found.slack < -found.margin).any()
 
 
@@ -304,12 +355,16 @@ def test_what_is_not_a_number_is_undecided():
     assert (found.slack[[0, 2]] > found.margin).all()
 
 
-@pytest.mark.parametrize("name", ["ur5e", "puma560", "stanford_arm"])
-def test_kernels_compile_for_cuda_without_a_gpu(name, tmp_path):
-    shape = shape_of(ClosedForm.of(ws.load_robot(name).chain), "float64", keep=True)
+@pytest.mark.parametrize(
+    ("name", "precision"),
+    [("ur5e", "float64"), ("ur5e", "float32"), ("puma560", "float64"), ("stanford_arm", "float64")],
+)
+def test_kernels_compile_for_cuda_without_a_gpu(name, precision, tmp_path):
+    shape = shape_of(ClosedForm.of(ws.load_robot(name).chain), precision, keep=True)
     module = closed_form_kernel(shape, cuda=True).module
     wp.compile_aot_module(module, device=None, arch=90, module_dir=str(tmp_path), use_ptx=True)
-    assert list(tmp_path.glob("*.ptx"))
+    (ptx,) = tmp_path.glob("*.ptx")
+    assert ("min.NaN.f32" in ptx.read_text()) == (precision == "float32")  # one instruction, not two of half the rate
 
 
 def test_no_poses():

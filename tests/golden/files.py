@@ -15,7 +15,8 @@ from wsrender.analyses.registry import job_classes
 DOCUMENTS = Path(__file__).parent / "documents"
 FOLDERS = Path(__file__).parent / "folders"
 
-UNSAVED = frozenset({"base_placement", "postures"})  # analyses of which no version has saved a result
+# Analyses of which no version has saved a result.
+UNSAVED = frozenset({"base_placement", "inverse_reachability", "postures", "two_arm_placement"})
 
 
 def analyses() -> list[str]:

@@ -7,6 +7,7 @@ import wsrender as ws
 from tests.indices.test_chain_indices import Case
 from wsrender.errors import InputError, MissingInertiaError
 from wsrender.indices.index_catalogue import find
+from wsrender.pipeline.constraints import registry
 from wsrender.run import plan
 
 pytestmark = pytest.mark.usefixtures("catalogue_as_shipped")
@@ -152,7 +153,8 @@ def test_what_a_robot_lacks_is_named():
         ws.execute(job | {"device": "cpu"})
 
 
-def test_constraints_take_the_inertia_too():
+def test_constraints_take_the_inertia_too(monkeypatch):
+    monkeypatch.setattr(registry, "_ADDED", {})  # what the test adds is forgotten
     ws.register_constraint("light", lambda q, position, axes, M, most=1.0: most - M[0][0])
     q = np.random.default_rng(1).uniform(-2, 2, (200, 6))
     M = ws.load_robot("ur5e").mujoco_inertia(q)[:, 0, 0]

@@ -13,10 +13,12 @@ from wsrender.collision.solids import BASE, Solid
 from wsrender.documents.legs import DeltaLeg
 from wsrender.documents.mechanism import Delta, LegsMechanism, StewartGough
 from wsrender.errors import DocumentError, InputError
-from wsrender.mechanisms.bodies import Bodies
+from wsrender.mechanisms.bodies import PAIRS, TRIANGLES, Bodies
+from wsrender.mechanisms.five_bar.region import workspace
 from wsrender.mechanisms.inverse_kinematics import inverse_kinematics
 from wsrender.mechanisms.mechanism import mechanism_of
 from wsrender.mechanisms.membership import fault_at, poses_labelled
+from wsrender.mechanisms.surfaces import between_surfaces, from_surface
 from wsrender.run import finish, plan, run_shard
 
 PLACED = {"position_m": [1.0, -2.0, 0.5], "rpy_deg": [10, -5, 30]}
@@ -256,6 +258,68 @@ def test_indices_are_those_of_branches_that_keep_apart():
     assert np.abs(centers("either", []) - centers("plus", [])).max() > 1e-3
 
 
+BAR, STEP = ws.FiveBar(0.6, (0.5, 0.55), (0.6, 0.5)), 0.02
+COLUMN = {"shape": "cylinder", "radius_m": 0.05, "length_m": 0.3, "position_m": [0.25, 0.45, 0]}
+BEAM = {"shape": "box", "size_m": [0.1, 0.08, 0.2], "position_m": [0.9, 0.2, 0], "rpy_deg": [0, 0, 30]}
+
+
+def bar_as_legs(mode, **fields):
+    """A planar five-bar as two cranks, of which the links meet in the platform's origin; it stays in one layer."""
+    legs = [
+        {
+            "type": "RUS",
+            "base_m": [x, 0, 0],
+            "platform_m": [0, 0, 0],
+            "axis": [0, 0, 1],
+            "zero": [1, 0, 0],
+            "crank_m": crank,
+            "link_m": link,
+            "angle_deg": [-180, 180],
+            "branch": {"+": "minus", "-": "plus"}[sign],
+        }
+        for x, crank, link, sign in zip((0, BAR.base_m), BAR.proximal_m, BAR.distal_m, mode, strict=True)
+    ]
+    region = {"lower_m": [None, None, -STEP / 4], "upper_m": [None, None, STEP / 4]}
+    return {"legs": legs, "region": region, "placement": {"position_m": [0, 0, STEP / 2]}, **fields}
+
+
+def test_a_planar_five_bar_among_obstacles_in_its_plane():
+    """Its cells against inverse kinematics of the five-bar and MuJoCo's distances of its four links."""
+    mode = "+-"
+    around = [each | {"position_m": [*each["position_m"][:2], STEP / 2]} for each in (COLUMN, BEAM)]
+    bodies = {"link_radius_m": RADIUS, "environment": {"items": around}, "margin_m": MARGIN}
+    run = {"voxel_size_m": STEP, "refined_volume": None, "device": "cpu"}
+    free = ws.parallel_workspace(bar_as_legs(mode), **run).volume
+    assert free.n_occupied * STEP**2 == pytest.approx(workspace(BAR, mode).area_m2, rel=0.01)
+    result = ws.parallel_workspace(bar_as_legs(mode, bodies=bodies), **run)
+    cells = [{tuple(row) for row in (v.voxels.at.T + v.first_voxel).tolist()} for v in (free, result.volume)]
+    some = sorted(cells[0])[:: max(len(cells[0]) // 300, 1)]
+    points = (np.array(some)[:, :2] + 0.5) * STEP
+    angles = BAR.inverse_kinematics(points, mode)
+    standing = [("around", geom("CYLINDER", [0.05, 0.15, 0], at(COLUMN["position_m"])))]
+    standing.append(("around", geom("BOX", [0.05, 0.04, 0.1], ws.Transform(
+        position_m=BEAM["position_m"], rpy_deg=BEAM["rpy_deg"]).matrix())))  # fmt: skip
+    least = []
+    for point, elbows in zip(points, BAR.elbows(angles), strict=True):
+        ends = [np.append(each, 0.0) for each in (*BAR.bases, *elbows, point)]
+        lines = [[ends[a], ends[b]] for a, b in ((0, 2), (1, 3), (2, 4), (3, 4))]
+        least.append(least_distance([("bar", line) for line in lines], standing))
+    assert np.abs(np.array(least) - MARGIN).min() > 1e-7
+    expected = np.array(least) > MARGIN
+    np.testing.assert_array_equal([each in cells[1] for each in some], expected)
+    assert 30 < (~expected).sum() < len(some) - 30
+    assert result.document["samples"]["rejected"]["collision"] == len(cells[0]) - len(cells[1])
+
+
+def test_a_five_bar_says_what_takes_bodies():
+    job = {"analysis": "five_bar", "base_m": 0.6, "proximal_m": 0.5, "distal_m": 0.6}
+    for field in ("environment", "constraints"):
+        with pytest.raises(DocumentError) as error:
+            plan(job | {field: {}})
+        ((found, told),) = error.value.problems
+        assert found == field and '"parallel_workspace"' in told and "RUS legs" in told and '"bodies"' in told
+
+
 def test_exact_boundaries_refuse_bodies():
     bodies = {"link_radius_m": 0.02}
     with pytest.raises(InputError, match="else not only spheres bound") as error:
@@ -265,34 +329,103 @@ def test_exact_boundaries_refuse_bodies():
         ws.method_comparison({"library": "six_pus", "bodies": bodies})
 
 
-def test_shapes_that_are_not_convex_are_refused(tmp_path):
-    """An L of two boxes, as one closed mesh; its hull is taken."""
+def corner_of(path, scale):
+    """An L of two boxes in the plane, as a file of one closed mesh; and these boxes, (middle, half edges)."""
     outline = np.array([[0, 0], [2, 0], [2, 1], [1, 1], [1, 2], [0, 2]], float)
     solid = trimesh.creation.extrude_triangulation(outline, [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 5]], 1.0)
-    solid.export(tmp_path / "corner.stl")
-    around = {"shape": "mesh", "path": str(tmp_path / "corner.stl")}
-    for convex in (None, True):
-        bodies = {"link_radius_m": 0.01, "environment": {"items": [around | {"convex": convex}]}}
-        if convex:
-            assert mechanism_of(Delta(bodies=bodies)).bodies
-            continue
-        with pytest.raises(InputError, match="must be convex, which mesh 1") as error:
-            mechanism_of(Delta(bodies=bodies))
-        assert error.value.field == "mechanism.bodies"
+    solid.apply_scale(scale).export(path)
+    return [(scale * np.array(middle), scale * np.array(half)) for middle, half in (
+        ([1, 0.5, 0.5], [1, 0.5, 0.5]), ([0.5, 1, 0.5], [0.5, 1, 0.5]),
+    )]  # fmt: skip
+
+
+HUNG = [0.06, 0.02, -0.15]
+KNOB = {"shape": "sphere", "radius_m": 0.06, "position_m": [0.2, -0.2, 0.08]}
+SHELF = {"position_m": [0.24, -0.2, 0.5], "rpy_deg": [90, 0, 20]}
+BALL = {"shape": "sphere", "name": "ball", "radius_m": 0.08, "position_m": [-0.3, 0.1, 0.75]}
+CEILING = {"shape": "half_space", "name": "ceiling", "point_m": [0, 0, 0.85], "normal": [0, 0, -1]}
+
+
+def test_solids_that_are_not_convex_on_the_platform_and_around(tmp_path):
+    """Both L's are as their two boxes, of MuJoCo; with a ball in reach of the platform's, below a ceiling."""
+    carried, around = corner_of(tmp_path / "carried.stl", 0.08), corner_of(tmp_path / "shelf.stl", 0.12)
+    bodies = {
+        "link_radius_m": RADIUS,
+        "platform": {"items": [{"shape": "mesh", "path": str(tmp_path / "carried.stl"), "position_m": HUNG}, KNOB]},
+        "platform_gap_m": GAP,
+        "environment": {"items": [{"shape": "mesh", "path": str(tmp_path / "shelf.stl"), **SHELF}, BALL, CEILING]},
+        "margin_m": MARGIN,
+    }
+    spec = StewartGough(length_m=(0.45, 0.9), bodies=bodies)
+    mechanism, alone = mechanism_of(spec), mechanism_of(StewartGough(length_m=(0.45, 0.9)))
+    poses = random_poses(2500, [-0.25, -0.25, 0.4], [0.25, 0.25, 0.7], 0.6)
+    poses = poses[poses_labelled(alone, poses, device="cpu")[0] == 1][:300]
+    T_shelf = ws.Transform(**SHELF).matrix()
+    standing = [("shelf", geom("BOX", half, T_shelf @ at(middle))) for middle, half in around]
+    standing.append(("shelf", geom("SPHERE", [0.08, 0, 0], at(BALL["position_m"]))))
+    turned = np.diag([1.0, -1, -1, 1])
+    turned[2, 3] = 0.85
+    standing.append(("shelf", geom("PLANE", [0, 0, 1], turned)))
+    parts = {"legs": [], "carried": [], "links": []}
+    for T in poses:
+        ends = np.stack([mechanism.base, mechanism.platform @ T[:3, :3].T + T[:3, 3]], axis=1)
+        own = [("own", geom("BOX", half, T @ at(HUNG) @ at(middle))) for middle, half in carried]
+        own.append(("own", geom("SPHERE", [0.06, 0, 0], T @ at(KNOB["position_m"]))))
+        short = [(b, j - GAP * (j - b) / np.linalg.norm(j - b)) for b, j in ends]
+        parts["legs"].append(least_distance(list(enumerate(ends)), standing))
+        parts["carried"].append(least_distance([], own + standing))
+        parts["links"].append(min(least_distance([("link", line)], own) for line in short))
+    least = np.min(list(parts.values()), axis=0)
+    assert 40 < compared(mechanism, poses, least) < len(poses) - 40
+    # Each kind of pair blocks some pose by itself.
+    blocked = np.array(list(parts.values())) < MARGIN
+    assert (blocked[:, blocked.sum(axis=0) == 1].sum(axis=1) > 3).all()
+    bodies["platform"]["items"][0]["convex"] = True
+    hull = mechanism_of(StewartGough(length_m=(0.45, 0.9), bodies=bodies))
+    assert (poses_labelled(hull, poses, device="cpu")[0] != poses_labelled(mechanism, poses, device="cpu")[0]).any()
+
+
+def test_the_estimate_counts_triangles(tmp_path, monkeypatch):
+    """Of a solid on the platform and one around, and of both together."""
+    corner_of(tmp_path / "corner.stl", 0.1)
+    item = {"items": [{"shape": "mesh", "path": str(tmp_path / "corner.stl")}]}
+    bodies = {"link_radius_m": 0.02, "platform": item, "environment": item}
+    mechanism = {"library": "stewart_gough", "bodies": bodies}
+    job = {"analysis": "parallel_workspace", "mechanism": mechanism, "voxel_size_m": 0.05}
+    faces, found = len(trimesh.load_mesh(tmp_path / "corner.stl").faces), [plan(job).cost.seconds]
+    for effort in (1.0, 0.0):
+        monkeypatch.setattr(Bodies, "effort", effort)
+        found.append(plan(job).cost.seconds)
+    share = (found[0] - found[2]) / (found[1] - found[2])
+    assert share == pytest.approx(1 + 2 * faces / TRIANGLES + faces**2 / PAIRS)
+
+
+def test_a_body_within_a_solid_collides_with_it():
+    """A capsule, and another solid, that touch no triangle of the one around them."""
+    corners = np.array(trimesh.creation.box([6.0, 6, 6]).triangles)
+    within = np.array([[[-1.0, 0, 0], [1, 0, 0]], [[-5.0, 0, 0], [-4, 0, 0]], [[0, 0, 0], [9.0, 0, 0]]])
+    np.testing.assert_allclose(from_surface(corners, within, 3.0) > 0, [False, True, False])
+    assert from_surface(corners, within, 3.0)[1] == pytest.approx(1.0)
+    small, rod = (np.array(trimesh.creation.box(size).triangles) for size in ([2.0, 2, 2], [20, 0.1, 0.1]))
+    assert between_surfaces(corners, small, 1.0) < 0 and between_surfaces(small, corners, 1.0) < 0
+    assert between_surfaces(corners, rod + np.array([0, 1.0, 0.5]), 1.0) < 0
+    assert between_surfaces(corners, small + np.array([4.5, 0, 0]), 1.0) == pytest.approx(0.5)
+    assert between_surfaces(corners, small + np.array([9.0, 0, 0]), 1.0) == 1.0
 
 
 @pytest.mark.parametrize(
-    ("mechanism", "field"),
+    ("mechanism", "field", "message"),
     [
-        ({"library": "master_4dof"} | THIN, "bodies"),
-        ({"library": "delta", "minimum_leg_distance_m": 0.1} | THIN, "minimum_leg_distance_m"),
-        ({"legs": [{"type": "serial", "robot": "ur5e"}]} | THIN, "bodies"),
-        ({"library": "delta", "bodies": THIN["bodies"] | {"platform": ENDLESS}}, "bodies.platform"),
-        ({"library": "delta", "bodies": {"link_radius_m": 0}}, "bodies.link_radius_m"),
-        ({"library": "delta", "bodies": {}}, "bodies.link_radius_m"),
+        ({"library": "master_4dof"} | THIN, "bodies", "without them, its placement at one of their values"),
+        ({"library": "delta", "minimum_leg_distance_m": 0.1} | THIN, "minimum_leg_distance_m", "keep apart by them"),
+        ({"legs": [{"type": "serial", "robot": "ur5e"}]} | THIN, "bodies", 'give cranks as "RUS"'),
+        ({"library": "delta", "bodies": THIN["bodies"] | {"platform": ENDLESS}}, "bodies.platform", "half-spaces"),
+        ({"library": "delta", "bodies": {"link_radius_m": 0}}, "bodies.link_radius_m", "greater than 0"),
+        ({"library": "delta", "bodies": {}}, "bodies.link_radius_m", "is required"),
     ],
 )
-def test_what_has_no_bodies(mechanism, field):
+def test_what_has_no_bodies(mechanism, field, message):
     with pytest.raises(DocumentError) as error:
         ws.parallel_workspace(mechanism)
-    assert [name for name, _ in error.value.problems] == [f"mechanism.{field}"]
+    ((found, told),) = error.value.problems
+    assert found == f"mechanism.{field}" and message in told

@@ -12,6 +12,7 @@ FIRST = {
     "indices_at": ("robot", "configurations"),
     "base_placement": ("robot", "points_m", "quats_wxyz"),
     "reachability": ("robot", "points_m", "quats_wxyz"),
+    "two_arm_placement": ("points_m", "quats_wxyz"),
     "kinetostatic_field": ("robot", "sampling"),
     "planar_boundary": ("robot", "sampling"),
     "shared_workspace": ("robots", "sampling"),
@@ -40,9 +41,10 @@ ROBOT = Parameter(
 )
 CONFIGURATIONS = Parameter(
     "configurations",
-    "Sequence[Sequence[float] | np.ndarray] | np.ndarray",
+    "Sequence[Sequence[float] | np.ndarray] | np.ndarray | str | ArrayFile | Mapping[str, Any]",
     None,
-    "Rows of joint values [rad or m], (N, n), one per joint from base to tip.",
+    "Rows of joint values [rad or m], (N, n), one per joint from base to tip; or a .npy, Parquet or CSV file of them, "
+    "with columns in that order or named as the joints.",
 )
 ROBOTS = Parameter(
     "robots",
@@ -51,6 +53,11 @@ ROBOTS = Parameter(
     "The robots, placed by `load_robot(…, placement=…)`, each as one robot elsewhere, or its part of a job document; "
     "the arms of one model are loaded with other base and tip.",
 )
+OPTIONAL = {
+    name: {"type": f"{each.type} | None", "default": "None", "text": f"{each.text.rstrip('.')}; null: {other} given."}
+    for name, each, other in (("robot", ROBOT, "robots are"), ("robots", ROBOTS, "robot is"))
+}
+"""Of an analysis that takes either."""
 EACH_SAMPLING = Parameter(
     "sampling",
     "SamplingLike | Sequence[SamplingLike | None] | None",
@@ -108,12 +115,14 @@ def _default(field: Any) -> str | None:
 def instead_of(analysis: str, fields: Mapping[str, Parameter]) -> dict[str, Parameter]:
     """The fields with what Python takes in their place, and beside them."""
     found = dict(fields)
-    if "robot" in found:
-        found["robot"] = ROBOT
+    one, several = "robot" in found, "robots" in found
+    if one:
+        found["robot"] = replace(ROBOT, **OPTIONAL["robot"]) if several else ROBOT
     if "configurations" in found:
         found["configurations"] = CONFIGURATIONS
-    if "robots" in found:
-        found |= {"robots": ROBOTS, "sampling": EACH_SAMPLING, "names": NAMES}
+    if several:
+        found |= {"robots": replace(ROBOTS, **OPTIONAL["robots"]) if one else ROBOTS, "names": NAMES}
+        found |= {} if one else {"sampling": EACH_SAMPLING}
     for name in found.keys() & {"left", "right", "master", "slave"}:
         who = found[name].text.partition(":")[0].rstrip(".")
         text = f"{who}: a Robot, what `load_robot` takes, points (N, 3) [m], or the part of a job document."

@@ -26,6 +26,7 @@ EXECUTION = {"progress", "threads", "chunk_size"}
 BESIDE = {
     "shared_workspace": {"sampling", "names"},
     "robot_comparison": {"sampling", "names"},
+    "base_placement": {"names"},
     "master_slave_mapping": {"sampling"},
     "design_optimization": {"resume"},
     "five_bar": {"mechanism"},

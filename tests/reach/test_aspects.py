@@ -24,7 +24,7 @@ def last_without_cusps(d3, r2):
 
 
 def finders(chain, with_orientation=True):
-    solver = PostureSolver(chain, with_orientation=with_orientation, device="cpu")
+    solver = PostureSolver(chain, kind="pose" if with_orientation else "position", device="cpu")
     return solver, AspectFinder(solver.holder, solver.form)
 
 

@@ -97,7 +97,8 @@ def from_0(name):
 def test_nothing_within_the_tolerances_of_a_reached_pose_is_proven_out_of_reach(arm):
     """At limits and singular poses, by moves of all sizes: slack is lost in proportion to them, and by little."""
     chain, random = ARMS[arm](), np.random.default_rng(3)
-    T = chain.poses(np.concatenate([near_limits(chain, 40_000, 3), at_singular_postures(chain, 10_000)]))
+    number = 1_000 if arm == "singular everywhere" else 10_000  # each a search along a family there
+    T = chain.poses(np.concatenate([near_limits(chain, 4 * number, 3), at_singular_postures(chain, number)]))
     for tolerance in (1e-3, 1e-5, 1e-7):
         decided = solver(chain, position_m=tolerance, angle_rad=tolerance).closed
         assert decided.margin < 600 * tolerance

@@ -11,6 +11,7 @@ import wsrender as ws
 from tests.collision.robots import collides
 from tests.reference import closed_form_inverse
 from wsrender.reach.posture_sets import MOST_OF_FAMILIES, PostureSolver
+from wsrender.reach.posture_solver import PoseHolder
 from wsrender.robot.links import link_shapes
 
 FLOOR = {"items": [{"shape": "half_space", "name": "floor", "point_m": [0, 0, 0.05]}]}
@@ -120,7 +121,7 @@ def test_positions_at_right_angles_are_decided():
     rows = [{"a": 0, "alpha_deg": -90}, {"a": 0.4, "d": 0.2}, {"a": 0.3}]
     chain = ws.load_robot(ws.DHTable(convention="standard", name="elbow", rows=rows)).chain
     angles = np.meshgrid([0, np.pi / 2, 0.5], [-np.pi / 2, 0, 0.4], [np.pi / 2, 0.7, -1])
-    found = solved(chain, chain.poses(np.reshape(angles, (3, -1)).T), with_orientation=False)
+    found = solved(chain, chain.poses(np.reshape(angles, (3, -1)).T), kind="position")
     assert found.complete.all() and (np.bincount(found.pose) == 4).all()
 
 
@@ -156,7 +157,7 @@ def test_singular_postures_are_flagged():
     own = [np.argmin(np.where(found.pose == k, apart(chain, q[k], found.configurations), 9)) for k in (0, 1)]
     in_line = found.family & (found.pose == 0)
     assert in_line.any() and (np.abs(np.sin(found[in_line][:, 4])) < 1e-6).all()
-    assert (found.sigma_min[in_line] < 1e-8).all() and found.doubtful[in_line].all() and not found.complete[0]
+    assert (found.sigma_min[in_line] < 1e-8).all() and found.doubtful[in_line].all() and found.complete[0]
     assert not found.family[own[1]] and not found.doubtful[own[1]] and found.sigma_min[own[1]] > 1e-3
     assert found.complete[1] and in_line.sum() <= MOST_OF_FAMILIES
     q[1, 2] = straight_elbow(chain, q[1])
@@ -182,6 +183,110 @@ def test_what_constraints_block_is_what_mujoco_says():
     assert (free.configurations == found.configurations).all() and (free.reasons == "").all()
 
 
+def rolled(T, angles, axis):
+    """Poses (K, 4, 4) of one pose turned by angles (K,) about an axis of its own."""
+    turned = np.tile(T, (len(angles), 1, 1))
+    turned[:, :3, :3] = T[:3, :3] @ Rotation.from_rotvec(np.outer(angles, np.eye(3)[axis])).as_matrix()
+    return turned
+
+
+def ur5e_postures(T):
+    """Configurations (K, 6) of poses (N, 4, 4) by another closed form (Hawkins), hinges within half a turn."""
+    with np.errstate(invalid="ignore"):
+        q = closed_form_inverse.ur5e(T[:, :3, 3], T[:, :3, :3]).reshape(-1, 6)
+    return np.remainder(q[np.isfinite(q).all(axis=1)] + np.pi, 2 * np.pi) - np.pi
+
+
+def test_axes_about_which_the_last_joint_turns():
+    """The other joints are those of the pose, however it is turned; the last one goes from limit to limit."""
+    chain = ws.load_robot("ur5e").chain
+    T = chain.poses(drawn(chain, 25, seed=11))
+    turned = np.concatenate([rolled(each, np.array([angle]), 2) for angle, each in enumerate(T)])
+    found, held = solved(chain, turned, kind="axis"), solved(chain.held({"joint6": 0.3}), turned, kind="axis")
+    for k in range(len(T)):
+        theirs = ur5e_postures(T[[k]])[:, :5]
+        for ours in (found[found.pose == k][:, :5], held[held.pose == k][:, :5]):
+            assert len(ours) == len(theirs)
+            assert all(apart(chain, np.append(row, 0), np.pad(ours, ((0, 0), (0, 1)))).min() < 1e-6 for row in theirs)
+    assert found.complete.mean() > 0.9 and held.complete.mean() > 0.9  # the others are nearly singular
+    assert found.family.all() and not held.family.any()
+    assert found.evidence.startswith("closed form (three parallel axes)") and (held.configurations[:, 5] == 0.3).all()
+    assert found.windings.max() == held.windings.max() == 16  # of joints 1, 2, 4 and 5
+    for posture, curve in zip(found, found.curves, strict=True):
+        assert curve.configurations[:, :5] == pytest.approx(np.tile(posture[:5], (len(curve), 1)), abs=1e-9)
+        assert curve.configurations[[0, -1], 5] == pytest.approx([-2 * np.pi, 2 * np.pi]) and not curve.singular
+
+
+@pytest.mark.parametrize("axis", ["x", "y"])
+def test_axes_about_which_all_joints_move(axis):
+    """Every point of the curves holds the axis, and what a dense sweep of the turn finds is on one of them."""
+    chain, k = ws.load_robot("ur5e").chain, "xyz".index(axis)
+    q = drawn(chain, 1, seed=12)
+    T = chain.poses(q)
+    found = solved(chain, T, kind="axis", free_axis=axis, starts=1)
+    assert "at 128 values of the turn about the free axis, self-motions in steps of 0.05" in found.evidence
+    assert all(found.curves) and found.family.all() and not found.complete.any()
+    for curve in found.curves:
+        back = chain.poses(curve.configurations)
+        assert np.abs(back[:, :3, [k, 3]] - T[0][:3, [k, 3]]).max() <= 1e-8
+        assert (np.abs(curve.configurations) <= chain.upper_limits).all()
+    swept = ur5e_postures(rolled(T[0], np.linspace(0, 2 * np.pi, 300), k))
+    points = np.concatenate([curve.configurations for curve in found.curves])
+    off = [apart(chain, row, points).min() for row in swept]
+    assert len(swept) > 500 and max(off) < 0.05 and apart(chain, q[0], points).min() < 0.05
+
+
+def test_opposite_axes_are_half_a_turn_apart():
+    holder = PoseHolder(ws.load_robot("ur5e").chain, "axis")
+    T = holder.chain.poses(np.full((1, 6), 0.3))
+    T[:, :3, :3] = T[:, :3, :3] @ np.diag([1, -1, -1])
+    left = holder.errors(np.full((1, 6), 0.3), T)
+    assert np.linalg.norm(left[0, 3:]) == pytest.approx(np.pi) and abs(left[0, 3:] @ T[0, :3, 2]) < 1e-12
+
+
+def test_positions_of_arms_in_a_plane_and_scaras():
+    """By the law of cosines; the joint that a tip on its axis leaves alone turns as it likes."""
+    rows = [{"a": 0.4, "limits_deg": [-170, 170]}, {"a": 0.3, "limits_deg": [-150, 150]}]
+    slide = {"joint": "prismatic", "limits": [0.1, 0.3]}
+    scara = [*rows, slide, {"limits_deg": [-180, 180]}]
+    points = np.random.default_rng(2).uniform([-0.8, -0.8, 0.1], [0.8, 0.8, 0.3], (60, 3))
+    for arm, idle in ((rows, 0), (scara, 1)):
+        chain = ws.load_robot(ws.DHTable(convention="standard", name="arm", rows=arm)).chain
+        T = np.tile(np.eye(4), (len(points), 1, 1))
+        T[:, :3, 3] = points * [1, 1, idle]
+        found = solved(chain, T, kind="position")
+        for k, (x, y, _) in enumerate(points):
+            cosine = (x**2 + y**2 - 0.25) / 0.24
+            bends = [sign * np.arccos(cosine) for sign in (-1, 1)] if abs(cosine) < 1 else []
+            both = [(np.arctan2(y, x) - np.arctan2(0.3 * np.sin(b), 0.4 + 0.3 * np.cos(b)), b) for b in bends]
+            both = [np.remainder(np.add(each, np.pi), 2 * np.pi) - np.pi for each in both]
+            theirs = sorted(tuple(each) for each in both if (np.abs(each) < chain.upper_limits[:2]).all())
+            ours = sorted(tuple(each) for each in found[found.pose == k][:, :2])
+            assert np.reshape(ours, (-1, 2)) == pytest.approx(np.reshape(theirs, (-1, 2)), abs=1e-6)
+        assert len(found) > 50 and found.complete.all() and (found.family == bool(idle)).all()
+        assert all((curve is not None) == bool(idle) for curve in found.curves)
+
+
+def test_the_centre_of_a_wrist_leaves_three_joints_alone():
+    chain = ws.load_robot("puma560").chain
+    T = chain.poses(drawn(chain, 50, seed=13))
+    found = solved(chain, T, kind="position")
+    with np.errstate(invalid="ignore"):
+        arm = closed_form_inverse.puma560_arm(T[:, :3, 3])
+    arm = np.remainder(arm - chain.lower_limits[:3], 2 * np.pi) + chain.lower_limits[:3]
+    there = np.isfinite(arm).all(axis=2) & (arm <= chain.upper_limits[:3]).all(axis=2)
+    for k in range(len(T)):
+        ours = found[found.pose == k][:, :3]
+        assert len(ours) == there[k].sum() > 0
+        assert all(np.abs(ours - row).max(axis=1).min() < 1e-6 for row in arm[k][there[k]])
+    assert found.complete.all() and found.family.all() and found.curves == (None,) * len(found)
+    wide = ws.load_robot("puma560", limits={"joint4": (-7, 7)}).chain
+    assert (solved(wide, T, kind="position").windings == 1).all()  # joint 4 turns as it likes
+    ur = solved(ws.load_robot("ur5e").chain, T[:1], kind="position")
+    assert len(ur) == MOST_OF_FAMILIES and not ur.complete.any()
+    assert ur.evidence.startswith("16 postures at most of families of 3 freedoms, search from")
+
+
 def test_positions_alone():
     """Three joints put the centre of a Puma's wrist on a point in four ways."""
     robot = ws.load_robot("puma560")
@@ -205,6 +310,14 @@ def test_bad_poses_are_refused_by_name(position, quat, field, message):
     with pytest.raises(ws.InputError, match=message) as refusal:
         ws.postures("ur5e", position, quat)
     assert refusal.value.field == field
+
+
+def test_bad_axes_are_refused_by_name():
+    with pytest.raises(ws.InputError, match="'w' is not allowed; x, y, z, or None") as refusal:
+        ws.postures("ur5e", [0, 0, 0.5], [1, 0, 0, 0], free_axis="w")
+    assert refusal.value.field == "free_axis"
+    with pytest.raises(ws.InputError, match="free_axis: must not be given without quat_wxyz"):
+        ws.postures("ur5e", [0, 0, 0.5], free_axis="z")
 
 
 def test_no_postures():
@@ -268,10 +381,12 @@ def test_self_motions_close_where_nothing_stops_them():
             assert np.linalg.norm(gap) < 0.07 and gap @ (curve.configurations[1] - curve.configurations[0]) > 0
     with pytest.raises(ws.InputError, match=r"curve_step: 0\.3 is not allowed"):
         ws.postures(arm, point, curve_step=0.3)
-    long = PostureSolver(arm.chain, with_orientation=False, starts=32, curve_step=1.2, device="cpu")
-    T = np.tile(np.eye(4), (1, 1, 1))
-    T[0, :3, 3] = [0.3, 0.1, 0.0]
-    assert len(long.solve(T)) == 2  # steps are shortened where the curve bends
+    for step in (0.2, 0.5):  # steps are shortened where the curve bends, and none goes round twice
+        long = PostureSolver(arm.chain, kind="position", starts=32, curve_step=step, device="cpu")
+        T = np.tile(np.eye(4), (1, 1, 1))
+        T[0, :3, 3] = [0.3, 0.1, 0.0]
+        found = long.solve(T)
+        assert len(found) == 2 and max(map(len, found.curves)) < 12 / step
     fine, coarse = (ws.postures(arm, point, device="cpu", starts=32, curve_step=step) for step in (0.05, 0.2))
     assert 3 < sum(map(len, fine.curves)) / sum(map(len, coarse.curves)) < 5
 
@@ -288,3 +403,16 @@ def test_points_of_self_motions_say_what_blocks_them():
         told = {reason for curve in result.curves for reason in curve.reasons}
         assert told == set(result.reasons) and told in reasons
     assert set(found.reasons) != set(beyond.reasons)
+
+
+def test_values_at_which_no_closed_form_is_known_are_left_out(monkeypatch):
+    """As of a joint that is held where the others are ill-conditioned."""
+    arm, held = ws.load_robot(ws.DHTable(convention="standard", rows=[{"a": a} for a in (0.4, 0.3, 0.2)])), []
+
+    def every_second(solver, joint, value, own=PostureSolver._held):
+        held.append(own(solver, joint, value))
+        held[-1].form = held[-1].form if len(held) % 2 else None
+        return held[-1]
+
+    monkeypatch.setattr(PostureSolver, "_held", every_second)
+    assert len(ws.postures(arm, [0.3, 0.1, 0.0], device="cpu", starts=1)) == 2 and len(held) == 129

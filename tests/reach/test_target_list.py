@@ -13,6 +13,7 @@ import wsrender as ws
 from wsrender.documents.target_lists import LONGEST_TEXT, TargetTable
 from wsrender.reach import target_list as tables
 from wsrender.reach.target_list import target_list
+from wsrender.robots import array_files
 
 EXAMPLE = Path(__file__).parents[2] / "docs" / "examples" / "targets.csv"
 HALF = np.sqrt(0.5)
@@ -170,12 +171,12 @@ def test_large_tables_are_refused_before_they_are_unpacked(tmp_path, monkeypatch
     small = parquet_of(tmp_path, many | {"name": ["n" * 500_000] * 2000}, compression="zstd")
     assert len(small) < 10_000
     assert "row 1, column name: must have at most 64 characters" in refusal(tmp_path, small, "t.parquet")
-    monkeypatch.setattr(tables, "MOST_UNPACKED", 1000)
-    assert "unpacked; at most" in refusal(tmp_path, small, "t.parquet")
     monkeypatch.setattr(tables, "MOST_TARGETS", 1999)
     assert "has 2000 rows of targets; allowed: 1 … 1999" in refusal(tmp_path, small, "t.parquet")
     assert "has 2000 rows" in refusal(tmp_path, csv_of(many))
-    monkeypatch.setattr(tables, "MOST_BYTES", 1000)
+    monkeypatch.setattr(array_files, "MOST_UNPACKED", 1000)
+    assert "unpacked; at most" in refusal(tmp_path, small, "t.parquet")
+    monkeypatch.setattr(array_files, "MOST_BYTES", 1000)
     assert "has more than" in refusal(tmp_path, csv_of(many))
 
 

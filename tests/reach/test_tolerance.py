@@ -17,6 +17,18 @@ def test_beside_a_plane_and_a_small_hole(seed):
     assert largest_ball(holds, 0.8, 1024, seed) == pytest.approx(SAFE * 0.3, rel=5e-3)
 
 
+def test_a_plane_is_found_closely_in_few_calls():
+    """A call may be a search by inverse kinematics, which costs about as much for fifty placements as for eight."""
+    calls = []
+
+    def holds(points):
+        calls.append(len(points))
+        return points[:, 0] > -0.3
+
+    assert largest_ball(holds, 0.8, 1024) == pytest.approx(SAFE * 0.3, rel=1e-4)
+    assert len(calls) < 50
+
+
 def test_nothing_fails():
     assert largest_ball(lambda points: np.ones(len(points), bool), 0.7, 64) == pytest.approx(SAFE * 0.7)
 

@@ -11,10 +11,10 @@ from wsrender.robots.closed_form import ClosedForm, FreeJointForm
 SURE = 1e-6  # slack of a posture that there is beyond doubt
 
 
-def redundant_arm(kind, seed, backwards=False, tip=None):
+def redundant_arm(kind, seed, backwards=False, tip=None, rail=False):
     """A chain of seven joints: any first one, then two that are related as RELATIONS say, and an orthogonal wrist.
 
-    ``tip``: None, or "in the wrist".
+    ``tip``: None, or "in the wrist". ``rail``: the first one is a slide.
     """
     random = np.random.default_rng(seed)
     h, o, T_tip = axes_of(random_arm(kind, seed))
@@ -25,7 +25,7 @@ def redundant_arm(kind, seed, backwards=False, tip=None):
     if tip:
         T_tip[:3, 3] = o[6]
     middle, half = random.uniform(-1, 1, 7), random.choice([0.4, 1.0, 2.0, 3.0, 3.5, 6.2], 7)
-    chain = chain_of(h, o, T_tip, middle - half, middle + half)
+    chain = chain_of(h, o, T_tip, middle - half, middle + half, [not rail, *[True] * 6])
     return reversed_chain(chain) if backwards else chain
 
 
@@ -34,6 +34,10 @@ RANDOM_ARMS = {
     for kind in RELATIONS[:2]
     for backwards in (False, True)
 } | {"tip in the wrist": redundant_arm(RELATIONS[0], 6, tip="in the wrist")}
+RANDOM_ARMS |= {
+    f"{RELATIONS[0]}, on a rail": redundant_arm(RELATIONS[0], 7, rail=True),
+    f"{RELATIONS[1]}, backwards, on a rail": redundant_arm(RELATIONS[1], 7, backwards=True, rail=True),
+}
 
 
 def with_limits(chain, lower, upper):

@@ -1,6 +1,7 @@
 """The page holds what the document says, and nothing that runs or is fetched."""
 
 import base64
+import hashlib
 import io
 import json
 import re
@@ -98,13 +99,21 @@ def test_the_job_document_can_be_copied_from_the_page(result, page):
     assert json.dumps(result.document["job"], indent=2, ensure_ascii=False) in page.text
 
 
-def test_nothing_runs_and_nothing_is_fetched(page):
+def test_nothing_runs_but_the_viewer_and_nothing_is_fetched(page, result, tmp_path):
     tags = {tag for tag, _ in page.elements}
-    assert not tags & {"script", "link", "iframe", "object", "base", "form", "a", "svg"}
+    assert not tags & {"link", "iframe", "object", "base", "form", "a", "svg"}
     assert all(image["src"].startswith("data:image/png;base64,") for image in page.named("img"))
     assert not any(name.startswith("on") for _, attributes in page.elements for name in attributes)
     policies = [meta["content"] for meta in page.named("meta") if meta.get("http-equiv") == "Content-Security-Policy"]
-    assert policies == ["default-src 'none'; img-src data:; style-src 'unsafe-inline'"]
+    result.report(tmp_path / "report.html", views=())
+    text = (tmp_path / "report.html").read_text(encoding="utf-8")
+    kinds = [script["type"] for script in page.named("script")]
+    assert kinds == ["application/octet-stream", "application/octet-stream", "module"]  # data, and what reads them
+    loader = text.partition('<script type="module">')[2].partition("</script>")[0]
+    digest = base64.b64encode(hashlib.sha256(loader.encode()).digest()).decode()
+    assert policies == [
+        f"default-src 'none'; img-src data: blob:; style-src 'unsafe-inline'; script-src 'sha256-{digest}' blob:"
+    ]
     assert HOSTILE in page.text
 
 

@@ -171,7 +171,11 @@ def test_searches_along_a_free_joint():
         assert along(shifted(arm, 5, 4e-6, beside=6)) is None
         assert along(tilted(arm, 5, 1e-6)) is None
         assert along(replace(arm, joint_scale=np.array([1.0, 1, 1, 1, 1, 1, 2]))) is None
-        assert along(replace(arm, joint_is_revolute=np.arange(7) > 0)) is None
+        railed = replace(arm, joint_is_revolute=np.arange(7) > 0)
+        assert along(railed) == along(arm)
+        endless = np.where(np.arange(7) > 0, arm.upper_limits, np.inf)
+        assert along(replace(railed, lower_limits=-endless, upper_limits=endless)) is None
+        assert along(replace(arm, joint_is_revolute=np.arange(7) != 2)) is None
     for kind in RELATIONS[2:]:
         assert along(redundant_arm(kind, 1)) is None
     panda = ws.load_robot("franka_panda")

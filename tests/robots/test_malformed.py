@@ -1,10 +1,15 @@
 """Malformed, hostile and unsupported models: one clear exception each."""
 
+from xml.etree.ElementTree import fromstring
+from xml.sax.saxutils import quoteattr
+
+import mujoco
 import pytest
 
 from wsrender import robots
 from wsrender.errors import ModelError
 from wsrender.robots import xml_source
+from wsrender.robots.mjcf import _expanded
 
 BOMB = "".join(f'<!ENTITY e{i} "{f"&e{i - 1};" * 10}">' for i in range(1, 9))
 INERTIAL = '<inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>'
@@ -65,17 +70,23 @@ MJCF = {
         mjcf('<replicate count="999"><replicate count="999"><geom size="1"/></replicate></replicate>'),
         "replicas make .* elements; at most",
     ),
-    "replicas by the million, written with spaces": (
-        mjcf('<replicate count=" 999"><replicate count="+999 "><geom size="1"/></replicate></replicate>'),
-        "replicas make .* elements; at most",
-    ),
     "replicas fewer than none": (
-        mjcf('<replicate count="-1"><replicate count="99999"><geom size="1"/></replicate></replicate>'),
+        mjcf('<replicate count="0"><replicate count="99999"><geom size="1"/></replicate></replicate>'),
         "replicas make .* elements; at most",
     ),
+    "names replicated to gigabytes": (
+        mjcf(f'<replicate count="999"><geom size="1" name="{"a" * 99_999}"/></replicate>'),
+        "replicas make 99900.* characters; at most",
+    ),
+    "a long word for a number": (mjcf(f'<joint axis="0 0 {"x" * 9999}"/>'), "'x{100}'…; a finite number is needed"),
+    "digits of another script": (mjcf('<joint axis="0 0 ١"/>'), "axis is '١'; a finite number is needed"),
     "meshes made by the million": (
         mjcf(more='<asset><mesh name="m" builtin="plate" params="2000 1"/></asset>'),
-        r"make up to 4e\+06 vertices; at most 1000000",
+        r"make up to 4e\+06 vertices; at most 100000",
+    ),
+    "a cone of a thousand million edges": (
+        mjcf(more='<asset><mesh name="m" builtin="cone" params="1000000000 1"/></asset>'),
+        r"make up to 1e\+18 vertices; at most 100000",
     ),
     "unknown element": (mjcf("<jiont/>"), "unrecognized element"),
     "unknown attribute": (mjcf('<joint nmae="j"/>'), "unrecognized attribute: 'nmae'"),
@@ -290,3 +301,39 @@ def test_every_error_while_a_model_is_built_is_a_model_error(monkeypatch, error,
     monkeypatch.setattr(f"wsrender.robots.{stage}", broken)
     with pytest.raises(ModelError, match=r"model: .*what"):
         robots.load_urdf(urdf(joint(LIMIT)))
+
+
+COUNTS = ("+3", "", " 3", "3 ", "\t3\n", "3.0", "3e0", "1_0", "0x3", "٣", "０３", "3\u00a0", "3 4", "-3", "9" * 10, "x")
+
+
+@pytest.mark.parametrize("count", COUNTS)
+def test_counts_that_are_no_plain_digits_are_refused(count):
+    """Some of these MuJoCo reads, as what Python might not: +3 as three."""
+    text = mjcf(f'<joint range="-1 1"/><replicate count={quoteattr(count)}><geom size="1"/></replicate>')
+    with pytest.raises(ModelError, match=r"<replicate>: count is .*; up to nine plain digits are needed"):
+        robots.load_mjcf(text)
+
+
+@pytest.mark.parametrize("count", ["0", "1", "007", "300"])
+def test_counts_of_plain_digits_are_those_of_mujoco(count):
+    inside = f'<replicate count="{count}"><replicate count="2"><geom size="1"/></replicate></replicate>'
+    element = fromstring(mjcf(inside))
+    made = mujoco.MjSpec.from_string(mjcf(inside))
+    others = 3 + 1  # mujoco, worldbody, body; inertial
+    # What is replicated no times is counted once: no bound needs to know.
+    assert _expanded(element, "model")[0] == others + 1 + max(int(count), 1) * 3
+    assert len(made.geoms) == 2 * int(count)
+
+
+def test_what_a_model_could_make_large_or_slow_beside_its_kinematics_is_left_out():
+    """Arrays of a chosen size, and a simulation of the muscles that would take years; the kinematics stay."""
+    large = '<joint name="j" range="-1 1" user="1 2 3"/>'
+    actuators = (
+        '<compiler><lengthrange mode="all" inttotal="1e9" interval="1" timestep="1e-6"/></compiler><actuator>'
+        '<general joint="j" dyntype="user" actdim="500000000"/><muscle joint="j" delay="1" nsample="16777216"/>'
+        "</actuator>"
+    )
+    plain = robots.load_mjcf(mjcf('<joint name="j" range="-1 1"/>'))
+    loaded = robots.load_mjcf(mjcf(large, actuators))
+    assert (loaded.chain.T_tip == plain.chain.T_tip).all()
+    assert loaded.chain.joint_names == ("j",)

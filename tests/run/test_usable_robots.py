@@ -45,6 +45,12 @@ def every_analysis(model, **robot):
         "reachability": {**one, "points_m": [[0.1, 0, 0]]},
         "postures": {**one, "position_m": [[0.1, 0, 0]]},
         "base_placement": {**one, "points_m": [[0.1, 0, 0]], "over": {"x_m": [0, 1, 0.5]}},
+        "inverse_reachability": {**one, "target": {"position_m": [0.1, 0, 0]}, "over": {"x_m": [0, 1, 0.5]}},
+        "two_arm_placement": {
+            "first": {**library, "over": {}},
+            "second": {**one, "over": {}},
+            "points_m": [[0.1, 0, 0]],
+        },
         "capability": {**one, "voxel_size_m": 0.2},
         "shared_workspace": {"robots": [library, one], "voxel_size_m": 0.1},
         "robot_comparison": {"robots": [library, one]},
@@ -64,6 +70,7 @@ def every_analysis(model, **robot):
 
 PATHS = {
     "shared_workspace": "robots.1.", "robot_comparison": "robots.1.", "collaborative_volume": "right.",
+    "two_arm_placement": "second.",
     "master_slave_mapping": "slave.", "parallel_workspace": "mechanism.legs.2.", "design_optimization": "design.",
 }  # fmt: skip
 TAKE_ARMS = [name for name in job_classes() if name not in ("five_bar", "method_comparison")]

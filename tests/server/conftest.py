@@ -7,6 +7,7 @@ import socket
 import subprocess
 import tempfile
 import time
+from contextlib import contextmanager
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -23,6 +24,13 @@ def postgres_url():
     if url := os.environ.get(URL_VARIABLE):
         yield own_database(url)
         return
+    with postgres_server() as (url, _):
+        yield url
+
+
+@contextmanager
+def postgres_server():
+    """A server with an empty database: its SQLAlchemy URL and its process id."""
     binaries = postgres_binaries()
     folder = Path(tempfile.mkdtemp(prefix="wsrender-postgres-"))
     # PostgreSQL refuses to run as root.
@@ -39,7 +47,7 @@ def postgres_url():
         )
     try:
         wait_for_port(port, server)
-        yield f"postgresql+psycopg://wsrender@127.0.0.1:{port}/postgres"
+        yield f"postgresql+psycopg://wsrender@127.0.0.1:{port}/postgres", server.pid
     finally:
         server.send_signal(signal.SIGINT)  # fast: connections that are open are closed
         server.wait(20)
@@ -58,6 +66,15 @@ def own_database(url):
         connection.execute(text(f"CREATE DATABASE {name}"))
     engine.dispose()
     return make_url(url).set(database=name).render_as_string(hide_password=False)
+
+
+def empty(url):
+    """Remove whatever other tests have put into a database."""
+    engine = create_engine(url, isolation_level="AUTOCOMMIT")
+    with engine.connect() as connection:
+        connection.execute(text("DROP SCHEMA public CASCADE"))
+        connection.execute(text("CREATE SCHEMA public"))
+    engine.dispose()
 
 
 def postgres_binaries():

@@ -1,11 +1,14 @@
 """Where the server's data is by default, and that looking makes nothing."""
 
+import os
 from pathlib import Path
 
 import pytest
+from wsrender_server.jobs.files import DataFolder
 from wsrender_server.settings import OLD_FOLDER, Settings, default_data_dir
 
 from wsrender import cli
+from wsrender.errors import InputError
 
 
 @pytest.fixture
@@ -83,7 +86,92 @@ def test_a_folder_that_is_named_needs_no_default(home):
     assert not (home / "data").exists()
 
 
+def test_misspelt_variables_are_refused_with_the_nearest(home, wsrender, monkeypatch):
+    for name in ("WSRENDER_THREADS", "WSRENDER_CACHE_DIR", "WSRENDER_TOKEN", "WSRENDER_TEST_X", "wsrender_host"):
+        monkeypatch.setenv(name, "1")
+    monkeypatch.setenv("WSRENDER_MAX_STREAMS", "7")
+    assert Settings().max_streams == 7
+    for wrong, near in (("WSRENDER_MAX_STREAM", "WSRENDER_MAX_STREAMS"), ("WSRENDER_DATADIR", "WSRENDER_DATA_DIR")):
+        with monkeypatch.context() as patch:
+            patch.setenv(wrong, "1")
+            for command in (("serve", "--port", "0"), ("keys", "list"), ("worker", "--scheduler", "tls://x:1")):
+                code, _, said = wsrender(*command)
+                assert (code, said.count("\n")) == (2, 1)
+                assert said.endswith(f"variable {wrong} is none of the server's settings; the nearest is {near}\n")
+    monkeypatch.setenv("WSRENDER_", "1")
+    assert wsrender("keys", "list")[0] == 2 and not made(home)
+
+
 def test_a_server_says_where_its_data_is(home, wsrender, monkeypatch):
-    monkeypatch.setattr("wsrender_server.serving.serve_until_stopped", lambda app, listener, *_: listener.close())
+    monkeypatch.setattr("wsrender_server.serving.serve_until_stopped", lambda _, __, listener, *___: listener.close())
     code, said, _ = wsrender("serve", "--port", "0")
     assert code == 0 and said == f"wsrender keeps its data in {home / '.local/share/wsrender'}\n"
+
+
+def modes(root):
+    return {path.relative_to(root).as_posix(): path.stat().st_mode & 0o777 for path in (root, *root.rglob("*"))}
+
+
+def test_a_folder_that_an_earlier_version_left_open_is_closed_with_all_in_it(tmp_path):
+    root = tmp_path / "data"
+    for name in ("models", "partials/a", "results/b", "scratch"):
+        (root / name).mkdir(parents=True)
+    (root / "results/b/c").write_text("1")
+    (root / "wsrender.db").write_text("")
+    outside = tmp_path / "outside"
+    outside.write_text("")
+    (root / "link").symlink_to(outside)
+    for path in (root, *root.rglob("*")):
+        path.chmod(0o777 if path.is_dir() else 0o666)
+    DataFolder(root, make=False)
+    assert modes(root)["."] == 0o777
+    DataFolder(root)
+    assert {mode for name, mode in modes(root).items() if name != "link"} == {0o700, 0o600}
+    assert outside.stat().st_mode & 0o777 == 0o666
+
+
+def test_a_folder_of_others_is_not_closed_but_refused(tmp_path, monkeypatch):
+    for name, mode, owner in (("others", 0o755, 1), ("shared", 0o1777, 0), ("theirs", 0o750, 0)):
+        root = tmp_path / name
+        root.mkdir()
+        if name == "theirs":
+            (root / "thesis.tex").touch()
+        root.chmod(mode)
+        with monkeypatch.context() as patch:
+            patch.setattr(os, "geteuid", lambda owner=owner: os.getuid() + owner)
+            with pytest.raises(InputError, match=rf"open to other users \(mode {mode:04o}\).*chmod 700"):
+                DataFolder(root)
+        assert root.stat().st_mode & 0o7777 == mode and not (root / "models").exists()
+        DataFolder(root / "own")
+        assert set(modes(root / "own").values()) == {0o700}
+
+
+def test_the_folder_of_an_earlier_version_with_its_database_elsewhere_is_closed(tmp_path):
+    """It has neither the database nor the folders that came later."""
+    root = tmp_path / "data"
+    for name in ("models", "partials", "results", "scratch"):
+        (root / name).mkdir(parents=True)
+    root.chmod(0o755)
+    DataFolder(root)
+    assert set(modes(root).values()) == {0o700} and (root / "documents").is_dir()
+
+
+def test_at_the_start_scratch_of_workers_that_go_on_stays(tmp_path):
+    files = DataFolder(tmp_path)
+    for name in ("aa.7", "bb.7"):
+        (tmp_path / "scratch" / name / "result").mkdir(parents=True)
+    (tmp_path / "scratch" / "cc.json").touch()
+    now = (tmp_path / "scratch" / "cc.json").stat().st_mtime
+    for name in ("aa.7", "bb.7"):
+        os.utime(tmp_path / "scratch" / name, (now - 9, now - 9))
+    files.empty_scratch(but={"aa"}, before=now)
+    assert sorted(path.name for path in (tmp_path / "scratch").iterdir()) == ["aa.7", "cc.json"]
+    files.forget("aa")
+    files.empty_scratch()
+    assert not any((tmp_path / "scratch").iterdir())
+
+
+def test_an_empty_name_of_a_database_is_that_of_the_folder(tmp_path, monkeypatch):
+    monkeypatch.setenv("WSRENDER_DATABASE", "")
+    settings = Settings(data_dir=tmp_path)
+    assert settings.database_url == f"sqlite:///{tmp_path / 'wsrender.db'}"

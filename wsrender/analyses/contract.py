@@ -142,7 +142,7 @@ class Analysis(Costed, ABC):
 
     @property
     def refinements(self) -> int:
-        """How many things are asked beside the samples that do not depend on them."""
+        """How many things are asked beside the samples that follow from what is settled."""
         return 0
 
     def refinement(self, number: int, progress: Progress | None, execution: Execution) -> Any:

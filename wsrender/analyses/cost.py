@@ -82,6 +82,8 @@ PICTURES = {
     "targets": (1.1e5, 0.12),
     "postures": (2.5e5, 0.4),
     "placements": (4.5e4, 0.2),
+    "arms_map": (8.0e4, 0.4),
+    "pareto": (6.0e4, 0.2),
     "mapping": (2.2e5, 0.3),
     "scales": (9.0e4, 0.15),
     "refinements": (5.0e4, 0.1),

@@ -1,6 +1,7 @@
 """Job documents in and out: parsed, written canonically, described by a schema."""
 
 import json
+import re
 from collections.abc import Collection, Mapping
 from functools import cache
 from typing import Annotated, Any, Union
@@ -14,6 +15,8 @@ from wsrender.documents.quantities import quoted
 from wsrender.documents.reading import read_document
 from wsrender.errors import InputError
 from wsrender.extensions import left_out
+
+_NEGATIVE_ZERO = re.compile(r"-0\.0[,}\]]")
 
 
 def parse_job(document: Mapping[str, Any] | str | bytes | Document, without: Collection[str] = ()) -> Any:
@@ -29,7 +32,16 @@ def parse_job(document: Mapping[str, Any] | str | bytes | Document, without: Col
 
 def canonical_json(job: Document) -> str:
     """The job as JSON text with sorted keys and all defaults: equal jobs, and only they, have equal text."""
-    document = _positive_zeros(job.model_dump(mode="json"))
+    return canonical_text(job.model_dump(mode="json"))
+
+
+def canonical_text(document: dict[str, Any]) -> str:
+    """The JSON text of a job dumped with all defaults, as `canonical_json` gives it."""
+    text = _dumped(document)
+    return _dumped(_positive_zeros(document)) if _NEGATIVE_ZERO.search(text) else text
+
+
+def _dumped(document: Any) -> str:
     return json.dumps(document, sort_keys=True, separators=(",", ":"), allow_nan=False)
 
 

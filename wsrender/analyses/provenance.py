@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from wsrender import __version__
-from wsrender.documents.arm import at_path
+from wsrender.documents.arm import PYTHON_CLASS, at_path
 from wsrender.documents.options import TASK_ROWS
 from wsrender.pipeline.evaluation import Evaluation
 from wsrender.robot import Robot
@@ -43,7 +43,7 @@ def job_entry(job: Any, *robots: Robot) -> dict[str, Any]:
     entry = job.model_dump(mode="json")
     for path, robot in zip(job.arms(), robots, strict=True):
         if robot.definition:
-            at_path(entry, path)["robot"] = {"user_defined": robot.definition}
+            at_path(entry, path)["robot"] = {PYTHON_CLASS: robot.definition}
     return entry
 
 

@@ -32,10 +32,10 @@ class Entry:
 
 
 def _own(name: str, job: str, run: str, presentation: str | None = "PRESENTATION") -> Entry:
-    """An analysis of this package, in a folder of its name."""
+    """An analysis of this package, in a folder of its name; ``run`` is in its ``run.py``, or says its module."""
     folder = f"{__name__.rpartition('.')[0]}.{name}"
     shown = None if presentation is None else f"{folder}.presentation:{presentation}"
-    return Entry(f"{folder}.job:{job}", f"{folder}.run:{run}", shown)
+    return Entry(f"{folder}.job:{job}", f"{folder}.{run if ':' in run else f'run:{run}'}", shown)
 
 
 _ROWS = {
@@ -46,7 +46,9 @@ _ROWS = {
     "capability": _own("capability", "CapabilityJob", "CapabilityAnalysis"),
     "shared_workspace": _own("shared_workspace", "SharedWorkspaceJob", "SharedWorkspaceAnalysis"),
     "robot_comparison": _own("robot_comparison", "RobotComparisonJob", "RobotComparisonAnalysis"),
-    "base_placement": _own("base_placement", "BasePlacementJob", "BasePlacementAnalysis"),
+    "base_placement": _own("base_placement", "BasePlacementJob", "several:alone_or_several"),
+    "inverse_reachability": _own("inverse_reachability", "InverseReachabilityJob", "InverseReachabilityAnalysis"),
+    "two_arm_placement": _own("two_arm_placement", "TwoArmPlacementJob", "TwoArmPlacementAnalysis"),
     "collaborative_volume": _own("collaborative_volume", "CollaborativeVolumeJob", "CollaborativeVolumeAnalysis"),
     "master_slave_mapping": _own("master_slave_mapping", "MasterSlaveMappingJob", "MasterSlaveMappingAnalysis"),
     "kinetostatic_field": _own("kinetostatic_field", "KinetostaticFieldJob", "KinetostaticFieldAnalysis"),

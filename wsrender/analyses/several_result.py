@@ -37,9 +37,9 @@ def notices_of_each(names: list[str], results: list[Result]) -> list[Notice]:
     ]
 
 
-def skeletons(results: list[Result]) -> np.ndarray:
-    """Every robot at mid-range, (K, L + 2, 3) [m]; shorter arms repeat their tip."""
-    arms = [result.skeleton[1] for result in results if result.skeleton is not None]
+def skeletons(results: list[Result], posture: int = 1) -> np.ndarray:
+    """Every robot in one of its postures, by default at mid-range, (K, L + 2, 3) [m]; shorter arms repeat their tip."""
+    arms = [result.skeleton[posture] for result in results if result.skeleton is not None]
     length = max(map(len, arms))
     return np.stack([np.concatenate([arm, np.repeat(arm[-1:], length - len(arm), axis=0)]) for arm in arms])
 

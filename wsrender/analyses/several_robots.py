@@ -19,7 +19,7 @@ from wsrender.analyses.registry import job_classes, planned
 from wsrender.documents.arm import Arm, dotted
 from wsrender.documents.constraints import ArmsConstraints, Constrained
 from wsrender.documents.options import IndexChoices
-from wsrender.documents.several_robots import PlacedRobot
+from wsrender.documents.several_robots import NamedArm, PlacedRobot
 from wsrender.errors import InputError
 from wsrender.results.result import Result
 from wsrender.robot import Robot
@@ -149,7 +149,7 @@ def arms_apart_of(
     }
 
 
-def robot_names(arms: tuple[PlacedRobot, ...], robots: tuple[Robot, ...]) -> list[str]:
+def robot_names(arms: Sequence[NamedArm], robots: tuple[Robot, ...]) -> list[str]:
     """What each robot is called: its name in the job, else its own, with a number where that is taken."""
     taken = {arm.name for arm in arms if arm.name}
     names = []

@@ -12,6 +12,7 @@ from wsrender.cli.jobs_command import jobs, submit
 from wsrender.cli.listing import robots, schema
 from wsrender.cli.render_command import render, report
 from wsrender.cli.reproduce_command import reproduce
+from wsrender.cli.view_command import view
 from wsrender.errors import InputError, MissingExtraError
 from wsrender.extensions import load
 
@@ -23,6 +24,7 @@ COMMANDS = {
     "robots": robots,
     "schema": schema,
     "submit": submit,
+    "view": view,
 }
 GROUPS = {"jobs": jobs}
 # Typer apps whose commands join these; loaded only where none of these is asked for.

@@ -32,7 +32,7 @@ def list_jobs(
     server: Server = SERVER,
     token: Token = None,
     state: Annotated[
-        str | None, typer.Option(help="queued, running, canceling, succeeded, failed, canceled or timed_out.")
+        str | None, typer.Option(help="queued, running, canceling, succeeded, failed, canceled, timed_out or expired.")
     ] = None,
     limit: Annotated[int, typer.Option(min=1, help="Number of jobs, newest first.")] = 50,
 ) -> None:
@@ -70,7 +70,7 @@ def cancel(id: JobId, server: Server = SERVER, token: Token = None) -> None:
 
 @jobs.command()
 def retry(id: JobId, server: Server = SERVER, token: Token = None) -> None:
-    """Queue a job again that failed, was canceled or timed out."""
+    """Queue a job again that failed, was canceled, timed out or has expired."""
     from wsrender.client import Client
 
     with one_line_faults(), Client(server, token) as client:

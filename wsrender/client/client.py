@@ -3,6 +3,7 @@
 import math
 import uuid
 from collections.abc import Iterator, Mapping
+from io import BytesIO
 from pathlib import Path
 from typing import Any, Self
 from urllib.parse import quote
@@ -12,13 +13,15 @@ import httpx2
 from wsrender.client.connection import Connection
 from wsrender.client.job import Job
 from wsrender.client.kinetostatic_stream import KinetostaticStream
-from wsrender.documents.arm import TARGETS, dotted, models_in
+from wsrender.documents.arm import FILED, OF_POINTS, dotted, models_in
+from wsrender.documents.array_files import TABLE_TYPES
 from wsrender.documents.problems import path_text
 from wsrender.documents.shapes import MEDIA_TYPES
-from wsrender.documents.target_lists import TABLE_TYPES
 from wsrender.errors import DocumentError, InputError
 
 PAGE = 100  # jobs in one answer
+LONGEST_SENT = 100_000  # numbers of an array that a document lists
+NPY = b"\x93NUMPY"  # with which such files begin
 
 
 class Client:
@@ -70,7 +73,7 @@ class Client:
 
         Meshes do not travel with it: geometry that needs them is dropped by the server. A mesh (.stl, .obj, .ply) that
         is a shape by itself is uploaded alike, for ``{"shape": "mesh", "model": sha256}``, as are heights (.npy) and
-        tables of targets (.csv, .parquet, .npy), for ``"targets": {"model": sha256}``.
+        tables (.csv, .parquet, .npy) of targets, configurations and points, for ``"targets": {"model": sha256}``.
         Raises InputError, naming ``field``, where the file cannot be read, ModelError where it is no model.
         """
         text = model if isinstance(model, bytes) else _read(Path(model), field)
@@ -88,8 +91,10 @@ class Client:
         timeout_s: float | None = None,
         idempotency_key: str | None = None,
     ) -> Job:
-        """Submit a job document (dict) or typed job; robots given by path are uploaded first.
+        """Submit a job document (dict) or typed job; files given by path are uploaded first.
 
+        So are NumPy arrays of more than 100,000 numbers that are ``configurations`` or ``points``: the document names
+        them by their hash.
         ``labels`` are free text to find the job by, larger ``priority`` goes first, ``timeout_s`` bounds the run. The
         idempotency key (default: a new one) makes sure that a request sent again after a lost connection is one job.
         """
@@ -150,13 +155,42 @@ class Client:
     def _document(self, job: Any) -> dict[str, Any]:
         if not isinstance(job, Mapping) and not hasattr(job, "model_dump"):
             raise InputError("job", f"must be a job document (dict) or a typed job, not {type(job).__name__}")
-        document = _plain(job)
-        if isinstance(document.get(TARGETS), str):
-            document[TARGETS] = {"path": document[TARGETS]}
+        document = _plain(self._with_uploads(job) if isinstance(job, Mapping) else job)
+        for name in FILED:
+            if isinstance(document.get(name), str):
+                document[name] = {"path": document[name]}
         for path, robot in models_in(document):
             if isinstance(robot.get("path"), str):
                 robot["model"] = self.upload_model(robot.pop("path"), dotted(path, "path"))
         return document
+
+    def _with_uploads(self, job: Mapping[str, Any]) -> dict[str, Any]:
+        """The document with long arrays of configurations and points uploaded."""
+        document = dict(job)
+        if content := _long_array(document.get("configurations")):
+            document["configurations"] = {"model": self.upload_model(content, "configurations")}
+        for name in OF_POINTS:
+            points = document.get(name)
+            if (
+                isinstance(points, Mapping)
+                and points.keys() == {"points"}
+                and (content := _long_array(points["points"]))
+            ):
+                document[name] = {"model": self.upload_model(content, dotted((name,), "points"))}
+        return document
+
+
+def _long_array(value: Any) -> bytes | None:
+    """The .npy file of a NumPy array that is too long for a document; None of anything else, which is sent as it is."""
+    import numpy as np
+
+    if not isinstance(value, np.ndarray) or value.size <= LONGEST_SENT or value.ndim != 2:
+        return None
+    if value.dtype.kind not in "fiu" or value.dtype.itemsize > 8 or not np.isfinite(value).all():
+        return None  # what is wrong with it is told by its place
+    file = BytesIO()
+    np.save(file, value, allow_pickle=False)
+    return file.getvalue()
 
 
 def _plain(document: Any) -> Any:
@@ -189,7 +223,7 @@ def _items(answer: Any) -> list[dict[str, Any]]:
 
 
 def _media_type(model: str | Path | bytes) -> str:
-    ending = "" if isinstance(model, bytes) else Path(model).suffix.lower()
+    ending = Path(model).suffix.lower() if not isinstance(model, bytes) else ".npy" if model[:6] == NPY else ""
     return (MEDIA_TYPES | TABLE_TYPES).get(ending, "application/xml")
 
 

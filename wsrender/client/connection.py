@@ -206,6 +206,8 @@ def worth_repeating(response: httpx2.Response) -> bool:
     """Whether the same request may succeed soon: the server is busy, or still at work on its first copy."""
     if response.status_code in TRY_AGAIN:
         return problem_of_response(response).get("retryable", True)
+    if response.status_code == 429:  # of a queue that is full, when its own jobs end
+        return problem_of_response(response).get("code") == "busy"
     return response.status_code == 409 and problem_of_response(response).get("retryable") is True
 
 

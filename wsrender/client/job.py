@@ -16,7 +16,7 @@ from wsrender.progress import RunProgress
 from wsrender.results.export.result_format import current_document
 from wsrender.results.result import Result
 
-FINISHED = ("succeeded", "failed", "canceled", "timed_out")
+FINISHED = ("succeeded", "failed", "canceled", "timed_out", "expired")
 LONG_POLL_S = 5.0  # between two reports of progress at the latest
 SHORTEST_POLL_S = 0.2
 RECONNECT_S = 600.0  # a server's restart, a laptop's sleep
@@ -41,7 +41,7 @@ class Job:
 
     @property
     def state(self) -> str:
-        """One of queued, running, canceling, succeeded, failed, canceled, timed_out."""
+        """One of queued, running, canceling, succeeded, failed, canceled, timed_out, expired."""
         return self.record["state"]
 
     @property
@@ -98,7 +98,7 @@ class Job:
         return self
 
     def retry(self) -> Self:
-        """Queue a job again that failed, was canceled or timed out."""
+        """Queue a job again that failed, was canceled, timed out or has expired."""
         self.record = self._connection.request("POST", f"{self._path}:retry", resend=False).json()
         return self
 

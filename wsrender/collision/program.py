@@ -24,6 +24,7 @@ DRAWN = 4096  # configurations over which the levels of covers are chosen
 OPEN_COST = 200.0
 NAMED_COST = 10.0  # of a test of one sample by itself, likewise
 EPSILON = 5e-6  # of the reach, at least 2 m: what positions in float32 may be off [m]
+RARELY = 0.04  # so that in a quarter of all cases or more none of 32 lanes is
 ABSENT = -1.0  # a squared distance that nothing falls below
 SHORT = 1e-10  # squared length of an axis that is a point [m²], or length of half of one [m]
 ALIGNED = 1e-9  # of a unit vector's coordinates
@@ -37,11 +38,12 @@ class Program:
     ``joints`` (L, 15): rotation (9) and translation (3) before the motion, scale, offset, 1 where it turns;
     ``sources`` (L,); ``lower``, ``upper`` (n,). ``capsules`` (C, 6): middle and unit axis in the frame of
     ``capsule_frame`` (C,), 0 of the base; ``capsule_axis`` (C,): where this is an axis of the frame, 12 times the
-    frame's number plus 0, 3 or 6, else -1. ``pairs`` (T, 4): pair, first test, tests of spheres, of capsules; then
+    frame's number plus 0, 3 or 6, else -1. ``pairs`` (T, 3): pair, first test, tests; then
     ``planes`` (U, 3): pair, first test, tests; ``tests`` (t, 2): capsules, or half-space's capsule and capsule;
-    ``test_numbers`` (t, 4): half lengths of both axes; squared distances below which they are near and hit (distances,
-    of planes). ``tables`` (K, 4): pair, two coordinates, first word;
-    ``table_numbers`` (K, 4): lowest value and cells per unit of both; ``table_columns`` (K,); ``table_words``.
+    ``test_numbers`` (t, 5): half lengths of both axes; squared distances below which they are near and hit (distances,
+    of planes), and of their middles above which they are not near, where that is worth a test, else 0.
+    ``tables`` (K, 4): pair, two coordinates, first word; ``table_numbers`` (K, 4): lowest value and cells per unit of
+    both; ``table_columns`` (K,); ``table_words``.
     ``solid_frame`` (S,), ``solids`` (S, 18): rotation and translation in its joint, radius, disc, kind, half a segment
     within it, about its middle; ``solid_sizes`` (S, 3): half axes of an ellipsoid, else half of what its points span;
     ``vertices`` (V,), ``vertex_range`` (S, cells, 2): see `vertices_by_direction`; ``solid_pairs`` (P, 2);
@@ -131,7 +133,7 @@ def program(pairs: Pairs, chain: Chain, distances: Distances | None = None) -> P
     left = {pair: lookups[pair] for pair in known.left if pair in lookups}
     named = {pair: chosen.levels(pair, NAMED_COST) for pair in crowded(pairs, convex)}
     many = crowd(pairs, named, covers.made, _links(chain), epsilon) if named else None
-    return _packed(pairs, chain, known, covers.made, levels, left, many, named, epsilon)
+    return _packed(pairs, chain, known, covers.made, levels, chosen, left, many, named, epsilon)
 
 
 class _Covers:
@@ -242,6 +244,20 @@ class _Chosen:
                 tests += 1
         return tests, below
 
+    def mostly_far(self, pair: int, level: int, epsilon: float) -> list[float]:
+        """Of each test outside the squared distance of middles above which none touches, 0 where many are nearer."""
+        a, b = self.pairs.pairs[pair]
+        (middle_a, half_a, radius_a), (middle_b, half_b, radius_b) = (
+            self._capsules(k, "outer", level, np.arange(DRAWN)) for k in (a, b)
+        )
+        found, everywhere = [], self.pairs.margin(pair) + 2 * epsilon
+        for i, k in np.ndindex(len(radius_a), len(radius_b)):
+            lengths = np.linalg.norm(half_a[0, i]) + np.linalg.norm(half_b[0, k])
+            far = radius_a[i] + radius_b[k] + lengths + everywhere
+            near = np.linalg.norm(middle_a[:, i] - middle_b[:, k], axis=1) < far
+            found.append(far**2 if lengths > 0 and near.mean() < RARELY else 0.0)
+        return found
+
     def _capsules(self, solid: int, side: str, level: int, at: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Middles and half axes (N, C, 3) in the base's frame, radii (C,)."""
         level = 0 if self.covers[solid].exact else level
@@ -317,6 +333,7 @@ def _packed(
     known: Certificates,
     covers: dict[int, Cover],
     levels: dict[int, tuple[int, int | None]],
+    chosen: _Chosen,
     lookups: dict[int, Lookup],
     many: Crowd | None,
     named: dict[int, tuple[int, int | None]],
@@ -328,7 +345,7 @@ def _packed(
         if pairs.solids[pairs.pairs[pair][0]].kind == "half_space":
             plane_rows.append(_plane_tests(rows, pairs, pair, levels[pair], epsilon))
         elif pair not in named:
-            pair_rows.append(_capsule_tests(rows, pairs, pair, levels[pair], epsilon))
+            pair_rows.append(_capsule_tests(rows, pairs, pair, levels[pair], chosen, epsilon))
     beside: set[int] = set()
     for pair, (outer, inner) in named.items():
         for side, level in (("outer", outer), ("inner", inner)):
@@ -336,7 +353,7 @@ def _packed(
                 beside.update(rows.of(int(pairs.pairs[pair][1]), side, level))
     moving, alone = len(rows.capsules), len(pair_rows)
     crowd_rows = _crowd(many, rows, pairs, named, epsilon)
-    pair_rows += [_capsule_tests(rows, pairs, pair, levels[pair], epsilon) for pair in named]
+    pair_rows += [_capsule_tests(rows, pairs, pair, levels[pair], chosen, epsilon) for pair in named]
     tables = [table for table in known.tables if not (table.labels == FREE).all()]
     words, numbers, columns, table_rows = [], [], [], []
     for table in tables:
@@ -376,10 +393,10 @@ def _packed(
             ],
             np.int32,
         ),
-        pairs=_i(pair_rows, 4),
+        pairs=_i(pair_rows, 3),
         planes=_i(plane_rows, 3),
         tests=_i(rows.tests, 2),
-        test_numbers=_f(rows.test_numbers, 4),
+        test_numbers=_f(rows.test_numbers, 5),
         tables=_i(table_rows, 4),
         table_numbers=_f(numbers, 4),
         table_columns=np.array(columns, np.int32),
@@ -408,21 +425,21 @@ def _packed(
     )
 
 
-def _capsule_tests(rows: _Rows, pairs: Pairs, pair: int, levels: tuple[int, int | None], epsilon: float) -> list[int]:
-    """Tests of a pair, those of two balls first; its row."""
+def _capsule_tests(
+    rows: _Rows, pairs: Pairs, pair: int, levels: tuple[int, int | None], chosen: _Chosen, epsilon: float
+) -> list[int]:
+    """Tests of a pair, of each the longer capsule first; its row."""
     a, b = (int(k) for k in pairs.pairs[pair])
-    exact = rows.covers[a].exact and rows.covers[b].exact
-    found = []
-    for side, level in (("outer", levels[0]), ("inner", None if exact else levels[1])):
-        if level is None:
-            continue
-        for ends, numbers in _between(rows, pairs, pair, side, level, epsilon):
-            found.append((any(numbers[:2]), ends, numbers))
-    found.sort(key=lambda each: each[0])
-    first, balls = len(rows.tests), sum(not each[0] for each in found)
-    rows.tests += [each[1] for each in found]
-    rows.test_numbers += [each[2] for each in found]
-    return [pair, first, balls, len(found) - balls]
+    first, (outer, inner) = len(rows.tests), levels
+    found = _between(rows, pairs, pair, "outer", outer, epsilon)
+    for (_, numbers), far in zip(found, chosen.mostly_far(pair, outer, epsilon), strict=True):
+        numbers[-1] = far
+    if inner is not None and not (rows.covers[a].exact and rows.covers[b].exact):
+        found += _between(rows, pairs, pair, "inner", inner, epsilon)
+    for (i, k), (length, other, *bounds) in found:
+        rows.tests.append((i, k) if length >= other else (k, i))
+        rows.test_numbers.append([max(length, other), min(length, other), *bounds])
+    return [pair, first, len(found)]
 
 
 def _between(
@@ -436,7 +453,7 @@ def _between(
             sum_ = rows.capsules[i][3] + rows.capsules[k][3] + pairs.margin(pair)
             near = (sum_ + epsilon) ** 2 if side == "outer" else ABSENT
             hit = max(sum_ - epsilon, 0.0) ** 2 if side == "inner" or exact else ABSENT
-            found.append(((i, k), [rows.capsules[i][2], rows.capsules[k][2], near, hit]))
+            found.append(((i, k), [rows.capsules[i][2], rows.capsules[k][2], near, hit, 0.0]))
     return found
 
 
@@ -487,7 +504,7 @@ def _plane_tests(rows: _Rows, pairs: Pairs, pair: int, levels: tuple[int, int | 
             near = radius + epsilon if side == "outer" else -np.inf
             hit = radius - epsilon if side == "inner" or exact else -np.inf
             rows.tests.append((plane, k))
-            rows.test_numbers.append([0.0, length, near, hit])
+            rows.test_numbers.append([0.0, length, near, hit, 0.0])
     return [pair, first, len(rows.tests) - first]
 
 

@@ -27,11 +27,13 @@ PACKAGE = Path(__file__).parents[1]
 MAKERS = (  # modules by which programs are made
     "collision/*.py",
     "content.py",
+    "errors.py",
     "robots/chain.py",
     "robots/joint_space.py",
     "robots/kinematics.py",
     "robots/reachable_box.py",
     "robots/triangles.py",
+    "version.py",
 )
 
 
@@ -60,8 +62,8 @@ def take_from(folder: Path | None) -> None:
 
 def put(programs: Mapping[str, Program], folder: Path) -> None:
     """Write programs by their keys, for other processes to `take_from`."""
-    folder.mkdir(parents=True, exist_ok=True)
     for key, each in programs.items():
+        folder.mkdir(parents=True, exist_ok=True)
         _write(folder / f"{key}.npz", each)
 
 
@@ -114,7 +116,7 @@ def _read(path: Path) -> Program | None:
         with path.open("rb") as file, np.load(file, allow_pickle=False) as arrays:
             values: dict[str, Any] = {field.name: arrays[field.name] for field in fields(Program)}
         os.utime(path)
-    except (OSError, EOFError, KeyError, ValueError, BadZipFile):
+    except (OSError, EOFError, KeyError, TypeError, ValueError, BadZipFile):
         return None
     values |= {name: int(values[name]) for name in ("columns", "moving", "alone")}
     values["epsilon"] = float(values["epsilon"])

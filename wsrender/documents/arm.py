@@ -6,23 +6,26 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator
 
 from wsrender.documents.document import Document
-from wsrender.documents.quantities import Name
+from wsrender.documents.quantities import Name, is_numeric
 from wsrender.documents.robot import SOURCES, RobotSpec
 
-TARGETS = "targets"  # the field whose table is a file
+FILED = ("targets", "configurations")  # fields whose lists a file may hold
+OF_POINTS = ("left", "right", "master", "slave")  # fields that may be points, in a file too
+PYTHON_CLASS = "user_defined"  # says in a result's job of which class a robot is that no document describes
 OF_FILES = ("mesh", "convex_mesh", "height_field")  # shapes that a file may say
 ArmPath = tuple[str | int, ...]
 """Keys from a job document to an arm in it; empty: the job itself is one."""
 
 
-def _robot(value: Any) -> Any:
+def robot_named(value: Any) -> Any:
+    """The robot of a document; a string is the name of a library robot."""
     return {"library": value} if isinstance(value, str) else value
 
 
 class Arm(Document):
     """A robot and the frames between which its chain runs."""
 
-    robot: Annotated[RobotSpec, BeforeValidator(_robot)]
+    robot: Annotated[RobotSpec, BeforeValidator(robot_named)]
     """The robot and where it stands; a string is the name of a library robot."""
     base: Name | None = None
     """Body, link or site at which the chain starts; null: the world."""
@@ -50,19 +53,27 @@ class Arm(Document):
 
 def models_in(document: Any, path: ArmPath = ()) -> Iterator[tuple[ArmPath, dict[str, Any]]]:
     """(path, part) of everything in a canonical document that a model or a file says: robots, scenes, meshes."""
-    items = document.items() if isinstance(document, dict) else enumerate(document)
-    for key, value in items:
+    for at, value in _entries(document, path):
         if isinstance(value, dict) and (
-            key == TARGETS or (key == "robot" and _is_robot(value)) or _names_a_file(value)
+            at[-1] in FILED
+            or (at[-1] == "robot" and _is_robot(value))
+            or (at[-1] in OF_POINTS and isinstance(value.get("path") or value.get("model"), str))
+            or _names_a_file(value)
         ):
-            yield (*path, key), value
-        if isinstance(value, dict | list):
-            yield from models_in(value, (*path, key))
+            yield at, value
+
+
+def _entries(document: Any, path: ArmPath) -> Iterator[tuple[ArmPath, Any]]:
+    """(path, value) of all that a document holds, an object before what is in it; lists of numbers as wholes."""
+    for key, value in document.items() if isinstance(document, dict) else enumerate(document):
+        yield (*path, key), value
+        if isinstance(value, dict) or (isinstance(value, list) and not is_numeric(value)):
+            yield from _entries(value, (*path, key))
 
 
 def _is_robot(part: dict[str, Any]) -> bool:
     """Whether it is no constraint or index of that name, whose options are numbers."""
-    return any(name in part and not isinstance(part[name], int | float) for name in SOURCES)
+    return any(name in part and not isinstance(part[name], int | float) for name in (*SOURCES, PYTHON_CLASS))
 
 
 def _names_a_file(part: dict[str, Any]) -> bool:
@@ -72,12 +83,7 @@ def _names_a_file(part: dict[str, Any]) -> bool:
 
 def local_paths(document: Any, path: ArmPath = ()) -> Iterator[ArmPath]:
     """Where a canonical document names a file of the machine that runs it."""
-    items = document.items() if isinstance(document, dict) else enumerate(document)
-    for key, value in items:
-        if key == "path" and isinstance(value, str):
-            yield (*path, key)
-        elif isinstance(value, dict | list):
-            yield from local_paths(value, (*path, key))
+    return (at for at, value in _entries(document, path) if at[-1] == "path" and isinstance(value, str))
 
 
 def at_path(document: Any, path: ArmPath) -> Any:

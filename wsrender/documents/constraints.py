@@ -8,15 +8,11 @@ from pydantic import BeforeValidator, ConfigDict, Field, StrictBool
 
 from wsrender.documents.document import Document
 from wsrender.documents.environment import Bounds, Environment, HalfSpace, Sphere
-from wsrender.documents.quantities import NonNegativeNumber, Number, quoted, real
+from wsrender.documents.quantities import NonNegativeNumber, Number, is_none, quoted, real
 from wsrender.documents.robot import Excluded, Inertia, least_moment
 from wsrender.documents.transform import Quaternion, Transform, Vector
 
 _ROTATIONS = ("quat_wxyz", "rpy_deg", "euler_xyz_deg")
-
-
-def _is_none(value: Any) -> bool:
-    return value is None
 
 
 class RegionChoice(Document):
@@ -85,7 +81,7 @@ class TorqueChoice(Document):
     """A mass that the tip carries [kg]."""
     payload_com_m: Vector = (0.0, 0.0, 0.0)
     """Where it is in the tip's frame [m]."""
-    payload_inertia_kg_m2: Annotated[Inertia | None, Field(exclude_if=_is_none)] = None
+    payload_inertia_kg_m2: Annotated[Inertia | None, Field(exclude_if=is_none)] = None
     """Its inertia about there, axes of the tip's frame: [ixx, iyy, izz] or these and ixy, ixz, iyz [kg m²]; null: it is
     a point."""
     acceleration_m_s2: NonNegativeNumber = 0.0
@@ -159,7 +155,7 @@ class Constraints(Document):
 class ArmsConstraints(Constraints):
     """Those of several arms: what every arm must satisfy by itself, and what they must together."""
 
-    arms_collision: Annotated[Apart | None, _switch(Apart), Field(exclude_if=_is_none)] = None
+    arms_collision: Annotated[Apart | None, _switch(Apart), Field(exclude_if=is_none)] = None
     """Two arms that reach a point together keep apart from each other, in configurations that all else admits; names
     of shapes and bodies are led by that of their arm and a stroke. true: they may touch; null: they are not asked
     for."""
@@ -178,7 +174,7 @@ class Constrained(Document):
     """Which configurations are admitted; null: all."""
     environment: Environment | None = None
     """What stands around, which the robot's shapes do not enter; null: nothing."""
-    gravity_m_s2: Annotated[Vector | None, Field(exclude_if=_is_none)] = None
+    gravity_m_s2: Annotated[Vector | None, Field(exclude_if=is_none)] = None
     """Gravity in the world, whatever the model says [m/s²]; null: 9.81 along -z."""
 
     @property

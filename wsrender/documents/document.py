@@ -11,6 +11,7 @@ from wsrender.documents.problems import listed, located, worded
 from wsrender.errors import DocumentError
 
 MOST_ITEMS = 20_000  # of a list or an object: to tell what is wrong with each takes time and memory
+MOST_COLUMNS = 1_000  # of a row in a longer list
 
 
 class Document(BaseModel):
@@ -49,6 +50,9 @@ class Document(BaseModel):
             many = isinstance(value, list | tuple | Mapping) and len(value) > MOST_ITEMS
             if many and field not in cls.long_fields:
                 yield located((str(field),), f"must have at most {MOST_ITEMS} items, not {len(value)}")
+            rows = isinstance(value, list | tuple) and field in cls.long_fields and {list, tuple} >= {*map(type, value)}
+            if rows and (widest := max(map(len, value), default=0)) > MOST_COLUMNS:
+                yield located((str(field),), f"must hold rows of at most {MOST_COLUMNS} numbers, not {widest}")
 
     @model_validator(mode="wrap")
     @classmethod

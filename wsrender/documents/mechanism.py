@@ -10,7 +10,16 @@ from wsrender.documents.document import Document
 from wsrender.documents.environment import Bounds, Environment
 from wsrender.documents.legs import Interval, Leg, Lengths, Link, SerialJoint, SerialJoints, SerialLeg
 from wsrender.documents.problems import shown
-from wsrender.documents.quantities import Name, NonNegativeNumber, PositiveNumber, points_of, quoted, real, sequence
+from wsrender.documents.quantities import (
+    Name,
+    NonNegativeNumber,
+    PositiveNumber,
+    is_none,
+    points_of,
+    quoted,
+    real,
+    sequence,
+)
 from wsrender.documents.robot import Transform, Vector
 
 WORKING_MODES = ("++", "+-", "-+", "--")
@@ -77,7 +86,7 @@ class _Mechanism(Document):
     """A pose of the platform in the base frame, which it must reach; null: none."""
     minimum_leg_distance_m: PositiveNumber | None = None
     """Least distance of the links of legs that do not share a joint [m]; null: they may cross."""
-    bodies: Annotated[MechanismBodies | None, Field(exclude_if=lambda value: value is None)] = None
+    bodies: Annotated[MechanismBodies | None, Field(exclude_if=is_none)] = None
     """Solids that keep apart; null: there are none."""
 
     def serial_legs(self) -> dict[ArmPath, Arm]:
@@ -89,9 +98,11 @@ class _Mechanism(Document):
         if self.bodies is None:
             return
         if self.before or self.after:
-            yield "bodies", "must be null with serial joints before or after: what these carry has no bodies"
+            remedy = "give the mechanism without them, its placement at one of their values"
+            yield "bodies", f"must be null with serial joints before or after, what these carry has no bodies: {remedy}"
         if self.serial_legs():
-            yield "bodies", 'must be null with legs of the type "serial": they are no straight links'
+            remedy = 'give cranks as "RUS", sliders as "PUS" and struts as "UPS" legs, or the arms to "workspace"'
+            yield "bodies", f'must be null with legs of the type "serial", one posture of many is known: {remedy}'
         if self.minimum_leg_distance_m is not None:
             yield (
                 "minimum_leg_distance_m",

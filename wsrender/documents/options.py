@@ -3,12 +3,25 @@
 import re
 from collections.abc import Iterator, Mapping
 from numbers import Integral
+from os import PathLike, fspath
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, StrictBool, WithJsonSchema
 
+from wsrender.documents.array_files import ArrayFile
 from wsrender.documents.document import Document
-from wsrender.documents.quantities import Name, Number, PositiveNumber, distinct, integer, quoted, real, sequence, share
+from wsrender.documents.quantities import (
+    Name,
+    Number,
+    PositiveNumber,
+    distinct,
+    integer,
+    number_rows,
+    quoted,
+    real,
+    sequence,
+    share,
+)
 
 TASK_ROWS = ("x", "y", "z", "rx", "ry", "rz")
 NAMED_TASKS = {"linear": TASK_ROWS[:3], "angular": TASK_ROWS[3:], "full": TASK_ROWS}
@@ -96,9 +109,15 @@ def _device(value: Any) -> str:
     return value
 
 
-def _configurations(value: Any) -> tuple[tuple[float, ...], ...]:
-    rows = tuple(tuple(real(q) for q in sequence(row)) for row in sequence(value))
-    if len({len(row) for row in rows}) > 1:
+def _configurations(value: Any) -> tuple[tuple[float, ...], ...] | ArrayFile:
+    if isinstance(value, str | PathLike):
+        value = {"path": fspath(value)}
+    if isinstance(value, Mapping | ArrayFile):
+        return ArrayFile.model_validate(value)
+    rows = number_rows(value)
+    if not rows:
+        raise ValueError("must have at least 1 items")
+    if len(lengths := set(map(len, rows))) > 1 or 0 in lengths:
         raise ValueError("must hold rows of one length, one joint value per joint")
     return rows
 
@@ -139,7 +158,11 @@ StatisticsOrNone = Annotated[
 ]
 MapColumns = Annotated[tuple[Literal["configuration", "orientation"], ...], BeforeValidator(_columns)]
 Device = Annotated[str, BeforeValidator(_device), Field(json_schema_extra={"pattern": f"^({_DEVICE.pattern})$"})]
-Configurations = Annotated[tuple[tuple[Number, ...], ...], Field(min_length=1), BeforeValidator(_configurations)]
+Configurations = Annotated[
+    Annotated[tuple[tuple[float, ...], ...], Field(min_length=1)] | ArrayFile,
+    Field(union_mode="left_to_right"),
+    BeforeValidator(_configurations),
+]
 
 
 class IndexChoices(Document):

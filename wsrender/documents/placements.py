@@ -8,12 +8,13 @@ import numpy as np
 from pydantic import BeforeValidator
 
 from wsrender.documents.document import Document
-from wsrender.documents.quantities import numbers_of, real
-from wsrender.documents.transform import LARGEST
+from wsrender.documents.quantities import PositiveNumber, numbers_of, real
+from wsrender.documents.transform import LARGEST, number_list
 
 COORDINATES = ("x_m", "y_m", "z_m", "roll_deg", "pitch_deg", "yaw_deg")
 ANGLES = COORDINATES[3:]
-NEARLY = 1e-9  # of a step: rounding of ranges
+IN_DEGREES = np.array([1.0] * 3 + [np.pi / 180] * 3)  # of coordinates, in m and rad
+NEARLY = 1e-9  # of a step, or m: rounding of ranges
 TURN = 360.0
 _MOUNTED = {"floor": (0.0, 0.0, 0.0), "wall": (0.0, 90.0, 0.0), "ceiling": (180.0, 0.0, 0.0)}  # roll, pitch, yaw [°]
 
@@ -116,9 +117,44 @@ class PlacementSpace(Document):
 Mounting = Literal["floor", "wall", "ceiling"]
 
 
-def mounted(mounting: Mounting) -> np.ndarray:
+class TableEdge(Document):
+    """The edge of a table: the base stands upright on its rectangle, and is clamped no farther from its edge.
+
+    The table's top is at the z of what is placed.
+    """
+
+    kind: Literal["table_edge"]
+    """The edge of a table."""
+    center_m: Annotated[tuple[float, float], number_list(2)] = (0.0, 0.0)
+    """x and y of the middle of the table in the world [m]."""
+    size_m: Annotated[tuple[PositiveNumber, PositiveNumber], number_list(2)]
+    """Lengths of the table along its x and y [m]."""
+    yaw_deg: Annotated[float, BeforeValidator(real)] = 0.0
+    """Turn of the table about the world's z [°]."""
+    clamp_m: PositiveNumber
+    """Largest distance of the origin of the frame that is placed from the nearest edge [m]."""
+
+    @property
+    def corners(self) -> np.ndarray:
+        """The table's corners (4, 2) in the world, around it [m]."""
+        return self.center_m + np.array([(1, 1), (-1, 1), (-1, -1), (1, -1)]) * self.size_m @ self._axes / 2
+
+    @property
+    def _axes(self) -> np.ndarray:
+        """The table's x and y in the world, (2, 2)."""
+        return placed(np.array([[0.0] * 5 + [self.yaw_deg]]))[0, :2, :2].T
+
+    def holds(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        """Whether a base may stand at x and y [m], bool of their shape."""
+        own = np.stack([x - self.center_m[0], y - self.center_m[1]], axis=-1) @ self._axes.T
+        inwards = (np.array(self.size_m) / 2 - np.abs(own)).min(axis=-1)
+        return (inwards >= -NEARLY) & (inwards <= self.clamp_m + NEARLY)
+
+
+def mounted(mounting: Mounting | TableEdge) -> np.ndarray:
     """How a base stands in the frame that is placed, (4, 4): its z is the frame's z, x, or -z."""
-    return placed(np.array([[0.0, 0.0, 0.0, *_MOUNTED[mounting]]]))[0]
+    turn = _MOUNTED["floor" if isinstance(mounting, TableEdge) else mounting]
+    return placed(np.array([[0.0, 0.0, 0.0, *turn]]))[0]
 
 
 def placed(coordinates: np.ndarray) -> np.ndarray:

@@ -134,6 +134,8 @@ def _json_style(context: dict[str, Any]) -> dict[str, Any]:
 
 def shown(value: Any) -> str:
     """A value as JSON would write it, or what kind of thing it is where that is long."""
+    if isinstance(value, Mapping | list | tuple) and len(value) > _LONGEST_VALUE:
+        return _kind(value)
     try:
         text = json.dumps(value, ensure_ascii=False)
     except (TypeError, ValueError):
@@ -141,9 +143,11 @@ def shown(value: Any) -> str:
     text = text.encode("utf-8", "backslashreplace").decode()
     if len(text) <= _LONGEST_VALUE:
         return text
-    if isinstance(value, Mapping):
-        return "an object"
-    return f"a list of {len(value)}" if isinstance(value, list | tuple) else f"{text[:_LONGEST_VALUE]}…"
+    return _kind(value) if isinstance(value, Mapping | list | tuple) else f"{text[:_LONGEST_VALUE]}…"
+
+
+def _kind(value: Mapping[Any, Any] | list[Any] | tuple[Any, ...]) -> str:
+    return "an object" if isinstance(value, Mapping) else f"a list of {len(value)}"
 
 
 def _path(loc: tuple[int | str, ...], document: Any) -> str:

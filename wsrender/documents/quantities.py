@@ -3,7 +3,9 @@
 import math
 import re
 from collections.abc import Callable, Iterable
+from itertools import chain
 from numbers import Integral, Real
+from types import NoneType
 from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Field, StrictStr
@@ -14,6 +16,7 @@ LARGEST_COUNT = 10**15
 SMALLEST_VOXEL_M, LARGEST_VOXEL_M = 1e-10, 1e6
 LARGEST_SEED = 2**63 - 1
 LONGEST_NAME = 4096  # characters
+_NUMERIC = {int, float, bool, NoneType}
 _FILE_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
 
 
@@ -46,7 +49,17 @@ def integer(value: Any) -> int:
 
 
 def _is_number(value: Any) -> bool:
-    return isinstance(value, Real) and not isinstance(value, bool)
+    return type(value) in (float, int) or (isinstance(value, Real) and not isinstance(value, bool))
+
+
+def is_none(value: Any) -> bool:
+    """Whether it is null, as what a document then does not say."""
+    return value is None
+
+
+def is_empty(value: Any) -> bool:
+    """Whether it is an empty list or object, as what a document then does not say."""
+    return not value
 
 
 def sequence(value: Any) -> list:
@@ -66,13 +79,38 @@ def numbers_of(value: Any) -> tuple[float, ...]:
         return ()
 
 
+def number_rows(value: Any) -> tuple[tuple[float, ...], ...]:
+    """Rows of finite numbers; ValueError for the first that is none.
+
+    There may be millions: they are looked at all at once, and one by one only where something is wrong.
+    """
+    rows = sequence(value)
+    if _kinds(rows) <= {list, tuple} and _kinds(chain.from_iterable(rows)) <= {int, float}:
+        try:
+            if math.isfinite(sum(chain.from_iterable(rows))):
+                return tuple(map(tuple, rows))
+        except OverflowError:  # of integers
+            pass
+    return tuple(tuple(real(item) for item in sequence(row)) for row in rows)
+
+
+def is_numeric(value: Any) -> bool:
+    """Whether a list holds nothing but numbers and nulls, or rows of them."""
+    kinds = _kinds(value)
+    return kinds <= _NUMERIC or (kinds == {list} and _kinds(chain.from_iterable(value)) <= _NUMERIC)
+
+
+def _kinds(values: Iterable[Any]) -> set[type]:
+    return set(map(type, values))
+
+
 def points_of(value: Any) -> tuple[tuple[float, ...], ...]:
     """Points [x, y, z] of finite numbers; none of anything else, which the caller refuses in its own words."""
     try:
-        points = tuple(numbers_of(point) for point in sequence(value))
+        points = number_rows(value)
     except ValueError:
         return ()
-    return points if all(len(point) == 3 for point in points) else ()
+    return points if set(map(len, points)) == {3} else ()
 
 
 def share(value: Any) -> float:
@@ -95,7 +133,7 @@ def rows_of(width: int) -> BeforeValidator:
     """Rows of so many numbers; only the first wrong one is told, since there may be millions."""
 
     def rows(value: Any) -> tuple[tuple[float, ...], ...]:
-        found = tuple(tuple(real(item) for item in sequence(row)) for row in sequence(value))
+        found = number_rows(value)
         wrong = next((k for k, row in enumerate(found) if len(row) != width), None)
         if wrong is not None:
             raise ValueError(f"must hold rows of {width} numbers; row {wrong} has {len(found[wrong])}")

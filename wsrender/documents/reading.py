@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Mapping
+from itertools import chain
 from typing import Any
 
 from pydantic import TypeAdapter, ValidationError
@@ -39,13 +40,16 @@ def read_json(text: str | bytes) -> Any:
 
 def check_depth(document: Any) -> None:
     """Raise DocumentError where objects and lists are nested deeper than 32 levels."""
-    pending = [(document, 1)]
-    while pending:
-        node, depth = pending.pop()
-        if depth > DEEPEST_NESTING:
-            raise _too_deep()
-        children = node.values() if isinstance(node, dict) else node
-        pending += [(child, depth + 1) for child in children if isinstance(child, dict | list | tuple)]
+    level, kinds = [document], {type(document)}
+    for _ in range(DEEPEST_NESTING):
+        if any(issubclass(kind, dict) for kind in kinds):
+            level = [node.values() if isinstance(node, dict) else node for node in level]
+        # There may be millions of numbers.
+        kinds = {kind for kind in set(map(type, chain.from_iterable(level))) if issubclass(kind, dict | list | tuple)}
+        if not kinds:
+            return
+        level = [child for child in chain.from_iterable(level) if type(child) in kinds]
+    raise _too_deep()
 
 
 def _unique_keys(pairs: list[tuple[str, Any]]) -> dict[str, Any]:

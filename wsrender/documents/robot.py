@@ -8,12 +8,24 @@ import numpy as np
 from pydantic import BeforeValidator, Field, StrictStr, model_validator
 
 from wsrender.documents.document import Document
-from wsrender.documents.quantities import Name, Number, PositiveNumber, Sha256, numbers_of, quoted, real, sequence
+from wsrender.documents.quantities import (
+    Name,
+    Number,
+    PositiveNumber,
+    Sha256,
+    is_empty,
+    is_none,
+    numbers_of,
+    quoted,
+    real,
+    sequence,
+)
 from wsrender.documents.shapes import ToolShape
 from wsrender.documents.transform import LARGEST, LengthUnit, Transform, Vector, number_list
 
-MOST_TOOL_SHAPES, MOST_EXCLUDED = 100, 10_000
+MOST_TOOL_SHAPES, MOST_EXCLUDED, MOST_MOUNT_JOINTS = 100, 10_000, 6
 SOURCES = ("library", "dh", "mjcf", "urdf", "model", "path")
+_AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 _IN_DEGREES = ("alpha", "theta", "limits")
 
 
@@ -57,18 +69,18 @@ XmlText = Annotated[StrictStr, Field(min_length=1)]
 NotNegative = Annotated[float, Field(ge=0), BeforeValidator(real)]
 
 
+def _axis(value: Any) -> Any:
+    if isinstance(value, str) and value in _AXES:
+        return value
+    if isinstance(value, str) or len(numbers := numbers_of(value)) != 3:
+        raise ValueError('must be "x", "y", "z" or a direction of three finite numbers')
+    return numbers
+
+
 def _pair(value: Any) -> Any:
     if len(names := sequence(value)) != 2:
         raise ValueError("must be a pair of names")
     return names
-
-
-def _is_none(value: Any) -> bool:
-    return value is None
-
-
-def _is_empty(value: Any) -> bool:
-    return not value
 
 
 ShapePair = Annotated[tuple[Name, Name], BeforeValidator(_pair)]
@@ -174,11 +186,11 @@ class DHTable(Document):
 
     convention: Literal["modified", "standard"]
     """Which of the two conventions the rows follow."""
-    rows: Annotated[tuple[DHRow, ...], BeforeValidator(_rows)]
+    rows: Annotated[tuple[DHRow, ...], Field(min_length=1), BeforeValidator(_rows)]
     """One row per joint, from the base to the tip."""
     name: Annotated[Name, BeforeValidator(_joint_name)] = "dh"
     """Name of the robot."""
-    link_radius: Annotated[PositiveNumber | None, Field(exclude_if=_is_none)] = None
+    link_radius: Annotated[PositiveNumber | None, Field(exclude_if=is_none)] = None
     """Radius of capsules along the links, which then are the robot's shapes [m]; null: it has none."""
 
     def joint_names(self) -> tuple[str, ...]:
@@ -192,6 +204,50 @@ class DHTable(Document):
             if name in names[:k]:
                 yield "rows", f'must not give two joints the name "{name}"'
                 return
+
+
+class MountJoint(Document):
+    """A joint that carries the base of a robot, without mass or shapes of its own: a rail, a lift, a torso's waist."""
+
+    name: Annotated[Name, BeforeValidator(_joint_name)]
+    """Name of the joint."""
+    joint: Literal["prismatic", "revolute"] = "prismatic"
+    """Kind of joint."""
+    axis: Annotated[Literal["x", "y", "z"] | Vector, BeforeValidator(_axis)]
+    """Along what it slides, or about what it turns, in the robot's base frame while all joints of the mount are at 0:
+    "x", "y", "z" or a direction of any length."""
+    position_m: Vector = (0.0, 0.0, 0.0)
+    """A point of a revolute joint's axis in the same frame [m]."""
+    limits: Limits = None
+    """[lower, upper] of the joint [rad or m]; null: a revolute joint that turns for ever."""
+    limits_deg: Limits = None
+    """[lower, upper] of a revolute joint [°], instead of limits."""
+
+    def conflicts(self) -> Iterator[tuple[str, str]]:
+        """(field, message) of every pair of fields that do not go together."""
+        if self.limits is not None and self.limits_deg is not None:
+            yield "limits_deg", 'must not be given together with "limits": one of the two is enough'
+        if not 1e-6 < math.hypot(*self.direction) < 1e6:
+            yield "axis", f"must not have length {math.hypot(*self.direction):g}: it says no direction"
+        if self.joint == "revolute":
+            return
+        if self.limits_deg is not None:
+            yield "limits_deg", 'must not be given for a prismatic joint: use "limits", in metres'
+        elif self.limits is None:
+            yield "limits", "must be given for a prismatic joint: [lower, upper] in metres"
+        if any(self.position_m):
+            yield "position_m", "must not be given for a prismatic joint: where its axis lies changes nothing"
+
+    @property
+    def direction(self) -> tuple[float, float, float]:
+        """The axis (3,), of any length."""
+        return _AXES[self.axis] if isinstance(self.axis, str) else self.axis
+
+    @property
+    def range(self) -> list[float] | None:
+        """[lower, upper] [rad or m]; None: it turns for ever."""
+        given = self.limits or (self.limits_deg and tuple(map(math.radians, self.limits_deg)))
+        return list(given) if given else None
 
 
 class RobotSpec(Document):
@@ -211,10 +267,15 @@ class RobotSpec(Document):
     """An .xml (MJCF) or .urdf file; local runs only."""
     placement: Transform | None = None
     """The robot's base frame in the world; null: they coincide."""
+    mount: Annotated[
+        tuple[MountJoint, ...], BeforeValidator(sequence), Field(max_length=MOST_MOUNT_JOINTS, exclude_if=is_empty)
+    ] = ()
+    """Joints that carry the robot's base, a rail or a torso, from the ground up: they are the first of its chain. The
+    base frame stands at ``placement`` while they are at 0."""
     tool: Transform | None = None
     """The tool point in the frame of the tip; null: they coincide."""
     tool_shapes: Annotated[
-        tuple[ToolShape, ...], BeforeValidator(sequence), Field(max_length=MOST_TOOL_SHAPES, exclude_if=_is_empty)
+        tuple[ToolShape, ...], BeforeValidator(sequence), Field(max_length=MOST_TOOL_SHAPES, exclude_if=is_empty)
     ] = ()
     """Shapes that the tip carries, in its frame, of tool and payload: they collide as a body fixed to the tip's would,
     which is called tool."""
@@ -226,15 +287,15 @@ class RobotSpec(Document):
     """The model's unit of length [m]: 0.001 for millimetres; 1 confirms metres. The model's positions, sizes, slides
     and centres of mass are multiplied by it, its inertias [kg unit²] by its square. null: metres, and a job is refused
     where they are beyond any arm."""
-    effort_limits: Annotated[dict[Name, PositiveNumber], Field(exclude_if=_is_empty)] = Field(default={})
+    effort_limits: Annotated[dict[Name, PositiveNumber], Field(exclude_if=is_empty)] = Field(default={})
     """Largest torques or forces of joints, by name, in both directions [N m or N], instead of the model's."""
-    velocity_limits: Annotated[dict[Name, PositiveNumber], Field(exclude_if=_is_empty)] = Field(default={})
+    velocity_limits: Annotated[dict[Name, PositiveNumber], Field(exclude_if=is_empty)] = Field(default={})
     """Largest speeds of joints, by name [rad/s or m/s], instead of the model's."""
-    reference: Annotated[dict[Name, Number], Field(exclude_if=_is_empty)] = Field(default={})
+    reference: Annotated[dict[Name, Number], Field(exclude_if=is_empty)] = Field(default={})
     """Where joints beside the chain stand, by name [rad or m]; others of them at the model's zero."""
-    srdf: Annotated[StrictStr | None, Field(min_length=1, exclude_if=_is_none)] = None
+    srdf: Annotated[StrictStr | None, Field(min_length=1, exclude_if=is_none)] = None
     """Text of an SRDF, whose disabled pairs of links do not collide; null: none."""
-    exclude: Annotated[Excluded, Field(exclude_if=_is_empty)] = ()
+    exclude: Annotated[Excluded, Field(exclude_if=is_empty)] = ()
     """Pairs of names of shapes, or of bodies for all shapes on them, that do not collide."""
 
     def conflicts(self) -> Iterator[tuple[str, str]]:
@@ -248,6 +309,10 @@ class RobotSpec(Document):
         for k, name in enumerate(names):
             if name is not None and name in names[:k]:
                 yield f"tool_shapes.{k}.name", f'must be another than that of another tool shape, "{name}"'
+        names = [joint.name for joint in self.mount]
+        for k, name in enumerate(names):
+            if name in names[:k]:
+                yield f"mount.{k}.name", f'must be another than that of another joint of the mount, "{name}"'
         for joint in sorted(self.limits.keys() & self.limits_deg.keys()):
             yield f"limits_deg.{joint}", 'must not be given together with "limits": one of the two is enough'
 

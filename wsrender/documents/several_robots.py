@@ -19,11 +19,16 @@ _ANGLES = ("roll", "pitch", "yaw")
 _MOST_VALUES = 1000
 
 
-class PlacedRobot(Arm):
-    """One of several robots, with its own sampling."""
+class NamedArm(Arm):
+    """One of several robots."""
 
     name: FileName | None = None
     """What the result calls it; null: the model's name, with a number where two have the same."""
+
+
+class PlacedRobot(NamedArm):
+    """One of several robots, with its own sampling."""
+
     sampling: Sampling = Sobol(SEVERAL_COUNT)
     """How its joint space is sampled; by default 2^20 Sobol samples."""
 
@@ -50,9 +55,14 @@ class SeveralRobotsJob(IndexChoices, Constrained, JobDocument):
     def conflicts(self) -> Iterator[tuple[str, str]]:
         """(field, message) of every pair of fields that do not go together."""
         yield from super().conflicts()
-        given = [robot.name for robot in self.robots if robot.name]
-        if len(set(given)) < len(given):
-            yield "robots", f"must not give two robots the same name: {', '.join(given)}"
+        yield from same_names(self.robots)
+
+
+def same_names(robots: Sequence[NamedArm]) -> Iterator[tuple[str, str]]:
+    """(field, message) of robots that are called the same."""
+    given = [robot.name for robot in robots if robot.name]
+    if len(set(given)) < len(given):
+        yield "robots", f"must not give two robots the same name: {', '.join(given)}"
 
 
 def _values(value: Any) -> tuple[float, ...]:

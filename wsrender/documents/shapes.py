@@ -12,7 +12,7 @@ from pydantic import BeforeValidator, Discriminator, Field, StrictBool, Validati
 
 from wsrender.documents.document import Document
 from wsrender.documents.problems import located, tagged
-from wsrender.documents.quantities import Name, PositiveNumber, Sha256, numbers_of, points_of, sequence
+from wsrender.documents.quantities import Name, PositiveNumber, Sha256, is_none, numbers_of, points_of, sequence
 from wsrender.documents.transform import LengthUnit, Transform, Vector
 
 MOST_VERTICES = 10_000
@@ -39,10 +39,6 @@ def _heights(value: Any) -> tuple[tuple[float, ...], ...] | None:
     if len({len(row or ()) for row in rows}) != 1 or min(len(rows), len(rows[0] or ())) < 2 or count > MOST_HEIGHTS:
         raise ValueError(f"must be at least 2 rows of as many numbers, at least 2, and at most {MOST_HEIGHTS} in all")
     return tuple(map(tuple, rows))  # type: ignore[arg-type]
-
-
-def _is_none(value: Any) -> bool:
-    return value is None
 
 
 Edges = Annotated[tuple[PositiveNumber, PositiveNumber, PositiveNumber], BeforeValidator(sequence)]
@@ -165,7 +161,7 @@ class _OfVertices(Placed):
     """Points [x, y, z] in that frame, of which the convex hull counts [m]; they must not lie in a plane."""
     path: Name | None = None
     """A file of triangles, .stl, .obj or .ply; local runs only."""
-    model: Annotated[Sha256 | None, Field(exclude_if=_is_none)] = None
+    model: Annotated[Sha256 | None, Field(exclude_if=is_none)] = None
     """SHA-256 of such a file that was uploaded to a server, 64 hexadecimal digits."""
     length_unit_m: LengthUnit = 1.0
     """Unit of length of the file in metres: 0.001 of millimetres."""
@@ -198,10 +194,10 @@ class Mesh(_OfVertices):
 
     shape: Literal["mesh"] = "mesh"
     """mesh."""
-    convex: Annotated[StrictBool | None, Field(exclude_if=_is_none)] = None
+    convex: Annotated[StrictBool | None, Field(exclude_if=is_none)] = None
     """null: of what stands around, the solid that the file's triangles enclose; of vertices_m, and of tools, the convex
     hull. true: the hull, as a convex_mesh. false: the solid in convex pieces that hold it."""
-    tolerance_m: Annotated[PositiveNumber | None, Field(exclude_if=_is_none)] = None
+    tolerance_m: Annotated[PositiveNumber | None, Field(exclude_if=is_none)] = None
     """How far convex pieces may go beyond the solid [m]; null: 0.001."""
 
     def conflicts(self) -> Iterator[tuple[str, str]]:
@@ -228,7 +224,7 @@ class HeightField(Placed):
     """Rows of heights above the base, along x [m], at least 2 of at least 2 positive numbers."""
     path: Name | None = None
     """A file with them, .npy; local runs only."""
-    model: Annotated[Sha256 | None, Field(exclude_if=_is_none)] = None
+    model: Annotated[Sha256 | None, Field(exclude_if=is_none)] = None
     """SHA-256 of such a file that was uploaded to a server, 64 hexadecimal digits."""
     length_unit_m: LengthUnit = 1.0
     """Unit of length of the file in metres: 0.001 of millimetres."""

@@ -5,17 +5,27 @@ from collections.abc import Iterator, Mapping
 from os import PathLike, fspath
 from typing import Annotated, Any, ClassVar, Literal
 
+import numpy as np
 from pydantic import BeforeValidator, Field, ValidationError
 
+from wsrender.documents.array_files import ArrayFile
 from wsrender.documents.document import Document
+from wsrender.documents.environment import Bounds
 from wsrender.documents.problems import located, worded
-from wsrender.documents.quantities import Name, NonNegativeNumber, PositiveNumber, Sha256, real, sequence, share
+from wsrender.documents.quantities import (
+    NonNegativeNumber,
+    PositiveNumber,
+    is_empty,
+    is_none,
+    real,
+    sequence,
+    share,
+)
+from wsrender.documents.shapes import Sphere
 from wsrender.documents.targets import Points, Targets
 from wsrender.documents.transform import LengthUnit, Quaternion, Vector
 
 MOST_TARGETS, LONGEST_TEXT = 1_000_000, 64  # rows, and characters of a name
-TABLE_TYPES = {".csv": "text/csv", ".parquet": "application/vnd.apache.parquet", ".npy": "application/x-npy"}
-"""Media types of tables by the endings of their files."""
 POSITION, QUATERNION = ("x_m", "y_m", "z_m"), ("qw", "qx", "qy", "qz")
 ANGLES = ("roll_deg", "pitch_deg", "yaw_deg")
 TOLERANCES = ("position_tolerance_m", "angle_tolerance_rad")
@@ -25,10 +35,6 @@ AXES = ("x", "y", "z")
 UNIT = 1e-3  # by which the length of a quaternion may differ from 1: components of three digits
 
 Angle = Annotated[float, Field(gt=0, le=3.14), BeforeValidator(real)]
-
-
-def _is_none(value: Any) -> bool:
-    return value is None
 
 
 class Target(Document):
@@ -61,39 +67,95 @@ class Target(Document):
             yield "free_axis", "must not be given without an orientation, of which it is an axis"
 
 
-class TargetTable(Document):
+class TargetTable(ArrayFile):
     """A table of targets in a file: CSV or Parquet with named columns, or points of shape (N, 3) as CSV or .npy."""
 
-    path: Name | None = None
-    """A .csv, .parquet or .npy file; local runs only."""
-    model: Sha256 | None = None
-    """SHA-256 of such a file that was uploaded to a server, 64 hexadecimal digits."""
     length_unit_m: LengthUnit | None = None
     """Unit of the positions in metres: 0.001 of millimetres, 1 confirms metres; null: metres, where the arm's size does
     not speak against it."""
 
     def __init__(self, path: Any = None, /, **values: Any):
-        Document.__init__(self, **values if path is None else {"path": str(path), **values})
+        super().__init__(path, **values)
 
     __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
 
+
+class TargetVolume(Document):
+    """A volume to cover: cells of at most a step fill it, and their centres are the targets, which weigh the same.
+
+    A box has whole cells, as many along each edge; a ball the cells of the box around it whose centres are inside.
+    """
+
+    box: Bounds | None = None
+    """A box along the world's axes, with all sides; null: a sphere is given."""
+    sphere: Sphere | None = None
+    """A ball; null: a box is given."""
+    step_m: PositiveNumber
+    """Largest edge of a cell [m]; nothing is said of points between the centres."""
+    quat_wxyz: Quaternion | None = None
+    """How the tip stands at all of them, a quaternion of unit length, scalar first; null: any orientation will do."""
+    free_axis: Literal["x", "y", "z"] | None = None
+    """Axis of the tip about which it may turn as it likes; null: none."""
+
     def conflicts(self) -> Iterator[tuple[str, str]]:
         """(field, message) of every pair of fields that do not go together."""
-        if (self.path is None) == (self.model is None):
-            yield "path", 'must be given, or else "model": one of the two'
-        if self.path is not None and not self.path.lower().endswith((*TABLE_TYPES,)):
-            yield "path", f'must end in {", ".join(TABLE_TYPES)}, not "{self.path}"'
+        if (self.box is None) == (self.sphere is None):
+            yield "box", 'must be given, or else "sphere": one of the two'
+        elif self.box and None in (*self.box.lower_m, *self.box.upper_m):
+            yield "box", "must have all sides: a volume to cover ends everywhere"
+        elif (count := math.prod(self.cells)) > MOST_TARGETS:
+            yield "step_m", f"must be larger: there would be {count:,} cells, allowed are {MOST_TARGETS:,}"
+        yield from Target.model_construct(quat_wxyz=self.quat_wxyz, free_axis=self.free_axis).conflicts()
+
+    @property
+    def ends(self) -> tuple[np.ndarray, np.ndarray]:
+        """Lower and upper corner (3,) of the box, or of that around the ball [m]."""
+        if self.sphere:
+            center = np.array(self.sphere.position_m)
+            return center - self.sphere.radius_m, center + self.sphere.radius_m
+        assert self.box
+        return np.array(self.box.lower_m, float), np.array(self.box.upper_m, float)
+
+    @property
+    def cells(self) -> tuple[int, ...]:
+        """How many cells there are along x, y, z of the box, or of that around the ball."""
+        lower, upper = self.ends
+        return tuple(max(1, math.ceil(edge / self.step_m - 1e-9)) for edge in (upper - lower).tolist())
+
+    @property
+    def points(self) -> np.ndarray:
+        """The centres (N, 3) [m], those along z first."""
+        lower, upper = self.ends
+        along = [low + (np.arange(n) + 0.5) * (high - low) / n
+                 for low, high, n in zip(lower, upper, self.cells, strict=True)]  # fmt: skip
+        found = np.stack(np.meshgrid(*along, indexing="ij"), axis=-1).reshape(-1, 3)
+        if not self.sphere:
+            return found
+        return found[np.linalg.norm(found - self.sphere.position_m, axis=1) <= self.sphere.radius_m]
+
+    @property
+    def cell_m3(self) -> float:
+        """Volume of a cell [m³]."""
+        lower, upper = self.ends
+        return float(np.prod((upper - lower) / self.cells))
 
 
 def _targets(value: Any) -> Any:
     if isinstance(value, str | PathLike):
         return TargetTable.model_validate({"path": fspath(value)})
-    if isinstance(value, TargetTable):
+    if isinstance(value, TargetTable | TargetVolume):
         return value
+    if isinstance(value, Mapping) and not value.keys().isdisjoint(TargetVolume.model_fields):
+        return TargetVolume.model_validate(value)
+    choices = 'a list of targets, a table: {"path": …}, or a volume: {"box": …, "step_m": …}'
     if isinstance(value, Mapping):
+        if value and value.keys().isdisjoint(TargetTable.model_fields):
+            key = next(iter(value))
+            of = "a target, which must stand in a list" if key in Target.model_fields else "none of them"
+            raise ValueError(f'must be {choices}; "{key}" is a field of {of}')
         return TargetTable.model_validate(value)
     if not isinstance(value, list | tuple) or not value:
-        raise ValueError('must be a list of targets, or a table: {"path": …}')
+        raise ValueError(f"must be {choices}")
     return tuple(_target(each, k) for k, each in enumerate(value))
 
 
@@ -106,7 +168,8 @@ def _target(value: Any, number: int) -> Target:
 
 
 ListOrTable = Annotated[
-    Annotated[tuple[Target, ...], Field(min_length=1, max_length=MOST_TARGETS)] | TargetTable, BeforeValidator(_targets)
+    Annotated[tuple[Target, ...], Field(min_length=1, max_length=MOST_TARGETS)] | TargetTable | TargetVolume,
+    BeforeValidator(_targets),
 ]
 
 
@@ -121,9 +184,7 @@ class Criterion(Document):
     """Room to either limit that all slides keep at once [m]."""
 
 
-Criteria = Annotated[
-    tuple[Criterion, ...], Field(max_length=16, exclude_if=lambda value: not value), BeforeValidator(sequence)
-]
+Criteria = Annotated[tuple[Criterion, ...], Field(max_length=16, exclude_if=is_empty), BeforeValidator(sequence)]
 
 
 class ListedTargets(Targets):
@@ -133,9 +194,9 @@ class ListedTargets(Targets):
 
     points_m: Points | None = None  # type: ignore[assignment]
     """Positions of the targets in the world frame, rows of x, y, z [m]; null: targets are given."""
-    targets: Annotated[ListOrTable | None, Field(exclude_if=_is_none)] = None
+    targets: Annotated[ListOrTable | None, Field(exclude_if=is_none)] = None
     """Instead of points_m and quats_wxyz: targets with names, weights, free axes and tolerances of their own, one by
-    one, or as a table in a file, {"path": "holes.csv"}."""
+    one, or as a table in a file, {"path": "holes.csv"}; or a volume to cover by points at a step."""
 
     def conflicts(self) -> Iterator[tuple[str, str]]:
         """(field, message) of every pair of fields that do not go together."""

@@ -7,12 +7,12 @@ from pydantic import BeforeValidator, Field
 
 from wsrender.documents.document import Document
 from wsrender.documents.options import Device
-from wsrender.documents.quantities import Number, PositiveNumber, Seed, real, rows_of
+from wsrender.documents.quantities import PositiveNumber, Seed, real, rows_of
 
 SMALLEST_LENGTH = 1e-6  # of a quaternion that says a rotation
 
-Points = Annotated[tuple[tuple[Number, Number, Number], ...], Field(min_length=1), rows_of(3)]
-Quaternions = Annotated[tuple[tuple[Number, Number, Number, Number], ...], Field(min_length=1), rows_of(4)]
+Points = Annotated[tuple[tuple[float, float, float], ...], Field(min_length=1), rows_of(3)]
+Quaternions = Annotated[tuple[tuple[float, float, float, float], ...], Field(min_length=1), rows_of(4)]
 
 
 class Targets(Document):

@@ -1,9 +1,17 @@
 """The only host code that talks to Warp: devices, packing, chunking, launches and partial results."""
 
-from wsrender.engine.closed_form import CLOSED_MARGIN, ClosedPostures, closed_postures, placed_slacks
+from wsrender_kernels.closed_form import REACHABLE, UNDECIDED, UNREACHABLE
+
+from wsrender.engine.closed_form import (
+    CLOSED_MARGIN,
+    ClosedPostures,
+    closed_labels,
+    closed_postures,
+    placed_slacks,
+)
 from wsrender.engine.devices import devices_of, target_of, thread_count
 from wsrender.engine.drawn_configurations import configurations
-from wsrender.engine.free_joint import search_free_joint
+from wsrender.engine.free_joint import FreeJointSearch, search_free_joint
 from wsrender.engine.index_units import units_of
 from wsrender.engine.inverse import Accuracy, Tries, solve_inverse, try_bytes
 from wsrender.engine.kinematics import EvaluatedKinematics, evaluate_kinematics, evaluate_poses
@@ -15,6 +23,7 @@ from wsrender.engine.membership import (
     joined,
     poses_reached,
 )
+from wsrender.engine.open_wrist import open_wrist_postures, search_open_wrist
 from wsrender.engine.partial import Partial, merge
 from wsrender.engine.rows import Evaluated, evaluate_samples, evaluated_of, sampled_positions
 from wsrender.engine.slabs import fitted
@@ -22,15 +31,20 @@ from wsrender.engine.sweep_plan import SweepPlan, label_bytes, sweep
 
 __all__ = [
     "CLOSED_MARGIN",
+    "REACHABLE",
+    "UNDECIDED",
+    "UNREACHABLE",
     "Accuracy",
     "ClosedPostures",
     "Evaluated",
     "EvaluatedKinematics",
+    "FreeJointSearch",
     "LegTest",
     "OrientationCounts",
     "Partial",
     "SweepPlan",
     "Tries",
+    "closed_labels",
     "closed_postures",
     "configurations",
     "count_orientations",
@@ -44,10 +58,12 @@ __all__ = [
     "joined",
     "label_bytes",
     "merge",
+    "open_wrist_postures",
     "placed_slacks",
     "poses_reached",
     "sampled_positions",
     "search_free_joint",
+    "search_open_wrist",
     "solve_inverse",
     "sweep",
     "target_of",

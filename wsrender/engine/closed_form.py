@@ -13,12 +13,14 @@ from wsrender_kernels.closed_form import (
     MARGIN,
     POSTURE_ROWS,
     TARGET_ROWS,
+    WORLD_FIELDS,
     ClosedFormShape,
     closed_form_kernel,
+    closed_labels_kernel,
 )
 
 from wsrender.engine.devices import devices_of, thread_count
-from wsrender.engine.evaluation import REAL, device_array
+from wsrender.engine.evaluation import REAL, device_array, given_array
 from wsrender.engine.kernel_cache import launch, loaded
 from wsrender.robots.closed_form import ClosedForm
 from wsrender.robots.closed_form.numbers import packed
@@ -74,6 +76,45 @@ def closed_postures(
         parts = [np.concatenate(part) for part in zip(*pool.map(run, enumerate(batches)), strict=True)]
     count, slack, flags = parts[:3]
     return ClosedPostures(count, slack.astype(np.float64), flags, MARGIN[real], parts[3] if keep else None)
+
+
+def closed_labels(
+    closed: ClosedForm,
+    position: np.ndarray,
+    quat_wxyz: np.ndarray | None = None,
+    *,
+    margin: float,
+    device: str = "auto",
+    threads: int | None = None,
+) -> np.ndarray:
+    """Labels (N,) int8 of positions (N, 3) [m], or poses with quaternions (N, 4) of any length but 0, in the world.
+
+    REACHABLE where the slack is above that of rounding, UNREACHABLE where it is below minus the ``margin``, else
+    UNDECIDED. Poses are composed where they are solved for.
+    """
+    devices, real = devices_of(device), REAL["float64"]
+    workers = devices if devices[0].is_cuda else devices * thread_count(threads)
+    shape, backwards = shape_of(closed, "float64", False), closed.solved.axes.reversed
+    kernel = loaded(closed_labels_kernel(shape, backwards, quat_wxyz is not None, devices[0].is_cuda), *devices)
+    numbers, found = packed(closed.numbers_in_world(), WORLD_FIELDS), np.empty(len(position), np.int8)
+    size = min(BATCH, max(LEAST_SHARE, -(-len(position) // len(workers))))
+    given = [position, np.empty((0, 4)) if quat_wxyz is None else quat_wxyz]
+
+    def run(numbered: tuple[int, int]) -> None:
+        number, first = numbered
+        rows, device = [part[first : first + size] for part in given], workers[number % len(workers)]
+        count, whole = len(rows[0]), max(len(rows[0]), LANES)
+        if count < whole:  # a task of the CPU takes as many
+            rows = [np.resize(part, (whole, part.shape[1])) for part in rows]
+        rows = [given_array(part, real, device) for part in (numbers, *rows)]
+        labels = wp.empty(whole, dtype=wp.int8, device=device)  # type: ignore[arg-type]
+        dim = whole if device.is_cuda else -(-whole // LANES)
+        launch(kernel, dim=dim, inputs=[whole, -margin, *rows], outputs=[labels], device=device)
+        found[first : first + count] = labels.numpy()[:count]
+
+    with ThreadPoolExecutor(len(workers)) as pool:
+        list(pool.map(run, enumerate(range(0, len(position), size))))
+    return found
 
 
 def placed_slacks(

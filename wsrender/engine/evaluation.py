@@ -116,3 +116,9 @@ def vector_of(values: np.ndarray, dtype):
 def device_array(values: np.ndarray, dtype, device: wp.Device) -> wp.array:
     """A contiguous copy of NumPy values on a device."""
     return wp.array(np.ascontiguousarray(values, wp.dtype_to_numpy(dtype)), dtype=dtype, device=device)
+
+
+def given_array(values: np.ndarray, dtype, device: wp.Device) -> wp.array:
+    """NumPy values that kernels read, flat: on the CPU where they are if they are contiguous there, else a copy."""
+    flat = np.ascontiguousarray(values, wp.dtype_to_numpy(dtype)).ravel()
+    return wp.array(flat, dtype=dtype, device=device, copy=False)

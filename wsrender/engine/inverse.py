@@ -1,6 +1,7 @@
 """Inverse kinematics of many targets: tries from given starts, on CPU threads or a GPU."""
 
 from concurrent.futures import ThreadPoolExecutor
+from functools import lru_cache
 
 import numpy as np
 import warp as wp
@@ -86,6 +87,7 @@ def _launch(kernel, model, targets, starts, steps, real, device) -> list[np.ndar
     return [q.numpy().reshape(n, count).T, distance_2.numpy(), rotation_2.numpy(), verdict.numpy()]
 
 
+@lru_cache(maxsize=64)
 def _model(chain: Chain, accuracy: Accuracy, without_limits: bool, precision: str):
     real = REAL[precision]
     model = inverse_model(real, chain.n, len(chain.joint_source))()

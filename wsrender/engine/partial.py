@@ -19,7 +19,9 @@ class Partial:
     samples). ``rejected`` (C,): samples by the first of the plan's constraints that they violate; they count in nothing
     else but ``samples``, and stay in the rows. ``earliest`` (C,): the number of the first of them, NONE where there is
     none; of the voxels that hold any, sorted by ``blocked_cells`` (B,), how many: ``blocked`` (B, C) int64. ``cut``
-    (X,): of the evaluation's ``cuts``, how many values of admitted samples are cut.
+    (X,): of the evaluation's ``cuts``, how many values of admitted samples are cut. ``best`` (V,) int64: the number of
+    the sample that has a voxel's largest value of the index at the place ``best_index``, the smallest among equals;
+    (0,) and None where that is not kept.
     """
 
     samples: int
@@ -35,6 +37,8 @@ class Partial:
     blocked_cells: np.ndarray = field(default_factory=lambda: np.zeros(0, np.int64))
     blocked: np.ndarray = field(default_factory=lambda: np.zeros((0, 0), np.int64))
     cut: np.ndarray = field(default_factory=lambda: np.zeros(0, np.int64))
+    best: np.ndarray = field(default_factory=lambda: np.zeros(0, np.int64))
+    best_index: int | None = None
 
     @property
     def admitted(self) -> int:
@@ -61,6 +65,11 @@ def merge(a: Partial, b: Partial) -> Partial:
     records[where_a] = a.records
     records[where_b] = np.maximum(records[where_b], b.records)
     sums = added(len(cells), (where_a, a.sums), (where_b, b.sums))
+    best = a.best
+    if (k := a.best_index) is not None:
+        highest, best = np.full(len(cells), lowest, a.records.dtype), np.full(len(cells), NONE)
+        highest[where_a], best[where_a] = a.records[:, k], a.best
+        best[where_b] = best_of(highest[where_b], best[where_b], b.records[:, k], b.best)
     blocked_cells, blocked_a, blocked_b = union(a.blocked_cells, b.blocked_cells)
     return Partial(
         a.samples + b.samples,
@@ -76,7 +85,14 @@ def merge(a: Partial, b: Partial) -> Partial:
         blocked_cells,
         added(len(blocked_cells), (blocked_a, a.blocked), (blocked_b, b.blocked)),
         a.cut + b.cut,
+        best,
+        a.best_index,
     )
+
+
+def best_of(value: np.ndarray, best: np.ndarray, other_value: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """Of two numbers (V,) of samples each that which has the larger value (V,), or the smaller one of equals."""
+    return np.where(other_value > value, other, np.where(other_value == value, np.minimum(best, other), best))
 
 
 def added(size: int, *parts: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
@@ -99,7 +115,7 @@ def joined(partials: list[Partial], voxels: int) -> Partial:
         },
         **{
             name: np.concatenate([getattr(p, name) for p in partials])
-            for name in ("count", "records", "sums", "blocked")
+            for name in ("count", "records", "sums", "blocked", "best")
         },
     )
 

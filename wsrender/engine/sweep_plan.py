@@ -29,7 +29,7 @@ from wsrender.engine.grid_structure import (
 )
 from wsrender.engine.kernel_cache import launch, loaded
 from wsrender.engine.memory import as_type, device_memory, fetched
-from wsrender.engine.partial import NONE, Partial, joined, merge
+from wsrender.engine.partial import NONE, Partial, best_of, joined, merge
 from wsrender.engine.ranges import check_range
 from wsrender.engine.row_buffer import RowBuffer
 from wsrender.engine.slabs import fitted
@@ -44,6 +44,7 @@ from wsrender.volume.lattice import LatticeBlock
 CHUNK_CPU, CHUNK_CUDA, CHUNK_ROWS, CHUNK_GIVEN = 1 << 20, 1 << 28, 1 << 18, 1 << 14
 LABELLED_BYTES_CPU, LABELLED_BYTES_CUDA = 1 << 26, 1 << 31  # of labels and lists of what is open, of one worker
 CHUNK_LEAST, CHUNKS_PER_THREAD = 1 << 15, 8
+LOOK_S = 0.1  # between two looks at what is done
 THREADS_PER_SM = 2048  # of a GPU: a whole multiple of those that run at a time
 VOXELS_ABSORBED, VOXELS_FETCHED = 1 << 14, 1 << 23  # at a time
 FOLD_AFTER = 2**31 - 2**29  # samples until the CPU, which counts in 32 bits, moves its counts to 64-bit ones
@@ -96,6 +97,7 @@ class SweepPlan:
             keep_rows=rows is not None,
             keep_configuration="configuration" in (rows or ()),
             keep_orientation="orientation" in (rows or ()),
+            best=None if each.best is None else each.evaluation.indices.index(each.best),
             **asked,
             **device_values(each, asked["limits"] - len(packed_values(each))),
         )
@@ -110,11 +112,13 @@ def sweep(
     threads: int | None = None,
     chunk_size: int | None = None,
     progress: Callable[[int], None] | None = None,
+    look_s: float = LOOK_S,
 ) -> Partial:
     """Evaluate samples first … first + count - 1, from a multiple of the plan's ``division`` to another or the end.
 
     ``chunk_size`` is rounded up to a multiple of that; neither it nor ``threads`` changes a bit of the result.
-    ``progress`` is called in this thread with the number of samples done. Where the voxel records do not fit in memory
+    ``progress`` is called in this thread with the number of samples done, every ``look_s`` [s]; where it raises, the
+    sweep ends after the chunks that run. Where the voxel records do not fit in memory
     the samples are swept once for every slab of the lattice block. Raises InputError for another range, ResourceError
     where that would take too many slabs, NumericalError for a value that is not finite or beyond its bound.
     """
@@ -140,7 +144,7 @@ def sweep(
                 progress((before + done) * each // len(slabs))
 
         accumulators = [Accumulator(plan, shape, slab, device, chunk) for device in workers]
-        partials.append(_swept(accumulators, _Queue(_chunks(first, count, chunk)), report))
+        partials.append(_swept(accumulators, _Queue(_chunks(first, count, chunk)), report, look_s))
     result = joined(partials, slabs[0].size if slabs[0] else 0)
     _check_values(pipeline, result)
     return result
@@ -158,14 +162,14 @@ def _collisions(plan: SweepPlan, shape: Shape, device: wp.Device, chunk: int) ->
     return HostLabels(plan.evaluated, apart, device, chunk) if on_host(constraints) else apart
 
 
-def _swept(accumulators: list["Accumulator"], queue: "_Queue", report: Callable[[int], None]) -> Partial:
+def _swept(accumulators: list["Accumulator"], queue: "_Queue", report: Callable[[int], None], look_s: float) -> Partial:
     """What the accumulators make of the chunks of a queue, each in a thread of its own."""
     with ThreadPoolExecutor(len(accumulators)) as pool:
         futures = [pool.submit(_work, accumulator, queue) for accumulator in accumulators]
         try:
             pending = set(futures)
             while pending:
-                done, pending = wait(pending, timeout=0.1, return_when=FIRST_COMPLETED)
+                done, pending = wait(pending, timeout=look_s, return_when=FIRST_COMPLETED)
                 report(queue.done)
                 for future in done:
                     future.result()
@@ -249,6 +253,7 @@ def _work(accumulator: "Accumulator", queue: _Queue) -> None:
         while (chunk := queue.take()) is not None:
             accumulator.add(*chunk)
             queue.finished(chunk[1])
+        accumulator.find_best(queue)
 
 
 class Accumulator:
@@ -281,6 +286,7 @@ class Accumulator:
         self._sums = device_memory(voxels * shape.sums_size, wp.int64, device)
         self._rejections = device_memory(voxels * len(shape.constraints), wp.int64, device)
         self._earliest = device_memory(len(shape.constraints), wp.int64, device)
+        self._best = device_memory(voxels * (shape.best is not None), wp.int64, device)
         buffers = (2 if device.is_cuda else 1) if shape.keep_rows else 0
         self._row_buffers = [RowBuffer(shape.n_rows, chunk, real, device, shape.interleaved) for _ in range(buffers)]
         outputs = self._outputs = outputs_type(shape)()
@@ -296,6 +302,10 @@ class Accumulator:
             outputs.earliest = self._earliest
             if slab:
                 outputs.rejections = self._rejections
+        if shape.best is not None:
+            outputs.best, outputs.weight = self._best, plan.structure.weight
+            outputs.level_stride = pipeline.sampling.count // plan.structure.base_levels
+        self._added: list[tuple[int, int]] = []
         self._folded: Partial | None = None
         self._clear()
 
@@ -306,6 +316,7 @@ class Accumulator:
             self._fold()
             self._clear()
         self.launch(first, count)
+        self._added.append((first, count))
         self._counted += counted
         if self.shape.keep_rows:
             self._row_buffers[0].fetch(first, count)
@@ -313,6 +324,19 @@ class Accumulator:
             self._row_buffers.reverse()
             self._rows |= self._row_buffers[0].take()
         elif self.device.is_cuda:
+            wp.synchronize_device(self.device)
+
+    def find_best(self, queue: "_Queue") -> None:
+        """On a GPU, whose maxima are known now, find the samples that have them: see `outputs_type`."""
+        if self.shape.best is None or not self.device.is_cuda:
+            return
+        for buffer in self._row_buffers:
+            self._rows |= buffer.take()  # which the kernel writes again
+        self._outputs.second = 1
+        for first, count in self._added:
+            if queue.stopped:
+                return
+            self.launch(first, count)
             wp.synchronize_device(self.device)
 
     def absorb(self, other: "Accumulator", pool: ThreadPoolExecutor) -> None:
@@ -334,8 +358,11 @@ class Accumulator:
 
         def absorb_voxels(start: int) -> None:
             part = slice(start, start + VOXELS_ABSORBED)
-            records, sums, rejections = (table[part] for table in own)
-            more_records, more_sums, more_rejections = (table[part] for table in added)
+            records, sums, rejections, best = (table[part] for table in own)
+            more_records, more_sums, more_rejections, more_best = (table[part] for table in added)
+            if self.shape.best is not None:
+                slot = self.shape.count_size + self.shape.best
+                best[:, 0] = best_of(records[:, slot], best[:, 0], more_records[:, slot], more_best[:, 0])
             counts = _counts(records) + (_counts(more_records) - self._empty_count)
             np.maximum(records, more_records, out=records)
             _counts(records)[:] = counts
@@ -388,39 +415,43 @@ class Accumulator:
             model.values_given = device_array(np.concatenate(found), real, device)
         return given_space(q, first, pipeline.precision, device)
 
-    def _voxels(self, part: slice) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Of some of the slab's voxels records (V, record_size), sums (V, sums_size) and rejected samples (V, C)."""
+    def _voxels(self, part: slice) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """Of some of the slab's voxels records (V, record_size), sums (V, sums_size) and rejected samples (V, C).
+
+        And the numbers of the best samples (V, 1), or none, (V, 0).
+        """
         shape = self.shape
-        records, sums, rejections = (
+        records, sums, rejections, best = (
             fetched(values, part.start * width, part.stop * width).reshape(part.stop - part.start, width)
             for values, width in (
                 (self._records, shape.record_size),
                 (self._sums, shape.sums_size),
                 (self._rejections, len(shape.constraints)),
+                (self._best, int(shape.best is not None)),
             )
         )
-        return records, sums, rejections
+        return records, sums, rejections, best
 
     def _occupied(self) -> list[np.ndarray]:
-        """Cells, counts, extremes and sums of the slab's occupied voxels; cells and numbers of rejected samples.
+        """Cells, counts, extremes, sums and best samples of occupied voxels; cells and numbers of rejected samples.
 
         Part by part: the host of a GPU may not have the memory for all records.
         """
         first, found = self.shape.count_size, []
         for start in range(0, max(self._size, 1), VOXELS_FETCHED):
-            records, sums, rejections = self._voxels(slice(start, min(start + VOXELS_FETCHED, self._size)))
+            records, sums, rejections, best = self._voxels(slice(start, min(start + VOXELS_FETCHED, self._size)))
             counts = _counts(records)
             cells = np.flatnonzero(counts != self._empty_count)
             extremes = records[cells, first : first + self.shape.extremes]
             kept = sums[cells, : self.shape.n_indices * self.shape.sums]
             blocked = np.flatnonzero(rejections.any(axis=1))
-            occupied = start + cells, counts[cells] - self._empty_count, extremes, kept
+            occupied = start + cells, counts[cells] - self._empty_count, extremes, kept, best[cells].ravel()
             found.append((*occupied, start + blocked, rejections[blocked]))
         return [np.concatenate(parts) for parts in zip(*found, strict=True)]
 
     def _fold(self) -> None:
         """Add what the device holds to the 64-bit host arrays."""
-        cells, count, extremes, sums, blocked_cells, blocked = self._occupied()
+        cells, count, extremes, sums, best, blocked_cells, blocked = self._occupied()
         weight = self.plan.structure.weight
         totals = self._totals.numpy().reshape(TOTAL_SLOTS, -1).sum(axis=0) * weight
         of_indices, rejected, cut = np.split(totals, np.cumsum([self.shape.n_indices, len(self.shape.constraints)]))
@@ -438,6 +469,8 @@ class Accumulator:
             blocked_cells,
             blocked * weight,
             cut,
+            best,
+            self.shape.best,
         )
         self._folded = held if self._folded is None else merge(self._folded, held)
 
@@ -453,6 +486,7 @@ class Accumulator:
         self._sums.zero_()
         self._rejections.zero_()
         self._earliest.fill_(NONE)
+        self._best.fill_(NONE)
         self._totals.zero_()
         self._extremes.fill_(self._lowest)
 

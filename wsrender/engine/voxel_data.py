@@ -14,6 +14,12 @@ from wsrender.volume.voxels import Voxels
 def volume_data(pipeline: Pipeline, partial: Partial, units: dict[str, str]) -> VolumeData:
     """The occupied part of the lattice block, cropped, with the chosen statistics as floats."""
     assert pipeline.block is not None
+    return _cropped(pipeline.block, voxels_of(pipeline, partial), units)
+
+
+def voxels_of(pipeline: Pipeline, partial: Partial) -> Voxels:
+    """The occupied voxels of the lattice block, with the chosen statistics as floats."""
+    assert pipeline.block is not None
     names, K = pipeline.evaluation.indices, len(pipeline.evaluation.indices)
     statistics: dict[str, dict[str, np.ndarray]] = {}
     column = 0
@@ -27,7 +33,8 @@ def volume_data(pipeline: Pipeline, partial: Partial, units: dict[str, str]) -> 
     if "mean" in pipeline.statistics:
         samples, scales = np.maximum(partial.count, 1), scales_of(pipeline)
         statistics["mean"] = {name: partial.sums[:, k] / scales[k] / samples for k, name in enumerate(names)}
-    return _cropped(pipeline.block, Voxels(pipeline.block.shape, partial.cells, partial.count, statistics), units)
+    best = {} if pipeline.best is None else {pipeline.best: partial.best.astype(np.uint64)}
+    return Voxels(pipeline.block.shape, partial.cells, partial.count, statistics, best=best)
 
 
 def admission_data(pipeline: Pipeline, partial: Partial) -> VolumeData:

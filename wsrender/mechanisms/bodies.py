@@ -15,11 +15,13 @@ from wsrender.collision.solids import BASE, Solid
 from wsrender.documents.environment import Environment
 from wsrender.documents.mechanism import MechanismBodies
 from wsrender.errors import InputError
+from wsrender.mechanisms.surfaces import between_surfaces, from_surface
 from wsrender.pipeline.constraints.leg_distance import segment_distance
 from wsrender.robot.collisions import standing_solid
 from wsrender.robot.surroundings import shapes_around
 
 BEYOND = 1e-3  # [m] beyond the margin up to which distances are asked
+TRIANGLES, PAIRS = 1.4e3, 1.5e5  # of surfaces, and of two of them, that take as long as all other bodies of a mechanism
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,6 +38,15 @@ class Bodies:
     around: tuple[Solid, ...]
     apart: tuple[tuple[int, int], ...]
     name: str = "collision"
+
+    @property
+    def effort(self) -> float:
+        """How many times as long a pose takes as of bodies without surfaces."""
+        own, other = (
+            sum(len(solid.faces) for solid in solids if solid.faces is not None)
+            for solids in (self.platform, self.around)
+        )
+        return 1 + (own + other) / TRIANGLES + own * other / PAIRS
 
     def collisions(self, legs: Sequence[dict[str, np.ndarray]], poses: np.ndarray) -> tuple[np.ndarray, list[str]]:
         """Number, from 1, of the first pair of bodies that collides at poses (N, 4, 4), base frame, or 0, (N,); names.
@@ -76,7 +87,7 @@ class Bodies:
             for b in range(first_around, len(solids)):
                 ask(
                     f"{solids[a].name} and {solids[b].name}",
-                    lambda at, a=a, b=b: distances.between(a, b, frames(a, at), frames(b, at), self.margin_m + BEYOND),
+                    lambda at, a=a, b=b: self._between(distances, a, b, frames(a, at), frames(b, at)),
                 )
         return found, names
 
@@ -93,8 +104,11 @@ class Bodies:
         solid, r = distances.solids[k], self.radius_m
         if solid.kind == "half_space":
             return np.einsum("nei,ni->ne", segments - T[:, None, :3, 3], T[:, :3, 2]).min(axis=1) - r
-        middle, half = segments.mean(axis=1), np.linalg.norm(segments[:, 1] - segments[:, 0], axis=1) / 2
         limit = self.margin_m + BEYOND
+        if solid.kind == "surface":
+            own = np.einsum("nji,nej->nei", T[:, :3, :3], segments - T[:, None, :3, 3])
+            return from_surface(solid.corners, own, limit + r) - r
+        middle, half = segments.mean(axis=1), np.linalg.norm(segments[:, 1] - segments[:, 0], axis=1) / 2
         found = np.full(len(T), limit)
         near = np.linalg.norm(middle - T[:, :3, 3], axis=1) < half + r + solid.bounding_radius + limit
         model = distances.model
@@ -103,6 +117,20 @@ class Bodies:
             model.geom_rbound[0] = half[i] + r
             found[i] = distances.between(0, k, _along(segments[i])[None], T[i : i + 1], limit)[0]
         return found
+
+    def _between(self, distances: Distances, a: int, b: int, T_a: np.ndarray, T_b: np.ndarray) -> np.ndarray:
+        """Distances (N,) of two solids with frames (N, 4, 4), far ones cut."""
+        if distances.solids[b].kind == "surface":
+            a, b, T_a, T_b = b, a, T_b, T_a
+        one, other, limit = distances.solids[a], distances.solids[b], self.margin_m + BEYOND
+        T = np.linalg.inv(T_a) @ T_b  # of b, seen from a
+        if one.kind == "surface" and other.kind == "half_space":
+            return (T[:, None, :3, 2] * (one.corners.reshape(-1, 3) - T[:, None, :3, 3])).sum(axis=2).min(axis=1)
+        if one.kind != "surface" or other.kind != "surface":
+            return distances.between(a, b, T_a, T_b, limit)
+        return np.array(
+            [between_surfaces(one.corners, other.corners @ each[:3, :3].T + each[:3, 3], limit) for each in T]
+        )
 
 
 def _along(segment: np.ndarray) -> np.ndarray:
@@ -128,10 +156,6 @@ def bodies_of(
             (choice.environment, "environment", T_world_base),
         )
     )
-    for solid in (*platform, *around):
-        if solid.kind == "surface":
-            message = f"must be convex, which {solid.name} is not; a mesh counts as its hull with convex = true"
-            raise InputError("mechanism.bodies", message)
     return Bodies(choice.link_radius_m, choice.margin_m, choice.platform_gap_m, platform, around, tuple(apart))
 
 

@@ -22,6 +22,7 @@ class Pipeline:
     count and the ``statistics`` of voxels ("maximum", "minimum", "mean"), and as ``kept_rows`` position, indices and
     more columns, "configuration" and "orientation"; each None: not kept. ``bounds`` (K,): the largest absolute value of
     each index, for its fixed-point sums; None: not summed. ``collapse``: whether the structure of a grid is used.
+    ``best``: the index of which every voxel keeps the sample with the largest value, among its maxima; None: of none.
     """
 
     evaluation: Evaluation
@@ -33,11 +34,14 @@ class Pipeline:
     bounds: tuple[float, ...] | None = None
     precision: str = "float64"
     collapse: bool = True
+    best: str | None = None
 
     def at(self, q: np.ndarray) -> "Pipeline":
         """The same at given configurations ``q`` (N, n) [rad or m], of which rows are kept."""
         given = plan_sampling(self.evaluation.chain, q)
-        return replace(self, sampling=given, block=None, statistics=frozenset(), kept_rows=frozenset(), bounds=None)
+        return replace(
+            self, sampling=given, block=None, statistics=frozenset(), kept_rows=frozenset(), bounds=None, best=None
+        )
 
     @property
     def of_tip(self) -> "Pipeline":

@@ -5,6 +5,7 @@ The kernels evaluate the plan; it knows the chain's limits and the sampling of a
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import TypeVar
 
 import numpy as np
@@ -199,8 +200,15 @@ def sobol_directions(dimensions: int) -> np.ndarray:
 def scrambled_sobol(free: np.ndarray, seed: int) -> tuple[np.ndarray, np.ndarray]:
     """Direction numbers (n, 52) and digital shift (n,) of free coordinates; zeros for locked ones.
 
-    Linear matrix scrambling and a digital shift (Matoušek, *On the L2-discrepancy for anchored boxes*, 1998).
+    Linear matrix scrambling and a digital shift (Matoušek, *On the L2-discrepancy for anchored boxes*, 1998). The last
+    are kept: they take longer than a sweep of a few samples.
     """
+    return _scrambled(tuple(free.tolist()), seed)
+
+
+@lru_cache(maxsize=16)
+def _scrambled(freedoms: tuple[bool, ...], seed: int) -> tuple[np.ndarray, np.ndarray]:
+    free = np.array(freedoms, bool)
     n, dimensions = len(free), int(free.sum())
     # Raw output of a bit generator: NumPy keeps its stream stable for ever.
     bits = np.random.Philox(key=seed)
@@ -217,6 +225,7 @@ def scrambled_sobol(free: np.ndarray, seed: int) -> tuple[np.ndarray, np.ndarray
             scrambled[d] |= parity << place
     directions[free] = scrambled
     shift[free] = bits.random_raw(dimensions)
+    directions.flags.writeable = shift.flags.writeable = False
     return directions, shift
 
 

@@ -17,7 +17,7 @@ line too, and says why where a set has no measure; `refined_measures` is the sam
 from wsrender.reach.inverse_solver import InverseSolver, Solutions
 from wsrender.reach.measure_refinement import RefinedMeasure, refined_measure, refined_measures
 from wsrender.reach.posture_sets import Postures, postures
-from wsrender.reach.targets import Reachability, reachable
+from wsrender.reach.targets import Reachability, reachable, reachable_labels
 from wsrender.reach.volume_estimate import Event, VolumeEstimate, estimate_volumes
 from wsrender.reach.volume_refinement import RefinedVolumes, refined_volume, refined_volumes
 
@@ -33,6 +33,7 @@ __all__ = [
     "estimate_volumes",
     "postures",
     "reachable",
+    "reachable_labels",
     "refined_measure",
     "refined_measures",
     "refined_volume",

@@ -25,10 +25,8 @@ from wsrender.documents.sampling import Sobol
 from wsrender.engine import Tries, configurations
 from wsrender.pipeline.pipeline import tip_pipeline
 from wsrender.reach.admission import Admission
-from wsrender.reach.closed_labels import ClosedLabels
 from wsrender.reach.evidence import REACHABLE, UNDECIDED
-from wsrender.reach.free_joint_labels import FreeJointLabels
-from wsrender.reach.inverse_solver import BATCH, MOST_TRIES, VERIFIED, InverseSolver, parts_of
+from wsrender.reach.inverse_solver import BATCH, MOST_TRIES, VERIFIED, InverseSolver, Labels, parts_of
 from wsrender.reach.starts import EPS, inwards, towards_limits
 
 BLOCKED = 2  # beside the labels of evidence
@@ -166,7 +164,7 @@ class AdmissibleSearch:
     def _all_postures(
         self,
         found: Admissible,
-        closed: ClosedLabels | FreeJointLabels,
+        closed: Labels,
         at: np.ndarray,
         position: np.ndarray,
         orientation: np.ndarray | None,
@@ -228,6 +226,12 @@ class AdmissibleSearch:
             else:
                 starts = np.tile(self._further[first:last], (len(part), 1, 1))
             self._tried(found, part, starts, position, orientation)
+
+    def nearest(self, position: np.ndarray, orientation: np.ndarray | None, count: int) -> np.ndarray:
+        """The admitted samples nearest to targets (N,), (N, count, n), fewer where there are not so many."""
+        if not self._tree:
+            return np.zeros((len(position), 0, self.solver.whole.n))
+        return self._near(self.solver.features(position, orientation), 0, count)
 
     def solutions(self, position: np.ndarray, first: int, last: int) -> tuple[np.ndarray, np.ndarray]:
         """Configurations (N, s, n) from the admitted samples nearest to positions (N, 3), ``first`` … ``last`` - 1.

@@ -55,6 +55,11 @@ class AspectFinder:
         return "three hinges" if self.holder.rows == 3 else "spherical wrist"
 
     @property
+    def gridded(self) -> bool:
+        """Whether a grid of cells is made."""
+        return self._parallel is None and self._plane is not None
+
+    @property
     def evidence(self) -> str:
         """What aspects rest on."""
         if self.proof:
@@ -131,7 +136,7 @@ class AspectFinder:
         """Axes of three hinges and what is behind, and the point that they move."""
         geometry = self.holder.chain.geometry
         axes = None if geometry is None else Axes.of(geometry)
-        if axes is None or len(axes.axes) != self.holder.rows:
+        if axes is None or len(axes.axes) != self.holder.rows or self.holder.kind == "axis":
             return None
         solved = self.form and self.form.solved
         if solved and solved.arm in ("nested", "general") and (self.holder.rows == 6 or not solved.axes.reversed):

@@ -6,12 +6,11 @@ from functools import cached_property, lru_cache
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from wsrender.engine import CLOSED_MARGIN, Accuracy, ClosedPostures, closed_postures
+from wsrender.engine import CLOSED_MARGIN, Accuracy, ClosedPostures, closed_labels, closed_postures
 from wsrender.reach.evidence import REACHABLE, UNDECIDED, UNREACHABLE
 from wsrender.reach.starts import towards_limits
 from wsrender.robots.chain import Chain
-from wsrender.robots.closed_form import ClosedForm, FreeJointForm
-from wsrender.robots.kinematics import Kinematics
+from wsrender.robots.closed_form import ClosedForm, Families, Form, NearlyClosedForm, families
 
 # What may be reached within the tolerances is no proof. How much slack reached poses lose at most where they move a
 # little is a number of the arm: SURE times the most that SAMPLES lost, most at limits, which moved and turned by STEP
@@ -31,31 +30,43 @@ class ClosedLabels:
     device: str
     threads: int | None
 
-    @classmethod
-    def of(
-        cls, chain: Kinematics, kind: str, accuracy: Accuracy, device: str, threads: int | None
-    ) -> "ClosedLabels | None":
-        """None for a chain without a closed form."""
-        form = ClosedForm.of(chain, kind)
-        return None if form is None else cls(form, accuracy, device, threads)
-
     @cached_property
     def margin(self) -> float:
         """Slack that a target lacks at most which is reached within the tolerances."""
-        form, accuracy = self.form, self.accuracy
-        near = (accuracy.position_m / form.solved.axes.reach, accuracy.angle_rad * (form.kind != "position"))
+        form, near = self.form, self._tolerances
         lost = [_lost(form.chain, form.kind, step, self.threads) for step in {STEP, max(STEP, *near)}]
         return CLOSED_MARGIN + SURE * float(np.max(lost, axis=0) @ near)
+
+    @property
+    def _tolerances(self) -> tuple[float, float]:
+        """Of positions [reach], and of angles where they count [rad]."""
+        accuracy, form = self.accuracy, self.form
+        return accuracy.position_m / form.solved.axes.reach, accuracy.angle_rad * (form.kind != "position")
 
     def labels(self, position: np.ndarray, orientation: np.ndarray | None, *, unlimited: bool = False) -> np.ndarray:
         """What is certain of targets, else UNDECIDED, (N,) int8; ``unlimited``: as if hinges had no limits."""
         found = self._found(position, orientation, unlimited=unlimited)
         there, out = found.slack > found.margin, found.slack < -self.margin
-        return np.select([there, out], [REACHABLE, UNREACHABLE], UNDECIDED).astype(np.int8)
+        label = np.select([there, out], [REACHABLE, UNREACHABLE], UNDECIDED).astype(np.int8)
+        if not unlimited:
+            for at in _parts(np.flatnonzero(label == UNDECIDED)):
+                none = self.postures(position[at], None if orientation is None else orientation[at])[2]
+                label[at[none.all(axis=1)]] = UNREACHABLE
+        return label
+
+    def labels_by_quaternions(self, position: np.ndarray, quat_wxyz: np.ndarray | None) -> np.ndarray:
+        """`labels` of positions, or of whole poses with quaternions (N, 4) of any length; families are left open."""
+        execution = {"device": self.device, "threads": self.threads}
+        return closed_labels(self.form, position, quat_wxyz, margin=self.margin, **execution)
 
     def unreachable(self, position: np.ndarray, orientation: np.ndarray | None) -> np.ndarray:
         """Whether targets are proven to be out of reach, (N,) bool."""
         return self.labels(position, orientation) == UNREACHABLE
+
+    def nearest(self, position: np.ndarray, orientation: np.ndarray | None) -> np.ndarray:
+        """The posture (N, n) [rad or m] of each target with the largest slack."""
+        q, slack, _, _ = self.postures(position, orientation)
+        return q[np.arange(len(q)), np.argmax(slack, axis=1)]
 
     def postures(
         self, position: np.ndarray, orientation: np.ndarray | None
@@ -66,10 +77,26 @@ class ClosedLabels:
         within the tolerances. Others are alone where all such targets have them, but for ALONE: not where one comes or
         goes, nor those of singular poses, which are families.
         """
-        found = self._found(position, orientation, keep=True)
-        assert found.rows is not None
-        slack, sure = found.rows[..., 12], found.rows[..., 13]
-        return self.form.configurations(found.rows[..., :12]), slack, sure < -self.margin, sure * ALONE > self.margin
+        rows = self._found(position, orientation, keep=True).rows
+        assert rows is not None
+        slack, sure = rows[..., 12], rows[..., 13]
+        none = sure < -self.margin
+        for at in _parts(np.flatnonzero((np.abs(sure) <= self.margin).any(axis=1))):
+            none[at] |= self._families(position[at], None if orientation is None else orientation[at], rows[at]).none
+        return self.form.configurations(rows[..., :12]), slack, none, sure * ALONE > self.margin
+
+    def members(self, position: np.ndarray, orientation: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:
+        """Postures of families within the limits, of targets that are singular or close to that.
+
+        The target of each, ascending, (M,), and configurations (M, n) [rad or m].
+        """
+        rows = self._found(position, orientation, keep=True).rows
+        assert rows is not None
+        found = self._families(position, orientation, rows)
+        return found.pose, self.form.configurations(found.rows)
+
+    def _families(self, position: np.ndarray, orientation: np.ndarray | None, rows: np.ndarray) -> Families:
+        return families(self.form, poses_of(position, orientation), rows, max(self._tolerances))
 
     def _found(
         self, position: np.ndarray, orientation: np.ndarray | None, *, keep: bool = False, unlimited: bool = False
@@ -78,9 +105,9 @@ class ClosedLabels:
         return closed_postures(self.form, T, keep=keep, unlimited=unlimited, device=device, threads=threads)
 
 
-def evidence(form: ClosedForm | FreeJointForm) -> str:
+def evidence(form: Form) -> str:
     """What decides, as results say it."""
-    name = f"closed form ({form.name})" if isinstance(form, ClosedForm) else form.name
+    name = f"closed form ({form.name})" if isinstance(form, ClosedForm | NearlyClosedForm) else form.name
     return f"{name}, margin {CLOSED_MARGIN:.0e}".replace("e-0", "e-")
 
 
@@ -91,6 +118,16 @@ def poses_of(position: np.ndarray, orientation: np.ndarray | None) -> np.ndarray
     if orientation is not None:
         T[:, :3, :3] = orientation if orientation.ndim == 3 else _with_z(orientation)
     return T
+
+
+def _parts(at: np.ndarray) -> list[np.ndarray]:
+    """Targets by number (P,) in parts, none empty, whose postures may be held together."""
+    return np.array_split(at, -(-len(at) // TOGETHER)) if len(at) else []
+
+
+def rotations_of(quat_wxyz: np.ndarray) -> np.ndarray:
+    """Rotation matrices (N, 3, 3) of quaternions (N, 4) of any length but 0."""
+    return Rotation.from_quat(quat_wxyz, scalar_first=True).as_matrix()
 
 
 @lru_cache(maxsize=256)

@@ -2,10 +2,9 @@
 
 import numpy as np
 
-from wsrender.engine import Accuracy, Tries
+from wsrender.engine import REACHABLE, UNDECIDED, UNREACHABLE, Accuracy, Tries
 from wsrender.robots.kinematics import Kinematics
 
-REACHABLE, UNREACHABLE, UNDECIDED = 1, 0, -1
 LABELS = {REACHABLE: "reachable", UNREACHABLE: "unreachable", UNDECIDED: "undecided"}
 
 # Evidence that a target is unreachable: enough tries came to rest where no motion within the limits leads nearer,
@@ -53,6 +52,10 @@ class Evidence:
     def pending(self) -> np.ndarray:
         """Undecided targets, (P,)."""
         return np.flatnonzero(self.label == UNDECIDED)
+
+    def exhaust(self, at: np.ndarray) -> None:
+        """Decide targets (P,) that were tried from every posture near to any that reaches them, and clearly missed."""
+        self.label[at[self._residual[at] > self._clearly_off]] = UNREACHABLE
 
     def record(self, pending: np.ndarray, tries: Tries, residual: np.ndarray) -> None:
         """Take in tries of pending targets (P,), residuals (P, tries each) [m], and settle what is decided."""

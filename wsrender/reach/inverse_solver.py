@@ -7,12 +7,14 @@ from functools import cached_property
 import numpy as np
 
 from wsrender.engine import Accuracy, Tries, evaluate_poses, solve_inverse, thread_count, try_bytes
-from wsrender.reach.closed_labels import ClosedLabels
+from wsrender.reach.closed_labels import ClosedLabels, rotations_of
 from wsrender.reach.evidence import FLATTER, REACHABLE, UNDECIDED, Evidence
 from wsrender.reach.free_joint_labels import FreeJointLabels
 from wsrender.reach.moving_joints import moving_joints
+from wsrender.reach.nearly_closed_labels import NearlyClosedLabels
+from wsrender.reach.open_wrist_labels import OpenWristLabels
 from wsrender.reach.starts import FURTHER, NEAR, NEAR_LIMITS, Starts, inwards
-from wsrender.robots.closed_form import ClosedForm, FreeJointForm
+from wsrender.robots.closed_form import ClosedForm, Form, FreeJointForm, NearlyClosedForm, OpenWristForm, form_of
 from wsrender.robots.kinematics import Kinematics
 from wsrender.robots.reachable_box import reachable_box
 
@@ -32,8 +34,14 @@ GROUPS = {
 }
 SAMPLES = {"position": 1 << 12, "axis": 1 << 13, "pose": 1 << 13}  # of either kind of starts
 WITHOUT_LIMITS = 8  # tries of what limits keep the chain from
+ALL_JOINTS = 6  # of an arm that reaches whole poses all about one
+MEMBERS_TRIED = 4  # of families, of a target
+SOLVED_TOGETHER = 1 << 11  # targets that are tried from their families, or from all postures, for memory
 STEP_BACK = 1e-3  # share of their ranges by which coordinates leave their limits before a last try
 AT_END = 1e-6  # share of a slide's range within which it stands at its end
+
+
+Labels = ClosedLabels | FreeJointLabels | OpenWristLabels | NearlyClosedLabels
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,7 +81,7 @@ class InverseSolver:
         threads: int | None = None,
     ):
         self.whole, self.kind, self.seed = chain, kind, seed
-        self.chain, self._kept = _that_matter(chain, kind)
+        self.chain, self._kept = that_matter(chain, kind)
         self.accuracy = Accuracy(position_m, angle_rad, length_m or chain.reach / 2 or 1.0)
         self._workers = thread_count(threads)
         self._execution = {"precision": precision, "device": device, "threads": threads}
@@ -98,6 +106,21 @@ class InverseSolver:
                 progress(min(first + BATCH, len(position)))
         return Solutions(*(np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(Solutions)))
 
+    def labels(self, position: np.ndarray, quat_wxyz: np.ndarray | None = None) -> np.ndarray:
+        """Labels (N,) int8 alone, as `solve` has them, of a solver of positions, or of whole poses by quaternions.
+
+        What a closed form leaves open is searched as there; ``quat_wxyz`` (N, 4): of any length but 0.
+        """
+        if self.closed:
+            label = self.closed.labels_by_quaternions(position, quat_wxyz)
+        else:
+            label = np.full(len(position), UNDECIDED, np.int8)
+        at = np.flatnonzero(label == UNDECIDED)
+        for part in (at[first : first + BATCH] for first in range(0, len(at), BATCH)):
+            R = None if quat_wxyz is None else rotations_of(quat_wxyz[part])
+            label[part] = self._solve(position[part], R).label
+        return label
+
     def _solve(self, position: np.ndarray, orientation: np.ndarray | None) -> Solutions:
         targets = _targets(position, orientation)
         proven = self._out_of_reach(position)
@@ -111,10 +134,10 @@ class InverseSolver:
             for part in parts_of(search.pending, each):
                 starts = self._starts.of(source, self._features(targets[part]), first, last)
                 tries = self._tries(np.repeat(targets[part], each, axis=0), starts.reshape(-1, self.chain.n))
-                search.record(part, tries, self._residual(tries).reshape(-1, each))
+                search.record(part, tries, self.residual(tries).reshape(-1, each))
         narrow = search.narrow
         tries = self._tries(targets[narrow], inwards(self.chain, search.q[narrow], STEP_BACK), flatness=FLATTER)
-        search.settle(narrow, tries, self._residual(tries))
+        search.settle(narrow, tries, self.residual(tries))
         q = np.tile((self.whole.lower_limits + self.whole.upper_limits) / 2, (len(targets), 1))
         q[:, self._kept] = self._within_a_turn(search.q)
         return Solutions(q, search.distance, search.angle, search.label, search.proven)
@@ -122,18 +145,38 @@ class InverseSolver:
     def _verify(
         self,
         search: Evidence,
-        closed: ClosedLabels | FreeJointLabels,
+        closed: Labels,
         targets: np.ndarray,
         position: np.ndarray,
         orientation: np.ndarray | None,
     ) -> None:
-        """Try what may be reached from the posture with the largest slack: it is there but for rounding."""
+        """Try what may be reached from the posture with the largest slack: it is there but for rounding.
+
+        Of singular targets also from members of families. Where there are none, what is reached is close to one of the
+        postures: after a try from each, others say no more.
+        """
         at = np.flatnonzero(~search.proven)
         for part in parts_of(at, MOST_TRIES // VERIFIED):
-            some = None if orientation is None else orientation[part]
-            q, slack, _, _ = closed.postures(position[part], some)
-            tries = self._tries(targets[part], q[np.arange(len(part)), np.argmax(slack, axis=1)])
-            search.record(part, tries, self._residual(tries)[:, None])
+            tries = self._tries(targets[part], closed.nearest(position[part], _some(orientation, part)))
+            search.record(part, tries, self.residual(tries)[:, None])
+        if not isinstance(closed, ClosedLabels):
+            return
+        pending, n = search.pending, self.chain.n
+        known = np.full(len(position), self.kind == "pose" and n >= ALL_JOINTS)
+        if known.any():
+            for part in parts_of(pending, MOST_TRIES // SOLVED_TOGETHER):
+                q, *_ = closed.postures(position[part], _some(orientation, part))
+                tries = self._tries(np.repeat(targets[part], q.shape[1], axis=0), q.reshape(-1, n))
+                search.record(part, tries, self.residual(tries).reshape(len(part), -1))
+        for part in parts_of(search.pending, MOST_TRIES // SOLVED_TOGETHER):
+            target, q = closed.members(position[part], _some(orientation, part))
+            known[part[target]] = False
+            number = np.arange(len(target)) - np.searchsorted(target, target)
+            for k in range(min(MEMBERS_TRIED, number.max(initial=-1) + 1)):
+                some = number == k
+                tries = self._tries(targets[part[target[some]]], q[some])
+                search.record(part[target[some]], tries, self.residual(tries)[:, None])
+        search.exhaust(search.pending[known[search.pending]])
 
     def tries(self, starts: np.ndarray, position: np.ndarray, orientation: np.ndarray | None = None) -> Tries:
         """One try from each configuration (N, n) to its target; joints that do not move it keep their values."""
@@ -171,14 +214,14 @@ class InverseSolver:
         further = np.tile(self._starts.further(0, WITHOUT_LIMITS - 1), (len(targets), 1, 1))
         starts = np.concatenate([q[:, None, self._kept], further], axis=1).reshape(-1, self.chain.n)
         tries = self._tries(np.repeat(targets, WITHOUT_LIMITS, axis=0), starts, without_limits=True)
-        residual = np.where(tries.reached, 0.0, self._residual(tries)).reshape(-1, WITHOUT_LIMITS)
+        residual = np.where(tries.reached, 0.0, self.residual(tries)).reshape(-1, WITHOUT_LIMITS)
         best = np.arange(len(targets)) * WITHOUT_LIMITS + np.argmin(residual, axis=1)
         chain, nearest = self.chain, tries.q[best]
         margin = AT_END * (chain.upper_limits - chain.lower_limits)
         ended = (nearest <= chain.lower_limits + margin) | (nearest >= chain.upper_limits - margin)
         return tries.reached[best] | np.any(ended & ~chain.revolute, axis=1)
 
-    def _residual(self, tries: Tries) -> np.ndarray:
+    def residual(self, tries: Tries) -> np.ndarray:
         """What the solver reduces, (N,) [m]."""
         return np.hypot(tries.distance, 2 * self.accuracy.length * np.sin(tries.angle / 2))
 
@@ -206,10 +249,17 @@ class InverseSolver:
         low, high = reachable_box(chain, chain.lower_limits, chain.upper_limits)
         return far | (position < low - slack).any(axis=1) | (position > high + slack).any(axis=1)
 
-    def _closed_labels(self, device: str, threads: int | None) -> ClosedLabels | FreeJointLabels | None:
-        closed = ClosedLabels.of(self.chain, self.kind, self.accuracy, device, threads)
-        along = None if closed else FreeJointForm.of(self.chain, self.kind)
-        return FreeJointLabels(along, self.accuracy, device, threads) if along else closed
+    def _closed_labels(self, device: str, threads: int | None) -> Labels | None:
+        form = form_of(self.chain, self.kind)
+        if form is None:
+            return None
+        labels = {
+            ClosedForm: ClosedLabels,
+            FreeJointForm: FreeJointLabels,
+            OpenWristForm: OpenWristLabels,
+            NearlyClosedForm: NearlyClosedLabels,
+        }
+        return labels[type(form)](form, self.accuracy, device, threads)
 
     @cached_property
     def _starts(self) -> Starts:
@@ -233,13 +283,12 @@ class InverseSolver:
         return q
 
 
-def closed_form_of(chain: Kinematics, kind: str) -> ClosedForm | FreeJointForm | None:
+def closed_form_of(chain: Kinematics, kind: str) -> Form | None:
     """What decides targets of a ``kind`` before any search; None for a chain without a closed form."""
-    part = _that_matter(chain, kind)[0]
-    return ClosedForm.of(part, kind) or FreeJointForm.of(part, kind)
+    return form_of(that_matter(chain, kind)[0], kind)
 
 
-def _that_matter(chain: Kinematics, kind: str) -> tuple[Kinematics, np.ndarray]:
+def that_matter(chain: Kinematics, kind: str) -> tuple[Kinematics, np.ndarray]:
     """The chain without last joints that do not change a ``kind`` of target, and which coordinates it keeps (m,)."""
     if kind == "pose" or not chain.geometry:  # where axes are, functions do not say
         return chain, np.arange(chain.n)
@@ -254,6 +303,10 @@ def solved_bytes(targets: float, kind: str, chain: Kinematics, precision: str = 
         return POSTURES_BYTES * min(targets, VERIFIED) + CLOSED_BYTES * together
     tries = min(TRIES_EACH[kind] * together, MOST_TRIES)
     return each * tries + TARGET_ROW * (row + 5) * (together + SAMPLES[kind])
+
+
+def _some(orientation: np.ndarray | None, at: np.ndarray) -> np.ndarray | None:
+    return None if orientation is None else orientation[at]
 
 
 def _groups(kind: str) -> Iterator[tuple[str, int, int]]:

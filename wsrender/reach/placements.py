@@ -23,9 +23,11 @@ from wsrender.reach.admissible_search import BLOCKED, TURN_FREE, AdmissibleSearc
 from wsrender.reach.admission import WORTH_THREADS, Admission
 from wsrender.reach.closed_labels import ClosedLabels
 from wsrender.reach.evidence import REACHABLE, UNDECIDED, UNREACHABLE
-from wsrender.reach.inverse_solver import BATCH, VERIFIED, InverseSolver
+from wsrender.reach.inverse_solver import BATCH, VERIFIED, InverseSolver, parts_of
 from wsrender.robots.chain import Chain
 from wsrender.robots.moving_base import MovingBase
+
+SEARCHED = 16  # tries from the nearest admitted samples, of a pose that may have other postures than those known
 
 Value = Callable[[np.ndarray, np.ndarray], np.ndarray]
 
@@ -78,12 +80,25 @@ class Decided:
     """What is known of pairs of a placement and a target, all of one shape.
 
     ``label``: of `reach.evidence`, or BLOCKED, int8; ``reason``: the constraint, from 1, that blocks, int8; ``value``:
-    the largest at the configurations that serve a target, NaN where it is not served, or none was asked for.
+    the largest at the configurations that serve a target, NaN where it is not served, or none was asked for;
+    ``proven``: that it is out of reach, or blocked, is proven, as `Reachability` has it, bool.
     """
 
     label: np.ndarray
     reason: np.ndarray
     value: np.ndarray
+    proven: np.ndarray
+
+    @classmethod
+    def nothing(cls, shape: tuple[int, ...], label: int = UNDECIDED) -> Self:
+        """All of one label, without reason, value or proof."""
+        none = np.zeros(shape, np.int8)
+        return cls(np.full(shape, label, np.int8), none, np.full(shape, np.nan), np.zeros(shape, bool))
+
+    @property
+    def arrays(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """Label, reason, value and proven."""
+        return self.label, self.reason, self.value, self.proven
 
 
 class Placements:
@@ -115,7 +130,7 @@ class Placements:
         """
         P, K = len(coordinates), len(self._targets)
         bases = self._bases(T_world_frame)
-        found = Decided(np.full((P, K), UNDECIDED, np.int8), np.zeros((P, K), np.int8), np.full((P, K), np.nan))
+        found = Decided.nothing((P, K))
         label, closed = found.label, self.solver.closed
         if isinstance(closed, ClosedLabels):
             slack = self._slacks(closed, bases).T
@@ -123,16 +138,16 @@ class Placements:
             if self.admission is None:
                 label[slack > closed.margin] = REACHABLE
         elif closed:
-            for first in range(0, P * K, BATCH):
-                at = np.arange(first, min(first + BATCH, P * K))
-                certain = closed.labels(*self._seen_from(at, bases))
-                there = (certain == UNREACHABLE) | ((certain == REACHABLE) & (self.admission is None))
-                label.ravel()[at[there]] = certain[there]
+            certain = closed.labels_from(self._seen_from(bases), self._targets).reshape(P, K)
+            there = (certain == UNREACHABLE) | ((certain == REACHABLE) & (self.admission is None))
+            label[there] = certain[there]
+        found.proven[label == UNREACHABLE] = True
         rest = np.flatnonzero(label.ravel() == UNDECIDED)
         for first in range(0, len(rest), BATCH):
             at = rest[first : first + BATCH]
             part, _ = self._decided(at, bases, coordinates)
-            label.ravel()[at], found.reason.ravel()[at], found.value.ravel()[at] = part.label, part.reason, part.value
+            for array, each in zip(found.arrays, part.arrays, strict=True):
+                array.ravel()[at] = each
         return found
 
     def configurations(self, coordinates: np.ndarray, T_world_frame: np.ndarray) -> tuple[Decided, np.ndarray]:
@@ -141,6 +156,84 @@ class Placements:
         Of served targets the best that was found, of others the nearest that was looked at.
         """
         return self._decided(np.arange(len(self._targets)), self._bases(T_world_frame), coordinates)
+
+    def continued(
+        self, coordinates: np.ndarray, T_world_frame: np.ndarray, starts: np.ndarray
+    ) -> tuple[Decided, np.ndarray]:
+        """As `decide`, and configurations (P, K, n), by a try from each of ``starts`` (P, K, S, n) [rad or m] alone.
+
+        What none of them serves stays UNDECIDED, at the nearest.
+        """
+        assert self.value and self.admission
+        (P, K, S, n), bases = starts.shape, self._bases(T_world_frame)
+        if self.exhaustive:
+            of, q = self._decided(np.arange(P * K), bases, coordinates)
+            return Decided(*(each.reshape(P, K) for each in of.arrays)), q.reshape(P, K, n)
+        q, value = np.zeros((P * K, n)), np.full(P * K, np.nan)
+        for part in parts_of(np.arange(P * K), S):
+            at = np.repeat(part, S)
+            tries = self.solver.tries(starts.reshape(P * K, S, n)[part].reshape(-1, n), *self._asked_from(at, bases))
+            admission = replace(self.admission, values=self.base.configurations(coordinates[at // K]))
+            good, reached = np.full(len(at), np.nan), np.flatnonzero(tries.reached)
+            served = reached[admission.rejected(tries.q[reached], reached) == 0]
+            if len(served):
+                good[served] = self.value(tries.q[served], admission.values[served])
+            rank = np.where(np.isnan(good), -np.inf, good).reshape(-1, S)
+            far = self.solver.residual(tries).reshape(-1, S)
+            best = np.where(np.isfinite(rank).any(axis=1), rank.argmax(axis=1), far.argmin(axis=1))
+            best += np.arange(len(part)) * S
+            q[part], value[part] = tries.q[best], good[best]
+        found = Decided.nothing((P, K))
+        found.value[:] = value.reshape(P, K)
+        found.label[~np.isnan(found.value)] = REACHABLE
+        return found, q.reshape(P, K, n)
+
+    def solutions(
+        self, at: np.ndarray, coordinates: np.ndarray, T_world_frame: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Configurations (N, s, n) [rad or m] of poses, of pairs of a base and a target by number (N,).
+
+        Whether each is admitted and reaches its pose, (N, s) bool, and whether those are all there are, (N,) bool: so
+        it is where closed forms know all postures, of which turns are left out. ``at`` counts targets first.
+        """
+        assert self.admission
+        position, orientation = self._asked_from(at, self._bases(T_world_frame))
+        assert orientation is not None
+        admission = replace(self.admission, values=self.base.configurations(coordinates[at // len(self._targets)]))
+        every, n = np.zeros(len(at), bool), self.solver.whole.n
+        q, ok = np.zeros((len(at), 0, n)), np.zeros((len(at), 0), bool)
+        if closed := self.solver.closed:
+            q, _, none, ok = closed.postures(position, orientation)
+            # Of other labels postures are those of a chain nearby, or some of a family.
+            every[:] = (none | ok).all(axis=1) & isinstance(closed, ClosedLabels) & (not self._turns_matter)
+            ok[ok] = admission.rejected(q[ok], np.nonzero(ok)[0]) == 0
+        left = np.flatnonzero(~every)
+        if closed and len(left):
+            q[left], ok[left] = self._tried(q[left], position[left], orientation[left], admission.among(left))
+        if isinstance(closed, ClosedLabels):
+            left = left[~ok[left].any(axis=1)]
+        if len(left):
+            near = self._search.nearest(position[left], orientation[left], SEARCHED)
+            own, s = self._tried(near, position[left], orientation[left], admission.among(left)), q.shape[1]
+            q, ok = (np.pad(each, [(0, 0), (0, near.shape[1]), (0, 0)][: each.ndim]) for each in (q, ok))
+            q[left, s:], ok[left, s:] = own
+        return q, ok, every
+
+    def _tried(
+        self, starts: np.ndarray, position: np.ndarray, orientation: np.ndarray, admission: PlacedAdmission
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """A try from each of starts (N, s, n) to poses (N,): where it ends, and whether it is admitted and reaches."""
+        N, s, n = starts.shape
+        of = np.repeat(np.arange(N), s)
+        tries = self.solver.tries(starts.reshape(-1, n), position[of], orientation[of])
+        ok = tries.reached.copy()
+        ok[ok] = admission.rejected(tries.q[ok], of[ok]) == 0
+        return tries.q.reshape(N, s, n), ok.reshape(N, s)
+
+    @property
+    def exhaustive(self) -> bool:
+        """Whether the value of a target is that of the best of all postures, not of the first that a search finds."""
+        return isinstance(self.solver.closed, ClosedLabels) and self.solver.kind == "pose" and not self._turns_matter
 
     def _bases(self, T_world_frame: np.ndarray) -> np.ndarray:
         """Bases (P, 4, 4), seen from the origin."""
@@ -154,38 +247,41 @@ class Placements:
     def _decided(self, at: np.ndarray, bases: np.ndarray, coordinates: np.ndarray) -> tuple[Decided, np.ndarray]:
         """Of pairs of a base and a target, by number (N,), and configurations (N, n)."""
         place = at // len(self._targets)
-        position, orientation = self._seen_from(at, bases)
-        found = Decided(np.full(len(at), UNDECIDED, np.int8), np.zeros(len(at), np.int8), np.full(len(at), np.nan))
+        position, orientation = self._asked_from(at, bases)
+        found = Decided.nothing((len(at),))
         q = np.zeros((len(at), self.solver.whole.n))
         if self.admission is None:
             solved = self.solver.solve(position, orientation)
             found.label[:], q[:] = solved.label, solved.q
+            found.proven[:] = solved.proven & (solved.label == UNREACHABLE)
             return found, q
         admission = replace(self.admission, values=self.base.configurations(coordinates[place]))
-        whole = isinstance(self.solver.closed, ClosedLabels)
-        if orientation is not None and self.solver.kind == "pose" and whole and not self._turns_matter:
+        if orientation is not None and self.exhaustive:
             for first in range(0, len(at), VERIFIED):
                 part = slice(first, first + VERIFIED)
                 of, q[part] = self._of_postures(admission.among(part), position[part], orientation[part])
-                found.label[part], found.reason[part], found.value[part] = of.label, of.reason, of.value
+                for array, each in zip(found.arrays, of.arrays, strict=True):
+                    array[part] = each
         left = np.flatnonzero(found.label == UNDECIDED)
         if len(left):
             search = copy(self._search)
             search.admission = admission.among(left)
             of = search.decide(position[left], None if orientation is None else orientation[left])
             found.label[left], found.reason[left], q[left] = of.label, of.reason, of.q
+            found.proven[left] = of.proven & np.isin(of.label, (UNREACHABLE, BLOCKED))
             served = left[of.label == REACHABLE]
             if self.value and len(served):
                 found.value[served] = self.value(q[served], admission.values[served])
         return found, q
 
-    def _seen_from(self, at: np.ndarray, bases: np.ndarray) -> tuple[np.ndarray, np.ndarray | None]:
-        """Positions (N, 3) and orientations, as `InverseSolver.solve` has them, of pairs by number (N,).
+    def _seen_from(self, bases: np.ndarray) -> np.ndarray:
+        """The motions (P, 4, 4) that move targets so that the solver's base is to them as each of ``bases``."""
+        return self.solver.whole.T_world_base @ np.linalg.inv(bases)
 
-        Seen from the solver's.
-        """
+    def _asked_from(self, at: np.ndarray, bases: np.ndarray) -> tuple[np.ndarray, np.ndarray | None]:
+        """Positions (N, 3) and orientations, as `InverseSolver.solve` has them, of pairs by number (N,)."""
         place, target = np.divmod(at, len(self._targets))
-        T = self.solver.whole.T_world_base @ np.linalg.inv(bases[place]) @ self._targets[target]
+        T = self._seen_from(bases[place]) @ self._targets[target]
         return T[:, :3, 3], {"position": None, "axis": T[:, :3, 2], "pose": T[:, :3, :3]}[self.solver.kind]
 
     def _of_postures(
@@ -208,7 +304,7 @@ class Placements:
         reason = np.where(label == BLOCKED, 1 + np.argmax(times, axis=0), 0).astype(np.int8)
         best = np.where(free, good.argmax(axis=1), slack.argmax(axis=1))
         value = np.where(free & (self.value is not None), good.max(axis=1), np.nan)
-        return Decided(label, reason, value), q[np.arange(len(q)), best]
+        return Decided(label, reason, value, label == BLOCKED), q[np.arange(len(q)), best]
 
     @property
     def _turns_matter(self) -> bool:
@@ -248,13 +344,24 @@ class PlacementsOfKinds:
         found = [part.configurations(coordinates, T_world_frame) for part in self.parts]
         return self._joined([of for of, _ in found]), np.concatenate([q for _, q in found])[self._back]
 
+    def continued(
+        self, coordinates: np.ndarray, T_world_frame: np.ndarray, starts: np.ndarray
+    ) -> tuple[Decided, np.ndarray]:
+        """As `Placements.continued`."""
+        parts = zip(self.parts, self.at, strict=True)
+        found = [part.continued(coordinates, T_world_frame, starts[:, at]) for part, at in parts]
+        return self._joined([of for of, _ in found]), np.concatenate([q for _, q in found], axis=1)[:, self._back]
+
+    @property
+    def exhaustive(self) -> bool:
+        """Whether all values are those of the best of all postures."""
+        return all(part.exhaustive for part in self.parts)
+
     def _joined(self, found: list[Decided]) -> Decided:
         if len(found) == 1:
             return found[0]
-        names = ("label", "reason", "value")
-        return Decided(
-            *(np.concatenate([getattr(of, name) for of in found], axis=-1)[..., self._back] for name in names)
-        )
+        parts = zip(*(of.arrays for of in found), strict=True)
+        return Decided(*(np.concatenate(part, axis=-1)[..., self._back] for part in parts))
 
     @cached_property
     def _back(self) -> np.ndarray:

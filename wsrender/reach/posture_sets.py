@@ -13,21 +13,29 @@ from wsrender.documents.constraints import Constraints
 from wsrender.documents.environment import Environment
 from wsrender.documents.quantities import argument, positive
 from wsrender.documents.sampling import Sobol
-from wsrender.documents.target_lists import UNIT
-from wsrender.engine import Accuracy, closed_postures, configurations, solve_inverse
+from wsrender.documents.target_lists import AXES, UNIT
+from wsrender.engine import (
+    CLOSED_MARGIN,
+    Accuracy,
+    closed_postures,
+    configurations,
+    open_wrist_postures,
+    solve_inverse,
+)
 from wsrender.errors import InputError
 from wsrender.pipeline.constraints.constraint import Constraint
 from wsrender.pipeline.pipeline import tip_pipeline
 from wsrender.reach.admission import Admission
-from wsrender.reach.closed_labels import evidence
-from wsrender.reach.inverse_solver import parts_of
-from wsrender.reach.posture_solver import NEARLY_SINGULAR, SAME, TURN, PoseHolder
+from wsrender.reach.closed_labels import ALONE, evidence
+from wsrender.reach.inverse_solver import parts_of, that_matter
+from wsrender.reach.nearly_closed_labels import NearlyClosedLabels
+from wsrender.reach.posture_solver import EXACT, NEARLY_SINGULAR, SAME, TURN, PoseHolder
 from wsrender.reach.self_motions import STEP, SelfMotion, self_motions
 from wsrender.reach.starts import towards_limits
-from wsrender.reach.targets import rotations, rows_of
+from wsrender.reach.targets import rotations, rows_of, with_axis
 from wsrender.robot import as_robot
 from wsrender.robot.constraints import constraints_for
-from wsrender.robots.closed_form import ClosedForm
+from wsrender.robots.closed_form import ClosedForm, NearlyClosedForm, OpenWristForm, families
 from wsrender.robots.kinematics import Kinematics
 
 STARTS = 512  # of the search for postures of a pose
@@ -37,6 +45,9 @@ LARGEST_STEP = 0.2  # rad and reaches: longer steps could leave a curve for anot
 SWEPT = 128  # values of a free joint at which self-motions are looked for
 MOST_OF_FAMILIES = 16  # postures of a pose that stand for families, whose members have no number
 NEARLY = 1e-5  # m and rad: a try that ends so near is taken further
+ROLL = "the turn about the free axis"
+# What is assumed of the one equation that an arm without a wrist leaves, where postures are called complete.
+ASSUMED = "complete where its terms beyond the fifth degree are less than the two before, as the wrist turns by 0.3 rad"
 ANYHOW = Rotation.from_rotvec([0.9, -1.3, 0.4]).as_matrix()  # an orientation at which no free wrist stands in line
 
 
@@ -50,8 +61,8 @@ class Postures:
     it while the tip stays, and a few such stand for all; ``doubtful`` (K,) bool: nearly singular. ``residual_m``,
     ``residual_rad`` (K,): to the pose. ``reasons`` (K,) text: the constraint that blocks it, "" of a free one.
 
-    ``complete`` (N,) bool: by a closed form no other posture exists; else others were not found. ``evidence``: what
-    says so. ``least_turns``, ``most_turns`` (K, n) int: by how many whole turns hinges may be moved.
+    ``complete`` (N,) bool: by a closed form no other posture exists, or by what ``evidence`` says; else others were not
+    found. ``least_turns``, ``most_turns`` (K, n) int: by how many whole turns hinges may be moved.
     ``curves``: the self-motion that each posture stands for, of arms with one joint more than the pose has freedoms and
     of families of one freedom; else None. Windings are then of the joints that stand still along it.
     """
@@ -95,8 +106,9 @@ class Postures:
 
 
 class PostureSolver:
-    """All postures of poses of one chain, or of positions that any orientation will do for.
+    """All postures of targets of one chain, of a ``kind``: "pose", "axis" or "position", any orientation.
 
+    Axes are poses about whose ``free_axis`` the tip may turn: "x", "y" or "z", its own.
     ``curve_step``: between points of self-motions [rad or reaches]. ``starts``: of the search, for a pose of an arm
     without a closed form, or where that is in doubt; they depend on ``seed`` alone.
     """
@@ -105,16 +117,21 @@ class PostureSolver:
         self,
         chain: Kinematics,
         *,
-        with_orientation: bool = True,
+        kind: str = "pose",
+        free_axis: str = "z",
         starts: int = STARTS,
         curve_step: float = STEP,
         seed: int = 0,
         device: str = "auto",
         threads: int | None = None,
     ):
-        self.whole, self.origin = chain, chain.origin
-        self.holder = PoseHolder(chain.relative_to(chain.origin), 6 if with_orientation else 3)
-        self.form = ClosedForm.of(chain, "pose" if with_orientation else "position")
+        self.whole, self.origin, self.kind, self.axis = chain, chain.origin, kind, AXES.index(free_axis)
+        self.turned = with_axis(chain, self.axis)
+        self.holder = PoseHolder(self.turned.relative_to(chain.origin), kind)
+        part, kept = that_matter(self.turned, kind)
+        self.form = ClosedForm.of(part, kind) or OpenWristForm.of(part, kind) or NearlyClosedForm.of(part, kind)
+        self.idle = ~np.isin(np.arange(chain.n), kept)  # joints that turn as they like: in the middle of their range
+        self._middle = (chain.lower_limits + chain.upper_limits) / 2
         self.starts, self.curve_step, self.seed = starts, curve_step, seed
         self.device, self.threads = device, threads
 
@@ -122,14 +139,15 @@ class PostureSolver:
     def evidence(self) -> str:
         """What postures rest on."""
         search = f"search from {self.starts} starts a pose, sampled, not proven complete"
-        if self.redundant:
-            sweep = (
-                f"closed form at {SWEPT} values of {self.whole.joint_names[self.free_joint]}, "
-                if self.free_joint is not None
-                else ""
-            )
-            return f"{sweep}self-motions in steps of {self.curve_step:g}, {search}"
-        return f"{evidence(self.form)}; where that is in doubt {search}" if self.form else search
+        if self.form:
+            assumed = f", {ASSUMED}" if isinstance(self.form, OpenWristForm) else ""
+            return f"{evidence(self.form)}{assumed}; where that is in doubt {search}"
+        if not self.redundant:
+            return search
+        if (spare := len(self.holder.moving) - self.holder.freedoms) > 1:
+            return f"{MOST_OF_FAMILIES} postures at most of families of {spare} freedoms, {search}"
+        sweep = f"closed form at {SWEPT} values of {self.swept}, " if self.swept else ""
+        return f"{sweep}self-motions in steps of {self.curve_step:g}, {search}"
 
     def solve(
         self,
@@ -139,6 +157,9 @@ class PostureSolver:
     ) -> Postures:
         """Of poses (N, 4, 4) in the world; ``progress``: called with the poses done."""
         parts = []
+        if self.kind == "axis":
+            T = T.copy()
+            T[:, :3, :3] = np.roll(T[:, :3, :3], 2 - self.axis, axis=2)
         batch = REDUNDANT_BATCH if self.redundant else BATCH
         for first in range(0, max(len(T), 1), batch):
             parts.append(self._solve(T[first : first + batch], first))
@@ -158,7 +179,7 @@ class PostureSolver:
     def _solve(self, T: np.ndarray, first: int) -> Postures:
         near, holder = T.copy(), self.holder
         near[:, :3, 3] -= self.origin
-        pose, q, complete = self._swept(T, near) if self.redundant else self._closed(T, near)
+        pose, q, complete = self._closed(T, near) if self.form else self._swept_postures(T, near)
         for part in parts_of(np.flatnonzero(~complete), self.starts):
             more, found = self._searched(T, part)
             found, _ = holder.polished(found, near[more])
@@ -180,6 +201,7 @@ class PostureSolver:
         q = np.concatenate([q[few], *(curve.configurations[[len(curve) // 2]] for curve in curves)])
         family = np.concatenate([family[few], np.ones(len(curves), bool)])
         least, most = holder.turns(q)
+        least[:, self.idle] = most[:, self.idle] = 0
         for k, curve in enumerate(curves, int(few.sum())):
             moves = np.ptp(curve.configurations, axis=0) > SAME * holder.scale
             least[k, moves] = most[k, moves] = 0
@@ -210,47 +232,89 @@ class PostureSolver:
         return len(self.holder.moving) > self.holder.freedoms
 
     @cached_property
-    def free_joint(self) -> int | None:
-        """The first or last joint of a redundant arm that leaves the others a closed form wherever it is held."""
-        holder, chain = self.holder, self.whole
-        if not self.redundant or holder.rows == 3 or len(holder.moving) != holder.freedoms + 1:
-            return None
-        ends = (int(holder.moving[-1]), int(holder.moving[0]))
-        middle = chain.within(0.41)  # no closed form that is there in a special configuration alone
-        return next((k for k in ends if ClosedForm.of(chain.held({chain.joint_names[k]: middle[k]}))), None)
+    def swept(self) -> str | None:
+        """What a closed form is known for wherever it stands, of an arm with one freedom more than is asked for.
 
-    def _swept(self, T: np.ndarray, near: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """As `_closed`, at SWEPT values of the free joint; that there are no others is not known."""
+        The first or last joint that moves, by name, or the turn about the free axis.
+        """
+        holder, chain = self.holder, self.turned
+        if self.form or len(holder.moving) != holder.freedoms + 1:
+            return None
+        middle = chain.within(0.41)  # no closed form that is there in a special configuration alone
+        for k in (int(holder.moving[-1]), int(holder.moving[0])):
+            if isinstance(self._held(chain.joint_names[k], float(middle[k])).form, ClosedForm):
+                return chain.joint_names[k]
+        return ROLL if self.kind == "axis" and ClosedForm.of(chain) else None
+
+    def _held(self, joint: str, value: float) -> "PostureSolver":
+        arm = self.turned.held({joint: value})
+        return PostureSolver(arm, kind=self.kind, device=self.device, threads=self.threads)
+
+    def _swept_postures(self, T: np.ndarray, near: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """As `_closed`, at SWEPT values of what is `swept`; that there are no others is not known."""
         pose, q = [np.zeros(0, int)], [np.zeros((0, self.whole.n))]
-        if (k := self.free_joint) is not None:
+        share = (np.arange(SWEPT if self.swept else 0) + 0.5) / SWEPT
+        if self.swept == ROLL:
+            solver = PostureSolver(self.turned, device=self.device, threads=self.threads)
+            for turn in Rotation.from_rotvec(TURN * share[:, None] * [0, 0, 1]).as_matrix():
+                rolled = [np.concatenate([each[..., :3] @ turn, each[..., 3:]], axis=2) for each in (T, near)]
+                more, found, _ = solver._closed(*rolled)
+                pose, q = [*pose, more], [*q, found]
+        elif self.swept:
+            k = self.whole.joint_names.index(self.swept)
             low, high = self.whole.lower_limits[k], self.whole.upper_limits[k]
-            for value in low + (np.arange(SWEPT) + 0.5) / SWEPT * (high - low):
-                arm = self.whole.held({self.whole.joint_names[k]: float(value)})
-                more, found, _ = PostureSolver(arm, device=self.device, threads=self.threads)._closed(T, near)
+            for value in low + share * (high - low):
+                more, found, _ = self._held(self.swept, float(value))._closed(T, near)
                 pose, q = [*pose, more], [*q, found]
         return np.concatenate(pose), np.concatenate(q), np.zeros(len(T), bool)
 
     def _closed(self, T: np.ndarray, near: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Pose, ascending, and configuration of a closed form's postures; and whether there are no others, (N,) bool.
 
-        That is not known of singular poses, whose postures are families or more than their branches tell.
+        That is not known of singular poses, whose postures are more than their branches tell, but of families that are
+        solved: of these postures at both ends of every curve, or on the loops.
         """
-        if self.form is None:
+        if self.form is None:  # nor has an arm one that is held where it is special
             return np.zeros(0, int), np.zeros((0, self.whole.n)), np.zeros(len(T), bool)
         asked = T.copy()
-        if self.holder.rows == 3:
+        if self.kind == "position":
             asked[:, :3, :3] = ANYHOW
-        found = closed_postures(self.form, asked, keep=True, device=self.device, threads=self.threads)
+        execution = {"device": self.device, "threads": self.threads}
+        form = self.form if isinstance(self.form, ClosedForm) else self.form.rest
+        if isinstance(self.form, OpenWristForm):
+            found = open_wrist_postures(self.form, asked, **execution)
+        else:
+            found = closed_postures(form, asked, keep=True, **execution)
         assert found.rows is not None
-        pose, branch = np.nonzero(found.rows[..., 12] > -NEAR)
-        q, _ = self.holder.polished(self.form.configurations(found.rows[pose, branch, :12]), near[pose])
-        singular = self.holder.sigma_min(q) < NEARLY_SINGULAR
-        return pose, q, (found.flags == 0) & (np.bincount(pose[singular], minlength=len(T)) == 0)
+        near_limits = NEAR
+        solved, doubtful = np.zeros(found.rows.shape[:2], bool), np.zeros(found.rows.shape[:2], bool)
+        of, members = np.zeros(0, int), np.zeros((0, 12))
+        if isinstance(self.form, OpenWristForm):
+            doubtful[:] = found.flags[:, None] != 0
+        elif isinstance(self.form, NearlyClosedForm):
+            exact = Accuracy(EXACT, EXACT, self.holder.length / 2)
+            margin = NearlyClosedLabels(self.form, exact, self.device, self.threads).nearby.margin
+            doubtful = (found.rows[..., 13] >= -margin) & (found.rows[..., 13] * ALONE <= margin)
+            near_limits = max(NEAR, margin)
+        else:
+            doubtful = np.abs(found.rows[..., 13]) <= CLOSED_MARGIN
+            at = np.flatnonzero(doubtful.any(axis=1))
+            curves = families(form, asked[at], found.rows[at], 0.0)
+            solved[at] = curves.family & (curves.near <= EXACT)
+            of, members = at[curves.pose], curves.rows
+        pose, branch = np.nonzero((found.rows[..., 12] > -near_limits) & ~solved)
+        q = np.tile(self._middle, (len(pose) + len(of), 1))
+        q[:, ~self.idle] = form.configurations(np.concatenate([found.rows[pose, branch, :12], members]))
+        q[: len(pose)], _ = self.holder.polished(q[: len(pose)], near[pose])
+        doubtful &= ~solved
+        doubtful[pose, branch] |= self.holder.sigma_min(q[: len(pose)]) < NEARLY_SINGULAR
+        pose = np.append(pose, of)
+        order = np.argsort(pose, kind="stable")
+        return pose[order], q[order], doubtful.sum(axis=1) == 0
 
     def _searched(self, T: np.ndarray, at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Pose and configuration of what tries for poses ``at`` (P,) come to."""
-        chain, kind = self.whole, self.holder.rows
-        columns = [3] if kind == 3 else [3, 0, 1, 2]
+        chain, columns = self.turned, {"position": [3], "axis": [3, 2], "pose": [3, 0, 1, 2]}[self.kind]
         targets = T[at][:, :3, columns].transpose(0, 2, 1).reshape(len(at), -1)
         anywhere = configurations(tip_pipeline(chain, Sobol(self.starts, seed=self.seed)))
         anywhere[1::2] = towards_limits(chain, anywhere[1::2])
@@ -263,7 +327,8 @@ class PostureSolver:
             device=self.device,
             threads=self.threads,
         )
-        return np.repeat(at, self.starts)[tries.reached], tries.q[tries.reached]
+        q = np.where(self.idle, self._middle, tries.q[tries.reached])
+        return np.repeat(at, self.starts)[tries.reached], q
 
 
 def postures(
@@ -271,6 +336,7 @@ def postures(
     position_m: Any,
     quat_wxyz: Any = None,
     *,
+    free_axis: str | None = None,
     constraints: Constraints | Mapping[str, Any] | None = None,
     environment: Environment | Mapping[str, Any] | None = None,
     starts: int = STARTS,
@@ -282,21 +348,25 @@ def postures(
     """All configurations of a pose ``position_m`` (3,) [m], ``quat_wxyz`` (4,) in the world, or of N, a row each.
 
     ``robot`` is a Robot, a user-defined robot or what `load_robot` takes. Without ``quat_wxyz`` any orientation will
-    do. ``constraints`` and ``environment`` are those of a job document, or their parts of one: they say of each posture
-    whether it is free. ``starts``: of the search for postures of a pose, where no closed form knows them all;
-    ``curve_step``: between points of self-motions [rad or reaches].
+    do; with a ``free_axis`` "x", "y" or "z" of the tip it may turn about that as it likes. ``constraints`` and
+    ``environment`` are those of a job document, or their parts of one: they say of each posture whether it is free.
+    ``starts``: of the search for postures of a pose, where no closed form knows them all; ``curve_step``: between
+    points of self-motions [rad or reaches].
 
     Raises InputError, DocumentError, ModelError.
     """
     subject = as_robot(robot)
     T = poses_of(position_m, quat_wxyz)
+    if free_axis is not None and (free_axis not in AXES or quat_wxyz is None):
+        given = f"{free_axis!r} is not allowed; {', '.join(AXES)}, or None"
+        raise InputError("free_axis", given if quat_wxyz is not None else "must not be given without quat_wxyz")
     choice = Constraints(**constraints) if isinstance(constraints, Mapping) else constraints
     around = Environment(**environment) if isinstance(environment, Mapping) else environment
     if argument("curve_step", positive, curve_step) > LARGEST_STEP:
         raise InputError("curve_step", f"{curve_step:g} is not allowed; {LARGEST_STEP:g} rad or reaches at most")
     solver = PostureSolver(
         subject.chain,
-        with_orientation=quat_wxyz is not None,
+        **kind_of(quat_wxyz, free_axis),
         starts=starts,
         curve_step=curve_step,
         seed=seed,
@@ -304,6 +374,13 @@ def postures(
         threads=threads,
     )
     return solver.solve(T, constraints=constraints_for(subject, choice, around))
+
+
+def kind_of(quat_wxyz: Any, free_axis: str | None) -> dict[str, str]:
+    """What a `PostureSolver` is asked for."""
+    if quat_wxyz is None or free_axis is None:
+        return {"kind": "position" if quat_wxyz is None else "pose"}
+    return {"kind": "axis", "free_axis": free_axis}
 
 
 def poses_of(position_m: Any, quat_wxyz: Any = None) -> np.ndarray:

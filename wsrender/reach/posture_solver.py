@@ -21,10 +21,18 @@ TURN = 2 * np.pi
 
 @dataclass(frozen=True, eq=False)
 class PoseHolder:
-    """Holds poses with a ``chain`` near the world's origin: whole ones, or positions alone (``rows`` 3, not 6)."""
+    """Holds poses with a ``chain`` near the world's origin.
+
+    ``kind``: whole ones ("pose"), positions with the direction of the tip's z ("axis"), or positions alone.
+    """
 
     chain: Kinematics
-    rows: int
+    kind: str = "pose"
+
+    @property
+    def rows(self) -> int:
+        """How many numbers say what a pose asks for."""
+        return {"pose": 6, "axis": 5, "position": 3}[self.kind]
 
     @property
     def length(self) -> float:
@@ -39,15 +47,27 @@ class PoseHolder:
     def errors(self, q: np.ndarray, T: np.ndarray) -> np.ndarray:
         """What is left to poses ``T`` (M, 4, 4) at ``q`` (M, n), (M, 6): metres, then a rotation vector, in the world.
 
-        Of positions no rotation is left.
+        Of positions no rotation is left, of axes the smallest that brings z to z.
         """
         at = self.chain.poses(q)
         left = np.zeros((len(q), 6))
         left[:, :3] = T[:, :3, 3] - at[:, :3, 3]
-        if self.rows == 6 and len(q):
+        if self.kind == "pose" and len(q):
             turn = T[:, :3, :3] @ at[:, :3, :3].transpose(0, 2, 1)
             left[:, 3:] = Rotation.from_matrix(turn).as_rotvec()
+        if self.kind == "axis":
+            about = np.cross(at[:, :3, 2], T[:, :3, 2])
+            sine, cosine = np.linalg.norm(about, axis=1), np.einsum("mi,mi->m", at[:, :3, 2], T[:, :3, 2])
+            about = np.where(sine[:, None] > 0, about / np.maximum(sine, 1e-300)[:, None], at[:, :3, 0])
+            left[:, 3:] = about * np.arctan2(sine, cosine)[:, None]
         return left
+
+    def _asked(self, q: np.ndarray, motions: np.ndarray) -> np.ndarray:
+        """What a pose asks for of ``motions`` (M, 6, k) of the tip, (M, rows, k): of turns those about its x and y."""
+        if self.kind != "axis":
+            return motions[:, : self.rows]
+        across = self.chain.poses(q)[:, :3, :2].transpose(0, 2, 1)
+        return np.concatenate([motions[:, :3], across @ motions[:, 3:]], axis=1)
 
     @property
     def moving(self) -> np.ndarray:
@@ -56,7 +76,7 @@ class PoseHolder:
 
     def jacobians(self, q: np.ndarray) -> np.ndarray:
         """Jacobians (M, rows, m) of the `moving` coordinates without units: lengths, of slides too, over the reach."""
-        J = (self.chain.jacobians(q)[:, : self.rows] * self.scale)[..., self.moving]
+        J = self._asked(q, self.chain.jacobians(q) * self.scale)[..., self.moving]
         J[:, :3] /= self.length
         return J
 
@@ -75,7 +95,7 @@ class PoseHolder:
         for _ in range(STEPS):
             if not len(at):
                 break
-            scaled = left[at, : self.rows].copy()
+            scaled = self._asked(q[at], left[at, :, None])[..., 0]
             scaled[:, :3] /= self.length
             J = self.jacobians(q[at])
             if frozen is not None:

@@ -109,13 +109,13 @@ def traced(holder: PoseHolder, q: np.ndarray, T: np.ndarray, step: float) -> lis
             paths[active[k]].append(moved[k])
         gone[active[good]] += h[active[good]]
         at[active[good]], along[active[good]] = moved[good], direction[good]
+        stuck = ~good & (h[active] <= FINEST * step)
+        h[active] = np.where(good, np.minimum(2 * h[active], step), h[active] / 2)
         back = holder.difference(start[active] - at[active]) / holder.scale
         home = np.linalg.norm(back, axis=1) < 1.2 * h[active]
         ahead = np.einsum("mk,mk->m", back[:, holder.moving], along[active]) >= 0
         closed[active] = good & home & ahead & (gone[active] > 3 * step)
-        stuck = ~good & (h[active] <= FINEST * step)
         singular[active] |= stuck
-        h[active] = np.where(good, np.minimum(2 * h[active], step), h[active] / 2)
         active = active[~(closed[active] | (good & stopped) | stuck)]
     singular[active] = True
     return [

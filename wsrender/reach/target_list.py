@@ -4,9 +4,8 @@ import csv
 import hashlib
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
-from io import BytesIO, StringIO
+from io import StringIO
 from itertools import islice
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -27,11 +26,10 @@ from wsrender.documents.target_lists import (
     ListedTargets,
     Target,
     TargetTable,
+    TargetVolume,
 )
 from wsrender.errors import InputError
-from wsrender.robots.uploaded import uploaded_content
-
-MOST_BYTES, MOST_UNPACKED = 256 << 20, 1 << 30  # of a file, and of what Parquet makes of it
+from wsrender.robots.array_files import content_of, of_npy, open_parquet
 
 ALLOWED = f"allowed: {', '.join((*NUMBERS, *TEXTS))}"
 LARGEST = 1e6  # m
@@ -96,12 +94,14 @@ def targets_of_job(job: ListedTargets, center: Callable[[np.ndarray], np.ndarray
     return found
 
 
-def target_list(targets: tuple[Target, ...] | TargetTable, field: str = "targets") -> TargetList:
+def target_list(targets: tuple[Target, ...] | TargetTable | TargetVolume, field: str = "targets") -> TargetList:
     """The targets of a job document. Raises InputError, naming row and column, for a file that says something else."""
+    if isinstance(targets, TargetVolume):
+        return _covering(targets)
     if not isinstance(targets, TargetTable):
         return _listed(targets)
     where, name = (f"{field}.path", str(targets.path)) if targets.model is None else (f"{field}.model", "the table")
-    content = _content(targets, where)
+    content = content_of(targets.path, targets.model, where)
     columns = _columns(content, where, name)
     return replace(
         _of_columns(columns, where, targets.length_unit_m or 1.0), sha256=hashlib.sha256(content).hexdigest()
@@ -114,6 +114,29 @@ def listed_targets(position: np.ndarray, quat_wxyz: np.ndarray | None = None) ->
     quat = np.full((count, 4), np.nan) if quat_wxyz is None else quat_wxyz
     text = np.full(count, "", dtype="<U1")
     return TargetList(position, quat, text, text, np.ones(count), np.full((count, 2), np.nan))
+
+
+def _covering(volume: TargetVolume) -> TargetList:
+    points, quat = volume.points, volume.quat_wxyz
+    found = listed_targets(points, None if quat is None else np.tile(np.array(quat), (len(points), 1)))
+    return replace(found, free_axis=np.full(len(points), volume.free_axis or ""))
+
+
+def covered(volume: Any, reached: np.ndarray, undecided: np.ndarray) -> dict[str, Any]:
+    """The entry ``covered`` of targets (N,) bool; nothing of other targets than a volume's."""
+    if not isinstance(volume, TargetVolume):
+        return {}
+    share, open_ = float(reached.mean()), float(undecided.mean())
+    return {
+        "covered": {
+            "points": len(reached),
+            "step_m": volume.step_m,
+            "volume_m3": len(reached) * volume.cell_m3,
+            "share": share,
+            "undecided_share": open_,
+            "evidence": f"sampled: centres of cells of at most {volume.step_m:g} m; between them nothing is proven",
+        }
+    }
 
 
 def check_unit(found: TargetList, table: TargetTable, center: np.ndarray, reach: float) -> None:
@@ -144,18 +167,6 @@ def _listed(targets: tuple[Target, ...]) -> TargetList:
     return _of_columns(columns, "targets", 1.0)
 
 
-def _content(table: TargetTable, field: str) -> bytes:
-    if table.model is not None:
-        return uploaded_content(table.model, field)
-    path = Path(str(table.path))
-    try:
-        if path.stat().st_size > MOST_BYTES:
-            raise InputError(field, f"{path} has more than {MOST_BYTES >> 20} MiB")
-        return path.read_bytes()
-    except OSError as error:
-        raise InputError(field, f"{path} cannot be read: {error.strerror}") from None
-
-
 def _columns(content: bytes, field: str, name: str) -> Columns:
     """Columns of a file, which may come from strangers, by what it begins with: numbers, NaN where empty, and texts."""
     if content[:4] == b"PAR1":
@@ -166,13 +177,10 @@ def _columns(content: bytes, field: str, name: str) -> Columns:
 
 
 def _npy(content: bytes, field: str, name: str) -> Columns:
-    """Nothing is unpickled."""
-    try:
-        points = np.load(BytesIO(content), allow_pickle=False)
-    except Exception as error:  # its reader raises whatever it stumbles over
-        raise InputError(field, f"{name} cannot be read as an array of NumPy (.npy): {error}") from None
-    if points.ndim != 2 or points.shape[1] != 3 or points.dtype.kind not in "fiu":
-        raise InputError(field, f"{name} has the shape {points.shape} of {points.dtype}; numbers (N, 3) are needed")
+    needed = "numbers (N, 3) are needed"
+    points = of_npy(content, field, name, needed)
+    if points.shape[1] != 3:
+        raise InputError(field, f"{name} has the shape {points.shape}; {needed}")
     _check_rows(len(points), field, name)
     return _finite(dict(zip(POSITION, points.T.astype(np.float64), strict=True)), field)
 
@@ -225,23 +233,12 @@ def _numbers(cells: tuple[str, ...], column: str, field: str) -> np.ndarray:
 
 def _parquet(content: bytes, field: str, name: str) -> Columns:
     import pyarrow
-    from pyarrow import parquet
 
-    try:
-        texts = [column for column in parquet.read_schema(BytesIO(content)).names if column in TEXTS]
-        file = parquet.ParquetFile(BytesIO(content), read_dictionary=texts)
-        schema, metadata = file.schema_arrow, file.metadata
-    except Exception as error:  # its reader raises whatever it stumbles over
-        raise InputError(field, f"{name} cannot be read as Parquet: {error}") from None
-    # pandas keeps the index of a table's rows as a column of its own
-    header = [column for column in schema.names if not column.startswith("__index_level_")]
+    file, header = open_parquet(content, field, name, TEXTS)
     _check_header(header, field, name)
-    _check_rows(metadata.num_rows, field, name)
-    unpacked = sum(metadata.row_group(k).total_byte_size for k in range(metadata.num_row_groups))
-    if unpacked > MOST_UNPACKED:
-        raise InputError(field, f"{name} holds {unpacked >> 20} MiB unpacked; at most {MOST_UNPACKED >> 20} MiB")
+    _check_rows(file.metadata.num_rows, field, name)
     for column in header:
-        kind = schema.field(column).type
+        kind = file.schema_arrow.field(column).type
         kind = kind.value_type if pyarrow.types.is_dictionary(kind) else kind
         text = pyarrow.types.is_string(kind) or pyarrow.types.is_large_string(kind) or pyarrow.types.is_null(kind)
         number = pyarrow.types.is_floating(kind) or pyarrow.types.is_integer(kind) or pyarrow.types.is_null(kind)

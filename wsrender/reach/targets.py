@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from os import PathLike, fspath
 from typing import Any
 
@@ -10,11 +11,12 @@ from scipy.spatial.transform import Rotation
 
 from wsrender.documents.quantities import argument, positive
 from wsrender.documents.target_lists import AXES, TargetTable
+from wsrender.engine import thread_count
 from wsrender.errors import DocumentError, InputError
 from wsrender.pipeline.constraints.constraint import Constraint
 from wsrender.reach.admissible_search import BLOCKED, Admissible, AdmissibleSearch
 from wsrender.reach.admission import Admission
-from wsrender.reach.closed_labels import evidence
+from wsrender.reach.closed_labels import evidence, rotations_of
 from wsrender.reach.evidence import CLEARLY, LABELS, UNDECIDED, UNREACHABLE
 from wsrender.reach.inverse_solver import InverseSolver, Solutions, closed_form_of
 from wsrender.reach.target_list import TargetList, check_unit, target_list
@@ -28,6 +30,7 @@ JOINT_LIMITS, OUT_OF_REACH = "joint limits", "out of reach"
 TOO_CLOSE, INCONCLUSIVE = "too close to the tolerance", "search not conclusive"
 NAMES = LABELS | {BLOCKED: "blocked"}
 POSITION, POSE = -2, -1  # what a target asks for
+SHORT = 1e-6  # length below which quaternions say no rotation
 MOST_KINDS = 100  # combinations of tolerances and free axes of a list, each of which sets up a search of its own
 
 
@@ -87,29 +90,58 @@ def reachable(
     Raises InputError, ModelError.
     """
     subject = as_robot(robot)
-    options = {
-        "characteristic_length_m": characteristic_length_m
-        and argument("characteristic_length_m", positive, characteristic_length_m),
-        "seed": seed,
-        "precision": precision,
-        "device": device,
-        "threads": threads,
-        "constraints": constraints,
-    }
-    tolerances = (
-        argument("position_tolerance_m", positive, position_tolerance_m),
-        argument("angle_tolerance_rad", positive, angle_tolerance_rad),
-    )
+    tolerances, options = _asked_of_all(position_tolerance_m, angle_tolerance_rad, characteristic_length_m)
+    options |= {"seed": seed, "precision": precision, "device": device, "threads": threads}
     if isinstance(points, str | PathLike | TargetTable):
         if orientations is not None:
             raise InputError("orientations", "must not be given beside a table of targets, which says its own")
         table = points if isinstance(points, TargetTable) else _table(fspath(points))
         targets = target_list(table, "points")
         check_unit(targets, table, subject.chain.center, subject.chain.reach)
-        return reachable_targets(subject.chain, targets, tolerances, progress=progress, **options)
+        return reachable_targets(
+            subject.chain, targets, tolerances, progress=progress, constraints=constraints, **options
+        )
     position = rows_of(points, 3, "points")
     axes = None if orientations is None else rotations(orientations, len(position))
-    return _decided(subject.chain, position, axes, tolerances, progress=progress, **options)
+    return _decided(subject.chain, position, axes, tolerances, progress=progress, constraints=constraints, **options)
+
+
+def reachable_labels(
+    robot: Any,
+    points: Any,
+    orientations: Any = None,
+    *,
+    position_tolerance_m: float = POSITION_TOLERANCE_M,
+    angle_tolerance_rad: float = ANGLE_TOLERANCE_RAD,
+    characteristic_length_m: float | None = None,
+    seed: int = 0,
+    precision: str = "float64",
+    device: str = "auto",
+    threads: int | None = None,
+) -> np.ndarray:
+    """Labels alone of ``points`` (N, 3) [m], or poses with ``orientations`` (N, 4) quat_wxyz of any length but 0.
+
+    Returns (N,) int8: 1 reachable, 0 unreachable, -1 undecided, which are those of `reachable` with the same options,
+    by the same proofs, without configurations and reasons: much faster where the arm has a closed form. What that
+    leaves open is searched as there. Contiguous arrays of float64 are read where they are.
+
+    Raises InputError, ModelError.
+    """
+    chain, kind = as_robot(robot).chain, "position" if orientations is None else "pose"
+    tolerances, options = _asked_of_all(position_tolerance_m, angle_tolerance_rad, characteristic_length_m)
+    options |= {"seed": seed, "precision": precision, "device": device}
+    position = rows_of(points, 3, "points")
+    quat = None if orientations is None else quaternions(orientations, len(position))
+    return _solver(chain, kind, tolerances, threads, **options).labels(position, quat)
+
+
+def _asked_of_all(position_m: float, angle_rad: float, length_m: float | None) -> tuple[tuple[float, float], dict]:
+    """Tolerances [m, rad], and options. Raises InputError."""
+    tolerances = (
+        argument("position_tolerance_m", positive, position_m),
+        argument("angle_tolerance_rad", positive, angle_rad),
+    )
+    return tolerances, {"characteristic_length_m": length_m and argument("characteristic_length_m", positive, length_m)}
 
 
 def _table(path: str) -> TargetTable:
@@ -187,10 +219,10 @@ def _kind(chain: Kinematics, targets: TargetList, asks: int, at: np.ndarray, tol
     if asks == POSE:
         return Kind(at, "pose", chain, T, accuracy)
     T[:, :3, :3] = np.roll(T[:, :3, :3], 2 - asks, axis=2)
-    return Kind(at, "axis", _with_axis(chain, asks), T, accuracy)
+    return Kind(at, "axis", with_axis(chain, asks), T, accuracy)
 
 
-def _with_axis(chain: Kinematics, axis: int) -> Kinematics:
+def with_axis(chain: Kinematics, axis: int) -> Kinematics:
     """The chain with an axis of its tip as z."""
     turn = np.eye(4)
     turn[:3, :3] = np.roll(np.eye(3), 2 - axis, axis=1)
@@ -219,31 +251,19 @@ def _decided(
     axes: np.ndarray | None,
     tolerances: Sequence[float],
     *,
-    characteristic_length_m: float | None = None,
-    seed: int = 0,
-    precision: str = "float64",
     device: str = "auto",
     threads: int | None = None,
     progress: Callable[[int], None] | None = None,
     constraints: Sequence[Constraint] = (),
     held: Kinematics | None = None,
+    **options: Any,
 ) -> Reachability:
     """Targets of one kind; ``axes``: none, directions (N, 3) of the tip's z, or rotations (N, 3, 3).
 
     ``held``: the chain that the constraints are about, where it is not the same.
     """
-    check_tolerance(chain, tolerances[0], precision)
-    solver = InverseSolver(
-        chain,
-        kind="position" if axes is None else "axis" if axes.ndim == 2 else "pose",
-        position_m=tolerances[0],
-        angle_rad=tolerances[1],
-        length_m=characteristic_length_m,
-        seed=seed,
-        precision=precision,
-        device=device,
-        threads=threads,
-    )
+    kind = "position" if axes is None else "axis" if axes.ndim == 2 else "pose"
+    solver = _solver(chain, kind, tolerances, threads, device=device, **options)
     if constraints:
         search = AdmissibleSearch(solver, Admission(held or chain, constraints, device, threads))
         found = search.decide(position, axes, progress)
@@ -255,6 +275,26 @@ def _decided(
     rejected = found.rejected if isinstance(found, Admissible) else None
     proven = found.proven & np.isin(found.label, (UNREACHABLE, BLOCKED))
     return Reachability(found.q, found.distance_m, found.angle_rad, labels, reasons, proven, rejected)
+
+
+def _solver(chain: Kinematics, kind: str, tolerances: Sequence[float], threads: int | None, **options: Any):
+    """The solver of options of `reachable`; the last are kept with what they found of the arm. Raises InputError."""
+    return _kept_solver(chain, kind, tuple(tolerances), threads=thread_count(threads), **options)
+
+
+@lru_cache(maxsize=4, typed=True)
+def _kept_solver(
+    chain: Kinematics,
+    kind: str,
+    tolerances: tuple[float, float],
+    *,
+    characteristic_length_m: float | None = None,
+    precision: str = "float64",
+    **options: Any,
+) -> InverseSolver:
+    check_tolerance(chain, tolerances[0], precision)
+    near = {"position_m": tolerances[0], "angle_rad": tolerances[1], "length_m": characteristic_length_m}
+    return InverseSolver(chain, kind=kind, precision=precision, **near, **options)
 
 
 def evidence_of(chain: Kinematics, kind: str) -> str:
@@ -269,7 +309,7 @@ def evidence_of_targets(chain: Kinematics, targets: TargetList) -> str:
     for asks in np.unique(_asked(targets)).tolist():
         whole = asks in (POSITION, POSE)
         kind = "axis" if not whole else "pose" if asks == POSE else "position"
-        found.append(evidence_of(chain if whole else _with_axis(chain, asks), kind))
+        found.append(evidence_of(chain if whole else with_axis(chain, asks), kind))
     return "; ".join(dict.fromkeys(found))
 
 
@@ -296,21 +336,27 @@ def rows_of(values: Any, width: int, field: str) -> np.ndarray:
         raise InputError(field, f"is not an array of numbers: {error}") from error
     if rows.ndim != 2 or rows.shape[1] != width:
         raise InputError(field, f"has shape {np.shape(values)}; (N, {width}) is needed")
-    finite = np.isfinite(rows).all(axis=1)
+    finite = np.isfinite(rows)
     if not finite.all():
-        raise InputError(field, f"row {int(np.argmin(finite))} has a value that is not finite")
+        raise InputError(field, f"row {int(np.argmin(finite.all(axis=1)))} has a value that is not finite")
     return rows
 
 
 def rotations(quat_wxyz: Any, count: int) -> np.ndarray:
     """Rotation matrices (N, 3, 3) of quaternions (N, 4) of any length but 0; InputError names ``orientations``."""
+    return rotations_of(quaternions(quat_wxyz, count))
+
+
+def quaternions(quat_wxyz: Any, count: int) -> np.ndarray:
+    """Quaternions (N, 4) of any length but 0; InputError names ``orientations``."""
     quat = rows_of(quat_wxyz, 4, "orientations")
     if len(quat) != count:
         raise InputError("orientations", f"has {len(quat)} rows for {count} points")
-    length = np.linalg.norm(quat, axis=1)
-    if (length < 1e-6).any():
-        raise InputError("orientations", f"row {int(np.argmin(length))} has length 0: it says no rotation")
-    return Rotation.from_quat(quat, scalar_first=True).as_matrix()
+    short = np.flatnonzero(np.abs(quat[:, 0]) < SHORT)  # few: no length of all is computed
+    short = short[np.linalg.norm(quat[short], axis=1) < SHORT]
+    if len(short):
+        raise InputError("orientations", f"row {short[0]} has length 0: it says no rotation")
+    return quat
 
 
 def reasons_of(

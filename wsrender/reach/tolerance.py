@@ -5,7 +5,8 @@ from collections.abc import Callable
 import numpy as np
 
 ROUNDS, QUIET = 24, 3  # at most, and those without a failure in a row that end the search
-BISECTIONS, NEAREST, TURNS = 14, 8, (0.3, 0.1, 0.03, 0.01)
+SECTIONS, PARTS = 5, 8  # a failure is followed inwards to an eighth of its way five times
+NEAREST, TURNS = 8, (0.3, 0.1, 0.03, 0.01)
 NOTHING = 1e-4  # share of the largest radius that is as good as none
 SAFE = 0.995  # of the radius of the nearest failure that was found
 
@@ -44,9 +45,10 @@ def _failures(holds: Callable[[np.ndarray], np.ndarray], points: np.ndarray) -> 
     """Where ``holds`` fails at some of the points, the nearest of them moved inwards as far as it does, (F, 3)."""
     failing = points[~holds(points)]
     far = failing[np.argsort(np.linalg.norm(failing, axis=1), kind="stable")[:NEAREST]]
-    inner = np.zeros_like(far)
-    for _ in range(BISECTIONS if len(far) else 0):
-        middle = (inner + far) / 2
-        good = holds(middle)
-        inner, far = np.where(good[:, None], middle, inner), np.where(good[:, None], far, middle)
+    inner, share = np.zeros_like(far), (np.arange(1, PARTS) / PARTS)[:, None]
+    for _ in range(SECTIONS if len(far) else 0):
+        between = inner[:, None] + share * (far - inner)[:, None]
+        good = holds(between.reshape(-1, 3)).reshape(between.shape[:2])
+        first = np.where(good.all(axis=1), PARTS, np.argmin(good, axis=1) + 1)[:, None] / PARTS  # that fails
+        inner, far = inner + (first - 1 / PARTS) * (far - inner), inner + first * (far - inner)
     return far

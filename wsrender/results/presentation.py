@@ -58,12 +58,12 @@ class Picture:
         if missing := self.missing(plot):
             held = ", ".join(word for word in PARTS if _held(plot, word)) or "nothing"
             raise InputError(missing[0], f"{self.name} shows it, which the result does not hold; it holds {held}")
-        return _imported(self.draw)(plot, *arguments, **{**self.options, **options})
+        return imported(self.draw)(plot, *arguments, **{**self.options, **options})
 
     @property
     def takes(self) -> set[str]:
         """Names of the options that a user may give; they go before those of the row."""
-        return set(list(signature(_imported(self.draw)).parameters)[1:])
+        return set(list(signature(imported(self.draw)).parameters)[1:])
 
 
 @dataclass(frozen=True)
@@ -72,8 +72,10 @@ class Presentation:
 
     ``pictures``: those of its results alone. Of a result document, ``facts`` gives lines of the summary, (name, text),
     ``title`` what stands beside robot and sampling, ``sections`` what the report shows instead of fields. ``measured``
-    says what the headline measures; ``drawings`` names tables of lines and arcs in a plane, which are saved as
-    drawings.
+    says what the headline measures; "": no workspace, and the facts stand in its place. ``drawings`` names tables of
+    lines and arcs in a plane, which are saved as drawings. Of a result's `ResultPlots`, ``view`` gives what only the
+    analysis adds to its view in a browser, `wsrender.results.view.additions.Additions`; of a document, ``job`` is
+    that of the robots which the view shows.
     """
 
     pictures: tuple[Picture, ...] = ()
@@ -82,6 +84,8 @@ class Presentation:
     sections: Callable[[Document], dict[str, Any]] = lambda document: {}
     measured: str = "reachable"
     drawings: tuple[str, ...] = ()
+    view: Function | None = None
+    job: Callable[[Document], Any] = lambda document: document.get("job")
 
 
 PLANE = "slice"  # the picture of one plane of voxels
@@ -157,7 +161,7 @@ def _own() -> dict[str, Picture]:
 
 
 def _analyses() -> Mapping[str, Callable[[], Presentation]]:
-    return _imported(_REGISTRY)()
+    return imported(_REGISTRY)()
 
 
 @cache
@@ -200,7 +204,8 @@ def _held(plot: Any, word: str) -> bool:
     return found is not None and (not hasattr(found, "__len__") or len(found) > 0)
 
 
-def _imported(function: Function) -> Any:
+def imported(function: Function) -> Any:
+    """The function of a row. Raises MissingExtraError where a package is missing."""
     if not isinstance(function, str):
         return function
     module, _, name = function.partition(":")

@@ -136,6 +136,21 @@ class Result:
             by_ending("picture", path).write(figure, path)
         return figure
 
+    def view(self, port: int = 0, block: bool | None = None) -> Any:
+        """Show the result in the viewer: in a notebook as a widget, else in a tab of the browser (a `LocalView`).
+
+        ``block``: return when the program is told to stop (Ctrl-C); by default in a script, not at a prompt. Raises
+        InputError for a port in use, MissingExtraError in a notebook without the extra ``notebook``.
+        """
+        from wsrender.window import show
+
+        return show(self, port, block)
+
+    def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> Any:
+        from wsrender.window import mime_bundle
+
+        return mime_bundle(self, include, exclude)
+
     def _robot_entries(self) -> list[dict[str, Any]]:
         """What the document says of each robot that a picture shows. Raises InputError for a mechanism."""
         if mechanism := self.document.get("mechanism"):
@@ -161,7 +176,9 @@ class Result:
         return samples if samples is not None and len(samples) else None, self.volume, self.skeleton
 
     def report(self, path: str | Path, views: Iterable[str] = REPORT_VIEWS) -> None:
-        """Write one HTML page with pictures, tables, provenance and the job document; it needs no network.
+        """Write one HTML page with the viewer, pictures, tables, provenance and the job document; it needs no network.
+
+        The viewer adds at most 2 MB: channels in half precision, and those that do not fit are named.
 
         ``views`` are the 3-D pictures, of those of ``render``; without the extra ``render`` or OpenGL they are left
         out, with a RenderWarning and a note in the page. Raises InputError for an unknown view.
@@ -177,8 +194,10 @@ class Result:
                 notes.append(f"3-D pictures are left out: {error}")
                 warnings.warn(notes[-1], RenderWarning, stacklevel=2)
                 break
+        from wsrender.results.view import view_of
+
         title = f"{sampling_text(self.document)} · {label(str(self.document.get('analysis', 'result')))}"
-        page = report_page(title, self.document, pictures, self.tables, notes)
+        page = report_page(title, self.document, pictures, self.tables, notes, view_of(self))
         with new_file(path) as temporary:
             temporary.write_text(page, encoding="utf-8")
 
@@ -306,7 +325,16 @@ def _table_files(name: str, data: DistributionMap | Table, formats: tuple[str, .
     frame = "world" if isinstance(data, DistributionMap) else None
     if isinstance(data, Table) and data.grid:
         frame, formats = data.grid.frame, tuple({*formats, "npz"})
-    return _files("table", name, data, formats, (len(data), len(units)), units, frame)
+    yield from _files("table", name, data, formats, (len(data), len(units)), units, frame)
+    if isinstance(data, Table) and data.grid and len(data.grid.axes) <= 3:
+        # In a folder: it is no part that a result is loaded from.
+        yield Artifact(f"maps/{name}.vtkhdf", partial(_write_cells, data), data.grid.shape, units, frame)
+
+
+def _write_cells(data: Table, path: Path) -> None:
+    from wsrender.results.export.vtkhdf import write_cells_vtkhdf
+
+    write_cells_vtkhdf(data, path)
 
 
 def _volume_files(name: str, volume: VolumeData, formats: tuple[str, ...]) -> Iterator[Artifact]:

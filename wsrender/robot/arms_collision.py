@@ -27,6 +27,7 @@ from wsrender.robot.collisions import (
 from wsrender.robot.model_robot import Robot
 from wsrender.robots.bodies import Bodies
 from wsrender.robots.chain import Chain
+from wsrender.robots.moving_base import MovingBase
 from wsrender.robots.pairs import meet, without
 from wsrender.robots.shapes import Shape
 
@@ -52,21 +53,33 @@ class ArmsApart:
         return np.concatenate([q_a, q_b], axis=1)[:, self.order]
 
 
-def arms_apart(robots: Sequence[Robot], names: Sequence[str], choice: Apart, *, one_model: bool = False) -> ArmsApart:
+def arms_apart(
+    robots: Sequence[Robot],
+    names: Sequence[str],
+    choice: Apart,
+    *,
+    one_model: bool = False,
+    bases: Sequence[MovingBase] | None = None,
+) -> ArmsApart:
     """Two robots that keep apart, whose shapes ``choice`` calls by the robot's name, a stroke, and their own.
 
     Every shape that moves with a joint of one against all of the other whose contact bits it meets; of two arms of
-    ``one_model`` against those that move. Tables are made here, in seconds, where they are not on disk yet. Raises
-    InputError for a robot without shapes, joints that both arms share, names that name nothing, a margin beyond both
-    robots, height fields, and pairs that meet in every configuration, or wherever the tips do.
+    ``one_model`` against those that move. ``bases``: of robots that may stand elsewhere; their joints lead those of the
+    arms, and nothing is said of how the tips meet. Tables are made here, in seconds, where they are not on disk yet.
+    Raises InputError for a robot without shapes, joints that both arms share, names that name nothing, a margin beyond
+    both robots, height fields, and pairs that meet in every configuration, or wherever the tips do.
     """
     field = f"constraints.{ARMS}"
     a, b = (robot_bodies(robot, ARMS) for robot in robots)
     shared = set(robots[0].joint_names) & set(robots[1].joint_names)
     if one_model and shared:
         raise InputError(field, f"must not be given: both arms have the joints {', '.join(sorted(shared))}")
-    chain, order = _joined(limited(a.chain), limited(b.chain))
+    chains = [limited(each.chain) for each in (a, b)]
     of_a, of_b = (_own(name, bodies) for name, bodies in zip(names, (a, b), strict=True))
+    if bases:
+        chains = [base.carrying(each) for base, each in zip(bases, chains, strict=True)]
+        of_a, of_b = (_carried(own, base) for own, base in zip((of_a, of_b), bases, strict=True))
+    chain, order = _joined(*chains)
     moves = [np.array([shape.frame != BASE for shape in own]) for own in (of_a, of_b)]
     asked = moves[0][:, None] & moves[1] if one_model else moves[0][:, None] | moves[1]
     asked &= np.array([[meet(one.bits, other.bits) for other in of_b] for one in of_a], bool).reshape(asked.shape)
@@ -81,13 +94,14 @@ def arms_apart(robots: Sequence[Robot], names: Sequence[str], choice: Apart, *, 
         raise InputError(
             f"{field}.margin_m", f"must be at most the robots' size, {size:.3g} m, not {choice.margin_m:g}"
         )
-    solids = (*(_of_first(shape, a.chain) for shape in of_a), *(_of_second(shape, a.chain, b.chain) for shape in of_b))
+    solids = (*(_of_first(shape, chains[0]) for shape in of_a), *(_of_second(shape, *chains) for shape in of_b))
     if fields := [solid.name for k, solid in enumerate(solids) if solid.kind == "surface" and k in pairs]:
         message = f"must list all pairs of {', '.join(fields)}: arms keep apart from no height field of the other"
         raise InputError(f"{field}.exclude", message)
     constraint = CollisionConstraint(ARMS, chain, solids, pairs, choice.margin_m)
     refuse_always((constraint,))
-    _refuse_where_tips_meet(constraint, [_from_tip(robots[0], a, of_a), _from_tip(robots[1], b, of_b)])
+    if not bases:
+        _refuse_where_tips_meet(constraint, [_from_tip(robots[0], a, of_a), _from_tip(robots[1], b, of_b)])
     return ArmsApart(constraint, order)
 
 
@@ -95,6 +109,17 @@ def _own(name: str, bodies: Bodies) -> list[Shape]:
     """A robot's shapes without what stands around, they and their bodies by names that say whose they are."""
     own = (shape for shape in bodies.shapes if not shape.surroundings)
     return [replace(shape, name=f"{name}/{shape.name}", body=f"{name}/{shape.body}") for shape in own]
+
+
+def _carried(shapes: list[Shape], base: MovingBase) -> list[Shape]:
+    """A robot's shapes in the frames of a chain that begins with the joints of its base."""
+    joints = len(base.varying)
+
+    def moved(shape: Shape) -> Shape:
+        T = base.base_on_last @ shape.T_frame_shape if joints and shape.frame == BASE else shape.T_frame_shape
+        return replace(shape, frame=shape.frame + joints, T_frame_shape=T)
+
+    return [moved(shape) for shape in shapes]
 
 
 def _joined(a: Chain, b: Chain) -> tuple[Chain, np.ndarray]:

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
     from wsrender.robots.shapes import Shape
 
+COARSE_FACES = {"sphere": 320, "capsule": 288, "cylinder": 48, "ellipsoid": 320, "box": 12}
+
 
 @dataclass(frozen=True, eq=False)
 class LinkShape:
@@ -52,7 +54,7 @@ def bodies_in(robot: Robot, q: Any) -> "trimesh.Trimesh | None":
     if robot.definition or not robot.bodies.shapes:
         return None
     bodies, parts = robot.bodies, []
-    own = [(mesh, k) for k, mesh in enumerate(_mesh(shape, coarse=True) for shape in bodies.shapes)]
+    own = [(mesh, k) for k, mesh in enumerate(shape_mesh(shape, coarse=True) for shape in bodies.shapes)]
     for row, poses in enumerate(bodies.poses(configuration_rows(q, robot.chain.n))):
         for mesh, k in own:
             vertices = mesh.vertices @ poses[k, :3, :3].T + poses[k, :3, 3]
@@ -63,14 +65,21 @@ def bodies_in(robot: Robot, q: Any) -> "trimesh.Trimesh | None":
     return whole
 
 
+def coarse_faces(robot: Robot) -> int:
+    """Triangles of what `bodies_in` makes of one configuration."""
+    if robot.definition:
+        return 0
+    return sum(COARSE_FACES.get(shape.kind, len(shape.faces)) for shape in robot.bodies.shapes)
+
+
 def _placed(shape: "Shape", T: np.ndarray) -> LinkShape:
-    mesh = _mesh(shape)
+    mesh = shape_mesh(shape)
     red, green, blue = (float(part) for part in shape.rgba[:3])
     return LinkShape(mesh.vertices @ T[:3, :3].T + T[:3, 3], np.asarray(mesh.faces), (red, green, blue))
 
 
-def _mesh(shape: "Shape", coarse: bool = False) -> "trimesh.Trimesh":
-    """A shape in its own frame."""
+def shape_mesh(shape: "Shape", coarse: bool = False) -> "trimesh.Trimesh":
+    """The triangles of a shape in its own frame; ``coarse``: of few of them."""
     import trimesh
 
     halvings, sides = (2, 12) if coarse else (3, None)

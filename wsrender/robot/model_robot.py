@@ -3,6 +3,7 @@
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -25,11 +26,13 @@ from wsrender.robots import (
     load_urdf,
     xml_source,
 )
-from wsrender.robots.closed_form import ClosedForm, FreeJointForm
+from wsrender.robots.closed_form import form_of
 from wsrender.robots.kinematics import Kinematics
 from wsrender.robots.model_warning import ModelWarning
 from wsrender.robots.plausibility import NO_LIMITS
 from wsrender.volume.table import Table
+
+_WINDOW = "wsrender.window"  # of a layer above, which is read by name alone
 
 if TYPE_CHECKING:
     import mujoco
@@ -125,10 +128,13 @@ class Robot:
 
         Told by the axes, joints that are held left out: "spherical wrist, axes 2 and 3 parallel", "three parallel
         axes", "SCARA", "planar arm"; a spherical "shoulder" is a wrist at the base. Of seven joints, where six have one
-        wherever the one at an end stands: "ball search along joint 7 over a closed form (…)".
+        wherever the one at an end stands: "ball search along joint 7 over a closed form (…)". Of six without a
+        wrist, of which axes 4 and 5 meet: "ball search along joint 6, axes 1 and 2 intersecting, axes 4 and 5
+        intersecting". Of hinges that miss a class by 1e-5 rad and reaches at most, as calibrated ones do: "three
+        parallel axes, but for 9e-6 m and 4e-6 rad", by which poses of the arm and one of the class differ at most.
         """
-        closed = ClosedForm.of(self.chain) or FreeJointForm.of(self.chain)
-        return closed and closed.name
+        form = form_of(self.chain)
+        return form and form.name
 
     @property
     def bodies(self) -> "Bodies":
@@ -231,6 +237,28 @@ class Robot:
         spec = self.spec and self.spec.model_copy(update={"placement": placement})
         return Robot(loaded, spec, self.name, self.base, self.tip)
 
+    def changed(
+        self,
+        *,
+        limits: Mapping[str, tuple[float, float]] | None = None,
+        placement: np.ndarray | None = None,
+        tool: np.ndarray | None = None,
+    ) -> "Robot":
+        """The same robot with other limits of joints by name [rad or m], base frame in the world, or tool, (4, 4) each.
+
+        As `load_robot` takes them, without compiling the model again. Raises InputError for an unknown joint, an empty
+        range, and for what a Python class fixes.
+        """
+        chain = self._loaded.chain.limited(limits or {}).placed(placement, tool)
+        spec = self.spec
+        if spec:
+            degrees = {name: ends for name, ends in spec.limits_deg.items() if name not in (limits or {})}
+            stated = {"limits": {**spec.limits, **(limits or {})}, "limits_deg": degrees}
+            given = {"placement": placement, "tool": tool}
+            stated |= {name: transform_of(T) for name, T in given.items() if T is not None}
+            spec = spec.model_copy(update=stated)
+        return Robot(replace(self._loaded, chain=chain), spec, self.name, self.base, self.tip)
+
     def held(self, values: Mapping[str, float]) -> "Robot":
         """The same robot with joints, by name, held at a value [rad or m]."""
         chain = self._loaded.chain.held(values)
@@ -245,6 +273,17 @@ class Robot:
         chain, rows = self._loaded.chain, configuration_rows(q, self.chain.n)
         foot = np.broadcast_to(chain.foot, (len(rows), 1, 3))
         return np.concatenate([foot, chain.frames(rows)[..., :3, 3]], axis=1)
+
+    def view(self, port: int = 0, block: bool | None = None) -> Any:
+        """Show the robot in the viewer: in a notebook as a widget, else in a tab of the browser (a `LocalView`).
+
+        ``block``: return when the program is told to stop (Ctrl-C); by default in a script, not at a prompt. Raises
+        InputError for a port in use, MissingExtraError in a notebook without the extra ``notebook``.
+        """
+        return import_module(_WINDOW).show(self, port, block)
+
+    def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> Any:
+        return import_module(_WINDOW).mime_bundle(self, include, exclude)
 
     def _kinematics(self, q, precision, device, with_inertia=False):
         from wsrender.engine import evaluate_kinematics
@@ -293,6 +332,7 @@ def load_robot(
     srdf: str | Path | None = None,
     exclude: Sequence[tuple[str, str]] = (),
     tool_shapes: Sequence[Any] = (),
+    mount: Sequence[Any] = (),
 ) -> Robot:
     """Load a robot: a library name, the path or text of an MJCF (.xml) or URDF file, a DH table, MjSpec or MjModel.
 
@@ -306,7 +346,9 @@ def load_robot(
     not collide; nor do those of ``exclude``, pairs of names of shapes, or of bodies
     for all shapes on them. ``tool_shapes``, of tool and payload, are carried by the tip, in its frame: `Box`, `Sphere`,
     `Cylinder`, `Capsule`, `Ellipsoid`, `Mesh` or their fields; they collide as a body of the name tool that is fixed to
-    the tip's would. What is odd about a model is a ModelWarning, and among the robot's ``notices``.
+    the tip's would. ``mount``: joints that carry the robot's base, the first of its chain, a rail or a torso: each a
+    `MountJoint` or its fields, from the ground up. What is odd about a model is a ModelWarning, and among the robot's
+    ``notices``.
     Raises InputError, ModelError for a malformed or unsupported model, FrameNotFoundError listing the frames.
     """
     kind, value = described(source)
@@ -316,7 +358,7 @@ def load_robot(
     given: dict[str, Any] = {"limits": limits or {}, "limits_deg": limits_deg or {}, "length_unit_m": length_unit_m}
     given |= {"effort_limits": effort_limits or {}, "velocity_limits": velocity_limits or {}}
     given |= {"reference": reference or {}, "srdf": _srdf_text(srdf), "exclude": exclude}
-    given |= {"tool_shapes": tool_shapes}
+    given |= {"tool_shapes": tool_shapes, "mount": mount}
     stated = RobotSpec(**{kind: value}, **given)
     loaded = load(source, **options, **_corrections(stated))
     spec = stated.model_copy(update={"placement": transform_of(placement), "tool": transform_of(tool)})
@@ -370,6 +412,7 @@ def _corrections(spec: RobotSpec) -> dict[str, Any]:
         "reference",
         "srdf",
         "exclude",
+        "mount",
     )
     found = {name: getattr(spec, name) for name in names}
     return found | ({"attached": attached(spec.tool_shapes)} if spec.tool_shapes else {})

@@ -1,7 +1,7 @@
 """A robot defined by a Python class with its own kinematics (local runs only)."""
 
 import hashlib
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Protocol, runtime_checkable
@@ -106,6 +106,19 @@ class HostRobot(Robot):
     def placed(self, placement: Transform) -> Robot:
         """The same robot with its base frame, in which the class gives its poses, elsewhere in the world."""
         return HostRobot(self.user, placement.matrix())
+
+    def changed(
+        self,
+        *,
+        limits: Mapping[str, tuple[float, float]] | None = None,
+        placement: np.ndarray | None = None,
+        tool: np.ndarray | None = None,
+    ) -> Robot:
+        """The same robot with its base elsewhere; its limits and its tip are those of the class."""
+        for field, given in (("limits", limits), ("tool", tool)):
+            if given is not None and len(given):
+                raise InputError(field, f"must not be given: {self.name} is defined by a Python class, which fixes it")
+        return HostRobot(self.user, self._chain.T_world_base if placement is None else placement)
 
     def skeleton(self, q: Any) -> np.ndarray:
         """Base and tip alone: what lies between is the user's, (N, 2, 3)."""

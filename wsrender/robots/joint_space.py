@@ -7,6 +7,7 @@ from typing import Any, Self
 import numpy as np
 
 from wsrender.content import Content
+from wsrender.errors import InputError
 
 
 def unlimited(n: int) -> np.ndarray:
@@ -66,6 +67,21 @@ class JointSpace(Content):
             upper_limits=np.where(held, value, self.upper_limits),
             periodic=self.periodic & ~held,
         )
+
+    def limited(self, limits: Mapping[str, tuple[float, float]]) -> Self:
+        """The same with limits of joints, by name, (lower, upper) [rad or m], in place of its own.
+
+        As the field ``limits`` of a robot gives them. Raises InputError for an unknown joint and an empty range.
+        """
+        lower, upper, periodic = self.lower_limits.copy(), self.upper_limits.copy(), self.periodic.copy()
+        for name, (low, high) in limits.items():
+            if name not in self.joint_names:
+                raise InputError(f"limits.{name}", f"unknown joint; allowed: {', '.join(self.joint_names)}")
+            if not low < high:
+                raise InputError(f"limits.{name}", f"must have the lower limit below the upper one, not {low}, {high}")
+            k = self.joint_names.index(name)
+            lower[k], upper[k], periodic[k] = low, high, False
+        return replace(self, lower_limits=lower, upper_limits=upper, periodic=periodic)
 
     @property
     def endless(self) -> tuple[str, ...]:

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     import mujoco
 
-    from wsrender.documents.robot import DHTable
+    from wsrender.documents.robot import DHTable, MountJoint
     from wsrender.robots.chain import Chain
     from wsrender.robots.compiled_model import CompiledModel
     from wsrender.robots.loaded_robot import LoadedRobot
@@ -54,6 +54,7 @@ def load(
     srdf: str | None = None,
     exclude: "Excluded" = (),
     attached: "Sequence[Shape]" = (),
+    mount: "Sequence[MountJoint]" = (),
 ) -> "LoadedRobot":
     """The robot of a library name, of a path to or the text of an MJCF or URDF file, of a DH table, MjSpec or MjModel.
 
@@ -66,13 +67,14 @@ def load(
     ``length_unit_m`` is the model's unit of length [m]; given, no length is doubted. ``reference`` is
     where joints beside the chain stand, by name [rad or m], instead of at the model's zero. ``srdf`` is SRDF
     text, whose disabled pairs of links do not collide, nor do those of ``exclude``, pairs of names of shapes or bodies.
-    ``attached``: shapes that the tip carries, in its frame.
+    ``attached``: shapes that the tip carries, in its frame. ``mount``: joints that carry the base, which then must be
+    the world; they are the first of the chain.
     Raises ModelError, FrameNotFoundError, InputError; gives a ModelWarning for each of the robot's notices.
     """
     options = {"base": base, "tip": tip, "name": name, "placement": placement, "tool": tool}
     options |= {"limits": limits, "limits_deg": limits_deg, "length_unit_m": length_unit_m}
     options |= {"effort_limits": effort_limits, "velocity_limits": velocity_limits}
-    options |= {"reference": reference, "srdf": srdf, "exclude": exclude, "attached": attached}
+    options |= {"reference": reference, "srdf": srdf, "exclude": exclude, "attached": attached, "mount": mount}
     kind, value = described(source)
     loaders = {"library": load_library, "path": load_path, "dh": load_dh, "mjcf": load_mjcf, "urdf": load_urdf}
     return loaders[kind](value, **options)
@@ -183,7 +185,7 @@ def _from_urdf(root: Element, text: str | bytes, read_mesh: "ReadMesh | None", *
 
 
 def _loaded(
-    compile_model: "Callable[[float], CompiledModel]",
+    compile_model: "Callable[[float, Sequence[MountJoint]], CompiledModel]",
     text: str | bytes,
     *,
     base=None,
@@ -200,25 +202,29 @@ def _loaded(
     srdf=None,
     exclude=(),
     attached=(),
+    mount=(),
     held=(),
 ) -> "LoadedRobot":
-    """The robot of a model that ``compile_model`` makes of its unit of length; warns of its notices.
+    """The robot of a model that ``compile_model`` makes of its unit of length and mount; warns of its notices.
 
     ``held``: joints that need no limits.
     """
     from wsrender.robots.chain_extraction import Given, extract
     from wsrender.robots.compiled_model import building
 
+    if mount and base is not None:
+        raise InputError("mount", f'must not be given with a "base", here {base!r}: it carries all of the model')
     source_hash = hashlib.sha256(text.encode() if isinstance(text, str) else text).hexdigest()
     given = dict(limits or {}) | {joint: tuple(np.radians(ends)) for joint, ends in (limits_deg or {}).items()}
     with building(_FIELD):
-        compiled = compile_model(1.0 if length_unit_m is None else length_unit_m)
+        compiled = compile_model(1.0 if length_unit_m is None else length_unit_m, mount)
         called = name or compiled.name or "robot"
         own = Given(given, effort_limits or {}, velocity_limits or {}, reference or {})
         robot = extract(compiled, base, tip, called, source_hash, own, _FIELD)
     _check_limits(robot.chain, limits or {}, limits_deg or {})
     chain = robot.chain.placed(_rigid("placement", placement), _rigid("tool", tool))
-    found = (*robot.notices, *doubts(chain, given, length_unit_m is not None, held))
+    confirmed = {*given, *(joint.name for joint in mount)}
+    found = (*robot.notices, *doubts(chain, confirmed, length_unit_m is not None, held))
     notices.warn(found, ModelWarning)
     disabled = disabled_pairs(srdf) if srdf is not None else ()
     source = replace(robot.body_source, attached=tuple(attached), excluded=tuple(exclude), disabled=disabled)

@@ -5,14 +5,17 @@ from xml.etree import ElementTree
 from xml.etree.ElementTree import Element
 
 from wsrender.errors import ModelError
-from wsrender.robots.xml_source import MAX_ELEMENTS, number
+from wsrender.robots.xml_source import MAX_BYTES, MAX_ELEMENTS, number, plain_digits
 
-MOST_MADE = 1_000_000  # vertices of meshes that MuJoCo makes by itself
+MOST_MADE = 100_000  # vertices of meshes that MuJoCo makes by itself
 
 # Sections that neither kinematics nor inertia depend on; several of them could read files.
 _SCENERY = ("option", "size", "visual", "statistic", "custom", "extension", "deformable", "contact",
             "sensor", "keyframe")  # fmt: skip
 _DROPPED = {"camera", "light", "texture", "material", "skin", "plugin"}
+# Arrays that are of no use here, and whose sizes a model may choose.
+_IDLE = {"user", "actdim", "nsample", "delay", "interp"}
+_HOLD_BODIES = ("body", "frame", "replicate")
 _REFUSED = {
     "include": "includes are refused where no folder is known to read them from: inline the file, by putting what is "
     "inside its <mujoco> element in the place of <include>, or load the model by its path where it stands",
@@ -50,6 +53,16 @@ def sanitized(mujoco: Element, field: str, keep: Collection[str] = ()) -> Elemen
     return mujoco
 
 
+def carried(mujoco: Element, name: str) -> None:
+    """Puts all bodies into one of a name, in place; shapes that the world itself has stay where they are."""
+    carrier = Element("body", name=name)
+    for world in mujoco.findall("worldbody"):
+        for child in [child for child in world if child.tag in _HOLD_BODIES]:
+            world.remove(child)
+            carrier.append(child)
+    ElementTree.SubElement(mujoco, "worldbody").append(carrier)
+
+
 def directories(mujoco: Element) -> tuple[str, bool]:
     """Folder of the meshes as the ``<compiler>`` states it, and whether paths are stripped from names.
 
@@ -71,7 +84,7 @@ def text(mujoco: Element) -> str:
 
 
 def _clean(element: Element, field: str) -> None:
-    for key in [key for key in element.attrib if key == "material" or ":" in key or key == "xmlns"]:
+    for key in [key for key in element.attrib if key in _IDLE or key == "material" or ":" in key or key == "xmlns"]:
         del element.attrib[key]
     for key in _NUMERIC.intersection(element.attrib):
         _check_numbers(element, key, field)
@@ -92,18 +105,21 @@ def _check_numbers(element: Element, key: str, field: str) -> None:
 
 
 def _bound_replicas(mujoco: Element, field: str) -> None:
-    if (count := _expanded(mujoco)) > MAX_ELEMENTS:
-        raise ModelError(field, f"replicas make {count} elements; at most {MAX_ELEMENTS} are allowed")
+    elements, characters = _expanded(mujoco, field)
+    if elements > MAX_ELEMENTS:
+        raise ModelError(field, f"replicas make {elements} elements; at most {MAX_ELEMENTS} are allowed")
+    if characters > MAX_BYTES:
+        raise ModelError(field, f"replicas make {characters} characters; at most {MAX_BYTES} are allowed")
 
 
-def _expanded(element: Element) -> int:
-    """Number of elements after replicas are written out."""
-    inside = sum(_expanded(child) for child in element)
-    try:
-        count = int(element.get("count", "1")) if element.tag == "replicate" else 1  # with spaces and sign, as MuJoCo
-    except ValueError:
-        count = 1  # which MuJoCo refuses
-    return 1 + inside * max(count, 1)
+def _expanded(element: Element, field: str) -> tuple[int, int]:
+    """Elements, and characters of their attributes, after replicas are written out."""
+    parts = [_expanded(child, field) for child in element]
+    times = 1
+    if element.tag == "replicate":
+        times = max(plain_digits(element.get("count", ""), field, "<replicate>: count"), 1)
+    own = sum(map(len, element.attrib.values()))
+    return 1 + times * sum(part[0] for part in parts), own + times * sum(part[1] for part in parts)
 
 
 def _bound_made_meshes(mujoco: Element, field: str) -> None:

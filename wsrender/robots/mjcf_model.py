@@ -2,7 +2,7 @@
 
 import copy
 import math
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -10,6 +10,7 @@ from xml.etree.ElementTree import Element
 
 import mujoco
 
+from wsrender.documents.robot import MountJoint
 from wsrender.errors import ModelError
 from wsrender.notices import Notice
 from wsrender.robots import mjcf, mjcf_text, xml_source
@@ -18,6 +19,7 @@ from wsrender.robots.hulls import with_small_hulls
 from wsrender.robots.inertials import compile_with_inertials
 from wsrender.robots.length_unit import in_metres, to_metres
 from wsrender.robots.mesh_files import ReadMesh
+from wsrender.robots.mount import BODY, add_joints
 
 VELOCITIES = "velocity_limits"  # of all joints, in the model's order [rad/s or m/s]
 VISIBLE_GROUPS = 3  # MuJoCo shows groups 0, 1, 2 unless told otherwise
@@ -36,26 +38,32 @@ def text_of(source: mujoco.MjSpec | mujoco.MjModel, field: str) -> str:
     return mjcf_text.text_of(model, field)
 
 
-def compile_mjcf(root: Element, read_mesh: ReadMesh, field: str, length_unit_m: float = 1.0) -> CompiledModel:
+def compile_mjcf(
+    root: Element, read_mesh: ReadMesh, field: str, length_unit_m: float = 1.0, mount: Sequence[MountJoint] = ()
+) -> CompiledModel:
     """The compiled model of a ``<mujoco>`` element (changed in the process), its lengths in ``length_unit_m``.
 
-    Geometry that needs a mesh stays only where it gives a body its inertia; meshes that are not there are
-    dropped with one notice, and noted as inertia faults where that leaves a body without inertia. Ranges that are
-    upside down or empty, which MuJoCo would take for none, are joint faults. Raises ModelError.
+    ``mount``: joints that carry all of its bodies. Geometry that needs a mesh stays only where it gives a body its
+    inertia; meshes that are not there are dropped with one notice, and noted as inertia faults where that leaves a body
+    without inertia. Ranges that are upside down or empty, which MuJoCo would take for none, are joint faults. Raises
+    ModelError.
     """
+    if mount:
+        mjcf.carried(root, BODY)
     whole, velocities, gravity = copy.deepcopy(root), _velocity_limits(root, field), _gravity(root, field)
     spec, files = _spec_of(root, field)
     joint_faults = _range_faults(spec)
     faults, missing = _drop_geometry(spec, files, read_mesh)
     to_metres(spec, length_unit_m)
+    add_joints(spec, mount)
     model, inertia_faults, notices = compile_with_inertials(spec, field)
     return CompiledModel(
         model,
         root.get("model", ""),
-        partial(_with_geometry, whole, read_mesh, field, length_unit_m),
+        partial(_with_geometry, whole, read_mesh, field, length_unit_m, mount),
         inertia_faults=inertia_faults | {body.id: fault for body, fault in faults},
         joint_faults=tuple(JointFault(joint.parent.id, joint.name, fault, True) for joint, fault in joint_faults),
-        velocity_limits=in_metres(model, _of_joints(velocities, model, field), length_unit_m),
+        velocity_limits=in_metres(model, _of_joints(velocities, model, field, len(mount)), length_unit_m),
         gravity=gravity,
         notices=_dropped(missing) + notices,
     )
@@ -68,11 +76,12 @@ def _velocity_limits(root: Element, field: str) -> list[float]:
     return [xml_source.number(word, field, f"<numeric> {VELOCITIES!r}") for word in words]
 
 
-def _of_joints(velocities: list[float], model: mujoco.MjModel, field: str) -> list[float]:
-    if velocities and (len(velocities) != model.njnt or min(velocities) < 0):
-        message = f"must be {model.njnt} numbers, one for each joint, 0 where it has none, not {velocities}"
+def _of_joints(velocities: list[float], model: mujoco.MjModel, field: str, mounting: int) -> list[float]:
+    """With none for the joints of the mount, which are the first."""
+    if velocities and (len(velocities) != model.njnt - mounting or min(velocities) < 0):
+        message = f"must be {model.njnt - mounting} numbers, one for each joint, 0 where it has none, not {velocities}"
         raise ModelError(field, f"<numeric> {VELOCITIES!r} {message}")
-    return velocities
+    return velocities and [0.0] * mounting + velocities
 
 
 def _gravity(root: Element, field: str) -> tuple[float, ...] | None:
@@ -81,7 +90,12 @@ def _gravity(root: Element, field: str) -> tuple[float, ...] | None:
 
 
 def _with_geometry(
-    root: Element, read_mesh: ReadMesh, field: str, length_unit_m: float, purpose: Purpose
+    root: Element,
+    read_mesh: ReadMesh,
+    field: str,
+    length_unit_m: float,
+    mount: Sequence[MountJoint],
+    purpose: Purpose,
 ) -> tuple[mujoco.MjModel, tuple[Notice, ...]]:
     """See `CompiledModel.with_geometry`. What is seen but cannot be had is left out, with one notice."""
     flags = [flag.get("filterparent") for flag in root.iterfind("option/flag") if "filterparent" in flag.attrib]
@@ -90,6 +104,7 @@ def _with_geometry(
     spec.compiler.inertiafromgeom = mujoco.mjtInertiaFromGeom.mjINERTIAFROMGEOM_FALSE
     missing = _keep_geometry(spec, files, read_mesh, purpose, field)
     to_metres(spec, length_unit_m)
+    add_joints(spec, mount)
     model, _, _ = compile_with_inertials(spec, field)
     simplified: tuple[Notice, ...] = ()
     if purpose == "collision":
@@ -157,9 +172,12 @@ def _dropped(missing: list[str]) -> tuple[Notice, ...]:
 def _parsed(text: str, field: str) -> mujoco.MjSpec:
     try:
         with quiet():
-            return mujoco.MjSpec.from_string(text)
+            spec = mujoco.MjSpec.from_string(text)
     except MUJOCO_ERRORS as error:
         raise refusal(error, field) from error
+    # A simulation of the muscles, as long as the model asks for, whose results are of no use here.
+    spec.compiler.LRopt.mode = mujoco.mjtLRMode.mjLRMODE_NONE
+    return spec
 
 
 def _range_faults(spec: mujoco.MjSpec) -> list[tuple[mujoco.MjsJoint, str]]:

@@ -1,5 +1,6 @@
 """Models that are named by their hash: those that were uploaded to a server, in the folder where it keeps them."""
 
+import hashlib
 import os
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -31,11 +32,14 @@ def load_uploaded(sha256: str, **options) -> "LoadedRobot":
 
 
 def uploaded_content(sha256: str, field: str) -> bytes:
-    """What was uploaded by that name. Raises InputError where nothing was, or this is no server."""
+    """What was uploaded by that name. Raises InputError where nothing was, it is damaged, or this is no server."""
     folder = os.environ.get(MODELS_VARIABLE)
     if folder is None:
         raise InputError(field, "what was uploaded is known to its server only; give a path or a text")
     path = Path(folder) / sha256
     if not path.is_file():
         raise InputError(field, f"{sha256} is not among the uploaded models")
-    return path.read_bytes()
+    content = path.read_bytes()
+    if hashlib.sha256(content).hexdigest() != sha256:
+        raise InputError(field, f"{sha256} is damaged on the server; upload it again")
+    return content

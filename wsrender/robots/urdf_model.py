@@ -1,19 +1,21 @@
 """URDF → MuJoCo model, link by link; MuJoCo's own URDF reader fuses, guesses and skips too much."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from xml.etree.ElementTree import Element
 
 import mujoco
 import numpy as np
 
+from wsrender.documents.robot import MountJoint
 from wsrender.notices import Notice
 from wsrender.robots.compiled_model import CompiledModel, JointFault, Purpose
 from wsrender.robots.hulls import with_small_hulls
 from wsrender.robots.inertials import compile_with_inertials
 from wsrender.robots.length_unit import in_metres, to_metres
 from wsrender.robots.mesh_files import ReadMesh, from_assets
+from wsrender.robots.mount import BODY, add_joints
 from wsrender.robots.urdf import Joint, Link, Mimic, Urdf, read_urdf
 from wsrender.robots.urdf_shapes import PRIMITIVES, add_primitives, add_shapes
 
@@ -22,26 +24,33 @@ AddShapes = Callable[[mujoco.MjSpec, mujoco.MjsBody, Link], None]
 _WORLD = "world"  # what MuJoCo calls the ground
 
 
-def compile_urdf(robot: Element, read_mesh: ReadMesh | None, field: str, length_unit_m: float = 1.0) -> CompiledModel:
+def compile_urdf(
+    robot: Element,
+    read_mesh: ReadMesh | None,
+    field: str,
+    length_unit_m: float = 1.0,
+    mount: Sequence[MountJoint] = (),
+) -> CompiledModel:
     """The compiled model of a ``<robot>`` element, its lengths in ``length_unit_m``.
 
     Every link, fixed or not, becomes a body of its name; a link "world" that is not the root is a body of another name
-    with a site "world". The root link stands still in the world. Inertia comes from ``<inertial>`` alone, and is left
-    out where no joint moves a link. Primitive shapes are kept as massless geometry, meshes are read where shapes are
-    asked for; without ``read_mesh`` there are none, of which there is a notice. Floating and planar joints are held at
-    zero, and noted as faults of the path through them. Joints that cannot be read, held too, and revolute ones
-    whose limits are missing, equal or upside down are joint faults. Limits that are both 0, as exporters write them
-    where none were set, or infinite count as none. Raises ModelError.
+    with a site "world". The root link stands still in the world, or on the joints of a ``mount``. Inertia comes from
+    ``<inertial>`` alone, and is left out where no joint moves a link. Primitive shapes are kept as massless geometry,
+    meshes are read where shapes are asked for; without ``read_mesh`` there are none, of which there is a notice.
+    Floating and planar joints are held at zero, and noted as faults of the path through them. Joints that cannot be
+    read, held too, and revolute ones whose limits are missing, equal or upside down are joint faults. Limits that are
+    both 0, as exporters write them where none were set, or infinite count as none. Raises ModelError.
     """
     urdf = read_urdf(robot, field)
-    spec = _spec_of(urdf, add_primitives)
+    spec = _spec_of(urdf, add_primitives, bool(mount))
     to_metres(spec, length_unit_m)
+    add_joints(spec, mount)
     model, inertia_faults, notices = compile_with_inertials(spec, field)
     joints = [(joint, model.body(_body_name(joint.child, urdf)).id) for joint in urdf.joints.values()]
     return CompiledModel(
         model,
         urdf.name,
-        partial(_with_geometry, urdf, read_mesh or from_assets({}), field, length_unit_m),
+        partial(_with_geometry, urdf, read_mesh or from_assets({}), field, length_unit_m, mount),
         path_faults={
             body: f"joint {joint.name!r} is {joint.kind}: name a base below it, such as {joint.child!r}"
             for joint, body in joints
@@ -50,17 +59,17 @@ def compile_urdf(robot: Element, read_mesh: ReadMesh | None, field: str, length_
         inertia_faults=inertia_faults,
         joint_faults=tuple(fault for joint, body in joints if (fault := _fault(joint, body, urdf.joints))),
         unset_limits=tuple(j.name for j, _ in joints if j.kind == "revolute" and j.limits == (0.0, 0.0)),
-        velocity_limits=in_metres(model, [urdf.joints[j].velocity for j in _names(model)], length_unit_m),
+        velocity_limits=in_metres(model, [0.0] * len(mount) + _velocities(urdf, model, len(mount)), length_unit_m),
         notices=notices if read_mesh else (*_dropped_meshes(urdf), *notices),
     )
 
 
-def _names(model: mujoco.MjModel) -> list[str]:
-    return [model.joint(k).name for k in range(model.njnt)]
+def _velocities(urdf: Urdf, model: mujoco.MjModel, first: int) -> list[float]:
+    return [urdf.joints[model.joint(k).name].velocity for k in range(first, model.njnt)]
 
 
 def _with_geometry(
-    urdf: Urdf, read_mesh: ReadMesh, field: str, length_unit_m: float, purpose: Purpose
+    urdf: Urdf, read_mesh: ReadMesh, field: str, length_unit_m: float, mount: Sequence[MountJoint], purpose: Purpose
 ) -> tuple[mujoco.MjModel, tuple[Notice, ...]]:
     """See `CompiledModel.with_geometry`. What is seen but cannot be had is left out, with one notice.
 
@@ -69,8 +78,9 @@ def _with_geometry(
     missing: list[str] = []
     visuals = purpose == "visual" and any(link.visuals for link in urdf.links.values())
     which = "visuals" if visuals else "collisions"
-    spec = _spec_of(urdf, partial(add_shapes, purpose, which, read_mesh, missing, field))
+    spec = _spec_of(urdf, partial(add_shapes, purpose, which, read_mesh, missing, field), bool(mount))
     to_metres(spec, length_unit_m)
+    add_joints(spec, mount)
     model, _, _ = compile_with_inertials(spec, field)
     if purpose == "collision":
         return with_small_hulls(spec, model, field)
@@ -78,20 +88,22 @@ def _with_geometry(
     return model, (Notice("meshes_missing", said),) if said else ()
 
 
-def _spec_of(urdf: Urdf, add_shapes: AddShapes) -> mujoco.MjSpec:
+def _spec_of(urdf: Urdf, add_shapes: AddShapes, carried: bool) -> mujoco.MjSpec:
     spec = mujoco.MjSpec()
     spec.modelname = urdf.name
     spec.compiler.degree = False
     spec.compiler.inertiafromgeom = mujoco.mjtInertiaFromGeom.mjINERTIAFROMGEOM_FALSE
-    _add_links(spec, urdf, add_shapes)
+    _add_links(spec, urdf, add_shapes, carried)
     _add_mimics(spec, urdf)
     return spec
 
 
-def _add_links(spec: mujoco.MjSpec, urdf: Urdf, add_shapes: AddShapes) -> None:
-    world = spec.worldbody
-    bodies = {urdf.root: world if urdf.root == _WORLD else world.add_body(name=urdf.root)}
-    standing = {urdf.root}  # links that no joint moves: what they weigh matters to nothing
+def _add_links(spec: mujoco.MjSpec, urdf: Urdf, add_shapes: AddShapes, carried: bool) -> None:
+    ground = spec.worldbody.add_body(name=BODY) if carried else spec.worldbody
+    bodies = {urdf.root: ground if urdf.root == _WORLD else ground.add_body(name=urdf.root)}
+    standing = set() if carried else {urdf.root}  # links that no joint moves: what they weigh matters to nothing
+    if carried:
+        _add_inertial(bodies[urdf.root], urdf.links[urdf.root])
     add_shapes(spec, bodies[urdf.root], urdf.links[urdf.root])
     for joint in urdf.joints.values():
         body = bodies[joint.parent].add_body(

@@ -15,9 +15,11 @@ from wsrender.errors import MissingExtraError, ModelError
 MAX_BYTES = 16 * 2**20
 MAX_ELEMENTS = 20_000  # the largest robots have 4,000
 MAX_DEPTH = 200  # MuJoCo compiles bodies recursively
+MOST_SHOWN = 100  # characters of a text in an error
 
 _ENCODING = re.compile(rb"""<\?xml[^>]*\sencoding\s*=\s*["']([A-Za-z0-9._-]+)["']""")
-_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
+_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
+_DIGITS = re.compile(r"\d{1,9}", re.ASCII)
 
 
 def parse(text: str | bytes, field: str = "model") -> ElementTree.Element:
@@ -66,7 +68,7 @@ def number(text: str, field: str, where: str) -> float:
     text = text.strip()
     value = float(text) if _NUMBER.fullmatch(text) else math.nan
     if not math.isfinite(value):
-        raise ModelError(field, f"{where} is {text!r}; a finite number is needed")
+        raise ModelError(field, f"{where} is {_shown(text)}; a finite number is needed")
     return value
 
 
@@ -74,8 +76,23 @@ def numbers(text: str, count: int, field: str, where: str) -> list[float]:
     """The ``count`` finite numbers of ``text``, separated by white space."""
     words = text.split()
     if len(words) != count:
-        raise ModelError(field, f"{where} is {text!r}; {count} numbers are needed")
+        raise ModelError(field, f"{where} is {_shown(text)}; {count} numbers are needed")
     return [number(word, field, where) for word in words]
+
+
+def plain_digits(text: str, field: str, where: str) -> int:
+    """The count written as ``text`` in up to nine digits and nothing else: no two programs read those differently.
+
+    ``where`` names it in the ModelError raised otherwise.
+    """
+    if not _DIGITS.fullmatch(text):
+        raise ModelError(field, f"{where} is {_shown(text)}; up to nine plain digits are needed")
+    return int(text)
+
+
+def _shown(text: str) -> str:
+    """A text in quotation marks, of a long one the beginning."""
+    return repr(text) if len(text) <= MOST_SHOWN else repr(text[:MOST_SHOWN]) + "…"
 
 
 def _input_source(text: str | bytes) -> InputSource:

@@ -78,9 +78,10 @@ def document_of(analysis: str, given: dict[str, Any]) -> tuple[dict[str, Any], A
     for a robot that cannot be loaded.
     """
     fields, robots = dict(given), None
-    if "robot" in fields:
+    several = fields.get("robots") is not None
+    if "robot" in fields and not (several and fields["robot"] is None):
         robots, fields = _of_one(fields)
-    elif "robots" in fields:
+    elif several:
         robots, fields = _of_several(fields)
     elif not fields.keys().isdisjoint(SOURCES):
         robots, fields = _of_sources(fields)
@@ -115,23 +116,23 @@ def _loaded(robot: Any, base: str | None, tip: str | None) -> Robot:
 
 def _of_several(fields: dict[str, Any]) -> tuple[list[Robot | None], dict[str, Any]]:
     """The fields of a job of several robots, each with its own name and sampling."""
-    given = fields.pop("robots")
+    given, sampled = fields.pop("robots"), "sampling" in fields
     sampling, names = fields.pop("sampling", None), fields.pop("names", None) or [None] * len(given)
     samplings = sampling if isinstance(sampling, list | tuple) else [sampling] * len(given)
     if not len(given) == len(samplings) == len(names):
         counts = f"{len(samplings)} samplings and {len(names)} names for {len(given)} robots"
         raise InputError("robots", f"there are {counts}; one for each is needed")
-    entries = [_entry(*each) for each in zip(given, samplings, names, strict=True)]
+    entries = [_entry(*each, sampled) for each in zip(given, samplings, names, strict=True)]
     return [robot for _, robot in entries], {"robots": [entry for entry, _ in entries], **fields}
 
 
-def _entry(given: Any, sampling: Any, name: str | None) -> tuple[Any, Robot | None]:
+def _entry(given: Any, sampling: Any, name: str | None, sampled: bool) -> tuple[Any, Robot | None]:
     """One of several robots in a job document; what its own document says goes before."""
     beside = {} if name is None else {"name": name}
     if isinstance(given, Mapping):
         return {**sampling_entry(sampling), **beside, **given}, None
     robot = as_robot(given)
-    return {**arm_entry(robot), **sampling_entry(sampling, robot), **beside}, robot
+    return {**arm_entry(robot), **(sampling_entry(sampling, robot) if sampled else {}), **beside}, robot
 
 
 def _of_sources(fields: dict[str, Any]) -> tuple[list[Robot | None], dict[str, Any]]:

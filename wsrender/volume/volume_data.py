@@ -19,7 +19,9 @@ class VolumeData:
     Voxel (i, j, k) of the arrays covers [(first_voxel + (i, j, k)) r, … + r) with r = ``voxel_size_m``;
     x runs along the first axis. ``count`` is int64 of shape (nx, ny, nz); ``statistics[s][name]`` holds
     statistic s ("maximum", "minimum", "mean") of index ``name``, float64 or float32, NaN in empty voxels.
-    ``vectors[name]`` (nx, ny, nz, 3) holds the mean of a vector in world axes. ``units`` are of both.
+    ``vectors[name]`` (nx, ny, nz, 3) holds the mean of a vector in world axes. ``units`` are of both. Where samples are
+    kept, ``best[name]`` (nx, ny, nz) uint64 is the number of the one with a voxel's largest value of an index, the
+    smallest among equals, 0 in empty voxels: `wsrender.configuration_of` has its configuration.
 
     ``voxels`` is the same without the empty voxels. A volume made of them (`of_voxels`) makes each array when it is
     asked for, which raises ResourceError, with the numbers, where it does not fit in memory. One made of arrays raises
@@ -28,6 +30,7 @@ class VolumeData:
 
     statistics: Mapping[str, Values]
     vectors: Values
+    best: Values
 
     def __init__(
         self,
@@ -37,18 +40,21 @@ class VolumeData:
         statistics: Mapping[str, Values] | None = None,
         units: Mapping[str, str] | None = None,
         vectors: Values | None = None,
+        best: Values | None = None,
     ):
         self.voxel_size_m, self.first_voxel, self.units = voxel_size_m, first_voxel, dict(units or {})
         nx, ny, nz = count.shape
         self.shape = nx, ny, nz
         self._count: Values = _read_only({"count": count})
         self.statistics = {s: _read_only(by_index) for s, by_index in (statistics or {}).items()}
-        self.vectors = _read_only(vectors or {})
+        self.vectors, self.best = _read_only(vectors or {}), _read_only(best or {})
         for statistic, by_index in self.statistics.items():
             for name, values in by_index.items():
                 _check_shape(f"statistics.{statistic}.{name}", values, self.shape)
         for name, values in self.vectors.items():
             _check_shape(f"vectors.{name}", values, (*self.shape, 3))
+        for name, values in self.best.items():
+            _check_shape(f"best.{name}", values, self.shape)
 
     @classmethod
     def of_voxels(
@@ -69,12 +75,13 @@ class VolumeData:
             for statistic, by_index in voxels.statistics.items()
         }
         volume.vectors = _Arrays("vectors", voxels, voxels.vectors, made)
+        volume.best = _Arrays("best", voxels, voxels.best, made)
         return volume
 
     @cached_property
     def voxels(self) -> Voxels:
         """The voxels that hold something."""
-        return Voxels.of_arrays(self.count, self.statistics, self.vectors)
+        return Voxels.of_arrays(self.count, self.statistics, self.vectors, self.best)
 
     @property
     def count(self) -> np.ndarray:
@@ -143,8 +150,19 @@ class _Arrays(Mapping[str, np.ndarray]):
         return len(self._values)
 
 
+_MERGED = {
+    **dict.fromkeys(("maximum", "number", "product", "fraction"), np.fmax),
+    "minimum": np.fmin,
+    "samples": np.add,
+}
+
+
 def coarser(volume: VolumeData, factor: int) -> VolumeData:
-    """The volume on the lattice whose voxels are ``factor`` times as long; it too is anchored at the origin."""
+    """The volume on the lattice whose voxels are ``factor`` times as long; it too is anchored at the origin.
+
+    Each holds the largest maximum, the least minimum and so on of its occupied parts, means and shares weighted by
+    their samples; of what has no such rule, as labels, the value of its first part.
+    """
     first = np.array(volume.first_voxel)
     start = first // factor
     x, y, z = start.tolist()
@@ -161,15 +179,22 @@ def coarser(volume: VolumeData, factor: int) -> VolumeData:
     count = reduced(np.add, fine.count)
 
     def merged(statistic: str, values: np.ndarray) -> np.ndarray:
-        if statistic == "mean":
+        if statistic in ("mean", "share"):
             return reduced(np.add, values * fine.count) / count
-        return reduced(np.fmax if statistic == "maximum" else np.fmin, values)
+        if statistic in _MERGED:
+            return reduced(_MERGED[statistic], values)
+        return values[order[starts]] if len(starts) else values[:0]
 
     statistics = {
         statistic: {name: merged(statistic, values) for name, values in by_index.items()}
         for statistic, by_index in fine.statistics.items()
     }
-    voxels = Voxels((nx, ny, nz), cells.astype(np.int64), count, statistics)
+    # Of each coarse voxel the first by value, and then by number.
+    best = {}
+    for name, numbers in fine.best.items():
+        leading = np.lexsort([numbers, -fine.statistics["maximum"][name], part_of])
+        best[name] = numbers[leading[starts]] if len(starts) else numbers[:0]
+    voxels = Voxels((nx, ny, nz), cells.astype(np.int64), count, statistics, best=best)
     return VolumeData.of_voxels(volume.voxel_size_m * factor, (x, y, z), voxels, volume.units)
 
 

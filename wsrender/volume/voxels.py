@@ -18,7 +18,8 @@ class Voxels:
     """The V voxels of a block that hold something: a sample, or a value.
 
     ``shape`` is the block's, (nx, ny, nz); ``cells`` (V,) int64, sorted: their numbers in it, z fastest; ``count`` (V,)
-    int64: samples; ``statistics[s][name]`` (V,) and ``vectors[name]`` (V, 3): NaN where unknown.
+    int64: samples; ``statistics[s][name]`` (V,) and ``vectors[name]`` (V, 3): NaN where unknown. ``best[name]`` (V,)
+    uint64: the number of the sample with the voxel's largest value of an index, the smallest among equals.
     """
 
     shape: tuple[int, int, int]
@@ -26,9 +27,12 @@ class Voxels:
     count: np.ndarray
     statistics: Mapping[str, Values] = field(default_factory=dict)
     vectors: Values = field(default_factory=dict)
+    best: Values = field(default_factory=dict)
 
     @classmethod
-    def of_arrays(cls, count: np.ndarray, statistics: Mapping[str, Values], vectors: Values) -> "Voxels":
+    def of_arrays(
+        cls, count: np.ndarray, statistics: Mapping[str, Values], vectors: Values, best: Values | None = None
+    ) -> "Voxels":
         """From dense arrays (nx, ny, nz), of vectors (nx, ny, nz, 3)."""
         holds = count != 0
         for array in (*(array for by_index in statistics.values() for array in by_index.values()), *vectors.values()):
@@ -40,7 +44,8 @@ class Voxels:
             return array[holds]
 
         of_statistics = {s: _mapped(by_index, taken) for s, by_index in statistics.items()}
-        return cls((nx, ny, nz), np.flatnonzero(holds), count[holds], of_statistics, _mapped(vectors, taken))
+        others = _mapped(vectors, taken), _mapped(best or {}, taken)
+        return cls((nx, ny, nz), np.flatnonzero(holds), count[holds], of_statistics, *others)
 
     @property
     def at(self) -> np.ndarray:
@@ -72,7 +77,8 @@ class Voxels:
             for s, by_index in first.statistics.items()
         }
         vectors = {name: joined(lambda part, name=name: part.vectors[name]) for name in first.vectors}
-        return cls(first.shape, cells[order], joined(lambda part: part.count), statistics, vectors)
+        best = {name: joined(lambda part, name=name: part.best[name]) for name in first.best}
+        return cls(first.shape, cells[order], joined(lambda part: part.count), statistics, vectors, best)
 
     def dense(self, values: np.ndarray) -> np.ndarray:
         """Values (V,) or (V, 3) of the voxels as an array of the block: NaN, or of whole numbers 0, in the others.
@@ -122,7 +128,7 @@ class Voxels:
 
     def _changed(self, shape: tuple[int, int, int], cells: np.ndarray, of: Callable[[np.ndarray], np.ndarray]):
         statistics = {s: _mapped(by_index, of) for s, by_index in self.statistics.items()}
-        return Voxels(shape, cells, of(self.count), statistics, _mapped(self.vectors, of))
+        return Voxels(shape, cells, of(self.count), statistics, _mapped(self.vectors, of), _mapped(self.best, of))
 
 
 def empty_array(shape: tuple[int, ...], dtype: np.dtype) -> np.ndarray:

@@ -1,18 +1,16 @@
 """Solids by their closed surface: what the triangles of a mesh enclose, and the ground under a field of heights."""
 
 from dataclasses import dataclass
-from io import BytesIO
-from pathlib import Path
 
 import numpy as np
 from scipy.spatial import ConvexHull
 
 from wsrender.documents.shapes import MOST_HEIGHTS, HeightField, Mesh
 from wsrender.errors import InputError
+from wsrender.robots.array_files import content_of, of_npy
 from wsrender.robots.hulls import LEAST_M3, MOST_VERTICES
 from wsrender.robots.mesh_files import Triangles
 from wsrender.robots.triangles import ground
-from wsrender.robots.uploaded import uploaded_content
 from wsrender.world.meshes import triangles_of
 
 MOST_TRIANGLES = 100_000  # grids and trees of so many take seconds
@@ -87,14 +85,7 @@ def _heights(item: HeightField) -> np.ndarray:
     if item.heights_m is not None:
         return np.array(item.heights_m)
     field = "path" if item.model is None else "model"
-    if item.model is not None:
-        content = uploaded_content(item.model, field)
-    else:
-        try:
-            content = Path(str(item.path)).read_bytes()
-        except OSError as error:
-            raise InputError(field, f"{item.path} cannot be read: {error.strerror}") from error
-    return item.length_unit_m * _read(content, field)
+    return item.length_unit_m * _read(content_of(item.path, item.model, field), field)
 
 
 def _read(content: bytes, field: str) -> np.ndarray:
@@ -102,13 +93,9 @@ def _read(content: bytes, field: str) -> np.ndarray:
     allowed = f"it must hold at least 2 rows of at least 2 positive numbers, at most {MOST_HEIGHTS} in all"
     if len(content) > MOST_HEIGHT_BYTES:
         raise InputError(field, f"has {len(content)} bytes; {allowed}")
-    try:
-        heights = np.load(BytesIO(content), allow_pickle=False)
-    except Exception as error:  # its reader raises whatever it stumbles over
-        raise InputError(field, f"cannot be read as an array of NumPy (.npy): {error}") from error
-    right = isinstance(heights, np.ndarray) and heights.ndim == 2 and min(heights.shape) >= 2
-    if not right or heights.size > MOST_HEIGHTS or heights.dtype.kind not in "fiu":
-        raise InputError(field, f"has the shape {getattr(heights, 'shape', None)}; {allowed}")
+    heights = of_npy(content, field, "the file", allowed)
+    if min(heights.shape) < 2 or heights.size > MOST_HEIGHTS:
+        raise InputError(field, f"has the shape {heights.shape}; {allowed}")
     if not (np.isfinite(heights).all() and (heights > 0).all()):
         raise InputError(field, f"holds heights that are not positive numbers; {allowed}")
     return heights.astype(np.float64)

@@ -9,7 +9,7 @@ from distributed import Future
 from wsrender_server.jobs.files import DataFolder
 from wsrender_server.jobs.records import ComputationRecord, Progress
 from wsrender_server.jobs.steps import partial_name
-from wsrender_server.jobs.task import Step, Task
+from wsrender_server.jobs.task import Limits, Step, Task
 
 MESSAGES = {Step.PLAN: "planning", Step.SHARD: "samples", Step.FINISH: "finishing"}
 
@@ -22,14 +22,18 @@ class Attempt:
     target: str
     resolved: dict[str, Any] | None
     generation: int  # of the scheduler's losses, so that a lost task's name is not used again
+    limits: Limits | None = None
     futures: dict[tuple[Step, int], Future] = field(default_factory=dict)
     step: Step = Step.PLAN
     done: dict[int, int] = field(default_factory=dict)  # samples done by shard; of a refinement, points decided
     decided: tuple[int, int] = (0, 0)  # tables of the first step, points of the last, and about how many there will be
     kept: int = 0  # samples that an earlier run of the server had done
+    turn: int = 0  # of its owner, see `FairShare`
     losses: int = 0
     started: float = 0.0
     seconds: dict[str, float] = field(default_factory=dict)
+    failure: dict[str, Any] | None = None  # why it has ended, until the database has taken it
+    stopping: bool = False  # whether its tasks were told to end, until the database has taken that
     stale: bool = False  # whether the newest progress has not been recorded yet
 
     @property
@@ -52,6 +56,7 @@ class Attempt:
             self.resolved,
             shard,
             self.seconds if step == Step.FINISH else None,
+            self.limits,
         )
 
     def key(self, step: Step, shard: int) -> str:

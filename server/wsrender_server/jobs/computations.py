@@ -1,21 +1,23 @@
 """The job table seen by the dispatcher: computations to start, their progress, their ends."""
 
-import json
+import time
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from datetime import UTC, datetime
 from typing import Any
 
-from sqlalchemy import delete, func, select, update
+from sqlalchemy import bindparam, delete, func, select, update
 from sqlalchemy.orm import Session
 
 from wsrender import __version__
-from wsrender.analyses.jobs import canonical_json, parse_job
-from wsrender.errors import DocumentError
+from wsrender.analyses.jobs import parse_job
+from wsrender.errors import InputError
 from wsrender_server.jobs.changes import Changes
 from wsrender_server.jobs.database import Transactions
+from wsrender_server.jobs.documents import CanonicalDocument
+from wsrender_server.jobs.faults import DiskFull
 from wsrender_server.jobs.files import DataFolder
-from wsrender_server.jobs.identity import Identity, device_of
+from wsrender_server.jobs.identity import Identity
 from wsrender_server.jobs.records import (
     LIVE,
     UNFINISHED,
@@ -26,7 +28,10 @@ from wsrender_server.jobs.records import (
     Progress,
     QueueSummary,
 )
+from wsrender_server.jobs.sole_use import SoleUse
 from wsrender_server.jobs.tables import ArtifactFile, Computation, DeviceTarget, Job, enter, finish, move, report
+
+KEEP_TIMES_S = 5.0
 
 
 class ComputationStore:
@@ -36,6 +41,9 @@ class ComputationStore:
     changes: Changes
     files: DataFolder
     identity: Identity
+    sole_use: SoleUse
+    running_since: dict[tuple[str, int], float]  # by job and attempt, of `time.monotonic`
+    times_kept: float
 
     def unfinished(self) -> dict[str, tuple[ComputationState, int]]:
         """State and attempt of the computations that wait, run or are to stop, the most urgent first."""
@@ -73,7 +81,7 @@ class ComputationStore:
                 return
             row.resolved, row.target = dict(resolved), target
             # The key was made for the target that the workers had when the job was submitted, if any was known.
-            key = self.identity.key(row.owner, json.loads(row.document), target)
+            key = self.identity.key(row.owner, _document(row), target)
             if session.scalar(select(Computation.id).where(Computation.key == key)) is None:
                 row.key = key
 
@@ -94,9 +102,11 @@ class ComputationStore:
         """The result is there: its files are listed and every job that waited for it succeeds."""
         with self.transactions.write() as session:
             row = self._current(session, computation_id, attempt)
-            if row is None or row.state not in (ComputationState.RUNNING, ComputationState.STOPPING):
+            if row is None or row.state not in UNFINISHED:  # it waits where a worker went on while the server restarted
                 return
-            row.state = ComputationState.SUCCEEDED
+            artifacts = list(artifacts)
+            row.state, row.used_at = ComputationState.SUCCEEDED, datetime.now(UTC)
+            row.bytes = sum({record.sha256: record.bytes for record in artifacts}.values())
             session.execute(delete(ArtifactFile).where(ArtifactFile.computation_id == computation_id))
             for position, record in enumerate(artifacts):
                 session.add(
@@ -119,6 +129,8 @@ class ComputationStore:
             if row is None or row.state not in UNFINISHED:
                 return
             row.state = ComputationState.FAILED
+            if not error.get("retryable"):
+                self.files.forget_partials(computation_id)
             ids = self._end(session, computation_id, dict(error))
         self.changes.notify(*ids)
 
@@ -142,12 +154,34 @@ class ComputationStore:
             self.files.forget(computation_id)
         self.changes.notify(*ids)
 
-    def time_out(self, now: datetime | None = None) -> list[str]:
-        """Detach the jobs whose time is up; their ids."""
-        now = now or datetime.now(UTC)
-        due = select(Job.id, Job.computation_id).where(Job.state == JobState.RUNNING, Job.deadline <= now)
+    def time_out(self, now: float | None = None) -> list[str]:
+        """Detach the jobs whose time is up; their ids. ``now`` is of `time.monotonic`, which nobody sets.
+
+        How long they have run is kept in the database every few seconds, for the next process.
+        """
+        now = time.monotonic() if now is None else now
+        query = select(Job.id, Job.attempt, Job.computation_id, Job.timeout_s, Job.ran_s)
+        query = query.where(Job.state == JobState.RUNNING, Job.timeout_s.is_not(None))
         with self.transactions.read() as session:
-            candidates = session.execute(due.order_by(Job.computation_id)).all()
+            running = session.execute(query.order_by(Job.computation_id, Job.created_at, Job.id)).all()
+        begun: dict[tuple[str, int], float] = {(row.id, row.attempt): now - row.ran_s for row in running}
+        self.running_since = {
+            key: self.running_since[key] if key in self.running_since else begun[key] for key in begun
+        }
+        if self.running_since and now - self.times_kept >= KEEP_TIMES_S:
+            self.times_kept = now
+            row = Job.id == bindparam("job"), Job.attempt == bindparam("of_attempt"), Job.state == JobState.RUNNING
+            times = [
+                {"job": job, "of_attempt": attempt, "seconds": now - began}
+                for (job, attempt), began in self.running_since.items()
+            ]
+            with self.transactions.write() as session:
+                session.connection().execute(update(Job).where(*row).values(ran_s=bindparam("seconds")), times)
+        candidates = [
+            (row.id, row.computation_id)
+            for row in running
+            if now - self.running_since[row.id, row.attempt] >= (row.timeout_s or 0.0)
+        ]
         if not candidates:
             return []
         ids: list[str] = []
@@ -176,9 +210,15 @@ class ComputationStore:
             running = Computation.state == ComputationState.RUNNING
             session.execute(update(Computation).where(running).values(state=ComputationState.WAITING))
             others = Computation.version != __version__, Computation.state != ComputationState.SUCCEEDED
-            renewed = [self._renewed(session, row) for row in session.scalars(select(Computation).where(*others))]
-        for computation_id in renewed:
-            self.files.forget_partials(computation_id)
+            old = list(session.scalars(select(Computation.id).where(*others)))
+            known = set(session.scalars(select(Computation.id)))
+            of_this = Computation.facts.is_(None), Computation.version == __version__  # no other's keys are asked for
+            plain = list(session.scalars(select(Computation.id).where(*of_this)))
+        for computation_id in old:
+            self._renew(computation_id)
+        for computation_id in plain:
+            self._describe(computation_id)
+        self.files.forget_documents_but(known)
 
     def set_targets(self, targets: Mapping[str, str]) -> None:
         """Keep which target a request for a device ("auto", "cpu", "cuda", …) means on the workers there are."""
@@ -204,17 +244,45 @@ class ComputationStore:
         with self.transactions.read() as session:
             session.execute(select(1))
 
-    def _renewed(self, session: Session, row: Computation) -> str:
-        """Let a computation without a result be one of this version, its document in this version's form; its id."""
-        row.version, row.resolved, row.target = __version__, None, None
-        with suppress(DocumentError):  # which its plan will meet again, and its jobs fail with
-            row.document = canonical_json(parse_job(json.loads(row.document)))
-        row.attempt += row.state == ComputationState.WAITING
-        target = self._target(session, device_of(document := json.loads(row.document)))
-        key = self.identity.key(row.owner, document, target)
-        if session.scalar(select(Computation.id).where(Computation.key == key)) is None:
-            row.key = key
-        return row.id
+    def _renew(self, computation_id: str) -> None:
+        """Let a computation without a result be one of this version, its document in this version's form."""
+        with self.transactions.read() as session:
+            row = session.get(Computation, computation_id)
+            if row is None or row.state == ComputationState.SUCCEEDED:
+                return
+            document = _document(row)
+        with suppress(InputError):  # which its plan will meet again, and its jobs fail with
+            read = parse_job(document.read(self.files, computation_id))
+            document = CanonicalDocument.of(read.model_dump(mode="json"))
+        with suppress(DiskFull):  # the row may hold it as well
+            document = document.kept(self.files, computation_id)
+        with self.transactions.write() as session:
+            row = session.get(Computation, computation_id)
+            if row is None or row.version == __version__:  # deleted or renewed meanwhile
+                return
+            row.version, row.resolved, row.target = __version__, None, None
+            row.document, row.facts = document.text or "", document.facts
+            row.attempt += row.state == ComputationState.WAITING
+            key = self.identity.key(row.owner, document, self._target(session, document.device))
+            if session.scalar(select(Computation.id).where(Computation.key == key)) is None:
+                row.key = key
+        self.files.forget_partials(computation_id)
+        self.files.forget_document(computation_id, but=document.sha256)
+
+    def _describe(self, computation_id: str) -> None:
+        """Give a computation without facts those of its document, and the key that goes with them."""
+        with self.transactions.read() as session:
+            document = _document(session.get_one(Computation, computation_id))
+        with self.transactions.write() as session:
+            row = session.get(Computation, computation_id)
+            if row is None or row.facts is not None:
+                return
+            row.facts = document.facts
+            target = row.target or self._target(session, document.device)
+            key = self.identity.key(row.owner, document, target)
+            taken = session.scalar(select(Computation.id).where(Computation.key == key))
+            if taken is None:
+                row.key = key
 
     def _target(self, session: Session, device: str) -> str | None:
         row = session.get(DeviceTarget, device)
@@ -260,12 +328,16 @@ def _counts(session: Session, table: type[Job] | type[Computation]) -> dict[str,
     return {row[0]: row[1] for row in rows}
 
 
+def _document(row: Computation) -> CanonicalDocument:
+    return CanonicalDocument.of_row(row.document, row.facts)
+
+
 def _record(row: Computation) -> ComputationRecord:
     return ComputationRecord(
         id=row.id,
         owner=row.owner,
         state=ComputationState(row.state),
-        document=json.loads(row.document),
+        document=_document(row),
         priority=row.priority,
         attempt=row.attempt,
         resolved=row.resolved,

@@ -4,7 +4,8 @@ import logging
 import queue
 import threading
 import time
-from collections.abc import Callable, Iterable, Sequence
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
 from typing import Any
 
@@ -13,17 +14,18 @@ from distributed import Future
 from wsrender_server.jobs.attempt import Attempt
 from wsrender_server.jobs.computations import ComputationStore
 from wsrender_server.jobs.engine import Engine, outcome_of
-from wsrender_server.jobs.faults import EngineUnavailable, StoreUnavailable
-from wsrender_server.jobs.identity import device_of
+from wsrender_server.jobs.fair_share import FairShare
+from wsrender_server.jobs.faults import EngineSlow, EngineUnavailable, StoreUnavailable
 from wsrender_server.jobs.records import ArtifactRecord, ComputationState
-from wsrender_server.jobs.task import Outcome, Step, Verdict, error
+from wsrender_server.jobs.task import Limits, Outcome, Step, Verdict, error
 from wsrender_server.settings import Settings
 
 TICK_S = 0.1
 RECORD_S = 0.5
 PAUSE_S = 1.0
 MOST_LOSSES = 4
-WORKERS_S = 90.0  # an embedded cluster without workers for so long is replaced
+# A cluster without workers for so much longer than one takes to start is replaced where it is embedded; so is a target.
+WORKERS_S = 30.0
 
 log = logging.getLogger(__name__)
 
@@ -31,20 +33,25 @@ log = logging.getLogger(__name__)
 class Dispatcher:
     """A thread between job table and engine. The table alone knows what is to be done: whatever is lost is done again.
 
-    At the start, and after the scheduler was lost, everything unfinished is submitted anew; partial results that are
-    on disk are not computed again.
+    At the start, and after the scheduler was lost, everything unfinished is submitted, by the names that it may still
+    have there; partial results that are on disk are not computed again.
     """
 
     def __init__(self, store: ComputationStore, settings: Settings):
         self.store = store
         self.engine = Engine(settings, self._on_message)
+        self._limits = Limits.of(settings)
         self._attempts: dict[str, Attempt] = {}
         self._inbox: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
         self._deferred: list[Callable[[], None]] = []
         self._targets: dict[str, str] = {}
+        self._shares = defaultdict[int, FairShare](FairShare)  # by priority: turns count among equals
         self._generation = 0  # of the scheduler's losses
         self._recorded = 0.0
+        self._made = time.time()
         self._served = time.monotonic()  # when a worker was last there
+        self._seen: dict[str, float] = {}  # when a worker of each target was last alive
+        self._workers_s = WORKERS_S + settings.worker_start_s
         self._end = threading.Event()
         self._wake = threading.Event()
         self._thread = threading.Thread(target=self._loop, name="dispatcher", daemon=True)
@@ -65,13 +72,20 @@ class Dispatcher:
         """Whether the thread runs, the scheduler answers and a worker is there."""
         return self._thread.is_alive() and self.engine.connected and bool(self._targets)
 
+    @property
+    def waits_for(self) -> str:
+        """What jobs that are queued wait for."""
+        if not self.engine.connected:
+            return f"waiting for {'the workers to start' if self.engine.embedded else 'the scheduler to answer'}"
+        return f"waiting for {'a free worker' if self._targets else 'a worker to start'}"
+
     def _loop(self) -> None:
         recovered = joined = False
         while not self._end.is_set():
             try:
                 if not recovered:
                     self.store.recover()
-                    self.store.files.empty_scratch()
+                    self.store.files.empty_scratch(self.store.unfinished(), self._made)
                     recovered = True
                 if not joined or not self.engine.connected:
                     self._join_engine()
@@ -79,6 +93,9 @@ class Dispatcher:
                 self._tick()
             except StoreUnavailable as fault:
                 log.warning("%s; trying again", fault)
+                self._end.wait(PAUSE_S)
+            except EngineSlow as fault:
+                log.warning("%s; waiting for it", fault)
                 self._end.wait(PAUSE_S)
             except EngineUnavailable as fault:
                 log.warning("%s; joining again", fault)
@@ -91,23 +108,33 @@ class Dispatcher:
             self._wake.clear()
 
     def _join_engine(self) -> None:
-        """Connect; what the lost scheduler knew is forgotten, so that it is submitted again."""
-        self._generation += bool(self._attempts)
-        self._attempts.clear()
+        """Connect; what is out is submitted again by its names, which a scheduler that was not lost knows."""
         self._targets.clear()
-        self.engine.connect()
+        self.engine.connect(self._resume)
         log.info("connected to the scheduler")
 
+    def _resume(self) -> None:
+        for computation_id, attempt in [*self._attempts.items()]:
+            if attempt.failure is not None or attempt.stopping:  # it has ended, once the database has taken that
+                continue
+            if attempt.futures:
+                self._hand_out(attempt, {place: str(future.key) for place, future in attempt.futures.items()})
+            else:  # it was between two steps
+                del self._attempts[computation_id]
+
     def _tick(self) -> None:
+        self.store.sole_use.keep()
         self._handle_inbox()
         self.store.time_out()
         self._update_targets()
+        self._leave_lost_targets()
         known = self.store.unfinished()
         old = [key for key, attempt in self._attempts.items() if known.get(key, (None, 0))[1] != attempt.record.attempt]
         unwanted = [key for key, (state, _) in known.items() if state == ComputationState.STOPPING]
         self._stop(set(old + unwanted))
+        ready = self._targets or not self.engine.embedded  # our own workers come anyway, and say what they are
         for computation_id, (state, _) in known.items():
-            if state != ComputationState.STOPPING and computation_id not in self._attempts and self._targets:
+            if ready and state != ComputationState.STOPPING and computation_id not in self._attempts:
                 self._launch(computation_id)
         self._record_progress()
 
@@ -125,7 +152,7 @@ class Dispatcher:
         targets = self.engine.targets()
         if targets:
             self._served = time.monotonic()
-        elif time.monotonic() - self._served > WORKERS_S and self.engine.embedded:
+        elif time.monotonic() - self._served > self._workers_s and self.engine.embedded:
             self._served = time.monotonic()
             self.engine.close()
             raise EngineUnavailable("the embedded cluster has no workers any more")
@@ -138,26 +165,52 @@ class Dispatcher:
         record = self.store.computation(computation_id)
         if record is None:
             return
-        kind = device_of(record.document).partition(":")[0]
-        target, resolved = self._targets.get(kind, self._targets["auto"]), record.resolved
-        if resolved is not None and record.target in self._targets.values():
+        kind = record.document.device.partition(":")[0]
+        target, resolved = self._planners(kind), record.resolved
+        if resolved is not None and (not self._targets or record.target in self.engine.alive):
             target = record.target or target
         elif resolved is not None:
             # The hardware is another one now; partial results of two targets do not mix.
             self.store.files.forget_partials(computation_id)
             resolved = None
-        attempt = self._attempts[computation_id] = Attempt(record, target, resolved, self._generation)
+        attempt = self._attempts[computation_id] = Attempt(record, target, resolved, self._generation, self._limits)
+        attempt.turn = self._shares[record.priority].turn(record.owner)
         if resolved is None:
             self._submit(attempt, Step.PLAN)
         else:
             self._submit_shards(attempt)
 
+    def _planners(self, kind: str) -> str:
+        """Which workers plan for a kind of device, and so choose the target; for "auto" those with GPUs, if any.
+
+        Without workers the plan waits at the scheduler, where whoever starts workers for what waits sees it.
+        """
+        if kind == "auto" and "cuda" in self._targets:
+            return "cuda"
+        return "auto" if self._targets and kind not in self._targets else kind
+
+    def _leave_lost_targets(self) -> None:
+        """Begin anew what waits for hardware that has been away for long, while other is there."""
+        now = time.monotonic()
+        self._seen.update(dict.fromkeys((*self.engine.alive, *self._targets), now))
+        for computation_id, attempt in list(self._attempts.items()):
+            away = now - self._seen.setdefault(attempt.target, now)
+            elsewhere = attempt.resolved is not None or attempt.record.document.device == "auto"
+            if elsewhere and self._targets and away > self._workers_s:
+                self.engine.stop([], list(attempt.futures.values()))
+                self._generation += 1  # its tasks get other names
+                del self._attempts[computation_id]
+
     def _submit(self, attempt: Attempt, step: Step, shards: Sequence[int] = (0,)) -> None:
-        tasks = {attempt.key(step, shard): attempt.task(step, shard) for shard in shards}
-        futures = self.engine.submit(tasks, attempt.record.priority, attempt.target)
-        for shard, future in zip(shards, futures, strict=True):
-            attempt.futures[step, shard] = future
-            future.add_done_callback(partial(self._future_done, attempt, step, shard))
+        self._hand_out(attempt, {(step, shard): attempt.key(step, shard) for shard in shards})
+
+    def _hand_out(self, attempt: Attempt, keys: Mapping[tuple[Step, int], str]) -> None:
+        """Submit tasks of one step by the names ``keys``."""
+        tasks = {key: attempt.task(*place) for place, key in keys.items()}
+        futures = self.engine.submit(tasks, attempt.record.priority, attempt.target, attempt.turn)
+        for place, future in zip(keys, futures, strict=True):
+            attempt.futures[place] = future
+            future.add_done_callback(partial(self._future_done, attempt, *place))
 
     def _future_done(self, attempt: Attempt, step: Step, shard: int, future: Future) -> None:
         self._put(lambda: self._ended(attempt, step, shard, future))
@@ -170,7 +223,8 @@ class Dispatcher:
             self._submit_finish(attempt)
 
     def _submit_finish(self, attempt: Attempt) -> None:
-        attempt.seconds["sweep"] = attempt.seconds.get("sweep", 0.0) + time.monotonic() - attempt.started
+        began, attempt.started = attempt.started, time.monotonic()
+        attempt.seconds["sweep"] = attempt.seconds.get("sweep", 0.0) + attempt.started - began
         attempt.step, attempt.stale = Step.FINISH, True
         self._submit(attempt, Step.FINISH, [len(attempt.shards)])  # of another name after every round
 
@@ -188,6 +242,7 @@ class Dispatcher:
         if attempt is None or attempt.token != message["token"]:
             return
         if "step" in message:
+            self._shares[attempt.record.priority].begun(attempt.turn)
             self.store.begin(computation_id, attempt.record.attempt)
             attempt.stale = True
         elif "decided" in message:
@@ -200,10 +255,13 @@ class Dispatcher:
         computation_id = attempt.record.id
         if self._attempts.get(computation_id) is not attempt or attempt.futures.get((step, shard)) is not future:
             return
-        if future.status in ("cancelled", "lost"):  # with the scheduler
-            self._generation += 1
-            del self._attempts[computation_id]
+        if attempt.failure is not None:  # its tasks were stopped by us, and the database did not answer then
+            self._fail(attempt, attempt.failure)
             return
+        if future.status in ("cancelled", "lost") and attempt.stopping:  # by us
+            return
+        if future.status in ("cancelled", "lost"):  # with the connection
+            raise EngineUnavailable("the scheduler was lost for a moment")
         outcome = outcome_of(future)
         if outcome is None or outcome.verdict in (Verdict.LOST, Verdict.STOPPED):
             self._lost(attempt, step, shard, outcome)
@@ -213,19 +271,24 @@ class Dispatcher:
             self._fail(attempt, outcome.error or {})
         elif isinstance(outcome.value, dict):  # a plan, or more shards of it
             self.store.settle(computation_id, outcome.value["resolved"], outcome.value["target"])
-            attempt.resolved = outcome.value["resolved"]
+            attempt.resolved, attempt.target = outcome.value["resolved"], outcome.value["target"]
             attempt.seconds.setdefault("plan", outcome.value.get("seconds", 0.0))
-            del attempt.futures[step, shard]
             self._submit_shards(attempt)
+            self._drop(attempt, (step, shard), future)
         elif step == Step.SHARD:
             attempt.reported(shard, attempt.shards[shard][1])
-            del attempt.futures[step, shard]
-            if not attempt.futures:
+            if len(attempt.futures) == 1:
                 self._submit_finish(attempt)
+            self._drop(attempt, (step, shard), future)
         else:
             records = [ArtifactRecord(**record) for record in outcome.value]
             self.store.complete(computation_id, attempt.record.attempt, records)
             del self._attempts[computation_id]
+
+    def _drop(self, attempt: Attempt, place: tuple[Step, int], future: Future) -> None:
+        """Forget a task once what follows is out: where that fails, its end is handled again."""
+        if attempt.futures.get(place) is future:  # and not the same step, out once more
+            del attempt.futures[place]
 
     def _lost(self, attempt: Attempt, step: Step, shard: int, outcome: Outcome | None) -> None:
         """A task was lost with its worker, or a partial result was: do it again, a few times."""
@@ -236,13 +299,15 @@ class Dispatcher:
             )
             self._fail(attempt, reason)
         elif step == Step.FINISH:
-            del attempt.futures[step, shard]
+            future = attempt.futures[step, shard]
             self._submit_shards(attempt)  # those whose files are there are not computed again
+            self._drop(attempt, (step, shard), future)
         else:
             self._submit(attempt, step, [shard])
 
     def _fail(self, attempt: Attempt, reason: dict[str, Any]) -> None:
         """End an attempt that failed; its other tasks are stopped first, so that a retry meets none of them."""
+        attempt.failure = reason
         self.engine.stop([attempt.token], list(attempt.futures.values()))
         self.store.fail(attempt.record.id, attempt.record.attempt, reason)
         self._attempts.pop(attempt.record.id, None)
@@ -254,6 +319,8 @@ class Dispatcher:
         if not attempts:
             return
         futures = [future for attempt in attempts.values() for future in attempt.futures.values()]
+        for attempt in attempts.values():
+            attempt.stopping = True
         self.engine.stop([attempt.token for attempt in attempts.values()], futures)
         for computation_id, attempt in attempts.items():
             self.store.stopped(computation_id, attempt.record.attempt)
@@ -262,7 +329,7 @@ class Dispatcher:
     def _unknown_attempt(self, computation_id: str) -> Attempt | None:
         """The attempt at a computation that this server has not launched: an earlier run of it may have."""
         record = self.store.computation(computation_id)
-        return None if record is None else Attempt(record, "", None, self._generation)
+        return None if record is None else Attempt(record, "", None, self._generation, self._limits)
 
     def _record_progress(self) -> None:
         now = time.monotonic()

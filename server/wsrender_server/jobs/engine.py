@@ -13,18 +13,21 @@ from distributed import Client, Future, LocalCluster
 from distributed.comm.core import CommClosedError
 
 from wsrender_server.jobs import worker as workers_side
-from wsrender_server.jobs.faults import EngineUnavailable
+from wsrender_server.jobs.faults import EngineSlow, EngineUnavailable
 from wsrender_server.jobs.records import WorkerRecord
 from wsrender_server.jobs.task import Outcome, Step, Task
 from wsrender_server.settings import Settings
 
 CONNECT_S = 10
 ANSWER_S = 3  # of the scheduler
+LOST_S = 60.0  # one that is connected is slow until then
 WORKER_ANSWER_S = 1.5  # whoever is canceled waits no longer for a worker that hangs
 QUIET_S = 20.0  # a worker gives a sign of life every second or so
 WORKER_TTL_S = 30  # a worker without one for so long is lost, and its tasks go to others
 # A later step goes before the earlier steps of other jobs: what has begun is finished first.
 URGENCY = {Step.PLAN: 0, Step.SHARD: 1, Step.FINISH: 2}
+
+MOST_TURNS = 2**32  # of owners, within which the urgency is the same
 
 LOST = (CommClosedError, OSError, TimeoutError, RuntimeError, ValueError)
 
@@ -43,6 +46,8 @@ class Engine:
         self._cluster: LocalCluster | None = None
         self._client: Client | None = None
         self._lock = threading.Lock()
+        self.alive: set[str] = set()  # targets of the workers that are alive, as `targets` found them last
+        self._answered = 0.0  # when the scheduler last did
         self._heard: dict[str, tuple[float, float]] = {}  # last sign of life of each worker, and when it was new here
 
     @property
@@ -55,14 +60,17 @@ class Engine:
         """Whether the scheduler answers."""
         return self._client is not None and self._client.status == "running"
 
-    def connect(self) -> None:
-        """Start the cluster or join it; after a loss, join it anew. Raises EngineUnavailable."""
-        self._leave()
+    def connect(self, resume: Callable[[], None] = lambda: None) -> None:
+        """Start the cluster or join it; after a loss, join it anew. Raises EngineUnavailable.
+
+        ``resume`` hands out what was out before, by the same names, before the former connection ends: what a scheduler
+        still knows runs on.
+        """
+        former = self._client
         try:
             # Where an embedded scheduler listens is nobody's business but its own workers'.
             with config.set(
                 {
-                    "distributed.worker.daemon": False,
                     "distributed.comm.timeouts.connect": CONNECT_S,
                     "distributed.scheduler.worker-ttl": f"{WORKER_TTL_S}s",
                 }
@@ -79,18 +87,23 @@ class Engine:
             client.subscribe_topic(workers_side.TOPIC, lambda event: self._on_message(event[1]))
         except LOST as error:
             raise EngineUnavailable(f"the scheduler does not answer: {error}") from error
-        self._client = client
+        self._client, self._answered = client, time.monotonic()
+        try:
+            resume()
+        finally:
+            _leave(former)
 
     def close(self) -> None:
         """Leave the scheduler; end an embedded cluster."""
-        self._leave()
+        client, self._client = self._client, None
+        _leave(client)
         cluster, self._cluster = self._cluster, None
         if cluster is not None:
             with contextlib.suppress(*LOST):
                 cluster.close(timeout=ANSWER_S)
 
-    def submit(self, tasks: dict[str, Task], priority: int, target: str) -> list[Future]:
-        """Hand tasks of one step to the scheduler, by name; workers of ``target`` run them.
+    def submit(self, tasks: dict[str, Task], priority: int, target: str, turn: int = 0) -> list[Future]:
+        """Hand tasks of one step to the scheduler, by name; workers of ``target``, or of a kind of device, run them.
 
         One message for all: a thousand messages would keep this process from anything else for seconds. Raises
         EngineUnavailable.
@@ -101,13 +114,13 @@ class Engine:
                 workers_side.run_task,
                 list(tasks.values()),
                 key=list(tasks),
-                priority=priority * len(URGENCY) + URGENCY[step],
+                priority=(priority * len(URGENCY) + URGENCY[step]) * MOST_TURNS - turn,
                 resources={target: 1},
                 retries=0,
                 pure=False,
             )
         except LOST as error:
-            raise EngineUnavailable(f"the scheduler does not answer: {error}") from error
+            raise self._fault(error) from error
 
     def stop(self, tokens: list[str], futures: list[Future]) -> None:
         """End attempts: nothing of them starts any more, and their kernel processes are killed when this returns.
@@ -116,10 +129,11 @@ class Engine:
         """
         client = self._connected()
         try:
+            known = self._known()
             client.cancel(futures, force=True)
-            self._ask(self._known(), workers_side.stop_tokens, tokens)
+            self._ask(known, workers_side.stop_tokens, tokens)
         except LOST as error:
-            raise EngineUnavailable(f"the scheduler does not answer: {error}") from error
+            raise self._fault(error) from error
 
     def workers(self) -> list[WorkerRecord]:
         """The workers that answer; none where the scheduler does not."""
@@ -134,8 +148,8 @@ class Engine:
             WorkerRecord(
                 address=address,
                 host=info["host"],
-                target=(sorted(info["resources"], reverse=True) or [None])[0],
-                devices=tuple(sorted({target.partition(":")[0] for target in info["resources"]})),
+                target=max(_targets_of(info), default=None),
+                devices=tuple(sorted({target.partition(":")[0] for target in _targets_of(info)})),
                 busy=busy[address],
             )
             for address, info in known.items()
@@ -147,11 +161,11 @@ class Engine:
         try:
             known = self._known()
         except LOST as error:
-            raise EngineUnavailable(f"the scheduler does not answer: {error}") from error
+            raise self._fault(error) from error
         self._heard = {address: self._news(address, info["last_seen"]) for address, info in known.items()}
         alive = [info for address, info in known.items() if time.monotonic() - self._heard[address][1] < QUIET_S]
-        names = sorted({target for info in alive for target in info["resources"]})
-        targets = {device: name for name in names for device in [name.partition(":")[0]]}
+        self.alive = {target for info in alive for target in _targets_of(info)}
+        targets = {name.partition(":")[0]: name for name in sorted(self.alive)}
         if targets:
             targets["auto"] = targets.get("cuda", targets.get("cpu", ""))
         return targets
@@ -165,7 +179,14 @@ class Engine:
         client = self._connected()
         scheduler: Any = client.scheduler  # there is one while the client runs
         identity: Any = client.sync(scheduler.identity, n_workers=-1, callback_timeout=ANSWER_S)
+        self._answered = time.monotonic()
         return identity["workers"]
+
+    def _fault(self, error: Exception) -> EngineUnavailable:
+        """What an error of Dask means: a scheduler that is connected is lost only once it was silent for long."""
+        silent = time.monotonic() - self._answered
+        slow = isinstance(error, TimeoutError) and self.connected and silent < LOST_S
+        return (EngineSlow if slow else EngineUnavailable)(f"the scheduler does not answer: {error!r}")
 
     def _news(self, address: str, last_seen: float) -> tuple[float, float]:
         """A worker's last sign of life by the scheduler's clock, and when it was new by ours."""
@@ -185,6 +206,8 @@ class Engine:
 
     def _embedded(self) -> LocalCluster:
         if self._cluster is None:
+            # A worker that was lost begins anew; Dask would give its place up after 15 s.
+            config.set({"distributed.deploy.lost-worker-timeout": f"{self._settings.worker_start_s}s"})
             self._cluster = LocalCluster(
                 n_workers=self._settings.workers,
                 threads_per_worker=1,
@@ -199,12 +222,12 @@ class Engine:
             )
         return self._cluster
 
-    def _leave(self) -> None:
-        client, self._client = self._client, None
-        if client is not None:
-            with contextlib.suppress(*LOST):
-                client.unsubscribe_topic(workers_side.TOPIC)  # else the scheduler tells the log whom it cannot tell
-                client.close(timeout=ANSWER_S)
+
+def _leave(client: Client | None) -> None:
+    if client is not None:
+        with contextlib.suppress(*LOST):
+            client.unsubscribe_topic(workers_side.TOPIC)  # else the scheduler tells the log whom it cannot tell
+            client.close(timeout=ANSWER_S)
 
 
 async def _answers(
@@ -222,6 +245,11 @@ async def _answers(
     for task in asked.values():
         task.cancel()  # of one that has ended, nothing
     return {address: task.result() for address, task in asked.items() if task.done() and not _failed(task)}
+
+
+def _targets_of(info: dict[str, Any]) -> list[str]:
+    """The targets among what a worker computes on; a kind of device has no colon."""
+    return [name for name in info["resources"] if ":" in name]
 
 
 def _failed(task: asyncio.Task[Any]) -> bool:

@@ -7,9 +7,12 @@
         ├── IdempotencyConflict     the idempotency key was used with another body
         ├── InvalidTransition       the job's state does not allow what was asked
         ├── QueueFull               the owner has as many unfinished jobs as allowed
+        ├── QuotaExceeded           the owner's models take as many bytes as allowed
+        ├── ResultExpired           the job has succeeded, and its result is no longer kept
         ├── StoreUnavailable        the database is locked, gone or on a full disk; try again
         ├── DiskFull                less disk is free than the server keeps in reserve; try again
         └── EngineUnavailable       no scheduler or worker answers; try again
+            └── EngineSlow          the scheduler is there, and takes its time
 """
 
 from wsrender.errors import WsrenderError
@@ -33,9 +36,9 @@ class InvalidTransition(JobFault):
 
     code = "invalid_transition"
 
-    def __init__(self, state: str, action: str):
+    def __init__(self, state: str, action: str, subject: str = "a job"):
         self.state = state
-        super().__init__(f"a job that is {state} cannot be {action}")
+        super().__init__(f"{subject} that is {state} cannot be {action}")
 
 
 class QueueFull(JobFault):
@@ -47,6 +50,18 @@ class QueueFull(JobFault):
     def __init__(self, limit: int):
         self.limit = limit
         super().__init__(f"{limit} unfinished jobs are allowed at a time; wait for one to end or cancel one")
+
+
+class QuotaExceeded(JobFault):
+    """The owner's models take as many bytes as allowed."""
+
+    code = "quota_exceeded"
+
+
+class ResultExpired(JobFault):
+    """The job has succeeded, and its result is no longer kept; it can be retried."""
+
+    code = "result_expired"
 
 
 class StoreUnavailable(JobFault):
@@ -68,3 +83,7 @@ class EngineUnavailable(JobFault):
 
     code = "engine_unavailable"
     retryable = True
+
+
+class EngineSlow(EngineUnavailable):
+    """The scheduler is connected, and has not answered in time: nothing is lost."""

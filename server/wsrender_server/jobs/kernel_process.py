@@ -1,6 +1,5 @@
-"""The one process of a worker in which kernels run: persistent, watched, and killed where it must end."""
+"""The process of a worker in which kernels run: persistent, watched, and killed where it must end; a spare waits."""
 
-import errno
 import multiprocessing
 import os
 import signal
@@ -8,8 +7,9 @@ import threading
 import time
 from collections import OrderedDict
 from collections.abc import Callable
-from concurrent.futures import CancelledError, TimeoutError
+from concurrent.futures import CancelledError, TimeoutError, wait
 from concurrent.futures.process import BrokenProcessPool
+from dataclasses import replace
 from multiprocessing.sharedctypes import RawArray
 from typing import Any
 
@@ -18,37 +18,92 @@ from pebble import ProcessExpired, ProcessPool
 from wsrender.errors import DocumentError, InputError, WsrenderError
 from wsrender_server.jobs import steps
 from wsrender_server.jobs.child_process import kill, resident_bytes
-from wsrender_server.jobs.files import FULL
-from wsrender_server.jobs.task import Outcome, Task, Verdict, error
+from wsrender_server.jobs.files import is_full
+from wsrender_server.jobs.task import Limits, Outcome, Step, Task, Verdict, error
 from wsrender_server.settings import Settings
 
 LOOK_S = 0.05
 REPORT_S = 0.4
+SPARE_AFTER_S = 2.0  # what takes less costs little to do again, and most servers of tests never do more
 REMEMBERED_TOKENS = 1000
 KILLED = -9  # exit code of a process that was killed
+LOST_AT_START = (ProcessExpired, BrokenProcessPool, CancelledError, RuntimeError)
+
+
+class _Child:
+    """A spawned process that dies with the task it is killed in; ``ready`` is what it does first."""
+
+    def __init__(self, settings: Settings, threads: int, first: Callable[[], Any]):
+        self.gauges = RawArray("q", 3)
+        self.pool = ProcessPool(
+            max_workers=1,
+            initializer=steps.start,
+            initargs=(settings, threads, self.gauges),
+            context=multiprocessing.get_context("spawn"),
+        )
+        self.ready = self.pool.schedule(first)
+
+    @property
+    def pid(self) -> int | None:
+        """The process, None where it has not started."""
+        return self.gauges[0] or None
+
+    def close(self) -> None:
+        """End it; a process killed in the middle may have left its pipes locked."""
+        kill(self.pid)
+        self.pool.stop()
+        self.pool.join()
+
+
+class _Guard:
+    """What a task may take of a process, and whether it has taken more."""
+
+    def __init__(self, task: Task, child: _Child):
+        assert task.limits is not None
+        self._child, self._limits, self._plans = child, task.limits, task.step == Step.PLAN
+        self._began = time.monotonic()
+        self._memory = task.limits.memory_bytes
+        if self._plans:  # beside what the process holds of earlier tasks
+            held = resident_bytes(child.pid)
+            self._memory = min(self._memory, held + task.limits.planning_memory_bytes)
+
+    def found(self) -> dict[str, Any] | None:
+        """The error of a task that has taken too much; None while it has not."""
+        if resident_bytes(self._child.pid) > self._memory:
+            if self._memory < self._limits.memory_bytes:
+                allowed = f"{self._limits.planning_memory_bytes / 2**30:.3g} GiB allowed for it; simplify the robot"
+                return error("out_of_memory", f"planning the job took more memory than the {allowed}")
+            allowed = f"{self._limits.memory_bytes / 2**30:.3g} GiB allowed; choose larger voxels or keep no map"
+            return error("out_of_memory", f"the job took more memory than the {allowed}")
+        if self._plans and time.monotonic() - self._began > self._limits.planning_s:
+            allowed = f"{self._limits.planning_s:g} s allowed for it; simplify the robot"
+            return error("too_slow", f"planning the job took longer than the {allowed}")
+        return None
 
 
 class KernelProcess:
     """Runs one task at a time in a spawned process.
 
-    A native crash, too much memory or a kill ends that process and its task only; the next task gets a new one.
+    A native crash, too much memory or a kill ends that process and its task only; the next task gets another, which
+    waits warm once a task has taken long.
     """
 
     def __init__(self, settings: Settings):
-        self._limit = settings.max_memory_bytes
-        self._gauges = RawArray("q", 3)
-        threads = settings.threads_per_worker or max(1, _cores() // max(1, settings.workers))
-        self._start = (settings, threads, self._gauges)
-        self._pool: ProcessPool | None = None
+        self._settings = settings
+        self._limits = Limits.of(settings)
+        self._threads = settings.threads_per_worker or max(1, _cores() // max(1, settings.workers))
+        self._child: _Child | None = None
+        self._spare: _Child | None = None
         self.closed = False
         self._lock = threading.Lock()
         self._token: str | None = None
+        self._computes = False
         self._stopped: OrderedDict[str, None] = OrderedDict()
 
     @property
     def pid(self) -> int | None:
         """The process, None where it has not started."""
-        return self._gauges[0] or None
+        return self._child and self._child.pid
 
     @property
     def busy(self) -> bool:
@@ -57,7 +112,7 @@ class KernelProcess:
 
     def describe(self) -> dict[str, str]:
         """Start the process; the target of each kind of device (see `steps.describe`)."""
-        return self._ready().schedule(steps.describe).result()
+        return self._current().pool.schedule(steps.describe).result()
 
     def run(self, task: Task, report: Callable[[int, int], None]) -> Outcome:
         """Run a task to its end; ``report`` gets the gauges (see `steps.start`) a few times a second. Never raises."""
@@ -66,74 +121,97 @@ class KernelProcess:
                 return Outcome(Verdict.STOPPED)
             self._token = task.token
         try:
-            future = self._ready().schedule(steps.run, args=[task])
-            return self._watched(task, future, report)
-        except (BrokenProcessPool, RuntimeError) as fault:
+            task = replace(task, limits=self._limits.within(task.limits))
+            child = self._started(task)
+            return Outcome(Verdict.STOPPED) if child is None else self._watched(child, task, report)
+        except LOST_AT_START as fault:
             self._discard()
-            return Outcome(Verdict.LOST, error=error("worker_lost", f"the kernel process did not start: {fault}"))
+            message = f"the kernel process did not start: {fault}"
+            return Outcome(Verdict.LOST, error=error("worker_lost", message, retryable=True))
         finally:
-            self._token = None
+            self._token, self._computes = None, False
 
     def stop(self, token: str) -> None:
-        """Kill the process if it works on an attempt; none of the attempt's tasks will start here any more."""
+        """Kill the process if it works on an attempt; none of the attempt's tasks will start here any more.
+
+        A process that is only starting goes on: the next task needs it.
+        """
         with self._lock:
             self._stopped[token] = None
             while len(self._stopped) > REMEMBERED_TOKENS:
                 self._stopped.popitem(last=False)
-            if self._token == token:
+            if self._token == token and self._computes:
                 kill(self.pid)
 
     def close(self) -> None:
         """End the process for good; a task that runs in it is lost."""
-        self.closed = True
-        kill(self.pid)
+        with self._lock:
+            self.closed = True
         self._discard()
+        self._discard()  # the spare
 
-    def _ready(self) -> ProcessPool:
+    def _current(self) -> _Child:
+        """The process, or the spare where there is none that lives, or a new one."""
         if self.closed:
             raise RuntimeError("the worker ends")
-        if self._pool is None or not self._pool.active:
+        while self._child is not None and not self._child.pool.active:
             self._discard()
-            self._pool = ProcessPool(
-                max_workers=1,
-                initializer=steps.start,
-                initargs=self._start,
-                context=multiprocessing.get_context("spawn"),
-            )
-        return self._pool
+        if self._child is None:
+            self._child = _Child(self._settings, self._threads, steps.describe)
+        return self._child
 
-    def _watched(self, task: Task, future: Any, report: Callable[[int, int], None]) -> Outcome:
-        reported = time.monotonic()
-        too_much = False
+    def _start_spare(self) -> None:
+        with self._lock:
+            if not self.closed:
+                self._spare = _Child(self._settings, self._threads, steps.warm)
+
+    def _started(self, task: Task) -> _Child | None:
+        """The process once it is ready; None where the task was stopped before."""
+        child, ends = self._current(), time.monotonic() + self._settings.worker_start_s
+        while not child.ready.done():
+            wait([child.ready], timeout=LOOK_S)
+            if task.token in self._stopped:
+                return None
+            if self.closed:  # a pool that was stopped leaves its futures as they were
+                raise RuntimeError("the worker ended")
+            if time.monotonic() > ends:
+                raise RuntimeError(f"it took longer than {self._settings.worker_start_s:g} s")
+        child.ready.result()
+        return child
+
+    def _watched(self, child: _Child, task: Task, report: Callable[[int, int], None]) -> Outcome:
+        future = child.pool.schedule(steps.run, args=[task])
+        began = reported = time.monotonic()
+        guard, too_much = _Guard(task, child), None
+        self._computes = True
         while True:
             try:
                 return Outcome(Verdict.DONE, future.result(timeout=LOOK_S))
             except TimeoutError:
-                if self.closed:  # a pool that was stopped leaves its futures as they were
+                now = time.monotonic()
+                if self.closed:
                     return Outcome(Verdict.LOST, error=error("worker_lost", "the worker ended", retryable=True))
                 if task.token in self._stopped:
-                    kill(self.pid)  # again: the process may have been starting when the stop came
-                    if self.pid is None:
-                        future.cancel()
-                if resident_bytes(self.pid) > self._limit:
-                    too_much = True
-                    kill(self.pid)
-                if time.monotonic() - reported > REPORT_S:
-                    reported = time.monotonic()
-                    report(self._gauges[1], self._gauges[2])
+                    kill(child.pid)  # again: the task may have been about to start when the stop came
+                too_much = too_much or guard.found()
+                if too_much is not None:
+                    kill(child.pid)
+                if now - reported > REPORT_S:
+                    reported = now
+                    report(child.gauges[1], child.gauges[2])
+                if self._spare is None and self._settings.warm_spare and now - began > SPARE_AFTER_S:
+                    self._start_spare()
             except (ProcessExpired, BrokenProcessPool, CancelledError) as fault:
                 self._discard()
                 return self._death(task, getattr(fault, "exitcode", None), too_much)
             except BaseException as fault:
                 return outcome_of_exception(fault)
 
-    def _death(self, task: Task, exit_code: int | None, too_much: bool) -> Outcome:
+    def _death(self, task: Task, exit_code: int | None, too_much: dict[str, Any] | None) -> Outcome:
         if task.token in self._stopped:
             return Outcome(Verdict.STOPPED)
-        if too_much:
-            allowed = f"{self._limit / 2**30:.3g} GiB"
-            message = f"the job took more memory than the {allowed} allowed; choose larger voxels or keep no map"
-            return Outcome(Verdict.FAILED, error=error("out_of_memory", message))
+        if too_much is not None:
+            return Outcome(Verdict.FAILED, error=too_much)
         if exit_code is None or exit_code == KILLED:
             # Killed from outside: by an administrator, or by a system short of memory.
             return Outcome(Verdict.LOST, error=error("worker_lost", "the kernel process was killed", retryable=True))
@@ -142,12 +220,10 @@ class KernelProcess:
         return Outcome(Verdict.FAILED, error=error("kernel_crash", message))
 
     def _discard(self) -> None:
-        """Forget the pool: a process killed in the middle may have left its pipes locked."""
-        pool, self._pool = self._pool, None
-        self._gauges[0] = 0
-        if pool is not None:
-            pool.stop()
-            pool.join()
+        """End the process; the spare, if there is one, takes its place."""
+        child, self._child, self._spare = self._child, self._spare, None
+        if child is not None:
+            child.close()
 
 
 def _cores() -> int:
@@ -167,7 +243,7 @@ def outcome_of_exception(fault: BaseException) -> Outcome:
         return Outcome(Verdict.FAILED, error=error(fault.code, str(fault)))
     if isinstance(fault, MemoryError):
         return Outcome(Verdict.FAILED, error=error("out_of_memory", "the job needs more memory than there is"))
-    if isinstance(fault, OSError) and (fault.errno in FULL or os.strerror(errno.ENOSPC) in str(fault)):
+    if isinstance(fault, OSError) and is_full(fault):
         message = "the server's disk is full; nothing computed so far is lost, retry the job later"
         return Outcome(Verdict.FAILED, error=error("disk_full", message, retryable=True))
     # What went wrong belongs into the server's log, not into an answer.

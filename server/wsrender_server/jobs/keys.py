@@ -13,7 +13,7 @@ from wsrender_server.jobs.database import Transactions
 from wsrender_server.jobs.records import KeyRecord
 from wsrender_server.jobs.tables import Key
 
-SCOPES = ("read", "submit", "admin")
+SCOPES = ("read", "submit", "priority", "admin")
 PREFIX = "wsr"
 
 
@@ -53,6 +53,12 @@ class KeyStore:
         """Whether there is a key that is not revoked."""
         with self.transactions.read() as session:
             return session.scalar(select(Key.id).where(Key.revoked_at.is_(None)).limit(1)) is not None
+
+    def is_live(self, key_id: str) -> bool:
+        """Whether a key is there and not revoked."""
+        with self.transactions.read() as session:
+            row = session.get(Key, key_id)
+            return row is not None and row.revoked_at is None
 
     def revoke_key(self, key_id: str) -> KeyRecord | None:
         """Revoke a key; None for an unknown one."""

@@ -8,6 +8,7 @@ from enum import StrEnum
 from typing import Any
 
 from wsrender.errors import InputError
+from wsrender_server.jobs.documents import CanonicalDocument
 
 
 class JobState(StrEnum):
@@ -20,6 +21,7 @@ class JobState(StrEnum):
     FAILED = "failed"
     CANCELED = "canceled"
     TIMED_OUT = "timed_out"
+    EXPIRED = "expired"  # it had succeeded; its result is no longer kept
 
 
 class ComputationState(StrEnum):
@@ -31,21 +33,23 @@ class ComputationState(StrEnum):
     SUCCEEDED = "succeeded"
     FAILED = "failed"
     STOPPED = "stopped"
+    EXPIRED = "expired"
 
 
 LIVE = (JobState.QUEUED, JobState.RUNNING)  # jobs for which a computation goes on
-ENDED = (JobState.SUCCEEDED, JobState.FAILED, JobState.CANCELED, JobState.TIMED_OUT)
-RETRYABLE = (JobState.FAILED, JobState.CANCELED, JobState.TIMED_OUT)
+RETRYABLE = (JobState.FAILED, JobState.CANCELED, JobState.TIMED_OUT, JobState.EXPIRED)
+ENDED = (JobState.SUCCEEDED, *RETRYABLE)
 UNFINISHED = (ComputationState.WAITING, ComputationState.RUNNING, ComputationState.STOPPING)
 
 NEXT: dict[JobState, tuple[JobState, ...]] = {
     JobState.QUEUED: (JobState.RUNNING, JobState.CANCELING, JobState.SUCCEEDED, JobState.FAILED, JobState.CANCELED),
     JobState.RUNNING: (JobState.CANCELING, JobState.SUCCEEDED, JobState.FAILED, JobState.CANCELED, JobState.TIMED_OUT),
     JobState.CANCELING: (JobState.CANCELED,),
-    JobState.SUCCEEDED: (),
+    JobState.SUCCEEDED: (JobState.EXPIRED,),
     JobState.FAILED: (JobState.QUEUED, JobState.RUNNING, JobState.SUCCEEDED),
     JobState.CANCELED: (JobState.QUEUED, JobState.RUNNING, JobState.SUCCEEDED),
     JobState.TIMED_OUT: (JobState.QUEUED, JobState.RUNNING, JobState.SUCCEEDED),
+    JobState.EXPIRED: (JobState.QUEUED, JobState.RUNNING, JobState.SUCCEEDED),
 }
 """The states that may follow each state; an ended job moves again only by a retry."""
 
@@ -64,7 +68,7 @@ class Progress:
 
 @dataclass(frozen=True)
 class JobRecord:
-    """A job. ``error`` holds code, message, retryable and where known field; ``document`` is None in lists.
+    """A job. ``error`` holds code, message, retryable and where known field.
 
     ``last_event`` is the id of the job's newest event, ``version`` that of the wsrender that computes it.
     """
@@ -84,7 +88,6 @@ class JobRecord:
     error: dict[str, Any] | None
     last_event: int
     version: str
-    document: dict[str, Any] | None = None
 
 
 @dataclass(frozen=True)
@@ -122,6 +125,15 @@ class ArtifactRecord:
 
 
 @dataclass(frozen=True)
+class ModelRecord:
+    """An uploaded model, mesh or table."""
+
+    sha256: str
+    bytes: int
+    created_at: datetime
+
+
+@dataclass(frozen=True)
 class KeyRecord:
     """An API key without its secret; ``scopes`` from read, submit, admin."""
 
@@ -139,7 +151,7 @@ class ComputationRecord:
     id: str
     owner: str
     state: ComputationState
-    document: dict[str, Any]
+    document: CanonicalDocument
     priority: int
     attempt: int
     resolved: dict[str, Any] | None

@@ -6,6 +6,7 @@ import shutil
 import time
 from collections import OrderedDict
 from functools import reduce
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +20,12 @@ from wsrender_server.settings import Settings
 MOST_SHARDS = 256
 KEPT_PLANS = 4
 BEHIND = 10  # niceness: a server answers, and live streams run, while jobs take all cores
+# Modules that take seconds to load: of plans, of shards, of results and their files.
+NEEDED = (
+    *("wsrender.analyses.jobs", "wsrender.run.steps", "wsrender.run.partial_files", "wsrender.robots.mjcf_model"),
+    *("wsrender.analyses.refined", "wsrender.geometry.surfaces", "wsrender.results.drawing.result_plots"),
+    *("h5py", "matplotlib.figure", "pyarrow.parquet", "skimage.measure", "trimesh"),
+)
 GPU_FACTOR = 256  # samples of a GPU in the time of one of the CPU, roughly
 
 _state: dict[str, Any] = {}
@@ -37,7 +44,7 @@ def start(settings: Settings, threads: int, gauges: "ctypes.Array[ctypes.c_int64
     files = DataFolder(settings.data_dir)
     os.environ.update({"WSRENDER_THREADS": str(threads), MODELS_VARIABLE: str(files.models)})
     _state.update(files=files, threads=threads, gauges=gauges)
-    _state.update(shard_samples=settings.shard_samples, max_samples=settings.max_samples)
+    _state.update(shard_samples=settings.shard_samples)
     gauges[1] = gauges[2] = 0
     gauges[0] = os.getpid()
 
@@ -54,6 +61,13 @@ def describe() -> dict[str, str]:
         except InputError:
             continue
     return targets
+
+
+def warm() -> None:
+    """Load what any job needs, and nothing that the next one would have to wait for: see ``NEEDED``."""
+    describe()
+    for name in NEEDED:
+        import_module(name)
 
 
 def run(task: Task) -> Any:
@@ -75,8 +89,7 @@ def _plan(task: Task) -> dict[str, Any]:
         plan = _planned(task)
     put(plan.programs, _programs(task))
     samples = max(plan.cost.samples, plan.samples)
-    if samples > _state["max_samples"]:
-        allowed = _state["max_samples"]
+    if task.limits is not None and samples > (allowed := task.limits.samples):
         raise ResourceError("sampling", f"has {samples:.4g} samples; this server allows {allowed:.4g}")
     faster = GPU_FACTOR if plan.target.startswith("cuda:") else 1
     return {
@@ -181,7 +194,7 @@ def _planned(task: Task) -> Any:
     take_from(_programs(task))
     key = f"{task.token}:{len(task.resolved['shards']) if task.resolved else 0}"
     if key not in _plans:
-        _plans[key] = plan(task.document, resolved=task.resolved)
+        _plans[key] = plan(task.document.read(_files(), task.computation), resolved=task.resolved)
         while len(_plans) > KEPT_PLANS:
             _plans.popitem(last=False)
     return _plans[key]

@@ -1,10 +1,12 @@
 """The job table seen by an owner: submit, look, cancel, retry, delete. Foreign jobs do not exist here."""
 
-import json
 import re
 import uuid
-from collections.abc import Callable, Mapping
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from datetime import UTC, datetime
+from pathlib import Path
 from typing import Any
 
 from sqlalchemy import Engine, delete, func, literal, select, tuple_
@@ -12,19 +14,20 @@ from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
 from wsrender import __version__
-from wsrender.documents.arm import dotted, models_in
 from wsrender.errors import InputError
 from wsrender_server.jobs.changes import Changes
 from wsrender_server.jobs.computations import ComputationStore
 from wsrender_server.jobs.database import Transactions, open_database
+from wsrender_server.jobs.documents import CanonicalDocument
 from wsrender_server.jobs.faults import IdempotencyConflict, InvalidTransition, QueueFull, StoreUnavailable
 from wsrender_server.jobs.files import DataFolder
-from wsrender_server.jobs.identity import Identity, device_of
+from wsrender_server.jobs.identity import Identity
 from wsrender_server.jobs.keys import KeyStore
 from wsrender_server.jobs.records import (
     ENDED,
     LIVE,
     RETRYABLE,
+    UNFINISHED,
     ComputationState,
     EventRecord,
     JobRecord,
@@ -34,6 +37,7 @@ from wsrender_server.jobs.records import (
     place_of,
 )
 from wsrender_server.jobs.results import ResultStore
+from wsrender_server.jobs.sole_use import SoleUse, bind, locked_folder
 from wsrender_server.jobs.tables import (
     ArtifactFile,
     Computation,
@@ -68,6 +72,7 @@ class JobStore(ComputationStore, ResultStore, KeyStore):
         files: DataFolder,
         *,
         max_queued_per_owner: int = 1000,
+        max_model_bytes_per_owner: int | None = None,
         shared_cache: bool = False,
         timeout_of: Callable[[float | None], float | None] = lambda requested: requested,
     ):
@@ -76,7 +81,23 @@ class JobStore(ComputationStore, ResultStore, KeyStore):
         self.changes = Changes()
         self.identity = Identity(shared_cache)
         self.max_queued_per_owner = max_queued_per_owner
+        self.max_model_bytes_per_owner = max_model_bytes_per_owner
         self.timeout_of = timeout_of
+        self.sole_use = SoleUse(engine)
+        self.running_since = {}
+        self.removed = Counter[str]()  # by retention in this process: things by kind, and bytes
+        self.times_kept = 0.0
+
+    @contextmanager
+    def claimed(self) -> Iterator[None]:
+        """Be the only server on database and data folder. Raises InputError where another is, or they are no pair."""
+        with locked_folder(self.files.root):
+            self.sole_use.take()
+            try:
+                bind(self.transactions, self.files)
+                yield
+            finally:
+                self.sole_use.release()
 
     def close(self) -> None:
         """Close the connections that are open; the next call opens new ones."""
@@ -85,15 +106,16 @@ class JobStore(ComputationStore, ResultStore, KeyStore):
     def submit(
         self,
         owner: str,
-        document: Mapping[str, Any],
+        document: CanonicalDocument | Mapping[str, Any],
         *,
+        written: Path | None = None,
         labels: Mapping[str, str] | None = None,
         priority: int = 0,
         timeout_s: float | None = None,
         idempotency_key: str | None = None,
         body_hash: str = "",
     ) -> Submission:
-        """A new job of a canonical job document (all defaults present).
+        """A new job of a canonical job document (all defaults present), whose text may be ``written`` to a file.
 
         It is answered from the cache, joins a twin that is running, or waits; the row is committed when this returns.
         ``body_hash`` identifies the request's body, so that an idempotency key repeated with another is noticed.
@@ -102,31 +124,61 @@ class JobStore(ComputationStore, ResultStore, KeyStore):
         """
         _check_options(labels or {}, priority, idempotency_key)
         self.files.check_space()
-        for _ in range(ATTEMPTS):
-            try:
-                with self.transactions.write() as session:
-                    replayed = self._replay(session, owner, idempotency_key, body_hash)
-                    if replayed:
-                        return Submission(replayed, replayed=True)
-                    job, cached = self._insert(
-                        session, owner, document, dict(labels or {}), priority, timeout_s, idempotency_key, body_hash
-                    )
-                    record = job_record(job, __version__, dict(document))
-            except IntegrityError:
-                continue  # another process inserted the same key or computation a moment before
-            self.changes.notify(record.id)
-            return Submission(record, cached=cached)
+        if not isinstance(document, CanonicalDocument):
+            document = CanonicalDocument.of(document)
+        new, used = uuid.uuid4().hex, ""  # id of the computation, where there is none yet; of that which is used
+        document = document.kept(self.files, new, written)
+        checked = ""  # a computation whose files are there
+        options = dict(labels or {}), priority, timeout_s, idempotency_key, body_hash
+        try:
+            for _ in range(ATTEMPTS):
+                try:
+                    with self.transactions.write() as session:
+                        replayed = self._replay(session, owner, idempotency_key, body_hash)
+                        if replayed:
+                            return Submission(replayed, replayed=True)
+                        computation = self._computation(session, owner, document, new, priority)
+                        found = computation.id
+                        has_files = computation.state == ComputationState.SUCCEEDED or document.text is None
+                        if has_files and found not in (new, checked):
+                            submission = None
+                        else:
+                            job = self._insert(session, owner, document, computation, *options)
+                            record = job_record(job, __version__)
+                            submission = Submission(record, cached=job.state == JobState.SUCCEEDED)
+                except IntegrityError:
+                    continue  # another process inserted the same key or computation a moment before
+                if submission is None:
+                    self.check_result(found)  # takes as long as files are large: in no transaction
+                    if document.text is None:
+                        self.files.mend_document(found, document.sha256, new)
+                    checked = found
+                    continue
+                used = found
+                self.changes.notify(submission.job.id)
+                return submission
+        finally:
+            if used != new:
+                self.files.forget_document(new)
         raise StoreUnavailable("the same job is being submitted many times at once; nothing was changed, try again")
 
     def get(self, owner: str, job_id: str) -> JobRecord | None:
-        """A job with its document."""
+        """A job."""
         with self.transactions.read() as session:
             row = session.execute(
-                select(Job, Computation.version, Computation.document)
+                select(Job, Computation.version)
                 .join(Computation, Job.computation_id == Computation.id)
                 .where(Job.id == job_id, Job.owner == owner)
             ).first()
-            return None if row is None else job_record(row[0], row[1], json.loads(row[2]))
+            return None if row is None else job_record(*row)
+
+    def document(self, owner: str, job_id: str) -> Any:
+        """The canonical document of a job; None where there is none."""
+        with self.transactions.read() as session:
+            query = select(Computation).join(Job, Job.computation_id == Computation.id)
+            row = session.scalar(query.where(Job.id == job_id, Job.owner == owner))
+            kept = None if row is None else (CanonicalDocument.of_row(row.document, row.facts), row.id)
+        return None if kept is None else kept[0].read(self.files, kept[1])
 
     def list(
         self,
@@ -138,7 +190,7 @@ class JobStore(ComputationStore, ResultStore, KeyStore):
         limit: int = 50,
         cursor: str | None = None,
     ) -> tuple[Jobs, str | None]:
-        """Jobs without their documents, newest first, and the cursor of the next page.
+        """Jobs, newest first, and the cursor of the next page.
 
         Raises InputError for a cursor that this method did not give.
         """
@@ -171,13 +223,24 @@ class JobStore(ComputationStore, ResultStore, KeyStore):
                 raise InvalidTransition(job.state, "canceled")
             if job.state in LIVE:
                 self._detach(session, job, computation, JobState.CANCELED)
-            record = job_record(job, computation.version, json.loads(computation.document))
+            record = job_record(job, computation.version)
         self.changes.notify(job_id)
         return record
 
     def retry(self, owner: str, job_id: str) -> JobRecord | None:
-        """Queue a failed, canceled or timed-out job again. Raises InvalidTransition for any other, DiskFull."""
+        """Queue a failed, canceled, timed-out or expired job again. Raises InvalidTransition for others, DiskFull."""
         self.files.check_space()
+        with self.transactions.read() as session:
+            query = select(Computation.id, Computation.version, Computation.state).join(
+                Job, Job.computation_id == Computation.id
+            )
+            found = session.execute(query.where(Job.id == job_id, Job.owner == owner)).first()
+        if found is not None:
+            self.check_result(found.id)
+            if (
+                found.version != __version__ and found.state not in UNFINISHED
+            ):  # its result has expired since this version runs
+                self._renew(found.id)
         with self.transactions.write() as session:
             job, computation = self._job(session, owner, job_id)
             if job is None or computation is None:
@@ -186,9 +249,9 @@ class JobStore(ComputationStore, ResultStore, KeyStore):
                 raise InvalidTransition(job.state, "retried")
             self._check_queue(session, owner)
             job.attempt += 1
-            job.started_at = job.finished_at = job.deadline = job.progress = None
+            job.started_at = job.finished_at = job.progress = None
             subscribe(session, job, computation)
-            record = job_record(job, computation.version, json.loads(computation.document))
+            record = job_record(job, computation.version)
         self.changes.notify(job_id)
         return record
 
@@ -200,7 +263,7 @@ class JobStore(ComputationStore, ResultStore, KeyStore):
                 return None
             if job.state not in ENDED:
                 raise InvalidTransition(job.state, "deleted")
-            record = job_record(job, computation.version, json.loads(computation.document))
+            record = job_record(job, computation.version)
             computation_id = computation.id
             for table in (Event, Label):
                 session.execute(delete(table).where(table.job_id == job_id))
@@ -233,19 +296,18 @@ class JobStore(ComputationStore, ResultStore, KeyStore):
         if job.body_hash != body_hash:
             raise IdempotencyConflict("the idempotency key was used with another body; send a new key")
         computation = session.get_one(Computation, job.computation_id)
-        return job_record(job, computation.version, json.loads(computation.document))
+        return job_record(job, computation.version)
 
     def _insert(
-        self, session, owner, document, labels, priority, timeout_s, idempotency_key, body_hash
-    ) -> tuple[Job, bool]:
-        computation = self._computation(session, owner, document, priority)
+        self, session, owner, document, computation, labels, priority, timeout_s, idempotency_key, body_hash
+    ) -> Job:
         if computation.state != ComputationState.SUCCEEDED:
             self._check_queue(session, owner)
         job = Job(
             id=uuid.uuid4().hex,
             owner=owner,
             computation_id=computation.id,
-            analysis=document["analysis"],
+            analysis=document.analysis,
             state=JobState.QUEUED,
             created_at=datetime.now(UTC),
             labels=labels,
@@ -260,24 +322,26 @@ class JobStore(ComputationStore, ResultStore, KeyStore):
         session.flush()
         session.add_all(Label(job_id=job.id, key=key, value=value) for key, value in labels.items())
         subscribe(session, job, computation)
-        return job, job.state == JobState.SUCCEEDED
+        return job
 
-    def _computation(self, session: Session, owner: str, document, priority: int) -> Computation:
-        """The computation of a document, locked until the transaction ends; a new one if there is none."""
-        for path, robot in models_in(document):
-            model = robot.get("model")
-            if model is not None and session.get(Model, (owner, model)) is None:
-                raise InputError(dotted(path, "model"), f"{model} is not among your models; upload it first")
-        key = self.identity.key(owner, document, self._target(session, device_of(document)))
+    def _computation(
+        self, session: Session, owner: str, document: CanonicalDocument, new: str, priority: int
+    ) -> Computation:
+        """The computation of a document, locked until the transaction ends; if there is none, one of the id ``new``."""
+        for path, model in document.uploads:
+            if session.get(Model, (owner, model)) is None:
+                raise InputError(path, f"{model} is not among your models; upload it first")
+        key = self.identity.key(owner, document, self._target(session, document.device))
         found = session.scalar(select(Computation).where(Computation.key == key).with_for_update())
         if found is not None:
             return found
         computation = Computation(
-            id=uuid.uuid4().hex,
+            id=new,
             key=key,
             owner=owner,
             state=ComputationState.WAITING,
-            document=json.dumps(document, sort_keys=True, separators=(",", ":"), allow_nan=False),
+            document=document.text or "",
+            facts=document.facts,
             priority=priority,
             attempt=1,
             created_at=datetime.now(UTC),
@@ -322,12 +386,14 @@ def open_existing_store(settings: Settings) -> JobStore | None:
 
 
 def _opened(settings: Settings, make: bool) -> JobStore:
+    files = DataFolder(settings.data_dir, settings.min_free_disk_bytes, make)  # before the database is made in it
     engine = open_database(settings.database_url)
     upgrade(engine, check_only=not make or engine.dialect.name != "sqlite")
     return JobStore(
         engine,
-        DataFolder(settings.data_dir, settings.min_free_disk_bytes, make),
+        files,
         max_queued_per_owner=settings.max_queued_per_owner,
+        max_model_bytes_per_owner=settings.max_model_bytes_per_owner,
         shared_cache=settings.shared_cache,
         timeout_of=settings.timeout_of,
     )

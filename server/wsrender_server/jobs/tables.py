@@ -5,7 +5,7 @@ lock of the job's computation.
 """
 
 from dataclasses import asdict
-from datetime import UTC, datetime, timedelta
+from datetime import UTC, datetime
 from typing import Any
 
 import structlog
@@ -60,10 +60,13 @@ class Computation(Table):
     key: Mapped[str] = mapped_column(String(64), unique=True)
     owner: Mapped[str] = mapped_column(String(64))
     state: Mapped[str] = mapped_column(String(16), index=True)
-    document: Mapped[str] = mapped_column(Text)
+    document: Mapped[str] = mapped_column(Text)  # empty where a file holds it
+    facts: Mapped[dict[str, Any] | None]  # of the document; null in rows of versions that had none
     priority: Mapped[int] = mapped_column(Integer)
     attempt: Mapped[int] = mapped_column(Integer, default=1)
     created_at: Mapped[datetime]
+    bytes: Mapped[int] = mapped_column(BigInteger, default=0, server_default="0")  # of its result
+    used_at: Mapped[datetime] = mapped_column(default=lambda: datetime.now(UTC), server_default="0")
     resolved: Mapped[dict[str, Any] | None]
     target: Mapped[str | None] = mapped_column(String(128))
     version: Mapped[str] = mapped_column(String(32), server_default="0.1.0")  # of wsrender, whose numbers it holds
@@ -86,11 +89,11 @@ class Job(Table):
     created_at: Mapped[datetime]
     started_at: Mapped[datetime | None]
     finished_at: Mapped[datetime | None]
-    deadline: Mapped[datetime | None] = mapped_column(index=True)
     labels: Mapped[dict[str, Any]]
     priority: Mapped[int] = mapped_column(Integer)
     attempt: Mapped[int] = mapped_column(Integer, default=1)
     timeout_s: Mapped[float | None] = mapped_column(Float)
+    ran_s: Mapped[float] = mapped_column(Float, default=0.0, server_default="0")  # of its timeout, as of a while ago
     idempotency_key: Mapped[str | None] = mapped_column(String(255))
     body_hash: Mapped[str] = mapped_column(String(64))
     progress: Mapped[dict[str, Any] | None]
@@ -156,6 +159,14 @@ class Key(Table):
     revoked_at: Mapped[datetime | None]
 
 
+class StoreId(Table):
+    """One row: the identity that this database shares with its data folder."""
+
+    __tablename__ = "store_id"
+
+    id: Mapped[str] = mapped_column(String(32), primary_key=True)
+
+
 class DeviceTarget(Table):
     """The target that a request for a device means on this server's workers, as last seen."""
 
@@ -165,7 +176,7 @@ class DeviceTarget(Table):
     target: Mapped[str] = mapped_column(String(128))
 
 
-def job_record(job: Job, version: str, document: dict[str, Any] | None = None) -> JobRecord:
+def job_record(job: Job, version: str) -> JobRecord:
     """The plain value of a row; ``version`` is that of its computation."""
     return JobRecord(
         id=job.id,
@@ -183,7 +194,6 @@ def job_record(job: Job, version: str, document: dict[str, Any] | None = None) -
         error=job.error,
         last_event=job.last_event,
         version=version,
-        document=document,
     )
 
 
@@ -202,19 +212,18 @@ def enter(session: Session, job: Job, state: JobState, error: dict[str, Any] | N
         "job", job_id=job.id, owner=job.owner, state=str(state), attempt=job.attempt, code=(error or {}).get("code")
     )
     if state == JobState.RUNNING:
-        job.started_at = now
-        job.deadline = None if job.timeout_s is None else now + timedelta(seconds=job.timeout_s)
-    if state in ENDED:
-        job.finished_at, job.deadline = now, None
+        job.started_at, job.ran_s = now, 0.0
+    if state in ENDED and state != JobState.EXPIRED:  # which had finished before
+        job.finished_at = now
     add_event(session, job, "state", {"state": state, "attempt": job.attempt, "error": error})
 
 
 def subscribe(session: Session, job: Job, computation: Computation) -> None:
-    """Let a new or retried job wait for a computation, which starts again if it had failed or been stopped.
+    """Let a new or retried job wait for a computation, which starts again if it has no result.
 
     Where it is more urgent than those that wait already, the computation goes out anew, by another attempt.
     """
-    restarts = computation.state in (ComputationState.FAILED, ComputationState.STOPPED)
+    restarts = computation.state in (ComputationState.FAILED, ComputationState.STOPPED, ComputationState.EXPIRED)
     if restarts:
         computation.state = ComputationState.WAITING
         computation.priority = job.priority
@@ -222,6 +231,7 @@ def subscribe(session: Session, job: Job, computation: Computation) -> None:
         computation.attempt += 1
     computation.priority = max(computation.priority, job.priority)
     if computation.state == ComputationState.SUCCEEDED:
+        computation.used_at = datetime.now(UTC)
         finish(session, job)
     elif computation.state == ComputationState.RUNNING:
         enter(session, job, JobState.RUNNING)

@@ -1,8 +1,11 @@
 """What travels between dispatcher, workers and their kernel processes. All of it is plain, picklable data."""
 
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from enum import StrEnum
-from typing import Any
+from typing import Any, Self
+
+from wsrender_server.jobs.documents import CanonicalDocument
+from wsrender_server.settings import Settings
 
 
 class Step(StrEnum):
@@ -14,19 +17,42 @@ class Step(StrEnum):
 
 
 @dataclass(frozen=True)
+class Limits:
+    """What a task may take: of a server's settings, or of a worker's."""
+
+    memory_bytes: int
+    planning_memory_bytes: int
+    planning_s: float
+    samples: int
+
+    @classmethod
+    def of(cls, settings: Settings) -> Self:
+        """The limits that the settings set."""
+        planning = settings.max_planning_memory_bytes, settings.max_planning_s
+        return cls(settings.max_memory_bytes, *planning, settings.max_samples)
+
+    def within(self, other: "Limits | None") -> "Limits":
+        """The smaller of each."""
+        return self if other is None else Limits(*map(min, astuple(self), astuple(other)))
+
+
+@dataclass(frozen=True)
 class Task:
     """One step of a computation. ``token`` names its attempt; whoever stops an attempt names it.
 
-    ``resolved`` is what the plan settled (None: plan first); ``seconds`` goes into ``timing_s``.
+    Of a long ``document`` the data folder holds the text, as that of the computation. ``resolved`` is what the plan
+    settled (None: plan first); ``seconds`` goes into ``timing_s``; ``limits`` are those of the server, None: a
+    worker's own only.
     """
 
     step: Step
     computation: str
     token: str
-    document: dict[str, Any]
+    document: CanonicalDocument
     resolved: dict[str, Any] | None = None
     shard: int = 0
     seconds: dict[str, float] | None = None
+    limits: Limits | None = None
 
 
 class Verdict(StrEnum):

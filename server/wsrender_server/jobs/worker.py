@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 from dask import config
-from distributed import Nanny, Reschedule, Security, Worker, WorkerPlugin, get_worker
+from distributed import Nanny, Reschedule, Security, Status, Worker, WorkerPlugin, get_worker
 
 from wsrender_server.jobs.kernel_process import KernelProcess
 from wsrender_server.jobs.task import Outcome, Step, Task, Verdict
@@ -16,17 +16,25 @@ from wsrender_server.settings import Settings
 TOPIC = "wsrender"
 PLUGIN = "wsrender-kernels"
 RECONNECT_S = 2.0
+STOP_S = 1.0
 
 log = logging.getLogger(__name__)
 
-config.set({"distributed.worker.daemon": False})  # daemons may not have processes of their own
+DASK = {
+    "distributed.worker.daemon": False,  # daemons may not have processes of their own
+    # Dask would look at itself up to a hundred times a second, and take a tenth of a core from the kernels.
+    "distributed.worker.profile.enabled": False,
+    "distributed.admin.system-monitor.interval": "5s",
+    "distributed.admin.tick.interval": "1s",
+}
+config.set(DASK)
 
 
 class Kernels(WorkerPlugin):
     """Gives a Dask worker its kernel process.
 
-    It is set up before the worker registers, so that the scheduler knows the worker's targets as resources from the
-    first moment.
+    It is set up before the worker registers, so that the scheduler knows from the first moment as resources what the
+    worker computes on: its targets, their kinds of device, and "auto".
     """
 
     name = PLUGIN
@@ -39,8 +47,8 @@ class Kernels(WorkerPlugin):
         """Start the kernel process and declare what it can compute for."""
         self.process = KernelProcess(Settings.model_validate(self.settings))
         self.targets = await asyncio.to_thread(self.process.describe)
-        for target in self.targets.values():
-            worker.state.total_resources[target] = worker.state.available_resources[target] = 1
+        for name in ("auto", *self.targets, *self.targets.values()):
+            worker.state.total_resources[name] = worker.state.available_resources[name] = 1
 
     async def teardown(self, worker: Worker) -> None:
         """End the kernel process."""
@@ -80,28 +88,54 @@ def kernel_pid(dask_worker: Worker) -> int | None:
 
 
 def serve_scheduler(
-    settings: Settings, on_start: Callable[[], None] | None = None, stop: threading.Event | None = None
+    settings: Settings,
+    on_start: Callable[[], None] | None = None,
+    stop: threading.Event | None = None,
+    name: str | None = None,
 ) -> None:
-    """Run a worker for the settings' scheduler until ``stop`` is set; it joins again where the scheduler was lost."""
-    asyncio.run(_serve(settings, on_start, stop or threading.Event()))
+    """Run a worker for the settings' scheduler until ``stop`` is set; it joins again where the scheduler was lost.
+
+    ``name`` is what the scheduler calls it, its address by default.
+    """
+    asyncio.run(_serve(settings, on_start, stop or threading.Event(), name))
 
 
-async def _serve(settings: Settings, on_start: Callable[[], None] | None, stop: threading.Event) -> None:
+async def _serve(
+    settings: Settings, on_start: Callable[[], None] | None, stop: threading.Event, name: str | None
+) -> None:
     while not stop.is_set():
         options = {**worker_options(settings), "dashboard": False, "dashboard_address": "127.0.0.1:0"}
-        worker = Nanny(settings.scheduler, security=security(settings), **options)
+        worker = Nanny(settings.scheduler, name=name, security=security(settings), **options)
+        life = asyncio.ensure_future(_live(worker, on_start))
+        while not (stop.is_set() or life.done()):
+            await asyncio.wait([life], timeout=0.1)
         try:
-            async with worker:
-                if on_start is not None:
-                    on_start()
-                finished = asyncio.ensure_future(worker.finished())
-                while not (stop.is_set() or finished.done()):
-                    await asyncio.wait([finished], timeout=0.2)
-                finished.cancel()
+            if not life.done():
+                await _end(worker)
+                await asyncio.wait([life], timeout=STOP_S)
+                life.cancel()
+            await life
+        except asyncio.CancelledError:
+            continue
         except (OSError, TimeoutError, RuntimeError) as error:  # RuntimeError: Dask's nanny could not start its worker
             log.warning("no worker at %s: %s; trying again", settings.scheduler, error)
         if not stop.is_set():
             await asyncio.sleep(RECONNECT_S)
+
+
+async def _live(worker: Nanny, on_start: Callable[[], None] | None) -> None:
+    async with worker:
+        if on_start is not None:
+            on_start()
+        await worker.finished()
+
+
+async def _end(worker: Nanny) -> None:
+    """Let a worker leave its scheduler, or kill it where it takes longer than STOP_S or has not joined yet."""
+    if worker.status == Status.running:
+        await worker.close(timeout=STOP_S)
+    elif worker.process is not None and worker.process.process is not None:
+        await worker.process.process.kill()
 
 
 def worker_options(settings: Settings) -> dict[str, Any]:
@@ -109,7 +143,7 @@ def worker_options(settings: Settings) -> dict[str, Any]:
     return {
         "nthreads": 1,
         "memory_limit": 0,
-        "death_timeout": 60,
+        "death_timeout": settings.worker_start_s,
         "plugins": (Kernels(settings.model_dump()),),
         "local_directory": str(settings.data_dir.absolute() / "dask"),
     }

@@ -1,7 +1,7 @@
 """Results: the document, the files, slices and plots."""
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from types import MappingProxyType
@@ -22,6 +22,8 @@ from wsrender.results.presentation import PLANE, all_pictures, picture_of
 from wsrender.results.result import files_of_parts
 from wsrender_server.auth import Reader
 from wsrender_server.conversions import draw, slice_values
+from wsrender_server.hosts import address
+from wsrender_server.jobs.faults import ResultExpired
 from wsrender_server.jobs.identity import notices_of
 from wsrender_server.jobs.records import ENDED, ArtifactRecord, JobRecord, JobState
 from wsrender_server.parts import Parts, Server
@@ -99,6 +101,8 @@ class ResultDocument(View):
 
 def _finished(server: Server, principal: Reader, job_id: JobId) -> JobRecord:
     job = found(server.store.get(principal.owner, job_id))
+    if job.state == JobState.EXPIRED and job.error is not None:
+        raise ResultExpired(job.error["message"])
     if job.state != JobState.SUCCEEDED:
         waiting = job.state not in ENDED
         detail = f"the job is {job.state}; it has no result" + (" yet" if waiting else "")
@@ -121,7 +125,7 @@ def get_result(server: Server, job: Finished) -> Response:
     `headline` is the number that the analysis is about, `warnings` what should be known of it: each has code, message,
     remedy and field; `other_version` says that another version of wsrender has computed it.
     """
-    document = _result_document(server, job)
+    document = result_document_of(server, job)
     document["warnings"] = [*document["warnings"], *entries(notices_of(job.version))]
     return Response(json.dumps(document, ensure_ascii=False), media_type="application/json")
 
@@ -135,7 +139,7 @@ def get_result(server: Server, job: Finished) -> Response:
 def list_artifacts(server: Server, job: Finished) -> Page[ArtifactView]:
     """All files in one page; 409 while there is no result."""
     records = server.store.artifacts(job.owner, job.id)
-    path = f"/v1/jobs/{job.id}/artifacts"
+    path = address(f"/v1/jobs/{job.id}/artifacts")
     return Page(items=[ArtifactView.of(record, href=f"{path}/{record.name}") for record in records])
 
 
@@ -156,9 +160,9 @@ async def get_artifact(
     ] = None,
 ) -> Response:
     """With Range, If-Range and If-None-Match; the entity tag is the SHA-256 of the content. `format` converts."""
-    record, path = await run_in_threadpool(_artifact, server, job, name)
+    record, path = await run_in_threadpool(artifact_of, server, job, name)
     sha256, media_type, own_name = record.sha256, record.media_type, name
-    with _not_found_if_gone(name, path):
+    with not_found_if_gone(name, path):
         if format is not None and not name.endswith(f".{format}"):
             path, sha256 = await server.converted.get(path, record, format)
             own_name = f"{name.rpartition('.')[0]}.{format}"
@@ -196,12 +200,12 @@ async def get_slice(
     """
     kind = _best(accept, (NPY, RAW, PICTURE.media_type))
     file = formats.kept("volume").file(volume)
-    _, path = await run_in_threadpool(_artifact, server, job, file)
+    _, path = await run_in_threadpool(artifact_of, server, job, file)
     if kind == PICTURE.media_type:
         options = {"axis": axis, axis: at, "index": index, "statistic": statistic}
         return await _drawn(server, job, PLANE, PICTURE, options, {part_file("volume"): str(path)})
-    with _not_found_if_gone(file, path):
-        plane = await _or_404(server.side_process.run(slice_values, str(path), axis, at, index, statistic))
+    with not_found_if_gone(file, path):
+        plane = await or_404(server.side_process.run(slice_values, str(path), axis, at, index, statistic))
     values: np.ndarray = plane["values"]
     headers = {
         "X-Shape": ",".join(map(str, values.shape)),
@@ -252,12 +256,12 @@ async def _drawn(
     """A picture of the result's files, or of those ``instead`` of them."""
     document, files = await run_in_threadpool(_sources, server, job, plot)
     files |= instead
-    with _not_found_if_gone(", ".join(files), *map(Path, files.values())):
-        content = await _or_404(server.side_process.run(draw, document, files, plot, format, options))
+    with not_found_if_gone(", ".join(files), *map(Path, files.values())):
+        content = await or_404(server.side_process.run(draw, document, files, plot, format, options))
     return Response(content, media_type=format.media_type)
 
 
-def _result_document(server: Parts, job: JobRecord) -> dict[str, Any]:
+def result_document_of(server: Parts, job: JobRecord) -> dict[str, Any]:
     """The result document of a finished job in today's form, whatever version has computed it."""
     document = server.store.result_document(job.owner, job.id)
     if document is None:
@@ -267,15 +271,23 @@ def _result_document(server: Parts, job: JobRecord) -> dict[str, Any]:
 
 def _sources(server: Parts, job: JobRecord, plot: str) -> tuple[dict[str, Any], dict[str, str]]:
     """The result document, and the files that the picture is drawn from."""
-    document = _result_document(server, job)
+    document = result_document_of(server, job)
     names = [record.name for record in server.store.artifacts(job.owner, job.id)]
     picture = picture_of(document, plot)
     wanted = files_of_parts((*picture.needs, *picture.uses), names)
-    paths = {name: server.store.artifact_path(job.owner, job.id, name) for name in wanted}
-    return document, {name: str(path) for name, path in paths.items() if path is not None}
+    return document, files_of(server, job, wanted)
 
 
-async def _or_404(answer: Any) -> Any:
+def files_of(server: Parts, job: JobRecord, names: Iterable[str]) -> dict[str, str]:
+    """Files of a result by name. Raises HttpProblem 404 where one is gone."""
+    paths = {name: server.store.artifact_path(job.owner, job.id, name) for name in names}
+    for name, path in paths.items():
+        if path is None:
+            raise _gone(name)
+    return {name: str(path) for name, path in paths.items()}
+
+
+async def or_404(answer: Any) -> Any:
     """What was awaited; a picture or plane of what the result does not hold is not found."""
     try:
         return await answer
@@ -285,7 +297,8 @@ async def _or_404(answer: Any) -> Any:
         raise
 
 
-def _artifact(server: Parts, job: JobRecord, name: str) -> tuple[ArtifactRecord, Path]:
+def artifact_of(server: Parts, job: JobRecord, name: str) -> tuple[ArtifactRecord, Path]:
+    """A file of a result. Raises HttpProblem 404 where it has none of that name."""
     record = next((record for record in server.store.artifacts(job.owner, job.id) if record.name == name), None)
     path = None if record is None else server.store.artifact_path(job.owner, job.id, name)
     if record is None or path is None:
@@ -294,7 +307,7 @@ def _artifact(server: Parts, job: JobRecord, name: str) -> tuple[ArtifactRecord,
 
 
 @contextmanager
-def _not_found_if_gone(name: str, *paths: Path) -> Iterator[None]:
+def not_found_if_gone(name: str, *paths: Path) -> Iterator[None]:
     """Whatever goes wrong with files that were there a moment ago, and are not: they went with their job."""
     try:
         yield

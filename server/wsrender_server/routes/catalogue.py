@@ -1,5 +1,6 @@
 """What can be asked for: analyses with their JSON Schema, library robots; models uploaded by users."""
 
+from datetime import datetime
 from functools import cache
 from typing import Annotated, Any
 
@@ -8,13 +9,15 @@ from pydantic import Field
 
 from wsrender.analyses.jobs import job_schema
 from wsrender.analyses.registry import job_classes
+from wsrender.documents.array_files import TABLE_TYPES
 from wsrender.documents.shapes import MEDIA_TYPES
-from wsrender.documents.target_lists import TABLE_TYPES
 from wsrender.robots import library
 from wsrender_server.admission import check_model, decoded_model
 from wsrender_server.auth import Reader, Submitter
+from wsrender_server.hosts import address
 from wsrender_server.parts import Server
 from wsrender_server.problems import HttpProblem, problem_responses
+from wsrender_server.query import Identifier
 from wsrender_server.routes.files import has_it
 from wsrender_server.routes.job_views import Page, View
 
@@ -59,6 +62,13 @@ class ModelView(View):
     """Its size."""
     href: str
     """Where it is."""
+
+
+class KeptModelView(ModelView):
+    """A model that is kept."""
+
+    created_at: datetime
+    """When it was uploaded."""
 
 
 @router.get(
@@ -127,7 +137,7 @@ _MODEL_BODY = {
             "headers": {"Location": {"description": "The model.", "schema": {"type": "string"}}},
             "links": {"model": {"operationId": "get_model", "parameters": {"sha256": "$response.body#/sha256"}}},
         },
-        **problem_responses(401, 403, 409, 413, 415, 422),
+        **problem_responses(401, 403, 408, 409, 413, 415, 422),
     },
     openapi_extra=_MODEL_BODY,
 )  # fmt: skip
@@ -140,8 +150,9 @@ def upload_model(
     """MJCF or URDF text, root element `<mujoco>` or `<robot>`, without document types, entities or outside files.
 
     Or an STL, OBJ or PLY mesh, for `{"shape": "mesh", "model": sha256}`, heights in an NPY file, for a `height_field`,
-    or a table of targets, CSV, Parquet or NPY, for `"targets": {"model": sha256}`. Each is read by the jobs that name
-    it; meshes of a model do not travel with it.
+    or a table, CSV, Parquet or NPY: of targets, for `"targets": {"model": sha256}`, of joint values, for
+    `"configurations": {"model": sha256}`, or of points, for `"left": {"model": sha256}`. Each is read by the jobs that
+    name it; meshes of a model do not travel with it.
     """
     media_type, text = body
     if media_type in XML_TYPES:
@@ -149,10 +160,25 @@ def upload_model(
     elif not text:
         raise HttpProblem(409, "the file is empty", "invalid_model")
     sha256 = server.store.put_model(principal.owner, text)
-    response.headers["Location"] = f"/v1/models/{sha256}"
-    return ModelView(sha256=sha256, bytes=len(text), href=f"/v1/models/{sha256}")
+    response.headers["Location"] = href = address(f"/v1/models/{sha256}")
+    return ModelView(sha256=sha256, bytes=len(text), href=href)
 
 
+@router.get(
+    "/models", tags=["models"], summary="List your models", response_model=Page[KeptModelView],
+    responses=problem_responses(401, 403),
+)  # fmt: skip
+def list_models(server: Server, principal: Reader) -> Page[KeptModelView]:
+    """What you have uploaded, newest first; all in one page."""
+    records = server.store.list_models(principal.owner)
+    return Page(items=[KeptModelView.of(record, href=address(f"/v1/models/{record.sha256}")) for record in records])
+
+
+def _model_not_found() -> HttpProblem:
+    return HttpProblem(404, "there is no such model, or it is not yours", "model_not_found")
+
+
+ModelId = Annotated[str, Identifier(64, _model_not_found), Path(description="SHA-256 of the model.")]
 _OCTETS = {"application/octet-stream": {"schema": {"type": "string", "format": "binary"}}}
 
 
@@ -168,12 +194,12 @@ def get_model(
     server: Server,
     principal: Reader,
     request: Request,
-    sha256: Annotated[str, Path(pattern="^[0-9a-f]{64}$", description="SHA-256 of the model.")],
+    sha256: ModelId,
 ) -> Response:
     """The text as it was uploaded."""
     content = server.store.get_model(principal.owner, sha256)
     if content is None:
-        raise HttpProblem(404, "there is no such model, or it is not yours", "model_not_found")
+        raise _model_not_found()
     etag = f'"{sha256}"'
     headers = {"ETag": etag, "Content-Disposition": "attachment"}
     if has_it(request, etag):
@@ -187,3 +213,14 @@ def _analysis(name: str) -> AnalysisView:
     schema = job_schema(name)
     title = name.replace("_", " ").capitalize()
     return AnalysisView(id=name, title=title, description=schema.get("description", title), schema=schema)
+
+
+@router.delete(
+    "/models/{sha256}", tags=["models"], summary="Delete a model", status_code=204, response_class=Response,
+    responses=problem_responses(401, 403, 404, 409, 422),
+)  # fmt: skip
+def delete_model(server: Server, principal: Submitter, sha256: ModelId) -> Response:
+    """Forget what you have uploaded; 409 while an unfinished job needs it. Results that were computed with it stay."""
+    if not server.store.delete_model(principal.owner, sha256):
+        raise _model_not_found()
+    return Response(status_code=204)

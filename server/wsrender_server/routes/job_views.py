@@ -1,5 +1,6 @@
 """Jobs as JSON."""
 
+from dataclasses import replace
 from datetime import datetime
 from typing import Annotated, Any, Generic, Self, TypeVar
 
@@ -7,13 +8,24 @@ from fastapi import Path
 from pydantic import BaseModel, ConfigDict, Field
 
 from wsrender.notices import entries
+from wsrender_server.hosts import address
 from wsrender_server.jobs.identity import notices_of
 from wsrender_server.jobs.records import EventRecord, JobRecord, JobState
 from wsrender_server.problems import HttpProblem, Problem, problem_of_job
+from wsrender_server.query import Identifier
 
 ItemT = TypeVar("ItemT")
+
+
+def job_not_found() -> HttpProblem:
+    """What is said of a job that is not there, or not its owner's."""
+    return HttpProblem(404, "there is no such job, or it is not yours", "job_not_found")
+
+
 JobId = Annotated[
-    str, Path(pattern="^[0-9a-f]{32}$", description="Id of a job.", examples=["3f2b8c1d9e4a4b5c8d7e6f5a4b3c2d1e"])
+    str,
+    Identifier(32, job_not_found),
+    Path(description="Id of a job.", examples=["3f2b8c1d9e4a4b5c8d7e6f5a4b3c2d1e"]),
 ]
 
 
@@ -88,7 +100,7 @@ class JobView(View):
     analysis: str = Field(examples=["workspace"])
     """What is analysed."""
     state: JobState
-    """queued, running, canceling, succeeded, failed, canceled or timed_out."""
+    """queued, running, canceling, succeeded, failed, canceled, timed_out, or expired: the result is no longer kept."""
     created_at: datetime
     """When it was submitted."""
     started_at: datetime | None
@@ -117,12 +129,13 @@ class JobView(View):
     """Where else to look."""
 
 
-def job_view(job: JobRecord) -> JobView:
-    """A job as JSON."""
-    path, has_result = f"/v1/jobs/{job.id}", job.state == JobState.SUCCEEDED
+def job_view(job: JobRecord, waits_for: str) -> JobView:
+    """A job as JSON; ``waits_for`` is what queued jobs wait for."""
+    progress = job.progress if job.state != JobState.QUEUED else replace(job.progress, message=waits_for)
+    path, has_result = address(f"/v1/jobs/{job.id}"), job.state == JobState.SUCCEEDED
     return JobView.of(
         job,
-        progress=ProgressView.of(job.progress),
+        progress=ProgressView.of(progress),
         error=None if job.error is None else Problem(**problem_of_job(job.error)),
         warnings=[WarningView(**entry) for entry in entries(notices_of(job.version) if has_result else ())],
         links=JobLinks(self=path, events=f"{path}/events", result=f"{path}/result", artifacts=f"{path}/artifacts"),
@@ -139,5 +152,5 @@ def event_data(event: EventRecord) -> dict[str, Any]:
 def found(job: JobRecord | None) -> JobRecord:
     """The job; HttpProblem 404 where there is none, or not for this owner."""
     if job is None:
-        raise HttpProblem(404, "there is no such job, or it is not yours", "job_not_found")
+        raise job_not_found()
     return job

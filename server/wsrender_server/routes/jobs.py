@@ -2,21 +2,23 @@
 
 import hashlib
 import json
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import AsyncIterator, Iterator
+from contextlib import asynccontextmanager, contextmanager
 from functools import partial
+from pathlib import Path
 from time import monotonic
-from typing import Annotated, Any
+from typing import Annotated, Any, cast
 
 from fastapi import APIRouter, Depends, Query, Request, Response
 from starlette.concurrency import run_in_threadpool
 
 from wsrender.analyses.registry import job_classes
-from wsrender.errors import DocumentError, InputError
-from wsrender_server.admission import Admission
-from wsrender_server.auth import Principal, Reader, Submitter
-from wsrender_server.job_body import JobBody, json_body, read_body, refused
-from wsrender_server.jobs.records import ENDED, JobState
+from wsrender.errors import InputError
+from wsrender_server.admission import Admitted
+from wsrender_server.auth import Principal, Reader, Submitter, check_priority
+from wsrender_server.hosts import address
+from wsrender_server.job_body import job_body
+from wsrender_server.jobs.records import ENDED, JobState, Submission
 from wsrender_server.parts import Parts, Server
 from wsrender_server.problems import HttpProblem, problem_responses
 from wsrender_server.routes.job_views import JobId, JobView, Page, View, found, job_view
@@ -26,7 +28,7 @@ ANSWER_WITHIN_S = 8.0  # many clients and proxies give up after ten
 POLL_AGAIN_S = "1"
 
 router = APIRouter(prefix="/v1", tags=["jobs"])
-_Body = Annotated[bytes, Depends(json_body)]
+_Body = Annotated[bytes, Depends(job_body)]
 
 
 class Estimate(View):
@@ -80,11 +82,11 @@ _SOON = {"Retry-After": {"description": "When to look again [s].", "schema": {"t
             "links": _JOB_LINKS,
         },
         202: {"description": "Queued", "headers": _LOCATION | _SOON, "links": _JOB_LINKS},
-        **problem_responses(401, 403, 404, 409, 413, 415, 422, 429),
+        **problem_responses(401, 403, 404, 408, 409, 413, 415, 422, 429),
     },
     openapi_extra=_body_of("JobSubmission"),
 )
-def submit_job(server: Server, principal: Submitter, request: Request, text: _Body) -> Response:
+async def submit_job(server: Server, principal: Submitter, request: Request, text: _Body) -> Response:
     """Queue a job document; labels, priority and timeout_s may stand beside its fields.
 
     Equal jobs of one owner are computed once: a job whose result is there already succeeds at once (200). The header
@@ -92,27 +94,17 @@ def submit_job(server: Server, principal: Submitter, request: Request, text: _Bo
     gives the same job (200), with another body 422, while the first request is still at work 409.
     """
     key = _idempotency_key(request)
-    body = read_body(text)
-    document = _admitted(server, principal, body, text, "JobSubmission")
-    options = body.options
-    with _one_at_a_time(request.app.state.keys_at_work, principal.owner, key):
-        submission = server.store.submit(
-            principal.owner,
-            document,
-            labels=options.labels,
-            priority=options.priority,
-            timeout_s=options.timeout_s,  # the store applies the limits of the settings
-            idempotency_key=key,
-            body_hash=_hash([document, options.model_dump()]),
-        )
+    async with _admitted(server, principal, text) as admitted:
+        submit = partial(_submit, server, principal.owner, admitted, key, request.app.state.keys_at_work)
+        submission = await run_in_threadpool(submit)
     job = submission.job
     request.state.job_id = job.id
     outcome = "replayed" if submission.replayed else "cached" if submission.cached else "queued"
     server.metrics.submissions.labels(outcome).inc()
-    headers = {"Location": f"/v1/jobs/{job.id}"}
+    headers = {"Location": address(f"/v1/jobs/{job.id}")}
     if outcome == "queued":
         headers["Retry-After"] = POLL_AGAIN_S
-    content = job_view(job).model_dump_json()
+    content = job_view(job, server.jobs.waits_for).model_dump_json()
     return Response(content, 202 if outcome == "queued" else 200, headers, "application/json")
 
 
@@ -120,13 +112,17 @@ def submit_job(server: Server, principal: Submitter, request: Request, text: _Bo
     "/jobs:validate",
     summary="Check a job and estimate what it would take",
     response_model=Estimate,
-    responses=problem_responses(401, 403, 404, 409, 413, 415, 422, 429),
+    responses=problem_responses(401, 403, 404, 408, 409, 413, 415, 422, 429),
     openapi_extra=_body_of("JobSubmission"),
 )
 async def validate_job(server: Server, principal: Submitter, text: _Body) -> Estimate:
     """Everything that can be wrong with a job is found here, the robot's model included; nothing is queued."""
-    document = await run_in_threadpool(lambda: _admitted(server, principal, read_body(text), text, "JobSubmission"))
-    return Estimate.model_validate({"valid": True} | await server.estimates.of(document))
+    async with _admitted(server, principal, text) as admitted:
+        document = admitted.document
+        planned = document.text or await run_in_threadpool(cast(Path, admitted.written).read_text, "utf-8")
+    return Estimate.model_validate(
+        {"valid": True} | await server.estimates.of(principal.owner, document.sha256, planned)
+    )
 
 
 @router.get(
@@ -161,7 +157,7 @@ def list_jobs(
         )
     except InputError as error:  # only the cursor can still be wrong
         raise HttpProblem(404, str(error), "unknown_cursor", errors=[("cursor", error.message)]) from None
-    return Page(items=[job_view(job) for job in jobs], next_cursor=following)
+    return Page(items=[job_view(job, server.jobs.waits_for) for job in jobs], next_cursor=following)
 
 
 @router.get(
@@ -199,7 +195,7 @@ async def get_job(
             left = ends - monotonic()
             if not waiting or left <= 0 or store.changes.closed or not await watch.wait(news, left):
                 break
-    return job_view(job)
+    return job_view(job, server.jobs.waits_for)
 
 
 @router.post(
@@ -210,7 +206,7 @@ async def get_job(
 )
 def cancel_job(server: Server, principal: Submitter, job_id: JobId) -> JobView:
     """Its state becomes canceling, then canceled; what another job waits for goes on. 409 for a job that has ended."""
-    return job_view(found(server.store.cancel(principal.owner, job_id)))
+    return job_view(found(server.store.cancel(principal.owner, job_id)), server.jobs.waits_for)
 
 
 @router.post(
@@ -220,8 +216,8 @@ def cancel_job(server: Server, principal: Submitter, job_id: JobId) -> JobView:
     responses=problem_responses(401, 403, 404, 409, 422, 429),
 )
 def retry_job(server: Server, principal: Submitter, job_id: JobId) -> JobView:
-    """Queue a job again that failed, was canceled or timed out; 409 for any other."""
-    return job_view(found(server.store.retry(principal.owner, job_id)))
+    """Queue a job again that failed, was canceled, timed out or has expired; 409 for any other."""
+    return job_view(found(server.store.retry(principal.owner, job_id)), server.jobs.waits_for)
 
 
 @router.delete(
@@ -237,12 +233,32 @@ def delete_job(server: Server, principal: Submitter, job_id: JobId) -> Response:
     return Response(status_code=204)
 
 
-def _admitted(server: Parts, principal: Principal, body: JobBody, text: bytes, schema: str) -> dict[str, Any]:
-    admission = Admission(server.store, principal.owner, server.settings.max_samples, body.prefix)
+@asynccontextmanager
+async def _admitted(server: Parts, principal: Principal, text: bytes) -> AsyncIterator[Admitted]:
+    admitted = await server.admissions.of(principal.owner, text)
     try:
-        return admission.canonical(body.document)
-    except DocumentError as error:
-        raise refused(error, text, schema, body.prefix) from None
+        check_priority(principal, admitted.options.priority, "#/priority")
+        yield admitted
+    finally:
+        await run_in_threadpool(admitted.discard)
+
+
+def _submit(
+    server: Parts, owner: str, admitted: Admitted, key: str | None, at_work: dict[tuple[str, str], object]
+) -> Submission:
+    document, options = admitted.document, admitted.options
+    told = document.sha256 if document.text is None else json.loads(document.text)
+    with _one_at_a_time(at_work, owner, key):
+        return server.store.submit(
+            owner,
+            document,
+            written=admitted.written,
+            labels=options.labels,
+            priority=options.priority,
+            timeout_s=options.timeout_s,  # the store applies the limits of the settings
+            idempotency_key=key,
+            body_hash=_hash([told, options.model_dump()]),
+        )
 
 
 def _idempotency_key(request: Request) -> str | None:

@@ -9,6 +9,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from wsrender_server.auth import Administrator, Scope
 from wsrender_server.parts import Server
 from wsrender_server.problems import HttpProblem, problem_responses
+from wsrender_server.query import Identifier
 from wsrender_server.routes.job_views import Page, View
 
 router = APIRouter(prefix="/v1", tags=["keys"])
@@ -47,6 +48,13 @@ class NewKey(KeyView):
     """The key itself; the server keeps only its hash, and never shows it again."""
 
 
+def _key_not_found() -> HttpProblem:
+    return HttpProblem(404, "there is no such key", "key_not_found")
+
+
+KeyId = Annotated[str, Identifier(16, _key_not_found), Path(description="Id of a key.")]
+
+
 @router.get("/keys", summary="List the API keys", response_model=Page[KeyView], responses=problem_responses(401, 403))
 def list_keys(server: Server, principal: Administrator) -> Page[KeyView]:
     """All keys of the database, oldest first, revoked ones included; those of a key file are not listed."""
@@ -76,10 +84,10 @@ def create_key(server: Server, principal: Administrator, response: Response, key
 def revoke_key(
     server: Server,
     principal: Administrator,
-    key_id: Annotated[str, Path(pattern="^[0-9a-f]{16}$", description="Id of a key.")],
+    key_id: KeyId,
 ) -> KeyView:
     """Requests with it are refused from now on; its jobs stay."""
     key = server.store.revoke_key(key_id)
     if key is None:
-        raise HttpProblem(404, f"there is no key {key_id}", "key_not_found")
+        raise _key_not_found()
     return KeyView.of(key)

@@ -6,7 +6,6 @@ import json
 import time
 from functools import cache
 from typing import Any
-from urllib.parse import urlsplit
 
 import structlog
 from fastapi import APIRouter, WebSocket
@@ -18,19 +17,18 @@ from wsrender import __version__
 from wsrender.documents.kinetostatic_stream import FROM_CLIENT, FROM_SERVER, LARGEST_SAMPLE, StreamOpen
 from wsrender.documents.reading import read_json
 from wsrender.errors import DocumentError, WsrenderError
-from wsrender_server.admission import Admission, refuse_paths
-from wsrender_server.auth import Principal, entitled
+from wsrender_server.admission import check_models, check_uploads, refuse_paths
+from wsrender_server.auth import Principal, until_revoked
+from wsrender_server.job_body import check_size
+from wsrender_server.jobs.documents import uploads_in
 from wsrender_server.parts import Parts
 from wsrender_server.problems import HttpProblem, problem_of_error, problem_responses, response_of_problem
-from wsrender_server.query import check_parameters
+from wsrender_server.routes.websockets import INTERNAL, NORMAL, POLICY, TOO_BIG, principal_of, protocol_of
 from wsrender_server.streams.sessions import MessageRate, Session
 
 PATH = "/v1/kinetostatic-stream"
-PROTOCOL = "wsrender.v1"  # the WebSocket subprotocol, where a client offers any
-KEY_PREFIX = "wsrender.key."  # of a subprotocol that carries an API key: browsers cannot set headers
 MOST_PER_S = 4000  # messages of a client
 OPEN_S = 30.0  # for the client's first message
-POLICY, TOO_BIG, INTERNAL, NORMAL = 1008, 1009, 1011, 1000  # close codes (RFC 6455)
 
 router = APIRouter(tags=["kinetostatic stream"])
 log = structlog.get_logger("wsrender.streams")
@@ -50,38 +48,18 @@ async def describe_stream() -> JSONResponse:
 @router.websocket(PATH)
 async def kinetostatic_stream(websocket: WebSocket) -> None:
     """A session: ``open`` → ``opened``, then samples → forces (`wsrender.documents.kinetostatic_stream`)."""
-    offered = websocket.scope.get("subprotocols", [])
     try:
-        principal = await run_in_threadpool(_entitled, websocket, offered)
+        principal = await run_in_threadpool(principal_of, websocket, "submit")
     except HttpProblem as problem:
         response = response_of_problem(problem_of_error(problem), None, problem.headers)
         await websocket.send_denial_response(response)
         return
-    await websocket.accept(PROTOCOL if PROTOCOL in offered else None)
+    await websocket.accept(protocol_of(websocket))
     with contextlib.suppress(WebSocketDisconnect):
         try:
             await _serve(websocket, principal)
         except (HttpProblem, WsrenderError) as error:
             await _refuse(websocket, problem_of_error(error))
-
-
-def _entitled(websocket: WebSocket, offered: list[str]) -> Principal:
-    """Who connects: by the header Authorization, or by a subprotocol; raises HttpProblem."""
-    check_parameters(websocket)
-    origin = websocket.headers.get("origin")
-    if origin is not None and _host_of(origin) != websocket.url.hostname:
-        raise HttpProblem(403, f"pages of {origin} may not connect", "wrong_origin")
-    scheme, _, secret = websocket.headers.get("authorization", "").partition(" ")
-    keys = [secret] if scheme.lower() == "bearer" else []
-    keys += [name.removeprefix(KEY_PREFIX) for name in offered if name.startswith(KEY_PREFIX)]
-    return entitled(websocket, keys[0] if keys else None, "submit")
-
-
-def _host_of(origin: str) -> str | None:
-    try:
-        return urlsplit(origin).hostname
-    except ValueError:
-        return None
 
 
 async def _serve(websocket: WebSocket, principal: Principal) -> None:
@@ -94,37 +72,40 @@ async def _serve(websocket: WebSocket, principal: Principal) -> None:
         raise HttpProblem(400, "messages must be text", "bad_request") from None
     if len(text) > parts.settings.max_body_bytes:
         raise HttpProblem(413, f"the first message may have {parts.settings.max_body_bytes} characters")
-    document = await run_in_threadpool(_admitted, parts, principal, text)
+    document, uploads = await parts.admissions.read(_admitted, text.encode("utf-8", "surrogatepass"))
+    await run_in_threadpool(check_uploads, parts.store, principal.owner, uploads)
     async with parts.streams.session(principal.owner, document) as session:
         log.info("stream opened", owner=principal.owner)
         try:
-            await _pump(websocket, session)
+            await _pump(websocket, session, principal)
         finally:
             log.info("stream closed", owner=principal.owner)
 
 
-def _admitted(parts: Parts, principal: Principal, text: str) -> str:
-    """The first message, checked; JSON text. Raises DocumentError, ModelError, HttpProblem."""
+def _admitted(text: bytes) -> tuple[str, list[tuple[str, str]]]:
+    """The first message, checked, as JSON, and the uploads in it. Raises DocumentError, ModelError, HttpProblem."""
+    check_size(text)
     value = read_json(text)
     if not isinstance(value, dict):
         raise DocumentError([("document", f"must be an object, not {type(value).__name__}")])
     choice = StreamOpen(**value)
     canonical = choice.model_dump(mode="json")
     refuse_paths(canonical)
-    Admission(parts.store, principal.owner, parts.settings.max_samples, "").check_models(canonical)
-    return json.dumps(canonical)
+    check_models(canonical)
+    return json.dumps(canonical), [*uploads_in(canonical)]
 
 
-async def _pump(websocket: WebSocket, session: Session) -> None:
-    """Pass messages both ways until one side ends."""
+async def _pump(websocket: WebSocket, session: Session, principal: Principal) -> None:
+    """Pass messages both ways until one side ends, or the key is revoked."""
+    revoked = asyncio.create_task(until_revoked(websocket, principal))
     inwards = asyncio.create_task(_to_loop(websocket, session))
     outwards = asyncio.create_task(_to_client(websocket, session))
-    done, pending = await asyncio.wait({inwards, outwards}, return_when=asyncio.FIRST_COMPLETED)
+    done, pending = await asyncio.wait({inwards, outwards, revoked}, return_when=asyncio.FIRST_COMPLETED)
     if inwards in done and outwards in pending and inwards.exception() is None:
         done, pending = await asyncio.wait({outwards}, timeout=1.0)  # what the loop says of the end
-    for task in (inwards, outwards):
+    for task in (inwards, outwards, revoked):
         task.cancel()
-    results = await asyncio.gather(inwards, outwards, return_exceptions=True)
+    results = await asyncio.gather(inwards, outwards, revoked, return_exceptions=True)
     for result in results:
         if isinstance(result, Exception) and not isinstance(result, WebSocketDisconnect):
             raise result

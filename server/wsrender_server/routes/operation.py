@@ -12,7 +12,7 @@ from wsrender_server.auth import Reader
 from wsrender_server.jobs.faults import DiskFull, StoreUnavailable
 from wsrender_server.metrics import MEDIA_TYPE
 from wsrender_server.parts import Parts, Server
-from wsrender_server.problems import HttpProblem, problem_responses
+from wsrender_server.problems import HttpProblem, problem_of_error, problem_responses
 from wsrender_server.routes.job_views import Page, View
 
 OK = "ok"
@@ -117,7 +117,8 @@ def get_readiness(server: Server) -> Readiness:
 def get_metrics(server: Server, principal: Reader) -> Response:
     """Requests, jobs, workers and disk."""
     store = server.store
-    text = server.metrics.text(store.queue_summary(), server.jobs.workers(), store.files.free_bytes())
+    kept, removed = store.usage(), store.removed
+    text = server.metrics.text(store.queue_summary(), server.jobs.workers(), store.files.free_bytes(), kept, removed)
     return Response(text, media_type=MEDIA_TYPE)
 
 
@@ -131,7 +132,7 @@ def _database(server: Parts) -> str:
     try:
         server.store.ping()
     except StoreUnavailable as error:
-        return str(error)
+        return problem_of_error(error)["detail"]
     return OK
 
 

@@ -38,7 +38,7 @@ def labels_of(result):
     table, count = result.tables["placements"], len(result.document["job"]["points_m"])
     found = np.full((len(table), count), "unreachable", dtype="<U20")
     for name, bits in table.columns.items():
-        if name.endswith("_bits"):
+        if name.endswith("_bits") and name != "proven_bits":
             mask = np.unpackbits(bits, axis=1, count=count, bitorder="little").astype(bool)
             assert (found[mask] == "unreachable").all()
             found[mask] = name.removesuffix("_bits").removeprefix("blocked_")
@@ -122,6 +122,35 @@ def test_an_arm_of_seven_joints_is_searched_along_one(blocked):
     assert (labels_of(result) == expected).mean() > (0.98 if blocked else 0.9999)
     assert min((expected == label).mean() for label in ("served", "unreachable")) > 0.1
     assert ((expected == "environment").mean() > 0.02) == blocked
+
+
+PROOFS = {
+    "closed form": ("ur5e", True, {}),
+    "all postures": ("ur5e", True, {"environment": {"items": [FLOOR | {"point_m": [0, 0, -0.1]}]}}),
+    "ball search": ("franka_panda", True, {}),
+    "search": ("franka_panda", False, {"environment": {"items": [FLOOR | {"point_m": [0, 0, -0.1]}]}}),
+    "beyond the reach": ("scara", False, {}),
+}
+
+
+@pytest.mark.parametrize("case", PROOFS)
+def test_what_is_proven_is_so_target_by_target_seen_from_each_base(case):
+    name, poses, around = PROOFS[case]
+    points = np.random.default_rng(3).uniform([-0.5, -0.3, -0.2], [0.5, 0.3, 0.4], (9, 3))
+    points[:, 2] *= name != "scara"
+    quats = np.tile(DOWN, (9, 1)) if poses else None
+    document = job(name, points, quats, over={"x_m": [-1.2, 0.9, 0.3], "y_m": [-0.6, 0.6, 0.6]}, **around)
+    result, bases, robot = execute(document), bases_of(document), ws.load_robot(name)
+    positions, rotations = seen_from(bases, points, np.tile(DOWN, (9, 1)))
+    turned = Rotation.from_matrix(rotations.reshape(-1, 3, 3)).as_quat(scalar_first=True) if poses else None
+    limits = constraints_for(robot, None, ws.Environment(**around["environment"])) if around else ()
+    expected = ws.reachable(robot, positions.reshape(-1, 3), turned, device="cpu", constraints=limits)
+    bits = result.tables["placements"]["proven_bits"]
+    found = np.unpackbits(bits, axis=1, count=9, bitorder="little").astype(bool)
+    assert (found.ravel() == expected.proven).mean() > 0.99
+    assert result.document["placements"]["proven"] == found.sum() and 0.05 < found.mean() < 0.98
+    assert not (found & np.isin(labels_of(result), ("served", "undecided"))).any()
+    assert (found & (labels_of(result) == "environment")).any() == (case == "all postures")
 
 
 def test_points_of_two_links():
@@ -271,6 +300,7 @@ def test_a_map_says_where_its_cells_are(tmp_path):
         assert '"origin": [-1.0, -0.5]' in str(file["wsrender"])
     assert (tmp_path / "out" / "plots" / "placements.png").exists()
     figure = result.plot.placements()
+    assert figure.axes[0].get_xlabel() == "x [m]"  # as pictures of volumes have it
     figure.draw_without_rendering()
     (legend,), (axes, _) = figure.legends, figure.axes
     assert len(legend.legend_handles) == 2 and not legend.get_window_extent().overlaps(axes.get_tightbbox())

@@ -199,7 +199,6 @@ HERE = [{"position_m": [0.4, 0, 0.3]}]
         ({}, 'points_m: must be given, or else "targets": one of the two'),
         ({"points_m": [[0, 0, 0]], "targets": HERE}, 'points_m: must be given, or else "targets"'),
         ({"targets": HERE, "weights": [2]}, 'weights: must not be given without "points_m": targets say their own'),
-        ({"targets": HERE, "criteria": [{"least_share": 1}]}, "criteria: "),
     ],
 )
 def test_wrong_documents(fields, message):

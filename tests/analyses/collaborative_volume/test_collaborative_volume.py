@@ -1,7 +1,11 @@
 """The collaborative volume of jobs: the outward pair of arms, points in documents and files, malformed jobs."""
 
+import hashlib
+
 import numpy as np
+import pyarrow as pa
 import pytest
+from pyarrow import parquet
 
 import wsrender as ws
 from tests.multi.test_body_elements import LENS, ball
@@ -62,15 +66,23 @@ def test_points_in_documents_and_files(tmp_path):
     np.save(tmp_path / "left.npy", left)
     np.savetxt(tmp_path / "right.csv", right, delimiter=",", header="x,y,z", comments="")
     np.savetxt(tmp_path / "bare.csv", right, delimiter=",")
+    parquet.write_table(pa.table({"z_m": right[:, 2], "x_m": right[:, 0], "y_m": right[:, 1]}), tmp_path / "r.parquet")
     inline = [{"points": left.tolist()}, {"points": right.tolist()}]
-    files = [{"path": str(tmp_path / name)} for name in ("left.npy", "right.csv", "bare.csv")]
+    files = [{"path": str(tmp_path / name)} for name in ("left.npy", "right.csv", "bare.csv", "r.parquet")]
     from_python = ws.collaborative_volume(left, right, cells=(6, 6, 6), seeds=1, device="cpu")
     assert from_python.tables["seeds"]["volume"][0] == pytest.approx(expected)
-    for sources in (inline, files[:2], files[::2], [{"points": left}, files[1]]):
+    for sources in (inline, files[:2], files[::2], files[::3], [{"points": left}, files[1]]):
         found = ws.execute(job(left=sources[0], right=sources[1], cells=[6, 6, 6], seeds=1))
         assert found.document["headline"]["value"] is None and "biased" in found.document["headline"]["reason"]
         assert found.tables["seeds"]["volume"][0] == pytest.approx(expected)
         assert found.document["refinements"][0]["variance_m6"] is None
+        hashes = {
+            f"{side}_sha256": hashlib.sha256((tmp_path / each["path"]).read_bytes()).hexdigest()
+            for side, each in zip(("left", "right"), sources, strict=True)
+            if "path" in each
+        }
+        said = found.document["provenance"].items()
+        assert {name: value for name, value in said if name.endswith("_sha256")} == hashes
     assert expected[0] == pytest.approx(LENS, rel=0.5)
 
 
@@ -113,7 +125,7 @@ def test_every_run_draws_its_own_configurations(monkeypatch):
         ({**OUTWARD, "left": {"points": [[0, 1]]}}, r"left.points: must be a list of points"),
         ({**OUTWARD, "left": {"points": [[0, 1, float("nan")]]}}, "left.points: must be a list of points"),
         ({**OUTWARD, "left": {"points": [[0, 1, 2]], "path": "a.npy"}}, "left.points: must be given, or else"),
-        ({**OUTWARD, "left": {"path": "/nowhere/a.npy"}}, "path: /nowhere/a.npy cannot be read as points"),
+        ({**OUTWARD, "left": {"path": "/nowhere/a.npy"}}, "left.path: /nowhere/a.npy cannot be read: No such file"),
         ({**OUTWARD, "left": {"points": [[0, 0, 0]]}, "refined_volume": 0.1}, "refined_volume: must be null"),
         ({**OUTWARD, "cells": [1, 2]}, "cells: must be a list of 3 whole numbers"),
         ({**OUTWARD, "neighbours": 5}, "neighbours: must be 4 or 6"),

@@ -1,5 +1,7 @@
 """Mappings with known answers: boxes, balls, a turned ellipsoid; failures; the project's own pair."""
 
+import hashlib
+
 import numpy as np
 import pytest
 
@@ -224,6 +226,17 @@ def test_malformed_jobs(fields, message):
     job = {"analysis": "master_slave_mapping", "master": {"points": MASTER_BOX}, "slave": {"points": SLAVE_BOX}, **CPU}
     with pytest.raises(ws.InputError, match=message):
         ws.execute({**job, **fields})
+
+
+def test_points_of_a_file_are_those_of_the_document(tmp_path):
+    np.save(tmp_path / "box.npy", MASTER_BOX)
+    listed, found = mapped(MASTER_BOX, SLAVE_BOX), mapped({"path": str(tmp_path / "box.npy")}, SLAVE_BOX)
+    assert found.document["mapping"] == listed.document["mapping"]
+    sha256 = hashlib.sha256((tmp_path / "box.npy").read_bytes()).hexdigest()
+    said = [result.document["provenance"].get("master_sha256") for result in (listed, found)]
+    assert said == [None, sha256] and "slave_sha256" not in found.document["provenance"]
+    with pytest.raises(ws.InputError, match=r"slave\.path: .*none\.npy cannot be read"):
+        mapped(MASTER_BOX, {"path": str(tmp_path / "none.npy")})
 
 
 def test_a_search_that_finds_nothing_says_so():

@@ -1,10 +1,13 @@
 """The analysis ``postures``: a job document in, tables of postures and poses out."""
 
+from time import process_time
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
 import wsrender as ws
+from tests.reach.test_postures import GENERAL, drawn
 from tests.run.journeys import from_the_command_line
 from wsrender.run import execute, merge, plan, run_shard
 
@@ -51,6 +54,24 @@ def test_one_pose_may_be_given_alone():
     assert (
         one.document["postures"]["postures"] == 8 and execute(one.document["job"]).document["postures"]["postures"] == 8
     )
+
+
+def test_a_free_axis_in_a_document(tmp_path):
+    job = JOB | {
+        "free_axis": "z",
+        "constraints": {"region": {"half_space": {"point_m": [0, 0, 0], "normal": [0, 0, 1]}}},
+    }
+    result = from_the_command_line(job, tmp_path)
+    found, table = ws.postures("ur5e", *POSES.values(), free_axis="z", device="cpu"), result.tables["postures"]
+    q = np.stack([table[f"q_joint{k}"] for k in range(1, 7)], axis=1)
+    assert (q == found.configurations).all() and result.document["job"]["free_axis"] == "z"
+    assert result.document["postures"]["self_motions"] == {"count": len(found), "closed": 0} and table["family"].all()
+    assert result.document["postures"]["complete"] == 3 and (table["reason"] == "").all()
+    other = execute(job | {"free_axis": "x", "starts": 16}).tables["postures"]
+    assert len(other) and set(other["family"]) == {True} and not np.isin(other["q_joint1"], table["q_joint1"]).any()
+    assert "free_axis" not in execute(JOB).document["job"]
+    with pytest.raises(ws.InputError, match="aspects: must be false: 6 joints move, and the pose has 5 freedoms"):
+        plan(job | {"aspects": True})
 
 
 def test_from_the_command_line_and_back(tmp_path, capsys):
@@ -118,6 +139,7 @@ def test_more_starts_find_more_and_seeds_matter():
         ({"quat_wxyz": [[1, 0, 0, 0]]}, "quat_wxyz", "must have as many rows as position_m, 3, not 1"),
         ({"position_m": [[0, 0]]}, "position_m", "rows of 3 numbers"),
         ({"position_m": []}, "position_m", "at least 1"),
+        ({"free_axis": "z", "quat_wxyz": None}, "free_axis", 'must not be given without "quat_wxyz"'),
         ({"windings": 0}, "windings", "1"),
         ({"indices": ["no_such"]}, "indices", "no_such"),
     ],
@@ -125,3 +147,18 @@ def test_more_starts_find_more_and_seeds_matter():
 def test_bad_jobs_are_refused_by_name(change, field, message):
     with pytest.raises((ws.DocumentError, ws.InputError), match=f"{field}.*{message}"):
         plan(JOB | change)
+
+
+@pytest.mark.parametrize(("robot", "count"), [("ur5e", 2000), (GENERAL, 200)])
+def test_estimated_seconds_are_those_of_closed_forms_and_searches(robot, count):
+    chain = ws.load_robot(robot).chain
+    T = chain.poses(drawn(chain, count))
+    quat = Rotation.from_matrix(T[:, :3, :3]).as_quat(scalar_first=True)
+    named = robot if isinstance(robot, str) else {"dh": robot.model_dump(mode="json")}
+    all_of_them = {"robot": named, "position_m": T[:, :3, 3].tolist(), "quat_wxyz": quat.tolist()}
+    few = {key: value[:1] for key, value in all_of_them.items() if key != "robot"}
+    one, whole = plan(JOB | all_of_them | few), plan(JOB | all_of_them)
+    run_shard(one, 0)  # kernels are compiled
+    began = process_time()
+    run_shard(whole, 0)
+    assert 0.25 < (whole.cost.seconds - one.cost.seconds) / (process_time() - began) < 4  # of CPU time

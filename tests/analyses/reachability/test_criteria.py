@@ -10,7 +10,8 @@ from scipy.spatial.transform import Rotation
 import wsrender as ws
 from tests.reference import closed_form_inverse as closed_form
 from tests.run.journeys import from_a_partial_file
-from wsrender.analyses.reachability.run import share_of, verdict
+from wsrender.analyses.cost import DECIDED_PER_S
+from wsrender.analyses.criteria import share_of, verdict
 from wsrender.cli import main
 from wsrender.run import execute, merge, plan
 from wsrender.run.steps import finish, run_shard
@@ -37,7 +38,7 @@ def test_a_share_at_its_boundary(reached, said, tmp_path, capsys):
         main(["run", str(tmp_path / "job.json"), "-o", str(tmp_path / "out")])
     assert ended.value.code == {"pass": 0, "fail": 3}[said]
     share = f"{reached / 0.4:g} %"
-    assert f"criterion 1             {said}: {share}; 95 % reached needed" in capsys.readouterr().out
+    assert f"criterion 1: {said}: {share}; 95 % reached needed" in capsys.readouterr().out
     result = ws.Result.load(tmp_path / "out")
     (criterion,) = result.document["criteria"]
     assert result.document["verdict"] == criterion["verdict"] == said
@@ -129,6 +130,17 @@ def test_margins_of_slides_and_their_bounds():
         plan(job | {"criteria": [{"least_share": 0.5, "joint_margin_m": 10}]})
     with pytest.raises(ws.InputError, match=r"criteria\.0\.joint_margin_deg: must be at most .*°: joint"):
         plan(job | {"criteria": [{"least_share": 0.5, "joint_margin_deg": 179}]})
+
+
+def test_each_margin_is_estimated_to_take_as_long_as_the_targets():
+    """Beside what pictures and files take."""
+    job = JOB | {"points_m": [[0.1, 0.1, 0.1 * k] for k in range(9)]}
+    criteria = {"least_share": 0.5, "joint_margin_deg": 1}, {"least_share": 0.5}
+    alone, once, twice = (
+        plan(job | {"criteria": [criteria[k] for k in asked]}).cost.seconds for asked in ([1], [0, 1], [0, 0])
+    )
+    assert once - alone == pytest.approx(9 / DECIDED_PER_S, rel=1e-6)
+    assert twice - once == pytest.approx(9 / DECIDED_PER_S, rel=1e-6)
 
 
 def test_shards_of_a_table_change_no_bit(tmp_path):

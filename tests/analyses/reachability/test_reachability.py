@@ -72,7 +72,7 @@ def test_what_constraints_reject_is_blocked_by_name():
     rejected = np.stack([table["rejected_environment"], table["rejected_self_collision"]], axis=1)
     assert (rejected[:2].sum(axis=1) >= 8).all() and rejected[0, 0] > 0 and not rejected[3].any()
     assert table["residual_m"][:3].max() <= 1e-5
-    assert "blocked targets         2" in result.summary()
+    assert "blocked targets: 2" in result.summary()
     assert result.plot.targets() is not None
 
 

@@ -157,7 +157,7 @@ def test_scatter_colours_each_point_by_its_index():
     values = samples.indices["x"][order]
     expected = mpl.colormaps["viridis"]((values - values.min()) / (values.max() - values.min()))
     np.testing.assert_allclose(cloud.get_facecolor(), expected, atol=1 / 255)
-    assert figure.axes[1].get_ylabel() == "X [rad]"
+    assert figure.axes[1].get_ylabel() == "x [rad]"
 
 
 def test_space_has_equal_scales_in_metres():

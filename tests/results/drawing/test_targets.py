@@ -96,6 +96,8 @@ def test_titles_say_in_words_how_samples_are_spread_and_how_a_voxel_is_approache
     ):
         sampling = {"samples": 1200, "method": method}
         assert sampling_text({"robot": {"name": "arm"}, "sampling": sampling}) == f"arm · 1,200 samples ({words})"
+    one = {"samples": 1, "method": "given"}
+    assert sampling_text({"robot": {"name": "arm"}, "sampling": one}) == "arm · 1 sample (as given)"
     capability = {"directions": 50, "approach_axis": "-x"}
     title = sampling_text({"analysis": "capability", "robot": {"name": "arm"}, "capability": capability})
     assert title == "arm · 50 directions of approach by the tip's -x axis"

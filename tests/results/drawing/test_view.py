@@ -9,7 +9,7 @@ import trimesh
 from wsrender.results import drawing
 from wsrender.results.drawing.box import space_around, towards_eye
 from wsrender.results.drawing.camera import Camera
-from wsrender.results.drawing.depth import DepthBuffer
+from wsrender.results.drawing.depth import OVERSAMPLING, DepthBuffer
 from wsrender.results.drawing.faces import faces_of
 from wsrender.results.drawing.style import DPI
 from wsrender.volume.distribution_map import DistributionMap
@@ -65,6 +65,38 @@ def test_the_nearest_triangle_is_seen_where_two_pass_through_each_other():
     np.testing.assert_array_equal(buffer.nearest[rows, columns][clear], expected[clear])
     area = 0.5 * 1.6 * 1.6 / 4 * buffer.nearest.shape[0] ** 2
     assert len(rows) == pytest.approx(area, rel=0.01)
+
+
+def test_each_pixel_shows_the_nearest_triangle_around_its_middle_in_the_mean_of_its_colours():
+    """Triangles of all sizes, with upright and level sides, partly outside the picture and without area."""
+    random = np.random.default_rng(5)
+    corners = random.normal(0, 0.9, (120, 1, 3)) + random.normal(0, 1, (120, 3, 3)) * random.uniform(0, 1, (120, 1, 1))
+    corners[:20, 1, 0], corners[:20, 2, 2], corners[20, 2] = corners[:20, 0, 0], corners[:20, 0, 2], corners[20, 0]
+    colors = random.uniform(0, 1, (120, 3, 3))
+    size, n = (64, 48), OVERSAMPLING
+    buffer = DepthBuffer.of(FRONT, size, corners)
+    column, row = (np.arange(n * edge) + 0.5 for edge in size)
+    at = np.stack(np.meshgrid(column * 2 / (n * 48) - 64 / 48, 1 - row * 2 / (n * 48)), axis=-1)
+    nearness, seen, color = np.full(at.shape[:2], -np.inf), np.full(at.shape[:2], -1), np.zeros((*at.shape[:2], 3))
+    for k, (triangle, shades) in enumerate(zip(corners, colors, strict=True)):
+        sides = np.roll(triangle, -1, axis=0) - triangle
+        parts = np.stack(
+            [d[0] * (at[..., 1] - p[2]) - d[2] * (at[..., 0] - p[0]) for p, d in zip(triangle, sides, strict=True)]
+        )
+        if not (whole := parts.sum(axis=0)).all():
+            continue
+        shares = np.roll(parts / whole, -1, axis=0)  # of a corner: the side opposite to it
+        near = np.tensordot(shares, -triangle[:, 1], axes=(0, 0))
+        front = (shares >= 0).all(axis=0) & (near > nearness)
+        nearness[front], seen[front] = near[front], k
+        color[front] = np.tensordot(shares, shades, axes=(0, 0))[front]
+    assert len(np.unique(seen)) > 40
+    np.testing.assert_array_equal(buffer.nearest, seen)
+    np.testing.assert_allclose(buffer.nearness[seen >= 0], nearness[seen >= 0], atol=1e-6)
+    total, covered = (a.reshape(48, n, 64, n, -1).sum(axis=(1, 3)) for a in (color, seen >= 0))
+    image = buffer.image(colors, 0.5)
+    np.testing.assert_allclose(image[..., :3], total / np.maximum(covered, 1), atol=1e-5)
+    np.testing.assert_allclose(image[..., 3:], 0.5 * covered / n**2, atol=1e-6)
 
 
 def test_a_sphere_is_seen_without_gaps_and_by_its_front():

@@ -1,11 +1,16 @@
 """What is read first of a result: its headline and its warnings, in words."""
 
+import json
+from pathlib import Path
+
 import pytest
 
 import wsrender as ws
+from wsrender.analyses.registry import job_classes
 from wsrender.notices import Notice
 from wsrender.results.export.headline import headline_lines, headline_text, warning_lines
 
+DOCUMENTS = Path(__file__).parents[2] / "golden" / "documents"
 VOLUME = {"quantity": "volume", "value": 3.8012, "ci95": [3.7812, 3.8263], "unit": "m3", "reason": ""}
 NONE = {"quantity": "volume", "value": None, "ci95": None, "unit": "m3", "reason": "the tip stays on a surface"}
 FEW = Notice("few_samples", "too few samples", "take more", "voxel_size_m")
@@ -39,6 +44,22 @@ def test_a_summary_starts_with_headline_and_warnings():
         "  warning: too few samples; take more (field voxel_size_m)",
         "  warning: the model has no inertias",
     ]
+
+
+def test_facts_stand_for_the_headline_where_no_workspace_is_measured():
+    counts = {"reachable": 2, "unreachable": 1, "undecided": 0}
+    document = {"analysis": "reachability", "robot": {"name": "arm"}, "headline": NONE, "targets": counts}
+    said = ["reachable targets: 2", "unreachable targets: 1", "undecided targets: 0"]
+    assert headline_lines(document) == said
+    assert ws.Result(document).summary().splitlines() == ["arm", *(f"  {line}" for line in said)]
+
+
+@pytest.mark.parametrize("analysis", job_classes())
+def test_every_result_that_measures_no_workspace_says_something_of_itself(analysis):
+    """Golden documents of every analysis: none says of itself that it measures nothing."""
+    for path in DOCUMENTS.glob(f"{analysis}*.json"):
+        lines = headline_lines(json.loads(path.read_text())["document"])
+        assert lines and not any("measures none" in line for line in lines)
 
 
 def test_several_robots_have_a_headline_each():

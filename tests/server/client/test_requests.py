@@ -1,5 +1,6 @@
 """Requests: lost connections, busy servers, problem documents."""
 
+import io
 import json
 
 import httpx2
@@ -99,6 +100,13 @@ def test_cancel_is_not_sent_twice(server, client):
     assert len(server.sent("POST", "/v1/jobs/j1:cancel")) == 1
     server.answer("POST", "/v1/jobs/j1:cancel", REFUSED, says({**JOB, "state": "canceling"}))
     assert client.job("j1").cancel().state == "canceling"
+
+
+def test_a_server_that_reads_other_long_bodies_is_asked_again(server, client, clock):
+    busy = refuses(429, "busy", retryable=True, headers={"Retry-After": "5"})
+    server.answer("POST", "/v1/jobs", busy, busy, says(JOB, 202))
+    assert client.submit(DOCUMENT).id == "j1" and len(server.requests) == 3
+    assert len({request.headers["Idempotency-Key"] for request in server.requests}) == 1
 
 
 def test_busy_server_is_asked_again_when_it_says(server, client, clock):
@@ -232,6 +240,37 @@ def test_tables_of_targets_are_uploaded(given, server, client, tmp_path):
     assert (upload.content, upload.headers["content-type"]) == (table.read_bytes(), "text/csv")
     sent = json.loads(submission.content)
     assert sent["targets"]["model"] == "ab" * 32 and not list(local_paths(sent))
+
+
+def test_long_arrays_are_uploaded(server, client, monkeypatch):
+    """Those of NumPy, in the fields that may be files; short ones, lists and what is no number stay in the document."""
+    monkeypatch.setattr("wsrender.client.client.LONGEST_SENT", 11)
+    rows = np.arange(12.0).reshape(4, 3)
+    server.answer("POST", "/v1/models", says({"sha256": "ab" * 32}, 201))
+    server.answer("POST", "/v1/jobs", says(JOB, 202))
+
+    def sent(**fields):
+        """What was uploaded, and what stands in the document."""
+        server.requests.clear()
+        client.submit({**DOCUMENT, **fields})
+        *uploads, submission = server.requests
+        document = json.loads(submission.content)
+        return uploads, {name: document[name] for name in fields}
+
+    upload = {"model": "ab" * 32}
+    for fields, document in (
+        ({"configurations": rows}, {"configurations": upload}),
+        ({"left": {"points": rows}, "slave": {"points": rows[:1]}}, {"left": upload, "slave": {"points": [[0, 1, 2]]}}),
+    ):
+        (one,), found = sent(**fields)
+        assert found == document and one.headers["content-type"] == "application/x-npy"
+        assert np.load(io.BytesIO(one.content)).tobytes() == rows.tobytes()
+    for fields in ({"configurations": rows[:3]}, {"points_m": rows}, {"configurations": rows.tolist()}):
+        ((name, value),) = fields.items()
+        assert sent(**fields) == ([], {name: np.asarray(value).tolist()})
+    rows[2, 1] = np.nan
+    with pytest.raises(ws.DocumentError, match=r"configurations\.2\.1: must be a finite number, not nan"):
+        client.submit({**DOCUMENT, "configurations": rows})
 
 
 def test_files_of_several_robots_are_uploaded(server, client, tmp_path):

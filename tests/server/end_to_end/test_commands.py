@@ -1,15 +1,19 @@
 """The server's commands, as an administrator types them."""
 
+import json
 import os
 import re
 import signal
 import socket
 import subprocess
 import sys
+import time
 
 import httpx2
 import psutil
 import pytest
+from websockets.exceptions import ConnectionClosed
+from websockets.sync.client import connect
 from wsrender_server.local_server import LocalServer
 
 import wsrender as ws
@@ -31,6 +35,7 @@ def test_keys_guard_the_server(tmp_path):
     data = ("--data-dir", str(tmp_path / "data"))
     made = wsrender("keys", "create", "--name", "ann", *data)
     secret = made.stdout.strip()
+    followed = wsrender("keys", "create", "--name", "cid", *data).stdout.strip()
     reader = wsrender("keys", "create", "--name", "bob", "--scope", "read", *data).stdout.strip()
     listed = wsrender("keys", "list", *data).stdout
     assert (made.returncode, "ann" in listed, secret in listed) == (0, True, False)
@@ -45,6 +50,35 @@ def test_keys_guard_the_server(tmp_path):
             assert wsrender("keys", "revoke", key_id, *data).returncode == 0
             with pytest.raises(ws.AccessError, match="revoked"):
                 list(client.jobs())
+        assert_streams_end_with_their_key(server, followed, lambda: wsrender("keys", "revoke", followed[4:20], *data))
+
+
+def assert_streams_end_with_their_key(server, secret, revoke):
+    """Events of a job, a live stream and a view session."""
+    key, host = {"Authorization": f"Bearer {secret}"}, server.url.removeprefix("http://")
+    long = QUICK | {"sampling": {"method": "sobol", "count": 10**10}}
+    job = httpx2.post(f"{server.url}/v1/jobs", json=long, headers=key, timeout=60).json()
+    with (
+        httpx2.stream("GET", server.url + job["links"]["events"], headers=key, timeout=60) as events,
+        connect(f"ws://{host}/v1/kinetostatic-stream", additional_headers=key) as forces,
+        connect(f"ws://{host}/v1/robots/ur5e/view/session", additional_headers=key) as view,
+    ):
+        forces.send('{"type": "open", "robot": "phantom_omni"}')
+        assert json.loads(forces.recv(60))["type"] == "opened"
+        lines = events.iter_lines()
+        while "running" not in next(lines):
+            pass
+        time.sleep(2)  # all of them are looked at more than once
+        assert revoke().returncode == 0
+        revoked = time.monotonic()
+        assert "data: succeeded" not in list(lines)
+        for socket in (forces, view):
+            with pytest.raises(ConnectionClosed) as closed:
+                while "revoked" not in str(socket.recv(60)):
+                    pass
+                socket.recv(60)
+            assert closed.value.rcvd.code == 1008
+        assert time.monotonic() - revoked < 10
 
 
 def test_other_addresses_need_a_key(tmp_path):
@@ -91,6 +125,9 @@ def test_signals_stop_the_server_and_all_of_its_processes(tmp_path, number):
     _, alive = psutil.wait_procs(family, timeout=10)
     assert alive == []
     assert "Traceback" not in server.log.read_text()
+    everything = [server.data_dir, *server.data_dir.rglob("*")]
+    assert {path.stat().st_mode & 0o777 for path in everything} == {0o700, 0o600}
+    assert any("results" in path.parts for path in everything if path.is_file())
 
 
 def test_two_servers_do_not_share_a_data_folder(tmp_path):

@@ -8,11 +8,13 @@ import sys
 import time
 from pathlib import Path
 
+import psutil
 import pytest
 from distributed import Security
 from wsrender_server.local_server import LocalServer
 
 import wsrender as ws
+from tests.server.conftest import empty
 from tests.server.end_to_end.acceptance import LONG, PATIENCE_S, QUICK, assert_same_result
 
 
@@ -62,6 +64,7 @@ def workers(options, data, tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def server(options, data, postgres_url, workers):
+    empty(postgres_url)  # other tests have left a store, of another folder
     upgrade = ["database", "upgrade", "--database", postgres_url]
     subprocess.run([sys.executable, "-m", "wsrender", *upgrade], check=True, cwd=data)
     with pytest.MonkeyPatch.context() as environment:
@@ -75,7 +78,7 @@ class started:  # noqa: N801
 
     def __init__(self, command: list[str], folder: Path):
         with (folder / "log").open("w") as log:
-            environment = {**os.environ, "WSRENDER_SHARD_SAMPLES": str(2**18)}
+            environment = {**os.environ, "WSRENDER_SHARD_SAMPLES": str(2**18), "PYTHONUNBUFFERED": "1"}
             self.process = subprocess.Popen(command, stdout=log, stderr=log, cwd=folder, env=environment)
 
     def __enter__(self) -> subprocess.Popen:
@@ -114,6 +117,21 @@ def test_results_are_those_of_a_local_run(server, quick_local, long_local):
         jobs = [client.submit(document) for document in (QUICK, LONG)]
         for job, local in zip(jobs, (quick_local[0], long_local), strict=True):
             assert_same_result(job.wait(timeout=PATIENCE_S).result(), local)
+
+
+def test_a_worker_stops_at_once_whether_it_has_joined_or_not(options, data, scheduler, tmp_path):
+    command = [sys.executable, "-m", "wsrender", "worker", "--data-dir", str(data), *options]
+    for line in ("Start worker at", "worker joined"):
+        (tmp_path / "log").write_text("")
+        with started(command, tmp_path) as worker:
+            end = time.monotonic() + 60
+            while line not in (tmp_path / "log").read_text():
+                assert worker.poll() is None and time.monotonic() < end
+                time.sleep(0.05)
+            family = [psutil.Process(worker.pid), *psutil.Process(worker.pid).children(recursive=True)]
+            worker.send_signal(signal.SIGTERM)
+            assert worker.wait(4) == 0, line  # 2 s where the machine has nothing else to do
+            assert psutil.wait_procs(family, timeout=4)[1] == []
 
 
 def test_strangers_without_a_certificate_are_turned_away(server, scheduler):

@@ -3,6 +3,7 @@
 import hashlib
 
 import numpy as np
+import pytest
 import trimesh
 
 import wsrender as ws
@@ -43,6 +44,32 @@ def test_a_table_travels_to_placements(client, tmp_path):
     assert result.document["provenance"]["targets_sha256"] == sha256
     assert result.tables["targets"]["name"].tolist() == ["a", "b"]
     assert np.array_equal(result.tables["placements"]["served_bits"], local.tables["placements"]["served_bits"])
+
+
+def test_arrays_travel(client, tmp_path):
+    """The bits of the same numbers in the document; what a file holds wrongly is said by field, file and row."""
+    rows = np.random.default_rng(2).uniform(-1, 1, (500, 6))
+    np.save(tmp_path / "rows.npy", rows)
+    document = {"analysis": "indices_at", "robot": "ur5e", "device": "cpu"}
+    listed = client.submit(document | {"configurations": rows.tolist()}).wait(timeout=PATIENCE_S).result()
+    found = client.submit(document | {"configurations": str(tmp_path / "rows.npy")}).wait(timeout=PATIENCE_S).result()
+    assert found.map.configuration.tobytes() == listed.map.configuration.tobytes() == rows.tobytes()
+    for name, values in listed.map.indices.items():
+        assert found.map.indices[name].tobytes() == values.tobytes()
+    sha256 = hashlib.sha256((tmp_path / "rows.npy").read_bytes()).hexdigest()
+    assert found.document["provenance"]["configurations_sha256"] == sha256
+    assert found.document["job"]["configurations"]["model"] == sha256
+    points = {"analysis": "collaborative_volume", "seeds": 1, "cells": [4, 4, 4], "right": {"points": rows[:, 3:]}}
+    np.save(tmp_path / "left.npy", rows[:, :3])
+    left = ({"points": rows[:, :3]}, {"path": str(tmp_path / "left.npy")})
+    both = [client.submit(points | {"left": each}).wait(timeout=PATIENCE_S).result() for each in left]
+    assert np.array_equal(*(each.tables["seeds"]["volume"] for each in both))
+    rows[7, 2] = np.nan
+    np.save(tmp_path / "rows.npy", rows)
+    with pytest.raises(
+        ws.InputError, match=r"configurations\.model: .*, row 8, column 3: must be a finite number, not nan"
+    ):
+        client.submit(document | {"configurations": str(tmp_path / "rows.npy")}).wait(timeout=PATIENCE_S).result()
 
 
 def test_files_of_what_stands_around_travel(client, tmp_path):

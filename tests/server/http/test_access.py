@@ -18,6 +18,7 @@ PRIVATE = ("/v1/jobs", "/v1/analyses", "/v1/robots", "/v1/queue", "/v1/workers",
 def keys(jobs):
     """Secrets by name."""
     names = {"ann": ("read", "submit"), "bob": ("read", "submit"), "eve": ("read",), "root": ("admin",)}
+    names["urgent"] = ("priority",)
     return {name: jobs.store.create_key(name, scopes)[1] for name, scopes in names.items()}
 
 
@@ -49,6 +50,33 @@ def test_scopes(keyed, keys):
     refused = keyed.post("/v1/models", content="<mujoco/>", headers=model | bearer(keys["eve"]))
     problem_of(refused, 403, "insufficient_scope")
     assert keyed.post("/v1/jobs", json=DOCUMENT, headers=bearer(keys["root"])).status_code == 202
+
+
+def test_going_before_others_is_a_scope(keyed, keys):
+    for name, priority, status in (
+        ("ann", 1, 403), ("ann", 0, 202), ("ann", -1000, 202), ("urgent", 1000, 202), ("root", 1, 202),
+    ):  # fmt: skip
+        for path in ("/v1/jobs", "/v1/jobs:validate"):
+            document = DOCUMENT | {"priority": priority, "voxel_size_m": 0.1 + priority / 1e5}
+            answer = keyed.post(path, json=document, headers=bearer(keys[name]))
+            if status == 403:
+                (error,) = problem_of(answer, 403, "insufficient_scope")["errors"]
+                assert error["pointer"] == "#/priority" and "0 is the highest" in error["detail"]
+            elif path == "/v1/jobs":
+                assert answer.status_code == status and answer.json()["priority"] == priority
+
+
+def test_ids_that_are_none_are_those_of_nothing(keyed, keys):
+    root = bearer(keys["root"])
+    for odd in ("x", "0" * 31, "0" * 33, "A" * 32, "%00" * 32, "0" * 32 + "%0A", "é"):
+        for method, path, code in (
+            ("GET", f"/v1/jobs/{odd}", "job_not_found"), ("DELETE", f"/v1/jobs/{odd}", "job_not_found"),
+            ("POST", f"/v1/jobs/{odd}:cancel", "job_not_found"), ("GET", f"/v1/jobs/{odd}/events", "job_not_found"),
+            ("GET", f"/v1/jobs/{odd}/result", "job_not_found"), ("GET", f"/v1/models/{odd}", "model_not_found"),
+            ("POST", f"/v1/keys/{odd}:revoke", "key_not_found"),
+        ):  # fmt: skip
+            problem_of(keyed.request(method, path, headers=root), 404, code)
+            problem_of(keyed.request(method, path), 401)
 
 
 def test_a_revoked_key_is_refused_at_once(keyed, keys, jobs):
@@ -88,7 +116,7 @@ def test_an_administrator_manages_keys(keyed, keys):
     assert keyed.get("/v1/jobs", headers=dan).status_code == 200
     problem_of(keyed.post("/v1/jobs", json=DOCUMENT, headers=dan), 403, "insufficient_scope")
     listed = keyed.get("/v1/keys", headers=root)
-    assert [key["name"] for key in listed.json()["items"]] == ["ann", "bob", "eve", "root", "dan"]
+    assert [key["name"] for key in listed.json()["items"]] == ["ann", "bob", "eve", "root", "urgent", "dan"]
     assert not any(secret in listed.text for secret in keys.values()) and "hash" not in listed.text
     path = f"/v1/keys/{made.json()['id']}:revoke"
     assert keyed.post(path, headers=root).json()["revoked_at"]
@@ -139,6 +167,30 @@ def test_models_belong_to_their_owner(keyed, keys):
     job = DOCUMENT | {"robot": {"model": model["sha256"]}}
     problem_of(keyed.post("/v1/jobs", json=job, headers=bob), 404, "model_not_found")
     assert keyed.post("/v1/jobs", json=job, headers=ann).status_code == 202
+
+
+def test_arrays_belong_to_their_owner_and_stay_while_a_job_needs_them(keyed, keys):
+    """By whatever field they are named; a job of what was deleted is refused as one of what never was there."""
+    ann, bob = bearer(keys["ann"]), bearer(keys["bob"])
+    points = {"analysis": "collaborative_volume", "right": {"points": [[0, 0, 0]]}, "seeds": 1}
+    mapping = {"analysis": "master_slave_mapping", "master": {"points": [[0, 0, 0]]}}
+    rows = {"analysis": "indices_at", "robot": "scara"}
+    for field, document in (("left", points), ("slave", mapping), ("configurations", rows)):
+        kind = {"Content-Type": "application/x-npy"}
+        model = keyed.post("/v1/models", content=f"{field}".encode(), headers=ann | kind).json()
+        body = document | {field: {"model": model["sha256"]}}
+        for way in ("/v1/jobs", "/v1/jobs:validate"):
+            problem = problem_of(keyed.post(way, json=body, headers=bob), 404, "model_not_found")
+            assert problem["errors"][0]["pointer"] == f"#/{field}/model"
+        job = keyed.post("/v1/jobs", json=body, headers=ann)
+        assert job.status_code == 202, job.text
+        assert "unfinished job" in problem_of(keyed.delete(model["href"], headers=ann), 409)["detail"]
+        keyed.post(f"/v1/jobs/{job.json()['id']}:cancel", headers=ann)
+        assert keyed.delete(model["href"], headers=ann).status_code == 204
+        problem_of(keyed.post("/v1/jobs", json=body, headers=ann), 404, "model_not_found")
+        local = keyed.post("/v1/jobs", json=document | {field: {"path": "/etc/passwd.npy"}}, headers=ann)
+        (error,) = problem_of(local, 422, "invalid_document")["errors"]
+        assert error["pointer"] == f"#/{field}/path" and "is for local runs only" in error["detail"]
 
 
 def test_openapi_asks_for_a_key_where_the_server_does(keyed, client):

@@ -70,3 +70,22 @@ def test_plots_of_a_file_that_is_deleted_are_not_found(client, jobs, finished, m
     document = jobs.store.result_document("local", finished.rpartition("/")[2])
     monkeypatch.setattr(jobs.store, "result_document", lambda *_: document)
     test_a_file_that_is_deleted_before_it_is_opened_is_not_found(client, jobs, finished, "/plots/histogram")
+
+
+def test_a_result_whose_files_are_lost_is_expired_and_computed_again(client, jobs, finished, submit, result_folder):
+    """From the first look at a lost file on, the job says so; a retry makes it whole."""
+    for path in (jobs.store.files.root / "results").rglob("*"):
+        if path.is_file():
+            path.write_bytes(path.read_bytes()[::-1])
+    problem_of(client.get(f"{finished}/artifacts/map.parquet"), 404, "artifact_not_found")
+    job = client.get(finished).json()
+    assert job["state"] == "expired" and job["error"]["code"] == "result_expired" and job["error"]["retryable"]
+    assert [each["id"] for each in client.get("/v1/jobs?state=expired").json()["items"]] == [job["id"]]
+    for rest in ("/result", "/artifacts", "/artifacts/map.parquet", "/view", "/plots/histogram"):
+        problem = problem_of(client.get(finished + rest), 409, "result_expired")
+        assert "map.parquet" in problem["detail"] and "retry the job" in problem["detail"]
+    assert submit()["state"] == "queued"
+    assert client.post(f"{finished}:retry").json()["state"] == "queued"
+    jobs.complete(job["id"], result_folder)
+    assert client.get(finished).json()["error"] is None
+    assert client.get(f"{finished}/artifacts/map.parquet").content == (result_folder / "map.parquet").read_bytes()

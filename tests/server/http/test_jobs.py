@@ -36,6 +36,16 @@ def test_what_is_not_there(client, method, path):
     problem_of(response, response.status_code)
 
 
+def test_a_queued_job_says_what_it_waits_for(client, submit, jobs):
+    jobs.waits_for = "waiting for the workers to start"
+    job = submit()
+    path = f"/v1/jobs/{job['id']}"
+    views = [job, client.get(path).json(), client.get("/v1/jobs").json()["items"][0]]
+    assert {view["progress"]["message"] for view in views} == {jobs.waits_for}
+    jobs.begin(job["id"])
+    assert client.get(path).json()["progress"]["message"] == "samples"
+
+
 def test_waiting_ends_with_the_job(client, submit, jobs, result_folder):
     job = submit()
     threading.Timer(0.5, jobs.complete, (job["id"], result_folder)).start()

@@ -54,6 +54,8 @@ def test_the_published_schema_is_that_of_the_documents():
     dh = {"convention": "modified", "rows": [{"a": 0.1, "limits": [-1, 1]}]}
     robots = ["scara", {"library": "scara"}, {"dh": dh}, {"mjcf": "<mujoco/>"}, {"model": "0" * 64}]
     robots += [{}, {"library": "nope"}, {"library": "scara", "dh": dh}, {"mjcf": ""}, {"model": "x"}]
+    rail = {"name": "rail", "axis": "x", "limits": [0, 1]}
+    robots += [{"library": "scara", "mount": mount} for mount in ([rail], [rail | {"axis": [0, 1, 1]}], rail, [{}])]
     bodies = [DOCUMENT | {"robot": robot} for robot in robots]
     bodies += [DOCUMENT | {"indices": indices} for indices in (["yoshikawa"], ["dynamic_isotropy"], "all", [], ["x"])]
     bodies += [DOCUMENT | {"task": task} for task in (["x", "rz"], ["x", "x"], [], "full")]

@@ -4,6 +4,7 @@ import errno
 import re
 import sqlite3
 from contextlib import closing
+from datetime import UTC, datetime, timedelta
 
 import numpy as np
 import pyarrow as pa
@@ -11,13 +12,16 @@ import pytest
 import structlog
 import trimesh
 from pyarrow import parquet
+from wsrender_server.jobs.database import Transactions, open_database
 from wsrender_server.jobs.faults import DiskFull, StoreUnavailable
+from wsrender_server.jobs.retention import Retention
+from wsrender_server.settings import Settings
 
 from tests.server.http.idle_server import DOCUMENT, problem_of
 from wsrender import __version__
 from wsrender.analyses.jobs import job_schema
 from wsrender.analyses.registry import job_classes
-from wsrender.documents.target_lists import TABLE_TYPES
+from wsrender.documents.array_files import TABLE_TYPES
 from wsrender.robots import library
 
 MODEL = {"content": "<mujoco/>", "headers": {"Content-Type": "application/xml"}}
@@ -37,6 +41,17 @@ def test_readiness_names_what_is_missing(client, jobs, monkeypatch):
     assert "ok" not in problem["checks"].values()
     assert set(problem["checks"]) == {"database", "scheduler", "workers", "disk"}
     assert client.get("/healthz").status_code == 200
+
+
+def test_nobody_is_told_where_the_database_is(client, jobs):
+    """A store of a PostgreSQL that does not answer: probes, and whoever asks without a key."""
+    jobs.store.transactions = Transactions(open_database("postgresql+psycopg://me:pw@127.0.0.1:1/secret_name"))
+    with structlog.testing.capture_logs() as logs:
+        for path, code in (("/readyz", "not_ready"), ("/v1/jobs", "database_unavailable")):
+            answer = client.get(path)
+            assert "the database does not answer" in problem_of(answer, 503, code)["detail"]
+            assert not re.search("127.0.0.1|secret_name|port|me:", answer.text)
+    assert any("127.0.0.1" in entry.get("error", "") for entry in logs)
 
 
 @pytest.mark.parametrize(
@@ -123,6 +138,14 @@ def test_metrics(client, submit):
     assert "secret-path" not in text and 'route="/v1/jobs/{job_id}"' in text and "0" * 32 not in text
 
 
+def test_invented_methods_are_one_line_of_the_metrics(client):
+    for number in range(50):
+        problem_of(client.request(f"M{number}", "/v1/jobs"), 405)
+    text = client.get("/metrics").text
+    assert 'wsrender_http_requests_total{method="other",route="/v1/jobs",status="405"} 50.0' in text
+    assert "M49" not in text
+
+
 def test_workers(client):
     (worker,) = client.get("/v1/workers").json()["items"]
     assert worker["busy"] is False and worker["target"]
@@ -151,7 +174,7 @@ def test_documentation_needs_no_internet(client):
     for file in files:
         assert not file.startswith(("http", "//"))
         assert client.get(f"/{file}").status_code == 200
-    assert client.get("/", follow_redirects=False).headers["location"] == "docs"
+    assert 'href="docs"' in client.get("/").text
 
 
 def test_analyses_carry_their_schema(client):
@@ -265,3 +288,33 @@ def _raises(error):
         raise error
 
     return raising
+
+
+def test_models_are_listed_and_deleted_by_their_owner(client, submit):
+    text = (library.find("scara")).read_text()
+    sent = client.post("/v1/models", content=text, headers=MODEL["headers"]).json()
+    (kept,) = client.get("/v1/models").json()["items"]
+    assert kept.pop("created_at") and kept == sent
+    job = submit(robot={"model": sent["sha256"]})
+    assert "unfinished job" in problem_of(client.delete(sent["href"]), 409, "invalid_transition")["detail"]
+    client.post(f"/v1/jobs/{job['id']}:cancel")
+    assert client.delete(sent["href"]).status_code == 204
+    assert client.get("/v1/models").json()["items"] == []
+    for method in (client.get, client.delete):
+        problem_of(method(sent["href"]), 404, "model_not_found")
+
+
+def test_metrics_tell_what_is_kept_and_what_was_removed(client, jobs, finished):
+    def value(name):
+        return next(
+            float(line.split()[-1]) for line in client.get("/metrics").text.splitlines() if line.startswith(name)
+        )
+
+    size = sum(each["bytes"] for each in client.get(f"{finished}/artifacts").json()["items"])
+    assert value('wsrender_kept_bytes{what="results"}') == size > 0
+    later = datetime.now(UTC) + timedelta(hours=1)
+    Retention(jobs.store, Settings(data_dir=jobs.store.files.root, keep_results_bytes=0)).sweep(later)
+    for _ in range(2):
+        assert value('wsrender_retention_removed_total{what="result"}') == 1
+        assert value("wsrender_retention_freed_bytes_total") == size
+    assert value('wsrender_kept_bytes{what="results"}') == 0 and value('wsrender_jobs{state="expired"}') == 1

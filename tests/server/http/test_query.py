@@ -5,6 +5,7 @@ import re
 import pytest
 from fastapi.routing import APIRoute, APIWebSocketRoute
 from starlette.testclient import WebSocketDenialResponse
+from starlette.websockets import WebSocketDisconnect
 from wsrender_server.app import ROUTERS
 from wsrender_server.query import parameters_of
 
@@ -13,6 +14,7 @@ from tests.server.http.idle_server import DOCUMENT, HOST, problem_of
 
 ROUTES = [route for router in ROUTERS for route in router.routes]
 OPERATIONS = [(method, route) for route in ROUTES if isinstance(route, APIRoute) for method in sorted(route.methods)]
+SOCKETS = [route for route in ROUTES if isinstance(route, APIWebSocketRoute) and route.path.endswith("/session")]
 DOCUMENTATION = ("/openapi.json", "/docs", "/")
 
 
@@ -50,13 +52,21 @@ def test_the_documentation_too(client, path):
 
 
 def test_the_live_stream_too(client):
-    (route,) = [route for route in ROUTES if isinstance(route, APIWebSocketRoute)]
     with (
         pytest.raises(WebSocketDenialResponse) as refused,
-        client.websocket_connect(f"{route.path}?stray=1") as _,
+        client.websocket_connect("/v1/kinetostatic-stream?stray=1") as _,
     ):
         pass
     assert refused.value.status_code == 422 and "stray" in refused.value.json()["detail"]
+
+
+@pytest.mark.parametrize("route", SOCKETS, ids=lambda route: route.path)
+def test_interactive_sessions_too(client, route):
+    with client.websocket_connect(f"{path_of(route)}?stray=1") as socket:
+        assert b"stray" in socket.receive_bytes()
+        with pytest.raises(WebSocketDisconnect) as closed:
+            socket.receive_bytes()
+    assert closed.value.code == 1008
 
 
 def test_a_plane_by_another_name_and_a_state_by_another_name(client, finished):

@@ -5,6 +5,7 @@ import asyncio
 import pytest
 import structlog
 from anyio import BrokenResourceError
+from wsrender_server.connections import BodyLayer
 from wsrender_server.metrics import Metrics
 from wsrender_server.requests import RequestLayer
 
@@ -47,3 +48,18 @@ def test_a_client_that_leaves_an_event_stream_is_no_fault():
 @pytest.mark.parametrize(("fault", "answering"), [(MIXED, True), (ValueError(), True), (LEFT, False)])
 def test_any_other_fault_is_logged(fault, answering):
     assert logged(fault, answering=answering) == (["request failed", "request"], [200 if answering else 500])
+
+
+def test_a_server_that_is_slow_to_read_refuses_no_body_for_that():
+    """The time of a body counts from when it is asked for; a thread may be long in coming."""
+    read = []
+
+    async def app(scope, receive, send):
+        await asyncio.sleep(0.05)
+        read.append(await receive())
+
+    async def receive():
+        return {"type": "http.request", "body": b"{}"}
+
+    asyncio.run(BodyLayer(app, 0.01)(dict(SCOPE), receive, None))
+    assert read == [{"type": "http.request", "body": b"{}"}]

@@ -6,6 +6,8 @@ import json
 
 import numpy as np
 import pytest
+from sqlalchemy import update
+from wsrender_server.jobs.tables import ArtifactFile
 
 from tests.results.export.sample_data import random_volume
 from tests.server.http.idle_server import problem_of
@@ -230,7 +232,11 @@ def stored_document(jobs, finished, change):
     path = jobs.store.artifact_path("local", job, "result.json")
     document = json.loads(path.read_text())
     change(document)
-    path.write_text(json.dumps(document))
+    content = json.dumps(document).encode()
+    sha256 = hashlib.sha256(content).hexdigest()
+    (path.parent / sha256).write_bytes(content)
+    with jobs.store.transactions.write() as session:
+        session.execute(update(ArtifactFile).where(ArtifactFile.name == "result.json").values(sha256=sha256))
 
 
 def test_results_of_0_1_are_answered_in_todays_form(client, jobs, finished):

@@ -1,14 +1,18 @@
 """Work for requests in a child process: what crashes or costs too much fails its own request only."""
 
 import asyncio
+import json
 import os
 import time
+from pathlib import Path
 
 import pytest
+from fastapi.testclient import TestClient
+from wsrender_server.app import create_app
 from wsrender_server.problems import HttpProblem
-from wsrender_server.side_process import SideProcess
+from wsrender_server.side_process import MOST_WAITING_OF_OWNER, Estimates, SideProcess
 
-from tests.server.http.idle_server import DOCUMENT, problem_of
+from tests.server.http.idle_server import DOCUMENT, HOST, problem_of
 from wsrender.errors import FrameNotFoundError
 
 LIMIT = 2**28  # bytes
@@ -27,6 +31,15 @@ def abort(document):
 
 def sleep(document):
     time.sleep(600)
+
+
+def noted(document):
+    """Sleep as long as a document says, and write down whose it was."""
+    document = json.loads(document)
+    time.sleep(document["sleep_s"])
+    with Path(document["path"]).open("a") as file:
+        file.write(document["owner"] + "\n")
+    return {}
 
 
 def refuse():
@@ -90,3 +103,85 @@ def test_planning_that_takes_too_long_is_refused(client, monkeypatch):
     monkeypatch.setattr("wsrender_server.side_process.planned", sleep)
     monkeypatch.setattr("wsrender_server.side_process.TIMEOUT_S", 1.0)
     problem_of(validated(client), 409, "too_slow")
+
+
+def test_planning_has_limits_of_its_own(settings, jobs, monkeypatch):
+    monkeypatch.setattr("wsrender_server.side_process.planned", sleep)
+    settings = settings.model_copy(update={"max_planning_s": 1.0, "max_planning_memory_bytes": LIMIT})
+    with TestClient(create_app(settings, jobs), base_url=HOST) as client:
+        problem_of(validated(client), 409, "too_slow")
+        monkeypatch.setattr("wsrender_server.side_process.planned", hold_much)
+        problem = problem_of(validated(client), 409, "out_of_memory")
+    assert "0.25 GiB" in problem["detail"]
+
+
+def hold_much(document):
+    return hold(2 * LIMIT)
+
+
+@pytest.fixture
+def estimates(tmp_path, monkeypatch):
+    """``estimates(n)`` plans in n processes, by `noted`; ``ask(owner, name, sleep_s)`` asks until it is answered."""
+    monkeypatch.setattr("wsrender_server.side_process.planned", noted)
+    made = []
+
+    def make(processes):
+        made.append(Estimates([SideProcess(2**31, tmp_path) for _ in range(processes)], 60.0))
+
+        async def ask(owner, name, sleep_s=0.0):
+            text = json.dumps({"owner": owner, "name": name, "sleep_s": sleep_s, "path": str(tmp_path / "order")})
+            while True:
+                try:
+                    return await made[-1].of(owner, name, text)
+                except HttpProblem as problem:
+                    if problem.code != "planning":
+                        raise
+
+        return ask
+
+    yield make
+    for each in made:
+        each.close()
+
+
+def test_one_owner_does_not_hold_the_planner_of_all(estimates):
+    """Plans of ann's that take ten minutes; others are answered while the first is at work."""
+    ask = estimates(2)
+
+    async def all_of_them():
+        slow = [asyncio.ensure_future(ask("ann", name, 600.0)) for name in range(3)]
+        await asyncio.sleep(0.1)
+        for owner in ("bob", "eve", "bob"):
+            assert await ask(owner, "quick") == {}
+        assert not any(each.done() for each in slow)
+        for each in slow:
+            each.cancel()
+
+    asyncio.run(asyncio.wait_for(all_of_them(), 60))
+
+
+def test_owners_are_planned_for_in_turn(estimates, tmp_path):
+    ask = estimates(1)
+
+    async def all_of_them():
+        asked = [asyncio.ensure_future(ask(owner, name)) for owner in ("ann", "bob") for name in range(3)]
+        await asyncio.gather(*asked)
+
+    asyncio.run(asyncio.wait_for(all_of_them(), 60))
+    assert (tmp_path / "order").read_text().split() == ["ann", "bob"] * 3
+
+
+def test_only_so_many_of_an_owner_wait(estimates):
+    ask = estimates(2)
+
+    async def flood():
+        mine = [asyncio.ensure_future(ask("ann", n, 600.0 * (n == 0))) for n in range(MOST_WAITING_OF_OWNER + 3)]
+        for late in mine[-3:]:
+            with pytest.raises(HttpProblem) as refused:
+                await late
+            assert (refused.value.status, refused.value.retryable) == (429, True)
+        assert await ask("bob", "quick") == {}
+        for each in mine:
+            each.cancel()
+
+    asyncio.run(asyncio.wait_for(flood(), 60))

@@ -3,6 +3,7 @@
 import json
 
 import pytest
+from wsrender_server.jobs.documents import CanonicalDocument
 from wsrender_server.routes.kinetostatic_stream import _admitted
 
 from tests.golden.files import golden_names, job_of
@@ -20,7 +21,7 @@ def test_a_new_job_is_queued(client, jobs):
     job = response.json()
     assert response.headers["location"] == job["links"]["self"] == f"/v1/jobs/{job['id']}"
     assert (job["state"], job["analysis"], job["attempt"], job["error"]) == ("queued", "workspace", 1, None)
-    assert jobs.store.get("local", job["id"]).document == json.loads(canonical_json(parse_job(DOCUMENT)))
+    assert jobs.store.document("local", job["id"]) == json.loads(canonical_json(parse_job(DOCUMENT)))
     assert client.get(job["links"]["self"]).json() == job
 
 
@@ -246,7 +247,7 @@ def test_points_in_files_are_not_opened(client, jobs, path):
     assert problem["errors"][0]["pointer"] == "#/left/path"
     assert "is for local runs" in problem["errors"][0]["detail"]
     with pytest.raises(InputError, match=r"left\.path: is for local runs"):
-        jobs.store.identity.key("local", json.loads(canonical_json(parse_job(document))), None)
+        CanonicalDocument.of(json.loads(canonical_json(parse_job(document))))
 
 
 def test_the_answer_to_a_body_full_of_faults_is_short(client):
@@ -305,7 +306,7 @@ def test_meshes_in_files_are_not_opened(client):
     (error,) = problem["errors"]
     assert error["pointer"] == "#/field/obstacles/items/0/path" and "is for local runs only" in error["detail"]
     with pytest.raises(DocumentError, match=r"field\.obstacles\.items\.0\.path: is for local runs only"):
-        _admitted(None, None, json.dumps({"robot": "scara", "field": job["field"]}))  # type: ignore[arg-type]
+        _admitted(json.dumps({"robot": "scara", "field": job["field"]}).encode())
 
 
 def test_obstacles_of_earlier_documents_are_the_same_job(client):

@@ -51,3 +51,14 @@ def opened():
             return store
 
         yield open_and_close
+
+
+@pytest.fixture
+def another_version(monkeypatch):
+    """``another_version(version)`` is what this process is from now on."""
+
+    def become(version):
+        for module in ("identity", "store", "computations"):
+            monkeypatch.setattr(f"wsrender_server.jobs.{module}.__version__", version)
+
+    return become

@@ -1,11 +1,15 @@
 """An attempt at a computation: in which order its shards begin, and what it says of how far they are."""
 
+from contextlib import suppress
+
 import pytest
 from wsrender_server.jobs.attempt import Attempt
+from wsrender_server.jobs.dispatcher import Dispatcher
 from wsrender_server.jobs.files import DataFolder
 from wsrender_server.jobs.records import ComputationRecord, ComputationState
 from wsrender_server.jobs.steps import partial_name
-from wsrender_server.jobs.task import Step
+from wsrender_server.jobs.task import Limits, Step
+from wsrender_server.settings import Settings
 
 SHARDS = [[0, 10], [10, 10], [20, 10], [30, 0], [30, 0]]  # the last two are refinements
 
@@ -60,3 +64,17 @@ def test_planning_tells_how_many_tables_are_made(files):
     attempt.begin_shards(files)
     attempt.step = Step.FINISH
     assert attempt.progress().message == "finishing"
+
+
+def test_tasks_carry_the_limits_of_the_server(opened, tmp_path, document):
+    limited = {"max_memory_bytes": 2**29, "max_planning_memory_bytes": 2**28, "max_planning_s": 7.0, "max_samples": 99}
+    settings = Settings(data_dir=tmp_path, **limited)
+    store, sent = opened(settings), []
+    dispatcher = Dispatcher(store, settings)
+    dispatcher._targets = {"auto": "cpu:x"}
+    dispatcher.engine.submit = lambda tasks, *_: sent.extend(tasks.values()) or []
+    store.submit("ann", document)
+    (computation,) = store.unfinished()
+    with suppress(ValueError):  # no future of it
+        dispatcher._launch(computation)
+    assert [task.limits for task in sent] == [Limits(2**29, 2**28, 7.0, 99)]

@@ -83,7 +83,7 @@ def test_a_full_database_refuses_and_forgets_nothing(settings, opened, document)
         connection.execute(f"PRAGMA max_page_count = {pages}")
 
     full = JobStore(engine, DataFolder(settings.data_dir))
-    table = {"dh": {"convention": "standard", "rows": [{"joint": "revolute", "a": 1.0}] * 200}}
+    table = {"dh": {"convention": "standard", "rows": [{"joint": "revolute", "a": 1.0}] * 60}}
     with pytest.raises(StoreUnavailable, match="full"):
         full.submit("ann", canonical(robot=table))
     full.close()
@@ -108,6 +108,8 @@ def test_a_full_disk_refuses_models(settings, opened, monkeypatch):
         OSError(errno.ENOSPC, "No space left on device"),
         OSError(errno.EDQUOT, "Disk quota exceeded"),
         OSError("Unable to synchronously create dataset (No space left on device)"),
+        OSError("Not enough free space to write 64000000 bytes after offset 128"),
+        OSError("65536 requested and 4096 written"),
     ],
 )
 def test_a_disk_that_fills_up_in_mid_job_is_worth_a_retry(fault):

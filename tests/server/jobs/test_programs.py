@@ -5,6 +5,7 @@ from dataclasses import fields
 import numpy as np
 import pytest
 from wsrender_server.jobs import steps
+from wsrender_server.jobs.documents import CanonicalDocument
 from wsrender_server.jobs.files import DataFolder
 from wsrender_server.jobs.task import Step, Task
 
@@ -53,7 +54,8 @@ def process(tmp_path, monkeypatch):
 
 def test_workers_compute_with_what_the_planner_has_made(process, tmp_path, monkeypatch):
     process("planner")
-    document, gauges = canonical(**JOB), steps._state["gauges"]
+    job, gauges = canonical(**JOB), steps._state["gauges"]
+    document = CanonicalDocument.of(job)
     planned = steps.run(Task(Step.PLAN, "c0ffee", "c0ffee-1", document))
     made = dict(store._LATEST)
     pairs = sum(len(each.solid_pairs) for each in made.values())
@@ -76,7 +78,7 @@ def test_workers_compute_with_what_the_planner_has_made(process, tmp_path, monke
     shards = [steps._load(Task(Step.SHARD, "c0ffee", "c0ffee-1", document), k, plan) for k in range(4)]
 
     monkeypatch.undo()
-    alone = run.plan(document)
+    alone = run.plan(job)
     whole, merged = run.run_shard(alone, 0), shards[0]
     for other in shards[1:]:
         merged = run.merge(plan, merged, other)

@@ -1,10 +1,14 @@
 """The contract of the job store, the same on SQLite and PostgreSQL."""
 
 import asyncio
+import hashlib
 import threading
+import time
 from concurrent.futures import ThreadPoolExecutor
+from datetime import datetime, timedelta
 
 import pytest
+from wsrender_server.jobs.documents import CanonicalDocument
 from wsrender_server.jobs.faults import DiskFull, IdempotencyConflict, InvalidTransition, QueueFull, StoreUnavailable
 from wsrender_server.jobs.files import DataFolder
 from wsrender_server.jobs.records import ArtifactRecord, ComputationState, JobState, Progress
@@ -13,7 +17,7 @@ from wsrender_server.jobs.store import JobStore
 from tests.server.jobs.documents import canonical
 from wsrender.errors import InputError
 
-HASH = "ab" * 32
+RESULT = b'{"analysis": "workspace"}'
 AT_ONCE = 1e-6  # s: a timeout that is over when the next statement runs
 
 
@@ -22,16 +26,19 @@ def running(store, document, owner="ann", **options):
     job = store.submit(owner, document, **options).job
     (computation_id,) = store.unfinished()
     assert store.begin(computation_id, store.computation(computation_id).attempt)
+    store.time_out()  # as at every tick of the dispatcher: the job's time runs from now on
     return job.id, computation_id
 
 
-def complete(store, computation_id, content=b'{"analysis": "workspace"}'):
-    """End a computation with one artifact."""
-    path = store.files.artifact(computation_id, HASH)
+def complete(store, computation_id, content=RESULT):
+    """End a computation with one artifact, whose file is returned."""
+    sha256 = hashlib.sha256(content).hexdigest()
+    path = store.files.artifact(computation_id, sha256)
     path.parent.mkdir(exist_ok=True)
     path.write_bytes(content)
-    record = ArtifactRecord("result.json", "application/json", len(content), HASH)
+    record = ArtifactRecord("result.json", "application/json", len(content), sha256)
     store.complete(computation_id, store.computation(computation_id).attempt, [record])
+    return path
 
 
 def states(store, owner, *jobs):
@@ -44,7 +51,7 @@ def test_a_submitted_job_is_queued_and_complete(store, document):
     job = store.get("ann", submission.job.id)
     assert job == submission.job
     assert (job.state, job.analysis, job.labels, job.priority) == (JobState.QUEUED, "workspace", {"lab": "7"}, 3)
-    assert (job.attempt, job.timeout_s, job.document, job.error) == (1, 60, document, None)
+    assert (job.attempt, job.timeout_s, store.document("ann", job.id), job.error) == (1, 60, document, None)
     assert job.progress == Progress() and job.started_at is None and job.created_at.tzinfo is not None
 
 
@@ -144,7 +151,7 @@ def test_what_a_plan_settled_is_kept(store, document):
     settled = {"voxel_size_m": 0.1 + 0.2, "scales": [2.0**40], "bounds": [1 / 3], "shards": [[0, 81]]}
     store.settle(computation, settled, "cpu:a")
     record = store.computation(computation)
-    assert record.resolved == settled and record.target == "cpu:a" and record.document == document
+    assert record.resolved == settled and record.target == "cpu:a" and record.document == CanonicalDocument.of(document)
 
 
 def test_the_last_job_stops_its_computation(store, document):
@@ -199,6 +206,15 @@ def test_retry_starts_a_new_attempt(store, document):
     assert store.get("ann", job).state == JobState.SUCCEEDED
 
 
+def test_a_result_that_came_while_the_server_restarted_counts(store, document):
+    """A worker elsewhere went on with the last step, and says its beginning no second time."""
+    job, computation = running(store, document)
+    store.recover()
+    assert states(store, "ann", job) == [JobState.RUNNING]
+    complete(store, computation)
+    assert states(store, "ann", job) == [JobState.SUCCEEDED] and not store.unfinished()
+
+
 def test_what_an_earlier_attempt_says_is_ignored(store, document):
     job, computation = running(store, document)
     store.fail(computation, 1, {"code": "x", "message": "y", "retryable": True})
@@ -232,7 +248,7 @@ def test_every_state_allows_only_its_actions(store, document, action, allowed):
 def job_in(store, state, document):
     """A job of its own computation, brought into a state."""
     job = store.submit("ann", document).job.id
-    computation = next(c for c in store.unfinished() if store.computation(c).document == document)
+    computation = next(c for c in store.unfinished() if store.computation(c).document == CanonicalDocument.of(document))
     if state == "canceled":
         store.cancel("ann", job)
     elif state != "queued":
@@ -284,7 +300,7 @@ def test_artifacts_are_of_succeeded_jobs_only(store, document):
     assert store.artifacts("ann", job) == [] and store.result_document("ann", job) is None
     complete(store, computation)
     (artifact,) = store.artifacts("ann", job)
-    assert (artifact.name, artifact.sha256) == ("result.json", HASH)
+    assert (artifact.name, artifact.sha256) == ("result.json", hashlib.sha256(RESULT).hexdigest())
     assert store.artifact_path("ann", job, "../result.json") is None
 
 
@@ -295,6 +311,30 @@ def test_timeouts_detach_their_own_job_only(store, document):
     assert states(store, "ann", first, second) == [JobState.TIMED_OUT, JobState.RUNNING]
     assert store.get("ann", first).error["code"] == "timed_out"
     assert store.unfinished()[computation][0] == ComputationState.RUNNING
+
+
+def test_time_runs_by_a_clock_that_nobody_sets(store, database, tmp_path, document, monkeypatch):
+    """Neither a jump of the time of day nor a restart gives or takes time; what another attempt took does not count."""
+    began = time.monotonic()
+    job, computation = running(store, document, timeout_s=100)
+
+    class Jumped(datetime):
+        @classmethod
+        def now(cls, tz=None):
+            return datetime.now(tz) + timedelta(days=10)
+
+    for module in ("computations", "store", "tables"):
+        monkeypatch.setattr(f"wsrender_server.jobs.{module}.datetime", Jumped, raising=False)
+    assert store.time_out() == [] and store.time_out(began + 60) == []
+    another = JobStore(database, DataFolder(tmp_path / "data"))  # of a later process
+    another.recover()
+    another.begin(computation, 1)
+    assert another.time_out(1e6) == [] and another.time_out(1e6 + 35) == [] and another.time_out(1e6 + 45) == [job]
+    another.stopped(computation, 1)
+    another.retry("ann", job)
+    another.begin(computation, 2)
+    assert another.time_out(1e6 + 46) == [] and another.time_out(1e6 + 145) == []
+    assert another.time_out(1e6 + 147) == [job]
 
 
 def test_a_timed_out_computation_stops(store, document):
@@ -511,17 +551,6 @@ def test_a_nearly_full_disk_accepts_nothing(database, tmp_path, document):
     assert store.list("ann") == ([], None)
 
 
-@pytest.fixture
-def another_version(monkeypatch):
-    """``another_version(version)`` is what this process is from now on."""
-
-    def become(version):
-        for module in ("identity", "store", "computations"):
-            monkeypatch.setattr(f"wsrender_server.jobs.{module}.__version__", version)
-
-    return become
-
-
 def test_results_of_another_version_are_no_hits(store, document, another_version):
     another_version("0.0.9")
     old, computation = running(store, document)
@@ -532,6 +561,17 @@ def test_results_of_another_version_are_no_hits(store, document, another_version
     assert not again.cached and again.job.state == JobState.QUEUED and again.job.version == "0.1.0"
     assert [job.version for job in store.list("ann")[0]] == ["0.1.0", "0.0.9", "0.0.9"]
     assert store.result_document("ann", old) == {"analysis": "workspace"}
+
+
+def test_what_expires_and_is_retried_is_of_the_version_that_computes_it_again(store, document, another_version):
+    another_version("0.0.9")
+    job, computation = running(store, document)
+    complete(store, computation)
+    another_version("0.1.0")
+    store.recover()
+    assert store.expire(computation, 1, "it is old") and store.get("ann", job).version == "0.0.9"
+    assert store.retry("ann", job).version == "0.1.0" and store.computation(computation).resolved is None
+    assert store.submit("ann", document).job.version == "0.1.0" and len(store.unfinished()) == 1  # the twin joins it
 
 
 def test_parts_of_two_versions_do_not_mix(store, document, another_version):
@@ -564,7 +604,7 @@ def test_waiting_jobs_of_an_earlier_version_take_todays_form(store, document, an
     _, computation = running(store, earlier)
     another_version("0.2.0")
     store.recover()
-    found = store.computation(computation).document
+    found = store.computation(computation).document.read(store.files, computation)
     assert found == (document if known else earlier)
     store.submit("ann", document)
     assert len(store.unfinished()) == (1 if known else 2)  # an equal job joins it

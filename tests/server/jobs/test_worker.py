@@ -1,10 +1,19 @@
-"""A worker of an existing cluster keeps trying to join it."""
+"""A worker of an existing cluster keeps trying to join it, and what Dask is told of workers."""
 
 import threading
+import time
+from pathlib import Path
 
+import distributed
 import pytest
+import yaml
+from dask import config
 from wsrender_server.jobs import worker
+from wsrender_server.jobs.service import JobService
 from wsrender_server.settings import Settings
+
+from tests.server.jobs.documents import canonical
+from tests.server.jobs.waiting import ended, wait_until
 
 
 @pytest.fixture
@@ -18,6 +27,8 @@ def test_what_keeps_a_worker_from_joining_is_said_and_tried_again(settings, monk
     stop, attempts = threading.Event(), []
 
     class Nanny:
+        status, process = distributed.Status.init, None
+
         def __init__(self, scheduler, **options):
             attempts.append(scheduler)
 
@@ -37,4 +48,34 @@ def test_what_keeps_a_worker_from_joining_is_said_and_tried_again(settings, monk
     monkeypatch.setattr(worker, "RECONNECT_S", 0.01)
     worker.serve_scheduler(settings, stop.set, stop)
     assert attempts == ["tls://127.0.0.1:1"] * 3
-    assert [str(fault) in record.getMessage() for record in caplog.records] == [True, True]
+    said = [record.getMessage() for record in caplog.records if record.name == worker.log.name]
+    assert [str(fault) in text for text in said] == [True, True]
+
+
+LOST_WORKER = "distributed.deploy.lost-worker-timeout"  # after which an embedded cluster gives up a worker's place
+
+
+def test_dask_has_the_settings_that_workers_are_given():
+    """An unknown name would be taken without a word; every process of a worker reads them from this one."""
+    defaults = yaml.safe_load(Path(distributed.__file__).with_name("distributed.yaml").read_text())
+    assert config.get(LOST_WORKER, config=defaults) == "15s"
+    for name, value in worker.DASK.items():
+        assert config.get(name, config=defaults) != value == config.get(name)
+
+
+def test_the_wait_for_a_worker_is_a_setting_and_what_jobs_wait_for_is_said(tmp_path):
+    """A worker needs seconds: one that may take half of one is begun again, and again, while the job waits."""
+    settings = Settings(data_dir=tmp_path, worker_start_s=0.5)
+    with JobService(settings) as service:
+        job = service.store.submit("ann", canonical(sampling={"method": "sobol", "count": 64}, device="cpu")).job.id
+        time.sleep(4)
+        assert not service.worker_ready and service.waits_for == "waiting for the workers to start"
+        assert service.store.get("ann", job).state == "queued"
+    with JobService(settings.model_copy(update={"worker_start_s": 120.0})) as service:
+        assert ended(service.store, job).state == "succeeded"
+        assert service.waits_for == "waiting for a free worker"
+        assert config.get(LOST_WORKER) == "120.0s"
+        for address in service.dispatcher.engine.kernel_pids():
+            service.dispatcher.engine._client.retire_workers([address])
+        wait_until(lambda: service.waits_for != "waiting for a free worker", what="the retirement")
+        assert service.waits_for == "waiting for a worker to start"

@@ -1,21 +1,21 @@
 """What labels of placements and targets say: a row for each placement, their map, and the best of them."""
 
+import math
 from functools import cached_property
 from typing import Any
 
 import numpy as np
-from scipy.ndimage import distance_transform_edt
+from scipy.ndimage import distance_transform_edt, maximum_filter1d
 
 from wsrender.analyses.base_placement.job import BasePlacementJob
 from wsrender.analyses.base_placement.score import Score
-from wsrender.documents.placements import ANGLES, COORDINATES, TURN, PlacementSpace
+from wsrender.analyses.placed_bases import UNITS, grid_of
+from wsrender.documents.placements import ANGLES, COORDINATES, TURN, PlacementSpace, TableEdge
 from wsrender.reach.evidence import REACHABLE
 from wsrender.reach.placements import Decided
-from wsrender.volume.table import Grid, Table
+from wsrender.volume.table import Table
 
-UNITS = {name: "deg" if name in ANGLES else "m" for name in COORDINATES}
 DIGITS = 9
-IN_DEGREES = np.array([1.0] * 3 + [np.pi / 180] * 3)
 _COUNTED = ("served", "weight")
 BLOCK = 1 << 20  # pairs of a placement and a target whose bits are told apart at a time
 
@@ -24,7 +24,7 @@ class PlacementMap:
     """The placements of a job by number, with the ``bits`` (P, B) uint8 of what is known of each target, by name.
 
     ``weights`` (K,): what targets count; ``score``: the index by which those are told apart that serve as much, of
-    values ``scores`` (P,); None: none.
+    values ``scores`` (P,); None: none. ``second``: another index, and its scores (P,), which the Pareto set is of too.
     """
 
     def __init__(
@@ -34,9 +34,12 @@ class PlacementMap:
         bits: dict[str, np.ndarray],
         score: Score | None,
         scores: np.ndarray | None,
+        second: tuple[Score, np.ndarray] | None = None,
     ):
         self.over, self.weights, self.bits, self.score, self.scores = job.over, weights, bits, score, scores
+        self.second = second
         self.weighted = job.weights is not None or bool((weights != 1).any())
+        self.edge = job.mounted if isinstance(job.mounting, TableEdge) else None  # where it holds bases, (X, Y)
         self.served = np.bitwise_count(bits["served"]).sum(axis=1, dtype=np.int32)
 
     @cached_property
@@ -50,6 +53,12 @@ class PlacementMap:
         return np.concatenate([_unpacked(block, len(weights)) @ weights for block in blocks])
 
     @property
+    def least_known(self) -> np.ndarray:
+        """Labels (K,) from the placement whose undecided targets weigh the most, where none serves any."""
+        undecided = [_unpacked(row[None], len(self.weights))[0] for row in np.unique(self.bits["undecided"], axis=0)]
+        return np.where(max(undecided, key=lambda row: row @ self.weights), "undecided", "unreachable")
+
+    @property
     def entry(self) -> dict[str, Any]:
         """How many there are, and how many pairs of a placement and a target have which label and reason."""
         K = len(self.weights)
@@ -57,11 +66,14 @@ class PlacementMap:
         blocked = {name.removeprefix("blocked_"): n for name, n in totals.items() if name.startswith("blocked_")}
         decided = totals["served"] + totals["undecided"] + sum(blocked.values())
         labels = {"served": totals["served"], **({"blocked": sum(blocked.values())} if blocked else {})}
+        standing = self.over.count if self.edge is None else int(self.edge.sum()) * math.prod(self.over.shape[2:])
         return {
             "count": self.over.count,
+            **({} if self.edge is None else {"on_the_edge": standing}),
             "targets": K,
             "shape": dict(zip(self.over.ranges, self._sizes, strict=True)),
-            "labels": labels | {"unreachable": self.over.count * K - decided, "undecided": totals["undecided"]},
+            "labels": labels | {"unreachable": standing * K - decided, "undecided": totals["undecided"]},
+            "proven": totals["proven"],
             "reasons": {name: n for name, n in blocked.items() if n},
             "most_served": int(self.served.max()),
             "serving_all": int((self.served == K).sum()),
@@ -78,19 +90,45 @@ class PlacementMap:
         columns = {name: coordinates[:, COORDINATES.index(name)] for name in self.over.ranges}
         columns |= self._values(slice(None))
         columns |= {f"{name}_bits": bits for name, bits in self.bits.items()}
+        if self.edge is not None:
+            columns["on_the_edge"] = np.repeat(self.edge.ravel(), math.prod(self.over.shape[2:])).astype(np.uint8)
         return Table(columns, self._units)
+
+    def _columns(self, numbers: np.ndarray) -> dict[str, np.ndarray]:
+        """Where placements stand, and what they serve, by number."""
+        coordinates = self.over.coordinates(numbers)
+        columns = {name: coordinates[:, COORDINATES.index(name)] for name in self.over.ranges}
+        return columns | self._values(numbers)
+
+    @property
+    def pareto(self) -> Table:
+        """A row for each placement of the Pareto set of the weight served and the score, the largest weight first.
+
+        Of two indices that of both scores, among those that serve the largest weight, the best of the first first.
+        """
+        assert self.scores is not None
+        if self.second:
+            most = np.flatnonzero((weight := told_apart(self.weight)) == weight.max())
+            numbers = most[pareto_set(self.scores[most], self.second[1][most])]
+        else:
+            numbers = pareto_set(self.weight, self.scores)
+        return Table({"placement": numbers} | self._columns(numbers), self._units)
 
     def _values(self, numbers: Any) -> dict[str, np.ndarray]:
         """What placements serve, by number."""
         found = {"served": self.served[numbers]} | ({"weight": self.weight[numbers]} if self.weighted else {})
-        if self.score and self.scores is not None:
-            found[self.score.name] = self.score.sign * self.scores[numbers]
+        for score, scores in self._scored:
+            found[score.name] = score.sign * scores[numbers]
         return found
 
     @property
+    def _scored(self) -> list[tuple[Score, np.ndarray]]:
+        first = [(self.score, self.scores)] if self.score and self.scores is not None else []
+        return first + ([self.second] if self.second else [])
+
+    @property
     def _units(self) -> dict[str, str]:
-        score = {self.score.name: self.score.unit} if self.score else {}
-        return {name: UNITS[name] for name in self.over.ranges} | score
+        return {name: UNITS[name] for name in self.over.ranges} | {score.name: score.unit for score, _ in self._scored}
 
     @property
     def map(self) -> Table:
@@ -100,14 +138,9 @@ class PlacementMap:
         order = self._order.reshape(*shape, -1)
         best = np.argmax(order, axis=-1).ravel()
         each = np.arange(len(best)) * order.shape[-1] + best
-        coordinates = self.over.coordinates(each)
-        columns = {name: coordinates[:, COORDINATES.index(name)] for name in self.over.ranges}
-        columns |= self._values(each)
+        columns = self._columns(each)
         columns["serving_all"] = (self.served.reshape(*shape, -1) == len(self.weights)).sum(axis=-1).ravel()
-        steps = [self.over.ranges[name][2] for name in axes]
-        origin = [self.over.values(name)[0] - step / 2 for name, step in zip(axes, steps, strict=True)]
-        grid = Grid(tuple(axes), tuple(map(float, origin)), tuple(steps), tuple(shape))
-        return Table(columns, self._units, grid)
+        return Table(columns, self._units, grid_of(self.over, axes))
 
     @cached_property
     def _order(self) -> np.ndarray:
@@ -134,12 +167,23 @@ class PlacementMap:
         inner = tuple(slice(before, before + size) for before, size, _ in frames)
         return int(np.argmax(np.asarray(depth)[inner]))
 
+    def best_cells(self, count: int) -> np.ndarray:
+        """Numbers (B,) of the `best` placement, which there must be, and of others than which none beside is better."""
+        order = self._order.reshape(self._sizes or [1])
+        highest = order
+        for axis, name in enumerate(self.over.ranges):
+            mode = "wrap" if _whole_turn(self.over, name) else "nearest"
+            highest = maximum_filter1d(highest, 3, axis, mode=mode)
+        peaks = np.flatnonzero(order == highest)
+        peaks = peaks[np.argsort(-order.ravel()[peaks], kind="stable")]
+        return np.array([self.best, *peaks[peaks != self.best]][:count])
+
     def entry_at(self, coordinates: np.ndarray, found: Decided) -> dict[str, Any]:
         """Coordinates (6,) [m and °] of any placement, and what it serves."""
         served = found.label == REACHABLE
         entry = dict(zip(COORDINATES, coordinates.tolist(), strict=True)) | {"served": int(served.sum())}
         entry["weight"] = float(self.weights[served].sum())
-        return entry | ({self.score.name: float(self.score.sign * np.nanmin(found.value))} if self.score else {})
+        return entry
 
     def entry_of(self, number: int) -> dict[str, Any]:
         """Coordinates of a placement, and what it serves."""
@@ -173,6 +217,35 @@ def told_apart(scores: np.ndarray) -> np.ndarray:
     """Scores (N,) that only differ where more than rounding does, relative to the largest; NaN is the least."""
     size = np.abs(scores[np.isfinite(scores)]).max(initial=0.0) or 1.0
     return np.nan_to_num(np.round(scores / size, DIGITS), nan=-np.inf)
+
+
+def pareto_set(weight: np.ndarray, scores: np.ndarray) -> np.ndarray:
+    """Numbers of the places that no other beats in one of two objectives (N,) without being worse in the other.
+
+    The larger the better; what only rounding tells apart is equal, and NaN the least score. By weight, the largest
+    first, then by number.
+    """
+    levels, level = np.unique(told_apart(weight), return_inverse=True)
+    scores, best = told_apart(scores), np.full(len(levels), -np.inf)
+    np.maximum.at(best, level, scores)
+    above = np.append(np.maximum.accumulate(best[:0:-1])[::-1], np.nan)  # the best of those of more weight
+    numbers = np.flatnonzero((scores == best[level]) & ~(best <= above)[level])
+    return numbers[np.argsort(-level[numbers], kind="stable")]
+
+
+def entry_of_pareto(job: BasePlacementJob, tables: dict[str, Table]) -> dict[str, Any]:
+    """How many placements are in the Pareto set, and of how many pairs of values; nothing where none was asked for."""
+    if "pareto" not in tables:
+        return {}
+    cells = tables["pareto"]
+    objectives = objectives_of(job, cells)
+    values = np.unique(told_apart(cells[objectives[0]]))  # to each belongs one of the other
+    return {"pareto": {"objectives": objectives, "placements": len(cells), "values": len(values)}}
+
+
+def objectives_of(job: BasePlacementJob, cells: Table) -> list[str]:
+    """The two columns of placements that the Pareto set is of: how much is served and the index, or two indices."""
+    return ["weight" if "weight" in cells.columns else "served", *job.indices][-2:]
 
 
 def _unpacked(bits: np.ndarray, count: int) -> np.ndarray:

@@ -9,8 +9,8 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from wsrender.analyses.base_placement.job import BasePlacementJob
-from wsrender.analyses.base_placement.refined import refined
-from wsrender.analyses.base_placement.result import IN_DEGREES, PlacementMap, framed, least_value
+from wsrender.analyses.base_placement.refined import AROUND, CELLS, DEVIATIONS, looked_at, refined
+from wsrender.analyses.base_placement.result import PlacementMap, entry_of_pareto, framed, least_value
 from wsrender.analyses.base_placement.score import Score
 from wsrender.analyses.contract import Analysis, Draft, Settled, Tell
 from wsrender.analyses.cost import (
@@ -25,20 +25,21 @@ from wsrender.analyses.cost import (
     Cost,
     pictures_cost,
 )
+from wsrender.analyses.criteria import margins_of, verdicts
 from wsrender.analyses.estimate import RATE_CPU_CORE
 from wsrender.analyses.execution import Execution
 from wsrender.analyses.headline import no_headline
 from wsrender.analyses.partial_result import PartialResult, joined_rows, rows_of_shard
 from wsrender.documents.constraints import Constraints
-from wsrender.documents.placements import ANGLES, mounted, placed
+from wsrender.documents.placements import ANGLES, IN_DEGREES, mounted, placed
 from wsrender.errors import InputError
 from wsrender.pipeline.constraints.collision import CollisionConstraint
 from wsrender.pipeline.constraints.constraint import Constraint
 from wsrender.reach.admissible_search import BLOCKED
-from wsrender.reach.evidence import REACHABLE, UNDECIDED
-from wsrender.reach.inverse_solver import BATCH, InverseSolver, closed_form_of, solved_bytes
+from wsrender.reach.evidence import REACHABLE, UNDECIDED, UNREACHABLE
+from wsrender.reach.inverse_solver import InverseSolver, closed_form_of, solved_bytes
 from wsrender.reach.placements import Decided, PlacedAdmission, Placements, PlacementsOfKinds
-from wsrender.reach.target_list import TargetList, targets_of_job
+from wsrender.reach.target_list import TargetList, covered, targets_of_job
 from wsrender.reach.targets import NAMES, Kind, check_tolerance, evidence_of_targets, kinds_of
 from wsrender.reach.tolerance import largest_ball
 from wsrender.robot import Robot
@@ -46,21 +47,23 @@ from wsrender.robot.constraints import constraints_for
 from wsrender.robot.gravity import gravity_of
 from wsrender.robot.model_robot import transform_of
 from wsrender.robots.closed_form import ClosedForm
+from wsrender.robots.kinematics import Kinematics
 from wsrender.robots.moving_base import MovingBase
 from wsrender.volume.table import Table
 
 PAIRS = 1 << 20  # of placements and targets that are decided together
-CLOSED_PER_S, POSTURES_PER_S, BALLS_PER_S, POSES_PER_S = 1.5e7, 4e5, 3e5, 1.2e4  # pairs of one core
+CLOSED_PER_S, POSTURES_PER_S, BALLS_PER_S, POSES_PER_S = 1.5e7, 4e5, 1.5e6, 1.2e4  # pairs of one core
 PLACE_BYTES, PAIR_BYTES = 550, 25  # of a placement, and of a pair, while they are decided
 COORDINATES_BYTES, ROW_BYTES = 144, 62  # of a placement while tables are made of it, and in what is kept of these
-BALL_BYTES = 400  # of a pair that is searched along a joint
+BALL_BYTES, LEFT_BYTES = 20, 6e6  # of a pair that is searched along a joint, and of the few that this leaves
 DEPTH_BYTES = 16  # of a cell and a range while its distance from those that are worse is found
 OF_THE_WORLD = ("region", "orientation", "environment")  # constraints that see where the base stands
 LARGEST_TURN = np.pi / 4  # by which tolerances turn the base
 SHIFTS, FEW_SHIFTS = 1024, 128  # of the base that are tried at a time; few where inverse kinematics searches
-TRIED = 20_000  # placements around the best one
+TRIED, TOLERANCE_S = 20_000, 2.0  # placements around the best one, and seconds that they take however few targets
 TURNS_ALIKE = 1e-9  # sine, and distance in reaches, of an axis from the base's
 DRAWN = 3
+PICTURES = ("placements", "robot")
 Both = tuple[tuple[Constraint, ...], tuple[Constraint, ...]]
 
 
@@ -78,7 +81,7 @@ class BasePlacementAnalysis(Analysis):
         """Raises InputError for a tolerance below what is computed, and for constraints that cannot be asked."""
         for kind in self._kinds:
             check_tolerance(self.robot.chain, kind.tolerances[0], self.job.precision)
-        _, K = (self.constraints, self.score), len(self.targets)
+        _, K = (self.constraints, self.score, self.margins), len(self.targets)
         return Settled(device, target, ((0, self.job.over.count * K),), shard_unit=K * self._alike)
 
     @cached_property
@@ -96,9 +99,14 @@ class BasePlacementAnalysis(Analysis):
         """Targets by what they ask for, of the robot where it stands."""
         return self._kinds_of(self.targets)
 
-    def _kinds_of(self, targets: TargetList) -> list[Kind]:
+    def _kinds_of(self, targets: TargetList, chain: Kinematics | None = None) -> list[Kind]:
         tolerances = self.job.position_tolerance_m, self.job.angle_tolerance_rad
-        return kinds_of(self.standing.chain, targets, tolerances)
+        return kinds_of(chain or self.standing.chain, targets, tolerances)
+
+    @cached_property
+    def margins(self) -> dict[int, Kinematics]:
+        """The arm within the limits of each criterion, by number, that asks for a margin; raises InputError."""
+        return margins_of(self.job.criteria, self.standing.chain)
 
     @cached_property
     def base(self) -> MovingBase:
@@ -146,7 +154,12 @@ class BasePlacementAnalysis(Analysis):
     @cached_property
     def score(self) -> Score | None:
         """What tells placements apart that serve as much; raises InputError."""
-        return Score.of(self.job, self.standing, self.base) if self.job.index else None
+        return self.scores[0] if self.scores else None
+
+    @cached_property
+    def scores(self) -> list[Score]:
+        """By each index; raises InputError."""
+        return [Score.of(self.job, name, self.standing, self.base) for name in self.job.indices]
 
     @property
     def _constrained(self) -> bool:
@@ -171,7 +184,7 @@ class BasePlacementAnalysis(Analysis):
         T = self.standing.chain.T_world_base @ chain.T_joint[0]
         along = np.hypot(*T[:2, 2]) < TURNS_ALIKE and np.hypot(*T[:2, 3]) < TURNS_ALIKE * chain.reach
         free = chain.periodic[0] or chain.upper_limits[0] - chain.lower_limits[0] >= 2 * np.pi * (1 - 1e-12)
-        blind = self._blind and (self.score is None or self.score.survives)
+        blind = self._blind and all(score.survives for score in self.scores)
         return yaws if along and free and chain.joint_source[0] == 0 and blind else 1
 
     @property
@@ -195,7 +208,8 @@ class BasePlacementAnalysis(Analysis):
         form = closed_form_of(kind.chain, kind.name)
         closed = isinstance(form, ClosedForm)
         if self._constrained or self.score:
-            return POSTURES_PER_S if closed and kind.name == "pose" else SEARCHED_PER_S
+            rate = POSTURES_PER_S if closed and kind.name == "pose" else SEARCHED_PER_S
+            return rate / max(1, len(self.scores))
         if form:
             return CLOSED_PER_S if closed else BALLS_PER_S
         return DECIDED_PER_S if kind.name == "position" else POSES_PER_S
@@ -204,16 +218,31 @@ class BasePlacementAnalysis(Analysis):
     def cost(self) -> Cost:
         """Pairs, a bit of each label, and the table of placements."""
         over, K = self.job.over, len(self.targets)
-        bits = -(-K // 8) * (2 + len(self.names))
-        rows = over.count * (8.0 * (len(over.ranges) + bool(self.score)) + 12 + bits)
-        drawn, seconds = pictures_cost("placements", "robot")
+        kept = self._bits_bytes
+        rows = kept + over.count * (8.0 * len(over.ranges) + 12)
+        drawn, seconds = pictures_cost(*PICTURES, *(["pareto"] if self.job.pareto else []))
         files = DOCUMENT_BYTES + drawn + rows + 7 * LISTED_BYTES * K
-        kept = over.count * (bits + 8.0 * bool(self.score))
         tables = max(COORDINATES_BYTES * over.count, ROW_BYTES * over.count + self._depth_bytes)
-        memory = kept + max(kept + self._decided_bytes, tables) + 7 * LISTED_MEMORY * K
-        tried = over.count / self._alike + (TRIED if self.job.refine else 0)
+        around = 2 * LEFT_BYTES + self._refined_bytes if self.job.refine else 0.0
+        memory = kept + max(kept + self._decided_bytes, tables, around) + 7 * LISTED_MEMORY * K
+        tried = (
+            over.count * self.job.mounted.mean() / self._alike + (TRIED if self.job.refine else 0) + len(self.margins)
+        )
+        seconds += TOLERANCE_S if self.job.refine else 0.0
         seconds += tried * K / self._rate + files / WRITTEN_PER_S
         return Cost(over.count * K, memory, files, seconds, Asks("over", "take larger steps"))
+
+    @property
+    def _bits_bytes(self) -> float:
+        """Of memory for what is known of all placements."""
+        bits = -(-len(self.targets) // 8) * (3 + len(self.names))
+        return self.job.over.count * (bits + 8.0 * len(self.scores))
+
+    @property
+    def kept_bytes(self) -> float:
+        """Of memory for what is known of all placements, and the table of it, which others see beside theirs."""
+        columns = len(self.job.over.ranges) + len(self.scores) + (self.job.weights is not None)
+        return self._bits_bytes + self.job.over.count * (8.0 * columns + 4)
 
     @property
     def _decided_bytes(self) -> float:
@@ -230,8 +259,15 @@ class BasePlacementAnalysis(Analysis):
         """Of memory for targets of a kind that a search decides, from so many placements."""
         form, pairs = closed_form_of(kind.chain, kind.name), places * len(kind.at)
         if form:
-            return 0.0 if isinstance(form, ClosedForm) else BALL_BYTES * min(pairs, BATCH)
+            return 0.0 if isinstance(form, ClosedForm) else max(BALL_BYTES * pairs, LEFT_BYTES)
         return solved_bytes(pairs, kind.name, kind.chain, self.job.precision)
+
+    @property
+    def _refined_bytes(self) -> float:
+        """Of memory for starts of tries around a placement."""
+        if not self.score:
+            return 0.0
+        return self._bits_bytes + 3 * 8.0 * AROUND * len(DEVIATIONS) * self.standing.chain.n * len(self.targets)
 
     @property
     def _depth_bytes(self) -> float:
@@ -242,27 +278,38 @@ class BasePlacementAnalysis(Analysis):
     def compute(self, shard: int, execution: Execution, tell: Tell) -> PartialResult:
         """Of every placement of the shard bits (B,) uint8, target k that of byte k // 8 and weight 2^(k % 8).
 
-        ``served``, ``undecided``, and by constraint ``blocked_<name>``: that it rejected most configurations. With an
-        index ``score`` (P,), its least value over the targets that are served; NaN where none is.
+        ``served``, ``undecided``, by constraint ``blocked_<name>``: that it rejected most configurations, and
+        ``proven``: that a target is out of reach, or blocked, is. With an index ``score`` (P,), its least value over
+        the targets that are served, NaN where none is; ``score_2`` of a second.
         """
         (first, count), K = self.shards[shard], len(self.targets)
         start, end = first // K, (first + count) // K
         each = self._alike * max(1, PAIRS // (K * self._alike))
         search, parts = self._placements(execution.threads), []
+        others = [self._placements(execution.threads, score) for score in self.scores[1:]]
         for begin in range(start, end, each):
             numbers = np.arange(begin, min(begin + each, end))
-            found = self._decided(search, numbers[:: self._alike])
-            parts.append([np.repeat(rows, self._alike, axis=0) for rows in self._rows(found)])
+            rows = self._rows(self._decided(search, numbers[:: self._alike]))
+            rows += [least_value(self._decided(other, numbers[:: self._alike]).value) for other in others]
+            parts.append([np.repeat(row, self._alike, axis=0) for row in rows])
             tell((int(numbers[-1]) + 1) * K - first)
         arrays = [np.concatenate(part) for part in zip(*parts, strict=True)]
-        names = [*self._names_of_bits, *(["score"] if self.score else [])]
+        names = [*self._names_of_bits, *("score", "score_2")[: len(self.scores)]]
         return rows_of_shard(first, dict(zip(names, arrays, strict=True)))
 
-    def _placements(self, threads: int | None) -> PlacementsOfKinds:
-        """What decides all targets from placements of the job."""
-        value = self.score and replace(self.score, device=self.device, threads=threads)
+    def _placements(self, threads: int | None, score: Score | None = None) -> PlacementsOfKinds:
+        """What decides all targets from placements of the job, by a score or the first."""
+        score = score or self.score
+        value = score and replace(score, device=self.device, threads=threads)
         admission = self._admission(self.base, self.constraints, threads)
         return self._deciding(self._kinds, self.base, admission, threads, value)
+
+    def solving(self, threads: int | None) -> Placements:
+        """What finds configurations of targets that are whole poses, all of the same tolerances."""
+        admission = self._admission(self.base, self.constraints, threads)
+        admission = admission or PlacedAdmission(self.standing.chain, (), self.device, threads)
+        (search,) = self._deciding(self._kinds, self.base, admission, threads).parts
+        return search
 
     def _around(self, T_world_base: np.ndarray, served: np.ndarray, threads: int | None) -> PlacementsOfKinds:
         """What decides ``served`` targets (K,) bool from bases that are moved from one, and turned about its origin.
@@ -311,16 +358,24 @@ class BasePlacementAnalysis(Analysis):
         return PlacedAdmission(chain, own, self.device, threads, moved, on_base)
 
     def _decided(self, search: PlacementsOfKinds, numbers: np.ndarray) -> Decided:
-        coordinates = self.job.over.coordinates(numbers)
-        return search.decide(coordinates * IN_DEGREES, placed(coordinates))
+        coordinates, shape = self.job.over.coordinates(numbers), (len(numbers), len(self.targets))
+        there = np.flatnonzero(self.job.stands(*coordinates.T[:2]))
+        if len(there) == len(numbers):
+            return search.decide(coordinates * IN_DEGREES, placed(coordinates))
+        found = Decided.nothing(shape, UNREACHABLE)
+        if len(there):
+            of = search.decide(coordinates[there] * IN_DEGREES, placed(coordinates[there]))
+            for array, part in zip(found.arrays, of.arrays, strict=True):
+                array[there] = part
+        return found
 
     @property
     def _names_of_bits(self) -> list[str]:
-        return ["served", "undecided", *(f"blocked_{name}" for name in self.names)]
+        return ["served", "undecided", *(f"blocked_{name}" for name in self.names), "proven"]
 
     def _rows(self, found: Decided) -> list[np.ndarray]:
         blocked = [(found.label == BLOCKED) & (found.reason == k + 1) for k in range(len(self.names))]
-        masks = [found.label == REACHABLE, found.label == UNDECIDED, *blocked]
+        masks = [found.label == REACHABLE, found.label == UNDECIDED, *blocked, found.proven]
         rows = [np.packbits(mask, axis=1, bitorder="little") for mask in masks]
         return [*rows, least_value(found.value)] if self.score else rows
 
@@ -331,8 +386,9 @@ class BasePlacementAnalysis(Analysis):
     def result(self, partial: PartialResult, execution: Execution) -> Draft:
         """The tables ``placements``, their ``placement_map``, and ``targets`` as the best one serves them."""
         scores = partial["score"] if self.score else None
+        second = (self.scores[1], partial["score_2"]) if len(self.scores) == 2 else None
         bits = {name: partial[name] for name in self._names_of_bits}
-        found = PlacementMap(self.job, self.targets.weight, bits, self.score, scores)
+        found = PlacementMap(self.job, self.targets.weight, bits, self.score, scores, second)
         about = found.entry | {
             "alike": self._alike,
             "evidence": evidence_of_targets(self.robot.chain, self.targets),
@@ -340,24 +396,56 @@ class BasePlacementAnalysis(Analysis):
         tables = {"placements": found.table} | ({"placement_map": found.map} if self.job.over.ranges else {})
         if (best := found.best) is None:
             nothing = no_headline("no placement serves a target")
-            return Draft(
-                {"placements": about, "best": None}, nothing, provenance=self.targets.provenance, tables=tables
-            )
+            entries = {
+                "placements": about,
+                "best": None,
+                **self._verdicts([found.least_known] * len(self.job.criteria)),
+            }
+            return Draft(entries, nothing, provenance=self.targets.provenance, tables=tables)
+        if self.score and self.job.pareto:
+            tables["pareto"] = found.pareto
         search = self._placements(execution.threads)
-        coordinates = self.job.over.coordinates(np.array([best]))
+        cells = self.job.over.coordinates(found.best_cells(CELLS if self.job.refine else 1))
         if self.job.refine:
-            coordinates = refined(self.job, self.targets.weight, search, coordinates[0])[None]
-        of, q = search.configurations(coordinates * IN_DEGREES, placed(coordinates))
+            there = refined(self.job, self.targets.weight, search, self.standing.chain, cells)
+        else:
+            there = looked_at(search, cells[0])
+        coordinates, of, q = there.place[None], there.found, there.q
         robot = self._robot_at(placed(coordinates)[0])
         entry = {"T_world_base": robot.chain.T_world_base.tolist(), "cell": found.entry_of(best)}
-        entry = found.entry_at(coordinates[0], of) | entry
+        values = [(self.score, of.value)] if self.score else []
+        if second:
+            values.append(
+                (second[0], looked_at(self._placements(execution.threads, second[0]), there.place).found.value)
+            )
+        least = {score.name: float(score.sign * np.nanmin(value)) for score, value in values}
+        entry = found.entry_at(coordinates[0], of) | least | entry
         if self.job.refine:
             entry["tolerance"] = self._tolerance(robot.chain.T_world_base, of.label == REACHABLE, execution.threads)
-        tables["targets"] = self._targets_table(of, q)
+        labels = [_named(of.label)] * len(self.job.criteria)
+        for k, chain in self.margins.items():
+            labels[k] = self._within(chain, coordinates, labels[k], execution.threads)
+        tables["targets"] = self._targets_table(of, q, values, {f"criterion_{k + 1}": labels[k] for k in self.margins})
         reached = q[of.label == REACHABLE][:DRAWN]
         skeleton = robot.skeleton(reached) if len(reached) else None
-        entries = {"placements": about, "best": entry}
+        entry |= covered(self.job.targets, of.label == REACHABLE, of.label == UNDECIDED)
+        entries = {"placements": about, "best": entry, **entry_of_pareto(self.job, tables), **self._verdicts(labels)}
         return Draft(entries, provenance=self.targets.provenance, tables=tables, skeleton=skeleton)
+
+    def _verdicts(self, labels: list[np.ndarray]) -> dict[str, Any]:
+        return verdicts(self.job.criteria, self.targets.weight, labels)
+
+    def _within(self, chain: Kinematics, coordinates: np.ndarray, label: np.ndarray, threads: int | None) -> np.ndarray:
+        """Labels (K,) from one placement (1, 6) of targets that a chain of narrower limits may reach, others kept."""
+        admission = self._admission(self.base, self.constraints, threads)
+        asked = np.isin(label, (NAMES[REACHABLE], NAMES[UNDECIDED]))
+        kinds = self._kinds_of(self.targets.part(asked), chain) if asked.any() else []
+        labels = label.copy()
+        if kinds:
+            narrowed = None if admission is None else replace(admission, chain=chain)
+            search = self._deciding(kinds, self.base, narrowed, threads)
+            labels[asked] = _named(search.decide(coordinates * IN_DEGREES, placed(coordinates)).label[0])
+        return labels
 
     def _tolerance(self, T_world_base: np.ndarray, served: np.ndarray, threads: int | None) -> dict[str, Any]:
         """How far the base may stand elsewhere, or turned about any axis, and serve the same (DEFINITIONS 18)."""
@@ -381,18 +469,27 @@ class BasePlacementAnalysis(Analysis):
         entry["rotation_rad"] = None if "torque" in self.names else largest_ball(turned, LARGEST_TURN, count, seed)
         return entry | {"largest": {"translation_m": reach, "rotation_rad": LARGEST_TURN}}
 
-    def _targets_table(self, found: Decided, q: np.ndarray) -> Table:
-        """A row for each target as the best placement serves it, in the order asked."""
+    def _targets_table(
+        self, found: Decided, q: np.ndarray, values: list[tuple[Score, np.ndarray]], labels: dict[str, np.ndarray]
+    ) -> Table:
+        """A row for each target as the best placement serves it, in the order asked, with more ``labels`` by column.
+
+        ``values`` (K,) of each score.
+        """
         job, chain = self.job, self.robot.chain
         columns = self.targets.columns(job.targets is not None)
         columns |= {} if job.weights is None else {"weight": self.targets.weight}
         columns |= {
-            "label": np.array([NAMES[each] for each in found.label.tolist()], "<U11"),
+            "label": _named(found.label),
             "reason": np.array(["", *self.names])[np.where(found.label == BLOCKED, found.reason, 0)],
         }
-        columns |= {self.score.name: self.score.sign * found.value} if self.score else {}
-        columns |= {f"q_{name}": values for name, values in zip(chain.joint_names, q.T, strict=True)}
+        columns |= {score.name: score.sign * value for score, value in values}
+        columns |= labels | {f"q_{name}": values for name, values in zip(chain.joint_names, q.T, strict=True)}
         kinds = zip(chain.joint_names, chain.revolute, strict=True)
-        units = {"position": "m"} | ({self.score.name: self.score.unit} if self.score else {})
+        units = {"position": "m"} | {score.name: score.unit for score in self.scores}
         units |= {f"q_{name}": "rad" if revolute else "m" for name, revolute in kinds}
         return Table(columns, units)
+
+
+def _named(label: np.ndarray) -> np.ndarray:
+    return np.array([NAMES[each] for each in label.tolist()], "<U11")

@@ -35,15 +35,16 @@ class Score:
     threads: int | None = None
 
     @classmethod
-    def of(cls, job: BasePlacementJob, robot: Robot, base: MovingBase) -> "Score":
-        """Of a robot that stands where gravity is that of all placements.
+    def of(cls, job: BasePlacementJob, name: str, robot: Robot, base: MovingBase) -> "Score":
+        """By the index of a name, of a robot that stands where gravity is that of all placements.
 
         Raises InputError for an index that the robot does not have, or that may see how the base is turned.
         """
-        index, name = _found(job), str(job.index)
+        _ = _found(name)
+        options = {each: given for each, given in job.index_options.items() if each == name or each not in job.indices}
         given = name in ("clearance", "clearance_lower_bound")
         choices = {each: field.get_default() for each, field in IndexChoices.model_fields.items()}
-        choices |= {"indices": (name,), "index_options": job.index_options, "precision": "float64"}
+        choices |= {"indices": (name,), "index_options": options, "precision": "float64"}
         choices |= {"gravity_m_s2": job.gravity_m_s2, "constraints": job.constraints, "environment": None}
         try:
             evaluation = evaluation_of_job(SimpleNamespace(**choices), robot)  # type: ignore[arg-type]
@@ -54,7 +55,7 @@ class Score:
             from wsrender.robot.collisions import clearance_of
 
             clearance = clearance_of(robot, job.constraints, job.environment, base)
-        _refuse_turned(job, index, evaluation)
+        _refuse_turned(job, name, evaluation)
         return cls(name, evaluation, clearance)
 
     @property
@@ -83,20 +84,20 @@ class Score:
         return self.sign * evaluate_samples(pipeline, self.device, threads=self.threads).values[0]
 
 
-def _found(job: BasePlacementJob) -> Any:
+def _found(name: str) -> Any:
     try:
-        return find(str(job.index))
+        return find(name)
     except InputError as error:
         raise error.at("index") from None
 
 
-def _refuse_turned(job: BasePlacementJob, index: Any, evaluation: Evaluation) -> None:
+def _refuse_turned(job: BasePlacementJob, index: str, evaluation: Evaluation) -> None:
     turned = [name for name in ANGLES if name in job.over.ranges]
-    options = evaluation.options.get(str(job.index), {})
+    options = evaluation.options.get(index, {})
     if turned and options.get("direction"):
-        field = f"index_options.{job.index}.direction"
+        field = f"index_options.{index}.direction"
         raise InputError(field, f"must not be given where over.{turned[0]} is a range: the base turns")
-    if "gravity" in index.needs and (name := job.turns_gravity):
-        raise InputError("index", f"must not be {job.index} where over.{name} is a range: gravity would turn")
-    if "frames" in index.needs and job.over.ranges:
-        raise InputError("index", f"must not be {job.index}: frames in the world move with the base")
+    if "gravity" in (needs := find(index).needs) and (name := job.turns_gravity):
+        raise InputError("index", f"must not be {index} where over.{name} is a range: gravity would turn")
+    if "frames" in needs and job.over.ranges:
+        raise InputError("index", f"must not be {index}: frames in the world move with the base")

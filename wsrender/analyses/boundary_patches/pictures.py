@@ -18,14 +18,14 @@ _NUMBERS = {"radius_m": "R {:.3g}", "tube_radius_m": "r {:.3g}"}
 _LISTED = 18  # patches, largest first, that the legend names
 
 
-def faces_of_patches(mesh: "trimesh.Trimesh", patches: Table) -> Faces:
-    """The triangles of the mesh by their patch, labelled with its kind, numbers and what generates it."""
+def faces_of_patches(mesh: "trimesh.Trimesh", patches: Table, listed: int | None = None) -> Faces:
+    """The triangles of the mesh by their patch, the first labelled with kind, numbers and what generates them."""
     number = np.asarray(mesh.face_attributes[NUMBER])
     present, first = np.unique(number, return_index=True)
     visual: Any = mesh.visual
     rgba = np.asarray(visual.face_colors)[first] / 255.0
     colors = {int(k): (float(r), float(g), float(b)) for k, (r, g, b, _) in zip(present, rgba, strict=True)}
-    labels = {k: _label(patches, k) for k in present[:_LISTED].tolist()}
+    labels = {k: _label(patches, k) for k in present[:listed].tolist()}
     faces = Faces(np.asarray(mesh.vertices), np.asarray(mesh.faces), number, labels, colors)
     return replace(faces, normals=_normals(faces, patches))
 
@@ -77,5 +77,5 @@ def _label(patches: Table, k: int) -> str:
 
 def patches(plot: ResultPlots) -> Figure:
     """The boundary of a spatial arm from two sides: patches in their colours, edges and corners."""
-    faces = faces_of_patches(plot.meshes["patches"], plot.tables["patches"])
+    faces = faces_of_patches(plot.meshes["patches"], plot.tables["patches"], _LISTED)
     return surface_faces(faces, title=plot.heading("surface"))

@@ -6,7 +6,7 @@ from typing import Any
 
 from wsrender.results.presentation import Picture, Presentation
 
-_HERE = f"{__name__.rpartition('.')[0]}.pictures"
+_HERE = __name__.rpartition(".")[0]
 
 
 def facts(document: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
@@ -19,5 +19,7 @@ def facts(document: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
 
 
 PRESENTATION = Presentation(
-    (Picture("patches", f"{_HERE}:patches", needs=("meshes.patches", "tables.patches")),), facts
+    (Picture("patches", f"{_HERE}.pictures:patches", needs=("meshes.patches", "tables.patches")),),
+    facts,
+    view=f"{_HERE}.view:view",
 )

@@ -8,13 +8,9 @@ from wsrender.documents.arm import Arm
 from wsrender.documents.constraints import Constrained
 from wsrender.documents.format import JobDocument
 from wsrender.documents.options import Device
-from wsrender.documents.quantities import PositiveNumber, Seed, VoxelSize, integer, real
+from wsrender.documents.quantities import PositiveNumber, Seed, VoxelSize, integer, is_none, real
 
 LARGEST_SET = 10_000
-
-
-def _is_none(value: Any) -> bool:
-    return value is None
 
 
 def _whole(value: Any) -> int | None:
@@ -36,7 +32,7 @@ class CapabilityJob(Constrained, Arm, JobDocument):
     """Number of approach directions, spread evenly over the sphere."""
     approach_axis: Literal["x", "y", "z", "-x", "-y", "-z"] = "z"
     """Axis of the tip frame that points along the direction; the turn about it is free."""
-    rolls: Annotated[int | None, Field(ge=1, le=64, exclude_if=_is_none), BeforeValidator(_whole)] = None
+    rolls: Annotated[int | None, Field(ge=1, le=64, exclude_if=is_none), BeforeValidator(_whole)] = None
     """In how many turns about every direction, spread evenly, postures are counted, of arms with a closed form; null:
     they are not."""
     dexterous_threshold: Annotated[float, Field(gt=0, le=1), BeforeValidator(real)] = 1.0

@@ -28,4 +28,9 @@ _POSTURES = Picture(
     where=lambda plot: "mean" in plot.volume.statistics,
     options={"statistic": "mean"},
 )
-PRESENTATION = Presentation((_POSTURES,), facts, title)
+PRESENTATION = Presentation(
+    (_POSTURES,),
+    facts,
+    title,
+    view=f"{__name__.rpartition('.')[0]}.view:view",
+)

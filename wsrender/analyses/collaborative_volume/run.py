@@ -15,7 +15,6 @@ from wsrender.analyses.headline import headline_of, no_headline
 from wsrender.analyses.partial_result import PartialResult, joined_rows, rows_of_shard
 from wsrender.analyses.refined import Progress, divided, refined_together, volume_entry
 from wsrender.analyses.several_robots import arms_apart_of
-from wsrender.documents.point_sets import PointSet
 from wsrender.documents.sampling import Random
 from wsrender.engine import evaluate_samples, sampled_positions
 from wsrender.multi import body_elements
@@ -27,6 +26,7 @@ from wsrender.reach import Event
 from wsrender.robot import Robot
 from wsrender.robot.constraints import constraints_of_job, samples_entry
 from wsrender.robot.rejections import check_admitted
+from wsrender.robots.array_files import Rows, listed_points, listed_provenance
 from wsrender.volume.measure import UNITS
 from wsrender.volume.table import Table
 
@@ -53,9 +53,14 @@ class CollaborativeVolumeAnalysis(Analysis):
     @cached_property
     def sources(self) -> tuple[Robot | np.ndarray, Robot | np.ndarray]:
         """Of the left and right points: a robot, or they themselves."""
-        robots, (left, right) = iter(self.robots), (self.job.left, self.job.right)
-        left_points = left.array() if isinstance(left, PointSet) else next(robots)
-        return left_points, right.array() if isinstance(right, PointSet) else next(robots)
+        robots = iter(self.robots)
+        left, right = (self.listed[side].values if side in self.listed else next(robots) for side in SIDES)
+        return left, right
+
+    @cached_property
+    def listed(self) -> dict[str, Rows]:
+        """The points of the sides that are points; raises InputError."""
+        return listed_points({side: getattr(self.job, side) for side in SIDES})
 
     @cached_property
     def constraints(self) -> list[tuple[Constraint, ...]]:
@@ -189,7 +194,8 @@ class CollaborativeVolumeAnalysis(Analysis):
             name = f"{measure['quantity']}_{UNITS[measure['quantity']]}"
             about[name] = about.get(name, {}) | measure["parts"]
         tables = {"refinements": _curve(mean, variance, true), "seeds": _seeds(job.seed, volumes)}
-        return Draft(about, no_headline(BIASED) if measure is None else headline_of(measure), tables=tables)
+        headline = no_headline(BIASED) if measure is None else headline_of(measure)
+        return Draft(about, headline, provenance=listed_provenance(self.listed), tables=tables)
 
     def _admission(self, partial: PartialResult) -> dict[str, Any]:
         """Of both robots under constraints: configurations of all runs drawn, admitted, and rejected by reason."""

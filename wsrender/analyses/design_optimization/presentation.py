@@ -37,6 +37,12 @@ def _swept(plot: Any) -> bool:
     return plot.document["best"] is not None and (parameters == 1 or several)
 
 
+def shown_job(document: Mapping[str, Any]) -> Any:
+    """The job of the best design; where none has a value that of which it varies."""
+    best, job = document["best"] or {}, document["job"] or {}
+    return best.get("design") or job.get("design")
+
+
 PRESENTATION = Presentation(
     (
         Picture("best", _BEST, needs=("meshes.best",), uses=("tables.surfaces",), options={"mesh": "best"}),
@@ -45,4 +51,6 @@ PRESENTATION = Presentation(
         Picture("trade_off", f"{_HERE}:pareto", needs=("tables.pareto", "tables.evaluations"), saved=False),
     ),
     facts,
+    view=f"{__name__.rpartition('.')[0]}.view:view",
+    job=shown_job,
 )

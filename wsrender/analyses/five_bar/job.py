@@ -72,7 +72,10 @@ PlaneRows = Annotated[tuple[tuple[float, float], ...], BeforeValidator(_plane_ro
 class FiveBarJob(JobDocument):
     """Workspace, conditioning, singularities and aspects of a planar five-bar with two actuated base joints."""
 
-    constraints_elsewhere: ClassVar[str] = 'its links have no bodies; planar arms take them in "workspace"'
+    constraints_elsewhere: ClassVar[str] = (
+        'its boundaries are those of joint limits alone; "parallel_workspace" takes "bodies" of two RUS legs whose '
+        "links meet in platform_m = [0, 0, 0], in a region of one layer of voxels"
+    )
 
     analysis: Literal["five_bar"] = "five_bar"
     """Name of the analysis."""

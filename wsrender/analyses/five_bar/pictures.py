@@ -17,7 +17,7 @@ from matplotlib.ticker import MaxNLocator, MultipleLocator
 from wsrender.analyses.five_bar.presentation import MODE_VOLUMES
 from wsrender.errors import InputError
 from wsrender.results.drawing.result_plots import ResultPlots
-from wsrender.results.drawing.style import INK, Heading, color_map, new_figure, paper_style
+from wsrender.results.drawing.style import INK, Heading, color_map, new_figure, paper_style, quantity
 from wsrender.volume.table import Table
 from wsrender.volume.volume_data import VolumeData
 
@@ -139,8 +139,8 @@ def _cartesian_panels(
         axes.set_ylim(lower[1] - margin, upper[1] + margin)
         axes.xaxis.set_major_locator(MaxNLocator(6))
         axes.yaxis.set_major_locator(MaxNLocator(6))
-        axes.set_xlabel("x [m]")
-        axes.set_ylabel("y [m]")
+        axes.set_xlabel(quantity("x", "m"))
+        axes.set_ylabel(quantity("y", "m"))
         axes.tick_params(labelbottom=True, labelleft=True)
         axes.set_title(f"working mode {_signs(mode)}")
     return figure, list(panels.flat[: len(modes)])

@@ -40,4 +40,5 @@ PRESENTATION = Presentation(
         Picture("conditioning", f"{_HERE}:conditioning", "", ("tables",), ("volumes",), saved=False),
     ),
     facts,
+    view=f"{__name__.rpartition('.')[0]}.view:view",
 )

@@ -6,10 +6,11 @@ from typing import Annotated, Any, ClassVar, Literal, get_args
 from pydantic import BeforeValidator, Field
 
 from wsrender.documents.arm import Arm
+from wsrender.documents.array_files import ArrayFile
 from wsrender.documents.constraints import Constrained
 from wsrender.documents.format import JobDocument
 from wsrender.documents.options import Configurations, IndexChoices
-from wsrender.documents.quantities import distinct, sequence
+from wsrender.documents.quantities import distinct, is_empty, sequence
 
 MOST_DRAWN = 20  # configurations whose polytopes are made
 Kind = Literal["velocity", "force", "acceleration"]
@@ -21,11 +22,7 @@ def _kinds(value: Any) -> tuple[Any, ...]:
     return tuple(sorted(asked, key=lambda kind: get_args(Kind).index(kind) if kind in get_args(Kind) else -1))
 
 
-def _is_empty(value: Any) -> bool:
-    return not value
-
-
-Polytopes = Annotated[tuple[Kind, ...], Field(exclude_if=_is_empty), BeforeValidator(_kinds)]
+Polytopes = Annotated[tuple[Kind, ...], Field(exclude_if=is_empty), BeforeValidator(_kinds)]
 
 
 class IndicesAtJob(IndexChoices, Constrained, Arm, JobDocument):
@@ -36,7 +33,8 @@ class IndicesAtJob(IndexChoices, Constrained, Arm, JobDocument):
     analysis: Literal["indices_at"] = "indices_at"
     """Name of the analysis."""
     configurations: Configurations
-    """Rows of joint values [rad or m], one per joint from base to tip."""
+    """Rows of joint values [rad or m], one per joint from base to tip; or a file of them, {"path": "rows.npy"}, with
+    columns in that order or named as the joints."""
     polytopes: Polytopes = ()
     """Polytopes of the tip at each of at most 20 configurations, as meshes: "velocity", "force", "acceleration"; in the
     linear rows of the task, and in float64."""
@@ -46,8 +44,14 @@ class IndicesAtJob(IndexChoices, Constrained, Arm, JobDocument):
     def conflicts(self) -> Iterator[tuple[str, str]]:
         """(field, message) of every pair of fields that do not go together."""
         yield from super().conflicts()
-        if self.polytopes and len(self.configurations) > MOST_DRAWN:
-            yield "polytopes", f"must not be given with {len(self.configurations)} configurations; {MOST_DRAWN} at most"
+        if not isinstance(self.configurations, ArrayFile) and self.too_many(len(self.configurations)):
+            yield "polytopes", self.too_many(len(self.configurations))
+
+    def too_many(self, count: int) -> str:
+        """Why polytopes must not be given with so many configurations; empty: they may."""
+        if not self.polytopes or count <= MOST_DRAWN:
+            return ""
+        return f"must not be given with {count} configurations; {MOST_DRAWN} at most"
 
     @property
     def needs_ranges(self) -> bool:

@@ -1,6 +1,7 @@
 """The polytopes of a configuration at the tip of its arm."""
 
 import numpy as np
+from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
@@ -8,13 +9,13 @@ from wsrender.errors import InputError
 from wsrender.indices.units import pretty_unit
 from wsrender.results.drawing.faces import Faces
 from wsrender.results.drawing.faces_of_surface import shaded
+from wsrender.results.drawing.okabe_ito import BLUE, GREEN, VERMILION
 from wsrender.results.drawing.result_plots import ResultPlots
 from wsrender.results.drawing.stick_figure import draw_arm
 from wsrender.results.drawing.style import paper_style, three_digits
 from wsrender.results.drawing.view import add_legend, new_view
 
-# Okabe and Ito 2008
-_COLORS = {"velocity": (0.0, 0.447, 0.698), "force": (0.835, 0.369, 0.0), "acceleration": (0.0, 0.62, 0.451)}
+_COLORS = {"velocity": to_rgb(BLUE), "force": to_rgb(VERMILION), "acceleration": to_rgb(GREEN)}
 _VEIL = 0.5  # opacity, behind which the arm is seen
 
 

@@ -1,7 +1,9 @@
-"""How polytopes at configurations are shown."""
+"""How indices and polytopes at configurations are shown."""
 
+from collections.abc import Iterator, Mapping
 from typing import Any
 
+from wsrender.indices.units import pretty_unit
 from wsrender.results.presentation import Picture, Presentation
 
 _HERE = f"{__name__.rpartition('.')[0]}.pictures"
@@ -9,6 +11,15 @@ _HERE = f"{__name__.rpartition('.')[0]}.pictures"
 
 def _has_meshes(plot: Any) -> bool:
     return any("_polytope_" in name for name in plot.meshes)
+
+
+def facts(document: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    """How many configurations there are, and between which values the first index lies."""
+    yield "configurations", f"{document['sampling']['samples']:,}"
+    for name, values in list((document.get("indices") or {}).items())[:1]:
+        unit = pretty_unit(values["unit"]) if values["unit"] != "1" else ""
+        if values["minimum"] is not None:
+            yield name.replace("_", " "), f"{values['minimum']:.4g} … {values['maximum']:.4g} {unit}".rstrip()
 
 
 PRESENTATION = Presentation(
@@ -20,5 +31,7 @@ PRESENTATION = Presentation(
             needs=("tables.polytopes", "skeleton"),
             where=_has_meshes,
         ),
-    )
+    ),
+    facts,
+    measured="",
 )

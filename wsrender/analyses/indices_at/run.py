@@ -28,6 +28,7 @@ from wsrender.engine import (
     thread_count,
     units_of,
 )
+from wsrender.errors import InputError
 from wsrender.geometry.polytopes import LIMIT_N, Polytope, polytopes
 from wsrender.pipeline.pipeline import Pipeline
 from wsrender.pipeline.sampling import plan_sampling
@@ -36,6 +37,7 @@ from wsrender.robot.gravity import gravity_of
 from wsrender.robot.indices import evaluation_of_job
 from wsrender.robot.model_robot import configuration_rows
 from wsrender.robot.rejections import rejected_rows
+from wsrender.robots.array_files import Rows, rows_in
 from wsrender.volume.distribution_map import DistributionMap
 from wsrender.volume.table import Table
 
@@ -52,17 +54,23 @@ class IndicesAtAnalysis(Analysis):
         return f"indices_at: {self.pipeline}"
 
     def prepare(self, device: str, target: str) -> Settled:
-        """Raises InputError for configurations of the wrong length."""
+        """Raises InputError for configurations of the wrong length, and for a file of them that cannot be read."""
         _ = self.pipeline
+        if message := self.job.too_many(len(self.q)):
+            raise InputError("polytopes", message)
         for kind in self.job.polytopes:
             self._polytopes(kind, self.q[:1])
         return Settled(device, target, ((0, len(self.q)),))
 
     @cached_property
+    def rows(self) -> Rows:
+        """The rows as given, with their file; raises InputError."""
+        return rows_in(self.job.configurations, (self.robot.joint_names,), "configurations")
+
+    @cached_property
     def q(self) -> np.ndarray:
         """The rows (N, n) [rad or m]; raises InputError."""
-        rows = np.array(self.job.configurations, np.float64)
-        return configuration_rows(rows, len(self.robot.joint_names), "configurations")
+        return configuration_rows(self.rows.values, len(self.robot.joint_names), "configurations")
 
     @cached_property
     def pipeline(self) -> Pipeline:
@@ -125,7 +133,7 @@ class IndicesAtAnalysis(Analysis):
         }
         found = DistributionMap(rows.position, values, units, self.q, self.robot.joint_names, rows.quat_wxyz)
         sample = found.only(admitted) if tables else None
-        origin = {"pipeline": str(self.pipeline)}
+        origin = {"pipeline": str(self.pipeline), **self.rows.provenance("configurations")}
         notices = self.pipeline.evaluation.notices
         kept = {"notices": notices, "provenance": origin, "map": found, "sample": sample}
         if not self.job.polytopes:

@@ -13,12 +13,13 @@ from matplotlib.patches import Patch
 from scipy.spatial import ConvexHull
 
 from wsrender.errors import InputError
+from wsrender.results.drawing.okabe_ito import BLUE, VERMILION
 from wsrender.results.drawing.result_plots import ResultPlots
 from wsrender.results.drawing.style import GREY, INK, Heading, paper_style, three_digits
 from wsrender.results.drawing.view import BAR, View, inches, new_view
 from wsrender.volume.table import Table
 
-VELOCITY, FORCE, RENDERED = "#0072b2", "#d55e00", "#c8102e"  # Okabe and Ito 2008
+VELOCITY, FORCE, RENDERED = BLUE, VERMILION, "#c8102e"
 _LONGEST = 0.22  # of an ellipsoid's half axis, relative to the arm's extent
 _ARROW = 0.35  # length of the arrow of a force, relative to the arm's extent
 _ROUND, _HALF_ROUND = 41, 21  # points around an ellipsoid

@@ -23,4 +23,8 @@ def facts(document: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
         yield "search", f"no scale fits; at most {most}. The mapping is the job's own"
 
 
-PRESENTATION = Presentation((Picture("mapping", f"{_HERE}:mapping", needs=("tables.mapping",)),), facts)
+PRESENTATION = Presentation(
+    (Picture("mapping", f"{_HERE}:mapping", needs=("tables.mapping",)),),
+    facts,
+    view=f"{__name__.rpartition('.')[0]}.view:view",
+)

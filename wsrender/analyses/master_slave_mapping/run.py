@@ -20,7 +20,6 @@ from wsrender.analyses.master_slave_mapping.job import (
     MasterSlaveMappingJob,
 )
 from wsrender.analyses.partial_result import PartialResult
-from wsrender.documents.point_sets import PointSet
 from wsrender.engine import sampled_positions
 from wsrender.errors import InputError, ResourceError
 from wsrender.geometry.alpha_shape import AlphaShape
@@ -45,6 +44,7 @@ from wsrender.reach.served_positions import served_positions
 from wsrender.robot import Robot
 from wsrender.robot.constraints import constraints_of_job, samples_entry
 from wsrender.robot.rejections import check_admitted
+from wsrender.robots.array_files import Rows, listed_points, listed_provenance
 from wsrender.robots.reachable_box import reachable_box
 from wsrender.volume.lattice import block_around
 from wsrender.volume.table import Table
@@ -80,12 +80,19 @@ class MasterSlaveMappingAnalysis(Analysis):
         """Of the master's and the slave's points."""
         robots = iter(self.robots)
 
-        def source(of: MappedRobot | MappedMechanism | PointSet) -> Source:
-            if isinstance(of, PointSet):
-                return of.array()
+        def source(name: str) -> Source:
+            of = getattr(self.job, name)
+            if name in self.listed:
+                return self.listed[name].values
             return of if isinstance(of, MappedMechanism) else next(robots)
 
-        return source(self.job.master), source(self.job.slave)
+        master, slave = map(source, SIDES)
+        return master, slave
+
+    @cached_property
+    def listed(self) -> dict[str, Rows]:
+        """The points of the sides that are points; raises InputError."""
+        return listed_points({name: getattr(self.job, name) for name in SIDES})
 
     @cached_property
     def constraints(self) -> dict[str, tuple[Constraint, ...]]:
@@ -191,6 +198,7 @@ class MasterSlaveMappingAnalysis(Analysis):
             document,
             no_headline("the volumes are of shapes around points, estimates without an interval"),
             _search_notices(self.job, about["found"]) if "scales" in partial.arrays else (),
+            listed_provenance(self.listed),
             tables=tables,
             meshes=meshes,
         )

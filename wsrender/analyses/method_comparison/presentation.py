@@ -44,4 +44,5 @@ PRESENTATION = Presentation(
     ),
     facts,
     sections=lambda document: {"methods": method_rows(document)},
+    view=f"{__name__.rpartition('.')[0]}.view:view",
 )

@@ -4,6 +4,8 @@ Serial joints are searched, not sampled (`wsrender.mechanisms.serial_search`). S
 points are decided by the set and by one of half the steps, and what the two differ in widens the interval.
 """
 
+import base64
+import zlib
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
@@ -38,12 +40,15 @@ Labelled = Callable[[np.ndarray], np.ndarray]
 
 
 def refined_entry(
-    plan: "ParallelWorkspaceAnalysis", partial: PartialResult, progress: Callable[[int, int], None], threads: int | None
+    plan: "ParallelWorkspaceAnalysis",
+    occupied: np.ndarray,
+    progress: Callable[[int, int], None] | None,
+    threads: int | None,
 ) -> dict[str, Any]:
     """What is measured with its 95 % interval, from uniform points that inverse kinematics decides.
 
-    The strata are inner cells, the border and the rest of a coarse lattice around what can be reached. ``progress``:
-    points decided, and about how many there will be.
+    The strata are inner cells, the border and the rest of a coarse lattice around what can be reached, of which
+    `occupied_cells` are ``occupied``. ``progress``: points decided, and about how many there will be.
     """
     tolerance = plan.job.refined_volume
     assert tolerance is not None
@@ -62,7 +67,7 @@ def refined_entry(
     events = {"all": Event(len(sets), len(sets)), "any": Event(1, len(sets), precise=False)}
     found = estimate_volumes(
         membership,
-        _strata(plan, partial, cells, threads),
+        _strata(plan, occupied, cells, threads),
         cells.voxel_size_m,
         events if len(sets) > 1 else {"all": events["all"]},
         tolerance,
@@ -219,21 +224,39 @@ def _between_levels(
     return np.maximum(lower - most, origin - search.reach_m), np.minimum(upper + most, origin + search.reach_m)
 
 
-def _strata(
-    plan: "ParallelWorkspaceAnalysis", partial: PartialResult, cells: LatticeBlock, threads: int | None
-) -> list[np.ndarray]:
-    """Inner cells, the border and the rest: cells (M, 3) in which voxels were reached, and their neighbours."""
-    assert plan.block is not None
-    searched = plan.search is not None and plan.job.kind == "constant_orientation"
-    labels = _labels_of_cells(plan, cells, threads) if searched else np.full(cells.shape, UNDECIDED)
-    found = plan.counted(partial)
-    centers = plan.block.centers(partial["cells"][found])
+def occupied_cells(plan: "ParallelWorkspaceAnalysis", partial: PartialResult) -> np.ndarray:
+    """The cells (nx, ny, nz) bool of the coarse lattice in which voxels were reached, none of it without a lattice."""
+    if plan.block is None:
+        return np.zeros((0, 0, 0), bool)
+    cells = _cells(plan)
+    centers = plan.block.centers(partial["cells"][plan.counted(partial)])
     if isinstance(cells, FlatLattice):
         centers = cells.flat.local(centers)
     at = np.floor(centers / cells.voxel_size_m).astype(np.int64) - cells.first_voxel
     occupied = np.zeros(cells.shape, bool)
     inside = np.all((at >= 0) & (at < cells.shape), axis=1)
     occupied[tuple(at[inside].T)] = True
+    return occupied
+
+
+def packed(occupied: np.ndarray) -> str:
+    """Which cells are occupied, as text."""
+    return base64.b64encode(zlib.compress(np.packbits(occupied).tobytes())).decode()
+
+
+def unpacked(plan: "ParallelWorkspaceAnalysis", text: str) -> np.ndarray:
+    """The cells (nx, ny, nz) bool that were `packed`."""
+    shape = (0, 0, 0) if plan.block is None else _cells(plan).shape
+    bits = np.frombuffer(zlib.decompress(base64.b64decode(text)), np.uint8)
+    return np.unpackbits(bits, count=np.prod(shape)).astype(bool).reshape(shape)
+
+
+def _strata(
+    plan: "ParallelWorkspaceAnalysis", occupied: np.ndarray, cells: LatticeBlock, threads: int | None
+) -> list[np.ndarray]:
+    """Inner cells, the border and the rest: cells (M, 3) in which voxels were reached, and their neighbours."""
+    searched = plan.search is not None and plan.job.kind == "constant_orientation"
+    labels = _labels_of_cells(plan, cells, threads) if searched else np.full(cells.shape, UNDECIDED)
     inner, outer = inner_and_outer(occupied | (labels == REACHABLE))
     classes = (inner.astype(np.int8) + outer)[1:-1, 1:-1, 1:-1]
     kept = labels != UNREACHABLE  # by proof nothing in the others is reached

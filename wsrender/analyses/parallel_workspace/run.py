@@ -30,9 +30,16 @@ from wsrender.analyses.parallel_workspace.lattice import (
     reached_share,
     settled_lattice,
 )
-from wsrender.analyses.parallel_workspace.refined import labels_at_poses, refined_entry
+from wsrender.analyses.parallel_workspace.refined import (
+    labels_at_poses,
+    occupied_cells,
+    packed,
+    refined_entry,
+    unpacked,
+)
 from wsrender.analyses.parallel_workspace.result import orientation_result, positions_result
 from wsrender.analyses.partial_result import PartialResult
+from wsrender.analyses.refined import VOLUME
 from wsrender.documents.robot import Transform
 from wsrender.engine import OrientationCounts, thread_count
 from wsrender.engine.membership import LANES
@@ -67,9 +74,13 @@ RATE_NUMERIC_CORE = 5e4  # poses of a numeric leg per second, from benchmarks/in
 
 @dataclass(frozen=True, kw_only=True)
 class ParallelWorkspaceSettled(Settled):
-    """With the lattice block as lists and numbers (see `described`); None where none is tested."""
+    """With the lattice block as lists and numbers (see `described`); None where none is tested.
+
+    ``occupied``: in the round of the refined volume, `packed` cells in which voxels were reached.
+    """
 
     block: list[Any] | None
+    occupied: str | None = None
 
 
 class ParallelWorkspaceAnalysis(Analysis):
@@ -148,7 +159,7 @@ class ParallelWorkspaceAnalysis(Analysis):
         seconds = poses / rate + poses * len(self.mechanism.numeric) / (RATE_NUMERIC_CORE * threads)
         if self.mechanism.bodies:
             refined = APART_POINTS / self.job.refined_volume**2 if self.job.refined_volume else 0.0
-            seconds += (self._reached + refined) / APART_PER_S
+            seconds += (self._reached + refined) * self.mechanism.bodies.effort / APART_PER_S
         drawn, drawing = pictures_cost("slices", "robot", "targets")
         kept = (8 + 12 * self._columns) * self._reached + surface_bytes(self._reached)
         seconds += self._reached * bool(self.names) / INDICES_PER_S + drawing + refined_seconds(self.job.refined_volume)
@@ -362,17 +373,34 @@ class ParallelWorkspaceAnalysis(Analysis):
         asked = merged.pop("asked").reshape(2, -1).sum(axis=0)
         return PartialResult({"asked": asked, **{name: values[order] for name, values in merged.items()}})
 
+    def further(self, partial: PartialResult, execution: Execution) -> Settled | None:
+        """A last round, of the refined volume alone: it follows from the voxels."""
+        if self.job.refined_volume is None or self.unmeasured or self.settled.occupied is not None:
+            return None
+        shards = (*self.settled.shards, (self.samples, 0))
+        return replace(self.settled, shards=shards, occupied=packed(occupied_cells(self, partial)))
+
+    @property
+    def refinements(self) -> int:
+        """The refined volume, in its round."""
+        return int(self.settled.occupied is not None)
+
+    def refinement(self, number: int, progress: Progress | None, execution: Execution) -> dict[str, Any]:
+        """The entry of the refined volume."""
+        assert self.settled.occupied is not None
+        report = None if progress is None else lambda done, total: progress(done, total, VOLUME)
+        return refined_entry(self, unpacked(self, self.settled.occupied), report, execution.threads)
+
+    def with_refinements(self, partial: PartialResult, refinements: list[Any]) -> PartialResult:
+        """With the refined volume."""
+        return PartialResult(partial.arrays, {**partial.facts, "refined": refinements[0]})
+
     def refine(self, partial: PartialResult, progress: Progress | None, execution: Execution) -> PartialResult:
-        """The merged partial result, with the refined volume if asked."""
-        if self.job.refined_volume is None or self.unmeasured:
+        """With the refined volume, where no round was made of it."""
+        last = self.further(partial, execution)
+        if last is None:
             return partial
-
-        def report(done: int, total: int) -> None:
-            if progress:
-                progress(done, max(total, done), "refining the volume")
-
-        refined = refined_entry(self, partial, report, execution.threads)
-        return PartialResult(partial.arrays, {**partial.facts, "refined": refined})
+        return self.with_refinements(partial, [self.settled_as(last).refinement(0, progress, execution)])
 
     def result(self, partial: PartialResult, execution: Execution) -> Draft:
         """Volume data or mesh, entries, tables and the legs in a typical pose."""

@@ -8,7 +8,7 @@ from pydantic import BeforeValidator, Field
 from wsrender.documents.arm import Arm
 from wsrender.documents.format import JobDocument
 from wsrender.documents.options import Device
-from wsrender.documents.quantities import Number, PositiveNumber, integer, rows_of
+from wsrender.documents.quantities import PositiveNumber, integer, rows_of
 from wsrender.documents.sampling import BoundaryBiased, Converge, Sampling
 
 MOST_CELLS = 1_000_000
@@ -34,7 +34,7 @@ class PlanarBoundaryJob(Arm, JobDocument):
     """TOLL: largest mean squared distance of boundary cells from a line [m²]; null: by the cells' width."""
     arc_tolerance_m4: PositiveNumber | None = None
     """TOLA: largest mean of (r² − R²)² of boundary cells about an arc [m⁴]; null: by the cells' width."""
-    points_m: Annotated[tuple[tuple[Number, Number], ...], rows_of(2)] = ()
+    points_m: Annotated[tuple[tuple[float, float], ...], rows_of(2)] = ()
     """Points to be found inside or outside, with the nearest point of the boundary: rows of two coordinates in the
     plane [m], x and y of the world for an arm that moves in that plane."""
     device: Device = "auto"

@@ -12,7 +12,7 @@ from matplotlib.ticker import MaxNLocator
 from wsrender.errors import InputError
 from wsrender.geometry.planar.segments import drawn
 from wsrender.results.drawing.result_plots import ResultPlots
-from wsrender.results.drawing.style import INK, Heading, new_figure, paper_style
+from wsrender.results.drawing.style import INK, Heading, new_figure, paper_style, quantity
 from wsrender.volume.table import Table
 
 SAMPLES, ESTIMATED, INSIDE, OUTSIDE = "#9ecae1", "#e6550d", "#1a9641", "#c8102e"
@@ -73,7 +73,7 @@ def _new_plane(points: np.ndarray, heading: Heading | str) -> tuple[Figure, Axes
     axes.set_ylim(middle[1] - half[1], middle[1] + half[1])
     for axis, name in ((axes.xaxis, "x"), (axes.yaxis, "y")):
         axis.set_major_locator(MaxNLocator(6))
-        axis.set_label_text(f"{name} [m]")
+        axis.set_label_text(quantity(name, "m"))
     axes.grid(zorder=0)
     axes.set_axisbelow(True)
     return figure, axes

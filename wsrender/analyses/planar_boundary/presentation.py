@@ -23,5 +23,6 @@ def facts(document: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
 PRESENTATION = Presentation(
     (Picture("boundary", f"{_HERE}:boundary", "Boundary of the workspace", ("tables",)),),
     facts,
-    drawings=("boundary",),  # the table of the lines and arcs around what the arm reaches
+    drawings=("boundary",),  # the table of the lines and arcs around what the arm reaches,
+    view=f"{__name__.rpartition('.')[0]}.view:view",
 )

@@ -11,7 +11,7 @@ from wsrender.documents.constraints import Constrained
 from wsrender.documents.format import JobDocument
 from wsrender.documents.options import IndexChoices, IndicesOrNone
 from wsrender.documents.quantities import Number, Seed, integer, real, rows_of, sequence
-from wsrender.documents.target_lists import UNIT
+from wsrender.documents.target_lists import UNIT, is_none
 
 
 def _one_or_rows(width: int) -> BeforeValidator:
@@ -26,8 +26,8 @@ def _one_or_rows(width: int) -> BeforeValidator:
     return BeforeValidator(given, json_schema_input_type=tuple[single, ...] | single)
 
 
-Points = Annotated[tuple[tuple[Number, Number, Number], ...], Field(min_length=1), _one_or_rows(3)]
-Quaternions = Annotated[tuple[tuple[Number, Number, Number, Number], ...], Field(min_length=1), _one_or_rows(4)]
+Points = Annotated[tuple[tuple[float, float, float], ...], Field(min_length=1), _one_or_rows(3)]
+Quaternions = Annotated[tuple[tuple[float, float, float, float], ...], Field(min_length=1), _one_or_rows(4)]
 
 
 class PosturesJob(IndexChoices, Constrained, Arm, JobDocument):
@@ -46,6 +46,8 @@ class PosturesJob(IndexChoices, Constrained, Arm, JobDocument):
     """Positions of the tip in the world frame, rows of x, y, z, or a single one [m]."""
     quat_wxyz: Quaternions | None = None
     """Orientations, a quaternion w, x, y, z of unit length for each position; null: any orientation will do."""
+    free_axis: Annotated[Literal["x", "y", "z"] | None, Field(exclude_if=is_none)] = None
+    """Axis of the tip about which it may turn as it likes; null: none."""
     windings: Annotated[int, Field(ge=1, le=4096), BeforeValidator(integer)] = 1
     """How many configurations of a posture are listed that differ by whole turns of hinges; all are counted."""
     starts: Annotated[int, Field(ge=1, le=65536), BeforeValidator(integer)] = 512
@@ -65,6 +67,8 @@ class PosturesJob(IndexChoices, Constrained, Arm, JobDocument):
         """(field, message) of every pair of fields that do not go together."""
         yield from super().conflicts()
         if self.quat_wxyz is None:
+            if self.free_axis is not None:
+                yield "free_axis", 'must not be given without "quat_wxyz", of which it is an axis'
             return
         if len(self.quat_wxyz) != len(self.position_m):
             rows = f"{len(self.position_m)}, not {len(self.quat_wxyz)}"

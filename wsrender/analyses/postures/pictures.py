@@ -8,12 +8,12 @@ from matplotlib.patches import Patch
 
 from wsrender.results.drawing.faces import NUMBER, Faces
 from wsrender.results.drawing.faces_of_surface import shaded
+from wsrender.results.drawing.okabe_ito import BLUE, GREEN, ORANGE, PURPLE, SKY_BLUE, VERMILION
 from wsrender.results.drawing.result_plots import ResultPlots
 from wsrender.results.drawing.style import Heading, paper_style
 from wsrender.results.drawing.view import add_legend, new_view
 
-# Okabe and Ito 2008 with two greys.
-_COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#595959", "#b8a800")
+_COLORS = (BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY_BLUE, "#595959", "#b8a800")
 
 
 @paper_style()
@@ -42,21 +42,37 @@ def arms_in_postures(
 
 def postures(plot: ResultPlots) -> Figure:
     """The postures of the first pose that has any, each with what blocks it."""
-    table, arms, mesh = plot.tables["postures"], plot.skeleton, plot.meshes.get("bodies")
+    arms = plot.skeleton
     assert arms is not None
-    found = np.flatnonzero((table["winding"] == 0) & (table["pose"] == table["pose"][0]))
-    shown = found[: len(arms)]
+    labels, bodies = labels_of(plot), bodies_of(plot)
+    count = int(((plot.tables["postures"]["winding"] == 0) & _of_first_pose(plot)).sum())
+    some = f"{len(labels)} of {count} postures" if len(labels) < count else None
+    return arms_in_postures(arms, labels, bodies, title=plot.heading("other"), legend_title=some)
+
+
+def _of_first_pose(plot: ResultPlots) -> np.ndarray:
+    pose = plot.tables["postures"]["pose"]
+    return pose == pose[0]
+
+
+def labels_of(plot: ResultPlots) -> list[str]:
+    """Of the postures of the first pose that has any, as many as are drawn: which it is, and what blocks it."""
+    table, arms = plot.tables["postures"], plot.skeleton
+    shown = np.flatnonzero((table["winding"] == 0) & _of_first_pose(plot))[: 0 if arms is None else len(arms)]
     reasons = table["reason"][shown] if "reason" in table.columns else np.full(len(shown), "")
     motions = plot.tables.get("self_motions")
     moving = set() if motions is None else set(motions["posture"][motions["pose"] == table["pose"][0]].tolist())
-    labels = [
+    return [
         f"posture {k}{', of a self-motion' if k in moving else ''}{f', blocked by {reason}' if reason else ''}"
         for k, reason in enumerate(reasons)
     ]
-    bodies = None
-    if mesh is not None and NUMBER in mesh.face_attributes:
-        number = np.asarray(mesh.face_attributes[NUMBER]).astype(int)
-        colors = {k: tuple(int(color[i : i + 2], 16) / 255 for i in (1, 3, 5)) for k, color in enumerate(_COLORS)}
-        bodies = Faces(np.asarray(mesh.vertices), np.asarray(mesh.faces), number, {}, colors)  # type: ignore[arg-type]
-    some = f"{len(shown)} of {len(found)} postures" if len(shown) < len(found) else None
-    return arms_in_postures(arms, labels, bodies, title=plot.heading("other"), legend_title=some)
+
+
+def bodies_of(plot: ResultPlots) -> Faces | None:
+    """The bodies of the same, by posture, each in its colour; None where they are not known."""
+    mesh = plot.meshes.get("bodies")
+    if mesh is None or NUMBER not in mesh.face_attributes:
+        return None
+    number = np.asarray(mesh.face_attributes[NUMBER]).astype(int)
+    colors = {k: tuple(int(color[i : i + 2], 16) / 255 for i in (1, 3, 5)) for k, color in enumerate(_COLORS)}
+    return Faces(np.asarray(mesh.vertices), np.asarray(mesh.faces), number, {}, colors)  # type: ignore[arg-type]

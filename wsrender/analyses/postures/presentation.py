@@ -5,7 +5,7 @@ from typing import Any
 
 from wsrender.results.presentation import Picture, Presentation
 
-_HERE = f"{__name__.rpartition('.')[0]}.pictures"
+_HERE = __name__.rpartition(".")[0]
 
 
 def facts(document: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
@@ -28,11 +28,13 @@ PRESENTATION = Presentation(
     (
         Picture(
             "postures",
-            f"{_HERE}:postures",
+            f"{_HERE}.pictures:postures",
             "The arm in the postures of one pose",
             needs=("skeleton", "tables.postures"),
             uses=("meshes",),
         ),
     ),
     facts,
+    measured="",
+    view=f"{_HERE}.view:view",
 )

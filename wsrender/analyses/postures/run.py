@@ -1,5 +1,6 @@
 """The analysis ``postures``: all configurations of given poses, and what is said of each."""
 
+import math
 from functools import cached_property
 from itertools import islice
 from typing import Any
@@ -28,21 +29,41 @@ from wsrender.pipeline.evaluation import Evaluation
 from wsrender.pipeline.pipeline import Pipeline
 from wsrender.pipeline.sampling import plan_sampling
 from wsrender.reach.aspects import AspectFinder
-from wsrender.reach.posture_sets import BATCH, REDUNDANT_BATCH, Postures, PostureSolver, poses_of
+from wsrender.reach.inverse_solver import MOST_TRIES
+from wsrender.reach.posture_sets import (
+    BATCH,
+    MOST_OF_FAMILIES,
+    REDUNDANT_BATCH,
+    Postures,
+    PostureSolver,
+    kind_of,
+    poses_of,
+)
+from wsrender.reach.self_motions import STEP
 from wsrender.robot.constraints import constraints_of_job
 from wsrender.robot.indices import evaluation_of_job
-from wsrender.robot.links import bodies_in
+from wsrender.robot.links import bodies_in, coarse_faces
 from wsrender.robot.rejections import rejected_rows
+from wsrender.robots.closed_form import ClosedForm
 from wsrender.volume.table import Table
 
-CLOSED_PER_S, TRIES_PER_S = 5e3, 3e4  # poses with all their postures, and tries of searches, of one CPU core
-EXPECTED = 8  # postures of a pose
-POINTS, POINTS_PER_S = 800, 1e3  # of the self-motions of a pose, and how many are followed by one CPU core
-ASPECTS_S, ASPECTS_PER_S, ASPECTS_BYTES = 2.0, 200.0, 2e8  # of a grid of cells, and poses whose aspects are told
+CLOSED_PER_S, TRIES_PER_S = 2e4, 1e5  # postures of closed forms, and tries of searches, of one CPU core
+FAMILY_TRIES_PER_S = 2e4  # where two joints or more are spare: most tries come to postures that differ
+BRANCHES, OF_POSITIONS = 8, 4  # postures of a pose, and of a position, without limits
+SWEPT_S = 0.6  # of a batch of poses, for forms at all values of a joint
+POINTS = 250  # of the self-motion of a posture, in steps of STEP
+FORMED_POINTS_PER_S, POINTS_PER_S = 5e4, 3.5e3  # with a closed form and without, of one CPU core
+GRID_S, GRID_BYTES = 2.0, 7e7  # of the cells that say where a determinant has which sign
+WAYS_BYTES = 6e7  # of the ways between two postures that are sampled where no determinant factors
+FACTORED_PER_S, SAMPLED_PER_S = 2e3, 10.0  # poses whose aspects are told, by factors of the determinant and by samples
 ROW_BYTES = 60  # of a posture in the table beside its configuration and indices
-TRY_BYTES = 600  # of a try and its target
+# Of memory: of a try and its target, of a pose; of each joint of a posture while it is made, and which share of tries
+# come to one, where no joint is spare, one, or more; of a posture, a configuration that is listed, a point of a curve.
+TRY_BYTES, POSE_BYTES = 410, 2000
+MADE_BYTES, COME = 410, (0.1, 0.3, 0.55)
+FOUND_BYTES, LISTED_ROW_BYTES, POINT_BYTES = 430, 190, 25
 DRAWN = 8  # postures in pictures, of the first pose that has any
-MESH_BYTES = 1e6  # of their bodies, as ply and glb
+FACE_BYTES, MESH_BYTES = 42, 3  # of a triangle of their bodies, as ply and glb; of memory for each such byte
 OF_POSTURES = ("pose", "number", "winding", "windings", "q", "sigma_min", "family", "doubtful", "residual_m",
                "residual_rad", "rejected", "values", "aspect")  # fmt: skip
 OF_CURVES = ("curve_pose", "curve_posture", "point", "closed", "singular", "points", "blocked")
@@ -52,7 +73,7 @@ OF_POSES = ("asked", "aspects", "proven", "cuspidal", "complete", "found", "conf
 class PosturesAnalysis(Analysis):
     """A planned ``postures`` job: its samples are the poses."""
 
-    effort = RATE_CPU_CORE / CLOSED_PER_S
+    effort = RATE_CPU_CORE * BRANCHES / CLOSED_PER_S
     job: PosturesJob
 
     def prepare(self, device: str, target: str) -> Settled:
@@ -74,14 +95,14 @@ class PosturesAnalysis(Analysis):
     def solver(self) -> PostureSolver:
         """What finds postures."""
         job = self.job
-        options = {"with_orientation": job.quat_wxyz is not None, "starts": job.starts, "seed": job.seed}
-        options["curve_step"] = job.curve_step
-        return PostureSolver(self.robot.chain, **options)
+        asked, options = kind_of(job.quat_wxyz, job.free_axis), {"starts": job.starts, "curve_step": job.curve_step}
+        return PostureSolver(self.robot.chain, **asked, **options, seed=job.seed)
 
     @cached_property
     def finder(self) -> AspectFinder:
         """What tells aspects; raises InputError for an arm whose singular configurations part nothing."""
-        finder = AspectFinder(self.solver.holder, self.solver.form)
+        form = self.solver.form
+        finder = AspectFinder(self.solver.holder, form if isinstance(form, ClosedForm) else None)
         if not finder.square:
             moving, freedoms = len(finder.holder.moving), finder.holder.freedoms
             message = f"must be false: {moving} joints move, and the pose has {freedoms} freedoms"
@@ -91,23 +112,59 @@ class PosturesAnalysis(Analysis):
     @property
     def cost(self) -> Cost:
         """Poses, their postures and the search for those that no closed form knows."""
-        count, n = len(self.job.position_m), self.robot.chain.n
-        listed = 3 if self.job.quat_wxyz is None else 7
-        rows = EXPECTED * self.job.windings * count
+        job, solver, count, n = self.job, self.solver, len(self.job.position_m), self.robot.chain.n
+        listed = 3 if job.quat_wxyz is None else 7
+        postures = self._expected * count
+        rows = postures * min(job.windings, float(np.maximum(self._turns, 1).prod()))
         row = ROW_BYTES + 8 * (n + len(self.evaluation.indices))
-        drawn, seconds = pictures_cost("postures")
-        files = DOCUMENT_BYTES + drawn + MESH_BYTES + row * rows + LISTED_BYTES * listed * count
-        redundant, batch = self.solver.redundant, REDUNDANT_BATCH if self.solver.redundant else BATCH
-        tries = 0 if self.solver.form and not redundant else self.job.starts
-        points = POINTS * count * 0.05 / self.job.curve_step if redundant else 0.0
-        seconds += ASPECTS_S + count / ASPECTS_PER_S if self.job.aspects else 0.0
-        files += (ROW_BYTES + 8 * n) * points
-        memory = (
-            LISTED_MEMORY * listed * count + 4 * row * (rows + points) + min(count, batch) * (2000 + TRY_BYTES * tries)
-        )
-        memory += ASPECTS_BYTES if self.job.aspects else 0.0
-        seconds += count / CLOSED_PER_S + count * tries / TRIES_PER_S + points / POINTS_PER_S + files / WRITTEN_PER_S
+        points = POINTS * postures * STEP / job.curve_step if self._spare == 1 else 0.0
+        meshes = FACE_BYTES * coarse_faces(self.robot) * min(DRAWN, math.ceil(self._expected))
+        drawn, seconds = pictures_cost("postures", "robot")
+        files = DOCUMENT_BYTES + drawn + meshes + row * rows + (ROW_BYTES + 8 * n) * points
+        files += LISTED_BYTES * listed * count
+        batch = REDUNDANT_BATCH if solver.redundant else BATCH
+        tries = 0 if solver.form else job.starts
+        memory = LISTED_MEMORY * listed * count + self._most_held(min(count, batch), tries, postures, rows, row, points)
+        memory += MESH_BYTES * meshes
+        tries_per_s = FAMILY_TRIES_PER_S if self._spare > 1 else TRIES_PER_S
+        seconds += postures / CLOSED_PER_S + count * tries / tries_per_s + files / WRITTEN_PER_S
+        seconds += points / (FORMED_POINTS_PER_S if solver.form else POINTS_PER_S)
+        seconds += SWEPT_S * math.ceil(count / batch) if solver.swept else 0.0
+        if job.aspects:
+            grid, proof = self.finder.gridded, self.finder.proof
+            seconds += count / (FACTORED_PER_S if proof else SAMPLED_PER_S) + GRID_S * grid
+            memory += GRID_BYTES * grid if proof else WAYS_BYTES
         return Cost(count, memory, files, seconds, Asks("position_m", "take fewer"))
+
+    def _most_held(self, poses: int, tries: int, postures: float, rows: float, row: float, points: float) -> float:
+        """Bytes: of a batch of so many poses while its postures are made, or of all while they are listed."""
+        made, tries = MADE_BYTES * self.robot.chain.n, min(poses * tries, MOST_TRIES)
+        searched = max(TRY_BYTES, made * COME[min(self._spare, 2)]) * tries
+        solved = poses * POSE_BYTES + max(searched, made * self._expected * poses * bool(self.solver.form))
+        curves = (POINT_BYTES + 16 * self.robot.chain.n) * points
+        return max(solved, FOUND_BYTES * postures + (LISTED_ROW_BYTES + row) * rows) + curves
+
+    @property
+    def _spare(self) -> int:
+        """How many more joints move than the pose has freedoms."""
+        return len(self.solver.holder.moving) - self.solver.holder.freedoms
+
+    @cached_property
+    def _expected(self) -> float:
+        """Postures of a pose: of those without limits the share of the hinges' turns, and of poses within reach."""
+        job, chain = self.job, self.robot.chain
+        near = float((np.linalg.norm(job.position_m - chain.center, axis=1) <= chain.reach).mean())
+        if self._spare > 1 and not self.solver.form:
+            return MOST_OF_FAMILIES * near
+        branches = OF_POSITIONS if self.solver.kind == "position" else BRANCHES
+        return branches * near * float(np.minimum(self._turns, 1).prod())
+
+    @cached_property
+    def _turns(self) -> np.ndarray:
+        """How many turns the limits leave each hinge on which postures depend."""
+        chain, holder = self.robot.chain, self.solver.holder
+        hinges = [k for k in holder.moving if chain.revolute[k] and not self.solver.idle[k]]
+        return (chain.upper_limits - chain.lower_limits)[hinges] / (2 * np.pi)
 
     def compute(self, shard: int, execution: Execution, tell: Tell) -> PartialResult:
         """The shard's postures: arrays OF_POSTURES, a row for each configuration that is listed, and OF_POSES."""

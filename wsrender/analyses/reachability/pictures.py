@@ -8,18 +8,19 @@ from matplotlib.lines import Line2D
 
 from wsrender.errors import InputError
 from wsrender.results.drawing.cloud import thinned
+from wsrender.results.drawing.okabe_ito import BLUE, GREEN, ORANGE, VERMILION
 from wsrender.results.drawing.result_plots import ResultPlots
 from wsrender.results.drawing.stick_figure import arm_handles, draw_arm
 from wsrender.results.drawing.style import GREY, Heading, paper_style
 from wsrender.results.drawing.view import View, new_view
 from wsrender.volume.table import Table
 
-# Okabe and Ito 2008, and a mark of its own each: told apart by the colour-blind, and in grey.
+# With a mark of its own each: told apart in grey too.
 _MARKS: dict[str, dict[str, Any]] = {
-    "reachable": {"marker": "o", "ms": 5.0, "mfc": "#009e73", "mec": "white", "mew": 0.5},
-    "blocked": {"marker": "s", "ms": 5.0, "mfc": "#0072b2", "mec": "white", "mew": 0.5},
-    "unreachable": {"marker": "x", "ms": 5.0, "mec": "#d55e00", "mew": 1.4},
-    "undecided": {"marker": "^", "ms": 6.0, "mfc": "#e69f00", "mec": "black", "mew": 0.6},
+    "reachable": {"marker": "o", "ms": 5.0, "mfc": GREEN, "mec": "white", "mew": 0.5},
+    "blocked": {"marker": "s", "ms": 5.0, "mfc": BLUE, "mec": "white", "mew": 0.5},
+    "unreachable": {"marker": "x", "ms": 5.0, "mec": VERMILION, "mew": 1.4},
+    "undecided": {"marker": "^", "ms": 6.0, "mfc": ORANGE, "mec": "black", "mew": 0.6},
 }
 _POINTS = 6000  # of each kind
 _AXES = 400  # targets up to which the direction of the tip is drawn

@@ -1,6 +1,5 @@
 """The analysis ``reachability``: labels, configurations and residuals of given targets."""
 
-import math
 from functools import cached_property
 from typing import Any
 
@@ -19,14 +18,16 @@ from wsrender.analyses.cost import (
     Cost,
     pictures_cost,
 )
+from wsrender.analyses.criteria import margins_of, share_of, verdicts
 from wsrender.analyses.estimate import RATE_CPU_CORE
 from wsrender.analyses.execution import Execution
 from wsrender.analyses.partial_result import PartialResult, joined_rows, rows_of_shard
 from wsrender.analyses.reachability.job import ReachabilityJob
+from wsrender.documents.target_lists import TargetTable, TargetVolume
 from wsrender.pipeline.constraints.constraint import Constraint
 from wsrender.reach.inverse_solver import solved_bytes
-from wsrender.reach.target_list import TargetList, targets_of_job
-from wsrender.reach.targets import Reachability, check_tolerance, evidence_of_targets, reachable_targets, with_margin
+from wsrender.reach.target_list import TargetList, covered, targets_of_job
+from wsrender.reach.targets import Reachability, check_tolerance, evidence_of_targets, reachable_targets
 from wsrender.robot.constraints import constraints_of_job
 from wsrender.robots.kinematics import Kinematics
 from wsrender.volume.table import Table
@@ -36,9 +37,6 @@ TABLE_BYTES = 60  # of a target in the table beside its configuration
 LABEL_BYTES = 220  # of a target: its label and reason as text, residuals, and copies
 LABELS = ("reachable", "blocked", "unreachable", "undecided")
 DRAWN = 3  # configurations in the picture of the robot
-FAIL, UNDECIDED, PASS = "fail", "undecided", "pass"
-VERDICTS = (FAIL, UNDECIDED, PASS)  # the first that a criterion has is the job's
-ROUNDING = 1e-12  # relative, of a share's sums of weights
 
 
 class ReachabilityAnalysis(Analysis):
@@ -67,18 +65,14 @@ class ReachabilityAnalysis(Analysis):
     @cached_property
     def margins(self) -> dict[int, Kinematics]:
         """The arm within the limits of each criterion, by number, that asks for a margin; raises InputError."""
-        chains = {
-            k: with_margin(self.robot.chain, np.deg2rad(each.joint_margin_deg), each.joint_margin_m, f"criteria.{k}")
-            for k, each in enumerate(self.job.criteria)
-        }
-        return {k: chain for k, chain in chains.items() if chain is not self.robot.chain}
+        return margins_of(self.job.criteria, self.robot.chain)
 
     @property
     def cost(self) -> Cost:
         """Targets, what is known of each, and the table."""
         count, n, oriented = len(self.targets), self.robot.chain.n, bool(self.targets.oriented.any())
         width = 7 if oriented else 3
-        listed = width if self.targets.sha256 is None else 0
+        listed = 0 if isinstance(self.job.targets, TargetTable | TargetVolume) else width
         drawn, seconds = pictures_cost("targets", "robot")
         files = DOCUMENT_BYTES + drawn + (TABLE_BYTES + 8 * (n + width - 3) + LISTED_BYTES * listed) * count
         kind = "pose" if oriented else "position"
@@ -151,28 +145,18 @@ class ReachabilityAnalysis(Analysis):
             counts["share"] = {name: share_of(weight, labels == name) for name in names}
         q = partial["configurations"][reached][:DRAWN]
         skeleton = self.robot.skeleton(q) if len(q) else None
-        entries = {"targets": counts, **self._verdicts(partial)}
+        entries = {"targets": counts, **covered(self.job.targets, reached, labels == "undecided")}
+        entries |= self._verdicts(partial)
         return Draft(
             entries, provenance=self.targets.provenance, tables={"targets": self._table(partial)}, skeleton=skeleton
         )
 
     def _verdicts(self, partial: PartialResult) -> dict[str, Any]:
         """The entries ``criteria`` and ``verdict`` of a job with criteria."""
-        weight, entries = self.targets.weight, []
-        for k, each in enumerate(self.job.criteria):
-            labels = partial[f"criterion_{k + 1}"] if k in self.margins else partial["labels"]
-            reached, open_ = labels == "reachable", labels == "undecided"
-            entries.append(
-                each.model_dump()
-                | {
-                    "reached": int(reached.sum()),
-                    "share": share_of(weight, reached),
-                    "undecided_share": share_of(weight, open_),
-                    "verdict": verdict(each.least_share, weight, reached, open_),
-                }
-            )
-        found = {entry["verdict"] for entry in entries}
-        return {"criteria": entries, "verdict": next(v for v in VERDICTS if v in found)} if entries else {}
+        labels = [
+            partial[f"criterion_{k + 1}" if k in self.margins else "labels"] for k in range(len(self.job.criteria))
+        ]
+        return verdicts(self.job.criteria, self.targets.weight, labels)
 
     def _table(self, partial: PartialResult) -> Table:
         columns = self.targets.columns(self.job.targets is not None) | {
@@ -193,14 +177,3 @@ class ReachabilityAnalysis(Analysis):
         kinds = zip(chain.joint_names, chain.revolute, strict=True)
         units |= {f"q_{name}": "rad" if revolute else "m" for name, revolute in kinds}
         return Table(columns, units)
-
-
-def share_of(weight: np.ndarray, which: np.ndarray) -> float:
-    """Share of the weight (N,) that some (N,) bool have, its sums exact."""
-    return math.fsum(weight[which]) / math.fsum(weight)
-
-
-def verdict(least: float, weight: np.ndarray, reached: np.ndarray, undecided: np.ndarray) -> str:
-    """What targets of a weight (N,) say of a least share: "pass", "fail", or "undecided" where undecided ones count."""
-    enough = [share_of(weight, which) >= least * (1 - ROUNDING) for which in (reached, reached | undecided)]
-    return PASS if enough[0] else UNDECIDED if enough[1] else FAIL

@@ -1,15 +1,15 @@
 """The job ``workspace``: a sampled joint space, as map, volume and global indices."""
 
 from collections.abc import Iterator, Mapping
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import StrictBool, model_validator
+from pydantic import Field, StrictBool, model_validator
 
 from wsrender.documents.arm import Arm
 from wsrender.documents.constraints import Constrained
 from wsrender.documents.format import JobDocument
 from wsrender.documents.options import IndexChoices, MapColumns, StatisticsOrNone, Surfaces
-from wsrender.documents.quantities import Count, RelativeTolerance, VoxelSize
+from wsrender.documents.quantities import Count, Name, RelativeTolerance, VoxelSize, is_none
 from wsrender.documents.sampling import DEFAULT_COUNT, SEVERAL_COUNT, Sampling, Sobol
 
 
@@ -30,6 +30,9 @@ class WorkspaceJob(IndexChoices, Constrained, Arm, JobDocument):
     """Half width of the headline's 95 % interval, relative to it [1]: of the volume that inverse kinematics finds
     reachable, of a planar workspace the area, of a line the length; under constraints of what it finds free, beside
     what they block; null: none is computed."""
+    best_sample: Annotated[Name | None, Field(exclude_if=is_none)] = None
+    """An index of the job: of every voxel the number of the sample with its largest value is kept, of equal ones the
+    smallest; `configuration_of` has its configuration. null: none is kept."""
     voxel_labels: StrictBool = False
     """Whether every voxel is labelled reachable, unreachable or undecided by inverse kinematics; under constraints
     reachable in configurations that they admit, or blocked by one where others are found."""
@@ -57,3 +60,5 @@ class WorkspaceJob(IndexChoices, Constrained, Arm, JobDocument):
         yield from super().conflicts()
         if self.map_columns and not self.keep_map:
             yield "map_columns", 'must be empty unless "keep_map" is true'
+        if self.best_sample and self.voxel_statistics is not None and "maximum" not in self.voxel_statistics:
+            yield "best_sample", 'needs the voxel statistic "maximum", whose samples it keeps'

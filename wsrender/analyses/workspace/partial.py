@@ -29,10 +29,13 @@ class WorkspacePartial:
         rows = {f"{ROWS}{first}": block for first, block in self.sweep.rows.items()}
         arrays = {name: getattr(self.sweep, name) for name in SWEEP}
         facts = {"samples": self.sweep.samples, "convergence": self.convergence}
+        if (index := self.sweep.best_index) is not None:
+            arrays, facts = arrays | {"best": self.sweep.best}, facts | {"best_index": index}
         return PartialResult(arrays | rows, facts)
 
 
 def sweep_of(partial: PartialResult) -> Partial:
     """The sweep's part of what was packed."""
     rows = {int(name.removeprefix(ROWS)): array for name, array in partial.arrays.items() if name.startswith(ROWS)}
-    return Partial(partial.facts["samples"], **{name: partial[name] for name in SWEEP}, rows=rows)
+    kept = (*SWEEP, "best") if (index := partial.facts.get("best_index")) is not None else SWEEP
+    return Partial(partial.facts["samples"], **{name: partial[name] for name in kept}, rows=rows, best_index=index)

@@ -27,13 +27,13 @@ from wsrender.analyses.estimate import held, kept_bytes, sweep_cost
 from wsrender.analyses.execution import Execution
 from wsrender.analyses.partial_result import PartialResult
 from wsrender.analyses.refined import Refined, divided, labelled, refined
-from wsrender.analyses.workspace.first_pass import FirstPass
 from wsrender.analyses.workspace.job import WorkspaceJob
 from wsrender.analyses.workspace.partial import WorkspacePartial, sweep_of
 from wsrender.analyses.workspace.result import PICTURE_SAMPLES, workspace_draft
-from wsrender.documents.options import IsoSurface
+from wsrender.documents.options import STATISTICS, IsoSurface
 from wsrender.documents.sampling import Converge, Grid
 from wsrender.engine import Partial, SweepPlan, devices_of, fitted, merge, sweep
+from wsrender.engine.first_pass import FirstPass
 from wsrender.engine.voxel_data import admission_data, volume_data
 from wsrender.errors import InputError, NotConvergedError
 from wsrender.global_indices import joint_means, workspace_mean
@@ -74,7 +74,8 @@ class WorkspaceAnalysis(Analysis):
     def __init__(self, job: WorkspaceJob, robot: Robot, *, resolved: Mapping[str, Any] | None = None):
         self.evaluation = evaluation_of_job(job, robot)
         if job.voxel_statistics is None:
-            job = job.model_copy(update={"voxel_statistics": default_statistics(self.evaluation.indices)})
+            kept = {*default_statistics(self.evaluation.indices), *(["maximum"] if job.best_sample else [])}
+            job = job.model_copy(update={"voxel_statistics": tuple(name for name in STATISTICS if name in kept)})
         super().__init__(job, robot, resolved=resolved)
 
     def __repr__(self) -> str:
@@ -142,7 +143,22 @@ class WorkspaceAnalysis(Analysis):
             bounds,
             job.precision,
             collapse,
+            self.best,
         )
+
+    @cached_property
+    def best(self) -> str | None:
+        """The index whose best samples are kept; raises InputError for none of the job's."""
+        if self.job.best_sample is None:
+            return None
+        try:
+            (name,) = resolve((self.job.best_sample,), self.robot.has_inertia)
+        except InputError as error:
+            raise error.at("best_sample") from None
+        if name not in self.evaluation.indices:
+            choices = ", ".join(self.evaluation.indices)
+            raise InputError("best_sample", f"{name!r} is not among the job's indices: {choices}")
+        return name
 
     def _check(self, pipeline: Pipeline) -> None:
         """Whether the parts of the job go together; raises InputError, ResourceError."""
@@ -225,7 +241,7 @@ class WorkspaceAnalysis(Analysis):
         """Bytes of the volume's arrays as a file: counts, and a number of each statistic and index."""
         statistics = len(self.pipeline.statistics - {"count"}) * len(self.pipeline.evaluation.indices)
         width = 4 if self.job.precision == "float32" else 8
-        return self._expected[1] * (8.0 + width * statistics)
+        return self._expected[1] * (8.0 + width * statistics + 8.0 * (self.best is not None))
 
     @cached_property
     def _expected(self) -> tuple[float, float]:
@@ -266,7 +282,7 @@ class WorkspaceAnalysis(Analysis):
         if isinstance(self.job.sampling, Converge):
             return self._converge(self.job.sampling, execution, tell)
         first, count = self.shards[shard]
-        how = {"threads": execution.threads, "chunk_size": execution.chunk_size}
+        how: dict[str, Any] = {"threads": execution.threads, "chunk_size": execution.chunk_size}
         found = sweep(self.pipeline, first, count, devices_of(self.device), progress=tell, **how)
         return WorkspacePartial(found, self.pipeline)
 
@@ -336,7 +352,7 @@ class WorkspaceAnalysis(Analysis):
             def report(done: int, before: int = before) -> None:
                 tell(before + done)
 
-            how = {"threads": execution.threads, "chunk_size": execution.chunk_size}
+            how: dict[str, Any] = {"threads": execution.threads, "chunk_size": execution.chunk_size}
             partial = sweep(pipeline, 0, count, devices_of(self.device), progress=report, **how)
             check_admitted(samples_entry(pipeline.constraints, count, partial.rejected), pipeline.constraints)
             value = self._global_value(pipeline, partial, position, sampling.by)

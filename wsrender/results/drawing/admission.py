@@ -6,13 +6,13 @@ from matplotlib.figure import Figure
 
 from wsrender.errors import InputError
 from wsrender.results.drawing.color_scale import ColorScale
+from wsrender.results.drawing.okabe_ito import BLUE, GREEN, ORANGE, PURPLE, SKY_BLUE, VERMILION
 from wsrender.results.drawing.planes import Field, draw_plane, layer_at, new_planes, plane_normals
 from wsrender.results.drawing.style import Heading, paper_style
 from wsrender.volume.volume_data import VolumeData
 
 FREE, UNDECIDED, BEYOND = "#d9d9d9", "#000000", "#fafafa"
-# Okabe and Ito 2008, told apart by the colour-blind; further reasons begin anew, paler.
-BLOCKED = ("#d55e00", "#0072b2", "#cc79a7", "#009e73", "#e69f00", "#56b4e9")
+BLOCKED = (VERMILION, BLUE, PURPLE, GREEN, ORANGE, SKY_BLUE)  # further reasons begin anew, paler
 
 
 @paper_style()

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.ticker import MaxNLocator
 
 from wsrender.results.drawing.camera import Camera
-from wsrender.results.drawing.style import DPI
+from wsrender.results.drawing.style import DPI, quantity
 
 AZIMUTH_DEG, ELEVATION_DEG = -58.0, 24.0  # of the eye
 THINNEST = 0.3  # least extent of the box along an axis, relative to the largest: planar sets stay legible
@@ -52,7 +52,7 @@ class SeenBox:
     camera: Camera
     inch: float
     stretch: np.ndarray = field(default_factory=lambda: np.ones(3))
-    names: tuple[str, str, str] = ("x [m]", "y [m]", "z [m]")
+    names: tuple[str, ...] = tuple(quantity(name, "m") for name in "xyz")
 
     @property
     def near(self) -> np.ndarray:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wsrender.results.drawing.okabe_ito import BLUE, GREEN, PURPLE, SKY_BLUE, VERMILION
 from wsrender.volume.table import Table
 
 if TYPE_CHECKING:
@@ -15,8 +16,8 @@ Color = tuple[float, float, float]
 
 NUMBER = "surface"  # attribute of triangles: the row of the table of surfaces on which each lies
 PLAIN: Color = (0.45, 0.62, 0.75)
-# Okabe and Ito 2008, told apart by the colour-blind: of each leg one for its upper limit and a pale one for its lower.
-_LEGS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#b8a800", "#56b4e9")
+# Of each leg one for its upper limit and a pale one for its lower.
+_LEGS = (BLUE, VERMILION, GREEN, PURPLE, "#b8a800", SKY_BLUE)
 _PALE = 0.5
 _CREASE = 0.77  # cosine of the angle between a triangle and the mean around its corner from which on it is an edge
 _GREYS = ("#8c8c8c", "#a6a6a6", "#bfbfbf", "#707070", "#d9d9d9", "#595959")

@@ -260,8 +260,8 @@ def draw_plane(axes: Axes, volume: VolumeData, field: Field, axis: int, layer: i
         ticks.set_major_locator(MaxNLocator(5 if extent > 0.6 * max(extents) else 2))
     axes.grid(zorder=0)
     axes.set_axisbelow(True)
-    axes.set_xlabel(f"{NAMES[horizontal]} [m]")
-    axes.set_ylabel(f"{NAMES[vertical]} [m]")
+    axes.set_xlabel(quantity(NAMES[horizontal], "m"))
+    axes.set_ylabel(quantity(NAMES[vertical], "m"))
     axes.set_title(f"{NAMES[axis]} = {_layer_text(volume, axis, layer)} m ({frame})".replace("-", "−"))
 
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 from matplotlib.artist import Artist
+from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
@@ -13,13 +14,14 @@ from wsrender.errors import InputError
 from wsrender.results.drawing.cloud import far_half, scale_of, thinned
 from wsrender.results.drawing.faces import Faces
 from wsrender.results.drawing.faces_of_surface import shaded
+from wsrender.results.drawing.okabe_ito import BLUE, GREEN, ORANGE, PURPLE, SKY_BLUE, VERMILION
 from wsrender.results.drawing.style import GREY, INK, Heading, color_map, paper_style
 from wsrender.results.drawing.view import BAR, View, inches, new_view
 from wsrender.volume.distribution_map import DistributionMap
 
 _ACCENT = "#c8102e"
-_ROBOTS = ("#0072b2", "#d55e00", "#cc79a7", "#e69f00", "#56b4e9")  # Okabe and Ito 2008
-SHARED_COLOR, SHARED_LABEL = (0.0, 0.62, 0.451), "shared by at least two"
+ROBOTS = (BLUE, VERMILION, PURPLE, ORANGE, SKY_BLUE)
+SHARED_COLOR, SHARED_LABEL = to_rgb(GREEN), "shared by at least two"
 _CLOUD_POINTS = 12_000
 _VEIL = 0.5  # opacity of a surface before the arm
 
@@ -68,7 +70,7 @@ def robot(
         view.add_line(arm, color="white", lw=4.0, alpha=0.8, solid_capstyle="round", zorder=3.1)
         view.add_line(arm, color=GREY, lw=2.0, solid_capstyle="round", zorder=4)
         view.add_marks(arm, color=GREY, marker="o", ms=3, zorder=4)
-    colors = [_ROBOTS[k % len(_ROBOTS)] if names else INK for k in range(arms)]
+    colors = [ROBOTS[k % len(ROBOTS)] if names else INK for k in range(arms)]
     for arm, color in zip(skeleton[:arms], colors, strict=False):
         draw_arm(view, arm, color)
     robots: list[Artist] = [

@@ -75,7 +75,7 @@ def color_map() -> Colormap:
 
 
 def quantity(name: str, unit: str | None) -> str:
-    """Label of an axis or colour bar: ``Inverse condition number`` or ``Manipulability [m³]``."""
+    """Label of an axis or colour bar: ``Inverse condition number``, ``Manipulability [m³]``, or a symbol, ``x [m]``."""
     text = name.replace("_", " ").strip()
-    text = text[:1].upper() + text[1:]
+    text = text if len(text) == 1 else text[:1].upper() + text[1:]
     return text if unit in (None, "", "1", "-") else f"{text} [{pretty_unit(unit)}]"

@@ -6,21 +6,27 @@ import numpy as np
 
 from wsrender.results.export.names import unique_names
 from wsrender.volume.volume_data import VolumeData
-from wsrender.volume.voxels import Voxels, empty_array
+from wsrender.volume.voxels import Values, Voxels, empty_array
 
 CHUNK_BYTES = 1 << 21
 
+BEST = "best_sample"  # of arrays, instead of a statistic: numbers of samples
 CellNames = Mapping[tuple[str, str], str]
 
 
 def cell_names(volume: VolumeData, taken: set[str]) -> dict[tuple[str, str], str]:
-    """Name of the array of each (statistic, index): ``<statistic>_<index>``; ``taken`` is extended."""
+    """Name of the array of each (statistic, index), BEST among them: ``<statistic>_<index>``; ``taken`` is extended."""
     names = {}
-    for statistic, by_index in volume.statistics.items():
+    for statistic, by_index in cells_of(volume).items():
         for index in by_index:
             wanted = f"{statistic}_{index}"
             names[statistic, index] = unique_names([wanted], "array", taken)[wanted]
     return names
+
+
+def cells_of(values: VolumeData | Voxels) -> dict[str, Values]:
+    """What is held by statistic and index: dense of a volume, of voxels without the empty ones."""
+    return {**values.statistics, **({BEST: values.best} if values.best else {})}
 
 
 def vector_names(volume: VolumeData, taken: set[str]) -> dict[str, str]:
@@ -30,7 +36,8 @@ def vector_names(volume: VolumeData, taken: set[str]) -> dict[str, str]:
 
 def cell_units(volume: VolumeData, names: CellNames, vectors: Mapping[str, str]) -> dict[str, str]:
     """Unit of the count and of every named array and vector; ``"1"`` where it has none."""
-    units = {"count": "samples"} | {name: volume.units.get(index, "1") for (_, index), name in names.items()}
+    units = {"count": "samples"}
+    units |= {name: "1" if kind == BEST else volume.units.get(index, "1") for (kind, index), name in names.items()}
     return units | {name: volume.units.get(vector, "1") for vector, name in vectors.items()}
 
 
@@ -38,7 +45,7 @@ def cell_arrays(volume: VolumeData, names: CellNames, vectors: Mapping[str, str]
     """The count and every named array, (nx, ny, nz), and vector, (nx, ny, nz, 3): each made in its turn."""
     yield "count", volume.count
     for (statistic, index), name in names.items():
-        yield name, volume.statistics[statistic][index]
+        yield name, cells_of(volume)[statistic][index]
     for vector, name in vectors.items():
         yield name, volume.vectors[vector]
 

@@ -14,12 +14,15 @@ _SCIENTIFIC = 1e-4  # below: 1.23e-05 rather than 0.0000123
 def headline_lines(document: Mapping[str, Any]) -> list[str]:
     """``reachable volume 3.80 m³ (95 %: 3.78 … 3.83)``, or ``no volume: <reason>``; none in results of 0.1.
 
-    Those of several robots follow under their names where they have one, or stand alone where each is measured.
+    Of an analysis that measures no workspace its facts, such as ``reachable targets: 97``. Those of several robots
+    follow under their names where they have one, or stand alone where each is measured.
     """
-    whose = presentation_of(document).measured
-    found = document.get("headline")
+    presentation = presentation_of(document)
+    whose, found = presentation.measured, document.get("headline")
     if not found:
         return []
+    if not whose:
+        return [f"{name}: {text}" for name, text in presentation.facts(document)]
     together = whose != Presentation.measured
     robots = [robot for robot in document.get("robots") or () if robot.get("headline")]
     each = [robot for robot in robots if not together or robot["headline"]["value"] is not None]

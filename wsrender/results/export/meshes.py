@@ -35,7 +35,7 @@ def write_mesh(mesh: trimesh.Trimesh, path: str | Path) -> None:
     """
     path = Path(path)
     file_type = by_ending("mesh", path, own=True).suffix
-    origin = _origin(mesh)
+    origin = far_origin(mesh)
     if file_type == "stl" and origin.any():
         raise InputError(
             "path",
@@ -80,7 +80,7 @@ def read_mesh(path: str | Path, ending: str | None = None) -> trimesh.Trimesh:
 read_glb, read_ply, read_stl, read_obj = (partial(read_mesh, ending=ending) for ending in ("glb", "ply", "stl", "obj"))
 
 
-def _origin(mesh: trimesh.Trimesh) -> np.ndarray:
+def far_origin(mesh: trimesh.Trimesh) -> np.ndarray:
     """Where a mesh stands if it is far from the world's origin, else that origin, (3,) [m]."""
     if mesh.bounds is None:
         return np.zeros(3)

@@ -14,7 +14,7 @@ import numpy as np
 
 from wsrender.errors import InputError
 from wsrender.results.export.atomic import new_file
-from wsrender.results.export.cells import cell_arrays, cell_names, vector_names
+from wsrender.results.export.cells import BEST, cell_arrays, cell_names, vector_names
 from wsrender.results.export.columns import DESCRIPTION, arrays_by_column, columns_from_json, columns_of
 from wsrender.volume.distribution_map import DistributionMap
 from wsrender.volume.table import Table
@@ -64,6 +64,7 @@ def read_volume_npz(path: str | Path) -> VolumeData:
         statistics: dict[str, dict[str, np.ndarray]] = {}
         for statistic, index, name in description["arrays"]:
             statistics.setdefault(statistic, {})[index] = arrays[name]
+        best = statistics.pop(BEST, {})
         return VolumeData(
             voxel_size_m=description["voxel_size_m"],
             first_voxel=tuple(description["first_voxel"]),
@@ -71,6 +72,7 @@ def read_volume_npz(path: str | Path) -> VolumeData:
             statistics=statistics,
             units=description["units"],
             vectors={vector: arrays[name] for vector, name in description["vectors"].items()},
+            best=best,
         )
     except (ValueError, KeyError, TypeError) as error:
         raise InputError(path.name, f"is not volume data of wsrender: {error!r}") from error

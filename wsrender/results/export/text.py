@@ -25,7 +25,7 @@ def sampling_text(document: dict[str, Any]) -> str:
     parts = [" + ".join(names)]
     if "samples" in sampling:
         method = f" ({method_text(sampling['method'])})" if "method" in sampling else ""
-        parts.append(f"{sampling['samples']:,} samples{method}")
+        parts.append(f"{sampling['samples']:,} sample{'' if sampling['samples'] == 1 else 's'}{method}")
     if constraints := dict.fromkeys(name for _, samples in _admissions(document) for name in samples["rejected"]):
         parts.append(f"admitted by {', '.join(constraints)}")
     return " · ".join([*parts, *presentation_of(document).title(document)])
@@ -62,7 +62,8 @@ def _facts(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
         yield from _flat(flat, headline)
     else:
         yield from _measured(document, headline)
-    yield from presentation_of(document).facts(document)
+    if (presentation := presentation_of(document)).measured or not headline:  # else they have been said
+        yield from presentation.facts(document)
     bounds = document.get("bounds_m") or {}
     if {"lower", "upper"} <= set(bounds):
         for axis, low, high in zip("xyz", bounds["lower"], bounds["upper"], strict=True):

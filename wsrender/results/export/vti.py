@@ -11,7 +11,7 @@ from xml.sax.saxutils import escape, quoteattr
 import numpy as np
 
 from wsrender.results.export.atomic import new_file
-from wsrender.results.export.cells import Layers, cell_names, cell_units, vector_names
+from wsrender.results.export.cells import Layers, cell_names, cell_units, cells_of, vector_names
 from wsrender.volume.volume_data import VolumeData
 
 
@@ -24,7 +24,7 @@ def write_volume_vti(volume: VolumeData, path: str | Path) -> None:
     names, vectors = cell_names(volume, taken), vector_names(volume, taken)
     voxels = volume.voxels
     arrays = {"count": voxels.count}
-    arrays |= {name: voxels.statistics[statistic][index] for (statistic, index), name in names.items()}
+    arrays |= {name: cells_of(voxels)[statistic][index] for (statistic, index), name in names.items()}
     arrays |= {name: voxels.vectors[vector] for vector, name in vectors.items()}
     layers, cells = Layers(voxels), prod(volume.shape)
     with new_file(path) as temporary, temporary.open("wb") as file:

@@ -13,13 +13,16 @@ from typing import Any
 
 import h5py
 import numpy as np
+from numpy.typing import ArrayLike
 
 from wsrender.errors import InputError
 from wsrender.results.export.atomic import new_file
-from wsrender.results.export.cells import Layers, cell_names, cell_units, vector_names
+from wsrender.results.export.cells import BEST, Layers, cell_names, cell_units, cells_of, vector_names
+from wsrender.volume.table import Table
 from wsrender.volume.volume_data import VolumeData
 from wsrender.volume.voxels import Voxels
 
+LENGTHS = ("x_m", "y_m", "z_m")
 _COMPRESSION_LEVEL = 1  # voxel values are mostly noise in their low bits: higher levels gain little
 
 
@@ -30,25 +33,55 @@ def write_volume_vtkhdf(volume: VolumeData, path: str | Path) -> None:
     units = cell_units(volume, names, vectors)
     layers = Layers(volume.voxels)
     with new_file(path) as temporary, h5py.File(temporary, "w") as file:
-        root = file.create_group("VTKHDF")
-        root.attrs.create("Version", np.array([1, 0], np.int64))
-        root.attrs.create("Type", b"ImageData", dtype=h5py.string_dtype("ascii", 9))
-        extent = [bound for size in volume.shape for bound in (0, size)]
-        root.attrs["WholeExtent"] = np.array(extent, np.int64)
-        root.attrs["Origin"] = np.asarray(volume.origin_m, np.float64)
-        root.attrs["Spacing"] = np.full(3, volume.voxel_size_m, np.float64)
-        root.attrs["Direction"] = np.eye(3).ravel()
+        root = _image(file, volume.shape, volume.origin_m, np.full(3, volume.voxel_size_m))
         root.attrs["first_voxel"] = np.array(volume.first_voxel, np.int64)
         root.attrs["frame"] = "world"
         root.attrs["units"] = json.dumps(volume.units)
         cells = root.create_group("CellData", track_order=True)
         _write_array(cells, "count", layers, volume.voxels.count).attrs["unit"] = units["count"]
         for (statistic, index), name in names.items():
-            dataset = _write_array(cells, name, layers, volume.voxels.statistics[statistic][index])
+            dataset = _write_array(cells, name, layers, cells_of(volume.voxels)[statistic][index])
             dataset.attrs.update({"statistic": statistic, "index": index, "unit": units[name]})
         for vector, name in vectors.items():
             dataset = _write_array(cells, name, layers, volume.voxels.vectors[vector])
             dataset.attrs.update({"vector": vector, "unit": units[name]})
+
+
+def write_cells_vtkhdf(table: Table, path: str | Path) -> None:
+    """Write a map of at most three axes as one ImageData: cell arrays of its columns of numbers, named as they are.
+
+    Lengths x, y and z [m] are axes of the same names; others, which may be angles, take those that are left. An axis
+    that the map has not is one cell thick, around 0. Attribute ``axes``: columns of the axes x, y, z, empty for none.
+    """
+    grid = table.grid
+    assert grid and len(grid.axes) <= 3
+    own = {name: "xyz".index(name[0]) for name in grid.axes if name in LENGTHS}
+    left = [k for k in range(3) if k not in own.values()]
+    at = [own[name] if name in own else left.pop(0) for name in grid.axes]
+    shape, spacing, axes = np.ones(3, int), np.full(3, float(min(grid.step))), np.full(3, "", "<U32")
+    origin = -spacing / 2
+    shape[at], spacing[at], origin[at], axes[at] = grid.shape, grid.step, grid.origin, grid.axes
+    with new_file(path) as temporary, h5py.File(temporary, "w") as file:
+        root = _image(file, shape, origin, spacing)
+        root.attrs["frame"], root.attrs["axes"] = grid.frame, json.dumps(axes.tolist())
+        cells = root.create_group("CellData", track_order=True)
+        for name, column in table.columns.items():
+            if column.dtype.kind in "iuf" and name not in grid.axes:
+                values = column.reshape(*grid.shape, *[1] * len(left), *column.shape[1:])
+                values = np.moveaxis(values, (0, 1, 2), (*at, *left)).swapaxes(0, 2)
+                dataset = cells.create_dataset(name, data=values, compression="gzip", track_times=False)
+                dataset.attrs["unit"] = table.units.get(name, "1")
+
+
+def _image(file: h5py.File, shape: ArrayLike, origin: ArrayLike, spacing: np.ndarray) -> h5py.Group:
+    root = file.create_group("VTKHDF")
+    root.attrs.create("Version", np.array([1, 0], np.int64))
+    root.attrs.create("Type", b"ImageData", dtype=h5py.string_dtype("ascii", 9))
+    root.attrs["WholeExtent"] = np.array([bound for size in np.asarray(shape) for bound in (0, size)], np.int64)
+    root.attrs["Origin"] = np.asarray(origin, np.float64)
+    root.attrs["Spacing"] = np.asarray(spacing, np.float64)
+    root.attrs["Direction"] = np.eye(3).ravel()
+    return root
 
 
 def _write_array(group: h5py.Group, name: str, layers: Layers, values: np.ndarray) -> h5py.Dataset:
@@ -124,4 +157,5 @@ def _voxels(cells: Any, layers: slice) -> Voxels:
             by_index[str(dataset.attrs["index"])] = dataset[layers].T
         elif "vector" in dataset.attrs:
             vectors[str(dataset.attrs["vector"])] = dataset[layers].transpose(2, 1, 0, 3)
-    return Voxels.of_arrays(cells["count"][layers].T, statistics, vectors)
+    best = statistics.pop(BEST, {})
+    return Voxels.of_arrays(cells["count"][layers].T, statistics, vectors, best)

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 from matplotlib.artist import Artist
+from matplotlib.colors import to_rgb
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
@@ -14,15 +15,13 @@ from wsrender.geometry.surfaces import level_surface, occupied_surface
 from wsrender.results.drawing.cloud import checked_index
 from wsrender.results.drawing.color_scale import SIGNED, ColorScale, color_scale
 from wsrender.results.drawing.planes import NAMES, Field, layer_at, plane_normals, shared_scale, voxel_field
+from wsrender.results.drawing.stick_figure import ROBOTS
 from wsrender.results.drawing.style import quantity
 from wsrender.results.render.scene import Cloud, Color, DrawnSurface, Layer, Lines, Plates, Points
 from wsrender.results.render.subject import Subject
 from wsrender.volume.volume_data import VolumeData
 
-ROBOT_COLORS: list[Color] = [
-    (0.0, 0.447, 0.698), (0.835, 0.369, 0.0),
-    (0.8, 0.475, 0.655), (0.902, 0.624, 0.0), (0.337, 0.706, 0.914),
-]  # Okabe and Ito 2008: told apart by the colour-blind  # fmt: skip
+ROBOT_COLORS: list[Color] = [to_rgb(color) for color in ROBOTS]
 VEIL = 0.1  # opacity of translucent surfaces and of the mist of a voxel
 BLENDED = "colours blend with those behind: read values off the slices"
 DOT = 2.2  # diameter of a sample in pixels

@@ -6,15 +6,18 @@ import struct
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from wsrender.results.export.headline import headline_lines, warning_lines
 from wsrender.results.presentation import presentation_of
 from wsrender.results.report.entries import facts_html, label, records_html, table_html, value_html
 from wsrender.volume.table import Table
 
+if TYPE_CHECKING:
+    from wsrender.results.view import View
+
 # Nothing but what is in the page itself: whatever a name may hold, no script runs and nothing is fetched.
-_POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'"
+_POLICY = "default-src 'none'; img-src data: blob:; style-src 'unsafe-inline'"
 _MOST_JOB_TEXT = 100_000  # characters of the job document; result.json has all
 _FIRST = ("warnings",)  # above all sections
 _LATER = ("robot", "robots", "mechanism", "sampling", "choices")  # after the pictures; results come before them
@@ -81,8 +84,11 @@ def report_page(
     pictures: Sequence[ShownPicture],
     tables: Mapping[str, Table],
     notes: Sequence[str] = (),
+    view: "View | None" = None,
 ) -> str:
-    """The HTML text of a report: every value of the document, pictures inside, no link to anything outside."""
+    """The HTML text of a report: every value of the document, pictures and ``view`` inside, no link to the outside."""
+    from wsrender.results.view.page import embedded, loader_policy, shows_something
+
     single = {
         key: value for key, value in document.items() if not isinstance(value, Mapping | list) and value is not None
     }
@@ -96,6 +102,10 @@ def report_page(
     sections += [
         _section(label(key), table_html(named[key]) if key in named else value_html(nested[key])) for key in results
     ]
+    policy = _POLICY
+    if view is not None and shows_something(view):
+        sections += [_section("View", embedded(view))]
+        policy = f"{_POLICY}; {loader_policy()}"  # the viewer's script is one of the page's own, known by its hash
     sections += [_section("Pictures", _pictures(pictures, notes))]
     sections += [_section(label(key), value_html(nested[key])) for key in _LATER if key in nested]
     others = {name: table for name, table in tables.items() if name not in named and len(table)}
@@ -103,7 +113,7 @@ def report_page(
     sections += [_section(label(key), facts_html(nested[key])) for key in ("provenance", "timing_s") if key in nested]
     sections += [_section("Files", _files(nested["artifacts"]))] if "artifacts" in nested else []
     sections += [_section("Job document", _job(nested["job"]))] if "job" in nested else []
-    return _PAGE.format(policy=escape(_POLICY), title=escape(title), style=_STYLE, body="\n".join(sections))
+    return _PAGE.format(policy=escape(policy), title=escape(title), style=_STYLE, body="\n".join(sections))
 
 
 _PAGE = """<!DOCTYPE html>

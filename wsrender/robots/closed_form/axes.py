@@ -135,12 +135,12 @@ class Axes:
         return replace(self, axes=(*self.axes, *held))
 
 
-def parallel(first: Axis, second: Axis) -> bool:
+def parallel(first: Axis, second: Axis, within: float = SAME) -> bool:
     """Whether two axes have one direction, or opposite ones."""
-    return bool(np.linalg.norm(np.cross(first.direction, second.direction)) < SAME)
+    return bool(np.linalg.norm(np.cross(first.direction, second.direction)) < within)
 
 
-def meeting_point(axes: Sequence[Axis], reach: float) -> np.ndarray | None:
+def meeting_point(axes: Sequence[Axis], reach: float, within: float = SAME) -> np.ndarray | None:
     """The point (3,) that axes go through, by least squares; None where there is none, or more than one."""
     across = [np.eye(3) - np.outer(axis.direction, axis.direction) for axis in axes]
     A = np.sum(across, axis=0)
@@ -148,7 +148,7 @@ def meeting_point(axes: Sequence[Axis], reach: float) -> np.ndarray | None:
         return None
     point = np.linalg.solve(A, np.sum([P @ axis.point for P, axis in zip(across, axes, strict=True)], axis=0))
     off = max(np.linalg.norm(P @ (point - axis.point)) for P, axis in zip(across, axes, strict=True))
-    return point if off < SAME * reach else None
+    return point if off < within * reach else None
 
 
 def nearest_points(first: Axis, second: Axis) -> tuple[np.ndarray, np.ndarray]:

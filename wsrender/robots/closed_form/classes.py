@@ -15,10 +15,11 @@ from itertools import pairwise
 
 import numpy as np
 
-from wsrender.robots.closed_form.axes import JOINTS, SAME, Axes, meeting_point, parallel
+from wsrender.robots.closed_form.axes import JOINTS, SAME, Axes, meeting_point, nearest_points, parallel
 from wsrender.robots.closed_form.links import Links, links_of
 
 WELL = 1e-3  # sine, and length over the reach, below which the quartic of a general arm loses digits that it needs
+FAR = 100  # reaches: offsets along axes that are nearly parallel, with which digits are lost
 HEIGHT, DISTANCE = 0, 1
 
 
@@ -54,7 +55,7 @@ class SolvedClass:
     """How an arm is solved.
 
     ``name``: the class in words. ``arm``: "nested" (the joint ``first``, 1 or 3, by the first of the ``equations``, the
-    other by the second), "general" or "parallel" (axes 2, 3 and 4). ``axes``: as they are solved.
+    other by the second), "general", "parallel" (axes 2, 3 and 4) or "open" (no wrist). ``axes``: as they are solved.
     """
 
     name: str
@@ -86,6 +87,30 @@ def shoulder_and_wrist(axes: Axes) -> SolvedClass | None:
     return solved if np.abs(np.cos(solved.links.alpha[3:5])).max() < SAME else None
 
 
+def open_wrist(axes: Axes) -> SolvedClass | None:
+    """Six hinges, of which an equation holds joint 3 of the first three alone, and axes 4 and 5 meet.
+
+    Where the last one stands, so does that point: the class "open" is "nested" but for that joint.
+    """
+    if len(axes.axes) != JOINTS or not all(axis.revolute for axis in axes.axes):
+        return None
+    *arm, fourth, fifth, last = axes.axes
+    point = meeting_point([fourth, fifth], axes.reach)
+    if point is None or np.linalg.norm(np.cross(fourth.direction, fifth.direction)) < WELL:
+        return None
+    along = last.direction * (last.direction @ (point - last.point))
+    foot = last.point + along if parallel(fifth, last) else nearest_points(fifth, last)[1]
+    ends = [replace(axis, point=at) for axis, at in zip((fourth, fifth, last), (point, point, foot), strict=True)]
+    placed = replace(axes, axes=(*arm, *ends))
+    links = links_of(placed.axes, axes.T_tip)
+    nested = _nested(links, [True] * 3, axes.reach)
+    if nested is None or nested[1] != 3 or np.abs(links.d).max() > FAR * axes.reach:
+        return None
+    number = [axis.coordinate + 1 for axis in placed.axes if axis.coordinate is not None]
+    meeting = f"axes {number[3]} and {number[4]} intersecting"
+    return SolvedClass(f"{_relation(placed, links)}, {meeting}", "open", placed, links, *nested)
+
+
 def _spherical_wrist(axes: Axes, moving: int) -> SolvedClass | None:
     arm, wrist = axes.axes[:3], axes.axes[3:]
     center = meeting_point(wrist, axes.reach) if all(axis.revolute for axis in wrist) else None
@@ -98,19 +123,27 @@ def _spherical_wrist(axes: Axes, moving: int) -> SolvedClass | None:
     placed = replace(axes, axes=(*arm, *wrist))
     links = links_of(placed.axes, axes.T_tip)
     revolute = [axis.revolute for axis in arm]
-    first, second = equations(links, revolute, axes.reach)
-    about_elbow = first.less(2 * links.d[1] / axes.reach, second) if revolute[1] else first
+    if nested := _nested(links, revolute, axes.reach):
+        name = _name(placed, moving, _relation(placed, links) if all(revolute) else "")
+        return SolvedClass(name, "nested", placed, links, *nested)
+    if not all(revolute) or min(abs(links.a[0]) / axes.reach, abs(np.sin(links.alpha[0]))) < WELL:
+        return None
+    both = equations(links, revolute, axes.reach)
+    if not all(each.holds(3, True) for each in both):
+        return None
+    return SolvedClass(_name(placed, moving, "general arm"), "general", placed, links, both, 3)
+
+
+def _nested(links: Links, revolute: list[bool], reach: float) -> tuple[tuple[Equation, Equation], int] | None:
+    """Equations of the first three joints, the first of which holds joint 1 or 3 alone, and that joint."""
+    first, second = equations(links, revolute, reach)
+    about_elbow = first.less(2 * links.d[1] / reach, second) if revolute[1] else first
     for one, other in ((first, second), (second, first), (about_elbow, second)):
         for joint, rest in ((1, 3), (3, 1)):
             alone = one.holds(joint, revolute[joint - 1]) and not one.holds(rest, revolute[rest - 1])
             if alone and other.holds(rest, revolute[rest - 1]):
-                name = _name(placed, moving, _relation(placed, links) if all(revolute) else "")
-                return SolvedClass(name, "nested", placed, links, (one, other), joint)
-    if not all(revolute) or min(abs(links.a[0]) / axes.reach, abs(np.sin(links.alpha[0]))) < WELL:
-        return None
-    if not (first.holds(3, True) and second.holds(3, True)):
-        return None
-    return SolvedClass(_name(placed, moving, "general arm"), "general", placed, links, (first, second), 3)
+                return (one, other), joint
+    return None
 
 
 def equations(links: Links, revolute: list[bool], reach: float) -> tuple[Equation, Equation]:

@@ -8,7 +8,7 @@ import numpy as np
 from wsrender.robots.chain import Chain
 from wsrender.robots.closed_form.axes import JOINTS, Axes
 from wsrender.robots.closed_form.classes import SolvedClass, solved_class
-from wsrender.robots.closed_form.numbers import geometry_numbers, limit_numbers, zeros
+from wsrender.robots.closed_form.numbers import geometry_numbers, limit_numbers, motion_of, named_motion, zeros
 from wsrender.robots.kinematics import Kinematics
 
 FREE = {"pose": 0, "axis": 1, "position": 3}  # freedoms that targets of a kind leave open
@@ -79,6 +79,14 @@ class ClosedForm:
         scaled[:3, 3] /= self.solved.axes.reach
         T = T @ np.linalg.inv(scaled) if self.solved.axes.reversed else scaled @ T
         return numbers | {f"{name}{k}": x for k, x in enumerate([*T[:3, :3].ravel(), *T[:3, 3]])}
+
+    def numbers_in_world(self) -> dict[str, float]:
+        """What kernels take that solve for poses as they are in the world, by name."""
+        found, axes, world = self.numbers(), self.solved.axes, self.chain.T_world_base
+        name = "tool" if axes.reversed else "base"
+        T = motion_of(name, found, axes.reach)
+        found |= named_motion(name, world @ T if axes.reversed else T @ np.linalg.inv(world), axes.reach)
+        return found | {f"origin{k}": x for k, x in enumerate(self.origin)} | {"scale": 1 / axes.reach}
 
     def configurations(self, rows: np.ndarray) -> np.ndarray:
         """Configurations (..., n) of what kernels give of postures, (..., 12), moved into the limits."""

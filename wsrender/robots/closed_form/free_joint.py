@@ -1,4 +1,4 @@
-"""Arms of seven hinges of which one at an end may stand anywhere: a closed form of the others, where it does."""
+"""Arms of seven joints of which one at an end may stand anywhere: a closed form of the others, where it does."""
 
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -8,13 +8,20 @@ import numpy as np
 from wsrender.robots.closed_form.axes import JOINTS, Axes, Axis
 from wsrender.robots.closed_form.classes import SolvedClass, shoulder_and_wrist
 from wsrender.robots.closed_form.closed_form import FREE, ClosedForm
-from wsrender.robots.closed_form.numbers import TURN, ends_of, geometry_numbers, limit_numbers, zeros
+from wsrender.robots.closed_form.numbers import (
+    elbow_band,
+    ends_of,
+    geometry_numbers,
+    limit_numbers,
+    motion_of,
+    named_motion,
+)
 from wsrender.robots.kinematics import Kinematics
 
 
 @dataclass(frozen=True, eq=False)
 class FreeJointForm:
-    """What a search along a hinge takes: ``free``, the first as the arm is solved, and the closed form of the ``rest``.
+    """What a search along a joint takes: ``free``, the first as the arm is solved, and the closed form of the ``rest``.
 
     Only arms whose ``rest`` has its first three joints by an equation of joint 3 alone, and an orthogonal wrist: of
     others no bounds are known here.
@@ -35,8 +42,7 @@ class FreeJointForm:
         axes = axes.free(list(axes.T_tip[:3, [2, 0, 1][: FREE[kind]]].T))
         for way in (axes.backwards(), axes):
             free, rest = way.axes[0], replace(way, axes=way.axes[1:])
-            solved = shoulder_and_wrist(rest) if free.revolute else None
-            if solved:
+            if (solved := shoulder_and_wrist(rest)) and (free.revolute or np.isfinite(free.upper - free.lower)):
                 return cls(ClosedForm(near, chain.origin, kind, solved), free)
         return None
 
@@ -64,13 +70,13 @@ class FreeJointForm:
             self.rest.chain.T_world_base,
             ends_of(self.free, unlimited),
         )
-        turned, tool = np.eye(4), _matrix("tool", found, reach)
-        turned[:2, :2] = [[np.cos(middle), np.sin(middle)], [-np.sin(middle), np.cos(middle)]]
+        tool = motion_of("tool", found, reach)
         # Seen from the tip the base is behind the wrist's centre.
-        base = turned @ np.linalg.inv(frame if back else world @ frame)
-        found |= _named("base", base, reach) | _named("tool", world @ tool if back else tool, reach)
+        base = self._taken_back(np.array([middle]))[0] @ np.linalg.inv(frame if back else world @ frame)
+        found |= named_motion("base", base, reach) | named_motion("tool", world @ tool if back else tool, reach)
         found |= {f"origin{k}": x for k, x in enumerate(self.rest.origin)} | {"scale": 1 / reach}
-        found |= {"half": min((upper - lower) / 2, np.pi)} | self._band(unlimited)
+        half = (upper - lower) / 2
+        found |= {"half": min(half, np.pi) if self.free.revolute else half / reach} | elbow_band(self.solved, unlimited)
         # The wrist's centre is off by what the tip is, and by its turn about the tip: seen from there its own distance.
         near = max(position_m / reach, 1e-13)  # rounding
         held = np.linalg.norm((frame if back else tool)[:3, 3]) / reach
@@ -80,10 +86,10 @@ class FreeJointForm:
     def _geometry(self) -> dict[str, float]:
         """Those of the others, and how the free joint's frame lies to theirs."""
         found, reach = geometry_numbers(self.solved), self.solved.axes.reach
-        link = _matrix("base", found, reach) @ self._frame
+        link = motion_of("base", found, reach) @ self._frame
         R, p = link[:3, :3], link[:3, 3] / reach
-        found |= _named("link", link, reach)
-        for k, equation in enumerate(self.solved.equations, 1):
+        found |= named_motion("link", link, reach)
+        for k, equation in enumerate(self.solved.equations if self.free.revolute else (), 1):
             turn = (2 * equation.squares * R.T @ p + equation.left[2] * R[2])[:2]
             found |= {f"turn{k}_x": turn[0], f"turn{k}_y": turn[1], f"turn{k}_size": np.hypot(*turn)}
         moved = np.array([found[f"f{r}{k}"] for r in "xy" for k in "cs"])
@@ -104,50 +110,36 @@ class FreeJointForm:
     def _middle(self, unlimited: bool) -> float:
         return sum(ends_of(self.free, unlimited)) / 2
 
-    def _band(self, unlimited: bool) -> dict[str, float]:
-        """The least and the most that equation 1's right side is within the limits of joint 3."""
-        right = self.solved.equations[0].right
-        lower, upper = (end + zeros(self.solved)[2] for end in ends_of(self.solved.axes.axes[2], unlimited))
-        top = np.arctan2(right[1], right[0])
-        if upper - lower >= TURN:
-            at = top + np.array([0.0, np.pi])
+    def _displacement(self, at: np.ndarray) -> np.ndarray:
+        """That of the free joint (N,) [rad or m] where kernels say that it stands ``at``."""
+        return at * (1.0 if self.free.revolute else self.solved.axes.reach) + self._middle(False)
+
+    def _taken_back(self, by: np.ndarray) -> np.ndarray:
+        """Motions (N, 4, 4) in the free joint's frame that undo its displacements (N,) [rad or m]."""
+        T = np.tile(np.eye(4), (len(by), 1, 1))
+        if self.free.revolute:
+            T[:, 0, 0] = T[:, 1, 1] = np.cos(by)
+            T[:, 0, 1], T[:, 1, 0] = np.sin(by), -np.sin(by)
         else:
-            extremes = top + np.pi * np.arange(-8, 9)
-            at = np.array([lower, upper, *extremes[(extremes > lower) & (extremes < upper)]])
-        values = right[0] * np.cos(at) + right[1] * np.sin(at)
-        return {"right1_low": values.min(), "right1_high": values.max()}
+            T[:, 2, 3] = -by
+        return T
 
     def standing(self, T: np.ndarray, at: np.ndarray) -> np.ndarray:
-        """Poses (N, 4, 4) that the others must reach where the free joint stands ``at`` (N,), as kernels say [rad]."""
+        """Poses (N, 4, 4) that the others must reach where the free joint stands ``at`` (N,), as kernels say."""
         world = np.eye(4)
         world[:3, 3] = self.rest.origin
-        world, angle = world @ self.rest.chain.T_world_base, at + self._middle(False)
-        turn = np.tile(np.eye(4), (len(T), 1, 1))
-        turn[:, 0, 0] = turn[:, 1, 1] = np.cos(angle)
-        turn[:, 0, 1], turn[:, 1, 0] = np.sin(angle), -np.sin(angle)
-        turn = self._frame @ turn @ np.linalg.inv(self._frame)
+        world = world @ self.rest.chain.T_world_base
+        back = self._frame @ self._taken_back(self._displacement(at)) @ np.linalg.inv(self._frame)
         if self.solved.axes.reversed:
-            return T @ np.linalg.inv(turn)
-        return world @ turn @ np.linalg.inv(world) @ T
+            return T @ np.linalg.inv(back)
+        return world @ back @ np.linalg.inv(world) @ T
 
     def configurations(self, rows: np.ndarray, at: np.ndarray) -> np.ndarray:
         """Configurations (N, ..., n) of postures (N, ..., 12) of the others where the free joint stands ``at`` (N,)."""
         q = self.rest.configurations(rows)
         if (coordinate := self.free.coordinate) is not None:
             chain = self.rest.chain
-            value = (at + self._middle(False) - self.free.offset) * self.free.sign
+            value = (self._displacement(at) - self.free.offset) * self.free.sign
             value = np.clip(value, chain.lower_limits[coordinate], chain.upper_limits[coordinate])
             q[..., coordinate] = value.reshape(-1, *[1] * (q.ndim - 2))
         return q
-
-
-def _named(name: str, T: np.ndarray, reach: float) -> dict[str, float]:
-    """A motion (4, 4) [m] as kernels take it: rotation by rows, position [reach]."""
-    return {f"{name}{k}": x for k, x in enumerate([*T[:3, :3].ravel(), *T[:3, 3] / reach])}
-
-
-def _matrix(name: str, numbers: dict[str, float], reach: float) -> np.ndarray:
-    """The motion (4, 4) [m] of such numbers."""
-    T, values = np.eye(4), np.array([numbers[f"{name}{k}"] for k in range(12)])
-    T[:3, :3], T[:3, 3] = values[:9].reshape(3, 3), values[9:] * reach
-    return T

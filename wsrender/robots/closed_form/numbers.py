@@ -62,13 +62,12 @@ def elbow_turn(solved: SolvedClass) -> float:
 
 def limit_numbers(solved: SolvedClass, unlimited: bool = False) -> dict[str, float]:
     """Arcs of hinges and ends of slides; ``unlimited``: those of the chain's hinges turn for ever."""
-    axes, zero, reach = solved.axes.axes, zeros(solved), solved.axes.reach
+    zero, reach = zeros(solved), solved.axes.reach
     found: dict[str, float] = {}
-    halves, middles = np.zeros(6), np.zeros(6)
-    for k, axis in enumerate(axes):
+    middles, halves = hinge_arcs(solved, unlimited)
+    for k, axis in enumerate(solved.axes.axes):
         lower, upper = ends_of(axis, unlimited)
         if axis.revolute:
-            middles[k], halves[k] = (lower + upper) / 2 + zero[k], (upper - lower) / 2
             found |= _arc(k + 1, middles[k], halves[k])
         else:
             found |= {f"lower{k + 1}": (lower + zero[k]) / reach, f"upper{k + 1}": (upper + zero[k]) / reach}
@@ -77,12 +76,32 @@ def limit_numbers(solved: SolvedClass, unlimited: bool = False) -> dict[str, flo
     return found
 
 
+def hinge_arcs(solved: SolvedClass, unlimited: bool = False) -> tuple[np.ndarray, np.ndarray]:
+    """Middles and halves of the ranges of solved hinges (6,) [rad]; of slides nothing."""
+    ends = np.array([ends_of(axis, unlimited) for axis in solved.axes.axes])
+    return ends.mean(axis=1) + zeros(solved), np.diff(ends)[:, 0] / 2
+
+
 def zeros(solved: SolvedClass) -> np.ndarray:
     """What solved joints stand at where the axes' displacements are 0 (6,) [rad or m]."""
     links = solved.links
     zero = np.where([axis.revolute for axis in solved.axes.axes], links.theta, links.d)
     zero[2] += elbow_turn(solved)
     return zero
+
+
+def elbow_band(solved: SolvedClass, unlimited: bool = False) -> dict[str, float]:
+    """The least and the most that the right side of an equation of joint 3 alone is within its limits."""
+    right = solved.equations[0].right
+    lower, upper = (end + zeros(solved)[2] for end in ends_of(solved.axes.axes[2], unlimited))
+    top = np.arctan2(right[1], right[0])
+    if upper - lower >= TURN:
+        at = top + np.array([0.0, np.pi])
+    else:
+        extremes = top + np.pi * np.arange(-8, 9)
+        at = np.array([lower, upper, *extremes[(extremes > lower) & (extremes < upper)]])
+    values = right[0] * np.cos(at) + right[1] * np.sin(at)
+    return {"right1_low": values.min(), "right1_high": values.max()}
 
 
 def packed(numbers: Mapping[str, float], fields: tuple[str, ...]) -> np.ndarray:
@@ -95,6 +114,18 @@ def ends_of(axis: Axis, unlimited: bool) -> tuple[float, float]:
     if axis.revolute and ((unlimited and axis.coordinate is not None) or not np.isfinite(axis.upper - axis.lower)):
         return -np.pi, np.pi
     return axis.lower, axis.upper
+
+
+def named_motion(name: str, T: np.ndarray, reach: float) -> dict[str, float]:
+    """A motion (4, 4) [m] as kernels take it: rotation by rows, position [reach]."""
+    return {f"{name}{k}": x for k, x in enumerate([*T[:3, :3].ravel(), *T[:3, 3] / reach])}
+
+
+def motion_of(name: str, numbers: dict[str, float], reach: float) -> np.ndarray:
+    """The motion (4, 4) [m] of such numbers."""
+    T, values = np.eye(4), np.array([numbers[f"{name}{k}"] for k in range(12)])
+    T[:3, :3], T[:3, 3] = values[:9].reshape(3, 3), values[9:] * reach
+    return T
 
 
 def _arc(joint: int, middle: float, half: float) -> dict[str, float]:

@@ -1,0 +1,105 @@
+/** Questions over a WebSocket: the last of a kind wins; a session that is lost is opened again. */
+
+import { Refused, type Answer, type Request } from "../contract";
+import { answerOf, readReply, replaced } from "./answer";
+
+interface Waiting { ask: Request["ask"]; resolve(answer: Answer): void; reject(error: Error): void }
+
+const PROTOCOL = "wsrender.v1";
+const KEY_PREFIX = "wsrender.key64."; // browsers can't set headers of a WebSocket, nor name a subprotocol by any letter
+const FIRST_PAUSE_MS = 500, LONGEST_PAUSE_MS = 8000;
+
+export class Session {
+  private socket: WebSocket | null = null;
+  private open: Promise<WebSocket> | null = null;
+  private waiting = new Map<number, Waiting>();
+  private listeners = new Set<(state: "lost" | "back") => void>();
+  private next = 1;
+  private pause = FIRST_PAUSE_MS;
+  private lost = false;
+  private closed = false;
+
+  constructor(private readonly url: URL, private readonly key: () => string) {
+    this.url.protocol = url.protocol === "https:" ? "wss:" : "ws:";
+  }
+
+  async ask(request: Request): Promise<Answer> {
+    for (const [id, other] of this.waiting) if (other.ask === request.ask) this.settle(id)?.reject(replaced());
+    const id = this.next++;
+    const answer = new Promise<Answer>((resolve, reject) => this.waiting.set(id, { ask: request.ask, resolve, reject }));
+    this.connected().then(
+      (socket) => { if (this.waiting.has(id)) socket.send(JSON.stringify({ id, ...request })); },
+      (error) => this.settle(id)?.reject(error),
+    );
+    return answer;
+  }
+
+  onState(listener: (state: "lost" | "back") => void): () => void {
+    this.listeners.add(listener);
+    return () => this.listeners.delete(listener);
+  }
+
+  close(): void {
+    this.closed = true;
+    for (const id of [...this.waiting.keys()]) this.settle(id)?.reject(replaced());
+    this.socket?.close(1000);
+  }
+
+  private connected(): Promise<WebSocket> {
+    if (this.closed) return Promise.reject(replaced());
+    this.open ??= new Promise((resolve, reject) => {
+      const socket = new WebSocket(this.url, [PROTOCOL, ...(this.key() ? [KEY_PREFIX + base64url(this.key())] : [])]);
+      socket.binaryType = "arraybuffer";
+      socket.onopen = () => {
+        if (this.closed) return socket.close(1000);
+        this.socket = socket;
+        this.pause = FIRST_PAUSE_MS;
+        if (this.lost) this.say("back");
+        resolve(socket);
+      };
+      socket.onmessage = ({ data }) => this.receive(data);
+      socket.onclose = (event) => {
+        this.socket = this.open = null;
+        const error = new Refused(event.reason || "The interactive session has ended.", "", "lost");
+        reject(error);
+        for (const id of [...this.waiting.keys()]) this.settle(id)?.reject(error);
+        if (!this.closed) this.reconnect(event.code);
+      };
+    });
+    return this.open;
+  }
+
+  private reconnect(code: number): void {
+    if (code === 1008 || code === 1000) return; // refused, or ended when idle: the next question opens another
+    if (!this.lost) this.say("lost");
+    setTimeout(() => { if (!this.closed && this.lost) this.connected().catch(() => undefined); }, this.pause);
+    this.pause = Math.min(2 * this.pause, LONGEST_PAUSE_MS);
+  }
+
+  private say(state: "lost" | "back"): void {
+    this.lost = state === "lost";
+    for (const listener of this.listeners) listener(state);
+  }
+
+  private receive(data: ArrayBuffer | string): void {
+    if (typeof data === "string") return;
+    const { reply, blobs } = readReply(data);
+    const waiting = this.settle(Number(reply.id));
+    if (!waiting) return;
+    try {
+      waiting.resolve(answerOf(reply, blobs));
+    } catch (error) {
+      waiting.reject(error as Error);
+    }
+  }
+
+  private settle(id: number): Waiting | undefined {
+    const waiting = this.waiting.get(id);
+    this.waiting.delete(id);
+    return waiting;
+  }
+}
+
+function base64url(text: string): string {
+  return btoa(String.fromCharCode(...new TextEncoder().encode(text))).replaceAll("+", "-").replaceAll("/", "_").replace(/=+$/, "");
+}

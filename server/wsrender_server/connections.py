@@ -1,0 +1,123 @@
+"""What a client may hold open: so many connections, and requests only as long as they keep coming."""
+
+import asyncio
+from collections import Counter
+from time import monotonic
+from typing import Any
+
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+from uvicorn.protocols.http.h11_impl import H11Protocol
+
+from wsrender_server.problems import HttpProblem
+from wsrender_server.settings import Settings
+
+SLOWEST = 1 << 14  # bytes/s of a body, beside the time that silence may last
+TOO_SLOW = b"HTTP/1.1 408 Request Timeout\r\nconnection: close\r\ncontent-length: 0\r\n\r\n"
+TOO_MANY = b"HTTP/1.1 429 Too Many Requests\r\nconnection: close\r\nretry-after: 5\r\ncontent-length: 0\r\n\r\n"
+
+
+class Limits:
+    """The limits of the settings, and how many connections each address has."""
+
+    def __init__(self, settings: Settings):
+        self.settings = settings
+        self.open: Counter[str] = Counter()
+
+
+class Connection(H11Protocol):
+    """A connection that is closed where the head of a request does not come in time, or its client has too many."""
+
+    def __init__(self, *, limits: Limits, **options: Any):
+        super().__init__(**options)
+        self._limits = limits
+        self._counted: str | None = None
+        self._silence: asyncio.TimerHandle | None = None
+        self._spoke = False
+
+    def connection_made(self, transport: asyncio.Transport) -> None:  # pyright: ignore[reportIncompatibleMethodOverride]
+        """Count the connection; one too many is refused."""
+        super().connection_made(transport)
+        host, settings = self.client[0] if self.client else "", self._limits.settings
+        if not settings.trusts(host):
+            if self._limits.open[host] >= settings.max_connections_per_client:
+                self._end(TOO_MANY)
+                return
+            self._limits.open[host] += 1
+            self._counted = host
+        self._expect_head()
+
+    def data_received(self, data: bytes) -> None:
+        """Take in data; what is no whole head yet must become one in time."""
+        self._spoke = True
+        super().data_received(data)
+        if self.transport.get_protocol() is not self:  # a WebSocket's from now on
+            return
+        if self.cycle is not None and not self.cycle.response_complete:
+            self._head_is_here()
+        elif self._silence is None:
+            self._expect_head()
+
+    def handle_websocket_upgrade(self, event: Any) -> None:
+        """Hand the connection over to the WebSocket, which sessions count."""
+        self._forget()
+        super().handle_websocket_upgrade(event)
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        """Forget the connection."""
+        self._forget()
+        super().connection_lost(exc)
+
+    def _expect_head(self) -> None:
+        self._silence = self.loop.call_later(self._limits.settings.read_timeout_s, self._too_slow)
+
+    def _too_slow(self) -> None:
+        self._end(TOO_SLOW if self._spoke else b"")
+
+    def _head_is_here(self) -> None:
+        if self._silence is not None:
+            self._silence.cancel()
+            self._silence = None
+
+    def _end(self, answer: bytes) -> None:
+        if not self.transport.is_closing():
+            self.transport.write(answer)
+            self.transport.close()
+
+    def _forget(self) -> None:
+        self._head_is_here()
+        host, self._counted = self._counted, None
+        if host is not None:
+            self._limits.open[host] -= 1
+            if not self._limits.open[host]:
+                del self._limits.open[host]
+
+
+class BodyLayer:
+    """Around every route: a body that does not come in time is answered with 408."""
+
+    def __init__(self, app: ASGIApp, timeout_s: float):
+        self.app = app
+        self._timeout_s = timeout_s
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Answer a request (ASGI)."""
+        if scope["type"] != "http":
+            await self.app(scope, receive, send)
+            return
+        ends: float | None = None  # counted from when somebody asks: a server may be slow to come to it
+        complete = False
+
+        async def receive_in_time() -> Message:
+            nonlocal ends, complete
+            if complete:
+                return await receive()
+            ends = monotonic() + self._timeout_s if ends is None else ends
+            try:
+                message = await asyncio.wait_for(receive(), ends - monotonic())
+            except TimeoutError:
+                raise HttpProblem(408, f"the body did not come within {self._timeout_s:g} s and 16 KiB/s") from None
+            ends += len(message.get("body", b"")) / SLOWEST
+            complete = not message.get("more_body", False)
+            return message
+
+        await self.app(scope, receive_in_time, send)

@@ -1,0 +1,102 @@
+"""Job documents as the store keeps them: short ones in their row, long ones in files that rows and tasks refer to."""
+
+import hashlib
+import json
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from typing import Any, Self
+
+from wsrender.analyses.jobs import canonical_text
+from wsrender.documents.arm import ArmPath, dotted, local_paths, models_in
+from wsrender.errors import InputError
+from wsrender_server.jobs.files import DataFolder
+
+LONGEST_IN_ROW = 1 << 14  # characters; there is a task for each of up to hundreds of shards
+
+
+@dataclass(frozen=True)
+class CanonicalDocument:
+    """A canonical document (all defaults present) with what the store asks of it: plain data, read once.
+
+    ``text`` is None where the document is long: then a file of the data folder holds it, named by its hash.
+    """
+
+    sha256: str
+    """Of its text."""
+    analysis: str
+    device: str
+    """What it asks to be computed on."""
+    libraries: tuple[str | None, ...]
+    """Library robots of its models; None for each that is none."""
+    uploads: tuple[tuple[str, str], ...]
+    """Dotted path and SHA-256 of what was uploaded."""
+    text: str | None = None
+    """Its JSON."""
+
+    @classmethod
+    def of(cls, document: Mapping[str, Any]) -> Self:
+        """A canonical document. Raises InputError for a file given by a path: a server reads none for its users."""
+        for path in local_paths(document):
+            raise InputError(dotted(path), "is for local runs; send the points, or upload the model")
+        models = [*models_in(document)]
+        text = canonical_text(dict(document))
+        return cls(
+            hashlib.sha256(text.encode()).hexdigest(),
+            document["analysis"],
+            document.get("device", "auto"),
+            tuple(model.get("library") for _, model in models),
+            tuple(_uploads(models)),
+            text,
+        )
+
+    @classmethod
+    def of_row(cls, text: str, facts: Mapping[str, Any] | None) -> Self:
+        """That of a row; those of earlier versions have no ``facts``."""
+        if facts is None:
+            return cls.of(json.loads(text))
+        kept = {**facts, "libraries": tuple(facts["libraries"]), "uploads": tuple(map(tuple, facts["uploads"]))}
+        return cls(**kept, text=text or None)
+
+    @property
+    def facts(self) -> dict[str, Any]:
+        """All but its text, as JSON."""
+        return {name: value for name, value in asdict(self).items() if name != "text"}
+
+    @property
+    def is_short(self) -> bool:
+        """Whether its row holds it."""
+        return self.text is not None and len(self.text) <= LONGEST_IN_ROW
+
+    def read(self, files: DataFolder, computation: str) -> Any:
+        """The document of a computation; raises InputError where its file is gone, or not what was written."""
+        if self.text is not None:
+            return json.loads(self.text)
+        try:
+            content = files.document(computation, self.sha256).read_bytes()
+        except FileNotFoundError:
+            raise InputError("document", "is lost from the server's disk; submit the job again") from None
+        if hashlib.sha256(content).hexdigest() != self.sha256:
+            raise InputError("document", "is damaged on the server's disk; submit the job again")
+        return json.loads(content)
+
+    def kept(self, files: DataFolder, computation: str, written: Path | None = None) -> Self:
+        """As a computation's row holds it: of a long one the text goes into a file.
+
+        It is ``written`` already where a process did so. Raises DiskFull.
+        """
+        if written is None and (self.text is None or self.is_short):
+            return self
+        files.put_document(computation, self.sha256, written or (self.text or "").encode())
+        return replace(self, text=None)
+
+
+def uploads_in(document: Any) -> Iterator[tuple[str, str]]:
+    """Dotted path and SHA-256 of every upload that a canonical document names."""
+    return _uploads(models_in(document))
+
+
+def _uploads(models: Iterable[tuple[ArmPath, dict[str, Any]]]) -> Iterator[tuple[str, str]]:
+    for path, model in models:
+        if model.get("model") is not None:
+            yield dotted(path, "model"), model["model"]

@@ -1,0 +1,35 @@
+"""Colours of points and of maps: which there are, and which is shown first."""
+
+import numpy as np
+
+from wsrender.results.view.blobs import Blobs
+from wsrender.results.view.parts import add_maps, add_points
+from wsrender.volume.table import Grid, Table
+
+
+def names(entries):
+    return [[channel["name"] for channel in each["channels"]] for each in entries]
+
+
+def test_what_was_asked_for_leads_and_names_are_no_colours():
+    position = np.zeros((4, 3))
+    targets = Table(
+        {
+            "name": np.array(["a", "", "", "b"]),
+            "manipulability": np.arange(4.0),
+            "position": position,
+            "weight": np.ones(4),
+            "q_joint1": np.zeros(4),
+            "label": np.array(["reachable", "reachable", "blocked", "reachable"]),
+        }
+    )
+    assert names(add_points(Blobs(), None, {"targets": targets}, "float16", [])) == [
+        ["label", "weight", "manipulability"]
+    ]
+
+
+def test_maps_show_what_is_served_before_how_the_base_is_turned():
+    x, y = (each.ravel() for each in np.meshgrid(np.arange(2.0), np.arange(2.0), indexing="ij"))
+    columns = {"x_m": x, "y_m": y, "yaw_deg": np.zeros(4), "served": np.arange(4), "weight": np.arange(4.0)}
+    placements = Table(columns, grid=Grid(("x_m", "y_m"), (0.0, 0.0), (1.0, 1.0), (2, 2)))
+    assert names(add_maps(Blobs(), {"map": placements}, None, "float16")) == [["weight", "served", "yaw_deg"]]

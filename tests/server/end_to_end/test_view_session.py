@@ -1,0 +1,305 @@
+"""Interactive sessions through a real server: answers, replaced questions, limits, keys, and pages that misbehave."""
+
+import base64
+import contextlib
+import json
+import struct
+import time
+from contextlib import contextmanager
+
+import httpx2
+import numpy as np
+import psutil
+import pytest
+from websockets.exceptions import ConnectionClosed
+from websockets.sync.client import connect
+from wsrender_server.local_server import LocalServer
+
+import wsrender as ws
+from tests.server.end_to_end.acceptance import QUICK
+from wsrender.results.view.interactive import Interactive
+
+ROBOT = "/v1/robots/puma560/view/session"
+VOLUME = {"ask": "volume", "robot": 0, "index": "manipulability", "samples": 1 << 14, "voxel_size_m": 0.1}
+LONG = VOLUME | {"samples": 1 << 26}
+AT = {"ask": "indices_at", "robot": 0, "q": [0.1, 0.2, 0.3, 0.4, 0.5, 0.6]}
+
+
+@pytest.fixture(scope="module")
+def server(tmp_path_factory):
+    with LocalServer(tmp_path_factory.mktemp("data")) as server:
+        yield server
+
+
+@pytest.fixture(scope="module")
+def job(server):
+    """A finished job that keeps best samples: its id, and its result."""
+    with ws.Client(server.url) as client:
+        submitted = client.submit(QUICK | {"best_sample": "manipulability", "refined_volume": None})
+        yield submitted.id, submitted.result()
+
+
+def opened(server, path=ROBOT, **options):
+    return connect(server.url.replace("http", "ws") + path, compression=None, max_size=None, **options)
+
+
+def parts_of(message):
+    (length,) = struct.unpack("<I", message[:4])
+    header, at, blobs = json.loads(message[4 : 4 + length]), 4 + length, {}
+    for each in header.pop("blobs"):
+        blobs[each["name"]] = message[at : at + each["bytes"]]
+        at += each["bytes"]
+    assert at == len(message)
+    return header, blobs
+
+
+@contextmanager
+def session(server, path=ROBOT, **options):
+    """A session that is ready."""
+    with opened(server, path, **options) as socket:
+        ready, _ = parts_of(socket.recv(60))
+        assert ready["answer"]["robots"]
+        yield socket
+
+
+def asked(socket, number, question, patience_s=120.0):
+    socket.send(json.dumps({"id": number, **question}))
+    header, blobs = parts_of(socket.recv(patience_s))
+    assert header["id"] == number
+    return header, blobs
+
+
+def ended(socket, patience_s=60.0):
+    """What a refused session is told last, and its close code."""
+    header = {}
+    try:
+        while True:
+            header, _ = parts_of(socket.recv(patience_s))
+    except ConnectionClosed as closed:
+        return header, closed.rcvd.code
+
+
+def children(server):
+    """The processes of sessions: the server's own that stand behind jobs."""
+    return {each.pid for each in psutil.Process(server.process.pid).children() if each.nice() == 19}
+
+
+def gone(pids, patience_s=20.0):
+    end = time.monotonic() + patience_s
+    while any(psutil.pid_exists(pid) for pid in pids):
+        assert time.monotonic() < end, "the process goes on"
+        time.sleep(0.05)
+
+
+def test_answers_about_a_result_are_those_of_the_library(server, job):
+    number, result = job
+    local = Interactive.of_result(result)
+    k = int(result.volume.voxels.count.argmax())
+    voxel = {"ask": "voxel", "volume": "volume", "cell": result.volume.voxels.at[:, k].tolist()}
+    with session(server, f"/v1/jobs/{number}/view/session") as socket:
+        for n, question in enumerate((voxel, AT, VOLUME)):
+            header, blobs = asked(socket, n, question)
+            expected, expected_blobs = local.answer(question)
+            for answer in (header["answer"], expected):
+                answer.pop("elapsed_s", None)
+            assert header["answer"] == expected
+            assert blobs == expected_blobs
+        q = asked(socket, 9, voxel)[0]["answer"]["q"]
+    corner = (result.volume.voxels.at[:, k] + result.volume.first_voxel) * 0.1
+    tip = ws.load_robot("ur5e").forward_kinematics(q)[0, :3, 3]
+    assert (tip > corner - 1e-6).all()
+    assert (tip < corner + 0.1 + 1e-6).all()
+
+
+def test_a_later_question_of_its_kind_replaces_one_that_is_computed(server):
+    with session(server) as socket:
+        asked(socket, 0, VOLUME)  # kernels are there
+        socket.send(json.dumps({"id": 1, **LONG}))
+        time.sleep(0.3)
+        for number in (2, 3):
+            socket.send(json.dumps({"id": number, **LONG}))
+        socket.send(json.dumps({"id": "last", **VOLUME}))
+        started, told = time.monotonic(), {}
+        while "last" not in told:
+            header, _ = parts_of(socket.recv(60))
+            told[header["id"]] = header.get("refused", {}).get("code", "answered")
+        assert told == {1: "replaced", 2: "replaced", 3: "replaced", "last": "answered"}
+        assert time.monotonic() - started < 10  # the long one takes much longer
+        socket.send(json.dumps({"id": 5, **LONG}))
+        assert asked_beside(socket) == {6: "answered", 5: "answered"}  # of another kind: both are answered
+
+
+def asked_beside(socket):
+    socket.send(json.dumps({"id": 6, **AT}))
+    told = {}
+    while len(told) < 2:
+        header, _ = parts_of(socket.recv(120))
+        told[header["id"]] = header.get("refused", {}).get("code", "answered")
+    return told
+
+
+WRONG = [
+    ("no JSON", None, "document"),
+    ("[]", None, "request"),
+    ('{"ask": "voxel"}', None, "id"),
+    ('{"id": 1, "ask": "dance"}', 1, "ask"),
+    ('{"id": 2, "ask": ["voxel"]}', 2, "ask"),
+    ('{"id": 3, "ask": "indices_at", "q": [0]}', 3, "q"),
+    ('{"id": 4, "ask": "indices_at", "q": [1e999]}', 4, "q.0"),
+    ('{"id": 5, "ask": "voxel", "volume": "volume", "cell": [0, 0, -1]}', 5, "cell"),
+    (json.dumps({"id": 6, **VOLUME, "limits": {"joint1": [1, 0]}}), 6, "limits.joint1"),
+    (json.dumps({"id": 7, **VOLUME, "index": "<b>"}), 7, "index"),
+    (json.dumps({"id": 8, **VOLUME, "voxel_size_m": 1e-5}), 8, "voxel_size_m"),
+]
+
+
+def test_a_wrong_question_is_refused_and_the_session_goes_on(server):
+    with session(server) as socket:
+        for text, number, field in WRONG:
+            socket.send(text)
+            header, _ = parts_of(socket.recv(60))
+            assert (header["id"], header["refused"]["field"]) == (number, field), text
+            assert header["refused"]["message"] and header["refused"]["code"]
+        assert asked(socket, 99, AT)[0]["answer"]["position_m"]
+
+
+def test_a_flood_ends_the_session_and_frees_its_process(server):
+    before = children(server)
+    with session(server) as socket:
+        started = children(server) - before
+        assert started
+        with pytest.raises(ConnectionClosed):
+            for k in range(100_000):
+                socket.send(json.dumps({"id": k, **LONG}))
+        assert ended(socket)[1] == 1008
+        gone(started)
+
+
+def test_as_many_questions_a_second_as_a_fast_screen_has_pictures_are_taken(server):
+    """120 at once are, and again in the next second; of more, some end the session."""
+    with session(server) as socket:
+        for _ in range(2):
+            for k in range(120):
+                socket.send(json.dumps({"id": k, "ask": "dance"}))
+            for k in range(120):
+                assert parts_of(socket.recv(60))[0]["id"] == k
+            time.sleep(1.1)
+        with contextlib.suppress(ConnectionClosed):
+            for k in range(245):  # in two seconds at most
+                socket.send(json.dumps({"id": k, "ask": "dance"}))
+        header, code = ended(socket, 5.0)
+        assert (header["refused"]["code"], code) == ("too_fast", 1008)
+
+
+def test_too_long_a_question_ends_the_session(server):
+    with session(server) as socket:
+        socket.send(" " * ((1 << 16) - 100) + json.dumps({"id": 1, **AT}).ljust(100))
+        assert parts_of(socket.recv(60))[0]["answer"]
+        socket.send(" " * ((1 << 16) + 1))
+        header, code = ended(socket)
+        assert (header["refused"]["code"], code) == ("message_too_large", 1009)
+
+
+def test_a_page_that_is_gone_in_the_middle_frees_its_process(server):
+    before = children(server)
+    with session(server) as socket:
+        started = children(server) - before
+        asked(socket, 0, VOLUME)
+        socket.send(json.dumps({"id": 1, **LONG}))
+        time.sleep(0.2)
+        socket.socket.shutdown(2)  # without a word
+    gone(started, 5.0)
+
+
+def test_a_page_that_takes_nothing_in_frees_its_process(server):
+    before = children(server)
+    with session(server, max_queue=1) as socket:
+        started = children(server) - before
+        fine = VOLUME | {"samples": 1 << 10, "voxel_size_m": 0.012}  # some megabytes each
+        end = time.monotonic() + 60
+        with contextlib.suppress(ConnectionClosed):
+            while any(map(psutil.pid_exists, started)) and time.monotonic() < end:
+                socket.send(json.dumps({"id": 1, **fine}))
+                time.sleep(0.2)
+        gone(started, 1.0)
+
+
+def test_sessions_run_behind_jobs_and_are_few(server):
+    gone(children(server))  # sessions of other tests
+    time.sleep(0.5)
+    before = children(server)
+    with contextlib.ExitStack() as sessions:
+        for _ in range(4):
+            sessions.enter_context(session(server))
+        started = children(server) - before
+        assert len(started) == 4
+        with opened(server) as fifth:
+            header, code = ended(fifth)
+        assert (header["refused"]["code"], code) == ("too_many_sessions", 1008)
+    gone(started)
+
+
+def test_memory_is_limited(tmp_path, monkeypatch):
+    """What a small question takes is allowed; a large one ends the session while it is computed."""
+    monkeypatch.setenv("WSRENDER_MAX_VIEW_SESSION_MEMORY_BYTES", str(420 * 2**20))
+    with LocalServer(tmp_path) as server, session(server) as socket:
+        asked(socket, 0, VOLUME)
+        time.sleep(1.2)  # it is looked at twice
+        assert asked(socket, 1, AT)[0]["answer"]["values"]
+        socket.send(json.dumps({"id": 2, **LONG, "voxel_size_m": 0.0085}))
+        header, code = ended(socket)
+        assert (header["refused"]["code"], code) == ("out_of_memory", 1008)
+
+
+@pytest.mark.parametrize("origin", ["http://evil.example", "http://[abc", "null"])
+def test_pages_of_other_sites_are_refused(server, origin):
+    with opened(server, origin=origin) as socket:
+        header, code = ended(socket)
+    assert (header["refused"]["code"], code) == ("wrong_origin", 1008)
+
+
+def test_pages_of_this_host_may_connect(server):
+    with session(server, origin="http://127.0.0.1:3000"):
+        pass
+
+
+@pytest.mark.parametrize(
+    ("path", "code"),
+    [("/v1/jobs/none/view/session", "not_found"), ("/v1/robots/nobody/view/session", "robot_not_found")],
+)
+def test_of_what_is_not_there_nothing_is_answered(server, path, code):
+    with opened(server, path) as socket:
+        header, closed = ended(socket)
+    assert closed == 1008
+    assert header["refused"]["code"] == code or header["refused"]["code"].endswith(code)
+
+
+def test_keys(tmp_path):
+    keys = tmp_path / "keys"
+    secret = "a/secret=of,ann-12345"
+    keys.write_text(f"{secret} ann read\n")
+    with LocalServer(tmp_path / "data", ["--api-key-file", str(keys)]) as server:
+        as_text = base64.urlsafe_b64encode(secret.encode()).decode().rstrip("=")
+        with session(server, subprotocols=["wsrender.v1", f"wsrender.key64.{as_text}"]) as socket:
+            assert socket.subprotocol == "wsrender.v1"
+        with session(server, additional_headers={"Authorization": f"Bearer {secret}"}):
+            pass
+        for protocols in (["wsrender.v1"], ["wsrender.v1", "wsrender.key.nobody"], ["wsrender.v1", "wsrender.key64.a"]):
+            with opened(server, subprotocols=protocols) as socket:
+                header, code = ended(socket)
+            assert code == 1008
+            assert header["refused"]["code"] == "unauthorized" or "key" in header["refused"]["message"]
+
+
+def test_the_messages_are_described(server):
+    document = httpx2.get(f"{server.url}/v1/view-session/asyncapi.json", timeout=30).json()
+    assert document["channels"]["job"]["address"] == "/v1/jobs/{id}/view/session"
+    assert {"voxel", "indices_at", "inverse", "postures", "placement", "volume", "answer"} <= set(
+        document["components"]["schemas"]
+    )
+    text = json.dumps(document)
+    for name in {part.split('"')[0] for part in text.split("#/components/schemas/")[1:]}:
+        assert name in document["components"]["schemas"]
+    assert np.isin(
+        ["id", "ask", "index", "voxel_size_m"], document["components"]["schemas"]["volume"]["required"]
+    ).all()

@@ -1,0 +1,209 @@
+"""What the dispatcher makes of ends of tasks where the database does not answer at the same moment."""
+
+from types import SimpleNamespace
+
+import pytest
+from wsrender_server.jobs.attempt import Attempt
+from wsrender_server.jobs.dispatcher import Dispatcher
+from wsrender_server.jobs.faults import EngineSlow, StoreUnavailable
+from wsrender_server.jobs.records import JobState
+from wsrender_server.jobs.task import Outcome, Step, Verdict, error
+from wsrender_server.settings import Settings
+
+from tests.server.jobs.documents import canonical
+from tests.server.jobs.test_retention import document_of
+from tests.server.jobs.test_store import running, states
+
+FULL = error("disk_full", "the server's disk is full", retryable=True)
+
+
+class Future:
+    """A task that has ended."""
+
+    def __init__(self, outcome, key=""):
+        self.status, self._outcome, self.key = "finished", outcome, key
+
+    def add_done_callback(self, call):
+        """It has ended already; nobody asks."""
+
+    def result(self, timeout):
+        return self._outcome
+
+
+@pytest.mark.parametrize("answers_after", [0, 1, 3])
+def test_a_job_fails_for_its_own_reason_once_the_database_takes_it(
+    store, document, tmp_path, monkeypatch, answers_after
+):
+    """The disk of partial results is the database's as well; the tasks that were stopped say nothing new."""
+    job, computation = running(store, document)
+    dispatcher = Dispatcher(store, Settings(data_dir=tmp_path / "data"))
+    attempt = Attempt(store.computation(computation), "cpu:x", {"shards": [[0, 1], [1, 1]]}, 0)
+    outcomes = Outcome(Verdict.FAILED, error=FULL), Outcome(Verdict.STOPPED)
+    attempt.futures = {(Step.SHARD, shard): Future(outcome) for shard, outcome in enumerate(outcomes)}
+
+    def stop(tokens, futures):
+        for future in futures:
+            future.status = "cancelled"
+
+    dispatcher.engine = SimpleNamespace(stop=stop)
+    dispatcher._attempts = {computation: attempt}
+    fail, calls = store.fail, iter(range(100))
+
+    def full(*arguments):
+        if next(calls) < answers_after:
+            raise StoreUnavailable("database or disk is full")
+        fail(*arguments)
+
+    monkeypatch.setattr(store, "fail", full)
+    for shard in (0, 1):
+        dispatcher._future_done(attempt, Step.SHARD, shard, attempt.futures[Step.SHARD, shard])
+    for _ in range(answers_after):
+        with pytest.raises(StoreUnavailable):
+            dispatcher._handle_inbox()
+        assert states(store, "ann", job) == [JobState.RUNNING] and computation in dispatcher._attempts
+    dispatcher._handle_inbox()
+    assert states(store, "ann", job) == [JobState.FAILED] and store.get("ann", job).error == FULL
+    assert not dispatcher._attempts and store.retry("ann", job).state == JobState.QUEUED
+
+
+def test_owners_take_turns_at_the_scheduler(store, tmp_path, monkeypatch):
+    """Within a priority of jobs, whose later steps go first; a backlog of one is no reason for another to wait."""
+    dispatcher, sent = Dispatcher(store, Settings(data_dir=tmp_path / "data")), []
+
+    def sends(function, tasks, priority, **options):
+        sent.append(priority)
+        return [SimpleNamespace(add_done_callback=lambda call: None)] * len(tasks)
+
+    monkeypatch.setattr(dispatcher.engine, "_connected", lambda: SimpleNamespace(map=sends))
+    dispatcher._targets = {"auto": "cpu:x", "cpu": "cpu:x"}
+    for owner, number, priority in (("ann", 0, 0), ("ann", 1, 0), ("ann", 2, 0), ("bob", 3, 0), ("ann", 4, 1)):
+        store.submit(owner, document_of(number), priority=priority)
+        computation = next(key for key in store.unfinished() if key not in dispatcher._attempts)
+        dispatcher._launch(computation)
+    first, second, third, others, urgent = sent
+    assert urgent > others == first > second > third
+    attempt = next(iter(dispatcher._attempts.values()))
+    attempt.resolved = {"shards": [[0, 1]]}
+    dispatcher._submit(attempt, Step.SHARD)
+    assert urgent > sent[-1] > first
+
+
+@pytest.fixture
+def out(store, tmp_path, monkeypatch):
+    """A dispatcher whose scheduler takes tasks, named in ``out.sent``, or raises ``out.fault``."""
+    dispatcher = Dispatcher(store, Settings(data_dir=tmp_path / "data"))
+    found = SimpleNamespace(dispatcher=dispatcher, fault=None, sent=[], stopped=[])
+
+    def submit(tasks, priority, target, turn):
+        if found.fault is not None:
+            raise found.fault
+        found.sent += tasks
+        return [Future(None, key) for key in tasks]
+
+    dispatcher.engine = SimpleNamespace(submit=submit, stop=lambda tokens, futures: found.stopped.extend(tokens))
+    monkeypatch.setattr(dispatcher, "_future_done", lambda *_: None)
+    return found
+
+
+@pytest.mark.parametrize("fault", [EngineSlow("slow"), OSError("stale file handle")])
+def test_the_end_of_a_task_is_handled_again_where_the_next_could_not_go_out(store, document, out, fault):
+    """Else its attempt would have nothing out, and wait for ever."""
+    _, computation = running(store, document)
+    dispatcher = out.dispatcher
+    attempt = Attempt(store.computation(computation), "cpu", None, 0)
+    dispatcher._attempts = {computation: attempt}
+    plan = Future(Outcome(Verdict.DONE, {"resolved": {"shards": [[0, 1]]}, "target": "cpu:x"}))
+    ends = [((Step.PLAN, 0), plan), ((Step.SHARD, 0), Future(Outcome(Verdict.DONE)))]
+    for (place, future), then in zip(ends, (Step.SHARD, Step.FINISH), strict=True):
+        attempt.futures = {place: future}
+        dispatcher._put(lambda place=place, future=future: dispatcher._ended(attempt, *place, future))
+        out.fault = fault
+        with pytest.raises(type(fault)):
+            dispatcher._handle_inbox()
+        out.fault = None
+        dispatcher._handle_inbox()
+        assert [step for step, _ in attempt.futures] == [then]
+    (store.files.partials(computation)).mkdir()
+    (store.files.partials(computation) / "0.npz").touch()
+    (place, lost), *_ = attempt.futures.items()
+    dispatcher._lost(attempt, *place, None)
+    assert [*attempt.futures] == [place] and attempt.futures[place] is not lost  # the same step, out once more
+
+
+def test_a_failure_outlives_the_loss_of_the_scheduler(store, document, out, monkeypatch):
+    """Its tasks were stopped: going out again by their names, they would only be lost again and again."""
+    job, computation = running(store, document)
+    dispatcher = out.dispatcher
+    attempt = Attempt(store.computation(computation), "cpu:x", {"shards": [[0, 1]]}, 0)
+    future = Future(Outcome(Verdict.FAILED, error=FULL))
+    attempt.futures, dispatcher._attempts = {(Step.SHARD, 0): future}, {computation: attempt}
+    with monkeypatch.context() as patch:
+        patch.setattr(store, "fail", refuse)
+        dispatcher._put(lambda: dispatcher._ended(attempt, Step.SHARD, 0, future))
+        with pytest.raises(StoreUnavailable):
+            dispatcher._handle_inbox()
+    dispatcher._resume()
+    dispatcher._handle_inbox()
+    assert store.get("ann", job).error == FULL and not out.sent and not dispatcher._attempts
+
+
+def refuse(*_):
+    raise StoreUnavailable("database or disk is full")
+
+
+def test_a_backlog_of_another_priority_is_nobody_elses(store, out):
+    """What begins first because it is urgent says nothing of the turns of all that is not."""
+    dispatcher = out.dispatcher
+    dispatcher._targets = {"auto": "cpu:x", "cpu": "cpu:x"}
+
+    def launched(owner, number, priority):
+        store.submit(owner, document_of(number), priority=priority)
+        computation = next(key for key in store.unfinished() if key not in dispatcher._attempts)
+        dispatcher._launch(computation)
+        return dispatcher._attempts[computation]
+
+    backlog = [launched("ann", number, 0) for number in range(3)]
+    urgent = launched("ann", 3, 1)
+    dispatcher._reported({"token": urgent.token, "step": "plan"})
+    assert launched("bob", 4, 0).turn == backlog[0].turn
+
+
+@pytest.mark.parametrize(("device", "left"), [("auto", True), ("cuda", False)])
+def test_a_plan_waits_for_no_gpu_that_has_gone_where_any_hardware_will_do(store, out, device, left):
+    dispatcher = out.dispatcher
+    dispatcher.engine.alive, dispatcher._targets = {"cuda:x"}, {"auto": "cuda:x", "cuda": "cuda:x"}
+    store.submit("ann", canonical(device=device))
+    (computation,) = store.unfinished()
+    dispatcher._launch(computation)
+    attempt = dispatcher._attempts[computation]
+    assert attempt.target == "cuda"
+    dispatcher._leave_lost_targets()
+    dispatcher.engine.alive, dispatcher._targets = {"cpu:x"}, {"auto": "cpu:x", "cpu": "cpu:x"}
+    dispatcher._leave_lost_targets()
+    assert computation in dispatcher._attempts  # it may come back
+    dispatcher._seen["cuda"] -= dispatcher._workers_s + 1
+    dispatcher._leave_lost_targets()
+    assert (computation not in dispatcher._attempts) == left
+    if left:
+        dispatcher._launch(computation)
+        assert dispatcher._attempts[computation].target == "auto" and len(set(out.sent)) == 2
+
+
+def test_a_job_that_is_canceled_while_the_database_is_away_costs_no_connection(store, document, out, monkeypatch):
+    job, computation = running(store, document)
+    dispatcher = out.dispatcher
+    attempt = Attempt(store.computation(computation), "cpu:x", {"shards": [[0, 1]]}, 0)
+    future = Future(None)
+    attempt.futures, dispatcher._attempts = {(Step.SHARD, 0): future}, {computation: attempt}
+    store.cancel("ann", job)
+    with monkeypatch.context() as patch:
+        patch.setattr(store, "stopped", refuse)
+        with pytest.raises(StoreUnavailable):
+            dispatcher._stop([computation])
+    future.status = "cancelled"
+    dispatcher._put(lambda: dispatcher._ended(attempt, Step.SHARD, 0, future))
+    dispatcher._handle_inbox()
+    dispatcher._resume()
+    assert not out.sent and dispatcher._attempts
+    dispatcher._stop([computation])
+    assert states(store, "ann", job) == [JobState.CANCELED] and not dispatcher._attempts

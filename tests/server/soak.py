@@ -1,0 +1,246 @@
+"""A server that is not spared: kill -9 of any of its processes, round after round; and 3,000 small jobs in an hour.
+
+``PARTS`` and ``violations`` make it a long measurement.
+"""
+
+import os
+import random
+import sqlite3
+import tempfile
+import threading
+import time
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from contextlib import ExitStack, closing, contextmanager, suppress
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import psutil
+from wsrender_server.jobs import backups
+from wsrender_server.jobs.retention import Retention
+from wsrender_server.jobs.store import open_store
+from wsrender_server.local_server import LocalServer
+from wsrender_server.settings import Settings
+
+import wsrender as ws
+from tests.golden.files import job_of
+from tests.server.conftest import postgres_server
+from tests.server.jobs.waiting import comparable, wait_until
+
+ANALYSES = ("workspace", "indices_at", "base_placement", "reachability", "postures", "planar_boundary")
+ROUNDS = 50
+PATIENCE_S = 600.0
+GONE_S = 20.0  # within which nothing is left of what was killed
+JOBS, MINUTES, SETTLED = 3000, 60.0, 10.0  # of the hour: jobs, minutes, and those after which all is level
+FOLDERS = ("results", "partials", "scratch")
+
+
+def kills(rounds: int = ROUNDS, postgres: bool = False, seed: int = 0) -> dict[str, Any]:
+    """Figures of rounds in each of which six analyses run while processes are killed."""
+    rng, killed, wrong = random.Random(seed), Counter[str](), []
+    with ExitStack() as stack:
+        folder = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="wsrender-soak-")))
+        url, postmaster = stack.enter_context(postgres_server()) if postgres else (None, None)
+        stack.enter_context(_environment(WSRENDER_RETENTION_INTERVAL_S="1", WSRENDER_SHARD_SAMPLES="65536"))
+        expected = {name: _local(job_of(name), folder / name) for name in ANALYSES}
+        options = () if url is None else ("--database", url)
+        if url is not None:
+            _upgrade(url)
+        server = stack.enter_context(LocalServer(folder / "data", options))
+        client = stack.enter_context(ws.Client(server.url))
+        seen: set[psutil.Process] = set()
+        for number in range(rounds):
+            jobs = {name: client.submit(job_of(name)) for name in rng.sample(ANALYSES, len(ANALYSES))}
+            for _ in range(rng.randint(1, 3)):
+                time.sleep(rng.uniform(0.1, 4.0))
+                seen |= _kill_one(server, postmaster, rng, killed)
+            for name, job in jobs.items():
+                job.wait(timeout=PATIENCE_S)
+                if job.state != "succeeded" or comparable(job.result().document) != expected[name]:
+                    wrong.append(f"round {number}, {name}: {job.state} {job.error or 'with other bits'}")
+                job.delete()
+        seen |= set(_tree(server))
+        left = _files_left(server.data_dir)
+        server.stop()
+        orphans = _alive_after(seen, GONE_S)
+        server.start()
+        server.stop()  # which empties what is written to at the start
+        settings = Settings(data_dir=server.data_dir, database=url)
+        with closing(open_store(settings)) as store:
+            checked = backups.check(store, Retention(store, settings))
+        return {
+            "rounds": rounds,
+            "killed": dict(killed),
+            "wrong": wrong,
+            "orphans": orphans,
+            "files left": left + _files_left(server.data_dir, 0.0),
+            "findings": [finding.text for finding in checked.findings],
+        }
+
+
+def small_jobs(jobs: int = JOBS, minutes: float = MINUTES, settled: float = SETTLED) -> dict[str, Any]:
+    """Figures of a server that gets small jobs at an even pace, with retention: what it takes, minute by minute."""
+    limits = {"KEEP_RESULTS_BYTES": 4_000_000, "KEEP_JOBS_PER_OWNER": 100, "RETENTION_INTERVAL_S": 5}
+    with ExitStack() as stack:
+        folder = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="wsrender-soak-")))
+        stack.enter_context(_environment(**{f"WSRENDER_{name}": str(value) for name, value in limits.items()}))
+        server = stack.enter_context(LocalServer(folder / "data"))
+        client = stack.enter_context(ws.Client(server.url))
+        ended, taken = [], []
+        began = time.monotonic()
+        sampled = threading.Event()
+
+        def sample() -> None:
+            while not sampled.wait(max(minutes, 1.0)):  # sixty times in all
+                taken.append({"minute": (time.monotonic() - began) / 60} | _taken(server))
+
+        sampler = threading.Thread(target=sample)
+        sampler.start()
+        try:
+            for number in range(jobs):
+                time.sleep(max(0.0, began + number * minutes * 60 / jobs - time.monotonic()))
+                ended.append(client.submit(_small(number)).wait(timeout=PATIENCE_S).state)
+        finally:
+            sampled.set()
+            sampler.join()
+        minutes_taken = (time.monotonic() - began) / 60
+    level = [each for each in taken if each["minute"] >= settled]
+    third = max(1, len(level) // 3)
+    return {
+        "jobs": dict(Counter(ended)),
+        "minutes": round(minutes_taken, 1),
+        "taken": {
+            name: [round(sum(each[name] for each in part) / len(part), 1) for part in (level[:third], level[-third:])]
+            for name in (taken[0] if level else {})
+            if name != "minute"
+        },
+        "all": taken,
+    }
+
+
+def violations(figures: Mapping[str, Mapping[str, Any]]) -> list[str]:
+    """What must not be: a lost or wrong job, an orphan, a file left; or that anything grows after it has settled."""
+    found = []
+    for part, of_part in figures.items():
+        for kind in ("wrong", "orphans", "files left", "findings"):
+            found += [f"{part}, {kind}: {each}" for each in of_part.get(kind, [])]
+        if set(of_part.get("jobs", {"succeeded": 0})) != {"succeeded"}:
+            found.append(f"{part}: not all jobs have succeeded: {of_part['jobs']}")
+        for name, (first, last) in of_part.get("taken", {}).items():
+            if last > first * ALLOWED[name][0] + ALLOWED[name][1]:
+                found.append(f"{part}: {name} grows from {first} to {last}")
+    return found
+
+
+# By figure: factor and offset of what the last third of the time may take more than the first.
+ALLOWED = {
+    "resident MiB": (1.05, 20.0),
+    "descriptors": (1.0, 10.0),
+    "threads": (1.0, 5.0),
+    "disk MiB": (1.1, 2.0),
+    "rows": (1.1, 50.0),
+}
+PARTS = {
+    "soak_sqlite": kills,
+    "soak_postgresql": partial(kills, postgres=True),
+    "soak_hour": small_jobs,
+}
+TOO_LONG = frozenset(PARTS)  # to be among those that are chosen at random
+
+
+def _small(number: int) -> dict[str, Any]:
+    """A job that no other one is equal to."""
+    angles = [[0.1 + 1e-6 * number, 0.2, 0.05, 0.3]]
+    return {"analysis": "indices_at", "robot": {"library": "scara"}, "configurations": angles}
+
+
+def _local(job: dict[str, Any], folder: Path) -> dict[str, Any]:
+    result = ws.execute(job)
+    result.save(folder)
+    return comparable(result.document)
+
+
+def _tree(server: LocalServer) -> list[psutil.Process]:
+    with suppress(psutil.NoSuchProcess):
+        process = psutil.Process(server.process.pid)
+        return [process, *process.children(recursive=True)]
+    return []
+
+
+def _kill_one(
+    server: LocalServer, postmaster: int | None, rng: random.Random, killed: "Counter[str]"
+) -> set[psutil.Process]:
+    """Kill a process, of the server's or of the database's; the server is started again. Those that there were."""
+    tree = _tree(server)
+    choice = {"server": [tree[0]], "worker": tree[1:]}
+    if postmaster is not None:
+        choice["database"] = psutil.Process(postmaster).children()
+    kind = rng.choice([kind for kind, processes in choice.items() if processes])
+    with suppress(psutil.NoSuchProcess):
+        rng.choice(choice[kind]).kill()
+        killed[kind] += 1
+    if kind == "server":
+        server.process.wait()
+        server.start()
+    return set(tree)
+
+
+def _alive_after(processes: set[psutil.Process], seconds: float) -> list[str]:
+    """Commands of those that live on."""
+    _, alive = psutil.wait_procs(processes, timeout=seconds)
+    return [" ".join(process.cmdline()) for process in alive]
+
+
+def _files_left(data_dir: Path, patience_s: float = GONE_S) -> list[str]:
+    """Files of results, partial results and scratch, those of a running server after a while."""
+
+    def left() -> list[str]:
+        return [str(path) for name in FOLDERS for path in (data_dir / name).rglob("*") if path.is_file()]
+
+    with suppress(AssertionError):
+        wait_until(lambda: not left(), patience_s, "the end of files")
+    return left()
+
+
+def _taken(server: LocalServer) -> dict[str, float]:
+    memory = descriptors = threads = 0
+    for process in _tree(server):
+        with suppress(psutil.NoSuchProcess):
+            memory += process.memory_info().rss
+            descriptors += process.num_fds()
+            threads += process.num_threads()
+    sizes = []
+    for path in server.data_dir.rglob("*"):
+        with suppress(FileNotFoundError):
+            sizes.append(path.stat().st_size if path.is_file() and path.suffix != ".log" else 0)
+    with closing(sqlite3.connect(server.data_dir / "wsrender.db")) as connection:
+        tables = ("jobs", "computations", "events", "labels", "artifacts")
+        rows = sum(connection.execute(f"SELECT count(*) FROM {table}").fetchone()[0] for table in tables)
+    return {
+        "resident MiB": memory / 2**20,
+        "descriptors": descriptors,
+        "threads": threads,
+        "disk MiB": sum(sizes) / 2**20,
+        "rows": rows,
+    }
+
+
+def _upgrade(url: str) -> None:
+    from wsrender_server.jobs.database import open_database
+    from wsrender_server.migrations import upgrade
+
+    engine = open_database(url)
+    upgrade(engine)
+    engine.dispose()
+
+
+@contextmanager
+def _environment(**variables: str) -> Iterator[None]:
+    before = {name: os.environ.get(name) for name in variables}
+    os.environ.update(variables)
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            os.environ.pop(name) if value is None else os.environ.update({name: value})

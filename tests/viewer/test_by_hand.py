@@ -1,0 +1,125 @@
+"""What is measured, chosen in plots and dropped into the served page, by the mouse."""
+
+import hashlib
+
+import httpx2
+import numpy as np
+import pytest
+
+import wsrender as ws
+from tests.viewer.watched import JOB, Watched, clicked, differing, opened, pixels, settle
+from tests.viewer.written import decoded, looking
+
+ARM = """<mujoco model="pair"><worldbody><body name="upper"><joint name="shoulder" axis="0 0 1" range="-90 90"/>
+<geom type="capsule" size=".03" fromto="0 0 0 .4 0 0"/><body name="lower" pos=".4 0 0">
+<joint name="elbow" axis="0 1 0" range="-90 90"/><geom type="capsule" size=".03" fromto="0 0 0 .3 0 0"/>
+<site name="tool" pos=".3 0 0"/></body></body></worldbody></mujoco>"""
+
+
+@pytest.fixture(scope="module")
+def finished(client) -> str:
+    """The id of a job that has a result."""
+    return client.submit(JOB).wait().id
+
+
+def test_the_distance_of_two_places(watched: Watched, client: ws.Client, finished: str) -> None:
+    """On the plane y = 0, through which the volume is cut: known from where the mouse is, and drawn."""
+    half, target, size = 1.2, np.zeros(3), JOB["voxel_size_m"]
+    volume = client.job(finished).result().volume
+    assert volume is not None
+    layer = volume.occupied[:, -volume.first_voxel[1]]
+    cut = {"style": "cells", "cut": [{"axis": "y", "from_m": 0.0, "to_m": None}]}
+    opened(watched, f"/job/{finished}", camera=looking(target, half), volumes={"volume": cut},
+           layers={"robot:0": {"visible": False, "opacity": 1}})  # fmt: skip
+    page, box = watched.page, watched.page.locator(".stage-host").bounding_box()
+    metre = box["height"] / 2 / half
+    middle = np.array([box["x"] + box["width"] / 2, box["y"] + box["height"] / 2])
+    cells = np.argwhere(layer)
+    at = (cells[[0, -1]] + np.array(volume.first_voxel)[[0, 2]] + 0.5) * size  # x and z
+    places = np.round(middle + at * [metre, -metre])  # whole pixels
+    assert (np.abs(at) < half).all()
+    before = pixels(watched)
+    page.get_by_role("button", name="Measure").click()
+    for place in places:
+        page.mouse.click(*place)
+    shown = page.locator("[data-distance]")
+    shown.wait_for()
+    distance = float(shown.get_attribute("data-distance"))
+    expected = np.linalg.norm(places[1] - places[0]) / metre
+    assert distance == pytest.approx(expected, rel=1e-4)
+    assert shown.inner_text() == f"{expected:.4g} m"
+    assert differing(before, pixels(watched)) > 100  # the line
+    assert page.locator("[data-voxel]").count() == 0  # no voxel was chosen meanwhile
+    page.get_by_role("button", name="Clear").click()
+    assert differing(before, pixels(watched)) < 20
+    page.mouse.click(*places[0])
+    assert shown.count() == 0 and "second point" in page.get_by_role("region", name="Selected").inner_text()
+
+
+def test_a_range_is_dragged_in_a_histogram_and_a_voxel_is_marked_there(watched: Watched, finished: str) -> None:
+    manifest = httpx2.get(f"{watched.url}/v1/jobs/{finished}/view", timeout=60).json()
+    (plot,) = (each for each in manifest["plots"] if each["kind"] == "histogram")
+    first, last = plot["x"]["values"][0], plot["x"]["values"][-1]
+    opened(watched, f"/job/{finished}")
+    page, before = watched.page, pixels(watched)
+    over = page.locator(".plot .u-over")
+    over.scroll_into_view_if_needed()
+    box = over.bounding_box()
+    chosen = [first + share * (last - first) for share in (0.2, 0.6)]
+    y = box["y"] + box["height"] / 2
+    page.mouse.move(box["x"] + 0.2 * box["width"], y)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 0.4 * box["width"], y)
+    page.mouse.move(box["x"] + 0.6 * box["width"], y)
+    page.mouse.up()
+    settle(watched)
+    pixel = (last - first) / box["width"]
+    for end, value in zip(("Lower", "Upper"), chosen, strict=True):
+        assert float(page.get_by_label(f"{end} end of the range").input_value()) == pytest.approx(value, abs=2 * pixel)
+    assert differing(before, pixels(watched)) > 1000
+    _, values = clicked(watched)
+    over.scroll_into_view_if_needed()
+    page.wait_for_timeout(200)
+    box = over.bounding_box()
+    seen = decoded(over.screenshot())
+    red, green, blue = seen[:8].mean(axis=0).T  # above most bars
+    marked = np.flatnonzero((red > 150) & (green < 140) & (blue < 90))
+    at = (values["maximum:manipulability"] - first) / (last - first) * box["width"]
+    assert len(marked) and np.abs(marked - at).max() <= 4
+
+
+def test_a_model_is_dropped_into_the_form(watched: Watched, client: ws.Client) -> None:
+    """It is uploaded, named by its SHA-256, shown, and computed; what is no model is refused where it was dropped."""
+    page = watched.page
+
+    def drop(text: str, name: str) -> None:
+        transfer = page.evaluate_handle(
+            """([text, name]) => {
+              const transfer = new DataTransfer();
+              transfer.items.add(new File([text], name));
+              return transfer;
+            }""",
+            [text, name],
+        )
+        field.dispatch_event("dragover", {"dataTransfer": transfer})
+        field.dispatch_event("drop", {"dataTransfer": transfer})
+
+    page.goto(watched.url + "/#/new")
+    page.locator('[data-pointer="#/robot"]').first.select_option(label="Robot …")
+    page.locator('[data-pointer="#/robot#source"]').select_option(label="Model")
+    field = page.locator('[data-pointer="#/robot/model"]')
+    drop("no model", "notes.xml")
+    page.locator('.field:has([data-pointer="#/robot/model"]) .problem', has_text="notes.xml").wait_for()
+    assert field.input_value() == ""
+    drop(ARM, "pair.xml")
+    page.get_by_text("pair.xml is uploaded").wait_for()
+    assert field.input_value() == hashlib.sha256(ARM.encode()).hexdigest()
+    page.locator(".preview-host canvas").first.wait_for()
+    page.locator('[data-pointer="#/sampling"]').select_option(label="Sobol …")
+    page.locator('[data-pointer="#/sampling/count"]').fill("1000")
+    page.locator('[data-pointer="#/voxel_size_m"]').fill("0.1")
+    page.get_by_text("Samples", exact=True).wait_for()
+    with page.expect_response(lambda answer: answer.url.endswith("/v1/jobs") and answer.status == 202) as answer:
+        page.get_by_role("button", name="Submit", exact=True).click()
+    document = client.job(answer.value.json()["id"]).result().document
+    assert document["robot"]["name"] == "pair"

@@ -1,0 +1,327 @@
+"""The served page as a person uses it."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import wsrender as ws
+from tests.viewer.watched import JOB, Watched, clicked, differing, opened, pixels, settle
+from tests.viewer.written import decoded
+
+AXE = Path(__file__).parents[2] / "server/web/node_modules/axe-core/axe.min.js"
+
+
+@pytest.fixture(scope="module")
+def finished(client) -> str:
+    """The id of a job that has a result."""
+    return client.submit(JOB).wait().id
+
+
+NARROW = {
+    **JOB,
+    "robot": {"library": "ur5e", "limits": {"joint2": [-1.5, 0.0]}},
+    "sampling": {"method": "sobol", "count": 1 << 20},  # as many as follow a slider
+}
+
+
+@pytest.fixture(scope="module")
+def narrower(client) -> str:
+    """The same with a joint's limits drawn together."""
+    return client.submit(NARROW).wait().id
+
+
+def test_a_job_is_submitted_through_the_form_and_watched(watched: Watched) -> None:
+    page = watched.page
+    page.goto(watched.url + "/")
+    page.get_by_role("button", name="New job").click()
+    page.locator('[data-pointer="#/robot"]').first.select_option(label="ur5e")
+    page.locator('[data-pointer="#/sampling"]').select_option(label="Sobol …")
+    page.locator('[data-pointer="#/sampling/count"]').fill("0")
+    problem = page.locator('.field:has([data-pointer="#/sampling/count"]) .problem')
+    problem.wait_for()
+    assert "at least 1" in problem.inner_text()
+    page.locator('[data-pointer="#/sampling/count"]').fill("5e4")
+    page.locator('[data-pointer="#/voxel_size_m"]').fill("0.1")
+    page.get_by_text("Samples", exact=True).wait_for()
+    assert page.locator(".facts dd").first.inner_text() == "50,000"
+    page.get_by_role("button", name="Submit").click()
+    row = page.locator("tbody tr[data-job]").first
+    row.wait_for()
+    page.locator("tr[data-state=succeeded]").first.wait_for()
+    row.get_by_role("button", name="View").click()
+    page.get_by_role("button", name="Show all").wait_for()
+    assert watched.refusals <= 4
+
+
+def test_whole_numbers_keep_their_digits(watched: Watched, client: ws.Client) -> None:
+    """Beyond 2^53 they are no numbers of JavaScript's: in the editor, in the form, and in a job that was dragged."""
+    page, seeds = watched.page, [2**53 + 1, 2**63 - 1]
+
+    def editor() -> Any:
+        page.get_by_role("button", name="Edit as JSON").click()
+        return page.get_by_label("Job document")
+
+    def submitted() -> tuple[ws.client.Job, ws.Result]:
+        page.get_by_text("Samples", exact=True).wait_for()
+        with page.expect_response(lambda answer: answer.url.endswith("/v1/jobs") and answer.status == 202) as answer:
+            page.get_by_role("button", name="Submit", exact=True).click()
+        job = client.job(answer.value.json()["id"])
+        return job, job.result()
+
+    page.goto(watched.url + "/#/new")
+    document = JOB | {"voxel_size_m": 0.2, "sampling": {"method": "sobol", "count": 1 << 10, "seed": seeds[0]}}
+    editor().fill(json.dumps(document))
+    page.get_by_role("button", name="Edit as JSON").click()
+    seed = page.locator('[data-pointer="#/sampling/seed"]')
+    assert seed.input_value() == str(seeds[0])
+    job, result = submitted()
+    assert result.document["job"]["sampling"]["seed"] == seeds[0]
+    opened(watched, f"/job/{job.id}", limits=[{"joint2": [-1.5, 0.0]}])
+    page.get_by_role("button", name="Submit as a job").click()
+    seed.wait_for()
+    assert seed.input_value() == str(seeds[0])
+    seed.fill(str(seeds[1]))
+    assert page.locator('.field:has([data-pointer="#/sampling/seed"]) .problem').count() == 0
+    assert json.loads(editor().input_value())["sampling"]["seed"] == seeds[1]
+    _, result = submitted()
+    assert result.document["job"]["sampling"]["seed"] == seeds[1]
+
+
+def test_slices_threshold_and_range_change_the_picture(watched: Watched, finished: str) -> None:
+    opened(watched, f"/job/{finished}")
+    page, first = watched.page, pixels(watched)
+    page.get_by_label("Style").select_option("isosurface")
+    threshold = page.get_by_label("Threshold [m³], as a number")
+    few = pixels(watched)
+    threshold.fill(str(float(threshold.input_value()) * 1.5))
+    threshold.press("Enter")
+    fewer = pixels(watched)
+    assert differing(first, few) > 500
+    assert differing(few, fewer) > 500
+    page.get_by_label("Style").select_option("surface")
+    again = pixels(watched)
+    assert differing(first, again) < 50
+    page.get_by_label("Upper end of the range").fill("0.05")
+    assert differing(again, pixels(watched)) > 1000
+    page.get_by_role("button", name="Slices").click()
+    page.get_by_role("button", name="Add a slice").click()
+    page.get_by_label("Show Volume").uncheck()
+    sliced = pixels(watched)
+    place = page.get_by_label("Slice 1, place [m], as a number")
+    place.fill("0.3")
+    place.press("Enter")
+    assert differing(sliced, pixels(watched)) > 200
+
+
+def test_values_of_a_clicked_voxel_are_the_files(watched: Watched, client: ws.Client, finished: str) -> None:
+    opened(watched, f"/job/{finished}")
+    cell, values = clicked(watched)
+    volume = client.job(finished).result().volume
+    assert volume is not None
+    number = int(np.ravel_multi_index(cell, volume.shape))
+    at = int(np.searchsorted(volume.voxels.cells, number))
+    assert volume.voxels.cells[at] == number
+    assert values["maximum:manipulability"] == volume.voxels.statistics["maximum"]["manipulability"][at]
+
+
+def test_the_volume_that_follows_a_limit_is_a_jobs(
+    watched: Watched, client: ws.Client, finished: str, narrower: str
+) -> None:
+    opened(watched, f"/job/{finished}")
+    page = watched.page
+    page.get_by_text("Change limits").click()
+    for label, value in (("Upper", 0.0), ("Lower", np.rad2deg(-1.5))):
+        field = page.get_by_label(f"{label} limit of joint2 [°], as a number")
+        field.fill(repr(float(value)))
+        field.press("Enter")
+    volume = client.job(narrower).result().volume
+    assert volume is not None
+    expected = len(volume.voxels.cells) * float(volume.voxel_size_m) ** 3
+    page.locator(f"[data-live=done][data-volume='{expected!r}']").wait_for()
+    page.get_by_role("button", name="Submit as a job").click()
+    page.get_by_label("Analysis").wait_for()
+    page.get_by_role("button", name="Edit as JSON").click()
+    written = json.loads(page.get_by_label("Job document").input_value())
+    assert written["robot"]["limits"] == {"joint2": pytest.approx([-1.5, 0.0], abs=1e-12)}
+    assert written["refined_volume"] is None
+
+
+def test_a_link_restores_the_view(watched: Watched, finished: str) -> None:
+    opened(watched, f"/job/{finished}")
+    page = watched.page
+    page.get_by_label("Colour map").select_option("magma")
+    page.get_by_label("Style").select_option("cells")
+    page.get_by_label("Joint joint2 [°], as a number").fill("-60")
+    page.get_by_label("Joint joint2 [°], as a number").press("Enter")
+    box = page.locator(".stage-host").bounding_box()
+    page.mouse.move(box["x"] + 300, box["y"] + 300)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 380, box["y"] + 330, steps=4)
+    page.mouse.up()
+    seen = pixels(watched)
+    page.wait_for_timeout(800)
+    link = page.url
+    assert "view=" in link
+    page.goto("about:blank")
+    page.goto(link)
+    page.get_by_role("button", name="Show all").wait_for()
+    settle(watched)
+    assert page.get_by_label("Colour map").input_value() == "magma"
+    assert page.get_by_label("Joint joint2 [°], as a number").input_value() == "-60"
+    assert differing(seen, pixels(watched)) < 100
+
+
+def relink(watched: Watched) -> None:
+    """Leave the page, and follow its own address, once that holds the view."""
+    watched.page.wait_for_timeout(800)
+    link = watched.page.url
+    assert "view=" in link
+    watched.page.goto("about:blank")
+    watched.page.goto(link)
+    watched.page.get_by_role("button", name="Show all").first.wait_for()
+    settle(watched)
+
+
+def test_a_link_of_an_older_page_begins_with_todays_settings_where_it_says_nothing(
+    watched: Watched, finished: str
+) -> None:
+    range_ = {"low": None, "high": 0.05}
+    opened(watched, f"/job/{finished}", volumes={"volume": {"style": "cells"}}, range=range_, configurations=[[1.0]])
+    page = watched.page
+    assert page.get_by_label("Style").input_value() == "cells"
+    assert page.get_by_label("Upper end of the range").input_value() == "0.05"
+    assert page.get_by_label("Leave out outliers").is_checked()
+    assert page.get_by_label("Show Volume", exact=True).is_checked()
+    assert page.get_by_label("Joint joint6 [°], as a number").input_value() == "0"
+
+
+def test_a_link_restores_the_look_of_a_volume_that_follows_limits(watched: Watched, finished: str) -> None:
+    opened(watched, f"/job/{finished}", limits=[{"joint2": [-1.5, 0.0]}])
+    page, done = watched.page, watched.page.locator("[data-live=done][data-volume]")
+    done.wait_for()
+    page.get_by_label("Style").select_option("cells")
+    page.get_by_label("Show Volume", exact=True).check()
+    relink(watched)
+    done.wait_for()
+    assert page.get_by_label("Style").input_value() == "cells"
+    assert page.get_by_label("Show Volume", exact=True).is_checked()
+
+
+def test_a_link_to_two_results_restores_both_and_their_difference(
+    watched: Watched, finished: str, narrower: str
+) -> None:
+    opened(watched, f"/compare/{finished}/{narrower}")
+    page, subtracted = watched.page, watched.page.get_by_text("the first minus the second")
+    second = page.locator(".viewer").nth(1)
+    page.get_by_role("button", name="Difference, on the left").click()
+    subtracted.wait_for()
+    second.get_by_role("button", name="Look").click()
+    second.get_by_label("Style").select_option("cells")
+    second.get_by_role("button", name="Look").click()
+    seen = pixels(watched)
+    second.get_by_role("button", name="Link").click()
+    page.get_by_text("The link is", exact=False).first.wait_for()
+    relink(watched)
+    subtracted.wait_for()
+    assert differing(seen, pixels(watched)) < 100
+    second.get_by_role("button", name="Look").click()
+    assert second.get_by_label("Style").input_value() == "cells"
+
+
+def test_two_results_turn_together(watched: Watched, finished: str, narrower: str) -> None:
+    opened(watched, f"/compare/{finished}/{narrower}")
+    page, views = watched.page, watched.page.locator(".stage-host")
+    bars = [decoded(views.nth(k).screenshot())[-30:, :200].max(axis=2) < 120 for k in range(2)]
+    left, right = (int(bar.sum(axis=1).max()) for bar in bars)
+    assert left > 50 and abs(left - right) <= 2  # the scale bars: one camera from the first
+    before = views.nth(1).screenshot()
+    box = views.nth(0).bounding_box()
+    page.mouse.move(box["x"] + 200, box["y"] + 200)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 290, box["y"] + 200, steps=4)
+    page.mouse.up()
+    settle(watched)
+    assert views.nth(1).screenshot() != before
+    page.get_by_role("button", name="Difference, on the left").click()
+    page.get_by_text("the first minus the second").wait_for()
+
+
+def test_a_picture_has_the_size_that_is_asked_for(watched: Watched, finished: str, tmp_path: Path) -> None:
+    opened(watched, f"/job/{finished}")
+    page = watched.page
+    page.get_by_role("button", name="Picture").click()
+    page.get_by_label("Width").fill("1600")
+    page.get_by_label("Height").fill("900")
+    with page.expect_download() as download:
+        page.get_by_role("button", name="Save").click()
+    download.value.save_as(tmp_path / "view.png")
+    picture = decoded((tmp_path / "view.png").read_bytes())
+    assert picture.shape == (900, 1600, 3)
+    assert len(np.unique(picture[::9, ::9].reshape(-1, 3), axis=0)) > 50
+
+
+def test_the_page_is_used_by_keyboard_alone(watched: Watched, finished: str) -> None:
+    page = watched.page
+    page.goto(watched.url + "/")
+    page.locator(f"tr[data-job='{finished}']").wait_for()
+    focused = "document.querySelector('#wsrender').shadowRoot.activeElement?.getAttribute('aria-label')"
+    for _ in range(80):
+        page.keyboard.press("Tab")
+        if page.evaluate(focused) == f"View job {finished[:8]}":
+            break
+    else:
+        raise AssertionError("the button that shows the result is not reached")
+    page.keyboard.press("Enter")
+    page.get_by_role("button", name="Show all").wait_for()
+    settle(watched)
+    before = pixels(watched)
+    page.get_by_label("Joint joint1 [°]", exact=True).focus()
+    value = page.get_by_label("Joint joint1 [°]", exact=True).input_value()
+    for _ in range(20):
+        page.keyboard.press("ArrowRight")
+    assert page.get_by_label("Joint joint1 [°]", exact=True).input_value() != value
+    page.locator("canvas[tabindex]").focus()
+    for _ in range(4):
+        page.keyboard.press("ArrowLeft")
+    assert differing(before, pixels(watched)) > 500
+
+
+TABLET = {"color_scheme": "dark", "reduced_motion": "reduce", "viewport": {"width": 1024, "height": 768}}
+
+
+@pytest.mark.parametrize("place", ["/jobs", "/new", "job"])
+@pytest.mark.parametrize("watched", [{"color_scheme": "light"}, TABLET], indirect=True)
+def test_axe_finds_no_serious_fault(watched: Watched, finished: str, place: str) -> None:
+    if not AXE.exists():
+        pytest.skip("needs axe-core: npm ci in server/web")
+    page = watched.page
+    if place == "job":
+        opened(watched, f"/job/{finished}")
+        if page.viewport_size["width"] < 1100:
+            page.get_by_role("button", name="Explore").click()
+    else:
+        page.goto(f"{watched.url}/#{place}")
+        page.locator("table, form.submit").first.wait_for()
+    page.evaluate(AXE.read_text() + ";0")
+    found = page.evaluate("axe.run(document, {resultTypes: ['violations']})")
+    serious = [each for each in found["violations"] if each["impact"] in ("serious", "critical")]
+    assert [(each["id"], [node["html"][:160] for node in each["nodes"][:4]]) for each in serious] == []
+
+
+def test_names_are_text(watched: Watched, client: ws.Client) -> None:
+    name = "<img src=x onerror=alert(1)>"
+    rows = [{"a": 0.4, "limits": [-2, 2], "name": f"{name}{k}"} for k in range(3)]
+    robot = {"dh": {"convention": "standard", "rows": rows, "name": name}}
+    job = client.submit({**JOB, "robot": robot, "voxel_size_m": 0.2}, labels={"study": name})
+    page = watched.page
+    page.goto(watched.url + "/")
+    page.locator(f"tr[data-job='{job.id}']").get_by_text(f"study={name}").wait_for()
+    job.wait()
+    opened(watched, f"/job/{job.id}")
+    assert name in page.get_by_role("heading", level=1).inner_text()
+    page.get_by_label(f"Show {name}", exact=True).wait_for()
+    page.get_by_label(f"Joint {name}0 [°]", exact=True).wait_for()
+    assert page.locator("img").count() == 0

@@ -1,0 +1,118 @@
+"""What the served page does where something is wrong: no graphics, keys, a server that goes, hostile names."""
+
+from base64 import urlsafe_b64encode
+from pathlib import Path
+from urllib.parse import quote
+
+import numpy as np
+from wsrender_server.local_server import LocalServer
+
+import wsrender as ws
+from tests.viewer.watched import JOB, PATIENCE_MS, Watched, clicked, opened, settle, until
+from tests.viewer.written import launch
+
+SMALL = JOB | {"sampling": {"method": "sobol", "count": 1 << 14}}
+
+
+def test_without_graphics_the_pictures_of_the_result_are_shown(playwright, server, client, tmp_path: Path) -> None:
+    job = client.submit(SMALL).wait()
+    browser = launch(playwright, "--disable-3d-apis")
+    page = browser.new_page()
+    page.set_default_timeout(PATIENCE_MS)
+    watched = Watched(page, server.url)
+    page.goto(f"{server.url}/#/job/{job.id}")
+    shown = page.get_by_role("region", name="Pictures of the result")
+    until(lambda: shown.locator("img").count() >= 3)
+    for image in shown.locator("img").all():
+        until(lambda image=image: image.evaluate("each => each.complete && each.naturalWidth") > 100)
+    assert "These are pictures of the result instead." in shown.inner_text()
+    job.result().report(tmp_path / "report.html")
+    page.goto((tmp_path / "report.html").as_uri())
+    page.get_by_text("Pictures of the result, where it has any, are further down.").wait_for()
+    assert page.locator("figure img").count() >= 3
+    browser.close()
+    assert watched.errors == []
+
+
+def test_a_key_is_entered_once_and_kept_by_the_tab(chromium, tmp_path: Path) -> None:
+    secret = "a/secret=of,ann-12345"
+    (tmp_path / "keys").write_text(f"{secret} ann read,submit\n")
+    context = chromium.new_context(viewport={"width": 1280, "height": 720})
+    context.set_default_timeout(PATIENCE_MS)
+    with LocalServer(tmp_path / "data", ["--api-key-file", str(tmp_path / "keys")]) as server:
+        with ws.Client(server.url, token=secret) as client:
+            job = client.submit(SMALL | {"best_sample": "manipulability"}).wait()
+        page = context.new_page()
+        watched, asked = Watched(page, server.url), []
+        page.on("request", lambda request: asked.append(request.url))
+        page.on("websocket", lambda socket: asked.append(socket.url))
+        page.goto(server.url + "/")
+        dialog = page.get_by_role("dialog", name="API key")
+        dialog.get_by_text("This server asks for an API key.").wait_for()
+        for key in ("wrong-key-0123456789", secret):
+            dialog.get_by_label("Key").fill(key)
+            dialog.get_by_role("button", name="Use it").click()
+            if key != secret:
+                dialog.get_by_text("The server does not know this key.").wait_for()
+        page.get_by_role("button", name=f"View job {job.id[:8]}").click()
+        page.get_by_role("button", name="Show all").wait_for()
+        settle(watched)
+        clicked(watched)  # by the session's WebSocket
+        page.get_by_text("Best posture: sample").wait_for()
+        page.get_by_role("button", name="Link").click()
+        page.get_by_text("The link is", exact=False).first.wait_for()
+        assert "view=" in page.url
+        page.reload()
+        page.get_by_role("button", name="Show all").wait_for()
+        stored = page.evaluate("[Object.values(sessionStorage), Object.values(localStorage), document.cookie]")
+        assert stored[0] == [secret]
+        shown = [*asked, page.url, *stored[1], stored[2]]
+        assert any(each.startswith("ws:") for each in shown)
+        for form in (secret, quote(secret, safe=""), urlsafe_b64encode(secret.encode()).decode().rstrip("=")):
+            assert not any(form in each for each in shown)
+        other = context.new_page()
+        other.goto(page.url)
+        other.get_by_text("This server asks for an API key.").wait_for()
+        context.close()
+    assert watched.errors == []
+    assert watched.foreign == []
+
+
+def test_a_server_that_goes_is_said_and_found_again(chromium, tmp_path: Path) -> None:
+    pages = [chromium.new_page(viewport={"width": 1280, "height": 720}) for _ in range(2)]  # of contexts of their own
+    with LocalServer(tmp_path) as server:
+        with ws.Client(server.url) as client:
+            job = client.submit(SMALL | {"best_sample": "manipulability"}).wait()
+            volume = job.result().volume
+        assert volume is not None
+        for page in pages:
+            page.set_default_timeout(PATIENCE_MS)
+        view, jobs = (Watched(page, server.url) for page in pages)
+        opened(view, f"/job/{job.id}")
+        clicked(view)
+        jobs.page.goto(server.url)
+        jobs.page.locator(f"tr[data-job='{job.id}']").wait_for()
+        server.stop()
+        lost = [each.page.get_by_text("does not answer. Looking for it again") for each in (view, jobs)]
+        for each in lost:
+            each.wait_for()
+        view.page.get_by_role("button", name="Forget it").click()
+        cell, values = clicked(view)
+        at = int(np.searchsorted(volume.voxels.cells, np.ravel_multi_index(cell, volume.shape)))
+        known = volume.voxels.statistics["maximum"]["manipulability"][at]
+        assert values == {"maximum:manipulability": np.float16(known)}
+        view.page.get_by_text("These values are rounded to 16 bits.").wait_for()
+        server.start()
+        for each in lost:
+            each.wait_for(state="hidden")
+        view.page.get_by_role("button", name="Forget it").click()
+        clicked(view)
+        view.page.get_by_text("Best posture: sample").wait_for()
+        until(lambda: jobs.page.get_by_role("alert").count() == 0)
+        with ws.Client(server.url) as client:
+            later = client.submit(SMALL)
+        jobs.page.locator(f"tr[data-job='{later.id}'][data-state=succeeded]").wait_for()
+    for page in pages:
+        page.close()
+    said = [each for each in view.errors + jobs.errors if "ERR_CONNECTION_REFUSED" not in each]
+    assert said == []

@@ -1,0 +1,4 @@
+"""Colours that the colour-blind tell apart (Okabe and Ito, *Color universal design*, 2008)."""
+
+BLUE, VERMILION, GREEN, PURPLE = "#0072b2", "#d55e00", "#009e73", "#cc79a7"
+ORANGE, SKY_BLUE, YELLOW = "#e69f00", "#56b4e9", "#f0e442"
