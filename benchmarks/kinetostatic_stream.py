@@ -30,6 +30,7 @@ LONG_JOB = {
     "indices": ["manipulability"],
     "voxel_size_m": 0.1,
     "sampling": {"method": "sobol", "count": 10**10},
+    "constraints": {"self_collision": True},
 }
 GOALS_MS = {"p50": (1, 0.5), "p99.9": (0, 3.0)}  # ticks and time above the echo
 
