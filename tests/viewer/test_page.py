@@ -162,7 +162,7 @@ def test_a_link_restores_the_view(watched: Watched, finished: str) -> None:
     page.mouse.move(box["x"] + 380, box["y"] + 330, steps=4)
     page.mouse.up()
     seen = pixels(watched)
-    page.wait_for_timeout(800)
+    link_holds_the_view(page)
     link = page.url
     assert "view=" in link
     page.goto("about:blank")
@@ -174,9 +174,14 @@ def test_a_link_restores_the_view(watched: Watched, finished: str) -> None:
     assert differing(seen, pixels(watched)) < 100
 
 
+def link_holds_the_view(page) -> None:
+    """Wait until the page has written its view into its address, by its own clock, however busy it is."""
+    page.evaluate("new Promise((done) => setTimeout(done, 800))")
+
+
 def relink(watched: Watched) -> None:
     """Leave the page, and follow its own address, once that holds the view."""
-    watched.page.wait_for_timeout(800)
+    link_holds_the_view(watched.page)
     link = watched.page.url
     assert "view=" in link
     watched.page.goto("about:blank")
