@@ -17,6 +17,7 @@ from wsrender.analyses.registry import job_classes
 from wsrender.documents.quantities import quoted
 from wsrender.errors import InputError, MissingExtraError, ModelError, NumericalError
 from wsrender.progress import LINE_EVERY_S, RunProgress
+from wsrender.robots import library
 
 
 @pytest.fixture
@@ -73,6 +74,31 @@ def test_robots(wsrender):
     rows = {line.split()[0]: line for line in out.splitlines() if line.strip()}
     assert {"ur5e", "scara", "puma560"} <= set(rows)
     assert rows["scara"].split()[1] == "4"
+    assert rows["ur5e"].split()[1:6] == ["6", "Universal", "Robots", "5", "0.85"]
+    assert "payload [kg]" in out and "three parallel axes" in rows["ur5e"]
+
+
+def listed(wsrender, *arguments):
+    code, out, _ = wsrender("robots", "--json", *arguments)
+    assert code == 0
+    return {kind: {robot["name"]: robot for robot in robots} for kind, robots in json.loads(out).items()}
+
+
+def test_robots_that_are_asked_for(wsrender):
+    everything = listed(wsrender)
+    assert list(everything["robots"]) == library.names()
+    assert everything["robots"]["franka_panda"]["payload_kg"] == 3.0
+    assert everything["robots"]["scara"]["maker"] is None and "delta" in everything["mechanisms"]
+    for arguments, said, kept in (
+        (["universalUR5e"], "aliases", lambda robot: "universalUR5e" in robot["aliases"]),
+        (["--joints", "4"], "joints", lambda robot: robot["joints"] == 4),
+        (["--payload", "5"], "payload_kg", lambda robot: (robot["payload_kg"] or 0) >= 5),
+        (["--reach", "0.84"], "reach_m", lambda robot: (robot["reach_m"] or 0) >= 0.84),
+        (["--closed-form", "Parallel"], "closed_form", lambda robot: "parallel" in (robot["closed_form"] or "")),
+    ):
+        found = listed(wsrender, *arguments)["robots"]
+        assert 0 < len(found) < len(everything["robots"]), said
+        assert found == {name: robot for name, robot in everything["robots"].items() if kept(robot)}, said
 
 
 @pytest.mark.parametrize(

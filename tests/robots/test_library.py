@@ -43,15 +43,15 @@ def mass_matrix(model, q):
 # --- the folder -----------------------------------------------------------------------------------------
 
 
-def test_the_library_has_every_robot():
-    assert library.names() == NAMES
+def test_the_library_has_every_robot_of_the_tables():
+    assert set(NAMES) <= set(library.names())
     assert all(library.find(name).is_file() for name in NAMES)
 
 
 def test_an_unknown_robot_is_refused_with_the_names():
     with pytest.raises(ModelError, match=r'no robot "UR-5e"; did you mean "ur5e"\? It has: articulated, .*ur5e'):
         library.find("UR-5e")
-    with pytest.raises(ModelError, match=r'no robot "nonesuch". It has: articulated, .*ur5e$'):
+    with pytest.raises(ModelError, match=r'no robot "nonesuch". It has: articulated, .*ur5e'):
         library.find("nonesuch")
 
 
@@ -71,10 +71,10 @@ def test_an_installed_package_uses_its_own_models(tmp_path, monkeypatch):
 
 def test_descriptions_name_joints_and_source():
     described = {robot.name: robot for robot in library.describe()}
-    assert sorted(described) == NAMES
-    for name, robot in described.items():
-        assert robot.joints == len(dh_table(name).rows)
-        assert len(robot.description) > 20 and len(robot.source) > 10
+    assert list(described) == library.names()
+    for name in NAMES:
+        assert described[name].joints == len(dh_table(name).rows)
+        assert len(described[name].description) > 20 and len(described[name].source) > 10
 
 
 @pytest.mark.parametrize("name", NAMES)

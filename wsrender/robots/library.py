@@ -4,8 +4,10 @@ Mechanisms with closed loops have theirs under ``mjcf/mechanisms/``: they are no
 their own documents; the models are for simulation, and check the analyses.
 """
 
+import tomllib
 from dataclasses import dataclass
 from difflib import get_close_matches
+from functools import cache
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -15,13 +17,25 @@ from wsrender.errors import ModelError
 
 @dataclass(frozen=True)
 class LibraryRobot:
-    """What the library says of one of its robots."""
+    """What the library says of one of its robots.
+
+    The description and the source stand in the model file, all below the path in ``robot.toml`` beside it, so that
+    results of a model stay valid when another name of it is added. None: not published, or an arm of a paper.
+    """
 
     name: str
     joints: int
     description: str
     source: str  # where its numbers come from, in one line; the README beside the model has them all
     path: Path
+    full_name: str | None = None
+    maker: str | None = None
+    payload_kg: float | None = None  # that the maker rates the arm for
+    reach_m: float | None = None  # as the maker measures it
+    closed_form: str | None = None  # see Robot.closed_form
+    aliases: tuple[str, ...] = ()  # names that other packages have for it
+    second_source: str | None = None  # what its kinematics are compared with
+    frames: str | None = None  # which frames of its maker or of ROS "world" and "tool" are
 
 
 def names() -> list[str]:
@@ -30,8 +44,9 @@ def names() -> list[str]:
 
 
 def find(name: str) -> Path:
-    """The MJCF file of a library robot; raises ModelError listing the names for one it does not have."""
+    """The MJCF file of a library robot by its name or an alias; raises ModelError listing the names otherwise."""
     known = names()
+    name = name if name in known else _aliases(_folder()).get(name, name)
     if name in known:
         return _folder() / name / f"{name}.xml"
     close = get_close_matches(str(name).lower().replace("-", "_"), known, n=1, cutoff=0.5)
@@ -43,7 +58,7 @@ def find(name: str) -> Path:
 
 def describe() -> list[LibraryRobot]:
     """Every robot of the library, sorted by name, as its model file describes it."""
-    return [_described(name, find(name), "worldbody//joint") for name in names()]
+    return [_robot(_folder() / name / f"{name}.xml") for name in names()]
 
 
 def mechanisms() -> list[LibraryRobot]:
@@ -52,11 +67,25 @@ def mechanisms() -> list[LibraryRobot]:
     return [_described(path.stem, path, "actuator/*") for path in paths]
 
 
+def _robot(path: Path) -> LibraryRobot:
+    return _described(path.stem, path, "worldbody//joint")
+
+
+@cache
+def _aliases(folder: Path) -> dict[str, str]:
+    """Names of robots by their aliases."""
+    robots = [_robot(path) for path in sorted(folder.glob("*/*.xml")) if path.stem == path.parent.name]
+    return {alias: robot.name for robot in robots for alias in robot.aliases}
+
+
 def _described(name: str, path: Path, counted: str) -> LibraryRobot:
     model = ElementTree.parse(path).getroot()  # our own file: the parser need not distrust it
     texts = {text.get("name"): text.get("data", "") for text in model.iterfind("custom/text")}
     joints = sum(1 for _ in model.iterfind(counted))
-    return LibraryRobot(name, joints, texts["description"], texts["source"], path)
+    beside = path.with_name("robot.toml")
+    facts = tomllib.loads(beside.read_text(encoding="utf-8")) if beside.is_file() else {}  # mechanisms have none
+    facts["aliases"] = tuple(facts.get("aliases", ()))
+    return LibraryRobot(name, joints, texts["description"], texts["source"], path, **facts)
 
 
 def _folder() -> Path:

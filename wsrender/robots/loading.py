@@ -112,7 +112,8 @@ def load_library(robot: str, **options) -> "LoadedRobot":
     """The library's ``robot``; ``options`` as in ``load``. Raises ModelError listing the names."""
     from wsrender.robots import library
 
-    return load_path(library.find(robot), **{**options, "name": options.get("name") or robot})
+    path = library.find(robot)
+    return load_path(path, **{**options, "name": options.get("name") or path.stem})
 
 
 def load_dh(table: "DHTable", **options) -> "LoadedRobot":

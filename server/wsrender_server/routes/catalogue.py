@@ -51,6 +51,18 @@ class RobotView(View):
     """What it is."""
     source: str
     """Where its numbers come from."""
+    full_name: str | None
+    """Its maker's name for it."""
+    maker: str | None
+    """Who makes it; null for an arm of a paper."""
+    payload_kg: float | None
+    """What its maker rates it for [kg]; null where that is not published."""
+    reach_m: float | None
+    """Its reach [m], as its maker measures it."""
+    closed_form: str | None
+    """The class of arms by whose closed form its inverse kinematics are solved; null: of none."""
+    frames: str | None
+    """Which frames of its maker, or of ROS, "world" and "tool" are."""
 
 
 class ModelView(View):

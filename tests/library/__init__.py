@@ -1,0 +1,1 @@
+"""Tools for the robots under ``mjcf/``: what their READMEs repeat, fitted shapes, models of other packages."""

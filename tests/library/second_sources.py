@@ -1,0 +1,65 @@
+"""What the kinematics of library robots are compared with: models of other packages, by their own numbers.
+
+A source gives poses (N, 4, 4) of the tool at joint angles (N, n). Packages are those of the extra ``test-models``.
+"""
+
+import importlib
+from collections.abc import Callable
+from functools import partial
+
+import numpy as np
+import pytest
+
+Poses = Callable[[np.ndarray], np.ndarray]
+MISSING = "needs {}, of the extra test-models"
+
+
+def exact(T: np.ndarray) -> np.ndarray:
+    """A pose whose right angles, written as 1.5708 or shorter, are right angles."""
+    T = np.array(T, dtype=float)
+    near = np.round(T[:3, :3])
+    T[:3, :3] = np.where(np.abs(T[:3, :3] - near) < 1e-4, near, T[:3, :3])
+    return T
+
+
+def ssik(name: str, base: np.ndarray | None = None, tool: np.ndarray | None = None) -> Poses:
+    """Of a module of ssik: products of the poses and axes that it is generated with."""
+    pytest.importorskip("ssik", reason=MISSING.format("ssik"))
+    module = importlib.import_module(f"ssik.prebuilt.{name}_ik")
+    joints = list(zip(module._JOINT_T_LEFTS, module._JOINT_AXES, module._JOINT_T_RIGHTS, strict=True))
+
+    def poses(q: np.ndarray) -> np.ndarray:
+        T = np.tile(np.eye(4) if base is None else base, (len(q), 1, 1))
+        for k, (left, axis, right) in enumerate(joints):
+            T = T @ exact(left) @ rotations(np.asarray(axis), q[:, k]) @ exact(right)
+        return T @ (np.eye(4) if tool is None else tool)
+
+    return poses
+
+
+def rotations(axis: np.ndarray, angles: np.ndarray) -> np.ndarray:
+    """Rodrigues' rotations (N, 4, 4) about an axis (3,) by angles (N,) [rad]."""
+    x, y, z = axis / np.linalg.norm(axis)
+    K = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    T = np.tile(np.eye(4), (len(angles), 1, 1))
+    T[:, :3, :3] += np.sin(angles)[:, None, None] * K + (1 - np.cos(angles))[:, None, None] * (K @ K)
+    return T
+
+
+def turned_about_z(angle: float) -> np.ndarray:
+    """A turn (4, 4) about z by an angle [rad]."""
+    return exact(rotations(np.array([0.0, 0.0, 1.0]), np.array([angle]))[0])
+
+
+def along_z(distance: float) -> np.ndarray:
+    """A shift (4, 4) along z [m]."""
+    T = np.eye(4)
+    T[2, 3] = distance
+    return T
+
+
+SECOND_SOURCES: dict[str, Callable[[], Poses]] = {
+    "ur5e": partial(ssik, "universal_robots.ur5e", turned_about_z(np.pi)),
+    "franka_panda": partial(ssik, "franka.panda"),
+    "kuka_iiwa14": partial(ssik, "kuka.iiwa14"),
+}
