@@ -21,14 +21,17 @@ from wsrender.robots.model_warning import ModelWarning
 
 SUFFIXES = (".urdf", ".xml", ".xacro", ".sdf")
 UNSTATED = "refused for no reason of the table:"
-MOST_CHOICES = 3  # of base and tip, one after the other, before a file counts as refused
+MOST_CHOICES = 4  # of base, tip and package, one after the other, before a file counts as refused
 
 # Why a file is refused: the reason in the message, and in words.
 REASONS = {
     r"^there is no joint between base": "nothing moves: objects, planes, things that float as a whole",
     r"^there is nothing to move|^the URDF has no <link>": "nothing is there: a part that other files include",
     r"^the root element is <": "no URDF or MJCF: SDF, descriptions of packages, parts that other files include",
-    r"run the file through xacro first|is '\$\(": "xacro that was not expanded",
+    r"is '\$\(": "xacro that was expanded by half",
+    r"^xacro refuses .*package://": "xacro that includes an address, where xacro takes names of files",
+    r"^xacro refuses .*(is not defined|No such file)": "xacro that names what another package has",
+    r"^the package '.*' is neither above the model": "a ROS package that is not there",
     r"^not well-formed XML": "not well-formed XML",
     r"(a finite number is|\d numbers are) needed$": "numbers that cannot be read",
     r"its lower limit .* is above its upper limit": "limits upside down, on the chain",
@@ -48,7 +51,7 @@ class Outcome:
 
     file: Path
     message: str
-    choices: tuple[tuple[str, str], ...] = ()
+    choices: tuple[tuple[str, Any], ...] = ()
 
     @property
     def reason(self) -> str | None:
@@ -76,7 +79,10 @@ def files() -> list[Path]:
 
 
 def outcome(file: Path) -> Outcome:
-    """Loads a file; where a tip or a base must be named, with the first that the error offers."""
+    """Loads a file; where a tip or a base must be named, with the first that the error offers.
+
+    A package that is not found is the one that the file lies in.
+    """
     choices: dict[str, Any] = {}
     message = ""
     with warnings.catch_warnings():
@@ -85,7 +91,7 @@ def outcome(file: Path) -> Outcome:
             try:
                 ws.load_robot(file, **choices)
             except ModelError as error:
-                message, chosen = error.message, _chosen(error)
+                message, chosen = error.message, _chosen(error, file)
                 if chosen is None or chosen[0] in choices:
                     break
                 choices |= dict([chosen])
@@ -94,9 +100,11 @@ def outcome(file: Path) -> Outcome:
     return Outcome(file, message, tuple(choices.items()))
 
 
-def _chosen(error: ModelError) -> tuple[str, str] | None:
+def _chosen(error: ModelError, file: Path) -> tuple[str, Any] | None:
     if isinstance(error, FrameNotFoundError):
         return error.field, error.choices[0]
+    if absent := re.search(r"^the package '(.+)' is neither above", error.message):
+        return "packages", {absent[1]: file.parent.parent}  # some have theirs in a folder of another name
     below = re.search(r"name a base below it, such as '(.+)'$", error.message)
     return ("base", below[1]) if below else None
 

@@ -161,7 +161,7 @@ MJCF = {
 URDF = {
     "MJCF given as URDF": (mjcf(), "the root element is <mujoco>; <robot> is needed"),
     "no link": ("<robot name='r'/>", "the URDF has no <link>"),
-    "unexpanded xacro": ("<robot name='r'><xacro:arm/></robot>", "<xacro:arm> is not expanded: run the file"),
+    "unexpanded xacro": ("<robot name='r'><xacro:arm/></robot>", "<xacro:arm> is not expanded: give the path"),
     "xacro expression": (
         urdf(joint('<origin xyz="0 0 ${h}"/>' + LIMIT)),
         "origin xyz.*'.{h}'; a finite number",

@@ -16,7 +16,7 @@ from wsrender.progress import RunProgress
 
 _SAMPLING = "Sampling"
 _ANALYSIS = "Analysis"
-ROBOT_FILES = (".xml", ".mjcf", ".urdf")
+ROBOT_FILES = (".xml", ".mjcf", ".urdf", ".xacro")
 COUNTED_METHODS = ("random", "sobol", "boundary")
 
 
@@ -57,6 +57,10 @@ def _document(
     length_unit_m: Annotated[
         float | None, typer.Option(help="The model's unit of length in metres; 1 confirms metres.")
     ] = None,
+    package: Annotated[
+        list[str] | None, typer.Option(help="NAME=FOLDER of a ROS package, for package://; repeatable.")
+    ] = None,
+    xacro: Annotated[list[str] | None, typer.Option(help="NAME=VALUE of a xacro file's argument; repeatable.")] = None,
     sampling: Annotated[
         str | None, typer.Option(help="grid, random, sobol, boundary or converge.", rich_help_panel=_SAMPLING)
     ] = None,
@@ -93,7 +97,7 @@ def _document(
     document = job_document(job)
     count = SEVERAL_COUNT if keep_map else DEFAULT_COUNT
     given = {
-        "robot": corrected_robot(document, limits or [], length_unit_m),
+        "robot": corrected_robot(document, limits or [], length_unit_m, package or [], xacro or []),
         "tip": tip,
         "base": base,
         "sampling": sampling_document(document.get("sampling"), sampling, grid, samples, seed, lock or [], count),
@@ -158,19 +162,36 @@ def job_document(job: str) -> dict[str, Any]:
     return {"analysis": "workspace", "robot": {source: job}}
 
 
-def corrected_robot(document: dict[str, Any], limits: list[str], length_unit_m: float | None) -> dict[str, Any] | None:
-    """The robot of a document with limits and unit of length from options; None without options.
+def corrected_robot(
+    document: dict[str, Any],
+    limits: list[str],
+    length_unit_m: float | None,
+    packages: list[str] | tuple[str, ...] = (),
+    xacro: list[str] | tuple[str, ...] = (),
+) -> dict[str, Any] | None:
+    """The robot of a document with limits, unit of length and how its file is read from options; None without options.
 
     Raises InputError naming the option, and for a document that has not one robot.
     """
-    if not limits and length_unit_m is None:
+    options = {"--limits": limits, "--length-unit-m": length_unit_m, "--package": packages, "--xacro": xacro}
+    named = [option for option, value in options.items() if value not in (None, [], ())]
+    if not named:
         return None
     robot: Any = document.get("robot")
     robot = {"library": robot} if isinstance(robot, str) else robot
     if not isinstance(robot, dict):
-        raise InputError("--limits" if limits else "--length-unit-m", "goes with a job of one robot")
+        raise InputError(named[0], "goes with a job of one robot")
     given = {"limits": robot.get("limits", {}) | dict(_limits(text) for text in limits), "length_unit_m": length_unit_m}
+    given["packages"] = robot.get("packages", {}) | dict(_named("--package", text) for text in packages)
+    given["xacro"] = robot.get("xacro", {}) | dict(_named("--xacro", text) for text in xacro)
     return robot | {field: value for field, value in given.items() if value}
+
+
+def _named(option: str, text: str) -> tuple[str, str]:
+    name, equals, value = text.partition("=")
+    if not equals or not name:
+        raise InputError(option, f'must be NAME=VALUE, not "{text}"')
+    return name, value
 
 
 def sampling_document(

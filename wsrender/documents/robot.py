@@ -55,6 +55,13 @@ def _joint_name(value: Any) -> Any:
     return value
 
 
+def _argument(value: Any) -> Any:
+    """A number or a truth value as xacro reads it."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    return repr(value) if isinstance(value, int | float) else value
+
+
 def _range(value: Any) -> tuple[float, ...]:
     if (limits := _interval(value)) is None:
         raise ValueError("must be [lower, upper], two finite numbers")
@@ -66,6 +73,7 @@ Limits = Annotated[tuple[float, float] | None, BeforeValidator(_interval)]
 Range = Annotated[tuple[float, float], BeforeValidator(_range)]
 Length = Annotated[float, Field(ge=-LARGEST, le=LARGEST), BeforeValidator(real)]
 XmlText = Annotated[StrictStr, Field(min_length=1)]
+Argument = Annotated[StrictStr, BeforeValidator(_argument)]
 NotNegative = Annotated[float, Field(ge=0), BeforeValidator(real)]
 
 
@@ -264,7 +272,12 @@ class RobotSpec(Document):
     model: Sha256 | None = None
     """SHA-256 of a model uploaded to a server, 64 hexadecimal digits."""
     path: Name | None = None
-    """An .xml (MJCF) or .urdf file; local runs only."""
+    """An .xml (MJCF), .urdf or .xacro file; local runs only."""
+    packages: Annotated[dict[Name, Name], Field(exclude_if=is_empty)] = Field(default={})
+    """Folders of ROS packages by name, for the addresses package:// in the file ``path``, before ROS_PACKAGE_PATH and
+    the ament index."""
+    xacro: Annotated[dict[Name, Argument], Field(exclude_if=is_empty)] = Field(default={})
+    """Arguments of the xacro file ``path``, by name."""
     placement: Transform | None = None
     """The robot's base frame in the world; null: they coincide."""
     mount: Annotated[
@@ -305,6 +318,9 @@ class RobotSpec(Document):
             yield SOURCES[0], f"is required, or another source of the robot: one of {quoted(SOURCES)}"
         for name in given[1:]:
             yield name, f'must not be given together with "{given[0]}": a robot has one source'
+        for name in ("packages", "xacro"):
+            if getattr(self, name) and self.path is None:
+                yield name, 'must be given together with "path" alone: it says how that file is read'
         names = [shape.name for shape in self.tool_shapes]
         for k, name in enumerate(names):
             if name is not None and name in names[:k]:

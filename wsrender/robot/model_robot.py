@@ -333,9 +333,13 @@ def load_robot(
     exclude: Sequence[tuple[str, str]] = (),
     tool_shapes: Sequence[Any] = (),
     mount: Sequence[Any] = (),
+    packages: Mapping[str, str | Path] | None = None,
+    xacro: Mapping[str, Any] | None = None,
 ) -> Robot:
     """Load a robot: a library name, the path or text of an MJCF (.xml) or URDF file, a DH table, MjSpec or MjModel.
 
+    A path may be that of a xacro file, which is expanded with the arguments ``xacro`` by name. ``package://`` leads to
+    the folder that ``packages`` names, one above the file, in ROS_PACKAGE_PATH or in the ament index.
     ``base`` and ``tip`` name a site, body or link (default: the world, and the site "tool" or the only end).
     ``placement`` is the base frame in the world and ``tool`` the tool point in the tip frame, each a
     `Transform`, its fields as a dict, or a (4, 4) array. ``limits`` {joint: (lower, upper)} [rad or m] (or
@@ -358,9 +362,10 @@ def load_robot(
     given: dict[str, Any] = {"limits": limits or {}, "limits_deg": limits_deg or {}, "length_unit_m": length_unit_m}
     given |= {"effort_limits": effort_limits or {}, "velocity_limits": velocity_limits or {}}
     given |= {"reference": reference or {}, "srdf": _srdf_text(srdf), "exclude": exclude}
-    given |= {"tool_shapes": tool_shapes, "mount": mount}
+    given |= {"tool_shapes": tool_shapes, "mount": mount, "xacro": xacro or {}}
+    given["packages"] = {package: str(folder) for package, folder in (packages or {}).items()}
     stated = RobotSpec(**{kind: value}, **given)
-    loaded = load(source, **options, **_corrections(stated))
+    loaded = load(source, **options, **_corrections(stated), **_reading(stated))
     spec = stated.model_copy(update={"placement": transform_of(placement), "tool": transform_of(tool)})
     return Robot(loaded, spec, name, base, tip)
 
@@ -388,7 +393,8 @@ def robot_of_spec(
         "model": load_uploaded,
     }
     try:
-        loaded = loaders[spec.source](getattr(spec, spec.source), **options, **_corrections(spec))
+        source = getattr(spec, spec.source)
+        loaded = loaders[spec.source](source, **options, **_corrections(spec), **_reading(spec))
     except InputError as error:
         raise error.at(_field_of_arm(error.field, spec)) from None
     return Robot(loaded, spec, base=base, tip=tip)
@@ -416,6 +422,11 @@ def _corrections(spec: RobotSpec) -> dict[str, Any]:
     )
     found = {name: getattr(spec, name) for name in names}
     return found | ({"attached": attached(spec.tool_shapes)} if spec.tool_shapes else {})
+
+
+def _reading(spec: RobotSpec) -> dict[str, Any]:
+    """How the file is read that a document names, if it names one."""
+    return {"packages": spec.packages, "xacro": spec.xacro} if spec.path is not None else {}
 
 
 def _srdf_text(srdf: str | Path | None) -> str | None:

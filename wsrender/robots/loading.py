@@ -13,7 +13,7 @@ import numpy as np
 
 from wsrender import notices
 from wsrender.errors import InputError, MissingExtraError, ModelError
-from wsrender.robots import includes, mesh_files, xml_source
+from wsrender.robots import includes, mesh_files, xacro_files, xml_source
 from wsrender.robots.model_warning import ModelWarning
 from wsrender.robots.plausibility import doubts
 from wsrender.robots.srdf import disabled_pairs
@@ -28,12 +28,14 @@ if TYPE_CHECKING:
     from wsrender.robots.compiled_model import CompiledModel
     from wsrender.robots.loaded_robot import LoadedRobot
     from wsrender.robots.mesh_files import ReadMesh
+    from wsrender.robots.packages import Packages
     from wsrender.robots.shapes import Shape
 
     Limits = Mapping[str, tuple[float, float]]
     Excluded = Sequence[tuple[str, str]]
     Source = str | Path | DHTable | mujoco.MjSpec | mujoco.MjModel
 
+MODEL_FILES = (".xml", ".mjcf", ".urdf", ".xacro")  # what their names end in
 _FIELD = "model"
 
 
@@ -55,10 +57,12 @@ def load(
     exclude: "Excluded" = (),
     attached: "Sequence[Shape]" = (),
     mount: "Sequence[MountJoint]" = (),
+    packages: "Packages | None" = None,
+    xacro: "Mapping[str, Any] | None" = None,
 ) -> "LoadedRobot":
     """The robot of a library name, of a path to or the text of an MJCF or URDF file, of a DH table, MjSpec or MjModel.
 
-    A string is text if it begins with <, a path if it ends in .xml or .urdf or has a folder in it. ``base`` and
+    A string is text if it begins with <, a path if it ends in .xml, .urdf or .xacro or has a folder in it. ``base`` and
     ``tip`` name a site, body or link. The base is the world by default. The tip is by default the site ``tool``, else
     the only end of the model that a joint moves, else the link ``tool0``; a site goes before a body of its name.
     ``placement`` is the base frame in the world and ``tool`` the tool frame in the tip frame, (4, 4) each.
@@ -68,7 +72,8 @@ def load(
     where joints beside the chain stand, by name [rad or m], instead of at the model's zero. ``srdf`` is SRDF
     text, whose disabled pairs of links do not collide, nor do those of ``exclude``, pairs of names of shapes or bodies.
     ``attached``: shapes that the tip carries, in its frame. ``mount``: joints that carry the base, which then must be
-    the world; they are the first of the chain.
+    the world; they are the first of the chain. ``packages``: folders of ROS packages by name, before all others, and
+    ``xacro``: arguments of a xacro file by name; both for a path alone.
     Raises ModelError, FrameNotFoundError, InputError; gives a ModelWarning for each of the robot's notices.
     """
     options = {"base": base, "tip": tip, "name": name, "placement": placement, "tool": tool}
@@ -76,6 +81,10 @@ def load(
     options |= {"effort_limits": effort_limits, "velocity_limits": velocity_limits}
     options |= {"reference": reference, "srdf": srdf, "exclude": exclude, "attached": attached, "mount": mount}
     kind, value = described(source)
+    if kind == "path":
+        options |= {"packages": packages, "xacro": xacro}
+    elif packages or xacro:
+        raise InputError("packages" if packages else "xacro", "goes with the path of a file alone")
     loaders = {"library": load_library, "path": load_path, "dh": load_dh, "mjcf": load_mjcf, "urdf": load_urdf}
     return loaders[kind](value, **options)
 
@@ -98,7 +107,7 @@ def described(source: "Source") -> tuple[str, Any]:
         raise InputError("source", f"must be {kinds}, not {type(source).__name__}")
     if source.lstrip("\ufeff \t\r\n").startswith("<"):
         return ("urdf" if xml_source.parse(source, _FIELD).tag == "robot" else "mjcf"), source
-    is_path = source.lower().endswith((".xml", ".urdf")) or "/" in source or "\\" in source
+    is_path = source.lower().endswith(MODEL_FILES) or "/" in source or "\\" in source
     return "path" if is_path else "library", source
 
 
@@ -123,23 +132,35 @@ def load_dh(table: "DHTable", **options) -> "LoadedRobot":
     return load_mjcf(dh.to_mjcf(table), **options)
 
 
-def load_path(path: str | Path, **options) -> "LoadedRobot":
+def load_path(
+    path: str | Path, *, packages: "Packages | None" = None, xacro: "Mapping[str, Any] | None" = None, **options
+) -> "LoadedRobot":
     """The robot of a file of the user's own, MJCF or URDF by its root element; ``options`` as in ``load``.
 
     Files that an MJCF includes and meshes that an inertia is computed from are read relative to it, other meshes when
-    shapes are asked for; nothing else is.
+    shapes are asked for; nothing else is. A xacro file is expanded first.
     """
     path = Path(path)
     content = xml_source.read(path, _FIELD)
     root = xml_source.parse(content, _FIELD)
+    if root.tag == "robot" and (xacro_files.is_xacro(path, root) or xacro):
+        content = xacro_files.expanded(path, xacro or {}, packages or {}, _FIELD)
+        root = xml_source.parse(content, _FIELD)
+    elif xacro:
+        raise InputError("xacro", f"goes with a xacro file; the root element of {path.name} is <{root.tag}>")
     options = {**options, "name": options.get("name") or root.get("model") or root.get("name") or path.stem}
-    read_mesh = mesh_files.from_folder(path.parent)
+    read = mesh_files.from_folder(path.parent, packages)
+    return _from_files(root, content, read, repr(str(path.parent)), **options)
+
+
+def _from_files(root: Element, content: bytes, read: "ReadMesh", place: str, **options) -> "LoadedRobot":
+    """The robot of a model file and those that it leads to, which ``read`` reads in a ``place``."""
     if root.tag == "robot":
-        return _from_urdf(root, content, read_mesh, **options)
+        return _from_urdf(root, content, read, **options)
     if root.tag != "mujoco":
         raise ModelError(_FIELD, f"the root element is <{root.tag}>; <mujoco> or <robot> (URDF) is needed")
-    content = b"".join([content, *includes.put_in(root, path.parent, _FIELD)])
-    return _from_mjcf(root, content, read_mesh, **options)
+    content = b"".join([content, *includes.put_in(root, read, place, _FIELD)])
+    return _from_mjcf(root, content, read, **options)
 
 
 def load_mjcf(text: str | bytes, *, assets: Mapping[str, bytes] | None = None, **options) -> "LoadedRobot":

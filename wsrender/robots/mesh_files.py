@@ -1,17 +1,23 @@
-"""Files of meshes, from strangers too: STL, OBJ and COLLADA (.dae), read here; none leads to another file."""
+"""Files of meshes, from strangers too: STL, OBJ and COLLADA (.dae), read here, and what trimesh reads.
 
-import os
+None leads to another file.
+"""
+
 import re
+import zipfile
 from collections.abc import Callable, Iterator, Mapping
 from functools import cache
+from io import BytesIO
 from itertools import chain
 from pathlib import Path, PurePosixPath
+from typing import Any
 from xml.etree.ElementTree import Element
 
 import numpy as np
 
 from wsrender.errors import ModelError
 from wsrender.robots import xml_source
+from wsrender.robots.packages import Packages, folders_of
 
 MAX_MESH_BYTES = 256 * 2**20
 MAX_CORNERS = 6_000_000  # of triangles; the largest meshes of robots have a tenth
@@ -29,15 +35,15 @@ def from_assets(assets: Mapping[str, bytes]) -> ReadMesh:
     return lambda name: assets.get(name, by_last_part.get(Path(name).name))
 
 
-def from_folder(folder: Path) -> ReadMesh:
+def from_folder(folder: Path, packages: Packages | None = None) -> ReadMesh:
     """Reads meshes relative to ``folder``: for files of the user's own.
 
-    ``package://name/rest`` is ``rest`` in a folder ``name`` that is above ``folder``, stands beside one that is, or is
-    in ROS_PACKAGE_PATH.
+    ``package://name/rest`` and ``model://name/rest`` are ``rest`` in a folder of that package or model; see
+    `wsrender.robots.packages.folders_of`.
     """
 
     def read(name: str) -> bytes | None:
-        for path in _places(name, folder.absolute()):
+        for path in _places(name, folder.absolute(), packages or {}):
             if path.is_file() and path.stat().st_size <= MAX_MESH_BYTES:
                 return path.read_bytes()
         return None
@@ -45,14 +51,14 @@ def from_folder(folder: Path) -> ReadMesh:
     return read
 
 
-def _places(name: str, folder: Path) -> list[Path]:
+def _places(name: str, folder: Path, packages: Packages) -> Iterator[Path]:
     scheme = _ADDRESS.match(name)
     if scheme is None or scheme[1] == "file":
-        return [folder / name.removeprefix("file://")]
+        yield folder / name.removeprefix("file://")
+        return
     package, _, rest = name[scheme.end() :].partition("/")
-    packages = os.environ.get("ROS_PACKAGE_PATH", "").split(os.pathsep)
-    roots = [folder, *folder.parents, *(Path(each) for each in packages if each)]
-    return [root / rest if root.name == package else root / package / rest for root in roots]
+    for root in folders_of(package, folder, packages):
+        yield root / rest
 
 
 def triangles(content: bytes, name: str, field: str) -> Triangles:
@@ -63,10 +69,11 @@ def triangles(content: bytes, name: str, field: str) -> Triangles:
     """
     suffix = PurePosixPath(name.replace("\\", "/")).suffix.lower()
     readers = {".stl": _stl, ".obj": _obj, ".dae": _collada}
-    if suffix not in readers:
-        raise ModelError(field, f"the mesh {name!r} is of a format that is not read; allowed: {', '.join(readers)}")
+    if suffix not in readers and suffix not in (others := _formats()):
+        allowed = ", ".join(sorted({*readers, *others}))
+        raise ModelError(field, f"the mesh {name!r} is of a format that is not read; allowed: {allowed}")
     try:
-        vertices, faces = readers[suffix](content)
+        vertices, faces = readers[suffix](content) if suffix in readers else _by_trimesh(content, suffix)
     except ModelError as error:
         raise ModelError(field, f"the mesh {name!r} cannot be read: {error.message}") from error
     except (ValueError, LookupError, OverflowError, StopIteration) as error:
@@ -80,6 +87,32 @@ def triangles(content: bytes, name: str, field: str) -> Triangles:
     if not np.isfinite(vertices).all():
         raise ModelError(field, f"the mesh {name!r} must hold finite numbers")
     return vertices, faces
+
+
+def _formats() -> set[str]:
+    """Endings of the files that trimesh reads here; some need packages beside it."""
+    from trimesh.exchange.load import mesh_formats
+
+    return {f".{each}" for each in mesh_formats()}
+
+
+def _by_trimesh(content: bytes, suffix: str) -> Triangles:
+    """All triangles of a file, its scene flattened, in its own unit; without a resolver, no other file is read."""
+    import trimesh
+
+    if suffix == ".gltf" and re.search(rb'"uri"\s*:\s*"(?!data:)', content):
+        raise ValueError("it leads to other files: make it a .glb")
+    if zipfile.is_zipfile(file := BytesIO(content)):  # .3mf, .3dxml, .zae
+        with zipfile.ZipFile(file) as archive:
+            if (size := sum(each.file_size for each in archive.infolist())) > MAX_MESH_BYTES:
+                raise ValueError(f"it unpacks to {size} bytes; at most {MAX_MESH_BYTES} are allowed")
+    try:
+        found: Any = trimesh.load_scene(BytesIO(content), file_type=suffix[1:], process=False).to_mesh()
+        return np.asarray(found.vertices, np.float64).reshape(-1, 3), np.asarray(found.faces, int).reshape(-1, 3)
+    except MemoryError:
+        raise
+    except Exception as error:  # its readers raise whatever they stumble over
+        raise ValueError(" ".join(str(error).split()) or type(error).__name__) from error
 
 
 def _stl(content: bytes) -> Triangles:

@@ -28,7 +28,13 @@ def scene_of_path(path: str | Path, length_unit_m: float = 1.0) -> tuple[Shape, 
     path = Path(path)
     content = xml_source.read(path, "path")
     read_mesh = mesh_files.from_folder(path.parent)
-    return _fixed(content, "path", read_mesh, length_unit_m, lambda root: includes.put_in(root, path.parent, "path"))
+    return _fixed(
+        content,
+        "path",
+        read_mesh,
+        length_unit_m,
+        lambda root: includes.put_in(root, read_mesh, repr(str(path.parent)), "path"),
+    )
 
 
 def scene_of_text(text: str | bytes, length_unit_m: float = 1.0, field: str = "mjcf") -> tuple[Shape, ...]:

@@ -7,6 +7,7 @@ from xml.etree.ElementTree import Element
 import numpy as np
 
 from wsrender.errors import ModelError
+from wsrender.robots import xacro_files
 from wsrender.robots.xml_source import MAX_DEPTH, number, numbers
 
 JOINT_TYPES = ("revolute", "continuous", "prismatic", "fixed", "floating", "planar")
@@ -129,9 +130,9 @@ def read_urdf(robot: Element, field: str) -> Urdf:
 
 
 def _refuse_xacro(robot: Element, field: str) -> None:
-    for element in robot:
-        if element.tag.startswith("xacro:") and element.tag not in ("xacro:property", "xacro:arg"):
-            raise ModelError(field, f"<{element.tag}> is not expanded: run the file through xacro first")
+    if tag := xacro_files.unexpanded(robot):
+        remedy = "give the path of the file, or run it through xacro first"
+        raise ModelError(field, f"<{tag}> is not expanded: {remedy}")
 
 
 def _unique(items: list, kind: str, field: str) -> dict:

@@ -2,12 +2,9 @@
 
 import hashlib
 from collections import OrderedDict
-from io import BytesIO
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-import trimesh
 from scipy.spatial import ConvexHull, QhullError
 
 from wsrender.documents.shapes import ConvexMesh, Mesh
@@ -89,7 +86,7 @@ def triangles_of(mesh: ConvexMesh | Mesh) -> mesh_files.Triangles:
 
 def _read(content: bytes, name: str, field: str) -> mesh_files.Triangles:
     try:
-        return _ply(content) if name.lower().endswith(".ply") else mesh_files.triangles(content, name, field)
+        return mesh_files.triangles(content, name, field)
     except ModelError as error:
         raise InputError(field, f"{name} cannot be read as a mesh: {error.message}") from error
 
@@ -101,18 +98,3 @@ def _ending(content: bytes) -> str:
     count = int.from_bytes(content[80:84], "little")
     binary = len(content) == 84 + 50 * count and len(content) >= 84
     return ".stl" if binary or content.lstrip()[:5].lower() == b"solid" else ".obj"
-
-
-def _ply(content: bytes) -> mesh_files.Triangles:
-    try:
-        found: Any = trimesh.load(BytesIO(content), file_type="ply", process=False)
-        vertices, faces = np.asarray(found.vertices, np.float64), np.asarray(found.faces, int)
-    except Exception as error:  # its reader raises whatever it stumbles over
-        raise ModelError("path", str(error)) from error
-    if not len(faces) or faces.size > mesh_files.MAX_CORNERS:
-        raise ModelError("path", f"it has {len(faces)} triangles; allowed: 1 … {mesh_files.MAX_CORNERS // 3}")
-    if faces.min() < 0 or faces.max() >= len(vertices):
-        raise ModelError("path", "it names vertices that it does not have")
-    if not np.isfinite(vertices).all():
-        raise ModelError("path", "it must hold finite numbers")
-    return vertices, faces
