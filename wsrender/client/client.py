@@ -50,6 +50,9 @@ class Client:
         """Close all sockets."""
         self._connection.close()
 
+    def __repr__(self) -> str:
+        return f"Client({self._url!r})"
+
     def __enter__(self) -> Self:
         return self
 

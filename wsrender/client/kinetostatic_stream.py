@@ -42,6 +42,13 @@ class KinetostaticStream:
         self.last: dict[str, Any] = {}
         """The newest message ``force``, or empty."""
 
+    def __repr__(self) -> str:
+        return f"<KinetostaticStream {self._url}: {self._state}>"
+
+    @property
+    def _state(self) -> str:
+        return "closed" if self.statistics else "open" if self.opened else "not open"
+
     def __enter__(self) -> Self:
         self._socket = self._connected()
         try:

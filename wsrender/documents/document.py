@@ -9,6 +9,7 @@ from pydantic_core import InitErrorDetails
 
 from wsrender.documents.problems import listed, located, worded
 from wsrender.errors import DocumentError
+from wsrender.short_repr import is_default, short_value
 
 MOST_ITEMS = 20_000  # of a list or an object: to tell what is wrong with each takes time and memory
 MOST_COLUMNS = 1_000  # of a row in a longer list
@@ -37,6 +38,13 @@ class Document(BaseModel):
     def conflicts(self) -> Iterator[tuple[str, str]]:
         """(field, message) of every pair of fields that do not go together."""
         yield from ()
+
+    def __repr_args__(self) -> Iterator[tuple[str, Any]]:
+        """What is not at its default; long values are told by their kind."""
+        for name, field in type(self).model_fields.items():
+            value = self.__dict__.get(name)  # there is none before it is validated
+            if field.is_required() or not is_default(value, field.get_default(call_default_factory=True)):
+                yield name, _Said(short_value(value))
 
     @classmethod
     def _excess(cls, data: Any) -> Iterator[InitErrorDetails]:
@@ -67,3 +75,10 @@ class Document(BaseModel):
         if problems:
             raise ValidationError.from_exception_data(cls.__name__, problems)
         return document
+
+
+class _Said(str):
+    """A text that is shown without quotes."""
+
+    def __repr__(self) -> str:
+        return str(self)

@@ -23,6 +23,7 @@ from wsrender.robot.gravity import GRAVITY
 from wsrender.robot.indices import task_rows
 from wsrender.robot.model_robot import configuration_rows
 from wsrender.robots.dynamics import gravity_torques, inertia_matrices
+from wsrender.short_repr import short_repr
 
 if TYPE_CHECKING:
     import trimesh
@@ -55,6 +56,8 @@ class Polytope:
     rows: tuple[int, ...]
     position: np.ndarray
     reach: float
+
+    __repr__ = short_repr
 
     @property
     def unit(self) -> str:

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 from wsrender.errors import InputError
 from wsrender.indices.expression import Expression, trace
+from wsrender.short_repr import short_repr
 
 MOST_JOINTS = 200  # that a function may ask for; whether a robot has them is seen when a job is planned
 
@@ -47,6 +48,8 @@ class Expressed:
     function: Callable[..., Any]
     options: tuple[str, ...] = ()
     asks: tuple[str, ...] = ()
+
+    __repr__ = short_repr
 
     def traced(self, n: int, joints: int) -> Expression | float:
         """The function for ``n`` joint values, of inputs q, position, axes, options, asks, one after the other.

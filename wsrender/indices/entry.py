@@ -15,6 +15,7 @@ from wsrender.indices.chain_expression import MOST_JOINTS, NEEDED, Expressed, of
 from wsrender.indices.expression import trace
 from wsrender.indices.functions import of_chain
 from wsrender.indices.units import UnitRule
+from wsrender.short_repr import short_repr
 
 Value = bool | int | float | tuple[float, ...]
 _SCHEMAS: dict[str, dict[str, Any]] = {
@@ -154,6 +155,8 @@ class Index:
     aliases: tuple[str, ...] = ()
     conventions: Mapping[str, Callable[..., Any]] = field(default_factory=dict)
     convention_units: Mapping[str, UnitRule] = field(default_factory=dict)
+
+    __repr__ = short_repr
 
     @property
     def given(self) -> bool:

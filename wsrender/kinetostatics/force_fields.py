@@ -34,6 +34,7 @@ from wsrender.kinetostatics.ramps import JointLimits, ObstacleDistance, SurfaceR
 from wsrender.robot import Robot, as_robot
 from wsrender.robot.indices import task_rows
 from wsrender.robot.model_robot import configuration_rows
+from wsrender.short_repr import short_repr
 from wsrender.volume.table import Table
 
 FELT = 1e-6  # least norm of a limit's direction that can be felt, relative to the largest
@@ -65,6 +66,8 @@ class FieldState:
     nearness: float
     ill_conditioning: float
     unfelt: tuple[str, ...]
+
+    __repr__ = short_repr
 
 
 @dataclass(eq=False, slots=True)
@@ -106,6 +109,9 @@ class ForceField:
         self._normalised = choice.form == "normalised"
         self._size = 6 if self.is_wrench else 3
         self._row_scale = np.array([1 / length] * 3 + [1.0] * 3)[:, None]
+
+    def __repr__(self) -> str:
+        return f"<ForceField {self.chain.name}: {self.choice.form}, {self.device.kind}>"
 
     def force(self, q: Any) -> np.ndarray:
         """Force (3,) [N] at a configuration (n,), or force and torque (6,) [N, N m] of a wrench device.

@@ -12,6 +12,7 @@ import numpy as np
 from wsrender.robot import Robot, robot_with_model
 from wsrender.robots import frames
 from wsrender.robots.plausibility import need_ranges
+from wsrender.short_repr import short_repr
 
 
 @dataclass(eq=False, slots=True)
@@ -27,6 +28,8 @@ class Posture:
     rotation: np.ndarray
     J: np.ndarray
     columns: np.ndarray
+
+    __repr__ = short_repr
 
 
 class PostureKinematics:

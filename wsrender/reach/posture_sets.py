@@ -37,6 +37,7 @@ from wsrender.robot import as_robot
 from wsrender.robot.constraints import constraints_for
 from wsrender.robots.closed_form import ClosedForm, NearlyClosedForm, OpenWristForm, families
 from wsrender.robots.kinematics import Kinematics
+from wsrender.short_repr import short_repr
 
 STARTS = 512  # of the search for postures of a pose
 NEAR = 1e-4  # slack within which a posture that seems outside limits or not there is looked at: folds, rounding
@@ -81,6 +82,8 @@ class Postures:
     least_turns: np.ndarray
     most_turns: np.ndarray
     curves: tuple[SelfMotion | None, ...]
+
+    __repr__ = short_repr
 
     def __len__(self) -> int:
         return len(self.configurations)

@@ -7,6 +7,7 @@ import numpy as np
 from scipy.spatial import KDTree
 
 from wsrender.reach.posture_solver import PoseHolder
+from wsrender.short_repr import short_repr
 
 STEP = 0.05  # rad and reaches: between points of a curve
 FINEST = 1 / 256  # of a step: where no shorter one goes on, the curve ends in a singular configuration
@@ -28,6 +29,8 @@ class SelfMotion:
     closed: bool
     singular: bool
     reasons: np.ndarray = field(default_factory=lambda: np.zeros(0, str))
+
+    __repr__ = short_repr
 
     def __len__(self) -> int:
         return len(self.configurations)

@@ -22,6 +22,7 @@ from wsrender.reach.inverse_solver import InverseSolver, Solutions, closed_form_
 from wsrender.reach.target_list import TargetList, check_unit, target_list
 from wsrender.robot import as_robot
 from wsrender.robots.kinematics import Kinematics
+from wsrender.short_repr import short_repr
 from wsrender.tolerances import TOLERANCES
 
 POSITION_TOLERANCE_M, ANGLE_TOLERANCE_RAD = 1e-5, 1e-5
@@ -60,6 +61,8 @@ class Reachability:
     reasons: np.ndarray
     proven: np.ndarray
     rejected: np.ndarray | None = None
+
+    __repr__ = short_repr
 
 
 def reachable(

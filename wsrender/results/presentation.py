@@ -16,6 +16,7 @@ from typing import Any
 
 from wsrender.errors import InputError, MissingExtraError
 from wsrender.extensions import left_out, load
+from wsrender.short_repr import short_repr
 
 _REGISTRY = "wsrender.analyses.registry:presentations"  # of the layer above, which is read by name alone
 EXTENSIONS = "wsrender.pictures"  # entry points, loaded when the table is first read
@@ -48,6 +49,8 @@ class Picture:
     options: Mapping[str, Any] = field(default_factory=dict)
     saved: bool = True
     analyses: tuple[str, ...] = ()
+
+    __repr__ = short_repr
 
     def missing(self, plot: Any) -> list[str]:
         """What it needs and the result does not hold."""

@@ -10,6 +10,7 @@ from wsrender.errors import ModelError
 from wsrender.notices import Notice
 from wsrender.robot.model_robot import Robot, configuration_rows
 from wsrender.robots.model_warning import ModelWarning
+from wsrender.short_repr import short_repr
 
 if TYPE_CHECKING:
     import trimesh
@@ -26,6 +27,8 @@ class LinkShape:
     vertices: np.ndarray
     faces: np.ndarray
     color: tuple[float, float, float]
+
+    __repr__ = short_repr
 
 
 def link_shapes(robot: Robot, q: Any) -> list[LinkShape]:

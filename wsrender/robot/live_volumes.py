@@ -20,6 +20,7 @@ from wsrender.robot.constraints import constraints_of_job
 from wsrender.robot.indices import evaluation_of_job
 from wsrender.robot.model_robot import Robot
 from wsrender.robots.plausibility import need_ranges
+from wsrender.short_repr import short_repr
 from wsrender.volume.lattice import LatticeBlock, block_of_all
 from wsrender.volume.voxels import Voxels
 
@@ -40,6 +41,8 @@ class LiveVolume:
     pipeline: Pipeline
     unit: str
     best: np.ndarray | None = None
+
+    __repr__ = short_repr
 
 
 class LiveVolumes:

@@ -8,6 +8,7 @@ import numpy as np
 from wsrender.notices import Notice
 from wsrender.robots.chain import Chain
 from wsrender.robots.shapes import Shape
+from wsrender.short_repr import short_repr
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,6 +29,8 @@ class Bodies:
     addresses: np.ndarray  # (L,) int: where ``qpos`` has each joint of the chain, -1 for one that undoes another
     notices: tuple[Notice, ...] = ()
     around: np.ndarray = field(default_factory=lambda: np.zeros((0, 2), int))
+
+    __repr__ = short_repr
 
     def placed_as(self, chain: Chain) -> "Bodies":
         """The same, its base, tool and limits those of another copy of the robot's chain."""

@@ -8,6 +8,7 @@ import numpy as np
 
 from wsrender.robots.kinematics import FAR, Kinematics
 from wsrender.robots.reachable_box import reachable_boxes
+from wsrender.short_repr import short_repr
 
 
 def _identity() -> np.ndarray:
@@ -66,6 +67,8 @@ class Chain(Kinematics):
     T_tip_tool: np.ndarray = field(default_factory=_identity)  # (4, 4) tool in the end-effector frame
     leader_is_revolute: np.ndarray | None = None  # (n,) bool; None: as the first joint that each coordinate moves
     with_branches: "Chain | None" = None  # where bodies on other branches move too: see `dynamic`
+
+    __repr__ = short_repr
 
     @property
     def geometry(self) -> "Chain":

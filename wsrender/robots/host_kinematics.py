@@ -8,6 +8,7 @@ from typing import Self
 import numpy as np
 
 from wsrender.robots.kinematics import FAR, Kinematics
+from wsrender.short_repr import short_repr
 
 SAMPLES = 1 << 14
 MARGIN, FLAT = 0.25, 1e-3  # beyond the samples, of their extent along an axis; where that is nothing, of the diagonal
@@ -27,6 +28,8 @@ class HostKinematics(Kinematics):
     base_jacobian: Callable[[np.ndarray], np.ndarray]
     T_world_base: np.ndarray = field(default_factory=lambda: np.eye(4))
     T_tip_tool: np.ndarray = field(default_factory=lambda: np.eye(4))
+
+    __repr__ = short_repr
 
     @property
     def geometry(self) -> None:

@@ -8,6 +8,7 @@ import numpy as np
 
 from wsrender.content import Content
 from wsrender.errors import InputError
+from wsrender.short_repr import short_repr
 
 
 def unlimited(n: int) -> np.ndarray:
@@ -28,6 +29,8 @@ class JointSpace(Content):
     periodic: np.ndarray  # (n,) bool: a hinge without limits
     efforts: np.ndarray  # (2, n) [N m or N]: least, negative, and largest; infinite where nothing limits them
     velocity_limits: np.ndarray  # (n,) [rad/s or m/s]; infinite where nothing limits them
+
+    __repr__ = short_repr
 
     def __post_init__(self):
         for f in fields(self):

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Self
 import numpy as np
 
 from wsrender.robots.joint_space import JointSpace
+from wsrender.short_repr import short_repr
 
 if TYPE_CHECKING:
     from wsrender.robots.chain import Chain
@@ -24,6 +25,8 @@ class Kinematics(JointSpace, ABC):
     T_world_base: np.ndarray  # (4, 4) placement of the base frame
     T_tip_tool: np.ndarray  # (4, 4) tool in the end-effector frame
     has_inertia: bool
+
+    __repr__ = short_repr
 
     @property
     @abstractmethod

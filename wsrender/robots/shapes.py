@@ -11,6 +11,7 @@ from wsrender.documents.shapes import MOST_HEIGHTS
 from wsrender.errors import ModelError
 from wsrender.robots.frames import body_name
 from wsrender.robots.triangles import ground
+from wsrender.short_repr import short_repr
 
 Kind = Literal["plane", "sphere", "capsule", "ellipsoid", "cylinder", "box", "mesh", "hfield"]
 _GEOMS = {getattr(mujoco.mjtGeom, f"mjGEOM_{kind.upper()}"): kind for kind in get_args(Kind)}
@@ -45,6 +46,8 @@ class Shape:
     bits: tuple[int, int] = (1, 1)  # contype and conaffinity, which are 1 by default
     vertices: np.ndarray = field(default_factory=_none)
     faces: np.ndarray = field(default_factory=lambda: np.zeros((0, 3), np.int32))
+
+    __repr__ = short_repr
 
 
 def shape_of(

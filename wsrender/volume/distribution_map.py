@@ -4,6 +4,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from wsrender.short_repr import short_names
+
 
 @dataclass(frozen=True, eq=False)
 class DistributionMap:
@@ -22,6 +24,9 @@ class DistributionMap:
 
     def __len__(self) -> int:
         return len(self.position)
+
+    def __repr__(self) -> str:
+        return f"<DistributionMap: {len(self):,} samples of {short_names(self.indices, self.units) or 'positions'}>"
 
     def only(self, rows: np.ndarray) -> "DistributionMap":
         """The map of some rows (N,) bool."""

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from wsrender.errors import InputError
+from wsrender.short_repr import short_names
 
 
 @dataclass(frozen=True)
@@ -41,6 +42,9 @@ class Table:
 
     def __len__(self) -> int:
         return len(next(iter(self.columns.values()), ()))
+
+    def __repr__(self) -> str:
+        return f"<Table: {len(self):,} rows of {short_names(self.columns, self.units)}>"
 
     def __getitem__(self, name: str) -> np.ndarray:
         return self.columns[name]

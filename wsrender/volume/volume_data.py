@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from wsrender.errors import InputError
+from wsrender.short_repr import short_names
 from wsrender.volume.voxels import Values, Voxels
 
 KEPT = 1 << 26  # numbers in all arrays of a volume that are kept once they are made
@@ -55,6 +56,11 @@ class VolumeData:
             _check_shape(f"vectors.{name}", values, (*self.shape, 3))
         for name, values in self.best.items():
             _check_shape(f"best.{name}", values, self.shape)
+
+    def __repr__(self) -> str:
+        held = dict.fromkeys(name for by_index in (*self.statistics.values(), self.vectors) for name in by_index)
+        of = f" of {short_names(held, self.units)}" if held else ""
+        return f"<VolumeData: {self.n_occupied:,} voxels of {self.voxel_size_m:g} m in {self.shape}{of}>"
 
     @classmethod
     def of_voxels(

@@ -8,6 +8,7 @@ import numpy as np
 
 from wsrender.errors import ResourceError
 from wsrender.memory import SHARE, available_bytes
+from wsrender.short_repr import short_repr
 
 Values = Mapping[str, np.ndarray]
 LAYERS = 32  # of voxels at a time
@@ -28,6 +29,8 @@ class Voxels:
     statistics: Mapping[str, Values] = field(default_factory=dict)
     vectors: Values = field(default_factory=dict)
     best: Values = field(default_factory=dict)
+
+    __repr__ = short_repr
 
     @classmethod
     def of_arrays(

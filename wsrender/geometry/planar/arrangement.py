@@ -11,6 +11,7 @@ from wsrender.errors import NumericalError
 from wsrender.geometry.components import components
 from wsrender.geometry.planar.curves import TURN, Curves, crossings
 from wsrender.geometry.planar.distances import point_distances
+from wsrender.short_repr import short_repr
 
 # Relative to the size of the set. Each is far above the rounding that a dozen joints collect (1e-15 each), and far
 # below the accuracy that is promised (1e-9).
@@ -46,6 +47,8 @@ class Arrangement:
     vertices: np.ndarray  # (V, 2) [m]
     curves: Curves  # (N,) as given
     carrier_of: np.ndarray  # (N,)
+
+    __repr__ = short_repr
 
     def only(self, rows: np.ndarray) -> "Arrangement":
         """The arrangement with some of its pieces."""

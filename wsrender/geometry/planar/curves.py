@@ -7,6 +7,8 @@ from typing import Self
 
 import numpy as np
 
+from wsrender.short_repr import short_repr
+
 TURN = 2 * np.pi
 FULL = TURN - 1e-12  # sweep [rad] from which an arc is a circle: the rounding of a sum of angles
 
@@ -25,6 +27,8 @@ class Curves:
     radius: np.ndarray  # (N,) [m]; 0 of lines
     low: np.ndarray  # (N,) [m or rad]
     high: np.ndarray  # (N,) [m or rad]
+
+    __repr__ = short_repr
 
     @classmethod
     def of_lines(cls, base: np.ndarray, direction: np.ndarray, low: np.ndarray, high: np.ndarray) -> Self:
@@ -146,6 +150,8 @@ class Crossings:
     second: np.ndarray  # (K,) row of another
     points: np.ndarray  # (K, 2) [m]
     sharpness: np.ndarray  # (K,)
+
+    __repr__ = short_repr
 
 
 def crossings(curves: Curves, tolerance: float) -> Crossings:

@@ -24,6 +24,7 @@ from wsrender.geometry.planar.sweep import swept_sets
 from wsrender.pipeline.sampling import held_chain
 from wsrender.robot import model_chain
 from wsrender.robots.chain import Chain
+from wsrender.short_repr import short_repr
 
 # A joint value this near to a limit, relative to its range, is at the limit: far above the rounding of postures.
 _AT_LIMIT = 1e-7
@@ -42,6 +43,8 @@ class Nearest:
     distance: np.ndarray
     segment: np.ndarray
 
+    __repr__ = short_repr
+
 
 class ExactBoundary:
     """The boundary of the positions that a planar arm reaches within its joint limits, exact to rounding.
@@ -53,6 +56,10 @@ class ExactBoundary:
     def __init__(self, chain: PlanarChain):
         self.chain = chain
         self.sets = swept_sets(chain.joints, chain.tip, chain.size)
+
+    def __repr__(self) -> str:
+        size = f"{len(self.loops)} loops, {self.area:.6g} m²" if self.dimension == 2 else f"{self.dimension} dimensions"
+        return f"<ExactBoundary: {size}>"
 
     @classmethod
     def of(cls, chain: Chain) -> "ExactBoundary":

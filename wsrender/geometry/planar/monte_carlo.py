@@ -16,6 +16,7 @@ from scipy.ndimage import binary_dilation, find_objects, label
 
 from wsrender.geometry.planar.planar_chain import PlanarChain
 from wsrender.geometry.planar.segments import FittedSegment, FitTolerances, fitted_segments, joined_segments
+from wsrender.short_repr import short_repr
 
 Edge = tuple[int, int, int]  # corner of the grid where an edge starts, and its heading: +x, +y, −x, −y
 _STEP = ((1, 0), (0, 1), (-1, 0), (0, -1))
@@ -42,6 +43,8 @@ class CellLoops:
     single: float = 0.0
     parts: int = 0
     chance: int = 0
+
+    __repr__ = short_repr
 
     @property
     def whole(self) -> bool:
@@ -151,6 +154,8 @@ class MonteCarloBoundary:
     critical: np.ndarray
     cell_width_m: float
     tolerances: FitTolerances
+
+    __repr__ = short_repr
 
 
 def monte_carlo_boundary(

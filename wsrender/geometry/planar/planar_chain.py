@@ -15,6 +15,7 @@ from wsrender.errors import ModelError
 from wsrender.geometry.planar.curves import FULL, TURN, Curves, cross, rotation, turned_left
 from wsrender.geometry.reference_frames import reference_frames
 from wsrender.robots.chain import Chain
+from wsrender.short_repr import short_repr
 
 # Sine of the angle by which an axis may be off: models are written with some ten digits.
 _ALIGNED = 1e-9
@@ -35,6 +36,8 @@ class PlanarJoint:
     high: float
     scale: float = 1.0  # displacement = scale q + offset, sign included
     offset: float = 0.0
+
+    __repr__ = short_repr
 
     @property
     def full(self) -> bool:
@@ -141,6 +144,8 @@ class Candidates:
     parent: np.ndarray
     point: np.ndarray
 
+    __repr__ = short_repr
+
 
 def candidates(
     joint: PlanarJoint, curves: Curves, points: np.ndarray, piece_of_point: np.ndarray, tolerance: float
@@ -174,6 +179,8 @@ class Plane:
     origin: np.ndarray
     axes: np.ndarray
 
+    __repr__ = short_repr
+
     @property
     def normal(self) -> np.ndarray:
         """Unit normal (3,): the third axis of a right-handed frame."""
@@ -200,6 +207,8 @@ class PlanarChain:
     tip: np.ndarray
     plane: Plane
     shift: np.ndarray
+
+    __repr__ = short_repr
 
     @property
     def size(self) -> float:

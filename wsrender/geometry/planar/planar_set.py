@@ -8,6 +8,7 @@ from wsrender.errors import NumericalError
 from wsrender.geometry.planar.curves import TURN, Curves, cross
 from wsrender.geometry.planar.distances import orbit_distances
 from wsrender.geometry.planar.planar_chain import Candidates, PlanarJoint, Source
+from wsrender.short_repr import short_repr
 
 _AT_ONCE = 1 << 20  # angles that are held in memory at once
 
@@ -40,6 +41,8 @@ class PlanarSet:
     candidates: Candidates | None = None
     joint: PlanarJoint | None = None
     inner: "PlanarSet | None" = None
+
+    __repr__ = short_repr
 
     @classmethod
     def of_point(cls, point: np.ndarray, **made: "PlanarJoint | PlanarSet | None") -> "PlanarSet":
@@ -102,6 +105,8 @@ class Loop:
 
     rows: np.ndarray
     signed_area: float  # [m²]; of a hole negative
+
+    __repr__ = short_repr
 
     @property
     def hole(self) -> bool:

@@ -11,6 +11,7 @@ import numpy as np
 from wsrender.geometry.fits import CircleFit, fit_circle, fit_line
 from wsrender.geometry.planar.curves import Curves, cross, crossings, turned_left
 from wsrender.geometry.planar.distances import point_distances
+from wsrender.short_repr import short_repr
 from wsrender.volume.table import Table
 
 GEOMETRY = ("x_s", "y_s", "x_e", "y_e", "x_o", "y_o", "R", "sweep")
@@ -36,6 +37,8 @@ class Segment:
     center: np.ndarray | None
     radius: float | None
     sweep: float | None
+
+    __repr__ = short_repr
 
     @property
     def kind(self) -> str:
@@ -86,6 +89,8 @@ class ExactSegment(Segment):
     generated_by: tuple[dict[str, str], ...]
     postures: tuple[np.ndarray, ...]
 
+    __repr__ = short_repr
+
     @property
     def limits_text(self) -> str:
         """``generated_by`` in words: ``joint1 lower, joint2 upper``; other ways after a bar."""
@@ -135,6 +140,8 @@ class FittedSegment(Segment):
     """A segment and the ``points`` (K, 2) [m] that it stands for, from its start to its end."""
 
     points: np.ndarray
+
+    __repr__ = short_repr
 
     @property
     def farthest(self) -> float:

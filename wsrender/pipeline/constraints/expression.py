@@ -12,6 +12,7 @@ from wsrender.pipeline.constraints.region import Point
 from wsrender.robots.chain import Chain
 from wsrender.robots.dynamics import gravity_torques, inertia_matrices
 from wsrender.robots.kinematics import Kinematics
+from wsrender.short_repr import short_repr
 
 
 @dataclass(frozen=True)
@@ -29,6 +30,8 @@ class ExpressionConstraint:
     asks: tuple[str, ...] = ()
     chain: Chain | None = None
     gravity: Point = (0.0, 0.0, 0.0)
+
+    __repr__ = short_repr
 
     @property
     def device(self) -> Expressed:

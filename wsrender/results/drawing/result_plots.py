@@ -21,6 +21,7 @@ from wsrender.results.drawing.table_curves import curves
 from wsrender.results.drawing.vector_field import vector_planes
 from wsrender.results.drawing.warned import Kind, heading
 from wsrender.results.presentation import Picture, all_pictures, picture_of, pictures_of
+from wsrender.short_repr import short_repr
 from wsrender.volume.distribution_map import DistributionMap
 from wsrender.volume.table import Table
 from wsrender.volume.volume_data import VOXEL_LABELS, VolumeData
@@ -46,6 +47,8 @@ class ResultPlots:
     volumes: Mapping[str, VolumeData] = field(default_factory=dict)
     meshes: "Mapping[str, trimesh.Trimesh]" = field(default_factory=dict)
     arms: int = 1  # robots whose skeletons stand one after the other
+
+    __repr__ = short_repr
 
     @property
     def pictures(self) -> list[Picture]:

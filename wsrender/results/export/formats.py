@@ -15,6 +15,7 @@ from typing import Any, Literal
 
 from wsrender.errors import InputError, MissingExtraError
 from wsrender.extensions import left_out, load
+from wsrender.short_repr import short_repr
 
 EXTENSIONS = "wsrender.formats"  # entry points, loaded when the table is first read
 GLB_FRAME = "world, +Y up"
@@ -55,6 +56,8 @@ class Format:
     extra: str | None = None
     written: Literal["kept", "always", "asked"] = "asked"
     frame: str | None = None
+
+    __repr__ = short_repr
 
     def write(self, data: Any, path: str | Path) -> None:
         """Write a file. Raises MissingExtraError, and what the writer raises."""
