@@ -3,9 +3,11 @@
 import sys
 import time
 from html import escape
+from importlib import import_module
 from typing import Any
 
 UPDATE_EVERY_S = 0.1
+_CARDS = "wsrender.results.cards"  # of a layer above, which is read by name alone
 
 
 def in_notebook() -> bool:
@@ -13,6 +15,11 @@ def in_notebook() -> bool:
     ipython = sys.modules.get("IPython")
     shell = None if ipython is None else ipython.get_ipython()
     return getattr(shell, "kernel", None) is not None
+
+
+def mime_bundle(what: Any, include: Any = None, exclude: Any = None) -> dict[str, Any]:
+    """A notebook's display of ``what``, as a method ``_repr_mimebundle_``; elsewhere, as in a terminal, its text."""
+    return import_module(_CARDS).mime_bundle(what) if in_notebook() else {"text/plain": repr(what)}
 
 
 def display(what: Any) -> Any:

@@ -160,9 +160,12 @@ def test_a_notebook_shows_a_robot_and_keeps_no_data(page, notebook):
     page.keyboard.press("Control+Enter")
     settled(page)
     assert colors(page) > 100
+    card = page.locator(".jp-OutputArea .wsrender-card")
+    assert "6 joints" in card.inner_text()
     page.keyboard.press("Control+s")
     end = time.monotonic() + 30
     while '"output_type"' not in path.read_text():
         assert time.monotonic() < end
         time.sleep(0.2)
-    assert path.stat().st_size < 50_000
+    assert "wsrender-card" in path.read_text()  # for who reads it without a kernel
+    assert path.stat().st_size < 80_000  # the card's picture, none of the view's data

@@ -158,3 +158,19 @@ class Job:
 
     def __repr__(self) -> str:
         return f"Job({self.id!r}, {self.state})"
+
+    def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> dict[str, Any]:
+        from wsrender.results.cards import Card
+
+        record, running = self.record, not self.finished
+        told = {name.removesuffix("_at"): record.get(name) for name in ("created_at", "started_at", "finished_at")}
+        told |= {"labels": ", ".join(f"{key}={value}" for key, value in (record.get("labels") or {}).items())}
+        told |= {"now": self.progress.get("message") if running else None}
+        card = Card(
+            f"Job {self.id} · {record.get('analysis')}",
+            [self.state.replace("_", " ")],
+            [str(self.error.get("detail") or self.error.get("title"))] if self.error else [],
+            {name: str(value) for name, value in told.items() if value},
+            share=float(self.progress.get("fraction") or 0) if running else None,
+        )
+        return card.bundle(repr(self))

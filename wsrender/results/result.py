@@ -11,6 +11,7 @@ import numpy as np
 
 from wsrender.documents.format import FORMAT
 from wsrender.errors import InputError, MissingExtraError, RenderError, RenderWarning
+from wsrender.notebook import mime_bundle
 from wsrender.results import drawing, render
 from wsrender.results.export.artifacts import (
     DOCUMENT,
@@ -146,10 +147,7 @@ class Result:
 
         return show(self, port, block)
 
-    def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> Any:
-        from wsrender.window import mime_bundle
-
-        return mime_bundle(self, include, exclude)
+    _repr_mimebundle_ = mime_bundle
 
     def _robot_entries(self) -> list[dict[str, Any]]:
         """What the document says of each robot that a picture shows. Raises InputError for a mechanism."""

@@ -12,6 +12,7 @@ import numpy as np
 from wsrender import notices
 from wsrender.documents.robot import RobotSpec, Transform
 from wsrender.errors import InputError, MissingInertiaError, ModelError
+from wsrender.notebook import mime_bundle
 from wsrender.notices import Notice
 from wsrender.robot.body_tables import pair_table, shape_table
 from wsrender.robot.tool_shapes import attached
@@ -282,8 +283,7 @@ class Robot:
         """
         return import_module(_WINDOW).show(self, port, block)
 
-    def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> Any:
-        return import_module(_WINDOW).mime_bundle(self, include, exclude)
+    _repr_mimebundle_ = mime_bundle
 
     def _kinematics(self, q, precision, device, with_inertia=False):
         from wsrender.engine import evaluate_kinematics

@@ -4,6 +4,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from wsrender.notebook import mime_bundle
 from wsrender.short_repr import short_names
 
 
@@ -27,6 +28,8 @@ class DistributionMap:
 
     def __repr__(self) -> str:
         return f"<DistributionMap: {len(self):,} samples of {short_names(self.indices, self.units) or 'positions'}>"
+
+    _repr_mimebundle_ = mime_bundle
 
     def only(self, rows: np.ndarray) -> "DistributionMap":
         """The map of some rows (N,) bool."""

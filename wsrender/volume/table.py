@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from wsrender.errors import InputError
+from wsrender.notebook import mime_bundle
 from wsrender.short_repr import short_names
 
 
@@ -45,6 +46,8 @@ class Table:
 
     def __repr__(self) -> str:
         return f"<Table: {len(self):,} rows of {short_names(self.columns, self.units)}>"
+
+    _repr_mimebundle_ = mime_bundle
 
     def __getitem__(self, name: str) -> np.ndarray:
         return self.columns[name]

@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from wsrender.errors import InputError
+from wsrender.notebook import mime_bundle
 from wsrender.short_repr import short_names
 from wsrender.volume.voxels import Values, Voxels
 
@@ -61,6 +62,8 @@ class VolumeData:
         held = dict.fromkeys(name for by_index in (*self.statistics.values(), self.vectors) for name in by_index)
         of = f" of {short_names(held, self.units)}" if held else ""
         return f"<VolumeData: {self.n_occupied:,} voxels of {self.voxel_size_m:g} m in {self.shape}{of}>"
+
+    _repr_mimebundle_ = mime_bundle
 
     @classmethod
     def of_voxels(

@@ -1,7 +1,6 @@
 """The viewer around a result or a robot: a tab of the browser, or a notebook's widget."""
 
 import sys
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from wsrender.notebook import in_notebook
@@ -41,16 +40,6 @@ def in_tab(what: "Result | Robot", port: int = 0) -> LocalView:
 def in_widget(what: "Result | Robot") -> Any:
     """``what`` in a notebook. Raises MissingExtraError without the extra ``notebook``."""
     return widget_of(*_shown(what))
-
-
-def mime_bundle(what: "Result | Robot", include: Any, exclude: Any) -> Mapping[str, Any] | tuple[Any, ...]:
-    """What a notebook shows of ``what``: a widget, or its text where there can be none."""
-    if in_notebook():
-        try:
-            return in_widget(what)._repr_mimebundle_(include=include, exclude=exclude)
-        except ImportError:
-            pass  # without the extra there is the text
-    return {"text/plain": repr(what)}
 
 
 def _shown(what: "Result | Robot") -> tuple[View, Interactive]:

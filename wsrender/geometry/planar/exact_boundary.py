@@ -21,6 +21,7 @@ from wsrender.geometry.planar.planar_chain import PlanarChain, Plane, planar_cha
 from wsrender.geometry.planar.planar_set import Loop, PlanarSet, loops_of, postures
 from wsrender.geometry.planar.segments import ExactSegment
 from wsrender.geometry.planar.sweep import swept_sets
+from wsrender.notebook import mime_bundle
 from wsrender.pipeline.sampling import held_chain
 from wsrender.robot import model_chain
 from wsrender.robots.chain import Chain
@@ -60,6 +61,8 @@ class ExactBoundary:
     def __repr__(self) -> str:
         size = f"{len(self.loops)} loops, {self.area:.6g} m²" if self.dimension == 2 else f"{self.dimension} dimensions"
         return f"<ExactBoundary: {size}>"
+
+    _repr_mimebundle_ = mime_bundle
 
     @classmethod
     def of(cls, chain: Chain) -> "ExactBoundary":

@@ -48,11 +48,11 @@ def paper_style() -> Iterator[None]:
         yield
 
 
-def png(figure: Figure) -> bytes:
-    """A figure as a PNG file; equal figures give equal bytes."""
+def png(figure: Figure, dpi: float = DPI) -> bytes:
+    """A figure as a PNG file of so many dots an inch; equal figures give equal bytes."""
     file = BytesIO()
     with paper_style():
-        figure.savefig(file, format="png", metadata={"Software": None})
+        figure.savefig(file, format="png", dpi=dpi, metadata={"Software": None})
     return file.getvalue()
 
 

@@ -39,7 +39,7 @@ def method_text(method: Any) -> str:
 def summary_text(document: dict[str, Any]) -> str:
     """Headline, warnings, admitted samples, volumes, bounds, global and local indices, as several lines."""
     head = [f"  {line}" for line in head_lines(document)]
-    facts = [f"  {name:<24}{value}" for name, value in _facts(document)]
+    facts = [f"  {name:<24}{value}" for name, value in summary_facts(document)]
     table = _index_table(document.get("indices") or {}, "admitted samples" if document.get("samples") else "samples")
     return "\n".join([sampling_text(document), *head, *facts, *table, *_difference_table(document)])
 
@@ -52,7 +52,8 @@ def _admissions(document: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]
         yield f"admitted of {side}", samples
 
 
-def _facts(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
+def summary_facts(document: dict[str, Any]) -> Iterator[tuple[str, str]]:
+    """What a summary says beside the headline and the indices: (name, text)."""
     headline = document.get("headline") or {}
     for name, samples in _admissions(document):
         reasons = ", ".join(f"{reason} {number:,}" for reason, number in samples["rejected"].items())

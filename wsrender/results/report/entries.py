@@ -77,15 +77,15 @@ def records_html(records: Sequence[Mapping[str, Any]]) -> str:
     return f"<table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>{_rest(len(records))}"
 
 
-def table_html(table: Table) -> str:
+def table_html(table: Table, most_rows: int = MOST_ROWS) -> str:
     """The first rows of a table, with units."""
     head = "".join(f"<th>{escape(_column_label(name, table.units.get(name)))}</th>" for name in table.columns)
-    rows = "".join(f"<tr>{_cells(row)}</tr>" for row in _table_rows(table))
-    return f"<table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>{_rest(len(table))}"
+    rows = "".join(f"<tr>{_cells(row)}</tr>" for row in _table_rows(table, most_rows))
+    return f"<table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>{_rest(len(table), most_rows)}"
 
 
-def _table_rows(table: Table) -> Iterator[list[Any]]:
-    for row in range(min(len(table), MOST_ROWS)):
+def _table_rows(table: Table, most_rows: int) -> Iterator[list[Any]]:
+    for row in range(min(len(table), most_rows)):
         record = {name: _plain(column[row]) for name, column in table.columns.items()}
         yield [_cell(record, name) for name in record]
 
@@ -123,5 +123,5 @@ def _is_plain(value: Any) -> bool:
     return not any(isinstance(part, Mapping | list | tuple) for part in parts)
 
 
-def _rest(rows: int) -> str:
-    return f"<p class=note>{rows:,} rows; the first {MOST_ROWS} are shown.</p>" if rows > MOST_ROWS else ""
+def _rest(rows: int, most_rows: int = MOST_ROWS) -> str:
+    return f"<p class=note>{rows:,} rows; the first {most_rows} are shown.</p>" if rows > most_rows else ""
