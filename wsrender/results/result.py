@@ -12,7 +12,7 @@ import numpy as np
 from wsrender.documents.format import FORMAT
 from wsrender.errors import InputError, MissingExtraError, RenderError, RenderWarning
 from wsrender.notebook import mime_bundle
-from wsrender.results import drawing, render
+from wsrender.results import conversion, drawing, render
 from wsrender.results.export.artifacts import (
     DOCUMENT,
     NAMED_PARTS,
@@ -40,7 +40,10 @@ from wsrender.volume.table import Table
 from wsrender.volume.volume_data import VolumeData
 
 if TYPE_CHECKING:
+    import pandas
+    import pyvista
     import trimesh
+    import xarray
     from matplotlib.figure import Figure
 
     from wsrender.results.drawing.result_plots import ResultPlots
@@ -202,6 +205,55 @@ class Result:
     def summary(self) -> str:
         """The main numbers as a few lines of text."""
         return summary_text(self.document)
+
+    def to_pandas(self, name: str | None = None) -> "pandas.DataFrame":
+        """A table, or the map, as a DataFrame, with units in its ``attrs["units"]``.
+
+        ``name``: of a table, "map" or "sample"; by default the map, else the first table, else the sample. Raises
+        InputError for one that the result does not hold, MissingExtraError without the extra ``data``.
+        """
+        held = {"map": self.map, **self.tables, "sample": self.sample}
+        found = conversion.one_of("table", {key: data for key, data in held.items() if data is not None}, name)
+        return conversion.data_frame(found, self.document)
+
+    def to_xarray(self, name: str | None = None) -> "xarray.Dataset":
+        """The voxels, or a table that is a map of cells, as a Dataset with labelled axes and units in their ``attrs``.
+
+        ``name``: of a further volume or of such a table; by default the volume, else the first. Empty voxels are NaN,
+        of whole numbers 0. Raises InputError for one that the result does not hold, MissingExtraError without the
+        extra ``data``.
+        """
+        maps = {key: table for key, table in self.tables.items() if table.grid}
+        found = conversion.one_of("volume or map", {**self._all_volumes, **maps}, name)
+        return conversion.dataset(found, self.document)
+
+    def to_pyvista(self, name: str | None = None) -> "pyvista.DataSet":
+        """The voxels as an ImageData, a mesh as a PolyData [m, world frame]; units in its ``user_dict["units"]``.
+
+        ``name``: of a further volume or of a mesh; by default the volume, else the first of them. Raises InputError for
+        one that the result does not hold, MissingExtraError without the extra ``render``.
+        """
+        found = conversion.one_of("volume or mesh", {**self._all_volumes, **self._all_meshes}, name)
+        made = conversion.image_data if isinstance(found, VolumeData) else conversion.poly_data
+        return made(found, self.document)
+
+    def to_trimesh(self, name: str | None = None) -> "trimesh.Trimesh":
+        """A mesh [m, world frame], by default the first; of a result without meshes the ``surface`` of its voxels.
+
+        Raises InputError for one that the result does not hold.
+        """
+        mesh = conversion.one_of("mesh", self._all_meshes, name).copy()
+        mesh.units = "m"
+        return mesh
+
+    @property
+    def _all_volumes(self) -> dict[str, VolumeData]:
+        volumes = {"volume": self.volume, **self.volumes}
+        return {key: volume for key, volume in volumes.items() if volume is not None}
+
+    @property
+    def _all_meshes(self) -> "dict[str, trimesh.Trimesh]":
+        return _meshes(self)
 
     def save(self, folder: str | Path, formats: Iterable[str] = ()) -> None:
         """Write document, data, meshes and pictures to a folder, and list them in ``document["artifacts"]``.
