@@ -1,6 +1,8 @@
 """Of every analysis: malformed documents are refused by the field at fault, and a job says what it will take."""
 
+import itertools
 import math
+import re
 
 import pytest
 
@@ -13,6 +15,8 @@ from wsrender.errors import DocumentError
 from wsrender.run import plan
 
 NOWHERE = {"no such field": [None]}  # no value of any field
+ODD = (NOWHERE, {}, [], "", -1, float("nan"), None, [None], [[]], True)
+IN_WORDS = re.compile(r"[\w .]+")  # a path of fields, without what pydantic calls members of a union
 
 
 def fields():
@@ -37,6 +41,18 @@ def test_unknown_fields_are_refused(analysis):
 def test_a_field_of_the_wrong_kind_is_named(analysis, field):
     first = refused({**job_of(analysis), field: NOWHERE})[0]
     assert first == field or first.startswith(f"{field}.")
+
+
+@pytest.mark.parametrize("name", golden_names())
+def test_what_is_wrong_is_named_by_fields_alone(name):
+    job = job_of(name)
+    for field, value in itertools.product(job_classes()[job["analysis"]].model_fields, ODD):
+        try:
+            parse_job({**job, field: value})
+        except DocumentError as refusal:
+            paths = [path for path, _ in refusal.problems]
+            assert all(IN_WORDS.fullmatch(path) for path in paths), (value, paths)
+            assert len(paths) == len(set(paths)), (value, paths)
 
 
 @pytest.mark.parametrize("analysis", analyses())

@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import BeforeValidator
 
 from wsrender.documents.document import Document
-from wsrender.documents.quantities import PositiveNumber, numbers_of, real
+from wsrender.documents.quantities import PositiveNumber, numbers_of, quoted, real
 from wsrender.documents.transform import LARGEST, number_list
 
 COORDINATES = ("x_m", "y_m", "z_m", "roll_deg", "pitch_deg", "yaw_deg")
@@ -149,6 +149,17 @@ class TableEdge(Document):
         own = np.stack([x - self.center_m[0], y - self.center_m[1]], axis=-1) @ self._axes.T
         inwards = (np.array(self.size_m) / 2 - np.abs(own)).min(axis=-1)
         return (inwards >= -NEARLY) & (inwards <= self.clamp_m + NEARLY)
+
+
+def _mounting(value: Any) -> Any:
+    if isinstance(value, TableEdge) or (isinstance(value, str) and value in _MOUNTED):
+        return value
+    if isinstance(value, Mapping):
+        return TableEdge.model_validate(value)
+    raise ValueError(f"must be one of {quoted(_MOUNTED)}, or a table's edge as an object")
+
+
+AnyMounting = Annotated[Mounting | TableEdge, BeforeValidator(_mounting)]
 
 
 def mounted(mounting: Mounting | TableEdge) -> np.ndarray:

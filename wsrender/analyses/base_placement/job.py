@@ -1,6 +1,6 @@
 """The job ``base_placement``: where the base of a robot stands best for given targets."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import Annotated, Any, ClassVar, Literal, Self
 
 import numpy as np
@@ -10,7 +10,7 @@ from wsrender.documents.arm import Arm, ArmPath, robot_named
 from wsrender.documents.constraints import Constrained
 from wsrender.documents.format import JobDocument
 from wsrender.documents.options import IndexOptions
-from wsrender.documents.placements import ANGLES, Mounting, PlacementSpace, TableEdge
+from wsrender.documents.placements import ANGLES, AnyMounting, PlacementSpace, TableEdge
 from wsrender.documents.quantities import Name, is_empty, is_none, number_rows, sequence
 from wsrender.documents.robot import RobotSpec
 from wsrender.documents.several_robots import MOST_ROBOTS, NamedArm, same_names
@@ -20,9 +20,10 @@ MOST_PLACEMENTS = 50_000_000
 
 
 def _index(value: Any) -> Any:
-    if value is None or isinstance(value, str):
+    if value is None or (isinstance(value, str) and value):
         return value
-    if isinstance(value, Mapping) or len(names := sequence(value)) != 2 or not all(isinstance(n, str) for n in names):
+    names = sequence(value) if isinstance(value, list | tuple | np.ndarray) else []
+    if len(names) != 2 or not all(isinstance(name, str) and name for name in names):
         raise ValueError("must be the name of an index, or a list of two")
     return tuple(names)
 
@@ -66,7 +67,7 @@ class BasePlacementJob(ListedTargets, Constrained, Arm, JobDocument):
     """What each of points_m counts; null: 1 each."""
     over: PlacementSpace
     """Where the base may stand. ``robot.placement`` is how it stands in the frame that is placed."""
-    mounting: Mounting | TableEdge = "floor"
+    mounting: AnyMounting = "floor"
     """How the base is mounted in the frame that is placed, before ``robot.placement``: its z is that frame's z on the
     floor, its x on a wall, its -z under a ceiling; on the edge of a table as on the floor, and only near that edge."""
     index: Annotated[Name | tuple[Name, Name] | None, BeforeValidator(_index)] = None

@@ -86,8 +86,10 @@ def _steps(value: Any) -> int | tuple[int, ...]:
 
 
 def _evaluations(value: Any) -> Any:
-    if isinstance(value, EvaluationsInFile | Mapping):
+    if isinstance(value, EvaluationsInFile):
         return value
+    if isinstance(value, Mapping):
+        return EvaluationsInFile.model_validate(value)
     return tuple(tuple(None if x is None else real(x) for x in sequence(row)) for row in sequence(value))
 
 
