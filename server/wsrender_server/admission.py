@@ -186,10 +186,9 @@ class Admissions:
     async def of(self, owner: str, text: bytes) -> Admitted:
         """The submission of a body; raises as `admit` and `check_uploads`. ``discard`` it in the end."""
         if len(text) <= LONGEST_HERE:
-            found = await run_in_threadpool(admit, text, self._max_samples)
-        else:
-            scratch = self._store.files.root / "scratch"
-            found = await self._process.run(_admit_aside, text, self._max_samples, scratch, timeout_s=LONGEST_S)
+            return await run_in_threadpool(self._admitted, owner, text)
+        scratch = self._store.files.root / "scratch"
+        found = await self._process.run(_admit_aside, text, self._max_samples, scratch, timeout_s=LONGEST_S)
         if isinstance(found, dict):
             raise refusal(found, found["status"])
         try:
@@ -198,6 +197,12 @@ class Admissions:
         except BaseException:
             found.discard()
             raise
+        return found
+
+    def _admitted(self, owner: str, text: bytes) -> Admitted:
+        """The submission of a short body, in one turn of a thread: turns are what many requests at once wait for."""
+        found = admit(text, self._max_samples)
+        check_uploads(self._store, owner, found.document.uploads, found.prefix)
         return found
 
     async def check_edited(self, owner: str, text: bytes) -> None:

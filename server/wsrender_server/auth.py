@@ -66,6 +66,11 @@ class Authenticator:
             self._required, self._looked = self._store.has_key(), now
         return self._required
 
+    @property
+    def asks_database(self) -> bool:
+        """Whether the next question needs the database: then it is asked in a thread."""
+        return self._required or monotonic() - self._looked >= LOOK_AGAIN_S
+
     def principal(self, secret: str) -> Principal | None:
         """Whose secret it is; None for an unknown or revoked key."""
         # Looking up the hash of a secret tells nothing about other secrets, whatever time it takes.
@@ -131,10 +136,14 @@ def check_binding(host: str, has_keys: bool) -> None:
 def needs(right: Scope) -> Callable[..., Principal]:
     """The dependency of a route that needs a right."""
 
-    def principal(
+    async def principal(
         request: Request, credentials: Annotated[HTTPAuthorizationCredentials | None, Security(_bearer)]
     ) -> Principal:
-        asking = entitled(request, credentials and credentials.credentials, right)
+        secret = credentials and credentials.credentials
+        if request.app.state.authenticator.asks_database:
+            asking = await run_in_threadpool(entitled, request, secret, right)
+        else:
+            asking = entitled(request, secret, right)
         request.state.owner = asking.owner
         return asking
 

@@ -4,6 +4,7 @@ Mechanisms with closed loops have theirs under ``mjcf/mechanisms/``: they are no
 their own documents; the models are for simulation, and check the analyses.
 """
 
+import re
 import tomllib
 from dataclasses import dataclass
 from difflib import get_close_matches
@@ -13,6 +14,8 @@ from xml.etree import ElementTree
 
 import wsrender
 from wsrender.errors import ModelError
+
+_NAME = re.compile(r"\w+")  # no part of a path
 
 
 @dataclass(frozen=True)
@@ -45,10 +48,13 @@ def names() -> list[str]:
 
 def find(name: str) -> Path:
     """The MJCF file of a library robot by its name or an alias; raises ModelError listing the names otherwise."""
+    # A server asks often: the folder of one robot says what the list of all would.
+    path = _folder() / str(name) / f"{name}.xml"
+    if _NAME.fullmatch(str(name)) and path in path.parent.glob("*.xml"):
+        return path
+    if alias := _aliases(_folder()).get(str(name)):
+        return _folder() / alias / f"{alias}.xml"
     known = names()
-    name = name if name in known else _aliases(_folder()).get(name, name)
-    if name in known:
-        return _folder() / name / f"{name}.xml"
     close = get_close_matches(str(name).lower().replace("-", "_"), known, n=1, cutoff=0.5)
     hint = f'; did you mean "{close[0]}"?' if close else "."
     if name in {mechanism.name for mechanism in mechanisms()}:

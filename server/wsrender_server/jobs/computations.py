@@ -1,7 +1,7 @@
 """The job table seen by the dispatcher: computations to start, their progress, their ends."""
 
 import time
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from contextlib import suppress
 from datetime import UTC, datetime
 from typing import Any
@@ -52,6 +52,19 @@ class ComputationStore:
         query = query.order_by(Computation.priority.desc(), Computation.created_at)
         with self.transactions.read() as session:
             return {row.id: (ComputationState(row.state), row.attempt) for row in session.execute(query)}
+
+    def in_turn(self, computations: Collection[str]) -> list[str]:
+        """Those of some computations that are unfinished, the most urgent first; of equals the first of every owner.
+
+        Then the second of every owner, and so on.
+        """
+        of_owner = {"partition_by": (Computation.priority, Computation.owner), "order_by": Computation.created_at}
+        place = func.row_number().over(**of_owner)
+        query = select(Computation.id).where(Computation.state.in_(UNFINISHED))
+        query = query.order_by(Computation.priority.desc(), place, Computation.created_at)
+        wanted = frozenset(computations)
+        with self.transactions.read() as session:
+            return [key for key in session.scalars(query) if key in wanted]
 
     def computation(self, computation_id: str) -> ComputationRecord | None:
         """A computation with its document."""

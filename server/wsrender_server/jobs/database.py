@@ -11,7 +11,7 @@ from sqlalchemy import Connection, Engine, create_engine, event, func, make_url,
 from sqlalchemy.exc import DBAPIError, IntegrityError
 from sqlalchemy.orm import Session
 
-from wsrender_server.jobs.faults import StoreUnavailable
+from wsrender_server.jobs.faults import CommitUnknown, StoreUnavailable
 
 LOCK_WAIT_S = 5.0
 
@@ -68,19 +68,36 @@ class Transactions:
         self.engine = engine
         self._writing = engine.execution_options(writes=True)
         # SQLite has one writer; threads of this process queue here rather than poll its lock.
+        self.written = 0  # goes on with every transaction that may have changed something
         self._turn = threading.Lock() if engine.dialect.name == "sqlite" else None
 
     @contextmanager
     def read(self) -> Iterator[Session]:
         """A session that only reads."""
-        with _faults(), Session(self.engine) as session, session.begin():
-            yield session
+        try:
+            with Session(self.engine) as session, session.begin():
+                yield session
+        except DBAPIError as error:
+            raise _fault(error) from error
 
     @contextmanager
     def write(self) -> Iterator[Session]:
-        """A session that is committed at the end of the block, or rolled back by an exception."""
-        with _faults(), self._my_turn(), Session(self._writing) as session, session.begin():
-            yield session
+        """A session that is committed at the end of the block, or rolled back by an exception.
+
+        Raises CommitUnknown where the database has not said which of the two it was; IntegrityError as it is.
+        """
+        committing = False
+        try:
+            with self._my_turn(), Session(self._writing) as session, session.begin():
+                yield session
+                session.flush()
+                committing = self.engine.dialect.name != "sqlite"  # which says so, and rolls back
+        except IntegrityError:
+            raise
+        except DBAPIError as error:
+            raise _fault(error, committing) from error
+        finally:
+            self.written += 1
 
     @contextmanager
     def _my_turn(self) -> Iterator[None]:
@@ -95,11 +112,9 @@ class Transactions:
             raise StoreUnavailable("the database is busy; nothing was changed, try again")
 
 
-@contextmanager
-def _faults() -> Iterator[None]:
-    try:
-        yield
-    except IntegrityError:
-        raise
-    except DBAPIError as error:
-        raise StoreUnavailable(f"the database does not answer ({error.orig}); nothing was changed") from error
+def _fault(error: DBAPIError, committing: bool = False) -> StoreUnavailable:
+    if committing:
+        return CommitUnknown(
+            f"the database has not said whether it took the change ({error.orig}); look, then try again"
+        )
+    return StoreUnavailable(f"the database does not answer ({error.orig}); nothing was changed")

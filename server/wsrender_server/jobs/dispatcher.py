@@ -21,6 +21,8 @@ from wsrender_server.jobs.task import Limits, Outcome, Step, Verdict, error
 from wsrender_server.settings import Settings
 
 TICK_S = 0.1
+LOOK_S = 1.0  # between looks at a table that this process has not changed
+MOST_LAUNCHES = 16  # at a tick: whoever asks the server for anything has their turn in between
 RECORD_S = 0.5
 PAUSE_S = 1.0
 MOST_LOSSES = 4
@@ -48,6 +50,10 @@ class Dispatcher:
         self._shares = defaultdict[int, FairShare](FairShare)  # by priority: turns count among equals
         self._generation = 0  # of the scheduler's losses
         self._recorded = 0.0
+        self._ticked = 0.0
+        self._known: dict[str, tuple[ComputationState, int]] = {}  # what is unfinished, as it was when it was looked at
+        self._looked = 0.0
+        self._written = -1  # transactions of this process by then
         self._made = time.time()
         self._served = time.monotonic()  # when a worker was last there
         self._seen: dict[str, float] = {}  # when a worker of each target was last alive
@@ -123,20 +129,38 @@ class Dispatcher:
                 del self._attempts[computation_id]
 
     def _tick(self) -> None:
-        self.store.sole_use.keep()
         self._handle_inbox()
+        now = time.monotonic()
+        if now - self._ticked < TICK_S:  # messages come by the hundred, and each wakes this thread
+            return
+        self._ticked = now
+        self.store.sole_use.keep()
         self.store.time_out()
         self._update_targets()
         self._leave_lost_targets()
-        known = self.store.unfinished()
+        known = self._unfinished(now)
         old = [key for key, attempt in self._attempts.items() if known.get(key, (None, 0))[1] != attempt.record.attempt]
         unwanted = [key for key, (state, _) in known.items() if state == ComputationState.STOPPING]
         self._stop(set(old + unwanted))
-        ready = self._targets or not self.engine.embedded  # our own workers come anyway, and say what they are
-        for computation_id, (state, _) in known.items():
-            if ready and state != ComputationState.STOPPING and computation_id not in self._attempts:
-                self._launch(computation_id)
+        if self._targets or not self.engine.embedded:  # our own workers come anyway, and say what they are
+            self._launch_some()
         self._record_progress()
+
+    def _unfinished(self, now: float) -> Mapping[str, tuple[ComputationState, int]]:
+        """What is unfinished: thousands of rows, read when anything was written."""
+        written = self.store.transactions.written
+        if written != self._written or now - self._looked >= LOOK_S:
+            self._known, self._written, self._looked = self.store.unfinished(), written, now
+        return self._known
+
+    def _launch_some(self) -> None:
+        """Hand out what waits, of much the first; owners take turns."""
+        stopping = ComputationState.STOPPING
+        ready = [key for key, (state, _) in self._known.items() if state != stopping and key not in self._attempts]
+        if len(ready) > MOST_LAUNCHES:
+            ready = self.store.in_turn(ready)[:MOST_LAUNCHES]
+        for computation_id in ready:
+            self._launch(computation_id)
 
     def _handle_inbox(self) -> None:
         """Handle what came in; where the database does not answer, keep the rest for later."""

@@ -10,6 +10,7 @@
         ├── QuotaExceeded           the owner's models take as many bytes as allowed
         ├── ResultExpired           the job has succeeded, and its result is no longer kept
         ├── StoreUnavailable        the database is locked, gone or on a full disk; try again
+        │   └── CommitUnknown       it was gone before it said whether it took the change
         ├── DiskFull                less disk is free than the server keeps in reserve; try again
         └── EngineUnavailable       no scheduler or worker answers; try again
             └── EngineSlow          the scheduler is there, and takes its time
@@ -69,6 +70,10 @@ class StoreUnavailable(JobFault):
 
     code = "database_unavailable"
     retryable = True
+
+
+class CommitUnknown(StoreUnavailable):
+    """The database was lost between a commit and its answer: the change was made, or it was not."""
 
 
 class DiskFull(JobFault):

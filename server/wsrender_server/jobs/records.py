@@ -97,6 +97,8 @@ class Submission:
     job: JobRecord
     replayed: bool = False
     cached: bool = False
+    computation: str = ""
+    """Id of what it waits for; empty for a replayed one."""
 
 
 @dataclass(frozen=True)

@@ -3,8 +3,9 @@
 import re
 import uuid
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -19,7 +20,13 @@ from wsrender_server.jobs.changes import Changes
 from wsrender_server.jobs.computations import ComputationStore
 from wsrender_server.jobs.database import Transactions, open_database
 from wsrender_server.jobs.documents import CanonicalDocument
-from wsrender_server.jobs.faults import IdempotencyConflict, InvalidTransition, QueueFull, StoreUnavailable
+from wsrender_server.jobs.faults import (
+    CommitUnknown,
+    IdempotencyConflict,
+    InvalidTransition,
+    QueueFull,
+    StoreUnavailable,
+)
 from wsrender_server.jobs.files import DataFolder
 from wsrender_server.jobs.identity import Identity
 from wsrender_server.jobs.keys import KeyStore
@@ -41,6 +48,7 @@ from wsrender_server.jobs.sole_use import SoleUse, bind, locked_folder
 from wsrender_server.jobs.tables import (
     ArtifactFile,
     Computation,
+    DeviceTarget,
     Event,
     Job,
     Label,
@@ -49,15 +57,52 @@ from wsrender_server.jobs.tables import (
     job_record,
     subscribe,
 )
+from wsrender_server.jobs.together import Together
 from wsrender_server.migrations import upgrade
 from wsrender_server.settings import Settings
 
 Events = list[EventRecord]  # "list" is a method below
 Jobs = list[JobRecord]
+Answers = list[Submission | str | Exception]
 
 LONGEST_TEXT, MOST_LABELS, HIGHEST_PRIORITY = 255, 32, 1000
 NOT_IN_TEXT = re.compile("[\x00-\x1f\x7f\ud800-\udfff]")  # controls, and lone surrogates, which no database keeps
 ATTEMPTS = 5  # of a submission whose twin is submitted at the same moment
+
+
+@dataclass(frozen=True)
+class _Request:
+    """What is asked for by a submission; ``new`` is the id of its computation where there is none yet."""
+
+    owner: str
+    document: CanonicalDocument
+    new: str
+    labels: dict[str, str]
+    priority: int
+    timeout_s: float | None
+    idempotency_key: str | None
+    body_hash: str
+    checked: str = ""
+    """A computation whose files are there."""
+
+
+class _Known:
+    """What all submissions of a transaction ask the database, asked once; it goes on with what they add."""
+
+    def __init__(self, session: Session, requests: Sequence[_Request], identity: Identity):
+        targets = {row.device: row.target for row in session.scalars(select(DeviceTarget))}
+        self.keys = {
+            request.new: identity.key(request.owner, request.document, targets.get(request.document.device))
+            for request in requests
+        }
+        query = select(Computation).where(Computation.key.in_(set(self.keys.values())))
+        # Locked until the transaction ends; in order, so that two transactions never wait for each other.
+        found = session.scalars(query.order_by(Computation.id).with_for_update())
+        self.computations = {computation.key: computation for computation in found}
+        self.new: set[str] = set()
+        """Computations that were added."""
+        self.queued: dict[str, int] = {}
+        """Unfinished jobs by owner, of those who were looked at."""
 
 
 class JobStore(ComputationStore, ResultStore, KeyStore):
@@ -84,6 +129,7 @@ class JobStore(ComputationStore, ResultStore, KeyStore):
         self.max_model_bytes_per_owner = max_model_bytes_per_owner
         self.timeout_of = timeout_of
         self.sole_use = SoleUse(engine)
+        self._submissions = Together(self._submit_all)
         self.running_since = {}
         self.removed = Counter[str]()  # by retention in this process: things by kind, and bytes
         self.times_kept = 0.0
@@ -128,35 +174,25 @@ class JobStore(ComputationStore, ResultStore, KeyStore):
             document = CanonicalDocument.of(document)
         new, used = uuid.uuid4().hex, ""  # id of the computation, where there is none yet; of that which is used
         document = document.kept(self.files, new, written)
-        checked = ""  # a computation whose files are there
-        options = dict(labels or {}), priority, timeout_s, idempotency_key, body_hash
+        request = _Request(owner, document, new, dict(labels or {}), priority, timeout_s, idempotency_key, body_hash)
         try:
             for _ in range(ATTEMPTS):
                 try:
-                    with self.transactions.write() as session:
-                        replayed = self._replay(session, owner, idempotency_key, body_hash)
-                        if replayed:
-                            return Submission(replayed, replayed=True)
-                        computation = self._computation(session, owner, document, new, priority)
-                        found = computation.id
-                        has_files = computation.state == ComputationState.SUCCEEDED or document.text is None
-                        if has_files and found not in (new, checked):
-                            submission = None
-                        else:
-                            job = self._insert(session, owner, document, computation, *options)
-                            record = job_record(job, __version__)
-                            submission = Submission(record, cached=job.state == JobState.SUCCEEDED)
+                    answer = self._submissions.answer(request)
                 except IntegrityError:
                     continue  # another process inserted the same key or computation a moment before
-                if submission is None:
-                    self.check_result(found)  # takes as long as files are large: in no transaction
-                    if document.text is None:
-                        self.files.mend_document(found, document.sha256, new)
-                    checked = found
-                    continue
-                used = found
-                self.changes.notify(submission.job.id)
-                return submission
+                if isinstance(answer, Submission):
+                    used = answer.computation
+                    if not answer.replayed:
+                        self.changes.notify(answer.job.id)
+                    return answer
+                self.check_result(answer)  # takes as long as files are large: in no transaction
+                if document.text is None:
+                    self.files.mend_document(answer, document.sha256, new)
+                request = replace(request, checked=answer)
+        except CommitUnknown:
+            used = new  # a row may name its document; where none does, it goes as what nothing names
+            raise
         finally:
             if used != new:
                 self.files.forget_document(new)
@@ -287,75 +323,75 @@ class JobStore(ComputationStore, ResultStore, KeyStore):
             query = select(Event).where(Event.job_id == job_id, Event.number > after).order_by(Event.number)
             return JobState(state), [EventRecord(row.number, row.type, row.data) for row in session.scalars(query)]
 
-    def _replay(self, session: Session, owner: str, key: str | None, body_hash: str) -> JobRecord | None:
-        if key is None:
+    def _submit_all(self, requests: Sequence["_Request"]) -> Answers:
+        """Submissions in one transaction: for each what came of it, or the computation whose files are to be checked.
+
+        Where another process inserts the same, each goes alone.
+        """
+        try:
+            with self.transactions.write() as session:
+                known = _Known(session, requests, self.identity)
+                return [self._answer(session, known, request) for request in requests]
+        except IntegrityError as error:
+            if len(requests) == 1:
+                return [error]
+        return [answer for request in requests for answer in self._submit_all([request])]
+
+    def _answer(self, session: Session, known: "_Known", request: "_Request") -> Submission | str | Exception:
+        """What comes of one submission of a transaction; the others go on where it is refused."""
+        try:
+            return self._replay(session, request) or self._enter(session, known, request)
+        except (IdempotencyConflict, QueueFull, InputError) as error:  # before anything of it was added
+            return error
+
+    def _replay(self, session: Session, request: "_Request") -> Submission | None:
+        if request.idempotency_key is None:
             return None
-        job = session.scalar(select(Job).where(Job.owner == owner, Job.idempotency_key == key))
+        key = Job.owner == request.owner, Job.idempotency_key == request.idempotency_key
+        job = session.scalar(select(Job).where(*key))
         if job is None:
             return None
-        if job.body_hash != body_hash:
+        if job.body_hash != request.body_hash:
             raise IdempotencyConflict("the idempotency key was used with another body; send a new key")
         computation = session.get_one(Computation, job.computation_id)
-        return job_record(job, computation.version)
+        return Submission(job_record(job, computation.version), replayed=True)
 
-    def _insert(
-        self, session, owner, document, computation, labels, priority, timeout_s, idempotency_key, body_hash
-    ) -> Job:
-        if computation.state != ComputationState.SUCCEEDED:
-            self._check_queue(session, owner)
-        job = Job(
-            id=uuid.uuid4().hex,
-            owner=owner,
-            computation_id=computation.id,
-            analysis=document.analysis,
-            state=JobState.QUEUED,
-            created_at=datetime.now(UTC),
-            labels=labels,
-            priority=priority,
-            attempt=1,
-            timeout_s=self.timeout_of(timeout_s),
-            idempotency_key=idempotency_key,
-            body_hash=body_hash,
-            last_event=0,
-        )
-        session.add(job)
-        session.flush()
-        session.add_all(Label(job_id=job.id, key=key, value=value) for key, value in labels.items())
-        subscribe(session, job, computation)
-        return job
-
-    def _computation(
-        self, session: Session, owner: str, document: CanonicalDocument, new: str, priority: int
-    ) -> Computation:
-        """The computation of a document, locked until the transaction ends; if there is none, one of the id ``new``."""
+    def _enter(self, session: Session, known: "_Known", request: "_Request") -> Submission | str:
+        """A new job and, where there is none, its computation; or that whose files are to be checked before."""
+        document, owner = request.document, request.owner
         for path, model in document.uploads:
             if session.get(Model, (owner, model)) is None:
                 raise InputError(path, f"{model} is not among your models; upload it first")
-        key = self.identity.key(owner, document, self._target(session, document.device))
-        found = session.scalar(select(Computation).where(Computation.key == key).with_for_update())
-        if found is not None:
-            return found
-        computation = Computation(
-            id=new,
-            key=key,
-            owner=owner,
-            state=ComputationState.WAITING,
-            document=document.text or "",
-            facts=document.facts,
-            priority=priority,
-            attempt=1,
-            created_at=datetime.now(UTC),
-            version=__version__,
-        )
-        session.add(computation)
-        session.flush()
-        return computation
+        key = known.keys[request.new]
+        computation = known.computations.get(key)
+        if computation is not None and computation.id not in (request.checked, *known.new):
+            has_files = computation.state == ComputationState.SUCCEEDED or document.text is None
+            if has_files:
+                return computation.id
+        if computation is None or computation.state != ComputationState.SUCCEEDED:
+            self._check_queue(session, owner, known)
+        if computation is None:
+            computation = known.computations[key] = _computation(request, key)
+            known.new.add(computation.id)
+            session.add(computation)
+        job = _job(request, self.timeout_of(request.timeout_s))
+        job.computation_id = computation.id
+        session.add(job)
+        session.add_all(Label(job_id=job.id, key=key, value=value) for key, value in request.labels.items())
+        subscribe(session, job, computation)
+        cached = job.state == JobState.SUCCEEDED
+        return Submission(job_record(job, __version__), cached=cached, computation=computation.id)
 
-    def _check_queue(self, session: Session, owner: str) -> None:
-        unfinished = [JobState.QUEUED, JobState.RUNNING, JobState.CANCELING]
-        count = session.scalar(select(func.count()).where(Job.owner == owner, Job.state.in_(unfinished)))
-        if (count or 0) >= self.max_queued_per_owner:
+    def _check_queue(self, session: Session, owner: str, known: "_Known | None" = None) -> None:
+        """Raise QueueFull where an owner's queue has no place; else one place of those that are ``known`` is taken."""
+        queued = {} if known is None else known.queued
+        if owner not in queued:
+            unfinished = [JobState.QUEUED, JobState.RUNNING, JobState.CANCELING]
+            count = session.scalar(select(func.count()).where(Job.owner == owner, Job.state.in_(unfinished)))
+            queued[owner] = count or 0
+        if queued[owner] >= self.max_queued_per_owner:
             raise QueueFull(self.max_queued_per_owner)
+        queued[owner] += 1
 
     def _job(self, session: Session, owner: str, job_id: str) -> tuple[Job | None, Computation | None]:
         """A job and its computation, the latter locked: whoever changes a job holds its computation's lock."""
@@ -396,6 +432,38 @@ def _opened(settings: Settings, make: bool) -> JobStore:
         max_model_bytes_per_owner=settings.max_model_bytes_per_owner,
         shared_cache=settings.shared_cache,
         timeout_of=settings.timeout_of,
+    )
+
+
+def _computation(request: _Request, key: str) -> Computation:
+    return Computation(
+        id=request.new,
+        key=key,
+        owner=request.owner,
+        state=ComputationState.WAITING,
+        document=request.document.text or "",
+        facts=request.document.facts,
+        priority=request.priority,
+        attempt=1,
+        created_at=datetime.now(UTC),
+        version=__version__,
+    )
+
+
+def _job(request: _Request, timeout_s: float | None) -> Job:
+    return Job(
+        id=uuid.uuid4().hex,
+        owner=request.owner,
+        analysis=request.document.analysis,
+        state=JobState.QUEUED,
+        created_at=datetime.now(UTC),
+        labels=request.labels,
+        priority=request.priority,
+        attempt=1,
+        timeout_s=timeout_s,
+        idempotency_key=request.idempotency_key,
+        body_hash=request.body_hash,
+        last_event=0,
     )
 
 

@@ -22,7 +22,7 @@ from sqlalchemy import (
     UniqueConstraint,
     delete,
 )
-from sqlalchemy.orm import DeclarativeBase, Mapped, Session, mapped_column
+from sqlalchemy.orm import DeclarativeBase, Mapped, Session, mapped_column, relationship
 from sqlalchemy.types import TypeDecorator
 
 from wsrender_server.jobs.records import ENDED, NEXT, ComputationState, JobRecord, JobState, Progress
@@ -99,6 +99,7 @@ class Job(Table):
     progress: Mapped[dict[str, Any] | None]
     error: Mapped[dict[str, Any] | None]
     last_event: Mapped[int] = mapped_column(Integer, default=0)
+    computation: Mapped[Computation] = relationship()  # says what is written first, as in the tables below
 
 
 class Label(Table):
@@ -110,6 +111,7 @@ class Label(Table):
     job_id: Mapped[str] = mapped_column(ForeignKey("jobs.id", ondelete="CASCADE"), primary_key=True)
     key: Mapped[str] = mapped_column(String(255), primary_key=True)
     value: Mapped[str] = mapped_column(String(255))
+    job: Mapped[Job] = relationship()
 
 
 class Event(Table):
@@ -121,6 +123,7 @@ class Event(Table):
     number: Mapped[int] = mapped_column(Integer, primary_key=True, autoincrement=False)
     type: Mapped[str] = mapped_column(String(16))
     data: Mapped[dict[str, Any]]
+    job: Mapped[Job] = relationship()
 
 
 class ArtifactFile(Table):

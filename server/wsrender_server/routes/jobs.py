@@ -240,7 +240,8 @@ async def _admitted(server: Parts, principal: Principal, text: bytes) -> AsyncIt
         check_priority(principal, admitted.options.priority, "#/priority")
         yield admitted
     finally:
-        await run_in_threadpool(admitted.discard)
+        if admitted.written is not None:
+            await run_in_threadpool(admitted.discard)
 
 
 def _submit(

@@ -1,10 +1,11 @@
 """What the dispatcher makes of ends of tasks where the database does not answer at the same moment."""
 
+import time
 from types import SimpleNamespace
 
 import pytest
 from wsrender_server.jobs.attempt import Attempt
-from wsrender_server.jobs.dispatcher import Dispatcher
+from wsrender_server.jobs.dispatcher import MOST_LAUNCHES, TICK_S, Dispatcher
 from wsrender_server.jobs.faults import EngineSlow, StoreUnavailable
 from wsrender_server.jobs.records import JobState
 from wsrender_server.jobs.task import Outcome, Step, Verdict, error
@@ -103,6 +104,39 @@ def out(store, tmp_path, monkeypatch):
     dispatcher.engine = SimpleNamespace(submit=submit, stop=lambda tokens, futures: found.stopped.extend(tokens))
     monkeypatch.setattr(dispatcher, "_future_done", lambda *_: None)
     return found
+
+
+def test_of_much_that_waits_a_part_goes_out_at_a_time_and_owners_take_turns(store, out):
+    """Handing out thousands at once kept the server from answering; whoever comes late waits for no backlog."""
+    store.max_queued_per_owner = 100
+    for number in range(40):
+        store.submit("ann", document_of(number))
+    store.submit("bob", document_of(40))
+    store.submit("ann", document_of(41), priority=1)
+    out.dispatcher._unfinished(0.0)
+    out.dispatcher._launch_some()
+    assert len(out.sent) == MOST_LAUNCHES
+    record = [store.computation(name.partition("-")[2].partition("-")[0]) for name in out.sent]
+    assert record[0].priority == 1 and "bob" in {each.owner for each in record[:3]}
+    for _ in range(3):
+        out.dispatcher._launch_some()
+    assert len(set(out.sent)) == 42
+
+
+def test_messages_by_the_hundred_are_no_looks_at_the_table_by_the_hundred(store, document, out, monkeypatch):
+    looks, unfinished = [], store.unfinished
+    monkeypatch.setattr(store, "unfinished", lambda: looks.append(1) or unfinished())
+    monkeypatch.setattr(out.dispatcher, "_update_targets", lambda: None)
+    out.dispatcher.engine.alive, out.dispatcher.engine.embedded = set(), False
+    started = time.monotonic()
+    for _ in range(500):
+        out.dispatcher._put(lambda: None)
+        out.dispatcher._tick()
+    assert len(looks) <= 1 + (time.monotonic() - started) / TICK_S
+    time.sleep(TICK_S)
+    store.submit("ann", document)
+    out.dispatcher._tick()
+    assert len(out.sent) == 1, "what comes is seen at the next tick"
 
 
 @pytest.mark.parametrize("fault", [EngineSlow("slow"), OSError("stale file handle")])
