@@ -26,7 +26,7 @@ from wsrender.indices.index_catalogue import find, option_values, resolve
 from wsrender.pipeline.constraints.host_function import on_host
 from wsrender.pipeline.constraints.registry import constraints_of
 from wsrender.results.view import Edited
-from wsrender.robots import library, mjcf, xml_source
+from wsrender.robots import archives, library, mjcf, xml_source
 from wsrender_server.job_body import LONGEST_HERE, SubmissionOptions, check_size, read_body, refused
 from wsrender_server.jobs.child_process import give_back_memory
 from wsrender_server.jobs.documents import CanonicalDocument, uploads_in
@@ -66,6 +66,17 @@ def check_model(field: str, text: str, prefix: str = "") -> str:
     if root.tag == "mujoco":
         mjcf.refuse_includes(root, field)
     return root.tag
+
+
+def check_archive(field: str, content: bytes) -> None:
+    """Check a ZIP of a model by its directory alone; nothing is unpacked, and its files are read by the jobs.
+
+    Raises HttpProblem 409 for what is no ZIP of a model, or no harmless one.
+    """
+    try:
+        archives.check(content, field)
+    except ModelError as error:
+        raise refusal(problem_of_error(error), 409) from None
 
 
 def decoded_model(content: bytes) -> str:

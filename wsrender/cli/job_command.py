@@ -16,7 +16,7 @@ from wsrender.progress import RunProgress
 
 _SAMPLING = "Sampling"
 _ANALYSIS = "Analysis"
-ROBOT_FILES = (".xml", ".mjcf", ".urdf", ".xacro")
+ROBOT_FILES = (".xml", ".mjcf", ".urdf", ".xacro", ".zip")
 COUNTED_METHODS = ("random", "sobol", "boundary")
 
 
@@ -48,7 +48,9 @@ def job_command(command: Callable[..., None]) -> Callable[..., None]:
 
 
 def _document(
-    job: Annotated[str, typer.Argument(metavar="JOB", help="Job document (.json), robot file or robot name.")],
+    job: Annotated[
+        str, typer.Argument(metavar="JOB", help="Job document (.json), robot name, robot file, ZIP or ./folder.")
+    ],
     tip: Annotated[str | None, typer.Option(help="Site, body or link at the end of the chain.")] = None,
     base: Annotated[str | None, typer.Option(help="Body or link at which the chain starts.")] = None,
     limits: Annotated[
@@ -61,6 +63,7 @@ def _document(
         list[str] | None, typer.Option(help="NAME=FOLDER of a ROS package, for package://; repeatable.")
     ] = None,
     xacro: Annotated[list[str] | None, typer.Option(help="NAME=VALUE of a xacro file's argument; repeatable.")] = None,
+    entry: Annotated[str | None, typer.Option(help="Which file of a ZIP or folder is the model.")] = None,
     sampling: Annotated[
         str | None, typer.Option(help="grid, random, sobol, boundary or converge.", rich_help_panel=_SAMPLING)
     ] = None,
@@ -97,7 +100,7 @@ def _document(
     document = job_document(job)
     count = SEVERAL_COUNT if keep_map else DEFAULT_COUNT
     given = {
-        "robot": corrected_robot(document, limits or [], length_unit_m, package or [], xacro or []),
+        "robot": corrected_robot(document, limits or [], length_unit_m, package or [], xacro or [], entry),
         "tip": tip,
         "base": base,
         "sampling": sampling_document(document.get("sampling"), sampling, grid, samples, seed, lock or [], count),
@@ -158,7 +161,8 @@ def job_document(job: str) -> dict[str, Any]:
         if not isinstance(document, dict):
             raise InputError("JOB", f"{job} must hold an object, not {type(document).__name__}")
         return document
-    source = "path" if path.suffix.lower() in ROBOT_FILES or path.is_file() else "library"
+    folder = path.is_dir() and ("/" in job or "\\" in job)  # one beside us may have the name of a library robot
+    source = "path" if path.suffix.lower() in ROBOT_FILES or path.is_file() or folder else "library"
     return {"analysis": "workspace", "robot": {source: job}}
 
 
@@ -168,12 +172,14 @@ def corrected_robot(
     length_unit_m: float | None,
     packages: list[str] | tuple[str, ...] = (),
     xacro: list[str] | tuple[str, ...] = (),
+    entry: str | None = None,
 ) -> dict[str, Any] | None:
     """The robot of a document with limits, unit of length and how its file is read from options; None without options.
 
     Raises InputError naming the option, and for a document that has not one robot.
     """
     options = {"--limits": limits, "--length-unit-m": length_unit_m, "--package": packages, "--xacro": xacro}
+    options["--entry"] = entry
     named = [option for option, value in options.items() if value not in (None, [], ())]
     if not named:
         return None
@@ -181,7 +187,8 @@ def corrected_robot(
     robot = {"library": robot} if isinstance(robot, str) else robot
     if not isinstance(robot, dict):
         raise InputError(named[0], "goes with a job of one robot")
-    given = {"limits": robot.get("limits", {}) | dict(_limits(text) for text in limits), "length_unit_m": length_unit_m}
+    given: dict[str, Any] = {"entry": entry, "length_unit_m": length_unit_m}
+    given["limits"] = robot.get("limits", {}) | dict(_limits(text) for text in limits)
     given["packages"] = robot.get("packages", {}) | dict(_named("--package", text) for text in packages)
     given["xacro"] = robot.get("xacro", {}) | dict(_named("--xacro", text) for text in xacro)
     return robot | {field: value for field, value in given.items() if value}

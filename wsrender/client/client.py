@@ -21,7 +21,7 @@ from wsrender.errors import DocumentError, InputError
 
 PAGE = 100  # jobs in one answer
 LONGEST_SENT = 100_000  # numbers of an array that a document lists
-NPY = b"\x93NUMPY"  # with which such files begin
+NPY, ZIP = b"\x93NUMPY", b"PK"  # with which such files begin
 
 
 class Client:
@@ -74,15 +74,15 @@ class Client:
     def upload_model(self, model: str | Path | bytes, field: str = "robot.path") -> str:
         """Upload an MJCF or URDF file, or its bytes; the SHA-256 for ``robot: {"model": sha256}``.
 
-        Meshes do not travel with it: geometry that needs them is dropped by the server. A mesh (.stl, .obj, .ply) that
+        Meshes and included files travel in a ZIP alone, its .zip file, its bytes, or a folder, of which one is made;
+        beside a model by itself, geometry that needs meshes is dropped by the server. A mesh (.stl, .obj, .ply) that
         is a shape by itself is uploaded alike, for ``{"shape": "mesh", "model": sha256}``, as are heights (.npy) and
         tables (.csv, .parquet, .npy) of targets, configurations and points, for ``"targets": {"model": sha256}``.
         Raises InputError, naming ``field``, where the file cannot be read, ModelError where it is no model.
         """
-        text = model if isinstance(model, bytes) else _read(Path(model), field)
-        answer = self._connection.request(
-            "POST", "/v1/models", content=text, headers={"Content-Type": _media_type(model)}
-        )
+        content = model if isinstance(model, bytes) else _read(Path(model), field)
+        headers = {"Content-Type": _media_type(model, content)}
+        answer = self._connection.request("POST", "/v1/models", content=content, headers=headers)
         return answer.json()["sha256"]
 
     def submit(
@@ -164,7 +164,11 @@ class Client:
                 document[name] = {"path": document[name]}
         for path, robot in models_in(document):
             if isinstance(robot.get("path"), str):
-                robot["model"] = self.upload_model(robot.pop("path"), dotted(path, "path"))
+                field = dotted(path, "path")
+                model = _expanded(robot, field)
+                robot["model"] = self.upload_model(robot["path"] if model is None else model, field)
+                for name in ("path", "packages", "xacro"):
+                    robot.pop(name, None)
         return document
 
     def _with_uploads(self, job: Mapping[str, Any]) -> dict[str, Any]:
@@ -225,12 +229,28 @@ def _items(answer: Any) -> list[dict[str, Any]]:
     return answer["items"]
 
 
-def _media_type(model: str | Path | bytes) -> str:
+def _expanded(robot: Mapping[str, Any], field: str) -> bytes | None:
+    """The URDF of a xacro file, which a server does not expand; None of another file."""
+    path = Path(robot["path"])
+    if path.suffix.lower() != ".xacro" and not robot.get("xacro"):
+        return None
+    from wsrender.robots import xacro_files
+
+    return xacro_files.expanded(path, robot.get("xacro") or {}, robot.get("packages") or {}, field)
+
+
+def _media_type(model: str | Path | bytes, content: bytes) -> str:
+    if content[:2] == ZIP:
+        return "application/zip"
     ending = Path(model).suffix.lower() if not isinstance(model, bytes) else ".npy" if model[:6] == NPY else ""
     return (MEDIA_TYPES | TABLE_TYPES).get(ending, "application/xml")
 
 
 def _read(path: Path, field: str) -> bytes:
+    if path.is_dir():
+        from wsrender.robots import archives
+
+        return archives.of_folder(path, field)
     try:
         return path.read_bytes()
     except OSError as error:

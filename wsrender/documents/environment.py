@@ -11,7 +11,7 @@ from pydantic import BeforeValidator, Discriminator, Field
 from wsrender.documents.arm import Arm
 from wsrender.documents.document import Document
 from wsrender.documents.problems import tagged
-from wsrender.documents.quantities import Name, Sha256, numbers_of, quoted, real, sequence
+from wsrender.documents.quantities import Name, Sha256, is_none, numbers_of, quoted, real, sequence
 from wsrender.documents.robot import XmlText
 from wsrender.documents.shapes import (
     Box,
@@ -72,9 +72,11 @@ class Scene(Placed):
     mjcf: XmlText | None = None
     """Its text."""
     model: Sha256 | None = None
-    """SHA-256 of an MJCF model uploaded to a server, 64 hexadecimal digits."""
+    """SHA-256 of an MJCF model, or a ZIP with one, uploaded to a server, 64 hexadecimal digits."""
     path: Name | None = None
-    """An .xml file; local runs only."""
+    """An .xml file, a ZIP or a folder; local runs only."""
+    entry: Annotated[Name | None, Field(exclude_if=is_none)] = None
+    """Which file of a ZIP or folder is the model; null: the only one that no other includes."""
     length_unit_m: LengthUnit = 1.0
     """Unit of length of the file in metres: 0.001 of millimetres."""
 
@@ -90,6 +92,8 @@ class Scene(Placed):
         if len(given) != 1:
             field = given[1] if given else SCENES[0]
             yield field, f"must be given, or another source of the scene: one of {quoted(SCENES)}"
+        if self.entry is not None and self.mjcf is not None:
+            yield "entry", 'must not be given together with "mjcf": it names a file of a ZIP'
 
 
 def _shape(value: Any) -> Any:

@@ -270,9 +270,11 @@ class RobotSpec(Document):
     urdf: XmlText | None = None
     """Text of a URDF model."""
     model: Sha256 | None = None
-    """SHA-256 of a model uploaded to a server, 64 hexadecimal digits."""
+    """SHA-256 of a model, or a ZIP of one with its files, uploaded to a server, 64 hexadecimal digits."""
     path: Name | None = None
-    """An .xml (MJCF), .urdf or .xacro file; local runs only."""
+    """An .xml (MJCF), .urdf or .xacro file, a ZIP or a folder; local runs only."""
+    entry: Annotated[Name | None, Field(exclude_if=is_none)] = None
+    """Which file of a ZIP or folder is the model; null: the only one that no other includes."""
     packages: Annotated[dict[Name, Name], Field(exclude_if=is_empty)] = Field(default={})
     """Folders of ROS packages by name, for the addresses package:// in the file ``path``, before ROS_PACKAGE_PATH and
     the ament index."""
@@ -321,6 +323,8 @@ class RobotSpec(Document):
         for name in ("packages", "xacro"):
             if getattr(self, name) and self.path is None:
                 yield name, 'must be given together with "path" alone: it says how that file is read'
+        if self.entry is not None and self.path is None and self.model is None:
+            yield "entry", 'must be given together with "path" or "model" alone: it names a file of a ZIP'
         names = [shape.name for shape in self.tool_shapes]
         for k, name in enumerate(names):
             if name is not None and name in names[:k]:

@@ -335,11 +335,13 @@ def load_robot(
     mount: Sequence[Any] = (),
     packages: Mapping[str, str | Path] | None = None,
     xacro: Mapping[str, Any] | None = None,
+    entry: str | None = None,
 ) -> Robot:
     """Load a robot: a library name, the path or text of an MJCF (.xml) or URDF file, a DH table, MjSpec or MjModel.
 
     A path may be that of a xacro file, which is expanded with the arguments ``xacro`` by name. ``package://`` leads to
-    the folder that ``packages`` names, one above the file, in ROS_PACKAGE_PATH or in the ament index.
+    the folder that ``packages`` names, one above the file, in ROS_PACKAGE_PATH or in the ament index. Or a path is that
+    of a ZIP or folder of a model with its files: ``entry`` names the model in it where several could be meant.
     ``base`` and ``tip`` name a site, body or link (default: the world, and the site "tool" or the only end).
     ``placement`` is the base frame in the world and ``tool`` the tool point in the tip frame, each a
     `Transform`, its fields as a dict, or a (4, 4) array. ``limits`` {joint: (lower, upper)} [rad or m] (or
@@ -362,7 +364,7 @@ def load_robot(
     given: dict[str, Any] = {"limits": limits or {}, "limits_deg": limits_deg or {}, "length_unit_m": length_unit_m}
     given |= {"effort_limits": effort_limits or {}, "velocity_limits": velocity_limits or {}}
     given |= {"reference": reference or {}, "srdf": _srdf_text(srdf), "exclude": exclude}
-    given |= {"tool_shapes": tool_shapes, "mount": mount, "xacro": xacro or {}}
+    given |= {"tool_shapes": tool_shapes, "mount": mount, "xacro": xacro or {}, "entry": entry}
     given["packages"] = {package: str(folder) for package, folder in (packages or {}).items()}
     stated = RobotSpec(**{kind: value}, **given)
     loaded = load(source, **options, **_corrections(stated), **_reading(stated))
@@ -426,7 +428,9 @@ def _corrections(spec: RobotSpec) -> dict[str, Any]:
 
 def _reading(spec: RobotSpec) -> dict[str, Any]:
     """How the file is read that a document names, if it names one."""
-    return {"packages": spec.packages, "xacro": spec.xacro} if spec.path is not None else {}
+    if spec.path is not None:
+        return {"packages": spec.packages, "xacro": spec.xacro, "entry": spec.entry}
+    return {"entry": spec.entry} if spec.model is not None else {}
 
 
 def _srdf_text(srdf: str | Path | None) -> str | None:

@@ -102,11 +102,11 @@ def _scene(item: Scene, name: str) -> Iterator[Standing]:
     from wsrender.robots.scenes import scene_of_path, scene_of_text, uploaded_scene
 
     if item.path is not None:
-        shapes = scene_of_path(item.path, item.length_unit_m)
+        shapes = scene_of_path(item.path, item.length_unit_m, item.entry)
     elif item.mjcf is not None:
         shapes = scene_of_text(item.mjcf, item.length_unit_m)
     else:
-        shapes = uploaded_scene(str(item.model), item.length_unit_m)
+        shapes = uploaded_scene(str(item.model), item.length_unit_m, item.entry)
     for shape in shapes:
         placed = as_document(shape, item.matrix() @ shape.T_frame_shape)
         yield Standing(f"{name}/{shape.name}", name, placed, shape.bits)

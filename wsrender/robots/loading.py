@@ -5,7 +5,7 @@ import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING, Any
 from xml.etree.ElementTree import Element
 
@@ -13,7 +13,7 @@ import numpy as np
 
 from wsrender import notices
 from wsrender.errors import InputError, MissingExtraError, ModelError
-from wsrender.robots import includes, mesh_files, xacro_files, xml_source
+from wsrender.robots import archives, includes, mesh_files, xacro_files, xml_source
 from wsrender.robots.model_warning import ModelWarning
 from wsrender.robots.plausibility import doubts
 from wsrender.robots.srdf import disabled_pairs
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     Excluded = Sequence[tuple[str, str]]
     Source = str | Path | DHTable | mujoco.MjSpec | mujoco.MjModel
 
-MODEL_FILES = (".xml", ".mjcf", ".urdf", ".xacro")  # what their names end in
+MODEL_FILES = (".xml", ".mjcf", ".urdf", ".xacro", ".zip")  # what their names end in
 _FIELD = "model"
 
 
@@ -59,12 +59,14 @@ def load(
     mount: "Sequence[MountJoint]" = (),
     packages: "Packages | None" = None,
     xacro: "Mapping[str, Any] | None" = None,
+    entry: str | None = None,
 ) -> "LoadedRobot":
     """The robot of a library name, of a path to or the text of an MJCF or URDF file, of a DH table, MjSpec or MjModel.
 
-    A string is text if it begins with <, a path if it ends in .xml, .urdf or .xacro or has a folder in it. ``base`` and
-    ``tip`` name a site, body or link. The base is the world by default. The tip is by default the site ``tool``, else
-    the only end of the model that a joint moves, else the link ``tool0``; a site goes before a body of its name.
+    A string is text if it begins with <, a path if it ends in .xml, .urdf, .xacro or .zip or has a folder in it.
+    ``base`` and ``tip`` name a site, body or link. The base is the world by default. The tip is by default the site
+    ``tool``, else the only end of the model that a joint moves, else the link ``tool0``; a site goes before a body of
+    its name.
     ``placement`` is the base frame in the world and ``tool`` the tool frame in the tip frame, (4, 4) each.
     ``limits`` (``limits_deg``: hinges in degrees) of joints of the chain by name, (lower, upper) [rad or m], go before
     the model's, as do ``effort_limits`` [N m or N] and ``velocity_limits`` [rad/s or m/s] of joints by name.
@@ -73,7 +75,8 @@ def load(
     text, whose disabled pairs of links do not collide, nor do those of ``exclude``, pairs of names of shapes or bodies.
     ``attached``: shapes that the tip carries, in its frame. ``mount``: joints that carry the base, which then must be
     the world; they are the first of the chain. ``packages``: folders of ROS packages by name, before all others, and
-    ``xacro``: arguments of a xacro file by name; both for a path alone.
+    ``xacro``: arguments of a xacro file by name; ``entry``: which file of a ZIP or folder is the model, where several
+    could be; these for a path alone.
     Raises ModelError, FrameNotFoundError, InputError; gives a ModelWarning for each of the robot's notices.
     """
     options = {"base": base, "tip": tip, "name": name, "placement": placement, "tool": tool}
@@ -82,9 +85,9 @@ def load(
     options |= {"reference": reference, "srdf": srdf, "exclude": exclude, "attached": attached, "mount": mount}
     kind, value = described(source)
     if kind == "path":
-        options |= {"packages": packages, "xacro": xacro}
-    elif packages or xacro:
-        raise InputError("packages" if packages else "xacro", "goes with the path of a file alone")
+        options |= {"packages": packages, "xacro": xacro, "entry": entry}
+    elif stray := [name for name, given in (("packages", packages), ("xacro", xacro), ("entry", entry)) if given]:
+        raise InputError(stray[0], "goes with the path of a file alone")
     loaders = {"library": load_library, "path": load_path, "dh": load_dh, "mjcf": load_mjcf, "urdf": load_urdf}
     return loaders[kind](value, **options)
 
@@ -133,14 +136,26 @@ def load_dh(table: "DHTable", **options) -> "LoadedRobot":
 
 
 def load_path(
-    path: str | Path, *, packages: "Packages | None" = None, xacro: "Mapping[str, Any] | None" = None, **options
+    path: str | Path,
+    *,
+    packages: "Packages | None" = None,
+    xacro: "Mapping[str, Any] | None" = None,
+    entry: str | None = None,
+    **options,
 ) -> "LoadedRobot":
     """The robot of a file of the user's own, MJCF or URDF by its root element; ``options`` as in ``load``.
 
     Files that an MJCF includes and meshes that an inertia is computed from are read relative to it, other meshes when
-    shapes are asked for; nothing else is. A xacro file is expanded first.
+    shapes are asked for; nothing else is. A xacro file is expanded first. A folder is read as a ZIP of it would be.
     """
     path = Path(path)
+    if archives.is_path(path):
+        for name, given in (("packages", packages), ("xacro", xacro)):
+            if given:
+                raise InputError(name, f"goes with the path of a model, and {path.name} is a folder or a ZIP of one")
+        return load_archive(archives.of_path(path, _FIELD), entry=entry, **options)
+    if entry is not None:
+        raise InputError("entry", f"goes with a ZIP or a folder, and {path.name} is neither")
     content = xml_source.read(path, _FIELD)
     root = xml_source.parse(content, _FIELD)
     if root.tag == "robot" and (xacro_files.is_xacro(path, root) or xacro):
@@ -148,13 +163,21 @@ def load_path(
         root = xml_source.parse(content, _FIELD)
     elif xacro:
         raise InputError("xacro", f"goes with a xacro file; the root element of {path.name} is <{root.tag}>")
-    options = {**options, "name": options.get("name") or root.get("model") or root.get("name") or path.stem}
     read = mesh_files.from_folder(path.parent, packages)
-    return _from_files(root, content, read, repr(str(path.parent)), **options)
+    return _from_files(root, content, read, repr(str(path.parent)), path.stem, **options)
 
 
-def _from_files(root: Element, content: bytes, read: "ReadMesh", place: str, **options) -> "LoadedRobot":
-    """The robot of a model file and those that it leads to, which ``read`` reads in a ``place``."""
+def load_archive(content: bytes, *, entry: str | None = None, **options) -> "LoadedRobot":
+    """The robot of a ZIP of models and meshes; no file is read, and none written. ``options`` as in ``load``."""
+    archive = archives.Archive(content, entry, _FIELD)
+    text = archive.model()
+    stem = PurePosixPath(archive.entry).stem
+    return _from_files(xml_source.parse(text, _FIELD), text, archive.read, "the archive", stem, **options)
+
+
+def _from_files(root: Element, content: bytes, read: "ReadMesh", place: str, stem: str, **options) -> "LoadedRobot":
+    """The robot of a model file, named ``stem`` where it has no name, and of those that ``read`` reads in a place."""
+    options = {**options, "name": options.get("name") or root.get("model") or root.get("name") or stem}
     if root.tag == "robot":
         return _from_urdf(root, content, read, **options)
     if root.tag != "mujoco":

@@ -26,7 +26,7 @@ ReadMesh = Callable[[str], bytes | None]  # file name in the model → its bytes
 Triangles = tuple[np.ndarray, np.ndarray]  # vertices (V, 3) float64, faces (F, 3) int
 
 _STL_TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
-_ADDRESS = re.compile(r"(package|model|file)://")
+ADDRESS = re.compile(r"(package|model|file)://")
 
 
 def from_assets(assets: Mapping[str, bytes]) -> ReadMesh:
@@ -52,7 +52,7 @@ def from_folder(folder: Path, packages: Packages | None = None) -> ReadMesh:
 
 
 def _places(name: str, folder: Path, packages: Packages) -> Iterator[Path]:
-    scheme = _ADDRESS.match(name)
+    scheme = ADDRESS.match(name)
     if scheme is None or scheme[1] == "file":
         yield folder / name.removeprefix("file://")
         return

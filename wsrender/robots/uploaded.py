@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from wsrender.errors import InputError, ModelError
-from wsrender.robots import xml_source
-from wsrender.robots.loading import load_mjcf, load_urdf
+from wsrender.robots import archives, xml_source
+from wsrender.robots.loading import load_archive, load_mjcf, load_urdf
 
 if TYPE_CHECKING:
     from wsrender.robots.loaded_robot import LoadedRobot
@@ -17,18 +17,28 @@ MODELS_VARIABLE = "WSRENDER_MODELS"
 _FIELD = "robot.model"
 
 
-def load_uploaded(sha256: str, **options) -> "LoadedRobot":
-    """The robot of the file ``sha256`` in the folder WSRENDER_MODELS, read as text: nothing beside it is opened.
+def load_uploaded(sha256: str, entry: str | None = None, **options) -> "LoadedRobot":
+    """The robot of the file ``sha256`` in the folder WSRENDER_MODELS, text or a ZIP: nothing beside it is opened.
 
+    ``entry``: which file of a ZIP is the model.
     ``options`` as in `wsrender.robots.loading.load`. Raises InputError where this process has no such folder or the
     folder no such file, ModelError for a file that is no model.
     """
     content = uploaded_content(sha256, _FIELD)
+    if archives.is_archive(content):
+        return load_archive(content, entry=entry, **options)
+    refuse_entry(entry)
     root = xml_source.parse(content, _FIELD)
     loaders = {"mujoco": load_mjcf, "robot": load_urdf}
     if root.tag not in loaders:
         raise ModelError(_FIELD, f"the root element is <{root.tag}>; <mujoco> or <robot> (URDF) is needed")
     return loaders[root.tag](content, **options)
+
+
+def refuse_entry(entry: str | None) -> None:
+    """Raises InputError where an entry is given of what is no archive."""
+    if entry is not None:
+        raise InputError("entry", "goes with a ZIP, which the uploaded model is not")
 
 
 def uploaded_content(sha256: str, field: str) -> bytes:

@@ -12,7 +12,7 @@ from wsrender.analyses.registry import job_classes
 from wsrender.documents.array_files import TABLE_TYPES
 from wsrender.documents.shapes import MEDIA_TYPES
 from wsrender.robots import library
-from wsrender_server.admission import check_model, decoded_model
+from wsrender_server.admission import check_archive, check_model, decoded_model
 from wsrender_server.auth import Reader, Submitter
 from wsrender_server.hosts import address
 from wsrender_server.parts import Server
@@ -22,7 +22,8 @@ from wsrender_server.routes.files import has_it
 from wsrender_server.routes.job_views import Page, View
 
 XML_TYPES = ("application/xml", "text/xml")
-FILE_TYPES = tuple(dict.fromkeys([*MEDIA_TYPES.values(), *TABLE_TYPES.values()]))
+ZIP_TYPE = "application/zip"
+FILE_TYPES = tuple(dict.fromkeys([*MEDIA_TYPES.values(), *TABLE_TYPES.values(), ZIP_TYPE]))
 
 router = APIRouter(prefix="/v1")
 
@@ -161,14 +162,18 @@ def upload_model(
 ) -> ModelView:
     """MJCF or URDF text, root element `<mujoco>` or `<robot>`, without document types, entities or outside files.
 
-    Or an STL, OBJ or PLY mesh, for `{"shape": "mesh", "model": sha256}`, heights in an NPY file, for a `height_field`,
-    or a table, CSV, Parquet or NPY: of targets, for `"targets": {"model": sha256}`, of joint values, for
-    `"configurations": {"model": sha256}`, or of points, for `"left": {"model": sha256}`. Each is read by the jobs that
-    name it; meshes of a model do not travel with it.
+    Or a ZIP of such a model with the files that it includes and its meshes: plain files of relative names, each once,
+    stored or deflated, no links, at most 5000 files and 512 MiB unpacked; `entry` beside `model` names the model in it
+    where several could be meant. Or an STL, OBJ or PLY mesh, for `{"shape": "mesh", "model": sha256}`, heights in an
+    NPY file, for a `height_field`, or a table, CSV, Parquet or NPY: of targets, for `"targets": {"model": sha256}`, of
+    joint values, for `"configurations": {"model": sha256}`, or of points, for `"left": {"model": sha256}`. Each is read
+    by the jobs that name it; meshes of a model travel in a ZIP alone.
     """
     media_type, text = body
     if media_type in XML_TYPES:
         check_model("document", decoded_model(text))
+    elif media_type == ZIP_TYPE:
+        check_archive("document", text)
     elif not text:
         raise HttpProblem(409, "the file is empty", "invalid_model")
     sha256 = server.store.put_model(principal.owner, text)

@@ -10,6 +10,7 @@ import pytest
 import wsrender as ws
 from tests.server.client.recorded_server import refuses, says
 from wsrender.documents.arm import local_paths
+from wsrender.robots import archives
 
 JOB = {"id": "j1", "state": "queued", "analysis": "workspace", "labels": {}, "progress": None, "error": None}
 DOCUMENT = {"analysis": "workspace", "robot": {"library": "ur5e"}}
@@ -296,3 +297,26 @@ def test_files_of_several_robots_are_uploaded(server, client, tmp_path):
 def test_wrong_address():
     with pytest.raises(ws.InputError, match='url: must start with http:// or https://, not "lab:8000"'):
         ws.Client("lab:8000")
+
+
+def test_folders_travel_as_zips_and_xacro_expanded(server, client, tmp_path):
+    server.answer("POST", "/v1/models", *(says({"sha256": each * 32}, 201) for each in ("ab", "cd", "ef")))
+    server.answer("POST", "/v1/jobs:validate", says({}))
+    (tmp_path / "arm").mkdir()
+    (tmp_path / "arm" / "a.xml").write_text("<mujoco/>")
+    (tmp_path / "arm.zip").write_bytes(archives.of_folder(tmp_path / "arm", "path"))
+    xacro = '<robot name="{}" xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:arg name="n" default="a"/>{}</robot>'
+    (tmp_path / "arm.xacro").write_text(xacro.format("x", '<link name="$(arg n)"/>'))
+    robots = (
+        {"path": str(tmp_path / "arm"), "entry": "a.xml"},
+        {"path": tmp_path / "arm.zip"},
+        {"path": str(tmp_path / "arm.xacro"), "xacro": {"n": "b"}, "packages": {"p": str(tmp_path)}},
+    )
+    for robot in robots:
+        client.estimate({"analysis": "workspace", "robot": robot})
+    sent = server.sent("POST", "/v1/models")
+    assert [each.headers["content-type"] for each in sent] == ["application/zip"] * 2 + ["application/xml"]
+    assert sent[0].content == sent[1].content == (tmp_path / "arm.zip").read_bytes()
+    assert b'<link name="b"/>' in sent[2].content
+    asked = [json.loads(each.content)["robot"] for each in server.sent("POST", "/v1/jobs:validate")]
+    assert asked == [{"model": "ab" * 32, "entry": "a.xml"}, {"model": "cd" * 32}, {"model": "ef" * 32}]

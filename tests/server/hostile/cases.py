@@ -4,6 +4,7 @@ import gzip
 import io
 import json
 import struct
+import warnings
 import zipfile
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -211,6 +212,106 @@ def bodies() -> Iterator[Case]:
         yield Case(f"idempotency key: {name}", text.encode(), path="/v1/jobs", headers=JSON | {"Idempotency-Key": key})
 
 
+def archives(secret: str) -> Iterator[Case]:
+    """ZIPs of models: refused when they arrive, and by the jobs that name them if they arrived as something else."""
+    model, entity = mjcf().encode(), f'<!DOCTYPE m [<!ENTITY e0 "ha">{BOMB}]>'
+    good = {"m.xml": model}
+    packed = zipped(good)
+    structure = {
+        "no ZIP": b"PK\x03\x04" + b"\0" * 100,
+        "cut short": packed[:-30],
+        "empty": zipped({}),
+        "no model": zipped({"a.stl": b"x"}),
+        "a link": zipped_infos([("m.xml", model), (of_mode(0o120777), secret.encode())]),
+        "a device": zipped_infos([("m.xml", model), (of_mode(0o020666), b"")]),
+        "the name twice": zipped_infos([("m.xml", model), ("m.xml", b"<mujoco/>")]),
+        "a name twice by a dot": zipped({**good, "./m.xml": b""}),
+        "climbing": zipped({**good, "../../etc/cron.d/x": b"x"}),
+        "climbing within": zipped({**good, "a/../../x.stl": b"x"}),
+        "an absolute name": zipped({**good, secret: b"x"}),
+        "a backslash": zipped({**good, "..\\x.stl": b"x"}),
+        "a drive": zipped({**good, "C:x.stl": b"x"}),
+        "a line in a name": zipped({**good, "a\nb.stl": b"x"}),
+        "a long name": zipped({**good, "a" * 600: b"x"}),
+        "encrypted": flagged(packed),
+        "another method": zipped(good, zipfile.ZIP_LZMA),
+        "many files": zipped({**good, **{f"{k}.stl": b"" for k in range(6000)}}),
+        "unpacks to much": declaring(packed, 2**31),
+    }
+    numbered = {str(k): b"<a>" + b"<b/>" * 15_000 + b"</a>" for k in range(50)}
+    used = mjcf('<geom type="mesh" mesh="m"/>', '<asset><mesh name="m" file="m.obj"/></asset>')
+    inside: dict[str, dict[str, bytes]] = {
+        "bomb of a mesh": {"m.xml": used.encode(), "m.obj": b"\0" * 10**8},
+        "large model": {"m.xml": b" " * 10**8},
+        "bomb of entities": {"m.xml": mjcf(before=entity).encode()},
+        "includes itself": {"m.xml": b'<mujoco><include file="m.xml"/></mujoco>'},
+        "a circle": {"m.xml": including("a/b"), "a/b": including("m.xml")},
+        "includes the secret": {"m.xml": including(secret)},
+        "includes what climbs": {"m.xml": including(f"../../../../..{secret}")},
+        "deep by includes": {"m.xml": nested("0"), **{str(k): nested(str(k + 1)) for k in range(9)}, "9": b"<a/>"},
+        "many elements by includes": {"m.xml": including(*numbered), **numbered},
+        "USD": {"m.xml": b"PXR-USDC"},
+        "xacro": {"m.urdf": b'<robot name="r"><xacro:include filename="/etc/passwd"/></robot>'},
+        "package that climbs": {"m.urdf": urdf(f"package://x/../../..{secret}").encode(), "x/a.stl": b"x"},
+        "two models": {"m.xml": model, "n.xml": model},
+    }
+    zips = structure | {name: zipped(files) for name, files in inside.items()} | {"damaged": damaged(packed)}
+    for name, content in zips.items():
+        if name in structure:
+            yield Case(f"ZIP: {name}", content, "#", path="/v1/models", headers={"Content-Type": "application/zip"})
+        yield document(f"ZIP of a job: {name}", "#/robot", content, robot={"model": "SHA256"},
+                       constraints={"self_collision": True})  # fmt: skip
+        yield document(f"ZIP of a scene: {name}", "#/environment/items/0", content,
+                       environment={"items": [{"shape": "scene", "model": "SHA256"}]})  # fmt: skip
+    yield document("ZIP without the entry", "#/robot/entry", packed, robot={"model": "SHA256", "entry": secret})
+
+
+def including(*names: str) -> bytes:
+    """A model that includes files."""
+    return b"<mujoco>" + b"".join(f'<include file="{name}"/>'.encode() for name in names) + b"</mujoco>"
+
+
+def nested(included: str) -> bytes:
+    """A part of a model that includes another in many elements."""
+    return b"<mujoco>" + b"<body>" * 50 + f'<include file="{included}"/>'.encode() + b"</body>" * 50 + b"</mujoco>"
+
+
+def of_mode(mode: int) -> zipfile.ZipInfo:
+    """An entry of a file of another kind, as Unix says it."""
+    info = zipfile.ZipInfo("m.stl")
+    info.create_system, info.external_attr = 3, mode << 16
+    return info
+
+
+def zipped_infos(files: list[tuple[Any, bytes]]) -> bytes:
+    """A ZIP of files by their entries of the directory, twice by a name too."""
+    file = io.BytesIO()
+    with warnings.catch_warnings(), zipfile.ZipFile(file, "w") as archive:
+        warnings.simplefilter("ignore", UserWarning)
+        for info, content in files:
+            archive.writestr(info, content)
+    return file.getvalue()
+
+
+def flagged(packed: bytes) -> bytes:
+    """A ZIP whose one file says that it is encrypted."""
+    found = bytearray(packed)
+    found[found.index(b"PK\x01\x02") + 8] |= 1
+    return bytes(found)
+
+
+def declaring(packed: bytes, size: int) -> bytes:
+    """A ZIP whose one file says that it unpacks to so many bytes."""
+    at = packed.index(b"PK\x01\x02") + 24
+    return packed[:at] + struct.pack("<I", size) + packed[at + 4 :]
+
+
+def damaged(packed: bytes) -> bytes:
+    """A ZIP whose one file is not what its checksum says."""
+    at = packed.index(b"m.xml") + 5
+    return packed[:at] + bytes(255 - each for each in packed[at : at + 40]) + packed[at + 40 :]
+
+
 def uploads() -> Iterator[Case]:
     """Uploaded files that a job names as a mesh, heights or targets."""
     triangle = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
@@ -264,10 +365,10 @@ def uploads() -> Iterator[Case]:
         yield Case(f"configurations: {name}", json.dumps(job).encode(), "#/configurations", upload=content)
 
 
-def zipped(entries: dict[str, bytes]) -> bytes:
+def zipped(entries: dict[str, bytes], method: int = zipfile.ZIP_DEFLATED) -> bytes:
     """A zip file."""
     buffer = io.BytesIO()
-    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as file:
+    with zipfile.ZipFile(buffer, "w", method) as file:
         for name, content in entries.items():
             file.writestr(name, content)
     return buffer.getvalue()

@@ -180,7 +180,9 @@ def _watched(server: Server) -> Iterator[None]:
 
 def of_kind(kind: str, server: Server) -> Iterable[Case]:
     """The cases of a kind, as they are for a server."""
-    arguments = {"files": (str(server.secret),), "others": (server.private["job"], server.private["model"])}
+    arguments = {kind: (str(server.secret),) for kind in ("files", "archives")} | {
+        "others": (server.private["job"], server.private["model"])
+    }
     return getattr(cases, kind)(*arguments.get(kind, ()))
 
 
@@ -193,7 +195,17 @@ def attack(kind: str, part: int = 0, parts: int = 1) -> Attack:
         return server.attack
 
 
-DIVIDED = {"texts": 3, "files": 3, "values": 2, "numbers": 2, "bodies": 1, "uploads": 3, "bombs": 1, "others": 1}
+DIVIDED = {
+    "texts": 3,
+    "files": 3,
+    "archives": 2,
+    "values": 2,
+    "numbers": 2,
+    "bodies": 1,
+    "uploads": 3,
+    "bombs": 1,
+    "others": 1,
+}
 PARTS = {
     f"{kind} {part}": partial(attack, kind, part, parts) for kind, parts in DIVIDED.items() for part in range(parts)
 }

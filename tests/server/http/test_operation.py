@@ -17,6 +17,7 @@ from wsrender_server.jobs.faults import DiskFull, StoreUnavailable
 from wsrender_server.jobs.retention import Retention
 from wsrender_server.settings import Settings
 
+from tests.server.hostile.cases import zipped
 from tests.server.http.idle_server import DOCUMENT, problem_of
 from wsrender import __version__
 from wsrender.analyses.jobs import job_schema
@@ -219,6 +220,31 @@ def test_models(client, submit):
     assert submit(robot={"model": model["sha256"]})["state"] == "queued"
     problem_of(client.post("/v1/models", content=text), 415)
     problem_of(client.get(f"/v1/models/{'0' * 64}"), 404, "model_not_found")
+
+
+def test_zips_of_models(client, submit):
+    """Checked by their directory when they arrive, read where jobs are planned."""
+    arm = b"""<mujoco><worldbody><body><joint name="j" axis="0 0 1" range="-1 1"/><geom size=".1"/>
+      <site name="tool" pos="1 0 0"/></body></worldbody></mujoco>"""
+    content = zipped({"scene.xml": b'<mujoco><include file="arm.xml"/></mujoco>', "arm.xml": arm, "b.xml": arm})
+    headers = {"Content-Type": "application/zip"}
+    response = client.post("/v1/models", content=content, headers=headers)
+    assert response.status_code == 201, response.text
+    sha256 = response.json()["sha256"]
+    assert client.get(f"/v1/models/{sha256}").content == content
+    assert submit(robot={"model": sha256, "entry": "scene.xml"})["state"] == "queued"
+    problem_of(client.post("/v1/models", content=zipped({"a.stl": b""}), headers=headers), 409, "invalid_model")
+    found = []
+    for fields in ({"entry": "scene.xml"}, {}, {"entry": "c.xml"}):
+        document = {"analysis": "indices_at", "robot": {"model": sha256, **fields}, "configurations": [[0]]}
+        found.append(client.post("/v1/jobs:validate", json=document))
+        while found[-1].json().get("code") == "planning":
+            found[-1] = client.post("/v1/jobs:validate", json=document)
+    assert found[0].status_code == 200, found[0].text
+    for answer, said in zip(found[1:], ("must name one of the models", "'c.xml' is not in the archive"), strict=True):
+        (error,) = problem_of(answer, answer.status_code, "invalid_input")["errors"]
+        assert error["pointer"] == "#/robot/entry" and said in error["detail"]
+        assert answer.status_code in (409, 422)
 
 
 @pytest.mark.parametrize("ending", ["stl", "obj", "ply"])
