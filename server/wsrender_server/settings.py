@@ -14,8 +14,8 @@ from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
 OLD_FOLDER = Path("wsrender-data")  # in the working directory: the default of 0.1
 GIB = 2**30
 PREFIX = "WSRENDER_"
-# Variables that are not the server's: of kernels, of collision tables and uploaded models, of the client.
-OTHERS = ("THREADS", "CACHE_DIR", "MODELS", "SERVER", "TOKEN")
+# Variables that are not the server's: of kernels, of collision tables and uploaded models, of the client, of results.
+OTHERS = ("THREADS", "CACHE_DIR", "MODELS", "SERVER", "TOKEN", "SAY_HOST")
 
 
 def default_data_dir() -> Path:

@@ -18,7 +18,7 @@ NEARLY_ZERO = 1e-12  # what is left where numbers of about one cancel
 TURN = 97  # weights of a sum that notices when values change places
 ESTIMATE = "estimate"  # its seconds are no time of a run
 OF_THE_RUN = frozenset({"timing_s", "artifacts"})
-OF_THE_HOST = frozenset({"wsrender", "warp-lang", "mujoco", "numpy", "target", "host"})
+OF_THE_HOST = frozenset({"wsrender", "warp-lang", "mujoco", "numpy", "target", "host", "run", "citation"})
 TIMES = ("seconds",)  # how names of times begin
 NOISE = ("residual", *TIMES)  # and of numbers that are noise below a tolerance
 

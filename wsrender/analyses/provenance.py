@@ -1,6 +1,8 @@
 """What a result says of its origin: robot, versions, hashes, target."""
 
+import os
 import platform
+from datetime import UTC, datetime
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any
@@ -10,8 +12,11 @@ import numpy as np
 from wsrender import __version__
 from wsrender.documents.arm import PYTHON_CLASS, at_path
 from wsrender.documents.options import TASK_ROWS
+from wsrender.origin import asked_by, citation
 from wsrender.pipeline.evaluation import Evaluation
 from wsrender.robot import Robot
+
+SAY_HOST = "WSRENDER_SAY_HOST"
 
 
 def robot_entry(robot: Robot) -> dict[str, Any]:
@@ -64,7 +69,8 @@ def provenance(job: Any, target: str, **more: Any) -> dict[str, Any]:
     """Versions, host, and what planning settled: precision, target, seed, and what else the plan has to say.
 
     A job without a choice of ``precision`` is computed in float64. The ``seed`` is the job's, else that of its sampling
-    or of its search; without any there is none.
+    or of its search; without any there is none. ``run`` says when it ended, and by which command; no file but the
+    document holds it, so equal results have equal files. The host's name is told where WSRENDER_SAY_HOST is 1.
     """
     packages = ("warp-lang", "mujoco", "numpy")
     return {
@@ -74,8 +80,19 @@ def provenance(job: Any, target: str, **more: Any) -> dict[str, Any]:
         "target": target,
         **_seed(job),
         **more,
-        "host": {"python": platform.python_version(), "system": platform.platform(), "name": platform.node()},
+        "citation": citation(),
+        "run": {"date": datetime.now(UTC).isoformat(timespec="seconds"), **_command()},
+        "host": {"python": platform.python_version(), "system": platform.platform(), **_host_name()},
     }
+
+
+def _command() -> dict[str, str]:
+    command = asked_by.get()
+    return {} if command is None else {"command": command}
+
+
+def _host_name() -> dict[str, str]:
+    return {"name": platform.node()} if os.environ.get(SAY_HOST) == "1" else {}
 
 
 def _seed(job: Any) -> dict[str, int]:

@@ -1,11 +1,13 @@
 """The command line: ``wsrender run | render | report | submit | jobs …``, and what the server adds to it."""
 
+import shlex
 import sys
 from collections.abc import Sequence
 from typing import Annotated
 
 import typer
 
+from wsrender.cli.cite_command import cite
 from wsrender.cli.faults import one_line_faults, one_line_warnings
 from wsrender.cli.job_command import run
 from wsrender.cli.jobs_command import jobs, submit
@@ -15,8 +17,10 @@ from wsrender.cli.reproduce_command import reproduce
 from wsrender.cli.view_command import view
 from wsrender.errors import InputError, MissingExtraError
 from wsrender.extensions import load
+from wsrender.origin import asked_by
 
 COMMANDS = {
+    "cite": cite,
     "run": run,
     "render": render,
     "report": report,
@@ -39,7 +43,12 @@ def main(arguments: Sequence[str] | None = None) -> None:
     """
     arguments = list(sys.argv[1:] if arguments is None else arguments)
     command = next((argument for argument in arguments if not argument.startswith("-")), None)
-    command_line(command)(arguments, prog_name="wsrender")
+    typed = shlex.join(["wsrender", *arguments]) if command == "run" else None  # others may hold a server's key
+    before = asked_by.set(typed)
+    try:
+        command_line(command)(arguments, prog_name="wsrender")
+    finally:
+        asked_by.reset(before)
 
 
 def command_line(command: str | None) -> typer.Typer:

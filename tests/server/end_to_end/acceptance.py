@@ -30,7 +30,7 @@ def local_result(document: dict, folder: Path) -> ws.Result:
 def comparable(document: dict) -> dict:
     """A result document without what may differ between two runs: seconds, and the host's name."""
     copy = json.loads(json.dumps(document))
-    del copy["timing_s"], copy["provenance"]["host"]
+    del copy["timing_s"], copy["provenance"]["host"], copy["provenance"]["run"]
     return copy
 
 

@@ -39,7 +39,7 @@ def in_state(store, job, state, owner="ann", timeout=PATIENCE_S):
 def comparable(document):
     """A result document without what may differ between two runs: seconds and host."""
     copy = json.loads(json.dumps(document))
-    del copy["timing_s"], copy["provenance"]["host"]
+    del copy["timing_s"], copy["provenance"]["host"], copy["provenance"]["run"]
     return copy
 
 
