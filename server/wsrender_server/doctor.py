@@ -4,11 +4,13 @@ import importlib.metadata
 import os
 import shutil
 import socket
+import stat
 import subprocess
 import sys
 from collections.abc import Iterator
 from contextlib import closing
 from dataclasses import dataclass
+from pathlib import Path
 
 from wsrender.errors import InputError, WsrenderError
 from wsrender_server.gpus import present_gpus
@@ -95,7 +97,7 @@ def _permissions(settings: Settings) -> Iterator[Finding]:
             yield Finding("permissions", f"{path} cannot be read", f"ls -l {path}")
             return
     for path in (*private, *([folder] if folder.exists() else [])):
-        if path.stat().st_mode & OTHERS:
+        if path.stat().st_mode & (OTHERS if path == folder else _open_to_others(path)):
             yield Finding("permissions", f"other users may look into {path}", f"chmod go= {path}")
             return
     where = next(path for path in (folder, *folder.parents) if path.exists())
@@ -105,6 +107,16 @@ def _permissions(settings: Settings) -> Iterator[Finding]:
     yield Finding(
         "permissions", f"{folder} is writable" + ("" if where == folder else ", and is made at the first start")
     )
+
+
+def _open_to_others(path: Path) -> int:
+    """Rights of a file that others must not have: what its group may read is right where we read it by the group.
+
+    So is a secret mounted by Kubernetes: root's, 0440, of the group that the pod's processes have.
+    """
+    status = path.stat()
+    by_group = status.st_uid != os.geteuid() and status.st_gid in (os.getegid(), *os.getgroups())
+    return OTHERS & ~stat.S_IRGRP if by_group else OTHERS
 
 
 def _store(settings: Settings) -> Iterator[Finding]:

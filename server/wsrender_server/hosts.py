@@ -14,7 +14,8 @@ from wsrender_server.problems import HttpProblem, problem_of_error, response_of_
 from wsrender_server.settings import Settings
 
 LOCAL_NAMES = ("localhost", "ip6-localhost")
-_HOST = re.compile(r"(\[[0-9A-Fa-f:.]+\]|[A-Za-z0-9._-]+)(?::[0-9]{1,5})?")  # of a header: name or address, port
+# Of a header: name or address, which may have a zone, and a port.
+_HOST = re.compile(r"(\[[0-9A-Fa-f:.]+(?:%[A-Za-z0-9._~-]+)?\]|[A-Za-z0-9._-]+)(?::[0-9]{1,5})?")
 _PREFIX = re.compile(r"(/[A-Za-z0-9._~-]+)+")
 _shown_under: ContextVar[str] = ContextVar("shown_under", default="")
 
@@ -75,7 +76,7 @@ def _host_of_origin(origin: str) -> str | None:
         name = urlsplit(origin).hostname
     except ValueError:
         return None
-    return f"[{name}]" if name is not None and ":" in name else name
+    return f"[{name.lower()}]" if name is not None and ":" in name else name
 
 
 class HostLayer:

@@ -69,6 +69,26 @@ def test_a_scheduler_that_is_not_there(settings, tmp_path):
     assert wrong(doctor._permissions, cluster)[1] == f"chmod go= {tmp_path}/key"
 
 
+def test_a_secret_that_is_read_by_its_group_is_right_where_we_are_of_it(settings, tmp_path, monkeypatch):
+    """As Kubernetes mounts one: root's, 0440, the pod's processes another user's of that group."""
+    keys = tmp_path / "keys"
+    keys.write_text("a-secret-of-many-characters\n")
+    keys.chmod(0o440)
+    asked = Settings(**settings.model_dump() | {"api_key_file": keys})
+    assert wrong(doctor._permissions, asked)[1] == f"chmod go= {keys}"  # our own file: nobody else need read it
+    monkeypatch.setattr(doctor.os, "geteuid", lambda: keys.stat().st_uid + 1)
+    monkeypatch.setattr(doctor.os, "getgroups", lambda: [keys.stat().st_gid])
+    assert "is writable" in next(doctor._permissions(asked)).found
+    keys.chmod(0o444)
+    assert "other users" in wrong(doctor._permissions, asked)[0]
+    keys.chmod(0o460)
+    assert "other users" in wrong(doctor._permissions, asked)[0]
+    keys.chmod(0o440)
+    monkeypatch.setattr(doctor.os, "getgroups", list)
+    monkeypatch.setattr(doctor.os, "getegid", lambda: keys.stat().st_gid + 1)
+    assert "other users" in wrong(doctor._permissions, asked)[0]
+
+
 def test_databases(settings, tmp_path):
     assert "is made at the first start" in next(doctor._database(settings)).found
     settings.data_dir.mkdir()

@@ -119,7 +119,10 @@ def restore(settings: Settings, source: Path) -> int:
                 target = files.root / path.relative_to(source)
                 target.parent.mkdir(mode=0o700, exist_ok=True)
                 shutil.copyfile(path, target)
-            between = shutil.copyfile(source / DATABASE, files.root / "scratch" / DATABASE)
+            between = files.root / "scratch" / DATABASE
+            for name in (DATABASE, f"{DATABASE}-wal"):  # a folder that was copied by hand has its newest rows there
+                with suppress(FileNotFoundError):
+                    shutil.copyfile(source / name, between.with_name(name))
             with _database(f"sqlite:///{between}") as earlier:
                 upgrade(earlier)
                 upgrade(engine)

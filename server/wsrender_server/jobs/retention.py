@@ -48,6 +48,7 @@ class Retention:
     def __init__(self, store: JobStore, settings: Settings):
         self.store = store
         self.settings = settings
+        self._made = datetime.now(UTC), time.monotonic()
 
     @contextmanager
     def running(self) -> Iterator[None]:
@@ -64,7 +65,7 @@ class Retention:
     def due(self, now: datetime | None = None) -> list[Removal]:
         """What is to go, in the order in which it goes; nothing is changed. Raises StoreUnavailable."""
         check_bound(self.store.transactions, self.store.files)  # a folder of others has no file too many
-        now = now or datetime.now(UTC)
+        now = now or self._now()
         folders = {
             kind: self._entries(kind) for kind in ("partials", "results", "models", "documents")
         }  # before the rows
@@ -95,6 +96,11 @@ class Retention:
         if removal.what == "model":
             return store.forget_model_file(removal.id)
         return store.forget_files(removal.id)
+
+    def _now(self) -> datetime:
+        """The time by which ages count: a clock that jumps ahead while this runs makes nothing old."""
+        time_then, seconds_then = self._made
+        return min(datetime.now(UTC), time_then + timedelta(seconds=time.monotonic() - seconds_then))
 
     def _loop(self, end: threading.Event) -> None:
         while not end.wait(self.settings.retention_interval_s):
@@ -150,7 +156,7 @@ class Retention:
 
     def _files(self, session: Session, folders: dict[str, list[Path]]) -> Iterator[Removal]:
         """Files of what has no result, after a while where a retry goes on from them, and those that no row names."""
-        now = time.time()
+        now = self._now().timestamp()
         states = {row.id: row for row in session.execute(select(Computation.id, Computation.state, Computation.owner))}
         models = set(session.scalars(select(Model.sha256)))
         for kind, path in [(each, path) for each in ("partials", "results") for path in folders[each]]:

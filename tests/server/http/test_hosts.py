@@ -5,7 +5,10 @@ import platform
 import pytest
 from fastapi.routing import APIRoute
 from fastapi.testclient import TestClient
+from starlette.requests import HTTPConnection
 from wsrender_server.app import ROUTERS, create_app
+from wsrender_server.hosts import check_names
+from wsrender_server.problems import HttpProblem
 from wsrender_server.settings import Settings
 
 from tests.server.http.idle_server import DOCUMENT, HOST, problem_of
@@ -25,6 +28,20 @@ ROUTES = [
 def asked(settings, jobs):
     """``asked(settings…)`` is a client of a server with these settings."""
     return lambda **more: TestClient(create_app(Settings(**settings.model_dump() | more), jobs), base_url=HOST)
+
+
+def test_an_address_may_have_a_zone():
+    """As of a machine on the same cable; its colon and brackets are no reason to ask who is meant."""
+    for host in ("[fe80::1%eth0]:8000", "[fe80::1%25eth0]", "[fe80::1%25Eth0.1]:80"):
+        headers = {"host": host, "origin": f"http://{host}"}
+        scope = {"type": "http", "headers": [(name.encode(), value.encode()) for name, value in headers.items()]}
+        check_names(HTTPConnection(scope), Settings())
+        scope["headers"][1] = (b"origin", b"http://[fe80::2%25eth0]")
+        with pytest.raises(HttpProblem, match="may not ask"):
+            check_names(HTTPConnection(scope), Settings())
+    for host in ("[fe80::1%]", "[fe80::1%a b]", "[fe80::1%eth0", "fe80::1%eth0", "[%eth0]x"):
+        with pytest.raises(HttpProblem, match="does not know"):
+            check_names(HTTPConnection({"type": "http", "headers": [(b"host", host.encode())]}), Settings())
 
 
 def test_every_route_refuses_names_and_pages_of_others(client):

@@ -1,5 +1,6 @@
 """Check, backup and restore, on both databases, and by the commands."""
 
+import shutil
 import threading
 from contextlib import ExitStack, closing
 
@@ -118,6 +119,20 @@ def test_a_restored_store_holds_what_was_backed_up(store, filled, tmp_path, post
         with closing(restored(tmp_path / "backup", tmp_path / "third", postgres_url)) as third, third.claimed():
             assert contents(third) == before
             assert third.submit("ann", document_of(0)).cached
+
+
+def test_a_folder_that_was_copied_by_hand_is_restored_with_its_newest_rows(store, filled, tmp_path):
+    """They are in the log beside the database until SQLite writes them into it."""
+    engine = store.transactions.engine
+    if engine.dialect.name != "sqlite":
+        pytest.skip("of SQLite")
+    with engine.connect():  # the last connection that closes empties the log
+        shutil.copytree(store.files.root, tmp_path / "copy")
+        for name in ("", "-wal"):
+            shutil.copyfile(f"{engine.url.database}{name}", tmp_path / f"copy/wsrender.db{name}")
+    assert (tmp_path / "copy/wsrender.db-wal").stat().st_size > 0
+    with closing(restored(tmp_path / "copy", tmp_path / "new")) as other:
+        assert contents(other) == contents(store)
 
 
 def test_long_documents_are_checked_and_restored(store, tmp_path, monkeypatch):
