@@ -132,7 +132,7 @@ def canonical(document: Mapping[str, Any], max_samples: int, prefix: str = "") -
     job = parse_job(document)
     plain = job.model_dump(mode="json")
     refuse_paths(plain)
-    check_models(plain, prefix)
+    models = check_models(plain, prefix)
     arms = job.arms()
     for path, part in ({(): job} | arms).items():
         _check_indices(part, path)
@@ -142,12 +142,16 @@ def canonical(document: Mapping[str, Any], max_samples: int, prefix: str = "") -
     if total > max_samples:
         message = f"have at least {total:.4g} samples together; this server allows {max_samples:.4g}"
         raise ResourceError("sampling", message)
-    return CanonicalDocument.of(plain)
+    return CanonicalDocument.of(plain, models)
 
 
-def check_models(document: Any, prefix: str = "") -> None:
-    """Raises DocumentError, ModelError or HttpProblem for models that cannot be had, or are not harmless text."""
-    for path, model in models_in(document):
+def check_models(document: Any, prefix: str = "") -> list[tuple[ArmPath, dict[str, Any]]]:
+    """The models that a canonical document names, each with its path.
+
+    Raises DocumentError, ModelError or HttpProblem for models that cannot be had, or are not harmless text.
+    """
+    models = [*models_in(document)]
+    for path, model in models:
         if model.get("library") is not None:
             try:
                 library.find(model["library"])
@@ -156,6 +160,7 @@ def check_models(document: Any, prefix: str = "") -> None:
         for name in ("mjcf", "urdf"):
             if model.get(name) is not None:
                 check_model(dotted(path, name), model[name], prefix)
+    return models
 
 
 def check_uploads(store: JobStore, owner: str, uploads: Iterable[tuple[str, str]], prefix: str = "") -> None:

@@ -1,10 +1,13 @@
 """Artifacts in other formats, slices and plots on request, made in the side process."""
 
 import asyncio
+import json
 import math
 import os
 import tempfile
 import uuid
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -12,11 +15,14 @@ import numpy as np
 
 from wsrender import __version__
 from wsrender.errors import InputError
+from wsrender.notices import entries
 from wsrender.results.export.artifacts import sha256 as sha256_of
 from wsrender.results.export.formats import Format, of_file, others
+from wsrender.results.export.result_format import current_document
 from wsrender.results.presentation import picture_of
-from wsrender.results.result import Result
+from wsrender.results.result import Result, files_of_parts
 from wsrender_server.jobs.files import DataFolder
+from wsrender_server.jobs.identity import notices_of
 from wsrender_server.jobs.records import ArtifactRecord
 from wsrender_server.problems import HttpProblem
 from wsrender_server.side_process import SideProcess
@@ -49,14 +55,21 @@ class ConvertedFiles:
             choices = ", ".join(allowed) or "none"
             detail = f"{record.name} does not come as {format}; other formats: {choices}"
             raise HttpProblem(404, detail, "format_not_available", errors=[("format", detail)])
+        return await self._made(record.sha256, format, partial(convert, source, stored, allowed[format]))
+
+    async def renewed(self, source: Path, record: ArtifactRecord, version: str) -> tuple[Path, str]:
+        """File and SHA-256 of the result document of another ``version`` in today's form. Raises DiskFull."""
+        return await self._made(record.sha256, "renewed", partial(renew, source, version))
+
+    async def _made(self, source_sha256: str, kind: str, write: Callable[[Path], str]) -> tuple[Path, str]:
+        """What the side process has written, or writes now, of a source."""
         async with self._turn:  # equal requests find the file that the first of them makes
-            kept = await asyncio.to_thread(self._kept, record.sha256, format)
+            kept = await asyncio.to_thread(self._kept, source_sha256, kind)
             if kept is None:
                 await asyncio.to_thread(self._files.check_space)
-                target = self._folder / f".{uuid.uuid4().hex}.{format}"
-                wanted = allowed[format]
-                sha256 = await self._side_process.run(convert, source, stored, target, wanted, timeout_s=TIMEOUT_S)
-                kept = await asyncio.to_thread(self._keep, target, record.sha256, sha256, format)
+                target = self._folder / f".{uuid.uuid4().hex}.{kind}"
+                sha256 = await self._side_process.run(write, target, timeout_s=TIMEOUT_S)
+                kept = await asyncio.to_thread(self._keep, target, source_sha256, sha256, kind)
         return kept
 
     def _kept(self, source_sha256: str, format: str) -> tuple[Path, str] | None:
@@ -74,13 +87,35 @@ class ConvertedFiles:
         return path, sha256
 
 
-def convert(source: Path, stored: Format, target: Path, wanted: Format) -> str:
+def convert(source: Path, stored: Format, wanted: Format, target: Path) -> str:
     """Write the file ``source``, whatever its name, in another format; SHA-256 of the file ``target``.
 
     Raises InputError where the source is damaged.
     """
     wanted.write(stored.read(source), target)
     return sha256_of(target)
+
+
+def renew(source: Path, version: str, target: Path) -> str:
+    """Write the result document of another version in today's form, with a warning; SHA-256 of the file ``target``."""
+    document = result_document(source)
+    document["warnings"] = [*document["warnings"], *entries(notices_of(version))]
+    target.write_text(json.dumps(document, ensure_ascii=False), encoding="utf-8")
+    return sha256_of(target)
+
+
+def result_document(source: Path | str) -> dict[str, Any]:
+    """The result document of a file, in today's form."""
+    return current_document(json.loads(Path(source).read_text(encoding="utf-8")))
+
+
+def files_for_plot(result: str, plot: str, names: list[str]) -> list[str]:
+    """Of the files ``names`` of a result, whose document is in a file, those that a picture is drawn from.
+
+    Raises InputError for a picture that results of its analysis do not have.
+    """
+    picture = picture_of(result_document(result), plot)
+    return files_of_parts((*picture.needs, *picture.uses), names)
 
 
 def slice_values(
@@ -175,11 +210,12 @@ def _layer(counts: Any, normal: int, at: float | None, size: float, first: int) 
     return min(max(int(np.floor(cells + 1e-9)), 0), layers - 1)
 
 
-def draw(document: dict[str, Any], files: dict[str, str], name: str, format: Format, options: dict[str, Any]) -> bytes:
-    """A picture of a result in a format of pictures; ``files`` maps names of its artifacts to paths.
+def draw(result: str, files: dict[str, str], name: str, format: Format, options: dict[str, Any]) -> bytes:
+    """A picture of a result, whose document is in a file; ``files`` maps names of its artifacts to paths.
 
     ``options``: those that the picture takes are used. Raises InputError where the result does not hold what it shows.
     """
+    document = result_document(result)
     plot = Result.of_files(document, {file: Path(path) for file, path in files.items()}).plot
     taken = picture_of(document, name).takes
     figure = plot(name, **{key: value for key, value in options.items() if value is not None and key in taken})

@@ -21,6 +21,7 @@ from wsrender.results.export.atomic import new_file
 from wsrender.results.result import Result
 from wsrender.results.view.blobs import ENCODINGS, Encoding
 from wsrender.results.view.container import message
+from wsrender_server.conversions import result_document
 from wsrender_server.jobs.files import DataFolder
 from wsrender_server.problems import HttpProblem
 from wsrender_server.side_process import SideProcess
@@ -39,17 +40,17 @@ FILES = "artifacts/"  # where a result's files are, from where its view is
 
 @dataclass(frozen=True)
 class Shown:
-    """What a view is of: a library robot, or the result document and files by name of a job."""
+    """What a view is of: a library robot, or a job: the file of its result document and its SHA-256, files by name."""
 
     robot: str | None = None
-    document: Mapping[str, Any] | None = None
+    result: str | None = None
+    sha256: str | None = None
     files: Mapping[str, str] | None = None
 
     @property
     def key(self) -> str:
         """The same for equal views, of this version."""
-        named = self.robot if self.document is None else self.document
-        return hashlib.sha256(json.dumps([__version__, named], sort_keys=True).encode()).hexdigest()
+        return hashlib.sha256(json.dumps([__version__, self.robot, self.sha256]).encode()).hexdigest()
 
 
 def data_files(names: list[str]) -> list[str]:
@@ -182,7 +183,7 @@ def _view(shown: Shown, encoding: Encoding | None) -> "View":
     found = next((view for (key, each), view in _last.items() if key == shown.key and encoding in (None, each)), None)
     if found is None:
         encoding = encoding or "float16"
-        found = robot_view(shown.robot) if shown.document is None else _of_result(shown, encoding)
+        found = robot_view(shown.robot) if shown.result is None else _of_result(shown, encoding)
         _last.clear()
         _last[shown.key, encoding] = found
     return found
@@ -192,7 +193,8 @@ def _of_result(shown: Shown, encoding: Encoding) -> "View":
     from wsrender.results.view import view_of
 
     paths = {name: Path(path) for name, path in (shown.files or {}).items()}
-    return view_of(Result.of_files(dict(shown.document or {}), paths), encoding=encoding, pictures=FILES)
+    document = result_document(shown.result or "")
+    return view_of(Result.of_files(document, paths), encoding=encoding, pictures=FILES)
 
 
 def data_in(part: Any) -> list[Any]:

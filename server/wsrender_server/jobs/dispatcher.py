@@ -56,6 +56,7 @@ class Dispatcher:
         self._written = -1  # transactions of this process by then
         self._made = time.time()
         self._served = time.monotonic()  # when a worker was last there
+        self._sought = 0.0  # when lost targets were looked for
         self._seen: dict[str, float] = {}  # when a worker of each target was last alive
         self._workers_s = WORKERS_S + settings.worker_start_s
         self._end = threading.Event()
@@ -137,7 +138,9 @@ class Dispatcher:
         self.store.sole_use.keep()
         self.store.time_out()
         self._update_targets()
-        self._leave_lost_targets()
+        if now - self._sought >= LOOK_S:
+            self._sought = now
+            self._leave_lost_targets()
         known = self._unfinished(now)
         old = [key for key, attempt in self._attempts.items() if known.get(key, (None, 0))[1] != attempt.record.attempt]
         unwanted = [key for key, (state, _) in known.items() if state == ComputationState.STOPPING]

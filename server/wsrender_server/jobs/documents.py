@@ -2,7 +2,7 @@
 
 import hashlib
 import json
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any, Self
@@ -35,11 +35,15 @@ class CanonicalDocument:
     """Its JSON."""
 
     @classmethod
-    def of(cls, document: Mapping[str, Any]) -> Self:
-        """A canonical document. Raises InputError for a file given by a path: a server reads none for its users."""
-        for path in local_paths(document):
-            raise InputError(dotted(path), "is for local runs; send the points, or upload the model")
-        models = [*models_in(document)]
+    def of(cls, document: Mapping[str, Any], models: Sequence[tuple[ArmPath, dict[str, Any]]] | None = None) -> Self:
+        """A canonical document. Raises InputError for a file given by a path: a server reads none for its users.
+
+        ``models`` are those of `models_in`, where whoever calls has looked for them and for paths: it may be long.
+        """
+        if models is None:
+            for path in local_paths(document):
+                raise InputError(dotted(path), "is for local runs; send the points, or upload the model")
+            models = [*models_in(document)]
         text = canonical_text(dict(document))
         return cls(
             hashlib.sha256(text.encode()).hexdigest(),

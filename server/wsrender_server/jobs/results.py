@@ -158,7 +158,7 @@ class ResultStore:
             log.error("files of a result are lost or damaged", computation_id=computation_id, names=names)
 
     def result_document(self, owner: str, job_id: str) -> dict[str, Any] | None:
-        """The result document of a succeeded job; None where there is none, or no more."""
+        """The result document of a succeeded job; None where there is none, or no more. It may be long."""
         path = self.artifact_path(owner, job_id, "result.json")
         try:
             return None if path is None else json.loads(path.read_text(encoding="utf-8"))

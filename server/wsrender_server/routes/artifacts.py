@@ -1,6 +1,5 @@
 """Results: the document, the files, slices and plots."""
 
-import json
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
@@ -13,18 +12,15 @@ from fastapi import Path as PathParameter
 from pydantic import ConfigDict, Field
 from starlette.concurrency import run_in_threadpool
 
+from wsrender import __version__
 from wsrender.documents.format import FORMAT
-from wsrender.notices import entries
 from wsrender.results.export import formats
 from wsrender.results.export.artifacts import part_file
-from wsrender.results.export.result_format import current_document
-from wsrender.results.presentation import PLANE, all_pictures, picture_of
-from wsrender.results.result import files_of_parts
+from wsrender.results.presentation import PLANE, all_pictures
 from wsrender_server.auth import Reader
-from wsrender_server.conversions import draw, slice_values
+from wsrender_server.conversions import draw, files_for_plot, slice_values
 from wsrender_server.hosts import address
 from wsrender_server.jobs.faults import ResultExpired
-from wsrender_server.jobs.identity import notices_of
 from wsrender_server.jobs.records import ENDED, ArtifactRecord, JobRecord, JobState
 from wsrender_server.parts import Parts, Server
 from wsrender_server.problems import HttpProblem, problem_responses
@@ -41,12 +37,18 @@ _FILE_RESPONSES: dict[int | str, dict[str, Any]] = {
     206: {"description": "The range asked for", "headers": _ETAG, "content": {"*/*": {}}},
     304: {"description": "The client has it already", "headers": _ETAG},
 }
+_RESULT_RESPONSES: dict[int | str, dict[str, Any]] = {
+    200: {"description": "The document", "headers": _ETAG},
+    206: {"description": "The range asked for", "headers": _ETAG, "content": {"application/json": {"schema": {}}}},
+    304: {"description": "The client has it already", "headers": _ETAG},
+}
 _INDEX = Query(max_length=256, description="Name of an index; the first by default.")
 _VOLUME = Query(max_length=256, description="Which volume, where the result has several: name of its file.")
 _STATISTIC = Query(description="Statistic per voxel; the maximum by default, if it was kept.")
 _AT = Query(allow_inf_nan=False, description="Coordinate of the plane [m]; the plane with most voxels by default.")
 _SUFFIX = OneOf(lambda: formats.suffixes(formats.rows("picture")))
 Statistic = Literal["count", "maximum", "mean", "minimum"]
+RESULT = "result.json"
 NPY, RAW, PICTURE = "application/x-npy", "application/octet-stream", formats.rows("picture", own=True)[0]
 
 
@@ -117,17 +119,21 @@ Finished = Annotated[JobRecord, Depends(_finished)]
     "/jobs/{job_id:id}/result",
     summary="The result document",
     response_model=ResultDocument,
-    responses=problem_responses(401, 403, 404, 409, 422),
+    responses=_RESULT_RESPONSES | problem_responses(401, 403, 404, 409, 416, 422, 429),
 )
-def get_result(server: Server, job: Finished) -> Response:
+async def get_result(server: Server, job: Finished, request: Request) -> Response:
     """Values with units, volumes, hashes, versions, timings, warnings, and the list of files; 409 while there is none.
 
     `headline` is the number that the analysis is about, `warnings` what should be known of it: each has code, message,
     remedy and field; `other_version` says that another version of wsrender has computed it.
     """
-    document = result_document_of(server, job)
-    document["warnings"] = [*document["warnings"], *entries(notices_of(job.version))]
-    return Response(json.dumps(document, ensure_ascii=False), media_type="application/json")
+    # It may be as long as a job document: it goes out as the file that it is, and nobody here reads it.
+    record, path = await run_in_threadpool(artifact_of, server, job, RESULT)
+    sha256 = record.sha256
+    with not_found_if_gone(RESULT, path):
+        if job.version != __version__:
+            path, sha256 = await readable(server.converted.renewed(path, record, job.version))
+        return await run_in_threadpool(file_response, request, path, sha256, "application/json")
 
 
 @router.get(
@@ -254,28 +260,19 @@ async def _drawn(
     instead: Mapping[str, str] = MappingProxyType({}),
 ) -> Response:
     """A picture of the result's files, or of those ``instead`` of them."""
-    document, files = await run_in_threadpool(_sources, server, job, plot)
-    files |= instead
-    with not_found_if_gone(", ".join(files), *map(Path, files.values())):
-        content = await or_404(server.side_process.run(draw, document, files, plot, format, options))
+    records, result = await run_in_threadpool(_listed, server, job)
+    with not_found_if_gone(RESULT, Path(result)):
+        wanted = await readable(server.side_process.run(files_for_plot, result, plot, records))
+    files = await run_in_threadpool(files_of, server, job, wanted) | instead
+    with not_found_if_gone(", ".join(files), *map(Path, (result, *files.values()))):
+        content = await or_404(server.side_process.run(draw, result, files, plot, format, options))
     return Response(content, media_type=format.media_type)
 
 
-def result_document_of(server: Parts, job: JobRecord) -> dict[str, Any]:
-    """The result document of a finished job in today's form, whatever version has computed it."""
-    document = server.store.result_document(job.owner, job.id)
-    if document is None:
-        raise _gone("result.json")
-    return current_document(document)
-
-
-def _sources(server: Parts, job: JobRecord, plot: str) -> tuple[dict[str, Any], dict[str, str]]:
-    """The result document, and the files that the picture is drawn from."""
-    document = result_document_of(server, job)
+def _listed(server: Parts, job: JobRecord) -> tuple[list[str], str]:
+    """Names of the files of a result, and where its document is."""
     names = [record.name for record in server.store.artifacts(job.owner, job.id)]
-    picture = picture_of(document, plot)
-    wanted = files_of_parts((*picture.needs, *picture.uses), names)
-    return document, files_of(server, job, wanted)
+    return names, files_of(server, job, [RESULT])[RESULT]
 
 
 def files_of(server: Parts, job: JobRecord, names: Iterable[str]) -> dict[str, str]:
@@ -287,14 +284,19 @@ def files_of(server: Parts, job: JobRecord, names: Iterable[str]) -> dict[str, s
     return {name: str(path) for name, path in paths.items()}
 
 
-async def or_404(answer: Any) -> Any:
+async def or_404(answer: Any, status: int = 404) -> Any:
     """What was awaited; a picture or plane of what the result does not hold is not found."""
     try:
         return await answer
     except HttpProblem as error:
         if error.code == "invalid_input":
-            error.status = 404
+            error.status = status
         raise
+
+
+async def readable(answer: Any) -> Any:
+    """What was awaited; a document in a form that this version does not read is answered with 422."""
+    return await or_404(answer, 422)
 
 
 def artifact_of(server: Parts, job: JobRecord, name: str) -> tuple[ArtifactRecord, Path]:

@@ -17,10 +17,11 @@ PIECE_BYTES = 1 << 18
 _RANGE = re.compile(r"bytes=(?:(\d+)-(\d*)|-(\d+))")
 
 
-def file_response(request: Request, path: Path, sha256: str, media_type: str, name: str) -> Response:
+def file_response(request: Request, path: Path, sha256: str, media_type: str, name: str = "") -> Response:
     """The file, the range asked for (206), or 304 where the client has it.
 
-    The file is open when this returns: it arrives whole even if it is deleted meanwhile. The entity tag is the SHA-256.
+    With a ``name`` it is a download. The file is open when this returns: it arrives whole even if it is deleted
+    meanwhile. The entity tag is the SHA-256.
     Several ranges at once are answered with the whole file, as RFC 9110 allows. Raises HttpProblem 416 for a range
     beyond the file, FileNotFoundError.
     """
@@ -29,8 +30,9 @@ def file_response(request: Request, path: Path, sha256: str, media_type: str, na
         "ETag": etag,
         "Cache-Control": "private, no-cache",
         "Accept-Ranges": "bytes",
-        "Content-Disposition": f"attachment; filename*=utf-8''{quote(Path(name).name)}",
     }
+    if name:
+        headers["Content-Disposition"] = f"attachment; filename*=utf-8''{quote(Path(name).name)}"
     if has_it(request, etag):
         return Response(status_code=304, headers={name: headers[name] for name in ("ETag", "Cache-Control")})
     file = path.open("rb")

@@ -17,12 +17,12 @@ from wsrender_server.job_body import job_body
 from wsrender_server.parts import Parts, Server
 from wsrender_server.problems import HttpProblem, problem_responses
 from wsrender_server.routes.artifacts import (
+    RESULT,
     Finished,
     artifact_of,
     files_of,
     not_found_if_gone,
     or_404,
-    result_document_of,
 )
 from wsrender_server.routes.files import file_response
 from wsrender_server.routes.job_views import View
@@ -222,10 +222,10 @@ async def _answer(request: Request, made: Callable[[], Any], shown: Shown, name:
 
 
 def _of_job(server: Parts, job: Any) -> Shown:
-    """The result document and the files of a finished job. Raises HttpProblem 404 where they are gone."""
-    document = result_document_of(server, job)
-    wanted = data_files([record.name for record in server.store.artifacts(job.owner, job.id)])
-    return Shown(document=document, files=files_of(server, job, wanted))
+    """The files of a finished job. Raises HttpProblem 404 where they are gone."""
+    names = [record.name for record in server.store.artifacts(job.owner, job.id)]
+    record, path = artifact_of(server, job, RESULT)
+    return Shown(result=str(path), sha256=record.sha256, files=files_of(server, job, data_files(names)))
 
 
 def _of_library(robot: str) -> Shown:

@@ -24,7 +24,7 @@ from wsrender_server.auth import Principal, until_revoked
 from wsrender_server.jobs.records import JobState
 from wsrender_server.parts import Parts
 from wsrender_server.problems import HttpProblem, problem_of_error, problem_responses
-from wsrender_server.routes.artifacts import files_of, result_document_of
+from wsrender_server.routes.artifacts import RESULT, files_of
 from wsrender_server.routes.job_views import found
 from wsrender_server.routes.websockets import INTERNAL, NORMAL, POLICY, TOO_BIG, principal_of, protocol_of
 from wsrender_server.streams.sessions import MessageRate
@@ -66,13 +66,13 @@ async def job_view_session(websocket: WebSocket, job_id: str) -> None:
         job = found(parts.store.get(principal.owner, job_id))
         if job.state != JobState.SUCCEEDED:
             raise HttpProblem(409, f"the job is {job.state}; it has no result", "no_result")
-        document = result_document_of(parts, job)
         names = [record.name for record in parts.store.artifacts(job.owner, job.id)]
         wanted = [
             part_file("volume"),
             *(file for part in ("tables", "volumes") for file in named_files(part, names).values()),
         ]
-        return {"document": document, "files": files_of(parts, job, [name for name in wanted if name in names])}
+        result = files_of(parts, job, [RESULT])[RESULT]
+        return {"result": result, "files": files_of(parts, job, [name for name in wanted if name in names])}
 
     await _session(websocket, subject)
 

@@ -35,7 +35,7 @@ log = structlog.get_logger("wsrender.views")
 def run_session(link: socket.socket, subject: Mapping[str, Any], models: Path, threads: int | None) -> None:
     """Answer questions about a ``subject`` until the link closes: {"robot": library name}, or a result.
 
-    Of a result: {"document": …, "files": paths by name}.
+    Of a result: {"result": path of its document, "files": paths by name}.
     """
     settle_in()
     if hasattr(os, "nice"):  # not on Windows
@@ -70,11 +70,12 @@ def send_frame(link: socket.socket, content: bytes) -> None:
 def _opened(subject: Mapping[str, Any], threads: int | None) -> Interactive:
     from wsrender.results.result import Result
     from wsrender.robot import load_robot
+    from wsrender_server.conversions import result_document
 
     if "robot" in subject:
         return Interactive({}, [load_robot(subject["robot"])], threads=threads)
     files = {name: Path(path) for name, path in subject["files"].items()}
-    return Interactive.of_result(Result.of_files(dict(subject["document"]), files), threads=threads)
+    return Interactive.of_result(Result.of_files(result_document(subject["result"]), files), threads=threads)
 
 
 class _Questions:

@@ -3,12 +3,14 @@
 import hashlib
 import io
 import json
+import tracemalloc
 
 import numpy as np
 import pytest
 from sqlalchemy import update
-from wsrender_server.jobs.tables import ArtifactFile
+from wsrender_server.jobs.tables import ArtifactFile, Computation
 
+import wsrender
 from tests.results.export.sample_data import random_volume
 from tests.server.http.idle_server import problem_of
 from wsrender.results import export
@@ -23,6 +25,36 @@ def volume(result):
 
 def test_the_document_is_that_of_the_run(client, finished, result):
     assert client.get(f"{finished}/result").json() == result.document
+
+
+def test_the_document_goes_out_as_the_file_that_it_is(client, finished, result_folder, monkeypatch):
+    """Nobody in the server's process reads it: it may hold as many numbers as a job document."""
+    content = (result_folder / "result.json").read_bytes()
+    for module in ("wsrender_server.jobs.results", "wsrender_server.conversions"):
+        monkeypatch.setattr(f"{module}.json.loads", lambda *_: pytest.fail("the document was read"))
+    response = client.get(f"{finished}/result")
+    monkeypatch.undo()
+    assert response.content == content and response.headers["content-type"] == "application/json"
+    etag = response.headers["etag"]
+    assert etag == f'"{hashlib.sha256(content).hexdigest()}"' and "content-disposition" not in response.headers
+    assert client.get(f"{finished}/result", headers={"If-None-Match": etag}).status_code == 304
+    part = client.get(f"{finished}/result", headers={"Range": "bytes=2-9"})
+    assert (part.status_code, part.content) == (206, content[2:10])
+
+
+@pytest.mark.parametrize("version", [wsrender.__version__, "0.5.0"])
+def test_a_long_document_takes_no_memory_of_the_server(client, jobs, finished, version):
+    """That of an earlier version is brought into today's form by another process."""
+    numbers = [[0.125] * 4] * 250_000  # a dozen bytes of JSON for each becomes a hundred of objects
+    stored_document(jobs, finished, lambda document: document.update(numbers=numbers), version)
+    client.get(f"{finished}/volume/slice")  # the side process is there
+    tracemalloc.start()
+    with client.stream("GET", f"{finished}/result") as response:
+        length = sum(map(len, response.iter_bytes()))
+        most = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert response.status_code == 200 and length > 7_000_000
+    assert most < 20 << 20, f"{most / 2**20:.1f} MiB"
 
 
 def test_no_result_yet(client, submit):
@@ -226,7 +258,7 @@ def test_a_result_without_a_volume(client, jobs, tmp_path):
     problem_of(client.get(f"/v1/jobs/{job['id']}/plots/robot"), 404, "invalid_input")
 
 
-def stored_document(jobs, finished, change):
+def stored_document(jobs, finished, change, version):
     """Change the result document of a finished job in the data folder, as an earlier version may have written it."""
     job = finished.rpartition("/")[2]
     path = jobs.store.artifact_path("local", job, "result.json")
@@ -237,6 +269,7 @@ def stored_document(jobs, finished, change):
     (path.parent / sha256).write_bytes(content)
     with jobs.store.transactions.write() as session:
         session.execute(update(ArtifactFile).where(ArtifactFile.name == "result.json").values(sha256=sha256))
+        session.execute(update(Computation).values(version=version))
 
 
 def test_results_of_0_1_are_answered_in_todays_form(client, jobs, finished):
@@ -244,14 +277,15 @@ def test_results_of_0_1_are_answered_in_todays_form(client, jobs, finished):
         del document["format"], document["headline"], document["warnings"]
         document["provenance"]["wsrender"] = "0.1.0"
 
-    stored_document(jobs, finished, of_0_1)
+    stored_document(jobs, finished, of_0_1, "0.1.0")
     document = client.get(f"{finished}/result").json()
-    assert (document["format"], document["headline"]["value"], document["warnings"]) == (2, None, [])
+    assert (document["format"], document["headline"]["value"]) == (2, None)
+    assert [each["code"] for each in document["warnings"]] == ["other_version"]
     assert client.get(f"{finished}/plots/robot").status_code == 200
 
 
 def test_a_result_of_another_format_is_a_problem(client, jobs, finished):
-    stored_document(jobs, finished, lambda document: document.update(format=3))
+    stored_document(jobs, finished, lambda document: document.update(format=3), "99.0.0")
     for path in ("result", "plots/robot"):
         problem = problem_of(client.get(f"{finished}/{path}"), 422, "invalid_input")
         assert "must be 2 or missing" in problem["detail"]
