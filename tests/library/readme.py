@@ -15,8 +15,7 @@ from wsrender.robots.library import LibraryRobot
 
 BEGIN, END = "<!-- made by python -m tests.library.readme -->", "<!-- made until here -->"
 SOURCES = "## Source of every number"
-SHARE = re.compile(r"Of 20 000 uniform random configurations, ([\d.]+) % collide with the arm itself\.")
-SAMPLES = 20_000
+SHARE = re.compile(r"Of ([\d ]+) uniform random configurations, ([\d.]+) % collide with the arm itself\.")
 
 
 def written(text: str, name: str) -> str:
@@ -107,7 +106,7 @@ def _number(value: float, digits: int = 9) -> str:
     return f"{round(float(value), digits) + 0.0:.{digits}g}".replace("-", "−")
 
 
-def collision_share(name: str, count: int = SAMPLES) -> float:
+def collision_share(name: str, count: int) -> float:
     """In how many of uniform random configurations the arm's shapes collide [%]."""
     bodies = load_path(library.find(name)).bodies
     chain, data = bodies.chain, mujoco.MjData(bodies.model)
@@ -126,9 +125,9 @@ def main(names: list[str]) -> None:
     for name in names or library.names():
         path = library.find(name).parent / "README.md"
         text = written(path.read_text(encoding="utf-8"), name)
-        if SHARE.search(text):
-            share = f"{collision_share(name):.1f}"
-            text = SHARE.sub(lambda found, share=share: found[0].replace(found[1], share, 1), text)
+        if said := SHARE.search(text):
+            share = f"{collision_share(name, int(said[1].replace(' ', ''))):.1f}"
+            text = text.replace(said[0], said[0].replace(f"{said[2]} %", f"{share} %"))
         path.write_text(text, encoding="utf-8")
         print(f"{path.parent.name}/{path.name}")
 
