@@ -10,6 +10,8 @@ from functools import partial
 import numpy as np
 import pytest
 
+from tests.library.published_tables import TABLES
+
 Poses = Callable[[np.ndarray], np.ndarray]
 MISSING = "needs {}, of the extra test-models"
 
@@ -58,8 +60,11 @@ def along_z(distance: float) -> np.ndarray:
     return T
 
 
+Z_OUT_OF_X = np.array([[0.0, 0, 1, 0], [0, 1, 0, 0], [-1, 0, 0, 0], [0, 0, 0, 1]])  # of a flange with x outwards
+
 SECOND_SOURCES: dict[str, Callable[[], Poses]] = {
     "ur5e": partial(ssik, "universal_robots.ur5e", turned_about_z(np.pi)),
     "franka_panda": partial(ssik, "franka.panda"),
     "kuka_iiwa14": partial(ssik, "kuka.iiwa14"),
-}
+    "abb_irb120": partial(ssik, "abb.irb120", tool=Z_OUT_OF_X),
+} | {name: partial(getattr, table, "poses") for name, table in TABLES.items()}

@@ -1,0 +1,68 @@
+"""Denavit–Hartenberg tables of industrial arms, as others publish them, to compare library robots with.
+
+Modified ones (Craig 1986) are of robotkinematicscatalogue 1.1.2, standard ones of ir-support-extra-robots 0.2.1 (both
+on PyPI). Lengths in mm, angles in quarter turns; ``signs`` says which joints turn the other way, ``base`` adds a height
+that a table leaves out. The last row's angle is the one that gives this library's tool, z out of the flange.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+ABB, FANUC, KUKA = (1, 1, 1, 1, 1, 1), (1, 1, -1, -1, -1, -1), (-1, 1, 1, -1, 1, -1)  # Yaskawa's are FANUC's
+
+
+@dataclass(frozen=True)
+class PublishedTable:
+    """Rows α, a, d, θ; ``modified``: α and a are of the joint before."""
+
+    rows: tuple[tuple[float, float, float, float], ...]
+    signs: tuple[int, ...]
+    base: float = 0.0  # [mm]
+    modified: bool = True
+
+    def poses(self, q: np.ndarray) -> np.ndarray:
+        """Poses (N, 4, 4) of the last frame at joint angles (N, 6) [rad], lengths in m."""
+        T = np.tile(np.eye(4), (len(q), 1, 1))
+        T[:, 2, 3] = self.base / 1000
+        for k, (alpha, a, d, theta) in enumerate(self.rows):
+            link, joint = _screw(0, alpha, a), _screw(2, theta * np.pi / 2 + self.signs[k] * q[:, k], d, quarters=False)
+            T = T @ link @ joint if self.modified else T @ joint @ link
+        return T
+
+
+def _screw(axis: int, angle, shift: float, quarters: bool = True) -> np.ndarray:
+    """Turns about an axis of the frame, and a shift along it [mm]."""
+    angles = np.atleast_1d(np.asarray(angle, dtype=float) * (np.pi / 2 if quarters else 1.0))
+    i, j = (axis + 1) % 3, (axis + 2) % 3
+    T = np.tile(np.eye(4), (len(angles), 1, 1))
+    T[:, i, i] = T[:, j, j] = np.cos(angles)
+    T[:, j, i] = np.sin(angles)
+    T[:, i, j] = -T[:, j, i]
+    T[:, axis, 3] = shift / 1000
+    return T
+
+
+def _kuka(d1: float, a1: float, a2: float, a3: float, d4: float, d6: float) -> PublishedTable:
+    rows = ((0, 0, d1, 0), (-1, a1, 0, 0), (0, a2, 0, -1), (-1, a3, d4, 0), (1, 0, 0, 0), (-1, 0, d6, 2))
+    return PublishedTable(rows, KUKA)
+
+
+def _upright(lengths: tuple[float, ...], signs: tuple[int, ...], base: float = 0.0) -> PublishedTable:
+    """Of arms whose upper arm stands at zero: d1, a1, a2, a3, d4, d5, a5, d6, and how far the flange is turned."""
+    d1, a1, a2, a3, d4, d5, a5, d6, turned = lengths
+    rows = ((0, 0, d1, 0), (-1, a1, 0, -1), (0, a2, 0, 0), (-1, a3, d4, 0), (1, 0, d5, 0), (-1, a5, d6, turned))
+    return PublishedTable(rows, signs, base)
+
+
+TABLES: dict[str, PublishedTable] = {
+    "abb_crb15000_5_95": _upright((265, 0, 444, 110, 470, 0, 80, 101, 2), ABB),
+    "abb_irb1200_5_90": _upright((399, 0, 448, 42, 451, 0, 0, 82, 2), ABB, base=0.1),
+    "kuka_kr3_r540": _kuka(345, 20, 260, 20, 260, 75),
+    "kuka_kr16_2": _kuka(675, 260, 680, -35, 670, 158),
+    "yaskawa_hc10dtp": PublishedTable(
+        ((1, 0, 275, 0), (0, 700, 0, 1), (1, 0, 0, 0), (1, 0, 500, 0), (-1, 0, 162, 0), (0, 0, 170, 0)),
+        (1, -1, 1, -1, -1, -1),
+        modified=False,
+    ),
+}
