@@ -58,6 +58,9 @@ def _upright(lengths: tuple[float, ...], signs: tuple[int, ...], base: float = 0
 TABLES: dict[str, PublishedTable] = {
     "abb_crb15000_5_95": _upright((265, 0, 444, 110, 470, 0, 80, 101, 2), ABB),
     "abb_irb1200_5_90": _upright((399, 0, 448, 42, 451, 0, 0, 82, 2), ABB, base=0.1),
+    "denso_vs060": PublishedTable(
+        ((0, 0, 345, 0), (-1, 0, 0, -1), (0, 305, 0, -1), (-1, 10, 300, 0), (1, 0, 0, 0), (-1, 0, 70, 2)), ABB
+    ),
     "kuka_kr3_r540": _kuka(345, 20, 260, 20, 260, 75),
     "kuka_kr16_2": _kuka(675, 260, 680, -35, 670, 158),
     "yaskawa_hc10dtp": PublishedTable(

@@ -61,10 +61,16 @@ def along_z(distance: float) -> np.ndarray:
 
 
 Z_OUT_OF_X = np.array([[0.0, 0, 1, 0], [0, 1, 0, 0], [-1, 0, 0, 0], [0, 0, 0, 1]])  # of a flange with x outwards
+Z_OUT_X_UP = np.array(
+    [[0.0, 0, 1, 0], [0, -1, 0, 0], [1, 0, 0, 0], [0, 0, 0, 1]]
+)  # of the same, as ROS-Industrial turns it
 
 SECOND_SOURCES: dict[str, Callable[[], Poses]] = {
     "ur5e": partial(ssik, "universal_robots.ur5e", turned_about_z(np.pi)),
     "franka_panda": partial(ssik, "franka.panda"),
     "kuka_iiwa14": partial(ssik, "kuka.iiwa14"),
     "abb_irb120": partial(ssik, "abb.irb120", tool=Z_OUT_OF_X),
+    "fanuc_crx10ia_l": partial(ssik, "fanuc.crx10ial"),
+    "fanuc_crx5ia": partial(ssik, "fanuc.crx5ia", tool=Z_OUT_X_UP),
+    "fanuc_lrmate200id": partial(ssik, "fanuc.lrmate200id", tool=Z_OUT_X_UP),
 } | {name: partial(getattr, table, "poses") for name, table in TABLES.items()}
