@@ -245,7 +245,7 @@ _MODULE_OF_NAME = {name: module for module, names in _NAMES_OF_MODULE.items() fo
 _MODULES = {"math": "wsrender.indices.math", "run": "wsrender.run"}
 
 
-def __getattr__(name: str) -> Any:
+def _public(name: str) -> Any:
     """Import a public name when it is first used; raises MissingExtraError where its extra is missing."""
     if name in _MODULES:
         value = _imported(_MODULES[name])
@@ -255,6 +255,10 @@ def __getattr__(name: str) -> Any:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     globals()[name] = value
     return value
+
+
+if not TYPE_CHECKING:  # a type checker would believe that every name is there
+    __getattr__ = _public
 
 
 def _imported(module: str) -> ModuleType:

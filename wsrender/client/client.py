@@ -18,12 +18,14 @@ from wsrender.documents.array_files import TABLE_TYPES
 from wsrender.documents.problems import path_text
 from wsrender.documents.shapes import MEDIA_TYPES
 from wsrender.errors import DocumentError, InputError
+from wsrender.keywords import keywords
 
 PAGE = 100  # jobs in one answer
 LONGEST_SENT = 100_000  # numbers of an array that a document lists
 NPY, ZIP = b"\x93NUMPY", b"PK"  # with which such files begin
 
 
+@keywords
 class Client:
     """A connection to a job server; a context manager.
 

@@ -12,6 +12,7 @@ import httpx2
 from wsrender.client.connection import Connection, error_of_problem
 from wsrender.client.remote_result import RemoteFiles, RemoteResult
 from wsrender.errors import JobFailedError, WaitTimeoutError
+from wsrender.keywords import keywords
 from wsrender.progress import RunProgress
 from wsrender.results.export.result_format import current_document
 from wsrender.results.result import Result
@@ -22,6 +23,7 @@ SHORTEST_POLL_S = 0.2
 RECONNECT_S = 600.0  # a server's restart, a laptop's sleep
 
 
+@keywords
 class Job:
     """A job as the server last described it; ``refresh`` and ``wait`` ask again.
 

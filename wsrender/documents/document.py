@@ -8,6 +8,7 @@ from pydantic.functional_validators import ModelWrapValidatorHandler
 from pydantic_core import InitErrorDetails
 
 from wsrender.documents.problems import listed, located, worded
+from wsrender.documents.signatures import DocumentType
 from wsrender.errors import DocumentError
 from wsrender.short_repr import is_default, short_value
 
@@ -15,7 +16,7 @@ MOST_ITEMS = 20_000  # of a list or an object: to tell what is wrong with each t
 MOST_COLUMNS = 1_000  # of a row in a longer list
 
 
-class Document(BaseModel):
+class Document(BaseModel, metaclass=DocumentType):
     """A part of a job document. Unknown fields, NaN, infinities and numbers in strings are refused."""
 
     model_config = ConfigDict(

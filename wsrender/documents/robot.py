@@ -1,8 +1,8 @@
 """The robot of a job document: where its model comes from, where it stands, what it carries."""
 
 import math
-from collections.abc import Iterator, Mapping
-from typing import Annotated, Any, Literal
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
 from pydantic import BeforeValidator, Field, StrictStr, model_validator
@@ -200,6 +200,17 @@ class DHTable(Document):
     """Name of the robot."""
     link_radius: Annotated[PositiveNumber | None, Field(exclude_if=is_none)] = None
     """Radius of capsules along the links, which then are the robot's shapes [m]; null: it has none."""
+
+    if TYPE_CHECKING:  # what may be given is more than what is kept
+
+        def __init__(
+            self,
+            *,
+            convention: Literal["modified", "standard"],
+            rows: Sequence[DHRow | Mapping[str, Any]],
+            name: str = "dh",
+            link_radius: float | None = None,
+        ): ...
 
     def joint_names(self) -> tuple[str, ...]:
         """Names of the joints, joint1, joint2, … where a row gives none."""

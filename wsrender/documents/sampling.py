@@ -8,6 +8,7 @@ from pydantic import BeforeValidator, Discriminator, Field
 from wsrender.documents.document import Document
 from wsrender.documents.problems import tagged
 from wsrender.documents.quantities import LARGEST_COUNT, Count, Name, Number, PositiveNumber, Seed, integer, sequence
+from wsrender.keywords import keywords
 
 
 def _per_joint(value: Any) -> int | tuple[int, ...]:
@@ -39,6 +40,7 @@ class Grid(_Sampling):
     """Samples per joint: one number for all, or a list from base to tip with one per joint, or one per
     joint that is not locked."""
 
+    @keywords
     def __init__(
         self,
         per_joint: int | Sequence[int] = 15,
@@ -120,6 +122,7 @@ class Converge(_Sampling):
     by: Literal["joint_mean", "workspace_mean"] = "joint_mean"
     """The global value: mean over samples, or mean over occupied voxels at one fixed voxel size."""
 
+    @keywords
     def __init__(
         self,
         index: str = "manipulability",

@@ -16,6 +16,7 @@ from scipy.spatial import ConvexHull, HalfspaceIntersection
 
 from wsrender.documents.quantities import argument, positive
 from wsrender.errors import InputError
+from wsrender.keywords import keywords
 from wsrender.pipeline.constraints.region import Point
 from wsrender.robot import Robot, as_robot
 from wsrender.robot.chain_indices import ChainAsked
@@ -102,6 +103,7 @@ class Polytope:
         return trimesh.Trimesh(scale * self.vertices + at_tip * self.position, self.triangles, process=False)
 
 
+@keywords
 def polytope(
     robot: Any,
     q: Any,

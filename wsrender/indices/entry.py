@@ -15,6 +15,7 @@ from wsrender.indices.chain_expression import MOST_JOINTS, NEEDED, Expressed, of
 from wsrender.indices.expression import trace
 from wsrender.indices.functions import of_chain
 from wsrender.indices.units import UnitRule
+from wsrender.keywords import keywords
 from wsrender.short_repr import short_repr
 
 Value = bool | int | float | tuple[float, ...]
@@ -43,6 +44,7 @@ _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,63}")
 Bound = float | Callable[..., float]
 
 
+@keywords
 @dataclass(frozen=True)
 class Option:
     """An option of an index, passed to its function by name.
@@ -123,6 +125,7 @@ def values(options: tuple[Option, ...], given: Mapping[str, Any]) -> dict[str, V
     return found
 
 
+@keywords
 @dataclass(frozen=True)
 class Index:
     """A local index: a named function of what it ``needs`` and of nothing else.

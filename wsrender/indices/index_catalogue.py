@@ -14,6 +14,7 @@ from wsrender.extensions import left_out, load
 from wsrender.indices import functions as f
 from wsrender.indices.entry import DYNAMIC_PREFIX, Bound, Index, Option, Value, checked, values
 from wsrender.indices.units import TaskMatrix, UnitRule, unit_text
+from wsrender.keywords import keywords
 
 CONVENTIONS = ("standard", "table_1", "wsrender_code")
 EXTENSIONS = "wsrender.indices"  # entry points of other packages: each an Index, or a list of them
@@ -153,6 +154,7 @@ _SHIPPED: dict[str, Index] = {index.name: index for index in (*SIX, *CLEARANCE, 
 _ADDED: dict[str, Index] = {}  # by the user
 
 
+@keywords
 def register_index(
     name: str,
     function: Callable[..., Any],

@@ -23,6 +23,7 @@ from wsrender.engine import (
     solve_inverse,
 )
 from wsrender.errors import InputError
+from wsrender.keywords import keywords
 from wsrender.pipeline.constraints.constraint import Constraint
 from wsrender.pipeline.pipeline import tip_pipeline
 from wsrender.reach.admission import Admission
@@ -334,6 +335,7 @@ class PostureSolver:
         return np.repeat(at, self.starts)[tries.reached], q
 
 
+@keywords
 def postures(
     robot: Any,
     position_m: Any,

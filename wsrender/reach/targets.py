@@ -13,6 +13,7 @@ from wsrender.documents.quantities import argument, positive
 from wsrender.documents.target_lists import AXES, TargetTable
 from wsrender.engine import thread_count
 from wsrender.errors import DocumentError, InputError
+from wsrender.keywords import keywords
 from wsrender.pipeline.constraints.constraint import Constraint
 from wsrender.reach.admissible_search import BLOCKED, Admissible, AdmissibleSearch
 from wsrender.reach.admission import Admission
@@ -65,6 +66,7 @@ class Reachability:
     __repr__ = short_repr
 
 
+@keywords
 def reachable(
     robot: Any,
     points: Any,
@@ -109,6 +111,7 @@ def reachable(
     return _decided(subject.chain, position, axes, tolerances, progress=progress, constraints=constraints, **options)
 
 
+@keywords
 def reachable_labels(
     robot: Any,
     points: Any,

@@ -12,6 +12,7 @@ from wsrender.documents.robot import RobotSpec
 from wsrender.documents.sampling import Converge, Grid, Sampling
 from wsrender.engine import configurations
 from wsrender.errors import InputError
+from wsrender.keywords import keywords
 from wsrender.pipeline.evaluation import Evaluation
 from wsrender.pipeline.pipeline import Pipeline
 from wsrender.pipeline.sampling import plan_sampling
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 _SAMPLING: TypeAdapter[Any] = TypeAdapter(Sampling)
 
 
+@keywords
 def configuration_of(result: "Result", number: int, robot: Any = None) -> np.ndarray:
     """The configuration (n,) float64 [rad or m] of a sample of a ``workspace`` result by its number, as of ``best``.
 

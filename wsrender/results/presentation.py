@@ -16,6 +16,7 @@ from typing import Any
 
 from wsrender.errors import InputError, MissingExtraError
 from wsrender.extensions import left_out, load
+from wsrender.keywords import keywords
 from wsrender.short_repr import short_repr
 
 _REGISTRY = "wsrender.analyses.registry:presentations"  # of the layer above, which is read by name alone
@@ -29,6 +30,7 @@ Function = str | Callable[..., Any]
 Document = Mapping[str, Any]
 
 
+@keywords
 @dataclass(frozen=True)
 class Picture:
     """One picture of a result.
@@ -116,6 +118,7 @@ _ROWS = (
 _REGISTERED: dict[str, Picture] = {}
 
 
+@keywords
 def register_picture(row: Picture) -> Picture:
     """Add a picture: results that hold what it needs are then saved with it, and a server draws it.
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from wsrender.documents.format import FORMAT
 from wsrender.errors import InputError, MissingExtraError, RenderError, RenderWarning
+from wsrender.keywords import keywords
 from wsrender.notebook import mime_bundle
 from wsrender.results import conversion, drawing, render
 from wsrender.results.export.artifacts import (
@@ -52,6 +53,7 @@ REPORT_VIEWS = ("boundary", "isosurface")
 VIEW_CAPTIONS = {"boundary": "Boundary of the workspace", "isosurface": "Voxels of at least 0.9 of the maximum"}
 
 
+@keywords
 @dataclass(eq=False)
 class Result:
     """What an analysis returns, locally and from a server alike.

@@ -20,6 +20,7 @@ from wsrender.documents.options import (
 from wsrender.documents.quantities import argument, positive, real, sequence
 from wsrender.errors import InputError, MissingInertiaError
 from wsrender.indices.index_catalogue import CONVENTIONS, find, is_dynamic, option_values, resolve
+from wsrender.keywords import keywords
 from wsrender.notices import Notice, warn
 from wsrender.pipeline.constraints.region import Point
 from wsrender.pipeline.evaluation import Evaluation
@@ -38,6 +39,7 @@ LARGEST_INERTIA_RATIO = 1e7
 SUSPECT_INERTIA_RATIO = 1e10  # no real arm's: a link without mass gets 1e-14 kg and kg m²
 
 
+@keywords
 def evaluate_indices(
     robot: Any,
     q: Any,

@@ -12,6 +12,7 @@ import numpy as np
 from wsrender import notices
 from wsrender.documents.robot import RobotSpec, Transform
 from wsrender.errors import InputError, MissingInertiaError, ModelError
+from wsrender.keywords import keywords
 from wsrender.notebook import mime_bundle
 from wsrender.notices import Notice
 from wsrender.robot.body_tables import pair_table, shape_table
@@ -43,6 +44,7 @@ if TYPE_CHECKING:
     from wsrender.robots.loading import Source
 
 
+@keywords
 class Robot:
     """A serial chain of a compiled model, from its base frame to its end effector.
 
@@ -315,6 +317,7 @@ def configuration_rows(q: Any, n: int, field: str = "q") -> np.ndarray:
     return rows
 
 
+@keywords
 def load_robot(
     source: "Source",
     *,

@@ -1,7 +1,6 @@
 """From the arguments of a Python function to a job document, and its execution here."""
 
 from collections.abc import Callable, Mapping
-from difflib import get_close_matches
 from functools import wraps
 from inspect import Signature, signature
 from pathlib import Path
@@ -13,6 +12,7 @@ from wsrender.analyses.jobs import parse_job
 from wsrender.documents.robot import DHTable, RobotSpec
 from wsrender.documents.sampling import PYTHON_COUNT, BoundaryBiased, Converge, Grid, Random, Sobol
 from wsrender.errors import InputError
+from wsrender.keywords import unknown
 from wsrender.mechanisms.five_bar import FiveBar
 from wsrender.progress import RunProgress
 from wsrender.results.result import Result
@@ -61,10 +61,8 @@ def runs(analysis: str) -> Callable[[Function], Function]:
 def _given(name: str, parameters: Signature, args: Any, named: dict[str, Any]) -> dict[str, Any]:
     """Arguments by parameter; TypeError for one that is not known, with the parameter that may be meant."""
     allowed = list(parameters.parameters)
-    if unknown := next((each for each in named if each not in allowed), None):
-        close = get_close_matches(unknown, allowed, n=1)
-        hint = f"did you mean {close[0]}? " if close else ""
-        raise TypeError(f"{name}() has no parameter {unknown}; {hint}allowed: {', '.join(allowed)}")
+    if wrong := next((each for each in named if each not in allowed), None):
+        raise unknown(name, wrong, allowed)
     try:
         return parameters.bind(*args, **named).arguments
     except TypeError as error:

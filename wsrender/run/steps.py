@@ -12,6 +12,7 @@ from wsrender.analyses.registry import planned
 from wsrender.collision.asked import told_to
 from wsrender.documents.arm import Arm, ArmPath, dotted
 from wsrender.errors import InputError
+from wsrender.keywords import keywords
 from wsrender.results.result import Result
 from wsrender.robot import Robot, as_robot, robot_of_spec
 from wsrender.robot.constraints import notices_of
@@ -106,6 +107,7 @@ def finish(
     return plan.finish(partial, seconds, execution)
 
 
+@keywords
 def execute(
     document: Any,
     progress: Progress | None = None,

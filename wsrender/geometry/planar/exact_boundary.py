@@ -21,6 +21,7 @@ from wsrender.geometry.planar.planar_chain import PlanarChain, Plane, planar_cha
 from wsrender.geometry.planar.planar_set import Loop, PlanarSet, loops_of, postures
 from wsrender.geometry.planar.segments import ExactSegment
 from wsrender.geometry.planar.sweep import swept_sets
+from wsrender.keywords import keywords
 from wsrender.notebook import mime_bundle
 from wsrender.pipeline.sampling import held_chain
 from wsrender.robot import model_chain
@@ -256,6 +257,7 @@ def plane_points(points: Any) -> np.ndarray:
     return rows
 
 
+@keywords
 def exact_boundary(robot: Any, *, locked: Mapping[str, float] | None = None) -> ExactBoundary:
     """The exact boundary alone, with ``area``, ``segments``, ``contains(points)`` and ``nearest(points)``.
 

@@ -9,6 +9,7 @@ import numpy as np
 from wsrender.documents.mechanism import LEAST_RANGE, WORKING_MODES
 from wsrender.documents.quantities import argument, positive
 from wsrender.errors import InputError
+from wsrender.keywords import keywords
 from wsrender.tolerances import CLOSURE
 
 ASSEMBLY_MODES = ("+", "-")
@@ -18,6 +19,7 @@ Pair = tuple[float, float]
 Interval = tuple[float, float]
 
 
+@keywords
 @dataclass(frozen=True)
 class FiveBar:
     """Base points A = (0, 0) and B = (base_m, 0), elbows C and D, end point P; lengths of left and right leg [m].

@@ -16,6 +16,7 @@ from wsrender.documents.problems import path_text
 from wsrender.errors import InputError
 from wsrender.extensions import left_out, load
 from wsrender.indices.chain_expression import ASKED, MOST_JOINTS
+from wsrender.keywords import keywords
 from wsrender.pipeline.constraints.constraint import ORDER, STRUCTURES, Constraint, Structure, in_order
 from wsrender.pipeline.constraints.expression import ExpressionConstraint
 from wsrender.pipeline.constraints.host_function import HostConstraint
@@ -26,6 +27,7 @@ EXTENSIONS = "wsrender.constraints"  # entry points, loaded when a job names one
 _ADDED: dict[str, ExpressionConstraint | HostConstraint] = {}  # by the user
 
 
+@keywords
 def register_constraint(
     name: str, function: Callable[..., Any], *, keeps: frozenset[Structure] = frozenset(), on_host: bool = False
 ) -> None:

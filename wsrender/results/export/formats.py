@@ -15,6 +15,7 @@ from typing import Any, Literal
 
 from wsrender.errors import InputError, MissingExtraError
 from wsrender.extensions import left_out, load
+from wsrender.keywords import keywords
 from wsrender.short_repr import short_repr
 
 EXTENSIONS = "wsrender.formats"  # entry points, loaded when the table is first read
@@ -35,6 +36,7 @@ Function = str | Callable[..., Any]
 """A function, or ``"module:name"`` of one that is imported when it is needed."""
 
 
+@keywords
 @dataclass(frozen=True)
 class Format:
     """One kind of thing in one kind of file.
@@ -130,6 +132,7 @@ _OWN = {(row.kind, row.suffix): row for row in _ROWS}
 _REGISTERED: dict[tuple[str, str], Format] = {}
 
 
+@keywords
 def register_format(row: Format) -> Format:
     """Add a format: results are then saved in it where it is asked for, and a server converts files to it.
 
