@@ -24,6 +24,7 @@ RING = [[0.1 + 0.15 * np.cos(k), 0.15 * np.sin(k), 0.3] for k in range(6)]
 PLACED = {"robot": "ur5e", "points_m": RING, "quats_wxyz": [[0, 1, 0, 0]] * 6, "refine": False}
 BOTH = {name: PLACED[name] for name in ("points_m", "quats_wxyz")}
 TARGET = {"robot": "ur5e", "target": {"position_m": [0.1, 0, 0.3], "quat_wxyz": [0, 1, 0, 0]}}
+FEW = {"x_m": [-0.9, 0.9, 0.3], "y_m": [-0.9, 0.9, 0.3]}
 OVER = {"x_m": [-0.9, 0.9, 0.1], "y_m": [-0.9, 0.9, 0.1]}
 GENERAL = ((0.1, 70, 0.2), (0.4, 40, 0.1), (0.15, -80, 0.05), (0, 90, 0.35), (0.1, -90, 0.1), (0.05, 20, 0.1))
 JOBS = {
@@ -148,6 +149,10 @@ SOLVED = {  # mostly by inverse kinematics
     "postures: ways": postures(SEARCHED, 10, starts=64, aspects=True),
     "base_placement: seven joints": PLACED | {"robot": "franka_panda", "over": OVER | {"yaw_deg": [0, 360, 30]}},
 }
+for arms in (("franka_panda", "franka_panda"), ("ur5e", SEARCHED)):
+    places = {side: {"robot": arm, "over": FEW} for side, arm in zip(("first", "second"), arms, strict=True)}
+    name = f"two_arm_placement: hand-overs, {arms.count('franka_panda')} of seven joints"
+    SOLVED[name] = BOTH | places | {"hand_over": {"points_m": RING, "orientations": 20}}
 OF_ANALYSIS = {"map": "workspace", "constrained workspace": "workspace", "orientations": "parallel_workspace"}
 
 

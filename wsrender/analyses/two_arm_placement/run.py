@@ -8,7 +8,15 @@ import numpy as np
 
 from wsrender.analyses.composed import Composed, Part, PartialParts, part_of
 from wsrender.analyses.contract import Draft, Settled
-from wsrender.analyses.cost import DOCUMENT_BYTES, NOTHING, SEARCHED_PER_S, Cost, in_turn, pictures_cost
+from wsrender.analyses.cost import (
+    DOCUMENT_BYTES,
+    NOTHING,
+    SEARCHED_BYTES,
+    SEARCHED_PER_S,
+    Cost,
+    in_turn,
+    pictures_cost,
+)
 from wsrender.analyses.execution import Execution
 from wsrender.analyses.headline import no_headline
 from wsrender.analyses.registry import planned
@@ -33,7 +41,8 @@ PAIRS_PER_S, BLOCK_BYTES, ROW_BYTES = 5e7, 40, 40  # of one core; of a pair mean
 # pose; what one core decides.
 PAIR_BYTES, POSE_BYTES, COMPARED_BYTES, HELD_BYTES, APART_BYTES = 24.0, 110.0, 2.0, 4000.0, 5000.0
 POSE_S, SOLVED_PER_S, APART_PER_S = 2e-4, 4e5, 2e5
-SAMPLED_S = 0.7  # seconds of the samples from which configurations are searched
+# Seconds of the samples from which an arm's configurations are searched, and bytes of those that stay for the other.
+SAMPLED_S, SAMPLED_BYTES = 0.7, 1.1e8
 OFFERED = 0.5  # share of poses that pairs of placements hold, about
 DIGITS = 9  # of weights, relative to that of all targets, to which they are told apart
 LABELS = (*SIDES, "both", "none", "undecided")
@@ -111,15 +120,17 @@ class TwoArmPlacementAnalysis(Composed):
         rows, table = pairs * (PAIR_BYTES + H / 8), H * (POSE_BYTES + 8.0 * joints)
         decided = COMPARED_BYTES * min(pairs, PLACES**2) * together
         memory = sum(plan.kept_bytes for plan in plans) + rows + pairs * H / 8 + table
-        memory += max(decided, HELD_BYTES * min(H, TOGETHER))
-        seconds = sum(plan.cost.seconds - before for plan in plans) + POSE_S * H
+        closed = [isinstance(closed_form_of(robot.chain, "pose"), ClosedForm) for robot in self.robots]
+        searched = closed.count(False)
+        solved = SEARCHED_BYTES + (searched - 1) * SAMPLED_BYTES if searched else 0.0
+        memory += max(decided, HELD_BYTES * min(H, TOGETHER), solved)
+        seconds = sum(plan.cost.seconds - before for plan in plans) + POSE_S * H + SAMPLED_S * searched
         if self.apart:
             held = pairs * H * OFFERED
             memory += self.program_bytes + APART_BYTES * min(held, TOGETHER)
             seconds += held / APART_PER_S
-            for count, robot in zip(counts, self.robots, strict=True):
-                closed = isinstance(closed_form_of(robot.chain, "pose"), ClosedForm)
-                seconds += count * H / SOLVED_PER_S if closed else SAMPLED_S + count * H / SEARCHED_PER_S
+            rates = [SOLVED_PER_S if own else SEARCHED_PER_S for own in closed]
+            seconds += sum(count * H / rate for count, rate in zip(counts, rates, strict=True))
         return Cost(0, memory, rows + table + drawn, seconds)
 
     def result(self, partial: PartialParts, execution: Execution) -> Draft:
