@@ -65,13 +65,13 @@ TURN = """async frames => {
     gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
     times.push(performance.now() - from);
   }
-  const share = stage.info.scale, from = performance.now();
+  const {scale: share, stride} = stage.info, from = performance.now();
   await new Promise(done => { const off = stage.on("drawn", what => { if (what === "fine") { off(); done(); } }); });
   const fine = performance.now() - from, before = stage.info.frames;
   while (!stage.info.idle) await new Promise(done => setTimeout(done, 20));
   const finished = performance.now() - from, still = stage.info.frames;
   await new Promise(done => setTimeout(done, 500));
-  return {times, share, fine, finished, drawn_at_rest: stage.info.frames - still, before};
+  return {times, share, stride, fine, finished, drawn_at_rest: stage.info.frames - still, before};
 }"""
 
 
@@ -181,8 +181,9 @@ def frames(arguments: argparse.Namespace) -> None:
     from playwright.sync_api import sync_playwright
 
     width, height = map(int, arguments.size.split("x"))
-    print("| ms, median (min … max) | first fine | a frame while turning | share | fine | finished | drawn at rest |")
+    print("| ms, median (min … max) | first fine | frame, turning | share, step | fine | finished | drawn at rest |")
     print("|---|--:|--:|--:|--:|--:|--:|")
+    print("| goal | | 100 (10 frames/s) | | | | 0 |")
     with serving() as (address, blobs), sync_playwright() as running:
         browser = running.chromium.launch(executable_path=shutil.which("chromium"), args=["--no-sandbox"])
         page = browser.new_page(viewport={"width": width, "height": height})
@@ -197,7 +198,8 @@ def frames(arguments: argparse.Namespace) -> None:
                 times = found["times"]
                 spread = f"{statistics.median(times):.0f} ({min(times):.0f} … {max(times):.0f})"
                 ends = f"{found['fine']:.0f} | {found['finished']:.0f} | {found['drawn_at_rest']}"
-                print(f"| {name}, {style} | {first:.0f} | {spread} | {found['share']:.2f} | {ends} |", flush=True)
+                share = f"{found['share']:.2f}, {found['stride']:.1f}"
+                print(f"| {name}, {style} | {first:.0f} | {spread} | {share} | {ends} |", flush=True)
         browser.close()
 
 
@@ -251,7 +253,7 @@ def served(arguments: argparse.Namespace) -> None:
         label = "Upper limit of joint2 [°]"
         page.evaluate(DRAG, {"label": label, "value": 0, "done": True})  # its session begins
         finished(page)
-        for name, done in (("while dragged", False), ("let go, fine", True)):
+        for name, done, goal in (("while dragged", False, 120), ("let go, fine", True, 1500)):
             received.clear()
             count = max(1, arguments.drags // (4 if done else 1))
             found = []
@@ -262,7 +264,8 @@ def served(arguments: argparse.Namespace) -> None:
             for what in ("computed", "drawn"):
                 ms = [each[what] for each in found]
                 spread = f"{statistics.median(ms):.0f} ms ({min(ms):.0f} … {max(ms):.0f})"
-                print(f"slider, {name}: {what} after a median of {spread}")
+                told = f"; goal: a median of {goal} ms" if what == "drawn" else ""
+                print(f"slider, {name}: {what} after a median of {spread}{told}")
             print(f"  {np.median([each for each in received if each > 10_000]) / 1e3:,.0f} kB a volume")
             finished(page)
 
@@ -336,7 +339,8 @@ def use(arguments: argparse.Namespace) -> None:
             print(f"| {(time.monotonic() - began) / 60:.1f} | {rounds} | {heap:.1f} | {counted['nodes']} | "
                   f"{counted['jsEventListeners']} | {resident('renderer'):.0f} | "
                   f"{resident('gpu-process'):.0f} | {json.dumps(held)} |", flush=True)  # fmt: skip
-        print(f"heap: {rows[0]:.1f} MB at first, {rows[-1]:.1f} MB at the end, {max(rows):.1f} MB at most")
+        print(f"heap: {rows[0]:.1f} MB at first, {rows[-1]:.1f} MB at the end, {max(rows):.1f} MB at most; "
+              "goal: no growth, of what is held neither")  # fmt: skip
 
 
 PARTS = {"frames": frames, "engine": lambda _: engine(), "served": served, "use": use}

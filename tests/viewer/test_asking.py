@@ -87,6 +87,36 @@ def test_the_tool_is_dragged_to_where_it_can_be_and_to_where_it_cannot(watched: 
     assert red > 1.5 * max(green, blue)
 
 
+def test_the_joints_ways_are_drawn_and_stepped_along_while_the_tip_stands(watched: Watched, client: ws.Client) -> None:
+    """Of an arm with a joint to spare: orange where the self-motion of the posture goes, which ends with the pose."""
+    redundant = client.submit(JOB | {"robot": {"library": "kuka_iiwa14"}}).wait().id
+    opened(watched, f"/job/{redundant}")
+    page = watched.page
+    page.get_by_label("Show Volume").uncheck()
+
+    def orange() -> int:
+        red, green, blue = np.moveaxis(pixels(watched).astype(int), 2, 0)
+        return int(((red > 180) & (abs(green - red / 2.3) < 30) & (blue < 60)).sum())
+
+    assert orange() == 0
+    place = tip(watched)
+    page.get_by_role("button", name="Other postures").click()
+    slider = page.get_by_label("Along the self-motion", exact=True)
+    slider.wait_for()
+    assert orange() > 50
+    joint, seen = page.get_by_label("Joint joint3 [°], as a number"), set()
+    slider.focus()
+    page.keyboard.press("Home")
+    for _ in range(5):
+        page.keyboard.press("ArrowRight")
+        settle(watched)
+        seen.add(joint.input_value())
+        assert np.abs(tip(watched) - place).max() < 1e-6
+    assert len(seen) == 5
+    page.get_by_role("button", name="Home").click()
+    assert orange() == 0
+
+
 def test_a_click_on_a_map_stands_the_robot_there(watched: Watched, client: ws.Client) -> None:
     over = {"x_m": [-0.6, 0.6, 0.3], "y_m": [-0.4, 0.4, 0.4], "yaw_deg": [0, 180, 90], "z_m": 0.2}
     job = {"analysis": "base_placement", "robot": {"library": "puma560"}, "over": over, "refine": False}

@@ -1,14 +1,17 @@
 """What is measured, chosen in plots and dropped into the served page, by the mouse."""
 
 import hashlib
+import json
 
 import httpx2
 import numpy as np
 import pytest
 
 import wsrender as ws
-from tests.viewer.watched import JOB, Watched, clicked, differing, opened, pixels, settle
+from tests.viewer.watched import JOB, Watched, clicked, differing, opened, pixels, settle, tip, until
 from tests.viewer.written import decoded, looking
+from wsrender.documents.robot import DHTable
+from wsrender.results.view.interactive import Interactive
 
 ARM = """<mujoco model="pair"><worldbody><body name="upper"><joint name="shoulder" axis="0 0 1" range="-90 90"/>
 <geom type="capsule" size=".03" fromto="0 0 0 .4 0 0"/><body name="lower" pos=".4 0 0">
@@ -123,3 +126,44 @@ def test_a_model_is_dropped_into_the_form(watched: Watched, client: ws.Client) -
         page.get_by_role("button", name="Submit", exact=True).click()
     document = client.job(answer.value.json()["id"]).result().document
     assert document["robot"]["name"] == "pair"
+
+
+def test_a_robot_that_is_edited_is_moved_and_its_volume_followed(watched: Watched) -> None:
+    """Before there is a job: pose and volumes are the library's, and what was dragged goes into the form."""
+    rows = [{"a": 0.5, "limits": [-2, 2]}, {"a": 0.3, "limits": [-2, 2]}, {"joint": "prismatic", "limits": [0, 0.2]}]
+    robot = {"dh": {"convention": "standard", "name": "drawn", "rows": rows}}
+    arm = ws.load_robot(DHTable(**robot["dh"]))
+    page = watched.page
+    page.goto(f"{watched.url}/#/new")
+    page.get_by_role("button", name="Edit as JSON").click()
+    page.get_by_label("Job document").fill(json.dumps({"analysis": "workspace", "robot": robot}))
+    page.get_by_role("button", name="Robot: drawn").click()
+    for joint, value in (("joint1 [°]", "30"), ("joint2 [°]", "-45"), ("joint3 [m]", "0.1")):
+        field = page.get_by_label(f"Joint {joint}, as a number")
+        field.fill(value)
+        field.press("Enter")
+    q = [np.radians(30), np.radians(-45), 0.1]
+    until(lambda: np.abs(tip(watched) - arm.forward_kinematics(q)[0, :3, 3]).max() < 1e-6)
+    assert page.locator("main.at-new").count(), "Enter in a field of the preview submits nothing"
+
+    def followed() -> float:
+        return float(page.locator("[data-live=done]").get_attribute("data-volume") or 0)
+
+    asked = {"ask": "volume", "index": "manipulability", "samples": 1 << 20}
+    local = Interactive({}, [arm])
+    header, _ = local.answer(asked)
+    page.get_by_text("Change limits").click()
+    page.get_by_role("button", name="Compute its volume").click()
+    until(lambda: followed() == pytest.approx(header["volume_m3"], rel=1e-12))
+    limit = page.get_by_label("Upper limit of joint2 [°], as a number")
+    limit.fill("10")
+    limit.press("Enter")
+    size, limits = header["volume"]["voxel_size_m"], {"joint2": [-2, np.radians(10)]}
+    narrower, _ = local.answer(asked | {"voxel_size_m": size, "limits": limits})
+    assert narrower["volume_m3"] < 0.9 * header["volume_m3"]
+    until(lambda: followed() == pytest.approx(narrower["volume_m3"], rel=1e-12))
+    page.get_by_role("button", name="Into the form").click()
+    until(lambda: "limits" in json.loads(page.get_by_label("Job document").input_value())["robot"])
+    written = json.loads(page.get_by_label("Job document").input_value())["robot"]
+    assert written["dh"] == robot["dh"]
+    np.testing.assert_allclose(written["limits"]["joint2"], limits["joint2"], atol=1e-12)

@@ -402,9 +402,13 @@ def test_views_come_and_go_without_growth(views):
         views.page.evaluate(
             """async ([manifest, folder]) => {
               await stage.load(manifest, async name => (await fetch(`/${folder}/${name}`)).arrayBuffer());
+              stage.apply(structuredClone(settings));
+              while (!stage.valuesAt("block", [0, 0, 0]).size) await new Promise(done => setTimeout(done, 5));
               for (const style of ["cells", "translucent", "isosurface", "points", "surface"]) {
-                settings.volumes.block.style = style; stage.apply(structuredClone(settings));
-                await new Promise(done => setTimeout(done, 60)); } }""",
+                settings.volumes.block.style = style;
+                await new Promise(done => {
+                  const off = stage.on("drawn", how => { if (how === "coarse") { off(); done(); } });
+                  stage.apply(structuredClone(settings)); }); } }""",
             [shown, folder],
         )
         views.rest()

@@ -126,8 +126,8 @@ class VolumeRequest(_OfRobot):
     """What is shown of it per voxel."""
     samples: Count = 1 << 20
     """Sobol samples."""
-    voxel_size_m: VoxelSize
-    """Edge of a voxel [m]."""
+    voxel_size_m: VoxelSize | None = None
+    """Edge of a voxel [m]; null: that of a job which does not say."""
 
 
 Request = VoxelRequest | IndicesRequest | InverseRequest | PosturesRequest | PlacementRequest | VolumeRequest

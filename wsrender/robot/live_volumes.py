@@ -63,7 +63,7 @@ class LiveVolumes:
         index: str,
         statistic: str,
         samples: int,
-        voxel_size_m: float,
+        voxel_size_m: float | None,
         *,
         limits: Limits | None = None,
         tool: np.ndarray | None = None,
@@ -73,7 +73,8 @@ class LiveVolumes:
     ) -> LiveVolume:
         """What a job ``workspace`` of the changed robot finds, bit for bit, on a block that its limits leave alone.
 
-        That is the block of the robot's own limits, larger where the new ones reach beyond. ``progress`` is called a
+        That is the block of the robot's own limits, larger where the new ones reach beyond. ``voxel_size_m`` [m]; None:
+        the job's default. ``progress`` is called a
         few times in a hundredth of a second with the samples done; the sweep ends where it raises. Raises InputError
         for what does not go together, a block of more than ``most_voxels`` among it.
         """
@@ -83,6 +84,9 @@ class LiveVolumes:
         evaluation = evaluation_of_job(choices, robot)
         locked = dict(self.choices.held_joints)
         first = FirstPass(evaluation, locked)
+        sampling = plan_sampling(robot.chain, Sobol(samples, seed=self.seed, locked=locked))
+        if voxel_size_m is None:
+            voxel_size_m = first.voxel_size(sampling)
         own = first.block(voxel_size_m)
         whole = block_of_all([own, *self._whole_block(locked, voxel_size_m, tool, placement)])
         if whole.size > most_voxels:
@@ -91,7 +95,7 @@ class LiveVolumes:
             raise InputError("voxel_size_m", f"{message} {least:.2g} m or more")
         pipeline = Pipeline(
             evaluation,
-            plan_sampling(robot.chain, Sobol(samples, seed=self.seed, locked=locked)),
+            sampling,
             self._constraints_of(robot, limits or {}),
             own,
             frozenset({"count", statistic}),

@@ -29,6 +29,7 @@ export interface Chain {
   offset: number[];
   T_joint: number[][]; // L of 16
   T_tip: number[]; // 16, tool included
+  T_tool: number[]; // 16, the tool alone, in the frame of the tip
   T_base: number[]; // 16
 }
 
@@ -124,13 +125,15 @@ export type Request =
   | ({ ask: "inverse"; position_m: Vector; quat_wxyz: number[]; near: number[] } & Changed)
   | ({ ask: "postures"; position_m: Vector; quat_wxyz: number[] } & Changed)
   | { ask: "placement"; map: string; cell: number[] } // where a robot stands for a cell of a map
-  | ({ ask: "volume"; index: string; statistic: string; samples: number; voxel_size_m: number } & Changed); // it is called `live_<robot>` from then on
+  | ({ ask: "volume"; index: string; statistic: string; samples: number; voxel_size_m: number | null } & Changed); // null: as of a job that does not say; it is called `live_<robot>` from then on
 
 type Value = { name: string; label: string; unit: string; value: Number };
 export interface VoxelAnswer { center_m: Vector; count: number; values: (Value & { statistic: string })[]; q: number[] | null; sample: string | null }
 /** Of a pose that is not reached, `q` comes nearest to it (`distance_m`, `angle_rad` are left), or reaches it and is blocked. */
 export interface InverseAnswer { label: "reachable" | "unreachable" | "undecided" | "blocked"; reason: string; q: number[]; distance_m: number; angle_rad: number }
-export interface PosturesAnswer { postures: { q: number[]; said: string }[]; families: number; reason: string }
+/** The configurations of a self-motion in their order, and what blocks each, "" of free ones. */
+export interface SelfMotion { closed: boolean; configurations: number[][]; reasons: string[] }
+export interface PosturesAnswer { postures: { q: number[]; said: string; curve: SelfMotion | null }[]; families: number; reason: string }
 export interface IndicesAnswer { values: Value[]; position_m: Vector; quat_wxyz: number[]; reason: string } // what rejects the configuration, "" if nothing
 export interface PlacementAnswer { T_world_base: number[]; at: Record<string, number>; values: Value[] } // coordinates [m, deg]
 export interface VolumeAnswer { volume: Volume; samples: number; volume_m3: number; elapsed_s: number } // blobs come with it

@@ -45,12 +45,20 @@ function opened(volume: Volume, { robots, mapping }: Manifest): VolumeSettings["
   return within ? [{ axis: "y", from_m: y!, to_m: null }] : [];
 }
 
+/** How a volume is shown first where it is the only one. */
+export function volumeSettings(volume: Volume, manifest: Manifest): VolumeSettings {
+  return {
+    visible: true, opacity: flat(volume) && manifest.robots.length ? 0.6 : 1, style: flat(volume) ? "cells" : "surface",
+    channel: volume.channels[0] ? channelKey(volume.channels[0]) : "", threshold: null, cut: opened(volume, manifest), minus: "",
+  };
+}
+
 /** How a view is shown first. */
 export function defaultSettings(manifest: Manifest): Settings {
   const mapped = manifest.mapping?.volumes;
   const volumes = manifest.volumes.map((volume, i): [string, VolumeSettings] => [volume.name, {
-    visible: mapped ? Object.values(mapped).includes(volume.name) : i === 0, opacity: flat(volume) && manifest.robots.length ? 0.6 : 1, style: volume.name === mapped?.master ? "translucent" : flat(volume) ? "cells" : "surface",
-    channel: volume.channels[0] ? channelKey(volume.channels[0]) : "", threshold: null, cut: i === 0 ? opened(volume, manifest) : [], minus: "",
+    ...volumeSettings(volume, manifest), visible: mapped ? Object.values(mapped).includes(volume.name) : i === 0,
+    ...(volume.name === mapped?.master ? { style: "translucent" } : {}), ...(i === 0 ? {} : { cut: [] }),
   }]);
   const covers = manifest.volumes.length ? [...manifest.meshes.filter((mesh) => mesh.role === "surface" || mesh.role === "refined"), ...manifest.points] : []; // hide the volume
   const hidden = ["frames", ...covers.map((each) => each.name)].map((key): [string, Layer] => [key, { visible: false, opacity: 1 }]);

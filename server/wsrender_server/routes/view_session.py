@@ -5,8 +5,8 @@ import contextlib
 import json
 import struct
 import time
-from collections.abc import Awaitable, Callable
-from functools import cache
+from collections.abc import Awaitable, Callable, Mapping
+from functools import cache, partial
 from typing import Any
 
 import structlog
@@ -20,7 +20,8 @@ from wsrender.documents.view_requests import REQUESTS
 from wsrender.errors import ModelError, WsrenderError
 from wsrender.results.export.artifacts import named_files, part_file
 from wsrender.robots import library
-from wsrender_server.auth import Principal, until_revoked
+from wsrender_server.admission import EDITED
+from wsrender_server.auth import Principal, Scope, until_revoked
 from wsrender_server.jobs.records import JobState
 from wsrender_server.parts import Parts
 from wsrender_server.problems import HttpProblem, problem_of_error, problem_responses
@@ -32,6 +33,7 @@ from wsrender_server.streams.view_sessions import ViewSession
 
 MOST_PER_S = 120  # questions of a page: one for each picture of a fast screen
 LARGEST_QUESTION = 1 << 16  # bytes
+OPEN_S = 30.0  # for the first message, where it says what the session is about
 IDLE_S = 600.0  # without a question: the session ends
 SEND_S = 10.0  # for a page to take in an answer
 LONGEST_REASON = 120  # bytes of a close frame
@@ -49,6 +51,9 @@ log = structlog.get_logger("wsrender.views")
 async def describe_view_session() -> JSONResponse:
     """AsyncAPI 3.0 document of the WebSockets `/v1/jobs/{id}/view/session` and `/v1/robots/{robot}/view/session`.
 
+    That of `/v1/robots:view/session` is the same, about a robot that is edited: its first message is what
+    `POST /v1/robots:view` takes.
+
     A question is a JSON text `{"id": …, "ask": …, …}`. Every answer is one binary message: a little-endian uint32, the
     length of a header; the header, JSON with `id`, `answer` or `refused` (`message`, `field`, `code`) and `blobs`
     (names and sizes), padded by spaces to a multiple of 4; then the blobs, one after the other. A question that a
@@ -62,7 +67,7 @@ async def describe_view_session() -> JSONResponse:
 async def job_view_session(websocket: WebSocket, job_id: str) -> None:
     """Questions about the result of a job."""
 
-    def subject(parts: Parts, principal: Principal) -> dict[str, Any]:
+    def of_job(parts: Parts, principal: Principal) -> dict[str, Any]:
         job = found(parts.store.get(principal.owner, job_id))
         if job.state != JobState.SUCCEEDED:
             raise HttpProblem(409, f"the job is {job.state}; it has no result", "no_result")
@@ -74,31 +79,63 @@ async def job_view_session(websocket: WebSocket, job_id: str) -> None:
         result = files_of(parts, job, [RESULT])[RESULT]
         return {"result": result, "files": files_of(parts, job, [name for name in wanted if name in names])}
 
-    await _session(websocket, subject)
+    await _session(websocket, partial(run_in_threadpool, of_job))
 
 
 @router.websocket("/robots/{robot}/view/session")
 async def robot_view_session(websocket: WebSocket, robot: str) -> None:
     """Questions about a library robot."""
 
-    def subject(parts: Parts, principal: Principal) -> dict[str, Any]:
+    def of_library(parts: Parts, principal: Principal) -> dict[str, Any]:
         try:
             library.find(robot)
         except ModelError as error:
             raise HttpProblem(404, error.message, "robot_not_found") from None
         return {"robot": robot}
 
-    await _session(websocket, subject)
+    await _session(websocket, partial(run_in_threadpool, of_library))
 
 
-async def _session(websocket: WebSocket, subject: Callable[[Parts, Principal], dict[str, Any]]) -> None:
+@router.websocket("/robots:view/session")
+async def edited_view_session(websocket: WebSocket) -> None:
+    """Questions about a robot that is edited, which the first message holds."""
+
+    async def of_edited(parts: Parts, principal: Principal) -> dict[str, Any]:
+        text = await _first(websocket, parts.settings.max_body_bytes)
+        await parts.admissions.check_edited(principal.owner, text)
+        return {"edited": text}
+
+    await _session(websocket, of_edited, "submit")
+
+
+async def _first(websocket: WebSocket, most: int) -> bytes:
+    """The first message, of so many bytes at most. Raises HttpProblem."""
+    try:
+        message = await asyncio.wait_for(websocket.receive(), OPEN_S)
+    except TimeoutError:
+        raise HttpProblem(400, f"no message came within {OPEN_S:g} s", "silent") from None
+    if message["type"] == "websocket.disconnect":
+        raise WebSocketDisconnect
+    text = _bytes_of(message)
+    if len(text) > most:
+        raise HttpProblem(413, f"the first message may have {most} bytes, not {len(text)}", "message_too_large")
+    return text
+
+
+def _bytes_of(message: Mapping[str, Any]) -> bytes:
+    return (message.get("text") or "").encode("utf-8", "surrogatepass") or (message.get("bytes") or b"")
+
+
+async def _session(
+    websocket: WebSocket, subject: Callable[[Parts, Principal], Awaitable[dict[str, Any]]], right: Scope = "read"
+) -> None:
     """A session, which is accepted before it is refused: pages are told nothing of what is closed before."""
     parts: Parts = websocket.app.state.parts
     await websocket.accept(protocol_of(websocket))
     with contextlib.suppress(WebSocketDisconnect):
         try:
-            principal = await run_in_threadpool(principal_of, websocket, "read")
-            about = await run_in_threadpool(subject, parts, principal)
+            principal = await run_in_threadpool(principal_of, websocket, right)
+            about = await subject(parts, principal)
             async with parts.view_sessions.session(principal.owner, about) as session:
                 log.info("view session opened", owner=principal.owner)
                 await _pump(websocket, session, principal)
@@ -130,7 +167,7 @@ async def _to_engine(websocket: WebSocket, session: ViewSession) -> None:
             return
         if rate.exceeded(time.monotonic()):
             raise HttpProblem(429, f"more than {MOST_PER_S} questions came in a second", "too_fast")
-        text = (message.get("text") or "").encode() or (message.get("bytes") or b"")
+        text = _bytes_of(message)
         if len(text) > LARGEST_QUESTION:
             raise HttpProblem(
                 413, f"a question may have {LARGEST_QUESTION} bytes, not {len(text)}", "message_too_large"
@@ -140,11 +177,20 @@ async def _to_engine(websocket: WebSocket, session: ViewSession) -> None:
 
 
 async def _to_page(websocket: WebSocket, session: ViewSession) -> None:
+    first = True
     while (answer := await session.received()) is not None:
+        if first and (refused := _refused_in(answer)):  # what the session is about cannot be had
+            raise HttpProblem(409, refused["message"], refused["code"])
+        first = False
         await _taken_in(websocket.send_bytes(answer))
     if session.too_large:
         raise HttpProblem(409, "the session took more memory than is allowed", "out_of_memory")
     raise HttpProblem(500, "the process of this session ended", "crashed")
+
+
+def _refused_in(answer: bytes) -> dict[str, str] | None:
+    (length,) = struct.unpack("<I", answer[:4])
+    return json.loads(answer[4 : 4 + length]).get("refused")
 
 
 async def _taken_in(sending: Awaitable[None]) -> None:
@@ -195,11 +241,25 @@ def asyncapi() -> dict[str, Any]:
     }
     names = [*REQUESTS, "answer"]
     messages = {name: {"$ref": f"#/components/messages/{name}"} for name in names}
-    paths = {"job": "/v1/jobs/{id}/view/session", "robot": "/v1/robots/{robot}/view/session"}
+    edited = EDITED.json_schema(ref_template="#/components/schemas/{model}")
+    schemas |= edited.pop("$defs", {}) | {"edited": edited}
+    paths = {
+        "job": "/v1/jobs/{id}/view/session",
+        "robot": "/v1/robots/{robot}/view/session",
+        "edited": "/v1/robots:view/session",
+    }
+    first = {"edited": ["edited"]}  # what comes before all questions
     return {
         "asyncapi": "3.0.0",
         "info": {"title": "wsrender interactive sessions", "version": __version__},
-        "channels": {name: {"address": path, "messages": messages} for name, path in paths.items()},
+        "channels": {
+            name: {
+                "address": path,
+                "messages": messages
+                | {each: {"$ref": f"#/components/messages/{each}"} for each in first.get(name, ())},
+            }
+            for name, path in paths.items()
+        },
         "operations": {
             f"{action}_{name}": {
                 "action": action,
@@ -207,10 +267,10 @@ def asyncapi() -> dict[str, Any]:
                 "messages": [{"$ref": f"#/channels/{name}/messages/{each}"} for each in which],
             }
             for name in paths
-            for action, which in (("receive", [*REQUESTS]), ("send", ["answer"]))
+            for action, which in (("receive", [*first.get(name, ()), *REQUESTS]), ("send", ["answer"]))
         },
         "components": {
-            "messages": {name: {"payload": {"$ref": f"#/components/schemas/{name}"}} for name in names},
+            "messages": {name: {"payload": {"$ref": f"#/components/schemas/{name}"}} for name in [*names, "edited"]},
             "schemas": {**schemas, "answer": answer},
         },
     }

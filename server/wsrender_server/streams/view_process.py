@@ -16,8 +16,9 @@ from pathlib import Path
 from typing import Any
 
 import structlog
+from pydantic import TypeAdapter
 
-from wsrender.documents.reading import read_json
+from wsrender.documents.reading import read_document, read_json
 from wsrender.documents.view_requests import REQUESTS
 from wsrender.errors import InputError, WsrenderError
 from wsrender.results.view.container import message
@@ -33,9 +34,9 @@ log = structlog.get_logger("wsrender.views")
 
 
 def run_session(link: socket.socket, subject: Mapping[str, Any], models: Path, threads: int | None) -> None:
-    """Answer questions about a ``subject`` until the link closes: {"robot": library name}, or a result.
+    """Answer questions about a ``subject`` until the link closes: {"robot": library name}, {"edited": text}, a result.
 
-    Of a result: {"result": path of its document, "files": paths by name}.
+    The text is that of an admitted `Edited`; of a result: {"result": path of its document, "files": paths by name}.
     """
     settle_in()
     if hasattr(os, "nice"):  # not on Windows
@@ -69,9 +70,12 @@ def send_frame(link: socket.socket, content: bytes) -> None:
 
 def _opened(subject: Mapping[str, Any], threads: int | None) -> Interactive:
     from wsrender.results.result import Result
+    from wsrender.results.view import Edited
     from wsrender.robot import load_robot
     from wsrender_server.conversions import result_document
 
+    if "edited" in subject:
+        return Interactive.of_edited(read_document(subject["edited"], TypeAdapter(Edited)), threads=threads)
     if "robot" in subject:
         return Interactive({}, [load_robot(subject["robot"])], threads=threads)
     files = {name: Path(path) for name, path in subject["files"].items()}

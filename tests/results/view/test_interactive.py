@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 import wsrender as ws
 from tests.run.simple_robots import PLANAR, PlanarClass
 from wsrender.errors import InputError
-from wsrender.results.view import view_of
+from wsrender.results.view import looked_at, view_of
 from wsrender.results.view.container import message
 from wsrender.results.view.interactive import Interactive, ReplacedError, choices_of
 from wsrender.robot import evaluate_indices
@@ -138,6 +138,27 @@ def test_families_of_a_redundant_arm():
     header = Interactive({}, [arm]).answer({"ask": "postures", **pose_of(arm, arm.chain.within(0.6))})[0]
     assert header["families"] == len(header["postures"]) > 0
     assert all(each["said"].startswith("of a self-motion") for each in header["postures"])
+
+
+def test_a_self_motion_can_be_stepped_along():
+    """The tip stands, the joints move in small steps from end to end, and what blocks a step is told."""
+    arm = ws.load_robot("franka_panda")
+    pose = pose_of(arm, q := arm.chain.within(0.45))
+    job = {"robot": {"library": "franka_panda"}, "constraints": {"self_collision": {}}}
+    listed = Interactive(job, [arm]).answer({"ask": "postures", **pose})[0]["postures"]
+    assert listed
+    for each in listed:
+        along = np.array(each["curve"]["configurations"])
+        T = arm.forward_kinematics(along)
+        np.testing.assert_allclose(T, np.broadcast_to(arm.forward_kinematics(q), T.shape), atol=1e-8)
+        assert 2 <= len(along) == len(each["curve"]["reasons"]) <= looked_at.MOST_STEPS
+        steps = np.linalg.norm(np.diff(along, axis=0), axis=1)
+        assert 0 < steps.max() < 0.5
+        assert set(each["curve"]["reasons"]) <= {"", "self_collision"}
+    expected = ws.postures(arm, **pose, constraints=job["constraints"])
+    for each, curve in zip(listed, expected.curves, strict=True):
+        ends = [each["curve"]["configurations"][k] for k in (0, -1)]
+        np.testing.assert_array_equal(ends, curve.configurations[[0, -1]])
 
 
 def test_the_bytes_of_a_volume(looking):

@@ -17,9 +17,10 @@ from wsrender_server.local_server import LocalServer
 
 import wsrender as ws
 from tests.server.end_to_end.acceptance import QUICK
+from wsrender.results.view import Edited
 from wsrender.results.view.interactive import Interactive
 
-ROBOT = "/v1/robots/puma560/view/session"
+ROBOT, EDITED = "/v1/robots/puma560/view/session", "/v1/robots:view/session"
 VOLUME = {"ask": "volume", "robot": 0, "index": "manipulability", "samples": 1 << 14, "voxel_size_m": 0.1}
 LONG = VOLUME | {"samples": 1 << 26}
 AT = {"ask": "indices_at", "robot": 0, "q": [0.1, 0.2, 0.3, 0.4, 0.5, 0.6]}
@@ -291,15 +292,59 @@ def test_keys(tmp_path):
             assert header["refused"]["code"] == "unauthorized" or "key" in header["refused"]["message"]
 
 
+def test_a_robot_that_is_edited_is_asked_about_under_its_constraints(server):
+    """Before there is a job: the answers are the library's, the voxels' size that of a job which does not say."""
+    rows = [{"a": 0.5, "limits": [-2, 2]}, {"a": 0.3, "limits": [-2, 2]}, {"joint": "prismatic", "limits": [0, 0.2]}]
+    dh = {"dh": {"convention": "standard", "rows": rows}}
+    edited = {"robot": dh, "constraints": {"region": {"half_space": {"normal": [1, 0, 0]}}}}
+    local = Interactive.of_edited(Edited(**edited))
+    questions = [AT | {"q": [0.1, 0.2, 0.1]}, {name: VOLUME[name] for name in VOLUME if name != "voxel_size_m"}]
+    with opened(server, EDITED) as socket:
+        socket.send(json.dumps(edited))
+        assert "answer" in parts_of(socket.recv(60))[0]
+        for n, question in enumerate(questions):
+            header, blobs = asked(socket, n, question)
+            expected, expected_blobs = local.answer(question)
+            for answer in (header["answer"], expected):
+                answer.pop("elapsed_s", None)
+            assert header["answer"] == expected
+            assert blobs == expected_blobs
+    free = Interactive.of_edited(Edited(robot=dh)).answer(questions[1])[0]
+    assert expected["volume_m3"] < 0.8 * free["volume_m3"]
+    sampling = {"method": "sobol", "count": VOLUME["samples"], "seed": 0}
+    job = ws.analyze(dh, sampling, indices=["manipulability"], refined_volume=None, device="cpu")
+    assert free["volume"]["voxel_size_m"] == job.volume.voxel_size_m
+
+
+@pytest.mark.parametrize(
+    ("first", "code"),
+    [
+        ("{", "invalid_document"),
+        ('{"robot": {"library": "nobody"}}', "invalid_document"),
+        ('{"robot": {"path": "/etc/passwd"}}', "invalid_document"),
+        ('{"robot": {"model": "' + "0" * 64 + '"}}', "model_not_found"),
+        ("{}", "invalid_input"),
+    ],
+)
+def test_a_robot_that_is_none_is_refused(server, first, code):
+    before = children(server)
+    with opened(server, EDITED) as socket:
+        socket.send(first)
+        header, closed = ended(socket)
+    assert closed == 1008
+    assert header["refused"]["code"] == code, header
+    gone(children(server) - before)
+
+
 def test_the_messages_are_described(server):
     document = httpx2.get(f"{server.url}/v1/view-session/asyncapi.json", timeout=30).json()
     assert document["channels"]["job"]["address"] == "/v1/jobs/{id}/view/session"
+    assert document["channels"]["edited"]["address"] == EDITED
+    assert "edited" not in document["channels"]["job"]["messages"]
     assert {"voxel", "indices_at", "inverse", "postures", "placement", "volume", "answer"} <= set(
         document["components"]["schemas"]
     )
     text = json.dumps(document)
     for name in {part.split('"')[0] for part in text.split("#/components/schemas/")[1:]}:
         assert name in document["components"]["schemas"]
-    assert np.isin(
-        ["id", "ask", "index", "voxel_size_m"], document["components"]["schemas"]["volume"]["required"]
-    ).all()
+    assert np.isin(["id", "ask", "index"], document["components"]["schemas"]["volume"]["required"]).all()

@@ -33,12 +33,13 @@ from wsrender.results.view.blobs import encoded, limits
 from wsrender.results.view.looked_at import LookedAt
 from wsrender.results.view.robots import arms_of, shown_job
 from wsrender.results.view.volumes import x_fastest
-from wsrender.robot import Robot
+from wsrender.robot import Robot, robot_of_spec
 from wsrender.robot.live_volumes import LiveVolume, LiveVolumes
 from wsrender.volume.volume_data import VolumeData, coarser
 
 if TYPE_CHECKING:
     from wsrender.results.result import Result
+    from wsrender.results.view.edited import Edited
 
 MOST_SAMPLES, MOST_VOXELS = 1 << 26, 1 << 24  # of a volume that is computed while it is looked at
 Answer = tuple[dict[str, Any], dict[str, bytes]]
@@ -99,6 +100,16 @@ class Interactive:
         standing = [arm.robot.changed(placement=arm.T_world_base) for arm in arms]
         job, numbers = shown_job(result.document) or {}, [arm.number for arm in arms]
         return cls(job, standing, result, numbers=numbers, **options)
+
+    @classmethod
+    def of_edited(cls, edited: "Edited", **options: Any) -> "Interactive":
+        """About a robot that is edited, under what constrains it; ``options`` as of the class.
+
+        Raises InputError where there is none, ModelError.
+        """
+        if edited.robot is None:
+            raise InputError("robot", "must be given: it is what is asked about")
+        return cls(edited.model_dump(mode="json"), [robot_of_spec(edited.robot, edited.base, edited.tip)], **options)
 
     def answer(self, request: Any, wanted: Callable[[], bool] = lambda: True) -> Answer:
         """The header of the answer, JSON values, and its blobs by name.

@@ -21,6 +21,7 @@ from wsrender.reach.admission import Admission
 from wsrender.reach.evidence import REACHABLE, UNREACHABLE
 from wsrender.reach.inverse_solver import InverseSolver, Solutions
 from wsrender.reach.posture_sets import Postures, PostureSolver
+from wsrender.reach.self_motions import SelfMotion
 from wsrender.reach.targets import ANGLE_TOLERANCE_RAD, NAMES, POSITION_TOLERANCE_M, admissible_reasons, reasons_of
 from wsrender.robot import Robot
 from wsrender.robot.constraints import constraints_of_job
@@ -30,6 +31,7 @@ from wsrender.robot.rejections import colliding_pairs
 from wsrender.robots.model_warning import ModelWarning
 
 MOST_POSTURES = 256  # of one pose that are listed
+MOST_STEPS = 128  # of a self-motion that are told
 TURN = 2 * np.pi
 
 
@@ -139,14 +141,21 @@ class LookedAt:
         }
 
     def postures(self, position_m: Any, quat_wxyz: Any) -> dict[str, Any]:
-        """All postures of a pose, what is said of each, how many stand for families, and whether these are all."""
+        """All postures of a pose, what is said of each, how many stand for families, and whether these are all.
+
+        One that stands for a self-motion has its ``curve``: configurations (P, n) [rad or m] in their order, of a long
+        one not all, whether it is ``closed``, and what blocks each, "" of free ones.
+        """
         T = Transform(position_m=position_m, quat_wxyz=quat_wxyz).matrix()
         found = self.posture_solver.solve(T[None], constraints=self.constraints)
         listed = min(len(found), MOST_POSTURES)
         some = f"; the first {listed} of {len(found)} are listed" if listed < len(found) else ""
         complete = "these are all" if found.complete[0] else "there may be others"
         return {
-            "postures": [{"q": found[k].tolist(), "said": ", ".join(_said(found, k))} for k in range(listed)],
+            "postures": [
+                {"q": found[k].tolist(), "said": ", ".join(_said(found, k)), "curve": _curve(found.curves[k])}
+                for k in range(listed)
+            ],
             "families": int(found.family.sum()),
             "reason": f"{complete}: {found.evidence}{some}",
         }
@@ -206,6 +215,14 @@ def _said(found: Postures, k: int) -> Iterator[str]:
     if found.doubtful[k]:
         yield "nearly singular"
     yield f"blocked by {found.reasons[k]}" if found.reasons[k] else "free"
+
+
+def _curve(curve: SelfMotion | None) -> dict[str, Any] | None:
+    if curve is None:
+        return None
+    kept = np.unique(np.linspace(0, len(curve) - 1, min(len(curve), MOST_STEPS)).round().astype(int))
+    reasons = curve.reasons[kept].tolist() if len(curve.reasons) else [""] * len(kept)
+    return {"closed": curve.closed, "configurations": curve.configurations[kept].tolist(), "reasons": reasons}
 
 
 def _number(value: Any) -> float | None:

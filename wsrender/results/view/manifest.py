@@ -42,7 +42,8 @@ class Chain(TypedDict):
     scale: list[float]
     offset: list[float]
     T_joint: list[list[float]]
-    T_tip: list[float]
+    T_tip: list[float]  # tool included
+    T_tool: list[float]
     T_base: list[float]
 
 

@@ -70,7 +70,7 @@ def add_robot(blobs: Blobs, number: int, arm: ShownArm, omitted: list[str]) -> R
 
 
 def chain_entry(robot: Arm, chain: Any, T_world_base: np.ndarray) -> Chain:
-    """The arrays of a chain; its tool is in ``T_tip``. Limits are those of the robot."""
+    """The arrays of a chain; its tool is in ``T_tip``, and ``T_tool`` alone. Limits are those of the robot."""
     return {
         "joints": list(robot.joint_names),
         "angle": [bool(each) for each in robot.chain.revolute],
@@ -83,6 +83,7 @@ def chain_entry(robot: Arm, chain: Any, T_world_base: np.ndarray) -> Chain:
         "offset": chain.joint_offset.tolist(),
         "T_joint": chain.T_joint.reshape(-1, 16).tolist(),
         "T_tip": (chain.T_tip @ chain.T_tip_tool).ravel().tolist(),
+        "T_tool": robot.chain.T_tip_tool.ravel().tolist(),
         "T_base": T_world_base.ravel().tolist(),
     }
 

@@ -18,7 +18,8 @@ from wsrender.volume.voxels import Voxels
 MOST_VOXELS = 256**3  # of a block that a page draws
 FINE = 64**3  # voxels of a block from which on larger ones are shown first
 FIRST = (4, 2)  # so many times as long
-COLORS = ("#d9d9d9", BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY_BLUE, YELLOW)  # further names begin anew
+COLORS = ("#8c8c8c", BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY_BLUE, YELLOW)  # further names begin anew
+_SILENT, _COUNTED = ("count", "center", "value"), ("number", "fraction")  # statistics, as labels say them
 _NAMES = re.compile(r"-?\d+ [^,]+(, -?\d+ [^,]+)*")
 
 
@@ -138,7 +139,7 @@ def channel(
     entry: Channel = {
         "name": name,
         "statistic": statistic,
-        "label": said("" if statistic in ("count", "center", "value") else statistic, name),
+        "label": said("" if statistic in _SILENT else f"{statistic} of" if statistic in _COUNTED else statistic, name),
         "unit": unit_said(unit),
         "minimum": low,
         "maximum": high,

@@ -172,7 +172,7 @@ function writeBar(g: CanvasRenderingContext2D, w: Written, scale: ColorScale, ri
     });
     return width;
   }
-  const x = right - wide, y = 34, high = 12, ticks = scale.ticks(Math.max(3, Math.round(wide / 45))), step = !scale.log && ticks.length > 1 ? ticks[1]! - ticks[0]! : 0;
+  const x = Math.round(right - wide), y = 34, high = 12, ticks = scale.ticks(Math.max(3, Math.round(wide / 45))), step = !scale.log && ticks.length > 1 ? ticks[1]! - ticks[0]! : 0;
   panel(Math.max(titled, wide), 62);
   const color = (i: number) => `rgb(${scale.colors.subarray(4 * i, 4 * i + 3).join()})`;
   for (let k = 0; k < wide; k++) { g.fillStyle = color(Math.floor((255.99 * (k + 0.5)) / wide)); g.fillRect(x + k, y, 1, high); }

@@ -53,7 +53,8 @@ export class MeshLayer implements Drawn {
 
 const COLORS_OF_LINES = [0x0072b2, 0xd55e00, 0x009e73, 0xcc79a7, 0xe69f00, 0x56b4e9];
 
-function segmentsOf(points: Vector[], closed: boolean): number[] {
+/** Ends of the pieces of a line, 6 numbers each. */
+export function segmentsOf(points: Vector[], closed: boolean): number[] {
   const found: number[] = [], n = closed ? points.length : points.length - 1;
   for (let i = 0; i < n; i++) found.push(...points[i]!, ...points[(i + 1) % points.length]!);
   return found;

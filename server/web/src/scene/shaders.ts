@@ -144,7 +144,7 @@ void main() {
       float at_ = clamp((v - range.x) * range.y, 0., 1.);
       float alpha = 1. - exp(-density * opacity * s.g * (.12 + 1.9 * at_ * sqrt(at_)) * dt);
       o += (1. - o.a) * alpha * vec4(shade(p, v), 1.);
-      if (o.a > .985) return;
+      if (o.a > 1. - .02 * stride) return;
     }
 #else
 #if STYLE == 2

@@ -116,7 +116,7 @@ export class PointLayer {
     this.drawn = look;
     const of = table(this.scale), grey = packed([120, 130, 140]), n = this.points.count, colors = new Uint32Array(n);
     for (let i = 0; i < n; i++) colors[i] = v && !Number.isNaN(v[i]!) ? of(v[i]!) : grey;
-    this.cloud = { positions: this.positions, colors, count: n, radius_m: span * Math.min(0.006, Math.max(0.0009, 0.12 / Math.sqrt(n))) };
+    this.cloud = { positions: this.positions, colors, count: n, radius_m: span * Math.min(0.012, Math.max(0.0009, 0.12 / Math.sqrt(n))) };
   }
 
   private fetch(key: string, get: () => Promise<void>): void {

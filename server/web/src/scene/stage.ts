@@ -8,8 +8,9 @@ import { defaultSettings, type Settings, type VolumeSettings } from "../settings
 import { AxesBox, INKS, write, type Ink } from "./annotations";
 import { scaleOf, type ColorScale } from "./colors";
 import type { Blob_ } from "./data";
-import { curves, glyphs, MeshLayer, PaintedMap, skeleton, type Drawn } from "./layers";
-import { LINES } from "./lines";
+import { curves, glyphs, MeshLayer, PaintedMap, segmentsOf, skeleton, type Drawn } from "./layers";
+import { LINES, lines } from "./lines";
+import { free } from "./glb";
 import { RobotBody } from "./robot";
 import * as glsl from "./shaders";
 import { PointLayer, Splats, type Cloud } from "./splat";
@@ -30,6 +31,9 @@ export type Pick =
   | { kind: "points"; name: string; number: number; point_m: Vector }
   | { kind: "mesh"; name: string; patch: string; point_m: Vector };
 
+/** The way of a joint while the tip stands. */
+export interface Motion { points: Vector[]; closed: boolean; chosen: boolean }
+
 export type Camera = NonNullable<Settings["camera"]>;
 export interface Events {
   pick: Pick | null;
@@ -46,6 +50,8 @@ interface Part { x: number; y: number; width: number; height: number; of: { widt
 const MOST_PIXELS = 8192, TILE = 1024;
 const LEAST_TILE = 100_000; // pixels: smaller ones would wait for the page longer than they draw
 const PASSES = 4, BUDGET_MS = 45, REST_MS = 180, FOV = 32;
+const QUICK_MS = 55, LEAST_SHARE = 0.2, LONGEST_STRIDE = 5; // while something moves: a frame; of the resolution; voxels between two looks
+const STRIDE = 1.3;
 const SHIFTS = [[0.125, 0.375], [-0.375, 0.125], [0.375, -0.125], [-0.125, -0.375]] as const; // of a pixel, rotated grid
 
 const vector = (v: THREE.Vector3): Vector => [v.x, v.y, v.z];
@@ -62,6 +68,7 @@ export class Stage {
   private sun = new THREE.DirectionalLight(0xffffff, 2.3);
   private axes = new AxesBox();
   private sheets = new THREE.Group();
+  private motions = new THREE.Group();
   private screen = new THREE.Mesh(new THREE.PlaneGeometry(2, 2));
   private screenScene = new THREE.Scene();
   private screenCamera = new THREE.OrthographicCamera(-1, 1, 1, -1, 0, 1);
@@ -104,7 +111,7 @@ export class Stage {
   private fence: WebGLSync | null = null;
   private timed: "quick" | "tile" | null = null;
   private sent = 0;
-  private quick = 0.5; // share of the resolution while something moves
+  private effort = 0.25; // while something moves: work of the rays, of that for every pixel; followed by what frames take
   private count = { frames: 0, milliseconds: 0 };
 
   constructor(readonly host: HTMLElement) {
@@ -127,7 +134,7 @@ export class Stage {
     for (const t of [this.nothing, this.farthest]) t.needsUpdate = true;
     this.screen.frustumCulled = false;
     this.screenScene.add(this.screen);
-    this.scene.add(new THREE.HemisphereLight(0xffffff, 0x949fab, 2.2), this.sun, this.sun.target, this.axes, this.sheets, this.splats.object);
+    this.scene.add(new THREE.HemisphereLight(0xffffff, 0x949fab, 2.2), this.sun, this.sun.target, this.axes, this.sheets, this.motions, this.splats.object);
     this.eye.up.set(0, 0, 1);
     this.eye.position.set(2, -3, 1.5);
     this.controls = new OrbitControls(this.eye, this.canvas);
@@ -237,6 +244,25 @@ export class Stage {
     this.askFront();
   }
 
+  /** Draws the ways of joints, of one self-motion more strongly; in place of those before. */
+  setMotions(motions: readonly Motion[]): void {
+    if (!motions.length && !this.motions.children.length) return;
+    this.freeMotions();
+    for (const chosen of [false, true]) {
+      const segments = motions.filter((each) => each.chosen === chosen).flatMap((each) => segmentsOf(each.points, each.closed));
+      if (!segments.length) continue;
+      const drawn = lines(segments, chosen ? 0xd55e00 : 0x8a96a3, chosen ? 3 : 1.2);
+      drawn.material.depthTest = !chosen; // the robot's bodies would hide it
+      drawn.renderOrder = chosen ? 1 : 0;
+      this.motions.add(drawn);
+    }
+    this.ask();
+  }
+
+  private freeMotions(): void {
+    for (const each of [...this.motions.children]) free(each);
+  }
+
   /** The gizmo goes with the tip, but while it is dragged. */
   private followTip(): void {
     const body = this.front.robot === null ? null : this.robots[this.front.robot];
@@ -264,15 +290,16 @@ export class Stage {
   private need(data: VolumeData, wanted: VolumeSettings): void {
     const minus = this.minus(wanted);
     if (data.has(wanted, minus)) return;
-    data.get(wanted, minus, () => this.ready(data)).then(() => this.ready(data), (e: unknown) => this.emit("problem", e instanceof Error ? e.message : `${e}`));
+    data.get(wanted, minus, () => this.ready(data, true)).then(() => this.ready(data, true), (e: unknown) => this.emit("problem", e instanceof Error ? e.message : `${e}`));
   }
 
-  private ready(data: VolumeData): void {
+  /** `wider`: all is shown again where the volume goes beyond what was shown, and the eye has not been moved. */
+  private ready(data: VolumeData, wider = false): void {
     if (this.disposed || !this.settings || this.volumes.get(data.volume.name) !== data) return;
-    const first = this.bounds.isEmpty() || !this.fitted;
+    const first = this.bounds.isEmpty() || !this.fitted, before = this.bounds.clone();
     this.rescale();
     this.measureBounds();
-    if (first && !this.settings.camera) this.fit();
+    if ((first || (wider && this.fits && !before.containsBox(this.bounds))) && !this.settings.camera) this.fit(this.fits ?? undefined);
     this.select();
     this.ask();
   }
@@ -301,12 +328,12 @@ export class Stage {
     const span = this.bounds.getSize(new THREE.Vector3()).length() / Math.sqrt(3);
     for (const points of this.points) {
       points.set(settings, first, span);
-      if (points.cloud && points.scale) { first = false; addBar(points.scale); }
+      if (points.cloud && points.scale) { first &&= Boolean(points.scale.categories); addBar(points.scale); }
     }
     for (const layer of this.layers) {
       layer.object.visible = settings.layers[layer.key]?.visible ?? layer.shown;
       layer.set?.(settings, first);
-      if (layer.object.visible && layer.scale) { first = false; addBar(layer.scale); }
+      if (layer.object.visible && layer.scale) { first &&= Boolean(layer.scale.categories); addBar(layer.scale); }
     }
   }
 
@@ -470,7 +497,7 @@ export class Stage {
       const took = performance.now() - this.sent;
       this.count.milliseconds = took;
       if (this.timed === "tile") this.tiles = Math.max(1, Math.min(Math.floor((this.canvas.width * this.canvas.height) / LEAST_TILE), Math.ceil((took * this.tiles) / BUDGET_MS)));
-      if (this.timed === "quick") this.quick = Math.max(0.25, Math.min(1, this.quick * Math.sqrt(Math.min(1.6, Math.max(0.5, 55 / Math.max(took, 1))))));
+      if (this.timed === "quick") this.effort = Math.max(LEAST_SHARE ** 2 * (STRIDE / LONGEST_STRIDE), Math.min(1, this.effort * Math.min(1.6, Math.max(0.4, QUICK_MS / Math.max(took, 1)))));
       this.timed = null;
     }
     const { width, height } = this.canvas;
@@ -485,7 +512,7 @@ export class Stage {
     } else if (this.dirty) {
       this.dirty = this.frontDirty = false;
       this.drawScene(this.whole());
-      this.drawRays(this.quick, 1.3, 0, 1, 0);
+      this.drawRays(this.share, this.stride, 0, 1, 0);
       this.show();
       this.timed = "quick";
       this.done("coarse");
@@ -496,6 +523,10 @@ export class Stage {
     this.gl.flush();
     if (!this.later || this.timed) this.ask(false);
   }
+
+  /** Fewer pixels first; where the fewest take too long still, longer steps along their rays. */
+  private get share(): number { return Math.max(LEAST_SHARE, Math.sqrt(this.effort)); }
+  private get stride(): number { return STRIDE * Math.max(1, LEAST_SHARE ** 2 / this.effort); }
 
   private fine(width: number, height: number): void {
     if (this.row === 0) this.drawScene(this.whole(), SHIFTS[this.pass]);
@@ -773,7 +804,7 @@ export class Stage {
   get info() {
     const { geometries, textures } = this.renderer.info.memory;
     return {
-      ...this.count, geometries, textures, programs: this.renderer.info.programs?.length ?? 0, scale: this.quick,
+      ...this.count, geometries, textures, programs: this.renderer.info.programs?.length ?? 0, scale: this.share, stride: this.stride,
       idle: !this.asked && !this.later && !this.dirty && !this.frontDirty && !this.fence && this.pass === PASSES,
     };
   }
@@ -781,6 +812,7 @@ export class Stage {
   private clear(): void {
     for (const data of this.volumes.values()) data.dispose();
     this.volumes.clear();
+    this.freeMotions();
     for (const robot of this.robots) robot.dispose();
     for (const layer of this.layers) layer.dispose();
     this.robots = []; this.layers = []; this.points = [];

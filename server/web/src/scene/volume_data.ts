@@ -57,7 +57,7 @@ export class VolumeData {
     const own = await shown(this.volume, this.grid, channel, this.blob);
     if (!minus) return own;
     const other = await minus.get({ channel } as VolumeSettings, null), lattice = difference(own.lattice, other.lattice);
-    const about = own.channel && { label: `${own.channel.label}: difference`, unit: own.channel.unit, signed: true };
+    const about = own.channel && { label: `Δ ${own.channel.label}`, unit: own.channel.unit, signed: true };
     return { lattice, channel: about, whole: extent(lattice.values!), inner: withoutOutliers(lattice.values!) };
   }
 

@@ -1,7 +1,8 @@
 /** A job's result, and robots that are edited, from `wsrender serve`. */
 
-import type { Source } from "../contract";
+import type { Manifest, Source } from "../contract";
 import { parse } from "../json";
+import { readReply } from "./answer";
 import type { Api } from "./api";
 import { Session } from "./session";
 
@@ -13,6 +14,26 @@ export function jobSource(api: Api, id: string): Source {
     home: "served",
     manifest: async () => parse(await (await api.fetch(path)).text()),
     blob: async (name) => (await api.fetch(`${path}/blobs/${encodeURIComponent(name)}`)).arrayBuffer(),
+    ask: (request) => opened().ask(request),
+    onState: (listener) => opened().onState(listener),
+    close: () => session?.close(),
+  };
+}
+
+/** What is edited in a form: `parts` as `POST /v1/robots:view` takes them, of which the view is one message. */
+export function editedSource(api: Api, parts: Record<string, unknown>): Source {
+  const text = JSON.stringify(parts);
+  let session: Session | null = null, blobs: Record<string, ArrayBuffer> = {};
+  const opened = () => session ??= new Session(new URL("v1/robots:view/session", api.base), () => api.key.value, text);
+  return {
+    home: "served",
+    manifest: async () => {
+      const response = await api.fetch("v1/robots:view", { method: "POST", body: text, headers: { "Content-Type": "application/json" } });
+      const read = readReply(await response.arrayBuffer());
+      blobs = read.blobs;
+      return { ...(read.reply as unknown as { manifest: Manifest }).manifest, job: parts };
+    },
+    blob: async (name) => blobs[name]!,
     ask: (request) => opened().ask(request),
     onState: (listener) => opened().onState(listener),
     close: () => session?.close(),

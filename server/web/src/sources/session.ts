@@ -19,7 +19,8 @@ export class Session {
   private lost = false;
   private closed = false;
 
-  constructor(private readonly url: URL, private readonly key: () => string) {
+  /** `first`: what the session is about, where its address does not say. */
+  constructor(private readonly url: URL, private readonly key: () => string, private readonly first?: string) {
     this.url.protocol = url.protocol === "https:" ? "wss:" : "ws:";
   }
 
@@ -54,6 +55,7 @@ export class Session {
         if (this.closed) return socket.close(1000);
         this.socket = socket;
         this.pause = FIRST_PAUSE_MS;
+        if (this.first !== undefined) socket.send(this.first);
         if (this.lost) this.say("back");
         resolve(socket);
       };

@@ -1,7 +1,7 @@
 /** A new job: a form of its schema or its JSON, checked by the server while it is written, with what it would take. */
 
 import type { Signal } from "@preact/signals";
-import { useEffect, useMemo, useRef, useState } from "preact/hooks";
+import { useEffect, useId, useMemo, useRef, useState } from "preact/hooks";
 import { ApiError, type Api } from "../../sources/api";
 import type { Theme } from "../app";
 import type { Job } from "../jobs/job";
@@ -34,7 +34,7 @@ function Written({ api, theme, schemas, start, onSubmitted }: { api: Api; theme:
   });
   const [raw, setRaw] = useState(false), [touched, setTouched] = useState(start !== null), [sending, setSending] = useState(false);
   const [checked, setChecked] = useState<Checked>({ state: "none" }), [text, setText] = useState("");
-  const form = useRef<HTMLFormElement>(null);
+  const page = useRef<HTMLDivElement>(null), form = useId();
   const analysis = analyses.find((each) => each.name === name);
 
   const change = (next: JsonObject) => {
@@ -80,7 +80,7 @@ function Written({ api, theme, schemas, start, onSubmitted }: { api: Api; theme:
     } catch (error) {
       setTouched(true);
       setChecked(wrong(error));
-      requestAnimationFrame(() => form.current?.querySelector<HTMLElement>("[aria-invalid], .problems button")?.focus());
+      requestAnimationFrame(() => page.current?.querySelector<HTMLElement>("[aria-invalid], .problems button")?.focus());
     } finally {
       setSending(false);
     }
@@ -88,7 +88,7 @@ function Written({ api, theme, schemas, start, onSubmitted }: { api: Api; theme:
   const problems = checked.state === "bad" ? checked.problems : [];
   const find = (pointer: string) => {
     for (let at = pointer; at; at = at.slice(0, at.lastIndexOf("/"))) {
-      const field = form.current?.querySelector<HTMLElement>(`[data-pointer="${CSS.escape(at)}"]`);
+      const field = page.current?.querySelector<HTMLElement>(`[data-pointer="${CSS.escape(at)}"]`);
       if (!field) continue;
       for (let details = field.closest("details"); details; details = details.parentElement?.closest("details") ?? null) details.open = true;
       field.scrollIntoView({ block: "center" });
@@ -101,8 +101,8 @@ function Written({ api, theme, schemas, start, onSubmitted }: { api: Api; theme:
   };
   return (
     <Form.Provider value={{ schemas, problems, upload }}>
-      <form class="submit" ref={form} onSubmit={submit} noValidate>
-        <div class="column">
+      <div class="submit" ref={page}>
+        <form class="column" id={form} onSubmit={submit} noValidate>
           <div class="bar">
             <h1>New job</h1>
             <button type="button" onClick={edit} aria-pressed={raw}>Edit as JSON</button>
@@ -127,16 +127,16 @@ function Written({ api, theme, schemas, start, onSubmitted }: { api: Api; theme:
               </fieldset>}
             </>
           )}
-        </div>
+        </form>
         <aside class="column side" aria-label="Preview and cost">
-          <Preview api={api} document={value} theme={theme} />
+          <Preview api={api} document={value} theme={theme} onChange={(next) => { change(next); setText(JSON.stringify(next, null, 2)); }} />
           <section class="card" aria-live="polite">
             <h2>What it takes</h2>
             <Cost checked={checked} onFind={find} />
           </section>
-          <button class="primary" type="submit" disabled={sending}>{sending ? "Submitting …" : "Submit"}</button>
+          <button class="primary" type="submit" form={form} disabled={sending}>{sending ? "Submitting …" : "Submit"}</button>
         </aside>
-      </form>
+      </div>
     </Form.Provider>
   );
 }

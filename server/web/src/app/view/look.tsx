@@ -17,9 +17,8 @@ const AXES = ["x", "y", "z"] as const;
 /** Whose colours the range is of: the volume that is shown, else the first points or map. */
 export function channelOf(model: ViewModel): Channel | undefined {
   const volume = model.shown, settings = model.settings.value!;
-  if (volume && settings.volumes[volume.name]?.visible) return volume.channels.find((each) => keyOf(each) === settings.volumes[volume.name]!.channel);
-  const first = paintedIn(model).find((each) => settings.layers[each.name]?.visible ?? true);
-  return first && paintOf(model, first);
+  if (volume && (settings.volumes[volume.name]?.visible || settings.slices.some((each) => each.visible))) return volume.channels.find((each) => keyOf(each) === settings.volumes[volume.name]!.channel);
+  return paintedIn(model).filter((each) => settings.layers[each.name]?.visible ?? true).map((each) => paintOf(model, each)).find((each) => !each.categories);
 }
 
 function paintedIn(model: ViewModel): { name: string; label: string; channels: Channel[] }[] {
@@ -98,19 +97,19 @@ export function Colors({ model }: { model: ViewModel }) {
   return (
     <Section title="Colours" open>
       <Select label="Colour map" value={settings.colors} options={MAPS.map((each) => ({ value: each, label: each }))} onChange={(colors) => model.update({ colors })} />
-      <Select label="Scale" value={range.scale} options={[{ value: "linear", label: "linear" }, { value: "log", label: "logarithmic" }]} onChange={(scale) => put({ scale })} />
-      <div class="line"><span>Range</span>
-        <span class="pair">
-          <Value label="Lower end of the range" value={range.low} placeholder={number(channel?.minimum)} onChange={(low) => put({ low })} />
-          <Value label="Upper end of the range" value={range.high} placeholder={number(channel?.maximum)} onChange={(high) => put({ high })} />
-        </span>
-      </div>
       {channel && !channel.categories && <>
+        <Select label="Scale" value={range.scale} options={[{ value: "linear", label: "linear" }, { value: "log", label: "logarithmic" }]} onChange={(scale) => put({ scale })} />
+        <div class="line"><span>Range</span>
+          <span class="pair">
+            <Value label="Lower end of the range" value={range.low} placeholder={number(channel.minimum)} onChange={(low) => put({ low })} />
+            <Value label="Upper end of the range" value={range.high} placeholder={number(channel.maximum)} onChange={(high) => put({ high })} />
+          </span>
+        </div>
         <Slide label="From" name="Lower end" value={range.low ?? channel.minimum} low={channel.minimum} high={channel.maximum} onChange={(low) => put({ low })} />
         <Slide label="To" name="Upper end" value={range.high ?? channel.maximum} low={channel.minimum} high={channel.maximum} onChange={(high) => put({ high })} />
+        <Tick label="Leave out outliers" value={range.clipped} onChange={(clipped) => put({ clipped })} />
+        <button onClick={() => put({ low: null, high: null })} disabled={range.low === null && range.high === null}>Whole range</button>
       </>}
-      <Tick label="Leave out outliers" value={range.clipped} onChange={(clipped) => put({ clipped })} />
-      <button onClick={() => put({ low: null, high: null })} disabled={range.low === null && range.high === null}>Whole range</button>
     </Section>
   );
 }

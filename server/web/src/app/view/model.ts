@@ -1,11 +1,11 @@
 /** What a viewer knows: the manifest, the settings as one value, and what the engine has answered. */
 
 import { batch, effect, signal, untracked } from "@preact/signals";
-import { Refused, type IndicesAnswer, type InverseAnswer, type Manifest, type PlacementAnswer, type PosturesAnswer, type Request, type Robot, type Source, type Vector, type Volume, type VolumeAnswer, type VoxelAnswer } from "../../contract";
-import { channelKey, defaultSettings, type Settings, type VolumeSettings } from "../../settings";
+import { Refused, type IndicesAnswer, type InverseAnswer, type Manifest, type PlacementAnswer, type PosturesAnswer, type Request, type Robot, type SelfMotion, type Source, type Vector, type Volume, type VolumeAnswer, type VoxelAnswer } from "../../contract";
+import { channelKey, defaultSettings, volumeSettings, type Settings, type VolumeSettings } from "../../settings";
 import { values as numbersOf } from "../../scene/data";
-import { quaternion, tip } from "../../scene/kinematics";
-import { Stage, type Camera } from "../../scene/stage";
+import { frames, quaternion, tip } from "../../scene/kinematics";
+import { Stage, type Camera, type Motion } from "../../scene/stage";
 import { message } from "../parts";
 import { toolOf } from "./changed_job";
 
@@ -17,6 +17,7 @@ const STATISTICS = ["maximum", "mean", "minimum"]; // which it may have, beside 
 const COARSE_CELLS = 48; // along its longest edge
 const FINE_AFTER_MS = 350;
 const INDICES_AFTER_MS = 120;
+const STANDS = 1e-3; // of the longest way that a joint goes along a self-motion: it stands still
 
 export class ViewModel {
   readonly manifest = signal<Manifest | null>(null);
@@ -29,7 +30,7 @@ export class ViewModel {
   readonly voxel = signal<(VoxelAnswer & { rounded?: boolean }) | null>(null);
   readonly said = signal(""); // told to who can't see
   readonly indices = signal<(IndicesAnswer & { robot: number }) | null>(null);
-  readonly postures = signal<(PosturesAnswer & { at: number; robot: number }) | null>(null);
+  readonly postures = signal<(PosturesAnswer & { at: number; along: number; robot: number }) | null>(null);
   readonly reach = signal<InverseAnswer | null>(null);
   readonly gizmo = signal<number | null>(null);
   readonly turning = signal(false); // the gizmo turns the tool instead of moving it
@@ -38,13 +39,14 @@ export class ViewModel {
   readonly measuring = signal(false);
   stage: Stage | null = null;
   private added = new Map<string, Volume>(); // beside the manifest's
-  private wanted = new Map<number, boolean>(); // robots whose volume is to be computed, and whether in the file's voxels
+  private wanted = new Map<number, boolean>(); // robots whose volume is to be computed, and whether in fine voxels
+  private followed = new Map<number, { size: number; longest: number } | null>(); // robots of views without a volume that have one now: its fine voxels and longest edge [m]; null: not yet
   private computing = false;
   private fineTimer = 0;
   private indicesTimer = 0;
   private readonly stops: (() => void)[] = [];
 
-  constructor(readonly source: Source) {}
+  constructor(public source: Source) {}
 
   get canAsk(): boolean { return Boolean(this.source.ask); }
 
@@ -77,8 +79,36 @@ export class ViewModel {
     const { robots, skeletons, volumes, meshes, points, glyphs, curves, maps } = manifest;
     if (![robots, skeletons, volumes, meshes, points, glyphs, curves, maps].some((each) => each.length)) this.undrawn.value = "This result holds nothing that stands in space.";
     if (settings.selected) void this.select(settings.selected.volume, settings.selected.cell, false);
-    manifest.robots.forEach((_, robot) => { if (this.isChanged(robot)) this.recompute(robot, true); });
+    manifest.robots.forEach((_, robot) => {
+      if (!manifest.volumes.length && settings.volumes[`live_${robot}`]?.visible) this.followVolume(robot);
+      else if (this.isChanged(robot)) this.recompute(robot, true);
+    });
   }
+
+  /** Shows what another source has, where this one's was: what is edited in a form. */
+  async replace(source: Source): Promise<void> {
+    const number = ++this.replaced, manifest = await source.manifest();
+    if (number !== this.replaced || !this.stage) return;
+    await this.stage.load(manifest, (name) => source.blob(name));
+    if (number !== this.replaced || !this.stage) return source.close?.();
+    this.source.close?.();
+    this.source = source;
+    clearTimeout(this.fineTimer);
+    clearTimeout(this.indicesTimer);
+    this.added.clear();
+    this.wanted.clear();
+    this.followed.clear();
+    batch(() => {
+      this.live.value = this.voxel.value = this.postures.value = this.indices.value = this.placed.value = null;
+      this.lost.value = false;
+      this.manifest.value = manifest;
+      this.settings.value = { ...defaultSettings(manifest), theme: this.settings.value!.theme };
+      this.camera.value = null;
+      this.setGizmo(null);
+    });
+    this.watchSource();
+  }
+  private replaced = 0;
 
   private follow(stage: Stage): void {
     this.stops.push(
@@ -98,6 +128,17 @@ export class ViewModel {
         if (settings) untracked(() => stage.apply({ ...settings, camera: this.camera.value }));
       }),
     );
+    let drawn: unknown[] = [];
+    this.stops.push(effect(() => {
+      const found = this.postures.value, now = [found?.postures, found?.at];
+      if (now.every((each, i) => each === drawn[i])) return;
+      drawn = now;
+      untracked(() => stage.setMotions(found ? this.motions(found.robot, found.postures.map((each) => each.curve), found.at) : []));
+    }));
+    this.watchSource();
+  }
+
+  private watchSource(): void {
     if (this.canAsk && this.source.onState) this.stops.push(this.source.onState((state) => { this.lost.value = state === "lost"; }));
   }
 
@@ -127,6 +168,7 @@ export class ViewModel {
       this.settings.value = { ...defaultSettings(manifest), theme: this.settings.value!.theme };
       this.stage?.fit();
       this.live.value = this.voxel.value = this.postures.value = null;
+      this.followed.clear();
       this.setGizmo(null);
     });
   }
@@ -212,7 +254,9 @@ export class ViewModel {
 
   robot(number: number): Robot { return this.manifest.value!.robots[number]!; }
 
-  setConfiguration(robot: number, q: number[]): void {
+  /** `same`: of the postures that are listed, or along one's self-motion; of another the list is of no use. */
+  setConfiguration(robot: number, q: number[], same = false): void {
+    if (!same) this.postures.value = null;
     const configurations = this.settings.value!.configurations.slice();
     configurations[robot] = q;
     this.update({ configurations });
@@ -223,7 +267,7 @@ export class ViewModel {
   /** Limits, tool and placement as they have been dragged; the tool in the tip's frame, as the engine has it. */
   changes(robot: number): { limits: Record<string, [number, number]>; tool?: number[]; placement?: number[] } {
     const settings = this.settings.value!, tip = settings.tools[robot], placement = settings.placements[robot];
-    const tool = tip ? toolOf(this.manifest.value!.job, robot, this.robot(robot).chain, tip) : null;
+    const tool = tip ? toolOf(this.robot(robot).chain, tip) : null;
     return { limits: settings.limits[robot] ?? {}, ...(tool ? { tool } : {}), ...(placement ? { placement } : {}) };
   }
 
@@ -291,7 +335,7 @@ export class ViewModel {
   async askPostures(robot: number): Promise<void> {
     try {
       const found = (await this.ask({ ask: "postures", robot, ...this.tip(robot), ...this.changes(robot) } as Request)) as PosturesAnswer;
-      this.postures.value = { ...found, at: -1, robot };
+      this.postures.value = { ...found, at: -1, along: 0, robot };
       if (found.postures.length) this.stepPosture(1);
     } catch (error) {
       this.tell(error);
@@ -302,9 +346,30 @@ export class ViewModel {
     const found = this.postures.value;
     if (!found?.postures.length) return;
     const at = (found.at + by + found.postures.length) % found.postures.length;
-    this.postures.value = { ...found, at };
-    this.setConfiguration(found.robot, found.postures[at]!.q);
+    const { q, curve } = found.postures[at]!, apart = (curve?.configurations ?? []).map((each) => Math.hypot(...each.map((value, k) => value - q[k]!)));
+    this.postures.value = { ...found, at, along: apart.indexOf(Math.min(...apart)) };
+    this.setConfiguration(found.robot, q, true);
     this.said.value = `Posture ${at + 1} of ${found.postures.length}.`;
+  }
+
+  /** To a point of the self-motion of the posture that is shown. */
+  stepAlong(along: number): void {
+    const found = this.postures.value, q = found?.postures[found.at]?.curve?.configurations[along];
+    if (!found || !q) return;
+    this.postures.value = { ...found, along };
+    this.setConfiguration(found.robot, q, true);
+  }
+
+  /** The ways of the joints along self-motions while the tip stands: of each those that move. */
+  private motions(robot: number, curves: (SelfMotion | null)[], chosen: number): Motion[] {
+    const { placements, tools } = this.settings.value!, { chain } = this.robot(robot);
+    return curves.flatMap((curve, i) => {
+      if (!curve) return [];
+      const at = curve.configurations.map((q) => frames(chain, q, { T_base: placements[robot] ?? null, T_tip: tools[robot] ?? null }).slice(1, -1).map((T): Vector => [T[3]!, T[7]!, T[11]!]));
+      const ways = at[0]!.map((_, joint) => at.map((each) => each[joint]!));
+      const long = ways.map((way) => Math.max(...[0, 1, 2].map((k) => Math.max(...way.map((p) => p[k]!)) - Math.min(...way.map((p) => p[k]!)))));
+      return ways.filter((_, joint) => long[joint]! > STANDS * Math.max(...long)).map((points) => ({ points, closed: curve.closed, chosen: i === chosen }));
+    });
   }
 
   /** A robot stands where a cell of a map says. */
@@ -314,6 +379,7 @@ export class ViewModel {
       const placements = this.settings.value!.placements.slice();
       placements[0] = found.T_world_base;
       this.update({ placements });
+      this.postures.value = null;
       this.placed.value = found.values;
       this.said.value = "The robot stands there.";
     } catch (error) {
@@ -328,28 +394,40 @@ export class ViewModel {
     if (range) own[joint] = range;
     else delete own[joint];
     limits[robot] = own;
-    this.update({ limits });
+    this.dragged(robot, { limits });
+  }
+
+  private dragged(robot: number, patch: Partial<Settings>): void {
+    this.update(patch);
+    this.postures.value = null;
     this.recompute(robot, false);
   }
 
   setTool(robot: number, tool: number[] | null): void {
     const tools = this.settings.value!.tools.slice();
     tools[robot] = tool;
-    this.update({ tools });
-    this.recompute(robot, false);
+    this.dragged(robot, { tools });
   }
 
   setPlacement(robot: number, placement: number[] | null): void {
     const placements = this.settings.value!.placements.slice();
     placements[robot] = placement;
-    this.update({ placements });
-    this.recompute(robot, false);
+    this.dragged(robot, { placements });
+  }
+
+  /** Whether the volume of a robot is there, to follow what is dragged. */
+  isFollowed(robot: number): boolean { return this.followed.has(robot) || Boolean(this.manifest.value?.volumes.length); }
+
+  /** Shows the volume of a robot whose view has none. */
+  followVolume(robot: number): void {
+    this.followed.set(robot, null);
+    this.recompute(robot, true);
   }
 
   /** The volume of what was dragged: in large voxels while one drags, then in those of the file. */
   recompute(robot: number, fine: boolean): void {
-    if (!this.source.ask || !this.manifest.value?.volumes.length) return;
-    if (!this.isChanged(robot)) return this.unchanged(robot);
+    if (!this.source.ask || !this.isFollowed(robot)) return;
+    if (!this.isChanged(robot) && !this.followed.has(robot)) return this.unchanged(robot);
     clearTimeout(this.fineTimer);
     if (!fine) this.fineTimer = window.setTimeout(() => this.recompute(robot, true), FINE_AFTER_MS);
     this.wanted.set(robot, fine);
@@ -366,23 +444,26 @@ export class ViewModel {
   }
 
   private async compute(robot: number, fine: boolean): Promise<void> {
-    const file = this.manifest.value!.volumes[0]!, settings = this.settings.value!, name = `live_${robot}`;
-    const own = settings.volumes[name] ?? settings.volumes[file.name]!, channels = [own.channel, ...file.channels.map(channelKey), "maximum:manipulability"];
+    const manifest = this.manifest.value!, file = manifest.volumes[0], settings = this.settings.value!, name = `live_${robot}`;
+    const own = settings.volumes[name] ?? (file && settings.volumes[file.name]!), channels = [own?.channel ?? "", ...(file?.channels ?? []).map(channelKey), "maximum:manipulability"];
     const [statistic = "", index = ""] = channels.map((each) => each.split(/:(.*)/s)).find(([each]) => STATISTICS.includes(each!))!;
-    const coarse = Math.max(file.voxel_size_m, (Math.max(...file.shape) * file.voxel_size_m) / COARSE_CELLS);
+    const sized = (volume: Volume) => ({ size: volume.voxel_size_m, longest: Math.max(...volume.shape) * volume.voxel_size_m });
+    const known = file ? sized(file) : this.followed.get(robot);
     this.live.value = { busy: true, said: this.live.value?.said ?? "", wrong: false };
     try {
       const { header, blobs } = await this.source.ask!({
         ask: "volume", robot, index, statistic, samples: SAMPLES,
-        voxel_size_m: fine ? file.voxel_size_m : coarse, ...this.changes(robot),
+        voxel_size_m: !known ? null : fine ? known.size : Math.max(known.size, known.longest / COARSE_CELLS), ...this.changes(robot),
       });
+      if (manifest !== this.manifest.value) return;
       const found = header as VolumeAnswer, first = !this.added.has(found.volume.name);
-      if (!this.isChanged(robot)) return;
-      const channel = found.volume.channels[0], label = this.manifest.value!.robots.length > 1 ? `${this.robot(robot).name}, as it was changed` : "As it was changed";
-      const shown = { ...own, visible: true, channel: channel ? channelKey(channel) : "", minus: "" };
+      if (file && !this.isChanged(robot)) return;
+      if (!file && !known) this.followed.set(robot, sized(found.volume));
+      const channel = found.volume.channels[0], label = !this.isChanged(robot) ? "Workspace" : manifest.robots.length > 1 ? `${this.robot(robot).name}, as it was changed` : "As it was changed";
+      const shown = { ...(own ?? volumeSettings(found.volume, manifest)), visible: true, channel: channel ? channelKey(channel) : "", minus: "" };
       batch(() => {
-        void this.add({ ...found.volume, label }, blobs, first ? shown : { channel: shown.channel });
-        if (first && !settings.volumes[name]?.visible) this.setVolume(file.name, { visible: false });
+        void this.add({ ...found.volume, label }, blobs, first ? shown : { channel: shown.channel }).then(() => { if (first && !file && !this.camera.value) this.stage?.fit(); });
+        if (file && first && !settings.volumes[name]?.visible) this.setVolume(file.name, { visible: false });
         this.live.value = { busy: false, wrong: false, volume_m3: found.volume_m3, said: `${found.volume_m3.toPrecision(4)} m³ of ${found.samples.toLocaleString("en")} samples, ${Math.round(1000 * found.elapsed_s)} ms` };
       });
     } catch (error) {
@@ -405,7 +486,8 @@ export class ViewModel {
     const settings = this.settings.value!;
     const without = <T>(list: T[], none: T) => list.map((each, i) => (i === robot ? none : each));
     this.update({ limits: without(settings.limits, {}), tools: without(settings.tools, null), placements: without(settings.placements, null) });
-    this.unchanged(robot);
+    this.postures.value = null;
+    this.recompute(robot, true);
   }
 
   // ---- asking
