@@ -26,7 +26,7 @@ from wsrender.indices.index_catalogue import find, option_values, resolve
 from wsrender.pipeline.constraints.host_function import on_host
 from wsrender.pipeline.constraints.registry import constraints_of
 from wsrender.results.view import Edited
-from wsrender.robots import archives, library, mjcf, xml_source
+from wsrender.robots import archives, library, loading, mjcf, xml_source
 from wsrender_server.job_body import LONGEST_HERE, SubmissionOptions, check_size, read_body, refused
 from wsrender_server.jobs.child_process import give_back_memory
 from wsrender_server.jobs.documents import CanonicalDocument, uploads_in
@@ -37,7 +37,7 @@ from wsrender_server.side_process import SideProcess
 
 Found = TypeVar("Found")
 
-ROOTS = ("mujoco", "robot")
+ROOTS = ("mujoco", "robot", "sdf")
 LOCAL_ONLY = "is for local runs only; upload the file and name it by model, or send text or points"
 BEYOND_LIMITS = 10**18  # samples
 LONGEST_S = 60.0  # that a long body may take
@@ -61,7 +61,7 @@ def check_model(field: str, text: str, prefix: str = "") -> str:
             raise refusal(problem_of_error(error, prefix), 409) from None
         raise
     if root.tag not in ROOTS:
-        wrong = ModelError(field, f"the root element is <{root.tag}>; <mujoco> or <robot> (URDF) is needed")
+        wrong = ModelError(field, f"the root element is <{root.tag}>; {loading.ROOTS}")
         raise refusal(problem_of_error(wrong, prefix), 409)
     if root.tag == "mujoco":
         mjcf.refuse_includes(root, field)

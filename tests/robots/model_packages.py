@@ -27,7 +27,9 @@ MOST_CHOICES = 4  # of base, tip and package, one after the other, before a file
 REASONS = {
     r"^there is no joint between base": "nothing moves: objects, planes, things that float as a whole",
     r"^there is nothing to move|^the URDF has no <link>": "nothing is there: a part that other files include",
-    r"^the root element is <": "no URDF or MJCF: SDF, descriptions of packages, parts that other files include",
+    r"ties .* into a closed loop with the chain": "closed loops, on the chain",
+    r"^two models, links, joints or frames are named": "an SDF with two models of one name",
+    r"^the root element is <": "no URDF, SDF or MJCF: descriptions of packages, parts that other files include",
     r"is '\$\(": "xacro that was expanded by half",
     r"^xacro refuses .*package://": "xacro that includes an address, where xacro takes names of files",
     r"^xacro refuses .*(is not defined|No such file)": "xacro that names what another package has",

@@ -22,8 +22,9 @@ from tests.reference.published_robots import (
     dh_table,
 )
 from tests.robots.test_bodies import contacts_of
+from wsrender.analyses.jobs import parse_job
 from wsrender.errors import ModelError
-from wsrender.robots import library, load_dh, load_path, load_urdf
+from wsrender.robots import library, load, load_dh, load_path, load_urdf
 from wsrender.robots.dh import structural_length
 
 
@@ -262,9 +263,15 @@ def test_stanford_arm_carries_the_moments_about_the_frames_origins():
     assert model.dof_armature.tolist() == [0.953, 2.193, 0.782, 0.106, 0.097, 0.02]
 
 
-def test_a_mechanism_is_not_a_robot():
-    with pytest.raises(ModelError, match=r'"delta" is a mechanism .* see parallel_workspace'):
-        library.find("delta")
+@pytest.mark.parametrize("mechanism", library.mechanisms(), ids=lambda each: each.name)
+def test_a_mechanism_is_not_a_robot(mechanism):
+    """By its name and by its file, naming the analysis that takes it, which then does."""
+    for source in (mechanism.name, mechanism.path):
+        with pytest.raises(ModelError, match=f'"{mechanism.name}" is a mechanism with closed loops') as refused:
+            load(source)
+        analysis = refused.value.message.partition("the analysis ")[2].split(",")[0].split()[0]
+        lengths = {"base_m": 1, "proximal_m": 1, "distal_m": 1}
+        parse_job({"analysis": analysis} | (lengths if analysis == "five_bar" else {"mechanism": mechanism.name}))
 
 
 # --- shapes ---------------------------------------------------------------------------------------------

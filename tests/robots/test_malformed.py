@@ -55,7 +55,7 @@ XML = {
     "nested too deep": ("<mujoco>" + "<body>" * 300, f"nested deeper than {xml_source.MAX_DEPTH}"),
     "too many elements": ("<mujoco>" + "<a/>" * 30_000, f"more than {xml_source.MAX_ELEMENTS} elements"),
     "too large": ("<mujoco>" + " " * 2**24, "has 16777224 characters; at most 16777216"),
-    "wrong root": ("<sdf/>", "the root element is <sdf>; <(mujoco|robot)> is needed"),
+    "wrong root": ("<collada/>", "the root element is <collada>; <(mujoco|robot)> is needed"),
 }
 
 MJCF = {
@@ -161,6 +161,24 @@ MJCF = {
 URDF = {
     "MJCF given as URDF": (mjcf(), "the root element is <mujoco>; <robot> is needed"),
     "no link": ("<robot name='r'/>", "the URDF has no <link>"),
+    "SDF that includes a file": (
+        "<sdf version='1.7'><include><uri>/etc</uri></include></sdf>",
+        "the included model '/etc' is not there",
+    ),
+    "SDF that includes a page": (
+        "<sdf version='1.7'><include><uri>http://127.0.0.1:1/a</uri></include></sdf>",
+        "is not local; models are not downloaded",
+    ),
+    "SDF posed by itself": (
+        "<sdf version='1.7'><model name='m'><link name='a'><pose relative_to='a'/></link></model></sdf>",
+        "is said by its own",
+    ),
+    "SDF of many frames": (
+        "<sdf version='1.7'><model name='m'><link name='a'><pose relative_to='f0'>0 0 0 0 0 0</pose></link>"
+        + "".join(f"<frame name='f{k}'><pose relative_to='f{k + 1}'/></frame>" for k in range(3000))
+        + "</model></sdf>",
+        "is said by its own, or over too many frames",
+    ),
     "unexpanded xacro": ("<robot name='r'><xacro:arm/></robot>", "<xacro:arm> is not expanded: give the path"),
     "xacro expression": (
         urdf(joint('<origin xyz="0 0 ${h}"/>' + LIMIT)),
@@ -278,7 +296,7 @@ def test_urdf(text, message):
 def test_files(tmp_path, name):
     (tmp_path / "garbage.xml").write_bytes(b"\x00\x01\x02")
     (tmp_path / "wrong.urdf").write_text("<html/>")
-    with pytest.raises(ModelError, match=r"not well-formed XML|<html>; <mujoco> or <robot> \(URDF\) is needed"):
+    with pytest.raises(ModelError, match=r"not well-formed XML|<html>; <mujoco>, <robot> \(URDF\) or <sdf> is needed"):
         robots.load(tmp_path / name)
 
 

@@ -16,7 +16,7 @@ from wsrender.progress import RunProgress
 
 _SAMPLING = "Sampling"
 _ANALYSIS = "Analysis"
-ROBOT_FILES = (".xml", ".mjcf", ".urdf", ".xacro", ".zip")
+ROBOT_FILES = (".xml", ".mjcf", ".urdf", ".xacro", ".sdf", ".world", ".zip")
 COUNTED_METHODS = ("random", "sobol", "boundary")
 
 

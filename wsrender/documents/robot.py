@@ -279,11 +279,11 @@ class RobotSpec(Document):
     mjcf: XmlText | None = None
     """Text of an MJCF model."""
     urdf: XmlText | None = None
-    """Text of a URDF model."""
+    """Text of a URDF or SDF model."""
     model: Sha256 | None = None
     """SHA-256 of a model, or a ZIP of one with its files, uploaded to a server, 64 hexadecimal digits."""
     path: Name | None = None
-    """An .xml (MJCF), .urdf or .xacro file, a ZIP or a folder; local runs only."""
+    """An .xml (MJCF), .urdf, .xacro or .sdf file, a ZIP or a folder; local runs only."""
     entry: Annotated[Name | None, Field(exclude_if=is_none)] = None
     """Which file of a ZIP or folder is the model; null: the only one that no other includes."""
     packages: Annotated[dict[Name, Name], Field(exclude_if=is_empty)] = Field(default={})

@@ -125,7 +125,10 @@ def refuse_loops(model: mujoco.MjModel, carrier: np.ndarray, field: str) -> None
             name = model.equality(int(equality)).name
             names = ", ".join(sorted({model.body(body).name or "(unnamed)" for body in bodies}))
             what = f"equality {name!r} ties" if name else "an equality ties"
-            raise ModelError(field, f"{what} {names} into a closed loop with the chain; not supported")
+            remedy = (
+                "name a base and tip off the loop, or describe its legs to the analysis parallel_workspace or five_bar"
+            )
+            raise ModelError(field, f"{what} {names} into a closed loop with the chain, which is not serial: {remedy}")
 
 
 def _tied_bodies(model: mujoco.MjModel, equality: int) -> list[int]:

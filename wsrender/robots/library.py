@@ -58,7 +58,7 @@ def find(name: str) -> Path:
     close = get_close_matches(str(name).lower().replace("-", "_"), known, n=1, cutoff=0.5)
     hint = f'; did you mean "{close[0]}"?' if close else "."
     if name in {mechanism.name for mechanism in mechanisms()}:
-        raise ModelError("library", f'"{name}" is a mechanism with closed loops, not a robot: see parallel_workspace')
+        raise ModelError("library", _for_mechanism(name))
     raise ModelError("library", f'has no robot "{name}"{hint} It has: {", ".join(known)}')
 
 
@@ -82,6 +82,20 @@ def _aliases(folder: Path) -> dict[str, str]:
     """Names of robots by their aliases."""
     robots = [_robot(path) for path in sorted(folder.glob("*/*.xml")) if path.stem == path.parent.name]
     return {alias: robot.name for robot in robots for alias in robot.aliases}
+
+
+def for_mechanism(path: Path) -> str | None:
+    """What to do with a mechanism's file of the library, which is no robot's; None of any other file."""
+    if path.parent.parent.name == "mechanisms" and path.resolve() in {each.path.resolve() for each in mechanisms()}:
+        return _for_mechanism(path.stem)
+    return None
+
+
+def _for_mechanism(name: str) -> str:
+    analysis = f'parallel_workspace, with "mechanism": "{name}"'
+    if name == "five_bar":
+        analysis = "five_bar, with its lengths base_m, proximal_m and distal_m,"
+    return f'"{name}" is a mechanism with closed loops, not a robot: the analysis {analysis} takes it'
 
 
 def _described(name: str, path: Path, counted: str) -> LibraryRobot:

@@ -13,7 +13,7 @@ import numpy as np
 
 from wsrender import notices
 from wsrender.errors import InputError, MissingExtraError, ModelError
-from wsrender.robots import archives, includes, mesh_files, xacro_files, xml_source
+from wsrender.robots import archives, includes, library, mesh_files, xacro_files, xml_source
 from wsrender.robots.model_warning import ModelWarning
 from wsrender.robots.plausibility import doubts
 from wsrender.robots.srdf import disabled_pairs
@@ -35,7 +35,13 @@ if TYPE_CHECKING:
     Excluded = Sequence[tuple[str, str]]
     Source = str | Path | DHTable | mujoco.MjSpec | mujoco.MjModel
 
-MODEL_FILES = (".xml", ".mjcf", ".urdf", ".xacro", ".zip")  # what their names end in
+USD_FILES = (".usd", ".usda", ".usdc", ".usdz")
+MODEL_FILES = (".xml", ".mjcf", ".urdf", ".xacro", ".sdf", ".world", ".zip", *USD_FILES)  # what their names end in
+ROOTS = "<mujoco>, <robot> (URDF) or <sdf> is needed"
+_USD = (
+    "USD is not read: convert it to URDF, by Isaac Sim's extension isaacsim.asset.exporter.urdf "
+    "(File > URDF Exporter), or to MJCF"
+)
 _FIELD = "model"
 
 
@@ -109,7 +115,7 @@ def described(source: "Source") -> tuple[str, Any]:
         kinds = "a library name, the path or text of an MJCF (.xml) or URDF file, a DHTable, MjSpec or MjModel"
         raise InputError("source", f"must be {kinds}, not {type(source).__name__}")
     if source.lstrip("\ufeff \t\r\n").startswith("<"):
-        return ("urdf" if xml_source.parse(source, _FIELD).tag == "robot" else "mjcf"), source
+        return ("urdf" if xml_source.parse(source, _FIELD).tag in ("robot", "sdf") else "mjcf"), source
     is_path = source.lower().endswith(MODEL_FILES) or "/" in source or "\\" in source
     return "path" if is_path else "library", source
 
@@ -122,8 +128,6 @@ def of_mujoco(source: Any) -> bool:
 
 def load_library(robot: str, **options) -> "LoadedRobot":
     """The library's ``robot``; ``options`` as in ``load``. Raises ModelError listing the names."""
-    from wsrender.robots import library
-
     path = library.find(robot)
     return load_path(path, **{**options, "name": options.get("name") or path.stem})
 
@@ -143,10 +147,10 @@ def load_path(
     entry: str | None = None,
     **options,
 ) -> "LoadedRobot":
-    """The robot of a file of the user's own, MJCF or URDF by its root element; ``options`` as in ``load``.
+    """The robot of a file of the user's own, MJCF, URDF or SDF by its root element; ``options`` as in ``load``.
 
-    Files that an MJCF includes and meshes that an inertia is computed from are read relative to it, other meshes when
-    shapes are asked for; nothing else is. A xacro file is expanded first. A folder is read as a ZIP of it would be.
+    Files that an MJCF or SDF includes and meshes that an inertia is computed from are read relative to it, other meshes
+    when shapes are asked for; nothing else is. A xacro file is expanded first, a folder read as a ZIP of it would be.
     """
     path = Path(path)
     if archives.is_path(path):
@@ -154,9 +158,13 @@ def load_path(
             if given:
                 raise InputError(name, f"goes with the path of a model, and {path.name} is a folder or a ZIP of one")
         return load_archive(archives.of_path(path, _FIELD), entry=entry, **options)
+    if (remedy := library.for_mechanism(path)) is not None:
+        raise ModelError(_FIELD, remedy)
     if entry is not None:
         raise InputError("entry", f"goes with a ZIP or a folder, and {path.name} is neither")
     content = xml_source.read(path, _FIELD)
+    if path.suffix.lower() in USD_FILES or content[:8] == b"PXR-USDC":
+        raise ModelError(_FIELD, _USD)
     root = xml_source.parse(content, _FIELD)
     if root.tag == "robot" and (xacro_files.is_xacro(path, root) or xacro):
         content = xacro_files.expanded(path, xacro or {}, packages or {}, _FIELD)
@@ -177,11 +185,15 @@ def load_archive(content: bytes, *, entry: str | None = None, **options) -> "Loa
 
 def _from_files(root: Element, content: bytes, read: "ReadMesh", place: str, stem: str, **options) -> "LoadedRobot":
     """The robot of a model file, named ``stem`` where it has no name, and of those that ``read`` reads in a place."""
-    options = {**options, "name": options.get("name") or root.get("model") or root.get("name") or stem}
+    options = {**options, "name": options.get("name") or root.get("model") or root.get("name")}
+    if root.tag != "sdf":  # which says its name further in
+        options["name"] = options["name"] or stem
     if root.tag == "robot":
         return _from_urdf(root, content, read, **options)
+    if root.tag == "sdf":
+        return _from_sdf(root, content, read, **options)
     if root.tag != "mujoco":
-        raise ModelError(_FIELD, f"the root element is <{root.tag}>; <mujoco> or <robot> (URDF) is needed")
+        raise ModelError(_FIELD, f"the root element is <{root.tag}>; {ROOTS}")
     content = b"".join([content, *includes.put_in(root, read, place, _FIELD)])
     return _from_mjcf(root, content, read, **options)
 
@@ -196,7 +208,9 @@ def load_mjcf(text: str | bytes, *, assets: Mapping[str, bytes] | None = None, *
 
 
 def load_urdf(text: str | bytes, *, assets: Mapping[str, bytes] | None = None, **options) -> "LoadedRobot":
-    """The robot of URDF text; no file is read. ``options`` as in ``load``, ``assets`` as in ``load_mjcf``."""
+    """The robot of URDF or SDF text; no file is read. ``options`` as in ``load``, ``assets`` as in ``load_mjcf``."""
+    if (root := xml_source.parse(text, _FIELD)).tag == "sdf":
+        return _from_sdf(root, text, mesh_files.from_assets(assets or {}), **options)
     return _from_urdf(_root(text, "robot"), text, mesh_files.from_assets(assets) if assets else None, **options)
 
 
@@ -227,6 +241,19 @@ def _from_urdf(root: Element, text: str | bytes, read_mesh: "ReadMesh | None", *
     from wsrender.robots.urdf_model import compile_urdf
 
     return _loaded(partial(compile_urdf, root, read_mesh, _FIELD), text, **options)
+
+
+def _from_sdf(root: Element, text: str | bytes, read: "ReadMesh", **options) -> "LoadedRobot":
+    _mjcf_model()
+    from wsrender.robots.compiled_model import building
+    from wsrender.robots.sdf import read_sdf
+    from wsrender.robots.urdf_model import compile_tree
+
+    with building(_FIELD):
+        tree, included = read_sdf(root, read, _FIELD)
+    content = b"".join([text.encode() if isinstance(text, str) else text, *included])
+    options = {**options, "name": options.get("name") or tree.name}
+    return _loaded(partial(compile_tree, tree, read, _FIELD), content, **options)
 
 
 def _loaded(

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from wsrender.errors import InputError, ModelError
 from wsrender.robots import archives, xml_source
-from wsrender.robots.loading import load_archive, load_mjcf, load_urdf
+from wsrender.robots.loading import ROOTS, load_archive, load_mjcf, load_urdf
 
 if TYPE_CHECKING:
     from wsrender.robots.loaded_robot import LoadedRobot
@@ -29,9 +29,9 @@ def load_uploaded(sha256: str, entry: str | None = None, **options) -> "LoadedRo
         return load_archive(content, entry=entry, **options)
     refuse_entry(entry)
     root = xml_source.parse(content, _FIELD)
-    loaders = {"mujoco": load_mjcf, "robot": load_urdf}
+    loaders = {"mujoco": load_mjcf, "robot": load_urdf, "sdf": load_urdf}
     if root.tag not in loaders:
-        raise ModelError(_FIELD, f"the root element is <{root.tag}>; <mujoco> or <robot> (URDF) is needed")
+        raise ModelError(_FIELD, f"the root element is <{root.tag}>; {ROOTS}")
     return loaders[root.tag](content, **options)
 
 

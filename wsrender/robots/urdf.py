@@ -1,7 +1,7 @@
 """URDF: its links and joints, checked, as they stand in the file."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from xml.etree.ElementTree import Element
 
 import numpy as np
@@ -17,23 +17,23 @@ _INFINITE = {sign + word for sign in ("", "+", "-") for word in ("inf", "infinit
 
 @dataclass(frozen=True)
 class Pose:
-    """An ``<origin>``: position [m] and roll, pitch, yaw [rad] about fixed axes, R = Rz Ry Rx."""
+    """Of a frame in another: position [m] and rotation, a unit quaternion (4,)."""
 
     position: np.ndarray
-    rpy: np.ndarray
+    quat_wxyz: np.ndarray
 
-    @property
-    def quat_wxyz(self) -> np.ndarray:
-        """Unit quaternion of the rotation, (4,)."""
-        (cr, cp, cy), (sr, sp, sy) = np.cos(self.rpy / 2), np.sin(self.rpy / 2)
-        return np.array(
-            [
-                cr * cp * cy + sr * sp * sy,
-                sr * cp * cy - cr * sp * sy,
-                cr * sp * cy + sr * cp * sy,
-                cr * cp * sy - sr * sp * cy,
-            ]
-        )
+
+def quat_of_rpy(rpy: np.ndarray) -> np.ndarray:
+    """Unit quaternion wxyz (4,) of roll, pitch, yaw [rad] about fixed axes, R = Rz Ry Rx."""
+    (cr, cp, cy), (sr, sp, sy) = np.cos(rpy / 2), np.sin(rpy / 2)
+    return np.array(
+        [
+            cr * cp * cy + sr * sp * sy,
+            sr * cp * cy - cr * sp * sy,
+            cr * sp * cy + sr * cp * sy,
+            cr * cp * sy - sr * sp * cy,
+        ]
+    )
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,8 @@ class Inertial:
 class Shape:
     """A geometry: ``box`` (edges), ``cylinder`` or ``capsule`` (radius, length), ``sphere`` (radius) [m], or ``mesh``.
 
-    ``kind`` is the name of its element, whatever that is; ``rgba`` None where no colour is stated.
+    Of an ``ellipsoid`` the half axes. ``kind`` is the name of its element, whatever that is; ``rgba`` None where no
+    colour is stated.
     """
 
     pose: Pose
@@ -84,7 +85,9 @@ class Mimic:
 class Joint:
     """A ``<joint>``; ``limits`` [rad or m] are None without ``<limit>``, ``effort``, ``velocity`` 0 where not stated.
 
-    ``fault`` says why nothing can be known of how it moves; empty where all of it can be read.
+    ``pose`` is the child's in the parent's frame while the joint is at zero; ``axis`` (3,) and ``anchor`` (3,) [m], a
+    point of it, are in the child's frame. ``fault`` says why nothing can be known of how it moves; empty where all of
+    it can be read.
     """
 
     name: str
@@ -98,6 +101,7 @@ class Joint:
     velocity: float = 0.0
     mimic: Mimic | None = None
     fault: str = ""
+    anchor: np.ndarray = field(default_factory=lambda: np.zeros(3))
 
     @property
     def movable(self) -> bool:
@@ -106,13 +110,26 @@ class Joint:
 
 
 @dataclass(frozen=True)
+class Loop:
+    """A joint beside the tree: it ties two links that are in it already."""
+
+    name: str
+    first: str
+    second: str
+
+
+@dataclass(frozen=True)
 class Urdf:
-    """A tree of links: every link but ``root`` is the child of one joint, parents before children."""
+    """A tree of links: every link but ``root`` is the child of one joint, parents before children.
+
+    A URDF has no ``loops``; an SDF may.
+    """
 
     name: str
     root: str
     links: dict[str, Link]
     joints: dict[str, Joint]
+    loops: tuple[Loop, ...] = ()
 
 
 def read_urdf(robot: Element, field: str) -> Urdf:
@@ -158,7 +175,7 @@ def _pose(parent: Element, field: str, where: str) -> Pose:
         np.array(numbers(get.get(key, "0 0 0") or "0 0 0", 3, field, f"{where}: origin {key}"))
         for key in ("xyz", "rpy")
     )
-    return Pose(xyz, rpy)
+    return Pose(xyz, quat_of_rpy(rpy))
 
 
 def _link(element: Element, colors: dict[str, tuple[float, ...]], field: str) -> Link:
@@ -178,7 +195,7 @@ def _link(element: Element, colors: dict[str, tuple[float, ...]], field: str) ->
 def _shape(element: Element, part: Element, colors: dict[str, tuple[float, ...]], field: str, where: str) -> Shape:
     keys, size = _SIZES.get(element.tag, ()), []
     for key in keys:
-        size += numbers(element.get(key, ""), 3 if element.tag == "box" else 1, field, f"{where}: {key}")
+        size += numbers(element.get(key, ""), 3 if element.tag in ("box", "ellipsoid") else 1, field, f"{where}: {key}")
     material = part.find("material")
     rgba = None if material is None else _rgba(material, field) or colors.get(material.get("name", ""))
     file = "" if keys else element.get("filename", element.tag)
@@ -186,7 +203,13 @@ def _shape(element: Element, part: Element, colors: dict[str, tuple[float, ...]]
     return Shape(_pose(part, field, where), element.tag, tuple(size), file, scale, name, rgba)
 
 
-_SIZES = {"box": ("size",), "cylinder": ("radius", "length"), "capsule": ("radius", "length"), "sphere": ("radius",)}
+_SIZES = {
+    "box": ("size",),
+    "ellipsoid": ("radii",),
+    "cylinder": ("radius", "length"),
+    "capsule": ("radius", "length"),
+    "sphere": ("radius",),
+}
 
 
 def _rgba(material: Element, field: str) -> tuple[float, ...] | None:

@@ -1,4 +1,4 @@
-"""URDF → MuJoCo model, link by link; MuJoCo's own URDF reader fuses, guesses and skips too much."""
+"""URDF or SDF → MuJoCo model, link by link; MuJoCo's own URDF reader fuses, guesses and skips too much."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -31,7 +31,18 @@ def compile_urdf(
     length_unit_m: float = 1.0,
     mount: Sequence[MountJoint] = (),
 ) -> CompiledModel:
-    """The compiled model of a ``<robot>`` element, its lengths in ``length_unit_m``.
+    """The compiled model of a ``<robot>`` element, its lengths in ``length_unit_m``; see `compile_tree`."""
+    return compile_tree(read_urdf(robot, field), read_mesh, field, length_unit_m, mount)
+
+
+def compile_tree(
+    urdf: Urdf,
+    read_mesh: ReadMesh | None,
+    field: str,
+    length_unit_m: float = 1.0,
+    mount: Sequence[MountJoint] = (),
+) -> CompiledModel:
+    """The compiled model of the links and joints of a URDF or SDF, its lengths in ``length_unit_m``.
 
     Every link, fixed or not, becomes a body of its name; a link "world" that is not the root is a body of another name
     with a site "world". The root link stands still in the world, or on the joints of a ``mount``. Inertia comes from
@@ -39,9 +50,9 @@ def compile_urdf(
     meshes are read where shapes are asked for; without ``read_mesh`` there are none, of which there is a notice.
     Floating and planar joints are held at zero, and noted as faults of the path through them. Joints that cannot be
     read, held too, and revolute ones whose limits are missing, equal or upside down are joint faults. Limits that are
-    both 0, as exporters write them where none were set, or infinite count as none. Raises ModelError.
+    both 0, as exporters write them where none were set, or infinite count as none. Loops are equalities, which no chain
+    may lead over. Raises ModelError.
     """
-    urdf = read_urdf(robot, field)
     spec = _spec_of(urdf, add_primitives, bool(mount))
     to_metres(spec, length_unit_m)
     add_joints(spec, mount)
@@ -95,6 +106,7 @@ def _spec_of(urdf: Urdf, add_shapes: AddShapes, carried: bool) -> mujoco.MjSpec:
     spec.compiler.inertiafromgeom = mujoco.mjtInertiaFromGeom.mjINERTIAFROMGEOM_FALSE
     _add_links(spec, urdf, add_shapes, carried)
     _add_mimics(spec, urdf)
+    _add_loops(spec, urdf)
     return spec
 
 
@@ -144,6 +156,7 @@ def _add_joint(body: mujoco.MjsBody, joint: Joint) -> None:
         name=joint.name,
         type=mujoco.mjtJoint.mjJNT_SLIDE if slide else mujoco.mjtJoint.mjJNT_HINGE,
         axis=joint.axis,
+        pos=joint.anchor,
     )
     if joint.limits is not None and joint.limits[0] < joint.limits[1] and all(map(math.isfinite, joint.limits)):
         added.limited, added.range = mujoco.mjtLimited.mjLIMITED_TRUE, joint.limits
@@ -167,6 +180,21 @@ def _add_mimics(spec: mujoco.MjSpec, urdf: Urdf) -> None:
         data = np.zeros(len(equality.data))
         data[:2] = joint.mimic.offset, joint.mimic.multiplier
         equality.data = data
+
+
+def _add_loops(spec: mujoco.MjSpec, urdf: Urdf) -> None:
+    """Ties the links of each loop: by what kind of joint does not matter, as it is only to be known that they are."""
+    for loop in urdf.loops:
+        first, second = (_body_name(link, urdf) for link in (loop.first, loop.second))
+        if first == _WORLD:
+            first, second = second, first
+        spec.add_equality(
+            name=loop.name,
+            type=mujoco.mjtEq.mjEQ_CONNECT,
+            objtype=mujoco.mjtObj.mjOBJ_BODY,
+            name1=first,
+            name2="" if second == _WORLD else second,
+        )
 
 
 def _leader(mimic: Mimic, joint: Joint, joints: dict[str, Joint]) -> Joint | None:

@@ -13,6 +13,7 @@ PRIMITIVES = {
     "box": mujoco.mjtGeom.mjGEOM_BOX,
     "capsule": mujoco.mjtGeom.mjGEOM_CAPSULE,
     "cylinder": mujoco.mjtGeom.mjGEOM_CYLINDER,
+    "ellipsoid": mujoco.mjtGeom.mjGEOM_ELLIPSOID,
     "sphere": mujoco.mjtGeom.mjGEOM_SPHERE,
 }
 
