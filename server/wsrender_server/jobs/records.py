@@ -2,6 +2,7 @@
 
 import base64
 import binascii
+import re
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from enum import StrEnum
@@ -9,6 +10,8 @@ from typing import Any
 
 from wsrender.errors import InputError
 from wsrender_server.jobs.documents import CanonicalDocument
+
+ID = re.compile("[0-9a-f]{32}")
 
 
 class JobState(StrEnum):
@@ -192,6 +195,8 @@ def place_of(cursor: str) -> tuple[datetime, str]:
     try:
         text = base64.urlsafe_b64decode(cursor + "=" * (-len(cursor) % 4)).decode("ascii")
         time, job_id = text.split(".")
+        if not ID.fullmatch(job_id):  # a database may refuse what is no id as well, in words of its own
+            raise ValueError(job_id)
         return datetime.fromtimestamp(int(time) / 1e6, UTC), job_id
     except (binascii.Error, ValueError, OverflowError, OSError) as error:
         raise InputError("cursor", "is not one that a list of jobs has given") from error

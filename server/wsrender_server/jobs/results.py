@@ -168,19 +168,28 @@ class ResultStore:
     def put_model(self, owner: str, content: bytes) -> str:
         """Keep an uploaded model for its owner; its SHA-256. Raises DiskFull, QuotaExceeded."""
         sha256 = hashlib.sha256(content).hexdigest()
-        most = self.max_model_bytes_per_owner
         with self.transactions.read() as session:
-            kept = session.scalar(select(func.sum(Model.bytes)).where(Model.owner == owner, Model.sha256 != sha256))
-        if most is not None and int(kept or 0) + len(content) > most:
-            raise QuotaExceeded(f"your models may take {most} bytes, and take {int(kept or 0)}; delete some of them")
+            self._check_quota(session, owner, sha256, len(content))
         self.files.put_model(content)
         # IntegrityError: the same model arrived twice at once, and is kept.
         with contextlib.suppress(IntegrityError), self.transactions.write() as session:
+            lock_name(session, f"models of {owner}")  # many at once would each find room for one
+            self._check_quota(session, owner, sha256, len(content))
             lock_name(session, sha256)
             self.files.put_model(content)  # again where its last owner has deleted it in between
             if session.get(Model, (owner, sha256)) is None:
                 session.add(Model(owner=owner, sha256=sha256, bytes=len(content), created_at=datetime.now(UTC)))
         return sha256
+
+    def _check_quota(self, session: Session, owner: str, sha256: str, size: int) -> None:
+        """Raise QuotaExceeded where an owner's models leave no room for one more."""
+        most = self.max_model_bytes_per_owner
+        if most is None:
+            return
+        others = Model.owner == owner, Model.sha256 != sha256
+        kept = int(session.scalar(select(func.sum(Model.bytes)).where(*others)) or 0)
+        if kept + size > most:
+            raise QuotaExceeded(f"your models may take {most} bytes, and take {kept}; delete some of them")
 
     def get_model(self, owner: str, sha256: str) -> bytes | None:
         """A model that the owner uploaded; None where it is not there, or damaged: it can be sent again."""

@@ -1,5 +1,6 @@
 """Jobs as resources: look, wait, list, cancel, retry, delete, follow."""
 
+import base64
 import json
 import threading
 import time
@@ -148,7 +149,9 @@ def test_lists_are_filtered_and_paged(client, submit):
     for query in ({"state": "x"}, {"limit": 0}, {"limit": 201}, {"label": "x"}, {"analysis": "x"}, {"cursor": "a%b"}):
         (fault,) = problem_of(client.get("/v1/jobs", params=query), 422)["errors"]
         assert fault["pointer"] in query
-    problem_of(client.get("/v1/jobs", params={"cursor": "YWJj"}), 404, "unknown_cursor")
+    for text in (b"abc", b"1.", b"1.\0", b"x." + b"0" * 32, b"9" * 40 + b"." + b"0" * 32, b"1." + b"0" * 31 + b"\n"):
+        cursor = base64.urlsafe_b64encode(text).decode().rstrip("=")
+        problem_of(client.get("/v1/jobs", params={"cursor": cursor}), 404, "unknown_cursor")
 
 
 def test_queue_counts_jobs(client, submit, jobs):

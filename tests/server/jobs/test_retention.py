@@ -1,7 +1,9 @@
 """What is kept no longer: by age, size and owner, the least recently used first; rows stay and can be run again."""
 
 import os
+import threading
 import time
+from concurrent.futures import ThreadPoolExecutor
 from datetime import UTC, datetime, timedelta
 
 import pytest
@@ -243,6 +245,32 @@ def test_an_owner_has_a_quota_of_models(store, database):
     assert bounded.put_model("bob", b"y" * 20)
     bounded.delete_model("ann", kept)
     bounded.put_model("ann", b"y" * 9)
+
+
+def test_a_quota_holds_for_uploads_at_the_same_moment(store, database, monkeypatch):
+    """Each would find room for itself; what was refused leaves a file that retention takes."""
+    bounded = JobStore(database, store.files, max_model_bytes_per_owner=20)
+    start = threading.Barrier(6)
+    late = threading.Barrier(6)
+    put, first = store.files.put_model, threading.local()
+
+    def put_together(content):
+        if not hasattr(first, "gone"):  # all have looked before any row is there
+            first.gone = late.wait(20)
+        return put(content)
+
+    monkeypatch.setattr(store.files, "put_model", put_together)
+
+    def upload(number):
+        start.wait(20)
+        try:
+            return bounded.put_model("ann", bytes([number]) * 8)
+        except QuotaExceeded:
+            return None
+
+    with ThreadPoolExecutor(6) as pool:
+        kept = [sha256 for sha256 in pool.map(upload, range(6)) if sha256]
+    assert len(kept) == 2 == len(bounded.list_models("ann"))
 
 
 def test_documents_whose_jobs_never_came_about_are_removed(store, retention):
