@@ -320,7 +320,7 @@ def _joints(part: Document) -> int:
     if part.robot.dh is not None:
         return len(part.robot.dh.rows)
     if part.robot.library is not None:
-        return _library_joints()[library.find(part.robot.library).stem]
+        return _library_joints()[library.canonical(part.robot.library)]
     return 1
 
 

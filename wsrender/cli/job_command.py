@@ -161,9 +161,26 @@ def job_document(job: str) -> dict[str, Any]:
         if not isinstance(document, dict):
             raise InputError("JOB", f"{job} must hold an object, not {type(document).__name__}")
         return document
+    if _of_collection(job):
+        return {"analysis": "workspace", "robot": _named_robot(job)}
     folder = path.is_dir() and ("/" in job or "\\" in job)  # one beside us may have the name of a library robot
     source = "path" if path.suffix.lower() in ROBOT_FILES or path.is_file() or folder else "library"
     return {"analysis": "workspace", "robot": {source: job}}
+
+
+def _of_collection(job: str) -> bool:
+    from wsrender.robots import named_models
+
+    return named_models.collection_of(job) is not None
+
+
+def _named_robot(job: str) -> dict[str, Any]:
+    """The part of a document of a robot that a collection has."""
+    from wsrender.robots import named_models
+
+    named = named_models.find(job)
+    given = {"path": str(named.path), "xacro": named.xacro, "packages": named.packages}
+    return {field: value for field, value in given.items() if value}
 
 
 def corrected_robot(

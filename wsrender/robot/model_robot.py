@@ -19,6 +19,7 @@ from wsrender.robot.body_tables import pair_table, shape_table
 from wsrender.robot.tool_shapes import attached
 from wsrender.robots import (
     described,
+    library,
     load,
     load_dh,
     load_library,
@@ -26,6 +27,7 @@ from wsrender.robots import (
     load_path,
     load_uploaded,
     load_urdf,
+    named_models,
     xml_source,
 )
 from wsrender.robots.closed_form import form_of
@@ -340,8 +342,11 @@ def load_robot(
     xacro: Mapping[str, Any] | None = None,
     entry: str | None = None,
 ) -> Robot:
-    """Load a robot: a library name, the path or text of an MJCF (.xml) or URDF file, a DH table, MjSpec or MjModel.
+    """Load a robot: a name, the path or text of an MJCF (.xml), URDF or SDF file, a DH table, MjSpec or MjModel.
 
+    A name is one of the library, or what Corke, MATLAB or ssik call such a robot; or of a collection:
+    "menagerie:universal_robots_ur5e", "robot_descriptions:ur5e_mj_description" (extra ``models``; both download at
+    first use), "example-robot-data:ur5_robot".
     A path may be that of a xacro file, which is expanded with the arguments ``xacro`` by name. ``package://`` leads to
     the folder that ``packages`` names, one above the file, in ROS_PACKAGE_PATH or in the ament index. Or a path is that
     of a ZIP or folder of a model with its files: ``entry`` names the model in it where several could be meant.
@@ -360,6 +365,7 @@ def load_robot(
     ``notices``.
     Raises InputError, ModelError for a malformed or unsupported model, FrameNotFoundError listing the frames.
     """
+    source, xacro, packages = named_models.resolved(source, xacro, packages)
     kind, value = described(source)
     options: dict[str, Any] = {"base": base, "tip": tip, "name": name}
     placement, tool = _as_transform(placement), _as_transform(tool)
@@ -369,6 +375,8 @@ def load_robot(
     given |= {"reference": reference or {}, "srdf": _srdf_text(srdf), "exclude": exclude}
     given |= {"tool_shapes": tool_shapes, "mount": mount, "xacro": xacro or {}, "entry": entry}
     given["packages"] = {package: str(folder) for package, folder in (packages or {}).items()}
+    if kind == "library":
+        value = library.canonical(value)
     stated = RobotSpec(**{kind: value}, **given)
     loaded = load(source, **options, **_corrections(stated), **_reading(stated))
     spec = stated.model_copy(update={"placement": transform_of(placement), "tool": transform_of(tool)})

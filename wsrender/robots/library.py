@@ -46,15 +46,20 @@ def names() -> list[str]:
     return sorted(path.stem for path in _folder().glob("*/*.xml") if path.stem == path.parent.name)
 
 
+def canonical(name: str) -> str:
+    """The library's own name of a robot that another program calls so (``aliases`` of its robot.toml), or the name."""
+    return _aliases(_folder()).get(name, name)
+
+
 def find(name: str) -> Path:
     """The MJCF file of a library robot by its name or an alias; raises ModelError listing the names otherwise."""
     # A server asks often: the folder of one robot says what the list of all would.
     path = _folder() / str(name) / f"{name}.xml"
     if _NAME.fullmatch(str(name)) and path in path.parent.glob("*.xml"):
         return path
-    if alias := _aliases(_folder()).get(str(name)):
-        return _folder() / alias / f"{alias}.xml"
-    known = names()
+    known, name = names(), canonical(str(name))
+    if name in known:
+        return _folder() / name / f"{name}.xml"
     close = get_close_matches(str(name).lower().replace("-", "_"), known, n=1, cutoff=0.5)
     hint = f'; did you mean "{close[0]}"?' if close else "."
     if name in {mechanism.name for mechanism in mechanisms()}:

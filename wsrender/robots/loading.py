@@ -13,7 +13,7 @@ import numpy as np
 
 from wsrender import notices
 from wsrender.errors import InputError, MissingExtraError, ModelError
-from wsrender.robots import archives, includes, library, mesh_files, xacro_files, xml_source
+from wsrender.robots import archives, includes, library, mesh_files, named_models, xacro_files, xml_source
 from wsrender.robots.model_warning import ModelWarning
 from wsrender.robots.plausibility import doubts
 from wsrender.robots.srdf import disabled_pairs
@@ -67,7 +67,10 @@ def load(
     xacro: "Mapping[str, Any] | None" = None,
     entry: str | None = None,
 ) -> "LoadedRobot":
-    """The robot of a library name, of a path to or the text of an MJCF or URDF file, of a DH table, MjSpec or MjModel.
+    """The robot of a name, of a path to or the text of an MJCF, URDF or SDF file, of a DH table, MjSpec or MjModel.
+
+    A name is one of the library, or of another program's for such a robot, or of a collection: menagerie:…,
+    robot_descriptions:…, example-robot-data:… (see `wsrender.robots.named_models`).
 
     A string is text if it begins with <, a path if it ends in .xml, .urdf, .xacro or .zip or has a folder in it.
     ``base`` and ``tip`` name a site, body or link. The base is the world by default. The tip is by default the site
@@ -89,6 +92,7 @@ def load(
     options |= {"limits": limits, "limits_deg": limits_deg, "length_unit_m": length_unit_m}
     options |= {"effort_limits": effort_limits, "velocity_limits": velocity_limits}
     options |= {"reference": reference, "srdf": srdf, "exclude": exclude, "attached": attached, "mount": mount}
+    source, xacro, packages = named_models.resolved(source, xacro, packages)
     kind, value = described(source)
     if kind == "path":
         options |= {"packages": packages, "xacro": xacro, "entry": entry}
