@@ -9,6 +9,7 @@ from typing import Annotated, Any
 
 import typer
 
+from wsrender.cli import completion
 from wsrender.cli.faults import one_line_faults
 from wsrender.cli.saving import Formats, check_output, save_and_report
 from wsrender.errors import InputError
@@ -49,7 +50,12 @@ def job_command(command: Callable[..., None]) -> Callable[..., None]:
 
 def _document(
     job: Annotated[
-        str, typer.Argument(metavar="JOB", help="Job document (.json), robot name, robot file, ZIP or ./folder.")
+        str,
+        typer.Argument(
+            metavar="JOB",
+            help="Job document (.json), robot name, robot file, ZIP or ./folder.",
+            autocompletion=completion.job,
+        ),
     ],
     tip: Annotated[str | None, typer.Option(help="Site, body or link at the end of the chain.")] = None,
     base: Annotated[str | None, typer.Option(help="Body or link at which the chain starts.")] = None,
@@ -65,7 +71,12 @@ def _document(
     xacro: Annotated[list[str] | None, typer.Option(help="NAME=VALUE of a xacro file's argument; repeatable.")] = None,
     entry: Annotated[str | None, typer.Option(help="Which file of a ZIP or folder is the model.")] = None,
     sampling: Annotated[
-        str | None, typer.Option(help="grid, random, sobol, boundary or converge.", rich_help_panel=_SAMPLING)
+        str | None,
+        typer.Option(
+            help="grid, random, sobol, boundary or converge.",
+            rich_help_panel=_SAMPLING,
+            autocompletion=completion.sampling,
+        ),
     ] = None,
     grid: Annotated[
         str | None, typer.Option(help="Samples per joint: N, or N,N,… by joint.", rich_help_panel=_SAMPLING)
@@ -79,19 +90,48 @@ def _document(
         typer.Option(help="JOINT=VALUE held still, in rad or m; repeatable.", rich_help_panel=_SAMPLING),
     ] = None,
     indices: Annotated[
-        str | None, typer.Option(help="kinematic, dynamic, all, or names: a,b,c.", rich_help_panel=_ANALYSIS)
+        str | None,
+        typer.Option(
+            help="kinematic, dynamic, all, or names: a,b,c.",
+            rich_help_panel=_ANALYSIS,
+            autocompletion=completion.indices,
+        ),
     ] = None,
     task: Annotated[
-        str | None, typer.Option(help="linear, angular, full, or rows such as x,y.", rich_help_panel=_ANALYSIS)
+        str | None,
+        typer.Option(
+            help="linear, angular, full, or rows such as x,y.",
+            rich_help_panel=_ANALYSIS,
+            autocompletion=completion.one_of("linear", "angular", "full"),
+        ),
     ] = None,
     convention: Annotated[
-        str | None, typer.Option(help="standard, table_1 or wsrender_code.", rich_help_panel=_ANALYSIS)
+        str | None,
+        typer.Option(
+            help="standard, table_1 or wsrender_code.",
+            rich_help_panel=_ANALYSIS,
+            autocompletion=completion.one_of("standard", "table_1", "wsrender_code"),
+        ),
     ] = None,
     voxel_size: Annotated[
         float | None, typer.Option(help="Edge of a voxel in metres.", rich_help_panel=_ANALYSIS)
     ] = None,
-    precision: Annotated[str | None, typer.Option(help="float32 or float64.", rich_help_panel=_ANALYSIS)] = None,
-    device: Annotated[str | None, typer.Option(help="auto, cpu, cuda or cuda:N.", rich_help_panel=_ANALYSIS)] = None,
+    precision: Annotated[
+        str | None,
+        typer.Option(
+            help="float32 or float64.",
+            rich_help_panel=_ANALYSIS,
+            autocompletion=completion.one_of("float32", "float64"),
+        ),
+    ] = None,
+    device: Annotated[
+        str | None,
+        typer.Option(
+            help="auto, cpu, cuda or cuda:N.",
+            rich_help_panel=_ANALYSIS,
+            autocompletion=completion.one_of("auto", "cpu", "cuda"),
+        ),
+    ] = None,
     keep_map: Annotated[bool, typer.Option("--keep-map", help="Keep one row per sample (map.parquet).")] = False,
 ) -> dict[str, Any]:
     """The job document that JOB and the options say; options override the fields of a document."""

@@ -10,6 +10,7 @@ from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
 
+from wsrender.cli.completion import STATES, one_of
 from wsrender.cli.faults import INTERRUPTED, one_line_faults
 from wsrender.cli.job_command import job_command
 from wsrender.cli.listing import PIPED_WIDTH
@@ -32,7 +33,11 @@ def list_jobs(
     server: Server = SERVER,
     token: Token = None,
     state: Annotated[
-        str | None, typer.Option(help="queued, running, canceling, succeeded, failed, canceled, timed_out or expired.")
+        str | None,
+        typer.Option(
+            help="queued, running, canceling, succeeded, failed, canceled, timed_out or expired.",
+            autocompletion=one_of(*STATES),
+        ),
     ] = None,
     limit: Annotated[int, typer.Option(min=1, help="Number of jobs, newest first.")] = 50,
 ) -> None:

@@ -5,18 +5,22 @@ from typing import Annotated, Any
 
 import typer
 
+from wsrender.cli.completion import VIEWS, one_of
 from wsrender.cli.faults import one_line_faults
 from wsrender.errors import InputError
-from wsrender.results.export.formats import by_ending, one_of, rows, suffixes
+from wsrender.results.export.formats import by_ending, rows, suffixes
+from wsrender.results.export.formats import one_of as listed
 
 _SURROUNDINGS = "Surroundings"
-_ENDINGS = one_of(f".{suffix}" for suffix in suffixes(rows("picture", own=True)))
+_ENDINGS = listed(f".{suffix}" for suffix in suffixes(rows("picture", own=True)))
 
 
 def render(
     folder: Annotated[Path, typer.Argument(metavar="FOLDER", help="Folder of a saved result.")],
     output: Annotated[Path, typer.Option("--output", "-o", help=f"Picture to write, {_ENDINGS}.")] = Path("view.png"),
-    view: Annotated[str, typer.Option(help="boundary, solid, scatter, volume, slice or isosurface.")] = "boundary",
+    view: Annotated[
+        str, typer.Option(help="boundary, solid, scatter, volume, slice or isosurface.", autocompletion=one_of(*VIEWS))
+    ] = "boundary",
     other: Annotated[
         list[Path] | None, typer.Option("--with", help="Folder of a result to draw in the same box; repeatable.")
     ] = None,
@@ -93,7 +97,10 @@ def report(
     ] = None,
     view: Annotated[
         list[str] | None,
-        typer.Option(help="3-D picture to show, as in `wsrender render`; repeatable. By default boundary, isosurface."),
+        typer.Option(
+            help="3-D picture to show, as in `wsrender render`; repeatable. By default boundary, isosurface.",
+            autocompletion=one_of(*VIEWS),
+        ),
     ] = None,
     flat: Annotated[bool, typer.Option("--flat", help="No 3-D pictures.")] = False,
     traceback: Annotated[bool, typer.Option("--traceback", help="Show where an error came from.")] = False,

@@ -10,6 +10,7 @@ from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
 
+from wsrender.cli.completion import one_of
 from wsrender.cli.faults import one_line_faults
 from wsrender.progress import RunProgress
 
@@ -19,7 +20,9 @@ PIPED_WIDTH = 260  # columns off a terminal: one value a line
 
 
 def reproduce(
-    name: Annotated[str, typer.Argument(metavar="NAME", help=f"One of {', '.join(NAMES)}.")],
+    name: Annotated[
+        str, typer.Argument(metavar="NAME", help=f"One of {', '.join(NAMES)}.", autocompletion=one_of(*NAMES))
+    ],
     as_json: Annotated[bool, typer.Option("--json", help="Print the rows as JSON.")] = False,
     traceback: Annotated[bool, typer.Option("--traceback", help="Show where an error came from.")] = False,
 ) -> None:
