@@ -28,9 +28,35 @@ def postgres_url():
         yield url
 
 
+class Postmaster:
+    """A process of PostgreSQL, which can be killed and started again on its data and port."""
+
+    def __init__(self, command, port, log):
+        self._command, self._port, self._log = command, port, log
+        self.process = None
+
+    def start(self):
+        """Start it, and wait until it answers: while backends of one that was killed live on, it refuses to."""
+        ends = time.monotonic() + 60.0
+        while True:
+            with self._log.open("ab") as log:
+                self.process = subprocess.Popen(self._command, stdout=log, stderr=log, cwd=self._log.parent)
+            try:
+                return wait_for_port(self._port, self.process)
+            except AssertionError:
+                if time.monotonic() > ends:
+                    raise
+                time.sleep(0.5)
+
+    def kill(self):
+        """Kill it, as a machine without memory does."""
+        self.process.kill()
+        self.process.wait()
+
+
 @contextmanager
 def postgres_server():
-    """A server with an empty database: its SQLAlchemy URL and its process id."""
+    """A server with an empty database: its SQLAlchemy URL and its `Postmaster`."""
     binaries = postgres_binaries()
     folder = Path(tempfile.mkdtemp(prefix="wsrender-postgres-"))
     # PostgreSQL refuses to run as root.
@@ -41,16 +67,13 @@ def postgres_server():
     initdb = [*user, binaries / "initdb", "-D", data, "-U", "wsrender", "-A", "trust", "-E", "UTF8", "--no-sync"]
     subprocess.run(initdb, check=True, capture_output=True, cwd=folder)
     options = ["-c", "listen_addresses=127.0.0.1", "-c", "fsync=off", "-p", str(port), "-k", folder]
-    with (folder / "log").open("wb") as log:
-        server = subprocess.Popen(
-            [*user, binaries / "postgres", "-D", data, *options], stdout=log, stderr=log, cwd=folder
-        )
+    server = Postmaster([*user, binaries / "postgres", "-D", data, *options], port, folder / "log")
     try:
-        wait_for_port(port, server)
-        yield f"postgresql+psycopg://wsrender@127.0.0.1:{port}/postgres", server.pid
+        server.start()
+        yield f"postgresql+psycopg://wsrender@127.0.0.1:{port}/postgres", server
     finally:
-        server.send_signal(signal.SIGINT)  # fast: connections that are open are closed
-        server.wait(20)
+        server.process.send_signal(signal.SIGINT)  # fast: connections that are open are closed
+        server.process.wait(20)
         shutil.rmtree(folder, ignore_errors=True)
 
 

@@ -1,10 +1,15 @@
-"""A server that is not spared: kill -9 of any of its processes, round after round; and 3,000 small jobs in an hour.
+"""A server that is not spared: kill -9 of any process, round after round; and 3,000 small jobs in an hour.
+
+Killed are server, workers and kernels, backends of the database and its postmaster, and clients in mid-upload and
+mid-stream.
 
 ``PARTS`` and ``violations`` make it a long measurement.
 """
 
+import multiprocessing
 import os
 import random
+import socket
 import sqlite3
 import tempfile
 import threading
@@ -15,6 +20,7 @@ from contextlib import ExitStack, closing, contextmanager, suppress
 from functools import partial
 from pathlib import Path
 from typing import Any
+from urllib.parse import urlsplit
 
 import psutil
 from wsrender_server.jobs import backups
@@ -25,7 +31,7 @@ from wsrender_server.settings import Settings
 
 import wsrender as ws
 from tests.golden.files import job_of
-from tests.server.conftest import postgres_server
+from tests.server.conftest import Postmaster, postgres_server
 from tests.server.jobs.waiting import comparable, wait_until
 
 ANALYSES = ("workspace", "indices_at", "base_placement", "reachability", "postures", "planar_boundary")
@@ -54,12 +60,16 @@ def kills(rounds: int = ROUNDS, postgres: bool = False, seed: int = 0) -> dict[s
             jobs = {name: client.submit(job_of(name)) for name in rng.sample(ANALYSES, len(ANALYSES))}
             for _ in range(rng.randint(1, 3)):
                 time.sleep(rng.uniform(0.1, 4.0))
-                seen |= _kill_one(server, postmaster, rng, killed)
+                seen |= _kill_one(server, postmaster, rng.choice(list(jobs.values())).id, rng, killed)
             for name, job in jobs.items():
                 job.wait(timeout=PATIENCE_S)
                 if job.state != "succeeded" or comparable(job.result().document) != expected[name]:
                     wrong.append(f"round {number}, {name}: {job.state} {job.error or 'with other bits'}")
                 job.delete()
+        last = client.submit(_long()).wait(timeout=PATIENCE_S)
+        if last.state != "succeeded":
+            wrong.append(f"a long job after all of them: {last.state} {last.error}")
+        last.delete()
         seen |= set(_tree(server))
         left = _files_left(server.data_dir)
         server.stop()
@@ -155,6 +165,11 @@ def _small(number: int) -> dict[str, Any]:
     return {"analysis": "indices_at", "robot": {"library": "scara"}, "configurations": angles}
 
 
+def _long() -> dict[str, Any]:
+    """A job whose body takes one of the places of long ones: who was killed holds none."""
+    return _small(0) | {"configurations": [[0.1, 0.2, 0.05, 0.3]] * 20_000}
+
+
 def _local(job: dict[str, Any], folder: Path) -> dict[str, Any]:
     result = ws.execute(job)
     result.save(folder)
@@ -169,21 +184,74 @@ def _tree(server: LocalServer) -> list[psutil.Process]:
 
 
 def _kill_one(
-    server: LocalServer, postmaster: int | None, rng: random.Random, killed: "Counter[str]"
+    server: LocalServer, postmaster: Postmaster | None, job: str, rng: random.Random, killed: "Counter[str]"
 ) -> set[psutil.Process]:
-    """Kill a process, of the server's or of the database's; the server is started again. Those that there were."""
+    """Kill a process, of the server's, of the database's or of a client; what serves is started again.
+
+    Those of the server that there were.
+    """
     tree = _tree(server)
-    choice = {"server": [tree[0]], "worker": tree[1:]}
+    choice = {"server": [tree[0]], "worker": tree[1:], "upload": [], "stream": []}
     if postmaster is not None:
-        choice["database"] = psutil.Process(postmaster).children()
-    kind = rng.choice([kind for kind, processes in choice.items() if processes])
-    with suppress(psutil.NoSuchProcess):
-        rng.choice(choice[kind]).kill()
-        killed[kind] += 1
+        choice |= {"database": psutil.Process(postmaster.process.pid).children(), "postmaster": []}
+    kind = rng.choice([kind for kind, processes in choice.items() if processes or kind in BY_THEMSELVES])
+    if kind == "postmaster":
+        assert postmaster is not None
+        postmaster.kill()
+        postmaster.start()
+    elif kind in CLIENTS:
+        _kill_client(CLIENTS[kind](server.url, job))
+    else:
+        with suppress(psutil.NoSuchProcess):
+            rng.choice(choice[kind]).kill()
+    killed[kind] += 1
     if kind == "server":
         server.process.wait()
         server.start()
     return set(tree)
+
+
+def _kill_client(request: tuple[str, int, bytes]) -> None:
+    """Kill a client once it is in the middle of what it sends or reads."""
+    spawn = multiprocessing.get_context("spawn")
+    there, here = spawn.Pipe()
+    client = spawn.Process(target=_talk, args=(request, there), daemon=True)
+    client.start()
+    try:
+        assert here.poll(PATIENCE_S), "the client did not come to the middle"
+    finally:
+        client.kill()
+        client.join()
+
+
+def _talk(request: tuple[str, int, bytes], middle: Any) -> None:
+    """Send a request, read what comes, and say when something has; what is half-sent is not answered."""
+    host, port, content = request
+    with socket.create_connection((host, port), timeout=PATIENCE_S) as server:
+        server.sendall(content)
+        if not content.startswith(b"POST"):
+            server.recv(1)
+        middle.send(True)
+        while server.recv(1 << 16):
+            time.sleep(0.01)
+
+
+def _upload(url: str, job: str) -> tuple[str, int, bytes]:
+    """Half of a long job document."""
+    at = urlsplit(url)
+    body = b'{"analysis":"indices_at","robot":{"library":"scara"},"configurations":[' + b"[0.1,0.2,0.05,0.3]," * 60_000
+    head = f"POST /v1/jobs HTTP/1.1\r\nHost: {at.netloc}\r\nContent-Type: application/json\r\n"
+    return str(at.hostname), at.port or 80, f"{head}Content-Length: {2 * len(body)}\r\n\r\n".encode() + body
+
+
+def _stream(url: str, job: str) -> tuple[str, int, bytes]:
+    """The events of a job."""
+    at = urlsplit(url)
+    return str(at.hostname), at.port or 80, f"GET /v1/jobs/{job}/events HTTP/1.1\r\nHost: {at.netloc}\r\n\r\n".encode()
+
+
+CLIENTS = {"upload": _upload, "stream": _stream}
+BY_THEMSELVES = (*CLIENTS, "postmaster")  # kinds whose process is made, or known, here
 
 
 def _alive_after(processes: set[psutil.Process], seconds: float) -> list[str]:
