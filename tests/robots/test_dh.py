@@ -15,6 +15,7 @@ from wsrender import load_robot
 from wsrender.documents.robot import DHTable
 from wsrender.robots import load_dh, load_mjcf, load_urdf
 from wsrender.robots.dh import modified_dh, structural_length, to_mjcf
+from wsrender.robots.model_warning import ModelWarning
 
 QUARTERS = st.sampled_from([0.0, math.pi / 2, -math.pi / 2, math.pi])
 ANGLES = st.one_of(QUARTERS, st.floats(-3.1, 3.1))
@@ -300,3 +301,20 @@ def with_other_joint_frames(chain, generator):
         T_joint.append(np.linalg.inv(before) @ T @ change)
         before = change
     return replace(chain, T_joint=np.array(T_joint), T_tip=np.linalg.inv(before) @ chain.T_tip)
+
+
+@pytest.mark.parametrize("field", ["alpha", "theta"])
+@pytest.mark.parametrize(("angle", "degrees"), [(90, True), (-45.0, True), (6.2, False), (-3.2, False)])
+def test_angles_that_can_only_be_degrees_are_said(field, angle, degrees):
+    rows = [{"a": 0.3, "limits": (-1, 1)}, {"a": 0.3, field: angle, "limits": (-1, 1)}]
+    table = DHTable(convention="standard", rows=rows)
+    if not degrees:
+        assert load_dh(table).notices == ()
+        return
+    with pytest.warns(ModelWarning, match=rf"can only be degrees: joint2: {field} {angle:g} rad"):
+        (notice,) = load_dh(table).notices
+    assert (notice.code, notice.field) == ("units_angle", "robot.dh.rows")
+    rows[1] = {"a": 0.3, f"{field}_deg": angle, "limits": (-1, 1)}
+    assert load_dh(DHTable(convention="standard", rows=rows)).notices == ()
+    whole = {"a": 0.3, f"{field}_deg": 360, "limits": (-1, 1)}
+    assert load_dh(DHTable(convention="standard", rows=[whole])).notices == ()

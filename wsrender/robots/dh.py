@@ -7,7 +7,9 @@ from xml.etree import ElementTree
 import numpy as np
 
 from wsrender.documents.robot import DHRow, DHTable
+from wsrender.notices import Notice
 from wsrender.robots.chain import Chain
+from wsrender.robots.plausibility import ANGLE
 
 # MuJoCo refuses a moving body without mass: this much stands for "not published".
 NEGLIGIBLE = "1e-12"  # kg, kg m²
@@ -18,7 +20,23 @@ _COMPILER = {"angle": "radian", "autolimits": "true", "boundmass": NEGLIGIBLE, "
 PARALLEL = 2e-3  # sine of the angle between the axes
 
 SHORTEST = 1e-6  # of a capsule, in the table's unit: MuJoCo refuses some that are shorter
+WHOLE_TURN = 2 * math.pi * (1 + 1e-9)  # rad; 360° converted may round up
+
 COINCIDENT = 1e-9  # m: a common normal shorter than this has no direction of its own
+
+
+def doubts(table: DHTable) -> tuple[Notice, ...]:
+    """Notice of angles of more than a whole turn, which no table needs: degrees, given as radians."""
+    found = [
+        f"{name}: {field} {angle:g} rad ({angle / (2 * math.pi):.3g} turns)"
+        for name, row in zip(table.joint_names(), table.rows, strict=True)
+        for field, angle in (("alpha", row.alpha), ("theta", row.theta))
+        if abs(angle) > WHOLE_TURN
+    ]
+    if not found:
+        return ()
+    message = f"angles of the table must be in radians, and can only be degrees: {', '.join(found)}"
+    return (Notice(ANGLE, message, "give alpha_deg and theta_deg", "robot.dh.rows"),)
 
 
 def to_mjcf(table: DHTable) -> str:

@@ -140,7 +140,7 @@ def load_dh(table: "DHTable", **options) -> "LoadedRobot":
     """The robot of a DH table; ``options`` as in ``load``."""
     from wsrender.robots import dh
 
-    return load_mjcf(dh.to_mjcf(table), **options)
+    return load_mjcf(dh.to_mjcf(table), **options, said=dh.doubts(table))
 
 
 def load_path(
@@ -280,10 +280,11 @@ def _loaded(
     attached=(),
     mount=(),
     held=(),
+    said=(),
 ) -> "LoadedRobot":
     """The robot of a model that ``compile_model`` makes of its unit of length and mount; warns of its notices.
 
-    ``held``: joints that need no limits.
+    ``held``: joints that need no limits; ``said``: notices of the source itself.
     """
     from wsrender.robots.chain_extraction import Given, extract
     from wsrender.robots.compiled_model import building
@@ -300,7 +301,7 @@ def _loaded(
     _check_limits(robot.chain, limits or {}, limits_deg or {})
     chain = robot.chain.placed(_rigid("placement", placement), _rigid("tool", tool))
     confirmed = {*given, *(joint.name for joint in mount)}
-    found = (*robot.notices, *doubts(chain, confirmed, length_unit_m is not None, held))
+    found = (*said, *robot.notices, *doubts(chain, confirmed, length_unit_m is not None, held))
     notices.warn(found, ModelWarning)
     disabled = disabled_pairs(srdf) if srdf is not None else ()
     source = replace(robot.body_source, attached=tuple(attached), excluded=tuple(exclude), disabled=disabled)
