@@ -16,8 +16,12 @@ POINTS = {
     "fanuc_crx10ia_l": ("link3", (0.7, -0.15, 0.0)),  # the flange, the wrist stretched
     "fanuc_crx5ia": ("link3", (0.575, -0.13, 0.0)),  # the flange, the wrist stretched
     "fanuc_lrmate200id": ("link5", (0.0, 0.0, 0.0)),
+    "kuka_kr10_r1100_sixx": ("link5", (0.0, 0.0, 0.0)),
     "kuka_kr16_2": ("link5", (0.0, 0.0, 0.0)),
     "kuka_kr3_r540": ("link5", (0.0, 0.0, 0.0)),
+    "kuka_kr6_r700_sixx": ("link5", (0.0, 0.0, 0.0)),
+    "kuka_kr6_r900_sixx": ("link5", (0.0, 0.0, 0.0)),
+    "yaskawa_gp7": ("link5", (0.0, 0.0, 0.0)),
     "yaskawa_hc10dtp": ("link4", (0.0, 0.0, 0.0)),
 }
 

@@ -12,7 +12,20 @@ from wsrender.robots import library
 trimesh = pytest.importorskip("trimesh")
 KUKA = "xacro/kuka_description"
 LINKS = ("base_link", *(f"link_{k}" for k in range(1, 7)))
+
+
+def agilus(arm):
+    """Of KR 6 arms, which differ in links 2 and 4."""
+    folders = [arm if link in ("link_2", "link_4") else "kr6_agilus" for link in LINKS]
+    return [
+        f"{KUKA}/kuka_kr6/meshes/{folder}/collision/{link}.stl" for folder, link in zip(folders, LINKS, strict=True)
+    ]
+
+
 MESHES = {
+    "kuka_kr10_r1100_sixx": [f"{KUKA}/kuka_kr10/meshes/kr10r1100sixx/collision/{link}.stl" for link in LINKS],
+    "kuka_kr6_r700_sixx": agilus("kr6r700sixx"),
+    "kuka_kr6_r900_sixx": agilus("kr6r900sixx"),
     "kuka_kr3_r540": [f"{KUKA}/kuka_kr3/meshes/kr3r540/collision/{link}.stl" for link in LINKS],
     "kuka_kr16_2": [f"{KUKA}/kuka_kr16/meshes/kr16_2/collision/{link}.stl" for link in LINKS],
 }

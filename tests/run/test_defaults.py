@@ -39,7 +39,7 @@ def holds(document, quantity, value, error):
     return low <= value * (1 + error) and value * (1 - error) <= high
 
 
-ARMS = [name for name in library.names() if name != "slave_5r"]
+ARMS = sorted({"scara", *LONG, *CASES} & set(library.names()) - {"slave_5r"})
 
 
 @pytest.fixture(scope="module")
