@@ -2,7 +2,8 @@
 
 Writes ``mjcf/NAME/NAME.xml`` of the chain between two links: a body for each joint that moves, in its URDF frame;
 limits, speeds, efforts and inertials as they are stated, right angles written as 1.5708 made exact; shapes fitted to
-the collision meshes (`tests.library.fit`). What is fixed to a link of the chain belongs to it, unless beyond the tip.
+the collision shapes, or to what is seen of a link that has none (`tests.library.fit`). What is fixed to a link of the
+chain belongs to it, unless beyond the tip.
 """
 
 import argparse
@@ -22,6 +23,7 @@ from tests.library.second_sources import exact
 from wsrender.robots import library
 
 CONFIGURATIONS = 400  # by which pairs that the fit brought to touch are found
+ALWAYS = 0.9  # of them: links that touch so often do at their joint
 
 
 @dataclass
@@ -77,7 +79,7 @@ def _add(link: Link, element: Element, T: np.ndarray, urdf: Path) -> None:
         tensor = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
         mass = float(inertial.find("mass").get("value"))
         link.inertials.append((mass, at[:3, 3], at[:3, :3] @ tensor @ at[:3, :3].T))
-    for collision in element.iterfind("collision"):
+    for collision in element.findall("collision") or element.findall("visual"):
         at = T @ _origin(collision)
         link.meshes.append(_solid(collision.find("geometry")[0], urdf).apply_transform(at))
 
@@ -246,7 +248,7 @@ def text_of(root: Element) -> str:
 def write(name: str, links: list[Link], T_tip: np.ndarray, description: str, source: str, hulls: Path):
     """Write a robot's model; what touches by the fit alone, two links with one between them, is excluded.
 
-    Such a pair's meshes never touch in random configurations, or always do, as their housings overlap. Returns the
+    Such a pair's meshes never touch in random configurations, or nearly always, as their housings overlap. Returns the
     excluded pairs. ``hulls``: a folder for the meshes meanwhile.
     """
     fit_shapes(links)
@@ -256,7 +258,7 @@ def write(name: str, links: list[Link], T_tip: np.ndarray, description: str, sou
     exclude = [
         pair
         for pair, share in sorted(fitted.items(), key=lambda item: [order.index(one) for one in item[0]])
-        if share > 0.999 or (real.get(pair, 0) == 0 and order.index(pair[1]) - order.index(pair[0]) == 2)
+        if share > ALWAYS or (real.get(pair, 0) == 0 and order.index(pair[1]) - order.index(pair[0]) == 2)
     ]
     folder = library.find("ur5e").parent.parent / name
     folder.mkdir(exist_ok=True)

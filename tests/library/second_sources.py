@@ -6,11 +6,13 @@ A source gives poses (N, 4, 4) of the tool at joint angles (N, n). Packages are 
 import importlib
 from collections.abc import Callable
 from functools import partial
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
 
 from tests.library.published_tables import TABLES
+from tests.robots.model_packages import folders
 
 Poses = Callable[[np.ndarray], np.ndarray]
 MISSING = "needs {}, of the extra test-models"
@@ -65,7 +67,77 @@ Z_OUT_X_UP = np.array(
     [[0.0, 0, 1, 0], [0, -1, 0, 0], [1, 0, 0, 0], [0, 0, 0, 1]]
 )  # of the same, as ROS-Industrial turns it
 
+
+def urdf(path: str, base: str, tip: str) -> Poses:
+    """Of a URDF of example-robot-data: products of its origins and turns, read here and nowhere else."""
+    folder = next((each for each in folders() if each.parent.name == "example-robot-data"), None)
+    if folder is None:
+        pytest.skip(MISSING.format("example-robot-data"))
+    above = {joint.find("child").get("link"): joint for joint in ElementTree.parse(folder / path).iterfind("joint")}
+    joints, link = [], tip
+    while link != base:
+        joints.append(above[link])
+        link = above[link].find("parent").get("link")
+
+    def poses(q: np.ndarray) -> np.ndarray:
+        T, column = np.tile(np.eye(4), (len(q), 1, 1)), 0
+        for joint in reversed(joints):
+            T = T @ _origin(joint)
+            if joint.get("type") != "fixed":
+                T = T @ rotations(np.array(_words(joint, "axis", "xyz", "1 0 0")), q[:, column])
+                column += 1
+        return T
+
+    return poses
+
+
+def _origin(joint: ElementTree.Element) -> np.ndarray:
+    roll, pitch, yaw = _words(joint, "origin", "rpy", "0 0 0")
+    x, y, z = np.eye(3)
+    T = rotations(z, np.array([yaw]))[0] @ rotations(y, np.array([pitch]))[0] @ rotations(x, np.array([roll]))[0]
+    T[:3, 3] = _words(joint, "origin", "xyz", "0 0 0")
+    return exact(T)
+
+
+def _words(joint: ElementTree.Element, tag: str, key: str, otherwise: str) -> list[float]:
+    found = joint.find(tag)
+    return [float(word) for word in (otherwise if found is None else found.get(key, otherwise)).split()]
+
+
+def modified_dh(*rows: tuple[float, float, float]) -> Poses:
+    """Of a table of modified DH parameters a [m], alpha [°], d [m], a row for each hinge (Craig 1986)."""
+    z, x = np.array([0.0, 0.0, 1.0]), np.array([1.0, 0.0, 0.0])
+
+    def poses(q: np.ndarray) -> np.ndarray:
+        T = np.tile(np.eye(4), (len(q), 1, 1))
+        for k, (a, alpha, d) in enumerate(rows):
+            shift = np.eye(4)
+            shift[0, 3] = a
+            T = T @ exact(rotations(x, np.array([np.radians(alpha)]))[0]) @ shift @ rotations(z, q[:, k]) @ along_z(d)
+        return T
+
+    return poses
+
+
+XARM7 = [
+    (0, 0, 0.267),
+    (0, -90, 0),
+    (0, 90, 0.293),
+    (0.0525, 90, 0),
+    (0.0775, 90, 0.3425),
+    (0, 90, 0),
+    (0.076, -90, 0.097),
+]
+EE_LINK = np.array([[0.0, 0, 1, 0], [-1, 0, 0, 0], [0, -1, 0, 0], [0, 0, 0, 1]])  # tool0 in the older ee_link of ROS
+
 SECOND_SOURCES: dict[str, Callable[[], Poses]] = {
+    "ur3": partial(urdf, "ur_description/urdf/ur3_robot.urdf", "base_link", "tool0"),
+    "ur5": partial(ssik, "universal_robots.ur5", tool=EE_LINK),
+    "ur10": partial(urdf, "ur_description/urdf/ur10_robot.urdf", "base_link", "tool0"),
+    "ur3e": partial(ssik, "universal_robots.ur3e"),
+    "ur10e": partial(ssik, "universal_robots.ur10e"),
+    "talos_left_arm": partial(urdf, "talos_data/robots/talos_full_v2.urdf", "torso_2_link", "wrist_left_ft_tool_link"),
+    "xarm7": partial(modified_dh, *XARM7),
     "ur5e": partial(ssik, "universal_robots.ur5e", turned_about_z(np.pi)),
     "franka_panda": partial(ssik, "franka.panda"),
     "kuka_iiwa14": partial(ssik, "kuka.iiwa14"),
