@@ -33,6 +33,7 @@ from wsrender.results.view.blobs import encoded, limits
 from wsrender.results.view.looked_at import LookedAt
 from wsrender.results.view.robots import arms_of, shown_job
 from wsrender.results.view.volumes import x_fastest
+from wsrender.results.view.words import said
 from wsrender.robot import Robot, robot_of_spec
 from wsrender.robot.live_volumes import LiveVolume, LiveVolumes
 from wsrender.volume.volume_data import VolumeData, coarser
@@ -302,9 +303,10 @@ def packed(name: str, live: LiveVolume, statistic: str) -> Answer:
         "data": data[f"{name}/{statistic}"],
     }
     del shown["value"]
+    shown["label"] = said("samples") if counted else said(statistic, index)
     volume = {
         "name": name,
-        "label": "samples" if counted else shown["label"],
+        "label": shown["label"],
         "shape": list(block.shape),
         "first_voxel": list(block.first_voxel),
         "voxel_size_m": block.voxel_size_m,

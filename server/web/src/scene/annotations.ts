@@ -108,9 +108,11 @@ function writeAxes(g: CanvasRenderingContext2D, w: Written, axes: AxesBox, halo:
     const p = w.project(label.at), o = w.project(label.at.clone().addScaledVector(label.outward, axes.step));
     if (!p.front) continue;
     const d = Math.hypot(o.x - p.x, o.y - p.y) || 1, out = label.bold ? 44 : 17;
-    const x = p.x + ((o.x - p.x) / d) * out, y = p.y + ((o.y - p.y) / d) * out;
+    const beside = p.x + ((o.x - p.x) / d) * out, y = p.y + ((o.y - p.y) / d) * out;
     g.font = label.bold ? `600 13px ${FONT}` : `12px ${FONT}`;
-    const half = g.measureText(label.text).width / 2 + 2, box: [number, number, number, number] = [x - half, y - 8, x + half, y + 8];
+    const half = g.measureText(label.text).width / 2 + 2, inside = p.x >= 0 && p.x <= w.width; // then its label too
+    const x = inside ? Math.max(half, Math.min(w.width - half, beside)) : beside;
+    const box: [number, number, number, number] = [x - half, y - 8, x + half, y + 8];
     if (taken.some((t) => box[0] < t[2] && t[0] < box[2] && box[1] < t[3] && t[1] < box[3])) continue;
     taken.push(box);
     halo(label.text, x, y);

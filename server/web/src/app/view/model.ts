@@ -264,6 +264,14 @@ export class ViewModel {
     if (this.source.ask) this.indicesTimer = window.setTimeout(() => void this.askIndices(robot), INDICES_AFTER_MS);
   }
 
+  /** What was said before is of another configuration. */
+  moveByHand(robot: number, q: number[]): void {
+    batch(() => {
+      this.said.value = "";
+      this.setConfiguration(robot, q);
+    });
+  }
+
   /** Limits, tool and placement as they have been dragged; the tool in the tip's frame, as the engine has it. */
   changes(robot: number): { limits: Record<string, [number, number]>; tool?: number[]; placement?: number[] } {
     const settings = this.settings.value!, tip = settings.tools[robot], placement = settings.placements[robot];

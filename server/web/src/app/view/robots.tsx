@@ -38,11 +38,11 @@ function OneRobot({ model, number_: i, title, onJob, jobLabel, open }: RobotsPro
       {chain.joints.map((joint, k) => {
         const angle = chain.angle[k]!, [low, high] = shownLimits(chain.lower[k] ?? null, chain.upper[k] ?? null, angle), scale = angle ? DEG : 1;
         return <Slide key={joint} label={joint} name={`Joint ${joint}`} unit={angle ? "°" : "m"} value={q[k]! * scale} low={low} high={high}
-          onChange={(value) => model.setConfiguration(i, q.map((each, n) => (n === k ? Math.min(high, Math.max(low, value)) / scale : each)))} />;
+          onChange={(value) => model.moveByHand(i, q.map((each, n) => (n === k ? Math.min(high, Math.max(low, value)) / scale : each)))} />;
       })}
       <div class="wrap">
-        <button onClick={() => model.setConfiguration(i, home)}>Home</button>
-        {samples && <button onClick={() => { const next = (sample + 1) % samples.configurations.length; setSample(next); model.setConfiguration(i, samples.configurations[next]!); }}>Next sample</button>}
+        <button onClick={() => model.moveByHand(i, home)}>Home</button>
+        {samples && <button onClick={() => { const next = (sample + 1) % samples.configurations.length; setSample(next); model.moveByHand(i, samples.configurations[next]!); }}>Next sample</button>}
         {model.canAsk && <button aria-pressed={model.gizmo.value === i} onClick={() => model.setGizmo(model.gizmo.value === i ? null : i)}>Drag the tool</button>}
         {model.canAsk && <button onClick={() => void model.askPostures(i)}>Other postures</button>}
       </div>
