@@ -118,6 +118,14 @@ def test_faults_are_one_line(wsrender, execute, error, code, line):
     assert wsrender("run", "ur5e") == (code, "", line)
 
 
+def test_ctrl_c_says_what_was_kept(wsrender, execute):
+    stopped = KeyboardInterrupt()
+    execute(raising(stopped))
+    assert wsrender("run", "ur5e") == (130, "", "stopped: nothing was kept\n")
+    stopped.add_note("samples, 5 of 9 done; nothing of this run was kept")
+    assert wsrender("run", "ur5e")[2] == "stopped: samples, 5 of 9 done; nothing of this run was kept\n"
+
+
 def test_traceback_on_request(execute):
     execute(raising(ZeroDivisionError("by zero")))
     with pytest.raises(ZeroDivisionError):

@@ -27,7 +27,7 @@ def one_line_warnings() -> Iterator[None]:
 
 @contextmanager
 def one_line_faults(traceback: bool = False) -> Iterator[None]:
-    """Turn exceptions into a red line and an exit code, warnings into yellow lines.
+    """Turn exceptions into a red line and an exit code, warnings into yellow lines; Ctrl-C says what was kept.
 
     With ``traceback`` exceptions pass through untouched.
     """
@@ -36,6 +36,9 @@ def one_line_faults(traceback: bool = False) -> Iterator[None]:
             yield
         except (typer.Exit, typer.Abort):
             raise
+        except KeyboardInterrupt as error:
+            _print("stopped: ", "bold yellow", "; ".join(getattr(error, "__notes__", ())) or "nothing was kept")
+            raise typer.Exit(INTERRUPTED) from None
         except Exception as error:
             if traceback:
                 raise

@@ -73,15 +73,22 @@ class Job:
         ServerConnectionError where the server stays away for ten minutes.
         """
         end = float("inf") if timeout is None else time.monotonic() + timeout
-        with RunProgress() if progress else nullcontext() as bar:
-            self._report(bar)
-            while not self.finished:
-                left = end - time.monotonic()
-                if left <= 0:
-                    raise WaitTimeoutError(f"job {self.id} is still {self.state} after {timeout:g} s")
-                self._poll(min(LONG_POLL_S, left), min(RECONNECT_S, left), bar)
-                self._report(bar)
+        try:
+            with RunProgress() if progress else nullcontext() as bar:
+                self._wait_until(end, timeout, bar)
+        except KeyboardInterrupt as error:
+            error.add_note(f"the job goes on at the server; Client.job({self.id!r}) finds it")
+            raise
         return self
+
+    def _wait_until(self, end: float, timeout: float | None, bar: RunProgress | None) -> None:
+        self._report(bar)
+        while not self.finished:
+            left = end - time.monotonic()
+            if left <= 0:
+                raise WaitTimeoutError(f"job {self.id} is still {self.state} after {timeout:g} s")
+            self._poll(min(LONG_POLL_S, left), min(RECONNECT_S, left), bar)
+            self._report(bar)
 
     def result(self) -> Result:
         """The result, the same object as of a local run; waits for the job, downloads files when they are used.

@@ -1,7 +1,8 @@
 """The four steps of a job, and a local run of them."""
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -121,19 +122,38 @@ def execute(
     ``progress(done, total, message)`` is called in this thread a few times a second. ``threads`` (default:
     the variable WSRENDER_THREADS, else all cores) and ``chunk_size`` change no bit of the result.
     """
-    started = time.perf_counter()
-    if progress:
-        progress(0, 1, "planning")
-    with told_to(progress):
-        settled = plan(document, robot)
-    total = settled.samples
-    planned_at = time.perf_counter()
+    with _interruptible(progress) as told:
+        started = time.perf_counter()
+        told(0, 1, "planning")
+        with told_to(progress):
+            settled = plan(document, robot)
+        total = settled.samples
+        planned_at = time.perf_counter()
 
-    def report(done: int) -> None:
+        def report(done: int) -> None:
+            told(done, max(total, done), "samples")  # converging jobs exceed it
+
+        partial = run_shard(settled, 0, report, threads=threads, chunk_size=chunk_size)
+        swept_at = time.perf_counter()
+        seconds = {"plan": planned_at - started, "sweep": swept_at - planned_at}
+        return finish(settled, partial, seconds, told if progress else None, threads=threads)
+
+
+@contextmanager
+def _interruptible(progress: Progress | None) -> Iterator[Progress]:
+    """What reports progress; to a Ctrl-C it adds how far the run was, and that a run here keeps nothing."""
+    last = (0, 1, "planning")
+
+    def told(done: int, total: int, message: str) -> None:
+        nonlocal last
+        last = done, total, message
         if progress:
-            progress(done, max(total, done), "samples")  # converging jobs exceed it
+            progress(done, total, message)
 
-    partial = run_shard(settled, 0, report, threads=threads, chunk_size=chunk_size)
-    swept_at = time.perf_counter()
-    seconds = {"plan": planned_at - started, "sweep": swept_at - planned_at}
-    return finish(settled, partial, seconds, progress, threads=threads)
+    try:
+        yield told
+    except KeyboardInterrupt as error:
+        if not getattr(error, "__notes__", ()):  # of a run within this one
+            done, total, message = last
+            error.add_note(f"{message}, {done:,} of {total:,} done; nothing of this run was kept")
+        raise
