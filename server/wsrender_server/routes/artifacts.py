@@ -263,7 +263,7 @@ async def _drawn(
     records, result = await run_in_threadpool(_listed, server, job)
     with not_found_if_gone(RESULT, Path(result)):
         wanted = await readable(server.side_process.run(files_for_plot, result, plot, records))
-    files = await run_in_threadpool(files_of, server, job, wanted) | instead
+    files = {**await run_in_threadpool(files_of, server, job, wanted), **instead}
     with not_found_if_gone(", ".join(files), *map(Path, (result, *files.values()))):
         content = await or_404(server.side_process.run(draw, result, files, plot, format, options))
     return Response(content, media_type=format.media_type)
