@@ -2,7 +2,7 @@
 
 import asyncio
 import hashlib
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -133,7 +133,7 @@ def check_binding(host: str, has_keys: bool) -> None:
     )
 
 
-def needs(right: Scope) -> Callable[..., Principal]:
+def needs(right: Scope) -> Callable[..., Awaitable[Principal]]:
     """The dependency of a route that needs a right."""
 
     async def principal(

@@ -10,6 +10,7 @@ import time
 from contextlib import contextmanager
 from importlib.util import find_spec
 from pathlib import Path
+from typing import Any
 
 import pytest
 from sqlalchemy import create_engine, make_url, text
@@ -33,7 +34,7 @@ class Postmaster:
 
     def __init__(self, command, port, log):
         self._command, self._port, self._log = command, port, log
-        self.process = None
+        self.process: Any = None
 
     def start(self):
         """Start it, and wait until it answers: while backends of one that was killed live on, it refuses to."""
