@@ -155,7 +155,7 @@ function writeBar(g: CanvasRenderingContext2D, w: Written, scale: ColorScale, ri
   const wide = Math.round(Math.min(260, Math.max(100, 0.28 * w.width)));
   g.font = `600 13px ${FONT}`;
   let title = scale.title;
-  while (title.length > 4 && g.measureText(title).width > Math.max(wide, w.width * 0.42)) title = `${title.slice(0, -2)}…`;
+  while (title.length > 4 && g.measureText(title).width > Math.max(wide, w.width * (w.bars.length > 1 ? 0.42 : 0.8))) title = `${title.slice(0, -2)}…`;
   const titled = g.measureText(title).width, panel = (width: number, height: number) => {
     g.fillStyle = w.ink.panel;
     g.beginPath(); g.roundRect(right - width - 14, 6, width + 28, height, 6); g.fill();
