@@ -8,7 +8,7 @@ from scipy.spatial import ConvexHull
 
 import wsrender as ws
 from wsrender.errors import ModelError
-from wsrender.robots import hulls, load_urdf, mesh_files
+from wsrender.robots import hulls, load, load_urdf, mesh_files
 from wsrender.robots.model_warning import ModelWarning
 
 BRICK = trimesh.creation.box((0.1, 0.2, 0.3))
@@ -283,3 +283,19 @@ def test_large_hulls_are_simplified_outwards(tmp_path, monkeypatch):
     monkeypatch.setattr(hulls, "MOST_VERTICES", 20)
     with pytest.raises(ModelError, match=r"hull of shape 'a/0' has 642 vertices; 20 that hold it go more than 0.5 %"):
         _ = loaded(tmp_path, content=ball.export(file_type="stl")).bodies
+
+
+def test_a_mesh_of_three_vertices_is_not_drawn_and_does_not_collide(tmp_path):
+    """Files that others publish have such among their visuals."""
+    (tmp_path / "a.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    text = (
+        '<robot name="r"><link name="a"/><link name="b">{}</link><joint name="j" type="revolute"><parent link="a"/>'
+        '<child link="b"/><axis xyz="0 0 1"/><limit lower="-1" upper="1" effort="1" velocity="1"/></joint></robot>'
+    )
+    mesh = '<geometry><mesh filename="a.obj"/></geometry>'
+    (tmp_path / "seen.urdf").write_text(text.format(f"<visual>{mesh}</visual>"))
+    seen = load(tmp_path / "seen.urdf").visuals
+    assert seen.shapes == () and "'a.obj' has 3 vertices; at least 4" in seen.notices[0].message
+    (tmp_path / "meets.urdf").write_text(text.format(f"<collision>{mesh}</collision>"))
+    with pytest.raises(ModelError, match=r"'a.obj' has 3 vertices; at least 4"):
+        _ = load(tmp_path / "meets.urdf").bodies

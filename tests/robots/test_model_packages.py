@@ -2,6 +2,7 @@
 
 import re
 
+import numpy as np
 import pytest
 
 import wsrender as ws
@@ -25,6 +26,17 @@ def test_a_reason_that_is_not_in_the_table_is_told():
     unknown = model_packages.Outcome(FILES[0], "something else")
     assert unknown.reason is None
     assert model_packages.violations({"a part": {"loaded": 2, f"{model_packages.UNSTATED} file: said": 1}}) != []
+
+
+def test_robots_stand_where_a_walk_of_their_own_says(monkeypatch):
+    """And one that does not is told."""
+    file = next((file for file in FILES if file.name == "z1.urdf"), None)
+    if file is None:
+        pytest.skip("example-robot-data is not installed")
+    found = model_packages.outcome(file)
+    assert (found.message, model_packages.fault(found)) == ("", "")
+    monkeypatch.setattr(model_packages.urdf_walk, "pose", lambda *_: np.eye(4))
+    assert model_packages.fault(found).startswith("its tip is off by ")
 
 
 # Files that show one fault of a kind each: what is said of them, and None where they load.

@@ -9,6 +9,8 @@ from wsrender.robots.mesh_files import ReadMesh, triangles
 from wsrender.robots.urdf import Link, Shape
 from wsrender.robots.xml_source import numbers
 
+FEWEST_VERTICES = 4  # that MuJoCo takes
+
 PRIMITIVES = {
     "box": mujoco.mjtGeom.mjGEOM_BOX,
     "capsule": mujoco.mjtGeom.mjGEOM_CAPSULE,
@@ -70,9 +72,12 @@ def _added(
         raise ModelError(field, f"{where} is of no known kind; allowed: {', '.join((*PRIMITIVES, 'mesh'))}")
     if (content := read_mesh(shape.file)) is None:
         raise ModelError(field, f"{where}: the file {shape.file!r} is not there, or is too large")
-    mesh = spec.add_mesh(name=f"mesh{len(spec.meshes)}", inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL)
-    mesh.scale = numbers(shape.scale or "1 1 1", 3, field, f"{where}: scale")
+    scale = numbers(shape.scale or "1 1 1", 3, field, f"{where}: scale")
     vertices, faces = triangles(content, shape.file, field)
+    if len(vertices) < FEWEST_VERTICES:
+        raise ModelError(field, f"{where}: {shape.file!r} has {len(vertices)} vertices; at least 4 enclose a volume")
+    mesh = spec.add_mesh(name=f"mesh{len(spec.meshes)}", inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL)
+    mesh.scale = scale
     mesh.uservert = vertices.ravel()
     if purpose == "visual":
         mesh.userface = faces.ravel()
