@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from tests.engine.test_voxels import executed, job
+from tests.lasting import lasting
 from wsrender import run
 from wsrender.engine import thread_count
 from wsrender.errors import InputError
@@ -56,12 +57,9 @@ def test_shards_merge_in_any_order(split, precision, device):
 
 
 def test_documents_of_equal_jobs_are_equal(precision):
-    def without_time(result):
-        return {key: value for key, value in result.document.items() if key != "timing_s"}
-
     one, _, _ = executed(job(precision, COUNT), threads=1, chunk_size=1000)
     two, _, _ = executed(job(precision, COUNT), threads=2, chunk_size=1_000_000)
-    assert without_time(one) == without_time(two)
+    assert lasting(one.document) == lasting(two.document)
 
 
 def test_folding_32_bit_counts_changes_nothing(precision, monkeypatch):

@@ -6,6 +6,7 @@ import sys
 import pytest
 
 import wsrender as ws
+from tests.lasting import lasting
 from tests.run.small_jobs import SMALL_JOBS
 from wsrender.analyses.execution import Execution
 from wsrender.analyses.registry import job_classes
@@ -58,11 +59,6 @@ def _is_planning():
     return False
 
 
-def settled(document):
-    """Without times, which method_comparison has in its rows of text too."""
-    return {name: value for name, value in document.items() if name != "timing_s"}
-
-
 def test_there_is_a_job_of_every_analysis():
     assert set(SMALL_JOBS) == set(job_classes())
 
@@ -73,7 +69,7 @@ def test_every_step_takes_the_threads_that_are_asked_for(analysis, requested):
     assert set(requested) == {ASKED}
     asked_by_steps = 2 if "design" not in SMALL_JOBS[analysis] else 0  # Execution, of the shard and of finish
     assert (len(requested) > asked_by_steps) == (analysis not in ON_ONE_CORE)
-    assert settled(execute(SMALL_JOBS[analysis], threads=1).document) == settled(found.document)
+    assert lasting(execute(SMALL_JOBS[analysis], threads=1).document) == lasting(found.document)
 
 
 @pytest.mark.parametrize("door", DOORS, ids=lambda door: door.__name__)

@@ -8,6 +8,7 @@ import pytest
 import trimesh
 
 import wsrender as ws
+from tests.lasting import lasting
 from tests.run.simple_robots import PLANAR, planar_arm
 from wsrender.collision import store
 from wsrender.run import execute, finish, merge, plan, run_shard
@@ -28,7 +29,7 @@ def analysis(**execution):
 
 def timeless(result):
     """The document without what differs from run to run."""
-    return json.dumps({name: value for name, value in result.document.items() if name != "timing_s"})
+    return json.dumps(lasting(result.document))
 
 
 def assert_same_bits(a, b):
