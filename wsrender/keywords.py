@@ -21,10 +21,11 @@ def keywords(what: Called) -> Called:
     """A function that refuses an unknown keyword with the one that may be meant; of a class all that it offers."""
     if not isclass(what):
         return _checked(what)
-    for name, member in vars(what).copy().items():
+    kind: Any = what
+    for name, member in vars(kind).copy().items():
         if isfunction(member) and (name == "__init__" or not name.startswith("_")):
-            setattr(what, name, _checked(member))
-    return what
+            setattr(kind, name, _checked(member))
+    return kind
 
 
 def _checked(function: Any) -> Any:

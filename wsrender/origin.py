@@ -4,6 +4,7 @@ One source of what ``wsrender cite``, provenance and CITATION.cff say.
 """
 
 import json
+from collections.abc import Mapping
 from contextvars import ContextVar
 from typing import Literal, get_args
 
@@ -55,7 +56,7 @@ def _bibtex() -> str:
     return "\n\n".join(_entry(*each) for each in (("software", "wsrender", software), ("article", "wsr2019", paper)))
 
 
-def _entry(kind: str, key: str, fields: dict[str, object]) -> str:
+def _entry(kind: str, key: str, fields: Mapping[str, object]) -> str:
     lines = "\n".join(f"  {name} = {{{value}}}," for name, value in fields.items())
     return f"@{kind}{{{key},\n{lines}\n}}"
 

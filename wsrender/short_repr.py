@@ -10,9 +10,9 @@ MOST_ITEMS = 4  # of a collection
 LONGEST_REPR = 240  # characters of all values
 
 
-def short_repr(what: Any) -> str:
+def short_repr(self: Any) -> str:
     """``Name(field=value, …)`` of a dataclass, without fields that hold their defaults, or nothing."""
-    return f"{type(what).__name__}({listed(_told(what))})"
+    return f"{type(self).__name__}({listed(_told(self))})"
 
 
 def listed(values: Iterator[tuple[str, Any]]) -> str:

@@ -50,7 +50,7 @@ def _dataset_of_voxels(volume: VolumeData, document: Mapping[str, Any]) -> "xarr
     for name, values in cell_arrays(volume, names, vectors):
         axes = (*AXES, VECTOR) if values.ndim == 4 else AXES
         arrays[name] = (axes, values, {"units": units[name], "long_name": words.get(name, said("samples"))})
-    centers = {axis: _axis(axis, volume.centers(k), "m") for k, axis in enumerate(AXES)}
+    centers: dict[str, Any] = {axis: _axis(axis, volume.centers(k), "m") for k, axis in enumerate(AXES)}
     if vectors:
         centers[VECTOR] = (VECTOR, list(AXES), {"long_name": "Component along the axes of the world"})
     about = _about(document, "world") | {"voxel_size_m": float(volume.voxel_size_m)}
@@ -97,7 +97,7 @@ def one_of(kind: str, held: Mapping[str, Any], name: str | None) -> Any:
     """What is held under a name, by default the first. Raises InputError where there is none."""
     if name is None and held:
         return next(iter(held.values()))
-    if name not in held:
+    if name is None or name not in held:
         missing = kind if name is None else f"{kind} {name}"
         raise InputError("name", f"the result has no {missing}; it holds {', '.join(held) or 'none'}")
     return held[name]

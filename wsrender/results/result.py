@@ -236,7 +236,7 @@ class Result:
         one that the result does not hold, MissingExtraError without the extra ``render``.
         """
         found = conversion.one_of("volume or mesh", {**self._all_volumes, **self._all_meshes}, name)
-        made = conversion.image_data if isinstance(found, VolumeData) else conversion.poly_data
+        made: Any = conversion.image_data if isinstance(found, VolumeData) else conversion.poly_data
         return made(found, self.document)
 
     def to_trimesh(self, name: str | None = None) -> "trimesh.Trimesh":

@@ -31,5 +31,5 @@ def _turned(what: Any, card: Card) -> dict[str, Any]:
         return {}
     if not isinstance(what, Robot):  # whose picture is in the viewer
         parts.append(HTML(card.figures))
-    bundle = VBox(parts)._repr_mimebundle_()
+    bundle = VBox(parts)._repr_mimebundle_() or {}
     return {kind: data for kind, data in bundle.items() if kind not in ("text/plain", "text/html")}
