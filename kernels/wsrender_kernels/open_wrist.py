@@ -286,6 +286,8 @@ _SEARCH = f"""
         const bool crossed = (value_low > ZERO) != (value_high > ZERO);
         if (!crossed) {{
             const bool within = value_low * rise_low < ZERO && value_high * rise_high > ZERO;
+            // Beside a point where f touches 0, or joints fold too, its signs and slopes are rounding.
+            s.doubt |= SMALLER(SIZE(value_low), SIZE(value_high)) < real(1e-10);
             if (!within) return;
         }}
         if (s.intervals < 6)

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 from wsrender_kernels.open_wrist import open_wrist_kernel
 
+import wsrender as ws
 from tests.engine import open_wrist_poses
 from tests.engine.test_closed_form import EXACT, anywhere, apart, in_the_box, near_limits
 from tests.reference.arms_by_axes import axes_of, chain_of
@@ -289,3 +290,20 @@ def test_classes():
     turned[2, :3, :3] = Rotation.from_rotvec([2e-6, 2e-6, 2e-6]).as_matrix() @ turned[2, :3, :3]
     assert OpenWristForm.of(replace(chain, T_joint=turned)) is None
     assert OpenWristForm.of(open_arm("CRX-10iA"), "position") is None
+
+
+def test_postures_at_the_end_of_an_arc_are_flagged():
+    """There axes are in line and the arm is stretched: what is left of the equation touches 0, up to rounding."""
+    rows = [(-0.9, 180, -2.8, -80, (-360, 360)), (0, 90, 0, 40, (-101, -44)), (-3.9, -90, -4.4, 90, (-360, 360))]
+    rows += [(2.1, 90, 0, 90, None), (-4, 0, 0, 0, (-180, 180)), (0, 0, 0, 88, (-360, 360))]
+    names = ("a", "alpha_deg", "d", "theta_deg", "limits_deg")
+    table = ws.DHTable(convention="standard", rows=[dict(zip(names, row, strict=True)) for row in rows])
+    chain = ws.load_robot(table).chain
+    lower, upper = np.maximum(chain.lower_limits, -6), np.minimum(chain.upper_limits, 6)
+    q = np.random.default_rng(0).uniform(lower, upper, (500, 6))
+    q[:, 2:4] = [0.0, np.pi]
+    form = OpenWristForm.of(chain)
+    found = open_wrist_postures(form, chain.poses(q), device="cpu")
+    off = np.remainder(form.rest.configurations(found.rows[..., :12]) - q[:, None] + np.pi, 2 * np.pi) - np.pi
+    there = (np.abs(off).max(axis=2) < 1e-3) & (found.rows[..., 12] > -4)
+    assert ((found.flags > 0) | there.any(axis=1)).all()

@@ -163,3 +163,30 @@ def test_postures_give_families_whole_and_without_a_search(case, monkeypatch):
             assert found.family[found.pose == k].any()
             seen += 1
     assert seen > 3 and np.concatenate(whole).mean() > 0.85
+
+
+def coaxial_arm():
+    """A slide along axis 1, and a wrist of one axis about a point on it: singular everywhere."""
+    rows = [{"limits_deg": [-170, 170]}, {"joint": "prismatic", "limits": [-0.1, 0.4]}]
+    rows.append({"alpha_deg": -90, "theta_deg": -100, "limits_deg": [50, 75]})
+    return ws.load_robot(ws.DHTable(convention="modified", rows=rows)).chain
+
+
+def slide_between_parallel_axes():
+    """Axes 1, 3 and 4 and the slide between them are parallel: singular everywhere."""
+    rows = [{"limits_deg": [30, 310]}, {"a": 0.46, "joint": "prismatic", "limits": [-0.1, 0.3]}, {}]
+    rows += [{"d": -0.17}, {"alpha_deg": 90}, {"alpha_deg": -90}]
+    return ws.load_robot(ws.DHTable(convention="modified", rows=rows)).chain
+
+
+@pytest.mark.parametrize("made", [coaxial_arm, slide_between_parallel_axes])
+def test_postures_that_are_folds_of_a_family_are_searched_for(made):
+    """Its ends are then known to the root of rounding alone: they are no postures, nor proof that there are none."""
+    chain = made()
+    lower, upper = (
+        np.where(np.isfinite(x), x, y) for x, y in ((chain.lower_limits, -np.pi), (chain.upper_limits, np.pi))
+    )
+    q = np.random.default_rng(1).uniform(lower, upper, (6, chain.n))
+    found = PostureSolver(chain, device="cpu").solve(chain.poses(q))
+    assert set(found.pose) == set(range(6))
+    assert not found.complete.any()

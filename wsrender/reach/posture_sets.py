@@ -304,7 +304,7 @@ class PostureSolver:
             doubtful = np.abs(found.rows[..., 13]) <= CLOSED_MARGIN
             at = np.flatnonzero(doubtful.any(axis=1))
             curves = families(form, asked[at], found.rows[at], 0.0)
-            solved[at] = curves.family & (curves.near <= EXACT)
+            solved[at] = curves.family & curves.told_apart & (curves.near <= EXACT)
             of, members = at[curves.pose], curves.rows
         pose, branch = np.nonzero((found.rows[..., 12] > -near_limits) & ~solved)
         q = np.tile(self._middle, (len(pose) + len(of), 1))

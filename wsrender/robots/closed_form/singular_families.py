@@ -28,13 +28,15 @@ ROUNDING = 1e-7  # rad: of what stands at a limit
 class Families:
     """Of N poses: branches (N, 8) that are a family's, and what is known of them.
 
-    ``family`` bool; ``near`` float64: how far off the branch is [sine or reaches]; ``none`` bool: no pose that is
+    ``family`` bool; ``near`` float64: how far off the branch is [sine or reaches]; ``told_apart`` bool: the joints that
+    are not of the family stand off each other's folds, so that it is the whole family; ``none`` bool: no pose that is
     closer than was asked has a posture of it within the limits. ``pose`` (M,) int and ``rows`` (M, 12): postures of
     families within the limits, each of their connected sets at least once, as kernels give them.
     """
 
     family: np.ndarray
     near: np.ndarray
+    told_apart: np.ndarray
     none: np.ndarray
     pose: np.ndarray
     rows: np.ndarray
@@ -60,7 +62,7 @@ def families(form: ClosedForm, T: np.ndarray, rows: np.ndarray, within: float) -
     none &= told_apart
     numbers = np.concatenate(pose)
     order = np.argsort(numbers, kind="stable")
-    return Families(kind >= 0, near, none, numbers[order], np.concatenate(found)[order])
+    return Families(kind >= 0, near, told_apart, none, numbers[order], np.concatenate(found)[order])
 
 
 def _in_frame(form: ClosedForm, T: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
