@@ -136,6 +136,9 @@ SECOND_SOURCES: dict[str, Callable[[], Poses]] = {
     "ur10": partial(urdf, "ur_description/urdf/ur10_robot.urdf", "base_link", "tool0"),
     "ur3e": partial(ssik, "universal_robots.ur3e"),
     "ur10e": partial(ssik, "universal_robots.ur10e"),
+    "kinova_j2s6s200": partial(
+        urdf, "kinova_description/robots/kinova.urdf", "j2s6s200_link_base", "j2s6s200_end_effector"
+    ),
     "talos_left_arm": partial(urdf, "talos_data/robots/talos_full_v2.urdf", "torso_2_link", "wrist_left_ft_tool_link"),
     "unitree_z1": partial(ssik, "unitree.z1"),
     "viperx300s": partial(ssik, "trossen.viperx300s"),
