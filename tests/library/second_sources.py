@@ -149,6 +149,7 @@ SECOND_SOURCES: dict[str, Callable[[], Poses]] = {
     "kuka_iiwa14": partial(ssik, "kuka.iiwa14"),
     "abb_irb120": partial(ssik, "abb.irb120", tool=Z_OUT_OF_X),
     "kuka_kr6_r900_sixx": partial(ssik, "kuka.kr6_r900", tool=Z_OUT_OF_X),
+    "fanuc_crx10ia": partial(ssik, "fanuc.crx10ia", tool=Z_OUT_X_UP),
     "fanuc_crx10ia_l": partial(ssik, "fanuc.crx10ial"),
     "fanuc_crx5ia": partial(ssik, "fanuc.crx5ia", tool=Z_OUT_X_UP),
     "fanuc_lrmate200id": partial(ssik, "fanuc.lrmate200id", tool=Z_OUT_X_UP),
