@@ -5,6 +5,7 @@ Numbers are compared to a tolerance, for other processors round otherwise; every
 
 import json
 import math
+import re
 from collections.abc import Iterator, Mapping
 from hashlib import sha256
 from typing import Any
@@ -21,6 +22,7 @@ OF_THE_RUN = frozenset({"timing_s", "artifacts"})
 OF_THE_HOST = frozenset({"wsrender", "warp-lang", "mujoco", "numpy", "target", "host", "run", "citation"})
 TIMES = ("seconds",)  # how names of times begin
 NOISE = ("residual", *TIMES)  # and of numbers that are noise below a tolerance
+FACETS = re.compile(r"polytope\w*/faces")  # rounding decides which triangles fill a facet of more than three corners
 
 
 def facts_of(result: Any, estimate: Mapping[str, float]) -> dict[str, Any]:
@@ -28,7 +30,7 @@ def facts_of(result: Any, estimate: Mapping[str, float]) -> dict[str, Any]:
     facts = {
         ESTIMATE: estimate,
         "document": _lasting(result.document),
-        "data": {name: _array(array, unit, name.rpartition("/")[2]) for name, array, unit in arrays_of(result)},
+        "data": {name: _array(array, unit, name) for name, array, unit in arrays_of(result)},
         "pictures": sorted(row.name for row in result.plot.pictures),
     }
     return json.loads(json.dumps(facts, allow_nan=False, default=np.ndarray.tolist))
@@ -90,7 +92,7 @@ def _array(values: np.ndarray, unit: str, name: str) -> dict[str, Any]:
     entry = {"shape": list(values.shape), "dtype": _dtype(values), "unit": unit}
     if values.dtype.kind not in "biuf":
         return entry | {"sha256": sha256(_text_of(values)).hexdigest()}
-    if name.startswith(NOISE):
+    if name.rpartition("/")[2].startswith(NOISE) or FACETS.search(name):
         return entry
     numbers = values.astype(np.float64).ravel()
     finite = np.isfinite(numbers)

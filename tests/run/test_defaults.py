@@ -8,11 +8,11 @@ import pytest
 
 import wsrender as ws
 from tests.reference.exact_volumes import CASES
-from tests.reference.published_robots import NAMES
 from tests.robots.model_packages import folders
 from tests.run.journeys import from_the_command_line
 from wsrender.reach.holes import share_of_holes
 from wsrender.reach.measure_refinement import refined_measure
+from wsrender.robots import library
 
 # Refined to .1 % from other points (seed 1), 1e5 of them decided by inverse kinematics.
 LONG = {"franka_panda": (2.5174, 1e-3), "kuka_iiwa14": (3.2863, 1e-3)}

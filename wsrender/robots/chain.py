@@ -8,6 +8,7 @@ import numpy as np
 
 from wsrender.robots.kinematics import FAR, Kinematics
 from wsrender.robots.reachable_box import reachable_boxes
+from wsrender.robots.small_matrices import applied, product
 from wsrender.short_repr import short_repr
 
 
@@ -23,7 +24,7 @@ def _first_moved(T_joint: np.ndarray, by: np.ndarray) -> np.ndarray:
 
 def _of_point(at: np.ndarray) -> np.ndarray:
     """Inertia (3, 3) [m²] of a unit mass at a point (3,) [m]."""
-    return at @ at * np.eye(3) - np.outer(at, at)
+    return (at * at).sum() * np.eye(3) - np.outer(at, at)
 
 
 def _motions(turns: bool, by: np.ndarray) -> np.ndarray:
@@ -176,12 +177,12 @@ class Chain(Kinematics):
         link, total = self.mass[-1], self.mass[-1] + mass
         if not mass:
             return self
-        T = self.T_tip @ self.T_tip_tool
-        place, R = T[:3] @ [*at, 1.0], T[:3, :3]
+        T = product(self.T_tip, self.T_tip_tool)
+        place, R = applied(T[:3], [*at, 1.0]), T[:3, :3]
         center = (link * self.center_of_mass[-1] + mass * place) / total
         about = link * _of_point(self.center_of_mass[-1] - center) + mass * _of_point(place - center)
         if inertia is not None:
-            about += R @ inertia @ R.T
+            about += product(R, inertia, R.T)
         return replace(
             self,
             mass=np.append(self.mass[:-1], total),

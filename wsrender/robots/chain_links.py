@@ -12,6 +12,7 @@ from wsrender.robots.frames import Frame, joints_of, transform
 from wsrender.robots.inertials import MASSLESS
 from wsrender.robots.kinematics import FAR
 from wsrender.robots.limits import Drive
+from wsrender.robots.small_matrices import applied, product
 
 
 def carriers(model: mujoco.MjModel, joints: list[int]) -> np.ndarray:
@@ -87,8 +88,8 @@ def links_of(model: mujoco.MjModel, geometry: Geometry, joints: list[tuple[Drive
         "joint_source": np.array([drive.source for drive in drives]),
         "joint_scale": signs * [drive.scale for drive in drives],
         "joint_offset": signs * [drive.offset for drive in drives],
-        "T_joint": np.array([inverse(T) @ T_next for T, T_next in zip(before, joint, strict=True)]),
-        "T_tip": inverse(joint[-1]) @ geometry.tip,
+        "T_joint": np.array([product(inverse(T), T_next) for T, T_next in zip(before, joint, strict=True)]),
+        "T_tip": product(inverse(joint[-1]), geometry.tip),
         "mass": mass,
         "center_of_mass": center,
         "inertia": inertia,
@@ -99,7 +100,7 @@ def links_of(model: mujoco.MjModel, geometry: Geometry, joints: list[tuple[Drive
 def joint_frame(model: mujoco.MjModel, data: mujoco.MjData, joint: int) -> np.ndarray:
     """World frame on the joint's anchor: its body's axes, turned the shortest way to make z the axis."""
     rotation = data.xmat[model.jnt_bodyid[joint]].reshape(3, 3)
-    return transform(data.xanchor[joint], rotation @ _turn_z_to(rotation.T @ data.xaxis[joint]))
+    return transform(data.xanchor[joint], product(rotation, _turn_z_to(applied(rotation.T, data.xaxis[joint]))))
 
 
 def _turn_z_to(axis: np.ndarray) -> np.ndarray:
@@ -107,15 +108,15 @@ def _turn_z_to(axis: np.ndarray) -> np.ndarray:
     x, y, z = axis
     if z < -0.5:  # half a turn about x first keeps the denominator away from 0
         half_turn = np.diag([1.0, -1.0, -1.0])
-        return half_turn @ _turn_z_to(half_turn @ axis)
+        return product(half_turn, _turn_z_to(applied(half_turn, axis)))
     K = np.array([[0.0, 0.0, x], [0.0, 0.0, y], [-x, -y, 0.0]])
-    return np.eye(3) + K + K @ K / (1.0 + z)
+    return np.eye(3) + K + product(K, K) / (1.0 + z)
 
 
 def inverse(T: np.ndarray) -> np.ndarray:
     """Inverse of a rigid transform (4, 4)."""
     R = T[:3, :3].T
-    return transform(-R @ T[:3, 3], R)
+    return transform(-applied(R, T[:3, 3]), R)
 
 
 def is_hinge(model: mujoco.MjModel, joint: int) -> bool:
@@ -147,10 +148,10 @@ def _rigid_sum(
     """
     m, moments = model.body_mass[bodies], model.body_inertia[bodies]
     m, moments = np.where(m > floor, m, 0.0), np.where(moments > floor, moments, 0.0)
-    R = T[:3, :3].T @ data.ximat[bodies].reshape(-1, 3, 3)
-    at = (data.xipos[bodies] - T[:3, 3]) @ T[:3, :3]
+    R = product(T[:3, :3].T, data.ximat[bodies].reshape(-1, 3, 3))
+    at = applied(T[:3, :3].T, data.xipos[bodies] - T[:3, 3])
     mass = float(m.sum())
-    center = m @ at / mass if mass > 0.0 else np.zeros(3)
+    center = applied(at.T, m) / mass if mass > 0.0 else np.zeros(3)
     about_own = np.einsum("bij,bj,bkj->ik", R, moments, R)
     d = at - center
     # parallel axes (Huygens–Steiner): Σ m (|d|² 1 − d dᵀ)

@@ -10,6 +10,7 @@ from wsrender.documents.robot import DHRow, DHTable
 from wsrender.notices import Notice
 from wsrender.robots.chain import Chain
 from wsrender.robots.plausibility import ANGLE
+from wsrender.robots.small_matrices import applied, principal_axes, product
 
 # MuJoCo refuses a moving body without mass: this much stands for "not published".
 NEGLIGIBLE = "1e-12"  # kg, kg m²
@@ -226,14 +227,14 @@ def _add_inertial(body: ElementTree.Element, row: DHRow, to_dh_frame: tuple[floa
     a, alpha = to_dh_frame
     c, s = _cosine_sine(alpha)
     R = np.array([[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]])
-    center = R @ np.array(row.center_of_mass) + [a, 0.0, 0.0]
-    I = R @ row.inertia_matrix() @ R.T  # noqa: E741 - the field's symbol
+    center = np.add(applied(R, row.center_of_mass), [a, 0.0, 0.0])
+    I = product(R, row.inertia_matrix(), R.T)  # noqa: E741 - the field's symbol
     inertial = ElementTree.SubElement(body, "inertial", pos=_text(*center), mass=_text(row.mass or 0.0))
     if np.count_nonzero(I - np.diag(np.diag(I))) == 0:
         inertial.set("diaginertia", _text(*np.diag(I)))
         return
     # Principal axes rather than fullinertia, which MuJoCo refuses for a rod (one moment zero).
-    moments, axes = np.linalg.eigh(I)
+    moments, axes = principal_axes(I)
     axes[:, 2] *= np.sign(np.linalg.det(axes))
     inertial.set("diaginertia", _text(*np.maximum(moments, 0.0)))
     inertial.set("xyaxes", _text(*axes[:, 0], *axes[:, 1]))

@@ -11,6 +11,7 @@ import numpy as np
 from wsrender.errors import ModelError
 from wsrender.notices import Notice
 from wsrender.robots.compiled_model import MUJOCO_ERRORS, quiet, refusal
+from wsrender.robots.small_matrices import principal_axes
 
 NEGLIGIBLE = 1e-14  # [kg, kg m²] given to massless links; MuJoCo's own floor is mjMINVAL = 1e-15
 MASSLESS = 1e-12  # [kg, kg m²] up to here a link counts as having no inertia
@@ -69,7 +70,7 @@ def _moments(body: mujoco.MjsBody, field: str) -> np.ndarray:
     if not full:
         return np.maximum(diagonal, 0.0)
     xx, yy, zz, xy, xz, yz = body.fullinertia
-    moments, axes = np.linalg.eigh(np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]))
+    moments, axes = principal_axes([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
     if moments.min() >= -max(_SEMIDEFINITE * moments.max(), NEGLIGIBLE):
         moments = np.maximum(moments, 0.0)
     body.fullinertia = [np.nan, 0.0, 0.0, 0.0, 0.0, 0.0]

@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from wsrender.robots.chain import Chain
+from wsrender.robots.small_matrices import product
 
 ORDER = (0, 1, 2, 5, 4, 3)  # of coordinates x, y, z, roll, pitch, yaw: R = Rz(yaw) Ry(pitch) Rx(roll)
 AXES = (0, 1, 2, 0, 1, 2)
@@ -39,12 +40,12 @@ class MovingBase:
         T, joints = np.eye(4), []
         for k in ORDER:
             if k > 2:
-                T = T @ _turned(AXES[k], self._middle[k])
+                T = product(T, _turned(AXES[k], self._middle[k]))
             if k in self.varying:
                 along = _turned_to(AXES[k])
-                joints.append(T @ along)
+                joints.append(product(T, along))
                 T = along.T
-        return joints, T @ self.T_frame_base
+        return joints, product(T, self.T_frame_base)
 
     @property
     def base_on_last(self) -> np.ndarray:
@@ -61,7 +62,7 @@ class MovingBase:
         T_world = np.eye(4)
         T_world[:3, 3] = self._middle[:3]
         if not m:
-            return chain.placed(T_world @ self.base_on_last)
+            return chain.placed(product(T_world, self.base_on_last))
         joints, T_base = self._joints
         free = np.full(m, np.inf)
         before = {
@@ -85,7 +86,7 @@ class MovingBase:
             "joint_names": before["joint_names"] + chain.joint_names,
             "joint_source": np.concatenate([np.arange(m), chain.joint_source + m]),
             "efforts": np.concatenate([np.stack([-free, free]), chain.efforts], axis=1),
-            "T_joint": np.concatenate([joints, [T_base @ chain.T_joint[0]], chain.T_joint[1:]]),
+            "T_joint": np.concatenate([joints, [product(T_base, chain.T_joint[0])], chain.T_joint[1:]]),
             "T_world_base": T_world,
             "with_branches": None,
         }

@@ -46,7 +46,7 @@ def expanded(path: Path, arguments: Mapping[str, Any], packages: Packages, field
 
     with _LOCK, _finding(find):
         try:
-            document = xacro.process_file(str(path), mappings=given)
+            document: Any = xacro.process_file(str(path), mappings=given)
         except Exception as error:  # its readers raise whatever they stumble over
             raise _refusal(error, path, field) from error
     if unknown := sorted(arguments.keys() - given.asked):

@@ -61,7 +61,7 @@ def edges_and_corners(mesh: PatchMesh, exact: float = _EXACT) -> tuple[list[Edge
         _edge(mesh, rows, tuple(np.searchsorted(used, vertices).tolist()), exact)
         for rows, vertices in zip(groups, ends, strict=True)
     ]
-    edges.sort(key=lambda edge: -edge.length)
+    edges.sort(key=lambda edge: -float(f"{edge.length:.9g}"))  # those of equal length keep their order, whatever rounds
     return [edge for k, edge in enumerate(edges) if not any(_repeats(edge, longer) for longer in edges[:k])], corners
 
 
