@@ -7,7 +7,7 @@ from pathlib import Path
 CLONE = Path(__file__).parents[2]
 TOLD = (CLONE / "THIRD_PARTY.md").read_text()
 TEXTS = (CLONE / "server" / "wsrender_server" / "static" / "viewer" / "licences.txt").read_text()
-OWN = (".xml", ".md")  # in folders of robots, whose shapes are primitives
+OWN = (".xml", ".md", ".toml")  # in folders of robots, whose shapes are primitives
 
 
 def test_each_package_in_the_page_is_named_with_its_licence():

@@ -138,9 +138,14 @@ def test_a_document_says_how_its_file_is_read(arm):
         job_command.corrected_robot(document, [], None, [], ["tool"])
 
 
+WRITERS = {"dae": ["collada"], "3mf": ["lxml", "networkx"]}  # what trimesh needs for these
+
+
 @pytest.mark.parametrize("suffix", ["stl", "obj", "dae", "ply", "off", "glb", "gltf", "3mf"])
 def test_meshes_of_every_format_are_seen_and_collide(suffix, tmp_path):
     """For visuals and collisions alike, with the same corners."""
+    for package in WRITERS.get(suffix, ()):
+        pytest.importorskip(package, reason=f"needs {package}, of the extra test-models")
     content = (trimesh.Scene(BRICK) if suffix == "glb" else BRICK).export(file_type=suffix)
     if isinstance(content, dict):  # glTF, its buffers beside it
         content = trimesh.exchange.gltf.export_gltf(trimesh.Scene(BRICK), embed_buffers=True)["model.gltf"]
@@ -176,6 +181,7 @@ def test_meshes_that_are_refused(name, content, message):
 
 
 def test_a_packed_mesh_that_would_fill_memory_is_refused(monkeypatch):
+    pytest.importorskip("lxml", reason="needs lxml, of the extra test-models")
     from wsrender.robots import mesh_files
 
     content = trimesh.Scene(BRICK).export(file_type="3mf")
