@@ -18,7 +18,7 @@ def product(*factors: ArrayLike) -> np.ndarray:
 
 def applied(A: ArrayLike, x: ArrayLike) -> np.ndarray:
     """Matrices (…, I, J) times vectors (…, J)."""
-    return np.einsum("...ij,...j->...i", A, x)
+    return np.einsum("...ij,...j->...i", np.asarray(A), np.asarray(x))
 
 
 def principal_axes(A: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
