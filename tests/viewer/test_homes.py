@@ -155,6 +155,7 @@ def test_a_notebook_shows_a_robot_and_keeps_no_data(page, notebook):
             break
         except Exception:
             time.sleep(0.5)
+    page.get_by_text("| Idle").wait_for()  # what is run before the kernel is there is lost
     page.locator(".jp-Notebook .jp-Cell").first.click()
     page.locator(".jp-Notebook .jp-Cell .jp-InputArea-editor").first.click()
     page.keyboard.press("Control+Enter")
