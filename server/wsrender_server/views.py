@@ -106,7 +106,9 @@ class Views:
         self._files.check_space()
         folder.mkdir(parents=True, exist_ok=True)
         kept = 0
-        for number, old in enumerate(sorted(self._root.iterdir(), key=_last_used, reverse=True)):
+        for number, old in enumerate(
+            sorted(self._root.iterdir(), key=lambda each: (each == folder, _last_used(each)), reverse=True)
+        ):
             kept += sum(file.stat().st_size for file in old.iterdir())
             if old != folder and (number >= MOST_KEPT or kept > MOST_KEPT_BYTES):
                 shutil.rmtree(old, ignore_errors=True)

@@ -67,7 +67,7 @@ def test_indices_at_given_configurations(tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["ur5"], 'has no robot "ur5"; did you mean "ur5e"?'),
+        (["ur5f"], 'has no robot "ur5f"; did you mean "ur5"?'),
         (["missing.urdf"], "missing.urdf"),
         (["ur5e", "--tip", "hand"], "choose one of: "),
         (["ur5e", "--lock", "elbow=0"], "elbow"),

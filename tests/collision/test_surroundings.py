@@ -127,7 +127,7 @@ def test_a_scene_of_files_is_the_scene_of_its_text(tmp_path):
     [
         ({"robot": "ur5e", "configuration": [0, 0]}, "configuration", r"has shape .*\(6,\) or"),
         ({"robot": "ur5e", "configuration": [0, 0, 90, 0, 0, 0]}, "configuration", "at 90, beyond its limits"),
-        ({"robot": {"library": "ur5"}, "configuration": [0]}, "robot.library", "ur5"),
+        ({"robot": {"library": "ur7"}, "configuration": [0]}, "robot.library", "ur7"),
         ({"robot": {"mjcf": CELL}, "configuration": [0]}, "robot.mjcf", "is a free joint on the chain"),
         (
             {"robot": {"dh": {"convention": "standard", "rows": [{"a": 0.3}] * 2}}, "configuration": [0, 0]},

@@ -41,7 +41,8 @@ def test_a_server_draws_the_same_pictures_of_what_they_need(analysis, saved):
     for row in result.plot.pictures:
         needed = files_of_parts((*row.needs, *row.uses), files)
         assert 0 < len(needed) < len(files)
-        drawn = draw(result.document, {name: files[name] for name in needed}, row.name, PNG, {"index": None})
+        given = {name: files[name] for name in needed}
+        drawn = draw(str(saved(analysis) / "result.json"), given, row.name, PNG, {"index": None})
         assert drawn == png(row.drawn(result.plot)), row.name
 
 

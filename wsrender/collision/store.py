@@ -32,7 +32,9 @@ MAKERS = (  # modules by which programs are made
     "robots/joint_space.py",
     "robots/kinematics.py",
     "robots/reachable_box.py",
+    "robots/small_matrices.py",
     "robots/triangles.py",
+    "short_repr.py",
     "version.py",
 )
 

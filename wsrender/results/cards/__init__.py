@@ -3,7 +3,7 @@
 from dataclasses import replace
 from typing import Any
 
-from wsrender.results.cards.card import Card
+from wsrender.results.cards.card_html import Card
 from wsrender.results.cards.subjects import card_of
 from wsrender.robot import Robot
 from wsrender.window import in_widget

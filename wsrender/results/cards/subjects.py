@@ -8,7 +8,7 @@ import numpy as np
 
 from wsrender.geometry.planar.exact_boundary import ExactBoundary
 from wsrender.results import drawing
-from wsrender.results.cards.card import Card
+from wsrender.results.cards.card_html import Card
 from wsrender.results.export.columns import columns_of
 from wsrender.results.export.headline import headline_lines, warning_lines
 from wsrender.results.export.text import method_text, sampling_text, summary_facts
