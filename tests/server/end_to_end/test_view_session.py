@@ -185,10 +185,10 @@ def test_as_many_questions_a_second_as_a_fast_screen_has_pictures_are_taken(serv
             for k in range(120):
                 assert parts_of(socket.recv(60))[0]["id"] == k
             time.sleep(1.1)
-        with pytest.raises(ConnectionClosed):
-            for k in range(100_000):
+        with contextlib.suppress(ConnectionClosed):
+            for k in range(245):  # in two seconds at most
                 socket.send(json.dumps({"id": k, "ask": "dance"}))
-        header, code = ended(socket, 5.0)
+        header, code = ended(socket, 20.0)
         assert (header["refused"]["code"], code) == ("too_fast", 1008)
 
 
